@@ -1,0 +1,17 @@
+#![cfg_attr(all(panic = "abort", not(test)), no_std)]
+//! The C ABI of noisefloor. `include/noisefloor.h` is generated from this crate and is its documentation.
+//!
+//! Every function checks its arguments, writes its outputs only on success, and never panics, allocates or locks.
+//! This crate is the only one that contains `unsafe`; the pointer checks are in [`convert`].
+
+mod convert;
+mod status;
+
+pub use status::*;
+
+/// Nothing in the library can panic (a test looks for the panic symbols in the archive), so this is never reached.
+#[cfg(all(panic = "abort", not(test)))]
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    loop {}
+}

@@ -1,0 +1,43 @@
+//! The one error type of the crate.
+
+use core::fmt;
+
+/// Why a call was refused. A refused call leaves its outputs and its object as they were.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Error {
+    /// An argument is outside its documented range.
+    Range,
+    /// An input value is NaN or infinite.
+    NotFinite,
+    /// A caller-supplied buffer is too small.
+    Memory,
+    /// There is nothing to estimate from.
+    NoSamples,
+    /// The options exist, but not in this combination.
+    Unsupported,
+    /// Two objects made with different configurations cannot be combined.
+    Mismatch,
+}
+
+impl Error {
+    /// A static sentence that says what was wrong.
+    pub const fn message(self) -> &'static str {
+        match self {
+            Error::Range => "an argument is outside its documented range",
+            Error::NotFinite => "an input value is NaN or infinite",
+            Error::Memory => "a caller-supplied buffer is too small: ask the matching size function",
+            Error::NoSamples => "no samples: at least one is needed",
+            Error::Unsupported => "this combination of options is not supported",
+            Error::Mismatch => "the two objects were made with different configurations",
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.message())
+    }
+}
+
+impl core::error::Error for Error {}

@@ -1,0 +1,42 @@
+//! `cargo xtask`: everything the project does beyond `cargo build`.
+
+mod header;
+mod library;
+mod paths;
+mod run;
+mod test;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+#[derive(Parser)]
+#[command(name = "cargo xtask", about = "Build, test and demonstrate noisefloor")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run every test; installs what it needs when it may
+    Test(test::Options),
+    /// Regenerate include/noisefloor.h
+    Header,
+    /// Build target/noisefloor/libnoisefloor.a, the archive that C and C++ programs link
+    Library,
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Test(options) => test::run(&options),
+        Command::Header => header::write(),
+        Command::Library => library::build().map(|path| println!("{}", path.display())),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
