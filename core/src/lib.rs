@@ -2,6 +2,18 @@
 #![forbid(unsafe_code)]
 //! noisefloor: less Monte Carlo noise for the samples a renderer or trainer already pays for.
 
+#[cfg(feature = "control-variate")]
+mod arena;
+#[cfg(feature = "control-variate")]
+pub mod basis;
+#[cfg(feature = "control-variate")]
+pub mod control_variate;
 pub mod error;
+#[cfg(feature = "control-variate")]
+mod lanes;
+#[cfg(feature = "control-variate")]
+mod linalg;
+#[cfg(feature = "control-variate")]
+pub mod real;
 
 pub use error::Error;

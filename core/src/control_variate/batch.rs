@@ -1,0 +1,174 @@
+//! Estimates from samples in caller arrays.
+
+use super::accumulator::{Accumulator, State};
+use super::config::{Config, Estimate, Estimator, Solver};
+use super::design::Design;
+use super::mixture::{self, Fitter};
+use super::per_channel::PerChannel;
+use super::result::{self, Outcome};
+use super::samples::{Reader, Samples, Subset};
+use super::{gradient_descent, k_fold, square_root};
+use crate::arena::Arena;
+use crate::basis::Basis;
+use crate::error::Error;
+use crate::real::Real;
+
+/// The most samples that [`Solver::Dual`] takes: its system is as large as they are.
+const MAX_DUAL: usize = 4096;
+
+/// Numbers of workspace that [`estimate`] needs for `n` samples.
+///
+/// # Errors
+/// [`Error::Range`] or [`Error::Unsupported`] for a configuration that cannot be, [`Error::Memory`] if no memory could
+/// be large enough.
+#[inline]
+pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error> {
+    let basis = config.checked_basis()?;
+    let plan = Plan::new(config, &basis, n)?;
+    let design = Design::<R>::size(n, plan.columns, config.channels).ok_or(Error::Memory)?;
+    let solve = match config.estimator {
+        Estimator::GradientDescent => gradient_descent::size(plan.columns, config.channels),
+        Estimator::KFold => k_fold::size::<R>(config, plan.columns, n).ok_or(Error::Memory)?,
+        Estimator::Incremental => {
+            let state = State::<R>::new(config)?;
+            return state.len().checked_add(state.workspace_len()).ok_or(Error::Memory);
+        }
+        Estimator::LeastSquares if config.solver == Solver::SquareRoot => square_root::size(plan.columns, 1),
+        _ => mixture::size(n, plan.dual, plan.columns, config.channels).ok_or(Error::Memory)?,
+    };
+    design.checked_add(solve).ok_or(Error::Memory)
+}
+
+/// How a configuration is carried out.
+#[derive(Clone, Copy)]
+pub(crate) struct Plan {
+    /// Functions, control functions included, the constant not.
+    pub(crate) columns: usize,
+    /// Whether fits go through the samples' n x n system.
+    pub(crate) dual: bool,
+}
+
+impl Plan {
+    #[inline(always)]
+    pub(crate) fn new(config: &Config, basis: &Basis, n: usize) -> Result<Self, Error> {
+        let columns = config.controls + basis.columns();
+        let dual = match config.solver {
+            // Control functions are all but free of penalty, which the dual divides by.
+            Solver::Auto => n <= columns && config.controls == 0,
+            Solver::NormalEquations => false,
+            Solver::Dual if config.controls > 0 => return Err(Error::Unsupported),
+            Solver::Dual if n > MAX_DUAL => return Err(Error::Range),
+            Solver::Dual => true,
+            Solver::SquareRoot if config.estimator == Estimator::LeastSquares => false,
+            Solver::SquareRoot => return Err(Error::Unsupported),
+        };
+        Ok(Self { columns, dual })
+    }
+}
+
+/// Estimates the integral over primary sample space from a pixel's samples.
+///
+/// Deterministic: the same samples give the same bits. Nothing is written but `workspace`, whose content does not
+/// matter and must not be relied on.
+///
+/// # Errors
+/// - [`Error::Range`]: a field of `config`, a coordinate outside [0, 1], or array lengths that do not belong together.
+/// - [`Error::NotFinite`]: a NaN or infinity among the samples, unless `config` says to skip them.
+/// - [`Error::NoSamples`]: no samples, or none left.
+/// - [`Error::Memory`]: `workspace` is shorter than [`workspace_len`] says.
+/// - [`Error::Unsupported`]: options that exclude each other.
+#[inline(always)]
+pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
+    if config.estimator == Estimator::Incremental {
+        return incremental(config, samples, workspace);
+    }
+    let basis = config.checked_basis()?;
+    let reader = Reader::new(config, samples)?;
+    let plan = Plan::new(config, &basis, reader.len())?;
+    reader.check()?;
+    let mut arena = Arena::new(workspace);
+    let is_plain = plan.columns == 0 || (config.stratified && config.estimator == Estimator::Robust);
+    let columns = if is_plain { 0 } else { plan.columns };
+    let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena)?;
+    let outcome = if is_plain || design.n == 1 {
+        Outcome { correction: Default::default(), variance: result::plain_variance(&design) }
+    } else {
+        match config.estimator {
+            // The incremental estimate went its own way above.
+            Estimator::Robust | Estimator::Incremental => robust(&design, config, &basis, plan, &mut arena)?,
+            Estimator::LeaveOneOut => leave_one_out(&design, config, &basis, plan, &mut arena)?,
+            Estimator::LeastSquares if config.solver == Solver::SquareRoot => {
+                square_root::least_squares(&design, config, &basis, &mut arena)?
+            }
+            Estimator::LeastSquares => least_squares(&design, config, &basis, plan, &mut arena)?,
+            Estimator::KFold => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
+            Estimator::GradientDescent => gradient_descent::estimate(&design, config, None, &mut arena)?,
+        }
+    };
+    Ok(result::finish(result::Summary::of(&design, &reader), outcome))
+}
+
+/// (4.30) is about a stream: the batch form streams.
+fn incremental<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
+    let state = State::<R>::new(config)?;
+    let (sums, scratch) = workspace.split_at_mut_checked(state.len()).ok_or(Error::Memory)?;
+    let mut accumulator = Accumulator::new(config, sums)?;
+    accumulator.add(samples)?;
+    accumulator.estimate(scratch)
+}
+
+#[inline(always)]
+fn robust<'a, R: Real>(
+    design: &Design<'a, R>,
+    config: &Config,
+    basis: &Basis,
+    plan: Plan,
+    arena: &mut Arena<'a, R>,
+) -> Result<Outcome<R>, Error> {
+    let fitter = Fitter::new(design, config, basis, plan.dual, arena)?;
+    let mixture = fitter.robust(None, arena)?;
+    Ok(Outcome { correction: mixture.correction, variance: result::variance_of_press(&mixture.press, design.n) })
+}
+
+#[inline(always)]
+fn leave_one_out<'a, R: Real>(
+    design: &Design<'a, R>,
+    config: &Config,
+    basis: &Basis,
+    plan: Plan,
+    arena: &mut Arena<'a, R>,
+) -> Result<Outcome<R>, Error> {
+    let fitter = Fitter::new(design, config, basis, plan.dual, arena)?;
+    let fit = fitter.single(config.ridge, None, arena)?;
+    Ok(Outcome { correction: fit.leave_one_out, variance: result::variance_of_press(&fit.press, design.n) })
+}
+
+/// Algorithm 1. Its residuals have mean zero, so the estimate is the fit's constant term.
+#[inline(always)]
+fn least_squares<'a, R: Real>(
+    design: &Design<'a, R>,
+    config: &Config,
+    basis: &Basis,
+    plan: Plan,
+    arena: &mut Arena<'a, R>,
+) -> Result<Outcome<R>, Error> {
+    let fitter = Fitter::new(design, config, basis, plan.dual, arena)?;
+    let fit = fitter.least_squares(config.ridge, arena)?;
+    let mut residual = fit.explained;
+    for (channel, value) in residual.iter_mut().enumerate() {
+        *value = (design.sum_of_squares(channel) - *value).max(R::ZERO);
+    }
+    Ok(Outcome { correction: fit.in_sample, variance: residual_variance(design, residual) })
+}
+
+/// The variance of a fit's constant term for a sum of squared residuals, or the plain mean's if no residual is left
+/// over to tell.
+pub(crate) fn residual_variance<R: Real>(design: &Design<'_, R>, residual: PerChannel<R>) -> Option<PerChannel<R>> {
+    match design.n.checked_sub(design.columns + 1) {
+        None | Some(0) => result::plain_variance(design),
+        Some(freedom) => {
+            let factor = R::ONE / (R::from_usize(freedom) * R::from_usize(design.n));
+            Some(residual.map(|residual| residual * factor))
+        }
+    }
+}

@@ -1,0 +1,278 @@
+//! A pixel's samples as a regression sees them: columns of functions, centred, and values, centred and scaled.
+
+use super::Config;
+use super::samples::{Reader, Subset};
+use crate::arena::Arena;
+use crate::basis::{Basis, MAX_DIMS};
+use crate::error::Error;
+use crate::lanes::{self, LANES, Lanes};
+use crate::linalg::packed_len;
+use crate::real::Real;
+
+/// The design matrix and the values, eight samples to a panel. Unused lanes of the last panel are zero.
+pub(crate) struct Design<'a, R> {
+    /// Samples.
+    pub(crate) n: usize,
+    /// Functions, the constant not counted.
+    pub(crate) columns: usize,
+    /// Values of a sample.
+    pub(crate) channels: usize,
+    /// Panel after panel, each with one group of lanes for each column.
+    pub(crate) panels: &'a mut [Lanes<R>],
+    /// Panel after panel, each with one group of lanes for each channel.
+    pub(crate) values: &'a mut [Lanes<R>],
+    /// What was subtracted from each column: its sample mean.
+    pub(crate) column_means: &'a mut [R],
+    /// How stored values map to the caller's.
+    pub(crate) units: [Units<R>; Config::MAX_CHANNELS],
+}
+
+/// value = offset + 2^exponent * stored
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Units<R> {
+    pub(crate) offset: R,
+    pub(crate) exponent: i32,
+}
+
+impl<R: Real> Units<R> {
+    /// The caller's value for a stored one.
+    pub(crate) fn value(&self, stored: R) -> f64 {
+        libm::scalbn(self.offset.to_f64() + stored.to_f64(), self.exponent)
+    }
+
+    /// The caller's length for a stored one.
+    pub(crate) fn length(&self, stored: R) -> f64 {
+        libm::scalbn(stored.to_f64(), self.exponent)
+    }
+
+    /// The stored length for a caller's.
+    pub(crate) fn stored_length(&self, value: f32) -> R {
+        R::from_f64(libm::scalbn(f64::from(value), -self.exponent))
+    }
+
+    /// A length stored in other units, in these.
+    #[inline(always)]
+    pub(crate) fn from_other(&self, length: R, other: &Self) -> R {
+        if self.exponent == other.exponent { length } else { length.scale(other.exponent - self.exponent) }
+    }
+
+    /// A value stored in other units, in these.
+    #[inline(always)]
+    pub(crate) fn relative(&self, stored: R, other: &Self) -> R {
+        self.from_other(other.offset + stored, other) - self.offset
+    }
+}
+
+impl<'a, R: Real> Design<'a, R> {
+    /// Numbers that a design of `n` samples takes from its arena.
+    pub(crate) fn size(n: usize, columns: usize, channels: usize) -> Option<usize> {
+        let lanes = n.div_ceil(LANES).checked_mul(LANES)?;
+        lanes.checked_mul(columns.checked_add(channels)?)?.checked_add(columns)
+    }
+
+    /// Evaluates the basis at the samples of a subset, which were checked before. With `centre`, columns and values
+    /// have mean zero; without, columns are as they are, and values relative to the first sample.
+    #[inline(always)]
+    pub(crate) fn load(
+        reader: &Reader<'_>,
+        basis: &Basis,
+        columns: usize,
+        subset: Subset,
+        centre: bool,
+        arena: &mut Arena<'a, R>,
+    ) -> Result<Self, Error> {
+        let channels = reader.channels();
+        let count = reader.count(subset).div_ceil(LANES);
+        let panels = arena.take_lanes(count.checked_mul(columns).ok_or(Error::Memory)?)?;
+        let values = arena.take_lanes(count.checked_mul(channels).ok_or(Error::Memory)?)?;
+        let column_means = arena.take(columns)?;
+        let units = units(reader, subset);
+        let factors = units.map(|unit| R::ONE.scale(-unit.exponent));
+        let mut x = [[R::ZERO; LANES]; MAX_DIMS];
+        let mut h = [[R::ZERO; LANES]; Config::MAX_CONTROLS];
+        let mut f = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
+        let mut value_panels = values.chunks_exact_mut(channels.max(1));
+        // Columns may be none, and chunks of nothing would be none either.
+        let mut column_panels = panels.chunks_exact_mut(columns.max(1));
+        let mut flush = |x: &_, h: &_, f: &[Lanes<R>]| {
+            if let Some(panel) = column_panels.next() {
+                reader.columns(basis, x, h, panel);
+            }
+            for (out, f) in value_panels.next().unwrap_or(&mut []).iter_mut().zip(f) {
+                *out = *f;
+            }
+        };
+        let mut lane = 0;
+        let n = reader.each(subset, |sample| {
+            sample.put(lane, &mut x, &mut h);
+            let sample = reader.values::<R>(sample);
+            for (((f, value), factor), unit) in f.iter_mut().zip(sample).zip(factors).zip(&units) {
+                if let Some(f) = f.get_mut(lane) {
+                    *f = value * factor - unit.offset;
+                }
+            }
+            lane += 1;
+            if lane == LANES {
+                flush(&x, &h, &f);
+                lane = 0;
+            }
+        });
+        if lane > 0 {
+            // The other lanes hold an earlier panel's samples, in range; they are cleared below.
+            flush(&x, &h, &f);
+        }
+        if n == 0 {
+            return Err(Error::NoSamples);
+        }
+        let used = n.div_ceil(LANES);
+        let panels = panels.get_mut(..used * columns).ok_or(Error::Memory)?;
+        let values = values.get_mut(..used * channels).ok_or(Error::Memory)?;
+        clear_unused(panels, columns, n);
+        clear_unused(values, channels, n);
+        let mut design = Self { n, columns, channels, panels, values, column_means, units };
+        design.centre(centre);
+        Ok(design)
+    }
+
+    /// Subtracts the means, or with `centre` false sets them to zero.
+    #[inline(always)]
+    fn centre(&mut self, centre: bool) {
+        for mean in self.column_means.iter_mut() {
+            *mean = R::ZERO;
+        }
+        if !centre {
+            return;
+        }
+        let inverse = R::ONE / R::from_usize(self.n);
+        for (j, mean) in self.column_means.iter_mut().enumerate() {
+            let mut total = [R::ZERO; LANES];
+            for panel in self.panels.chunks_exact(self.columns.max(1)) {
+                if let Some(column) = panel.get(j) {
+                    total = lanes::zip(&total, column, |a, b| a + b);
+                }
+            }
+            *mean = lanes::sum(&total) * inverse;
+        }
+        for panel in self.panels.chunks_exact_mut(self.columns.max(1)) {
+            for (column, &mean) in panel.iter_mut().zip(self.column_means.iter()) {
+                for value in column {
+                    *value -= mean;
+                }
+            }
+        }
+        for (channel, unit) in self.units.iter_mut().enumerate().take(self.channels) {
+            let mut total = [R::ZERO; LANES];
+            for panel in self.values.chunks_exact(self.channels) {
+                if let Some(values) = panel.get(channel) {
+                    total = lanes::zip(&total, values, |a, b| a + b);
+                }
+            }
+            let mean = lanes::sum(&total) * inverse;
+            for panel in self.values.chunks_exact_mut(self.channels) {
+                for value in panel.get_mut(channel).into_iter().flatten() {
+                    *value -= mean;
+                }
+            }
+            unit.offset += mean;
+        }
+        // Centring moved the unused lanes too.
+        clear_unused(self.panels, self.columns, self.n);
+        clear_unused(self.values, self.channels, self.n);
+    }
+
+    /// The panels one by one: columns and values of eight samples.
+    #[inline(always)]
+    pub(crate) fn each_panel(&self) -> impl Iterator<Item = (&[Lanes<R>], &[Lanes<R>])> {
+        self.panels.chunks_exact(self.columns.max(1)).zip(self.values.chunks_exact(self.channels.max(1)))
+    }
+
+    /// The sum of squares of a channel.
+    pub(crate) fn sum_of_squares(&self, channel: usize) -> R {
+        let mut total = [R::ZERO; LANES];
+        for panel in self.values.chunks_exact(self.channels.max(1)) {
+            if let Some(values) = panel.get(channel) {
+                lanes::add_product(&mut total, values, values);
+            }
+        }
+        lanes::sum(&total)
+    }
+
+    /// Writes the packed matrix of column products (4.28), and for each channel the products with its values.
+    /// `partial` holds one group of lanes for each column.
+    #[inline(always)]
+    pub(crate) fn normal_equations(&self, gram: &mut [R], rhs: &mut [R], partial: &mut [Lanes<R>]) {
+        for j in 0..self.columns {
+            let start = packed_len(j);
+            let row = gram.get_mut(start..start + j + 1).unwrap_or(&mut []);
+            let width = j + 1;
+            self.products(|panel, _| panel.get(j).copied(), partial.get_mut(..width).unwrap_or(&mut []), row);
+        }
+        for (channel, row) in rhs.chunks_exact_mut(self.columns.max(1)).enumerate() {
+            self.products(|_, values| values.get(channel).copied(), partial, row);
+        }
+    }
+
+    /// Sums, over the samples, of one quantity times each of the first columns.
+    #[inline(always)]
+    fn products(
+        &self,
+        quantity: impl Fn(&[Lanes<R>], &[Lanes<R>]) -> Option<Lanes<R>>,
+        partial: &mut [Lanes<R>],
+        out: &mut [R],
+    ) {
+        for partial in partial.iter_mut() {
+            *partial = [R::ZERO; LANES];
+        }
+        for (panel, values) in self.each_panel() {
+            let quantity = quantity(panel, values).unwrap_or([R::ZERO; LANES]);
+            for (partial, column) in partial.iter_mut().zip(panel) {
+                lanes::add_product(partial, &quantity, column);
+            }
+        }
+        for (out, partial) in out.iter_mut().zip(partial) {
+            *out = lanes::sum(partial);
+        }
+    }
+}
+
+/// Zeroes the lanes after sample `n`, where each panel has `width` groups.
+#[inline(always)]
+fn clear_unused<R: Real>(panels: &mut [Lanes<R>], width: usize, n: usize) {
+    let used = n % LANES;
+    if used == 0 {
+        return;
+    }
+    for group in panels.rchunks_exact_mut(width.max(1)).next().unwrap_or(&mut []) {
+        for value in group.iter_mut().skip(used) {
+            *value = R::ZERO;
+        }
+    }
+}
+
+/// Where the stored values' zero and unit lie: at the first sample, so that constants are exact, and, for a type whose
+/// range squares could leave, at a power of two near the largest value.
+#[inline(always)]
+fn units<R: Real>(reader: &Reader<'_>, subset: Subset) -> [Units<R>; Config::MAX_CHANNELS] {
+    let mut units = [Units::default(); Config::MAX_CHANNELS];
+    if R::NARROW {
+        let mut largest = [R::ZERO; Config::MAX_CHANNELS];
+        reader.each(subset, |sample| {
+            for (largest, value) in largest.iter_mut().zip(reader.values::<R>(sample)) {
+                *largest = largest.max(value.abs());
+            }
+        });
+        for (unit, largest) in units.iter_mut().zip(largest) {
+            unit.exponent = if largest > R::ZERO { largest.exponent().clamp(-126, 126) } else { 0 };
+        }
+    }
+    let mut first = true;
+    reader.each(subset, |sample| {
+        if first {
+            first = false;
+            for (unit, value) in units.iter_mut().zip(reader.values::<R>(sample)) {
+                unit.offset = value * R::ONE.scale(-unit.exponent);
+            }
+        }
+    });
+    units
+}

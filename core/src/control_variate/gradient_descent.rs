@@ -1,0 +1,274 @@
+//! The fit by gradient descent (Alg. 2, 4.29).
+//!
+//! With orthonormal functions the loss is nearly round, so few steps do. A fit that stopped early is a shrunk one: at
+//! low sample counts this is safer than least squares, with no matrix at all.
+
+use super::batch::{self, Plan};
+use super::config::{Config, Estimate, Optimizer};
+use super::design::Design;
+use super::moments::Centred;
+use super::per_channel::{PerChannel, get, set};
+use super::result::{self, Outcome};
+use super::samples::{Reader, Samples, Subset};
+use crate::arena::Arena;
+use crate::error::Error;
+use crate::lanes::{self, LANES};
+use crate::real::Real;
+
+/// Steps, if the caller names none.
+const ITERATIONS: usize = 32;
+/// Adam's step length in standard deviations of the values, if the caller names none.
+const ADAM_RATE: f64 = 0.05;
+/// Heavy-ball momentum, if the caller names none.
+const MOMENTUM: f64 = 0.8;
+/// Adam's decay of the first and second moment.
+const ADAM_DECAY: [f64; 2] = [0.9, 0.999];
+/// Rounds of power iteration for the largest curvature, which bounds the step.
+const POWER_ROUNDS: usize = 6;
+/// What the power iteration's value, a lower bound, is multiplied by.
+const POWER_MARGIN: f64 = 1.25;
+
+/// Numbers that a descent takes from its arena, its solution included.
+pub(crate) fn size(columns: usize, channels: usize) -> usize {
+    columns * (channels + 3)
+}
+
+/// A least-squares problem whose intercept was eliminated.
+pub(crate) trait Objective<R> {
+    /// Half the negative gradient of the mean squared residual, P'(f - P b) / n; without a channel, P'P b / n.
+    fn gradient(&self, channel: Option<usize>, b: &[R], out: &mut [R]);
+    /// The values' standard deviation.
+    fn deviation(&self, channel: usize) -> R;
+    /// The number of functions.
+    fn columns(&self) -> usize;
+}
+
+/// As [`estimate`](super::estimate) with [`Estimator::GradientDescent`](super::Estimator::GradientDescent), starting
+/// from `coefficients`, a row of `terms - 1` numbers for each channel in the values' unit, and leaving the solution
+/// there: a previous frame's solution is a good start for the next (4.2.6).
+///
+/// # Errors
+/// As for [`estimate`](super::estimate), and [`Error::NotFinite`] for a start that is not finite. The coefficients are
+/// written only on success.
+#[inline(always)]
+pub fn estimate_from<R: Real>(
+    config: &Config,
+    samples: Samples<'_>,
+    coefficients: &mut [f32],
+    workspace: &mut [R],
+) -> Result<Estimate, Error> {
+    let basis = config.checked_basis()?;
+    let reader = Reader::new(config, samples)?;
+    let columns = Plan::new(config, &basis, reader.len())?.columns;
+    if coefficients.len() != columns * reader.channels() {
+        return Err(Error::Range);
+    }
+    if !coefficients.iter().all(|value| value.is_finite()) {
+        return Err(Error::NotFinite);
+    }
+    reader.check()?;
+    let mut arena = Arena::new(workspace);
+    let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena)?;
+    let outcome = estimate(&design, config, Some(coefficients), &mut arena)?;
+    Ok(result::finish(result::Summary::of(&design, &reader), outcome))
+}
+
+/// Descends from zero, or from `warm` and back into it.
+#[inline(always)]
+pub(crate) fn estimate<R: Real>(
+    design: &Design<'_, R>,
+    config: &Config,
+    warm: Option<&mut [f32]>,
+    arena: &mut Arena<'_, R>,
+) -> Result<Outcome<R>, Error> {
+    let columns = design.columns;
+    let solutions = arena.take(columns * design.channels)?;
+    for value in solutions.iter_mut() {
+        *value = R::ZERO;
+    }
+    let unit = |index: usize| index.checked_div(columns).and_then(|channel| design.units.get(channel));
+    if let Some(warm) = &warm {
+        for (index, (out, &value)) in solutions.iter_mut().zip(warm.iter()).enumerate() {
+            *out = unit(index).map_or(R::ZERO, |unit| unit.stored_length(value));
+        }
+    }
+    descend(design, config, solutions, arena)?;
+    let mut residual = PerChannel::default();
+    let mut correction = PerChannel::default();
+    for (channel, solution) in solutions.chunks_exact(columns.max(1)).enumerate() {
+        let in_sample = solution.iter().zip(design.column_means.iter()).fold(R::ZERO, |sum, (&b, &m)| sum - b * m);
+        set(&mut correction, channel, in_sample);
+        set(&mut residual, channel, residual_square(design, channel, solution));
+    }
+    if let Some(warm) = warm {
+        for (index, (out, &value)) in warm.iter_mut().zip(solutions.iter()).enumerate() {
+            *out = unit(index).map_or(0.0, |unit| unit.length(value) as f32);
+        }
+    }
+    Ok(Outcome { correction, variance: batch::residual_variance(design, residual) })
+}
+
+/// Improves the coefficients, a row for each channel, step by step. A descent that diverges, for a step length of the
+/// caller's, ends at zero: the plain mean.
+#[inline(always)]
+pub(crate) fn descend<R: Real>(
+    objective: &impl Objective<R>,
+    config: &Config,
+    coefficients: &mut [R],
+    arena: &mut Arena<'_, R>,
+) -> Result<(), Error> {
+    let columns = objective.columns();
+    let (gradient, first, second) = (arena.take(columns)?, arena.take(columns)?, arena.take(columns)?);
+    let curvature = match config.optimizer {
+        Optimizer::Adam => R::ONE,
+        Optimizer::Momentum | Optimizer::Plain => largest_curvature(objective, first, gradient),
+    };
+    for (channel, solution) in coefficients.chunks_exact_mut(columns.max(1)).enumerate() {
+        let descent = Descent::new(config, objective.deviation(channel), curvature);
+        for value in first.iter_mut().chain(second.iter_mut()) {
+            *value = R::ZERO;
+        }
+        let steps = if config.iterations == 0 { ITERATIONS } else { config.iterations };
+        let mut bias = [R::ONE; 2];
+        for _ in 0..steps {
+            objective.gradient(Some(channel), solution, gradient);
+            descent.step(solution, gradient, first, second, &mut bias);
+        }
+        if !solution.iter().all(|value| value.is_finite()) {
+            for value in solution {
+                *value = R::ZERO;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The step rule and its constants.
+struct Descent<R> {
+    optimizer: Optimizer,
+    rate: R,
+    momentum: R,
+    /// Keeps Adam's quotient finite where the gradient is zero.
+    smallest: R,
+}
+
+impl<R: Real> Descent<R> {
+    fn new(config: &Config, deviation: R, curvature: R) -> Self {
+        let rate = R::from_f32(config.learning_rate);
+        let rate = match config.optimizer {
+            Optimizer::Adam if rate > R::ZERO => rate * deviation,
+            Optimizer::Adam => R::from_f64(ADAM_RATE) * deviation,
+            Optimizer::Momentum | Optimizer::Plain if rate > R::ZERO => rate / curvature,
+            Optimizer::Momentum | Optimizer::Plain => R::ONE / curvature,
+        };
+        let momentum = match config.optimizer {
+            Optimizer::Plain => R::ZERO,
+            _ if config.momentum > 0.0 => R::from_f32(config.momentum),
+            Optimizer::Momentum => R::from_f64(MOMENTUM),
+            Optimizer::Adam => R::from_f64(ADAM_DECAY[0]),
+        };
+        Self { optimizer: config.optimizer, rate, momentum, smallest: R::EPSILON * deviation }
+    }
+
+    /// One step along the negative gradient; `bias` holds the powers of Adam's decays so far.
+    #[inline(always)]
+    fn step(&self, solution: &mut [R], gradient: &[R], first: &mut [R], second: &mut [R], bias: &mut [R; 2]) {
+        if self.optimizer != Optimizer::Adam {
+            for ((b, &g), velocity) in solution.iter_mut().zip(gradient).zip(first) {
+                *velocity = self.momentum * *velocity + self.rate * g;
+                *b += *velocity;
+            }
+            return;
+        }
+        let decay = R::from_f64(ADAM_DECAY[1]);
+        bias[0] *= self.momentum;
+        bias[1] *= decay;
+        let unbias = [R::ONE / (R::ONE - bias[0]), R::ONE / (R::ONE - bias[1])];
+        for (((b, &g), m), v) in solution.iter_mut().zip(gradient).zip(first).zip(second) {
+            *m = self.momentum * *m + (R::ONE - self.momentum) * g;
+            *v = decay * *v + (R::ONE - decay) * g * g;
+            let length = (*v * unbias[1]).sqrt() + self.smallest;
+            if length > R::ZERO {
+                *b += self.rate * *m * unbias[0] / length;
+            }
+        }
+    }
+}
+
+impl<R: Real> Objective<R> for Design<'_, R> {
+    #[inline(always)]
+    fn gradient(&self, channel: Option<usize>, b: &[R], out: &mut [R]) {
+        let inverse = R::ONE / R::from_usize(self.n);
+        for value in out.iter_mut() {
+            *value = R::ZERO;
+        }
+        for (panel, values) in self.each_panel() {
+            let mut residual = [R::ZERO; LANES];
+            for (column, &b) in panel.iter().zip(b) {
+                lanes::add_scaled(&mut residual, b, column);
+            }
+            if let Some(values) = channel.and_then(|channel| values.get(channel)) {
+                residual = lanes::zip(values, &residual, |f, g| f - g);
+            }
+            for (out, column) in out.iter_mut().zip(panel) {
+                *out += lanes::sum(&lanes::zip(column, &residual, |p, r| p * r)) * inverse;
+            }
+        }
+    }
+
+    fn deviation(&self, channel: usize) -> R {
+        (self.sum_of_squares(channel) / R::from_usize(self.n)).sqrt()
+    }
+
+    fn columns(&self) -> usize {
+        self.columns
+    }
+}
+
+impl<R: Real> Objective<R> for Centred<'_, R> {
+    fn gradient(&self, channel: Option<usize>, b: &[R], out: &mut [R]) {
+        self.half_gradient(channel, b, out);
+    }
+
+    fn deviation(&self, channel: usize) -> R {
+        (get(&self.squares, channel) / self.count).sqrt()
+    }
+
+    fn columns(&self) -> usize {
+        self.columns
+    }
+}
+
+/// A little more than the largest eigenvalue of P'P / n, by power iteration.
+fn largest_curvature<R: Real>(objective: &impl Objective<R>, vector: &mut [R], image: &mut [R]) -> R {
+    for value in vector.iter_mut() {
+        *value = R::ONE;
+    }
+    let mut largest = R::ZERO;
+    for _ in 0..POWER_ROUNDS {
+        objective.gradient(None, vector, image);
+        let length = image.iter().fold(R::ZERO, |sum, &x| sum + x * x).sqrt();
+        let before = vector.iter().fold(R::ZERO, |sum, &x| sum + x * x).sqrt();
+        if !(length > R::ZERO && before > R::ZERO) {
+            break;
+        }
+        largest = length / before;
+        for (out, &value) in vector.iter_mut().zip(image.iter()) {
+            *out = value / length;
+        }
+    }
+    if largest > R::ZERO { largest * R::from_f64(POWER_MARGIN) } else { R::ONE }
+}
+
+/// The sum of squared residuals of a fit.
+fn residual_square<R: Real>(design: &Design<'_, R>, channel: usize, b: &[R]) -> R {
+    let mut total = [R::ZERO; LANES];
+    for (panel, values) in design.each_panel() {
+        let mut residual = values.get(channel).copied().unwrap_or([R::ZERO; LANES]);
+        for (column, &b) in panel.iter().zip(b) {
+            lanes::add_scaled(&mut residual, -b, column);
+        }
+        lanes::add_product(&mut total, &residual, &residual);
+    }
+    lanes::sum(&total)
+}

@@ -1,0 +1,126 @@
+//! Cross-fit: each fold is corrected by a fit to the other folds, so that no sample shapes its own correction.
+
+use super::batch::Plan;
+use super::config::{Config, Ridge};
+use super::design::Design;
+use super::mixture::{self, Fitter};
+use super::per_channel::{PerChannel, add, get, set};
+use super::result::Outcome;
+use super::samples::{Reader, Subset};
+use crate::arena::Arena;
+use crate::basis::Basis;
+use crate::error::Error;
+use crate::lanes::{LANES, Lanes};
+use crate::real::Real;
+
+/// Numbers that [`estimate`] takes from its arena.
+pub(crate) fn size<R: Real>(config: &Config, columns: usize, n: usize) -> Option<usize> {
+    // The largest training set leaves out the smallest fold, and the held-out fold is no larger than that.
+    let train = n - n / config.fold_count();
+    let channels = config.channels;
+    let dual = config.solver == super::config::Solver::Dual || train <= columns;
+    let designs = Design::<R>::size(train, columns, channels)?.checked_mul(2)?;
+    mixture::size(train, dual, columns, channels)?.checked_add(designs)?.checked_add(columns * channels)
+}
+
+/// The estimate over `config.folds` folds, sample i in fold i mod folds. `whole` holds all samples.
+#[inline(always)]
+pub(crate) fn estimate<R: Real>(
+    reader: &Reader<'_>,
+    whole: &Design<'_, R>,
+    config: &Config,
+    basis: &Basis,
+    arena: &mut Arena<'_, R>,
+) -> Result<Outcome<R>, Error> {
+    let channels = whole.channels;
+    let mut sums = PerChannel::default();
+    let mut squares = PerChannel::default();
+    let coefficients = arena.take(whole.columns * channels)?;
+    for fold in 0..config.fold_count() {
+        let folds = config.fold_count();
+        let mut arena = arena.scratch();
+        let held_out = match load(reader, basis, whole.columns, Subset::Fold { fold, folds }, false, &mut arena) {
+            Err(Error::NoSamples) => continue,
+            other => other?,
+        };
+        let train = match load(reader, basis, whole.columns, Subset::Complement { fold, folds }, true, &mut arena) {
+            Err(Error::NoSamples) => None,
+            other => Some(other?),
+        };
+        for value in coefficients.iter_mut() {
+            *value = R::ZERO;
+        }
+        if let Some(train) = train.filter(|train| train.n > 1) {
+            let plan = Plan::new(config, basis, train.n)?;
+            let fitter = Fitter::new(&train, config, basis, plan.dual, &mut arena)?;
+            match config.ridge {
+                Ridge::Default => {
+                    fitter.robust(Some(coefficients), &mut arena)?;
+                }
+                Ridge::Auto | Ridge::Fixed(_) => {
+                    fitter.single(config.ridge, Some(coefficients), &mut arena)?;
+                }
+            }
+            // Coefficients came in the training set's units.
+            for (coefficients, (from, to)) in
+                coefficients.chunks_exact_mut(whole.columns.max(1)).zip(train.units.iter().zip(&whole.units))
+            {
+                for value in coefficients {
+                    *value = to.from_other(*value, from);
+                }
+            }
+        }
+        for (panel_index, (panel, values)) in held_out.each_panel().enumerate() {
+            let used = held_out.n.saturating_sub(panel_index * LANES);
+            for (channel, (values, coefficients)) in
+                values.iter().zip(coefficients.chunks_exact(whole.columns.max(1))).enumerate()
+            {
+                let residuals = residuals(panel, values, coefficients);
+                // Relative to the whole design's mean.
+                for &residual in residuals.iter().take(used) {
+                    let (Some(from), Some(to)) = (held_out.units.get(channel), whole.units.get(channel)) else {
+                        continue;
+                    };
+                    let residual = to.relative(residual, from);
+                    add(&mut sums, channel, residual);
+                    add(&mut squares, channel, residual * residual);
+                }
+            }
+        }
+    }
+    let n = R::from_usize(whole.n);
+    let mut outcome = Outcome { correction: PerChannel::default(), variance: None };
+    let mut variance = PerChannel::default();
+    for channel in 0..channels {
+        let (sum, square) = (get(&sums, channel), get(&squares, channel));
+        set(&mut outcome.correction, channel, sum / n);
+        let spread = (square - sum * sum / n).max(R::ZERO);
+        set(&mut variance, channel, spread / (n * (n - R::ONE)));
+    }
+    outcome.variance = (whole.n > 1).then_some(variance);
+    Ok(outcome)
+}
+
+#[inline(always)]
+fn load<'a, R: Real>(
+    reader: &Reader<'_>,
+    basis: &Basis,
+    columns: usize,
+    subset: Subset,
+    centre: bool,
+    arena: &mut Arena<'a, R>,
+) -> Result<Design<'a, R>, Error> {
+    Design::load(reader, basis, columns, subset, centre, arena)
+}
+
+/// f - b'p, where the columns' integrals are zero.
+#[inline(always)]
+fn residuals<R: Real>(panel: &[Lanes<R>], values: &Lanes<R>, coefficients: &[R]) -> Lanes<R> {
+    let mut residuals = *values;
+    for (column, &weight) in panel.iter().zip(coefficients) {
+        for (residual, &value) in residuals.iter_mut().zip(column) {
+            *residual -= weight * value;
+        }
+    }
+    residuals
+}

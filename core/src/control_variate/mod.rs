@@ -1,0 +1,26 @@
+//! Regression control variates (chapter 4): a pixel's own samples, made into a lower-error estimate.
+//!
+//! The integrand's samples are fitted by a combination of functions with known integrals, and the estimate is the
+//! integral of the fit plus the mean of what the fit leaves (4.9).
+
+mod accumulator;
+mod batch;
+mod config;
+mod cross_fit;
+mod design;
+mod gradient_descent;
+mod incremental;
+mod k_fold;
+mod mixture;
+mod moments;
+mod per_channel;
+mod result;
+mod ridge_fit;
+mod samples;
+mod square_root;
+
+pub use accumulator::{Accumulator, State};
+pub use batch::{estimate, workspace_len};
+pub use config::{Color, Config, Estimate, Estimator, NonFinite, Optimizer, Ridge, Solver};
+pub use gradient_descent::estimate_from as gradient_descent;
+pub use samples::Samples;

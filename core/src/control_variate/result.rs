@@ -1,0 +1,96 @@
+//! From a correction in a design's units to an [`Estimate`] in the caller's.
+
+use super::config::{Config, Estimate};
+use super::design::{Design, Units};
+use super::per_channel::{PerChannel, get};
+use super::samples::Reader;
+use crate::real::Real;
+
+/// What an estimator found, in a design's units.
+pub(crate) struct Outcome<R> {
+    /// What to add to the plain mean.
+    pub(crate) correction: PerChannel<R>,
+    /// The variance of the estimate; None if the samples are too few to tell.
+    pub(crate) variance: Option<PerChannel<R>>,
+}
+
+/// The variance of the plain mean, None for one sample.
+pub(crate) fn plain_variance<R: Real>(design: &Design<'_, R>) -> Option<PerChannel<R>> {
+    let n = R::from_usize(design.n);
+    let factor = R::ONE / (n * (n - R::ONE));
+    let mut variance = PerChannel::default();
+    for (channel, variance) in variance.iter_mut().enumerate().take(design.channels) {
+        *variance = design.sum_of_squares(channel) * factor;
+    }
+    (design.n > 1).then_some(variance)
+}
+
+/// The variance that a sum of squared leave-one-out residuals of `n` samples stands for: exact for the plain mean.
+pub(crate) fn variance_of_press<R: Real>(press: &PerChannel<R>, n: usize) -> Option<PerChannel<R>> {
+    let n_real = R::from_usize(n);
+    let factor = (n_real - R::ONE) / (n_real * n_real * n_real);
+    (n > 1).then(|| press.map(|press| press * factor))
+}
+
+/// What an [`Estimate`] is put together from, besides the outcome.
+pub(crate) struct Summary<R> {
+    pub(crate) samples: usize,
+    pub(crate) channels: usize,
+    pub(crate) units: [Units<R>; Config::MAX_CHANNELS],
+    pub(crate) plain_variance: Option<PerChannel<R>>,
+    /// For a luminance ratio: the mean colour and its luminance.
+    pub(crate) colour: Option<([f64; 3], f64)>,
+}
+
+impl<R: Real> Summary<R> {
+    pub(crate) fn of(design: &Design<'_, R>, reader: &Reader<'_>) -> Self {
+        Self {
+            samples: design.n,
+            channels: design.channels,
+            units: design.units,
+            plain_variance: plain_variance(design),
+            colour: reader.mean_colour(),
+        }
+    }
+}
+
+/// Puts an estimate together; for a luminance ratio, the colours too.
+pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estimate {
+    let mut mean = [0.0f64; Config::MAX_CHANNELS];
+    let mut error = [0.0f64; Config::MAX_CHANNELS];
+    let (mut gain, mut counted) = (0.0, 0.0);
+    for (channel, unit) in summary.units.iter().enumerate().take(summary.channels) {
+        if let (Some(mean), Some(error)) = (mean.get_mut(channel), error.get_mut(channel)) {
+            *mean = unit.value(get(&outcome.correction, channel));
+            *error = f64::INFINITY;
+            if let (Some(variance), Some(plain)) = (&outcome.variance, &summary.plain_variance) {
+                let (variance, plain) = (get(variance, channel).max(R::ZERO), get(plain, channel));
+                *error = unit.length(variance.sqrt());
+                if plain > R::ZERO {
+                    gain += (variance / plain).to_f64();
+                    counted += 1.0;
+                }
+            }
+        }
+    }
+    if let Some((colour, luminance)) = summary.colour {
+        // (4.3): the colour of the plain mean, with the regressed luminance.
+        let ([regressed, ..], [deviation, ..]) = (mean, error);
+        let ratio = if luminance == 0.0 { 1.0 } else { regressed / luminance };
+        for ((mean, error), colour) in mean.iter_mut().zip(&mut error).zip(colour) {
+            *mean = ratio * colour;
+            *error = if luminance == 0.0 { 0.0 } else { libm::fabs(deviation * colour / luminance) };
+        }
+    }
+    Estimate {
+        mean: mean.map(saturate),
+        std_error: error.map(|error| error as f32),
+        samples: u32::try_from(summary.samples).unwrap_or(u32::MAX),
+        gain: if counted > 0.0 { (gain / counted) as f32 } else { 1.0 },
+    }
+}
+
+/// The nearest finite `f32`: a fit to values near the type's end can reach beyond it.
+fn saturate(value: f64) -> f32 {
+    value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
+}

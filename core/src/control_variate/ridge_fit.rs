@@ -1,0 +1,338 @@
+//! One ridge fit to a design, with its leave-one-out residuals in closed form.
+//!
+//! With the intercept free, columns centred (P), values centred (f), A = P'P + L and b = A^-1 P'f, the residual of
+//! sample i under the fit to all others is
+//!
+//! r_i = (f_i - b'p_i) / (1 - h_i),   h_i = 1/n + p_i' A^-1 p_i,
+//!
+//! and the estimate that corrects each sample by the fit to the others is the mean of
+//!
+//! y_i = f_i - b'q_i + (q_i' A^-1 p_i) r_i
+//!
+//! where q_i = p_i + m is the column before centring, whose integral is zero. For a fixed L that mean is exactly
+//! unbiased although every sample serves both the fit and the estimate.
+
+use super::design::Design;
+use super::per_channel::{PerChannel, set};
+use crate::arena::Arena;
+use crate::error::Error;
+use crate::lanes::{self, LANES, Lanes};
+use crate::linalg::{ldlt, packed_len, row, row_mut};
+use crate::real::Real;
+
+/// What one ridge fit says, in the design's units.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct RidgeFit<R> {
+    /// The sum of squared leave-one-out residuals.
+    pub(crate) press: PerChannel<R>,
+    /// The mean of y_i minus the mean of f_i: what leaving one out adds to the plain mean.
+    pub(crate) leave_one_out: PerChannel<R>,
+    /// -b'm: what the fit to all samples adds to the plain mean (Alg. 1).
+    pub(crate) in_sample: PerChannel<R>,
+    /// The sum of squares that the fit explains, f'P A^-1 P'f.
+    pub(crate) explained: PerChannel<R>,
+    /// n m'A^-1 m, about 0 for samples spread evenly: how far the estimate extrapolates. Leave-one-out errors are small
+    /// if all samples lie in one part of the cube, and this is what tells.
+    pub(crate) extrapolation: R,
+}
+
+/// Which fit.
+#[derive(Clone, Copy)]
+pub(crate) struct Choice<'a, R> {
+    /// Ridge strength per sample.
+    pub(crate) strength: R,
+    /// Relative penalty of each column.
+    pub(crate) penalties: &'a [R],
+    /// Whether the leave-one-out figures are wanted.
+    pub(crate) leave_one_out: bool,
+}
+
+/// The smallest 1 - h that a division is trusted with, in units of the type's epsilon.
+const SMALLEST_GAP: f64 = 64.0;
+
+/// Numbers that [`primal`] takes from its arena.
+pub(crate) fn primal_size(columns: usize, channels: usize) -> usize {
+    packed_len(columns) + columns * (1 + channels) + columns * LANES
+}
+
+/// The fit through the normal equations. `coefficients`, if wanted, gets a row for each channel.
+#[inline(always)]
+pub(crate) fn primal<R: Real>(
+    design: &Design<'_, R>,
+    gram: &[R],
+    rhs: &[R],
+    choice: Choice<'_, R>,
+    coefficients: Option<&mut [R]>,
+    mut arena: Arena<'_, R>,
+) -> Result<RidgeFit<R>, Error> {
+    match design.channels {
+        1 => primal_channels::<R, 1>(design, gram, rhs, choice, coefficients, &mut arena),
+        2 => primal_channels::<R, 2>(design, gram, rhs, choice, coefficients, &mut arena),
+        3 => primal_channels::<R, 3>(design, gram, rhs, choice, coefficients, &mut arena),
+        _ => primal_channels::<R, 4>(design, gram, rhs, choice, coefficients, &mut arena),
+    }
+}
+
+#[inline(always)]
+fn primal_channels<R: Real, const CHANNELS: usize>(
+    design: &Design<'_, R>,
+    gram: &[R],
+    rhs: &[R],
+    choice: Choice<'_, R>,
+    coefficients: Option<&mut [R]>,
+    arena: &mut Arena<'_, R>,
+) -> Result<RidgeFit<R>, Error> {
+    let columns = design.columns;
+    let n = R::from_usize(design.n);
+    let factor = arena.take(packed_len(columns))?;
+    let means = arena.take(columns)?;
+    let solution = arena.take(columns * CHANNELS)?;
+    let z = arena.take_lanes(columns)?;
+    for (factor, &gram) in factor.iter_mut().zip(gram) {
+        *factor = gram;
+    }
+    let strength = choice.strength * n;
+    ldlt::add_diagonal(factor, columns, |j| strength * choice.penalties.get(j).copied().unwrap_or(R::ONE));
+    ldlt::factor(factor, columns);
+
+    // Everything below lives in the coordinates z = L^-1 p, where A^-1 is diagonal.
+    for (out, &mean) in means.iter_mut().zip(design.column_means.iter()) {
+        *out = mean;
+    }
+    ldlt::forward(factor, means);
+    let mut fit = RidgeFit::default();
+    for (j, &mean) in means.iter().enumerate() {
+        fit.extrapolation += mean * mean * ldlt::inverse_pivot(factor, j);
+    }
+    fit.extrapolation *= n;
+    for (channel, solution) in solution.chunks_exact_mut(columns.max(1)).enumerate() {
+        let rhs = rhs.get(channel * columns..).unwrap_or(&[]);
+        for (out, &rhs) in solution.iter_mut().zip(rhs) {
+            *out = rhs;
+        }
+        ldlt::forward(factor, solution);
+        let (mut in_sample, mut explained) = (R::ZERO, R::ZERO);
+        for (j, (value, &mean)) in solution.iter_mut().zip(means.iter()).enumerate() {
+            let scaled = *value * ldlt::inverse_pivot(factor, j);
+            explained += *value * scaled;
+            in_sample -= scaled * mean;
+            *value = scaled;
+        }
+        set(&mut fit.in_sample, channel, in_sample);
+        set(&mut fit.explained, channel, explained);
+    }
+    if choice.leave_one_out {
+        residuals::<R, CHANNELS>(design, factor, means, solution, z, &mut fit);
+    }
+    if let Some(coefficients) = coefficients {
+        for (out, solution) in
+            coefficients.chunks_exact_mut(columns.max(1)).zip(solution.chunks_exact_mut(columns.max(1)))
+        {
+            ldlt::backward(factor, solution);
+            for (out, &value) in out.iter_mut().zip(solution.iter()) {
+                *out = value;
+            }
+        }
+    }
+    Ok(fit)
+}
+
+/// The leave-one-out figures, eight samples at a time.
+#[inline(always)]
+fn residuals<R: Real, const CHANNELS: usize>(
+    design: &Design<'_, R>,
+    factor: &[R],
+    means: &[R],
+    solution: &[R],
+    z: &mut [Lanes<R>],
+    fit: &mut RidgeFit<R>,
+) {
+    let columns = means.len();
+    let n = R::from_usize(design.n);
+    let inverse_n = R::ONE / n;
+    let smallest_gap = R::from_f64(SMALLEST_GAP) * R::EPSILON;
+    let zero = [R::ZERO; LANES];
+    let (mut press, mut corrections) = ([zero; CHANNELS], [zero; CHANNELS]);
+    for (panel, values) in design.each_panel() {
+        for (z, column) in z.iter_mut().zip(panel) {
+            *z = *column;
+        }
+        ldlt::forward_lanes(factor, z);
+        // leverage = p'A^-1 p, shift = m'A^-1 p, fitted = b'p
+        let (mut leverage, mut shift) = (zero, zero);
+        let mut fitted = [zero; CHANNELS];
+        for (j, (z, &mean)) in z.iter().zip(means).enumerate() {
+            let pivot = ldlt::inverse_pivot(factor, j);
+            let scaled_mean = mean * pivot;
+            for ((leverage, shift), &z) in leverage.iter_mut().zip(&mut shift).zip(z) {
+                *leverage += z * z * pivot;
+                *shift += z * scaled_mean;
+            }
+            for (channel, fitted) in fitted.iter_mut().enumerate() {
+                let weight = solution.get(channel * columns + j).copied().unwrap_or(R::ZERO);
+                lanes::add_scaled(fitted, weight, z);
+            }
+        }
+        for (((values, fitted), press), corrections) in values.iter().zip(&fitted).zip(&mut press).zip(&mut corrections)
+        {
+            for l in 0..LANES {
+                let gap = (R::ONE - inverse_n - leverage[l]).max(smallest_gap);
+                let residual = (values[l] - fitted[l]) / gap;
+                press[l] += residual * residual;
+                corrections[l] += (leverage[l] + shift[l]) * residual;
+            }
+        }
+    }
+    for channel in 0..CHANNELS {
+        set(&mut fit.press, channel, lanes::sum(&press[channel]));
+        let correction = lanes::sum(&corrections[channel]) * inverse_n;
+        let in_sample = fit.in_sample.get(channel).copied().unwrap_or(R::ZERO);
+        set(&mut fit.leave_one_out, channel, in_sample + correction);
+    }
+}
+
+/// The samples' n x n matrix K = P D^-1 P' over all columns, for relative penalties D, and g = P D^-1 m.
+pub(crate) struct Dual<'a, R> {
+    kernel: &'a mut [R],
+    shift: &'a mut [R],
+}
+
+/// Numbers that the dual fits of `n` samples take from their arena.
+pub(crate) fn dual_size(n: usize, channels: usize) -> Option<usize> {
+    let padded = n.checked_next_multiple_of(LANES)?;
+    let triangle = padded.checked_mul(padded + 1)? / 2;
+    triangle.checked_mul(3)?.checked_add(padded * (3 + channels))
+}
+
+impl<'a, R: Real> Dual<'a, R> {
+    #[inline(always)]
+    pub(crate) fn new(design: &Design<'_, R>, penalties: &[R], arena: &mut Arena<'a, R>) -> Result<Self, Error> {
+        let padded = design.n.next_multiple_of(LANES);
+        let kernel = arena.take(packed_len(padded))?;
+        let shift = arena.take(padded)?;
+        for value in shift.iter_mut() {
+            *value = R::ZERO;
+        }
+        let weight = |j: usize| R::ONE / penalties.get(j).copied().unwrap_or(R::ONE);
+        for (a, (left, _)) in design.each_panel().enumerate() {
+            for (b, (right, _)) in design.each_panel().enumerate().take(a + 1) {
+                let mut tile = [[R::ZERO; LANES]; LANES];
+                for (j, (left, right)) in left.iter().zip(right).enumerate() {
+                    let weight = weight(j);
+                    for (row, &value) in tile.iter_mut().zip(left) {
+                        lanes::add_scaled(row, weight * value, right);
+                    }
+                }
+                for (i, tile_row) in tile.iter().enumerate() {
+                    let row = row_mut(kernel, a * LANES + i);
+                    for (out, &value) in row.iter_mut().skip(b * LANES).zip(tile_row) {
+                        *out = value;
+                    }
+                }
+            }
+            let shift = shift.get_mut(a * LANES..(a + 1) * LANES).unwrap_or(&mut []);
+            for (j, (column, &mean)) in left.iter().zip(design.column_means.iter()).enumerate() {
+                let weight = weight(j) * mean;
+                for (shift, &value) in shift.iter_mut().zip(column) {
+                    *shift += weight * value;
+                }
+            }
+        }
+        Ok(Self { kernel, shift })
+    }
+
+    /// The fit with ridge strength `choice.strength` over all columns. With B = K + strength n I,
+    ///
+    /// b = D^-1 P' B^-1 f,   h_i - 1/n = 1 - strength n (B^-1)_ii,   m'A^-1 p_i = (B^-1 g)_i.
+    #[inline(always)]
+    pub(crate) fn fit(
+        &self,
+        design: &Design<'_, R>,
+        choice: Choice<'_, R>,
+        coefficients: Option<&mut [R]>,
+        mut arena: Arena<'_, R>,
+    ) -> Result<RidgeFit<R>, Error> {
+        let n = design.n;
+        let inverse_n = R::ONE / R::from_usize(n);
+        let strength = choice.strength * R::from_usize(n);
+        let factor = arena.take(packed_len(n))?;
+        let inverse = arena.take(packed_len(n))?;
+        let diagonal = arena.take(n)?;
+        let shift = arena.take(n)?;
+        let alpha = arena.take(n * design.channels)?;
+        for (out, &value) in factor.iter_mut().zip(self.kernel.iter()) {
+            *out = value;
+        }
+        ldlt::add_diagonal(factor, n, |_| strength);
+        ldlt::factor(factor, n);
+        for (out, &value) in shift.iter_mut().zip(self.shift.iter()) {
+            *out = value;
+        }
+        ldlt::solve(factor, shift);
+        let penalised = |j: usize, mean: R| mean * mean / choice.penalties.get(j).copied().unwrap_or(R::ONE);
+        let whole = design.column_means.iter().enumerate().fold(R::ZERO, |sum, (j, &mean)| sum + penalised(j, mean));
+        let explained = shift.iter().zip(self.shift.iter()).fold(R::ZERO, |sum, (&a, &b)| sum + a * b);
+        if choice.leave_one_out {
+            ldlt::inverse_diagonal(factor, n, inverse, diagonal);
+        }
+        let smallest_gap = R::from_f64(SMALLEST_GAP) * R::EPSILON;
+        // By the matrix inversion lemma m'A^-1 m = (m'D^-1 m - g'B^-1 g) / (strength n).
+        let extrapolation = R::from_usize(n) * ((whole - explained) / strength).max(R::ZERO);
+        let mut fit = RidgeFit { extrapolation, ..RidgeFit::default() };
+        for (channel, alpha) in alpha.chunks_exact_mut(n.max(1)).enumerate() {
+            let value = |i: usize| {
+                let panel = design.values.get(i / LANES * design.channels + channel);
+                panel.and_then(|lanes| lanes.get(i % LANES)).copied().unwrap_or(R::ZERO)
+            };
+            for (i, out) in alpha.iter_mut().enumerate() {
+                *out = value(i);
+            }
+            ldlt::solve(factor, alpha);
+            let (mut in_sample, mut residual_square) = (R::ZERO, R::ZERO);
+            let (mut press, mut correction) = (R::ZERO, R::ZERO);
+            for (i, &alpha) in alpha.iter().enumerate() {
+                let value = value(i);
+                let residual = strength * alpha;
+                in_sample -= self.shift.get(i).copied().unwrap_or(R::ZERO) * alpha;
+                residual_square += residual * value;
+                let complement = strength * diagonal.get(i).copied().unwrap_or(R::ZERO);
+                let gap = (complement - inverse_n).max(smallest_gap);
+                let residual = residual / gap;
+                press += residual * residual;
+                correction += (R::ONE - complement + shift.get(i).copied().unwrap_or(R::ZERO)) * residual;
+            }
+            set(&mut fit.press, channel, press);
+            set(&mut fit.in_sample, channel, in_sample);
+            set(&mut fit.leave_one_out, channel, in_sample + correction * inverse_n);
+            set(&mut fit.explained, channel, design.sum_of_squares(channel) - residual_square);
+        }
+        if let Some(coefficients) = coefficients {
+            for (out, alpha) in coefficients.chunks_exact_mut(design.columns.max(1)).zip(alpha.chunks_exact(n.max(1))) {
+                for (j, out) in out.iter_mut().enumerate() {
+                    let mut total = R::ZERO;
+                    for ((panel, _), alpha) in design.each_panel().zip(alpha.chunks(LANES)) {
+                        let column = panel.get(j).map_or(&[] as &[R], |column| column);
+                        total += column.iter().zip(alpha).map(|(&p, &a)| p * a).fold(R::ZERO, |a, b| a + b);
+                    }
+                    *out = total / choice.penalties.get(j).copied().unwrap_or(R::ONE);
+                }
+            }
+        }
+        Ok(fit)
+    }
+}
+
+/// Copies, and fills what is left with zeros.
+#[inline(always)]
+pub(crate) fn copy_padded<R: Real>(out: &mut [R], values: &[R]) {
+    let mut values = values.iter();
+    for out in out {
+        *out = values.next().copied().unwrap_or(R::ZERO);
+    }
+}
+
+/// The diagonal entry j of a packed matrix.
+#[inline(always)]
+pub(crate) fn diagonal_entry<R: Real>(matrix: &[R], j: usize) -> R {
+    row(matrix, j).last().copied().unwrap_or(R::ZERO)
+}

@@ -1,0 +1,299 @@
+//! What the caller hands over: positions, values, and control functions at those positions.
+
+use super::Config;
+use crate::basis::{Basis, MAX_DIMS};
+use crate::error::Error;
+use crate::lanes::Lanes;
+use crate::real::Real;
+
+use super::config::{Color, NonFinite};
+
+/// Rec. 709 luminance of linear RGB.
+const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
+
+/// `n` samples in caller arrays.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Samples<'a> {
+    /// Positions in [0, 1], `n` rows of `Config::stride` numbers (`Config::dims` if that is 0); the last row may end
+    /// after `dims` numbers.
+    pub u: &'a [f32],
+    /// Integrand over density, `n` rows of `Config::channels` numbers.
+    pub f: &'a [f32],
+    /// Control functions (4.18) at the positions, `n` rows of `Config::controls` numbers. Empty without any.
+    pub controls: &'a [f32],
+    /// The exact integral of each control function.
+    pub control_integrals: &'a [f32],
+}
+
+impl<'a> Samples<'a> {
+    /// Samples without control functions.
+    #[inline]
+    pub const fn new(u: &'a [f32], f: &'a [f32]) -> Self {
+        Self { u, f, controls: &[], control_integrals: &[] }
+    }
+}
+
+/// Which samples of the arrays are meant.
+#[derive(Clone, Copy)]
+pub(crate) enum Subset {
+    All,
+    /// Indices that are `fold` modulo `folds`.
+    Fold {
+        fold: usize,
+        folds: usize,
+    },
+    /// All others.
+    Complement {
+        fold: usize,
+        folds: usize,
+    },
+}
+
+impl Subset {
+    #[inline(always)]
+    fn contains(self, index: usize) -> bool {
+        match self {
+            Subset::All => true,
+            Subset::Fold { fold, folds } => index.checked_rem(folds) == Some(fold),
+            Subset::Complement { fold, folds } => index.checked_rem(folds) != Some(fold),
+        }
+    }
+}
+
+/// Samples whose lengths were checked, read one at a time.
+#[derive(Clone, Copy)]
+pub(crate) struct Reader<'a> {
+    samples: Samples<'a>,
+    n: usize,
+    dims: usize,
+    stride: usize,
+    inputs: usize,
+    controls: usize,
+    luminance: bool,
+    skip: bool,
+}
+
+/// One sample's numbers.
+pub(crate) struct Sample<'a> {
+    u: &'a [f32],
+    f: &'a [f32],
+    h: &'a [f32],
+}
+
+impl<'a> Reader<'a> {
+    /// # Errors
+    /// [`Error::Range`] if the arrays' lengths do not belong together, [`Error::NoSamples`] if they are empty.
+    #[inline(always)]
+    pub(crate) fn new(config: &Config, samples: Samples<'a>) -> Result<Self, Error> {
+        let n = samples.f.len().checked_div(config.channels).unwrap_or(0);
+        if n == 0 && samples.f.is_empty() {
+            return Err(Error::NoSamples);
+        }
+        let stride = config.step();
+        // The last row may end early: all but one need a whole stride.
+        let needed = (n.max(1) - 1).checked_mul(stride).and_then(|len| len.checked_add(config.dims));
+        let lengths_fit = samples.f.len() == n * config.channels
+            && needed.is_some_and(|needed| samples.u.len() >= needed)
+            && samples.u.len() <= n.saturating_mul(stride)
+            && samples.controls.len() == n.saturating_mul(config.controls)
+            && samples.control_integrals.len() == config.controls;
+        if !lengths_fit || u32::try_from(n).is_err() {
+            return Err(Error::Range);
+        }
+        if !samples.control_integrals.iter().all(|value| value.is_finite()) {
+            return Err(Error::NotFinite);
+        }
+        Ok(Self {
+            samples,
+            n,
+            dims: config.dims,
+            stride,
+            inputs: config.channels,
+            controls: config.controls,
+            luminance: config.color == Color::LuminanceRatio,
+            skip: config.non_finite == NonFinite::Skip,
+        })
+    }
+
+    /// How many samples the arrays hold.
+    #[inline(always)]
+    pub(crate) fn len(&self) -> usize {
+        self.n
+    }
+
+    /// How many samples of a subset the arrays hold; at least as many as [`Reader::each`] visits.
+    pub(crate) fn count(&self, subset: Subset) -> usize {
+        match subset {
+            Subset::All => self.n,
+            Subset::Fold { fold, folds } => (self.n + folds.saturating_sub(1 + fold)).checked_div(folds).unwrap_or(0),
+            Subset::Complement { fold, folds } => {
+                self.n - (self.n + folds.saturating_sub(1 + fold)).checked_div(folds).unwrap_or(0)
+            }
+        }
+    }
+
+    /// How many values of a sample are regressed.
+    #[inline(always)]
+    pub(crate) fn channels(&self) -> usize {
+        if self.luminance { 1 } else { self.inputs }
+    }
+
+    /// Sample `index`, whatever it holds.
+    #[inline(always)]
+    pub(crate) fn get(&self, index: usize) -> Sample<'a> {
+        let start = index * self.stride;
+        let row = |array: &'a [f32], width: usize| array.get(index * width..(index + 1) * width).unwrap_or(&[]);
+        Sample {
+            u: self.samples.u.get(start..start + self.dims).unwrap_or(&[]),
+            f: row(self.samples.f, self.inputs),
+            h: row(self.samples.controls, self.controls),
+        }
+    }
+
+    /// Checks every sample. After this, all samples that [`Reader::is_used`] accepts are finite and in range.
+    #[inline(always)]
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        // Branch-free over the values: one flag for everything, and the reason is looked for only if it is down.
+        let mut fine = true;
+        if self.stride == self.dims {
+            for &u in self.samples.u {
+                fine &= (0.0..=1.0).contains(&u);
+            }
+        } else {
+            for index in 0..self.n {
+                for u in self.get(index).u {
+                    fine &= (0.0..=1.0).contains(u);
+                }
+            }
+        }
+        for values in [self.samples.f, self.samples.controls] {
+            for value in values {
+                fine &= value.is_finite();
+            }
+        }
+        if fine { Ok(()) } else { self.explain() }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn explain(&self) -> Result<(), Error> {
+        for index in 0..self.n {
+            let sample = self.get(index);
+            if !sample.is_finite() {
+                if self.skip {
+                    continue;
+                }
+                return Err(Error::NotFinite);
+            }
+            if !sample.u.iter().all(|u| (0.0..=1.0).contains(u)) {
+                return Err(Error::Range);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether sample `index` of the subset counts.
+    #[inline(always)]
+    fn is_used(&self, index: usize, subset: Subset) -> bool {
+        subset.contains(index) && (!self.skip || self.get(index).is_finite())
+    }
+
+    /// Calls `visit` with each used sample in order and returns their number.
+    #[inline(always)]
+    pub(crate) fn each(&self, subset: Subset, mut visit: impl FnMut(&Sample<'a>)) -> usize {
+        let mut used = 0;
+        for index in 0..self.n {
+            if self.is_used(index, subset) {
+                visit(&self.get(index));
+                used += 1;
+            }
+        }
+        used
+    }
+
+    /// The values of a sample that are regressed: its channels, or its luminance.
+    #[inline(always)]
+    pub(crate) fn values<R: Real>(&self, sample: &Sample<'_>) -> [R; Config::MAX_CHANNELS] {
+        let mut values = [R::ZERO; Config::MAX_CHANNELS];
+        if self.luminance {
+            values[0] = R::from_f32(luminance(sample.f));
+        } else {
+            for (value, &f) in values.iter_mut().zip(sample.f) {
+                *value = R::from_f32(f);
+            }
+        }
+        values
+    }
+
+    /// Evaluates control functions and basis at `L` positions; `x` has a group of lanes for each coordinate, `h` one
+    /// for each control function, and `out` one for each column, control functions first.
+    #[inline(always)]
+    pub(crate) fn columns<R: Real, const L: usize>(
+        &self,
+        basis: &Basis,
+        x: &[Lanes<R, L>; MAX_DIMS],
+        h: &[Lanes<R, L>; Config::MAX_CONTROLS],
+        out: &mut [Lanes<R, L>],
+    ) {
+        let (controls, functions) = out.split_at_mut_checked(self.controls).unwrap_or((&mut [], &mut []));
+        for ((out, h), &integral) in controls.iter_mut().zip(h).zip(self.samples.control_integrals) {
+            *out = h.map(|h| h - R::from_f32(integral));
+        }
+        basis.evaluate(x, functions);
+    }
+
+    /// For a luminance-ratio estimate, a sample's colour and its luminance.
+    pub(crate) fn colour(&self, sample: &Sample<'_>) -> Option<[f64; 4]> {
+        match (self.luminance, sample.f) {
+            (true, &[red, green, blue]) => Some([red, green, blue, luminance(sample.f)].map(f64::from)),
+            _ => None,
+        }
+    }
+
+    /// For a luminance-ratio estimate, the mean colour of the used samples and its luminance.
+    pub(crate) fn mean_colour(&self) -> Option<([f64; 3], f64)> {
+        if !self.luminance {
+            return None;
+        }
+        let mut sums = [0.0; 4];
+        let used = self.each(Subset::All, |sample| {
+            for (sum, value) in sums.iter_mut().zip(self.colour(sample).unwrap_or_default()) {
+                *sum += value;
+            }
+        });
+        let [red, green, blue, luminance] = sums.map(|sum| sum / used.max(1) as f64);
+        Some(([red, green, blue], luminance))
+    }
+}
+
+impl Sample<'_> {
+    fn is_finite(&self) -> bool {
+        [self.u, self.f, self.h].iter().all(|values| values.iter().all(|value| value.is_finite()))
+    }
+
+    /// Writes the position and the control functions to lane `lane`.
+    #[inline(always)]
+    pub(crate) fn put<R: Real, const L: usize>(
+        &self,
+        lane: usize,
+        x: &mut [Lanes<R, L>; MAX_DIMS],
+        h: &mut [Lanes<R, L>; Config::MAX_CONTROLS],
+    ) {
+        for (x, &u) in x.iter_mut().zip(self.u) {
+            if let Some(x) = x.get_mut(lane) {
+                *x = R::from_f32(u);
+            }
+        }
+        for (h, &value) in h.iter_mut().zip(self.h) {
+            if let Some(h) = h.get_mut(lane) {
+                *h = R::from_f32(value);
+            }
+        }
+    }
+}
+
+/// Rec. 709 luminance; rounded once, so that it cannot overflow where the channels do not.
+#[inline(always)]
+fn luminance(rgb: &[f32]) -> f32 {
+    rgb.iter().zip(LUMINANCE).map(|(&c, weight)| c * weight).sum()
+}

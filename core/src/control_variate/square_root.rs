@@ -1,0 +1,136 @@
+//! Least squares by Givens rotations, for samples so badly placed that normal equations lose their digits.
+
+use super::batch;
+use super::config::{Config, Ridge};
+use super::design::Design;
+use super::moments::Moments;
+use super::per_channel::{PerChannel, set};
+use super::result::Outcome;
+use super::ridge_fit;
+use crate::arena::Arena;
+use crate::basis::Basis;
+use crate::error::Error;
+use crate::lanes::LANES;
+use crate::linalg::{givens, packed_len};
+use crate::real::Real;
+
+/// Strength of the penalty that makes the solution unique: its square root, which is what rows see, is the type's
+/// rounding noise. For `f64` and for narrower types.
+const FLOOR: [f64; 2] = [1e-24, 1e-12];
+
+/// Numbers that [`least_squares`] takes from its arena.
+pub(crate) fn size(columns: usize, channels: usize) -> usize {
+    packed_len(columns) + columns * (channels + 3) + 2 * Config::MAX_CHANNELS
+}
+
+/// Algorithm 1 on a centred design.
+#[inline(always)]
+pub(crate) fn least_squares<R: Real>(
+    design: &Design<'_, R>,
+    config: &Config,
+    basis: &Basis,
+    arena: &mut Arena<'_, R>,
+) -> Result<Outcome<R>, Error> {
+    let (columns, channels) = (design.columns, design.channels);
+    let factor = arena.take(packed_len(columns))?;
+    let rhs = arena.take(columns * channels)?;
+    let x = arena.take(columns)?;
+    let solution = arena.take(columns)?;
+    let penalties = arena.take(columns)?;
+    for value in factor.iter_mut().chain(rhs.iter_mut()).chain(penalties.iter_mut()) {
+        *value = R::ZERO;
+    }
+    let mut residual = PerChannel::default();
+    for (index, (panel, values)) in design.each_panel().enumerate() {
+        for lane in 0..LANES.min(design.n.saturating_sub(index * LANES)) {
+            let mut y = PerChannel::default();
+            let at = |lanes: &[R; LANES]| lanes.get(lane).copied().unwrap_or(R::ZERO);
+            for (x, column) in x.iter_mut().zip(panel) {
+                *x = at(column);
+            }
+            for (y, values) in y.iter_mut().zip(values) {
+                *y = at(values);
+            }
+            givens::add_row(factor, rhs, &mut residual, x, y.get_mut(..channels).unwrap_or(&mut []));
+        }
+    }
+    basis.penalties(penalties.get_mut(config.controls..).unwrap_or(&mut []));
+    let strength = strength::<R>(config.ridge)? * R::from_usize(design.n);
+    let mut triangle = Triangle { factor, rhs, channels };
+    triangle.add_penalty(penalties, strength, x);
+    let mut correction = PerChannel::default();
+    for channel in 0..channels {
+        givens::solve(triangle.factor, triangle.rhs, channels, channel, solution);
+        let value = solution.iter().zip(design.column_means.iter()).fold(R::ZERO, |sum, (&b, &m)| sum - b * m);
+        set(&mut correction, channel, value);
+    }
+    Ok(Outcome { correction, variance: batch::residual_variance(design, residual) })
+}
+
+/// Algorithm 1 from the triangular factor of the rows (1, functions); the estimate is in the sums' units.
+pub(crate) fn from_factor<R: Real>(
+    sums: &Moments<'_, R>,
+    config: &Config,
+    basis: &Basis,
+    terms: usize,
+    channels: usize,
+    arena: &mut Arena<'_, R>,
+) -> Result<Outcome<R>, Error> {
+    let factor = arena.take(packed_len(terms))?;
+    let rhs = arena.take(terms * channels)?;
+    let x = arena.take(terms)?;
+    let solution = arena.take(terms)?;
+    let penalties = arena.take(terms)?;
+    ridge_fit::copy_padded(factor, sums.gram);
+    ridge_fit::copy_padded(rhs, sums.rhs);
+    for value in penalties.iter_mut() {
+        *value = R::ZERO;
+    }
+    basis.penalties(penalties.get_mut(1 + config.controls..).unwrap_or(&mut []));
+    let first = sums.gram.first().copied().unwrap_or(R::ZERO);
+    let count = first * first;
+    let mut triangle = Triangle { factor, rhs, channels };
+    triangle.add_penalty(penalties, strength::<R>(config.ridge)? * count, x);
+    let mut correction = PerChannel::default();
+    for channel in 0..channels {
+        givens::solve(triangle.factor, triangle.rhs, channels, channel, solution);
+        // The functions' integrals are zero.
+        set(&mut correction, channel, solution.first().copied().unwrap_or(R::ZERO));
+    }
+    let freedom = count - R::from_usize(terms);
+    let mut variance = PerChannel::default();
+    for (variance, &residual) in variance.iter_mut().zip(sums.square) {
+        *variance = residual / (freedom * count);
+    }
+    // The count comes from a square root: a half tells one from none.
+    Ok(Outcome { correction, variance: (freedom > R::from_f64(0.5)).then_some(variance) })
+}
+
+fn strength<R: Real>(ridge: Ridge) -> Result<R, Error> {
+    match ridge {
+        Ridge::Default => Ok(R::from_f64(FLOOR[usize::from(R::NARROW)])),
+        Ridge::Fixed(strength) => Ok(R::from_f32(strength)),
+        Ridge::Auto => Err(Error::Unsupported),
+    }
+}
+
+/// A triangular system to be solved.
+struct Triangle<'a, R> {
+    factor: &'a mut [R],
+    rhs: &'a mut [R],
+    channels: usize,
+}
+
+impl<R: Real> Triangle<'_, R> {
+    /// Adds a row sqrt(strength penalty_j) e_j for each column with a penalty; `x` is scratch.
+    fn add_penalty(&mut self, penalties: &[R], strength: R, x: &mut [R]) {
+        for (j, &penalty) in penalties.iter().enumerate().filter(|(_, penalty)| **penalty > R::ZERO) {
+            for (k, x) in x.iter_mut().enumerate() {
+                *x = if k == j { (strength * penalty).sqrt() } else { R::ZERO };
+            }
+            let mut y = PerChannel::default();
+            let mut spent = PerChannel::default();
+            givens::add_row(self.factor, self.rhs, &mut spent, x, y.get_mut(..self.channels).unwrap_or(&mut []));
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! The two floating-point types the estimators run in.
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// `f64` where the target has it in hardware, `f32` elsewhere. Sealed: no other type implements it.
+///
+/// Only operations that IEEE 754 defines to the last bit, or that `libm` computes in software, are used, so every
+/// target returns the same bits.
+pub trait Real:
+    sealed::Sealed
+    + Copy
+    + Debug
+    + Default
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + 'static
+{
+    /// 0
+    const ZERO: Self;
+    /// 1
+    const ONE: Self;
+    /// The spacing of numbers at 1.
+    const EPSILON: Self;
+    /// Whether squares of `f32` inputs can leave this type's range, so that they are scaled first.
+    const NARROW: bool;
+
+    /// Rounds to nearest.
+    fn from_f64(value: f64) -> Self;
+    /// Exact.
+    fn from_f32(value: f32) -> Self;
+    /// Exact for `f32`, and up to 2^53 for `f64`.
+    fn from_usize(value: usize) -> Self;
+    /// Rounds to nearest; what is too large becomes infinite.
+    fn to_f32(self) -> f32;
+    /// Exact.
+    fn to_f64(self) -> f64;
+    /// The square root.
+    fn sqrt(self) -> Self;
+    /// e to the power of `self`.
+    fn exp(self) -> Self;
+    /// The natural logarithm.
+    fn ln(self) -> Self;
+    /// The cosine of an angle in radians.
+    fn cos(self) -> Self;
+    /// The absolute value.
+    fn abs(self) -> Self;
+    /// `self` times two to the power of `exponent`.
+    fn scale(self, exponent: i32) -> Self;
+    /// The exponent e of |self| = m 2^e with m in [1/2, 1); 0 for zero.
+    fn exponent(self) -> i32;
+
+    /// The larger of the two; `other` if `self` is NaN.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+
+    /// The smaller of the two; `other` if `self` is NaN.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+
+    /// Neither NaN nor infinite.
+    #[inline(always)]
+    fn is_finite(self) -> bool {
+        self - self == Self::ZERO
+    }
+}
+
+impl Real for f64 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const EPSILON: Self = f64::EPSILON;
+    const NARROW: bool = false;
+
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn from_f32(value: f32) -> Self {
+        Self::from(value)
+    }
+    #[inline(always)]
+    fn from_usize(value: usize) -> Self {
+        value as Self
+    }
+    #[inline(always)]
+    fn to_f32(self) -> f32 {
+        self as f32
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        libm::sqrt(self)
+    }
+    fn exp(self) -> Self {
+        libm::exp(self)
+    }
+    fn ln(self) -> Self {
+        libm::log(self)
+    }
+    fn cos(self) -> Self {
+        libm::cos(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        libm::fabs(self)
+    }
+    fn scale(self, exponent: i32) -> Self {
+        libm::scalbn(self, exponent)
+    }
+    fn exponent(self) -> i32 {
+        libm::frexp(self).1
+    }
+}
+
+impl Real for f32 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const EPSILON: Self = f32::EPSILON;
+    const NARROW: bool = true;
+
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        value as Self
+    }
+    #[inline(always)]
+    fn from_f32(value: f32) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn from_usize(value: usize) -> Self {
+        value as Self
+    }
+    #[inline(always)]
+    fn to_f32(self) -> f32 {
+        self
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        libm::sqrtf(self)
+    }
+    fn exp(self) -> Self {
+        libm::expf(self)
+    }
+    fn ln(self) -> Self {
+        libm::logf(self)
+    }
+    fn cos(self) -> Self {
+        libm::cosf(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        libm::fabsf(self)
+    }
+    fn scale(self, exponent: i32) -> Self {
+        libm::scalbnf(self, exponent)
+    }
+    fn exponent(self) -> i32 {
+        libm::frexpf(self).1
+    }
+}
