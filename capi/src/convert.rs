@@ -3,6 +3,8 @@
 //! Lengths are checked against `isize::MAX` bytes, alignment against the element type, before any slice is made.
 
 use crate::status::*;
+use core::ffi::c_void;
+use noisefloor_core::real::Real;
 
 /// A shared reference to one object.
 ///
@@ -58,6 +60,44 @@ pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, len: usize) -> Result<&'a
     check(pointer, len)?;
     // SAFETY: not NULL, aligned and of a representable length as just checked; the rest is the caller's promise.
     Ok(unsafe { core::slice::from_raw_parts_mut(pointer, len) })
+}
+
+/// `needed` bytes of caller memory, 8-byte aligned, of which nothing is assumed.
+///
+/// # Safety
+/// A non-NULL `memory` must be the start of `bytes` bytes that no one else uses.
+pub(crate) unsafe fn memory(memory: *mut c_void, bytes: usize, needed: usize) -> Result<*mut u8, nf_status> {
+    if memory.is_null() {
+        return Err(NF_ERR_NULL);
+    }
+    if !memory.cast::<u64>().is_aligned() {
+        return Err(NF_ERR_ALIGNMENT);
+    }
+    if bytes < needed || needed > isize::MAX as usize {
+        return Err(NF_ERR_MEMORY);
+    }
+    Ok(memory.cast())
+}
+
+/// `len` numbers of workspace, cleared: the caller's memory may never have been written.
+///
+/// # Safety
+/// As for [`memory`], and all zeros must be a `T`.
+pub(crate) unsafe fn workspace<'a, T: Real>(
+    workspace: *mut c_void,
+    bytes: usize,
+    len: usize,
+) -> Result<&'a mut [T], nf_status> {
+    let needed = product(len, size_of::<T>())?;
+    if needed == 0 {
+        return Ok(&mut []);
+    }
+    // SAFETY: the caller's promise; the memory is aligned to 8 bytes and long enough.
+    unsafe {
+        let start = memory(workspace, bytes, needed)?;
+        start.write_bytes(0, needed);
+        Ok(core::slice::from_raw_parts_mut(start.cast(), len))
+    }
 }
 
 /// `a * b` elements, or the status for a length that no array can have.

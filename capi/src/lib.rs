@@ -5,8 +5,10 @@
 //! This crate is the only one that contains `unsafe`; the pointer checks are in [`convert`].
 
 mod convert;
+mod cv;
 mod status;
 
+pub use cv::*;
 pub use status::*;
 
 /// Nothing in the library can panic (a test looks for the panic symbols in the archive), so this is never reached.

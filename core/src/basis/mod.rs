@@ -147,6 +147,14 @@ impl Basis {
         self.terms.get(term).map_or(1, Term::degree)
     }
 
+    /// Whether another basis has the same functions in the same order.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        self.family == other.family
+            && self.continuous == other.continuous
+            && self.slices == other.slices
+            && self.terms.len() == other.terms.len()
+    }
+
     #[inline(always)]
     fn indicators(&self) -> usize {
         if self.first_degree > 0 { self.slices } else { 0 }

@@ -7,10 +7,10 @@ use super::config::{Config, Estimate, Estimator, Ridge, Solver};
 use super::cross_fit;
 use super::design::Units;
 use super::incremental;
-use super::mixture;
 use super::moments::{self, Centred, Moments, MomentsMut};
 use super::per_channel::{PerChannel, add, get, set};
 use super::result::{self, Outcome, Summary};
+use super::ridge;
 use super::samples::{Reader, Samples, Subset};
 use super::{gradient_descent, square_root};
 use crate::arena::Arena;
@@ -115,9 +115,7 @@ impl<R: Real> State<R> {
         let solve = moments::solve_len(columns);
         let fit = moments::centred_len(columns, channels) + columns * (1 + channels) + solve;
         match self.config.estimator {
-            Estimator::Robust | Estimator::KFold => {
-                cross_fit::len(columns, channels, self.groups()) + self.group() + fit
-            }
+            Estimator::Robust | Estimator::KFold => cross_fit::len(columns, channels) + self.group() + fit,
             Estimator::GradientDescent => fit + gradient_descent::size(columns, channels),
             _ if self.config.solver == Solver::SquareRoot => square_root::size(self.terms(), channels) + self.group(),
             _ => fit,
@@ -127,6 +125,11 @@ impl<R: Real> State<R> {
     /// Samples added so far.
     pub fn samples(&self) -> u64 {
         self.samples
+    }
+
+    /// What it was made with.
+    pub fn config(&self) -> &Config {
+        &self.config
     }
 }
 
@@ -160,22 +163,6 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
         Ok(accumulator)
     }
 
-    /// Joins a state and the buffer it was used with; both as they were when last taken apart.
-    ///
-    /// # Errors
-    /// [`Error::Memory`] if the buffer is too short.
-    pub fn from_parts(state: State<R>, sums: S) -> Result<Self, Error> {
-        if sums.as_ref().len() < state.len() {
-            return Err(Error::Memory);
-        }
-        Ok(Self { state, sums })
-    }
-
-    /// The state, to be kept beside the buffer.
-    pub fn state(&self) -> &State<R> {
-        &self.state
-    }
-
     /// Forgets all samples.
     pub fn reset(&mut self) {
         let state = &mut self.state;
@@ -192,7 +179,6 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
     ///
     /// # Errors
     /// As for [`estimate`](super::estimate); adding no samples is an error too.
-    #[inline(always)]
     pub fn add(&mut self, samples: Samples<'_>) -> Result<(), Error> {
         let config = self.state.config;
         let reader = Reader::new(&config, samples)?;
@@ -255,7 +241,7 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
     ///
     /// # Errors
     /// [`Error::Mismatch`] if the configurations differ.
-    pub fn merge<T: AsRef<[R]> + AsMut<[R]>>(&mut self, other: &Accumulator<R, T>) -> Result<(), Error> {
+    pub fn merge<T: AsRef<[R]>>(&mut self, other: &Accumulator<R, T>) -> Result<(), Error> {
         if self.state.config != other.state.config {
             return Err(Error::Mismatch);
         }
@@ -300,6 +286,24 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
         }
         Ok(())
     }
+}
+
+impl<R: Real, S: AsRef<[R]>> Accumulator<R, S> {
+    /// Joins a state and the buffer it was used with; both as they were when last taken apart.
+    ///
+    /// # Errors
+    /// [`Error::Memory`] if the buffer is too short.
+    pub fn from_parts(state: State<R>, sums: S) -> Result<Self, Error> {
+        if sums.as_ref().len() < state.len() {
+            return Err(Error::Memory);
+        }
+        Ok(Self { state, sums })
+    }
+
+    /// The state, to be kept beside the buffer.
+    pub fn state(&self) -> &State<R> {
+        &self.state
+    }
 
     /// The estimate from all samples so far. More may be added afterwards.
     ///
@@ -318,7 +322,7 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
             total.plain()
         } else {
             match state.config.estimator {
-                Estimator::Incremental => incremental::outcome(&state.incremental, state.samples),
+                Estimator::Incremental => incremental::outcome(&state.incremental, state.samples).relative_to(&total),
                 Estimator::Robust | Estimator::KFold => self.cross_fit(&total, &mut arena)?,
                 Estimator::GradientDescent => {
                     let group = self.group(0).ok_or(Error::Memory)?;
@@ -361,7 +365,7 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
 
     fn penalties<'a>(&self, gram: &[R], count: R, arena: &mut Arena<'a, R>) -> Result<&'a [R], Error> {
         let penalties = arena.take(self.state.columns)?;
-        mixture::penalties(
+        ridge::penalties(
             &self.state.config,
             &self.state.config.checked_basis()?,
             |j| row(gram, j + 1).last().copied().unwrap_or(R::ZERO) / count,
@@ -395,11 +399,8 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
         let penalties = self.penalties(group.gram, group.count(), arena)?;
         let coefficients = arena.take(columns * channels)?;
         let Some(centred) = Centred::new(group, columns, channels, arena)? else { return Ok(total.plain()) };
-        let strength = match self.state.config.ridge {
-            Ridge::Fixed(strength) => R::from_f32(strength),
-            Ridge::Default | Ridge::Auto => R::from_f64(mixture::FLOOR[usize::from(R::NARROW)]),
-        };
-        centred.solve(penalties, strength, coefficients, arena)?;
+        let strength = R::from_f64(ridge::least_squares::<R>(self.state.config.ridge));
+        centred.solve(penalties, strength, coefficients, false, arena)?;
         Ok(in_sample(&centred, coefficients, total))
     }
 
@@ -412,6 +413,9 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
         let (columns, channels) = (self.state.columns, self.state.channels);
         let Some(centred) = Centred::new(group, columns, channels, arena)? else { return Ok(total.plain()) };
         let coefficients = arena.take(columns * channels)?;
+        for value in coefficients.iter_mut() {
+            *value = R::ZERO;
+        }
         gradient_descent::descend(&centred, &self.state.config, coefficients, arena)?;
         Ok(in_sample(&centred, coefficients, total))
     }
@@ -443,7 +447,7 @@ pub(crate) struct Totals<R> {
 }
 
 impl<R: Real> Totals<R> {
-    fn new<S: AsRef<[R]> + AsMut<[R]>>(accumulator: &Accumulator<R, S>) -> Result<Self, Error> {
+    fn new<S: AsRef<[R]>>(accumulator: &Accumulator<R, S>) -> Result<Self, Error> {
         let state = &accumulator.state;
         let mut totals = PerChannel::default();
         let mut squares = PerChannel::default();
@@ -490,7 +494,6 @@ impl<R: Real> Outcome<R> {
 }
 
 /// Sets the units at the first sample, and keeps values of a narrow type near one.
-#[inline(always)]
 fn fit_units<R: Real>(state: &mut State<R>, values: &PerChannel<R>, sums: &mut [R]) {
     if R::NARROW {
         raise_exponents(state, &values.map(|value| if value == R::ZERO { -126 } else { value.exponent() }), sums);

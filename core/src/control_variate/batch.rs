@@ -3,7 +3,7 @@
 use super::accumulator::{Accumulator, State};
 use super::config::{Config, Estimate, Estimator, Solver};
 use super::design::Design;
-use super::mixture::{self, Fitter};
+use super::fitter::{self, Fitter, Rule};
 use super::per_channel::PerChannel;
 use super::result::{self, Outcome};
 use super::samples::{Reader, Samples, Subset};
@@ -34,7 +34,7 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
             return state.len().checked_add(state.workspace_len()).ok_or(Error::Memory);
         }
         Estimator::LeastSquares if config.solver == Solver::SquareRoot => square_root::size(plan.columns, 1),
-        _ => mixture::size(n, plan.dual, plan.columns, config.channels).ok_or(Error::Memory)?,
+        _ => fitter::size(n, plan.dual, plan.columns, config.channels).ok_or(Error::Memory)?,
     };
     design.checked_add(solve).ok_or(Error::Memory)
 }
@@ -94,15 +94,15 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
         Outcome { correction: Default::default(), variance: result::plain_variance(&design) }
     } else {
         match config.estimator {
-            // The incremental estimate went its own way above.
-            Estimator::Robust | Estimator::Incremental => robust(&design, config, &basis, plan, &mut arena)?,
-            Estimator::LeaveOneOut => leave_one_out(&design, config, &basis, plan, &mut arena)?,
+            Estimator::KFold => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
+            Estimator::GradientDescent => gradient_descent::estimate(&design, config, None, &mut arena)?,
             Estimator::LeastSquares if config.solver == Solver::SquareRoot => {
                 square_root::least_squares(&design, config, &basis, &mut arena)?
             }
-            Estimator::LeastSquares => least_squares(&design, config, &basis, plan, &mut arena)?,
-            Estimator::KFold => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
-            Estimator::GradientDescent => gradient_descent::estimate(&design, config, None, &mut arena)?,
+            // The incremental estimate went its own way above.
+            Estimator::Robust | Estimator::LeaveOneOut | Estimator::LeastSquares | Estimator::Incremental => {
+                fit(&design, config, &basis, plan, &mut arena)?
+            }
         }
     };
     Ok(result::finish(result::Summary::of(&design, &reader), outcome))
@@ -117,48 +117,33 @@ fn incremental<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [
     accumulator.estimate(scratch)
 }
 
+/// The estimators that fit all samples at once through the normal equations or their dual.
 #[inline(always)]
-fn robust<'a, R: Real>(
+fn fit<'a, R: Real>(
     design: &Design<'a, R>,
     config: &Config,
     basis: &Basis,
     plan: Plan,
     arena: &mut Arena<'a, R>,
 ) -> Result<Outcome<R>, Error> {
+    let rule = match config.estimator {
+        Estimator::LeastSquares => Rule::LeastSquares(config.ridge),
+        Estimator::LeaveOneOut => Rule::Single(config.ridge),
+        _ => Rule::Robust,
+    };
     let fitter = Fitter::new(design, config, basis, plan.dual, arena)?;
-    let mixture = fitter.robust(None, arena)?;
-    Ok(Outcome { correction: mixture.correction, variance: result::variance_of_press(&mixture.press, design.n) })
-}
-
-#[inline(always)]
-fn leave_one_out<'a, R: Real>(
-    design: &Design<'a, R>,
-    config: &Config,
-    basis: &Basis,
-    plan: Plan,
-    arena: &mut Arena<'a, R>,
-) -> Result<Outcome<R>, Error> {
-    let fitter = Fitter::new(design, config, basis, plan.dual, arena)?;
-    let fit = fitter.single(config.ridge, None, arena)?;
-    Ok(Outcome { correction: fit.leave_one_out, variance: result::variance_of_press(&fit.press, design.n) })
-}
-
-/// Algorithm 1. Its residuals have mean zero, so the estimate is the fit's constant term.
-#[inline(always)]
-fn least_squares<'a, R: Real>(
-    design: &Design<'a, R>,
-    config: &Config,
-    basis: &Basis,
-    plan: Plan,
-    arena: &mut Arena<'a, R>,
-) -> Result<Outcome<R>, Error> {
-    let fitter = Fitter::new(design, config, basis, plan.dual, arena)?;
-    let fit = fitter.least_squares(config.ridge, arena)?;
-    let mut residual = fit.explained;
-    for (channel, value) in residual.iter_mut().enumerate() {
-        *value = (design.sum_of_squares(channel) - *value).max(R::ZERO);
+    let blend = fitter.solve(rule, None, arena)?;
+    if let Rule::LeastSquares(_) = rule {
+        // Algorithm 1. Its residuals have mean zero, so the estimate is the fit's constant term.
+        let mut residual = blend.blended(|fit| fit.explained);
+        for (channel, value) in residual.iter_mut().enumerate() {
+            *value = (design.sum_of_squares(channel) - *value).max(R::ZERO);
+        }
+        let correction = blend.blended(|fit| fit.in_sample);
+        return Ok(Outcome { correction, variance: residual_variance(design, residual) });
     }
-    Ok(Outcome { correction: fit.in_sample, variance: residual_variance(design, residual) })
+    let correction = blend.blended(|fit| fit.leave_one_out);
+    Ok(Outcome { correction, variance: result::variance_of_press(&blend.press(design), design.n) })
 }
 
 /// The variance of a fit's constant term for a sum of squared residuals, or the plain mean's if no residual is left

@@ -6,10 +6,11 @@
 //! estimate exactly unbiased.
 
 use super::config::Ridge;
-use super::mixture::{self, CANDIDATES, STRENGTHS};
 use super::moments::{self, Centred, Moments};
 use super::per_channel::{PerChannel, add, get, set};
 use super::result::{self, Outcome};
+use super::ridge::{self, CANDIDATES, STRENGTHS};
+use super::trust;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::real::Real;
@@ -29,7 +30,7 @@ pub(crate) struct Groups<'a, R> {
 type Errors<R> = [PerChannel<R>; CANDIDATES];
 
 /// Numbers that [`estimate`] takes from its arena beyond one fit and one group of sums.
-pub(crate) fn len(columns: usize, channels: usize, _folds: usize) -> usize {
+pub(crate) fn len(columns: usize, channels: usize) -> usize {
     CANDIDATES * columns * channels
 }
 
@@ -62,10 +63,7 @@ pub(crate) fn estimate<R: Real>(
     nested: bool,
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
-    let fixed = [match ridge {
-        Ridge::Fixed(strength) => f64::from(strength),
-        Ridge::Default | Ridge::Auto => mixture::DEFAULT_STRENGTH,
-    }];
+    let fixed = [ridge::single(ridge)];
     let strengths: &[f64] = if matches!(ridge, Ridge::Default | Ridge::Auto) { &STRENGTHS } else { &fixed };
     let channels = groups.channels;
     let coefficients = arena.take(CANDIDATES * groups.columns * channels)?;
@@ -85,17 +83,17 @@ pub(crate) fn estimate<R: Real>(
             for other in (0..groups.folds).filter(|&other| other != fold) {
                 let Some(judging) = groups.group(other).filter(|group| group.count() > R::ZERO) else { continue };
                 let train = groups.train([fold, other], train).ok_or(Error::Memory)?;
-                fit(&train, groups, penalties, strengths, coefficients, &mut arena.scratch())?;
-                judge.add(&train, &judging, groups, strengths.len(), coefficients);
+                let discounts = fit(&train, groups, penalties, strengths, coefficients, &mut arena.scratch())?;
+                judge.add(&train, &judging, groups, &discounts, coefficients);
             }
             Some(judge.weights(channels, strengths.len(), ridge))
         } else {
             None
         };
         let train = groups.train([fold, fold], train).ok_or(Error::Memory)?;
-        fit(&train, groups, penalties, strengths, coefficients, &mut arena.scratch())?;
+        let discounts = fit(&train, groups, penalties, strengths, coefficients, &mut arena.scratch())?;
         let mut own = Judge::default();
-        own.add(&train, &held_out, groups, strengths.len(), coefficients);
+        own.add(&train, &held_out, groups, &discounts, coefficients);
         for channel in 0..channels {
             let plain = held_out.total(channel);
             add(&mut plain_sum, channel, plain);
@@ -140,7 +138,7 @@ pub(crate) fn estimate<R: Real>(
     Ok(outcome)
 }
 
-/// Every candidate's coefficients for a training set; zero where there is no sample.
+/// Every candidate's coefficients for a training set, zero where there is no sample, and the discounts of their trust.
 fn fit<R: Real>(
     train: &Moments<'_, R>,
     groups: &Groups<'_, R>,
@@ -148,17 +146,19 @@ fn fit<R: Real>(
     strengths: &[f64],
     coefficients: &mut [R],
     arena: &mut Arena<'_, R>,
-) -> Result<(), Error> {
+) -> Result<[R; CANDIDATES], Error> {
+    let mut discounts = [R::ZERO; CANDIDATES];
     for value in coefficients.iter_mut() {
         *value = R::ZERO;
     }
     let each = groups.columns * groups.channels;
     if let Some(centred) = Centred::new(train, groups.columns, groups.channels, arena)? {
-        for (&strength, coefficients) in strengths.iter().zip(coefficients.chunks_exact_mut(each.max(1))) {
-            centred.solve(penalties, R::from_f64(strength), coefficients, &mut arena.scratch())?;
+        let candidates = strengths.iter().zip(coefficients.chunks_exact_mut(each.max(1))).zip(&mut discounts);
+        for ((&strength, coefficients), discount) in candidates {
+            *discount = centred.solve(penalties, R::from_f64(strength), coefficients, true, &mut arena.scratch())?;
         }
     }
-    Ok(())
+    Ok(discounts)
 }
 
 fn row_of<'c, R>(coefficients: &'c [R], candidate: usize, channel: usize, groups: &Groups<'_, R>) -> &'c [R] {
@@ -172,11 +172,20 @@ struct Judge<R> {
     errors: Errors<R>,
     plain: PerChannel<R>,
     count: R,
+    /// Sums of the fits' discounts, and their number.
+    discounts: [R; CANDIDATES],
+    fits: R,
 }
 
 impl<R: Real> Default for Judge<R> {
     fn default() -> Self {
-        Self { errors: Default::default(), plain: Default::default(), count: R::ZERO }
+        Self {
+            errors: Default::default(),
+            plain: Default::default(),
+            count: R::ZERO,
+            discounts: [R::ZERO; CANDIDATES],
+            fits: R::ZERO,
+        }
     }
 }
 
@@ -187,16 +196,20 @@ impl<R: Real> Judge<R> {
         train: &Moments<'_, R>,
         judging: &Moments<'_, R>,
         groups: &Groups<'_, R>,
-        candidates: usize,
+        discounts: &[R; CANDIDATES],
         coefficients: &[R],
     ) {
         self.count += judging.count();
+        self.fits += R::ONE;
+        for (total, &discount) in self.discounts.iter_mut().zip(discounts) {
+            *total += discount;
+        }
         let inverse = if train.count() > R::ZERO { R::ONE / train.count() } else { R::ZERO };
         for channel in 0..groups.channels {
             let mean = train.total(channel) * inverse;
             let error = judging.residual_square(channel, groups.channels, mean, &[]);
             add(&mut self.plain, channel, error);
-            for (candidate, errors) in self.errors.iter_mut().enumerate().take(candidates) {
+            for (candidate, errors) in self.errors.iter_mut().enumerate() {
                 let b = row_of(coefficients, candidate, channel, groups);
                 let a = train.residual_total(channel, b) * inverse;
                 let error = judging.residual_square(channel, groups.channels, a, b);
@@ -207,6 +220,10 @@ impl<R: Real> Judge<R> {
 
     fn merge(&mut self, other: &Self) {
         self.count += other.count;
+        self.fits += other.fits;
+        for (ours, &theirs) in self.discounts.iter_mut().zip(&other.discounts) {
+            *ours += theirs;
+        }
         let pairs = self.errors.iter_mut().zip(&other.errors).chain([(&mut self.plain, &other.plain)]);
         for (ours, theirs) in pairs {
             for (ours, &theirs) in ours.iter_mut().zip(theirs) {
@@ -231,7 +248,8 @@ impl<R: Real> Judge<R> {
                 *error = get(all, channel);
             }
             let power = self.count * R::from_f64(SHARPNESS);
-            let (plain, each) = mixture::weights(get(&self.plain, channel), &errors, power);
+            let discounts = self.discounts.map(|total| total / self.fits.max(R::ONE));
+            let (plain, each) = trust::weights(get(&self.plain, channel), &errors, &discounts, power);
             set(&mut plain_weights, channel, plain);
             for (weights, weight) in weights.iter_mut().zip(each) {
                 set(weights, channel, weight);

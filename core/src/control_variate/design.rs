@@ -252,7 +252,7 @@ fn clear_unused<R: Real>(panels: &mut [Lanes<R>], width: usize, n: usize) {
 /// Where the stored values' zero and unit lie: at the first sample, so that constants are exact, and, for a type whose
 /// range squares could leave, at a power of two near the largest value.
 #[inline(always)]
-fn units<R: Real>(reader: &Reader<'_>, subset: Subset) -> [Units<R>; Config::MAX_CHANNELS] {
+pub(crate) fn units<R: Real>(reader: &Reader<'_>, subset: Subset) -> [Units<R>; Config::MAX_CHANNELS] {
     let mut units = [Units::default(); Config::MAX_CHANNELS];
     if R::NARROW {
         let mut largest = [R::ZERO; Config::MAX_CHANNELS];

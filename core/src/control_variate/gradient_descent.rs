@@ -50,7 +50,7 @@ pub(crate) trait Objective<R> {
 /// # Errors
 /// As for [`estimate`](super::estimate), and [`Error::NotFinite`] for a start that is not finite. The coefficients are
 /// written only on success.
-#[inline(always)]
+#[inline(never)]
 pub fn estimate_from<R: Real>(
     config: &Config,
     samples: Samples<'_>,
@@ -74,7 +74,7 @@ pub fn estimate_from<R: Real>(
 }
 
 /// Descends from zero, or from `warm` and back into it.
-#[inline(always)]
+#[inline(never)]
 pub(crate) fn estimate<R: Real>(
     design: &Design<'_, R>,
     config: &Config,
@@ -110,7 +110,7 @@ pub(crate) fn estimate<R: Real>(
 
 /// Improves the coefficients, a row for each channel, step by step. A descent that diverges, for a step length of the
 /// caller's, ends at zero: the plain mean.
-#[inline(always)]
+#[inline(never)]
 pub(crate) fn descend<R: Real>(
     objective: &impl Objective<R>,
     config: &Config,

@@ -5,12 +5,11 @@
 //! keeps the guarantee: the fit in use is always one to preceding samples.
 
 use super::config::{Config, Ridge};
-use super::mixture;
 use super::moments::{self, Centred, Moments};
 use super::per_channel::{PerChannel, get};
 use super::result::Outcome;
+use super::ridge;
 use crate::arena::Arena;
-use crate::linalg::row;
 use crate::real::Real;
 
 /// Ridge strength per sample, if the caller names none.
@@ -67,14 +66,9 @@ pub(crate) fn refit<R: Real>(
         let mut arena = Arena::new(rest);
         let coefficients = arena.take(columns * channels).ok()?;
         let penalties = arena.take(columns).ok()?;
-        mixture::penalties(
-            config,
-            &basis,
-            |j| row(sums.gram, j + 1).last().copied().unwrap_or(R::ZERO) / sums.count(),
-            penalties,
-        );
+        ridge::penalties(config, &basis, |j| sums.column_square(j) / sums.count(), penalties);
         let centred = Centred::new(&sums, columns, channels, &mut arena).ok()??;
-        centred.solve(penalties, strength, coefficients, &mut arena).ok()
+        centred.solve(penalties, strength, coefficients, false, &mut arena).ok().map(drop)
     };
     // The buffer was measured for this, so there is nothing to fail; a fit that is not renewed is still a valid one.
     let _: Option<()> = solve();

@@ -3,7 +3,7 @@
 use super::batch::Plan;
 use super::config::{Config, Ridge};
 use super::design::Design;
-use super::mixture::{self, Fitter};
+use super::fitter::{self, Fitter, Rule};
 use super::per_channel::{PerChannel, add, get, set};
 use super::result::Outcome;
 use super::samples::{Reader, Subset};
@@ -16,15 +16,15 @@ use crate::real::Real;
 /// Numbers that [`estimate`] takes from its arena.
 pub(crate) fn size<R: Real>(config: &Config, columns: usize, n: usize) -> Option<usize> {
     // The largest training set leaves out the smallest fold, and the held-out fold is no larger than that.
-    let train = n - n / config.fold_count();
+    let train = n - n.checked_div(config.fold_count()).unwrap_or(0);
     let channels = config.channels;
     let dual = config.solver == super::config::Solver::Dual || train <= columns;
     let designs = Design::<R>::size(train, columns, channels)?.checked_mul(2)?;
-    mixture::size(train, dual, columns, channels)?.checked_add(designs)?.checked_add(columns * channels)
+    fitter::size(train, dual, columns, channels)?.checked_add(designs)?.checked_add(columns * channels)
 }
 
 /// The estimate over `config.folds` folds, sample i in fold i mod folds. `whole` holds all samples.
-#[inline(always)]
+#[inline(never)]
 pub(crate) fn estimate<R: Real>(
     reader: &Reader<'_>,
     whole: &Design<'_, R>,
@@ -53,14 +53,8 @@ pub(crate) fn estimate<R: Real>(
         if let Some(train) = train.filter(|train| train.n > 1) {
             let plan = Plan::new(config, basis, train.n)?;
             let fitter = Fitter::new(&train, config, basis, plan.dual, &mut arena)?;
-            match config.ridge {
-                Ridge::Default => {
-                    fitter.robust(Some(coefficients), &mut arena)?;
-                }
-                Ridge::Auto | Ridge::Fixed(_) => {
-                    fitter.single(config.ridge, Some(coefficients), &mut arena)?;
-                }
-            }
+            let rule = if config.ridge == Ridge::Default { Rule::Robust } else { Rule::Single(config.ridge) };
+            fitter.solve(rule, Some(coefficients), &mut arena)?;
             // Coefficients came in the training set's units.
             for (coefficients, (from, to)) in
                 coefficients.chunks_exact_mut(whole.columns.max(1)).zip(train.units.iter().zip(&whole.units))
@@ -101,7 +95,7 @@ pub(crate) fn estimate<R: Real>(
     Ok(outcome)
 }
 
-#[inline(always)]
+#[inline(never)]
 fn load<'a, R: Real>(
     reader: &Reader<'_>,
     basis: &Basis,

@@ -5,22 +5,28 @@
 
 mod accumulator;
 mod batch;
+mod block;
 mod config;
 mod cross_fit;
 mod design;
+mod fitter;
 mod gradient_descent;
 mod incremental;
 mod k_fold;
-mod mixture;
 mod moments;
 mod per_channel;
+mod regressor;
 mod result;
+mod ridge;
 mod ridge_fit;
 mod samples;
 mod square_root;
+mod trust;
 
 pub use accumulator::{Accumulator, State};
 pub use batch::{estimate, workspace_len};
+pub use block::{block_workspace_len, estimate_block};
 pub use config::{Color, Config, Estimate, Estimator, NonFinite, Optimizer, Ridge, Solver};
 pub use gradient_descent::estimate_from as gradient_descent;
+pub use regressor::Regressor;
 pub use samples::Samples;

@@ -3,6 +3,7 @@
 //! For rows p = (1, functions) and values f the sums are P'P (packed), P'f (a row for each column) and f'f.
 
 use super::per_channel::{PerChannel, get, set};
+use super::trust;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::linalg::{ldlt, packed_len, row, row_mut};
@@ -52,6 +53,11 @@ impl<'a, R: Real> Moments<'a, R> {
     /// The sum of column j.
     pub(crate) fn column_total(&self, j: usize) -> R {
         row(self.gram, j + 1).first().copied().unwrap_or(R::ZERO)
+    }
+
+    /// The sum of the squares of column j.
+    pub(crate) fn column_square(&self, j: usize) -> R {
+        row(self.gram, j + 1).last().copied().unwrap_or(R::ZERO)
     }
 
     /// The sum of f - b'p over the samples.
@@ -147,7 +153,6 @@ impl<'a, R: Real> MomentsMut<'a, R> {
 pub(crate) struct Centred<'a, R> {
     /// Functions, the constant not counted.
     pub(crate) columns: usize,
-    pub(crate) channels: usize,
     pub(crate) count: R,
     gram: &'a mut [R],
     rhs: &'a mut [R],
@@ -166,7 +171,7 @@ pub(crate) fn centred_len(columns: usize, channels: usize) -> usize {
 
 /// How many numbers [`Centred::solve`] takes.
 pub(crate) fn solve_len(columns: usize) -> usize {
-    packed_len(columns)
+    2 * packed_len(columns) + 2 * columns
 }
 
 impl<'a, R: Real> Centred<'a, R> {
@@ -208,18 +213,20 @@ impl<'a, R: Real> Centred<'a, R> {
                 *out = value - sums.column_total(j) * mean;
             }
         }
-        Ok(Some(Self { columns, channels, count, gram, rhs, means, value_means, squares }))
+        Ok(Some(Self { columns, count, gram, rhs, means, value_means, squares }))
     }
 
-    /// Writes the coefficients of the fit with a ridge of `strength` per sample, a row for each channel.
+    /// Writes the coefficients of the fit with a ridge of `strength` per sample, a row for each channel, and returns
+    /// the [`discount`](trust::discount) of its trust, if that is wanted.
     #[inline(always)]
     pub(crate) fn solve(
         &self,
         penalties: &[R],
         strength: R,
         coefficients: &mut [R],
+        with_discount: bool,
         arena: &mut Arena<'_, R>,
-    ) -> Result<(), Error> {
+    ) -> Result<R, Error> {
         let factor = arena.take(packed_len(self.columns))?;
         for (out, &value) in factor.iter_mut().zip(self.gram.iter()) {
             *out = value;
@@ -235,7 +242,25 @@ impl<'a, R: Real> Centred<'a, R> {
             }
             ldlt::solve(factor, out);
         }
-        Ok(())
+        if !with_discount {
+            return Ok(R::ZERO);
+        }
+        let inverse = arena.take(packed_len(self.columns))?;
+        let diagonal = arena.take(self.columns)?;
+        let means = arena.take(self.columns)?;
+        ldlt::inverse_diagonal(factor, self.columns, inverse, diagonal);
+        // tr(A^-1 G) = columns - strength tr(A^-1 D).
+        let mut freedom = R::from_usize(self.columns);
+        for (&value, &penalty) in diagonal.iter().zip(penalties) {
+            freedom -= strength * value * penalty;
+        }
+        super::ridge_fit::copy_padded(means, self.means);
+        ldlt::forward(factor, means);
+        let mut eccentricity = R::ZERO;
+        for (j, &mean) in means.iter().enumerate() {
+            eccentricity += mean * mean * ldlt::inverse_pivot(factor, j);
+        }
+        Ok(trust::discount(eccentricity * self.count, freedom, self.count))
     }
 
     /// The intercept that goes with coefficients.

@@ -12,8 +12,9 @@
 //! where q_i = p_i + m is the column before centring, whose integral is zero. For a fixed L that mean is exactly
 //! unbiased although every sample serves both the fit and the estimate.
 
+use super::Config;
 use super::design::Design;
-use super::per_channel::{PerChannel, set};
+use super::per_channel::{PerChannel, get, set};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
@@ -31,9 +32,10 @@ pub(crate) struct RidgeFit<R> {
     pub(crate) in_sample: PerChannel<R>,
     /// The sum of squares that the fit explains, f'P A^-1 P'f.
     pub(crate) explained: PerChannel<R>,
-    /// n m'A^-1 m, about 0 for samples spread evenly: how far the estimate extrapolates. Leave-one-out errors are small
-    /// if all samples lie in one part of the cube, and this is what tells.
-    pub(crate) extrapolation: R,
+    /// n m'A^-1 m: how far the columns' means are from their integrals, as the fit measures distance.
+    pub(crate) eccentricity: R,
+    /// The effective number of coefficients, tr(P A^-1 P').
+    pub(crate) freedom: R,
 }
 
 /// Which fit.
@@ -65,28 +67,11 @@ pub(crate) fn primal<R: Real>(
     coefficients: Option<&mut [R]>,
     mut arena: Arena<'_, R>,
 ) -> Result<RidgeFit<R>, Error> {
-    match design.channels {
-        1 => primal_channels::<R, 1>(design, gram, rhs, choice, coefficients, &mut arena),
-        2 => primal_channels::<R, 2>(design, gram, rhs, choice, coefficients, &mut arena),
-        3 => primal_channels::<R, 3>(design, gram, rhs, choice, coefficients, &mut arena),
-        _ => primal_channels::<R, 4>(design, gram, rhs, choice, coefficients, &mut arena),
-    }
-}
-
-#[inline(always)]
-fn primal_channels<R: Real, const CHANNELS: usize>(
-    design: &Design<'_, R>,
-    gram: &[R],
-    rhs: &[R],
-    choice: Choice<'_, R>,
-    coefficients: Option<&mut [R]>,
-    arena: &mut Arena<'_, R>,
-) -> Result<RidgeFit<R>, Error> {
     let columns = design.columns;
     let n = R::from_usize(design.n);
     let factor = arena.take(packed_len(columns))?;
     let means = arena.take(columns)?;
-    let solution = arena.take(columns * CHANNELS)?;
+    let solution = arena.take(columns * design.channels)?;
     let z = arena.take_lanes(columns)?;
     for (factor, &gram) in factor.iter_mut().zip(gram) {
         *factor = gram;
@@ -102,9 +87,9 @@ fn primal_channels<R: Real, const CHANNELS: usize>(
     ldlt::forward(factor, means);
     let mut fit = RidgeFit::default();
     for (j, &mean) in means.iter().enumerate() {
-        fit.extrapolation += mean * mean * ldlt::inverse_pivot(factor, j);
+        fit.eccentricity += mean * mean * ldlt::inverse_pivot(factor, j);
     }
-    fit.extrapolation *= n;
+    fit.eccentricity *= n;
     for (channel, solution) in solution.chunks_exact_mut(columns.max(1)).enumerate() {
         let rhs = rhs.get(channel * columns..).unwrap_or(&[]);
         for (out, &rhs) in solution.iter_mut().zip(rhs) {
@@ -122,7 +107,7 @@ fn primal_channels<R: Real, const CHANNELS: usize>(
         set(&mut fit.explained, channel, explained);
     }
     if choice.leave_one_out {
-        residuals::<R, CHANNELS>(design, factor, means, solution, z, &mut fit);
+        residuals(design, factor, means, solution, z, &mut fit);
     }
     if let Some(coefficients) = coefficients {
         for (out, solution) in
@@ -139,7 +124,7 @@ fn primal_channels<R: Real, const CHANNELS: usize>(
 
 /// The leave-one-out figures, eight samples at a time.
 #[inline(always)]
-fn residuals<R: Real, const CHANNELS: usize>(
+fn residuals<R: Real>(
     design: &Design<'_, R>,
     factor: &[R],
     means: &[R],
@@ -152,15 +137,15 @@ fn residuals<R: Real, const CHANNELS: usize>(
     let inverse_n = R::ONE / n;
     let smallest_gap = R::from_f64(SMALLEST_GAP) * R::EPSILON;
     let zero = [R::ZERO; LANES];
-    let (mut press, mut corrections) = ([zero; CHANNELS], [zero; CHANNELS]);
+    let (mut press, mut corrections) = ([zero; Config::MAX_CHANNELS], [zero; Config::MAX_CHANNELS]);
+    let mut freedom = zero;
     for (panel, values) in design.each_panel() {
         for (z, column) in z.iter_mut().zip(panel) {
             *z = *column;
         }
         ldlt::forward_lanes(factor, z);
-        // leverage = p'A^-1 p, shift = m'A^-1 p, fitted = b'p
+        // leverage = p'A^-1 p, shift = m'A^-1 p
         let (mut leverage, mut shift) = (zero, zero);
-        let mut fitted = [zero; CHANNELS];
         for (j, (z, &mean)) in z.iter().zip(means).enumerate() {
             let pivot = ldlt::inverse_pivot(factor, j);
             let scaled_mean = mean * pivot;
@@ -168,25 +153,30 @@ fn residuals<R: Real, const CHANNELS: usize>(
                 *leverage += z * z * pivot;
                 *shift += z * scaled_mean;
             }
-            for (channel, fitted) in fitted.iter_mut().enumerate() {
-                let weight = solution.get(channel * columns + j).copied().unwrap_or(R::ZERO);
-                lanes::add_scaled(fitted, weight, z);
-            }
         }
-        for (((values, fitted), press), corrections) in values.iter().zip(&fitted).zip(&mut press).zip(&mut corrections)
-        {
+        freedom = lanes::zip(&freedom, &leverage, |a, b| a + b);
+        let mut gap = zero;
+        for (gap, &leverage) in gap.iter_mut().zip(&leverage) {
+            *gap = R::ONE / (R::ONE - inverse_n - leverage).max(smallest_gap);
+        }
+        let channels = values.iter().zip(solution.chunks_exact(columns.max(1))).zip(&mut press).zip(&mut corrections);
+        for (((values, solution), press), corrections) in channels {
+            let mut residual = *values;
+            for (z, &weight) in z.iter().zip(solution) {
+                lanes::add_scaled(&mut residual, -weight, z);
+            }
             for l in 0..LANES {
-                let gap = (R::ONE - inverse_n - leverage[l]).max(smallest_gap);
-                let residual = (values[l] - fitted[l]) / gap;
+                let residual = residual[l] * gap[l];
                 press[l] += residual * residual;
                 corrections[l] += (leverage[l] + shift[l]) * residual;
             }
         }
     }
-    for channel in 0..CHANNELS {
-        set(&mut fit.press, channel, lanes::sum(&press[channel]));
-        let correction = lanes::sum(&corrections[channel]) * inverse_n;
-        let in_sample = fit.in_sample.get(channel).copied().unwrap_or(R::ZERO);
+    fit.freedom = lanes::sum(&freedom);
+    for (channel, (press, corrections)) in press.iter().zip(&corrections).enumerate().take(design.channels) {
+        set(&mut fit.press, channel, lanes::sum(press));
+        let correction = lanes::sum(corrections) * inverse_n;
+        let in_sample = get(&fit.in_sample, channel);
         set(&mut fit.leave_one_out, channel, in_sample + correction);
     }
 }
@@ -277,8 +267,11 @@ impl<'a, R: Real> Dual<'a, R> {
         }
         let smallest_gap = R::from_f64(SMALLEST_GAP) * R::EPSILON;
         // By the matrix inversion lemma m'A^-1 m = (m'D^-1 m - g'B^-1 g) / (strength n).
-        let extrapolation = R::from_usize(n) * ((whole - explained) / strength).max(R::ZERO);
-        let mut fit = RidgeFit { extrapolation, ..RidgeFit::default() };
+        let eccentricity = R::from_usize(n) * ((whole - explained) / strength).max(R::ZERO);
+        let mut fit = RidgeFit { eccentricity, ..RidgeFit::default() };
+        for &value in diagonal.iter() {
+            fit.freedom += R::ONE - strength * value;
+        }
         for (channel, alpha) in alpha.chunks_exact_mut(n.max(1)).enumerate() {
             let value = |i: usize| {
                 let panel = design.values.get(i / LANES * design.channels + channel);

@@ -24,7 +24,7 @@ pub(crate) fn size(columns: usize, channels: usize) -> usize {
 }
 
 /// Algorithm 1 on a centred design.
-#[inline(always)]
+#[inline(never)]
 pub(crate) fn least_squares<R: Real>(
     design: &Design<'_, R>,
     config: &Config,

@@ -1,0 +1,298 @@
+//! Streaming accumulators in caller memory.
+
+use super::batch::{samples, size, status};
+use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimate};
+use crate::convert;
+use crate::status::*;
+use core::ffi::c_void;
+use noisefloor_core::control_variate::{Accumulator, Config, State};
+use noisefloor_core::real::Real;
+
+/// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls.
+#[allow(non_camel_case_types)]
+pub struct nf_cv_accumulator {
+    magic: u64,
+    state: AnyState,
+}
+
+#[derive(Clone, Copy)]
+enum AnyState {
+    Double(State<f64>),
+    Single(State<f32>),
+}
+
+/// "nf_cvacc" as bytes.
+const MAGIC: u64 = u64::from_le_bytes(*b"nf_cvacc");
+
+/// Bytes that the sums start at.
+const HEADER: usize = size_of::<nf_cv_accumulator>().next_multiple_of(8);
+
+/// Bytes that an accumulator needs; 0 for a configuration that is NULL, out of range or not for streaming.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_accumulator_size(config: *const nf_cv_config) -> usize {
+    // SAFETY: the caller's pointer, checked there for NULL and alignment.
+    let Ok(config) = (unsafe { convert::reference(config) }) else { return 0 };
+    let sums = size(config, |config, narrow| {
+        if narrow { State::<f32>::new(config).map(|s| s.len()) } else { State::<f64>::new(config).map(|s| s.len()) }
+    });
+    if sums == 0 { 0 } else { HEADER + sums }
+}
+
+/// Makes an empty accumulator in `memory`, 8-byte aligned and of at least nf_cv_accumulator_size() bytes, and returns
+/// it in out.
+///
+/// NF_ERR_UNSUPPORTED for NF_CV_LEAVE_ONE_OUT, which needs all samples at once, and for NF_SOLVER_DUAL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_accumulator_init(
+    memory: *mut c_void,
+    bytes: usize,
+    config: *const nf_cv_config,
+    out: *mut *mut nf_cv_accumulator,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller's pointers, each checked there.
+        let (config, out) = unsafe { (convert::reference(config)?, convert::reference_mut(out)?) };
+        let core = core_config(config)?;
+        let (state, sums) = if is_narrow(config)? {
+            let state = State::new(&core).map_err(status_of)?;
+            (AnyState::Single(state), state.len() * size_of::<f32>())
+        } else {
+            let state = State::new(&core).map_err(status_of)?;
+            (AnyState::Double(state), state.len() * size_of::<f64>())
+        };
+        // SAFETY: the caller's memory, `bytes` long.
+        let memory = unsafe { convert::memory(memory, bytes, HEADER + sums)? };
+        let accumulator = memory.cast::<nf_cv_accumulator>();
+        // SAFETY: `memory` is aligned to 8 bytes and holds the header and, cleared, the sums.
+        unsafe {
+            memory.add(HEADER).write_bytes(0, sums);
+            accumulator.write(nf_cv_accumulator { magic: MAGIC, state });
+        }
+        *out = accumulator;
+        Ok(())
+    })())
+}
+
+/// Adds n samples, laid out as for nf_cv_estimate(): all of them or, on an error, none. A configuration with `controls`
+/// needs nf_cv_accumulator_add_with_controls().
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_accumulator_add(
+    accumulator: *mut nf_cv_accumulator,
+    u: *const f32,
+    f: *const f32,
+    n: usize,
+) -> nf_status {
+    // SAFETY: the caller's pointers; there are no control functions.
+    unsafe { nf_cv_accumulator_add_with_controls(accumulator, u, f, core::ptr::null(), core::ptr::null(), n) }
+}
+
+/// As nf_cv_accumulator_add(), with the control functions of nf_cv_estimate_with_controls().
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_accumulator_add_with_controls(
+    accumulator: *mut nf_cv_accumulator,
+    u: *const f32,
+    f: *const f32,
+    h: *const f32,
+    h_integral: *const f32,
+    n: usize,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller's object, checked there, and arrays of the lengths the header states.
+        unsafe {
+            match open(accumulator)? {
+                Opened::Double(state, sums) => add(state, sums, u, f, h, h_integral, n),
+                Opened::Single(state, sums) => add(state, sums, u, f, h, h_integral, n),
+            }
+        }
+    })())
+}
+
+/// Adds all samples of `other`, which stays as it is. NF_ERR_MISMATCH if the configurations differ.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_accumulator_merge(
+    accumulator: *mut nf_cv_accumulator,
+    other: *const nf_cv_accumulator,
+) -> nf_status {
+    if core::ptr::eq(accumulator, other) && !other.is_null() {
+        // Two references to one object must not be; and whoever asks for this has made a mistake.
+        return NF_ERR_RANGE;
+    }
+    status((|| {
+        // SAFETY: the caller's objects, checked there, and not the same one.
+        let (ours, theirs) = unsafe { (open(accumulator)?, open_shared(other)?) };
+        match (ours, theirs) {
+            (Opened::Double(state, sums), OpenedShared::Double(other, other_sums)) => {
+                merge(state, sums, other, other_sums)
+            }
+            (Opened::Single(state, sums), OpenedShared::Single(other, other_sums)) => {
+                merge(state, sums, other, other_sums)
+            }
+            _ => Err(NF_ERR_MISMATCH),
+        }
+    })())
+}
+
+/// Bytes of workspace that nf_cv_accumulator_estimate() needs; 0 as for nf_cv_accumulator_size().
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_accumulator_workspace_size(config: *const nf_cv_config) -> usize {
+    // SAFETY: the caller's pointer, checked there for NULL and alignment.
+    let Ok(config) = (unsafe { convert::reference(config) }) else { return 0 };
+    size(config, |config, narrow| {
+        if narrow {
+            State::<f32>::new(config).map(|state| state.workspace_len())
+        } else {
+            State::<f64>::new(config).map(|state| state.workspace_len())
+        }
+    })
+}
+
+/// The estimate from all samples so far; more may be added afterwards. NF_ERR_NO_SAMPLES if there are none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_accumulator_estimate(
+    accumulator: *const nf_cv_accumulator,
+    workspace: *mut c_void,
+    bytes: usize,
+    out: *mut nf_estimate,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller's object and memory, each checked there.
+        unsafe {
+            let out = convert::reference_mut(out)?;
+            let estimate = match open_shared(accumulator)? {
+                OpenedShared::Double(state, sums) => {
+                    let workspace = convert::workspace(workspace, bytes, state.workspace_len())?;
+                    Accumulator::from_parts(*state, Shared(sums)).and_then(|sums| sums.estimate(workspace))
+                }
+                OpenedShared::Single(state, sums) => {
+                    let workspace = convert::workspace(workspace, bytes, state.workspace_len())?;
+                    Accumulator::from_parts(*state, Shared(sums)).and_then(|sums| sums.estimate(workspace))
+                }
+            };
+            *out = c_estimate(&estimate.map_err(status_of)?);
+            Ok(())
+        }
+    })())
+}
+
+/// Forgets all samples.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_accumulator_reset(accumulator: *mut nf_cv_accumulator) -> nf_status {
+    status((|| {
+        // SAFETY: the caller's object, checked there.
+        match unsafe { open(accumulator)? } {
+            Opened::Double(state, sums) => reset(state, sums),
+            Opened::Single(state, sums) => reset(state, sums),
+        }
+    })())
+}
+
+enum Opened<'a> {
+    Double(&'a mut State<f64>, &'a mut [f64]),
+    Single(&'a mut State<f32>, &'a mut [f32]),
+}
+
+enum OpenedShared<'a> {
+    Double(&'a State<f64>, &'a [f64]),
+    Single(&'a State<f32>, &'a [f32]),
+}
+
+/// # Safety
+/// A non-NULL, aligned pointer must be to memory that nf_cv_accumulator_init() or something else wrote at least a
+/// header's bytes to, and that nobody else uses.
+unsafe fn open<'a>(accumulator: *mut nf_cv_accumulator) -> Result<Opened<'a>, nf_status> {
+    // SAFETY: the caller's promise; the magic number tells an accumulator from other bytes before the rest is looked at.
+    unsafe {
+        check(accumulator)?;
+        let sums = accumulator.cast::<u8>().add(HEADER);
+        Ok(match &mut (*accumulator).state {
+            AnyState::Double(state) => {
+                let sums = convert::slice_mut(sums.cast(), state.len())?;
+                Opened::Double(state, sums)
+            }
+            AnyState::Single(state) => {
+                let sums = convert::slice_mut(sums.cast(), state.len())?;
+                Opened::Single(state, sums)
+            }
+        })
+    }
+}
+
+/// # Safety
+/// As for [`open`], but others may read the object.
+unsafe fn open_shared<'a>(accumulator: *const nf_cv_accumulator) -> Result<OpenedShared<'a>, nf_status> {
+    // SAFETY: as in `open`.
+    unsafe {
+        check(accumulator)?;
+        let sums = accumulator.cast::<u8>().add(HEADER);
+        Ok(match &(*accumulator).state {
+            AnyState::Double(state) => OpenedShared::Double(state, convert::slice(sums.cast(), state.len())?),
+            AnyState::Single(state) => OpenedShared::Single(state, convert::slice(sums.cast(), state.len())?),
+        })
+    }
+}
+
+/// # Safety
+/// As for [`open`].
+unsafe fn check(accumulator: *const nf_cv_accumulator) -> Result<(), nf_status> {
+    if accumulator.is_null() {
+        return Err(NF_ERR_NULL);
+    }
+    if !accumulator.is_aligned() {
+        return Err(NF_ERR_ALIGNMENT);
+    }
+    // SAFETY: the caller's promise; any bytes are a number.
+    if unsafe { (&raw const (*accumulator).magic).read() } != MAGIC {
+        return Err(NF_ERR_STATE);
+    }
+    Ok(())
+}
+
+/// # Safety
+/// As for [`samples`].
+unsafe fn add<R: Real>(
+    state: &mut State<R>,
+    sums: &mut [R],
+    u: *const f32,
+    f: *const f32,
+    h: *const f32,
+    h_integral: *const f32,
+    n: usize,
+) -> Result<(), nf_status> {
+    let config: Config = *state.config();
+    // SAFETY: the caller's promise.
+    let samples = unsafe { samples(&config, u, f, h, h_integral, n)? };
+    with(state, sums, |accumulator| accumulator.add(samples))
+}
+
+fn merge<R: Real>(state: &mut State<R>, sums: &mut [R], other: &State<R>, other_sums: &[R]) -> Result<(), nf_status> {
+    let other = Accumulator::from_parts(*other, Shared(other_sums)).map_err(status_of)?;
+    with(state, sums, |accumulator| accumulator.merge(&other))
+}
+
+fn reset<R: Real>(state: &mut State<R>, sums: &mut [R]) -> Result<(), nf_status> {
+    with(state, sums, |accumulator| {
+        accumulator.reset();
+        Ok(())
+    })
+}
+
+/// Does something with an accumulator and puts its state back.
+fn with<'a, R: Real>(
+    state: &mut State<R>,
+    sums: &'a mut [R],
+    action: impl FnOnce(&mut Accumulator<R, &'a mut [R]>) -> Result<(), noisefloor_core::Error>,
+) -> Result<(), nf_status> {
+    let mut accumulator = Accumulator::from_parts(*state, sums).map_err(status_of)?;
+    action(&mut accumulator).map_err(status_of)?;
+    *state = *accumulator.state();
+    Ok(())
+}
+
+/// Sums that are only read.
+struct Shared<'a, R>(&'a [R]);
+
+impl<R> AsRef<[R]> for Shared<'_, R> {
+    fn as_ref(&self) -> &[R] {
+        self.0
+    }
+}

@@ -1,0 +1,234 @@
+//! Estimates from arrays of samples.
+
+use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimate};
+use crate::convert;
+use crate::status::*;
+use noisefloor_core::Error;
+use noisefloor_core::control_variate::{self as cv, Config, Estimate, Samples};
+use noisefloor_core::real::Real;
+
+/// Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL or
+/// out of range, or a size no memory has.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_workspace_size(config: *const nf_cv_config, n: usize) -> usize {
+    // SAFETY: the caller's pointer, checked there for NULL and alignment.
+    let Ok(config) = (unsafe { convert::reference(config) }) else { return 0 };
+    size(
+        config,
+        |config, narrow| {
+            if narrow { cv::workspace_len::<f32>(config, n) } else { cv::workspace_len::<f64>(config, n) }
+        },
+    )
+}
+
+/// Estimates an integral from n samples: u has n rows of `stride` floats (the last may end after `dims`), f has n rows
+/// of `channels`. The workspace's content is used up.
+///
+/// NF_ERR_RANGE for a configuration or coordinate out of range, NF_ERR_NOT_FINITE for a NaN or infinity (but see
+/// NF_NONFINITE_SKIP), NF_ERR_NO_SAMPLES for n = 0, NF_ERR_MEMORY and NF_ERR_ALIGNMENT for the workspace,
+/// NF_ERR_UNSUPPORTED for options that exclude each other.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_estimate(
+    config: *const nf_cv_config,
+    u: *const f32,
+    f: *const f32,
+    n: usize,
+    workspace: *mut core::ffi::c_void,
+    bytes: usize,
+    out: *mut nf_estimate,
+) -> nf_status {
+    // SAFETY: the caller's arrays; there are no control functions.
+    unsafe {
+        nf_cv_estimate_with_controls(config, u, f, core::ptr::null(), core::ptr::null(), n, workspace, bytes, out)
+    }
+}
+
+/// As nf_cv_estimate(), with `controls` functions h of known integral (4.18): h has n rows of `controls` floats, the
+/// functions at the samples, and h_integral their integrals. Both may be NULL if `controls` is 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_estimate_with_controls(
+    config: *const nf_cv_config,
+    u: *const f32,
+    f: *const f32,
+    h: *const f32,
+    h_integral: *const f32,
+    n: usize,
+    workspace: *mut core::ffi::c_void,
+    bytes: usize,
+    out: *mut nf_estimate,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller's pointers, each checked there.
+        let (config, out) = unsafe { (convert::reference(config)?, convert::reference_mut(out)?) };
+        let (core, narrow) = (core_config(config)?, is_narrow(config)?);
+        // SAFETY: the caller's arrays, of the lengths the header states.
+        let samples = unsafe { samples(&core, u, f, h, h_integral, n)? };
+        let estimate = if narrow {
+            // SAFETY: the caller's workspace, `bytes` long.
+            let workspace =
+                unsafe { convert::workspace::<f32>(workspace, bytes, len(cv::workspace_len::<f32>(&core, n))?)? };
+            estimate(&core, samples, workspace)
+        } else {
+            // SAFETY: the caller's workspace, `bytes` long.
+            let workspace =
+                unsafe { convert::workspace::<f64>(workspace, bytes, len(cv::workspace_len::<f64>(&core, n))?)? };
+            estimate(&core, samples, workspace)
+        };
+        *out = c_estimate(&estimate.map_err(status_of)?);
+        Ok(())
+    })())
+}
+
+/// As nf_cv_estimate() with NF_CV_GRADIENT_DESCENT, which `estimator` must be, starting from `coefficients`, `channels`
+/// rows (1 for a luminance ratio) of nf_cv_terms() - 1 floats in the values' unit, and leaving the solution there: a
+/// previous frame's is a good start (4.2.6).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_gradient_descent(
+    config: *const nf_cv_config,
+    u: *const f32,
+    f: *const f32,
+    n: usize,
+    coefficients: *mut f32,
+    workspace: *mut core::ffi::c_void,
+    bytes: usize,
+    out: *mut nf_estimate,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller's pointers, each checked there.
+        let (config, out) = unsafe { (convert::reference(config)?, convert::reference_mut(out)?) };
+        let (core, narrow) = (core_config(config)?, is_narrow(config)?);
+        if core.estimator != cv::Estimator::GradientDescent || core.controls > 0 {
+            return Err(NF_ERR_UNSUPPORTED);
+        }
+        let rows = if core.color == cv::Color::LuminanceRatio { 1 } else { core.channels };
+        let columns = core.terms().map_err(status_of)? - 1;
+        // SAFETY: the caller's arrays, of the lengths the header states.
+        let samples = unsafe { samples(&core, u, f, core::ptr::null(), core::ptr::null(), n)? };
+        // SAFETY: as above.
+        let coefficients = unsafe { convert::slice_mut(coefficients, convert::product(rows, columns)?)? };
+        let estimate = if narrow {
+            // SAFETY: the caller's workspace, `bytes` long.
+            let workspace =
+                unsafe { convert::workspace::<f32>(workspace, bytes, len(cv::workspace_len::<f32>(&core, n))?)? };
+            cv::gradient_descent(&core, samples, coefficients, workspace)
+        } else {
+            // SAFETY: the caller's workspace, `bytes` long.
+            let workspace =
+                unsafe { convert::workspace::<f64>(workspace, bytes, len(cv::workspace_len::<f64>(&core, n))?)? };
+            cv::gradient_descent(&core, samples, coefficients, workspace)
+        };
+        *out = c_estimate(&estimate.map_err(status_of)?);
+        Ok(())
+    })())
+}
+
+/// Bytes of workspace that nf_cv_block_estimate() needs; 0 as for nf_cv_workspace_size().
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_block_workspace_size(config: *const nf_cv_config, pixels: usize, n: usize) -> usize {
+    // SAFETY: the caller's pointer, checked there for NULL and alignment.
+    let Ok(config) = (unsafe { convert::reference(config) }) else { return 0 };
+    size(config, |config, narrow| block_len(config, narrow, pixels, n))
+}
+
+/// Estimates `pixels` integrals that are alike, from n samples of each: u and f hold pixel after pixel what
+/// nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to the other pixels'
+/// samples (4.3.6): exactly unbiased for a given `ridge`; by default the block weighs four fits and the plain mean by
+/// the variance across its pixels.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_block_estimate(
+    config: *const nf_cv_config,
+    u: *const f32,
+    f: *const f32,
+    pixels: usize,
+    n: usize,
+    workspace: *mut core::ffi::c_void,
+    bytes: usize,
+    out: *mut nf_estimate,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller's pointer, checked there.
+        let config = unsafe { convert::reference(config)? };
+        let (core, narrow) = (core_config(config)?, is_narrow(config)?);
+        if core.controls > 0 {
+            return Err(NF_ERR_UNSUPPORTED);
+        }
+        let total = convert::product(pixels, n)?;
+        // SAFETY: the caller's arrays, of the lengths the header states.
+        let (samples, out) = unsafe {
+            (samples(&core, u, f, core::ptr::null(), core::ptr::null(), total)?, convert::slice_mut(out, pixels)?)
+        };
+        let needed = len(block_len(&core, narrow, pixels, n))?;
+        let mut write = |pixel: usize, estimate: Estimate| {
+            if let Some(out) = out.get_mut(pixel) {
+                *out = c_estimate(&estimate);
+            }
+        };
+        if narrow {
+            // SAFETY: the caller's workspace, `bytes` long.
+            let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
+            cv::estimate_block(&core, samples, pixels, workspace, &mut write).map_err(status_of)
+        } else {
+            // SAFETY: the caller's workspace, `bytes` long.
+            let workspace = unsafe { convert::workspace::<f64>(workspace, bytes, needed)? };
+            cv::estimate_block(&core, samples, pixels, workspace, &mut write).map_err(status_of)
+        }
+    })())
+}
+
+fn block_len(config: &Config, narrow: bool, pixels: usize, n: usize) -> Result<usize, Error> {
+    if narrow {
+        cv::block_workspace_len::<f32>(config, pixels, n)
+    } else {
+        cv::block_workspace_len::<f64>(config, pixels, n)
+    }
+}
+
+fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
+    cv::estimate(config, samples, workspace)
+}
+
+/// # Safety
+/// Non-NULL pointers must point to as many floats as the configuration says for n samples.
+pub(super) unsafe fn samples<'a>(
+    config: &Config,
+    u: *const f32,
+    f: *const f32,
+    h: *const f32,
+    h_integral: *const f32,
+    n: usize,
+) -> Result<Samples<'a>, nf_status> {
+    // What an invalid configuration says about lengths means nothing.
+    config.terms().map_err(status_of)?;
+    if n == 0 {
+        return Err(NF_ERR_NO_SAMPLES);
+    }
+    let stride = if config.stride == 0 { config.dims } else { config.stride };
+    let u_len = convert::product(n - 1, stride)?.checked_add(config.dims).ok_or(NF_ERR_RANGE)?;
+    // SAFETY: the caller's promise, see above.
+    unsafe {
+        Ok(Samples {
+            u: convert::slice(u, u_len)?,
+            f: convert::slice(f, convert::product(n, config.channels)?)?,
+            controls: convert::slice(h, convert::product(n, config.controls)?)?,
+            control_integrals: convert::slice(h_integral, config.controls)?,
+        })
+    }
+}
+
+/// Bytes for a count of numbers, 0 for an error.
+pub(super) fn size(config: &nf_cv_config, count: impl Fn(&Config, bool) -> Result<usize, Error>) -> usize {
+    let (Ok(core), Ok(narrow)) = (core_config(config), is_narrow(config)) else { return 0 };
+    let width = if narrow { size_of::<f32>() } else { size_of::<f64>() };
+    count(&core, narrow).ok().and_then(|count| count.checked_mul(width)).unwrap_or(0)
+}
+
+pub(super) fn len(count: Result<usize, Error>) -> Result<usize, nf_status> {
+    count.map_err(status_of)
+}
+
+pub(super) fn status(result: Result<(), nf_status>) -> nf_status {
+    match result {
+        Ok(()) => NF_OK,
+        Err(status) => status,
+    }
+}

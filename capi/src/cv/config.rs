@@ -1,0 +1,214 @@
+//! Configuration and result, and their translation to the core's types.
+
+use crate::convert;
+use crate::status::*;
+use noisefloor_core::basis::Family;
+use noisefloor_core::control_variate::{Color, Config, Estimate, Estimator, NonFinite, Optimizer, Ridge, Solver};
+
+/// Estimator: a soft mixture of the plain mean and ridge fits, weighted by their leave-one-out errors (streaming:
+/// held-out errors). The default; never noticeably worse than the mean. Slightly biased at low sample counts.
+pub const NF_CV_ROBUST: u32 = 0;
+/// Estimator: least squares on its own samples (Alg. 1). The cheapest; bias O(1/n); needs several samples per term.
+pub const NF_CV_LEAST_SQUARES: u32 = 1;
+/// Estimator: one ridge fit, each sample corrected by the fit to all others. Exactly unbiased. Not for streaming.
+pub const NF_CV_LEAVE_ONE_OUT: u32 = 2;
+/// Estimator: each fold corrected by a robust fit to the other folds (two folds: 4.2.6). Exactly unbiased.
+pub const NF_CV_K_FOLD: u32 = 3;
+/// Estimator: the fit by gradient descent on its own samples (Alg. 2). Biased as least squares is.
+pub const NF_CV_GRADIENT_DESCENT: u32 = 4;
+/// Estimator: each sample corrected by a fit to those before it (4.30). Exactly unbiased after every sample.
+pub const NF_CV_INCREMENTAL: u32 = 5;
+
+/// Basis: products of orthonormal shifted Legendre polynomials. The default.
+pub const NF_BASIS_LEGENDRE: u32 = 0;
+/// Basis: products of Walsh functions, constant on the cells of a grid of eighths.
+pub const NF_BASIS_STEP: u32 = 1;
+/// Basis: products of half-waves sin(pi d x + pi/2).
+pub const NF_BASIS_SINE: u32 = 2;
+/// Basis: isotropic Gaussians, as many as Legendre has terms.
+pub const NF_BASIS_GAUSSIAN: u32 = 3;
+
+/// Solver: dual for fewer samples than terms, else normal equations. The default.
+pub const NF_SOLVER_AUTO: u32 = 0;
+/// Solver: normal equations (4.27) and LDL'.
+pub const NF_SOLVER_NORMAL_EQUATIONS: u32 = 1;
+/// Solver: Givens rotations, for badly placed samples. Only with NF_CV_LEAST_SQUARES.
+pub const NF_SOLVER_SQUARE_ROOT: u32 = 2;
+/// Solver: the n x n system of at most 4096 samples. Not for streaming.
+pub const NF_SOLVER_DUAL: u32 = 3;
+
+/// Precision: double. The default.
+pub const NF_PRECISION_F64: u32 = 0;
+/// Precision: float, for targets without double hardware.
+pub const NF_PRECISION_F32: u32 = 1;
+
+/// A NaN or infinite sample is NF_ERR_NOT_FINITE. The default.
+pub const NF_NONFINITE_ERROR: u32 = 0;
+/// A NaN or infinite sample is left out and not counted; biased unless such samples would have been average ones.
+pub const NF_NONFINITE_SKIP: u32 = 1;
+
+/// Each channel is regressed on its own, with one factorisation. The default.
+pub const NF_COLOR_PER_CHANNEL: u32 = 0;
+/// Rec. 709 luminance is regressed and scales the plain mean of 3 channels (4.3).
+pub const NF_COLOR_LUMINANCE_RATIO: u32 = 1;
+
+/// Gradient descent by Adam. The default.
+pub const NF_OPTIMIZER_ADAM: u32 = 0;
+/// Gradient descent with heavy-ball momentum.
+pub const NF_OPTIMIZER_MOMENTUM: u32 = 1;
+/// Plain gradient descent (4.29).
+pub const NF_OPTIMIZER_PLAIN: u32 = 2;
+
+/// For `ridge`: of a few strengths the one with the smallest leave-one-out error.
+pub const NF_RIDGE_AUTO: f32 = -1.0;
+
+/// How to estimate. Zero in any field but dims and channels is its default.
+#[repr(C)]
+#[derive(Clone, Copy)]
+#[allow(non_camel_case_types)]
+pub struct nf_cv_config {
+    /// Coordinates of a sample that are regressed, 1 to 16.
+    pub dims: u32,
+    /// Largest total degree, 0 to 7; 0 is the plain mean. nf_cv_terms() may not exceed 136.
+    pub order: u32,
+    /// Values of a sample, 1 to 4.
+    pub channels: u32,
+    /// NF_CV_*
+    pub estimator: u32,
+    /// NF_BASIS_*
+    pub basis: u32,
+    /// 1 if the samples are stratified (a tile, Sobol), 0 if independent. Leave-one-out errors cannot see
+    /// stratification: with 1, NF_CV_ROBUST returns the plain mean.
+    pub stratified: u32,
+    /// If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (4.15).
+    pub slices: u32,
+    /// User-supplied control functions with known integrals (4.18), 0 to 4.
+    pub controls: u32,
+    /// Floats from one sample's u to the next; 0 means dims. A path may be longer than what is regressed (4.3.5); its
+    /// first dims coordinates must exist, uniform, for every sample, however short its path.
+    pub stride: u32,
+    /// NF_SOLVER_*
+    pub solver: u32,
+    /// NF_PRECISION_*
+    pub precision: u32,
+    /// NF_NONFINITE_*
+    pub nonfinite: u32,
+    /// NF_COLOR_*
+    pub color: u32,
+    /// Folds of NF_CV_K_FOLD and of the streaming NF_CV_ROBUST, 2 to 16; 0 means 4.
+    pub folds: u32,
+    /// Steps of gradient descent, at most 2^20; 0 means 32.
+    pub iterations: u32,
+    /// NF_OPTIMIZER_*
+    pub optimizer: u32,
+    /// Ridge strength per sample, NF_RIDGE_AUTO, or 0 for the estimator's default.
+    pub ridge: f32,
+    /// Step of gradient descent: in standard deviations of the values for Adam, else times one over the largest
+    /// curvature. 0 means the default.
+    pub learning_rate: f32,
+    /// Momentum of gradient descent, below 1; 0 means the default.
+    pub momentum: f32,
+}
+
+/// An estimate of an integral over primary sample space.
+#[repr(C)]
+#[derive(Clone, Copy)]
+#[allow(non_camel_case_types)]
+pub struct nf_estimate {
+    /// The integral, for each channel; zero for channels that are not there.
+    pub mean: [f32; 4],
+    /// An estimate of each mean's standard error; infinite if one sample is all there is.
+    pub std_error: [f32; 4],
+    /// Samples used.
+    pub samples: u32,
+    /// Estimated variance relative to the plain mean's, averaged over the channels; 1 is no gain.
+    pub gain: f32,
+}
+
+/// Sets a configuration to the robust estimator over 2 coordinates, order 2, 1 channel. NULL is ignored.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_config_default(config: *mut nf_cv_config) {
+    // SAFETY: the caller's pointer, checked there for NULL and alignment.
+    if let Ok(config) = unsafe { convert::reference_mut(config) } {
+        *config = nf_cv_config {
+            dims: 2,
+            order: 2,
+            channels: 1,
+            estimator: NF_CV_ROBUST,
+            basis: NF_BASIS_LEGENDRE,
+            stratified: 0,
+            slices: 0,
+            controls: 0,
+            stride: 0,
+            solver: NF_SOLVER_AUTO,
+            precision: NF_PRECISION_F64,
+            nonfinite: NF_NONFINITE_ERROR,
+            color: NF_COLOR_PER_CHANNEL,
+            folds: 0,
+            iterations: 0,
+            optimizer: NF_OPTIMIZER_ADAM,
+            ridge: 0.0,
+            learning_rate: 0.0,
+            momentum: 0.0,
+        };
+    }
+}
+
+/// The number of terms of a regression, constant included; 0 for a configuration that is NULL or out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_terms(config: *const nf_cv_config) -> u32 {
+    // SAFETY: the caller's pointer, checked there for NULL and alignment.
+    let config = unsafe { convert::reference(config) }.and_then(core_config);
+    config.ok().and_then(|config| config.terms().ok()).map_or(0, |terms| terms as u32)
+}
+
+/// The core's configuration; precision apart, see [`is_narrow`].
+pub(super) fn core_config(config: &nf_cv_config) -> Result<Config, nf_status> {
+    Ok(Config {
+        dims: config.dims as usize,
+        order: config.order as usize,
+        channels: config.channels as usize,
+        estimator: pick(
+            config.estimator,
+            &[
+                Estimator::Robust,
+                Estimator::LeastSquares,
+                Estimator::LeaveOneOut,
+                Estimator::KFold,
+                Estimator::GradientDescent,
+                Estimator::Incremental,
+            ],
+        )?,
+        basis: pick(config.basis, &[Family::Legendre, Family::Step, Family::Sine, Family::Gaussian])?,
+        stratified: pick(config.stratified, &[false, true])?,
+        slices: config.slices as usize,
+        controls: config.controls as usize,
+        stride: config.stride as usize,
+        solver: pick(config.solver, &[Solver::Auto, Solver::NormalEquations, Solver::SquareRoot, Solver::Dual])?,
+        non_finite: pick(config.nonfinite, &[NonFinite::Error, NonFinite::Skip])?,
+        color: pick(config.color, &[Color::PerChannel, Color::LuminanceRatio])?,
+        folds: config.folds as usize,
+        iterations: config.iterations as usize,
+        optimizer: pick(config.optimizer, &[Optimizer::Adam, Optimizer::Momentum, Optimizer::Plain])?,
+        ridge: match config.ridge {
+            0.0 => Ridge::Default,
+            NF_RIDGE_AUTO => Ridge::Auto,
+            strength => Ridge::Fixed(strength),
+        },
+        learning_rate: config.learning_rate,
+        momentum: config.momentum,
+    })
+}
+
+/// Whether the configuration asks for float instead of double.
+pub(super) fn is_narrow(config: &nf_cv_config) -> Result<bool, nf_status> {
+    pick(config.precision, &[false, true])
+}
+
+fn pick<T: Copy>(value: u32, choices: &[T]) -> Result<T, nf_status> {
+    choices.get(value as usize).copied().ok_or(NF_ERR_RANGE)
+}
+
+pub(super) fn c_estimate(estimate: &Estimate) -> nf_estimate {
+    nf_estimate { mean: estimate.mean, std_error: estimate.std_error, samples: estimate.samples, gain: estimate.gain }
+}

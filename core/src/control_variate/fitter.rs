@@ -1,0 +1,195 @@
+//! The fits of an estimator to one design, and how they are weighed.
+
+use super::config::{Config, Ridge};
+use super::design::Design;
+use super::per_channel::{PerChannel, add, get, set};
+use super::ridge::{self, CANDIDATES, STRENGTHS};
+use super::ridge_fit::{self, Choice, Dual, RidgeFit};
+use super::trust;
+use crate::arena::Arena;
+use crate::basis::Basis;
+use crate::error::Error;
+use crate::linalg::packed_len;
+use crate::real::Real;
+
+/// Trust in a candidate is its error, relative to the mean's, to the power of minus this times the sample count.
+const SHARPNESS: f64 = 1.0 / 6.0;
+
+/// Which fits are made and how one is made of them.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Rule {
+    /// The mixture of all strengths and the plain mean.
+    Robust,
+    /// One strength.
+    Single(Ridge),
+    /// One strength, next to none by default, and no leave-one-out figures.
+    LeastSquares(Ridge),
+}
+
+/// Fits and their weights.
+pub(crate) struct Blend<R> {
+    fits: [RidgeFit<R>; CANDIDATES],
+    weights: [PerChannel<R>; CANDIDATES],
+    plain_weight: PerChannel<R>,
+}
+
+/// The systems of a design that every fit starts from.
+pub(crate) struct Fitter<'a, 'd, R> {
+    design: &'d Design<'a, R>,
+    gram: &'a [R],
+    rhs: &'a [R],
+    penalties: &'a [R],
+    dual: Option<Dual<'a, R>>,
+}
+
+/// How many numbers a [`Fitter`] and its fits take, for up to `n` samples.
+pub(crate) fn size(n: usize, dual: bool, columns: usize, channels: usize) -> Option<usize> {
+    let dual = if dual { ridge_fit::dual_size(n, channels)? } else { 0 };
+    let systems = packed_len(columns) + columns * (1 + channels) + CANDIDATES * columns * channels;
+    systems.checked_add(ridge_fit::primal_size(columns, channels).max(dual))
+}
+
+impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
+    #[inline(always)]
+    pub(crate) fn new(
+        design: &'d Design<'a, R>,
+        config: &Config,
+        basis: &Basis,
+        use_dual: bool,
+        arena: &mut Arena<'a, R>,
+    ) -> Result<Self, Error> {
+        let columns = design.columns;
+        let gram = arena.take(packed_len(columns))?;
+        let rhs = arena.take(columns * design.channels)?;
+        let penalties = arena.take(columns)?;
+        if !use_dual {
+            let partial = arena.scratch().take_lanes(columns)?;
+            design.normal_equations(gram, rhs, partial);
+        }
+        let per_sample = R::ONE / R::from_usize(design.n);
+        ridge::penalties(config, basis, |j| ridge_fit::diagonal_entry(gram, j) * per_sample, penalties);
+        let dual = if use_dual { Some(Dual::new(design, penalties, arena)?) } else { None };
+        Ok(Self { design, gram, rhs, penalties, dual })
+    }
+
+    /// Makes and weighs the fits. `coefficients`, if wanted, gets the blended fit's, a row for each channel.
+    #[inline(always)]
+    pub(crate) fn solve(
+        &self,
+        rule: Rule,
+        coefficients: Option<&mut [R]>,
+        arena: &mut Arena<'_, R>,
+    ) -> Result<Blend<R>, Error> {
+        let design = self.design;
+        let single = [match rule {
+            Rule::LeastSquares(ridge) => ridge::least_squares::<R>(ridge),
+            Rule::Single(ridge) => ridge::single(ridge),
+            Rule::Robust => 0.0,
+        }];
+        let (strengths, leave_one_out) = match rule {
+            Rule::Robust | Rule::Single(Ridge::Auto) | Rule::LeastSquares(Ridge::Auto) => (&STRENGTHS[..], true),
+            Rule::Single(_) => (&single[..], true),
+            Rule::LeastSquares(_) => (&single[..], false),
+        };
+        let each = design.columns * design.channels;
+        let kept = arena.take(if coefficients.is_some() { strengths.len() * each } else { 0 })?;
+        let mut fits = [RidgeFit::default(); CANDIDATES];
+        for (index, (&strength, fit)) in strengths.iter().zip(&mut fits).enumerate() {
+            let kept = kept.get_mut(index * each..(index + 1) * each).filter(|kept| !kept.is_empty());
+            let choice = Choice { strength: R::from_f64(strength), penalties: self.penalties, leave_one_out };
+            *fit = match &self.dual {
+                Some(dual) => dual.fit(design, choice, kept, arena.scratch())?,
+                None => ridge_fit::primal(design, self.gram, self.rhs, choice, kept, arena.scratch())?,
+            };
+        }
+        let blend = self.weigh(rule, fits, strengths.len());
+        for (channel, out) in coefficients.into_iter().flat_map(|all| all.chunks_exact_mut(design.columns)).enumerate()
+        {
+            for (j, out) in out.iter_mut().enumerate() {
+                *out = R::ZERO;
+                for (kept, weights) in kept.chunks_exact(each).zip(&blend.weights) {
+                    let b = kept.get(channel * design.columns + j).copied().unwrap_or(R::ZERO);
+                    *out += get(weights, channel) * b;
+                }
+            }
+        }
+        Ok(blend)
+    }
+
+    fn weigh(&self, rule: Rule, fits: [RidgeFit<R>; CANDIDATES], used: usize) -> Blend<R> {
+        let mut blend = Blend { fits, weights: Default::default(), plain_weight: PerChannel::default() };
+        let plain = plain_press(self.design);
+        if rule != Rule::Robust {
+            let best = if used > 1 { best_of(&fits, &plain) } else { 0 };
+            if let Some(weights) = blend.weights.get_mut(best) {
+                *weights = [R::ONE; Config::MAX_CHANNELS];
+            }
+            return blend;
+        }
+        let n = R::from_usize(self.design.n);
+        let power = n * R::from_f64(SHARPNESS);
+        let discounts = fits.map(|fit| trust::discount(fit.eccentricity, fit.freedom, n));
+        for channel in 0..self.design.channels {
+            let press = fits.map(|fit| get(&fit.press, channel));
+            let (plain_weight, weights) = trust::weights(get(&plain, channel), &press, &discounts, power);
+            set(&mut blend.plain_weight, channel, plain_weight);
+            for (slot, weight) in blend.weights.iter_mut().zip(weights) {
+                set(slot, channel, weight);
+            }
+        }
+        blend
+    }
+}
+
+/// Of fits the one with the smallest leave-one-out error summed over the channels, each relative to its plain mean's.
+fn best_of<R: Real>(fits: &[RidgeFit<R>; CANDIDATES], plain: &PerChannel<R>) -> usize {
+    let error = |fit: &RidgeFit<R>| {
+        let channels = fit.press.iter().zip(plain).filter(|(_, plain)| **plain > R::ZERO);
+        channels.fold(R::ZERO, |sum, (&press, &plain)| sum + press / plain)
+    };
+    let mut best = (0, R::ZERO);
+    for (index, fit) in fits.iter().enumerate() {
+        let error = error(fit);
+        if index == 0 || error < best.1 {
+            best = (index, error);
+        }
+    }
+    best.0
+}
+
+impl<R: Real> Blend<R> {
+    /// A weighted figure of the fits.
+    #[inline(always)]
+    pub(crate) fn blended(&self, figure: impl Fn(&RidgeFit<R>) -> PerChannel<R>) -> PerChannel<R> {
+        let mut total = PerChannel::default();
+        for (fit, weights) in self.fits.iter().zip(&self.weights) {
+            let figure = figure(fit);
+            for channel in 0..Config::MAX_CHANNELS {
+                add(&mut total, channel, get(weights, channel) * get(&figure, channel));
+            }
+        }
+        total
+    }
+
+    /// The sum of squared leave-one-out residuals, the plain mean's share included.
+    pub(crate) fn press(&self, design: &Design<'_, R>) -> PerChannel<R> {
+        let mut press = self.blended(|fit| fit.press);
+        for ((press, plain), &weight) in press.iter_mut().zip(plain_press(design)).zip(&self.plain_weight) {
+            *press += weight * plain;
+        }
+        press
+    }
+}
+
+/// The sum of squared leave-one-out residuals of the plain mean.
+#[inline(always)]
+pub(crate) fn plain_press<R: Real>(design: &Design<'_, R>) -> PerChannel<R> {
+    let n = R::from_usize(design.n);
+    // f_i minus the mean of the others is n / (n - 1) times f_i minus the mean.
+    let factor = if design.n > 1 { n / (n - R::ONE) } else { R::ZERO };
+    let mut press = PerChannel::default();
+    for channel in 0..design.channels {
+        set(&mut press, channel, design.sum_of_squares(channel) * factor * factor);
+    }
+    press
+}

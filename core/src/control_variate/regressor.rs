@@ -1,0 +1,189 @@
+//! Least squares with every size known to the compiler: no buffer, no workspace, the stack only.
+
+use super::config::{Config, Estimate};
+use super::design::Units;
+use super::per_channel::{PerChannel, set};
+use super::result::{self, Outcome, Summary};
+use crate::basis::{Basis, Family};
+use crate::error::Error;
+use crate::linalg::ldlt;
+use crate::linalg::{row, row_mut};
+use crate::real::Real;
+
+/// A streaming least-squares regressor (Alg. 1) over `DIMS` coordinates with `TERMS` terms, constant included, and
+/// `CHANNELS` values of each sample.
+///
+/// ```
+/// use noisefloor::basis::Family;
+/// use noisefloor::control_variate::Regressor;
+///
+/// // Total degree 2 over 2 coordinates: 6 terms.
+/// let mut regressor = Regressor::<f64, 2, 6, 1>::new(Family::Legendre, 2)?;
+/// for i in 0..32 {
+///     let u = [i as f32 / 32.0, (i * 7 % 32) as f32 / 32.0];
+///     regressor.add(&u, &[u[0] * u[0] + u[1]])?;
+/// }
+/// let estimate = regressor.estimate(1e-9)?;
+/// assert!((estimate.mean[0] - 5.0 / 6.0).abs() < 1e-6);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Regressor<R, const DIMS: usize, const TERMS: usize, const CHANNELS: usize> {
+    basis: Basis,
+    samples: u64,
+    offset: [f32; CHANNELS],
+    /// Lower triangles of the sums of products (4.28), packed into the first rows.
+    gram: [[R; TERMS]; TERMS],
+    /// Sums of products with the values (4.27).
+    rhs: [[R; CHANNELS]; TERMS],
+    square: [R; CHANNELS],
+}
+
+impl<R: Real, const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<R, DIMS, TERMS, CHANNELS> {
+    /// An empty regressor of total degree `order`.
+    ///
+    /// # Errors
+    /// [`Error::Range`] if `DIMS`, `order` and `TERMS` do not belong together or `CHANNELS` is not 1 to 4.
+    pub fn new(family: Family, order: usize) -> Result<Self, Error> {
+        let basis = Basis::new(family, DIMS, order, 0)?;
+        if basis.columns() + 1 != TERMS || CHANNELS == 0 || CHANNELS > Config::MAX_CHANNELS {
+            return Err(Error::Range);
+        }
+        Ok(Self {
+            basis,
+            samples: 0,
+            offset: [0.0; CHANNELS],
+            gram: [[R::ZERO; TERMS]; TERMS],
+            rhs: [[R::ZERO; CHANNELS]; TERMS],
+            square: [R::ZERO; CHANNELS],
+        })
+    }
+
+    /// Adds a sample at `u` in [0, 1]^DIMS.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::Range`]; the sample is then not added.
+    #[inline(always)]
+    pub fn add(&mut self, u: &[f32; DIMS], f: &[f32; CHANNELS]) -> Result<(), Error> {
+        if !u.iter().chain(f).all(|value| value.is_finite()) {
+            return Err(Error::NotFinite);
+        }
+        if !u.iter().all(|u| (0.0..=1.0).contains(u)) {
+            return Err(Error::Range);
+        }
+        if self.samples == 0 {
+            self.offset = *f;
+        }
+        let x = u.map(|u| [R::from_f32(u)]);
+        let mut p = [[R::ONE]; TERMS];
+        self.basis.evaluate(&x, p.get_mut(1..).unwrap_or(&mut []));
+        let p = p.as_flattened();
+        let gram = self.gram.as_flattened_mut();
+        for (j, &value) in p.iter().enumerate() {
+            for (out, &other) in row_mut(gram, j).iter_mut().zip(p) {
+                *out += value * other;
+            }
+        }
+        let values = core::array::from_fn::<R, CHANNELS, _>(|channel| {
+            R::from_f32(f[channel]) - R::from_f32(self.offset[channel])
+        });
+        for (out, &p) in self.rhs.iter_mut().zip(p) {
+            for (out, &value) in out.iter_mut().zip(&values) {
+                *out += p * value;
+            }
+        }
+        for (out, &value) in self.square.iter_mut().zip(&values) {
+            *out += value * value;
+        }
+        self.samples += 1;
+        Ok(())
+    }
+
+    /// Samples added so far.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// The estimate of a fit with a ridge of `strength` per sample; strengths near 1e-9 are least squares.
+    ///
+    /// # Errors
+    /// [`Error::NoSamples`], or [`Error::Range`] for a strength that is not positive and finite.
+    #[inline(always)]
+    pub fn estimate(&self, strength: f32) -> Result<Estimate, Error> {
+        if self.samples == 0 {
+            return Err(Error::NoSamples);
+        }
+        if !(strength > 0.0 && strength.is_finite()) {
+            return Err(Error::Range);
+        }
+        let n = R::from_f64(self.samples as f64);
+        let sums = self.gram.as_flattened();
+        let mut factor = self.gram;
+        let factor = factor.as_flattened_mut();
+        let mut penalties = [R::ZERO; TERMS];
+        self.basis.penalties(penalties.get_mut(1..).unwrap_or(&mut []));
+        let strength = R::from_f32(strength) * n;
+        ldlt::add_diagonal(factor, TERMS, |j| strength * penalties.get(j).copied().unwrap_or(R::ZERO));
+        // The intercept is the first unknown and has no penalty.
+        ldlt::factor(factor, TERMS);
+        let mut outcome = Outcome { correction: PerChannel::default(), variance: None };
+        let mut units = [Units::default(); Config::MAX_CHANNELS];
+        let mut variance = PerChannel::default();
+        let mut plain_variance = PerChannel::default();
+        let freedom = n - R::from_usize(TERMS);
+        for channel in 0..CHANNELS {
+            let rhs = core::array::from_fn::<R, TERMS, _>(|j| self.rhs[j][channel]);
+            let mut solution = rhs;
+            ldlt::solve(factor, &mut solution);
+            let total = rhs.first().copied().unwrap_or(R::ZERO);
+            set(&mut outcome.correction, channel, solution.first().copied().unwrap_or(R::ZERO));
+            if let (Some(unit), Some(&offset)) = (units.get_mut(channel), self.offset.get(channel)) {
+                unit.offset = R::from_f32(offset);
+            }
+            // f'f - 2 b'r + b'G b
+            let mut residual = self.square[channel];
+            for (j, (&b, &r)) in solution.iter().zip(&rhs).enumerate() {
+                let mut product = R::ZERO;
+                for (k, (&gram, &other)) in row(sums, j).iter().zip(&solution).enumerate() {
+                    product += if k == j { gram * other } else { (gram + gram) * other };
+                }
+                residual += b * (product - r - r);
+            }
+            let plain = (self.square[channel] - total * total / n).max(R::ZERO) / (n * (n - R::ONE));
+            set(&mut plain_variance, channel, plain);
+            set(&mut variance, channel, residual.max(R::ZERO) / (freedom * n));
+        }
+        let plain_variance = (self.samples > 1).then_some(plain_variance);
+        outcome.variance = if freedom > R::ZERO { Some(variance) } else { plain_variance };
+        let samples = usize::try_from(self.samples).unwrap_or(usize::MAX);
+        Ok(result::finish(Summary { samples, channels: CHANNELS, units, plain_variance, colour: None }, outcome))
+    }
+
+    /// Adds all samples of another regressor.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`] if the bases differ.
+    pub fn merge(&mut self, other: &Self) -> Result<(), Error> {
+        if !self.basis.is_same(&other.basis) {
+            return Err(Error::Mismatch);
+        }
+        if self.samples == 0 {
+            self.offset = other.offset;
+        }
+        let count = R::from_f64(other.samples as f64);
+        for channel in 0..CHANNELS {
+            let shift = R::from_f32(other.offset[channel]) - R::from_f32(self.offset[channel]);
+            let total = other.rhs.first().map_or(R::ZERO, |row| row[channel]);
+            self.square[channel] += other.square[channel] + shift * (total + total + shift * count);
+            for (j, (ours, theirs)) in self.rhs.iter_mut().zip(&other.rhs).enumerate() {
+                let column = row(other.gram.as_flattened(), j).first().copied().unwrap_or(R::ZERO);
+                ours[channel] += theirs[channel] + shift * column;
+            }
+        }
+        for (ours, theirs) in self.gram.as_flattened_mut().iter_mut().zip(other.gram.as_flattened()) {
+            *ours += *theirs;
+        }
+        self.samples += other.samples;
+        Ok(())
+    }
+}

@@ -1,0 +1,43 @@
+//! Ridge strengths and penalties.
+
+use super::Config;
+use super::config::Ridge;
+use crate::basis::Basis;
+use crate::real::Real;
+
+/// Strengths, per sample, of the candidates of a mixture and of [`Ridge::Auto`].
+pub(crate) const STRENGTHS: [f64; 4] = [1e-5, 1e-3, 0.02, 0.2];
+/// The number of candidates besides the plain mean.
+pub(crate) const CANDIDATES: usize = STRENGTHS.len();
+/// The strength of [`Ridge::Default`] where there is one fit.
+const DEFAULT: f64 = 0.01;
+/// What keeps a least-squares system with too few samples solvable, for `f64` and for narrower types.
+const FLOOR: [f64; 2] = [1e-10, 1e-6];
+/// Relative penalty of a control function: next to none, as its maker vouches for it.
+const CONTROL_PENALTY: f64 = 1e-7;
+
+/// The strength where there is one fit.
+pub(crate) fn single(ridge: Ridge) -> f64 {
+    match ridge {
+        Ridge::Fixed(strength) => f64::from(strength),
+        Ridge::Default | Ridge::Auto => DEFAULT,
+    }
+}
+
+/// The strength of least squares: next to none.
+pub(crate) fn least_squares<R: Real>(ridge: Ridge) -> f64 {
+    match ridge {
+        Ridge::Fixed(strength) => f64::from(strength),
+        Ridge::Default | Ridge::Auto => FLOOR[usize::from(R::NARROW)],
+    }
+}
+
+/// Relative penalties of control functions and basis, where `mean_square` is that of a control function's column.
+#[inline(always)]
+pub(crate) fn penalties<R: Real>(config: &Config, basis: &Basis, mean_square: impl Fn(usize) -> R, out: &mut [R]) {
+    let (controls, functions) = out.split_at_mut_checked(config.controls).unwrap_or((&mut [], &mut []));
+    for (j, penalty) in controls.iter_mut().enumerate() {
+        *penalty = R::from_f64(CONTROL_PENALTY) * mean_square(j);
+    }
+    basis.penalties(functions);
+}
