@@ -15,5 +15,7 @@ mod lanes;
 mod linalg;
 #[cfg(feature = "control-variate")]
 pub mod real;
+#[cfg(feature = "control-variate")]
+mod rows;
 
 pub use error::Error;

@@ -52,10 +52,10 @@ pub const NF_COLOR_PER_CHANNEL: u32 = 0;
 /// Rec. 709 luminance is regressed and scales the plain mean of 3 channels (4.3).
 pub const NF_COLOR_LUMINANCE_RATIO: u32 = 1;
 
-/// Gradient descent by Adam. The default.
-pub const NF_OPTIMIZER_ADAM: u32 = 0;
-/// Gradient descent with heavy-ball momentum.
-pub const NF_OPTIMIZER_MOMENTUM: u32 = 1;
+/// Gradient descent with heavy-ball momentum. The default.
+pub const NF_OPTIMIZER_MOMENTUM: u32 = 0;
+/// Gradient descent by Adam.
+pub const NF_OPTIMIZER_ADAM: u32 = 1;
 /// Plain gradient descent (4.29).
 pub const NF_OPTIMIZER_PLAIN: u32 = 2;
 
@@ -97,7 +97,7 @@ pub struct nf_cv_config {
     pub color: u32,
     /// Folds of NF_CV_K_FOLD and of the streaming NF_CV_ROBUST, 2 to 16; 0 means 4.
     pub folds: u32,
-    /// Steps of gradient descent, at most 2^20; 0 means 32.
+    /// Steps of gradient descent, at most 2^20; 0 means half as many as samples, 8 to 128.
     pub iterations: u32,
     /// NF_OPTIMIZER_*
     pub optimizer: u32,
@@ -146,7 +146,7 @@ pub unsafe extern "C" fn nf_cv_config_default(config: *mut nf_cv_config) {
             color: NF_COLOR_PER_CHANNEL,
             folds: 0,
             iterations: 0,
-            optimizer: NF_OPTIMIZER_ADAM,
+            optimizer: NF_OPTIMIZER_MOMENTUM,
             ridge: 0.0,
             learning_rate: 0.0,
             momentum: 0.0,
@@ -189,7 +189,7 @@ pub(super) fn core_config(config: &nf_cv_config) -> Result<Config, nf_status> {
         color: pick(config.color, &[Color::PerChannel, Color::LuminanceRatio])?,
         folds: config.folds as usize,
         iterations: config.iterations as usize,
-        optimizer: pick(config.optimizer, &[Optimizer::Adam, Optimizer::Momentum, Optimizer::Plain])?,
+        optimizer: pick(config.optimizer, &[Optimizer::Momentum, Optimizer::Adam, Optimizer::Plain])?,
         ridge: match config.ridge {
             0.0 => Ridge::Default,
             NF_RIDGE_AUTO => Ridge::Auto,

@@ -22,6 +22,7 @@ mod terms;
 use crate::error::Error;
 use crate::lanes::Lanes;
 use crate::real::Real;
+use crate::rows::rows_mut;
 use functions::Argument;
 use gaussian::Gaussians;
 use heapless::Vec;
@@ -131,6 +132,13 @@ impl Basis {
         }
     }
 
+    /// 2^(1 - degree) for each column.
+    pub(crate) fn scales<R: Real>(&self, out: &mut [R]) {
+        for (column, scale) in out.iter_mut().enumerate().take(self.columns) {
+            *scale = R::ONE.scale(1 - self.degree(column) as i32);
+        }
+    }
+
     /// The total degree of a column; indicators count as one, a slice's copy of a function as the function.
     fn degree(&self, column: usize) -> usize {
         let indicators = self.indicators();
@@ -202,7 +210,7 @@ impl Basis {
             }
         }
         let (shared, copies) = out.split_at_mut_checked(self.terms.len() + self.slices).unwrap_or((&mut [], &mut []));
-        for (s, block) in copies.chunks_exact_mut(self.copies.max(1)).enumerate().take(self.slices) {
+        for (s, block) in rows_mut(copies, self.copies).enumerate().take(self.slices) {
             for (term, column) in self.terms.iter().zip(block) {
                 let source = shared.get(term.column()).copied().unwrap_or([R::ZERO; L]);
                 for ((value, source), &k) in column.iter_mut().zip(source).zip(&picked) {

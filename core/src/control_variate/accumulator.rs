@@ -19,6 +19,7 @@ use crate::error::Error;
 use crate::lanes::Lanes;
 use crate::linalg::{givens, row};
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
 /// A fixed-size accumulator over `sums`, a buffer of [`Accumulator::len`] numbers: an array, a slice, a vector.
 ///
@@ -217,15 +218,15 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
         let p = p.as_flattened_mut();
         if state.config.estimator == Estimator::Incremental {
             let (group, rest) = sums.split_at_mut_checked(group).unwrap_or((&mut [], &mut []));
-            incremental::correct(&mut state.incremental, rest, p.get(1..).unwrap_or(&[]), f);
+            incremental::correct(&mut state.incremental, state.config.ridge, rest, p.get(1..).unwrap_or(&[]), f);
             if let Some(mut moments) = MomentsMut::new(group, terms, channels) {
                 moments.add(p, f);
             }
             state.samples += 1;
-            incremental::refit(state.samples, &mut state.incremental, &state.config, group, rest, terms, channels);
+            incremental::refit(state.samples, &mut state.incremental, &state.config, group, rest, terms - 1, channels);
             return;
         }
-        let fold = (state.samples % groups.max(1) as u64) as usize;
+        let fold = state.samples.checked_rem(groups as u64).unwrap_or(0) as usize;
         state.samples += 1;
         let sums = sums.get_mut(fold * group..(fold + 1) * group).unwrap_or(&mut []);
         if let Some(mut moments) = MomentsMut::new(sums, terms, channels) {
@@ -282,7 +283,7 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
         if state.config.estimator == Estimator::Incremental {
             let (group, rest) = sums.split_at_mut_checked(group).unwrap_or((&mut [], &mut []));
             state.incremental.refit_now();
-            incremental::refit(state.samples, &mut state.incremental, &state.config, group, rest, terms, channels);
+            incremental::refit(state.samples, &mut state.incremental, &state.config, group, rest, terms - 1, channels);
         }
         Ok(())
     }
@@ -416,7 +417,13 @@ impl<R: Real, S: AsRef<[R]>> Accumulator<R, S> {
         for value in coefficients.iter_mut() {
             *value = R::ZERO;
         }
-        gradient_descent::descend(&centred, &self.state.config, coefficients, arena)?;
+        gradient_descent::descend(
+            &centred,
+            &self.state.config,
+            &self.state.config.checked_basis()?,
+            coefficients,
+            arena,
+        )?;
         Ok(in_sample(&centred, coefficients, total))
     }
 }
@@ -426,7 +433,7 @@ fn in_sample<R: Real>(centred: &Centred<'_, R>, coefficients: &[R], total: &Tota
     let mut correction = PerChannel::default();
     let mut variance = PerChannel::default();
     let freedom = centred.count - R::from_usize(centred.columns + 1);
-    for (channel, b) in coefficients.chunks_exact(centred.columns.max(1)).enumerate() {
+    for (channel, b) in rows(coefficients, centred.columns).enumerate() {
         let shift = centred.intercept(channel, b) - get(&centred.value_means, channel);
         set(&mut correction, channel, shift);
         let residual = centred.residual_square(channel, b);
@@ -524,12 +531,12 @@ fn raise_exponents<R: Real>(state: &mut State<R>, exponents: &[i32; Config::MAX_
     }
     let (terms, channels, group, groups) = (state.terms(), state.channels, state.group(), state.groups());
     let (folds, rest) = sums.split_at_mut_checked(groups * group).unwrap_or((&mut [], &mut []));
-    for sums in folds.chunks_exact_mut(group) {
+    for sums in rows_mut(folds, group) {
         if let Some(mut moments) = MomentsMut::new(sums, terms, channels) {
             moments.rescale(&factors, channels);
         }
     }
-    state.incremental.rescale(&factors, rest, state.columns);
+    state.incremental.rescale(&factors, rest, state.columns, channels);
 }
 
 /// Rotates the rows of another triangular factor into ours.

@@ -95,7 +95,7 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
     } else {
         match config.estimator {
             Estimator::KFold => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
-            Estimator::GradientDescent => gradient_descent::estimate(&design, config, None, &mut arena)?,
+            Estimator::GradientDescent => gradient_descent::estimate(&design, config, &basis, None, &mut arena)?,
             Estimator::LeastSquares if config.solver == Solver::SquareRoot => {
                 square_root::least_squares(&design, config, &basis, &mut arena)?
             }

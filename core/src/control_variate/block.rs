@@ -18,6 +18,7 @@ use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS};
 use crate::error::Error;
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
 /// Ridge strengths, per sample of the block.
 const STRENGTHS: [f64; 2] = [0.02, 0.3];
@@ -119,7 +120,7 @@ impl<'a, R: Real> Block<'a, R> {
             }
             index += 1;
         });
-        for group in sums.chunks_exact(len) {
+        for group in rows(sums, len) {
             moments::add_sums(total, group);
         }
         Ok(Self { columns, channels, pixels, n, sums, total, units })
@@ -151,7 +152,7 @@ impl<'a, R: Real> Block<'a, R> {
             }
         };
         let used = if matches!(config.ridge, Ridge::Fixed(_)) { 1 } else { CANDIDATES };
-        for (own, estimates) in self.sums.chunks_exact(len).zip(estimates.chunks_exact_mut(each)) {
+        for (own, estimates) in rows(self.sums, len).zip(rows_mut(estimates, each)) {
             for ((train, &total), &own) in train.iter_mut().zip(self.total.iter()).zip(own) {
                 *train = total - own;
             }
@@ -165,7 +166,7 @@ impl<'a, R: Real> Block<'a, R> {
             for (channel, out) in plain.iter_mut().enumerate() {
                 *out = own.total(channel) * inverse;
             }
-            for (&(columns, strength), out) in fits.iter().zip(fitted.chunks_exact_mut(channels)).take(used) {
+            for (&(columns, strength), out) in fits.iter().zip(rows_mut(fitted, channels)).take(used) {
                 let mut arena = arena.scratch();
                 let coefficients = coefficients.get_mut(..columns * channels).unwrap_or(&mut []);
                 for value in coefficients.iter_mut() {
@@ -182,7 +183,7 @@ impl<'a, R: Real> Block<'a, R> {
             }
         }
         let (weights, gain) = self.weigh(estimates, each, config.ridge);
-        for (pixel, (own, estimates)) in self.sums.chunks_exact(len).zip(estimates.chunks_exact(each)).enumerate() {
+        for (pixel, (own, estimates)) in rows(self.sums, len).zip(rows(estimates, each)).enumerate() {
             let own = Moments::new(own, columns + 1, channels).ok_or(Error::Memory)?;
             out(pixel, self.pixel(&own, estimates, &weights, &gain));
         }
@@ -196,7 +197,7 @@ impl<'a, R: Real> Block<'a, R> {
         for channel in 0..self.channels {
             let spread = |candidate: usize| {
                 let values = || {
-                    let row = estimates.chunks_exact(each);
+                    let row = rows(estimates, each);
                     row.filter_map(move |row| row.get(candidate * self.channels + channel)).copied()
                 };
                 let mean = values().fold(R::ZERO, |sum, value| sum + value) / R::from_usize(self.pixels);
@@ -213,7 +214,7 @@ impl<'a, R: Real> Block<'a, R> {
                 (R::ZERO, only)
             } else {
                 let power = R::from_usize(self.pixels) * R::from_f64(SHARPNESS);
-                trust::weights(plain, &spreads, &[R::ZERO; CANDIDATES], power)
+                trust::weights(plain, &spreads, &[R::ZERO; CANDIDATES], power, R::from_usize(self.pixels))
             };
             let all = [plain_weight].into_iter().chain(fit_weights);
             let mut mixed = R::ZERO;
@@ -240,7 +241,7 @@ impl<'a, R: Real> Block<'a, R> {
         let mut plain_variance = PerChannel::default();
         let n = own.count();
         for channel in 0..self.channels {
-            for (row, weights) in estimates.chunks_exact(self.channels).zip(weights) {
+            for (row, weights) in rows(estimates, self.channels).zip(weights) {
                 let value = row.get(channel).copied().unwrap_or(R::ZERO);
                 add(&mut outcome.correction, channel, get(weights, channel) * value);
             }

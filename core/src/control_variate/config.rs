@@ -59,11 +59,11 @@ pub enum Color {
 /// The step rule of [`Estimator::GradientDescent`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Optimizer {
-    /// Adam (Kingma and Ba 2015).
-    #[default]
-    Adam,
     /// Heavy-ball momentum.
+    #[default]
     Momentum,
+    /// Adam (Kingma and Ba 2015).
+    Adam,
     /// Plain gradient descent (4.29).
     Plain,
 }
@@ -111,7 +111,7 @@ pub struct Config {
     pub color: Color,
     /// Folds of [`Estimator::KFold`] and of the streaming robust estimate: 2 to 16; 0 means 4.
     pub folds: usize,
-    /// Steps of gradient descent; 0 means the default.
+    /// Steps of gradient descent, at most 2^20; 0 means half as many as samples, at least 8 and at most 128.
     pub iterations: usize,
     /// The step rule of gradient descent.
     pub optimizer: Optimizer,
@@ -150,7 +150,7 @@ impl Config {
             color: Color::PerChannel,
             folds: 0,
             iterations: 0,
-            optimizer: Optimizer::Adam,
+            optimizer: Optimizer::Momentum,
             ridge: Ridge::Default,
             learning_rate: 0.0,
             momentum: 0.0,

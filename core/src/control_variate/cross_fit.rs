@@ -14,9 +14,10 @@ use super::trust;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
-/// Held-out errors come from fewer, smaller fits than leave-one-out errors, so trust grows faster with the count.
-const SHARPNESS: f64 = 0.25;
+/// Trust in a candidate is its error, relative to the mean's, to the power of minus this times the sample count.
+const SHARPNESS: f64 = 1.0 / 6.0;
 
 /// An accumulator's sums, fold after fold.
 pub(crate) struct Groups<'a, R> {
@@ -46,7 +47,7 @@ impl<'a, R: Real> Groups<'a, R> {
             *value = R::ZERO;
         }
         let len = moments::len(self.columns + 1, self.channels);
-        for (fold, group) in self.sums.chunks_exact(len).take(self.folds).enumerate() {
+        for (fold, group) in rows(self.sums, len).take(self.folds).enumerate() {
             if !left_out.contains(&fold) {
                 moments::add_sums(sums, group);
             }
@@ -153,7 +154,7 @@ fn fit<R: Real>(
     }
     let each = groups.columns * groups.channels;
     if let Some(centred) = Centred::new(train, groups.columns, groups.channels, arena)? {
-        let candidates = strengths.iter().zip(coefficients.chunks_exact_mut(each.max(1))).zip(&mut discounts);
+        let candidates = strengths.iter().zip(rows_mut(coefficients, each)).zip(&mut discounts);
         for ((&strength, coefficients), discount) in candidates {
             *discount = centred.solve(penalties, R::from_f64(strength), coefficients, true, &mut arena.scratch())?;
         }
@@ -249,7 +250,7 @@ impl<R: Real> Judge<R> {
             }
             let power = self.count * R::from_f64(SHARPNESS);
             let discounts = self.discounts.map(|total| total / self.fits.max(R::ONE));
-            let (plain, each) = trust::weights(get(&self.plain, channel), &errors, &discounts, power);
+            let (plain, each) = trust::weights(get(&self.plain, channel), &errors, &discounts, power, self.count);
             set(&mut plain_weights, channel, plain);
             for (weights, weight) in weights.iter_mut().zip(each) {
                 set(weights, channel, weight);

@@ -8,6 +8,7 @@ use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::packed_len;
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
 /// The design matrix and the values, eight samples to a panel. Unused lanes of the last panel are zero.
 pub(crate) struct Design<'a, R> {
@@ -91,9 +92,9 @@ impl<'a, R: Real> Design<'a, R> {
         let mut x = [[R::ZERO; LANES]; MAX_DIMS];
         let mut h = [[R::ZERO; LANES]; Config::MAX_CONTROLS];
         let mut f = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
-        let mut value_panels = values.chunks_exact_mut(channels.max(1));
+        let mut value_panels = rows_mut(values, channels);
         // Columns may be none, and chunks of nothing would be none either.
-        let mut column_panels = panels.chunks_exact_mut(columns.max(1));
+        let mut column_panels = rows_mut(panels, columns);
         let mut flush = |x: &_, h: &_, f: &[Lanes<R>]| {
             if let Some(panel) = column_panels.next() {
                 reader.columns(basis, x, h, panel);
@@ -146,14 +147,14 @@ impl<'a, R: Real> Design<'a, R> {
         let inverse = R::ONE / R::from_usize(self.n);
         for (j, mean) in self.column_means.iter_mut().enumerate() {
             let mut total = [R::ZERO; LANES];
-            for panel in self.panels.chunks_exact(self.columns.max(1)) {
+            for panel in rows(self.panels, self.columns) {
                 if let Some(column) = panel.get(j) {
                     total = lanes::zip(&total, column, |a, b| a + b);
                 }
             }
             *mean = lanes::sum(&total) * inverse;
         }
-        for panel in self.panels.chunks_exact_mut(self.columns.max(1)) {
+        for panel in rows_mut(self.panels, self.columns) {
             for (column, &mean) in panel.iter_mut().zip(self.column_means.iter()) {
                 for value in column {
                     *value -= mean;
@@ -162,13 +163,13 @@ impl<'a, R: Real> Design<'a, R> {
         }
         for (channel, unit) in self.units.iter_mut().enumerate().take(self.channels) {
             let mut total = [R::ZERO; LANES];
-            for panel in self.values.chunks_exact(self.channels) {
+            for panel in rows(self.values, self.channels) {
                 if let Some(values) = panel.get(channel) {
                     total = lanes::zip(&total, values, |a, b| a + b);
                 }
             }
             let mean = lanes::sum(&total) * inverse;
-            for panel in self.values.chunks_exact_mut(self.channels) {
+            for panel in rows_mut(self.values, self.channels) {
                 for value in panel.get_mut(channel).into_iter().flatten() {
                     *value -= mean;
                 }
@@ -183,13 +184,13 @@ impl<'a, R: Real> Design<'a, R> {
     /// The panels one by one: columns and values of eight samples.
     #[inline(always)]
     pub(crate) fn each_panel(&self) -> impl Iterator<Item = (&[Lanes<R>], &[Lanes<R>])> {
-        self.panels.chunks_exact(self.columns.max(1)).zip(self.values.chunks_exact(self.channels.max(1)))
+        rows(self.panels, self.columns).zip(rows(self.values, self.channels))
     }
 
     /// The sum of squares of a channel.
     pub(crate) fn sum_of_squares(&self, channel: usize) -> R {
         let mut total = [R::ZERO; LANES];
-        for panel in self.values.chunks_exact(self.channels.max(1)) {
+        for panel in rows(self.values, self.channels) {
             if let Some(values) = panel.get(channel) {
                 lanes::add_product(&mut total, values, values);
             }
@@ -207,7 +208,7 @@ impl<'a, R: Real> Design<'a, R> {
             let width = j + 1;
             self.products(|panel, _| panel.get(j).copied(), partial.get_mut(..width).unwrap_or(&mut []), row);
         }
-        for (channel, row) in rhs.chunks_exact_mut(self.columns.max(1)).enumerate() {
+        for (channel, row) in rows_mut(rhs, self.columns).enumerate() {
             self.products(|_, values| values.get(channel).copied(), partial, row);
         }
     }

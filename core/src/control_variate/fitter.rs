@@ -11,6 +11,7 @@ use crate::basis::Basis;
 use crate::error::Error;
 use crate::linalg::packed_len;
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
 /// Trust in a candidate is its error, relative to the mean's, to the power of minus this times the sample count.
 const SHARPNESS: f64 = 1.0 / 6.0;
@@ -103,11 +104,10 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
             };
         }
         let blend = self.weigh(rule, fits, strengths.len());
-        for (channel, out) in coefficients.into_iter().flat_map(|all| all.chunks_exact_mut(design.columns)).enumerate()
-        {
+        for (channel, out) in coefficients.into_iter().flat_map(|all| rows_mut(all, design.columns)).enumerate() {
             for (j, out) in out.iter_mut().enumerate() {
                 *out = R::ZERO;
-                for (kept, weights) in kept.chunks_exact(each).zip(&blend.weights) {
+                for (kept, weights) in rows(kept, each).zip(&blend.weights) {
                     let b = kept.get(channel * design.columns + j).copied().unwrap_or(R::ZERO);
                     *out += get(weights, channel) * b;
                 }
@@ -131,7 +131,7 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         let discounts = fits.map(|fit| trust::discount(fit.eccentricity, fit.freedom, n));
         for channel in 0..self.design.channels {
             let press = fits.map(|fit| get(&fit.press, channel));
-            let (plain_weight, weights) = trust::weights(get(&plain, channel), &press, &discounts, power);
+            let (plain_weight, weights) = trust::weights(get(&plain, channel), &press, &discounts, power, n);
             set(&mut blend.plain_weight, channel, plain_weight);
             for (slot, weight) in blend.weights.iter_mut().zip(weights) {
                 set(slot, channel, weight);

@@ -1,7 +1,8 @@
 //! The fit by gradient descent (Alg. 2, 4.29).
 //!
-//! With orthonormal functions the loss is nearly round, so few steps do. A fit that stopped early is a shrunk one: at
-//! low sample counts this is safer than least squares, with no matrix at all.
+//! With orthonormal functions the loss is nearly round, so few steps do. Columns of degree k are scaled by 2^(1-k), so
+//! that the early steps go where functions vary most. A fit that stopped early is a shrunk one: at low sample counts this
+//! is safer than least squares, with no matrix at all.
 
 use super::batch::{self, Plan};
 use super::config::{Config, Estimate, Optimizer};
@@ -11,26 +12,27 @@ use super::per_channel::{PerChannel, get, set};
 use super::result::{self, Outcome};
 use super::samples::{Reader, Samples, Subset};
 use crate::arena::Arena;
+use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
-/// Steps, if the caller names none.
-const ITERATIONS: usize = 32;
+/// Steps, if the caller names none: half as many as samples, within these bounds. Stopping early shrinks the fit as a
+/// ridge does, which few samples need.
+const ITERATIONS: (usize, usize) = (8, 128);
 /// Adam's step length in standard deviations of the values, if the caller names none.
 const ADAM_RATE: f64 = 0.05;
 /// Heavy-ball momentum, if the caller names none.
-const MOMENTUM: f64 = 0.8;
+const MOMENTUM: f64 = 0.5;
 /// Adam's decay of the first and second moment.
 const ADAM_DECAY: [f64; 2] = [0.9, 0.999];
 /// Rounds of power iteration for the largest curvature, which bounds the step.
-const POWER_ROUNDS: usize = 6;
-/// What the power iteration's value, a lower bound, is multiplied by.
-const POWER_MARGIN: f64 = 1.25;
+const POWER_ROUNDS: usize = 12;
 
 /// Numbers that a descent takes from its arena, its solution included.
 pub(crate) fn size(columns: usize, channels: usize) -> usize {
-    columns * (channels + 3)
+    columns * (channels + 4)
 }
 
 /// A least-squares problem whose intercept was eliminated.
@@ -41,6 +43,8 @@ pub(crate) trait Objective<R> {
     fn deviation(&self, channel: usize) -> R;
     /// The number of functions.
     fn columns(&self) -> usize;
+    /// The number of samples.
+    fn count(&self) -> usize;
 }
 
 /// As [`estimate`](super::estimate) with [`Estimator::GradientDescent`](super::Estimator::GradientDescent), starting
@@ -69,7 +73,7 @@ pub fn estimate_from<R: Real>(
     reader.check()?;
     let mut arena = Arena::new(workspace);
     let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena)?;
-    let outcome = estimate(&design, config, Some(coefficients), &mut arena)?;
+    let outcome = estimate(&design, config, &basis, Some(coefficients), &mut arena)?;
     Ok(result::finish(result::Summary::of(&design, &reader), outcome))
 }
 
@@ -78,6 +82,7 @@ pub fn estimate_from<R: Real>(
 pub(crate) fn estimate<R: Real>(
     design: &Design<'_, R>,
     config: &Config,
+    basis: &Basis,
     warm: Option<&mut [f32]>,
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
@@ -92,10 +97,10 @@ pub(crate) fn estimate<R: Real>(
             *out = unit(index).map_or(R::ZERO, |unit| unit.stored_length(value));
         }
     }
-    descend(design, config, solutions, arena)?;
+    descend(design, config, basis, solutions, arena)?;
     let mut residual = PerChannel::default();
     let mut correction = PerChannel::default();
-    for (channel, solution) in solutions.chunks_exact(columns.max(1)).enumerate() {
+    for (channel, solution) in rows(solutions, columns).enumerate() {
         let in_sample = solution.iter().zip(design.column_means.iter()).fold(R::ZERO, |sum, (&b, &m)| sum - b * m);
         set(&mut correction, channel, in_sample);
         set(&mut residual, channel, residual_square(design, channel, solution));
@@ -114,25 +119,34 @@ pub(crate) fn estimate<R: Real>(
 pub(crate) fn descend<R: Real>(
     objective: &impl Objective<R>,
     config: &Config,
+    basis: &Basis,
     coefficients: &mut [R],
     arena: &mut Arena<'_, R>,
 ) -> Result<(), Error> {
     let columns = objective.columns();
     let (gradient, first, second) = (arena.take(columns)?, arena.take(columns)?, arena.take(columns)?);
+    let scales = arena.take(columns)?;
+    for value in scales.iter_mut() {
+        *value = R::ONE;
+    }
+    basis.scales(scales.get_mut(config.controls..).unwrap_or(&mut []));
     let curvature = match config.optimizer {
         Optimizer::Adam => R::ONE,
-        Optimizer::Momentum | Optimizer::Plain => largest_curvature(objective, first, gradient),
+        Optimizer::Momentum | Optimizer::Plain => largest_curvature(objective, scales, first, gradient, second),
     };
-    for (channel, solution) in coefficients.chunks_exact_mut(columns.max(1)).enumerate() {
+    for (channel, solution) in rows_mut(coefficients, columns).enumerate() {
         let descent = Descent::new(config, objective.deviation(channel), curvature);
         for value in first.iter_mut().chain(second.iter_mut()) {
             *value = R::ZERO;
         }
-        let steps = if config.iterations == 0 { ITERATIONS } else { config.iterations };
+        let steps = match config.iterations {
+            0 => (objective.count() / 2).clamp(ITERATIONS.0, ITERATIONS.1),
+            steps => steps,
+        };
         let mut bias = [R::ONE; 2];
         for _ in 0..steps {
             objective.gradient(Some(channel), solution, gradient);
-            descent.step(solution, gradient, first, second, &mut bias);
+            descent.step(solution, gradient, scales, first, second, &mut bias);
         }
         if !solution.iter().all(|value| value.is_finite()) {
             for value in solution {
@@ -172,11 +186,19 @@ impl<R: Real> Descent<R> {
 
     /// One step along the negative gradient; `bias` holds the powers of Adam's decays so far.
     #[inline(always)]
-    fn step(&self, solution: &mut [R], gradient: &[R], first: &mut [R], second: &mut [R], bias: &mut [R; 2]) {
+    fn step(
+        &self,
+        solution: &mut [R],
+        gradient: &[R],
+        scales: &[R],
+        first: &mut [R],
+        second: &mut [R],
+        bias: &mut [R; 2],
+    ) {
         if self.optimizer != Optimizer::Adam {
-            for ((b, &g), velocity) in solution.iter_mut().zip(gradient).zip(first) {
-                *velocity = self.momentum * *velocity + self.rate * g;
-                *b += *velocity;
+            for (((b, &g), velocity), &scale) in solution.iter_mut().zip(gradient).zip(first).zip(scales) {
+                *velocity = self.momentum * *velocity + self.rate * scale * g;
+                *b += scale * *velocity;
             }
             return;
         }
@@ -184,12 +206,12 @@ impl<R: Real> Descent<R> {
         bias[0] *= self.momentum;
         bias[1] *= decay;
         let unbias = [R::ONE / (R::ONE - bias[0]), R::ONE / (R::ONE - bias[1])];
-        for (((b, &g), m), v) in solution.iter_mut().zip(gradient).zip(first).zip(second) {
+        for ((((b, &g), m), v), &scale) in solution.iter_mut().zip(gradient).zip(first).zip(second).zip(scales) {
             *m = self.momentum * *m + (R::ONE - self.momentum) * g;
             *v = decay * *v + (R::ONE - decay) * g * g;
             let length = (*v * unbias[1]).sqrt() + self.smallest;
             if length > R::ZERO {
-                *b += self.rate * *m * unbias[0] / length;
+                *b += scale * self.rate * *m * unbias[0] / length;
             }
         }
     }
@@ -223,6 +245,10 @@ impl<R: Real> Objective<R> for Design<'_, R> {
     fn columns(&self) -> usize {
         self.columns
     }
+
+    fn count(&self) -> usize {
+        self.n
+    }
 }
 
 impl<R: Real> Objective<R> for Centred<'_, R> {
@@ -237,27 +263,43 @@ impl<R: Real> Objective<R> for Centred<'_, R> {
     fn columns(&self) -> usize {
         self.columns
     }
+
+    fn count(&self) -> usize {
+        self.count.to_f64() as usize
+    }
 }
 
-/// A little more than the largest eigenvalue of P'P / n, by power iteration.
-fn largest_curvature<R: Real>(objective: &impl Objective<R>, vector: &mut [R], image: &mut [R]) -> R {
+/// Nearly the largest eigenvalue of S P'P S / n for the column scales S, by power iteration; momentum forgives a third.
+fn largest_curvature<R: Real>(
+    objective: &impl Objective<R>,
+    scales: &[R],
+    vector: &mut [R],
+    image: &mut [R],
+    scaled: &mut [R],
+) -> R {
     for value in vector.iter_mut() {
         *value = R::ONE;
     }
+    let length = |vector: &[R]| vector.iter().fold(R::ZERO, |sum, &x| sum + x * x).sqrt();
     let mut largest = R::ZERO;
     for _ in 0..POWER_ROUNDS {
-        objective.gradient(None, vector, image);
-        let length = image.iter().fold(R::ZERO, |sum, &x| sum + x * x).sqrt();
-        let before = vector.iter().fold(R::ZERO, |sum, &x| sum + x * x).sqrt();
-        if !(length > R::ZERO && before > R::ZERO) {
+        for ((out, &value), &scale) in scaled.iter_mut().zip(vector.iter()).zip(scales) {
+            *out = scale * value;
+        }
+        objective.gradient(None, scaled, image);
+        for (value, &scale) in image.iter_mut().zip(scales) {
+            *value *= scale;
+        }
+        let (before, after) = (length(vector), length(image));
+        if !(after > R::ZERO && before > R::ZERO) {
             break;
         }
-        largest = length / before;
+        largest = after / before;
         for (out, &value) in vector.iter_mut().zip(image.iter()) {
-            *out = value / length;
+            *out = value / after;
         }
     }
-    if largest > R::ZERO { largest * R::from_f64(POWER_MARGIN) } else { R::ONE }
+    if largest > R::ZERO { largest } else { R::ONE }
 }
 
 /// The sum of squared residuals of a fit.

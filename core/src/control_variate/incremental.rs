@@ -1,19 +1,25 @@
-//! The incremental estimate (4.30): each sample is corrected by a fit to the samples before it.
+//! The incremental estimate (4.30): each sample is corrected by fits to the samples before it.
 //!
-//! As no sample shapes its own correction the estimate is exactly unbiased after every sample (4.31). The fit is renewed
-//! after each of the first samples and then each time their number has grown by a sixteenth, which costs little and
-//! keeps the guarantee: the fit in use is always one to preceding samples.
+//! As no sample shapes its own correction the estimate is exactly unbiased after every sample (4.31). Two ridge fits and
+//! the plain value are weighed by how well they predicted the samples so far, which keeps the early fits, which
+//! (4.30) never forgets, from doing harm. The fits are renewed after each of the first samples and then each time their
+//! number has grown by a sixteenth: they are always fits to preceding samples.
 
 use super::config::{Config, Ridge};
 use super::moments::{self, Centred, Moments};
-use super::per_channel::{PerChannel, get};
+use super::per_channel::{PerChannel, add, get, set};
 use super::result::Outcome;
-use super::ridge;
+use super::{ridge, trust};
 use crate::arena::Arena;
 use crate::real::Real;
+use crate::rows::rows_mut;
 
-/// Ridge strength per sample, if the caller names none.
-const STRENGTH: f64 = 0.1;
+/// Total ridge strengths: not per sample, as the fits of few samples need them most.
+const STRENGTHS: [f64; 2] = [0.1, 1.0];
+/// The number of fits.
+const FITS: usize = STRENGTHS.len();
+/// Trust in a fit is its prediction error, relative to the mean's, to the power of minus this times the sample count.
+const SHARPNESS: f64 = 0.25;
 
 /// Where an incremental estimate stands.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,56 +27,101 @@ pub(crate) struct Progress<R> {
     /// Sums of corrected values and of their squares.
     total: PerChannel<R>,
     square: PerChannel<R>,
+    /// Sums of squared prediction errors, of each fit and of the mean of the samples before.
+    errors: [PerChannel<R>; FITS],
+    plain_error: PerChannel<R>,
+    /// How many predictions were made.
+    predictions: R,
+    /// What the fits, and the mean, predict where all functions are zero.
+    intercepts: [PerChannel<R>; FITS],
+    mean: PerChannel<R>,
     /// The number of samples at which the next fit is due.
     next_fit: u64,
 }
 
 /// Numbers that follow the sums in an accumulator's buffer: coefficients, and room to renew them.
 pub(crate) fn len(columns: usize, channels: usize) -> usize {
-    columns * channels + columns + moments::centred_len(columns, channels) + moments::solve_len(columns)
+    FITS * columns * channels + columns + moments::centred_len(columns, channels) + moments::solve_len(columns)
 }
 
-/// Adds f - b'p for the fit so far.
-#[inline(always)]
-pub(crate) fn correct<R: Real>(progress: &mut Progress<R>, coefficients: &[R], p: &[R], f: &[R]) {
-    for (channel, ((&f, total), square)) in f.iter().zip(&mut progress.total).zip(&mut progress.square).enumerate() {
-        let b = coefficients.get(channel * p.len()..).unwrap_or(&[]);
-        let value = b.iter().zip(p).fold(f, |value, (&b, &p)| value - b * p);
-        *total += value;
-        *square += value * value;
+/// Adds a sample's value, corrected by the fits so far.
+pub(crate) fn correct<R: Real>(progress: &mut Progress<R>, ridge: Ridge, coefficients: &[R], p: &[R], f: &[R]) {
+    let fitted = progress.next_fit > 0;
+    let channels = f.len();
+    for (channel, &f) in f.iter().enumerate() {
+        let mut slopes = [R::ZERO; FITS];
+        for (fit, slope) in slopes.iter_mut().enumerate() {
+            let b = coefficients.get((fit * channels + channel) * p.len()..).unwrap_or(&[]);
+            *slope = b.iter().zip(p).fold(R::ZERO, |sum, (&b, &p)| sum + b * p);
+        }
+        let mut value = f;
+        if fitted {
+            let errors = progress.errors.map(|errors| get(&errors, channel));
+            let weights = match ridge {
+                Ridge::Fixed(_) => [R::ONE, R::ZERO],
+                Ridge::Default | Ridge::Auto => {
+                    let n = progress.predictions;
+                    let power = n * R::from_f64(SHARPNESS);
+                    let plain = get(&progress.plain_error, channel);
+                    trust::weights(plain, &errors, &[R::ZERO; FITS], power, n).1
+                }
+            };
+            for (&weight, &slope) in weights.iter().zip(&slopes) {
+                value -= weight * slope;
+            }
+            for ((errors, intercepts), &slope) in progress.errors.iter_mut().zip(&progress.intercepts).zip(&slopes) {
+                let error = f - get(intercepts, channel) - slope;
+                add(errors, channel, error * error);
+            }
+            let error = f - get(&progress.mean, channel);
+            add(&mut progress.plain_error, channel, error * error);
+        }
+        add(&mut progress.total, channel, value);
+        add(&mut progress.square, channel, value * value);
+    }
+    if fitted {
+        progress.predictions += R::ONE;
     }
 }
 
-/// Renews the fit if it is due.
+/// Renews the fits if they are due.
 pub(crate) fn refit<R: Real>(
     samples: u64,
     progress: &mut Progress<R>,
     config: &Config,
     sums: &[R],
     rest: &mut [R],
-    terms: usize,
+    columns: usize,
     channels: usize,
 ) {
     if samples < progress.next_fit.max(2) {
         return;
     }
-    progress.next_fit = samples + (samples / 16).max(1);
-    let columns = terms - 1;
-    let strength = match config.ridge {
-        Ridge::Fixed(strength) => R::from_f32(strength),
-        Ridge::Default | Ridge::Auto => R::from_f64(STRENGTH),
+    let strengths = match config.ridge {
+        Ridge::Fixed(strength) => [R::from_f32(strength); FITS],
+        // `Centred::solve` takes strengths per sample.
+        Ridge::Default | Ridge::Auto => STRENGTHS.map(|strength| R::from_f64(strength / samples as f64)),
     };
     let mut solve = || {
-        let sums = Moments::new(sums, terms, channels)?;
+        let sums = Moments::new(sums, columns + 1, channels)?;
         let basis = config.checked_basis().ok()?;
         let mut arena = Arena::new(rest);
-        let coefficients = arena.take(columns * channels).ok()?;
+        let coefficients = arena.take(FITS * columns * channels).ok()?;
         let penalties = arena.take(columns).ok()?;
         ridge::penalties(config, &basis, |j| sums.column_square(j) / sums.count(), penalties);
         let centred = Centred::new(&sums, columns, channels, &mut arena).ok()??;
-        centred.solve(penalties, strength, coefficients, false, &mut arena).ok().map(drop)
+        let fits = rows_mut(coefficients, columns * channels).zip(strengths).zip(&mut progress.intercepts);
+        for ((coefficients, strength), intercepts) in fits {
+            centred.solve(penalties, strength, coefficients, false, &mut arena.scratch()).ok()?;
+            for (channel, b) in rows_mut(coefficients, columns).enumerate() {
+                set(intercepts, channel, centred.intercept(channel, b));
+            }
+        }
+        progress.mean = centred.value_means;
+        progress.next_fit = samples + (samples / 16).max(1);
+        Some(())
     };
-    // The buffer was measured for this, so there is nothing to fail; a fit that is not renewed is still a valid one.
+    // The buffer was measured for this, so there is nothing to fail; fits that are not renewed are still valid ones.
     let _: Option<()> = solve();
 }
 
@@ -96,21 +147,33 @@ impl<R: Real> Progress<R> {
             let added = factor * get(&other.total, channel);
             *total += added + shift * n;
             *square += factor * factor * get(&other.square, channel) + shift * (added + added + shift * n);
+            let squares = self.errors.iter_mut().chain([&mut self.plain_error]);
+            for (ours, theirs) in squares.zip(other.errors.iter().chain([&other.plain_error])) {
+                add(ours, channel, factor * factor * get(theirs, channel));
+            }
         }
+        self.predictions += other.predictions;
     }
 
-    /// Makes the next fit due at once.
+    /// Makes the next fits due at once.
     pub(crate) fn refit_now(&mut self) {
         self.next_fit = 0;
     }
 
     /// Multiplies values, and with them the coefficients in front of `rest`.
-    pub(crate) fn rescale(&mut self, factors: &PerChannel<R>, rest: &mut [R], columns: usize) {
-        for ((total, square), &factor) in self.total.iter_mut().zip(&mut self.square).zip(factors) {
-            *total *= factor;
-            *square *= factor * factor;
+    pub(crate) fn rescale(&mut self, factors: &PerChannel<R>, rest: &mut [R], columns: usize, channels: usize) {
+        for (channel, &factor) in factors.iter().enumerate().take(channels) {
+            for values in self.intercepts.iter_mut().chain([&mut self.total, &mut self.mean]) {
+                let value = get(values, channel);
+                set(values, channel, value * factor);
+            }
+            for values in self.errors.iter_mut().chain([&mut self.square, &mut self.plain_error]) {
+                let value = get(values, channel);
+                set(values, channel, value * factor * factor);
+            }
         }
-        for (coefficients, &factor) in rest.chunks_exact_mut(columns.max(1)).zip(factors) {
+        for (index, coefficients) in rows_mut(rest, columns).take(FITS * channels).enumerate() {
+            let factor = get(factors, index.checked_rem(channels).unwrap_or(0));
             for value in coefficients {
                 *value *= factor;
             }

@@ -12,6 +12,7 @@ use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::{LANES, Lanes};
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
 /// Numbers that [`estimate`] takes from its arena.
 pub(crate) fn size<R: Real>(config: &Config, columns: usize, n: usize) -> Option<usize> {
@@ -57,7 +58,7 @@ pub(crate) fn estimate<R: Real>(
             fitter.solve(rule, Some(coefficients), &mut arena)?;
             // Coefficients came in the training set's units.
             for (coefficients, (from, to)) in
-                coefficients.chunks_exact_mut(whole.columns.max(1)).zip(train.units.iter().zip(&whole.units))
+                rows_mut(coefficients, whole.columns).zip(train.units.iter().zip(&whole.units))
             {
                 for value in coefficients {
                     *value = to.from_other(*value, from);
@@ -66,9 +67,7 @@ pub(crate) fn estimate<R: Real>(
         }
         for (panel_index, (panel, values)) in held_out.each_panel().enumerate() {
             let used = held_out.n.saturating_sub(panel_index * LANES);
-            for (channel, (values, coefficients)) in
-                values.iter().zip(coefficients.chunks_exact(whole.columns.max(1))).enumerate()
-            {
+            for (channel, (values, coefficients)) in values.iter().zip(rows(coefficients, whole.columns)).enumerate() {
                 let residuals = residuals(panel, values, coefficients);
                 // Relative to the whole design's mean.
                 for &residual in residuals.iter().take(used) {

@@ -8,6 +8,7 @@ use crate::arena::Arena;
 use crate::error::Error;
 use crate::linalg::{ldlt, packed_len, row, row_mut};
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
 /// How many numbers the sums of `terms` terms (constant included) and `channels` values take.
 pub(crate) const fn len(terms: usize, channels: usize) -> usize {
@@ -103,7 +104,7 @@ impl<'a, R: Real> MomentsMut<'a, R> {
                 *out += value * other;
             }
         }
-        for (out, &value) in self.rhs.chunks_exact_mut(f.len().max(1)).zip(p) {
+        for (out, &value) in rows_mut(self.rhs, f.len()).zip(p) {
             for (out, &f) in out.iter_mut().zip(f) {
                 *out += value * f;
             }
@@ -126,7 +127,7 @@ impl<'a, R: Real> MomentsMut<'a, R> {
             let total = factor * other.total(channel);
             *square += factor * factor * other.square(channel) + shift * (total + total + shift * count);
         }
-        let (ours, theirs) = (self.rhs.chunks_exact_mut(channels.max(1)), other.rhs.chunks_exact(channels.max(1)));
+        let (ours, theirs) = (rows_mut(self.rhs, channels), rows(other.rhs, channels));
         for (j, (ours, theirs)) in ours.zip(theirs).enumerate() {
             let column = row(other.gram, j).first().copied().unwrap_or(R::ZERO);
             for (((out, &value), &factor), &shift) in ours.iter_mut().zip(theirs).zip(factors).zip(shift) {
@@ -138,7 +139,7 @@ impl<'a, R: Real> MomentsMut<'a, R> {
 
     /// Makes the sums those of `factors` times f.
     pub(crate) fn rescale(&mut self, factors: &PerChannel<R>, channels: usize) {
-        for out in self.rhs.chunks_exact_mut(channels.max(1)) {
+        for out in rows_mut(self.rhs, channels) {
             for (out, &factor) in out.iter_mut().zip(factors) {
                 *out *= factor;
             }
@@ -208,7 +209,7 @@ impl<'a, R: Real> Centred<'a, R> {
             set(&mut value_means, channel, mean);
             let square = sums.square(channel) - sums.total(channel) * mean;
             set(&mut squares, channel, square.max(R::ZERO));
-            for (j, out) in rhs.chunks_exact_mut(columns.max(1)).nth(channel).into_iter().flatten().enumerate() {
+            for (j, out) in rows_mut(rhs, columns).nth(channel).into_iter().flatten().enumerate() {
                 let value = sums.rhs.get((j + 1) * channels + channel).copied().unwrap_or(R::ZERO);
                 *out = value - sums.column_total(j) * mean;
             }
@@ -234,9 +235,7 @@ impl<'a, R: Real> Centred<'a, R> {
         let strength = strength * self.count;
         ldlt::add_diagonal(factor, self.columns, |j| strength * penalties.get(j).copied().unwrap_or(R::ONE));
         ldlt::factor(factor, self.columns);
-        for (out, rhs) in
-            coefficients.chunks_exact_mut(self.columns.max(1)).zip(self.rhs.chunks_exact(self.columns.max(1)))
-        {
+        for (out, rhs) in rows_mut(coefficients, self.columns).zip(rows(self.rhs, self.columns)) {
             for (out, &value) in out.iter_mut().zip(rhs) {
                 *out = value;
             }
@@ -255,10 +254,14 @@ impl<'a, R: Real> Centred<'a, R> {
             freedom -= strength * value * penalty;
         }
         super::ridge_fit::copy_padded(means, self.means);
-        ldlt::forward(factor, means);
+        ldlt::solve(factor, means);
+        // sum_i (m'A^-1 p_i)^2 = x'G x for x = A^-1 m.
         let mut eccentricity = R::ZERO;
-        for (j, &mean) in means.iter().enumerate() {
-            eccentricity += mean * mean * ldlt::inverse_pivot(factor, j);
+        for (j, &x) in means.iter().enumerate() {
+            for (k, (&gram, &other)) in row(self.gram, j).iter().zip(means.iter()).enumerate() {
+                let both = x * gram * other;
+                eccentricity += if k == j { both } else { both + both };
+            }
         }
         Ok(trust::discount(eccentricity * self.count, freedom, self.count))
     }

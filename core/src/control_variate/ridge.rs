@@ -6,7 +6,7 @@ use crate::basis::Basis;
 use crate::real::Real;
 
 /// Strengths, per sample, of the candidates of a mixture and of [`Ridge::Auto`].
-pub(crate) const STRENGTHS: [f64; 4] = [1e-5, 1e-3, 0.02, 0.2];
+pub(crate) const STRENGTHS: [f64; 4] = [2e-5, 1e-3, 0.02, 0.2];
 /// The number of candidates besides the plain mean.
 pub(crate) const CANDIDATES: usize = STRENGTHS.len();
 /// The strength of [`Ridge::Default`] where there is one fit.

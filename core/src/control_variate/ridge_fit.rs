@@ -20,6 +20,7 @@ use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::{ldlt, packed_len, row, row_mut};
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
 /// What one ridge fit says, in the design's units.
 #[derive(Clone, Copy, Default)]
@@ -32,7 +33,7 @@ pub(crate) struct RidgeFit<R> {
     pub(crate) in_sample: PerChannel<R>,
     /// The sum of squares that the fit explains, f'P A^-1 P'f.
     pub(crate) explained: PerChannel<R>,
-    /// n m'A^-1 m: how far the columns' means are from their integrals, as the fit measures distance.
+    /// n sum_i (m'A^-1 p_i)^2: how far the columns' means are from their integrals, as the fit measures distance.
     pub(crate) eccentricity: R,
     /// The effective number of coefficients, tr(P A^-1 P').
     pub(crate) freedom: R,
@@ -86,11 +87,7 @@ pub(crate) fn primal<R: Real>(
     }
     ldlt::forward(factor, means);
     let mut fit = RidgeFit::default();
-    for (j, &mean) in means.iter().enumerate() {
-        fit.eccentricity += mean * mean * ldlt::inverse_pivot(factor, j);
-    }
-    fit.eccentricity *= n;
-    for (channel, solution) in solution.chunks_exact_mut(columns.max(1)).enumerate() {
+    for (channel, solution) in rows_mut(solution, columns).enumerate() {
         let rhs = rhs.get(channel * columns..).unwrap_or(&[]);
         for (out, &rhs) in solution.iter_mut().zip(rhs) {
             *out = rhs;
@@ -110,9 +107,7 @@ pub(crate) fn primal<R: Real>(
         residuals(design, factor, means, solution, z, &mut fit);
     }
     if let Some(coefficients) = coefficients {
-        for (out, solution) in
-            coefficients.chunks_exact_mut(columns.max(1)).zip(solution.chunks_exact_mut(columns.max(1)))
-        {
+        for (out, solution) in rows_mut(coefficients, columns).zip(rows_mut(solution, columns)) {
             ldlt::backward(factor, solution);
             for (out, &value) in out.iter_mut().zip(solution.iter()) {
                 *out = value;
@@ -138,7 +133,7 @@ fn residuals<R: Real>(
     let smallest_gap = R::from_f64(SMALLEST_GAP) * R::EPSILON;
     let zero = [R::ZERO; LANES];
     let (mut press, mut corrections) = ([zero; Config::MAX_CHANNELS], [zero; Config::MAX_CHANNELS]);
-    let mut freedom = zero;
+    let (mut freedom, mut eccentricity) = (zero, zero);
     for (panel, values) in design.each_panel() {
         for (z, column) in z.iter_mut().zip(panel) {
             *z = *column;
@@ -155,11 +150,12 @@ fn residuals<R: Real>(
             }
         }
         freedom = lanes::zip(&freedom, &leverage, |a, b| a + b);
+        lanes::add_product(&mut eccentricity, &shift, &shift);
         let mut gap = zero;
         for (gap, &leverage) in gap.iter_mut().zip(&leverage) {
             *gap = R::ONE / (R::ONE - inverse_n - leverage).max(smallest_gap);
         }
-        let channels = values.iter().zip(solution.chunks_exact(columns.max(1))).zip(&mut press).zip(&mut corrections);
+        let channels = values.iter().zip(rows(solution, columns)).zip(&mut press).zip(&mut corrections);
         for (((values, solution), press), corrections) in channels {
             let mut residual = *values;
             for (z, &weight) in z.iter().zip(solution) {
@@ -173,6 +169,7 @@ fn residuals<R: Real>(
         }
     }
     fit.freedom = lanes::sum(&freedom);
+    fit.eccentricity = lanes::sum(&eccentricity) * n;
     for (channel, (press, corrections)) in press.iter().zip(&corrections).enumerate().take(design.channels) {
         set(&mut fit.press, channel, lanes::sum(press));
         let correction = lanes::sum(corrections) * inverse_n;
@@ -259,20 +256,19 @@ impl<'a, R: Real> Dual<'a, R> {
             *out = value;
         }
         ldlt::solve(factor, shift);
-        let penalised = |j: usize, mean: R| mean * mean / choice.penalties.get(j).copied().unwrap_or(R::ONE);
-        let whole = design.column_means.iter().enumerate().fold(R::ZERO, |sum, (j, &mean)| sum + penalised(j, mean));
-        let explained = shift.iter().zip(self.shift.iter()).fold(R::ZERO, |sum, (&a, &b)| sum + a * b);
         if choice.leave_one_out {
             ldlt::inverse_diagonal(factor, n, inverse, diagonal);
         }
         let smallest_gap = R::from_f64(SMALLEST_GAP) * R::EPSILON;
-        // By the matrix inversion lemma m'A^-1 m = (m'D^-1 m - g'B^-1 g) / (strength n).
-        let eccentricity = R::from_usize(n) * ((whole - explained) / strength).max(R::ZERO);
-        let mut fit = RidgeFit { eccentricity, ..RidgeFit::default() };
+        let mut fit = RidgeFit::default();
+        for &value in shift.iter() {
+            fit.eccentricity += value * value;
+        }
+        fit.eccentricity *= R::from_usize(n);
         for &value in diagonal.iter() {
             fit.freedom += R::ONE - strength * value;
         }
-        for (channel, alpha) in alpha.chunks_exact_mut(n.max(1)).enumerate() {
+        for (channel, alpha) in rows_mut(alpha, n).enumerate() {
             let value = |i: usize| {
                 let panel = design.values.get(i / LANES * design.channels + channel);
                 panel.and_then(|lanes| lanes.get(i % LANES)).copied().unwrap_or(R::ZERO)
@@ -300,7 +296,7 @@ impl<'a, R: Real> Dual<'a, R> {
             set(&mut fit.explained, channel, design.sum_of_squares(channel) - residual_square);
         }
         if let Some(coefficients) = coefficients {
-            for (out, alpha) in coefficients.chunks_exact_mut(design.columns.max(1)).zip(alpha.chunks_exact(n.max(1))) {
+            for (out, alpha) in rows_mut(coefficients, design.columns).zip(rows(alpha, n)) {
                 for (j, out) in out.iter_mut().enumerate() {
                     let mut total = R::ZERO;
                     for ((panel, _), alpha) in design.each_panel().zip(alpha.chunks(LANES)) {

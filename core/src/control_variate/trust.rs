@@ -9,36 +9,52 @@ use crate::real::Real;
 /// How much the plain mean is trusted before any sample is seen, with 1 for all candidates together.
 const PRIOR: f64 = 8.0;
 
+/// How many samples it takes to be sure: the mean keeps at least e^-(n^2 / this) of any candidate's trust, whatever the
+/// candidate's errors.
+const CAUTION: f64 = 14.0;
+
 /// The logarithm of what trust in a fit is divided by because its samples lie to one side.
 ///
-/// If all samples lie in one part of the cube, leave-one-out errors are small and yet the fit's integral is an
-/// extrapolation. Hotelling's F = (n m'A^-1 m / k) (n - 1 - k), for k effective coefficients, tells: it is about 1 for
-/// samples whose centre is the cube's. Trust is divided by max(1, F / 2)^2.
+/// If all samples lie in one part of the cube, errors on held-out samples are small and yet the fit's integral is an
+/// extrapolation. For q = `eccentricity` = n sum_i (m'A^-1 p_i)^2, with m the columns' means and p_i the centred columns,
+/// and k = `freedom` effective coefficients, Hotelling's F = (q / k) (n - 1 - k) tells: it is about 1 if the samples'
+/// centre is the cube's. Trust is divided by max(1, F)^2.
 #[inline(always)]
 pub(crate) fn discount<R: Real>(eccentricity: R, freedom: R, n: R) -> R {
-    let left = (n - R::ONE - freedom).max(R::ZERO);
-    let f = eccentricity * left / freedom.max(R::EPSILON);
-    let half = f * R::from_f64(0.5);
-    if half > R::ONE { half.ln() + half.ln() } else { R::ZERO }
+    let freedom = freedom.min(n - R::from_f64(1.5)).max(R::EPSILON);
+    let f = eccentricity * (n - R::ONE - freedom) / freedom;
+    if f > R::ONE { f.ln() + f.ln() } else { R::ZERO }
 }
 
 /// Weights of the plain mean and of the candidates: (error / plain error)^(-power) / C for a candidate, less its
-/// discount, and 8 for the mean, normalised. Errors are sums of squares.
+/// discount, and 8 for the mean, normalised. Errors are sums of squares over `n` samples.
 #[inline(always)]
-pub(crate) fn weights<R: Real, const C: usize>(plain: R, errors: &[R; C], discounts: &[R; C], power: R) -> (R, [R; C]) {
+pub(crate) fn weights<R: Real, const C: usize>(
+    plain: R,
+    errors: &[R; C],
+    discounts: &[R; C],
+    power: R,
+    n: R,
+) -> (R, [R; C]) {
     let mut weights = [R::ZERO; C];
     // Constant values: the mean is exact. A NaN cannot come from finite samples, but trust would go to the mean.
     if !(plain > R::ZERO) {
         return (R::ONE, weights);
     }
     let smallest = R::from_f64(1e-30);
-    let prior = R::from_f64(PRIOR * C as f64).ln();
-    let mut largest = prior;
-    for ((weight, &error), &discount) in weights.iter_mut().zip(errors).zip(discounts) {
-        *weight = -power * (error / plain).max(smallest).ln() - discount;
+    let mut largest = R::ZERO;
+    for (weight, &error) in weights.iter_mut().zip(errors) {
+        *weight = -power * (error / plain).max(smallest).ln();
         if !weight.is_finite() {
             *weight = -R::ONE / R::EPSILON;
         }
+        largest = largest.max(*weight);
+    }
+    let caution = (largest - n * n / R::from_f64(CAUTION)).max(R::ZERO);
+    let prior = R::from_f64(PRIOR * C as f64).ln() + caution;
+    largest = prior;
+    for (weight, &discount) in weights.iter_mut().zip(discounts) {
+        *weight -= discount;
         largest = largest.max(*weight);
     }
     let plain_weight = (prior - largest).exp();

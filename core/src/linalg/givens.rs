@@ -6,6 +6,7 @@
 
 use super::{packed_len, row};
 use crate::real::Real;
+use crate::rows::rows;
 
 /// Rotates one row into the factor: `x` has one number for each of the `n` columns, `y` one for each right-hand side.
 /// `rhs` has `n` rows of `y.len()` numbers; `residual` gathers what no coefficient can explain. `x` and `y` are used up.
@@ -59,7 +60,7 @@ pub(crate) fn solve<R: Real>(factor: &[R], rhs: &[R], width: usize, channel: usi
 pub(crate) fn first_column<R: Real>(factor: &[R], rhs: &[R], residual: &[R], width: usize, channel: usize) -> (R, R) {
     let root = factor.first().copied().unwrap_or(R::ZERO);
     let mut square = residual.get(channel).copied().unwrap_or(R::ZERO);
-    for z in rhs.chunks_exact(width.max(1)).filter_map(|row| row.get(channel)) {
+    for z in rows(rhs, width).filter_map(|row| row.get(channel)) {
         square += *z * *z;
     }
     (root * rhs.get(channel).copied().unwrap_or(R::ZERO), square)
