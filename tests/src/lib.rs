@@ -1,1 +1,6 @@
 //! What the tests share: the oracle, the integrands, the statistics.
+
+pub mod integrands;
+pub mod legendre;
+pub mod random;
+pub mod statistics;
