@@ -2,5 +2,6 @@
 
 pub mod integrands;
 pub mod legendre;
+pub mod oracle;
 pub mod random;
 pub mod statistics;
