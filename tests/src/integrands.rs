@@ -136,7 +136,7 @@ const CORNER: [f64; 3] = [2.0, 1.0, 3.0];
 fn corner_peak_integral() -> f64 {
     let corner = |bits: usize| {
         let sum: f64 = (0..3).filter(|j| bits >> j & 1 == 1).map(|j| CORNER[j]).sum();
-        (if bits.count_ones() % 2 == 0 { 1.0 } else { -1.0 }) / (1.0 + sum)
+        (if bits.count_ones().is_multiple_of(2) { 1.0 } else { -1.0 }) / (1.0 + sum)
     };
     (0..8).map(corner).sum::<f64>() / (6.0 * CORNER.iter().product::<f64>())
 }

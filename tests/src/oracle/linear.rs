@@ -18,7 +18,7 @@ pub fn least_squares(a: &Matrix, b: &[f64]) -> Vec<f64> {
     } else if rank > 0 {
         // [R11 R12] x = c has many solutions; with its transpose Q [S; 0], x = Q [S^-T c; 0] is the shortest. It is
         // found as x = M' z, where M = [R11 R12] and M M' z = c is solved through the triangle S: S' S z = c.
-        let m: Matrix = r[..rank].iter().map(|row| row.clone()).collect();
+        let m: Matrix = r[..rank].to_vec();
         let mut transposed: Matrix = (0..unknowns).map(|j| m.iter().map(|row| row[j]).collect()).collect();
         let pivots = triangularise(&mut transposed, &mut vec![0.0; unknowns]);
         let s = &transposed;

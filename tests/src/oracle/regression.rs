@@ -130,11 +130,22 @@ impl Regression {
         left_out
     }
 
-    /// q = n m' A^-1 m with m the column means: how far the samples' centre is from the domain's, in the metric of the
-    /// fit. The variance of the fit's constant is (1 + q) / n times that of its residual.
-    pub fn offset_leverage(design: &Design, ridge: f64) -> f64 {
+    /// How far the samples' centre is from the domain's, where every term has mean zero: Hotelling's
+    /// F = q (n - 1 - d) / d with a_i = c_i' A^-1 m for the column means m, q = n sum a_i^2 (the variance of the
+    /// fit's constant is (1 + q) / n times the residual's) and d = sum c_i' A^-1 c_i, at most n - 1.5, the degrees of
+    /// freedom the ridge leaves. About 1 for well spread samples. Needs ridge > 0.
+    pub fn offset(design: &Design, ridge: f64) -> f64 {
+        let n = design.rows.len() as f64;
         let means = design.means();
-        design.rows.len() as f64 * dot(&means, &solve_centred(design, &means, &means, ridge))
+        let (mut q, mut freedom) = (0.0, 0.0);
+        for row in &design.rows {
+            let centred: Vec<f64> = row.iter().zip(&means).map(|(p, m)| p - m).collect();
+            let solved = solve_centred(design, &means, &centred, ridge);
+            q += n * dot(&means, &solved).powi(2);
+            freedom += dot(&centred, &solved);
+        }
+        let freedom = freedom.min(n - 1.5);
+        if freedom > 0.0 { q * (n - 1.0 - freedom) / freedom } else { 0.0 }
     }
 }
 

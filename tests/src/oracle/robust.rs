@@ -11,8 +11,11 @@ pub struct Candidate {
     pub penalty: f64,
 }
 
-/// How candidates are weighed: w_k = (error_k / error_0)^(-n * exponent) / (C max(1, q_k)^leverage), Monte Carlo has
-/// weight `prior`, and the weights are divided by their sum.
+/// How candidates are weighed. With l_k = -n exponent ln(error_k / error_0) and Hotelling's F_k of "the samples' centre is
+/// the domain's" (`Regression::offset`): w_k = exp(l_k) max(1, F_k / offset)^-2 / C for the C candidates and, for Monte
+/// Carlo, w_0 = prior max(1, exp(max l_k - n^2 / cap)); then all are divided by their sum.
+///
+/// F guards against extrapolation, the cap against fits that are exact on a handful of badly spread samples.
 #[derive(Clone, Debug)]
 pub struct RobustRule {
     /// The fits.
@@ -21,8 +24,10 @@ pub struct RobustRule {
     pub exponent: f64,
     /// Weight of plain Monte Carlo against 1 for all candidates together.
     pub prior: f64,
-    /// Power of the offset leverage `Regression::offset_leverage`; 0 ignores it.
-    pub leverage: f64,
+    /// F values up to this one cost nothing; infinity ignores F.
+    pub offset: f64,
+    /// Divisor of n^2 in the cap; 0 for no cap.
+    pub cap: f64,
 }
 
 /// The samples of one estimate.
@@ -35,29 +40,37 @@ struct Samples<'a> {
 impl RobustRule {
     /// The rule with four ridges of the highest order.
     pub fn standard() -> Self {
-        let penalties = [1e-5, 1e-3, 0.02, 0.2];
+        let penalties = [2e-5, 1e-3, 0.02, 0.2];
         let candidates = penalties.map(|penalty| Candidate { order: usize::MAX, penalty }).to_vec();
-        Self { candidates, exponent: 1.0 / 6.0, prior: 8.0, leverage: 1.0 }
+        Self { candidates, exponent: 1.0 / 6.0, prior: 8.0, offset: 1.5, cap: 14.0 }
     }
 
     /// The seven candidates of an earlier study: four ridges of the highest order and three of order 1.
     pub fn seven() -> Self {
         let highest = [5e-5, 5e-3, 0.05, 0.5].map(|penalty| Candidate { order: usize::MAX, penalty });
         let first = [0.01, 0.1, 1.0].map(|penalty| Candidate { order: 1, penalty });
-        Self { candidates: [&highest[..], &first].concat(), exponent: 1.0 / 8.0, prior: 8.0, leverage: 0.0 }
+        Self {
+            candidates: [&highest[..], &first].concat(),
+            exponent: 1.0 / 8.0,
+            prior: 8.0,
+            offset: f64::INFINITY,
+            cap: 0.0,
+        }
     }
 
-    /// Weights from log-likelihood-like scores, the last one that of Monte Carlo; computed without overflow.
-    fn normalise(scores: &[f64]) -> Vec<f64> {
+    /// The weights of the candidates and, last, of Monte Carlo, from each candidate's error ratio and F; computed in
+    /// logarithms, so that nothing overflows.
+    fn weigh(&self, n: f64, ratios: &[f64], offsets: &[f64]) -> Vec<f64> {
+        let count = ratios.len() as f64;
+        let logs: Vec<f64> = ratios.iter().map(|ratio| -n * self.exponent * ratio.max(1e-30).ln()).collect();
+        let best = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let trusted = if self.cap > 0.0 { n * n / self.cap } else { f64::INFINITY };
+        let penalised = logs.iter().zip(offsets).map(|(l, f)| l - 2.0 * (f / self.offset).max(1.0).ln() - count.ln());
+        let scores: Vec<f64> = penalised.chain([self.prior.ln() + (best - trusted).max(0.0)]).collect();
         let largest = scores.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let raw: Vec<f64> = scores.iter().map(|s| (s - largest).exp()).collect();
         let sum: f64 = raw.iter().sum();
         raw.iter().map(|w| w / sum).collect()
-    }
-
-    fn score(&self, samples: f64, ratio: f64, leverage: f64) -> f64 {
-        let count = self.candidates.len() as f64;
-        -samples * self.exponent * ratio.max(1e-30).ln() - self.leverage * leverage.max(1.0).ln() - count.ln()
     }
 
     /// The weights of the candidates and, last, of Monte Carlo, beside each one's estimate.
@@ -68,18 +81,17 @@ impl RobustRule {
         if f.len() < 2 || press_0 == 0.0 {
             return (vec![1.0], vec![mean]);
         }
-        let (mut scores, mut estimates) = (vec![], vec![]);
+        let (mut ratios, mut offsets, mut estimates) = (vec![], vec![], vec![]);
         for candidate in &self.candidates {
             let design = Design::legendre(u, dims, candidate.order.min(order));
             let ridge = candidate.penalty * n;
             let left_out: LeftOut = Regression::leave_one_out(&design, f, ridge);
-            let leverage = Regression::offset_leverage(&design, ridge);
-            scores.push(self.score(n, left_out.press() / press_0, leverage));
+            ratios.push(left_out.press() / press_0);
+            offsets.push(Regression::offset(&design, ridge));
             estimates.push(left_out.mean());
         }
-        scores.push(self.prior.ln());
         estimates.push(mean);
-        (Self::normalise(&scores), estimates)
+        (self.weigh(n, &ratios, &offsets), estimates)
     }
 
     /// The estimate of the integral from all samples: sum of w_k mean(y_k).
@@ -89,8 +101,9 @@ impl RobustRule {
     }
 
     /// Cross-fit over `folds` folds by index modulo `folds`: each fold's samples meet only fits to the others, with
-    /// penalty times the size of the fit's own samples. With `unbiased` the fold's weights come from fits without the fold
-    /// and errors on the remaining ones (nested), else from the held-out errors of all folds.
+    /// penalty times the size of the fit's own samples, and F is that of the samples outside the fold. With `unbiased` the
+    /// fold's errors come from fits without the fold and on the remaining ones (nested), else they are the held-out errors
+    /// of all folds.
     pub fn k_fold(&self, u: &[f64], dims: usize, f: &[f64], order: usize, folds: usize, unbiased: bool) -> f64 {
         let samples = Samples { u, dims, f };
         let n = f.len();
@@ -115,9 +128,10 @@ impl RobustRule {
             }
             let last = errors.len() - 1;
             let ratio = |k: usize| if errors[last] > 0.0 { errors[k] / errors[last] } else { 1.0 };
-            let mut scores: Vec<f64> = (0..last).map(|k| self.score(n as f64, ratio(k), 1.0)).collect();
-            scores.push(self.prior.ln());
-            for (weight, &(order, penalty)) in Self::normalise(&scores).iter().zip(&orders) {
+            let ratios: Vec<f64> = (0..last).map(ratio).collect();
+            let offsets: Vec<f64> =
+                orders[..last].iter().map(|&(o, p)| samples.offset_without(folds, fold, o, p)).collect();
+            for (weight, &(order, penalty)) in self.weigh(n as f64, &ratios, &offsets).iter().zip(&orders) {
                 let fit = samples.fit_without(folds, &[fold], order, penalty);
                 let design = Design::legendre(u, dims, order);
                 let sum: f64 = inside.iter().map(|&i| f[i] - fit.control(&design.rows[i])).sum();
@@ -134,6 +148,12 @@ impl Samples<'_> {
         let f: Vec<f64> = keep.iter().map(|&i| self.f[i]).collect();
         let design = Design::legendre(self.u, self.dims, order).select(&keep);
         Regression::fit(&design, &f, penalty * keep.len() as f64)
+    }
+
+    fn offset_without(&self, folds: usize, fold: usize, order: usize, penalty: f64) -> f64 {
+        let keep: Vec<usize> = (0..self.f.len()).filter(|i| i % folds != fold).collect();
+        let design = Design::legendre(self.u, self.dims, order).select(&keep);
+        Regression::offset(&design, penalty * keep.len() as f64)
     }
 
     fn squared_error(&self, fit: &Regression, folds: usize, fold: usize, order: usize) -> f64 {
