@@ -1,1 +1,7 @@
 //! What the tests share: the oracle, the integrands, the statistics.
+
+pub mod integrands;
+pub mod legendre;
+pub mod oracle;
+pub mod random;
+pub mod statistics;

@@ -1,0 +1,12 @@
+//! The slow, obvious reference for the control-variate estimators: plain `f64`, textbook formulas, allocation everywhere.
+//!
+//! `linear` solves least squares, `regression` fits and leaves samples out, `robust` mixes fits. Nothing here shares
+//! code with the library.
+
+mod linear;
+mod regression;
+mod robust;
+
+pub use linear::{Matrix, least_squares};
+pub use regression::{Design, LeftOut, Regression, gradient_descent, incremental};
+pub use robust::{Candidate, RobustRule};
