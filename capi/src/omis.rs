@@ -169,8 +169,8 @@ pub unsafe extern "C" fn nf_omis_alpha(omis: *const nf_omis, solver: u32, ridge:
 
 /// Ends a batch: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so far on those that follow.
 ///
-/// Before the first call alpha is 0, the balance heuristic; NF_OMIS_BALANCE returns to that. Batches should be whole rounds.
-/// When to call it may not depend on the values in the batch that ends, or the estimate is biased.
+/// Before the first call alpha is 0, the balance heuristic; NF_OMIS_BALANCE returns to that. Call it between whole rounds,
+/// whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
 ///
 /// Other arguments and errors as for nf_omis_solve; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE as the solver.
 #[unsafe(no_mangle)]

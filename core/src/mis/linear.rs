@@ -117,10 +117,12 @@ fn rotate(m: &mut Matrix, vectors: &mut Matrix, p: usize, q: usize, n: usize) ->
         m[p][k] = m[k][p];
         m[q][k] = m[k][q];
     }
-    for k in 0..MAX_TECHNIQUES {
-        let (along_p, along_q) = (vectors[p][k], vectors[q][k]);
-        vectors[p][k] = cos * along_p - sin * along_q;
-        vectors[q][k] = sin * along_p + cos * along_q;
+    let (row_p, row_q) = (vectors[p], vectors[q]);
+    for (out, (along_p, along_q)) in vectors[p].iter_mut().zip(row_p.iter().zip(&row_q)) {
+        *out = cos * along_p - sin * along_q;
+    }
+    for (out, (along_p, along_q)) in vectors[q].iter_mut().zip(row_p.iter().zip(&row_q)) {
+        *out = sin * along_p + cos * along_q;
     }
     true
 }

@@ -271,8 +271,8 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
 
     /// Ends a batch: the progressive estimator uses the alpha of all samples so far on those that follow.
     ///
-    /// Before the first call alpha is 0, the balance heuristic. [`Solver::Balance`] returns to that. Batches should be
-    /// whole rounds. When to call it may not depend on the values in the batch that ends, or the estimate is biased.
+    /// Before the first call alpha is 0, the balance heuristic. [`Solver::Balance`] returns to that. Call it between whole
+    /// rounds, whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
     ///
     /// Errors, which change nothing: [`Error::Unsupported`] for [`Solver::Progressive`]; others as for
     /// [`OptimalMis::solve`].
