@@ -229,8 +229,8 @@ nf_status nf_mis_optimal(const float *pdf,
  What one sample of technique j adds to the estimate (2.10) with optimal weights:
  w_j f / (n_j p_j) = alpha_j / n_j + (f - sum_k alpha_k p_k) / S, S = sum_k n_k p_k.
 
- The sum over every sample is the estimate, unbiased if alpha came from other samples. A sample with f = 0 adds
- something too, and leaving it out makes the estimate biased. Times the number of samples, these terms are what a
+ The sum over all samples is the estimate, unbiased if alpha came from other samples. The term is not 0 where f is;
+ leaving such samples out keeps the mean and loses part of the gain. These terms, times the number of samples, are what a
  regression control variate is fitted to (4.3.3).
 
  Arguments and errors as for nf_mis_optimal, except that value may be 0, and pdf[technique] must be positive.
@@ -283,7 +283,7 @@ nf_status nf_omis_add(struct nf_omis *omis, uint32_t technique, const float *pdf
  more samples may be added.
 
  solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN, NF_OMIS_PROGRESSIVE or NF_OMIS_BALANCE; each says whether it is unbiased.
- ridge: for NF_OMIS_RIDGE, relative to A's mean diagonal: 1e-8..1e8, or 0 for the default .01; otherwise ignored.
+ ridge: for NF_OMIS_RIDGE, relative to A's mean diagonal: 1e-8..1e8, or 0 for the default .03; otherwise ignored.
  estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite float.
 
  NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.
@@ -302,14 +302,12 @@ nf_status nf_omis_alpha(const struct nf_omis *omis, uint32_t solver, float ridge
 /*
  Ends a batch: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so far on those that follow.
 
- Before the first call alpha is 0, the balance heuristic; NF_OMIS_BALANCE returns to that. Batches should be whole rounds.
- When to call it may not depend on the values in the batch that ends, or the estimate is biased.
+ Before the first call alpha is 0, the balance heuristic; NF_OMIS_BALANCE returns to that. Call it between whole rounds,
+ whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
 
  Other arguments and errors as for nf_omis_solve; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE as the solver.
  */
-nf_status nf_omis_next_batch(struct nf_omis *omis,
-                             uint32_t solver,
-                             float ridge);
+nf_status nf_omis_next_batch(struct nf_omis *omis, uint32_t solver, float ridge);
 
 /*
  Multiplies all sums by beta in 0..1, so that older samples count for less: for integrals that drift, as gradients do.

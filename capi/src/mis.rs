@@ -124,8 +124,8 @@ pub unsafe extern "C" fn nf_mis_optimal(
 /// What one sample of technique j adds to the estimate (2.10) with optimal weights:
 /// w_j f / (n_j p_j) = alpha_j / n_j + (f - sum_k alpha_k p_k) / S, S = sum_k n_k p_k.
 ///
-/// The sum over every sample is the estimate, unbiased if alpha came from other samples. A sample with f = 0 adds
-/// something too, and leaving it out makes the estimate biased. Times the number of samples, these terms are what a
+/// The sum over all samples is the estimate, unbiased if alpha came from other samples. The term is not 0 where f is;
+/// leaving such samples out keeps the mean and loses part of the gain. These terms, times the number of samples, are what a
 /// regression control variate is fitted to (4.3.3).
 ///
 /// Arguments and errors as for nf_mis_optimal, except that value may be 0, and pdf[technique] must be positive.

@@ -135,7 +135,7 @@ pub unsafe extern "C" fn nf_omis_add(
 /// more samples may be added.
 ///
 /// solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN, NF_OMIS_PROGRESSIVE or NF_OMIS_BALANCE; each says whether it is unbiased.
-/// ridge: for NF_OMIS_RIDGE, relative to A's mean diagonal: 1e-8..1e8, or 0 for the default .01; otherwise ignored.
+/// ridge: for NF_OMIS_RIDGE, relative to A's mean diagonal: 1e-8..1e8, or 0 for the default .03; otherwise ignored.
 /// estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite float.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.

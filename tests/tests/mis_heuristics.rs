@@ -42,7 +42,7 @@ fn techniques() -> impl Strategy<Value = (Vec<f32>, Vec<u32>)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4000, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 4000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn weights_sum_to_one_and_vanish_with_the_density((pdf, counts) in techniques()) {

@@ -10,7 +10,7 @@ use glam::{Vec2, Vec3};
 pub fn uniform_triangle(u: Vec2) -> Vec3 {
     let (u0, u1) = unit_square(u);
     let (b0, b1) = if u0 < u1 { (0.5 * u0, u1 - 0.5 * u0) } else { (u0 - 0.5 * u1, 0.5 * u1) };
-    Vec3::new(b0 as f32, b1 as f32, (1.0 - b0 - b1) as f32)
+    Vec3::new(b0 as f32, b1 as f32, unit(1.0 - b0 - b1) as f32)
 }
 
 /// The density of [`uniform_triangle`] per area: 1 over the triangle's area, infinite for a triangle without area, 0 if a

@@ -50,6 +50,8 @@ impl Technique {
 /// Techniques with their counts, and an integrand with its integral.
 pub struct Problem {
     pub name: &'static str,
+    /// Whether the densities are linearly independent; otherwise A is singular.
+    pub independent: bool,
     pub techniques: Vec<Technique>,
     pub counts: Vec<u32>,
     pub f: fn(f64) -> f64,
@@ -91,6 +93,13 @@ impl Problem {
         (a.collect(), b.collect())
     }
 
+    /// The alpha of least variance. Where several have it, one of them: 1e-10 on the diagonal chooses.
+    pub fn alpha(&self) -> Vec<f64> {
+        let (mut a, b) = self.system();
+        a.iter_mut().enumerate().for_each(|(k, row)| row[k] += 1e-10);
+        solve(a, b)
+    }
+
     /// The variance of one round with coefficients alpha, from (2.11) and (2.15):
     /// int (f - alpha p)^2 / S - sum_j n_j (int p_j (f - alpha p) / S)^2.
     pub fn variance(&self, alpha: &[f64]) -> f64 {
@@ -114,6 +123,7 @@ pub fn problems() -> Vec<Problem> {
     vec![
         Problem {
             name: "a slope and its mirror image",
+            independent: true,
             techniques: vec![Rising, Falling],
             counts: vec![1, 1],
             f: |x| 1.0 + 3.0 * x * x,
@@ -121,6 +131,7 @@ pub fn problems() -> Vec<Problem> {
         },
         Problem {
             name: "unequal counts",
+            independent: true,
             techniques: vec![Uniform, Rising],
             counts: vec![3, 1],
             f: |x| x * x * x + 0.2,
@@ -128,6 +139,7 @@ pub fn problems() -> Vec<Problem> {
         },
         Problem {
             name: "zero on the left third",
+            independent: true,
             techniques: vec![Uniform, Box(0.2, 0.9)],
             counts: vec![2, 3],
             f: |x| if x < 1.0 / 3.0 { 0.0 } else { 2.0 + x },
@@ -135,6 +147,7 @@ pub fn problems() -> Vec<Problem> {
         },
         Problem {
             name: "three techniques, two bumps, zero between",
+            independent: true,
             techniques: vec![Uniform, Box(0.1, 0.4), Box(0.6, 0.8)],
             counts: vec![1, 2, 2],
             f: |x| {
@@ -149,7 +162,8 @@ pub fn problems() -> Vec<Problem> {
             integral: 2.0 * (0.16 - 0.0225) + 0.6,
         },
         Problem {
-            name: "a change of sign",
+            name: "a change of sign; densities that depend on each other",
+            independent: false,
             techniques: vec![Rising, Falling, Uniform],
             counts: vec![2, 1, 1],
             f: |x| 5.0 * x * x - 1.0,
