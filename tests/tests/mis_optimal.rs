@@ -38,8 +38,8 @@ fn oracle_sums(counts: &[u32], samples: &[Sample]) -> (Vec<Vec<f64>>, Vec<f64>, 
     for s in samples {
         let sum: f64 = s.pdf.iter().zip(counts).map(|(&p, &n)| f64::from(p) * f64::from(n)).sum();
         for i in 0..j {
-            for k in 0..j {
-                a[i][k] += f64::from(s.pdf[i]) * f64::from(s.pdf[k]) / (sum * sum);
+            for (cell, &p) in a[i].iter_mut().zip(&s.pdf) {
+                *cell += f64::from(s.pdf[i]) * f64::from(p) / (sum * sum);
             }
             b[i] += f64::from(s.value) * f64::from(s.pdf[i]) / (sum * sum);
             q[i] += f64::from(s.pdf[i]) / sum;

@@ -115,10 +115,11 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         }
         let factor = self.factor(solver)?;
         let (sums, rounds) = self.sums()?;
+        let scale = root_counts(&self.counts);
         for (out, record) in estimate.iter_mut().zip(memory::records(sums.rest, self.techniques, self.integrals)) {
             let value = match (&factor, solver) {
                 (Some(factor), _) => {
-                    let alpha = coefficients(factor, &self.counts, record.moment, rounds);
+                    let alpha = coefficients(factor, &scale, record.moment, rounds);
                     let error = sums.ratio.iter().zip(&alpha).map(|(ratio, alpha)| (ratio / rounds - 1.0) * alpha);
                     record.balance / rounds - error.sum::<f64>()
                 }
@@ -141,11 +142,12 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         }
         let factor = self.factor(solver)?;
         let (sums, rounds) = self.sums()?;
+        let scale = root_counts(&self.counts);
         let rows = alpha.chunks_exact_mut(self.techniques.clamp(1, MAX_TECHNIQUES));
         for (row, record) in rows.zip(memory::records(sums.rest, self.techniques, self.integrals)) {
             match (&factor, solver) {
                 (Some(factor), _) => {
-                    let solved = coefficients(factor, &self.counts, record.moment, rounds);
+                    let solved = coefficients(factor, &scale, record.moment, rounds);
                     row.iter_mut().zip(solved).for_each(|(out, alpha)| *out = to_f32(alpha));
                 }
                 (None, Solver::Progressive) => {
@@ -283,10 +285,11 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         }
         let factor = self.factor(solver)?;
         let (_, rounds) = self.sums()?;
+        let scale = root_counts(&self.counts);
         let sums = memory::sums_mut(self.memory.as_mut(), self.techniques).ok_or(Error::Memory)?;
         for record in memory::records_mut(sums.rest, self.techniques, self.integrals) {
             let solved = match &factor {
-                Some(factor) => coefficients(factor, &self.counts, record.moment, rounds),
+                Some(factor) => coefficients(factor, &scale, record.moment, rounds),
                 None => Vector::default(),
             };
             record.alpha.iter_mut().zip(solved).for_each(|(alpha, solved)| *alpha = solved);
@@ -340,13 +343,12 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     }
 }
 
-/// alpha of one integral: N^1/2 M^-1 N^1/2 b, for the factorised M = N^1/2 A N^1/2.
-fn coefficients(factor: &Factor, counts: &[u32; MAX_TECHNIQUES], moment: &[f64], rounds: f64) -> Vector {
-    let scale = root_counts(counts);
+/// alpha of one integral: N^1/2 M^-1 N^1/2 b, for the factorised M = N^1/2 A N^1/2 and `scale`, the diagonal of N^1/2.
+fn coefficients(factor: &Factor, scale: &Vector, moment: &[f64], rounds: f64) -> Vector {
     let mut right = Vector::default();
-    right.iter_mut().zip(moment.iter().zip(&scale)).for_each(|(out, (b, scale))| *out = scale * (b / rounds));
+    right.iter_mut().zip(moment.iter().zip(scale)).for_each(|(out, (b, scale))| *out = scale * (b / rounds));
     let mut alpha = factor.solve(&right);
-    alpha.iter_mut().zip(&scale).for_each(|(alpha, scale)| *alpha *= scale);
+    alpha.iter_mut().zip(scale).for_each(|(alpha, scale)| *alpha *= scale);
     alpha
 }
 

@@ -213,9 +213,8 @@ pub fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
         b.swap(i, pivot);
         for k in i + 1..n {
             let factor = a[k][i] / a[i][i];
-            for l in i..n {
-                a[k][l] -= factor * a[i][l];
-            }
+            let row = a[i].clone();
+            a[k].iter_mut().zip(row).skip(i).for_each(|(x, y)| *x -= factor * y);
             b[k] -= factor * b[i];
         }
     }
