@@ -4,11 +4,20 @@
 //! Every function checks its arguments, writes its outputs only on success, and never panics, allocates or locks.
 //! This crate is the only one that contains `unsafe`; the pointer checks are in [`convert`].
 
+// What a caller must promise is written for C readers, once, at the head of the header.
+#![allow(clippy::missing_safety_doc)]
+
 mod convert;
 mod cv;
+mod mis;
+mod omis;
+mod rng;
 mod status;
 
 pub use cv::*;
+pub use mis::*;
+pub use omis::*;
+pub use rng::*;
 pub use status::*;
 
 /// Nothing in the library can panic (a test looks for the panic symbols in the archive), so this is never reached.

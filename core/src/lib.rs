@@ -13,9 +13,14 @@ pub mod error;
 mod lanes;
 #[cfg(feature = "control-variate")]
 mod linalg;
+#[cfg(feature = "mis")]
+pub mod mis;
 #[cfg(feature = "control-variate")]
 pub mod real;
+pub mod rng;
 #[cfg(feature = "control-variate")]
 mod rows;
+#[cfg(feature = "warp")]
+pub mod warp;
 
 pub use error::Error;

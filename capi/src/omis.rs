@@ -1,0 +1,280 @@
+//! Optimal multiple importance sampling weights, found from the samples.
+
+use crate::convert;
+use crate::status::*;
+use noisefloor_core::mis::{self, DEFAULT_RIDGE, MAX_TECHNIQUES, OptimalMis, Solver};
+
+/// nf_omis solver: alpha = (A + ridge)^-1 b, which shrinks to the balance heuristic where the samples say little. The
+/// default. Consistent, not unbiased: alpha comes from the samples it is applied to.
+pub const NF_OMIS_RIDGE: u32 = 0;
+/// nf_omis solver: alpha = A^-1 b (the pseudo-inverse where A is singular), the direct estimator sum_k alpha_k of
+/// Kondapaneni et al. Consistent, not unbiased, and heavy-tailed with similar techniques or few samples.
+pub const NF_OMIS_PLAIN: u32 = 1;
+/// nf_omis solver: each batch with the alpha of the batches before it (nf_omis_next_batch). Unbiased.
+pub const NF_OMIS_PROGRESSIVE: u32 = 2;
+/// nf_omis solver: alpha = 0, the balance heuristic. Unbiased.
+pub const NF_OMIS_BALANCE: u32 = 3;
+
+/// Optimal multiple importance sampling (Kondapaneni et al. 2019; 2.15): sums over samples of J techniques, from which P
+/// integrals are estimated with weights of least variance.
+///
+/// With S = sum_k n_k p_k and s over all samples, it keeps A = sum_s p p' / S^2 and b = sum_s f p / S^2 and a few sums more.
+/// After R rounds of n_k samples each, an integral is sum_s f / S / R - (sum_s p / S / R - 1)' alpha with alpha
+/// from A alpha = b: the balance estimate, less what the samples got wrong about the densities' integrals.
+///
+/// Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use; nothing to destroy.
+#[allow(non_camel_case_types)]
+pub struct nf_omis {
+    _private: (),
+}
+
+/// What stands at the start of the memory, before the f64 sums.
+#[repr(C, align(8))]
+#[derive(Clone, Copy)]
+struct Header {
+    magic: u64,
+    techniques: u32,
+    integrals: u32,
+    counts: [u32; MAX_TECHNIQUES],
+}
+
+/// "nf_omis" and the version of the layout.
+const MAGIC: u64 = u64::from_le_bytes(*b"nf_omis\x01");
+
+/// The bytes of memory an nf_omis needs; 0 unless techniques is in 1..NF_MIS_MAX_TECHNIQUES, integrals at least 1, and the
+/// size one that memory can have.
+#[unsafe(no_mangle)]
+pub extern "C" fn nf_omis_size(techniques: u32, integrals: u32) -> usize {
+    match mis::len(techniques as usize, integrals as usize) {
+        0 => 0,
+        len => match len.checked_mul(size_of::<f64>()).and_then(|bytes| bytes.checked_add(size_of::<Header>())) {
+            Some(bytes) if bytes <= isize::MAX as usize => bytes,
+            _ => 0,
+        },
+    }
+}
+
+/// Makes an empty nf_omis in `memory`, `*out` being its handle (the same address).
+///
+/// memory: at least nf_omis_size(techniques, integrals) bytes, 8-byte aligned; what it holds is lost.
+/// counts[techniques]: n_k, how many samples of each technique make one round, at least 1.
+///
+/// NF_ERR_NULL; NF_ERR_RANGE: techniques, integrals or a count; NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_omis_init(
+    memory: *mut core::ffi::c_void,
+    bytes: usize,
+    techniques: u32,
+    integrals: u32,
+    counts: *const u32,
+    out: *mut *mut nf_omis,
+) -> nf_status {
+    status((|| {
+        let size = nf_omis_size(techniques, integrals);
+        if size == 0 {
+            return Err(NF_ERR_RANGE);
+        }
+        // SAFETY: the caller passes `techniques` counts, which a size other than 0 says are at most 16.
+        let counts = unsafe { convert::slice(counts, techniques as usize) }?;
+        if counts.contains(&0) {
+            return Err(NF_ERR_RANGE);
+        }
+        let mut header = Header { magic: MAGIC, techniques, integrals, counts: [0; MAX_TECHNIQUES] };
+        header.counts.iter_mut().zip(counts).for_each(|(to, &from)| *to = from);
+        // SAFETY: the caller passes a place for a pointer.
+        let out = unsafe { convert::reference_mut(out) }?;
+        let place = memory.cast::<Header>();
+        if place.is_null() {
+            return Err(NF_ERR_NULL);
+        }
+        if !place.is_aligned() {
+            return Err(NF_ERR_ALIGNMENT);
+        }
+        if bytes < size {
+            return Err(NF_ERR_MEMORY);
+        }
+        // SAFETY: not NULL, aligned and of at least `size` bytes, which is what the header and the sums take; all-zero
+        // sums are those of no samples.
+        unsafe {
+            core::ptr::write_bytes(memory.cast::<u8>(), 0, size);
+            place.write(header);
+        }
+        *out = memory.cast();
+        Ok(())
+    })())
+}
+
+/// Adds one sample, drawn by `technique`.
+///
+/// pdf[techniques]: the density of each technique at the sample's point, finite and at least 0, positive for the technique
+/// that drew it. value[integrals]: the value of each integrand there, not divided by any density, finite.
+///
+/// Add every sample, those of value 0 included: without them no solver but NF_OMIS_BALANCE is unbiased or consistent. The
+/// samples should make whole rounds of the counts, or each be drawn from technique k with probability n_k / sum n.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE: a density (combine delta
+/// distributions outside) or a value.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_omis_add(
+    omis: *mut nf_omis,
+    technique: u32,
+    pdf: *const f32,
+    value: *const f32,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes an object that no one else uses meanwhile, and arrays of the lengths it was made for.
+        let mut omis = unsafe { open_mut(omis) }?;
+        // SAFETY: as above.
+        let (pdf, value) =
+            unsafe { (convert::slice(pdf, omis.techniques())?, convert::slice(value, omis.integrals())?) };
+        omis.add(technique as usize, pdf, value).map_err(status_of)
+    })())
+}
+
+/// Estimates the integrals from all samples so far. The object does not change: the same call gives the same answer, and
+/// more samples may be added.
+///
+/// solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN, NF_OMIS_PROGRESSIVE or NF_OMIS_BALANCE; each says whether it is unbiased.
+/// ridge: for NF_OMIS_RIDGE, relative to A's mean diagonal: 1e-8..1e8, or 0 for the default .03; otherwise ignored.
+/// estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite float.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_omis_solve(omis: *const nf_omis, solver: u32, ridge: f32, estimate: *mut f32) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes an object that no one writes meanwhile, and room for its integrals.
+        let omis = unsafe { open(omis) }?;
+        // SAFETY: as above.
+        let estimate = unsafe { convert::slice_mut(estimate, omis.integrals()) }?;
+        omis.solve(solver_of(solver, ridge)?, estimate).map_err(status_of)
+    })())
+}
+
+/// The coefficients of the weights (2.15), for nf_mis_optimal and nf_mis_optimal_contribution:
+/// alpha[p * techniques + j] of integral p and technique j.
+///
+/// Used on samples other than those it came from, an alpha gives unbiased estimates. NF_OMIS_PROGRESSIVE stands for the
+/// alpha of the current batch, NF_OMIS_BALANCE for zeros. Arguments and errors as for nf_omis_solve.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_omis_alpha(omis: *const nf_omis, solver: u32, ridge: f32, alpha: *mut f32) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes an object that no one writes meanwhile, and room for its integrals and techniques.
+        let omis = unsafe { open(omis) }?;
+        let len = convert::product(omis.integrals(), omis.techniques())?;
+        // SAFETY: as above.
+        let alpha = unsafe { convert::slice_mut(alpha, len) }?;
+        omis.alpha(solver_of(solver, ridge)?, alpha).map_err(status_of)
+    })())
+}
+
+/// Ends a batch: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so far on those that follow.
+///
+/// Before the first call alpha is 0, the balance heuristic; NF_OMIS_BALANCE returns to that. Call it between whole rounds,
+/// whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
+///
+/// Other arguments and errors as for nf_omis_solve; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE as the solver.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_omis_next_batch(omis: *mut nf_omis, solver: u32, ridge: f32) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes an object that no one else uses meanwhile.
+        let mut omis = unsafe { open_mut(omis) }?;
+        omis.next_batch(solver_of(solver, ridge)?).map_err(status_of)
+    })())
+}
+
+/// Multiplies all sums by beta in 0..1, so that older samples count for less: for integrals that drift, as gradients do.
+/// NF_OMIS_PROGRESSIVE keeps its alpha.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE, NF_ERR_NOT_FINITE: beta.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_omis_decay(omis: *mut nf_omis, beta: f32) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes an object that no one else uses meanwhile.
+        unsafe { open_mut(omis) }?.decay(beta).map_err(status_of)
+    })())
+}
+
+/// Forgets every sample and NF_OMIS_PROGRESSIVE's alpha; techniques, integrals and counts stay.
+///
+/// NF_ERR_NULL; NF_ERR_STATE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_omis_reset(omis: *mut nf_omis) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes an object that no one else uses meanwhile.
+        unsafe { open_mut(omis) }?.reset();
+        Ok(())
+    })())
+}
+
+/// Adds the samples of `other`, of another thread or pass, to `omis`. `other` does not change and must be another object;
+/// NF_OMIS_PROGRESSIVE's alpha stays that of `omis`.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: their techniques, integrals or
+/// counts differ.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis) -> nf_status {
+    status((|| {
+        // Two references to one object, one of them exclusive, must never exist.
+        if core::ptr::eq(omis, other) && !other.is_null() {
+            return Err(NF_ERR_RANGE);
+        }
+        // SAFETY: the caller passes two objects that no one else uses meanwhile; they are two, as just checked.
+        let (mut omis, other) = unsafe { (open_mut(omis)?, open(other)?) };
+        omis.merge(&other).map_err(status_of)
+    })())
+}
+
+/// The object as the core sees it, to read.
+///
+/// # Safety
+/// A non-NULL `omis` must be 8-byte-aligned memory that nf_omis_init was given and that no one writes to during `'a`.
+unsafe fn open<'a>(omis: *const nf_omis) -> Result<OptimalMis<&'a [f64]>, nf_status> {
+    // SAFETY: passed on to the caller.
+    let header = *unsafe { header(omis) }?;
+    // SAFETY: nf_omis_init made the sums right behind the header.
+    let sums = unsafe { convert::slice(omis.cast::<Header>().add(1).cast::<f64>(), sums_len(&header)) }?;
+    OptimalMis::resume(sums, used_counts(&header)?, header.integrals as usize).map_err(status_of)
+}
+
+/// As [`open`], to write.
+///
+/// # Safety
+/// As for [`open`], and no one else may read the object during `'a`.
+unsafe fn open_mut<'a>(omis: *mut nf_omis) -> Result<OptimalMis<&'a mut [f64]>, nf_status> {
+    // SAFETY: passed on to the caller.
+    let header = *unsafe { header(omis) }?;
+    // SAFETY: nf_omis_init made the sums right behind the header.
+    let sums = unsafe { convert::slice_mut(omis.cast::<Header>().add(1).cast::<f64>(), sums_len(&header)) }?;
+    OptimalMis::resume(sums, used_counts(&header)?, header.integrals as usize).map_err(status_of)
+}
+
+/// # Safety
+/// As for [`open`].
+unsafe fn header<'a>(omis: *const nf_omis) -> Result<&'a Header, nf_status> {
+    // SAFETY: passed on to the caller.
+    let header = unsafe { convert::reference(omis.cast::<Header>()) }?;
+    if header.magic == MAGIC && sums_len(header) > 0 { Ok(header) } else { Err(NF_ERR_STATE) }
+}
+
+fn sums_len(header: &Header) -> usize {
+    mis::len(header.techniques as usize, header.integrals as usize)
+}
+
+fn used_counts(header: &Header) -> Result<&[u32], nf_status> {
+    header.counts.get(..header.techniques as usize).ok_or(NF_ERR_STATE)
+}
+
+fn solver_of(solver: u32, ridge: f32) -> Result<Solver, nf_status> {
+    match solver {
+        NF_OMIS_RIDGE if ridge == 0.0 => Ok(Solver::Ridge(DEFAULT_RIDGE)),
+        NF_OMIS_RIDGE => Ok(Solver::Ridge(ridge)),
+        NF_OMIS_PLAIN => Ok(Solver::Plain),
+        NF_OMIS_PROGRESSIVE => Ok(Solver::Progressive),
+        NF_OMIS_BALANCE => Ok(Solver::Balance),
+        _ => Err(NF_ERR_RANGE),
+    }
+}
+
+fn status(result: Result<(), nf_status>) -> nf_status {
+    result.err().unwrap_or(NF_OK)
+}

@@ -1,0 +1,133 @@
+//! The balance, power, cutoff and maximum heuristics (2.12-2.14).
+//!
+//! All four take, for one point x:
+//!
+//! - `pdf`: p_k(x) of each of the 1..=16 techniques, in any common measure, at least 0. Infinity stands for a delta
+//!   distribution: where any is infinite the finite ones count as 0, and the infinite ones are equally dense.
+//! - `counts`: n_k, the samples taken of each technique. One with n_k = 0 has no part in it, whatever its density.
+//! - `technique`: which one's weight is asked for.
+//!
+//! The weights of all techniques sum to one. Where every n_k p_k is 0, so that x cannot have been drawn, each is 0.
+//!
+//! Errors: [`Error::Range`] for a number of techniques outside 1..=16, slices of different lengths, a technique that
+//! does not exist or a negative density; [`Error::NotFinite`] for a density that is NaN.
+
+use super::MAX_TECHNIQUES;
+use crate::Error;
+
+/// The exponent that Veach recommends for [`power`].
+pub const DEFAULT_BETA: f32 = 2.0;
+
+/// The balance heuristic (2.12): `n_j p_j / sum_k n_k p_k`.
+///
+/// Arguments and errors are the same for every heuristic: `pdf` holds each technique's density at the point (infinity
+/// is a delta distribution), `counts` its number of samples; [`Error::Range`] for slices that are not of one length in
+/// 1..=16, a technique that does not exist or a negative density, [`Error::NotFinite`] for a NaN.
+pub fn balance(pdf: &[f32], counts: &[u32], technique: usize) -> Result<f32, Error> {
+    let shares = Shares::new(pdf, counts, technique)?;
+    Ok(shares.weight(|share| share))
+}
+
+/// The power heuristic: `(n_j p_j)^beta / sum_k (n_k p_k)^beta`; [`DEFAULT_BETA`] is 2.
+///
+/// `beta` is positive and finite ([`Error::Range`], [`Error::NotFinite`]): 1 is the balance heuristic, and the limit at
+/// infinity the maximum heuristic. (2.13) prints the exponent outside the sum of its denominator; those weights would
+/// not sum to one, and these are Veach's. Other arguments and errors as for [`balance`].
+pub fn power(pdf: &[f32], counts: &[u32], technique: usize, beta: f32) -> Result<f32, Error> {
+    if !beta.is_finite() {
+        return Err(Error::NotFinite);
+    }
+    if beta <= 0.0 {
+        return Err(Error::Range);
+    }
+    let shares = Shares::new(pdf, counts, technique)?;
+    let raised = |share: f64| match beta {
+        2.0 => share * share,
+        // A share of 0 stays 0 however small beta is.
+        _ if share > 0.0 => libm::pow(share, f64::from(beta)),
+        _ => 0.0,
+    };
+    Ok(shares.weight(raised))
+}
+
+/// The cutoff heuristic: the balance heuristic among the techniques with `n_k p_k >= epsilon max_i n_i p_i`.
+///
+/// `epsilon` is in 0..=1 ([`Error::Range`], [`Error::NotFinite`]): 0 is the balance heuristic, 1 the maximum heuristic
+/// with ties shared. (2.14) prints an absolute threshold on p_k, without the counts. An absolute one has the unit of a
+/// density, so it changes with the scale of the scene, and where no technique reaches it the weights are 0/0; without
+/// counts the weights ignore how often each technique was used. This is Veach's form, which always keeps the best
+/// technique. Other arguments and errors as for [`balance`].
+pub fn cutoff(pdf: &[f32], counts: &[u32], technique: usize, epsilon: f32) -> Result<f32, Error> {
+    if !epsilon.is_finite() {
+        return Err(Error::NotFinite);
+    }
+    if !(0.0..=1.0).contains(&epsilon) {
+        return Err(Error::Range);
+    }
+    let shares = Shares::new(pdf, counts, technique)?;
+    let kept = |share: f64| if share >= f64::from(epsilon) { share } else { 0.0 };
+    Ok(shares.weight(kept))
+}
+
+/// The maximum heuristic: 1 for the technique with the largest `n_k p_k`, the first of them if several tie; else 0.
+///
+/// Arguments and errors as for [`balance`].
+pub fn maximum(pdf: &[f32], counts: &[u32], technique: usize) -> Result<f32, Error> {
+    let shares = Shares::new(pdf, counts, technique)?;
+    let best = shares.all().position(|share| share == 1.0);
+    Ok(if best == Some(technique) { 1.0 } else { 0.0 })
+}
+
+/// n_k p_k of every technique over the largest of them.
+///
+/// The largest is exactly 1 (all are 0 if it is 0), so no later power or sum can overflow or lose everything.
+struct Shares {
+    share: [f64; MAX_TECHNIQUES],
+    techniques: usize,
+    /// That of the technique whose weight is asked for.
+    own: f64,
+}
+
+impl Shares {
+    fn new(pdf: &[f32], counts: &[u32], technique: usize) -> Result<Shares, Error> {
+        let techniques = pdf.len();
+        if !(1..=MAX_TECHNIQUES).contains(&techniques) || counts.len() != techniques || technique >= techniques {
+            return Err(Error::Range);
+        }
+        if pdf.iter().any(|p| p.is_nan()) {
+            return Err(Error::NotFinite);
+        }
+        if pdf.iter().any(|&p| p < 0.0) {
+            return Err(Error::Range);
+        }
+        let delta = pdf.iter().zip(counts).any(|(&p, &n)| n > 0 && p == f32::INFINITY);
+        let mut share = [0.0; MAX_TECHNIQUES];
+        let mut largest = 0.0_f64;
+        for (share, (&p, &n)) in share.iter_mut().zip(pdf.iter().zip(counts)) {
+            let density = match (delta, p == f32::INFINITY) {
+                (true, true) => 1.0,
+                (true, false) => 0.0,
+                // An infinite density comes here only with n = 0: it must not become 0 * infinity.
+                (false, true) => 0.0,
+                (false, false) => f64::from(p),
+            };
+            *share = f64::from(n) * density;
+            largest = largest.max(*share);
+        }
+        if largest > 0.0 {
+            share.iter_mut().take(techniques).for_each(|share| *share /= largest);
+        }
+        let own = share.get(technique).copied().unwrap_or(0.0);
+        Ok(Shares { share, techniques, own })
+    }
+
+    fn all(&self) -> impl Iterator<Item = f64> {
+        self.share.iter().take(self.techniques).copied()
+    }
+
+    /// The part that the technique's own share has of the sum over all, once `f` has been applied to each.
+    fn weight(&self, f: impl Fn(f64) -> f64) -> f32 {
+        let sum: f64 = self.all().map(&f).sum();
+        if sum > 0.0 { (f(self.own) / sum) as f32 } else { 0.0 }
+    }
+}

@@ -1,0 +1,128 @@
+//! Symmetric systems of at most 16 unknowns, two ways.
+
+use super::MAX_TECHNIQUES;
+
+pub(super) type Vector = [f64; MAX_TECHNIQUES];
+pub(super) type Matrix = [Vector; MAX_TECHNIQUES];
+
+/// Something that solves M x = b for any number of right-hand sides; only the first `n` unknowns are used.
+pub(super) enum Factor {
+    Cholesky { lower: Matrix, n: usize },
+    Spectral { vectors: Matrix, inverse: Vector, n: usize },
+}
+
+/// Eigenvalues below this part of the largest are taken for rounding errors of 0.
+const RANK_TOLERANCE: f64 = 1e-12;
+
+impl Factor {
+    /// M = L L', for a positive definite M of which the lower triangle is read.
+    pub(super) fn cholesky(mut lower: Matrix, n: usize) -> Factor {
+        let n = n.min(MAX_TECHNIQUES);
+        for j in 0..n {
+            let pivot = lower[j].iter().take(j).fold(lower[j][j], |sum, &x| sum - x * x);
+            // Never met with the ridge this crate adds; it only keeps nonsense finite.
+            let root = libm::sqrt(pivot.max(f64::MIN_POSITIVE));
+            lower[j][j] = root;
+            for i in j + 1..n {
+                let sum = dot(&lower[i], &lower[j], j);
+                lower[i][j] = (lower[i][j] - sum) / root;
+            }
+        }
+        Factor::Cholesky { lower, n }
+    }
+
+    /// M = V D V' by Jacobi rotations, for any symmetric M given in full. It then solves in the least-squares sense of
+    /// least norm: the pseudo-inverse.
+    pub(super) fn spectral(mut m: Matrix, n: usize) -> Factor {
+        let n = n.min(MAX_TECHNIQUES);
+        let mut vectors = Matrix::default();
+        for (i, row) in vectors.iter_mut().enumerate() {
+            row[i] = 1.0;
+        }
+        // Convergence is quadratic: 16 unknowns need about 8 sweeps.
+        for _ in 0..30 {
+            let mut rotated = false;
+            for p in 0..n {
+                for q in p + 1..n {
+                    rotated |= rotate(&mut m, &mut vectors, p, q, n);
+                }
+            }
+            if !rotated {
+                break;
+            }
+        }
+        let mut values = Vector::default();
+        for (i, (value, row)) in values.iter_mut().zip(&m).enumerate() {
+            *value = row[i];
+        }
+        let largest = values.iter().take(n).fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let inverse = values.map(|value| if value.abs() > RANK_TOLERANCE * largest { 1.0 / value } else { 0.0 });
+        Factor::Spectral { vectors, inverse, n }
+    }
+
+    pub(super) fn solve(&self, b: &Vector) -> Vector {
+        let mut x = Vector::default();
+        match self {
+            Factor::Cholesky { lower, n } => {
+                let n = (*n).min(MAX_TECHNIQUES);
+                // L y = b, then L' x = y with one row of L at a time.
+                for i in 0..n {
+                    x[i] = (b[i] - dot(&lower[i], &x, i)) / lower[i][i];
+                }
+                for i in (0..n).rev().map(|i| i % MAX_TECHNIQUES) {
+                    let solved = x[i] / lower[i][i];
+                    x.iter_mut().zip(&lower[i]).take(i).for_each(|(x, l)| *x -= l * solved);
+                    x[i] = solved;
+                }
+            }
+            Factor::Spectral { vectors, inverse, n } => {
+                for (row, inverse) in vectors.iter().zip(inverse).take(*n) {
+                    let along = dot(row, b, *n) * inverse;
+                    x.iter_mut().zip(row).take(*n).for_each(|(x, v)| *x += along * v);
+                }
+            }
+        }
+        x
+    }
+}
+
+/// The dot product of the first `n` entries.
+fn dot(a: &Vector, b: &Vector, n: usize) -> f64 {
+    a.iter().zip(b).take(n).map(|(a, b)| a * b).sum()
+}
+
+/// One Jacobi rotation that makes m[p][q] zero; the rows of `vectors` turn with it. False if it already was negligible.
+fn rotate(m: &mut Matrix, vectors: &mut Matrix, p: usize, q: usize, n: usize) -> bool {
+    let (p, q) = (p % MAX_TECHNIQUES, q % MAX_TECHNIQUES);
+    let off = m[p][q];
+    let size = libm::sqrt((m[p][p] * m[q][q]).abs());
+    // Relative to the diagonal, so that small eigenvalues keep their digits; the floor ends it where one of them is 0.
+    let floor = f64::EPSILON * f64::EPSILON * (m[p][p].abs() + m[q][q].abs());
+    if off.abs() <= 0.5 * f64::EPSILON * size || off.abs() <= floor {
+        return false;
+    }
+    let theta = (m[q][q] - m[p][p]) / (2.0 * off);
+    let root = theta.abs() + libm::sqrt(1.0 + theta * theta);
+    let t = if theta < 0.0 { -1.0 / root } else { 1.0 / root };
+    let cos = 1.0 / libm::sqrt(1.0 + t * t);
+    let sin = t * cos;
+    m[p][p] -= t * off;
+    m[q][q] += t * off;
+    m[p][q] = 0.0;
+    m[q][p] = 0.0;
+    for k in (0..n).map(|k| k % MAX_TECHNIQUES).filter(|&k| k != p && k != q) {
+        let (along_p, along_q) = (m[k][p], m[k][q]);
+        m[k][p] = cos * along_p - sin * along_q;
+        m[k][q] = sin * along_p + cos * along_q;
+        m[p][k] = m[k][p];
+        m[q][k] = m[k][q];
+    }
+    let (row_p, row_q) = (vectors[p], vectors[q]);
+    for (out, (along_p, along_q)) in vectors[p].iter_mut().zip(row_p.iter().zip(&row_q)) {
+        *out = cos * along_p - sin * along_q;
+    }
+    for (out, (along_p, along_q)) in vectors[q].iter_mut().zip(row_p.iter().zip(&row_q)) {
+        *out = sin * along_p + cos * along_q;
+    }
+    true
+}

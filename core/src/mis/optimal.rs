@@ -1,0 +1,367 @@
+//! The optimal MIS weights, found from the samples: Kondapaneni et al., "Optimal Multiple Importance Sampling", 2019.
+//!
+//! Put (2.15) into (2.10) and the estimate becomes a control variate g = sum_k alpha_k p_k, whose integral sum_k alpha_k
+//! is known, on top of the balance heuristic: with S = sum_k n_k p_k and s over all samples of all techniques,
+//!
+//! `F = sum_k alpha_k + sum_s (f - sum_k alpha_k p_k) / S`.
+//!
+//! Its variance is least where A alpha = b, A = int p p' / S, b = int f p / S. As sum_s h / S estimates int h without
+//! bias, sum_s p p' / S^2 and sum_s f p / S^2 estimate A and b. After R rounds of the n_k samples,
+//!
+//! `F = sum_s f / S / R - (sum_s p / S / R - 1)' alpha`,
+//!
+//! the balance estimate less what the samples got wrong about the densities' integrals, each of which is 1.
+
+use super::linear::{Factor, Matrix, Vector};
+use super::memory::{self, RecordMut, Sums};
+use super::{MAX_TECHNIQUES, len};
+use crate::Error;
+
+/// The relative ridge of [`Solver::default`]: less loses to the balance heuristic where a few samples must tell apart
+/// densities that bring little, more gives away gain where they bring much.
+pub const DEFAULT_RIDGE: f32 = 0.03;
+
+/// The relative ridges that [`Solver::Ridge`] accepts.
+pub const RIDGE_RANGE: core::ops::RangeInclusive<f32> = 1e-8..=1e8;
+
+/// How [`OptimalMis::solve`] turns its sums into an estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Solver {
+    /// alpha = (A + L)^-1 b, with L = ridge tr(N A) / J N^-1, N the diagonal matrix of the counts (equal counts: ridge
+    /// tr(A) / J on the diagonal). A larger ridge shrinks the estimate towards the balance heuristic's. Consistent, not
+    /// unbiased: alpha comes from the samples it is applied to.
+    Ridge(f32),
+    /// alpha = A^-1 b, the pseudo-inverse (of N^1/2 A N^1/2) where A is singular: the limit of a vanishing ridge. The
+    /// estimate is sum_k alpha_k, the direct estimator of Kondapaneni et al. Consistent, not unbiased, and heavy-tailed
+    /// where A is nearly singular: similar techniques, or few samples.
+    Plain,
+    /// Each batch with the alpha of the batches before it, as [`OptimalMis::next_batch`] left it. Unbiased.
+    Progressive,
+    /// The balance heuristic, alpha = 0. Unbiased.
+    Balance,
+}
+
+impl Default for Solver {
+    /// [`Solver::Ridge`] with [`DEFAULT_RIDGE`].
+    fn default() -> Solver {
+        Solver::Ridge(DEFAULT_RIDGE)
+    }
+}
+
+/// Sums from which the integrals of several functions are estimated with optimal MIS weights.
+///
+/// The memory is [`len`]`(techniques, integrals)` values of `f64`, borrowed or owned:
+///
+/// ```
+/// use noisefloor::mis::{self, OptimalMis, Solver};
+///
+/// let mut omis = OptimalMis::new([0.0; mis::len(2, 1)], &[1, 1], 1)?;
+/// omis.add(0, &[1.0, 0.5], &[3.0])?;
+/// omis.add(1, &[1.0, 1.5], &[4.0])?;
+/// let mut estimate = [0.0];
+/// omis.solve(Solver::default(), &mut estimate)?;
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
+///
+/// Add **every** sample, those with f = 0 included: each says something about the densities, and without them no estimate
+/// but the balance heuristic's is unbiased or consistent. The samples should make whole rounds of `counts`, or be drawn
+/// from technique j with probability n_j / sum n; the number of rounds R is taken to be samples / sum n, and a round
+/// interrupted in the middle over- or under-weights the techniques accordingly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OptimalMis<M> {
+    counts: [u32; MAX_TECHNIQUES],
+    techniques: usize,
+    integrals: usize,
+    memory: M,
+}
+
+impl<M: AsRef<[f64]>> OptimalMis<M> {
+    /// Takes up the sums that `memory` already holds, made earlier with the same `counts` and `integrals`.
+    ///
+    /// Errors: as for [`OptimalMis::new`].
+    pub fn resume(memory: M, counts: &[u32], integrals: usize) -> Result<Self, Error> {
+        let needed = len(counts.len(), integrals);
+        if needed == 0 || counts.contains(&0) {
+            return Err(Error::Range);
+        }
+        if memory.as_ref().len() < needed {
+            return Err(Error::Memory);
+        }
+        let mut all = [0; MAX_TECHNIQUES];
+        all.iter_mut().zip(counts).for_each(|(to, &from)| *to = from);
+        Ok(OptimalMis { counts: all, techniques: counts.len(), integrals, memory })
+    }
+
+    /// The number of techniques J.
+    pub fn techniques(&self) -> usize {
+        self.techniques
+    }
+
+    /// The number of integrals P.
+    pub fn integrals(&self) -> usize {
+        self.integrals
+    }
+
+    /// Estimates every integral from all samples so far; `estimate` has one element per integral.
+    ///
+    /// Nothing is changed: the same call gives the same answer, and more samples may follow. An estimate beyond the range
+    /// of `f32` becomes the largest finite one.
+    ///
+    /// Errors: [`Error::Range`] for a wrong length or a ridge outside [`RIDGE_RANGE`]; [`Error::NotFinite`] for a ridge
+    /// that is NaN or infinite; [`Error::NoSamples`].
+    pub fn solve(&self, solver: Solver, estimate: &mut [f32]) -> Result<(), Error> {
+        if estimate.len() != self.integrals {
+            return Err(Error::Range);
+        }
+        let factor = self.factor(solver)?;
+        let (sums, rounds) = self.sums()?;
+        let scale = root_counts(&self.counts);
+        for (out, record) in estimate.iter_mut().zip(memory::records(sums.rest, self.techniques, self.integrals)) {
+            let value = match (&factor, solver) {
+                (Some(factor), _) => {
+                    let alpha = coefficients(factor, &scale, record.moment, rounds);
+                    let error = sums.ratio.iter().zip(&alpha).map(|(ratio, alpha)| (ratio / rounds - 1.0) * alpha);
+                    record.balance / rounds - error.sum::<f64>()
+                }
+                (None, Solver::Progressive) => record.progressive / rounds,
+                (None, _) => record.balance / rounds,
+            };
+            *out = to_f32(value);
+        }
+        Ok(())
+    }
+
+    /// The alpha of (2.15), for [`optimal`](super::optimal) and [`optimal_contribution`](super::optimal_contribution):
+    /// `alpha[p * J + j]` of integral p and technique j.
+    ///
+    /// Used on samples other than the ones it came from, it gives unbiased estimates. [`Solver::Progressive`] stands for
+    /// the alpha that the current batch uses, [`Solver::Balance`] for zeros. Errors as for [`OptimalMis::solve`].
+    pub fn alpha(&self, solver: Solver, alpha: &mut [f32]) -> Result<(), Error> {
+        if self.integrals.checked_mul(self.techniques) != Some(alpha.len()) {
+            return Err(Error::Range);
+        }
+        let factor = self.factor(solver)?;
+        let (sums, rounds) = self.sums()?;
+        let scale = root_counts(&self.counts);
+        let rows = alpha.chunks_exact_mut(self.techniques.clamp(1, MAX_TECHNIQUES));
+        for (row, record) in rows.zip(memory::records(sums.rest, self.techniques, self.integrals)) {
+            match (&factor, solver) {
+                (Some(factor), _) => {
+                    let solved = coefficients(factor, &scale, record.moment, rounds);
+                    row.iter_mut().zip(solved).for_each(|(out, alpha)| *out = to_f32(alpha));
+                }
+                (None, Solver::Progressive) => {
+                    row.iter_mut().zip(record.alpha).for_each(|(out, &alpha)| *out = to_f32(alpha));
+                }
+                (None, _) => row.fill(0.0),
+            }
+        }
+        Ok(())
+    }
+
+    /// The factorised system of a solver that needs one.
+    fn factor(&self, solver: Solver) -> Result<Option<Factor>, Error> {
+        if let Solver::Ridge(ridge) = solver {
+            if !ridge.is_finite() {
+                return Err(Error::NotFinite);
+            }
+            if !RIDGE_RANGE.contains(&ridge) {
+                return Err(Error::Range);
+            }
+        }
+        let (sums, rounds) = self.sums()?;
+        let n = self.techniques;
+        match solver {
+            Solver::Balance | Solver::Progressive => Ok(None),
+            Solver::Plain => Ok(Some(Factor::spectral(self.scaled_matrix(&sums, rounds), n))),
+            Solver::Ridge(ridge) => {
+                let mut matrix = self.scaled_matrix(&sums, rounds);
+                let trace: f64 = matrix.iter().enumerate().map(|(i, row)| row[i]).sum();
+                let diagonal = f64::from(ridge) * trace / n as f64;
+                matrix.iter_mut().enumerate().for_each(|(i, row)| row[i] += diagonal);
+                Ok(Some(Factor::cholesky(matrix, n)))
+            }
+        }
+    }
+
+    /// N^1/2 A N^1/2 per round. Its largest eigenvalue tends to 1, with the counts' square roots as its vector, whatever
+    /// the techniques and counts are: the scale on which a ridge or a rank means the same everywhere.
+    fn scaled_matrix(&self, sums: &Sums<'_>, rounds: f64) -> Matrix {
+        let scale = root_counts(&self.counts);
+        let mut matrix = Matrix::default();
+        let mut cells = sums.matrix.iter();
+        for j in 0..self.techniques.min(MAX_TECHNIQUES) {
+            for (k, &cell) in (0..=j).zip(&mut cells) {
+                let value = scale[j] * scale[k] * (cell / rounds);
+                matrix[j][k] = value;
+                matrix[k][j] = value;
+            }
+        }
+        matrix
+    }
+
+    fn sum_counts(&self) -> f64 {
+        self.counts.iter().map(|&count| f64::from(count)).sum()
+    }
+
+    /// The sums and the number of rounds R, which is positive.
+    fn sums(&self) -> Result<(Sums<'_>, f64), Error> {
+        let sums = memory::sums(self.memory.as_ref(), self.techniques).ok_or(Error::Memory)?;
+        let rounds = *sums.samples / self.sum_counts();
+        if rounds > 0.0 { Ok((sums, rounds)) } else { Err(Error::NoSamples) }
+    }
+}
+
+impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
+    /// Empty sums for techniques that draw `counts[j]` samples each, and `integrals` functions.
+    ///
+    /// Errors: [`Error::Range`] unless there are 1..=16 counts, all at least 1, and at least one integral;
+    /// [`Error::Memory`] for less than [`len`]`(counts.len(), integrals)` elements of memory.
+    pub fn new(memory: M, counts: &[u32], integrals: usize) -> Result<Self, Error> {
+        let mut omis = OptimalMis::resume(memory, counts, integrals)?;
+        omis.reset();
+        Ok(omis)
+    }
+
+    /// Forgets every sample, and the progressive estimator's alpha.
+    pub fn reset(&mut self) {
+        self.memory.as_mut().fill(0.0);
+    }
+
+    /// Adds one sample that `technique` drew: `pdf[j]` of each technique at its point, and the value f of each integrand
+    /// there (not divided by any density).
+    ///
+    /// Errors, which leave the sums as they were: [`Error::Range`] for wrong lengths, a technique that does not exist, a
+    /// negative density, or a density of 0 for the technique that drew the sample; [`Error::NotFinite`] for NaN or
+    /// infinity among the densities (combine delta distributions outside) or values.
+    pub fn add(&mut self, technique: usize, pdf: &[f32], value: &[f32]) -> Result<(), Error> {
+        let techniques = self.techniques;
+        if pdf.len() != techniques || value.len() != self.integrals {
+            return Err(Error::Range);
+        }
+        let Some(&own) = pdf.get(technique) else { return Err(Error::Range) };
+        if !pdf.iter().chain(value).all(|x| x.is_finite()) {
+            return Err(Error::NotFinite);
+        }
+        if own <= 0.0 || pdf.iter().any(|&p| p < 0.0) {
+            return Err(Error::Range);
+        }
+        let sum: f64 = pdf.iter().zip(&self.counts).map(|(&p, &n)| f64::from(p) * f64::from(n)).sum();
+        let mut ratio = Vector::default();
+        ratio.iter_mut().zip(pdf).for_each(|(ratio, &p)| *ratio = f64::from(p) / sum);
+
+        let per_sample = 1.0 / self.sum_counts();
+        let sums = memory::sums_mut(self.memory.as_mut(), techniques).ok_or(Error::Memory)?;
+        *sums.samples += 1.0;
+        sums.ratio.iter_mut().zip(&ratio).for_each(|(sum, ratio)| *sum += ratio);
+        let mut cells = sums.matrix.iter_mut();
+        for (j, row) in ratio.iter().enumerate().take(techniques) {
+            for (column, cell) in ratio.iter().take(j + 1).zip(&mut cells) {
+                *cell += row * column;
+            }
+        }
+        for (&value, record) in value.iter().zip(memory::records_mut(sums.rest, techniques, self.integrals)) {
+            let RecordMut { balance, progressive, moment, alpha } = record;
+            let value = f64::from(value) / sum;
+            *balance += value;
+            // sum alpha, shared out over the round's samples, + (f - sum alpha p) / S.
+            let control: f64 = alpha.iter().zip(&ratio).map(|(alpha, ratio)| alpha * (per_sample - ratio)).sum();
+            *progressive += value + control;
+            moment.iter_mut().zip(&ratio).for_each(|(b, ratio)| *b += value * ratio);
+        }
+        Ok(())
+    }
+
+    /// Ends a batch: the progressive estimator uses the alpha of all samples so far on those that follow.
+    ///
+    /// Before the first call alpha is 0, the balance heuristic. [`Solver::Balance`] returns to that. Call it between whole
+    /// rounds, whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
+    ///
+    /// Errors, which change nothing: [`Error::Unsupported`] for [`Solver::Progressive`]; others as for
+    /// [`OptimalMis::solve`].
+    pub fn next_batch(&mut self, solver: Solver) -> Result<(), Error> {
+        if solver == Solver::Progressive {
+            return Err(Error::Unsupported);
+        }
+        let factor = self.factor(solver)?;
+        let (_, rounds) = self.sums()?;
+        let scale = root_counts(&self.counts);
+        let sums = memory::sums_mut(self.memory.as_mut(), self.techniques).ok_or(Error::Memory)?;
+        for record in memory::records_mut(sums.rest, self.techniques, self.integrals) {
+            let solved = match &factor {
+                Some(factor) => coefficients(factor, &scale, record.moment, rounds),
+                None => Vector::default(),
+            };
+            record.alpha.iter_mut().zip(solved).for_each(|(alpha, solved)| *alpha = solved);
+        }
+        Ok(())
+    }
+
+    /// Multiplies all sums by `beta` in 0..=1, so that older samples count for less: for integrals that drift.
+    ///
+    /// With beta = 0 nothing is left but the progressive estimator's alpha. Errors: [`Error::NotFinite`] for NaN or
+    /// infinity, [`Error::Range`] outside 0..=1.
+    pub fn decay(&mut self, beta: f32) -> Result<(), Error> {
+        if !beta.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        if !(0.0..=1.0).contains(&beta) {
+            return Err(Error::Range);
+        }
+        let beta = f64::from(beta);
+        let sums = memory::sums_mut(self.memory.as_mut(), self.techniques).ok_or(Error::Memory)?;
+        *sums.samples *= beta;
+        sums.ratio.iter_mut().chain(sums.matrix).for_each(|sum| *sum *= beta);
+        for record in memory::records_mut(sums.rest, self.techniques, self.integrals) {
+            *record.balance *= beta;
+            *record.progressive *= beta;
+            record.moment.iter_mut().for_each(|sum| *sum *= beta);
+        }
+        Ok(())
+    }
+
+    /// Adds the samples of `other`, of another thread or pass. The progressive estimator's alpha stays this one's.
+    ///
+    /// Errors: [`Error::Mismatch`] unless both have the same counts and number of integrals.
+    pub fn merge<N: AsRef<[f64]>>(&mut self, other: &OptimalMis<N>) -> Result<(), Error> {
+        let techniques = self.techniques;
+        if techniques != other.techniques || !same(&self.counts, &other.counts) || self.integrals != other.integrals {
+            return Err(Error::Mismatch);
+        }
+        let from = memory::sums(other.memory.as_ref(), techniques).ok_or(Error::Memory)?;
+        let to = memory::sums_mut(self.memory.as_mut(), techniques).ok_or(Error::Memory)?;
+        *to.samples += from.samples;
+        let shared = to.ratio.iter_mut().chain(to.matrix);
+        shared.zip(from.ratio.iter().chain(from.matrix)).for_each(|(to, from)| *to += from);
+        let records = memory::records_mut(to.rest, techniques, self.integrals);
+        for (to, from) in records.zip(memory::records(from.rest, techniques, self.integrals)) {
+            *to.balance += from.balance;
+            *to.progressive += from.progressive;
+            to.moment.iter_mut().zip(from.moment).for_each(|(to, from)| *to += from);
+        }
+        Ok(())
+    }
+}
+
+/// alpha of one integral: N^1/2 M^-1 N^1/2 b, for the factorised M = N^1/2 A N^1/2 and `scale`, the diagonal of N^1/2.
+fn coefficients(factor: &Factor, scale: &Vector, moment: &[f64], rounds: f64) -> Vector {
+    let mut right = Vector::default();
+    right.iter_mut().zip(moment.iter().zip(scale)).for_each(|(out, (b, scale))| *out = scale * (b / rounds));
+    let mut alpha = factor.solve(&right);
+    alpha.iter_mut().zip(scale).for_each(|(alpha, scale)| *alpha *= scale);
+    alpha
+}
+
+/// Equality without `bcmp`, which a freestanding target need not have.
+fn same(a: &[u32; MAX_TECHNIQUES], b: &[u32; MAX_TECHNIQUES]) -> bool {
+    a.iter().zip(b).fold(0, |difference, (a, b)| difference | (a ^ b)) == 0
+}
+
+fn root_counts(counts: &[u32; MAX_TECHNIQUES]) -> Vector {
+    counts.map(|count| libm::sqrt(f64::from(count)))
+}
+
+/// Rounds to f32, a value beyond its range to the largest finite one.
+fn to_f32(value: f64) -> f32 {
+    (value as f32).clamp(f32::MIN, f32::MAX)
+}
