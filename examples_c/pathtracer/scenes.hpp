@@ -129,7 +129,7 @@ inline bool make_scene(const std::string &name, float aspect, Scene &scene)
         builder.walls();
         builder.knot({.42f, .44f, -.3f}, .138f, builder.material({.5f, .33f, .1f}, {.35f, .3f, .2f}, 40));
         builder.sphere({-.62f, .3f, .2f}, .3f, builder.material({.12f, .2f, .42f}, {.4f, .4f, .4f}, 60), {.5f, .12f, .1f});
-        builder.sphere_light({-.1f, 1.6f, .3f}, .2f, {45, 41, 36});
+        builder.sphere_light({-.1f, 1.6f, .3f}, .2f, {26, 24, 21});
     } else if (name == "lights") {
         scene.layout = Layout::lights;
         furnish(builder);
