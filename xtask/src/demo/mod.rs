@@ -129,9 +129,10 @@ fn report(plan: &Plan, table: &str) -> String {
          - sampling ns, estimating ns: time per sample and thread for tracing it and for estimating from it. The time ratio\n  \
            compares the sums of both; an estimator and the plain mean share the sampling time, batch by batch.\n\
          - Same time: the plain mean was rendered again with so many samples (rounded up) as it makes in the estimator's\n  \
-           total time.\n",
+           total time; beyond {limit} times the samples, its relMSE is scaled by 1 / samples instead.\n",
         size = plan.size,
         threads = plan.threads,
         repetitions = plan.repetitions,
+        limit = measure::EQUAL_TIME_LIMIT,
     )
 }

@@ -37,13 +37,10 @@ pub(crate) struct Job<'a> {
 impl Renderer {
     /// Builds the library and the program that links it.
     pub(crate) fn build() -> Result<Self> {
-        let stub = std::env::var_os("NF_STUB").map(PathBuf::from); // STUB
-        let archive = match &stub { Some(p) => p.join("libnoisefloor.a"), None => library::build()? }; // STUB
+        let archive = library::build()?;
         let program = paths::output().join("pathtracer");
         let mut compiler = run::compiler("CXX", "c++");
-        compiler.args(["-O2", "-std=c++17", "-Wall", "-Wextra", "examples_c/pathtracer.cpp"]);
-        if let Some(p) = &stub { compiler.arg(format!("-I{}/include", p.display())); } // STUB
-        compiler.arg("-Iinclude");
+        compiler.args(["-O2", "-std=c++17", "-Wall", "-Wextra", "-Iinclude", "examples_c/pathtracer.cpp"]);
         run::check(compiler.arg(&archive).args(["-pthread", "-o"]).arg(&program))?;
         Ok(Self { program })
     }
@@ -77,7 +74,8 @@ impl Renderer {
                     let part: f64 = part.parse().with_context(|| format!("the path tracer said `{line}`"))?;
                     bar.set_position(start + (part * work as f64) as u64);
                 } else {
-                    timings.push(serde_json::from_str(&line).with_context(|| format!("the path tracer said `{line}`"))?);
+                    timings
+                        .push(serde_json::from_str(&line).with_context(|| format!("the path tracer said `{line}`"))?);
                 }
             }
         }
@@ -87,7 +85,7 @@ impl Renderer {
         }
         let status = child.wait().context("the path tracer was lost")?;
         if !status.success() {
-            bail!("rendering `{}` failed ({status}): {}", job.scene.name, message.trim());
+            bail!("rendering `{}` failed, {status}\n{}", job.scene.name, message.trim());
         }
         bar.set_position(start + work);
         Ok(timings)

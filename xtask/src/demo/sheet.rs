@@ -26,11 +26,8 @@ pub(crate) fn draw(title: &str, rows: &[String], columns: &[Column], reference: 
     let top = GAP + 2 * text::LINE;
     let row_height = 2 * (height + text::LINE) + 2 * GAP;
     let columns_width = (width + GAP) * (columns.len() as u32 + 1);
-    let mut picture = RgbImage::from_pixel(
-        GAP + columns_width,
-        top + row_height * rows.len() as u32 + 2 * text::LINE,
-        BACKGROUND,
-    );
+    let mut picture =
+        RgbImage::from_pixel(GAP + columns_width, top + row_height * rows.len() as u32 + 2 * text::LINE, BACKGROUND);
     text::draw(&mut picture, GAP, GAP / 2, title);
 
     let brightness = exposure(&reference.image);

@@ -81,9 +81,10 @@ pub(crate) fn markdown(rows: &[Row]) -> String {
         format!("| {} |\n", padded.collect::<Vec<_>>().join(" | "))
     };
     let mut text = line(&HEADINGS.map(str::to_owned));
-    let rule = widths.iter().enumerate().map(|(column, &width)| {
-        if WORDS.contains(&column) { "-".repeat(width) } else { "-".repeat(width - 1) + ":" }
-    });
+    let rule = widths
+        .iter()
+        .enumerate()
+        .map(|(column, &width)| if WORDS.contains(&column) { "-".repeat(width) } else { "-".repeat(width - 1) + ":" });
     text += &format!("| {} |\n", rule.collect::<Vec<_>>().join(" | "));
     text.extend(body.iter().map(line));
     text
