@@ -1,5 +1,6 @@
 //! `cargo xtask`: everything the project does beyond `cargo build`.
 
+mod demo;
 mod header;
 mod library;
 mod paths;
@@ -18,6 +19,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Render with every estimator: pictures and a table in target/demo
+    Demo(demo::Options),
     /// Run every test; installs what it needs when it may
     Test(test::Options),
     /// Regenerate include/noisefloor.h
@@ -28,6 +31,7 @@ enum Command {
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
+        Command::Demo(options) => demo::run(&options),
         Command::Test(options) => test::run(&options),
         Command::Header => header::write(),
         Command::Library => library::build().map(|path| println!("{}", path.display())),

@@ -1,0 +1,63 @@
+// Linear RGB images as PFM files: a text header, then rows of floats from the bottom up.
+#pragma once
+
+#include "vector.hpp"
+#include <cstdint>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace demo {
+
+struct Image {
+    uint32_t width, height;
+    std::vector<float> rgb; // rows from the top down
+
+    Image(uint32_t w, uint32_t h) : width(w), height(h), rgb(size_t{3} * w * h) {}
+};
+
+// Files appear under their names when all of them are complete, or not at all.
+class Outputs {
+public:
+    Outputs() = default;
+    Outputs(const Outputs &) = delete;
+    Outputs &operator=(const Outputs &) = delete;
+    ~Outputs()
+    {
+        for (const auto &file : files_)
+            std::remove(file.first.c_str());
+    }
+
+    void add(const std::string &path, const Image &image)
+    {
+        std::string temporary = path + ".partial";
+        FILE *file = std::fopen(temporary.c_str(), "wb");
+        if (!file)
+            throw std::runtime_error("cannot create " + temporary);
+        files_.emplace_back(temporary, path);
+        const uint16_t one = 1;
+        bool little = *reinterpret_cast<const unsigned char *>(&one) == 1; // the sign of the scale tells the byte order
+        bool good = std::fprintf(file, "PF\n%u %u\n%s\n", image.width, image.height, little ? "-1.0" : "1.0") > 0;
+        size_t row = size_t{3} * image.width;
+        for (uint32_t y = image.height; y-- > 0;)
+            good = std::fwrite(image.rgb.data() + y * row, sizeof(float), row, file) == row && good;
+        if (std::fclose(file) != 0 || !good)
+            throw std::runtime_error("cannot write " + temporary);
+    }
+
+    void commit()
+    {
+        while (!files_.empty()) {
+            if (std::rename(files_.back().first.c_str(), files_.back().second.c_str()) != 0)
+                throw std::runtime_error("cannot create " + files_.back().second);
+            files_.pop_back();
+        }
+    }
+
+private:
+    std::vector<std::pair<std::string, std::string>> files_; // temporary, final
+};
+
+} // namespace demo

@@ -1,0 +1,89 @@
+// The command line.
+#pragma once
+
+#include "estimators.hpp"
+#include "scenes.hpp"
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
+
+namespace demo {
+
+struct Options {
+    std::string scene = "direct";
+    uint32_t width = 128, height = 128, spp = 64, order = 2, threads = 1;
+    uint64_t seed = 1;
+    std::vector<std::string> estimators{"mc", "robust"};
+    std::string output = "pathtracer";
+    bool reference = false;
+};
+
+inline void print_usage(FILE *to)
+{
+    std::fputs("usage: pathtracer [--scene NAME] [--width N] [--height N] [--spp N] [--estimators A,B,...] [--order N]\n"
+               "                  [--seed N] [--threads N] [--output PREFIX] [--reference]\n\n"
+               "Renders PREFIX.ESTIMATOR.pfm with each estimator from the same samples and prints one line of JSON for each.\n"
+               "--reference renders PREFIX.reference.pfm instead: the plain mean over a shifted lattice.\n\nscenes:",
+               to);
+    for (const char *name : scene_names)
+        std::fprintf(to, " %s", name);
+    std::fputs("\nestimators:\n", to);
+    for (const EstimatorName &estimator : estimator_names)
+        std::fprintf(to, "  %-17s %s\n", estimator.name, estimator.description);
+}
+
+inline uint64_t parse_number(const std::string &option, const std::string &text, uint64_t low, uint64_t high)
+{
+    bool digits = !text.empty() && text.size() < 20 && text.find_first_not_of("0123456789") == std::string::npos;
+    uint64_t value = digits ? std::strtoull(text.c_str(), nullptr, 10) : 0;
+    if (!digits || value < low || value > high)
+        throw std::runtime_error(option + " takes a number from " + std::to_string(low) + " to " + std::to_string(high) + ", not `" + text + "`");
+    return value;
+}
+
+// Throws on a wrong command line; returns false if only help was asked for.
+inline bool parse(int argc, char **argv, Options &options)
+{
+    options.threads = std::max(1u, std::thread::hardware_concurrency());
+    for (int i = 1; i < argc; ++i) {
+        std::string name = argv[i];
+        if (name == "--help" || name == "-h")
+            return false;
+        if (name == "--reference") {
+            options.reference = true;
+            continue;
+        }
+        if (i + 1 == argc)
+            throw std::runtime_error("`" + name + "` is unknown or lacks its value; --help lists the options");
+        std::string value = argv[++i];
+        auto number = [&](uint64_t low, uint64_t high) { return static_cast<uint32_t>(parse_number(name, value, low, high)); };
+        if (name == "--scene")
+            options.scene = value;
+        else if (name == "--width")
+            options.width = number(1, 8192);
+        else if (name == "--height")
+            options.height = number(1, 8192);
+        else if (name == "--spp")
+            options.spp = number(1, 1 << 20);
+        else if (name == "--order")
+            options.order = number(0, 7);
+        else if (name == "--threads")
+            options.threads = number(1, 256);
+        else if (name == "--seed")
+            options.seed = parse_number(name, value, 0, ~uint64_t{0} >> 1);
+        else if (name == "--output")
+            options.output = value;
+        else if (name == "--estimators") {
+            options.estimators.clear();
+            for (size_t begin = 0; begin <= value.size();) {
+                size_t comma = std::min(value.find(',', begin), value.size());
+                options.estimators.push_back(value.substr(begin, comma - begin));
+                begin = comma + 1;
+            }
+        } else
+            throw std::runtime_error("unknown option `" + name + "`; --help lists them");
+    }
+    return true;
+}
+
+} // namespace demo

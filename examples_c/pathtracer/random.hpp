@@ -1,0 +1,54 @@
+// Sample points of the unit cube, a function of (seed, pixel, sample) alone: the image does not depend on the threads.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace demo {
+
+constexpr uint32_t max_dims = 16;
+
+// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): with a counter as its input, a random access generator.
+inline uint64_t mix(uint64_t z)
+{
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
+
+inline uint64_t pixel_key(uint64_t seed, uint32_t x, uint32_t y)
+{
+    return mix(mix(seed + 0x9e3779b97f4a7c15u) ^ (uint64_t{y} << 32 | x));
+}
+
+// 24 bits, so that every value is exact and below 1.
+inline float unit(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+
+// n independent, uniform points; row after row.
+inline void random_points(uint64_t key, size_t n, uint32_t dims, float *u)
+{
+    size_t values = n * dims;
+    for (size_t i = 0; i < values; i += 2) {
+        uint64_t bits = mix(key + (i / 2 + 1) * 0x9e3779b97f4a7c15u);
+        u[i] = unit(static_cast<uint32_t>(bits));
+        if (i + 1 < values)
+            u[i + 1] = unit(static_cast<uint32_t>(bits >> 32));
+    }
+}
+
+// Richtmyer's lattice: multiples of the square roots of primes, modulo 1, after a random shift. Every point is uniform,
+// so a mean over them is unbiased, and it converges faster than over random points. For references only.
+inline void lattice_points(uint64_t key, size_t n, uint32_t dims, float *u)
+{
+    static const int primes[max_dims] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53};
+    for (uint32_t d = 0; d < dims; ++d) {
+        double root = std::sqrt(static_cast<double>(primes[d]));
+        uint64_t step = static_cast<uint64_t>((root - std::floor(root)) * 0x1p53) << 11;
+        uint64_t value = mix(~key + d);
+        for (size_t i = 0; i < n; ++i, value += step)
+            u[i * dims + d] = unit(static_cast<uint32_t>(value >> 32));
+    }
+}
+
+} // namespace demo

@@ -1,0 +1,96 @@
+//! Linear images: read from PFM, compared, shown as sRGB.
+
+use anyhow::{Context, Result, bail};
+use image::{Rgb, Rgb32FImage, RgbImage};
+use std::fs;
+use std::path::Path;
+
+/// Reads the path tracer's images: little-endian PFM with rows from the bottom up.
+pub(crate) fn read_pfm(path: &Path) -> Result<Rgb32FImage> {
+    let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    parse_pfm(&bytes).with_context(|| format!("{} is not the image that was expected", path.display()))
+}
+
+fn parse_pfm(bytes: &[u8]) -> Result<Rgb32FImage> {
+    let mut rest = bytes;
+    let mut line = || -> Result<String> {
+        let end = rest.iter().position(|&byte| byte == b'\n').context("no header")?;
+        let (text, tail) = rest.split_at(end);
+        rest = &tail[1..];
+        Ok(String::from_utf8_lossy(text).into_owned())
+    };
+    if line()? != "PF" {
+        bail!("not a colour PFM file");
+    }
+    let size = line()?;
+    let (width, height) = size.split_once(' ').context("no size")?;
+    let (width, height): (u32, u32) = (width.parse()?, height.parse()?);
+    let little = line()?.parse::<f32>()? < 0.0;
+    if rest.len() as u64 != u64::from(width) * u64::from(height) * 12 {
+        bail!("{} bytes of data for {width}x{height} pixels", rest.len());
+    }
+    let values: Vec<f32> = rest
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .map(|&bytes| if little { f32::from_le_bytes(bytes) } else { f32::from_be_bytes(bytes) })
+        .collect();
+    if let Some(value) = values.iter().find(|value| !value.is_finite()) {
+        bail!("it contains {value}");
+    }
+    let image = Rgb32FImage::from_raw(width, height, values).context("wrong size")?;
+    Ok(image::imageops::flip_vertical(&image))
+}
+
+/// Rec. 709 luminance.
+pub(crate) fn luminance(pixel: &Rgb<f32>) -> f64 {
+    let [r, g, b] = pixel.0.map(f64::from);
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+/// Brightness at which a scene is shown: the 90th percentile of the reference's luminance becomes 0.7.
+pub(crate) fn exposure(reference: &Rgb32FImage) -> f32 {
+    let mut values: Vec<f64> = reference.pixels().map(luminance).collect();
+    values.sort_by(f64::total_cmp);
+    let bright = values.get(values.len() * 9 / 10).copied().unwrap_or(1.0);
+    if bright > 0.0 { (0.7 / bright) as f32 } else { 1.0 }
+}
+
+/// Exposed, clamped and sRGB-encoded (IEC 61966-2-1).
+pub(crate) fn tone_map(image: &Rgb32FImage, exposure: f32) -> RgbImage {
+    RgbImage::from_fn(image.width(), image.height(), |x, y| {
+        Rgb(image.get_pixel(x, y).0.map(|value| {
+            let linear = (value * exposure).clamp(0.0, 1.0);
+            let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+            (encoded * 255.0).round() as u8
+        }))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pfm_rows_run_from_the_bottom_up() {
+        let mut bytes = b"PF\n1 2\n-1.0\n".to_vec();
+        for value in [1.0_f32, 2.0, 3.0, 4.0, 5.0, 6.0] {
+            bytes.extend(value.to_le_bytes());
+        }
+        let image = parse_pfm(&bytes).expect("a valid file");
+        assert_eq!(image.get_pixel(0, 1).0, [1.0, 2.0, 3.0]);
+        assert_eq!(image.get_pixel(0, 0).0, [4.0, 5.0, 6.0]);
+        bytes.pop();
+        assert!(parse_pfm(&bytes).is_err());
+        assert!(parse_pfm(b"").is_err());
+    }
+
+    #[test]
+    fn a_nan_is_refused() {
+        let mut bytes = b"PF\n1 1\n-1.0\n".to_vec();
+        for value in [1.0_f32, f32::NAN, 3.0] {
+            bytes.extend(value.to_le_bytes());
+        }
+        assert!(parse_pfm(&bytes).is_err());
+    }
+}

@@ -1,0 +1,85 @@
+//! relMSE, equation (2.32) of the thesis, on luminance.
+
+use super::image::luminance;
+use image::{Rgb, Rgb32FImage};
+
+/// What images are compared with.
+///
+/// Two independent renderings A and B rather than one: R = (A + B) / 2 is shown and divides, and the squared error
+/// (I - R)^2 becomes (I - A)(I - B), whose expectation is the squared error to the true image. With one noisy reference
+/// the reference's own error would be added to every estimator's, and would flatter the worse ones.
+pub(crate) struct Reference {
+    pub(crate) image: Rgb32FImage,
+    halves: [Vec<f64>; 2],
+    /// R^2 + epsilon of each pixel; epsilon = 0.01 times the squared mean luminance of the image.
+    denominators: Vec<f64>,
+}
+
+impl Reference {
+    pub(crate) fn new(a: &Rgb32FImage, b: &Rgb32FImage) -> Self {
+        let image = Rgb32FImage::from_fn(a.width(), a.height(), |x, y| {
+            let (a, b) = (a.get_pixel(x, y).0, b.get_pixel(x, y).0);
+            Rgb(std::array::from_fn(|channel| 0.5 * (a[channel] + b[channel])))
+        });
+        let values: Vec<f64> = image.pixels().map(luminance).collect();
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let epsilon = 0.01 * mean * mean;
+        let denominators = values.iter().map(|value| value * value + epsilon).collect();
+        let halves = [a, b].map(|half| half.pixels().map(luminance).collect());
+        Self { image, halves, denominators }
+    }
+
+    /// The mean over all pixels of (I - A)(I - B) / (R^2 + epsilon).
+    pub(crate) fn rel_mse(&self, image: &Rgb32FImage) -> f64 {
+        let [a, b] = &self.halves;
+        let terms = image.pixels().map(luminance).zip(a.iter().zip(b)).zip(&self.denominators);
+        terms.map(|((i, (a, b)), d)| (i - a) * (i - b) / d).sum::<f64>() / self.denominators.len().max(1) as f64
+    }
+
+    /// |I - R| / sqrt(R^2 + epsilon) of each pixel, row after row: its square is the pixel's part of the relMSE.
+    pub(crate) fn error_map(&self, image: &Rgb32FImage) -> Vec<f64> {
+        let pairs = image.pixels().zip(self.image.pixels()).zip(&self.denominators);
+        pairs.map(|((i, r), d)| (luminance(i) - luminance(r)).abs() / d.sqrt()).collect()
+    }
+}
+
+/// The middle value; of an even number of values, the mean of the two in the middle.
+pub(crate) fn median(values: impl IntoIterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.into_iter().collect();
+    values.sort_by(f64::total_cmp);
+    match values.len() {
+        0 => f64::NAN,
+        n if n % 2 == 1 => values[n / 2],
+        n => 0.5 * (values[n / 2 - 1] + values[n / 2]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn flat(value: f32) -> Rgb32FImage {
+        Rgb32FImage::from_pixel(4, 4, Rgb([value; 3]))
+    }
+
+    #[test]
+    fn rel_mse_of_known_images() {
+        let reference = Reference::new(&flat(2.0), &flat(2.0));
+        assert!((reference.rel_mse(&flat(3.0)) - 1.0 / (4.0 + 0.04)).abs() < 1e-6);
+        assert!(reference.rel_mse(&flat(2.0)).abs() < 1e-12);
+        assert!((reference.error_map(&flat(3.0))[5].powi(2) - 1.0 / 4.04).abs() < 1e-6);
+    }
+
+    #[test]
+    fn noise_of_the_reference_cancels() {
+        // (3 - 1)(3 - 3) + (3 - 3)(3 - 1) = 0, while (3 - 2)^2 is not.
+        assert!(Reference::new(&flat(1.0), &flat(3.0)).rel_mse(&flat(3.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn medians() {
+        assert_eq!(median([3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median([4.0, 1.0, 2.0, 3.0]), 2.5);
+        assert!(median([]).is_nan());
+    }
+}
