@@ -120,7 +120,7 @@
 #define NF_COLOR_PER_CHANNEL 0
 
 /*
- Rec. 709 luminance is regressed and scales the plain mean of 3 channels (4.3).
+ Rec. 709 luminance is regressed and scales the plain mean of 3 channels (section 4.3).
  */
 #define NF_COLOR_LUMINANCE_RATIO 1
 
@@ -223,7 +223,7 @@ typedef struct nf_cv_config {
      */
     uint32_t stratified;
     /*
-     If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (4.15).
+     If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (figure 4.15).
      */
     uint32_t slices;
     /*

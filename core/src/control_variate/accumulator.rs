@@ -14,7 +14,7 @@ use super::ridge;
 use super::samples::{Reader, Samples, Subset};
 use super::{gradient_descent, square_root};
 use crate::arena::Arena;
-use crate::basis::{MAX_DIMS, MAX_TERMS};
+use crate::basis::{Basis, MAX_DIMS, MAX_TERMS};
 use crate::error::Error;
 use crate::lanes::Lanes;
 use crate::linalg::{givens, row};
@@ -57,7 +57,7 @@ impl<R: Real> State<R> {
     /// [`Error::Unsupported`] for [`Estimator::LeaveOneOut`], which needs all samples at once, and whatever
     /// [`Config::terms`] finds.
     pub fn new(config: &Config) -> Result<Self, Error> {
-        let columns = config.controls + config.checked_basis()?.columns();
+        let columns = config.controls + config.checked_shape()?.columns();
         let square_root = config.solver == Solver::SquareRoot;
         let supported = match config.estimator {
             Estimator::LeaveOneOut => false,
@@ -184,7 +184,8 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
         let config = self.state.config;
         let reader = Reader::new(&config, samples)?;
         reader.check()?;
-        let basis = config.checked_basis()?;
+        let mut basis = Basis::empty();
+        config.set_basis(config.checked_shape()?, &mut basis)?;
         let mut p = [[R::ONE]; MAX_TERMS];
         let terms = self.state.terms();
         let mut x = [[R::ZERO; 1]; MAX_DIMS];
@@ -331,7 +332,7 @@ impl<R: Real, S: AsRef<[R]>> Accumulator<R, S> {
                 }
                 _ if state.config.solver == Solver::SquareRoot => {
                     let group = self.group(0).ok_or(Error::Memory)?;
-                    let basis = state.config.checked_basis()?;
+                    let basis = self.basis()?;
                     square_root::from_factor(&group, &state.config, &basis, state.terms(), state.channels, &mut arena)?
                         .relative_to(&total)
                 }
@@ -358,6 +359,13 @@ impl<R: Real, S: AsRef<[R]>> Accumulator<R, S> {
         ))
     }
 
+    #[inline(never)]
+    fn basis(&self) -> Result<Basis, Error> {
+        let mut basis = Basis::empty();
+        self.state.config.set_basis(self.state.config.checked_shape()?, &mut basis)?;
+        Ok(basis)
+    }
+
     fn group(&self, fold: usize) -> Option<Moments<'_, R>> {
         let group = self.state.group();
         let sums = self.sums.as_ref().get(fold * group..(fold + 1) * group)?;
@@ -368,7 +376,7 @@ impl<R: Real, S: AsRef<[R]>> Accumulator<R, S> {
         let penalties = arena.take(self.state.columns)?;
         ridge::penalties(
             &self.state.config,
-            &self.state.config.checked_basis()?,
+            &self.basis()?,
             |j| row(gram, j + 1).last().copied().unwrap_or(R::ZERO) / count,
             penalties,
         );
@@ -417,13 +425,7 @@ impl<R: Real, S: AsRef<[R]>> Accumulator<R, S> {
         for value in coefficients.iter_mut() {
             *value = R::ZERO;
         }
-        gradient_descent::descend(
-            &centred,
-            &self.state.config,
-            &self.state.config.checked_basis()?,
-            coefficients,
-            arena,
-        )?;
+        gradient_descent::descend(&centred, &self.state.config, &self.basis()?, coefficients, arena)?;
         Ok(in_sample(&centred, coefficients, total))
     }
 }

@@ -23,8 +23,7 @@ const MAX_DUAL: usize = 4096;
 /// be large enough.
 #[inline]
 pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error> {
-    let basis = config.checked_basis()?;
-    let plan = Plan::new(config, &basis, n)?;
+    let plan = Plan::new(config, config.checked_shape()?.columns(), n)?;
     let design = Design::<R>::size(n, plan.columns, config.channels).ok_or(Error::Memory)?;
     let solve = match config.estimator {
         Estimator::GradientDescent => gradient_descent::size(plan.columns, config.channels),
@@ -50,8 +49,8 @@ pub(crate) struct Plan {
 
 impl Plan {
     #[inline(always)]
-    pub(crate) fn new(config: &Config, basis: &Basis, n: usize) -> Result<Self, Error> {
-        let columns = config.controls + basis.columns();
+    pub(crate) fn new(config: &Config, functions: usize, n: usize) -> Result<Self, Error> {
+        let columns = config.controls + functions;
         let dual = match config.solver {
             // Control functions are all but free of penalty, which the dual divides by.
             Solver::Auto => n <= columns && config.controls == 0,
@@ -82,9 +81,10 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
     if config.estimator == Estimator::Incremental {
         return incremental(config, samples, workspace);
     }
-    let basis = config.checked_basis()?;
+    let mut basis = Basis::empty();
+    config.set_basis(config.checked_shape()?, &mut basis)?;
     let reader = Reader::new(config, samples)?;
-    let plan = Plan::new(config, &basis, reader.len())?;
+    let plan = Plan::new(config, basis.columns(), reader.len())?;
     reader.check()?;
     let mut arena = Arena::new(workspace);
     let is_plain = plan.columns == 0 || (config.stratified && config.estimator == Estimator::Robust);

@@ -52,7 +52,7 @@ pub(crate) fn estimate<R: Real>(
             *value = R::ZERO;
         }
         if let Some(train) = train.filter(|train| train.n > 1) {
-            let plan = Plan::new(config, basis, train.n)?;
+            let plan = Plan::new(config, basis.columns(), train.n)?;
             let fitter = Fitter::new(&train, config, basis, plan.dual, &mut arena)?;
             let rule = if config.ridge == Ridge::Default { Rule::Robust } else { Rule::Single(config.ridge) };
             fitter.solve(rule, Some(coefficients), &mut arena)?;
@@ -61,7 +61,7 @@ pub(crate) fn estimate<R: Real>(
                 rows_mut(coefficients, whole.columns).zip(train.units.iter().zip(&whole.units))
             {
                 for value in coefficients {
-                    *value = to.from_other(*value, from);
+                    *value = to.converted(*value, from);
                 }
             }
         }
