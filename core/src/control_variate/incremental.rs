@@ -107,12 +107,15 @@ pub(crate) fn refit<R: Real>(
     };
     let mut solve = || {
         let sums = Moments::new(sums, columns + 1, channels)?;
-        let mut basis = Basis::empty();
-        config.set_basis(config.checked_shape().ok()?, &mut basis).ok()?;
         let mut arena = Arena::new(rest);
         let coefficients = arena.take(FITS * columns * channels).ok()?;
         let penalties = arena.take(columns).ok()?;
-        ridge::penalties(config, &basis, |j| sums.column_square(j) / sums.count(), penalties);
+        if progress.next_fit == 0 || config.controls > 0 {
+            // They stay in the buffer: only those of control functions depend on the samples.
+            let mut basis = Basis::empty();
+            config.set_basis(config.checked_shape().ok()?, &mut basis).ok()?;
+            ridge::penalties(config, &basis, |j| sums.column_square(j) / sums.count(), penalties);
+        }
         let centred = Centred::new(&sums, columns, channels, &mut arena).ok()??;
         let fits = rows_mut(coefficients, columns * channels).zip(strengths).zip(&mut progress.intercepts);
         for ((coefficients, strength), intercepts) in fits {
