@@ -59,9 +59,9 @@ pub(crate) fn estimate<R: Real>(
             let fitter = Fitter::new(&train, config, basis, plan.dual, &mut arena)?;
             let rule = if config.ridge == Ridge::Default { Rule::Robust } else { Rule::Single(config.ridge) };
             fitter.solve(rule, Some(coefficients), &mut arena)?;
-            // Coefficients came in the training set's units.
+            // Coefficients came in the training set's units and meet the held-out values in theirs.
             for (coefficients, (from, to)) in
-                rows_mut(coefficients, whole.columns).zip(train.units.iter().zip(&whole.units))
+                rows_mut(coefficients, whole.columns).zip(train.units.iter().zip(&held_out.units))
             {
                 for value in coefficients {
                     *value = to.converted(*value, from);
