@@ -1,12 +1,12 @@
 //! Estimates from samples in caller arrays.
 
-use super::accumulator::{Accumulator, State};
 use super::config::{Config, Estimate, Estimator, Solver};
 use super::design::Design;
 use super::fitter::{self, Fitter, Rule};
 use super::per_channel::PerChannel;
 use super::result::{self, Outcome};
 use super::samples::{Reader, Samples, Subset};
+use super::state::State;
 use super::{gradient_descent, k_fold, square_root};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -82,7 +82,7 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
         return incremental(config, samples, workspace);
     }
     let mut basis = Basis::empty();
-    config.set_basis(config.checked_shape()?, &mut basis)?;
+    basis.set(config.basis, config.checked_shape()?)?;
     let reader = Reader::new(config, samples)?;
     let plan = Plan::new(config, basis.columns(), reader.len())?;
     reader.check()?;
@@ -110,11 +110,11 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
 
 /// (4.30) is about a stream: the batch form streams.
 fn incremental<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
-    let state = State::<R>::new(config)?;
+    let mut state = State::<R>::new(config)?;
     let (sums, scratch) = workspace.split_at_mut_checked(state.len()).ok_or(Error::Memory)?;
-    let mut accumulator = Accumulator::new(config, sums)?;
-    accumulator.add(samples)?;
-    accumulator.estimate(scratch)
+    state.reset(sums)?;
+    state.add(sums, samples)?;
+    state.estimate(sums, scratch)
 }
 
 /// The estimators that fit all samples at once through the normal equations or their dual.

@@ -57,7 +57,7 @@ pub fn estimate_block<R: Real>(
     mut out: impl FnMut(usize, Estimate),
 ) -> Result<(), Error> {
     let mut basis = Basis::empty();
-    config.set_basis(config.checked_shape()?, &mut basis)?;
+    basis.set(config.basis, config.checked_shape()?)?;
     if config.color != super::Color::PerChannel || config.non_finite != super::NonFinite::Error {
         return Err(Error::Unsupported);
     }

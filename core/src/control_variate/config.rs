@@ -1,6 +1,6 @@
 //! What an estimate is made with.
 
-use crate::basis::{Basis, Family, MAX_TERMS, Shape};
+use crate::basis::{Family, MAX_TERMS, Shape};
 use crate::error::Error;
 
 /// How samples become an estimate (chapter 4).
@@ -190,12 +190,6 @@ impl Config {
             return Err(Error::Range);
         }
         Ok(shape)
-    }
-
-    /// Sets the basis of a configuration whose shape was checked.
-    #[inline(always)]
-    pub(crate) fn set_basis(&self, shape: Shape, basis: &mut Basis) -> Result<(), Error> {
-        basis.set(self.basis, shape)
     }
 
     /// Numbers from one sample's coordinates to the next.

@@ -62,7 +62,7 @@ pub fn estimate_from<R: Real>(
     workspace: &mut [R],
 ) -> Result<Estimate, Error> {
     let mut basis = Basis::empty();
-    config.set_basis(config.checked_shape()?, &mut basis)?;
+    basis.set(config.basis, config.checked_shape()?)?;
     let reader = Reader::new(config, samples)?;
     let columns = Plan::new(config, basis.columns(), reader.len())?.columns;
     if coefficients.len() != columns * reader.channels() {

@@ -113,7 +113,7 @@ pub(crate) fn refit<R: Real>(
         if progress.next_fit == 0 || config.controls > 0 {
             // They stay in the buffer: only those of control functions depend on the samples.
             let mut basis = Basis::empty();
-            config.set_basis(config.checked_shape().ok()?, &mut basis).ok()?;
+            basis.set(config.basis, config.checked_shape().ok()?).ok()?;
             ridge::penalties(config, &basis, |j| sums.column_square(j) / sums.count(), penalties);
         }
         let centred = Centred::new(&sums, columns, channels, &mut arena).ok()??;
