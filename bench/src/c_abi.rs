@@ -81,8 +81,12 @@ mod linked {
             out: *mut Estimate,
         ) -> i32;
         fn nf_cv_accumulator_size(config: *const Config) -> usize;
-        fn nf_cv_accumulator_init(memory: *mut c_void, bytes: usize, config: *const Config, out: *mut *mut c_void)
-        -> i32;
+        fn nf_cv_accumulator_init(
+            memory: *mut c_void,
+            bytes: usize,
+            config: *const Config,
+            out: *mut *mut c_void,
+        ) -> i32;
         fn nf_cv_accumulator_add(accumulator: *mut c_void, u: *const f32, f: *const f32, n: usize) -> i32;
         fn nf_cv_accumulator_merge(accumulator: *mut c_void, other: *const c_void) -> i32;
         fn nf_cv_accumulator_workspace_size(config: *const Config) -> usize;
@@ -152,8 +156,7 @@ mod linked {
         /// An empty accumulator.
         pub fn new(config: Config) -> Self {
             // SAFETY: a valid configuration is all that is read.
-            let (size, work) =
-                unsafe { (nf_cv_accumulator_size(&config), nf_cv_accumulator_workspace_size(&config)) };
+            let (size, work) = unsafe { (nf_cv_accumulator_size(&config), nf_cv_accumulator_workspace_size(&config)) };
             let mut this = Self { dims: config.dims as usize, memory: memory(size), workspace: memory(work) };
             let mut out = std::ptr::null_mut();
             let bytes = this.memory.len() * 8;
@@ -167,17 +170,13 @@ mod linked {
         pub fn add(&mut self, u: &[f32], f: &[f32]) {
             assert!(u.len() >= f.len() * self.dims);
             // SAFETY: the arrays are as long as was just checked; `new` made the object.
-            check(unsafe {
-                nf_cv_accumulator_add(self.memory.as_mut_ptr().cast(), u.as_ptr(), f.as_ptr(), f.len())
-            });
+            check(unsafe { nf_cv_accumulator_add(self.memory.as_mut_ptr().cast(), u.as_ptr(), f.as_ptr(), f.len()) });
         }
 
         /// Adds another accumulator's samples.
         pub fn merge(&mut self, other: &Self) {
             // SAFETY: `new` made both objects.
-            check(unsafe {
-                nf_cv_accumulator_merge(self.memory.as_mut_ptr().cast(), other.memory.as_ptr().cast())
-            });
+            check(unsafe { nf_cv_accumulator_merge(self.memory.as_mut_ptr().cast(), other.memory.as_ptr().cast()) });
         }
 
         /// The estimate so far.
