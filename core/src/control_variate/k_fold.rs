@@ -1,7 +1,7 @@
 //! Cross-fit: each fold is corrected by a fit to the other folds, so that no sample shapes its own correction.
 
 use super::batch::Plan;
-use super::config::{Config, Ridge};
+use super::config::{Config, Ridge, Solver};
 use super::design::Design;
 use super::fitter::{self, Fitter, Rule};
 use super::per_channel::{PerChannel, add, get, set};
@@ -19,9 +19,12 @@ pub(crate) fn size<R: Real>(config: &Config, columns: usize, n: usize) -> Option
     // The largest training set leaves out the smallest fold, and the held-out fold is no larger than that.
     let train = n - n.checked_div(config.fold_count()).unwrap_or(0);
     let channels = config.channels;
-    let dual = config.solver == super::config::Solver::Dual || train <= columns;
     let designs = Design::<R>::size(train, columns, channels)?.checked_mul(2)?;
-    fitter::size(train, dual, columns, channels)?.checked_add(designs)?.checked_add(columns * channels)
+    let primal = fitter::size(train, false, columns, channels)?;
+    // Training sets differ in size, and skipped samples make them smaller: some may be short where the largest is not.
+    let short = if config.solver == Solver::Dual { train } else { train.min(columns) };
+    let dual = fitter::size(short, true, columns, channels)?;
+    primal.max(dual).checked_add(designs)?.checked_add(columns * channels)
 }
 
 /// The estimate over `config.folds` folds, sample i in fold i mod folds. `whole` holds all samples.
