@@ -35,6 +35,10 @@ pub(crate) fn size(columns: usize, channels: usize) -> usize {
     columns * (channels + 4)
 }
 
+/// Curvatures and gradients below this, in units of the functions' and the values' variance, are taken for rounding noise of
+/// samples that all but coincide, for `f64` and for narrower types: a step of one over the curvature would go anywhere.
+const FLOOR: [f64; 2] = [1e-6, 1e-2];
+
 /// A least-squares problem whose intercept was eliminated.
 pub(crate) trait Objective<R> {
     /// Half the negative gradient of the mean squared residual, P'(f - P b) / n; without a channel, P'P b / n.
@@ -163,7 +167,7 @@ struct Descent<R> {
     optimizer: Optimizer,
     rate: R,
     momentum: R,
-    /// Keeps Adam's quotient finite where the gradient is zero.
+    /// Keeps Adam's quotient small where the gradient is noise, and finite where it is zero.
     smallest: R,
 }
 
@@ -182,7 +186,7 @@ impl<R: Real> Descent<R> {
             Optimizer::Momentum => R::from_f64(MOMENTUM),
             Optimizer::Adam => R::from_f64(ADAM_DECAY[0]),
         };
-        Self { optimizer: config.optimizer, rate, momentum, smallest: R::EPSILON * deviation }
+        Self { optimizer: config.optimizer, rate, momentum, smallest: floor::<R>() * deviation }
     }
 
     /// One step along the negative gradient; `bias` holds the powers of Adam's decays so far.
@@ -270,6 +274,10 @@ impl<R: Real> Objective<R> for Centred<'_, R> {
     }
 }
 
+fn floor<R: Real>() -> R {
+    R::from_f64(FLOOR[usize::from(R::NARROW)])
+}
+
 /// Nearly the largest eigenvalue of S P'P S / n for the column scales S, by power iteration; momentum forgives a third.
 fn largest_curvature<R: Real>(
     objective: &impl Objective<R>,
@@ -301,7 +309,7 @@ fn largest_curvature<R: Real>(
             *out = value / after;
         }
     }
-    if largest > R::ZERO { largest } else { R::ONE }
+    largest.max(floor())
 }
 
 /// The sum of squared residuals of a fit.

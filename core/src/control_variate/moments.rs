@@ -10,6 +10,10 @@ use crate::linalg::{ldlt, packed_len, row, row_mut};
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 
+/// A column whose sum of squares about its mean is below this fraction of that about zero, in units of the type's
+/// epsilon, is constant.
+const NOISE: f64 = 64.0;
+
 /// How many numbers the sums of `terms` terms (constant included) and `channels` values take.
 pub(crate) const fn len(terms: usize, channels: usize) -> usize {
     packed_len(terms) + terms * channels + channels
@@ -212,6 +216,24 @@ impl<'a, R: Real> Centred<'a, R> {
             for (j, out) in rows_mut(rhs, columns).nth(channel).into_iter().flatten().enumerate() {
                 let value = sums.rhs.get((j + 1) * channels + channel).copied().unwrap_or(R::ZERO);
                 *out = value - sums.column_total(j) * mean;
+            }
+        }
+        for j in 0..columns {
+            let left = row(gram, j).last().copied().unwrap_or(R::ZERO);
+            if left > R::from_f64(NOISE) * R::EPSILON * sums.column_square(j) {
+                continue;
+            }
+            // What is left of a column that hardly moves is rounding noise, and says nothing about the values.
+            for value in row_mut(gram, j) {
+                *value = R::ZERO;
+            }
+            for k in j + 1..columns {
+                if let Some(value) = row_mut(gram, k).get_mut(j) {
+                    *value = R::ZERO;
+                }
+            }
+            for value in rows_mut(rhs, columns).filter_map(|row| row.get_mut(j)) {
+                *value = R::ZERO;
             }
         }
         Ok(Some(Self { columns, count, gram, rhs, means, value_means, squares }))

@@ -55,16 +55,21 @@ impl<R: Real> Summary<R> {
 }
 
 /// Puts an estimate together; for a luminance ratio, the colours too.
+///
+/// A correction that left the type's range, as control functions of extreme size can make it, is none: the plain mean.
 pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estimate {
     let mut mean = [0.0f64; Config::MAX_CHANNELS];
     let mut error = [0.0f64; Config::MAX_CHANNELS];
     let (mut gain, mut counted) = (0.0, 0.0);
     for (channel, unit) in summary.units.iter().enumerate().take(summary.channels) {
         if let (Some(mean), Some(error)) = (mean.get_mut(channel), error.get_mut(channel)) {
-            *mean = unit.value(get(&outcome.correction, channel));
+            let correction = get(&outcome.correction, channel);
+            let is_usable = correction.is_finite();
+            *mean = unit.value(if is_usable { correction } else { R::ZERO });
             *error = f64::INFINITY;
             if let (Some(variance), Some(plain)) = (&outcome.variance, &summary.plain_variance) {
-                let (variance, plain) = (get(variance, channel).max(R::ZERO), get(plain, channel));
+                let plain = get(plain, channel);
+                let variance = if is_usable { get(variance, channel).max(R::ZERO) } else { plain };
                 *error = unit.length(variance.sqrt());
                 if plain > R::ZERO {
                     gain += (variance / plain).to_f64();

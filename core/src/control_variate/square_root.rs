@@ -11,12 +11,15 @@ use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::LANES;
-use crate::linalg::{givens, packed_len};
+use crate::linalg::{givens, packed_len, row, row_mut};
 use crate::real::Real;
 
 /// Strength of the penalty that makes the solution unique: its square root, which is what rows see, is the type's
 /// rounding noise. For `f64` and for narrower types.
 const FLOOR: [f64; 2] = [1e-24, 1e-12];
+
+/// An entry below this fraction of its column, in units of the type's epsilon, is rounding noise.
+const NOISE: f64 = 64.0;
 
 /// Numbers that [`least_squares`] takes from its arena.
 pub(crate) fn size(columns: usize, channels: usize) -> usize {
@@ -57,7 +60,13 @@ pub(crate) fn least_squares<R: Real>(
     basis.penalties(penalties.get_mut(config.controls..).unwrap_or(&mut []));
     let strength = strength::<R>(config.ridge)? * R::from_usize(design.n);
     let mut triangle = Triangle { factor, rhs, channels };
-    triangle.add_penalty(penalties, strength, x);
+    // A column that hardly moves is noise as a whole: its size is that before centring.
+    let n = R::from_usize(design.n);
+    triangle.column_squares(solution);
+    for (square, &mean) in solution.iter_mut().zip(design.column_means.iter()) {
+        *square += n * mean * mean;
+    }
+    triangle.add_penalty(penalties, strength, solution, x);
     let mut correction = PerChannel::default();
     for channel in 0..channels {
         givens::solve(triangle.factor, triangle.rhs, channels, channel, solution);
@@ -90,7 +99,8 @@ pub(crate) fn from_factor<R: Real>(
     let first = sums.gram.first().copied().unwrap_or(R::ZERO);
     let count = first * first;
     let mut triangle = Triangle { factor, rhs, channels };
-    triangle.add_penalty(penalties, strength::<R>(config.ridge)? * count, x);
+    triangle.column_squares(solution);
+    triangle.add_penalty(penalties, strength::<R>(config.ridge)? * count, solution, x);
     let mut correction = PerChannel::default();
     for channel in 0..channels {
         givens::solve(triangle.factor, triangle.rhs, channels, channel, solution);
@@ -122,9 +132,30 @@ struct Triangle<'a, R> {
 }
 
 impl<R: Real> Triangle<'_, R> {
+    /// The squared length of each column.
+    fn column_squares(&self, out: &mut [R]) {
+        for (k, out) in out.iter_mut().enumerate() {
+            *out = row(self.factor, k).iter().fold(R::ZERO, |sum, &r| sum + r * r);
+        }
+    }
+
     /// Adds a row sqrt(strength penalty_j) e_j for each column with a penalty; `x` is scratch.
-    fn add_penalty(&mut self, penalties: &[R], strength: R, x: &mut [R]) {
-        for (j, &penalty) in penalties.iter().enumerate().filter(|(_, penalty)| **penalty > R::ZERO) {
+    ///
+    /// Where columns depend on each other, a row of the factor is rounding noise with a right-hand side that is not: the
+    /// quotient would be anything. What is noise in a column of the squared length given is therefore zero.
+    fn add_penalty(&mut self, penalties: &[R], strength: R, squares: &[R], x: &mut [R]) {
+        let noise = R::from_f64(NOISE) * R::EPSILON;
+        for (j, &penalty) in penalties.iter().enumerate() {
+            for (k, &square) in squares.iter().enumerate().skip(j) {
+                if let Some(r) = row_mut(self.factor, k).get_mut(j)
+                    && *r * *r <= noise * noise * square
+                {
+                    *r = R::ZERO;
+                }
+            }
+            if !(penalty > R::ZERO) {
+                continue;
+            }
             for (k, x) in x.iter_mut().enumerate() {
                 *x = if k == j { (strength * penalty).sqrt() } else { R::ZERO };
             }
