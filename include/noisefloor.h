@@ -23,441 +23,189 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/*
- Estimator: a soft mixture of the plain mean and ridge fits, weighted by their leave-one-out errors (streaming:
- held-out errors). The default; never noticeably worse than the mean. Slightly biased at low sample counts.
- */
-#define NF_CV_ROBUST 0
+#ifdef __cplusplus
+extern "C" {
+#endif
 
-/*
- Estimator: least squares on its own samples (Alg. 1). The cheapest; bias O(1/n); needs several samples per term.
- */
-#define NF_CV_LEAST_SQUARES 1
+/* Version and status */
 
-/*
- Estimator: one ridge fit, each sample corrected by the fit to all others. Exactly unbiased. Not for streaming.
- */
-#define NF_CV_LEAVE_ONE_OUT 2
-
-/*
- Estimator: each fold corrected by a robust fit to the other folds (two folds: 4.2.6). Exactly unbiased.
- */
-#define NF_CV_K_FOLD 3
-
-/*
- Estimator: the fit by gradient descent on its own samples (Alg. 2). Biased as least squares is.
- */
-#define NF_CV_GRADIENT_DESCENT 4
-
-/*
- Estimator: each sample corrected by a fit to those before it (4.30). Exactly unbiased after every sample.
- */
-#define NF_CV_INCREMENTAL 5
-
-/*
- Basis: products of orthonormal shifted Legendre polynomials. The default.
- */
-#define NF_BASIS_LEGENDRE 0
-
-/*
- Basis: products of Walsh functions, constant on the cells of a grid of eighths.
- */
-#define NF_BASIS_STEP 1
-
-/*
- Basis: products of half-waves sin(pi d x + pi/2).
- */
-#define NF_BASIS_SINE 2
-
-/*
- Basis: isotropic Gaussians, as many as Legendre has terms.
- */
-#define NF_BASIS_GAUSSIAN 3
-
-/*
- Solver: dual for fewer samples than terms, else normal equations. The default.
- */
-#define NF_SOLVER_AUTO 0
-
-/*
- Solver: normal equations (4.27) and LDL'.
- */
-#define NF_SOLVER_NORMAL_EQUATIONS 1
-
-/*
- Solver: Givens rotations, for badly placed samples. Only with NF_CV_LEAST_SQUARES.
- */
-#define NF_SOLVER_SQUARE_ROOT 2
-
-/*
- Solver: the n x n system of at most 4096 samples. Not for streaming.
- */
-#define NF_SOLVER_DUAL 3
-
-/*
- Precision: double. The default.
- */
-#define NF_PRECISION_F64 0
-
-/*
- Precision: float, for targets without double hardware.
- */
-#define NF_PRECISION_F32 1
-
-/*
- A NaN or infinite sample is NF_ERR_NOT_FINITE. The default.
- */
-#define NF_NONFINITE_ERROR 0
-
-/*
- A NaN or infinite sample is left out and not counted; biased unless such samples would have been average ones.
- */
-#define NF_NONFINITE_SKIP 1
-
-/*
- Each channel is regressed on its own, with one factorisation. The default.
- */
-#define NF_COLOR_PER_CHANNEL 0
-
-/*
- Rec. 709 luminance is regressed and scales the plain mean of 3 channels (4.3).
- */
-#define NF_COLOR_LUMINANCE_RATIO 1
-
-/*
- Gradient descent with heavy-ball momentum. The default.
- */
-#define NF_OPTIMIZER_MOMENTUM 0
-
-/*
- Gradient descent by Adam.
- */
-#define NF_OPTIMIZER_ADAM 1
-
-/*
- Plain gradient descent (4.29).
- */
-#define NF_OPTIMIZER_PLAIN 2
-
-/*
- For `ridge`: of a few strengths the one with the smallest leave-one-out error.
- */
-#define NF_RIDGE_AUTO -1.0
-
-/*
- The most techniques that multiple importance sampling combines.
- */
-#define NF_MIS_MAX_TECHNIQUES 16
-
-/*
- nf_omis solver: alpha = (A + ridge)^-1 b, which shrinks to the balance heuristic where the samples say little. The
- default. Consistent, not unbiased: alpha comes from the samples it is applied to.
- */
-#define NF_OMIS_RIDGE 0
-
-/*
- nf_omis solver: alpha = A^-1 b (the pseudo-inverse where A is singular), the direct estimator sum_k alpha_k of
- Kondapaneni et al. Consistent, not unbiased, and heavy-tailed with similar techniques or few samples.
- */
-#define NF_OMIS_PLAIN 1
-
-/*
- nf_omis solver: each batch with the alpha of the batches before it (nf_omis_next_batch). Unbiased.
- */
-#define NF_OMIS_PROGRESSIVE 2
-
-/*
- nf_omis solver: alpha = 0, the balance heuristic. Unbiased.
- */
-#define NF_OMIS_BALANCE 3
-
-/*
- The version of this header. `nf_abi_version()` returns the library's.
- */
+// The version of this header. `nf_abi_version()` returns the library's.
 #define NF_ABI_VERSION 1
 
-/*
- A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls.
- */
-typedef struct nf_cv_accumulator nf_cv_accumulator;
+// The ABI version the library was built with; it must equal `NF_ABI_VERSION`.
+uint32_t nf_abi_version(void);
 
-/*
- Optimal multiple importance sampling (Kondapaneni et al. 2019; 2.15): sums over samples of J techniques, from which P
- integrals are estimated with weights of least variance.
+// 0 is success, a negative value an error; `nf_status_message` explains it.
+typedef int32_t nf_status;
 
- With S = sum_k n_k p_k and s over all samples, it keeps A = sum_s p p' / S^2 and b = sum_s f p / S^2 and a few sums more.
- After R rounds of n_k samples each, an integral is sum_s f / S / R - (sum_s p / S / R - 1)' alpha with alpha
- from A alpha = b: the balance estimate, less what the samples got wrong about the densities' integrals.
+// Success.
+#define NF_OK 0
 
- Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use; nothing to destroy.
- */
-typedef struct nf_omis nf_omis;
+// A required pointer is NULL.
+#define NF_ERR_NULL (-1)
+// An argument is outside its documented range.
+#define NF_ERR_RANGE (-2)
+// An input value is NaN or infinite.
+#define NF_ERR_NOT_FINITE (-3)
+// Caller-supplied memory is too small.
+#define NF_ERR_MEMORY (-4)
+// Caller-supplied memory is not aligned as its type needs.
+#define NF_ERR_ALIGNMENT (-5)
+// There is nothing to estimate from.
+#define NF_ERR_NO_SAMPLES (-6)
+// The options exist, but not in this combination.
+#define NF_ERR_UNSUPPORTED (-7)
+// The memory holds no initialised object.
+#define NF_ERR_STATE (-8)
+// Two objects were made with different configurations.
+#define NF_ERR_MISMATCH (-9)
 
-/*
- How to estimate. Zero in any field but dims and channels is its default.
- */
+// A static, NUL-terminated sentence for a status; never NULL, also for values that are no status.
+const char *nf_status_message(nf_status status);
+
+/* Control variates: samples of one integral, or of a pixel, made into an estimate of lower error */
+
+// Estimator: a soft mixture of the plain mean and ridge fits, weighted by their leave-one-out errors (streaming:
+// held-out errors). The default; never noticeably worse than the mean. Slightly biased at low sample counts.
+#define NF_CV_ROBUST 0
+// Estimator: least squares on its own samples (Alg. 1). The cheapest; bias O(1/n); needs several samples per term.
+#define NF_CV_LEAST_SQUARES 1
+// Estimator: one ridge fit, each sample corrected by the fit to all others. Exactly unbiased. Not for streaming.
+#define NF_CV_LEAVE_ONE_OUT 2
+// Estimator: each fold corrected by a robust fit to the other folds (two folds: 4.2.6). Exactly unbiased.
+#define NF_CV_K_FOLD 3
+// Estimator: the fit by gradient descent on its own samples (Alg. 2). Biased as least squares is.
+#define NF_CV_GRADIENT_DESCENT 4
+// Estimator: each sample corrected by a fit to those before it (4.30). Exactly unbiased after every sample.
+#define NF_CV_INCREMENTAL 5
+
+// Basis: products of orthonormal shifted Legendre polynomials. The default.
+#define NF_BASIS_LEGENDRE 0
+// Basis: products of Walsh functions, constant on the cells of a grid of eighths.
+#define NF_BASIS_STEP 1
+// Basis: products of half-waves sin(pi d x + pi/2).
+#define NF_BASIS_SINE 2
+// Basis: isotropic Gaussians, as many as Legendre has terms.
+#define NF_BASIS_GAUSSIAN 3
+
+// Solver: dual for fewer samples than terms, else normal equations. The default.
+#define NF_SOLVER_AUTO 0
+// Solver: normal equations (4.27) and LDL'.
+#define NF_SOLVER_NORMAL_EQUATIONS 1
+// Solver: Givens rotations, for badly placed samples. Only with NF_CV_LEAST_SQUARES.
+#define NF_SOLVER_SQUARE_ROOT 2
+// Solver: the n x n system of at most 4096 samples. Not for streaming.
+#define NF_SOLVER_DUAL 3
+
+// For `ridge`: of a few strengths the one with the smallest leave-one-out error.
+#define NF_RIDGE_AUTO (-1.0f)
+
+// Gradient descent with heavy-ball momentum. The default.
+#define NF_OPTIMIZER_MOMENTUM 0
+// Gradient descent by Adam.
+#define NF_OPTIMIZER_ADAM 1
+// Plain gradient descent (4.29).
+#define NF_OPTIMIZER_PLAIN 2
+
+// Each channel is regressed on its own, with one factorisation. The default.
+#define NF_COLOR_PER_CHANNEL 0
+// Rec. 709 luminance is regressed and scales the plain mean of 3 channels (section 4.3).
+#define NF_COLOR_LUMINANCE_RATIO 1
+
+// A NaN or infinite sample is NF_ERR_NOT_FINITE. The default.
+#define NF_NONFINITE_ERROR 0
+// A NaN or infinite sample is left out and not counted; biased unless such samples would have been average ones.
+#define NF_NONFINITE_SKIP 1
+
+// Precision: double. The default.
+#define NF_PRECISION_F64 0
+// Precision: float, for targets without double hardware.
+#define NF_PRECISION_F32 1
+
+// How to estimate. Zero in any field but dims and channels is its default.
 typedef struct nf_cv_config {
-    /*
-     Coordinates of a sample that are regressed, 1 to 16.
-     */
+    // Coordinates of a sample that are regressed, 1 to 16.
     uint32_t dims;
-    /*
-     Largest total degree, 0 to 7; 0 is the plain mean. nf_cv_terms() may not exceed 136.
-     */
+    // Largest total degree, 0 to 7; 0 is the plain mean. nf_cv_terms() may not exceed 136.
     uint32_t order;
-    /*
-     Values of a sample, 1 to 4.
-     */
+    // Values of a sample, 1 to 4.
     uint32_t channels;
-    /*
-     NF_CV_*
-     */
+    // NF_CV_*
     uint32_t estimator;
-    /*
-     NF_BASIS_*
-     */
+    // NF_BASIS_*
     uint32_t basis;
-    /*
-     1 if the samples are stratified (a tile, Sobol), 0 if independent. Leave-one-out errors cannot see
-     stratification: with 1, NF_CV_ROBUST returns the plain mean.
-     */
+    // 1 if the samples are stratified (a tile, Sobol), 0 if independent. Leave-one-out errors cannot see
+    // stratification: with 1, NF_CV_ROBUST returns the plain mean.
     uint32_t stratified;
-    /*
-     If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (4.15).
-     */
+    // If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (figure 4.15).
     uint32_t slices;
-    /*
-     User-supplied control functions with known integrals (4.18), 0 to 4.
-     */
+    // User-supplied control functions with known integrals (4.18), 0 to 4.
     uint32_t controls;
-    /*
-     Floats from one sample's u to the next; 0 means dims. A path may be longer than what is regressed (4.3.5); its
-     first dims coordinates must exist, uniform, for every sample, however short its path.
-     */
+    // Floats from one sample's u to the next; 0 means dims. A path may be longer than what is regressed (4.3.5); its
+    // first dims coordinates must exist, uniform, for every sample, however short its path.
     uint32_t stride;
-    /*
-     NF_SOLVER_*
-     */
+    // NF_SOLVER_*
     uint32_t solver;
-    /*
-     NF_PRECISION_*
-     */
+    // NF_PRECISION_*
     uint32_t precision;
-    /*
-     NF_NONFINITE_*
-     */
+    // NF_NONFINITE_*
     uint32_t nonfinite;
-    /*
-     NF_COLOR_*
-     */
+    // NF_COLOR_*
     uint32_t color;
-    /*
-     Folds of NF_CV_K_FOLD and of the streaming NF_CV_ROBUST, 2 to 16; 0 means 4.
-     */
+    // Folds of NF_CV_K_FOLD and of the streaming NF_CV_ROBUST, 2 to 16; 0 means 4.
     uint32_t folds;
-    /*
-     Steps of gradient descent, at most 2^20; 0 means half as many as samples, 8 to 128.
-     */
+    // Steps of gradient descent, at most 2^20; 0 means half as many as samples, 8 to 128.
     uint32_t iterations;
-    /*
-     NF_OPTIMIZER_*
-     */
+    // NF_OPTIMIZER_*
     uint32_t optimizer;
-    /*
-     Ridge strength per sample, NF_RIDGE_AUTO, or 0 for the estimator's default.
-     */
+    // Ridge strength per sample, NF_RIDGE_AUTO, or 0 for the estimator's default.
     float ridge;
-    /*
-     Step of gradient descent: in standard deviations of the values for Adam, else times one over the largest
-     curvature. 0 means the default.
-     */
+    // Step of gradient descent: in standard deviations of the values for Adam, else times one over the largest
+    // curvature. 0 means the default.
     float learning_rate;
-    /*
-     Momentum of gradient descent, below 1; 0 means the default.
-     */
+    // Momentum of gradient descent, below 1; 0 means the default.
     float momentum;
 } nf_cv_config;
 
-/*
- 0 is success, a negative value an error; `nf_status_message` explains it.
- */
-typedef int32_t nf_status;
+// Sets a configuration to the robust estimator over 2 coordinates, order 2, 1 channel. NULL is ignored.
+void nf_cv_config_default(nf_cv_config *config);
 
-/*
- An estimate of an integral over primary sample space.
- */
+// The number of terms of a regression, constant included; 0 for a configuration that is NULL or out of range.
+uint32_t nf_cv_terms(const nf_cv_config *config);
+
+// An estimate of an integral over primary sample space.
 typedef struct nf_estimate {
-    /*
-     The integral, for each channel; zero for channels that are not there.
-     */
+    // The integral, for each channel; zero for channels that are not there.
     float mean[4];
-    /*
-     An estimate of each mean's standard error; infinite if one sample is all there is.
-     */
+    // An estimate of each mean's standard error; infinite if one sample is all there is.
     float std_error[4];
-    /*
-     Samples used.
-     */
+    // Samples used.
     uint32_t samples;
-    /*
-     Estimated variance relative to the plain mean's, averaged over the channels; 1 is no gain.
-     */
+    // Estimated variance relative to the plain mean's, averaged over the channels; 1 is no gain.
     float gain;
 } nf_estimate;
 
-/*
- A PCG32 random number generator (O'Neill 2014), for examples and tests: the same numbers on every target.
+// Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL or
+// out of range, or a size no memory has.
+size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
- A complete struct, kept by value. A copy repeats the numbers its original has yet to give. Give each thread its own,
- with its own seed. Any value of the fields is valid; nf_rng_seed sets them well. Not for cryptography.
- */
-typedef struct nf_rng {
-    /*
-     Where the generator is.
-     */
-    uint64_t state;
-    /*
-     Which of 2^63 streams it is on; the lowest bit counts as set.
-     */
-    uint64_t increment;
-} nf_rng;
-
-/*
- Success.
- */
-#define NF_OK 0
-
-/*
- A required pointer is NULL.
- */
-#define NF_ERR_NULL -1
-
-/*
- An argument is outside its documented range.
- */
-#define NF_ERR_RANGE -2
-
-/*
- An input value is NaN or infinite.
- */
-#define NF_ERR_NOT_FINITE -3
-
-/*
- Caller-supplied memory is too small.
- */
-#define NF_ERR_MEMORY -4
-
-/*
- Caller-supplied memory is not aligned as its type needs.
- */
-#define NF_ERR_ALIGNMENT -5
-
-/*
- There is nothing to estimate from.
- */
-#define NF_ERR_NO_SAMPLES -6
-
-/*
- The options exist, but not in this combination.
- */
-#define NF_ERR_UNSUPPORTED -7
-
-/*
- The memory holds no initialised object.
- */
-#define NF_ERR_STATE -8
-
-/*
- Two objects were made with different configurations.
- */
-#define NF_ERR_MISMATCH -9
-
-#ifdef __cplusplus
-extern "C" {
-#endif // __cplusplus
-
-/*
- Bytes that an accumulator needs; 0 for a configuration that is NULL, out of range or not for streaming.
- */
-size_t nf_cv_accumulator_size(const struct nf_cv_config *config);
-
-/*
- Makes an empty accumulator in `memory`, 8-byte aligned and of at least nf_cv_accumulator_size() bytes, and returns
- it in out.
-
- NF_ERR_UNSUPPORTED for NF_CV_LEAVE_ONE_OUT, which needs all samples at once, and for NF_SOLVER_DUAL.
- */
-nf_status nf_cv_accumulator_init(void *memory,
-                                 size_t bytes,
-                                 const struct nf_cv_config *config,
-                                 struct nf_cv_accumulator **out);
-
-/*
- Adds n samples, laid out as for nf_cv_estimate(): all of them or, on an error, none. A configuration with `controls`
- needs nf_cv_accumulator_add_with_controls().
- */
-nf_status nf_cv_accumulator_add(struct nf_cv_accumulator *accumulator, const float *u, const float *f, size_t n);
-
-/*
- As nf_cv_accumulator_add(), with the control functions of nf_cv_estimate_with_controls().
- */
-nf_status nf_cv_accumulator_add_with_controls(struct nf_cv_accumulator *accumulator,
-                                              const float *u,
-                                              const float *f,
-                                              const float *h,
-                                              const float *h_integral,
-                                              size_t n);
-
-/*
- Adds all samples of `other`, which stays as it is. NF_ERR_MISMATCH if the configurations differ.
- */
-nf_status nf_cv_accumulator_merge(struct nf_cv_accumulator *accumulator, const struct nf_cv_accumulator *other);
-
-/*
- Bytes of workspace that nf_cv_accumulator_estimate() needs; 0 as for nf_cv_accumulator_size().
- */
-size_t nf_cv_accumulator_workspace_size(const struct nf_cv_config *config);
-
-/*
- The estimate from all samples so far; more may be added afterwards. NF_ERR_NO_SAMPLES if there are none.
- */
-nf_status nf_cv_accumulator_estimate(const struct nf_cv_accumulator *accumulator,
-                                     void *workspace,
-                                     size_t bytes,
-                                     struct nf_estimate *out);
-
-/*
- Forgets all samples.
- */
-nf_status nf_cv_accumulator_reset(struct nf_cv_accumulator *accumulator);
-
-/*
- Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL or
- out of range, or a size no memory has.
- */
-size_t nf_cv_workspace_size(const struct nf_cv_config *config, size_t n);
-
-/*
- Estimates an integral from n samples: u has n rows of `stride` floats (the last may end after `dims`), f has n rows
- of `channels`. The workspace's content is used up.
-
- NF_ERR_RANGE for a configuration or coordinate out of range, NF_ERR_NOT_FINITE for a NaN or infinity (but see
- NF_NONFINITE_SKIP), NF_ERR_NO_SAMPLES for n = 0, NF_ERR_MEMORY and NF_ERR_ALIGNMENT for the workspace,
- NF_ERR_UNSUPPORTED for options that exclude each other.
- */
-nf_status nf_cv_estimate(const struct nf_cv_config *config,
+// Estimates an integral from n samples: u has n rows of `stride` floats (the last may end after `dims`), f has n rows
+// of `channels`. The workspace's content is used up.
+//
+// NF_ERR_RANGE for a configuration or coordinate out of range, NF_ERR_NOT_FINITE for a NaN or infinity (but see
+// NF_NONFINITE_SKIP), NF_ERR_NO_SAMPLES for n = 0, NF_ERR_MEMORY and NF_ERR_ALIGNMENT for the workspace,
+// NF_ERR_UNSUPPORTED for options that exclude each other.
+nf_status nf_cv_estimate(const nf_cv_config *config,
                          const float *u,
                          const float *f,
                          size_t n,
                          void *workspace,
                          size_t bytes,
-                         struct nf_estimate *out);
+                         nf_estimate *out);
 
-/*
- As nf_cv_estimate(), with `controls` functions h of known integral (4.18): h has n rows of `controls` floats, the
- functions at the samples, and h_integral their integrals. Both may be NULL if `controls` is 0.
- */
-nf_status nf_cv_estimate_with_controls(const struct nf_cv_config *config,
+// As nf_cv_estimate(), with `controls` functions h of known integral (4.18): h has n rows of `controls` floats, the
+// functions at the samples, and h_integral their integrals. Both may be NULL if `controls` is 0.
+nf_status nf_cv_estimate_with_controls(const nf_cv_config *config,
                                        const float *u,
                                        const float *f,
                                        const float *h,
@@ -465,80 +213,107 @@ nf_status nf_cv_estimate_with_controls(const struct nf_cv_config *config,
                                        size_t n,
                                        void *workspace,
                                        size_t bytes,
-                                       struct nf_estimate *out);
+                                       nf_estimate *out);
 
-/*
- As nf_cv_estimate() with NF_CV_GRADIENT_DESCENT, which `estimator` must be, starting from `coefficients`, `channels`
- rows (1 for a luminance ratio) of nf_cv_terms() - 1 floats in the values' unit, and leaving the solution there: a
- previous frame's is a good start (4.2.6).
- */
-nf_status nf_cv_gradient_descent(const struct nf_cv_config *config,
+// As nf_cv_estimate() with NF_CV_GRADIENT_DESCENT, which `estimator` must be, starting from `coefficients`, `channels`
+// rows (1 for a luminance ratio) of nf_cv_terms() - 1 floats in the values' unit, and leaving the solution there: a
+// previous frame's is a good start (4.2.6).
+nf_status nf_cv_gradient_descent(const nf_cv_config *config,
                                  const float *u,
                                  const float *f,
                                  size_t n,
                                  float *coefficients,
                                  void *workspace,
                                  size_t bytes,
-                                 struct nf_estimate *out);
+                                 nf_estimate *out);
 
-/*
- Bytes of workspace that nf_cv_block_estimate() needs; 0 as for nf_cv_workspace_size().
- */
-size_t nf_cv_block_workspace_size(const struct nf_cv_config *config, size_t pixels, size_t n);
+// Bytes of workspace that nf_cv_block_estimate() needs; 0 as for nf_cv_workspace_size().
+size_t nf_cv_block_workspace_size(const nf_cv_config *config, size_t pixels, size_t n);
 
-/*
- Estimates `pixels` integrals that are alike, from n samples of each: u and f hold pixel after pixel what
- nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to the other pixels'
- samples (4.3.6): exactly unbiased for a given `ridge`; by default the block weighs four fits and the plain mean by
- the variance across its pixels.
- */
-nf_status nf_cv_block_estimate(const struct nf_cv_config *config,
+// Estimates `pixels` integrals that are alike, from n samples of each: u and f hold pixel after pixel what
+// nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to the other pixels'
+// samples (4.3.6): exactly unbiased for a given `ridge`; by default the block weighs four fits and the plain mean by
+// the variance across its pixels.
+nf_status nf_cv_block_estimate(const nf_cv_config *config,
                                const float *u,
                                const float *f,
                                size_t pixels,
                                size_t n,
                                void *workspace,
                                size_t bytes,
-                               struct nf_estimate *out);
+                               nf_estimate *out);
 
-/*
- Sets a configuration to the robust estimator over 2 coordinates, order 2, 1 channel. NULL is ignored.
- */
-void nf_cv_config_default(struct nf_cv_config *config);
+// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls.
+typedef struct nf_cv_accumulator nf_cv_accumulator;
 
-/*
- The number of terms of a regression, constant included; 0 for a configuration that is NULL or out of range.
- */
-uint32_t nf_cv_terms(const struct nf_cv_config *config);
+// Bytes that an accumulator needs; 0 for a configuration that is NULL, out of range or not for streaming.
+size_t nf_cv_accumulator_size(const nf_cv_config *config);
 
-/*
- The balance heuristic (2.12): the weight n_j p_j / sum_k n_k p_k of technique j at one point.
+// Makes an empty accumulator in `memory`, 8-byte aligned and of at least nf_cv_accumulator_size() bytes, and returns
+// it in out.
+//
+// NF_ERR_UNSUPPORTED for NF_CV_LEAVE_ONE_OUT, which needs all samples at once, and for NF_SOLVER_DUAL.
+nf_status nf_cv_accumulator_init(void *memory,
+                                 size_t bytes,
+                                 const nf_cv_config *config,
+                                 nf_cv_accumulator **out);
 
- pdf[techniques]: p_k, the density of each technique at the point, in any one measure, at least 0. Infinity stands for a
- delta distribution: where any is infinite the finite ones count as 0 and the infinite ones are equally dense.
- counts[techniques]: n_k, the number of samples of each technique; one with 0 has no part in it.
- techniques: 1..NF_MIS_MAX_TECHNIQUES. technique: j, below techniques.
+// Adds n samples, laid out as for nf_cv_estimate(): all of them or, on an error, none. A configuration with `controls`
+// needs nf_cv_accumulator_add_with_controls().
+nf_status nf_cv_accumulator_add(nf_cv_accumulator *accumulator, const float *u, const float *f, size_t n);
 
- The weights of all techniques sum to 1 and are safe for densities from 1e-38 to 1e38. Where every n_k p_k is 0, so that
- the point cannot have been drawn, each is 0. With them, the sum over all samples of weight * f / (n_j p_j) is unbiased
- (2.10).
+// As nf_cv_accumulator_add(), with the control functions of nf_cv_estimate_with_controls().
+nf_status nf_cv_accumulator_add_with_controls(nf_cv_accumulator *accumulator,
+                                              const float *u,
+                                              const float *f,
+                                              const float *h,
+                                              const float *h_integral,
+                                              size_t n);
 
- NF_ERR_NULL; NF_ERR_RANGE: techniques, technique, or a negative density; NF_ERR_NOT_FINITE: a density is NaN.
- */
+// Adds all samples of `other`, which stays as it is. NF_ERR_MISMATCH if the configurations differ.
+nf_status nf_cv_accumulator_merge(nf_cv_accumulator *accumulator, const nf_cv_accumulator *other);
+
+// Bytes of workspace that nf_cv_accumulator_estimate() needs; 0 as for nf_cv_accumulator_size().
+size_t nf_cv_accumulator_workspace_size(const nf_cv_config *config);
+
+// The estimate from all samples so far; more may be added afterwards. NF_ERR_NO_SAMPLES if there are none.
+nf_status nf_cv_accumulator_estimate(const nf_cv_accumulator *accumulator,
+                                     void *workspace,
+                                     size_t bytes,
+                                     nf_estimate *out);
+
+// Forgets all samples.
+nf_status nf_cv_accumulator_reset(nf_cv_accumulator *accumulator);
+
+/* Multiple importance sampling: the weight of one technique at one point */
+
+// The most techniques that multiple importance sampling combines.
+#define NF_MIS_MAX_TECHNIQUES 16
+
+// The balance heuristic (2.12): the weight n_j p_j / sum_k n_k p_k of technique j at one point.
+//
+// pdf[techniques]: p_k, the density of each technique at the point, in any one measure, at least 0. Infinity stands for a
+// delta distribution: where any is infinite the finite ones count as 0 and the infinite ones are equally dense.
+// counts[techniques]: n_k, the number of samples of each technique; one with 0 has no part in it.
+// techniques: 1..NF_MIS_MAX_TECHNIQUES. technique: j, below techniques.
+//
+// The weights of all techniques sum to 1 and are safe for densities from 1e-38 to 1e38. Where every n_k p_k is 0, so that
+// the point cannot have been drawn, each is 0. With them, the sum over all samples of weight * f / (n_j p_j) is unbiased
+// (2.10).
+//
+// NF_ERR_NULL; NF_ERR_RANGE: techniques, technique, or a negative density; NF_ERR_NOT_FINITE: a density is NaN.
 nf_status nf_mis_balance(const float *pdf,
                          const uint32_t *counts,
                          uint32_t techniques,
                          uint32_t technique,
                          float *weight);
 
-/*
- The power heuristic: the weight (n_j p_j)^beta / sum_k (n_k p_k)^beta.
-
- beta: positive and finite; 0 means the usual 2. 1 is the balance heuristic. (2.13) prints the exponent outside the sum;
- those weights would not sum to 1, and these are Veach's.
-
- Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: beta is negative; NF_ERR_NOT_FINITE: beta is not finite.
- */
+// The power heuristic: the weight (n_j p_j)^beta / sum_k (n_k p_k)^beta.
+//
+// beta: positive and finite; 0 means the usual 2. 1 is the balance heuristic. (2.13) prints the exponent outside the sum;
+// those weights would not sum to 1, and these are Veach's.
+//
+// Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: beta is negative; NF_ERR_NOT_FINITE: beta is not finite.
 nf_status nf_mis_power(const float *pdf,
                        const uint32_t *counts,
                        uint32_t techniques,
@@ -546,15 +321,13 @@ nf_status nf_mis_power(const float *pdf,
                        float beta,
                        float *weight);
 
-/*
- The cutoff heuristic: the balance heuristic among the techniques with n_k p_k >= epsilon * max_i n_i p_i.
-
- epsilon: 0..1; 0 is the balance heuristic, 1 the maximum heuristic with ties shared. (2.14) prints an absolute threshold
- on p_k, without the counts; it would depend on the unit of the density, and leave points where no technique reaches
- it. This is Veach's form.
-
- Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: epsilon; NF_ERR_NOT_FINITE: epsilon is not finite.
- */
+// The cutoff heuristic: the balance heuristic among the techniques with n_k p_k >= epsilon * max_i n_i p_i.
+//
+// epsilon: 0..1; 0 is the balance heuristic, 1 the maximum heuristic with ties shared. (2.14) prints an absolute threshold
+// on p_k, without the counts; it would depend on the unit of the density, and leave points where no technique reaches
+// it. This is Veach's form.
+//
+// Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: epsilon; NF_ERR_NOT_FINITE: epsilon is not finite.
 nf_status nf_mis_cutoff(const float *pdf,
                         const uint32_t *counts,
                         uint32_t techniques,
@@ -562,29 +335,25 @@ nf_status nf_mis_cutoff(const float *pdf,
                         float epsilon,
                         float *weight);
 
-/*
- The maximum heuristic: 1 for the technique with the largest n_k p_k (the first of them if several tie), 0 for others.
-
- Arguments and errors as for nf_mis_balance.
- */
+// The maximum heuristic: 1 for the technique with the largest n_k p_k (the first of them if several tie), 0 for others.
+//
+// Arguments and errors as for nf_mis_balance.
 nf_status nf_mis_maximum(const float *pdf,
                          const uint32_t *counts,
                          uint32_t techniques,
                          uint32_t technique,
                          float *weight);
 
-/*
- The optimal weight (2.15) of Kondapaneni et al. (2019), for an alpha from nf_omis_alpha:
- w_j = alpha_j p_j / f + n_j p_j / S (1 - sum_k alpha_k p_k / f), S = sum_k n_k p_k.
-
- pdf[techniques]: finite and at least 0. counts[techniques]: at least 1. alpha[techniques]: finite.
- value: f at the point, not divided by a density, finite and not 0. Where f is 0 the weight does not exist, though the
- sample still contributes: see nf_mis_optimal_contribution.
-
- Whatever alpha is, the weights sum to 1; they may be negative or above 1. Where no density is positive each is 0.
-
- NF_ERR_NULL; NF_ERR_RANGE: an argument is outside these ranges, or the weight outside float's; NF_ERR_NOT_FINITE.
- */
+// The optimal weight (2.15) of Kondapaneni et al. (2019), for an alpha from nf_omis_alpha:
+// w_j = alpha_j p_j / f + n_j p_j / S (1 - sum_k alpha_k p_k / f), S = sum_k n_k p_k.
+//
+// pdf[techniques]: finite and at least 0. counts[techniques]: at least 1. alpha[techniques]: finite.
+// value: f at the point, not divided by a density, finite and not 0. Where f is 0 the weight does not exist, though the
+// sample still contributes: see nf_mis_optimal_contribution.
+//
+// Whatever alpha is, the weights sum to 1; they may be negative or above 1. Where no density is positive each is 0.
+//
+// NF_ERR_NULL; NF_ERR_RANGE: an argument is outside these ranges, or the weight outside float's; NF_ERR_NOT_FINITE.
 nf_status nf_mis_optimal(const float *pdf,
                          const uint32_t *counts,
                          uint32_t techniques,
@@ -593,16 +362,14 @@ nf_status nf_mis_optimal(const float *pdf,
                          float value,
                          float *weight);
 
-/*
- What one sample of technique j adds to the estimate (2.10) with optimal weights:
- w_j f / (n_j p_j) = alpha_j / n_j + (f - sum_k alpha_k p_k) / S, S = sum_k n_k p_k.
-
- The sum over all samples is the estimate, unbiased if alpha came from other samples. The term is not 0 where f is;
- leaving such samples out keeps the mean and loses part of the gain. These terms, times the number of samples, are what a
- regression control variate is fitted to (4.3.3).
-
- Arguments and errors as for nf_mis_optimal, except that value may be 0, and pdf[technique] must be positive.
- */
+// What one sample of technique j adds to the estimate (2.10) with optimal weights:
+// w_j f / (n_j p_j) = alpha_j / n_j + (f - sum_k alpha_k p_k) / S, S = sum_k n_k p_k.
+//
+// The sum over all samples is the estimate, unbiased if alpha came from other samples. The term is not 0 where f is;
+// leaving such samples out keeps the mean and loses part of the gain. These terms, times the number of samples, are what a
+// regression control variate is fitted to (4.3.3).
+//
+// Arguments and errors as for nf_mis_optimal, except that value may be 0, and pdf[technique] must be positive.
 nf_status nf_mis_optimal_contribution(const float *pdf,
                                       const uint32_t *counts,
                                       uint32_t techniques,
@@ -611,124 +378,147 @@ nf_status nf_mis_optimal_contribution(const float *pdf,
                                       float value,
                                       float *contribution);
 
-/*
- The bytes of memory an nf_omis needs; 0 unless techniques is in 1..NF_MIS_MAX_TECHNIQUES, integrals at least 1, and the
- size one that memory can have.
- */
-size_t nf_omis_size(uint32_t techniques, uint32_t integrals);
+/* Optimal multiple importance sampling: weights of least variance, found from the samples */
 
-/*
- Makes an empty nf_omis in `memory`, `*out` being its handle (the same address).
+// nf_omis solver: alpha = (A + ridge)^-1 b, which shrinks to the balance heuristic where the samples say little. The
+// default. Consistent, not unbiased: alpha comes from the samples it is applied to.
+#define NF_OMIS_RIDGE 0
+// nf_omis solver: alpha = A^-1 b (the pseudo-inverse where A is singular), the direct estimator sum_k alpha_k of
+// Kondapaneni et al. Consistent, not unbiased, and heavy-tailed with similar techniques or few samples.
+#define NF_OMIS_PLAIN 1
+// nf_omis solver: each batch with the alpha of the batches before it (nf_omis_next_batch). Unbiased.
+#define NF_OMIS_PROGRESSIVE 2
+// nf_omis solver: alpha = 0, the balance heuristic. Unbiased.
+#define NF_OMIS_BALANCE 3
 
- memory: at least nf_omis_size(techniques, integrals) bytes, 8-byte aligned; what it holds is lost.
- counts[techniques]: n_k, how many samples of each technique make one round, at least 1.
+// Optimal multiple importance sampling (Kondapaneni et al. 2019; 2.15): sums over samples of J techniques, from which P
+// integrals are estimated with weights of least variance.
+//
+// With S = sum_k n_k p_k and s over all samples, it keeps A = sum_s p p' / S^2 and b = sum_s f p / S^2 and a few sums more.
+// After R rounds of n_k samples each, an integral is sum_s f / S / R - (sum_s p / S / R - 1)' alpha with alpha
+// from A alpha = b: the balance estimate, less what the samples got wrong about the densities' integrals.
+//
+// Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use; nothing to destroy.
+typedef struct nf_omis nf_omis;
 
- NF_ERR_NULL; NF_ERR_RANGE: techniques, integrals or a count; NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
- */
+// The bytes of memory an nf_omis needs; 0 unless techniques is in 1..NF_MIS_MAX_TECHNIQUES, integrals at least 1, and the
+// size one that memory can have.
+size_t nf_omis_size(uint32_t techniques,
+                    uint32_t integrals);
+
+// Makes an empty nf_omis in `memory`, `*out` being its handle (the same address).
+//
+// memory: at least nf_omis_size(techniques, integrals) bytes, 8-byte aligned; what it holds is lost.
+// counts[techniques]: n_k, how many samples of each technique make one round, at least 1.
+//
+// NF_ERR_NULL; NF_ERR_RANGE: techniques, integrals or a count; NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
 nf_status nf_omis_init(void *memory,
                        size_t bytes,
                        uint32_t techniques,
                        uint32_t integrals,
                        const uint32_t *counts,
-                       struct nf_omis **out);
+                       nf_omis **out);
 
-/*
- Adds one sample, drawn by `technique`.
+// Adds one sample, drawn by `technique`.
+//
+// pdf[techniques]: the density of each technique at the sample's point, finite and at least 0, positive for the technique
+// that drew it. value[integrals]: the value of each integrand there, not divided by any density, finite.
+//
+// Add every sample, those of value 0 included: without them no solver but NF_OMIS_BALANCE is unbiased or consistent. The
+// samples should make whole rounds of the counts, or each be drawn from technique k with probability n_k / sum n.
+//
+// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE: a density (combine delta
+// distributions outside) or a value.
+nf_status nf_omis_add(nf_omis *omis,
+                      uint32_t technique,
+                      const float *pdf,
+                      const float *value);
 
- pdf[techniques]: the density of each technique at the sample's point, finite and at least 0, positive for the technique
- that drew it. value[integrals]: the value of each integrand there, not divided by any density, finite.
+// Estimates the integrals from all samples so far. The object does not change: the same call gives the same answer, and
+// more samples may be added.
+//
+// solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN, NF_OMIS_PROGRESSIVE or NF_OMIS_BALANCE; each says whether it is unbiased.
+// ridge: for NF_OMIS_RIDGE, relative to A's mean diagonal: 1e-8..1e8, or 0 for the default .03; otherwise ignored.
+// estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite float.
+//
+// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.
+nf_status nf_omis_solve(const nf_omis *omis, uint32_t solver, float ridge, float *estimate);
 
- Add every sample, those of value 0 included: without them no solver but NF_OMIS_BALANCE is unbiased or consistent. The
- samples should make whole rounds of the counts, or each be drawn from technique k with probability n_k / sum n.
+// The coefficients of the weights (2.15), for nf_mis_optimal and nf_mis_optimal_contribution:
+// alpha[p * techniques + j] of integral p and technique j.
+//
+// Used on samples other than those it came from, an alpha gives unbiased estimates. NF_OMIS_PROGRESSIVE stands for the
+// alpha of the current batch, NF_OMIS_BALANCE for zeros. Arguments and errors as for nf_omis_solve.
+nf_status nf_omis_alpha(const nf_omis *omis, uint32_t solver, float ridge, float *alpha);
 
- NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE: a density (combine delta
- distributions outside) or a value.
- */
-nf_status nf_omis_add(struct nf_omis *omis, uint32_t technique, const float *pdf, const float *value);
+// Ends a batch: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so far on those that follow.
+//
+// Before the first call alpha is 0, the balance heuristic; NF_OMIS_BALANCE returns to that. Call it between whole rounds,
+// whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
+//
+// Other arguments and errors as for nf_omis_solve; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE as the solver.
+nf_status nf_omis_next_batch(nf_omis *omis,
+                             uint32_t solver,
+                             float ridge);
 
-/*
- Estimates the integrals from all samples so far. The object does not change: the same call gives the same answer, and
- more samples may be added.
+// Multiplies all sums by beta in 0..1, so that older samples count for less: for integrals that drift, as gradients do.
+// NF_OMIS_PROGRESSIVE keeps its alpha.
+//
+// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE, NF_ERR_NOT_FINITE: beta.
+nf_status nf_omis_decay(nf_omis *omis, float beta);
 
- solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN, NF_OMIS_PROGRESSIVE or NF_OMIS_BALANCE; each says whether it is unbiased.
- ridge: for NF_OMIS_RIDGE, relative to A's mean diagonal: 1e-8..1e8, or 0 for the default .03; otherwise ignored.
- estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite float.
+// Forgets every sample and NF_OMIS_PROGRESSIVE's alpha; techniques, integrals and counts stay.
+//
+// NF_ERR_NULL; NF_ERR_STATE.
+nf_status nf_omis_reset(nf_omis *omis);
 
- NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.
- */
-nf_status nf_omis_solve(const struct nf_omis *omis, uint32_t solver, float ridge, float *estimate);
+// Adds the samples of `other`, of another thread or pass, to `omis`. `other` does not change and must be another object;
+// NF_OMIS_PROGRESSIVE's alpha stays that of `omis`.
+//
+// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: their techniques, integrals or
+// counts differ.
+nf_status nf_omis_merge(nf_omis *omis,
+                        const nf_omis *other);
 
-/*
- The coefficients of the weights (2.15), for nf_mis_optimal and nf_mis_optimal_contribution:
- alpha[p * techniques + j] of integral p and technique j.
+/* Random numbers */
 
- Used on samples other than those it came from, an alpha gives unbiased estimates. NF_OMIS_PROGRESSIVE stands for the
- alpha of the current batch, NF_OMIS_BALANCE for zeros. Arguments and errors as for nf_omis_solve.
- */
-nf_status nf_omis_alpha(const struct nf_omis *omis, uint32_t solver, float ridge, float *alpha);
+// A PCG32 random number generator (O'Neill 2014), for examples and tests: the same numbers on every target.
+//
+// A complete struct, kept by value. A copy repeats the numbers its original has yet to give. Give each thread its own,
+// with its own seed. Any value of the fields is valid; nf_rng_seed sets them well. Not for cryptography.
+typedef struct nf_rng {
+    // Where the generator is.
+    uint64_t state;
+    // Which of 2^63 streams it is on; the lowest bit counts as set.
+    uint64_t increment;
+} nf_rng;
 
-/*
- Ends a batch: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so far on those that follow.
+// Starts a generator. Any seed is good, and neighbouring seeds (pixel numbers, say) give unrelated numbers. Does nothing
+// if `rng` is NULL.
+void nf_rng_seed(nf_rng *rng,
+                 uint64_t seed);
 
- Before the first call alpha is 0, the balance heuristic; NF_OMIS_BALANCE returns to that. Call it between whole rounds,
- whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
+// The next 32 random bits; 0 if `rng` is NULL.
+uint32_t nf_rng_next(nf_rng *rng);
 
- Other arguments and errors as for nf_omis_solve; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE as the solver.
- */
-nf_status nf_omis_next_batch(struct nf_omis *omis, uint32_t solver, float ridge);
+// The next number uniform in [0, 1), a multiple of 2^-24; 0 if `rng` is NULL.
+float nf_rng_uniform(nf_rng *rng);
 
-/*
- Multiplies all sums by beta in 0..1, so that older samples count for less: for integrals that drift, as gradients do.
- NF_OMIS_PROGRESSIVE keeps its alpha.
-
- NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE, NF_ERR_NOT_FINITE: beta.
- */
-nf_status nf_omis_decay(struct nf_omis *omis, float beta);
-
-/*
- Forgets every sample and NF_OMIS_PROGRESSIVE's alpha; techniques, integrals and counts stay.
-
- NF_ERR_NULL; NF_ERR_STATE.
- */
-nf_status nf_omis_reset(struct nf_omis *omis);
-
-/*
- Adds the samples of `other`, of another thread or pass, to `omis`. `other` does not change and must be another object;
- NF_OMIS_PROGRESSIVE's alpha stays that of `omis`.
-
- NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: their techniques, integrals or
- counts differ.
- */
-nf_status nf_omis_merge(struct nf_omis *omis, const struct nf_omis *other);
-
-/*
- Starts a generator. Any seed is good, and neighbouring seeds (pixel numbers, say) give unrelated numbers. Does nothing
- if `rng` is NULL.
- */
-void nf_rng_seed(struct nf_rng *rng, uint64_t seed);
-
-/*
- The next 32 random bits; 0 if `rng` is NULL.
- */
-uint32_t nf_rng_next(struct nf_rng *rng);
-
-/*
- The next number uniform in [0, 1), a multiple of 2^-24; 0 if `rng` is NULL.
- */
-float nf_rng_uniform(struct nf_rng *rng);
-
-/*
- The ABI version the library was built with; it must equal `NF_ABI_VERSION`.
- */
-uint32_t nf_abi_version(void);
-
-/*
- A static, NUL-terminated sentence for a status; never NULL, also for values that are no status.
- */
-const char *nf_status_message(nf_status status);
+/* Layouts: what the library was compiled with. */
+#if defined(__cplusplus) && __cplusplus >= 201103L
+#define NF_ASSERT_LAYOUT(condition) static_assert(condition, "noisefloor: unexpected struct layout")
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
+#define NF_ASSERT_LAYOUT(condition) _Static_assert(condition, "noisefloor: unexpected struct layout")
+#else
+#define NF_ASSERT_LAYOUT(condition) extern char nf_assert_layout[(condition) ? 1 : -1]
+#endif
+NF_ASSERT_LAYOUT(sizeof(nf_cv_config) == 76 && offsetof(nf_cv_config, ridge) == 64);
+NF_ASSERT_LAYOUT(sizeof(nf_estimate) == 40 && offsetof(nf_estimate, samples) == 32);
+NF_ASSERT_LAYOUT(sizeof(nf_rng) == 16 && offsetof(nf_rng, increment) == 8);
+#undef NF_ASSERT_LAYOUT
 
 #ifdef __cplusplus
-}  // extern "C"
-#endif  // __cplusplus
+}
+#endif
 
-#endif  /* NOISEFLOOR_H */
+#endif /* NOISEFLOOR_H */

@@ -9,6 +9,7 @@
 
 mod convert;
 mod cv;
+mod dispatch;
 mod mis;
 mod omis;
 mod rng;

@@ -18,12 +18,25 @@ pub(crate) fn splat<R: Real, const L: usize>(value: R) -> Lanes<R, L> {
     [value; L]
 }
 
+// The operations copy their operands before they store: compilers then know that no store changes an operand, without
+// which they would not use vector instructions.
+
 /// `f(a, b)` lane by lane.
 #[inline(always)]
 pub(crate) fn zip<R: Real, const L: usize>(a: &Lanes<R, L>, b: &Lanes<R, L>, f: impl Fn(R, R) -> R) -> Lanes<R, L> {
-    let mut out = *a;
-    for (out, &b) in out.iter_mut().zip(b) {
-        *out = f(*out, b);
+    let (mut out, b) = (*a, *b);
+    for l in 0..L {
+        out[l] = f(out[l], b[l]);
+    }
+    out
+}
+
+/// `a + b * c` lane by lane.
+#[inline(always)]
+pub(crate) fn plus_product<R: Real, const L: usize>(a: Lanes<R, L>, b: Lanes<R, L>, c: Lanes<R, L>) -> Lanes<R, L> {
+    let mut out = a;
+    for l in 0..L {
+        out[l] += b[l] * c[l];
     }
     out
 }
@@ -31,17 +44,27 @@ pub(crate) fn zip<R: Real, const L: usize>(a: &Lanes<R, L>, b: &Lanes<R, L>, f: 
 /// `a += b * c` lane by lane.
 #[inline(always)]
 pub(crate) fn add_product<R: Real, const L: usize>(a: &mut Lanes<R, L>, b: &Lanes<R, L>, c: &Lanes<R, L>) {
-    for ((a, &b), &c) in a.iter_mut().zip(b).zip(c) {
-        *a += b * c;
-    }
+    *a = plus_product(*a, *b, *c);
 }
 
 /// `a += s * b` lane by lane.
 #[inline(always)]
 pub(crate) fn add_scaled<R: Real, const L: usize>(a: &mut Lanes<R, L>, s: R, b: &Lanes<R, L>) {
-    for (a, &b) in a.iter_mut().zip(b) {
-        *a += s * b;
+    let (mut out, b) = (*a, *b);
+    for l in 0..L {
+        out[l] += s * b[l];
     }
+    *a = out;
+}
+
+/// `a -= s * b` lane by lane.
+#[inline(always)]
+pub(crate) fn subtract_scaled<R: Real, const L: usize>(a: &mut Lanes<R, L>, s: R, b: &Lanes<R, L>) {
+    let (mut out, b) = (*a, *b);
+    for l in 0..L {
+        out[l] -= s * b[l];
+    }
+    *a = out;
 }
 
 /// The sum of the eight lanes, always as ((0+4)+(2+6)) + ((1+5)+(3+7)).

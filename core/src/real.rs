@@ -33,6 +33,8 @@ pub trait Real:
     const ZERO: Self;
     /// 1
     const ONE: Self;
+    /// What is larger than any number.
+    const INFINITY: Self;
     /// The spacing of numbers at 1.
     const EPSILON: Self;
     /// Whether squares of `f32` inputs can leave this type's range, so that they are scaled first.
@@ -78,13 +80,14 @@ pub trait Real:
     /// Neither NaN nor infinite.
     #[inline(always)]
     fn is_finite(self) -> bool {
-        self - self == Self::ZERO
+        self.abs() < Self::INFINITY
     }
 }
 
 impl Real for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
+    const INFINITY: Self = f64::INFINITY;
     const EPSILON: Self = f64::EPSILON;
     const NARROW: bool = false;
 
@@ -136,6 +139,7 @@ impl Real for f64 {
 impl Real for f32 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
+    const INFINITY: Self = f32::INFINITY;
     const EPSILON: Self = f32::EPSILON;
     const NARROW: bool = true;
 

@@ -1,9 +1,53 @@
-//! The generated C header.
+//! The generated C header: cbindgen reads `capi/`, this file arranges what it finds by service.
 
 use crate::{paths, run};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use std::fs;
 use std::path::Path;
+
+/// A chapter of the header and how its items' names begin, in the order in which they are printed.
+struct Chapter {
+    title: &'static str,
+    prefixes: &'static [&'static str],
+}
+
+/// Every item belongs to the chapter with the longest matching prefix.
+const CHAPTERS: [Chapter; 5] = [
+    Chapter {
+        title: "Version and status",
+        prefixes: &["NF_ABI_VERSION", "nf_abi_version", "nf_status", "NF_OK", "NF_ERR_", "nf_status_message"],
+    },
+    Chapter {
+        title: "Control variates: samples of one integral, or of a pixel, made into an estimate of lower error",
+        prefixes: &[
+            "NF_CV_",
+            "NF_BASIS_",
+            "NF_SOLVER_",
+            "NF_RIDGE_",
+            "NF_OPTIMIZER_",
+            "NF_COLOR_",
+            "NF_NONFINITE_",
+            "NF_PRECISION_",
+            "nf_cv_config",
+            "nf_cv_terms",
+            "nf_estimate",
+            "nf_cv_workspace_size",
+            "nf_cv_",
+            "nf_cv_block_",
+            "nf_cv_accumulator",
+            "nf_cv_accumulator_",
+        ],
+    },
+    Chapter {
+        title: "Multiple importance sampling: the weight of one technique at one point",
+        prefixes: &["NF_MIS_", "nf_mis_"],
+    },
+    Chapter {
+        title: "Optimal multiple importance sampling: weights of least variance, found from the samples",
+        prefixes: &["NF_OMIS_", "nf_omis", "nf_omis_"],
+    },
+    Chapter { title: "Random numbers", prefixes: &["nf_rng", "nf_rng_"] },
+];
 
 /// Rewrites `include/noisefloor.h` from the `capi` crate.
 pub(crate) fn write() -> Result<()> {
@@ -25,41 +69,132 @@ pub(crate) fn check_committed() -> Result<()> {
 pub(crate) fn check_compiles() -> Result<()> {
     let output = paths::output();
     fs::create_dir_all(&output).with_context(|| format!("cannot create {}", output.display()))?;
-    for (header, variable, default, standard) in [
-        ("noisefloor.h", "CC", "cc", "c99"),
-        ("noisefloor.h", "CC", "cc", "c11"),
-        ("noisefloor.h", "CXX", "c++", "c++11"),
-        ("noisefloor.h", "CXX", "c++", "c++17"),
-        ("noisefloor.hpp", "CXX", "c++", "c++17"),
+    let strict = ["-Wconversion", "-Wshadow"];
+    for (header, variable, default, standard, options) in [
+        ("noisefloor.h", "CC", "cc", "c99", &strict[..]),
+        ("noisefloor.h", "CC", "cc", "c11", &strict[..]),
+        ("noisefloor.h", "CXX", "c++", "c++11", &strict[..]),
+        ("noisefloor.h", "CXX", "c++", "c++17", &strict[..]),
+        ("noisefloor.hpp", "CXX", "c++", "c++17", &strict[..]),
+        ("noisefloor.hpp", "CXX", "c++", "c++17", &["-Wconversion", "-fno-exceptions", "-fno-rtti"][..]),
+        ("noisefloor.hpp", "CXX", "c++", "c++20", &strict[..]),
     ] {
         let source = output.join(if variable == "CC" { "header_alone.c" } else { "header_alone.cpp" });
         // Twice: the include guard is part of what is checked.
         let text = format!("#include \"{header}\"\n#include \"{header}\"\nint main(void) {{ return 0; }}\n");
         fs::write(&source, text).with_context(|| format!("cannot write {}", source.display()))?;
-        compile_alone(variable, default, standard, &source)?;
+        run::check(
+            run::compiler(variable, default)
+                .arg(format!("-std={standard}"))
+                .args(["-Wall", "-Wextra", "-pedantic", "-Werror", "-fsyntax-only", "-Iinclude"])
+                .args(options)
+                .arg(&source),
+        )?;
     }
     Ok(())
 }
 
-fn compile_alone(variable: &str, default: &str, standard: &str, source: &Path) -> Result<()> {
-    run::check(
-        run::compiler(variable, default)
-            .arg(format!("-std={standard}"))
-            .args(["-Wall", "-Wextra", "-pedantic", "-Werror", "-fsyntax-only", "-Iinclude"])
-            .arg(source),
-    )
-}
-
 fn generate() -> Result<String> {
     let crate_dir = paths::root().join("capi");
-    let config = cbindgen::Config::from_file(crate_dir.join("cbindgen.toml"))
-        .map_err(|error| anyhow::anyhow!("capi/cbindgen.toml: {error}"))?;
+    let mut config = cbindgen::Config::from_file(crate_dir.join("cbindgen.toml"))
+        .map_err(|error| anyhow!("capi/cbindgen.toml: {error}"))?;
+    let conventions = config.header.take().context("capi/cbindgen.toml has no `header`")?;
+    let includes: String =
+        std::mem::take(&mut config.sys_includes).iter().map(|file| format!("#include <{file}>\n")).collect();
+    let trailer = config.trailer.take().context("capi/cbindgen.toml has no `trailer`")?;
+    let items = items(&crate_dir, config)?;
+
+    let mut text = format!("{}\n\n#ifndef NOISEFLOOR_H\n#define NOISEFLOOR_H\n\n{includes}\n", conventions.trim());
+    text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n";
+    for (index, chapter) in CHAPTERS.iter().enumerate() {
+        text += &format!("\n/* {} */\n", chapter.title);
+        let mut sorted: Vec<_> = items.iter().filter(|item| item.chapter == index).collect();
+        sorted.sort_by_key(|item| item.place);
+        let mut place = usize::MAX;
+        for item in sorted {
+            // Constants of one family stand together.
+            if !(item.is_constant() && item.place == place) {
+                text += "\n";
+            }
+            place = item.place;
+            text += &item.text;
+        }
+    }
+    text += &format!("\n{}\n\n#ifdef __cplusplus\n}}\n#endif\n\n#endif /* NOISEFLOOR_H */\n", trailer.trim());
+    Ok(text)
+}
+
+/// One declaration with its documentation.
+struct Item {
+    text: String,
+    chapter: usize,
+    place: usize,
+}
+
+impl Item {
+    fn new(block: &str) -> Result<Self> {
+        let code: Vec<_> = block.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+        let name = name(&code).with_context(|| format!("cbindgen wrote a declaration without a name: {block}"))?;
+        let mut best: Option<(usize, usize, usize)> = None;
+        for (index, chapter) in CHAPTERS.iter().enumerate() {
+            for (place, prefix) in chapter.prefixes.iter().enumerate().filter(|(_, prefix)| name.starts_with(*prefix)) {
+                if best.is_none_or(|(length, ..)| prefix.len() > length) {
+                    best = Some((prefix.len(), index, place));
+                }
+            }
+        }
+        let (_, chapter, place) =
+            best.with_context(|| format!("xtask/src/header.rs has no chapter for `{name}`: add its prefix"))?;
+        let mut text = String::new();
+        for line in block.lines() {
+            text += &tidy(line);
+            text.push('\n');
+        }
+        Ok(Self { text, chapter, place })
+    }
+
+    fn is_constant(&self) -> bool {
+        self.text.contains("#define ")
+    }
+}
+
+/// What cbindgen writes, item by item: it separates them by empty lines.
+fn items(crate_dir: &Path, config: cbindgen::Config) -> Result<Vec<Item>> {
     let bindings = cbindgen::Builder::new()
-        .with_crate(&crate_dir)
+        .with_crate(crate_dir)
         .with_config(config)
         .generate()
         .context("cbindgen could not read capi/")?;
     let mut text = Vec::new();
     bindings.write(&mut text);
-    String::from_utf8(text).context("cbindgen wrote a header that is not UTF-8")
+    let text = String::from_utf8(text).context("cbindgen wrote a header that is not UTF-8")?;
+    text.split("\n\n").map(|block| block.trim_matches('\n')).filter(|block| !block.is_empty()).map(Item::new).collect()
+}
+
+/// The first word of ours that is declared: the macro, the type or the function.
+fn name<'a>(code: &[&'a str]) -> Option<&'a str> {
+    let word = |c: char| !(c.is_ascii_alphanumeric() || c == '_');
+    let ours = |name: &&str| name.starts_with("nf_") || name.starts_with("NF_");
+    let first = code.first()?;
+    // A function's name is what stands before the parenthesis, after the type it returns.
+    match first.split_once('(') {
+        Some((before, _)) => before.split(word).rfind(ours),
+        None => first.split(word).filter(ours).last(),
+    }
+}
+
+/// Parentheses around negative constants, `f` behind floats, and no `struct` where a typedef does.
+fn tidy(line: &str) -> String {
+    if let Some((macro_name, value)) = line.strip_prefix("#define ").and_then(|rest| rest.split_once(' ')) {
+        let suffix = if value.contains('.') { "f" } else { "" };
+        return if value.starts_with('-') {
+            format!("#define {macro_name} ({value}{suffix})")
+        } else {
+            format!("#define {macro_name} {value}{suffix}")
+        };
+    }
+    if line.starts_with("typedef") || line.trim_start().starts_with("//") {
+        return line.to_owned();
+    }
+    line.replace("struct nf_", "nf_")
 }

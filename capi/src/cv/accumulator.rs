@@ -5,7 +5,7 @@ use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimat
 use crate::convert;
 use crate::status::*;
 use core::ffi::c_void;
-use noisefloor_core::control_variate::{Accumulator, Config, State};
+use noisefloor_core::control_variate::State;
 use noisefloor_core::real::Real;
 
 /// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls.
@@ -122,10 +122,10 @@ pub unsafe extern "C" fn nf_cv_accumulator_merge(
         let (ours, theirs) = unsafe { (open(accumulator)?, open_shared(other)?) };
         match (ours, theirs) {
             (Opened::Double(state, sums), OpenedShared::Double(other, other_sums)) => {
-                merge(state, sums, other, other_sums)
+                state.merge(sums, other, other_sums).map_err(status_of)
             }
             (Opened::Single(state, sums), OpenedShared::Single(other, other_sums)) => {
-                merge(state, sums, other, other_sums)
+                state.merge(sums, other, other_sums).map_err(status_of)
             }
             _ => Err(NF_ERR_MISMATCH),
         }
@@ -161,11 +161,11 @@ pub unsafe extern "C" fn nf_cv_accumulator_estimate(
             let estimate = match open_shared(accumulator)? {
                 OpenedShared::Double(state, sums) => {
                     let workspace = convert::workspace(workspace, bytes, state.workspace_len())?;
-                    Accumulator::from_parts(*state, Shared(sums)).and_then(|sums| sums.estimate(workspace))
+                    state.estimate(sums, workspace)
                 }
                 OpenedShared::Single(state, sums) => {
                     let workspace = convert::workspace(workspace, bytes, state.workspace_len())?;
-                    Accumulator::from_parts(*state, Shared(sums)).and_then(|sums| sums.estimate(workspace))
+                    state.estimate(sums, workspace)
                 }
             };
             *out = c_estimate(&estimate.map_err(status_of)?);
@@ -180,8 +180,8 @@ pub unsafe extern "C" fn nf_cv_accumulator_reset(accumulator: *mut nf_cv_accumul
     status((|| {
         // SAFETY: the caller's object, checked there.
         match unsafe { open(accumulator)? } {
-            Opened::Double(state, sums) => reset(state, sums),
-            Opened::Single(state, sums) => reset(state, sums),
+            Opened::Double(state, sums) => state.reset(sums).map_err(status_of),
+            Opened::Single(state, sums) => state.reset(sums).map_err(status_of),
         }
     })())
 }
@@ -258,41 +258,7 @@ unsafe fn add<R: Real>(
     h_integral: *const f32,
     n: usize,
 ) -> Result<(), nf_status> {
-    let config: Config = *state.config();
     // SAFETY: the caller's promise.
-    let samples = unsafe { samples(&config, u, f, h, h_integral, n)? };
-    with(state, sums, |accumulator| accumulator.add(samples))
-}
-
-fn merge<R: Real>(state: &mut State<R>, sums: &mut [R], other: &State<R>, other_sums: &[R]) -> Result<(), nf_status> {
-    let other = Accumulator::from_parts(*other, Shared(other_sums)).map_err(status_of)?;
-    with(state, sums, |accumulator| accumulator.merge(&other))
-}
-
-fn reset<R: Real>(state: &mut State<R>, sums: &mut [R]) -> Result<(), nf_status> {
-    with(state, sums, |accumulator| {
-        accumulator.reset();
-        Ok(())
-    })
-}
-
-/// Does something with an accumulator and puts its state back.
-fn with<'a, R: Real>(
-    state: &mut State<R>,
-    sums: &'a mut [R],
-    action: impl FnOnce(&mut Accumulator<R, &'a mut [R]>) -> Result<(), noisefloor_core::Error>,
-) -> Result<(), nf_status> {
-    let mut accumulator = Accumulator::from_parts(*state, sums).map_err(status_of)?;
-    action(&mut accumulator).map_err(status_of)?;
-    *state = *accumulator.state();
-    Ok(())
-}
-
-/// Sums that are only read.
-struct Shared<'a, R>(&'a [R]);
-
-impl<R> AsRef<[R]> for Shared<'_, R> {
-    fn as_ref(&self) -> &[R] {
-        self.0
-    }
+    let samples = unsafe { samples(state.config(), u, f, h, h_integral, n)? };
+    state.add(sums, samples).map_err(status_of)
 }

@@ -2,10 +2,10 @@
 
 use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimate};
 use crate::convert;
+use crate::dispatch;
 use crate::status::*;
 use noisefloor_core::Error;
 use noisefloor_core::control_variate::{self as cv, Config, Estimate, Samples};
-use noisefloor_core::real::Real;
 
 /// Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL or
 /// out of range, or a size no memory has.
@@ -67,12 +67,12 @@ pub unsafe extern "C" fn nf_cv_estimate_with_controls(
             // SAFETY: the caller's workspace, `bytes` long.
             let workspace =
                 unsafe { convert::workspace::<f32>(workspace, bytes, len(cv::workspace_len::<f32>(&core, n))?)? };
-            estimate(&core, samples, workspace)
+            narrow_estimate(&core, samples, workspace)
         } else {
             // SAFETY: the caller's workspace, `bytes` long.
             let workspace =
                 unsafe { convert::workspace::<f64>(workspace, bytes, len(cv::workspace_len::<f64>(&core, n))?)? };
-            estimate(&core, samples, workspace)
+            dispatch::estimate(&core, samples, workspace)
         };
         *out = c_estimate(&estimate.map_err(status_of)?);
         Ok(())
@@ -183,7 +183,9 @@ fn block_len(config: &Config, narrow: bool, pixels: usize, n: usize) -> Result<u
     }
 }
 
-fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
+/// Single precision is for targets without wide vectors: one version will do.
+#[inline(never)]
+fn narrow_estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f32]) -> Result<Estimate, Error> {
     cv::estimate(config, samples, workspace)
 }
 
@@ -197,8 +199,11 @@ pub(super) unsafe fn samples<'a>(
     h_integral: *const f32,
     n: usize,
 ) -> Result<Samples<'a>, nf_status> {
-    // What an invalid configuration says about lengths means nothing.
-    config.terms().map_err(status_of)?;
+    // What a configuration out of range says about lengths means nothing; these fields are all that matters here.
+    let in_range = config.dims <= 16 && config.channels <= 4 && config.controls <= 4;
+    if !in_range || (config.stride != 0 && config.stride < config.dims) {
+        return Err(NF_ERR_RANGE);
+    }
     if n == 0 {
         return Err(NF_ERR_NO_SAMPLES);
     }

@@ -49,7 +49,7 @@ pub const NF_NONFINITE_SKIP: u32 = 1;
 
 /// Each channel is regressed on its own, with one factorisation. The default.
 pub const NF_COLOR_PER_CHANNEL: u32 = 0;
-/// Rec. 709 luminance is regressed and scales the plain mean of 3 channels (4.3).
+/// Rec. 709 luminance is regressed and scales the plain mean of 3 channels (section 4.3).
 pub const NF_COLOR_LUMINANCE_RATIO: u32 = 1;
 
 /// Gradient descent with heavy-ball momentum. The default.
@@ -80,7 +80,7 @@ pub struct nf_cv_config {
     /// 1 if the samples are stratified (a tile, Sobol), 0 if independent. Leave-one-out errors cannot see
     /// stratification: with 1, NF_CV_ROBUST returns the plain mean.
     pub stratified: u32,
-    /// If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (4.15).
+    /// If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (figure 4.15).
     pub slices: u32,
     /// User-supplied control functions with known integrals (4.18), 0 to 4.
     pub controls: u32,

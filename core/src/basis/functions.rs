@@ -4,18 +4,13 @@ use super::Family;
 use crate::lanes::Lanes;
 use crate::real::Real;
 
-/// What the recurrences of a family run on.
-pub(crate) struct Argument;
-
-impl Argument {
-    /// Legendre: 2x - 1. Sine: cos(pi x). Otherwise x.
-    #[inline(always)]
-    pub(crate) fn new<R: Real, const L: usize>(family: Family, x: &Lanes<R, L>) -> Lanes<R, L> {
-        match family {
-            Family::Legendre => x.map(|x| x + x - R::ONE),
-            Family::Sine => x.map(|x| (R::from_f64(core::f64::consts::PI) * x).cos()),
-            Family::Step | Family::Gaussian => *x,
-        }
+/// What the recurrences of a family run on. Legendre: 2x - 1. Sine: cos(pi x). Otherwise x.
+#[inline(always)]
+pub(crate) fn argument<R: Real, const L: usize>(family: Family, x: &Lanes<R, L>) -> Lanes<R, L> {
+    match family {
+        Family::Legendre => x.map(|x| x + x - R::ONE),
+        Family::Sine => x.map(|x| (R::from_f64(core::f64::consts::PI) * x).cos()),
+        Family::Step | Family::Gaussian => *x,
     }
 }
 
@@ -26,7 +21,7 @@ const LEGENDRE_UP: [f64; 8] = [
     1.936_491_673_103_708_5,
     1.972_026_594_366_538_6,
     1.984_313_483_298_443,
-    1.989_974_874_213_239_9,
+    1.989_974_874_213_24,
     1.993_043_457_183_566_4,
     1.994_891_434_824_134_4,
 ];
@@ -58,8 +53,9 @@ pub(crate) fn next<R: Real, const L: usize>(
         Family::Legendre => {
             let up = R::from_f64(LEGENDRE_UP.get(degree).copied().unwrap_or(0.0));
             let down = R::from_f64(LEGENDRE_DOWN.get(degree).copied().unwrap_or(0.0));
-            for ((t, &below), &second) in out.iter_mut().zip(below).zip(second_below) {
-                *t = up * *t * below - down * second;
+            let (below, second) = (*below, *second_below);
+            for l in 0..L {
+                out[l] = up * out[l] * below[l] - down * second[l];
             }
         }
         // cos(d a) = 2 cos(a) cos((d-1) a) - cos((d-2) a), all but the constant scaled by sqrt(2).
@@ -70,8 +66,9 @@ pub(crate) fn next<R: Real, const L: usize>(
                 2 => (R::ONE + R::ONE, root),
                 _ => (R::ONE + R::ONE, R::ONE),
             };
-            for ((c, &below), &second) in out.iter_mut().zip(below).zip(second_below) {
-                *c = up * *c * below - down * second;
+            let (below, second) = (*below, *second_below);
+            for l in 0..L {
+                out[l] = up * out[l] * below[l] - down * second[l];
             }
         }
         Family::Step | Family::Gaussian => {

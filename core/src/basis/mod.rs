@@ -23,7 +23,6 @@ use crate::error::Error;
 use crate::lanes::Lanes;
 use crate::real::Real;
 use crate::rows::rows_mut;
-use functions::Argument;
 use gaussian::Gaussians;
 use heapless::Vec;
 use terms::Term;
@@ -53,16 +52,63 @@ pub enum Family {
 #[derive(Clone, Debug)]
 pub struct Basis {
     family: Family,
-    /// Coordinates that are regressed as numbers.
-    continuous: usize,
-    slices: usize,
+    shape: Shape,
     terms: Vec<Term, MAX_TERMS>,
     gaussians: Option<Gaussians>,
-    /// Columns of degree one: the continuous coordinates and the indicators.
-    first_degree: usize,
-    /// First columns and their count, of the per-slice copies; (0, 0) without.
+}
+
+/// How many functions there are of each kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Shape {
+    /// Coordinates that are regressed as numbers.
+    continuous: usize,
+    order: usize,
+    /// Slices, each with its indicator; 0 without.
+    slices: usize,
+    /// Functions that all slices share.
+    shared: usize,
+    /// Functions that each slice has its own copy of.
     copies: usize,
-    columns: usize,
+}
+
+impl Shape {
+    /// # Errors
+    /// As for [`Basis::new`].
+    pub(crate) fn new(dims: usize, order: usize, slices: usize) -> Result<Self, Error> {
+        if dims == 0 || dims > MAX_DIMS || order > MAX_ORDER || slices >= MAX_TERMS {
+            return Err(Error::Range);
+        }
+        let slices = if slices > 1 && order > 0 { slices } else { 0 };
+        let continuous = if slices > 0 { dims - 1 } else { dims };
+        let shared = count(continuous, order);
+        if 1 + shared + slices > MAX_TERMS {
+            return Err(Error::Range);
+        }
+        // As many whole degrees of per-slice copies as fit.
+        let fits = |&copies: &usize| 1 + shared + slices + slices * copies <= MAX_TERMS;
+        let copies = (1..=if slices > 0 { order } else { 0 })
+            .rev()
+            .map(|degree| count(continuous, degree))
+            .find(fits)
+            .unwrap_or(0);
+        Ok(Self { continuous, order, slices, shared, copies })
+    }
+
+    /// All functions; the constant is not one of them.
+    #[inline(always)]
+    pub(crate) fn columns(&self) -> usize {
+        self.shared + self.slices + self.slices * self.copies
+    }
+}
+
+/// The multi-indices over `dims` coordinates of degree 1 to `order`: binomial(dims + order, order) - 1.
+fn count(dims: usize, order: usize) -> usize {
+    // Exact at each step, and no larger than binomial(23, 7): 32 bits divide faster than 64.
+    let mut binomial = 1u32;
+    for k in 1..=order as u32 {
+        binomial = binomial * (dims as u32 + k) / k;
+    }
+    binomial as usize - 1
 }
 
 impl Basis {
@@ -70,48 +116,38 @@ impl Basis {
     ///
     /// # Errors
     /// [`Error::Range`] if a number is out of range or the terms, constant included, would exceed [`MAX_TERMS`].
-    #[inline]
     pub fn new(family: Family, dims: usize, order: usize, slices: usize) -> Result<Self, Error> {
-        let slices = if slices > 1 { slices } else { 0 };
-        if dims == 0 || dims > MAX_DIMS || order > MAX_ORDER || slices >= MAX_TERMS {
-            return Err(Error::Range);
-        }
-        let continuous = if slices > 0 { dims - 1 } else { dims };
-        let indicators = if order > 0 { slices } else { 0 };
-        let terms = terms::total_degree(continuous, order, indicators).ok_or(Error::Range)?;
-        let shared = terms.len();
-        if 1 + shared + indicators > MAX_TERMS {
-            return Err(Error::Range);
-        }
-        // As many whole degrees of per-slice copies as fit.
-        let fits = |degree: usize| {
-            let count = terms.iter().filter(|term| term.degree() <= degree).count();
-            (1 + shared + indicators + indicators * count <= MAX_TERMS).then_some(count)
-        };
-        let copies = (1..=order).rev().find_map(fits).unwrap_or(0);
-        let gaussians = (family == Family::Gaussian).then(|| Gaussians::new(continuous, shared));
-        Ok(Self {
-            family,
-            continuous,
-            slices,
-            first_degree: if order > 0 { continuous + indicators } else { 0 },
-            copies: if indicators > 0 { copies } else { 0 },
-            columns: shared + indicators + if indicators > 0 { indicators * copies } else { 0 },
-            terms,
-            gaussians,
-        })
+        let mut basis = Self::empty();
+        basis.set(family, Shape::new(dims, order, slices)?)?;
+        Ok(basis)
+    }
+
+    /// A basis of no functions, to be set.
+    #[inline(always)]
+    pub(crate) fn empty() -> Self {
+        Self { family: Family::Legendre, shape: Shape::default(), terms: Vec::new(), gaussians: None }
+    }
+
+    /// Makes it another basis, of a shape that was checked. A basis is a few kilobytes, which are better not moved.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, family: Family, shape: Shape) -> Result<(), Error> {
+        self.family = family;
+        self.shape = shape;
+        terms::total_degree(shape.continuous, shape.order, shape.slices, &mut self.terms).ok_or(Error::Range)?;
+        self.gaussians = (family == Family::Gaussian).then(|| Gaussians::new(shape.continuous, shape.shared));
+        Ok(())
     }
 
     /// How many functions there are; the constant is not one of them.
     #[inline(always)]
     pub fn columns(&self) -> usize {
-        self.columns
+        self.shape.columns()
     }
 
     /// How many leading functions are of degree one.
     #[inline(always)]
     pub fn first_degree(&self) -> usize {
-        self.first_degree
+        if self.shape.order > 0 { self.shape.continuous + self.shape.slices } else { 0 }
     }
 
     /// The ridge penalty of each column, relative: 4^(degree - 1) times the number of columns of that degree.
@@ -120,12 +156,12 @@ impl Basis {
     pub(crate) fn penalties<R: Real>(&self, out: &mut [R]) {
         let mut counts = [0usize; MAX_ORDER + 1];
         let degree = |column: usize| self.degree(column);
-        for column in 0..self.columns {
+        for column in 0..self.columns() {
             if let Some(count) = counts.get_mut(degree(column)) {
                 *count += 1;
             }
         }
-        for (column, penalty) in out.iter_mut().enumerate().take(self.columns) {
+        for (column, penalty) in out.iter_mut().enumerate().take(self.columns()) {
             let degree = degree(column);
             let count = counts.get(degree).copied().unwrap_or(1);
             *penalty = R::from_usize(count) * R::from_usize(1).scale(2 * (degree as i32 - 1));
@@ -134,51 +170,42 @@ impl Basis {
 
     /// 2^(1 - degree) for each column.
     pub(crate) fn scales<R: Real>(&self, out: &mut [R]) {
-        for (column, scale) in out.iter_mut().enumerate().take(self.columns) {
+        for (column, scale) in out.iter_mut().enumerate().take(self.columns()) {
             *scale = R::ONE.scale(1 - self.degree(column) as i32);
         }
     }
 
     /// The total degree of a column; indicators count as one, a slice's copy of a function as the function.
     fn degree(&self, column: usize) -> usize {
-        let indicators = self.indicators();
-        let shared = self.terms.len();
-        let term = if column < self.continuous {
+        let Shape { continuous, slices, shared, copies, .. } = self.shape;
+        let term = if column < continuous {
             column
-        } else if column < self.continuous + indicators {
+        } else if column < continuous + slices {
             return 1;
-        } else if column < shared + indicators {
-            column - indicators
+        } else if column < shared + slices {
+            column - slices
         } else {
-            (column - shared - indicators).checked_rem(self.copies).unwrap_or(0)
+            (column - shared - slices).checked_rem(copies).unwrap_or(0)
         };
         self.terms.get(term).map_or(1, Term::degree)
     }
 
     /// Whether another basis has the same functions in the same order.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
-        self.family == other.family
-            && self.continuous == other.continuous
-            && self.slices == other.slices
-            && self.terms.len() == other.terms.len()
-    }
-
-    #[inline(always)]
-    fn indicators(&self) -> usize {
-        if self.first_degree > 0 { self.slices } else { 0 }
+        self.family == other.family && self.shape == other.shape
     }
 
     /// Evaluates every function at `L` points: `x` has a group of lanes for each coordinate, `out` gets one for each
     /// column. Coordinates are taken to be in [0, 1].
     #[inline(always)]
     pub(crate) fn evaluate<R: Real, const L: usize>(&self, x: &[Lanes<R, L>], out: &mut [Lanes<R, L>]) {
-        let indicators = self.indicators();
+        let Shape { continuous, slices, .. } = self.shape;
         match &self.gaussians {
-            Some(gaussians) => gaussians.evaluate(x, self.continuous, indicators, out),
+            Some(gaussians) => gaussians.evaluate(x, continuous, slices, out),
             None => {
                 let mut arguments = [[R::ZERO; L]; MAX_DIMS];
-                for (argument, x) in arguments.iter_mut().zip(x).take(self.continuous) {
-                    *argument = Argument::new(self.family, x);
+                for (argument, x) in arguments.iter_mut().zip(x).take(continuous) {
+                    *argument = functions::argument(self.family, x);
                 }
                 for term in &self.terms {
                     let value = term.value(self.family, &arguments, out);
@@ -188,8 +215,8 @@ impl Basis {
                 }
             }
         }
-        if indicators > 0
-            && let Some(choice) = x.get(self.continuous)
+        if slices > 0
+            && let Some(choice) = x.get(continuous)
         {
             self.evaluate_slices(choice, out);
         }
@@ -198,19 +225,20 @@ impl Basis {
     /// The indicators (S [k = s] - 1) / sqrt(S - 1), and sqrt(S) [k = s] times each copied function.
     #[inline(never)]
     fn evaluate_slices<R: Real, const L: usize>(&self, choice: &Lanes<R, L>, out: &mut [Lanes<R, L>]) {
-        let slices = R::from_usize(self.slices);
-        let outside = -R::ONE / (slices - R::ONE).sqrt();
-        let inside = (slices - R::ONE).sqrt();
-        let scale = slices.sqrt();
-        let picked = choice.map(|u| slice_of(u, self.slices));
-        let indicators = out.get_mut(self.continuous..self.continuous + self.slices).unwrap_or(&mut []);
+        let Shape { continuous, slices, shared, copies, .. } = self.shape;
+        let count = R::from_usize(slices);
+        let inside = (count - R::ONE).sqrt();
+        let outside = -R::ONE / inside;
+        let scale = count.sqrt();
+        let picked = choice.map(|u| slice_of(u, slices));
+        let indicators = out.get_mut(continuous..continuous + slices).unwrap_or(&mut []);
         for (s, column) in indicators.iter_mut().enumerate() {
             for (value, &k) in column.iter_mut().zip(&picked) {
                 *value = if k == s { inside } else { outside };
             }
         }
-        let (shared, copies) = out.split_at_mut_checked(self.terms.len() + self.slices).unwrap_or((&mut [], &mut []));
-        for (s, block) in rows_mut(copies, self.copies).enumerate().take(self.slices) {
+        let (shared, blocks) = out.split_at_mut_checked(shared + slices).unwrap_or((&mut [], &mut []));
+        for (s, block) in rows_mut(blocks, copies).enumerate().take(slices) {
             for (term, column) in self.terms.iter().zip(block) {
                 let source = shared.get(term.column()).copied().unwrap_or([R::ZERO; L]);
                 for ((value, source), &k) in column.iter_mut().zip(source).zip(&picked) {

@@ -56,13 +56,10 @@ impl Term {
     }
 }
 
-/// Every multi-index of degree 1 to `order` over `dims` coordinates, degree by degree, or None if there are too many.
-/// Columns `dims..dims + gap` are left free for the slices' indicators.
-pub(crate) fn total_degree(dims: usize, order: usize, gap: usize) -> Option<Vec<Term, MAX_TERMS>> {
-    let mut terms: Vec<Term, MAX_TERMS> = Vec::new();
-    if order == 0 {
-        return Some(terms);
-    }
+/// Sets `terms` to every multi-index of degree 1 to `order` over `dims` coordinates, degree by degree; None if there are
+/// too many. Columns `dims..dims + gap` are left free for the slices' indicators.
+pub(crate) fn total_degree(dims: usize, order: usize, gap: usize, terms: &mut Vec<Term, MAX_TERMS>) -> Option<()> {
+    terms.clear();
     let column = |index: usize| u8::try_from(if index < dims { index } else { index + gap }).ok();
     // The columns of the one-dimensional functions, by coordinate and degree.
     let mut pure = [[CONSTANT; MAX_ORDER + 1]; MAX_DIMS];
@@ -71,7 +68,7 @@ pub(crate) fn total_degree(dims: usize, order: usize, gap: usize) -> Option<Vec<
             let column = column(terms.len())?;
             let below = |steps: usize| degree.checked_sub(steps).and_then(|d| pure.get(d)).copied().unwrap_or(CONSTANT);
             let sources = [below(1), below(2)];
-            push(&mut terms, Term { column, degree: degree as u8, dim: dim as u8, product: false, sources })?;
+            push(terms, Term { column, degree: degree as u8, dim: dim as u8, product: false, sources })?;
             *pure.get_mut(degree)? = column;
         }
         // A product is a lower-degree function of the coordinates before `dim` times a one-dimensional one of `dim`.
@@ -84,11 +81,11 @@ pub(crate) fn total_degree(dims: usize, order: usize, gap: usize) -> Option<Vec<
             for (dim, pure) in pure.iter().enumerate().take(dims).skip(usize::from(left.dim) + 1) {
                 let sources = [left.column, *pure.get(power)?];
                 let column = column(terms.len())?;
-                push(&mut terms, Term { column, degree: degree as u8, dim: dim as u8, product: true, sources })?;
+                push(terms, Term { column, degree: degree as u8, dim: dim as u8, product: true, sources })?;
             }
         }
     }
-    Some(terms)
+    Some(())
 }
 
 fn push(terms: &mut Vec<Term, MAX_TERMS>, term: Term) -> Option<()> {

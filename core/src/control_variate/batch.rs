@@ -1,12 +1,12 @@
 //! Estimates from samples in caller arrays.
 
-use super::accumulator::{Accumulator, State};
 use super::config::{Config, Estimate, Estimator, Solver};
 use super::design::Design;
 use super::fitter::{self, Fitter, Rule};
 use super::per_channel::PerChannel;
 use super::result::{self, Outcome};
 use super::samples::{Reader, Samples, Subset};
+use super::state::State;
 use super::{gradient_descent, k_fold, square_root};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -23,8 +23,7 @@ const MAX_DUAL: usize = 4096;
 /// be large enough.
 #[inline]
 pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error> {
-    let basis = config.checked_basis()?;
-    let plan = Plan::new(config, &basis, n)?;
+    let plan = Plan::new(config, config.checked_shape()?.columns(), n)?;
     let design = Design::<R>::size(n, plan.columns, config.channels).ok_or(Error::Memory)?;
     let solve = match config.estimator {
         Estimator::GradientDescent => gradient_descent::size(plan.columns, config.channels),
@@ -33,7 +32,7 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
             let state = State::<R>::new(config)?;
             return state.len().checked_add(state.workspace_len()).ok_or(Error::Memory);
         }
-        Estimator::LeastSquares if config.solver == Solver::SquareRoot => square_root::size(plan.columns, 1),
+        Estimator::LeastSquares if config.solver == Solver::SquareRoot => square_root::size(plan.columns, config.channels),
         _ => fitter::size(n, plan.dual, plan.columns, config.channels).ok_or(Error::Memory)?,
     };
     design.checked_add(solve).ok_or(Error::Memory)
@@ -50,8 +49,8 @@ pub(crate) struct Plan {
 
 impl Plan {
     #[inline(always)]
-    pub(crate) fn new(config: &Config, basis: &Basis, n: usize) -> Result<Self, Error> {
-        let columns = config.controls + basis.columns();
+    pub(crate) fn new(config: &Config, functions: usize, n: usize) -> Result<Self, Error> {
+        let columns = config.controls + functions;
         let dual = match config.solver {
             // Control functions are all but free of penalty, which the dual divides by.
             Solver::Auto => n <= columns && config.controls == 0,
@@ -82,9 +81,10 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
     if config.estimator == Estimator::Incremental {
         return incremental(config, samples, workspace);
     }
-    let basis = config.checked_basis()?;
+    let mut basis = Basis::empty();
+    basis.set(config.basis, config.checked_shape()?)?;
     let reader = Reader::new(config, samples)?;
-    let plan = Plan::new(config, &basis, reader.len())?;
+    let plan = Plan::new(config, basis.columns(), reader.len())?;
     reader.check()?;
     let mut arena = Arena::new(workspace);
     let is_plain = plan.columns == 0 || (config.stratified && config.estimator == Estimator::Robust);
@@ -110,11 +110,11 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
 
 /// (4.30) is about a stream: the batch form streams.
 fn incremental<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
-    let state = State::<R>::new(config)?;
+    let mut state = State::<R>::new(config)?;
     let (sums, scratch) = workspace.split_at_mut_checked(state.len()).ok_or(Error::Memory)?;
-    let mut accumulator = Accumulator::new(config, sums)?;
-    accumulator.add(samples)?;
-    accumulator.estimate(scratch)
+    state.reset(sums)?;
+    state.add(sums, samples)?;
+    state.estimate(sums, scratch)
 }
 
 /// The estimators that fit all samples at once through the normal equations or their dual.

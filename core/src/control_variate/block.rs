@@ -32,8 +32,8 @@ const SHARPNESS: f64 = 1.0 / 6.0;
 /// # Errors
 /// As for [`estimate_block`].
 pub fn block_workspace_len<R: Real>(config: &Config, pixels: usize, n: usize) -> Result<usize, Error> {
-    let basis = config.checked_basis()?;
-    let (columns, channels) = (config.controls + basis.columns(), config.channels);
+    let shape = config.checked_shape()?;
+    let (columns, channels) = (config.controls + shape.columns(), config.channels);
     let sums = moments::len(columns + 1, channels);
     let fit = moments::centred_len(columns, channels) + moments::solve_len(columns);
     let estimates = (CANDIDATES + 1) * channels;
@@ -56,7 +56,8 @@ pub fn estimate_block<R: Real>(
     workspace: &mut [R],
     mut out: impl FnMut(usize, Estimate),
 ) -> Result<(), Error> {
-    let basis = config.checked_basis()?;
+    let mut basis = Basis::empty();
+    basis.set(config.basis, config.checked_shape()?)?;
     if config.color != super::Color::PerChannel || config.non_finite != super::NonFinite::Error {
         return Err(Error::Unsupported);
     }
@@ -214,7 +215,12 @@ impl<'a, R: Real> Block<'a, R> {
                 (R::ZERO, only)
             } else {
                 let power = R::from_usize(self.pixels) * R::from_f64(SHARPNESS);
-                trust::weights(plain, &spreads, &[R::ZERO; CANDIDATES], power, R::from_usize(self.pixels))
+                {
+                    let mut weights = [R::ZERO; CANDIDATES];
+                    let pixels = R::from_usize(self.pixels);
+                    let plain = trust::weigh(plain, &spreads, &[], power, pixels, &mut weights);
+                    (plain, weights)
+                }
             };
             let all = [plain_weight].into_iter().chain(fit_weights);
             let mut mixed = R::ZERO;

@@ -9,7 +9,7 @@ use super::config::Ridge;
 use super::moments::{self, Centred, Moments};
 use super::per_channel::{PerChannel, add, get, set};
 use super::result::{self, Outcome};
-use super::ridge::{self, CANDIDATES, STRENGTHS};
+use super::ridge::{self, MIXED};
 use super::trust;
 use crate::arena::Arena;
 use crate::error::Error;
@@ -18,6 +18,9 @@ use crate::rows::{rows, rows_mut};
 
 /// Trust in a candidate is its error, relative to the mean's, to the power of minus this times the sample count.
 const SHARPNESS: f64 = 1.0 / 6.0;
+
+/// The number of candidates besides the plain mean.
+const CANDIDATES: usize = MIXED.len();
 
 /// An accumulator's sums, fold after fold.
 pub(crate) struct Groups<'a, R> {
@@ -65,7 +68,7 @@ pub(crate) fn estimate<R: Real>(
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
     let fixed = [ridge::single(ridge)];
-    let strengths: &[f64] = if matches!(ridge, Ridge::Default | Ridge::Auto) { &STRENGTHS } else { &fixed };
+    let strengths: &[f64] = if matches!(ridge, Ridge::Default | Ridge::Auto) { &MIXED } else { &fixed };
     let channels = groups.channels;
     let coefficients = arena.take(CANDIDATES * groups.columns * channels)?;
     let train = arena.take(moments::len(groups.columns + 1, channels))?;
@@ -250,7 +253,8 @@ impl<R: Real> Judge<R> {
             }
             let power = self.count * R::from_f64(SHARPNESS);
             let discounts = self.discounts.map(|total| total / self.fits.max(R::ONE));
-            let (plain, each) = trust::weights(get(&self.plain, channel), &errors, &discounts, power, self.count);
+            let mut each = [R::ZERO; CANDIDATES];
+            let plain = trust::weigh(get(&self.plain, channel), &errors, &discounts, power, self.count, &mut each);
             set(&mut plain_weights, channel, plain);
             for (weights, weight) in weights.iter_mut().zip(each) {
                 set(weights, channel, weight);

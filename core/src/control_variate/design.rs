@@ -53,14 +53,14 @@ impl<R: Real> Units<R> {
 
     /// A length stored in other units, in these.
     #[inline(always)]
-    pub(crate) fn from_other(&self, length: R, other: &Self) -> R {
+    pub(crate) fn converted(&self, length: R, other: &Self) -> R {
         if self.exponent == other.exponent { length } else { length.scale(other.exponent - self.exponent) }
     }
 
     /// A value stored in other units, in these.
     #[inline(always)]
     pub(crate) fn relative(&self, stored: R, other: &Self) -> R {
-        self.from_other(other.offset + stored, other) - self.offset
+        self.converted(other.offset + stored, other) - self.offset
     }
 }
 
@@ -92,35 +92,23 @@ impl<'a, R: Real> Design<'a, R> {
         let mut x = [[R::ZERO; LANES]; MAX_DIMS];
         let mut h = [[R::ZERO; LANES]; Config::MAX_CONTROLS];
         let mut f = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
-        let mut value_panels = rows_mut(values, channels);
-        // Columns may be none, and chunks of nothing would be none either.
         let mut column_panels = rows_mut(panels, columns);
-        let mut flush = |x: &_, h: &_, f: &[Lanes<R>]| {
+        let mut value_panels = rows_mut(values, channels);
+        let (mut next, mut n) = (0, 0);
+        loop {
+            // Lanes that are not filled hold an earlier panel's samples, in range; they are cleared below.
+            let filled = reader.panel(subset, &mut next, &mut x, &mut h, &mut f);
+            if filled == 0 {
+                break;
+            }
+            n += filled;
             if let Some(panel) = column_panels.next() {
-                reader.columns(basis, x, h, panel);
+                reader.columns(basis, &x, &h, panel);
             }
-            for (out, f) in value_panels.next().unwrap_or(&mut []).iter_mut().zip(f) {
-                *out = *f;
+            let values = value_panels.next().unwrap_or(&mut []).iter_mut();
+            for (((out, f), &factor), unit) in values.zip(&f).zip(&factors).zip(&units) {
+                *out = f.map(|f| f * factor - unit.offset);
             }
-        };
-        let mut lane = 0;
-        let n = reader.each(subset, |sample| {
-            sample.put(lane, &mut x, &mut h);
-            let sample = reader.values::<R>(sample);
-            for (((f, value), factor), unit) in f.iter_mut().zip(sample).zip(factors).zip(&units) {
-                if let Some(f) = f.get_mut(lane) {
-                    *f = value * factor - unit.offset;
-                }
-            }
-            lane += 1;
-            if lane == LANES {
-                flush(&x, &h, &f);
-                lane = 0;
-            }
-        });
-        if lane > 0 {
-            // The other lanes hold an earlier panel's samples, in range; they are cleared below.
-            flush(&x, &h, &f);
         }
         if n == 0 {
             return Err(Error::NoSamples);
@@ -156,9 +144,7 @@ impl<'a, R: Real> Design<'a, R> {
         }
         for panel in rows_mut(self.panels, self.columns) {
             for (column, &mean) in panel.iter_mut().zip(self.column_means.iter()) {
-                for value in column {
-                    *value -= mean;
-                }
+                *column = column.map(|value| value - mean);
             }
         }
         for (channel, unit) in self.units.iter_mut().enumerate().take(self.channels) {
@@ -170,8 +156,8 @@ impl<'a, R: Real> Design<'a, R> {
             }
             let mean = lanes::sum(&total) * inverse;
             for panel in rows_mut(self.values, self.channels) {
-                for value in panel.get_mut(channel).into_iter().flatten() {
-                    *value -= mean;
+                if let Some(values) = panel.get_mut(channel) {
+                    *values = values.map(|value| value - mean);
                 }
             }
             unit.offset += mean;
@@ -266,14 +252,10 @@ pub(crate) fn units<R: Real>(reader: &Reader<'_>, subset: Subset) -> [Units<R>; 
             unit.exponent = if largest > R::ZERO { largest.exponent().clamp(-126, 126) } else { 0 };
         }
     }
-    let mut first = true;
-    reader.each(subset, |sample| {
-        if first {
-            first = false;
-            for (unit, value) in units.iter_mut().zip(reader.values::<R>(sample)) {
-                unit.offset = value * R::ONE.scale(-unit.exponent);
-            }
+    if let Some(sample) = reader.first(subset) {
+        for (unit, value) in units.iter_mut().zip(reader.values::<R>(&sample)) {
+            unit.offset = value * R::ONE.scale(-unit.exponent);
         }
-    });
+    }
     units
 }

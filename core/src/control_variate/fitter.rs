@@ -3,7 +3,7 @@
 use super::config::{Config, Ridge};
 use super::design::Design;
 use super::per_channel::{PerChannel, add, get, set};
-use super::ridge::{self, CANDIDATES, STRENGTHS};
+use super::ridge::{self, CHOICES, MAX_FITS, MIXED};
 use super::ridge_fit::{self, Choice, Dual, RidgeFit};
 use super::trust;
 use crate::arena::Arena;
@@ -29,8 +29,8 @@ pub(crate) enum Rule {
 
 /// Fits and their weights.
 pub(crate) struct Blend<R> {
-    fits: [RidgeFit<R>; CANDIDATES],
-    weights: [PerChannel<R>; CANDIDATES],
+    fits: [RidgeFit<R>; MAX_FITS],
+    weights: [PerChannel<R>; MAX_FITS],
     plain_weight: PerChannel<R>,
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct Fitter<'a, 'd, R> {
 /// How many numbers a [`Fitter`] and its fits take, for up to `n` samples.
 pub(crate) fn size(n: usize, dual: bool, columns: usize, channels: usize) -> Option<usize> {
     let dual = if dual { ridge_fit::dual_size(n, channels)? } else { 0 };
-    let systems = packed_len(columns) + columns * (1 + channels) + CANDIDATES * columns * channels;
+    let systems = packed_len(columns) + columns * (1 + channels) + MAX_FITS * columns * channels;
     systems.checked_add(ridge_fit::primal_size(columns, channels).max(dual))
 }
 
@@ -88,13 +88,14 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
             Rule::Robust => 0.0,
         }];
         let (strengths, leave_one_out) = match rule {
-            Rule::Robust | Rule::Single(Ridge::Auto) | Rule::LeastSquares(Ridge::Auto) => (&STRENGTHS[..], true),
+            Rule::Robust => (&MIXED[..], true),
+            Rule::Single(Ridge::Auto) | Rule::LeastSquares(Ridge::Auto) => (&CHOICES[..], true),
             Rule::Single(_) => (&single[..], true),
             Rule::LeastSquares(_) => (&single[..], false),
         };
         let each = design.columns * design.channels;
         let kept = arena.take(if coefficients.is_some() { strengths.len() * each } else { 0 })?;
-        let mut fits = [RidgeFit::default(); CANDIDATES];
+        let mut fits = [RidgeFit::default(); MAX_FITS];
         for (index, (&strength, fit)) in strengths.iter().zip(&mut fits).enumerate() {
             let kept = kept.get_mut(index * each..(index + 1) * each).filter(|kept| !kept.is_empty());
             let choice = Choice { strength: R::from_f64(strength), penalties: self.penalties, leave_one_out };
@@ -116,7 +117,7 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         Ok(blend)
     }
 
-    fn weigh(&self, rule: Rule, fits: [RidgeFit<R>; CANDIDATES], used: usize) -> Blend<R> {
+    fn weigh(&self, rule: Rule, fits: [RidgeFit<R>; MAX_FITS], used: usize) -> Blend<R> {
         let mut blend = Blend { fits, weights: Default::default(), plain_weight: PerChannel::default() };
         let plain = plain_press(self.design);
         if rule != Rule::Robust {
@@ -131,7 +132,9 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         let discounts = fits.map(|fit| trust::discount(fit.eccentricity, fit.freedom, n));
         for channel in 0..self.design.channels {
             let press = fits.map(|fit| get(&fit.press, channel));
-            let (plain_weight, weights) = trust::weights(get(&plain, channel), &press, &discounts, power, n);
+            let mut weights = [R::ZERO; MAX_FITS];
+            let used = weights.get_mut(..used).unwrap_or(&mut []);
+            let plain_weight = trust::weigh(get(&plain, channel), &press, &discounts, power, n, used);
             set(&mut blend.plain_weight, channel, plain_weight);
             for (slot, weight) in blend.weights.iter_mut().zip(weights) {
                 set(slot, channel, weight);
@@ -142,7 +145,7 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
 }
 
 /// Of fits the one with the smallest leave-one-out error summed over the channels, each relative to its plain mean's.
-fn best_of<R: Real>(fits: &[RidgeFit<R>; CANDIDATES], plain: &PerChannel<R>) -> usize {
+fn best_of<R: Real>(fits: &[RidgeFit<R>; MAX_FITS], plain: &PerChannel<R>) -> usize {
     let error = |fit: &RidgeFit<R>| {
         let channels = fit.press.iter().zip(plain).filter(|(_, plain)| **plain > R::ZERO);
         channels.fold(R::ZERO, |sum, (&press, &plain)| sum + press / plain)

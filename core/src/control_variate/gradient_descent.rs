@@ -65,9 +65,10 @@ pub fn estimate_from<R: Real>(
     coefficients: &mut [f32],
     workspace: &mut [R],
 ) -> Result<Estimate, Error> {
-    let basis = config.checked_basis()?;
+    let mut basis = Basis::empty();
+    basis.set(config.basis, config.checked_shape()?)?;
     let reader = Reader::new(config, samples)?;
-    let columns = Plan::new(config, &basis, reader.len())?.columns;
+    let columns = Plan::new(config, basis.columns(), reader.len())?.columns;
     if coefficients.len() != columns * reader.channels() {
         return Err(Error::Range);
     }
@@ -299,7 +300,8 @@ fn largest_curvature<R: Real>(
             *value *= scale;
         }
         let (before, after) = (length(vector), length(image));
-        if !(after > R::ZERO && before > R::ZERO) {
+        let usable = after > R::ZERO && before > R::ZERO;
+        if !usable {
             break;
         }
         largest = after / before;

@@ -11,6 +11,7 @@ use super::per_channel::{PerChannel, add, get, set};
 use super::result::Outcome;
 use super::{ridge, trust};
 use crate::arena::Arena;
+use crate::basis::Basis;
 use crate::real::Real;
 use crate::rows::rows_mut;
 
@@ -63,7 +64,9 @@ pub(crate) fn correct<R: Real>(progress: &mut Progress<R>, ridge: Ridge, coeffic
                     let n = progress.predictions;
                     let power = n * R::from_f64(SHARPNESS);
                     let plain = get(&progress.plain_error, channel);
-                    trust::weights(plain, &errors, &[R::ZERO; FITS], power, n).1
+                    let mut weights = [R::ZERO; FITS];
+                    trust::weigh(plain, &errors, &[], power, n, &mut weights);
+                    weights
                 }
             };
             for (&weight, &slope) in weights.iter().zip(&slopes) {
@@ -104,11 +107,15 @@ pub(crate) fn refit<R: Real>(
     };
     let mut solve = || {
         let sums = Moments::new(sums, columns + 1, channels)?;
-        let basis = config.checked_basis().ok()?;
         let mut arena = Arena::new(rest);
         let coefficients = arena.take(FITS * columns * channels).ok()?;
         let penalties = arena.take(columns).ok()?;
-        ridge::penalties(config, &basis, |j| sums.column_square(j) / sums.count(), penalties);
+        if progress.next_fit == 0 || config.controls > 0 {
+            // They stay in the buffer: only those of control functions depend on the samples.
+            let mut basis = Basis::empty();
+            basis.set(config.basis, config.checked_shape().ok()?).ok()?;
+            ridge::penalties(config, &basis, |j| sums.column_square(j) / sums.count(), penalties);
+        }
         let centred = Centred::new(&sums, columns, channels, &mut arena).ok()??;
         let fits = rows_mut(coefficients, columns * channels).zip(strengths).zip(&mut progress.intercepts);
         for ((coefficients, strength), intercepts) in fits {

@@ -19,11 +19,11 @@ pub(crate) fn size<R: Real>(config: &Config, columns: usize, n: usize) -> Option
     // The largest training set leaves out the smallest fold, and the held-out fold is no larger than that.
     let train = n - n.checked_div(config.fold_count()).unwrap_or(0);
     let channels = config.channels;
-    let designs = Design::<R>::size(train, columns, channels)?.checked_mul(2)?;
+    // Some training sets may go through the dual and others not.
+    let largest_dual = if config.solver == Solver::Dual { train } else { train.min(columns) };
     let primal = fitter::size(train, false, columns, channels)?;
-    // Training sets differ in size, and skipped samples make them smaller: some may be short where the largest is not.
-    let short = if config.solver == Solver::Dual { train } else { train.min(columns) };
-    let dual = fitter::size(short, true, columns, channels)?;
+    let dual = fitter::size(largest_dual, true, columns, channels)?;
+    let designs = Design::<R>::size(train, columns, channels)?.checked_mul(2)?;
     primal.max(dual).checked_add(designs)?.checked_add(columns * channels)
 }
 
@@ -55,7 +55,7 @@ pub(crate) fn estimate<R: Real>(
             *value = R::ZERO;
         }
         if let Some(train) = train.filter(|train| train.n > 1) {
-            let plan = Plan::new(config, basis, train.n)?;
+            let plan = Plan::new(config, basis.columns(), train.n)?;
             let fitter = Fitter::new(&train, config, basis, plan.dual, &mut arena)?;
             let rule = if config.ridge == Ridge::Default { Rule::Robust } else { Rule::Single(config.ridge) };
             fitter.solve(rule, Some(coefficients), &mut arena)?;
@@ -64,7 +64,7 @@ pub(crate) fn estimate<R: Real>(
                 rows_mut(coefficients, whole.columns).zip(train.units.iter().zip(&held_out.units))
             {
                 for value in coefficients {
-                    *value = to.from_other(*value, from);
+                    *value = to.converted(*value, from);
                 }
             }
         }

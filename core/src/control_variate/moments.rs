@@ -192,7 +192,7 @@ impl<'a, R: Real> Centred<'a, R> {
         let rhs = arena.take(columns * channels)?;
         let means = arena.take(columns)?;
         let count = sums.count();
-        if !(count > R::ZERO) {
+        if count <= R::ZERO {
             return Ok(None);
         }
         let inverse = R::ONE / count;

@@ -5,10 +5,12 @@ use super::config::Ridge;
 use crate::basis::Basis;
 use crate::real::Real;
 
-/// Strengths, per sample, of the candidates of a mixture and of [`Ridge::Auto`].
-pub(crate) const STRENGTHS: [f64; 4] = [2e-5, 1e-3, 0.02, 0.2];
-/// The number of candidates besides the plain mean.
-pub(crate) const CANDIDATES: usize = STRENGTHS.len();
+/// Strengths, per sample, of the fits of a mixture. More of them gain nothing that a test can see, and each costs time.
+pub(crate) const MIXED: [f64; 2] = [2e-5, 0.02];
+/// Strengths, per sample, that [`Ridge::Auto`] chooses from.
+pub(crate) const CHOICES: [f64; 4] = [2e-5, 1e-3, 0.02, 0.2];
+/// The most fits that are made of one design.
+pub(crate) const MAX_FITS: usize = CHOICES.len();
 /// The strength of [`Ridge::Default`] where there is one fit.
 const DEFAULT: f64 = 0.01;
 /// What keeps a least-squares system with too few samples solvable, for `f64` and for narrower types.

@@ -144,28 +144,31 @@ fn residuals<R: Real>(
         for (j, (z, &mean)) in z.iter().zip(means).enumerate() {
             let pivot = ldlt::inverse_pivot(factor, j);
             let scaled_mean = mean * pivot;
-            for ((leverage, shift), &z) in leverage.iter_mut().zip(&mut shift).zip(z) {
-                *leverage += z * z * pivot;
-                *shift += z * scaled_mean;
+            let z = *z;
+            for l in 0..LANES {
+                leverage[l] += z[l] * z[l] * pivot;
+                shift[l] += z[l] * scaled_mean;
             }
         }
         freedom = lanes::zip(&freedom, &leverage, |a, b| a + b);
         lanes::add_product(&mut eccentricity, &shift, &shift);
         let mut gap = zero;
-        for (gap, &leverage) in gap.iter_mut().zip(&leverage) {
-            *gap = R::ONE / (R::ONE - inverse_n - leverage).max(smallest_gap);
+        for l in 0..LANES {
+            gap[l] = R::ONE / (R::ONE - inverse_n - leverage[l]).max(smallest_gap);
         }
         let channels = values.iter().zip(rows(solution, columns)).zip(&mut press).zip(&mut corrections);
         for (((values, solution), press), corrections) in channels {
             let mut residual = *values;
             for (z, &weight) in z.iter().zip(solution) {
-                lanes::add_scaled(&mut residual, -weight, z);
+                lanes::subtract_scaled(&mut residual, weight, z);
             }
+            let (mut press_sum, mut correction_sum) = (*press, *corrections);
             for l in 0..LANES {
                 let residual = residual[l] * gap[l];
-                press[l] += residual * residual;
-                corrections[l] += (leverage[l] + shift[l]) * residual;
+                press_sum[l] += residual * residual;
+                correction_sum[l] += (leverage[l] + shift[l]) * residual;
             }
+            (*press, *corrections) = (press_sum, correction_sum);
         }
     }
     fit.freedom = lanes::sum(&freedom);

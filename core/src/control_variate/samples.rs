@@ -3,7 +3,7 @@
 use super::Config;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::error::Error;
-use crate::lanes::Lanes;
+use crate::lanes::{LANES, Lanes};
 use crate::real::Real;
 
 use super::config::{Color, NonFinite};
@@ -211,6 +211,47 @@ impl<'a> Reader<'a> {
         used
     }
 
+    /// The first used sample.
+    pub(crate) fn first(&self, subset: Subset) -> Option<Sample<'a>> {
+        (0..self.n).find(|&index| self.is_used(index, subset)).map(|index| self.get(index))
+    }
+
+    /// Reads up to `LANES` used samples from index `next` on, and returns how many there were.
+    #[inline(always)]
+    pub(crate) fn panel<R: Real>(
+        &self,
+        subset: Subset,
+        next: &mut usize,
+        x: &mut [Lanes<R>; MAX_DIMS],
+        h: &mut [Lanes<R>; Config::MAX_CONTROLS],
+        f: &mut [Lanes<R>; Config::MAX_CHANNELS],
+    ) -> usize {
+        let whole = matches!(subset, Subset::All) && !self.skip && !self.luminance && self.n - *next >= LANES;
+        if whole && self.controls == 0 {
+            let start = *next;
+            *next += LANES;
+            transpose(self.samples.u.get(start * self.stride..).unwrap_or(&[]), self.stride, self.dims, x);
+            transpose(self.samples.f.get(start * self.inputs..).unwrap_or(&[]), self.inputs, self.inputs, f);
+            return LANES;
+        }
+        let mut lane = 0;
+        while lane < LANES && *next < self.n {
+            let index = *next;
+            *next += 1;
+            if self.is_used(index, subset) {
+                let sample = self.get(index);
+                sample.put(lane, x, h);
+                for (f, value) in f.iter_mut().zip(self.values::<R>(&sample)) {
+                    if let Some(f) = f.get_mut(lane) {
+                        *f = value;
+                    }
+                }
+                lane += 1;
+            }
+        }
+        lane
+    }
+
     /// The values of a sample that are regressed: its channels, or its luminance.
     #[inline(always)]
     pub(crate) fn values<R: Real>(&self, sample: &Sample<'_>) -> [R; Config::MAX_CHANNELS] {
@@ -290,6 +331,38 @@ impl Sample<'_> {
             }
         }
     }
+}
+
+/// The first `width` numbers of each of eight rows, `stride` apart, as groups of lanes.
+#[inline(always)]
+fn transpose<R: Real>(rows: &[f32], stride: usize, width: usize, out: &mut [Lanes<R>]) {
+    match width {
+        1 => transpose_exact::<R, 1>(rows, stride, out),
+        2 => transpose_exact::<R, 2>(rows, stride, out),
+        3 => transpose_exact::<R, 3>(rows, stride, out),
+        _ => {
+            for lane in 0..LANES {
+                let row = rows.get(lane * stride..).unwrap_or(&[]);
+                for (out, &value) in out.iter_mut().zip(row).take(width) {
+                    out[lane] = R::from_f32(value);
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn transpose_exact<R: Real, const WIDTH: usize>(rows: &[f32], stride: usize, out: &mut [Lanes<R>]) {
+    let Some(out) = out.first_chunk_mut::<WIDTH>() else { return };
+    let mut columns = [[R::ZERO; LANES]; WIDTH];
+    for lane in 0..LANES {
+        if let Some(row) = rows.get(lane * stride..).and_then(<[f32]>::first_chunk::<WIDTH>) {
+            for (column, &value) in columns.iter_mut().zip(row) {
+                column[lane] = R::from_f32(value);
+            }
+        }
+    }
+    *out = columns;
 }
 
 /// Rec. 709 luminance; rounded once, so that it cannot overflow where the channels do not.

@@ -12,34 +12,33 @@ const PRIOR: f64 = 8.0;
 /// How many samples it takes to be sure: the mean keeps at least e^-(n^2 / this) of any candidate's trust, whatever the
 /// candidate's errors.
 const CAUTION: f64 = 14.0;
+/// The F statistic that is still nothing to worry about.
+const USUAL_F: f64 = 1.25;
 
 /// The logarithm of what trust in a fit is divided by because its samples lie to one side.
 ///
 /// If all samples lie in one part of the cube, errors on held-out samples are small and yet the fit's integral is an
 /// extrapolation. For q = `eccentricity` = n sum_i (m'A^-1 p_i)^2, with m the columns' means and p_i the centred columns,
 /// and k = `freedom` effective coefficients, Hotelling's F = (q / k) (n - 1 - k) tells: it is about 1 if the samples'
-/// centre is the cube's. Trust is divided by max(1, F)^2.
+/// centre is the cube's. Trust is divided by max(1, F / 1.25)^2.
 #[inline(always)]
 pub(crate) fn discount<R: Real>(eccentricity: R, freedom: R, n: R) -> R {
     let freedom = freedom.min(n - R::from_f64(1.5)).max(R::EPSILON);
-    let f = eccentricity * (n - R::ONE - freedom) / freedom;
+    let f = eccentricity * (n - R::ONE - freedom) / (freedom * R::from_f64(USUAL_F));
     if f > R::ONE { f.ln() + f.ln() } else { R::ZERO }
 }
 
-/// Weights of the plain mean and of the candidates: (error / plain error)^(-power) / C for a candidate, less its
-/// discount, and 8 for the mean, normalised. Errors are sums of squares over `n` samples.
+/// Sets `weights` to those of C candidates, (error / plain error)^(-power) / C less a discount, and returns the plain
+/// mean's, 8, all normalised. Errors are sums of squares over `n` samples.
 #[inline(always)]
-pub(crate) fn weights<R: Real, const C: usize>(
-    plain: R,
-    errors: &[R; C],
-    discounts: &[R; C],
-    power: R,
-    n: R,
-) -> (R, [R; C]) {
-    let mut weights = [R::ZERO; C];
+pub(crate) fn weigh<R: Real>(plain: R, errors: &[R], discounts: &[R], power: R, n: R, weights: &mut [R]) -> R {
     // Constant values: the mean is exact. A NaN cannot come from finite samples, but trust would go to the mean.
-    if !(plain > R::ZERO) {
-        return (R::ONE, weights);
+    let varies = plain > R::ZERO;
+    if !varies {
+        for weight in weights {
+            *weight = R::ZERO;
+        }
+        return R::ONE;
     }
     let smallest = R::from_f64(1e-30);
     let mut largest = R::ZERO;
@@ -51,7 +50,7 @@ pub(crate) fn weights<R: Real, const C: usize>(
         largest = largest.max(*weight);
     }
     let caution = (largest - n * n / R::from_f64(CAUTION)).max(R::ZERO);
-    let prior = R::from_f64(PRIOR * C as f64).ln() + caution;
+    let prior = (R::from_f64(PRIOR) * R::from_usize(weights.len())).ln() + caution;
     largest = prior;
     for (weight, &discount) in weights.iter_mut().zip(discounts) {
         *weight -= discount;
@@ -59,12 +58,12 @@ pub(crate) fn weights<R: Real, const C: usize>(
     }
     let plain_weight = (prior - largest).exp();
     let mut total = plain_weight;
-    for weight in &mut weights {
+    for weight in weights.iter_mut() {
         *weight = (*weight - largest).exp();
         total += *weight;
     }
-    for weight in &mut weights {
+    for weight in weights {
         *weight = *weight / total;
     }
-    (plain_weight / total, weights)
+    plain_weight / total
 }

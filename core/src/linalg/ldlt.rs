@@ -1,7 +1,7 @@
 //! A = L D L' for symmetric positive semidefinite matrices: the direct solver of (4.27).
 
 use super::{packed_len, row, row_mut};
-use crate::lanes::{Lanes, dot};
+use crate::lanes::{self, Lanes, dot};
 use crate::real::Real;
 
 /// A pivot below this fraction of its diagonal entry, in units of the type's epsilon, is rounding noise. Its column
@@ -89,9 +89,7 @@ pub(crate) fn forward_lanes<R: Real>(factor: &[R], x: &mut [Lanes<R>]) {
         if let Some(value) = from_j.first_mut() {
             let mut sum = *value;
             for (x, &l) in before.iter().zip(row(factor, j)) {
-                for (sum, &x) in sum.iter_mut().zip(x) {
-                    *sum -= l * x;
-                }
+                lanes::subtract_scaled(&mut sum, l, x);
             }
             *value = sum;
         }

@@ -1,0 +1,59 @@
+//! Choosing, at run time, code for the vector units that the processor has.
+//!
+//! Every version is the same Rust code, compiled for more registers. No operation is fused or reordered, so all return
+//! the same bits. This is the only file that calls code for a feature the build does not assume.
+
+use noisefloor_core::Error;
+use noisefloor_core::control_variate::{self as cv, Config, Estimate, Samples};
+
+/// [`cv::estimate`] in double precision.
+pub(crate) fn estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f64]) -> Result<Estimate, Error> {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        // SAFETY: the processor and the operating system support AVX2, as just found out.
+        return unsafe { x86::estimate(config, samples, workspace) };
+    }
+    cv::estimate(config, samples, workspace)
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use super::*;
+    use core::arch::x86_64::{__cpuid, __cpuid_count, _xgetbv};
+    use core::sync::atomic::{AtomicU8, Ordering};
+
+    const UNKNOWN: u8 = 0;
+    const ABSENT: u8 = 1;
+    const PRESENT: u8 = 2;
+
+    /// What was found out: asking takes longer than an estimate. Whoever writes it writes the same.
+    static AVX2: AtomicU8 = AtomicU8::new(UNKNOWN);
+
+    #[target_feature(enable = "avx2")]
+    pub(super) fn estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f64]) -> Result<Estimate, Error> {
+        cv::estimate(config, samples, workspace)
+    }
+
+    #[inline(always)]
+    pub(super) fn has_avx2() -> bool {
+        match AVX2.load(Ordering::Relaxed) {
+            UNKNOWN => ask(),
+            known => known == PRESENT,
+        }
+    }
+
+    #[cold]
+    fn ask() -> bool {
+        const OSXSAVE_AND_AVX: u32 = 1 << 27 | 1 << 28;
+        const AVX2_BIT: u32 = 1 << 5;
+        /// The operating system keeps the xmm and ymm registers.
+        const REGISTERS: u64 = 0b110;
+        let present = __cpuid(0).eax >= 7
+            && __cpuid(1).ecx & OSXSAVE_AND_AVX == OSXSAVE_AND_AVX
+            // SAFETY: the OSXSAVE bit says that the instruction exists.
+            && unsafe { _xgetbv(0) } & REGISTERS == REGISTERS
+            && __cpuid_count(7, 0).ebx & AVX2_BIT != 0;
+        AVX2.store(if present { PRESENT } else { ABSENT }, Ordering::Relaxed);
+        present
+    }
+}

@@ -1,0 +1,317 @@
+//! What a streaming estimate knows besides its sums, and how samples get into them.
+
+use super::config::{Color, Config, Estimator, Ridge, Solver};
+use super::cross_fit;
+use super::design::Units;
+use super::incremental;
+use super::moments::{self, Moments, MomentsMut};
+use super::per_channel::PerChannel;
+use super::samples::{Reader, Samples, Subset};
+use super::{gradient_descent, square_root};
+use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
+use crate::error::Error;
+use crate::lanes::Lanes;
+use crate::linalg::{givens, row};
+use crate::real::Real;
+use crate::rows::rows_mut;
+
+/// All of an [`Accumulator`](super::Accumulator) but its buffer, for those who store the two apart. Every method takes
+/// the buffer, of [`State::len`] numbers, as the last call left it, and returns [`Error::Memory`] if it is shorter.
+#[derive(Clone, Copy, Debug)]
+pub struct State<R> {
+    pub(super) config: Config,
+    pub(super) shape: Shape,
+    pub(super) columns: usize,
+    pub(super) channels: usize,
+    pub(super) samples: u64,
+    pub(super) units: [Units<R>; Config::MAX_CHANNELS],
+    /// Sums of red, green, blue and luminance, for a luminance ratio.
+    pub(super) colour: [f64; 4],
+    pub(super) incremental: incremental::Progress<R>,
+}
+
+impl<R: Real> State<R> {
+    /// # Errors
+    /// [`Error::Unsupported`] for [`Estimator::LeaveOneOut`], which needs all samples at once, and whatever
+    /// [`Config::terms`] finds.
+    pub fn new(config: &Config) -> Result<Self, Error> {
+        let shape = config.checked_shape()?;
+        let columns = config.controls + shape.columns();
+        let square_root = config.solver == Solver::SquareRoot;
+        let supported = match config.estimator {
+            Estimator::LeaveOneOut => false,
+            Estimator::LeastSquares => config.ridge != Ridge::Auto,
+            _ => !square_root,
+        };
+        if !supported || config.solver == Solver::Dual {
+            return Err(Error::Unsupported);
+        }
+        let luminance = config.color == Color::LuminanceRatio;
+        Ok(Self {
+            config: *config,
+            shape,
+            columns,
+            channels: if luminance { 1 } else { config.channels },
+            samples: 0,
+            units: [Units::default(); Config::MAX_CHANNELS],
+            colour: [0.0; 4],
+            incremental: incremental::Progress::default(),
+        })
+    }
+
+    pub(super) fn terms(&self) -> usize {
+        self.columns + 1
+    }
+
+    /// Numbers of one group of sums.
+    pub(super) fn group(&self) -> usize {
+        moments::len(self.terms(), self.channels)
+    }
+
+    /// Groups of sums: one for each fold, or one.
+    pub(super) fn groups(&self) -> usize {
+        match self.config.estimator {
+            Estimator::Robust | Estimator::KFold => self.config.fold_count(),
+            _ => 1,
+        }
+    }
+
+    /// Numbers of the whole buffer.
+    pub fn len(&self) -> usize {
+        let extra = match self.config.estimator {
+            Estimator::Incremental => incremental::len(self.columns, self.channels),
+            _ => 0,
+        };
+        self.groups() * self.group() + extra
+    }
+
+    /// Never: an accumulator has at least the sums of a constant.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Numbers of workspace that an estimate takes.
+    pub fn workspace_len(&self) -> usize {
+        let (columns, channels) = (self.columns, self.channels);
+        let solve = moments::solve_len(columns);
+        let fit = moments::centred_len(columns, channels) + columns * (1 + channels) + solve;
+        match self.config.estimator {
+            Estimator::Robust | Estimator::KFold => cross_fit::len(columns, channels) + self.group() + fit,
+            Estimator::GradientDescent => fit + gradient_descent::size(columns, channels),
+            _ if self.config.solver == Solver::SquareRoot => square_root::size(self.terms(), channels) + self.group(),
+            _ => fit,
+        }
+    }
+
+    /// Samples added so far.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// What it was made with.
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    fn check_length(&self, sums: &[R]) -> Result<(), Error> {
+        if sums.len() < self.len() { Err(Error::Memory) } else { Ok(()) }
+    }
+
+    /// Forgets all samples.
+    ///
+    /// # Errors
+    /// [`Error::Memory`].
+    pub fn reset(&mut self, sums: &mut [R]) -> Result<(), Error> {
+        self.check_length(sums)?;
+        self.samples = 0;
+        self.units = [Units::default(); Config::MAX_CHANNELS];
+        self.colour = [0.0; 4];
+        self.incremental = incremental::Progress::default();
+        for value in sums {
+            *value = R::ZERO;
+        }
+        Ok(())
+    }
+
+    /// Adds samples, all or, on an error, none.
+    ///
+    /// # Errors
+    /// As for [`estimate`](super::estimate); adding no samples is an error too.
+    pub fn add(&mut self, sums: &mut [R], samples: Samples<'_>) -> Result<(), Error> {
+        self.check_length(sums)?;
+        let reader = Reader::new(&self.config, samples)?;
+        reader.check()?;
+        let mut basis = Basis::empty();
+        basis.set(self.config.basis, self.shape)?;
+        let terms = self.terms();
+        let mut p = [[R::ZERO]; MAX_TERMS];
+        p[0] = [R::ONE];
+        let mut x = [[R::ZERO; 1]; MAX_DIMS];
+        let mut h = [[R::ZERO; 1]; Config::MAX_CONTROLS];
+        reader.each(Subset::All, |sample| {
+            sample.put(0, &mut x, &mut h);
+            reader.columns(&basis, &x, &h, p.get_mut(1..terms).unwrap_or(&mut []));
+            if let Some(colour) = reader.colour(sample) {
+                for (sum, value) in self.colour.iter_mut().zip(colour) {
+                    *sum += value;
+                }
+            }
+            self.add_row(sums, p.get_mut(..terms).unwrap_or(&mut []), reader.values(sample));
+        });
+        Ok(())
+    }
+
+    /// Adds one evaluated sample.
+    #[inline(always)]
+    fn add_row(&mut self, sums: &mut [R], p: &mut [Lanes<R, 1>], values: PerChannel<R>) {
+        let state = self;
+        let (terms, channels, group) = (state.terms(), state.channels, state.group());
+        let groups = state.groups();
+        fit_units(state, &values, sums);
+        let mut f = PerChannel::default();
+        for ((f, value), unit) in f.iter_mut().zip(values).zip(&state.units) {
+            *f = value * R::ONE.scale(-unit.exponent) - unit.offset;
+        }
+        let f = f.get_mut(..channels).unwrap_or(&mut []);
+        let p = p.as_flattened_mut();
+        if state.config.estimator == Estimator::Incremental {
+            let (group, rest) = sums.split_at_mut_checked(group).unwrap_or((&mut [], &mut []));
+            incremental::correct(&mut state.incremental, state.config.ridge, rest, p.get(1..).unwrap_or(&[]), f);
+            if let Some(mut moments) = MomentsMut::new(group, terms, channels) {
+                moments.add(p, f);
+            }
+            state.samples += 1;
+            incremental::refit(state.samples, &mut state.incremental, &state.config, group, rest, terms - 1, channels);
+            return;
+        }
+        let fold = state.samples.checked_rem(groups as u64).unwrap_or(0) as usize;
+        state.samples += 1;
+        let sums = sums.get_mut(fold * group..(fold + 1) * group).unwrap_or(&mut []);
+        if let Some(mut moments) = MomentsMut::new(sums, terms, channels) {
+            if state.config.solver == Solver::SquareRoot {
+                givens::add_row(moments.gram, moments.rhs, moments.square, p, f);
+            } else {
+                moments.add(p, f);
+            }
+        }
+    }
+
+    /// Adds all samples of another state and its sums, fold to fold, as if they had been added here.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`] if the configurations differ.
+    pub fn merge(&mut self, sums: &mut [R], other: &Self, other_sums: &[R]) -> Result<(), Error> {
+        if self.config != other.config {
+            return Err(Error::Mismatch);
+        }
+        self.check_length(sums)?;
+        other.check_length(other_sums)?;
+        if other.samples == 0 {
+            return Ok(());
+        }
+        let state = self;
+        let (terms, channels, group) = (state.terms(), state.channels, state.group());
+        let groups = state.groups();
+        if state.samples == 0 {
+            state.units = other.units;
+        }
+        raise_exponents(state, &other.units.map(|unit| unit.exponent), sums);
+        let mut factors = [R::ONE; Config::MAX_CHANNELS];
+        let mut shift = PerChannel::default();
+        let units = other.units.iter().zip(&state.units);
+        for (((theirs, ours), factor), shift) in units.zip(&mut factors).zip(&mut shift) {
+            *factor = R::ONE.scale(theirs.exponent - ours.exponent);
+            *shift = theirs.offset * *factor - ours.offset;
+        }
+        for fold in 0..groups {
+            let range = fold * group..(fold + 1) * group;
+            let ours = sums.get_mut(range.clone()).and_then(|sums| MomentsMut::new(sums, terms, channels));
+            let theirs = other_sums.get(range).and_then(|sums| Moments::new(sums, terms, channels));
+            let (Some(mut ours), Some(theirs)) = (ours, theirs) else { continue };
+            if state.config.solver == Solver::SquareRoot {
+                merge_factors(&mut ours, &theirs, &factors, &shift, terms, channels);
+            } else {
+                ours.merge(&theirs, &factors, &shift, channels);
+            }
+        }
+        for (sum, value) in state.colour.iter_mut().zip(other.colour) {
+            *sum += value;
+        }
+        state.incremental.merge(&other.incremental, &factors, &shift, other.samples);
+        state.samples += other.samples;
+        if state.config.estimator == Estimator::Incremental {
+            let (group, rest) = sums.split_at_mut_checked(group).unwrap_or((&mut [], &mut []));
+            state.incremental.refit_now();
+            incremental::refit(state.samples, &mut state.incremental, &state.config, group, rest, terms - 1, channels);
+        }
+        Ok(())
+    }
+}
+
+/// Sets the units at the first sample, and keeps values of a narrow type near one.
+fn fit_units<R: Real>(state: &mut State<R>, values: &PerChannel<R>, sums: &mut [R]) {
+    if R::NARROW {
+        raise_exponents(state, &values.map(|value| if value == R::ZERO { -126 } else { value.exponent() }), sums);
+    }
+    if state.samples == 0 {
+        for (unit, &value) in state.units.iter_mut().zip(values) {
+            unit.offset = value * R::ONE.scale(-unit.exponent);
+        }
+    }
+}
+
+/// Raises the units' exponents to at least those given, and rescales what was summed.
+fn raise_exponents<R: Real>(state: &mut State<R>, exponents: &[i32; Config::MAX_CHANNELS], sums: &mut [R]) {
+    let mut factors = [R::ONE; Config::MAX_CHANNELS];
+    let mut any = false;
+    let fresh = state.samples == 0;
+    for ((unit, &exponent), factor) in state.units.iter_mut().zip(exponents).zip(&mut factors) {
+        let exponent = exponent.clamp(-126, 126);
+        if exponent > unit.exponent || (fresh && R::NARROW) {
+            *factor = R::ONE.scale((unit.exponent - exponent).clamp(-149, 149));
+            unit.offset *= *factor;
+            unit.exponent = exponent;
+            any = true;
+        }
+    }
+    if !any || fresh {
+        return;
+    }
+    let (terms, channels, group, groups) = (state.terms(), state.channels, state.group(), state.groups());
+    let (folds, rest) = sums.split_at_mut_checked(groups * group).unwrap_or((&mut [], &mut []));
+    for sums in rows_mut(folds, group) {
+        if let Some(mut moments) = MomentsMut::new(sums, terms, channels) {
+            moments.rescale(&factors, channels);
+        }
+    }
+    state.incremental.rescale(&factors, rest, state.columns, channels);
+}
+
+/// Rotates the rows of another triangular factor into ours.
+fn merge_factors<R: Real>(
+    ours: &mut MomentsMut<'_, R>,
+    theirs: &Moments<'_, R>,
+    factors: &PerChannel<R>,
+    shift: &PerChannel<R>,
+    terms: usize,
+    channels: usize,
+) {
+    let mut x = [R::ZERO; MAX_TERMS];
+    let x = x.get_mut(..terms).unwrap_or(&mut []);
+    for j in 0..terms {
+        for (k, x) in x.iter_mut().enumerate() {
+            *x = if k < j { R::ZERO } else { row(theirs.gram, k).get(j).copied().unwrap_or(R::ZERO) };
+        }
+        // The constant's column is the first, so a shift of the values is that many times column 0 of R.
+        let first = if j == 0 { x.first().copied().unwrap_or(R::ZERO) } else { R::ZERO };
+        let mut y = PerChannel::default();
+        let z = theirs.rhs.get(j * channels..).unwrap_or(&[]);
+        for (((y, &z), &factor), &shift) in y.iter_mut().zip(z).zip(factors).zip(shift) {
+            *y = factor * z + shift * first;
+        }
+        givens::add_row(ours.gram, ours.rhs, ours.square, x, y.get_mut(..channels).unwrap_or(&mut []));
+    }
+    for ((square, &other), &factor) in ours.square.iter_mut().zip(theirs.square).zip(factors) {
+        *square += factor * factor * other;
+    }
+}

@@ -1,0 +1,372 @@
+/* Estimates from arrays: nf_cv_estimate(), nf_cv_estimate_with_controls(), nf_cv_gradient_descent(). */
+#include "check.h"
+
+#define N 64
+static float u[N * 4], f[N * 4];
+static const uint32_t estimators = 6;
+
+/* Constant values: every estimator, basis and precision gives them back exactly. */
+static void constants(void)
+{
+    static const float values[] = {0.0f, 1.0f, -3.7f, 1e-30f, 1e30f, 0.1f};
+    uint32_t estimator, basis, precision;
+    size_t v, i;
+    for (estimator = 0; estimator < estimators; ++estimator)
+        for (basis = 0; basis < 4; ++basis)
+            for (precision = 0; precision < 2; ++precision)
+                for (v = 0; v < sizeof values / sizeof *values; ++v) {
+                    nf_cv_config config = make_config(2, 2, 1, estimator);
+                    nf_estimate out;
+                    memory work;
+                    config.basis = basis;
+                    config.precision = precision;
+                    for (i = 0; i < N; ++i)
+                        f[i] = values[v];
+                    work = memory_new(nf_cv_workspace_size(&config, N));
+                    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
+                    CHECK(out.mean[0] == values[v]);
+                    CHECK(out.std_error[0] == 0.0f);
+                    CHECK(out.samples == N);
+                    CHECK(out.mean[1] == 0.0f && out.mean[2] == 0.0f && out.mean[3] == 0.0f);
+                    memory_free(&work);
+                }
+}
+
+/* A linear integrand, which polynomials contain: least squares is exact, nobody is far off. */
+static void linear(void)
+{
+    uint32_t estimator, precision, channels, c;
+    for (estimator = 0; estimator < estimators; ++estimator)
+        for (precision = 0; precision < 2; ++precision)
+            for (channels = 1; channels <= 4; ++channels) {
+                nf_cv_config config = make_config(2, 2, channels, estimator);
+                nf_estimate out, again;
+                memory work;
+                config.precision = precision;
+                fill_linear(f, u, N, 2, channels);
+                work = memory_new(nf_cv_workspace_size(&config, N));
+                CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
+                /* Deterministic, and independent of what the workspace holds. */
+                CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &again), NF_OK);
+                CHECK(memcmp(&out, &again, sizeof out) == 0);
+                for (c = 0; c < 4; ++c) {
+                    const float scale = (float)(c + 1);
+                    if (c >= channels) {
+                        CHECK(out.mean[c] == 0.0f && out.std_error[c] == 0.0f);
+                        continue;
+                    }
+                    /* The plain mean's standard error is .051 (c + 1). */
+                    CHECK(fabsf(out.mean[c] - 2.0f * scale) < 4.0f * 0.051f * scale);
+                    if (estimator == NF_CV_LEAST_SQUARES)
+                        CHECK(fabsf(out.mean[c] - 2.0f * scale) < 1e-4f * scale);
+                    CHECK(out.std_error[c] >= 0.0f && out.std_error[c] < 0.06f * scale);
+                }
+                CHECK(out.gain >= 0.0f && out.gain < 1.0f);
+                memory_free(&work);
+            }
+}
+
+/* Every solver gives the same least-squares estimate. */
+static void solvers(void)
+{
+    uint32_t solver;
+    fill_linear(f, u, N, 2, 2);
+    for (solver = 0; solver < 4; ++solver) {
+        nf_cv_config config = make_config(2, 3, 2, NF_CV_LEAST_SQUARES);
+        nf_estimate out;
+        memory work;
+        config.solver = solver;
+        work = memory_new(nf_cv_workspace_size(&config, N));
+        CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
+        CHECK(fabsf(out.mean[0] - 2.0f) < 1e-4f && fabsf(out.mean[1] - 4.0f) < 1e-4f);
+        memory_free(&work);
+    }
+}
+
+/* Order 0, and the robust estimator of stratified samples, are the plain mean. */
+static void plain_means(void)
+{
+    nf_cv_config config = make_config(2, 0, 1, NF_CV_ROBUST);
+    memory work = memory_new(1 << 16);
+    nf_estimate plain, stratified, one;
+    double mean = 0.0;
+    size_t i;
+    fill_linear(f, u, N, 2, 1);
+    for (i = 0; i < N; ++i)
+        mean += f[i] / (double)N;
+    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &plain), NF_OK);
+    CHECK(fabs(plain.mean[0] - mean) < 1e-6);
+    CHECK(plain.gain == 1.0f);
+    config.order = 3;
+    config.stratified = 1;
+    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &stratified), NF_OK);
+    CHECK(memcmp(&plain, &stratified, sizeof plain) == 0);
+    config.stratified = 0;
+    CHECK_STATUS(nf_cv_estimate(&config, u, f, 1, work.start, work.bytes, &one), NF_OK);
+    CHECK(one.mean[0] == f[0] && one.samples == 1 && isinf(one.std_error[0]));
+    memory_free(&work);
+}
+
+/* Rows may be longer than what is regressed; the last may end early. */
+static void strides(void)
+{
+    static float wide[N * 5 - 3];
+    nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
+    memory work = memory_new(nf_cv_workspace_size(&config, N));
+    nf_estimate narrow_out, wide_out;
+    size_t i;
+    fill_linear(f, u, N, 2, 1);
+    for (i = 0; i < sizeof wide / sizeof *wide; ++i)
+        wide[i] = not_a_number(); /* between the rows: never looked at */
+    for (i = 0; i < N; ++i) {
+        wide[5 * i] = u[2 * i];
+        wide[5 * i + 1] = u[2 * i + 1];
+    }
+    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &narrow_out), NF_OK);
+    config.stride = 5;
+    CHECK(nf_cv_workspace_size(&config, N) == work.bytes);
+    CHECK_STATUS(nf_cv_estimate(&config, wide, f, N, work.start, work.bytes, &wide_out), NF_OK);
+    CHECK(memcmp(&narrow_out, &wide_out, sizeof wide_out) == 0);
+    memory_free(&work);
+}
+
+static void slices_and_colors(void)
+{
+    nf_cv_config config = make_config(3, 2, 3, NF_CV_ROBUST);
+    memory work = memory_new(1 << 18);
+    nf_estimate out;
+    fill_linear(f, u, N, 3, 3);
+    config.slices = 4;
+    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
+    CHECK(fabsf(out.mean[0] - 2.5f) < 0.3f);
+    config.slices = 0;
+    config.color = NF_COLOR_LUMINANCE_RATIO;
+    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
+    CHECK(fabsf(out.mean[0] - 2.5f) < 0.3f && fabsf(out.mean[2] - 3.0f * out.mean[0]) < 1e-4f);
+    config.channels = 2;
+    CHECK_REFUSED(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    memory_free(&work);
+}
+
+/* The pointers, the workspace and the samples, for one function. */
+typedef nf_status (*estimate_function)(const nf_cv_config *, const float *, const float *, size_t, void *, size_t,
+                                       nf_estimate *);
+static nf_status plain(const nf_cv_config *c, const float *pu, const float *pf, size_t n, void *w, size_t b, nf_estimate *out)
+{
+    return nf_cv_estimate(c, pu, pf, n, w, b, out);
+}
+static nf_status with_controls(const nf_cv_config *c, const float *pu, const float *pf, size_t n, void *w, size_t b,
+                               nf_estimate *out)
+{
+    return nf_cv_estimate_with_controls(c, pu, pf, NULL, NULL, n, w, b, out);
+}
+static float start[64];
+static nf_status descent(const nf_cv_config *c, const float *pu, const float *pf, size_t n, void *w, size_t b, nf_estimate *out)
+{
+    nf_status status;
+    float before[64];
+    memcpy(before, start, sizeof start);
+    status = nf_cv_gradient_descent(c, pu, pf, n, start, w, b, out);
+    if (status != NF_OK)
+        CHECK(memcmp(before, start, sizeof start) == 0);
+    return status;
+}
+
+static void errors(estimate_function call, uint32_t estimator, uint32_t precision)
+{
+    static const size_t huge[] = {SIZE_MAX, SIZE_MAX - 1, SIZE_MAX / 2, SIZE_MAX / 2 + 1, SIZE_MAX / 3, SIZE_MAX / 4, SIZE_MAX / 8,
+                                  SIZE_MAX / 16, SIZE_MAX / 256, SIZE_MAX / 65536};
+    nf_cv_config config = make_config(2, 2, 1, estimator);
+    memory work;
+    nf_estimate out;
+    float saved;
+    size_t i, bytes;
+    config.precision = precision;
+    fill_linear(f, u, N, 2, 1);
+    bytes = nf_cv_workspace_size(&config, N);
+    work = memory_new(bytes);
+
+    CHECK_STATUS(call(&config, u, f, N, work.start, bytes, &out), NF_OK);
+    CHECK(memory_is_intact(&work));
+    CHECK_REFUSED(call(NULL, u, f, N, work.start, bytes, &out), NF_ERR_NULL, out);
+    CHECK_REFUSED(call(&config, NULL, f, N, work.start, bytes, &out), NF_ERR_NULL, out);
+    CHECK_REFUSED(call(&config, u, NULL, N, work.start, bytes, &out), NF_ERR_NULL, out);
+    CHECK_REFUSED(call(&config, u, f, N, NULL, bytes, &out), NF_ERR_NULL, out);
+    CHECK_STATUS(call(&config, u, f, N, work.start, bytes, NULL), NF_ERR_NULL);
+    CHECK_REFUSED(call(&config, u, f, 0, work.start, bytes, &out), NF_ERR_NO_SAMPLES, out);
+    CHECK_REFUSED(call(&config, u, f, N, work.start, bytes - 1, &out), NF_ERR_MEMORY, out);
+    CHECK_REFUSED(call(&config, u, f, N, work.start, 0, &out), NF_ERR_MEMORY, out);
+    for (i = 1; i < 8; ++i)
+        CHECK_REFUSED(call(&config, u, f, N, (char *)work.start + i, bytes - i, &out), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(call(&config, (const float *)misaligned(u), f, N, work.start, bytes, &out), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(call(&config, u, (const float *)misaligned(f), N, work.start, bytes, &out), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(call((const nf_cv_config *)misaligned(&config), u, f, N, work.start, bytes, &out), NF_ERR_ALIGNMENT, out);
+
+    /* Counts that no array can have, or that the workspace is much too small for: nothing is read. */
+    for (i = 0; i < sizeof huge / sizeof *huge; ++i) {
+        nf_status status;
+        poison(&out, sizeof out);
+        status = call(&config, u, f, huge[i], work.start, bytes, &out);
+        CHECK(status == NF_ERR_RANGE || status == NF_ERR_MEMORY);
+        CHECK(is_poisoned(&out, sizeof out));
+    }
+    if (estimator != NF_CV_INCREMENTAL)
+        CHECK(nf_cv_workspace_size(&config, SIZE_MAX / 2) == 0);
+
+    for (i = 0; i < 2 * N; i += 2 * N - 1) {
+        saved = u[i];
+        u[i] = not_a_number();
+        CHECK_REFUSED(call(&config, u, f, N, work.start, bytes, &out), NF_ERR_NOT_FINITE, out);
+        u[i] = infinity_f();
+        CHECK_REFUSED(call(&config, u, f, N, work.start, bytes, &out), NF_ERR_NOT_FINITE, out);
+        u[i] = -1e-6f;
+        CHECK_REFUSED(call(&config, u, f, N, work.start, bytes, &out), NF_ERR_RANGE, out);
+        u[i] = 1.00001f;
+        CHECK_REFUSED(call(&config, u, f, N, work.start, bytes, &out), NF_ERR_RANGE, out);
+        u[i] = 1.0f;
+        CHECK_STATUS(call(&config, u, f, N, work.start, bytes, &out), NF_OK);
+        u[i] = -0.0f;
+        CHECK_STATUS(call(&config, u, f, N, work.start, bytes, &out), NF_OK);
+        u[i] = saved;
+    }
+    for (i = 0; i < N; i += N - 1) {
+        saved = f[i];
+        f[i] = not_a_number();
+        CHECK_REFUSED(call(&config, u, f, N, work.start, bytes, &out), NF_ERR_NOT_FINITE, out);
+        f[i] = -infinity_f();
+        CHECK_REFUSED(call(&config, u, f, N, work.start, bytes, &out), NF_ERR_NOT_FINITE, out);
+        config.nonfinite = NF_NONFINITE_SKIP;
+        CHECK_STATUS(call(&config, u, f, N, work.start, bytes, &out), NF_OK);
+        CHECK(out.samples == N - 1 && isfinite(out.mean[0]));
+        config.nonfinite = NF_NONFINITE_ERROR;
+        f[i] = saved;
+    }
+    /* All skipped: nothing is left. */
+    config.nonfinite = NF_NONFINITE_SKIP;
+    for (i = 0; i < N; ++i)
+        f[i] = not_a_number();
+    CHECK_REFUSED(call(&config, u, f, N, work.start, bytes, &out), NF_ERR_NO_SAMPLES, out);
+    memory_free(&work);
+}
+
+static void combinations(void)
+{
+    nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
+    memory work = memory_new(1 << 20);
+    nf_estimate out;
+    fill_linear(f, u, N, 2, 1);
+    config.solver = NF_SOLVER_SQUARE_ROOT;
+    CHECK(nf_cv_workspace_size(&config, N) == 0);
+    CHECK_REFUSED(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    config.estimator = NF_CV_LEAST_SQUARES;
+    config.ridge = NF_RIDGE_AUTO;
+    CHECK_REFUSED(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    config = make_config(2, 2, 1, NF_CV_ROBUST);
+    config.solver = NF_SOLVER_DUAL;
+    config.controls = 1;
+    CHECK(nf_cv_workspace_size(&config, N) == 0);
+    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, f, u, N, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    config.controls = 0;
+    CHECK(nf_cv_workspace_size(&config, 4096) > 0);
+    CHECK(nf_cv_workspace_size(&config, 4097) == 0);
+    memory_free(&work);
+}
+
+static void controls(void)
+{
+    nf_cv_config config = make_config(2, 1, 1, NF_CV_LEAST_SQUARES);
+    float h[N], integral = 0.25f, bad = not_a_number(), saved;
+    nf_estimate out, without;
+    memory work;
+    size_t i;
+    /* f = 5 h, h = u0 u1, whose integral is 1/4: order 1 does not contain it, h does. */
+    for (i = 0; i < N; ++i) {
+        h[i] = u[2 * i] * u[2 * i + 1];
+        f[i] = 5.0f * h[i];
+    }
+    config.controls = 1;
+    work = memory_new(nf_cv_workspace_size(&config, N));
+    CHECK_STATUS(nf_cv_estimate_with_controls(&config, u, f, h, &integral, N, work.start, work.bytes, &out), NF_OK);
+    CHECK(fabsf(out.mean[0] - 1.25f) < 1e-4f);
+    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, NULL, &integral, N, work.start, work.bytes, &out), NF_ERR_NULL, out);
+    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, h, NULL, N, work.start, work.bytes, &out), NF_ERR_NULL, out);
+    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, (const float *)misaligned(h), &integral, N, work.start, work.bytes, &out),
+                  NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, h, &bad, N, work.start, work.bytes, &out), NF_ERR_NOT_FINITE, out);
+    CHECK_REFUSED(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_NULL, out);
+    saved = h[3];
+    h[3] = infinity_f();
+    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, h, &integral, N, work.start, work.bytes, &out), NF_ERR_NOT_FINITE, out);
+    h[3] = saved;
+    memory_free(&work);
+
+    config.controls = 0;
+    work = memory_new(nf_cv_workspace_size(&config, N));
+    CHECK_STATUS(nf_cv_estimate_with_controls(&config, u, f, NULL, NULL, N, work.start, work.bytes, &out), NF_OK);
+    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &without), NF_OK);
+    CHECK(memcmp(&out, &without, sizeof out) == 0);
+    memory_free(&work);
+}
+
+static void warm_starts(void)
+{
+    nf_cv_config config = make_config(2, 2, 2, NF_CV_GRADIENT_DESCENT);
+    float coefficients[2 * 5], before[2 * 5];
+    nf_estimate cold, warm, out;
+    memory work = memory_new(nf_cv_workspace_size(&config, N));
+    uint32_t optimizer;
+    fill_linear(f, u, N, 2, 2);
+    for (optimizer = 0; optimizer < 3; ++optimizer) {
+        config.optimizer = optimizer;
+        config.iterations = 0;
+        memset(coefficients, 0, sizeof coefficients);
+        CHECK_STATUS(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &cold), NF_OK);
+        CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
+        CHECK(memcmp(&cold, &out, sizeof out) == 0);
+        config.iterations = 400;
+        CHECK_STATUS(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &warm), NF_OK);
+        /* u = 1/2 + phi_1 / sqrt(12), with the orthonormal phi_1. */
+        if (optimizer != NF_OPTIMIZER_ADAM) {
+            CHECK(fabsf(warm.mean[0] - 2.0f) < 1e-3f && fabsf(warm.mean[1] - 4.0f) < 2e-3f);
+            CHECK(fabsf(coefficients[0] - 0.288675f) < 1e-2f && fabsf(coefficients[5] - 2 * 0.288675f) < 2e-2f);
+        }
+    }
+    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, NULL, work.start, work.bytes, &out), NF_ERR_NULL, out);
+    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, (float *)misaligned(coefficients), work.start, work.bytes, &out),
+                  NF_ERR_ALIGNMENT, out);
+    coefficients[9] = not_a_number();
+    memcpy(before, coefficients, sizeof before);
+    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &out), NF_ERR_NOT_FINITE, out);
+    CHECK(memcmp(before, coefficients, sizeof before) == 0);
+    coefficients[9] = 0.0f;
+    config.estimator = NF_CV_ROBUST;
+    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    config.estimator = NF_CV_GRADIENT_DESCENT;
+    config.controls = 1;
+    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    memory_free(&work);
+}
+
+int main(void)
+{
+    uint32_t estimator, precision;
+    fill_uniform(u, N * 4, 3);
+    constants();
+    linear();
+    solvers();
+    plain_means();
+    strides();
+    slices_and_colors();
+    for (precision = 0; precision < 2; ++precision) {
+        for (estimator = 0; estimator < estimators; ++estimator) {
+            errors(plain, estimator, precision);
+            errors(with_controls, estimator, precision);
+        }
+        errors(descent, NF_CV_GRADIENT_DESCENT, precision);
+    }
+    combinations();
+    controls();
+    warm_starts();
+    CHECK(nf_cv_workspace_size(NULL, N) == 0);
+    return report("batch");
+}

@@ -1,0 +1,140 @@
+/* What the C tests share: a check that says where it failed, poisoned outputs, and memory with guards on both sides.
+ * Each program ends with `return report("theme");`. The same files are compiled as C++17 against noisefloor.hpp. */
+#ifndef NF_TESTS_CHECK_H
+#define NF_TESTS_CHECK_H
+
+#ifdef __cplusplus
+#include "noisefloor.hpp"
+#else
+#include "noisefloor.h"
+#endif
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int nf_checks, nf_failures;
+
+static inline void check_at(int condition, const char *text, const char *file, int line)
+{
+    ++nf_checks;
+    if (!condition) {
+        ++nf_failures;
+        fprintf(stderr, "%s:%d: failed: %s\n", file, line, text);
+    }
+}
+
+static inline void check_status_at(nf_status actual, nf_status expected, const char *text, const char *file, int line)
+{
+    ++nf_checks;
+    if (actual != expected) {
+        ++nf_failures;
+        fprintf(stderr, "%s:%d: %s\n    returned %d (%s), not %d\n", file, line, text, (int)actual,
+                nf_status_message(actual), (int)expected);
+    }
+}
+
+#define CHECK(condition) check_at((condition) ? 1 : 0, #condition, __FILE__, __LINE__)
+#define CHECK_STATUS(call, expected) check_status_at((call), (expected), #call, __FILE__, __LINE__)
+/* The call must fail with `expected` and leave the object `out` as it was. */
+#define CHECK_REFUSED(call, expected, out)                     \
+    do {                                                       \
+        poison(&(out), sizeof(out));                           \
+        check_status_at((call), (expected), #call, __FILE__, __LINE__); \
+        check_at(is_poisoned(&(out), sizeof(out)), "outputs untouched: " #call, __FILE__, __LINE__); \
+    } while (0)
+
+static inline int report(const char *theme)
+{
+    printf("%-12s %d checks, %d failed\n", theme, nf_checks, nf_failures);
+    return nf_failures == 0 ? 0 : 1;
+}
+
+#define POISON 0xC3
+static inline void poison(void *bytes, size_t count) { memset(bytes, POISON, count); }
+
+static inline int is_poisoned(const void *bytes, size_t count)
+{
+    const unsigned char *byte = (const unsigned char *)bytes;
+    size_t i;
+    for (i = 0; i < count; ++i)
+        if (byte[i] != POISON)
+            return 0;
+    return 1;
+}
+
+/* Exactly `bytes` bytes at `start`, 16-byte aligned, with guards before and behind; full of what is no useful number. */
+#define GUARD 64
+typedef struct memory {
+    unsigned char *base;
+    void *start;
+    size_t bytes;
+} memory;
+
+static inline memory memory_new(size_t bytes)
+{
+    memory m;
+    m.base = (unsigned char *)malloc(bytes + 2 * GUARD);
+    if (!m.base) {
+        fprintf(stderr, "out of memory\n");
+        exit(2);
+    }
+    poison(m.base, bytes + 2 * GUARD);
+    m.start = m.base + GUARD;
+    m.bytes = bytes;
+    return m;
+}
+
+static inline int memory_is_intact(const memory *m)
+{
+    return is_poisoned(m->base, GUARD) && is_poisoned(m->base + GUARD + m->bytes, GUARD);
+}
+
+static inline void memory_free(memory *m)
+{
+    CHECK(memory_is_intact(m));
+    free(m->base);
+    m->base = NULL;
+}
+
+/* One address further on: misaligned for anything larger than a byte. */
+static inline void *misaligned(void *pointer) { return (unsigned char *)pointer + 1; }
+
+static inline float not_a_number(void) { return (float)sqrt(-1.0); }
+static inline float infinity_f(void) { return (float)HUGE_VAL; }
+
+static inline nf_cv_config make_config(uint32_t dims, uint32_t order, uint32_t channels, uint32_t estimator)
+{
+    nf_cv_config config;
+    nf_cv_config_default(&config);
+    config.dims = dims;
+    config.order = order;
+    config.channels = channels;
+    config.estimator = estimator;
+    return config;
+}
+
+/* n rows of `stride` uniform numbers. */
+static inline void fill_uniform(float *u, size_t count, uint64_t seed)
+{
+    nf_rng rng;
+    size_t i;
+    nf_rng_seed(&rng, seed);
+    for (i = 0; i < count; ++i)
+        u[i] = nf_rng_uniform(&rng);
+}
+
+/* f = (c + 1) (1 + sum of the coordinates), whose integral is (c + 1) (1 + dims / 2). */
+static inline void fill_linear(float *f, const float *u, size_t n, size_t dims, size_t channels)
+{
+    size_t i, d, c;
+    for (i = 0; i < n; ++i) {
+        float sum = 1.0f;
+        for (d = 0; d < dims; ++d)
+            sum += u[i * dims + d];
+        for (c = 0; c < channels; ++c)
+            f[i * channels + c] = (float)(c + 1) * sum;
+    }
+}
+
+#endif

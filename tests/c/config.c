@@ -1,0 +1,168 @@
+/* Configurations: defaults, and what every function makes of one that is out of range. */
+#include "check.h"
+
+#define N 40
+static float u[N * 20], f[N * 5];
+
+static void defaults(void)
+{
+    nf_cv_config config, expected;
+    memset(&expected, 0, sizeof expected);
+    expected.dims = 2;
+    expected.order = 2;
+    expected.channels = 1;
+    poison(&config, sizeof config);
+    nf_cv_config_default(&config);
+    CHECK(memcmp(&config, &expected, sizeof config) == 0);
+    nf_cv_config_default(NULL);
+}
+
+/* binomial(dims + order, order), the dimension of the polynomials of total degree. */
+static uint32_t expected_terms(uint32_t dims, uint32_t order)
+{
+    uint64_t terms = 1;
+    uint32_t k;
+    for (k = 1; k <= order; ++k)
+        terms = terms * (dims + k) / k;
+    return terms <= 136 ? (uint32_t)terms : 0;
+}
+
+static void terms(void)
+{
+    uint32_t dims, order, basis;
+    nf_cv_config config;
+    for (basis = 0; basis < 4; ++basis)
+        for (dims = 1; dims <= 16; ++dims)
+            for (order = 0; order <= 7; ++order) {
+                config = make_config(dims, order, 1, NF_CV_ROBUST);
+                config.basis = basis;
+                CHECK(nf_cv_terms(&config) == expected_terms(dims, order));
+                CHECK((nf_cv_workspace_size(&config, 8) > 0) == (expected_terms(dims, order) > 0));
+            }
+    config = make_config(2, 2, 1, NF_CV_ROBUST);
+    config.controls = 3;
+    CHECK(nf_cv_terms(&config) == 9);
+    config = make_config(3, 1, 1, NF_CV_ROBUST);
+    config.slices = 4;
+    /* The constant, 2 coordinates, 4 indicators, and the 2 coordinates again for each of the 4. */
+    CHECK(nf_cv_terms(&config) == 1 + 2 + 4 + 8);
+    CHECK(nf_cv_terms(NULL) == 0);
+}
+
+/* Every function that takes a configuration refuses this one. */
+static void refused(const nf_cv_config *config, nf_status status)
+{
+    memory work = memory_new(1 << 16);
+    nf_estimate out, two[2];
+    float coefficients[4];
+    nf_cv_accumulator *accumulator;
+    nf_cv_config descent = *config;
+    /* Blocks and descents take no control functions at all. */
+    const nf_status narrower = config->controls > 0 ? NF_ERR_UNSUPPORTED : status;
+    CHECK(nf_cv_workspace_size(config, N) == 0);
+    CHECK(nf_cv_block_workspace_size(config, 2, N / 2) == 0);
+    CHECK(nf_cv_accumulator_size(config) == 0);
+    CHECK(nf_cv_accumulator_workspace_size(config) == 0);
+    CHECK_REFUSED(nf_cv_estimate(config, u, f, N, work.start, work.bytes, &out), status, out);
+    CHECK_REFUSED(nf_cv_estimate_with_controls(config, u, f, u, u, N, work.start, work.bytes, &out), status, out);
+    CHECK_REFUSED(nf_cv_block_estimate(config, u, f, 2, N / 2, work.start, work.bytes, two), narrower, two);
+    CHECK_REFUSED(nf_cv_accumulator_init(work.start, work.bytes, config, &accumulator), status, accumulator);
+    if (config->estimator == NF_CV_ROBUST)
+        descent.estimator = NF_CV_GRADIENT_DESCENT;
+    poison(coefficients, sizeof coefficients);
+    CHECK_REFUSED(nf_cv_gradient_descent(&descent, u, f, N, coefficients, work.start, work.bytes, &out), narrower,
+                  out);
+    CHECK(is_poisoned(coefficients, sizeof coefficients));
+    memory_free(&work);
+}
+
+#define REFUSED(change, status)                                 \
+    do {                                                        \
+        nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST); \
+        change;                                                 \
+        refused(&config, status);                               \
+        CHECK(nf_cv_terms(&config) == 0);                       \
+    } while (0)
+/* The number of terms does not depend on these fields, so that nf_cv_terms() need not look at them. */
+#define REFUSED_AFTER_TERMS(change, status)                     \
+    do {                                                        \
+        nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST); \
+        change;                                                 \
+        refused(&config, status);                               \
+    } while (0)
+
+static void ranges(void)
+{
+    const float nan = not_a_number(), infinite = infinity_f();
+    REFUSED(config.dims = 0, NF_ERR_RANGE);
+    REFUSED(config.dims = 17, NF_ERR_RANGE);
+    REFUSED(config.dims = UINT32_MAX, NF_ERR_RANGE);
+    REFUSED(config.order = 8, NF_ERR_RANGE);
+    REFUSED(config.order = UINT32_MAX, NF_ERR_RANGE);
+    REFUSED((config.dims = 16, config.order = 2), NF_ERR_RANGE); /* 153 terms */
+    REFUSED(config.channels = 0, NF_ERR_RANGE);
+    REFUSED(config.channels = 5, NF_ERR_RANGE);
+    REFUSED(config.channels = UINT32_MAX, NF_ERR_RANGE);
+    REFUSED(config.estimator = 6, NF_ERR_RANGE);
+    REFUSED(config.estimator = UINT32_MAX, NF_ERR_RANGE);
+    REFUSED(config.basis = 4, NF_ERR_RANGE);
+    REFUSED(config.stratified = 2, NF_ERR_RANGE);
+    REFUSED(config.slices = 136, NF_ERR_RANGE);
+    REFUSED(config.slices = UINT32_MAX, NF_ERR_RANGE);
+    REFUSED(config.controls = 5, NF_ERR_RANGE);
+    REFUSED(config.controls = UINT32_MAX, NF_ERR_RANGE);
+    REFUSED(config.stride = 1, NF_ERR_RANGE);
+    REFUSED(config.solver = 4, NF_ERR_RANGE);
+    REFUSED_AFTER_TERMS(config.precision = 2, NF_ERR_RANGE);
+    REFUSED(config.nonfinite = 2, NF_ERR_RANGE);
+    REFUSED(config.color = 2, NF_ERR_RANGE);
+    REFUSED(config.folds = 1, NF_ERR_RANGE);
+    REFUSED(config.folds = 17, NF_ERR_RANGE);
+    REFUSED(config.iterations = (1u << 20) + 1, NF_ERR_RANGE);
+    REFUSED(config.optimizer = 3, NF_ERR_RANGE);
+    REFUSED(config.ridge = -0.5f, NF_ERR_RANGE);
+    REFUSED(config.ridge = -2.0f, NF_ERR_RANGE);
+    REFUSED(config.ridge = nan, NF_ERR_RANGE);
+    REFUSED(config.ridge = infinite, NF_ERR_RANGE);
+    REFUSED(config.learning_rate = -1.0f, NF_ERR_RANGE);
+    REFUSED(config.learning_rate = nan, NF_ERR_RANGE);
+    REFUSED(config.learning_rate = infinite, NF_ERR_RANGE);
+    REFUSED(config.momentum = -0.1f, NF_ERR_RANGE);
+    REFUSED(config.momentum = 1.0f, NF_ERR_RANGE);
+    REFUSED(config.momentum = nan, NF_ERR_RANGE);
+}
+
+/* The largest and the smallest of everything is accepted. */
+static void limits(void)
+{
+    static float long_u[200 * 16], long_f[200 * 4];
+    static const uint32_t estimators = 6;
+    uint32_t estimator, dims, order;
+    fill_uniform(long_u, 200 * 16, 5);
+    for (estimator = 0; estimator < estimators; ++estimator)
+        for (dims = 1; dims <= 16; dims += 5)
+            for (order = 0; order <= 7; order += dims == 1 ? 7 : 1) {
+                nf_cv_config config = make_config(dims, order, 4, estimator);
+                nf_estimate out;
+                memory work;
+                if (expected_terms(dims, order) == 0)
+                    continue;
+                fill_linear(long_f, long_u, 20, dims, 4);
+                work = memory_new(nf_cv_workspace_size(&config, 20));
+                CHECK_STATUS(nf_cv_estimate(&config, long_u, long_f, 20, work.start, work.bytes, &out), NF_OK);
+                CHECK(out.samples == 20);
+                CHECK(isfinite(out.mean[0]) && isfinite(out.mean[3]) && isfinite(out.gain));
+                memory_free(&work);
+            }
+}
+
+int main(void)
+{
+    fill_uniform(u, N * 20, 1);
+    fill_linear(f, u, N, 2, 1);
+    defaults();
+    terms();
+    ranges();
+    limits();
+    return report("config");
+}
