@@ -1,7 +1,494 @@
 // noisefloor for C++17: thin wrappers over noisefloor.h.
+//
+// Everything is header-only, and nothing allocates or owns: memory is the caller's, views are pointer and length, and objects
+// end without a destructor. The C header has the full description of every function; here stand only the differences.
+//
+// A call that fails throws noisefloor::error. With NOISEFLOOR_NO_EXCEPTIONS defined, or exceptions turned off in the compiler,
+// the same functions return noisefloor::result<T>, or a status, instead: see `returned`.
 #ifndef NOISEFLOOR_HPP
 #define NOISEFLOOR_HPP
 
 #include "noisefloor.h"
 
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#if !defined(NOISEFLOOR_NO_EXCEPTIONS) && !defined(__cpp_exceptions) && !(defined(_MSC_VER) && defined(_CPPUNWIND))
+#define NOISEFLOOR_NO_EXCEPTIONS
 #endif
+#ifndef NOISEFLOOR_NO_EXCEPTIONS
+#include <exception>
+#endif
+
+namespace noisefloor {
+// Two namespaces, so that sources compiled with and without exceptions can be linked together.
+#ifdef NOISEFLOOR_NO_EXCEPTIONS
+inline namespace returning {
+#else
+inline namespace throwing {
+#endif
+
+// ---- Views -----------------------------------------------------------------------------------------------------------------
+
+// A pointer and a length, as std::span: made from arrays, and from whatever has data() and size().
+template <class T> class span {
+public:
+    constexpr span() noexcept = default;
+    constexpr span(T *data, std::size_t size) noexcept : data_(data), size_(size) {}
+    template <std::size_t N> constexpr span(T (&array)[N]) noexcept : data_(array), size_(N) {}
+    template <class C, class P = decltype(std::declval<C &>().data()), class = decltype(std::declval<C &>().size()),
+              class = std::enable_if_t<std::is_convertible_v<std::remove_pointer_t<P> (*)[], T (*)[]>>>
+    constexpr span(C &&container) noexcept : data_(container.data()), size_(static_cast<std::size_t>(container.size()))
+    {
+    }
+
+    constexpr T *data() const noexcept { return data_; }
+    constexpr std::size_t size() const noexcept { return size_; }
+    constexpr bool empty() const noexcept { return size_ == 0; }
+    constexpr T *begin() const noexcept { return data_; }
+    constexpr T *end() const noexcept { return data_ + size_; }
+    constexpr T &operator[](std::size_t index) const noexcept { return data_[index]; }
+
+private:
+    T *data_ = nullptr;
+    std::size_t size_ = 0;
+};
+
+// Memory for the library to work in, 8-byte aligned. Made from an array or container of any trivial type.
+class memory {
+public:
+    constexpr memory() noexcept = default;
+    constexpr memory(void *data, std::size_t bytes) noexcept : data_(data), bytes_(bytes) {}
+    template <class T, std::size_t N> constexpr memory(T (&array)[N]) noexcept : data_(array), bytes_(N * sizeof(T))
+    {
+        static_assert(std::is_trivial_v<T>, "memory is overwritten byte by byte");
+    }
+    template <class C, class P = decltype(std::declval<C &>().data()), class = decltype(std::declval<C &>().size()),
+              class = std::enable_if_t<std::is_convertible_v<P, void *> && !std::is_same_v<std::decay_t<C>, memory>>>
+    constexpr memory(C &&container) noexcept
+        : data_(container.data()), bytes_(static_cast<std::size_t>(container.size()) * sizeof(*container.data()))
+    {
+        static_assert(std::is_trivial_v<std::remove_pointer_t<P>>, "memory is overwritten byte by byte");
+    }
+
+    constexpr void *data() const noexcept { return data_; }
+    constexpr std::size_t bytes() const noexcept { return bytes_; }
+
+private:
+    void *data_ = nullptr;
+    std::size_t bytes_ = 0;
+};
+
+// ---- Errors ----------------------------------------------------------------------------------------------------------------
+
+enum class status : nf_status {
+    ok = NF_OK,
+    null = NF_ERR_NULL,
+    range = NF_ERR_RANGE,
+    not_finite = NF_ERR_NOT_FINITE,
+    memory = NF_ERR_MEMORY,
+    alignment = NF_ERR_ALIGNMENT,
+    no_samples = NF_ERR_NO_SAMPLES,
+    unsupported = NF_ERR_UNSUPPORTED,
+    state = NF_ERR_STATE,
+    mismatch = NF_ERR_MISMATCH
+};
+
+inline const char *message(status code) noexcept { return nf_status_message(static_cast<nf_status>(code)); }
+
+#ifndef NOISEFLOOR_NO_EXCEPTIONS
+
+class error final : public std::exception {
+public:
+    explicit error(status code) noexcept : code_(code) {}
+    status code() const noexcept { return code_; }
+    const char *what() const noexcept override { return message(code_); }
+
+private:
+    status code_;
+};
+
+// What a function that computes a T returns: the T.
+template <class T> using returned = T;
+
+namespace detail {
+inline void finish(nf_status code)
+{
+    if (code != NF_OK)
+        throw error(static_cast<status>(code));
+}
+template <class T> T finish(nf_status code, const T &value)
+{
+    finish(code);
+    return value;
+}
+} // namespace detail
+
+#else
+
+// A value, or why there is none. `value` means something only if `code` is status::ok.
+template <class T> struct [[nodiscard]] result {
+    status code = status::ok;
+    T value{};
+    constexpr bool ok() const noexcept { return code == status::ok; }
+    constexpr explicit operator bool() const noexcept { return ok(); }
+    constexpr const T &operator*() const noexcept { return value; }
+    constexpr T &operator*() noexcept { return value; }
+    constexpr const T *operator->() const noexcept { return &value; }
+    constexpr T *operator->() noexcept { return &value; }
+};
+template <> struct [[nodiscard]] result<void> {
+    status code = status::ok;
+    constexpr bool ok() const noexcept { return code == status::ok; }
+    constexpr explicit operator bool() const noexcept { return ok(); }
+};
+
+// What a function that computes a T returns: a result<T>.
+template <class T> using returned = result<T>;
+
+namespace detail {
+inline result<void> finish(nf_status code) noexcept { return {static_cast<status>(code)}; }
+template <class T> result<T> finish(nf_status code, const T &value) noexcept
+{
+    return {static_cast<status>(code), value};
+}
+} // namespace detail
+
+#endif
+
+// Whether header and library belong together.
+inline bool abi_matches() noexcept { return nf_abi_version() == NF_ABI_VERSION; }
+
+// ---- Control variates ------------------------------------------------------------------------------------------------------
+
+enum class estimator : std::uint32_t {
+    robust = NF_CV_ROBUST,
+    least_squares = NF_CV_LEAST_SQUARES,
+    leave_one_out = NF_CV_LEAVE_ONE_OUT,
+    k_fold = NF_CV_K_FOLD,
+    gradient_descent = NF_CV_GRADIENT_DESCENT,
+    incremental = NF_CV_INCREMENTAL
+};
+enum class basis : std::uint32_t {
+    legendre = NF_BASIS_LEGENDRE,
+    step = NF_BASIS_STEP,
+    sine = NF_BASIS_SINE,
+    gaussian = NF_BASIS_GAUSSIAN
+};
+enum class solver : std::uint32_t {
+    automatic = NF_SOLVER_AUTO,
+    normal_equations = NF_SOLVER_NORMAL_EQUATIONS,
+    square_root = NF_SOLVER_SQUARE_ROOT,
+    dual = NF_SOLVER_DUAL
+};
+enum class optimizer : std::uint32_t { momentum = NF_OPTIMIZER_MOMENTUM, adam = NF_OPTIMIZER_ADAM, plain = NF_OPTIMIZER_PLAIN };
+
+// nf_cv_config with its defaults, and functions that change one thing and can be chained:
+// `config(3, 2, 3).with(estimator::k_fold).with_folds(2)`. The C fields remain accessible.
+struct config : nf_cv_config {
+    config() noexcept : nf_cv_config() { nf_cv_config_default(this); }
+    config(std::uint32_t dims_, std::uint32_t order_, std::uint32_t channels_ = 1) noexcept : config()
+    {
+        dims = dims_;
+        order = order_;
+        channels = channels_;
+    }
+    explicit config(const nf_cv_config &other) noexcept : nf_cv_config(other) {}
+
+    config with(noisefloor::estimator value) const noexcept { return set(&nf_cv_config::estimator, static_cast<std::uint32_t>(value)); }
+    config with(noisefloor::basis value) const noexcept { return set(&nf_cv_config::basis, static_cast<std::uint32_t>(value)); }
+    config with(noisefloor::solver value) const noexcept { return set(&nf_cv_config::solver, static_cast<std::uint32_t>(value)); }
+    config with(noisefloor::optimizer value) const noexcept { return set(&nf_cv_config::optimizer, static_cast<std::uint32_t>(value)); }
+    config with_stratified_samples(bool value = true) const noexcept { return set(&nf_cv_config::stratified, value ? 1u : 0u); }
+    config with_slices(std::uint32_t count) const noexcept { return set(&nf_cv_config::slices, count); }
+    config with_controls(std::uint32_t count) const noexcept { return set(&nf_cv_config::controls, count); }
+    config with_stride(std::uint32_t floats) const noexcept { return set(&nf_cv_config::stride, floats); }
+    config with_single_precision(bool value = true) const noexcept
+    {
+        return set(&nf_cv_config::precision, value ? std::uint32_t{NF_PRECISION_F32} : std::uint32_t{NF_PRECISION_F64});
+    }
+    config with_non_finite_skipped(bool value = true) const noexcept
+    {
+        return set(&nf_cv_config::nonfinite, value ? std::uint32_t{NF_NONFINITE_SKIP} : std::uint32_t{NF_NONFINITE_ERROR});
+    }
+    config with_luminance_ratio(bool value = true) const noexcept
+    {
+        return set(&nf_cv_config::color, value ? std::uint32_t{NF_COLOR_LUMINANCE_RATIO} : std::uint32_t{NF_COLOR_PER_CHANNEL});
+    }
+    config with_folds(std::uint32_t count) const noexcept { return set(&nf_cv_config::folds, count); }
+    config with_iterations(std::uint32_t count) const noexcept { return set(&nf_cv_config::iterations, count); }
+    config with_ridge(float strength) const noexcept { return set(&nf_cv_config::ridge, strength); }
+    config with_automatic_ridge() const noexcept { return with_ridge(NF_RIDGE_AUTO); }
+    config with_learning_rate(float rate) const noexcept { return set(&nf_cv_config::learning_rate, rate); }
+    config with_momentum(float value) const noexcept { return set(&nf_cv_config::momentum, value); }
+
+    // 0 for a configuration that is out of range.
+    std::uint32_t terms() const noexcept { return nf_cv_terms(this); }
+    bool valid() const noexcept { return terms() > 0; }
+    // Bytes; 0 for a configuration that is out of range.
+    std::size_t workspace_size(std::size_t n) const noexcept { return nf_cv_workspace_size(this, n); }
+    std::size_t block_workspace_size(std::size_t pixels, std::size_t n) const noexcept { return nf_cv_block_workspace_size(this, pixels, n); }
+    std::size_t accumulator_size() const noexcept { return nf_cv_accumulator_size(this); }
+    std::size_t accumulator_workspace_size() const noexcept { return nf_cv_accumulator_workspace_size(this); }
+
+private:
+    template <class T> config set(T nf_cv_config::*field, T value) const noexcept
+    {
+        config copy = *this;
+        copy.*field = value;
+        return copy;
+    }
+};
+
+// Samples in caller arrays. The number of samples is f.size() / channels, and all lengths must agree with it.
+struct samples {
+    span<const float> u;
+    span<const float> f;
+    span<const float> controls{};
+    span<const float> control_integrals{};
+};
+
+namespace detail {
+// How many samples the arrays hold, or why they hold none.
+inline nf_status count(const nf_cv_config &how, const samples &what, std::size_t &n) noexcept
+{
+    const std::size_t channels = how.channels, stride = how.stride == 0 ? how.dims : how.stride;
+    if (channels == 0 || what.f.size() % channels != 0)
+        return NF_ERR_RANGE;
+    n = what.f.size() / channels;
+    if (n == 0)
+        return NF_ERR_NO_SAMPLES;
+    // Products that overflow would say "enough": divide instead.
+    if (what.u.size() < how.dims || (n > 1 && (stride == 0 || (what.u.size() - how.dims) / stride < n - 1)))
+        return NF_ERR_RANGE;
+    const std::size_t used = how.controls;
+    if (what.control_integrals.size() != used || what.controls.size() % n != 0 || what.controls.size() / n != used)
+        return NF_ERR_RANGE;
+    return NF_OK;
+}
+} // namespace detail
+
+// nf_cv_estimate_with_controls(): the estimate from all samples. status::range also for lengths that do not agree.
+inline returned<nf_estimate> estimate(const nf_cv_config &how, const samples &what, memory workspace)
+{
+    nf_estimate out{};
+    std::size_t n = 0;
+    nf_status code = detail::count(how, what, n);
+    if (code == NF_OK)
+        code = nf_cv_estimate_with_controls(&how, what.u.data(), what.f.data(), what.controls.data(), what.control_integrals.data(), n,
+                                            workspace.data(), workspace.bytes(), &out);
+    return detail::finish(code, out);
+}
+
+// nf_cv_gradient_descent(): `coefficients` are the start, and afterwards the solution.
+inline returned<nf_estimate> gradient_descent(const nf_cv_config &how, const samples &what, span<float> coefficients, memory workspace)
+{
+    nf_estimate out{};
+    std::size_t n = 0;
+    nf_status code = detail::count(how, what, n);
+    const std::size_t rows = how.color == NF_COLOR_LUMINANCE_RATIO ? 1 : how.channels;
+    const std::size_t terms = nf_cv_terms(&how);
+    if (code == NF_OK && terms > 0 && coefficients.size() != rows * (terms - 1))
+        code = NF_ERR_RANGE;
+    if (code == NF_OK)
+        code = nf_cv_gradient_descent(&how, what.u.data(), what.f.data(), n, coefficients.data(), workspace.data(), workspace.bytes(), &out);
+    return detail::finish(code, out);
+}
+
+// nf_cv_block_estimate(): one estimate for each element of `out`, from as many samples of each.
+inline returned<void> estimate_block(const nf_cv_config &how, const samples &what, memory workspace, span<nf_estimate> out)
+{
+    std::size_t n = 0;
+    nf_status code = detail::count(how, what, n);
+    if (code == NF_OK && (out.empty() || n % out.size() != 0))
+        code = NF_ERR_RANGE;
+    if (code == NF_OK)
+        code = nf_cv_block_estimate(&how, what.u.data(), what.f.data(), out.size(), n / out.size(), workspace.data(), workspace.bytes(), out.data());
+    return detail::finish(code);
+}
+
+// A view of an nf_cv_accumulator in caller memory: copying the view does not copy the sums.
+class accumulator {
+public:
+    // Makes an empty accumulator in `where`.
+    static returned<accumulator> create(const nf_cv_config &how, memory where)
+    {
+        accumulator made(nullptr, how);
+        return detail::finish(nf_cv_accumulator_init(where.data(), where.bytes(), &how, &made.handle_), made);
+    }
+    // A view of one made earlier with the same configuration.
+    accumulator(nf_cv_accumulator *handle, const nf_cv_config &how) noexcept : handle_(handle), how_(how) {}
+    accumulator() noexcept = default;
+
+    returned<void> add(const samples &what) const
+    {
+        std::size_t n = 0;
+        nf_status code = detail::count(how_, what, n);
+        if (code == NF_OK)
+            code = nf_cv_accumulator_add_with_controls(handle_, what.u.data(), what.f.data(), what.controls.data(), what.control_integrals.data(), n);
+        return detail::finish(code);
+    }
+    returned<void> merge(const accumulator &other) const { return detail::finish(nf_cv_accumulator_merge(handle_, other.handle_)); }
+    returned<void> reset() const { return detail::finish(nf_cv_accumulator_reset(handle_)); }
+    returned<nf_estimate> estimate(memory workspace) const
+    {
+        nf_estimate out{};
+        return detail::finish(nf_cv_accumulator_estimate(handle_, workspace.data(), workspace.bytes(), &out), out);
+    }
+    nf_cv_accumulator *handle() const noexcept { return handle_; }
+
+private:
+    nf_cv_accumulator *handle_ = nullptr;
+    nf_cv_config how_{};
+};
+
+// ---- Multiple importance sampling ------------------------------------------------------------------------------------------
+
+namespace mis {
+
+constexpr std::size_t max_techniques = NF_MIS_MAX_TECHNIQUES;
+
+// Densities and numbers of samples of the techniques at one point; both of one length.
+struct point {
+    span<const float> pdf;
+    span<const std::uint32_t> counts;
+};
+
+namespace detail {
+inline bool fits(const point &at) noexcept { return at.pdf.size() == at.counts.size() && at.pdf.size() <= max_techniques; }
+inline std::uint32_t techniques(const point &at) noexcept { return static_cast<std::uint32_t>(at.pdf.size()); }
+} // namespace detail
+
+inline returned<float> balance(const point &at, std::uint32_t technique)
+{
+    float weight = 0;
+    return noisefloor::detail::finish(
+        detail::fits(at) ? nf_mis_balance(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, &weight) : NF_ERR_RANGE, weight);
+}
+inline returned<float> power(const point &at, std::uint32_t technique, float beta = 2.0f)
+{
+    float weight = 0;
+    const nf_status code =
+        detail::fits(at) ? nf_mis_power(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, beta, &weight) : NF_ERR_RANGE;
+    return noisefloor::detail::finish(code, weight);
+}
+inline returned<float> cutoff(const point &at, std::uint32_t technique, float epsilon)
+{
+    float weight = 0;
+    const nf_status code =
+        detail::fits(at) ? nf_mis_cutoff(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, epsilon, &weight) : NF_ERR_RANGE;
+    return noisefloor::detail::finish(code, weight);
+}
+inline returned<float> maximum(const point &at, std::uint32_t technique)
+{
+    float weight = 0;
+    const nf_status code =
+        detail::fits(at) ? nf_mis_maximum(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, &weight) : NF_ERR_RANGE;
+    return noisefloor::detail::finish(code, weight);
+}
+inline returned<float> optimal(const point &at, std::uint32_t technique, span<const float> alpha, float value)
+{
+    float weight = 0;
+    nf_status code = NF_ERR_RANGE;
+    if (detail::fits(at) && alpha.size() == at.pdf.size())
+        code = nf_mis_optimal(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, alpha.data(), value, &weight);
+    return noisefloor::detail::finish(code, weight);
+}
+inline returned<float> optimal_contribution(const point &at, std::uint32_t technique, span<const float> alpha, float value)
+{
+    float term = 0;
+    nf_status code = NF_ERR_RANGE;
+    if (detail::fits(at) && alpha.size() == at.pdf.size())
+        code = nf_mis_optimal_contribution(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, alpha.data(), value, &term);
+    return noisefloor::detail::finish(code, term);
+}
+
+} // namespace mis
+
+// A view of an nf_omis in caller memory: copying the view does not copy the sums.
+class optimal_mis {
+public:
+    enum class solver : std::uint32_t { ridge = NF_OMIS_RIDGE, plain = NF_OMIS_PLAIN, progressive = NF_OMIS_PROGRESSIVE, balance = NF_OMIS_BALANCE };
+
+    // Bytes.
+    static std::size_t size(std::uint32_t techniques, std::uint32_t integrals) noexcept { return nf_omis_size(techniques, integrals); }
+
+    // Empty sums in `where`, for techniques that draw counts[j] samples a round.
+    static returned<optimal_mis> create(span<const std::uint32_t> counts, std::uint32_t integrals, memory where)
+    {
+        optimal_mis made;
+        nf_status code = NF_ERR_RANGE;
+        if (counts.size() <= mis::max_techniques) {
+            made.techniques_ = static_cast<std::uint32_t>(counts.size());
+            made.integrals_ = integrals;
+            code = nf_omis_init(where.data(), where.bytes(), made.techniques_, integrals, counts.data(), &made.handle_);
+        }
+        return detail::finish(code, made);
+    }
+    optimal_mis() noexcept = default;
+
+    // pdf[techniques], value[integrals]
+    returned<void> add(std::uint32_t technique, span<const float> pdf, span<const float> value) const
+    {
+        const bool fits = pdf.size() == techniques_ && value.size() == integrals_;
+        return detail::finish(fits ? nf_omis_add(handle_, technique, pdf.data(), value.data()) : NF_ERR_RANGE);
+    }
+    // out[integrals]
+    returned<void> solve(span<float> out, solver how = solver::ridge, float ridge = 0.0f) const
+    {
+        const bool fits = out.size() == integrals_;
+        return detail::finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, out.data()) : NF_ERR_RANGE);
+    }
+    // out[integrals * techniques]
+    returned<void> alpha(span<float> out, solver how = solver::ridge, float ridge = 0.0f) const
+    {
+        const bool fits = techniques_ > 0 && out.size() % techniques_ == 0 && out.size() / techniques_ == integrals_;
+        return detail::finish(fits ? nf_omis_alpha(handle_, static_cast<std::uint32_t>(how), ridge, out.data()) : NF_ERR_RANGE);
+    }
+    returned<void> next_batch(solver how = solver::ridge, float ridge = 0.0f) const
+    {
+        return detail::finish(nf_omis_next_batch(handle_, static_cast<std::uint32_t>(how), ridge));
+    }
+    returned<void> decay(float beta) const { return detail::finish(nf_omis_decay(handle_, beta)); }
+    returned<void> reset() const { return detail::finish(nf_omis_reset(handle_)); }
+    returned<void> merge(const optimal_mis &other) const { return detail::finish(nf_omis_merge(handle_, other.handle_)); }
+    nf_omis *handle() const noexcept { return handle_; }
+
+private:
+    nf_omis *handle_ = nullptr;
+    std::uint32_t techniques_ = 0, integrals_ = 0;
+};
+
+// ---- Random numbers --------------------------------------------------------------------------------------------------------
+
+// nf_rng as a standard uniform random bit generator.
+class rng {
+public:
+    using result_type = std::uint32_t;
+    explicit rng(std::uint64_t seed) noexcept { nf_rng_seed(&state_, seed); }
+    explicit rng(const nf_rng &state) noexcept : state_(state) {}
+    static constexpr result_type min() noexcept { return 0; }
+    static constexpr result_type max() noexcept { return UINT32_MAX; }
+    result_type operator()() noexcept { return nf_rng_next(&state_); }
+    float uniform() noexcept { return nf_rng_uniform(&state_); }
+    void fill(span<float> out) noexcept
+    {
+        for (float &value : out)
+            value = uniform();
+    }
+    const nf_rng &state() const noexcept { return state_; }
+
+private:
+    nf_rng state_{};
+};
+
+static_assert(sizeof(config) == sizeof(nf_cv_config), "config is an nf_cv_config");
+static_assert(std::is_trivially_copyable_v<config> && std::is_trivially_copyable_v<accumulator>, "views and values only");
+static_assert(std::is_trivially_destructible_v<optimal_mis> && std::is_trivially_destructible_v<accumulator>, "nothing to destroy");
+
+} // inline namespace
+} // namespace noisefloor
+
+#endif // NOISEFLOOR_HPP

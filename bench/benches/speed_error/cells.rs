@@ -1,0 +1,219 @@
+//! One integrand, one degree, one sample count: errors and times of every estimator on the same samples.
+
+use noisefloor_bench::method::{MEAN, METHODS, ROBUST};
+use noisefloor_bench::{Door, Method};
+use noisefloor_tests::integrands::Integrand;
+use noisefloor_tests::random::{SplitMix64, mix};
+use noisefloor_tests::statistics::{Ratio, median, rmse_ratio};
+use std::hint::black_box;
+use std::time::Instant;
+
+pub(crate) const COUNTS: [usize; 6] = [8, 16, 32, 64, 128, 256];
+/// The largest total degrees that are measured.
+pub(crate) const DEGREES: [usize; 2] = [3, 2];
+/// What the library admits.
+const MAX_TERMS: usize = 136;
+
+/// Which integrands.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Set {
+    Nine,
+    HeldOut,
+    Adversarial,
+}
+
+impl Set {
+    pub(crate) const ALL: [Self; 3] = [Self::Nine, Self::HeldOut, Self::Adversarial];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Nine => "nine",
+            Self::HeldOut => "held out",
+            Self::Adversarial => "adversarial",
+        }
+    }
+}
+
+/// A method's figures.
+#[derive(Clone)]
+pub(crate) struct Cell {
+    pub(crate) set: Set,
+    pub(crate) integrand: &'static str,
+    pub(crate) dims: usize,
+    /// The degree asked for, and the one that the limit of terms leaves.
+    pub(crate) degree: usize,
+    pub(crate) order: usize,
+    pub(crate) n: usize,
+    pub(crate) method: &'static str,
+    pub(crate) repetitions: usize,
+    /// The mean's RMSE on the same samples.
+    pub(crate) mean_rmse: f64,
+    /// RMSE over the mean's, 95 % interval.
+    pub(crate) ratio: Ratio,
+    /// For an `f32` method, how it differs from its `f64` twin on the same samples.
+    pub(crate) narrow: Option<Narrow>,
+    /// Nanoseconds per sample, and the mean's.
+    pub(crate) ns: f64,
+    pub(crate) mean_ns: f64,
+}
+
+/// What `f32` changes.
+#[derive(Clone, Copy)]
+pub(crate) struct Narrow {
+    /// RMSE over the `f64` path's; infinite where that path is exact.
+    pub(crate) ratio: Ratio,
+    /// The root mean square of the difference between the two estimates, over the plain mean's RMSE.
+    pub(crate) difference: f64,
+}
+
+impl Cell {
+    pub(crate) fn rmse(&self) -> f64 {
+        self.ratio.value * self.mean_rmse
+    }
+
+    /// 1 / (MSE x time of an estimate in seconds), samples for free.
+    pub(crate) fn efficiency(&self) -> f64 {
+        1e9 / (self.rmse().powi(2) * self.ns * self.n as f64)
+    }
+
+    /// Nanoseconds that a sample must cost for this method to be as efficient as the mean; more, and it is better.
+    pub(crate) fn break_even(&self) -> f64 {
+        let square = self.ratio.value.powi(2);
+        if square < 1.0 { ((square * self.ns - self.mean_ns) / (1.0 - square)).max(0.0) } else { f64::INFINITY }
+    }
+}
+
+/// How many repetitions.
+pub(crate) struct Effort {
+    factor: usize,
+}
+
+impl Effort {
+    pub(crate) fn new(full: bool) -> Self {
+        Self { factor: if full { 8 } else { 1 } }
+    }
+
+    /// (chunks, repetitions in a chunk) of the mean and the robust estimator; every fourth chunk for all others.
+    fn chunks(&self, dims: usize, n: usize) -> (usize, usize) {
+        let (repetitions, size) = match (dims, n) {
+            (..=5, ..=16) => (8192, 32),
+            (..=5, 17..=32) => (2048, 32),
+            (..=5, 33..=64) => (1536, 32),
+            (..=5, _) => (1024, 32),
+            (_, ..=64) => (512, 8),
+            _ => (256, 8),
+        };
+        (repetitions / size * self.factor, size)
+    }
+}
+
+/// Binomial (dims + degree) choose degree.
+fn terms(dims: usize, degree: usize) -> usize {
+    (1..=degree).fold(1, |terms, i| terms * (dims + i) / i)
+}
+
+struct Track {
+    method: Method,
+    prepared: noisefloor_bench::Prepared,
+    /// Errors in the chunks that all methods see.
+    shared: Vec<f64>,
+    /// Errors in all chunks that it sees.
+    all: Vec<f64>,
+    ns: Vec<f64>,
+}
+
+/// Adds a cell for each method.
+#[allow(clippy::too_many_arguments, reason = "one value for each axis of the table")]
+pub(crate) fn measure(
+    cells: &mut Vec<Cell>,
+    door: Door,
+    set: Set,
+    integrand: &Integrand,
+    seed: u64,
+    degree: usize,
+    n: usize,
+    effort: &Effort,
+) {
+    let dims = integrand.dims;
+    let order = (1..=degree).rev().find(|&order| terms(dims, order) <= MAX_TERMS).unwrap_or(1);
+    let same = |cell: &&Cell| (cell.integrand, cell.order, cell.n) == (integrand.name, order, n);
+    let known: Vec<Cell> = cells.iter().filter(same).cloned().collect();
+    if !known.is_empty() {
+        cells.extend(known.into_iter().map(|cell| Cell { degree, ..cell }));
+        return;
+    }
+    let mut tracks: Vec<Track> = METHODS
+        .iter()
+        .map(|&method| Track {
+            method,
+            prepared: method.prepare(door, dims, order, n),
+            shared: vec![],
+            all: vec![],
+            ns: vec![],
+        })
+        .collect();
+    let (chunks, size) = effort.chunks(dims, n);
+    let mut u = vec![0.0_f32; size * n * dims];
+    let mut f = vec![0.0_f32; size * n];
+    let mut rng = SplitMix64::new(mix(seed << 16 | n as u64));
+    let mut point = vec![0.0; dims];
+    for chunk in 0..chunks {
+        u.iter_mut().for_each(|u| *u = rng.uniform_f32());
+        for (f, u) in f.iter_mut().zip(u.chunks_exact(dims)) {
+            point.iter_mut().zip(u).for_each(|(x, &u)| *x = u.into());
+            *f = (integrand.evaluate)(&point) as f32;
+        }
+        let shared = chunk % 4 == 0;
+        for track in &mut tracks {
+            if !shared && ![MEAN.name, ROBUST.name].contains(&track.method.name) {
+                continue;
+            }
+            let mut errors = [0.0; 32];
+            let start = Instant::now();
+            for ((error, u), f) in errors.iter_mut().zip(u.chunks_exact(n * dims)).zip(f.chunks_exact(n)) {
+                *error = f64::from(black_box(track.prepared.estimate(black_box(u), black_box(f))));
+            }
+            track.ns.push(start.elapsed().as_secs_f64() * 1e9 / (size * n) as f64);
+            for value in &errors[..size] {
+                assert!(value.is_finite(), "{}: {} gave {value}", integrand.name, track.method.name);
+                track.all.push(value - integrand.integral);
+            }
+            if shared {
+                track.shared.extend(errors[..size].iter().map(|value| value - integrand.integral));
+            }
+        }
+    }
+    for track in &tracks {
+        let mean = if track.all.len() == tracks[0].all.len() { &tracks[0].all } else { &tracks[0].shared };
+        let wide = |other: &&Track| {
+            track.method.narrow
+                && !other.method.narrow
+                && track.method.name.strip_suffix(" f32") == Some(other.method.name)
+        };
+        cells.push(Cell {
+            set,
+            integrand: integrand.name,
+            dims,
+            degree,
+            order,
+            n,
+            method: track.method.name,
+            repetitions: track.all.len(),
+            mean_rmse: root_mean_square(mean.iter().copied()),
+            ratio: rmse_ratio(&track.all, mean),
+            narrow: tracks.iter().find(wide).map(|wide| narrow(&track.shared, &wide.shared, &tracks[0].shared)),
+            ns: median(&track.ns),
+            mean_ns: median(&tracks[0].ns),
+        });
+    }
+}
+
+fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    (values.map(|value| value * value).sum::<f64>() / count).sqrt()
+}
+
+fn narrow(narrow: &[f64], wide: &[f64], mean: &[f64]) -> Narrow {
+    let difference = root_mean_square(narrow.iter().zip(wide).map(|(narrow, wide)| narrow - wide));
+    Narrow { ratio: rmse_ratio(narrow, wide), difference: difference / root_mean_square(mean.iter().copied()) }
+}

@@ -1,0 +1,97 @@
+//! Error against speed, measured in one run: `cargo bench --package noisefloor-bench --bench speed_error`.
+//!
+//! Every estimator sees the same samples in turn, a chunk of repetitions at a time, so that a busy machine slows all of
+//! them alike; times are medians over the chunks. The report says what each figure means.
+
+mod cells;
+mod machine;
+mod must_reach;
+mod peer;
+mod report;
+mod speed;
+
+use anyhow::Result;
+use cells::{Cell, Effort, Set};
+use clap::Parser;
+use indicatif::{ProgressBar, ProgressStyle};
+use noisefloor_bench::{Door, c_abi};
+use noisefloor_tests::integrands;
+use std::path::{Path, PathBuf};
+
+/// Measures error against speed and writes a report.
+#[derive(Parser)]
+struct Options {
+    /// Eight times the repetitions.
+    #[arg(long)]
+    full: bool,
+    /// Where report.md, cells.csv and speed.csv go.
+    #[arg(long, default_value_os_t = default_output())]
+    output: PathBuf,
+    /// What cargo adds.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+fn default_output() -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder));
+    target.join("bench-report")
+}
+
+/// All that a run measures.
+pub(crate) struct Run {
+    pub(crate) full: bool,
+    pub(crate) door: Door,
+    pub(crate) machine: machine::Machine,
+    pub(crate) cells: Vec<Cell>,
+    pub(crate) speeds: Vec<speed::Speed>,
+    pub(crate) solves: Vec<speed::Speed>,
+}
+
+fn main() -> Result<()> {
+    let options = Options::parse();
+    let door = Door::shipped();
+    println!("through the {}; libnoisefloor.a is {}", door.name(), c_abi::STATE);
+    if !c_abi::LINKED {
+        println!("the figures are the Rust API's: for those of what ships, run `cargo xtask library` first");
+    }
+    let mut machine = machine::Machine::now();
+    let effort = Effort::new(options.full);
+    let sets = [
+        (Set::Nine, integrands::nine()),
+        (Set::HeldOut, integrands::held_out()),
+        (Set::Adversarial, integrands::adversarial()),
+    ];
+    let integrands: Vec<_> =
+        sets.iter().flat_map(|(set, list)| list.iter().map(move |integrand| (*set, *integrand))).collect();
+    let total =
+        integrands.len() * cells::DEGREES.len() * cells::COUNTS.len() + speed::SIZES.len() * speed::COUNTS.len();
+    let bar = ProgressBar::new(total as u64)
+        .with_style(ProgressStyle::with_template("{elapsed_precise} {wide_bar} {pos}/{len} {msg}")?);
+    let mut speeds = Vec::new();
+    for (dims, order) in speed::SIZES {
+        for n in speed::COUNTS {
+            bar.set_message(format!("speed, {dims}D, n = {n}"));
+            speeds.extend(speed::estimates(door, dims, order, n, options.full));
+            bar.inc(1);
+        }
+    }
+    let solves = speed::solves(options.full);
+    let mut cells = Vec::new();
+    for (index, (set, integrand)) in integrands.iter().enumerate() {
+        for degree in cells::DEGREES {
+            for n in cells::COUNTS {
+                bar.set_message(format!("{}, order {degree}, n = {n}", integrand.name));
+                cells::measure(&mut cells, door, *set, integrand, index as u64, degree, n, &effort);
+                bar.inc(1);
+            }
+        }
+    }
+    bar.finish_and_clear();
+    machine.finish();
+    let run = Run { full: options.full, door, machine, cells, speeds, solves };
+    report::write(&run, &options.output)?;
+    print!("{}", must_reach::table(&run));
+    println!("\nreport: {}", options.output.join("report.md").display());
+    Ok(())
+}

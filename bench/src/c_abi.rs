@@ -1,0 +1,248 @@
+//! The C functions, called as a C program calls them, from the archive that ships.
+//!
+//! A renderer links `libnoisefloor.a`, so its figures are the ones that count. Where the archive had not been built,
+//! nothing here can be called and [`STATE`] says "missing".
+
+use noisefloor::control_variate::Estimator;
+
+/// "up to date", "older than the sources" or "missing".
+pub const STATE: &str = env!("ARCHIVE_STATE");
+
+/// Whether the archive is linked.
+pub const LINKED: bool = cfg!(archive);
+
+/// `nf_cv_config`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+#[allow(missing_docs, reason = "include/noisefloor.h documents the fields")]
+pub struct Config {
+    pub dims: u32,
+    pub order: u32,
+    pub channels: u32,
+    pub estimator: u32,
+    pub basis: u32,
+    pub stratified: u32,
+    pub slices: u32,
+    pub controls: u32,
+    pub stride: u32,
+    pub solver: u32,
+    pub precision: u32,
+    pub nonfinite: u32,
+    pub color: u32,
+    pub folds: u32,
+    pub iterations: u32,
+    pub optimizer: u32,
+    pub ridge: f32,
+    pub learning_rate: f32,
+    pub momentum: f32,
+}
+
+/// The `NF_CV_*` value of an estimator.
+pub fn estimator(estimator: Estimator) -> u32 {
+    match estimator {
+        Estimator::Robust => 0,
+        Estimator::LeastSquares => 1,
+        Estimator::LeaveOneOut => 2,
+        Estimator::KFold => 3,
+        Estimator::GradientDescent => 4,
+        Estimator::Incremental => 5,
+    }
+}
+
+#[cfg(archive)]
+pub use linked::{Accumulator, Batch};
+#[cfg(not(archive))]
+pub use missing::{Accumulator, Batch};
+
+#[cfg(archive)]
+mod linked {
+    use super::Config;
+    use std::ffi::c_void;
+
+    /// `nf_estimate`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Default)]
+    struct Estimate {
+        mean: [f32; 4],
+        std_error: [f32; 4],
+        samples: u32,
+        gain: f32,
+    }
+
+    unsafe extern "C" {
+        fn nf_cv_workspace_size(config: *const Config, n: usize) -> usize;
+        fn nf_cv_estimate(
+            config: *const Config,
+            u: *const f32,
+            f: *const f32,
+            n: usize,
+            workspace: *mut c_void,
+            bytes: usize,
+            out: *mut Estimate,
+        ) -> i32;
+        fn nf_cv_accumulator_size(config: *const Config) -> usize;
+        fn nf_cv_accumulator_init(
+            memory: *mut c_void,
+            bytes: usize,
+            config: *const Config,
+            out: *mut *mut c_void,
+        ) -> i32;
+        fn nf_cv_accumulator_add(accumulator: *mut c_void, u: *const f32, f: *const f32, n: usize) -> i32;
+        fn nf_cv_accumulator_merge(accumulator: *mut c_void, other: *const c_void) -> i32;
+        fn nf_cv_accumulator_workspace_size(config: *const Config) -> usize;
+        fn nf_cv_accumulator_estimate(
+            accumulator: *const c_void,
+            workspace: *mut c_void,
+            bytes: usize,
+            out: *mut Estimate,
+        ) -> i32;
+        fn nf_cv_accumulator_reset(accumulator: *mut c_void) -> i32;
+    }
+
+    /// 8-byte aligned memory of at least `bytes` bytes.
+    fn memory(bytes: usize) -> Vec<u64> {
+        assert_ne!(bytes, 0, "the configuration is not supported");
+        vec![0; bytes.div_ceil(8)]
+    }
+
+    fn check(status: i32) {
+        assert_eq!(status, 0, "the C function failed");
+    }
+
+    /// `nf_cv_estimate` for a fixed number of samples.
+    pub struct Batch {
+        config: Config,
+        n: usize,
+        workspace: Vec<u64>,
+    }
+
+    impl Batch {
+        /// Allocates the workspace, as a renderer does once per thread.
+        pub fn new(config: Config, n: usize) -> Self {
+            // SAFETY: a valid configuration is all that is read.
+            let bytes = unsafe { nf_cv_workspace_size(&config, n) };
+            Self { config, n, workspace: memory(bytes) }
+        }
+
+        /// One estimate.
+        pub fn estimate(&mut self, u: &[f32], f: &[f32]) -> f32 {
+            assert!(u.len() >= self.n * self.config.dims as usize && f.len() >= self.n);
+            let mut out = Estimate::default();
+            let bytes = self.workspace.len() * 8;
+            // SAFETY: the arrays are as long as was just checked, the workspace as long as said.
+            check(unsafe {
+                nf_cv_estimate(
+                    &self.config,
+                    u.as_ptr(),
+                    f.as_ptr(),
+                    self.n,
+                    self.workspace.as_mut_ptr().cast(),
+                    bytes,
+                    &mut out,
+                )
+            });
+            out.mean[0]
+        }
+    }
+
+    /// `nf_cv_accumulator` in memory of its own.
+    pub struct Accumulator {
+        dims: usize,
+        memory: Vec<u64>,
+        workspace: Vec<u64>,
+    }
+
+    impl Accumulator {
+        /// An empty accumulator.
+        pub fn new(config: Config) -> Self {
+            // SAFETY: a valid configuration is all that is read.
+            let (size, work) = unsafe { (nf_cv_accumulator_size(&config), nf_cv_accumulator_workspace_size(&config)) };
+            let mut this = Self { dims: config.dims as usize, memory: memory(size), workspace: memory(work) };
+            let mut out = std::ptr::null_mut();
+            let bytes = this.memory.len() * 8;
+            // SAFETY: the memory is as long as said.
+            check(unsafe { nf_cv_accumulator_init(this.memory.as_mut_ptr().cast(), bytes, &config, &mut out) });
+            assert_eq!(out.cast_const().cast(), this.memory.as_ptr(), "the object starts its memory");
+            this
+        }
+
+        /// Adds one sample for each value.
+        pub fn add(&mut self, u: &[f32], f: &[f32]) {
+            assert!(u.len() >= f.len() * self.dims);
+            // SAFETY: the arrays are as long as was just checked; `new` made the object.
+            check(unsafe { nf_cv_accumulator_add(self.memory.as_mut_ptr().cast(), u.as_ptr(), f.as_ptr(), f.len()) });
+        }
+
+        /// Adds another accumulator's samples.
+        pub fn merge(&mut self, other: &Self) {
+            // SAFETY: `new` made both objects.
+            check(unsafe { nf_cv_accumulator_merge(self.memory.as_mut_ptr().cast(), other.memory.as_ptr().cast()) });
+        }
+
+        /// The estimate so far.
+        pub fn estimate(&mut self) -> f32 {
+            let mut out = Estimate::default();
+            let bytes = self.workspace.len() * 8;
+            // SAFETY: the workspace is as long as said; `new` made the object.
+            check(unsafe {
+                nf_cv_accumulator_estimate(
+                    self.memory.as_ptr().cast(),
+                    self.workspace.as_mut_ptr().cast(),
+                    bytes,
+                    &mut out,
+                )
+            });
+            out.mean[0]
+        }
+
+        /// Forgets all samples.
+        pub fn reset(&mut self) {
+            // SAFETY: `new` made the object.
+            check(unsafe { nf_cv_accumulator_reset(self.memory.as_mut_ptr().cast()) });
+        }
+    }
+}
+
+#[cfg(not(archive))]
+#[allow(missing_docs, reason = "nothing here can be reached")]
+mod missing {
+    use super::Config;
+
+    const MESSAGE: &str = "libnoisefloor.a is missing: run `cargo xtask library`";
+
+    pub enum Batch {}
+
+    impl Batch {
+        pub fn new(_: Config, _: usize) -> Self {
+            panic!("{MESSAGE}")
+        }
+
+        pub fn estimate(&mut self, _: &[f32], _: &[f32]) -> f32 {
+            match *self {}
+        }
+    }
+
+    pub enum Accumulator {}
+
+    impl Accumulator {
+        pub fn new(_: Config) -> Self {
+            panic!("{MESSAGE}")
+        }
+
+        pub fn add(&mut self, _: &[f32], _: &[f32]) {
+            match *self {}
+        }
+
+        pub fn merge(&mut self, _: &Self) {
+            match *self {}
+        }
+
+        pub fn estimate(&mut self) -> f32 {
+            match *self {}
+        }
+
+        pub fn reset(&mut self) {
+            match *self {}
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! An estimator with its configuration, ready to be timed through either door.
+
+use crate::c_abi;
+use noisefloor::control_variate::{self as cv, Accumulator, Config, Estimator, Samples};
+use noisefloor::real::Real;
+
+/// How the library is called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Door {
+    /// The C functions of the archive that ships.
+    C,
+    /// The Rust API, compiled into the benchmark.
+    Rust,
+}
+
+impl Door {
+    /// The C functions, or the Rust API where the archive is missing.
+    pub fn shipped() -> Self {
+        if c_abi::LINKED { Self::C } else { Self::Rust }
+    }
+
+    /// What a table calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::C => "C ABI",
+            Self::Rust => "Rust",
+        }
+    }
+}
+
+/// An estimator as it is compared.
+#[derive(Clone, Copy, Debug)]
+pub struct Method {
+    /// Short and unique: it labels tables.
+    pub name: &'static str,
+    /// The plain mean if there is none.
+    pub estimator: Option<Estimator>,
+    /// Folds; 0 is the default.
+    pub folds: usize,
+    /// Whether `f32` is the accumulator instead of `f64`.
+    pub narrow: bool,
+    /// Whether samples are added one at a time to an accumulator.
+    pub streaming: bool,
+}
+
+const fn method(name: &'static str, estimator: Estimator) -> Method {
+    Method { name, estimator: Some(estimator), folds: 0, narrow: false, streaming: false }
+}
+
+/// The plain mean, through the same functions: total degree 0.
+pub const MEAN: Method = Method { estimator: None, ..method("mean", Estimator::Robust) };
+/// The default.
+pub const ROBUST: Method = method("robust", Estimator::Robust);
+/// Least squares on its own samples.
+pub const LEAST_SQUARES: Method = method("least squares", Estimator::LeastSquares);
+
+/// Every estimator, the plain mean first and the default second, least squares third.
+pub const METHODS: [Method; 12] = [
+    MEAN,
+    ROBUST,
+    LEAST_SQUARES,
+    method("leave-one-out", Estimator::LeaveOneOut),
+    method("4-fold", Estimator::KFold),
+    Method { folds: 2, ..method("2-fold", Estimator::KFold) },
+    method("gradient descent", Estimator::GradientDescent),
+    method("incremental", Estimator::Incremental),
+    Method { streaming: true, ..method("robust streaming", Estimator::Robust) },
+    Method { streaming: true, ..method("least squares streaming", Estimator::LeastSquares) },
+    Method { narrow: true, ..method("robust f32", Estimator::Robust) },
+    Method { narrow: true, ..method("least squares f32", Estimator::LeastSquares) },
+];
+
+impl Method {
+    fn order(&self, order: usize) -> usize {
+        if self.estimator.is_some() { order } else { 0 }
+    }
+
+    /// The Rust configuration for one channel.
+    pub fn config(&self, dims: usize, order: usize) -> Config {
+        let mut config = Config::new(dims, self.order(order), 1);
+        config.estimator = self.estimator.unwrap_or_default();
+        config.folds = self.folds;
+        config
+    }
+
+    /// The C configuration for one channel.
+    pub fn c_config(&self, dims: usize, order: usize) -> c_abi::Config {
+        c_abi::Config {
+            dims: dims as u32,
+            order: self.order(order) as u32,
+            channels: 1,
+            estimator: c_abi::estimator(self.estimator.unwrap_or_default()),
+            precision: self.narrow.into(),
+            folds: self.folds as u32,
+            ..c_abi::Config::default()
+        }
+    }
+
+    /// Allocates what estimates from `n` samples need.
+    pub fn prepare(&self, door: Door, dims: usize, order: usize, n: usize) -> Prepared {
+        let (config, c_config) = (self.config(dims, order), self.c_config(dims, order));
+        match (door, self.streaming, self.narrow) {
+            (Door::C, false, _) => Prepared::C(c_abi::Batch::new(c_config, n)),
+            (Door::C, true, _) => Prepared::CStream(c_abi::Accumulator::new(c_config), dims),
+            (Door::Rust, false, true) => Prepared::Narrow(config, workspace::<f32>(&config, n)),
+            (Door::Rust, false, false) => Prepared::Wide(config, workspace::<f64>(&config, n)),
+            (Door::Rust, true, _) => Prepared::Stream(Box::new(Stream::new(&config)), dims),
+        }
+    }
+}
+
+fn workspace<R: Real>(config: &Config, n: usize) -> Vec<R> {
+    vec![R::ZERO; cv::workspace_len::<R>(config, n).expect("a valid configuration")]
+}
+
+/// A Rust accumulator with its workspace.
+pub struct Stream {
+    accumulator: Accumulator<f64, Vec<f64>>,
+    workspace: Vec<f64>,
+}
+
+impl Stream {
+    /// An empty accumulator.
+    pub fn new(config: &Config) -> Self {
+        let len = |count: Result<usize, _>| vec![0.0; count.expect("a streaming configuration")];
+        let sums = len(Accumulator::<f64, Vec<f64>>::len(config));
+        let workspace = len(Accumulator::<f64, Vec<f64>>::workspace_len(config));
+        Self { accumulator: Accumulator::new(config, sums).expect("enough memory"), workspace }
+    }
+
+    /// Adds one sample for each value.
+    pub fn add(&mut self, u: &[f32], f: &[f32]) {
+        self.accumulator.add(Samples::new(u, f)).expect("valid samples");
+    }
+
+    /// Adds another accumulator's samples.
+    pub fn merge(&mut self, other: &Self) {
+        self.accumulator.merge(&other.accumulator).expect("equal configurations");
+    }
+
+    /// The estimate so far.
+    pub fn estimate(&mut self) -> f32 {
+        self.accumulator.estimate(&mut self.workspace).expect("samples were added").mean[0]
+    }
+
+    /// Forgets all samples.
+    pub fn reset(&mut self) {
+        self.accumulator.reset();
+    }
+}
+
+/// A method with its memory: estimating allocates nothing.
+#[allow(missing_docs, reason = "one for each way to call")]
+pub enum Prepared {
+    C(c_abi::Batch),
+    CStream(c_abi::Accumulator, usize),
+    Narrow(Config, Vec<f32>),
+    Wide(Config, Vec<f64>),
+    Stream(Box<Stream>, usize),
+}
+
+impl Prepared {
+    /// One estimate from the samples this was prepared for; streaming methods add them one call at a time.
+    #[inline]
+    pub fn estimate(&mut self, u: &[f32], f: &[f32]) -> f32 {
+        match self {
+            Self::C(batch) => batch.estimate(u, f),
+            Self::CStream(accumulator, dims) => {
+                accumulator.reset();
+                for (u, f) in u.chunks_exact(*dims).zip(f.chunks_exact(1)) {
+                    accumulator.add(u, f);
+                }
+                accumulator.estimate()
+            }
+            Self::Narrow(config, workspace) => batch(config, u, f, workspace),
+            Self::Wide(config, workspace) => batch(config, u, f, workspace),
+            Self::Stream(stream, dims) => {
+                stream.reset();
+                for (u, f) in u.chunks_exact(*dims).zip(f.chunks_exact(1)) {
+                    stream.add(u, f);
+                }
+                stream.estimate()
+            }
+        }
+    }
+}
+
+fn batch<R: Real>(config: &Config, u: &[f32], f: &[f32], workspace: &mut [R]) -> f32 {
+    cv::estimate(config, Samples::new(u, f), workspace).expect("valid samples").mean[0]
+}

@@ -1,0 +1,309 @@
+/* Streaming: nf_cv_accumulator_*(). */
+#include "check.h"
+
+#define N 96
+static float u[N * 2], f[N * 2], h[N];
+/* All estimators but leave-one-out, which needs all samples at once. */
+static const uint32_t streaming[] = {NF_CV_ROBUST, NF_CV_LEAST_SQUARES, NF_CV_K_FOLD, NF_CV_GRADIENT_DESCENT, NF_CV_INCREMENTAL};
+#define STREAMING (sizeof streaming / sizeof *streaming)
+
+typedef struct stream {
+    memory state, work;
+    nf_cv_accumulator *accumulator;
+} stream;
+
+static stream stream_new(const nf_cv_config *config)
+{
+    stream s;
+    s.state = memory_new(nf_cv_accumulator_size(config));
+    s.work = memory_new(nf_cv_accumulator_workspace_size(config));
+    s.accumulator = NULL;
+    CHECK(s.state.bytes > 0 && s.work.bytes > 0);
+    CHECK_STATUS(nf_cv_accumulator_init(s.state.start, s.state.bytes, config, &s.accumulator), NF_OK);
+    CHECK((void *)s.accumulator == s.state.start);
+    return s;
+}
+
+static void stream_free(stream *s)
+{
+    memory_free(&s->state);
+    memory_free(&s->work);
+}
+
+static nf_estimate estimate(const stream *s)
+{
+    nf_estimate out;
+    poison(&out, sizeof out);
+    CHECK_STATUS(nf_cv_accumulator_estimate(s->accumulator, s->work.start, s->work.bytes, &out), NF_OK);
+    return out;
+}
+
+static void normal_use(uint32_t estimator, uint32_t precision, uint32_t solver)
+{
+    nf_cv_config config = make_config(2, 2, 2, estimator);
+    stream at_once, in_pieces, moved, first, second;
+    nf_estimate a, b, whole;
+    size_t i;
+    config.precision = precision;
+    config.solver = solver;
+    at_once = stream_new(&config);
+    in_pieces = stream_new(&config);
+    moved = stream_new(&config);
+    CHECK_STATUS(nf_cv_accumulator_add(at_once.accumulator, u, f, N), NF_OK);
+    whole = estimate(&at_once);
+    CHECK(whole.samples == N);
+    CHECK(fabsf(whole.mean[0] - 2.0f) < 0.15f && fabsf(whole.mean[1] - 4.0f) < 0.3f);
+    CHECK(whole.mean[2] == 0.0f && whole.std_error[3] == 0.0f);
+
+    /* One at a time: the same bits, and an estimate after every sample. */
+    for (i = 0; i < N; ++i) {
+        CHECK_STATUS(nf_cv_accumulator_add(in_pieces.accumulator, u + 2 * i, f + 2 * i, 1), NF_OK);
+        a = estimate(&in_pieces);
+        CHECK(a.samples == i + 1 && isfinite(a.mean[0]));
+        if (i == 0)
+            CHECK(a.mean[0] == f[0] && isinf(a.std_error[0]));
+    }
+    CHECK(memcmp(&a, &whole, sizeof a) == 0);
+
+    /* Moved as bytes between calls. */
+    memcpy(moved.state.start, at_once.state.start, moved.state.bytes);
+    b = estimate(&moved);
+    CHECK(memcmp(&b, &whole, sizeof b) == 0);
+
+    /* Two halves, merged: as good as one, though not the same bits. The other stays as it is. */
+    first = stream_new(&config);
+    second = stream_new(&config);
+    CHECK_STATUS(nf_cv_accumulator_add(first.accumulator, u, f, N / 2), NF_OK);
+    CHECK_STATUS(nf_cv_accumulator_add(second.accumulator, u + N, f + N, N / 2), NF_OK);
+    a = estimate(&second);
+    CHECK_STATUS(nf_cv_accumulator_merge(first.accumulator, second.accumulator), NF_OK);
+    b = estimate(&second);
+    CHECK(memcmp(&a, &b, sizeof a) == 0);
+    b = estimate(&first);
+    CHECK(b.samples == N);
+    CHECK(fabsf(b.mean[0] - 2.0f) < 0.15f && fabsf(b.mean[1] - 4.0f) < 0.3f);
+    if (estimator == NF_CV_LEAST_SQUARES)
+        CHECK(fabsf(b.mean[0] - whole.mean[0]) < 1e-4f);
+
+    /* Merging with nothing, either way. */
+    CHECK_STATUS(nf_cv_accumulator_reset(second.accumulator), NF_OK);
+    CHECK_STATUS(nf_cv_accumulator_merge(at_once.accumulator, second.accumulator), NF_OK);
+    a = estimate(&at_once);
+    CHECK(memcmp(&a, &whole, sizeof a) == 0);
+    CHECK_STATUS(nf_cv_accumulator_merge(second.accumulator, at_once.accumulator), NF_OK);
+    a = estimate(&second);
+    CHECK(a.samples == N && fabsf(a.mean[0] - whole.mean[0]) < 1e-3f);
+
+    /* Reset: as new. */
+    CHECK_STATUS(nf_cv_accumulator_reset(at_once.accumulator), NF_OK);
+    CHECK_STATUS(nf_cv_accumulator_estimate(at_once.accumulator, at_once.work.start, at_once.work.bytes, &b), NF_ERR_NO_SAMPLES);
+    CHECK_STATUS(nf_cv_accumulator_add(at_once.accumulator, u, f, N), NF_OK);
+    a = estimate(&at_once);
+    CHECK(memcmp(&a, &whole, sizeof a) == 0);
+    stream_free(&at_once);
+    stream_free(&in_pieces);
+    stream_free(&moved);
+    stream_free(&first);
+    stream_free(&second);
+}
+
+static void constants(uint32_t estimator)
+{
+    static const float values[] = {0.0f, -3.7f, 1e-30f, 1e30f};
+    nf_cv_config config = make_config(2, 3, 1, estimator);
+    float g[N];
+    size_t v, i;
+    for (v = 0; v < sizeof values / sizeof *values; ++v) {
+        stream s = stream_new(&config);
+        nf_estimate out;
+        for (i = 0; i < N; ++i)
+            g[i] = values[v];
+        CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, g, N), NF_OK);
+        out = estimate(&s);
+        CHECK(out.mean[0] == values[v] && out.std_error[0] == 0.0f);
+        stream_free(&s);
+    }
+}
+
+static void init_errors(void)
+{
+    nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
+    const size_t bytes = nf_cv_accumulator_size(&config);
+    memory state = memory_new(bytes);
+    nf_cv_accumulator *out;
+    CHECK_REFUSED(nf_cv_accumulator_init(NULL, bytes, &config, &out), NF_ERR_NULL, out);
+    CHECK_REFUSED(nf_cv_accumulator_init(state.start, bytes, NULL, &out), NF_ERR_NULL, out);
+    CHECK_STATUS(nf_cv_accumulator_init(state.start, bytes, &config, NULL), NF_ERR_NULL);
+    CHECK_REFUSED(nf_cv_accumulator_init(state.start, bytes - 1, &config, &out), NF_ERR_MEMORY, out);
+    CHECK_REFUSED(nf_cv_accumulator_init(state.start, 0, &config, &out), NF_ERR_MEMORY, out);
+    CHECK_REFUSED(nf_cv_accumulator_init((char *)state.start + 4, bytes, &config, &out), NF_ERR_ALIGNMENT, out);
+    config.estimator = NF_CV_LEAVE_ONE_OUT;
+    CHECK(nf_cv_accumulator_size(&config) == 0 && nf_cv_accumulator_workspace_size(&config) == 0);
+    CHECK_REFUSED(nf_cv_accumulator_init(state.start, bytes, &config, &out), NF_ERR_UNSUPPORTED, out);
+    config.estimator = NF_CV_ROBUST;
+    config.solver = NF_SOLVER_DUAL;
+    CHECK(nf_cv_accumulator_size(&config) == 0);
+    CHECK_REFUSED(nf_cv_accumulator_init(state.start, bytes, &config, &out), NF_ERR_UNSUPPORTED, out);
+    config.solver = NF_SOLVER_SQUARE_ROOT;
+    CHECK_REFUSED(nf_cv_accumulator_init(state.start, bytes, &config, &out), NF_ERR_UNSUPPORTED, out);
+    /* A refusal leaves even the memory as it was. */
+    CHECK(is_poisoned(state.start, bytes));
+    CHECK(nf_cv_accumulator_size(NULL) == 0 && nf_cv_accumulator_workspace_size(NULL) == 0);
+    memory_free(&state);
+}
+
+/* Memory that holds no accumulator, or none any more. */
+static void no_object(void)
+{
+    nf_cv_config config = make_config(2, 2, 2, NF_CV_ROBUST);
+    stream good = stream_new(&config);
+    memory bad = memory_new(good.state.bytes);
+    nf_cv_accumulator *wrong = (nf_cv_accumulator *)bad.start, *odd = (nf_cv_accumulator *)misaligned(good.state.start);
+    nf_estimate out;
+    int pass;
+    for (pass = 0; pass < 2; ++pass) {
+        CHECK_STATUS(nf_cv_accumulator_add(wrong, u, f, N), NF_ERR_STATE);
+        CHECK_STATUS(nf_cv_accumulator_add_with_controls(wrong, u, f, NULL, NULL, N), NF_ERR_STATE);
+        CHECK_STATUS(nf_cv_accumulator_merge(wrong, good.accumulator), NF_ERR_STATE);
+        CHECK_STATUS(nf_cv_accumulator_merge(good.accumulator, wrong), NF_ERR_STATE);
+        CHECK_REFUSED(nf_cv_accumulator_estimate(wrong, good.work.start, good.work.bytes, &out), NF_ERR_STATE, out);
+        CHECK_STATUS(nf_cv_accumulator_reset(wrong), NF_ERR_STATE);
+        memset(bad.start, 0, bad.bytes);
+    }
+    CHECK_STATUS(nf_cv_accumulator_add(NULL, u, f, N), NF_ERR_NULL);
+    CHECK_STATUS(nf_cv_accumulator_merge(NULL, good.accumulator), NF_ERR_NULL);
+    CHECK_STATUS(nf_cv_accumulator_merge(good.accumulator, NULL), NF_ERR_NULL);
+    CHECK_STATUS(nf_cv_accumulator_merge(NULL, NULL), NF_ERR_NULL);
+    CHECK_REFUSED(nf_cv_accumulator_estimate(NULL, good.work.start, good.work.bytes, &out), NF_ERR_NULL, out);
+    CHECK_STATUS(nf_cv_accumulator_reset(NULL), NF_ERR_NULL);
+    CHECK_STATUS(nf_cv_accumulator_add(odd, u, f, N), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_cv_accumulator_merge(odd, good.accumulator), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_cv_accumulator_merge(good.accumulator, odd), NF_ERR_ALIGNMENT);
+    CHECK_REFUSED(nf_cv_accumulator_estimate(odd, good.work.start, good.work.bytes, &out), NF_ERR_ALIGNMENT, out);
+    CHECK_STATUS(nf_cv_accumulator_reset(odd), NF_ERR_ALIGNMENT);
+    memory_free(&bad);
+    stream_free(&good);
+}
+
+/* Whatever is refused leaves every byte of the accumulator as it was, and the accumulator usable. */
+static void refused_calls_change_nothing(uint32_t estimator)
+{
+    nf_cv_config config = make_config(2, 2, 2, estimator), others[6];
+    stream s = stream_new(&config);
+    memory before = memory_new(s.state.bytes);
+    nf_estimate first, out;
+    float saved;
+    size_t i, n;
+    CHECK_REFUSED(nf_cv_accumulator_estimate(s.accumulator, s.work.start, s.work.bytes, &out), NF_ERR_NO_SAMPLES, out);
+    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, 50), NF_OK);
+    first = estimate(&s);
+    memcpy(before.start, s.state.start, before.bytes);
+
+    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, NULL, f, N), NF_ERR_NULL);
+    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, NULL, N), NF_ERR_NULL);
+    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, (const float *)misaligned(u), f, 1), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, 0), NF_ERR_NO_SAMPLES);
+    for (n = SIZE_MAX; n > SIZE_MAX / 65536; n /= 4)
+        CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, n), NF_ERR_RANGE);
+    saved = f[2 * N - 1];
+    f[2 * N - 1] = not_a_number();
+    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, N), NF_ERR_NOT_FINITE);
+    f[2 * N - 1] = saved;
+    saved = u[2 * N - 1];
+    u[2 * N - 1] = -1.0f;
+    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, N), NF_ERR_RANGE);
+    u[2 * N - 1] = infinity_f();
+    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, N), NF_ERR_NOT_FINITE);
+    u[2 * N - 1] = saved;
+
+    CHECK_STATUS(nf_cv_accumulator_merge(s.accumulator, s.accumulator), NF_ERR_RANGE);
+    for (i = 0; i < 6; ++i)
+        others[i] = config;
+    others[0].order = 3;
+    others[1].precision = NF_PRECISION_F32;
+    others[2].channels = 1;
+    others[3].ridge = 0.5f;
+    others[4].estimator = estimator == NF_CV_ROBUST ? NF_CV_K_FOLD : NF_CV_ROBUST;
+    others[5].basis = NF_BASIS_SINE;
+    for (i = 0; i < 6; ++i) {
+        stream other = stream_new(&others[i]);
+        CHECK_STATUS(nf_cv_accumulator_add(other.accumulator, u, f, 20), NF_OK);
+        CHECK_STATUS(nf_cv_accumulator_merge(s.accumulator, other.accumulator), NF_ERR_MISMATCH);
+        stream_free(&other);
+    }
+
+    CHECK_REFUSED(nf_cv_accumulator_estimate(s.accumulator, NULL, s.work.bytes, &out), NF_ERR_NULL, out);
+    CHECK_REFUSED(nf_cv_accumulator_estimate(s.accumulator, s.work.start, s.work.bytes - 1, &out), NF_ERR_MEMORY, out);
+    CHECK_REFUSED(nf_cv_accumulator_estimate(s.accumulator, (char *)s.work.start + 4, s.work.bytes, &out), NF_ERR_ALIGNMENT, out);
+    CHECK_STATUS(nf_cv_accumulator_estimate(s.accumulator, s.work.start, s.work.bytes, NULL), NF_ERR_NULL);
+
+    CHECK(memcmp(before.start, s.state.start, before.bytes) == 0);
+    out = estimate(&s);
+    CHECK(memcmp(&first, &out, sizeof out) == 0);
+    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u + 100, f + 100, N - 50), NF_OK);
+    out = estimate(&s);
+    CHECK(out.samples == N);
+    memory_free(&before);
+    stream_free(&s);
+}
+
+static void skipping(void)
+{
+    nf_cv_config config = make_config(2, 2, 2, NF_CV_ROBUST);
+    stream s;
+    nf_estimate out;
+    float saved = f[7];
+    config.nonfinite = NF_NONFINITE_SKIP;
+    s = stream_new(&config);
+    f[7] = not_a_number();
+    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, N), NF_OK);
+    f[7] = saved;
+    out = estimate(&s);
+    CHECK(out.samples == N - 1 && isfinite(out.mean[0]) && isfinite(out.mean[1]));
+    stream_free(&s);
+}
+
+static void controls(void)
+{
+    nf_cv_config config = make_config(2, 1, 1, NF_CV_LEAST_SQUARES);
+    float integral = 0.25f, bad = infinity_f(), g[N];
+    nf_estimate out;
+    stream s;
+    size_t i;
+    for (i = 0; i < N; ++i) {
+        h[i] = u[2 * i] * u[2 * i + 1];
+        g[i] = 5.0f * h[i];
+    }
+    config.controls = 1;
+    s = stream_new(&config);
+    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, g, N), NF_ERR_NULL);
+    CHECK_STATUS(nf_cv_accumulator_add_with_controls(s.accumulator, u, g, NULL, &integral, N), NF_ERR_NULL);
+    CHECK_STATUS(nf_cv_accumulator_add_with_controls(s.accumulator, u, g, h, NULL, N), NF_ERR_NULL);
+    CHECK_STATUS(nf_cv_accumulator_add_with_controls(s.accumulator, u, g, h, &bad, N), NF_ERR_NOT_FINITE);
+    CHECK_STATUS(nf_cv_accumulator_estimate(s.accumulator, s.work.start, s.work.bytes, &out), NF_ERR_NO_SAMPLES);
+    CHECK_STATUS(nf_cv_accumulator_add_with_controls(s.accumulator, u, g, h, &integral, N), NF_OK);
+    out = estimate(&s);
+    CHECK(fabsf(out.mean[0] - 1.25f) < 1e-3f);
+    stream_free(&s);
+}
+
+int main(void)
+{
+    size_t i;
+    uint32_t precision;
+    fill_uniform(u, N * 2, 17);
+    fill_linear(f, u, N, 2, 2);
+    for (i = 0; i < STREAMING; ++i) {
+        for (precision = 0; precision < 2; ++precision)
+            normal_use(streaming[i], precision, NF_SOLVER_AUTO);
+        constants(streaming[i]);
+        refused_calls_change_nothing(streaming[i]);
+    }
+    normal_use(NF_CV_LEAST_SQUARES, NF_PRECISION_F64, NF_SOLVER_SQUARE_ROOT);
+    normal_use(NF_CV_LEAST_SQUARES, NF_PRECISION_F32, NF_SOLVER_SQUARE_ROOT);
+    init_errors();
+    no_object();
+    skipping();
+    controls();
+    return report("accumulator");
+}

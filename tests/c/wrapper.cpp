@@ -1,0 +1,247 @@
+// noisefloor.hpp: the same results as the C functions, lengths checked, errors thrown or returned. Compiled with and without
+// exceptions; nothing in the wrapper may allocate, which the replaced operator new checks.
+#include "check.h"
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <random>
+#include <vector>
+
+namespace nf = noisefloor;
+
+static std::size_t allocations;
+void *operator new(std::size_t bytes)
+{
+    ++allocations;
+    if (void *block = std::malloc(bytes ? bytes : 1))
+        return block;
+    std::abort();
+}
+void operator delete(void *block) noexcept { std::free(block); }
+void operator delete(void *block, std::size_t) noexcept { std::free(block); }
+
+#ifdef NOISEFLOOR_NO_EXCEPTIONS
+template <class Call> static nf::status code_of(Call call) { return call().code; }
+template <class T> static T value_of(const nf::result<T> &result)
+{
+    CHECK(result.ok());
+    return *result;
+}
+static void succeed(const nf::result<void> &result) { CHECK(result.ok()); }
+#define SUCCEED(call) succeed(call)
+#else
+template <class Call> static nf::status code_of(Call call)
+{
+    try {
+        static_cast<void>(call());
+        return nf::status::ok;
+    } catch (const nf::error &error) {
+        CHECK(std::strcmp(error.what(), nf::message(error.code())) == 0);
+        return error.code();
+    }
+}
+template <class T> static T value_of(const T &value) { return value; }
+#define SUCCEED(call) (call)
+#endif
+#define CODE(call) code_of([&] { return call; })
+
+constexpr std::size_t n = 64;
+static float u[n * 2], f[n];
+
+static void views()
+{
+    std::vector<float> vector(5, 1.0f);
+    const std::vector<float> constant(4, 2.0f);
+    std::array<double, 3> array{};
+    float plain[7] = {};
+    CHECK(nf::span<const float>(vector).size() == 5 && nf::span<const float>(vector).data() == vector.data());
+    CHECK(nf::span<float>(vector).size() == 5);
+    CHECK(nf::span<const float>(constant)[3] == 2.0f);
+    CHECK(nf::span<const float>(plain).size() == 7 && nf::span<const float>(plain, 2).size() == 2);
+    CHECK(nf::span<const float>().empty());
+    CHECK(nf::memory(array).bytes() == 24 && nf::memory(vector).bytes() == 20 && nf::memory(plain).bytes() == 28);
+    static_assert(!std::is_constructible_v<nf::span<float>, const std::vector<float> &>, "const is kept");
+    static_assert(!std::is_constructible_v<nf::span<float>, std::vector<double> &>, "types are kept");
+    static_assert(!std::is_constructible_v<nf::memory, const std::vector<float> &>, "memory is written");
+    std::size_t count = 0;
+    for (float value : nf::span<const float>(constant))
+        count += value == 2.0f;
+    CHECK(count == 4);
+}
+
+static void configurations()
+{
+    nf_cv_config expected;
+    nf_cv_config_default(&expected);
+    const nf::config defaults;
+    CHECK(std::memcmp(&defaults, &expected, sizeof expected) == 0);
+    const nf::config config = nf::config(3, 1, 2)
+                                  .with(nf::estimator::k_fold)
+                                  .with(nf::basis::sine)
+                                  .with(nf::solver::normal_equations)
+                                  .with(nf::optimizer::adam)
+                                  .with_stratified_samples()
+                                  .with_slices(4)
+                                  .with_controls(1)
+                                  .with_stride(7)
+                                  .with_single_precision()
+                                  .with_non_finite_skipped()
+                                  .with_folds(5)
+                                  .with_iterations(9)
+                                  .with_ridge(0.5f)
+                                  .with_learning_rate(0.25f)
+                                  .with_momentum(0.75f);
+    CHECK(config.dims == 3 && config.order == 1 && config.channels == 2 && config.estimator == NF_CV_K_FOLD);
+    CHECK(config.basis == NF_BASIS_SINE && config.solver == NF_SOLVER_NORMAL_EQUATIONS && config.optimizer == NF_OPTIMIZER_ADAM);
+    CHECK(config.stratified == 1 && config.slices == 4 && config.controls == 1 && config.stride == 7 && config.precision == NF_PRECISION_F32);
+    CHECK(config.nonfinite == NF_NONFINITE_SKIP && config.folds == 5 && config.iterations == 9);
+    CHECK(config.ridge == 0.5f && config.learning_rate == 0.25f && config.momentum == 0.75f);
+    CHECK(config.with_automatic_ridge().ridge == NF_RIDGE_AUTO);
+    CHECK(config.with_luminance_ratio().color == NF_COLOR_LUMINANCE_RATIO);
+    CHECK(config.terms() == nf_cv_terms(&config) && config.valid());
+    CHECK(!nf::config(0, 1).valid() && nf::config(17, 1).workspace_size(4) == 0);
+    CHECK(config.workspace_size(64) == nf_cv_workspace_size(&config, 64) && config.accumulator_size() == nf_cv_accumulator_size(&config));
+}
+
+static void estimates()
+{
+    const nf::config config(2, 2);
+    std::array<std::uint64_t, 4096> workspace{};
+    nf_estimate expected;
+    CHECK(config.workspace_size(n) <= sizeof workspace);
+    CHECK(nf_cv_estimate(&config, u, f, n, workspace.data(), sizeof workspace, &expected) == NF_OK);
+    const std::size_t before = allocations;
+    const nf_estimate estimate = value_of(nf::estimate(config, {u, f}, workspace));
+    CHECK(std::memcmp(&estimate, &expected, sizeof estimate) == 0);
+
+    using nf::span;
+    using nf::status;
+    CHECK(CODE(nf::estimate(config, {span<const float>(u, 2 * n - 1), f}, workspace)) == status::range);
+    CHECK(CODE(nf::estimate(config, {u, span<const float>(f, 0)}, workspace)) == status::no_samples);
+    CHECK(CODE(nf::estimate(config, {}, workspace)) == status::no_samples);
+    CHECK(CODE(nf::estimate(config.with_controls(1), {u, f}, workspace)) == status::range);
+    CHECK(CODE(nf::estimate(config, {u, f, f, {}}, workspace)) == status::range);
+    CHECK(CODE(nf::estimate(nf::config(2, 2, 3), {u, f}, workspace)) == status::range); // 64 is no multiple of 3
+    CHECK(CODE(nf::estimate(nf::config(2, 2, 0), {u, f}, workspace)) == status::range);
+    CHECK(CODE(nf::estimate(config.with_stride(1u << 31), {u, f}, workspace)) == status::range);
+    CHECK(CODE(nf::estimate(config, {u, f}, {})) == status::null);
+    CHECK(CODE(nf::estimate(config, {u, f}, {workspace.data(), 8})) == status::memory);
+    CHECK(CODE(nf::estimate(config.with(nf::solver::square_root), {u, f}, workspace)) == status::unsupported);
+
+    // A control function, u0, whose integral is 1/2.
+    std::array<float, n> h{};
+    for (std::size_t i = 0; i < n; ++i)
+        h[i] = u[2 * i];
+    const float half[1] = {0.5f};
+    CHECK(CODE(nf::estimate(config.with_controls(1), {u, f, h, half}, workspace)) == status::ok);
+
+    std::array<float, 5> coefficients{};
+    const nf::config descent = config.with(nf::estimator::gradient_descent);
+    CHECK(std::fabs(value_of(nf::gradient_descent(descent, {u, f}, coefficients, workspace)).mean[0] - 2.0f) < 0.2f);
+    CHECK(coefficients[0] != 0.0f);
+    CHECK(CODE(nf::gradient_descent(descent, {u, f}, span<float>(coefficients.data(), 4), workspace)) == status::range);
+
+    std::array<nf_estimate, 4> pixels{};
+    CHECK(CODE(nf::estimate_block(config, {u, f}, workspace, pixels)) == status::ok);
+    CHECK(pixels[3].samples == n / 4);
+    CHECK(CODE(nf::estimate_block(config, {u, f}, workspace, {pixels.data(), 3})) == status::range);
+    CHECK(CODE(nf::estimate_block(config, {u, f}, workspace, {})) == status::range);
+#ifdef NOISEFLOOR_NO_EXCEPTIONS
+    CHECK(allocations == before);
+#else
+    static_cast<void>(before); // a thrown exception allocates, in the language's runtime
+#endif
+}
+
+static void accumulators()
+{
+    const nf::config config = nf::config(2, 2).with(nf::estimator::least_squares);
+    std::array<std::uint64_t, 512> first{}, second{}, workspace{};
+    CHECK(config.accumulator_size() <= sizeof first && config.accumulator_workspace_size() <= sizeof workspace);
+    const std::size_t before = allocations;
+    nf::accumulator a = value_of(nf::accumulator::create(config, first)), b = value_of(nf::accumulator::create(config, second));
+    SUCCEED(a.add({nf::span<const float>(u, n), nf::span<const float>(f, n / 2)}));
+    SUCCEED(b.add({nf::span<const float>(u + n, n), nf::span<const float>(f + n / 2, n / 2)}));
+    SUCCEED(a.merge(b));
+    const nf_estimate estimate = value_of(a.estimate(workspace));
+    CHECK(estimate.samples == n && std::fabs(estimate.mean[0] - 2.0f) < 1e-4f);
+    SUCCEED(a.reset());
+    CHECK(allocations == before);
+    CHECK(CODE(a.estimate(workspace)) == nf::status::no_samples);
+    CHECK(CODE(a.merge(a)) == nf::status::range);
+    CHECK(CODE(a.add({nf::span<const float>(u, 3), f})) == nf::status::range);
+    CHECK(CODE(nf::accumulator().reset()) == nf::status::null);
+    CHECK(CODE(nf::accumulator::create(config, {first.data(), 8})) == nf::status::memory);
+    CHECK(CODE(nf::accumulator::create(config.with(nf::estimator::leave_one_out), first)) == nf::status::unsupported);
+    CHECK(nf::accumulator(a.handle(), config).handle() == static_cast<void *>(first.data()));
+}
+
+static void mis()
+{
+    const float pdf[2] = {1.0f, 3.0f}, alpha[2] = {0.5f, 0.25f}, value[1] = {2.0f};
+    const std::uint32_t counts[2] = {1, 1};
+    const nf::mis::point at{pdf, counts};
+    CHECK(value_of(nf::mis::balance(at, 0)) == 0.25f);
+    CHECK(value_of(nf::mis::power(at, 0)) == 0.1f);
+    CHECK(value_of(nf::mis::cutoff(at, 1, 0.5f)) == 1.0f);
+    CHECK(value_of(nf::mis::maximum(at, 1)) == 1.0f);
+    const float weight = value_of(nf::mis::optimal(at, 1, alpha, 2.0f)), term = value_of(nf::mis::optimal_contribution(at, 1, alpha, 2.0f));
+    CHECK(std::fabs(weight * 2.0f / 3.0f - term) < 1e-6f);
+    CHECK(CODE(nf::mis::balance(at, 2)) == nf::status::range);
+    CHECK(CODE(nf::mis::balance({pdf, {counts, 1}}, 0)) == nf::status::range);
+    CHECK(CODE(nf::mis::optimal(at, 0, {alpha, 1}, 2.0f)) == nf::status::range);
+    CHECK(CODE(nf::mis::optimal(at, 0, alpha, 0.0f)) == nf::status::range);
+
+    std::array<std::uint64_t, 64> sums{};
+    CHECK(nf::optimal_mis::size(2, 1) <= sizeof sums);
+    nf::optimal_mis omis = value_of(nf::optimal_mis::create(counts, 1, sums));
+    std::array<float, 1> estimate{};
+    std::array<float, 2> found{};
+    CHECK(CODE(omis.solve(estimate)) == nf::status::no_samples);
+    SUCCEED(omis.add(0, pdf, value));
+    SUCCEED(omis.add(1, pdf, value));
+    SUCCEED(omis.next_batch());
+    SUCCEED(omis.solve(estimate, nf::optimal_mis::solver::balance));
+    CHECK(estimate[0] == 1.0f);
+    SUCCEED(omis.alpha(found));
+    SUCCEED(omis.decay(0.5f));
+    CHECK(CODE(omis.add(0, {pdf, 1}, value)) == nf::status::range);
+    CHECK(CODE(omis.solve({})) == nf::status::range);
+    CHECK(CODE(omis.alpha({found.data(), 1})) == nf::status::range);
+    CHECK(CODE(omis.merge(omis)) == nf::status::range);
+    CHECK(CODE(omis.next_batch(nf::optimal_mis::solver::progressive)) == nf::status::unsupported);
+    CHECK(CODE(nf::optimal_mis::create({counts, 0}, 1, sums)) == nf::status::range);
+    CHECK(CODE(nf::optimal_mis::create(counts, 1, {sums.data(), 8})) == nf::status::memory);
+    SUCCEED(omis.reset());
+}
+
+static void random_numbers()
+{
+    nf_rng expected;
+    nf_rng_seed(&expected, 5);
+    nf::rng rng(5), copy(rng.state());
+    CHECK(rng() == nf_rng_next(&expected));
+    CHECK(rng.uniform() == nf_rng_uniform(&expected));
+    std::array<float, 4> filled{};
+    rng.fill(filled);
+    CHECK(filled[0] == nf_rng_uniform(&expected));
+    CHECK(copy() != 0u && nf::rng::max() == UINT32_MAX);
+    const int die = std::uniform_int_distribution<int>(1, 6)(rng);
+    CHECK(die >= 1 && die <= 6);
+}
+
+int main()
+{
+    CHECK(nf::abi_matches());
+    fill_uniform(u, n * 2, 3);
+    fill_linear(f, u, n, 2, 1);
+    views();
+    configurations();
+    estimates();
+    accumulators();
+    mis();
+    random_numbers();
+    return report("wrapper");
+}
