@@ -126,7 +126,7 @@ fn large_fits_are_finite() {
 }
 
 /// Robust and leave-one-out estimates and least squares with a ridge agree with the oracle on every placement. In `f32`
-/// least squares within 2e-4, the robust mixture, whose trust goes by powers of differences, within 1e-2, and where
+/// least squares within 2e-4, the robust mixture, whose trust goes by powers of differences, within 2e-2, and where
 /// the dual is forced on more samples than terms, whose system only the ridge keeps from being singular, within 5e-2.
 #[test]
 fn badly_placed_samples_against_the_oracle() {
@@ -142,7 +142,7 @@ fn badly_placed_samples_against_the_oracle() {
             for solver in [Solver::Auto, Solver::NormalEquations, Solver::Dual] {
                 let what = format!("{dims} {order} {n} {name} {solver:?}");
                 let robust = Config { solver, ..base };
-                let tolerance = if solver == Solver::Dual { 5e-2 } else { 1e-2 };
+                let tolerance = if solver == Solver::Dual { 5e-2 } else { 2e-2 };
                 close(&batch::<f64>(&robust, &u, &f).unwrap(), expected, &f, F64, &what);
                 close(&batch::<f32>(&robust, &u, &f).unwrap(), expected, &f, tolerance, &format!("{what} f32"));
                 for strength in [1e-3_f32, 0.1] {
@@ -373,11 +373,11 @@ fn not_finite_is_an_error() {
                     }
                     let mut accumulator = accumulator::<f32>(&config);
                     assert_eq!(accumulator.add(Samples::new(u, f)), Err(Error::NotFinite));
-                    assert_eq!(finish(&accumulator), Err(Error::NoSamples));
+                    assert_eq!(finish(&config, &accumulator), Err(Error::NoSamples));
                     accumulator.add(Samples::new(&bad_u[..2 * place.max(1)], &f[..place.max(1)])).ok();
-                    let before = finish(&accumulator);
+                    let before = finish(&config, &accumulator);
                     assert_eq!(accumulator.add(Samples::new(u, f)), Err(Error::NotFinite));
-                    assert_eq!(finish(&accumulator), before);
+                    assert_eq!(finish(&config, &accumulator), before);
                 }
             }
             let config = Config::new(2, 2, 1);
@@ -506,7 +506,7 @@ fn extreme_control_functions() {
                     let mut narrow = accumulator::<f32>(&config);
                     wide.add(samples).unwrap();
                     narrow.add(samples).unwrap();
-                    all.extend([finish(&wide), finish(&narrow)]);
+                    all.extend([finish(&config, &wide), finish(&config, &narrow)]);
                 }
                 for (index, estimate) in all.into_iter().enumerate() {
                     assert!(is_sound(&estimate.unwrap()), "{estimator:?} {index} {size} {integral} {estimate:?}");

@@ -38,7 +38,7 @@ struct Samples<'a> {
 }
 
 impl RobustRule {
-    /// The rule with four ridges of the highest order.
+    /// The library's rule: two ridges of the highest order.
     pub fn standard() -> Self {
         let penalties = [2e-5, 0.02];
         let candidates = penalties.map(|penalty| Candidate { order: usize::MAX, penalty }).to_vec();

@@ -45,8 +45,8 @@ pub fn accumulator<R: Real>(config: &Config) -> Accumulator<R, Vec<R>> {
 }
 
 /// What an accumulator estimates.
-pub fn finish<R: Real>(accumulator: &Accumulator<R, Vec<R>>) -> Result<Estimate, Error> {
-    let len = Accumulator::<R, Vec<R>>::workspace_len(accumulator.state().config()).unwrap();
+pub fn finish<R: Real>(config: &Config, accumulator: &Accumulator<R, Vec<R>>) -> Result<Estimate, Error> {
+    let len = Accumulator::<R, Vec<R>>::workspace_len(config).unwrap();
     accumulator.estimate(&mut vec![R::from_f64(f64::NAN); len])
 }
 
@@ -54,7 +54,7 @@ pub fn finish<R: Real>(accumulator: &Accumulator<R, Vec<R>>) -> Result<Estimate,
 pub fn streamed<R: Real>(config: &Config, u: &[f32], f: &[f32]) -> Result<Estimate, Error> {
     let mut accumulator = accumulator::<R>(config);
     accumulator.add(Samples::new(u, f))?;
-    finish(&accumulator)
+    finish(config, &accumulator)
 }
 
 /// The default configuration with another estimator.
