@@ -50,11 +50,20 @@ pub(crate) struct Cell {
     pub(crate) mean_rmse: f64,
     /// RMSE over the mean's, 95 % interval.
     pub(crate) ratio: Ratio,
-    /// For an `f32` method, RMSE over its `f64` twin's.
-    pub(crate) to_wide: Option<Ratio>,
+    /// For an `f32` method, how it differs from its `f64` twin on the same samples.
+    pub(crate) narrow: Option<Narrow>,
     /// Nanoseconds per sample, and the mean's.
     pub(crate) ns: f64,
     pub(crate) mean_ns: f64,
+}
+
+/// What `f32` changes.
+#[derive(Clone, Copy)]
+pub(crate) struct Narrow {
+    /// RMSE over the `f64` path's; infinite where that path is exact.
+    pub(crate) ratio: Ratio,
+    /// The root mean square of the difference between the two estimates, over the plain mean's RMSE.
+    pub(crate) difference: f64,
 }
 
 impl Cell {
@@ -86,13 +95,15 @@ impl Effort {
 
     /// (chunks, repetitions in a chunk) of the mean and the robust estimator; every fourth chunk for all others.
     fn chunks(&self, dims: usize, n: usize) -> (usize, usize) {
-        let repetitions = match n {
-            ..=16 => 8192,
-            17..=32 => 2048,
-            33..=64 => 1536,
-            _ => 1024,
+        let (repetitions, size) = match (dims, n) {
+            (..=5, ..=16) => (8192, 32),
+            (..=5, 17..=32) => (2048, 32),
+            (..=5, 33..=64) => (1536, 32),
+            (..=5, _) => (1024, 32),
+            (_, ..=64) => (512, 8),
+            _ => (256, 8),
         };
-        if dims > 5 { (repetitions / 128 * self.factor, 8) } else { (repetitions / 32 * self.factor, 32) }
+        (repetitions / size * self.factor, size)
     }
 }
 
@@ -188,11 +199,21 @@ pub(crate) fn measure(
             n,
             method: track.method.name,
             repetitions: track.all.len(),
-            mean_rmse: (mean.iter().map(|e| e * e).sum::<f64>() / mean.len() as f64).sqrt(),
+            mean_rmse: root_mean_square(mean.iter().copied()),
             ratio: rmse_ratio(&track.all, mean),
-            to_wide: tracks.iter().find(wide).map(|wide| rmse_ratio(&track.shared, &wide.shared)),
+            narrow: tracks.iter().find(wide).map(|wide| narrow(&track.shared, &wide.shared, &tracks[0].shared)),
             ns: median(&track.ns),
             mean_ns: median(&tracks[0].ns),
         });
     }
+}
+
+fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    (values.map(|value| value * value).sum::<f64>() / count).sqrt()
+}
+
+fn narrow(narrow: &[f64], wide: &[f64], mean: &[f64]) -> Narrow {
+    let difference = root_mean_square(narrow.iter().zip(wide).map(|(narrow, wide)| narrow - wide));
+    Narrow { ratio: rmse_ratio(narrow, wide), difference: difference / root_mean_square(mean.iter().copied()) }
 }
