@@ -50,7 +50,7 @@ pub(crate) fn run(language: Language, options: &[&str], archive: &Path) -> Resul
     Ok(Outcome::Passed)
 }
 
-/// As [`run`], under the sanitizers, if the compiler has them.
+/// As [`run()`], under the sanitizers, if the compiler has them.
 pub(crate) fn sanitized(language: Language, archive: &Path) -> Result<Outcome> {
     let source = output("sanitizers.c")?;
     fs::write(&source, "int main(void) { return 0; }\n")

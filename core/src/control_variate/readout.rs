@@ -22,7 +22,7 @@ impl<R: Real> State<R> {
     ///
     /// # Errors
     /// [`Error::NoSamples`] if there are none, [`Error::Memory`] if `workspace` is shorter than
-    /// [`Accumulator::workspace_len`] says.
+    /// [`State::workspace_len`] says.
     pub fn estimate(&self, sums: &[R], workspace: &mut [R]) -> Result<Estimate, Error> {
         let state = self;
         if sums.len() < state.len() {
