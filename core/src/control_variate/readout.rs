@@ -143,7 +143,7 @@ fn in_sample<R: Real>(centred: &Centred<'_, R>, coefficients: &[R], total: &Tota
         let shift = centred.intercept(channel, b) - get(&centred.value_means, channel);
         set(&mut correction, channel, shift);
         let residual = centred.residual_square(channel, b);
-        set(&mut variance, channel, residual / (freedom * centred.count));
+        set(&mut variance, channel, residual / (freedom * freedom));
     }
     let variance = if freedom > R::ZERO { Some(variance) } else { total.variance };
     Outcome { correction, variance }
