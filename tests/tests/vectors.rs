@@ -123,7 +123,7 @@ fn compute<R: Real>(case: &Case) -> Estimate {
         let sums = vec![R::ZERO; Accumulator::<R, Vec<R>>::len(&config).unwrap()];
         let mut accumulator = Accumulator::new(&config, sums).unwrap();
         accumulator.add(Samples::new(&u, &f)).unwrap();
-        accumulator.estimate(&mut vec![R::ZERO; accumulator.state().workspace_len()])
+        accumulator.estimate(&mut vec![R::ZERO; Accumulator::<R, Vec<R>>::workspace_len(&config).unwrap()])
     } else {
         estimate(&config, Samples::new(&u, &f), &mut vec![R::ZERO; workspace_len::<R>(&config, case.n).unwrap()])
     };

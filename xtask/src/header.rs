@@ -179,7 +179,7 @@ fn name<'a>(code: &[&'a str]) -> Option<&'a str> {
     // A function's name is what stands before the parenthesis, after the type it returns.
     match first.split_once('(') {
         Some((before, _)) => before.split(word).rfind(ours),
-        None => first.split(word).filter(ours).last(),
+        None => first.split(word).filter(ours).next_back(),
     }
 }
 

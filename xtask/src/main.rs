@@ -1,11 +1,14 @@
 //! `cargo xtask`: everything the project does beyond `cargo build`.
 
+mod c_tests;
 mod demo;
+mod examples;
 mod header;
 mod library;
 mod paths;
 mod run;
 mod test;
+mod tools;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

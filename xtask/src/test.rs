@@ -1,23 +1,142 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
-use crate::{header, library, run};
-use anyhow::Result;
+use crate::{c_tests, examples, header, library, run, tools};
+use anyhow::{Context, Result, bail};
 use clap::Args;
+use std::path::PathBuf;
+use std::time::Instant;
 
-/// No options yet: the tests are all or nothing.
 #[derive(Args)]
-pub(crate) struct Options {}
-
-pub(crate) fn run(_: &Options) -> Result<()> {
-    step("the committed header is the generated one", header::check_committed)?;
-    step("the headers compile alone", header::check_compiles)?;
-    let archive = library::build()?;
-    step("the C library cannot panic and needs nothing", || library::check(&archive))?;
-    step("cargo test", || run::check(run::cargo().args(["test", "--workspace", "--quiet"])))?;
-    Ok(())
+pub(crate) struct Options {
+    /// Only the steps whose heading contains this
+    filter: Option<String>,
 }
 
-fn step(what: &str, action: impl FnOnce() -> Result<()>) -> Result<()> {
-    println!("== {what}");
-    action()
+pub(crate) fn run(options: &Options) -> Result<()> {
+    let start = Instant::now();
+    tools::ensure()?;
+    let mut steps = Steps { options, passed: 0, failed: Vec::new(), left_out: 0 };
+    steps.run("formatting (cargo fmt --check)", || {
+        run::check(run::cargo().args(["fmt", "--all", "--check"]))?;
+        Ok(Outcome::Passed)
+    });
+    steps.run("lints (cargo clippy, warnings are errors)", || {
+        let mut clippy = run::cargo();
+        clippy.args(["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"]);
+        run::check(&mut clippy)?;
+        Ok(Outcome::Passed)
+    });
+    steps.run("include/noisefloor.h is what capi/ generates", || {
+        header::check_committed()?;
+        Ok(Outcome::Passed)
+    });
+    steps.run("headers alone: C99, C11, C++11, C++17, C++20, every warning an error", || {
+        header::check_compiles()?;
+        Ok(Outcome::Passed)
+    });
+    // Every later step that links it needs it, whatever the filter says.
+    let archive = library::build().map_err(|error| format!("{error:#}"));
+    let archive = || -> Result<PathBuf> {
+        archive.clone().map_err(|error| anyhow::anyhow!("the C library could not be built: {error}"))
+    };
+    steps.run("the C library: no panic, no undefined symbol but mem*, only nf_* visible", || {
+        library::check(&archive()?)?;
+        Ok(Outcome::Passed)
+    });
+    steps.run("Rust tests (cargo test --workspace)", || {
+        run::check(run::cargo().args(["test", "--workspace"]))?;
+        Ok(Outcome::Passed)
+    });
+    steps.run("Rust documentation, warnings are errors", || {
+        let mut doc = run::cargo();
+        doc.args(["doc", "--quiet", "--workspace", "--no-deps", "--document-private-items"]);
+        run::check(doc.env("RUSTDOCFLAGS", "-D warnings"))?;
+        Ok(Outcome::Passed)
+    });
+    steps.run("each feature of the core alone, without std", || {
+        each_feature()?;
+        Ok(Outcome::Passed)
+    });
+    steps.run("C tests as C99", || c_tests::run(c_tests::Language::C99, &[], &archive()?));
+    steps.run("C tests under the address and undefined-behaviour sanitizers", || {
+        c_tests::sanitized(c_tests::Language::C99, &archive()?)
+    });
+    steps
+        .run("C tests as C++17, including noisefloor.hpp", || c_tests::run(c_tests::Language::Cpp17, &[], &archive()?));
+    steps.run("C++ wrapper, with and without exceptions", || c_tests::wrapper(&archive()?));
+    steps.run("examples_c/integrate.c", || examples::integrate(&archive()?));
+    steps.run("examples_c/pathtracer.cpp: every scene and estimator, 32 x 32 pixels", || {
+        examples::path_tracer(&archive()?)
+    });
+    steps.run("README.md opens with examples_c/integrate.c", examples::readme);
+    steps.finish(start)
+}
+
+/// What a step that did not fail says.
+pub(crate) enum Outcome {
+    Passed,
+    /// Why it could not run.
+    NotRun(String),
+}
+
+struct Steps<'a> {
+    options: &'a Options,
+    passed: usize,
+    failed: Vec<&'static str>,
+    left_out: usize,
+}
+
+impl Steps<'_> {
+    /// Runs one step; the others follow even if it fails.
+    fn run(&mut self, heading: &'static str, action: impl FnOnce() -> Result<Outcome>) {
+        if self.options.filter.as_ref().is_some_and(|filter| !heading.contains(filter.as_str())) {
+            self.left_out += 1;
+            return;
+        }
+        println!("\n== {heading}");
+        let start = Instant::now();
+        match action() {
+            Ok(Outcome::Passed) => {
+                println!("   ok ({:.1} s)", start.elapsed().as_secs_f64());
+                self.passed += 1;
+            }
+            Ok(Outcome::NotRun(why)) => println!("   NOT RUN: {why}"),
+            Err(error) => {
+                println!("   FAILED ({:.1} s): {error:#}", start.elapsed().as_secs_f64());
+                self.failed.push(heading);
+            }
+        }
+    }
+
+    fn finish(self, start: Instant) -> Result<()> {
+        println!("\ntotal {:.0} s", start.elapsed().as_secs_f64());
+        if self.left_out > 0 {
+            println!("{} steps left out, as asked", self.left_out);
+        }
+        for heading in &self.failed {
+            println!("failed: {heading}");
+        }
+        println!("{} passed, {} failed", self.passed, self.failed.len());
+        if !self.failed.is_empty() {
+            bail!("{} of the steps above failed", self.failed.len());
+        }
+        Ok(())
+    }
+}
+
+/// Builds the core with no feature, and with each alone.
+fn each_feature() -> Result<()> {
+    let metadata = run::read(run::cargo().args(["metadata", "--no-deps", "--format-version", "1"]))?;
+    let metadata: serde_json::Value = serde_json::from_str(&metadata).context("cargo metadata wrote no JSON")?;
+    let packages = metadata["packages"].as_array().map_or(&[][..], Vec::as_slice);
+    let core = packages.iter().find(|package| package["name"] == "noisefloor").context("there is no `noisefloor`")?;
+    let features = core["features"].as_object().context("`noisefloor` has no features")?;
+    let names = features.keys().map(String::as_str).filter(|name| *name != "default");
+    for feature in [""].into_iter().chain(names) {
+        println!("   --no-default-features --features \"{feature}\"");
+        let mut build = run::cargo();
+        build.args(["build", "--quiet", "--package", "noisefloor", "--no-default-features", "--features", feature]);
+        run::check(build.env("RUSTFLAGS", "-D warnings"))?;
+    }
+    Ok(())
 }

@@ -3,9 +3,9 @@
 use crate::Run;
 use crate::cells::{Cell, Set};
 use crate::report::{geometric_mean, worst};
-use crate::speed::{PEERS, SOLVE};
+use crate::speed::{PEERS, SOLVE, Speed};
 use noisefloor_bench::method::{LEAST_SQUARES, ROBUST};
-use noisefloor_tests::statistics::Ratio;
+use noisefloor_tests::statistics::{Ratio, geometric_mean as geometric_mean_of};
 use std::fmt::Write;
 
 /// What the robust estimator may exceed the mean's RMSE by.
@@ -35,6 +35,19 @@ fn verdict(ratio: Ratio, bound: f64) -> &'static str {
 
 fn time_verdict(ns: f64, bound: f64) -> &'static str {
     if ns <= bound { "pass" } else { "FAIL" }
+}
+
+/// Nanoseconds per sample at order 2.
+fn find(run: &Run, dims: usize, n: usize, name: &str, door: &str) -> f64 {
+    let same = |speed: &&Speed| {
+        (speed.dims, speed.order, speed.n, speed.name.as_str(), speed.door) == (dims, 2, n, name, door)
+    };
+    run.speeds.iter().find(same).map_or(f64::NAN, |speed| speed.ns)
+}
+
+/// The geometric mean of the first peer's times over the quoted ones.
+pub(crate) fn pace(run: &Run) -> f64 {
+    geometric_mean_of(&QUOTED.map(|(dims, n, quoted)| find(run, dims, n, PEERS[0].0, "peer") / quoted))
 }
 
 /// The table in Markdown.
@@ -69,14 +82,8 @@ pub(crate) fn table(run: &Run) -> String {
     }
     for (name, share) in SHARES {
         for (dims, n, quoted) in QUOTED {
-            let find = |name: &str, door: Option<&str>| {
-                let speed = run.speeds.iter().find(|speed| {
-                    (speed.dims, speed.order, speed.n, speed.name.as_str()) == (dims, 2, n, name)
-                        && door.is_none_or(|door| speed.door == door)
-                });
-                speed.map_or(f64::NAN, |speed| speed.ns)
-            };
-            let (ns, peer) = (find(name, Some(run.door.name())), PEERS.map(|(name, _)| find(name, None)));
+            let (ns, peer) =
+                (find(run, dims, n, name, run.door.name()), PEERS.map(|(name, _)| find(run, dims, n, name, "peer")));
             let measured = format!("{ns:.1} ns ({:.2} of QR, {:.2} of Cholesky)", ns / peer[0], ns / peer[1]);
             let target = format!("{name}, {dims}D order 2, n = {n}: per sample, {share} of {quoted} ns");
             line(&target, &measured, share * quoted, time_verdict(ns, share * quoted));

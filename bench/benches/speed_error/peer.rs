@@ -30,18 +30,12 @@ impl Peer {
     }
 
     /// The monomials at `u`.
-    fn basis(&self, u: &[f32]) -> Vec<f64> {
-        let monomial = |exponents: &Vec<usize>| {
-            let powers = u.iter().zip(exponents).map(|(&x, &power)| {
-                let mut product = 1.0;
-                for _ in 0..power {
-                    product *= f64::from(x);
-                }
-                product
-            });
-            powers.product()
-        };
-        self.exponents.iter().map(monomial).collect()
+    fn basis(&self, u: &[f32]) -> DVector<f64> {
+        let power = |x: f64, exponent: usize| (0..exponent).fold(1.0, |product, _| product * x);
+        DVector::from_iterator(
+            self.exponents.len(),
+            self.exponents.iter().map(|powers| u.iter().zip(powers).map(|(&x, &k)| power(x.into(), k)).product()),
+        )
     }
 
     /// The estimate; NaN if the system cannot be solved.
@@ -52,31 +46,26 @@ impl Peer {
         let mut rhs = DVector::<f64>::zeros(terms);
         for (u, &f) in u.chunks_exact(dims).zip(f) {
             let p = self.basis(u);
-            for (column, &q) in p.iter().enumerate() {
-                for (row, &p) in p.iter().enumerate() {
-                    matrix[(row, column)] += p * q;
-                }
-                rhs[column] += f64::from(f) * q;
-            }
+            matrix.ger(1.0, &p, &p, 1.0);
+            rhs.axpy(f.into(), &p, 1.0);
         }
         let Some(theta) = solve(matrix, &rhs, self.solver) else { return f32::NAN };
         let integral =
             |exponents: &Vec<usize>| exponents.iter().map(|&power| 1.0 / (power + 1) as f64).product::<f64>();
-        let fit: f64 = self.exponents.iter().zip(&theta).map(|(powers, theta)| integral(powers) * theta).sum();
+        let fit: f64 = self.exponents.iter().zip(theta.iter()).map(|(powers, theta)| integral(powers) * theta).sum();
         let mut residuals = 0.0;
         for (u, &f) in u.chunks_exact(dims).zip(f) {
             let p = self.basis(u);
-            residuals += f64::from(f) - p.iter().zip(&theta).map(|(p, theta)| p * theta).sum::<f64>();
+            residuals += f64::from(f) - p.dot(&theta);
         }
         (fit + residuals / f.len() as f64) as f32
     }
 }
 
 /// The solution, factors and all in fresh memory.
-pub(crate) fn solve(matrix: DMatrix<f64>, rhs: &DVector<f64>, solver: Solver) -> Option<Vec<f64>> {
-    let solution = match solver {
+pub(crate) fn solve(matrix: DMatrix<f64>, rhs: &DVector<f64>, solver: Solver) -> Option<DVector<f64>> {
+    match solver {
         Solver::Qr => matrix.col_piv_qr().solve(rhs),
         Solver::Cholesky => matrix.cholesky().map(|factor| factor.solve(rhs)),
-    };
-    solution.map(|solution| solution.as_slice().to_vec())
+    }
 }

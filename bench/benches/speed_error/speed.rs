@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use noisefloor::basis::Family;
 use noisefloor::control_variate::Regressor;
 use noisefloor_bench::Door;
-use noisefloor_bench::method::{LEAST_SQUARES, METHODS, ROBUST};
+use noisefloor_bench::method::{LEAST_SQUARES, MEAN, METHODS, ROBUST};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::statistics::median;
 use std::hint::black_box;
@@ -32,6 +32,7 @@ pub(crate) struct Speed {
     pub(crate) quartiles: [f64; 2],
 }
 
+type Estimate = Box<dyn FnMut(&[f32], &[f32]) -> f32>;
 type Contestant<'a> = (String, &'static str, Box<dyn FnMut() + 'a>);
 
 /// Nanoseconds of each contestant's calls, divided by `units`; the first round warms up and does not count.
@@ -55,7 +56,7 @@ fn speed((name, door, mut times): (String, &'static str, Vec<f64>), dims: usize,
     Speed { name, door, dims, order, n, ns: median(&times), quartiles: [at(1), at(3)] }
 }
 
-/// All methods through the shipped door, the two main ones through the Rust API too, and the peers.
+/// All methods through the shipped door, the main ones through the Rust API too, and the peers.
 pub(crate) fn estimates(door: Door, dims: usize, order: usize, n: usize, full: bool) -> Vec<Speed> {
     let large = dims > 3;
     let sets = if large { 512 / n } else { 4096 / n };
@@ -70,7 +71,7 @@ pub(crate) fn estimates(door: Door, dims: usize, order: usize, n: usize, full: b
         .collect();
     let pool = &pool;
     let mut contestants: Vec<Contestant<'_>> = Vec::new();
-    let mut enter = |name: &str, door: &'static str, mut estimate: Box<dyn FnMut(&[f32], &[f32]) -> f32>| {
+    let mut enter = |name: &str, door: &'static str, mut estimate: Estimate| {
         let call = move || {
             for (u, f) in pool {
                 black_box(estimate(black_box(u), black_box(f)));
@@ -78,7 +79,7 @@ pub(crate) fn estimates(door: Door, dims: usize, order: usize, n: usize, full: b
         };
         contestants.push((name.to_owned(), door, Box::new(call)));
     };
-    let rust = [ROBUST, LEAST_SQUARES].map(|method| (Door::Rust, method));
+    let rust = [MEAN, ROBUST, LEAST_SQUARES].map(|method| (Door::Rust, method));
     let shipped = METHODS.map(|method| (door, method));
     for (entered, method) in shipped.into_iter().chain(rust.into_iter().filter(|_| door == Door::C)) {
         let mut prepared = method.prepare(entered, dims, order, n);
@@ -111,7 +112,9 @@ pub(crate) fn solves(full: bool) -> Vec<Speed> {
         matrix += &p * p.transpose();
     }
     let repeat = |mut call: Box<dyn FnMut()>| -> Box<dyn FnMut()> { Box::new(move || (0..CALLS).for_each(|_| call())) };
-    let library = move || drop(black_box(black_box(&regressor).estimate(black_box(1e-9))));
+    let library = move || {
+        let _ = black_box(black_box(&regressor).estimate(black_box(1e-9)));
+    };
     let mut contestants: Vec<Contestant<'_>> = vec![(SOLVE.to_owned(), "Rust", repeat(Box::new(library)))];
     for (name, solver) in PEERS {
         let (matrix, rhs) = (matrix.clone(), rhs.clone());

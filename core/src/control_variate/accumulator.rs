@@ -87,6 +87,11 @@ impl<R: Real, S: AsRef<[R]>> Accumulator<R, S> {
         self.state.estimate(self.sums.as_ref(), workspace)
     }
 
+    /// All but the buffer.
+    pub fn state(&self) -> &State<R> {
+        &self.state
+    }
+
     /// Samples added so far.
     pub fn samples(&self) -> u64 {
         self.state.samples()

@@ -32,7 +32,9 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
             let state = State::<R>::new(config)?;
             return state.len().checked_add(state.workspace_len()).ok_or(Error::Memory);
         }
-        Estimator::LeastSquares if config.solver == Solver::SquareRoot => square_root::size(plan.columns, config.channels),
+        Estimator::LeastSquares if config.solver == Solver::SquareRoot => {
+            square_root::size(plan.columns, config.channels)
+        }
         _ => fitter::size(n, plan.dual, plan.columns, config.channels).ok_or(Error::Memory)?,
     };
     design.checked_add(solve).ok_or(Error::Memory)

@@ -19,11 +19,11 @@ pub(crate) fn size<R: Real>(config: &Config, columns: usize, n: usize) -> Option
     // The largest training set leaves out the smallest fold, and the held-out fold is no larger than that.
     let train = n - n.checked_div(config.fold_count()).unwrap_or(0);
     let channels = config.channels;
-    // Some training sets may go through the dual and others not.
-    let largest_dual = if config.solver == Solver::Dual { train } else { train.min(columns) };
-    let primal = fitter::size(train, false, columns, channels)?;
-    let dual = fitter::size(largest_dual, true, columns, channels)?;
     let designs = Design::<R>::size(train, columns, channels)?.checked_mul(2)?;
+    let primal = fitter::size(train, false, columns, channels)?;
+    // Training sets differ in size, and skipped samples make them smaller: some may be short where the largest is not.
+    let short = if config.solver == Solver::Dual { train } else { train.min(columns) };
+    let dual = fitter::size(short, true, columns, channels)?;
     primal.max(dual).checked_add(designs)?.checked_add(columns * channels)
 }
 

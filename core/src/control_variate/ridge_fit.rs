@@ -253,6 +253,14 @@ impl<'a, R: Real> Dual<'a, R> {
         for (out, &value) in factor.iter_mut().zip(self.kernel.iter()) {
             *out = value;
         }
+        // K annihilates 1, so B^-1 holds 11'/(s n) beside which all else is small for a small strength s. With
+        // c 11'/n added to B, c = tr K / n, that part is 11'/((s + c) n), and f and g, orthogonal to 1, see no change.
+        let trace = (0..n).fold(R::ZERO, |sum, i| sum + diagonal_entry(self.kernel, i));
+        let lift = trace * inverse_n;
+        for value in factor.iter_mut() {
+            *value += lift * inverse_n;
+        }
+        let left = strength / (strength + lift);
         ldlt::add_diagonal(factor, n, |_| strength);
         ldlt::factor(factor, n);
         for (out, &value) in shift.iter_mut().zip(self.shift.iter()) {
@@ -271,6 +279,7 @@ impl<'a, R: Real> Dual<'a, R> {
         for &value in diagonal.iter() {
             fit.freedom += R::ONE - strength * value;
         }
+        fit.freedom -= R::ONE - left;
         for (channel, alpha) in rows_mut(alpha, n).enumerate() {
             let value = |i: usize| {
                 let panel = design.values.get(i / LANES * design.channels + channel);
@@ -288,10 +297,11 @@ impl<'a, R: Real> Dual<'a, R> {
                 in_sample -= self.shift.get(i).copied().unwrap_or(R::ZERO) * alpha;
                 residual_square += residual * value;
                 let complement = strength * diagonal.get(i).copied().unwrap_or(R::ZERO);
-                let gap = (complement - inverse_n).max(smallest_gap);
+                let gap = (complement - left * inverse_n).max(smallest_gap);
                 let residual = residual / gap;
                 press += residual * residual;
-                correction += (R::ONE - complement + shift.get(i).copied().unwrap_or(R::ZERO)) * residual;
+                let leverage = R::ONE - complement - (R::ONE - left) * inverse_n;
+                correction += (leverage + shift.get(i).copied().unwrap_or(R::ZERO)) * residual;
             }
             set(&mut fit.press, channel, press);
             set(&mut fit.in_sample, channel, in_sample);

@@ -153,7 +153,7 @@ impl<R: Real> Triangle<'_, R> {
                     *r = R::ZERO;
                 }
             }
-            if !(penalty > R::ZERO) {
+            if penalty <= R::ZERO {
                 continue;
             }
             for (k, x) in x.iter_mut().enumerate() {
