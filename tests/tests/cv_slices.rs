@@ -70,11 +70,11 @@ fn ratios(count: usize, n: usize, repetitions: usize) -> [Ratio; 2] {
     errors.map(|errors| rmse_ratio(&errors, &plain))
 }
 
-/// At 1024 samples, upper ends of the 95 % intervals: .3, .45 and .95 of the mean's error with 4, 16 and 64 lights, and
+/// At 1024 samples, upper ends of the 95 % intervals: .45, .55 and .95 of the mean's error with 4, 16 and 64 lights, and
 /// below the lower end for the plain basis.
 #[test]
 fn slices_beat_the_plain_basis() {
-    for (count, limit) in [(4, 0.3), (16, 0.45), (64, 0.95)] {
+    for (count, limit) in [(4, 0.45), (16, 0.55), (64, 0.95)] {
         let [sliced, plain] = ratios(count, 1024, 250);
         println!("{count} lights, 1024: sliced {sliced:?}, plain basis {plain:?}");
         assert!(sliced.upper() < limit, "{count}: {sliced:?}");

@@ -187,13 +187,13 @@ fn biased_ones_are_detected() {
     }
     // Strengths and weights are chosen with the samples they serve.
     let automatic = Config { ridge: Ridge::Auto, ..config(1, 2, Estimator::LeaveOneOut) };
-    detect("automatic ridge", batches(&automatic, &steep, 16, 40_000, 81), steep.integral);
+    detect("automatic ridge", batches(&automatic, &steep, 6, 400_000, 81), steep.integral);
     let robust = config(1, 2, Estimator::Robust);
     detect("robust", batches(&robust, &steep, 16, 40_000, 82), steep.integral);
     detect("pooled folds", streams(&robust, &steep, 16, 1, 40_000, 83), steep.integral);
     let skipping = Config { non_finite: NonFinite::Skip, ..config(1, 0, Estimator::Robust) };
     let mut skipped = Moments::default();
-    sets(&listing, 8, 10_000, 84, |u, f| {
+    sets(&listing, 8, 40_000, 84, |u, f| {
         let bad: Vec<f32> = f.iter().map(|&f| if f > 2.0 { f32::INFINITY } else { f }).collect();
         batch::<f64>(&skipping, u, &bad).iter().for_each(|estimate| skipped.add(f64::from(estimate.mean[0])));
     });
