@@ -7,8 +7,8 @@ mod cv_support;
 
 use cv_support::*;
 use noisefloor::control_variate::{
-    Accumulator, Config, Estimate, Estimator, Ridge, Samples, Solver, block_workspace_len, estimate, estimate_block,
-    workspace_len,
+    Accumulator, Config, Estimate, Estimator, NonFinite, Ridge, Samples, Solver, block_workspace_len, estimate,
+    estimate_block, workspace_len,
 };
 use noisefloor_tests::integrands::{self, Integrand};
 use noisefloor_tests::random::SplitMix64;
@@ -173,25 +173,31 @@ fn block_with_a_fixed_ridge() {
 /// The test can fail: estimators that are not documented as unbiased are found out, by far.
 #[test]
 fn biased_ones_are_detected() {
-    let integrand = integrand("listing 4.1");
-    let z = |what: &str, moments: Moments| {
-        let z = moments.z(integrand.integral).abs();
-        let bias = (moments.mean() - integrand.integral).abs();
-        println!("{what}: |z| = {z:.1}, bias {:.3} of the deviation", bias / moments.variance().sqrt());
-        z
+    let [listing, steep] = ["listing 4.1", "steep power"].map(integrand);
+    let detect = |what: &str, moments: Moments, integral: f64| {
+        let z = moments.z(integral).abs();
+        let bias = (moments.mean() - integral).abs() / moments.variance().sqrt();
+        println!("{what}: |z| = {z:.1}, bias {bias:.3} of the deviation");
+        assert!(z > 2.0 * Z_LIMIT, "{what}: |z| = {z}");
     };
-    for estimator in [Estimator::Robust, Estimator::LeastSquares, Estimator::GradientDescent] {
-        // In-sample fits with a ridge shrink towards the mean of the samples, and the errors correlate.
+    for estimator in [Estimator::LeastSquares, Estimator::GradientDescent] {
+        // In-sample fits know the samples that they correct.
         let config = Config { ridge: Ridge::Fixed(0.01), ..config(1, 2, estimator) };
-        let repetitions = if estimator == Estimator::Robust { 400_000 } else { 100_000 };
-        let z = z(&format!("{estimator:?}"), batches(&config, &integrand, 8, repetitions, 80));
-        assert!(z > 2.0 * Z_LIMIT, "{estimator:?}: |z| = {z}");
+        detect(&format!("{estimator:?}"), batches(&config, &listing, 8, 400_000, 80), listing.integral);
     }
-    // Automatic strengths are chosen with the samples they serve.
+    // Strengths and weights are chosen with the samples they serve.
     let automatic = Config { ridge: Ridge::Auto, ..config(1, 2, Estimator::LeaveOneOut) };
-    assert!(z("automatic ridge", batches(&automatic, &integrand, 8, 400_000, 81)) > 2.0 * Z_LIMIT);
-    let pooled = config(1, 2, Estimator::Robust);
-    assert!(z("pooled folds", streams(&pooled, &integrand, 8, 1, 100_000, 82)) > 2.0 * Z_LIMIT);
+    detect("automatic ridge", batches(&automatic, &steep, 6, 400_000, 81), steep.integral);
+    let robust = config(1, 2, Estimator::Robust);
+    detect("robust", batches(&robust, &steep, 16, 40_000, 82), steep.integral);
+    detect("pooled folds", streams(&robust, &steep, 16, 1, 40_000, 83), steep.integral);
+    let skipping = Config { non_finite: NonFinite::Skip, ..config(1, 0, Estimator::Robust) };
+    let mut skipped = Moments::default();
+    sets(&listing, 8, 40_000, 84, |u, f| {
+        let bad: Vec<f32> = f.iter().map(|&f| if f > 2.0 { f32::INFINITY } else { f }).collect();
+        batch::<f64>(&skipping, u, &bad).iter().for_each(|estimate| skipped.add(f64::from(estimate.mean[0])));
+    });
+    detect("skipped samples", skipped, listing.integral);
 }
 
 /// The bias of the robust estimate stays below .13 of the plain mean's error at 8 samples, on the nine integrands, and below
@@ -216,8 +222,9 @@ fn robust_bias_is_small() {
     }
 }
 
-/// The mean of std_error^2 over the true squared error: within these bounds at 64 samples, order 2, on smooth and
-/// discontinuous integrands. 4,000 repetitions know the ratio within 6 % (95 %).
+/// The mean of std_error^2 over the true squared error at 64 samples, order 2, on smooth and discontinuous integrands:
+/// .75 to 1.3 where errors are judged on samples the fit has not seen; .5 to 1.3 for in-sample fits, whose residuals flatter
+/// them. 2,000 repetitions know the ratio within 7 % (95 %).
 #[test]
 fn standard_errors_are_calibrated() {
     for estimator in ESTIMATORS {
@@ -231,21 +238,24 @@ fn standard_errors_are_calibrated() {
             {
                 let integrand = integrand(name);
                 let config = config(integrand.dims, 2, estimator);
-                let (mut square, mut error) = (0.0, 0.0);
-                sets(&integrand, 64, 4000, 95, |u, f| {
+                let (mut square, mut error, mut plain) = (0.0, 0.0, 0.0);
+                sets(&integrand, 64, 2000, 95, |u, f| {
                     let estimate = if streaming { streamed::<f64>(&config, u, f) } else { batch::<f64>(&config, u, f) };
                     let estimate = estimate.unwrap();
                     square += f64::from(estimate.std_error[0]).powi(2);
                     error += (f64::from(estimate.mean[0]) - integrand.integral).powi(2);
+                    plain += (wide(f).iter().sum::<f64>() / 64.0 - integrand.integral).powi(2);
                 });
-                // An integrand within the basis leaves nothing but rounding, as `linear` does.
-                if error > 1e-9 {
+                // An integrand within the basis, as `linear` is, leaves rounding, or what a descent has yet to do.
+                if error > 1e-3 * plain {
                     println!("{estimator:?} {streaming} {name}: {:.3}", square / error);
                     worst = (worst.0.min(square / error), worst.1.max(square / error));
                 }
             }
             println!("{estimator:?} {streaming}: {worst:?}");
-            assert!(worst.0 > 0.7 && worst.1 < 1.6, "{estimator:?}, streaming {streaming}: {worst:?}");
+            let is_flattered = matches!(estimator, Estimator::LeastSquares | Estimator::GradientDescent);
+            let least = if is_flattered { 0.5 } else { 0.75 };
+            assert!(worst.0 > least && worst.1 < 1.3, "{estimator:?}, streaming {streaming}: {worst:?}");
         }
     }
 }

@@ -67,6 +67,9 @@ pub fn estimate_block<R: Real>(
         return Err(Error::Range);
     }
     reader.check()?;
+    if workspace.len() < block_workspace_len::<R>(config, pixels, n)? {
+        return Err(Error::Memory);
+    }
     let mut arena = Arena::new(workspace);
     let block = Block::new(config, &basis, &reader, pixels, n, &mut arena)?;
     block.estimate(config, &basis, &mut out, &mut arena)
@@ -142,6 +145,10 @@ impl<'a, R: Real> Block<'a, R> {
         let coefficients = arena.take(columns * channels)?;
         // Of each pixel: the plain mean's estimates, then each fit's.
         let estimates = arena.take(self.pixels * each)?;
+        for value in estimates.iter_mut() {
+            // A fit that is not made has weight zero, which would not help against a NaN that the buffer held.
+            *value = R::ZERO;
+        }
         let whole = Moments::new(self.total, columns + 1, channels).ok_or(Error::Memory)?;
         ridge::penalties(config, basis, |j| whole.column_square(j) / whole.count(), penalties);
         let first_degree = (config.controls + basis.first_degree()).min(columns);

@@ -286,8 +286,14 @@ fn largest_curvature<R: Real>(
     image: &mut [R],
     scaled: &mut [R],
 ) -> R {
+    // Uneven, as the columns of slices add up to zero: a vector of ones would miss them.
+    let mut phase = R::ZERO;
     for value in vector.iter_mut() {
-        *value = R::ONE;
+        phase += R::from_f64(0.618_033_988_75);
+        if phase > R::ONE {
+            phase = phase - R::ONE;
+        }
+        *value = R::from_f64(0.5) + phase;
     }
     let length = |vector: &[R]| vector.iter().fold(R::ZERO, |sum, &x| sum + x * x).sqrt();
     let mut largest = R::ZERO;
