@@ -10,7 +10,8 @@
  *  - Memory: nothing is ever allocated. Objects and workspaces live in caller memory, 8-byte aligned, of at least the
  *    bytes that the matching size function returns. Nothing needs to be destroyed. An object must not be moved or
  *    copied while it is in use, unless its description says otherwise.
- *  - Threads: no locks and no shared state but one cached answer of cpuid. Any number of threads may read an object; one at a time may write it.
+ *  - Threads: no locks, and no shared state but a cached answer of the processor's. Any number of threads may read an
+ *    object; one at a time may write it.
  *  - Configurations are plain integers; zero in an optional field means the documented default, an unknown value is
  *    NF_ERR_RANGE.
  *  - References such as (4.22) are to C. Salaun, "Toward Improving Monte Carlo Estimator for Rendering and
