@@ -4,7 +4,7 @@
 //! "elem/s" is samples per second.
 
 // Without the archive the C accumulator is a type of no values.
-#![cfg_attr(not(archive), allow(unreachable_code))]
+#![cfg_attr(not(archive), allow(unreachable_code, unused_variables))]
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
 use noisefloor::basis::Family;
