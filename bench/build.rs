@@ -21,9 +21,6 @@ fn main() {
         Some(_) => "up to date",
     };
     println!("cargo:rustc-env=ARCHIVE_STATE={state}");
-    if state != "up to date" {
-        println!("cargo:warning={} is {state}: run `cargo xtask library`", archive.display());
-    }
     if state != "missing" {
         println!("cargo:rustc-cfg=archive");
         println!("cargo:rustc-link-search=native={}", folder.display());

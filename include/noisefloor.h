@@ -10,7 +10,8 @@
  *  - Memory: nothing is ever allocated. Objects and workspaces live in caller memory, 8-byte aligned, of at least the
  *    bytes that the matching size function returns. Nothing needs to be destroyed. An object must not be moved or
  *    copied while it is in use, unless its description says otherwise.
- *  - Threads: no locks and no shared mutable state. Any number of threads may read an object; one at a time may write it.
+ *  - Threads: no locks, and no shared state but a cached answer of the processor's. Any number of threads may read an
+ *    object; one at a time may write it.
  *  - Configurations are plain integers; zero in an optional field means the documented default, an unknown value is
  *    NF_ERR_RANGE.
  *  - References such as (4.22) are to C. Salaun, "Toward Improving Monte Carlo Estimator for Rendering and
@@ -40,7 +41,6 @@ typedef int32_t nf_status;
 
 // Success.
 #define NF_OK 0
-
 // A required pointer is NULL.
 #define NF_ERR_NULL (-1)
 // An argument is outside its documented range.
@@ -504,18 +504,25 @@ uint32_t nf_rng_next(nf_rng *rng);
 // The next number uniform in [0, 1), a multiple of 2^-24; 0 if `rng` is NULL.
 float nf_rng_uniform(nf_rng *rng);
 
-/* Layouts: what the library was compiled with. */
+/* Layouts: what the library was compiled with. C99 has no alignment operator. */
 #if defined(__cplusplus) && __cplusplus >= 201103L
 #define NF_ASSERT_LAYOUT(condition) static_assert(condition, "noisefloor: unexpected struct layout")
+#define NF_ASSERT_ALIGNED_AS(a, b) NF_ASSERT_LAYOUT(alignof(a) == alignof(b))
 #elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
 #define NF_ASSERT_LAYOUT(condition) _Static_assert(condition, "noisefloor: unexpected struct layout")
+#define NF_ASSERT_ALIGNED_AS(a, b) NF_ASSERT_LAYOUT(_Alignof(a) == _Alignof(b))
 #else
 #define NF_ASSERT_LAYOUT(condition) extern char nf_assert_layout[(condition) ? 1 : -1]
+#define NF_ASSERT_ALIGNED_AS(a, b) NF_ASSERT_LAYOUT(sizeof(a) % sizeof(b) == 0)
 #endif
 NF_ASSERT_LAYOUT(sizeof(nf_cv_config) == 76 && offsetof(nf_cv_config, ridge) == 64);
+NF_ASSERT_ALIGNED_AS(nf_cv_config, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_estimate) == 40 && offsetof(nf_estimate, samples) == 32);
+NF_ASSERT_ALIGNED_AS(nf_estimate, float);
 NF_ASSERT_LAYOUT(sizeof(nf_rng) == 16 && offsetof(nf_rng, increment) == 8);
+NF_ASSERT_ALIGNED_AS(nf_rng, uint64_t);
 #undef NF_ASSERT_LAYOUT
+#undef NF_ASSERT_ALIGNED_AS
 
 #ifdef __cplusplus
 }

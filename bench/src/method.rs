@@ -97,6 +97,7 @@ impl Method {
     }
 
     /// Allocates what estimates from `n` samples need.
+    #[cfg_attr(not(archive), allow(unreachable_code))]
     pub fn prepare(&self, door: Door, dims: usize, order: usize, n: usize) -> Prepared {
         let (config, c_config) = (self.config(dims, order), self.c_config(dims, order));
         match (door, self.streaming, self.narrow) {

@@ -12,15 +12,16 @@
 namespace nf = noisefloor;
 
 static std::size_t allocations;
-void *operator new(std::size_t bytes)
+// Not inlined: gcc 12 would take free() for a mismatch with a `new` that it no longer recognises.
+[[gnu::noinline]] void *operator new(std::size_t bytes)
 {
     ++allocations;
     if (void *block = std::malloc(bytes ? bytes : 1))
         return block;
     std::abort();
 }
-void operator delete(void *block) noexcept { std::free(block); }
-void operator delete(void *block, std::size_t) noexcept { std::free(block); }
+[[gnu::noinline]] void operator delete(void *block) noexcept { std::free(block); }
+[[gnu::noinline]] void operator delete(void *block, std::size_t) noexcept { std::free(block); }
 
 #ifdef NOISEFLOOR_NO_EXCEPTIONS
 template <class Call> static nf::status code_of(Call call) { return call().code; }

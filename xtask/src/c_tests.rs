@@ -31,6 +31,7 @@ pub(crate) fn run(language: Language, options: &[&str], archive: &Path) -> Resul
         bail!("tests/c holds no test");
     }
     sources.sort();
+    check_coverage(&sources)?;
     each(&sources, |source| {
         let mut compiler = match language {
             Language::C99 => run::compiler("CC", "cc"),
@@ -50,7 +51,25 @@ pub(crate) fn run(language: Language, options: &[&str], archive: &Path) -> Resul
     Ok(Outcome::Passed)
 }
 
-/// As [`run`], under the sanitizers, if the compiler has them.
+/// Fails unless every function of the header is called somewhere.
+fn check_coverage(sources: &[PathBuf]) -> Result<()> {
+    let read = |path: &Path| fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()));
+    let header = read(&paths::header())?;
+    let code = header.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let calls = |text: &str, name: &str| text.contains(&format!("{name}("));
+    let tests = sources.iter().map(|source| read(source)).collect::<Result<Vec<_>>>()?;
+    let mut missing = Vec::new();
+    for name in
+        code.filter_map(|line| line.split_once('(')).filter_map(|(before, _)| before.split([' ', '*']).next_back())
+    {
+        if name.starts_with("nf_") && !tests.iter().any(|text| calls(text, name)) {
+            missing.push(name);
+        }
+    }
+    if missing.is_empty() { Ok(()) } else { bail!("tests/c never calls {}", missing.join(", ")) }
+}
+
+/// As [`run()`], under the sanitizers, if the compiler has them.
 pub(crate) fn sanitized(language: Language, archive: &Path) -> Result<Outcome> {
     let source = output("sanitizers.c")?;
     fs::write(&source, "int main(void) { return 0; }\n")

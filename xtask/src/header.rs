@@ -8,6 +8,7 @@ use std::path::Path;
 /// A chapter of the header and how its items' names begin, in the order in which they are printed.
 struct Chapter {
     title: &'static str,
+    /// `|` separates those that share a place.
     prefixes: &'static [&'static str],
 }
 
@@ -15,7 +16,7 @@ struct Chapter {
 const CHAPTERS: [Chapter; 5] = [
     Chapter {
         title: "Version and status",
-        prefixes: &["NF_ABI_VERSION", "nf_abi_version", "nf_status", "NF_OK", "NF_ERR_", "nf_status_message"],
+        prefixes: &["NF_ABI_VERSION", "nf_abi_version", "nf_status", "NF_OK|NF_ERR_", "nf_status_message"],
     },
     Chapter {
         title: "Control variates: samples of one integral, or of a pixel, made into an estimate of lower error",
@@ -112,7 +113,7 @@ fn generate() -> Result<String> {
         sorted.sort_by_key(|item| item.place);
         let mut place = usize::MAX;
         for item in sorted {
-            // Constants of one family stand together.
+            // Constants of one place stand together.
             if !(item.is_constant() && item.place == place) {
                 text += "\n";
             }
@@ -137,7 +138,9 @@ impl Item {
         let name = name(&code).with_context(|| format!("cbindgen wrote a declaration without a name: {block}"))?;
         let mut best: Option<(usize, usize, usize)> = None;
         for (index, chapter) in CHAPTERS.iter().enumerate() {
-            for (place, prefix) in chapter.prefixes.iter().enumerate().filter(|(_, prefix)| name.starts_with(*prefix)) {
+            let prefixes = chapter.prefixes.iter().enumerate();
+            let prefixes = prefixes.flat_map(|(place, all)| all.split('|').map(move |prefix| (place, prefix)));
+            for (place, prefix) in prefixes.filter(|(_, prefix)| name.starts_with(prefix)) {
                 if best.is_none_or(|(length, ..)| prefix.len() > length) {
                     best = Some((prefix.len(), index, place));
                 }
@@ -179,7 +182,7 @@ fn name<'a>(code: &[&'a str]) -> Option<&'a str> {
     // A function's name is what stands before the parenthesis, after the type it returns.
     match first.split_once('(') {
         Some((before, _)) => before.split(word).rfind(ours),
-        None => first.split(word).filter(ours).next_back(),
+        None => first.split(word).rfind(ours),
     }
 }
 

@@ -43,8 +43,15 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         library::check(&archive()?)?;
         Ok(Outcome::Passed)
     });
-    steps.run("Rust tests (cargo test --workspace)", || {
-        run::check(run::cargo().args(["test", "--workspace"]))?;
+    steps.run("Rust tests of the library (cargo test)", || {
+        run::check(run::cargo().args(["test", "--workspace", "--exclude", "xtask", "--exclude", "noisefloor-bench"]))?;
+        Ok(Outcome::Passed)
+    });
+    // Their dependencies are many and their tests few: in the profile that compiles fast, not the one that runs fast.
+    steps.run("Rust tests of xtask and the benches (cargo test)", || {
+        let mut test = run::cargo();
+        test.args(["test", "--profile", "xtask", "--package", "xtask", "--package", "noisefloor-bench"]);
+        run::check(&mut test)?;
         Ok(Outcome::Passed)
     });
     steps.run("Rust documentation, warnings are errors", || {

@@ -1,6 +1,6 @@
 //! The functions a regression combines: everything but the constant (4.22).
 //!
-//! Every function is centred, its integral over [0,1]^d is exactly zero, and scaled to unit variance. The integral of
+//! Every function is centred, its integral over `[0, 1]^d` is exactly zero, and scaled to unit variance. The integral of
 //! a fitted sum is therefore its constant coefficient (4.23), and a ridge penalty means the same for every basis.
 //!
 //! - [`Family::Legendre`]: products of orthonormal shifted Legendre polynomials, of total degree 1 to `order`.
@@ -48,7 +48,7 @@ pub enum Family {
     Gaussian,
 }
 
-/// A set of centred functions of unit variance on [0,1]^dims.
+/// A set of centred functions of unit variance on `[0, 1]^dims`.
 #[derive(Clone, Debug)]
 pub struct Basis {
     family: Family,

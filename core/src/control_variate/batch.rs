@@ -149,12 +149,13 @@ fn fit<'a, R: Real>(
 }
 
 /// The variance of a fit's constant term for a sum of squared residuals, or the plain mean's if no residual is left
-/// over to tell.
+/// over to tell: the square of the degrees of freedom, not times n, as the constant is an extrapolation itself.
 pub(crate) fn residual_variance<R: Real>(design: &Design<'_, R>, residual: PerChannel<R>) -> Option<PerChannel<R>> {
     match design.n.checked_sub(design.columns + 1) {
         None | Some(0) => result::plain_variance(design),
         Some(freedom) => {
-            let factor = R::ONE / (R::from_usize(freedom) * R::from_usize(design.n));
+            let freedom = R::from_usize(freedom);
+            let factor = R::ONE / (freedom * freedom);
             Some(residual.map(|residual| residual * factor))
         }
     }

@@ -67,6 +67,8 @@ pub(crate) fn estimate<R: Real>(
     nested: bool,
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
+    // With two folds no third is left to judge a fit: one ridge it is.
+    let ridge = if nested && groups.folds < 3 { Ridge::Fixed(ridge::single(ridge) as f32) } else { ridge };
     let fixed = [ridge::single(ridge)];
     let strengths: &[f64] = if matches!(ridge, Ridge::Default | Ridge::Auto) { &MIXED } else { &fixed };
     let channels = groups.channels;

@@ -291,7 +291,7 @@ fn largest_curvature<R: Real>(
     for value in vector.iter_mut() {
         phase += R::from_f64(0.618_033_988_75);
         if phase > R::ONE {
-            phase = phase - R::ONE;
+            phase -= R::ONE;
         }
         *value = R::from_f64(0.5) + phase;
     }

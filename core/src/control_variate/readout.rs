@@ -22,7 +22,7 @@ impl<R: Real> State<R> {
     ///
     /// # Errors
     /// [`Error::NoSamples`] if there are none, [`Error::Memory`] if `workspace` is shorter than
-    /// [`Accumulator::workspace_len`] says.
+    /// [`State::workspace_len`] says.
     pub fn estimate(&self, sums: &[R], workspace: &mut [R]) -> Result<Estimate, Error> {
         let state = self;
         if sums.len() < state.len() {
@@ -143,7 +143,7 @@ fn in_sample<R: Real>(centred: &Centred<'_, R>, coefficients: &[R], total: &Tota
         let shift = centred.intercept(channel, b) - get(&centred.value_means, channel);
         set(&mut correction, channel, shift);
         let residual = centred.residual_square(channel, b);
-        set(&mut variance, channel, residual / (freedom * centred.count));
+        set(&mut variance, channel, residual / (freedom * freedom));
     }
     let variance = if freedom > R::ZERO { Some(variance) } else { total.variance };
     Outcome { correction, variance }

@@ -151,7 +151,7 @@ impl<R: Real, const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regr
             }
             let plain = (self.square[channel] - total * total / n).max(R::ZERO) / (n * (n - R::ONE));
             set(&mut plain_variance, channel, plain);
-            set(&mut variance, channel, residual.max(R::ZERO) / (freedom * n));
+            set(&mut variance, channel, residual.max(R::ZERO) / (freedom * freedom));
         }
         let plain_variance = (self.samples > 1).then_some(plain_variance);
         outcome.variance = if freedom > R::ZERO { Some(variance) } else { plain_variance };

@@ -110,7 +110,7 @@ pub(crate) fn from_factor<R: Real>(
     let freedom = count - R::from_usize(terms);
     let mut variance = PerChannel::default();
     for (variance, &residual) in variance.iter_mut().zip(sums.square) {
-        *variance = residual / (freedom * count);
+        *variance = residual / (freedom * freedom);
     }
     // The count comes from a square root: a half tells one from none.
     Ok(Outcome { correction, variance: (freedom > R::from_f64(0.5)).then_some(variance) })

@@ -91,7 +91,7 @@ fn dot(a: &Vector, b: &Vector, n: usize) -> f64 {
     a.iter().zip(b).take(n).map(|(a, b)| a * b).sum()
 }
 
-/// One Jacobi rotation that makes m[p][q] zero; the rows of `vectors` turn with it. False if it already was negligible.
+/// One Jacobi rotation that makes `m[p][q]` zero; the rows of `vectors` turn with it. False if it already was negligible.
 fn rotate(m: &mut Matrix, vectors: &mut Matrix, p: usize, q: usize, n: usize) -> bool {
     let (p, q) = (p % MAX_TECHNIQUES, q % MAX_TECHNIQUES);
     let off = m[p][q];
