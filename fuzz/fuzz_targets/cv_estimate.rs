@@ -65,7 +65,8 @@ impl<'a> Arbitrary<'a> for Input {
             non_finite: *bytes.choose(&[NonFinite::Error, NonFinite::Skip])?,
             color: if u8::arbitrary(bytes)? < 32 { Color::LuminanceRatio } else { Color::PerChannel },
             folds: small(bytes, 16)?,
-            iterations: small(bytes, 40)?,
+            // At most 40 steps, which take their time, or too many, which is an error.
+            iterations: Some(small(bytes, 40)?).filter(|&steps| steps <= 40 || steps > 1 << 20).unwrap_or(7),
             optimizer: *bytes.choose(&[Optimizer::Momentum, Optimizer::Adam, Optimizer::Plain])?,
             ridge: match u8::arbitrary(bytes)? % 4 {
                 0 => Ridge::Auto,
