@@ -328,7 +328,7 @@ fn channels_are_separate() {
             let all = batch::<f64>(&together, &u, &f).unwrap();
             let all_streamed =
                 (estimator != Estimator::LeaveOneOut).then(|| streamed::<f64>(&together, &u, &f).unwrap());
-            for channel in 0..4 {
+            for (channel, &scale) in scales.iter().enumerate() {
                 let own: Vec<f32> = f.iter().skip(channel).step_by(channels).copied().collect();
                 if channel >= channels {
                     assert_eq!((all.mean[channel], all.std_error[channel]), (0.0, 0.0));
@@ -336,7 +336,7 @@ fn channels_are_separate() {
                 }
                 let alone = batch::<f64>(&config(2, 2, estimator), &u, &own).unwrap();
                 let what = format!("{estimator:?}, channel {channel} of {channels}");
-                let same = |a: f32, b: f32| (a - b).abs() <= 1e-6 * scales[channel].abs();
+                let same = |a: f32, b: f32| (a - b).abs() <= 1e-6 * scale.abs();
                 assert!(same(all.mean[channel], alone.mean[0]), "{what}");
                 assert!(same(all.std_error[channel], alone.std_error[0]), "{what}");
                 if let Some(all) = &all_streamed {
@@ -435,7 +435,7 @@ fn gradient_descent_takes_the_documented_steps() {
     let mut vector = vec![1.0; 5];
     let mut curvature = 0.0;
     for _ in 0..2000 {
-        let mut image = vec![0.0; 5];
+        let mut image = [0.0; 5];
         for row in &scaled.rows {
             let centred: Vec<f64> = row.iter().zip(&means).map(|(p, m)| p - m).collect();
             let product: f64 = centred.iter().zip(&vector).map(|(p, v)| p * v).sum();

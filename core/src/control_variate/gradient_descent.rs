@@ -112,7 +112,7 @@ pub(crate) fn estimate<R: Real>(
     }
     if let Some(warm) = warm {
         for (index, (out, &value)) in warm.iter_mut().zip(solutions.iter()).enumerate() {
-            *out = unit(index).map_or(0.0, |unit| unit.length(value) as f32);
+            *out = unit(index).map_or(0.0, |unit| result::saturate(unit.length(value)));
         }
     }
     Ok(Outcome { correction, variance: batch::residual_variance(design, residual) })

@@ -96,6 +96,6 @@ pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estim
 }
 
 /// The nearest finite `f32`: a fit to values near the type's end can reach beyond it.
-fn saturate(value: f64) -> f32 {
+pub(crate) fn saturate(value: f64) -> f32 {
     value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
 }
