@@ -68,13 +68,13 @@ const PLAIN: Case = Case {
 
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    for estimator in 0..ESTIMATORS.len() {
+    for (estimator, kind) in ESTIMATORS.into_iter().enumerate() {
         for narrow in [false, true] {
             for (dims, order, channels, n) in
                 [(1, 3, 1, 8), (2, 2, 1, 16), (2, 2, 3, 64), (3, 2, 4, 37), (15, 1, 3, 20)]
             {
                 for streaming in [false, true] {
-                    if !(streaming && ESTIMATORS[estimator] == Estimator::LeaveOneOut) {
+                    if !(streaming && kind == Estimator::LeaveOneOut) {
                         cases.push(Case { streaming, estimator, dims, order, channels, n, narrow, ..PLAIN });
                     }
                 }

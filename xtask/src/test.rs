@@ -45,7 +45,9 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         Ok(Outcome::Passed)
     });
     steps.run("Rust tests of the library (cargo test)", || {
-        run::check(run::cargo().args(["test", "--workspace", "--exclude", "xtask", "--exclude", "noisefloor-bench"]))?;
+        let mut test = run::cargo();
+        test.args(["test", "--workspace", "--no-fail-fast", "--exclude", "xtask", "--exclude", "noisefloor-bench"]);
+        run::check(&mut test)?;
         Ok(Outcome::Passed)
     });
     // Their dependencies are many and their tests few: in the profile that compiles fast, not the one that runs fast.
