@@ -3,6 +3,9 @@
 //! Group names are `door/dims`D`order/method`, ids are sample counts. Throughput is in samples, so that criterion's
 //! "elem/s" is samples per second.
 
+// Without the archive the C accumulator is a type of no values.
+#![cfg_attr(not(archive), allow(unreachable_code, unused_variables))]
+
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
 use noisefloor::basis::Family;
 use noisefloor::control_variate::Regressor;

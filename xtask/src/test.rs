@@ -15,6 +15,12 @@ pub(crate) struct Options {
 pub(crate) fn run(options: &Options) -> Result<()> {
     let start = Instant::now();
     tools::ensure()?;
+    // Before the steps: many of them link it, and the benches compile to more with it.
+    println!("building the C library");
+    let archive = library::build().map_err(|error| format!("{error:#}"));
+    let archive = || -> Result<PathBuf> {
+        archive.clone().map_err(|error| anyhow::anyhow!("the C library could not be built: {error}"))
+    };
     let mut steps = Steps { options, passed: 0, failed: Vec::new(), left_out: 0 };
     steps.run("formatting (cargo fmt --check)", || {
         run::check(run::cargo().args(["fmt", "--all", "--check"]))?;
@@ -34,11 +40,6 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         header::check_compiles()?;
         Ok(Outcome::Passed)
     });
-    // Every later step that links it needs it, whatever the filter says.
-    let archive = library::build().map_err(|error| format!("{error:#}"));
-    let archive = || -> Result<PathBuf> {
-        archive.clone().map_err(|error| anyhow::anyhow!("the C library could not be built: {error}"))
-    };
     steps.run("the C library: no panic, no undefined symbol but mem*, only nf_* visible", || {
         library::check(&archive()?)?;
         Ok(Outcome::Passed)
