@@ -64,7 +64,8 @@ impl<'a> Arbitrary<'a> for Input {
             solver: *bytes.choose(&[Solver::Auto, Solver::NormalEquations, Solver::SquareRoot, Solver::Dual])?,
             non_finite: *bytes.choose(&[NonFinite::Error, NonFinite::Skip])?,
             color: if u8::arbitrary(bytes)? < 32 { Color::LuminanceRatio } else { Color::PerChannel },
-            folds: small(bytes, 16)?,
+            // Nested folds cost the square of their number.
+            folds: small(bytes, 5)?,
             // At most 40 steps, which take their time, or too many, which is an error.
             iterations: Some(small(bytes, 40)?).filter(|&steps| steps <= 40 || steps > 1 << 20).unwrap_or(7),
             optimizer: *bytes.choose(&[Optimizer::Momentum, Optimizer::Adam, Optimizer::Plain])?,
