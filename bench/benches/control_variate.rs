@@ -102,7 +102,7 @@ fn streaming(criterion: &mut Criterion) {
 /// and fills in an `Estimate` with its standard error. The factorisation and solution alone cost less.
 fn solve(criterion: &mut Criterion) {
     fn bench<const D: usize, const T: usize>(group: &mut BenchmarkGroup<WallTime>) {
-        let mut regressor = Regressor::<f64, D, T, 1>::new(Family::Legendre, 2).expect("order 2");
+        let mut regressor = Regressor::<D, T, 1>::new(Family::Legendre, 2).expect("order 2");
         let (u, f) = samples(D, 64);
         for (u, f) in u.as_chunks().0.iter().zip(f.as_chunks().0) {
             regressor.add(u, f).expect("a valid sample");

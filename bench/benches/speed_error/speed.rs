@@ -101,7 +101,7 @@ pub(crate) const SOLVE: &str = "Regressor::estimate";
 /// of it. The peers' is their decomposition and solution alone, matrices copied and allocated.
 pub(crate) fn solves(full: bool) -> Vec<Speed> {
     const CALLS: usize = 500;
-    let mut regressor = Regressor::<f64, 2, 6, 1>::new(Family::Legendre, 2).expect("6 terms");
+    let mut regressor = Regressor::<2, 6, 1>::new(Family::Legendre, 2).expect("6 terms");
     let mut rng = SplitMix64::new(6);
     let mut matrix = DMatrix::<f64>::identity(6, 6);
     let rhs = DVector::<f64>::from_fn(6, |row, _| row as f64);

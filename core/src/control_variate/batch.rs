@@ -1,6 +1,6 @@
 //! Estimates from samples in caller arrays.
 
-use super::config::{Config, Estimate, Estimator, Solver};
+use super::config::{Color, Config, Estimate, Estimator, Solver};
 use super::design::Design;
 use super::fitter::{self, Fitter, Rule};
 use super::per_channel::PerChannel;
@@ -23,21 +23,31 @@ const MAX_DUAL: usize = 4096;
 /// be large enough.
 #[inline]
 pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error> {
-    let plan = Plan::new(config, config.checked_shape()?.columns(), n)?;
-    let design = Design::<R>::size(n, plan.columns, config.channels).ok_or(Error::Memory)?;
+    let mut plan = Plan::new(config, config.checked_shape()?.columns(), n)?;
+    if is_plain(config, plan.columns) {
+        plan.columns = 0;
+    }
+    let channels = if config.color == Color::LuminanceRatio { 1 } else { config.channels };
+    let design = Design::<R>::size(n, plan.columns, channels).ok_or(Error::Memory)?;
+    if plan.columns == 0 && config.estimator != Estimator::Incremental {
+        return Ok(design);
+    }
     let solve = match config.estimator {
-        Estimator::GradientDescent => gradient_descent::size(plan.columns, config.channels),
-        Estimator::KFold => k_fold::size::<R>(config, plan.columns, n).ok_or(Error::Memory)?,
+        Estimator::GradientDescent => gradient_descent::size(plan.columns, channels),
+        Estimator::KFold => k_fold::size::<R>(config, plan.columns, channels, n).ok_or(Error::Memory)?,
         Estimator::Incremental => {
             let state = State::<R>::new(config)?;
             return state.len().checked_add(state.workspace_len()).ok_or(Error::Memory);
         }
-        Estimator::LeastSquares if config.solver == Solver::SquareRoot => {
-            square_root::size(plan.columns, config.channels)
-        }
-        _ => fitter::size(n, plan.dual, plan.columns, config.channels).ok_or(Error::Memory)?,
+        Estimator::LeastSquares if config.solver == Solver::SquareRoot => square_root::size(plan.columns, channels),
+        _ => fitter::size(n, plan.dual, plan.columns, channels).ok_or(Error::Memory)?,
     };
     design.checked_add(solve).ok_or(Error::Memory)
+}
+
+/// Whether the estimate is the plain mean whatever the samples are.
+fn is_plain(config: &Config, columns: usize) -> bool {
+    columns == 0 || (config.stratified && config.estimator == Estimator::Robust)
 }
 
 /// How a configuration is carried out.
@@ -89,7 +99,7 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
     let plan = Plan::new(config, basis.columns(), reader.len())?;
     reader.check()?;
     let mut arena = Arena::new(workspace);
-    let is_plain = plan.columns == 0 || (config.stratified && config.estimator == Estimator::Robust);
+    let is_plain = is_plain(config, plan.columns);
     let columns = if is_plain { 0 } else { plan.columns };
     let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena)?;
     let outcome = if is_plain || design.n == 1 {

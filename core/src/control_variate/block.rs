@@ -153,7 +153,7 @@ impl<'a, R: Real> Block<'a, R> {
         ridge::penalties(config, basis, |j| whole.column_square(j) / whole.count(), penalties);
         let first_degree = (config.controls + basis.first_degree()).min(columns);
         let fits: [(usize, f64); CANDIDATES] = match config.ridge {
-            Ridge::Fixed(strength) => [(columns, f64::from(strength)); CANDIDATES],
+            Ridge::Fixed(_) => [(columns, ridge::single::<R>(config.ridge)); CANDIDATES],
             Ridge::Default | Ridge::Auto => {
                 let [weak, strong] = STRENGTHS;
                 [(columns, weak), (columns, strong), (first_degree, weak), (first_degree, strong)]
@@ -222,12 +222,10 @@ impl<'a, R: Real> Block<'a, R> {
                 (R::ZERO, only)
             } else {
                 let power = R::from_usize(self.pixels) * R::from_f64(SHARPNESS);
-                {
-                    let mut weights = [R::ZERO; CANDIDATES];
-                    let pixels = R::from_usize(self.pixels);
-                    let plain = trust::weigh(plain, &spreads, &[], power, pixels, &mut weights);
-                    (plain, weights)
-                }
+                let mut weights = [R::ZERO; CANDIDATES];
+                let pixels = R::from_usize(self.pixels);
+                let plain = trust::weigh(plain, &spreads, &[], power, pixels, &mut weights);
+                (plain, weights)
             };
             let all = [plain_weight].into_iter().chain(fit_weights);
             let mut mixed = R::ZERO;
@@ -252,24 +250,29 @@ impl<'a, R: Real> Block<'a, R> {
         let mut outcome = Outcome { correction: PerChannel::default(), variance: None };
         let mut variance = PerChannel::default();
         let mut plain_variance = PerChannel::default();
+        // As everywhere the zero is the pixel's plain mean, which is what remains of a correction that is not finite.
+        let mut units = self.units;
         let n = own.count();
-        for channel in 0..self.channels {
+        for (channel, unit) in units.iter_mut().enumerate().take(self.channels) {
+            let total = own.total(channel);
+            let mean = total / n;
+            unit.offset += mean;
             for (row, weights) in rows(estimates, self.channels).zip(weights) {
                 let value = row.get(channel).copied().unwrap_or(R::ZERO);
-                add(&mut outcome.correction, channel, get(weights, channel) * value);
+                add(&mut outcome.correction, channel, get(weights, channel) * (value - mean));
             }
-            let total = own.total(channel);
-            let plain = (own.square(channel) - total * total / n).max(R::ZERO) / (n * (n - R::ONE));
+            let plain = (own.square(channel) - total * mean).max(R::ZERO) / (n * (n - R::ONE));
             set(&mut plain_variance, channel, plain);
             set(&mut variance, channel, plain * get(gain, channel));
         }
         outcome.variance = (self.n > 1).then_some(variance);
         let plain_variance = (self.n > 1).then_some(plain_variance);
-        let summary =
-            Summary { samples: self.n, channels: self.channels, units: self.units, plain_variance, colour: None };
+        let is_usable = outcome.correction.iter().all(|value| value.is_finite());
+        let summary = Summary { samples: self.n, channels: self.channels, units, plain_variance, colour: None };
         let mut estimate = result::finish(summary, outcome);
         let sum = gain.iter().take(self.channels).fold(R::ZERO, |sum, &gain| sum + gain);
-        estimate.gain = (sum / R::from_usize(self.channels.max(1))).to_f32();
+        // The block's, which also one sample a pixel has.
+        estimate.gain = if is_usable { (sum / R::from_usize(self.channels.max(1))).to_f32() } else { 1.0 };
         estimate
     }
 }

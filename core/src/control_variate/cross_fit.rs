@@ -44,7 +44,7 @@ impl<'a, R: Real> Groups<'a, R> {
         Moments::new(self.sums.get(fold * len..(fold + 1) * len)?, self.columns + 1, self.channels)
     }
 
-    /// Writes the sums of all folds but those left out, and returns whether there is any sample.
+    /// Writes the sums of all folds but those left out; None for a buffer that is too short.
     fn train<'b>(&self, left_out: [usize; 2], sums: &'b mut [R]) -> Option<Moments<'b, R>> {
         for value in sums.iter_mut() {
             *value = R::ZERO;
@@ -67,9 +67,10 @@ pub(crate) fn estimate<R: Real>(
     nested: bool,
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
-    // With two folds no third is left to judge a fit: one ridge it is.
-    let ridge = if nested && groups.folds < 3 { Ridge::Fixed(ridge::single(ridge) as f32) } else { ridge };
-    let fixed = [ridge::single(ridge)];
+    // The mixture has its own ridges. With two nested folds no third is left to judge a fit: one ridge it is.
+    let ridge = if nested { ridge } else { Ridge::Default };
+    let ridge = if nested && groups.folds < 3 { Ridge::Fixed(ridge::single::<R>(ridge) as f32) } else { ridge };
+    let fixed = [ridge::single::<R>(ridge)];
     let strengths: &[f64] = if matches!(ridge, Ridge::Default | Ridge::Auto) { &MIXED } else { &fixed };
     let channels = groups.channels;
     let coefficients = arena.take(CANDIDATES * groups.columns * channels)?;

@@ -184,6 +184,19 @@ impl<'a, R: Real> Design<'a, R> {
         lanes::sum(&total)
     }
 
+    /// The sum of squared residuals of coefficients.
+    pub(crate) fn residual_square(&self, channel: usize, b: &[R]) -> R {
+        let mut total = [R::ZERO; LANES];
+        for (panel, values) in self.each_panel() {
+            let mut residual = values.get(channel).copied().unwrap_or([R::ZERO; LANES]);
+            for (column, &b) in panel.iter().zip(b) {
+                lanes::subtract_scaled(&mut residual, b, column);
+            }
+            lanes::add_product(&mut total, &residual, &residual);
+        }
+        lanes::sum(&total)
+    }
+
     /// Writes the packed matrix of column products (4.28), and for each channel the products with its values.
     /// `partial` holds one group of lanes for each column.
     #[inline(always)]

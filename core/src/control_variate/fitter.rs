@@ -45,8 +45,9 @@ pub(crate) struct Fitter<'a, 'd, R> {
 
 /// How many numbers a [`Fitter`] and its fits take, for up to `n` samples.
 pub(crate) fn size(n: usize, dual: bool, columns: usize, channels: usize) -> Option<usize> {
+    let gram = if dual { 0 } else { packed_len(columns) };
     let dual = if dual { ridge_fit::dual_size(n, channels)? } else { 0 };
-    let systems = packed_len(columns) + columns * (1 + channels) + MAX_FITS * columns * channels;
+    let systems = gram + columns * (1 + channels) + MAX_FITS * columns * channels;
     systems.checked_add(ridge_fit::primal_size(columns, channels).max(dual))
 }
 
@@ -60,7 +61,8 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         arena: &mut Arena<'a, R>,
     ) -> Result<Self, Error> {
         let columns = design.columns;
-        let gram = arena.take(packed_len(columns))?;
+        // Penalties of control functions come from the matrix, but the dual has no control functions.
+        let gram = arena.take(if use_dual { 0 } else { packed_len(columns) })?;
         let rhs = arena.take(columns * design.channels)?;
         let penalties = arena.take(columns)?;
         if !use_dual {
@@ -84,7 +86,7 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         let design = self.design;
         let single = [match rule {
             Rule::LeastSquares(ridge) => ridge::least_squares::<R>(ridge),
-            Rule::Single(ridge) => ridge::single(ridge),
+            Rule::Single(ridge) => ridge::single::<R>(ridge),
             Rule::Robust => 0.0,
         }];
         let (strengths, leave_one_out) = match rule {
@@ -93,12 +95,13 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
             Rule::Single(_) => (&single[..], true),
             Rule::LeastSquares(_) => (&single[..], false),
         };
+        let residual = matches!(rule, Rule::LeastSquares(_));
         let each = design.columns * design.channels;
         let kept = arena.take(if coefficients.is_some() { strengths.len() * each } else { 0 })?;
         let mut fits = [RidgeFit::default(); MAX_FITS];
         for (index, (&strength, fit)) in strengths.iter().zip(&mut fits).enumerate() {
             let kept = kept.get_mut(index * each..(index + 1) * each).filter(|kept| !kept.is_empty());
-            let choice = Choice { strength: R::from_f64(strength), penalties: self.penalties, leave_one_out };
+            let choice = Choice { strength: R::from_f64(strength), penalties: self.penalties, leave_one_out, residual };
             *fit = match &self.dual {
                 Some(dual) => dual.fit(design, choice, kept, arena.scratch())?,
                 None => ridge_fit::primal(design, self.gram, self.rhs, choice, kept, arena.scratch())?,

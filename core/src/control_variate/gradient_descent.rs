@@ -108,7 +108,7 @@ pub(crate) fn estimate<R: Real>(
     for (channel, solution) in rows(solutions, columns).enumerate() {
         let in_sample = solution.iter().zip(design.column_means.iter()).fold(R::ZERO, |sum, (&b, &m)| sum - b * m);
         set(&mut correction, channel, in_sample);
-        set(&mut residual, channel, residual_square(design, channel, solution));
+        set(&mut residual, channel, design.residual_square(channel, solution));
     }
     if let Some(warm) = warm {
         for (index, (out, &value)) in warm.iter_mut().zip(solutions.iter()).enumerate() {
@@ -316,17 +316,4 @@ fn largest_curvature<R: Real>(
         }
     }
     largest.max(floor())
-}
-
-/// The sum of squared residuals of a fit.
-fn residual_square<R: Real>(design: &Design<'_, R>, channel: usize, b: &[R]) -> R {
-    let mut total = [R::ZERO; LANES];
-    for (panel, values) in design.each_panel() {
-        let mut residual = values.get(channel).copied().unwrap_or([R::ZERO; LANES]);
-        for (column, &b) in panel.iter().zip(b) {
-            lanes::add_scaled(&mut residual, -b, column);
-        }
-        lanes::add_product(&mut total, &residual, &residual);
-    }
-    lanes::sum(&total)
 }

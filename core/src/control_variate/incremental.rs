@@ -101,7 +101,7 @@ pub(crate) fn refit<R: Real>(
         return;
     }
     let strengths = match config.ridge {
-        Ridge::Fixed(strength) => [R::from_f32(strength); FITS],
+        Ridge::Fixed(_) => [R::from_f64(ridge::single::<R>(config.ridge)); FITS],
         // `Centred::solve` takes strengths per sample.
         Ridge::Default | Ridge::Auto => STRENGTHS.map(|strength| R::from_f64(strength / samples as f64)),
     };
@@ -125,7 +125,7 @@ pub(crate) fn refit<R: Real>(
             }
         }
         progress.mean = centred.value_means;
-        progress.next_fit = samples + (samples / 16).max(1);
+        progress.next_fit = samples.saturating_add((samples / 16).max(1));
         Some(())
     };
     // The buffer was measured for this, so there is nothing to fail; fits that are not renewed are still valid ones.

@@ -15,10 +15,9 @@ use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 
 /// Numbers that [`estimate`] takes from its arena.
-pub(crate) fn size<R: Real>(config: &Config, columns: usize, n: usize) -> Option<usize> {
+pub(crate) fn size<R: Real>(config: &Config, columns: usize, channels: usize, n: usize) -> Option<usize> {
     // The largest training set leaves out the smallest fold, and the held-out fold is no larger than that.
     let train = n - n.checked_div(config.fold_count()).unwrap_or(0);
-    let channels = config.channels;
     let designs = Design::<R>::size(train, columns, channels)?.checked_mul(2)?;
     let primal = fitter::size(train, false, columns, channels)?;
     // Training sets differ in size, and skipped samples make them smaller: some may be short where the largest is not.

@@ -47,8 +47,16 @@ impl<R: Real> State<R> {
                 _ if state.config.solver == Solver::SquareRoot => {
                     let group = self.moments(sums, 0).ok_or(Error::Memory)?;
                     let basis = self.basis()?;
-                    square_root::from_factor(&group, &state.config, &basis, state.terms(), state.channels, &mut arena)?
-                        .relative_to(&total)
+                    let outcome = square_root::from_factor(
+                        &group,
+                        &state.config,
+                        &basis,
+                        state.terms(),
+                        state.channels,
+                        &mut arena,
+                    )?;
+                    let variance = outcome.variance.or(total.variance);
+                    Outcome { variance, ..outcome.relative_to(&total) }
                 }
                 _ => {
                     let group = self.moments(sums, 0).ok_or(Error::Memory)?;

@@ -8,17 +8,16 @@ use crate::basis::{Basis, Family};
 use crate::error::Error;
 use crate::linalg::ldlt;
 use crate::linalg::{row, row_mut};
-use crate::real::Real;
 
 /// A streaming least-squares regressor (Alg. 1) over `DIMS` coordinates with `TERMS` terms, constant included, and
-/// `CHANNELS` values of each sample.
+/// `CHANNELS` values of each sample, in `f64`. For `f32` there is [`Accumulator`](super::Accumulator).
 ///
 /// ```
 /// use noisefloor::basis::Family;
 /// use noisefloor::control_variate::Regressor;
 ///
 /// // Total degree 2 over 2 coordinates: 6 terms.
-/// let mut regressor = Regressor::<f64, 2, 6, 1>::new(Family::Legendre, 2)?;
+/// let mut regressor = Regressor::<2, 6, 1>::new(Family::Legendre, 2)?;
 /// for i in 0..32 {
 ///     let u = [i as f32 / 32.0, (i * 7 % 32) as f32 / 32.0];
 ///     regressor.add(&u, &[u[0] * u[0] + u[1]])?;
@@ -28,18 +27,18 @@ use crate::real::Real;
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Regressor<R, const DIMS: usize, const TERMS: usize, const CHANNELS: usize> {
+pub struct Regressor<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> {
     basis: Basis,
     samples: u64,
     offset: [f32; CHANNELS],
     /// Lower triangles of the sums of products (4.28), packed into the first rows.
-    gram: [[R; TERMS]; TERMS],
+    gram: [[f64; TERMS]; TERMS],
     /// Sums of products with the values (4.27).
-    rhs: [[R; CHANNELS]; TERMS],
-    square: [R; CHANNELS],
+    rhs: [[f64; CHANNELS]; TERMS],
+    square: [f64; CHANNELS],
 }
 
-impl<R: Real, const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<R, DIMS, TERMS, CHANNELS> {
+impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIMS, TERMS, CHANNELS> {
     /// An empty regressor of total degree `order`.
     ///
     /// # Errors
@@ -53,9 +52,9 @@ impl<R: Real, const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regr
             basis,
             samples: 0,
             offset: [0.0; CHANNELS],
-            gram: [[R::ZERO; TERMS]; TERMS],
-            rhs: [[R::ZERO; CHANNELS]; TERMS],
-            square: [R::ZERO; CHANNELS],
+            gram: [[0.0; TERMS]; TERMS],
+            rhs: [[0.0; CHANNELS]; TERMS],
+            square: [0.0; CHANNELS],
         })
     }
 
@@ -74,8 +73,8 @@ impl<R: Real, const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regr
         if self.samples == 0 {
             self.offset = *f;
         }
-        let x = u.map(|u| [R::from_f32(u)]);
-        let mut p = [[R::ONE]; TERMS];
+        let x = u.map(|u| [f64::from(u)]);
+        let mut p = [[1.0]; TERMS];
         self.basis.evaluate(&x, p.get_mut(1..).unwrap_or(&mut []));
         let p = p.as_flattened();
         let gram = self.gram.as_flattened_mut();
@@ -84,9 +83,8 @@ impl<R: Real, const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regr
                 *out += value * other;
             }
         }
-        let values = core::array::from_fn::<R, CHANNELS, _>(|channel| {
-            R::from_f32(f[channel]) - R::from_f32(self.offset[channel])
-        });
+        let values =
+            core::array::from_fn::<f64, CHANNELS, _>(|channel| f64::from(f[channel]) - f64::from(self.offset[channel]));
         for (out, &p) in self.rhs.iter_mut().zip(p) {
             for (out, &value) in out.iter_mut().zip(&values) {
                 *out += p * value;
@@ -116,45 +114,46 @@ impl<R: Real, const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regr
         if !(strength > 0.0 && strength.is_finite()) {
             return Err(Error::Range);
         }
-        let n = R::from_f64(self.samples as f64);
+        let n = self.samples as f64;
         let sums = self.gram.as_flattened();
         let mut factor = self.gram;
         let factor = factor.as_flattened_mut();
-        let mut penalties = [R::ZERO; TERMS];
+        let mut penalties = [0.0; TERMS];
         self.basis.penalties(penalties.get_mut(1..).unwrap_or(&mut []));
-        let strength = R::from_f32(strength) * n;
-        ldlt::add_diagonal(factor, TERMS, |j| strength * penalties.get(j).copied().unwrap_or(R::ZERO));
+        let strength = f64::from(strength) * n;
+        ldlt::add_diagonal(factor, TERMS, |j| strength * penalties.get(j).copied().unwrap_or(0.0));
         // The intercept is the first unknown and has no penalty.
         ldlt::factor(factor, TERMS);
         let mut outcome = Outcome { correction: PerChannel::default(), variance: None };
         let mut units = [Units::default(); Config::MAX_CHANNELS];
         let mut variance = PerChannel::default();
         let mut plain_variance = PerChannel::default();
-        let freedom = n - R::from_usize(TERMS);
+        let freedom = n - TERMS as f64;
         for channel in 0..CHANNELS {
-            let rhs = core::array::from_fn::<R, TERMS, _>(|j| self.rhs[j][channel]);
+            let rhs = core::array::from_fn::<f64, TERMS, _>(|j| self.rhs[j][channel]);
             let mut solution = rhs;
             ldlt::solve(factor, &mut solution);
-            let total = rhs.first().copied().unwrap_or(R::ZERO);
-            set(&mut outcome.correction, channel, solution.first().copied().unwrap_or(R::ZERO));
+            let total = rhs.first().copied().unwrap_or(0.0);
+            let mean = total / n;
+            set(&mut outcome.correction, channel, solution.first().copied().unwrap_or(0.0) - mean);
             if let (Some(unit), Some(&offset)) = (units.get_mut(channel), self.offset.get(channel)) {
-                unit.offset = R::from_f32(offset);
+                unit.offset = f64::from(offset) + mean;
             }
             // f'f - 2 b'r + b'G b
             let mut residual = self.square[channel];
             for (j, (&b, &r)) in solution.iter().zip(&rhs).enumerate() {
-                let mut product = R::ZERO;
+                let mut product = 0.0;
                 for (k, (&gram, &other)) in row(sums, j).iter().zip(&solution).enumerate() {
                     product += if k == j { gram * other } else { (gram + gram) * other };
                 }
                 residual += b * (product - r - r);
             }
-            let plain = (self.square[channel] - total * total / n).max(R::ZERO) / (n * (n - R::ONE));
+            let plain = (self.square[channel] - total * total / n).max(0.0) / (n * (n - 1.0));
             set(&mut plain_variance, channel, plain);
-            set(&mut variance, channel, residual.max(R::ZERO) / (freedom * freedom));
+            set(&mut variance, channel, residual.max(0.0) / (freedom * freedom));
         }
         let plain_variance = (self.samples > 1).then_some(plain_variance);
-        outcome.variance = if freedom > R::ZERO { Some(variance) } else { plain_variance };
+        outcome.variance = if freedom > 0.0 { Some(variance) } else { plain_variance };
         let samples = usize::try_from(self.samples).unwrap_or(usize::MAX);
         Ok(result::finish(Summary { samples, channels: CHANNELS, units, plain_variance, colour: None }, outcome))
     }
@@ -170,20 +169,20 @@ impl<R: Real, const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regr
         if self.samples == 0 {
             self.offset = other.offset;
         }
-        let count = R::from_f64(other.samples as f64);
+        let count = other.samples as f64;
         for channel in 0..CHANNELS {
-            let shift = R::from_f32(other.offset[channel]) - R::from_f32(self.offset[channel]);
-            let total = other.rhs.first().map_or(R::ZERO, |row| row[channel]);
+            let shift = f64::from(other.offset[channel]) - f64::from(self.offset[channel]);
+            let total = other.rhs.first().map_or(0.0, |row| row[channel]);
             self.square[channel] += other.square[channel] + shift * (total + total + shift * count);
             for (j, (ours, theirs)) in self.rhs.iter_mut().zip(&other.rhs).enumerate() {
-                let column = row(other.gram.as_flattened(), j).first().copied().unwrap_or(R::ZERO);
+                let column = row(other.gram.as_flattened(), j).first().copied().unwrap_or(0.0);
                 ours[channel] += theirs[channel] + shift * column;
             }
         }
         for (ours, theirs) in self.gram.as_flattened_mut().iter_mut().zip(other.gram.as_flattened()) {
             *ours += *theirs;
         }
-        self.samples += other.samples;
+        self.samples = self.samples.saturating_add(other.samples);
         Ok(())
     }
 }

@@ -18,10 +18,18 @@ const FLOOR: [f64; 2] = [1e-10, 1e-6];
 /// Relative penalty of a control function: next to none, as its maker vouches for it.
 const CONTROL_PENALTY: f64 = 1e-7;
 
+/// The smallest strength that a caller gets, for `f64` and for narrower types: with less, leverages lose their digits.
+const SMALLEST: [f64; 2] = [1e-12, 1e-5];
+
+/// A strength of the caller's.
+fn fixed<R: Real>(strength: f32) -> f64 {
+    f64::from(strength).max(SMALLEST[usize::from(R::NARROW)])
+}
+
 /// The strength where there is one fit.
-pub(crate) fn single(ridge: Ridge) -> f64 {
+pub(crate) fn single<R: Real>(ridge: Ridge) -> f64 {
     match ridge {
-        Ridge::Fixed(strength) => f64::from(strength),
+        Ridge::Fixed(strength) => fixed::<R>(strength),
         Ridge::Default | Ridge::Auto => DEFAULT,
     }
 }
@@ -29,7 +37,7 @@ pub(crate) fn single(ridge: Ridge) -> f64 {
 /// The strength of least squares: next to none.
 pub(crate) fn least_squares<R: Real>(ridge: Ridge) -> f64 {
     match ridge {
-        Ridge::Fixed(strength) => f64::from(strength),
+        Ridge::Fixed(strength) => fixed::<R>(strength),
         Ridge::Default | Ridge::Auto => FLOOR[usize::from(R::NARROW)],
     }
 }

@@ -14,7 +14,7 @@
 
 use super::Config;
 use super::design::Design;
-use super::per_channel::{PerChannel, get, set};
+use super::per_channel::{PerChannel, add, get, set};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
@@ -31,7 +31,7 @@ pub(crate) struct RidgeFit<R> {
     pub(crate) leave_one_out: PerChannel<R>,
     /// -b'm: what the fit to all samples adds to the plain mean (Alg. 1).
     pub(crate) in_sample: PerChannel<R>,
-    /// The sum of squares that the fit explains, f'P A^-1 P'f.
+    /// f'f less the sum of squared residuals of the fit; only if [`Choice::residual`] asks.
     pub(crate) explained: PerChannel<R>,
     /// n sum_i (m'A^-1 p_i)^2: how far the columns' means are from their integrals, as the fit measures distance.
     pub(crate) eccentricity: R,
@@ -48,6 +48,8 @@ pub(crate) struct Choice<'a, R> {
     pub(crate) penalties: &'a [R],
     /// Whether the leave-one-out figures are wanted.
     pub(crate) leave_one_out: bool,
+    /// Whether what the fit explains of its own samples is wanted.
+    pub(crate) residual: bool,
 }
 
 /// The smallest 1 - h that a division is trusted with, in units of the type's epsilon.
@@ -106,13 +108,18 @@ pub(crate) fn primal<R: Real>(
     if choice.leave_one_out {
         residuals(design, factor, means, solution, z, &mut fit);
     }
+    if coefficients.is_none() && !choice.residual {
+        return Ok(fit);
+    }
+    for (channel, solution) in rows_mut(solution, columns).enumerate() {
+        ldlt::backward(factor, solution);
+        // f'P A^-1 P'f = b'A b, and the residual has b'P'P b: a penalty's worth less.
+        let penalty = |(&b, &penalty): (&R, &R)| b * b * penalty;
+        let spent = solution.iter().zip(choice.penalties).map(penalty).fold(R::ZERO, |sum, value| sum + value);
+        add(&mut fit.explained, channel, strength * spent);
+    }
     if let Some(coefficients) = coefficients {
-        for (out, solution) in rows_mut(coefficients, columns).zip(rows_mut(solution, columns)) {
-            ldlt::backward(factor, solution);
-            for (out, &value) in out.iter_mut().zip(solution.iter()) {
-                *out = value;
-            }
-        }
+        copy_padded(coefficients, solution);
     }
     Ok(fit)
 }
@@ -292,10 +299,9 @@ impl<'a, R: Real> Dual<'a, R> {
             let (mut in_sample, mut residual_square) = (R::ZERO, R::ZERO);
             let (mut press, mut correction) = (R::ZERO, R::ZERO);
             for (i, &alpha) in alpha.iter().enumerate() {
-                let value = value(i);
                 let residual = strength * alpha;
                 in_sample -= self.shift.get(i).copied().unwrap_or(R::ZERO) * alpha;
-                residual_square += residual * value;
+                residual_square += residual * residual;
                 let complement = strength * diagonal.get(i).copied().unwrap_or(R::ZERO);
                 let gap = (complement - left * inverse_n).max(smallest_gap);
                 let residual = residual / gap;

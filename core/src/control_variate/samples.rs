@@ -9,7 +9,7 @@ use crate::real::Real;
 use super::config::{Color, NonFinite};
 
 /// Rec. 709 luminance of linear RGB.
-const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
+const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// `n` samples in caller arrays.
 #[derive(Clone, Copy, Debug, Default)]
@@ -365,8 +365,9 @@ fn transpose_exact<R: Real, const WIDTH: usize>(rows: &[f32], stride: usize, out
     *out = columns;
 }
 
-/// Rec. 709 luminance; rounded once, so that it cannot overflow where the channels do not.
+/// Rec. 709 luminance, rounded once.
 #[inline(always)]
 fn luminance(rgb: &[f32]) -> f32 {
-    rgb.iter().zip(LUMINANCE).map(|(&c, weight)| c * weight).sum()
+    let sum: f64 = rgb.iter().zip(LUMINANCE).map(|(&c, weight)| f64::from(c) * weight).sum();
+    sum as f32
 }

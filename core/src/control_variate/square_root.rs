@@ -23,7 +23,7 @@ const NOISE: f64 = 64.0;
 
 /// Numbers that [`least_squares`] takes from its arena.
 pub(crate) fn size(columns: usize, channels: usize) -> usize {
-    packed_len(columns) + columns * (channels + 3) + 2 * Config::MAX_CHANNELS
+    packed_len(columns) + columns * (channels + 3)
 }
 
 /// Algorithm 1 on a centred design.
@@ -44,6 +44,7 @@ pub(crate) fn least_squares<R: Real>(
         *value = R::ZERO;
     }
     let mut residual = PerChannel::default();
+    let mut unexplained = PerChannel::default();
     for (index, (panel, values)) in design.each_panel().enumerate() {
         for lane in 0..LANES.min(design.n.saturating_sub(index * LANES)) {
             let mut y = PerChannel::default();
@@ -54,7 +55,7 @@ pub(crate) fn least_squares<R: Real>(
             for (y, values) in y.iter_mut().zip(values) {
                 *y = at(values);
             }
-            givens::add_row(factor, rhs, &mut residual, x, y.get_mut(..channels).unwrap_or(&mut []));
+            givens::add_row(factor, rhs, &mut unexplained, x, y.get_mut(..channels).unwrap_or(&mut []));
         }
     }
     basis.penalties(penalties.get_mut(config.controls..).unwrap_or(&mut []));
@@ -72,6 +73,7 @@ pub(crate) fn least_squares<R: Real>(
         givens::solve(triangle.factor, triangle.rhs, channels, channel, solution);
         let value = solution.iter().zip(design.column_means.iter()).fold(R::ZERO, |sum, (&b, &m)| sum - b * m);
         set(&mut correction, channel, value);
+        set(&mut residual, channel, design.residual_square(channel, solution));
     }
     Ok(Outcome { correction, variance: batch::residual_variance(design, residual) })
 }
@@ -102,16 +104,24 @@ pub(crate) fn from_factor<R: Real>(
     triangle.column_squares(solution);
     triangle.add_penalty(penalties, strength::<R>(config.ridge)? * count, solution, x);
     let mut correction = PerChannel::default();
+    let mut residuals = PerChannel::default();
     for channel in 0..channels {
         givens::solve(triangle.factor, triangle.rhs, channels, channel, solution);
         // The functions' integrals are zero.
         set(&mut correction, channel, solution.first().copied().unwrap_or(R::ZERO));
+        // What no fit explains, and what this one leaves of the rest because of its penalty.
+        let mut residual = sums.square(channel);
+        for j in 0..terms {
+            let mut left = sums.rhs.get(j * channels + channel).copied().unwrap_or(R::ZERO);
+            for (k, &value) in solution.iter().enumerate().skip(j) {
+                left -= value * row(sums.gram, k).get(j).copied().unwrap_or(R::ZERO);
+            }
+            residual += left * left;
+        }
+        set(&mut residuals, channel, residual);
     }
     let freedom = count - R::from_usize(terms);
-    let mut variance = PerChannel::default();
-    for (variance, &residual) in variance.iter_mut().zip(sums.square) {
-        *variance = residual / (freedom * freedom);
-    }
+    let variance = residuals.map(|residual| residual / (freedom * freedom));
     // The count comes from a square root: a half tells one from none.
     Ok(Outcome { correction, variance: (freedom > R::from_f64(0.5)).then_some(variance) })
 }
@@ -119,7 +129,7 @@ pub(crate) fn from_factor<R: Real>(
 fn strength<R: Real>(ridge: Ridge) -> Result<R, Error> {
     match ridge {
         Ridge::Default => Ok(R::from_f64(FLOOR[usize::from(R::NARROW)])),
-        Ridge::Fixed(strength) => Ok(R::from_f32(strength)),
+        Ridge::Fixed(_) => Ok(R::from_f64(super::ridge::least_squares::<R>(ridge))),
         Ridge::Auto => Err(Error::Unsupported),
     }
 }

@@ -15,6 +15,9 @@ use crate::linalg::{givens, row};
 use crate::real::Real;
 use crate::rows::rows_mut;
 
+/// The most samples of an accumulator in `f32`.
+const NARROW_CAPACITY: u64 = 1 << 22;
+
 /// All of an [`Accumulator`](super::Accumulator) but its buffer, for those who store the two apart. Every method takes
 /// the buffer, of [`State::len`] numbers, as the last call left it, and returns [`Error::Memory`] if it is shorter.
 #[derive(Clone, Copy, Debug)]
@@ -117,6 +120,12 @@ impl<R: Real> State<R> {
         if sums.len() < self.len() { Err(Error::Memory) } else { Ok(()) }
     }
 
+    /// Sums of a narrow type stop growing when they are too large for one more sample to show.
+    fn check_capacity(&self, more: u64) -> Result<(), Error> {
+        let total = self.samples.saturating_add(more);
+        if R::NARROW && total > NARROW_CAPACITY { Err(Error::Range) } else { Ok(()) }
+    }
+
     /// Forgets all samples.
     ///
     /// # Errors
@@ -141,6 +150,7 @@ impl<R: Real> State<R> {
         self.check_length(sums)?;
         let reader = Reader::new(&self.config, samples)?;
         reader.check()?;
+        self.check_capacity(reader.len() as u64)?;
         let mut basis = Basis::empty();
         basis.set(self.config.basis, self.shape)?;
         let terms = self.terms();
@@ -196,7 +206,7 @@ impl<R: Real> State<R> {
         }
     }
 
-    /// Adds all samples of another state and its sums, fold to fold, as if they had been added here.
+    /// Adds all samples of another state and its sums, as if they had been added here, up to rounding.
     ///
     /// # Errors
     /// [`Error::Mismatch`] if the configurations differ.
@@ -209,6 +219,7 @@ impl<R: Real> State<R> {
         if other.samples == 0 {
             return Ok(());
         }
+        self.check_capacity(other.samples)?;
         let state = self;
         let (terms, channels, group) = (state.terms(), state.channels, state.group());
         let groups = state.groups();
@@ -223,10 +234,14 @@ impl<R: Real> State<R> {
             *factor = R::ONE.scale(theirs.exponent - ours.exponent);
             *shift = theirs.offset * *factor - ours.offset;
         }
+        // Folds stay even: the other's first sample goes where the next one would have gone.
+        let next = state.samples.checked_rem(groups as u64).unwrap_or(0) as usize;
         for fold in 0..groups {
             let range = fold * group..(fold + 1) * group;
-            let ours = sums.get_mut(range.clone()).and_then(|sums| MomentsMut::new(sums, terms, channels));
-            let theirs = other_sums.get(range).and_then(|sums| Moments::new(sums, terms, channels));
+            let ours = sums.get_mut(range).and_then(|sums| MomentsMut::new(sums, terms, channels));
+            let theirs = (fold + groups - next).checked_rem(groups).unwrap_or(0);
+            let theirs = other_sums.get(theirs * group..(theirs + 1) * group);
+            let theirs = theirs.and_then(|sums| Moments::new(sums, terms, channels));
             let (Some(mut ours), Some(theirs)) = (ours, theirs) else { continue };
             if state.config.solver == Solver::SquareRoot {
                 merge_factors(&mut ours, &theirs, &factors, &shift, terms, channels);
@@ -238,7 +253,7 @@ impl<R: Real> State<R> {
             *sum += value;
         }
         state.incremental.merge(&other.incremental, &factors, &shift, other.samples);
-        state.samples += other.samples;
+        state.samples = state.samples.saturating_add(other.samples);
         if state.config.estimator == Estimator::Incremental {
             let (group, rest) = sums.split_at_mut_checked(group).unwrap_or((&mut [], &mut []));
             state.incremental.refit_now();

@@ -52,8 +52,8 @@ pub(crate) fn weigh<R: Real>(plain: R, errors: &[R], discounts: &[R], power: R, 
     let caution = (largest - n * n / R::from_f64(CAUTION)).max(R::ZERO);
     let prior = (R::from_f64(PRIOR) * R::from_usize(weights.len())).ln() + caution;
     largest = prior;
-    for (weight, &discount) in weights.iter_mut().zip(discounts) {
-        *weight -= discount;
+    for (index, weight) in weights.iter_mut().enumerate() {
+        *weight -= discounts.get(index).copied().unwrap_or(R::ZERO);
         largest = largest.max(*weight);
     }
     let plain_weight = (prior - largest).exp();
