@@ -3,7 +3,8 @@
  * Generated from capi/ by `cargo xtask header`; do not edit. MIT OR Apache-2.0.
  *
  * Conventions, written once:
- *  - Arguments: configuration or object first, then inputs, then memory, then outputs.
+ *  - Arguments: configuration or object first (for an init function, the memory of the object to be), then inputs, then
+ *    memory, then outputs. No memory or output may overlap any other argument.
  *  - Samples are points of primary sample space, u in [0, 1]^dims, row after row; f = integrand / pdf, any unit.
  *  - Every function that can fail returns nf_status: 0 (NF_OK) or a negative NF_ERR_*. Outputs are written, and objects
  *    changed, only on success. Inputs are checked: NULL, ranges, lengths, alignment, finite values.
@@ -12,8 +13,8 @@
  *    copied while it is in use, unless its description says otherwise.
  *  - Threads: no locks, and no shared state but a cached answer of the processor's. Any number of threads may read an
  *    object; one at a time may write it.
- *  - Configurations are plain integers; zero in an optional field means the documented default, an unknown value is
- *    NF_ERR_RANGE.
+ *  - Configurations are plain numbers; zero in an optional field means the documented default (of nf_cv_config all but
+ *    dims, order and channels are optional), an unknown value is NF_ERR_RANGE.
  *  - References such as (4.22) are to C. Salaun, "Toward Improving Monte Carlo Estimator for Rendering and
  *    Machine Learning", 2025.
  */
@@ -70,11 +71,12 @@ const char *nf_status_message(nf_status status);
 #define NF_CV_ROBUST 0
 // Estimator: least squares on its own samples (Alg. 1). The cheapest; bias O(1/n); needs several samples per term.
 #define NF_CV_LEAST_SQUARES 1
-// Estimator: one ridge fit, each sample corrected by the fit to all others. Exactly unbiased. Not for streaming.
+// Estimator: one ridge fit, each sample corrected by the fit to all others. Exactly unbiased for the default or a
+// given ridge. Not for streaming.
 #define NF_CV_LEAVE_ONE_OUT 2
 // Estimator: each fold corrected by a robust fit to the other folds (two folds: 4.2.6). Exactly unbiased.
 #define NF_CV_K_FOLD 3
-// Estimator: the fit by gradient descent on its own samples (Alg. 2). Biased as least squares is.
+// Estimator: the fit by gradient descent on its own samples (Alg. 2). Biased, below 32 samples more than least squares.
 #define NF_CV_GRADIENT_DESCENT 4
 // Estimator: each sample corrected by a fit to those before it (4.30). Exactly unbiased after every sample.
 #define NF_CV_INCREMENTAL 5
@@ -122,7 +124,7 @@ const char *nf_status_message(nf_status status);
 // Precision: float, for targets without double hardware.
 #define NF_PRECISION_F32 1
 
-// How to estimate. Zero in any field but dims and channels is its default.
+// How to estimate. Zero in any field but dims, order and channels is its default; order 0 is the plain mean.
 typedef struct nf_cv_config {
     // Coordinates of a sample that are regressed, 1 to 16.
     uint32_t dims;
@@ -158,7 +160,9 @@ typedef struct nf_cv_config {
     uint32_t iterations;
     // NF_OPTIMIZER_*
     uint32_t optimizer;
-    // Ridge strength per sample, NF_RIDGE_AUTO, or 0 for the estimator's default.
+    // Ridge strength per sample (at least 1e-12, in float 1e-5: less is raised to it), NF_RIDGE_AUTO, or 0 for the
+    // estimator's default. NF_CV_ROBUST and NF_CV_GRADIENT_DESCENT do not use it; NF_RIDGE_AUTO is the default where
+    // there are no leave-one-out errors (streaming, incremental, blocks), and biases NF_CV_LEAVE_ONE_OUT slightly.
     float ridge;
     // Step of gradient descent: in standard deviations of the values for Adam, else times one over the largest
     // curvature. 0 means the default.
@@ -185,8 +189,8 @@ typedef struct nf_estimate {
     float gain;
 } nf_estimate;
 
-// Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL or
-// out of range, or a size no memory has.
+// Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL, out
+// of range or unsupported, or a size no memory has.
 size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
 // Estimates an integral from n samples: u has n rows of `stride` floats (the last may end after `dims`), f has n rows
@@ -233,7 +237,8 @@ size_t nf_cv_block_workspace_size(const nf_cv_config *config, size_t pixels, siz
 // Estimates `pixels` integrals that are alike, from n samples of each: u and f hold pixel after pixel what
 // nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to the other pixels'
 // samples (4.3.6): exactly unbiased for a given `ridge`; by default the block weighs four fits and the plain mean by
-// the variance across its pixels.
+// the variance across its pixels. Of the configuration only dims, order, channels, basis, slices, stride, precision and
+// ridge count; NF_ERR_UNSUPPORTED for controls, skipping and luminance ratio.
 nf_status nf_cv_block_estimate(const nf_cv_config *config,
                                const float *u,
                                const float *f,
@@ -258,9 +263,13 @@ nf_status nf_cv_accumulator_init(void *memory,
                                  const nf_cv_config *config,
                                  nf_cv_accumulator **out);
 
-// Adds n samples, laid out as for nf_cv_estimate(): all of them or, on an error, none. A configuration with `controls`
+// Adds n samples, laid out as for nf_cv_estimate(): all of them or, on an error, none. Several at a time are cheaper. In
+// single precision an accumulator holds 2^22 samples: NF_ERR_RANGE beyond. A configuration with `controls`
 // needs nf_cv_accumulator_add_with_controls().
-nf_status nf_cv_accumulator_add(nf_cv_accumulator *accumulator, const float *u, const float *f, size_t n);
+nf_status nf_cv_accumulator_add(nf_cv_accumulator *accumulator,
+                                const float *u,
+                                const float *f,
+                                size_t n);
 
 // As nf_cv_accumulator_add(), with the control functions of nf_cv_estimate_with_controls().
 nf_status nf_cv_accumulator_add_with_controls(nf_cv_accumulator *accumulator,

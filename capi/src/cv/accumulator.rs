@@ -21,8 +21,8 @@ enum AnyState {
     Single(State<f32>),
 }
 
-/// "nf_cvacc" as bytes.
-const MAGIC: u64 = u64::from_le_bytes(*b"nf_cvacc");
+/// "nf_cvac1" as bytes; the last is the layout's version.
+const MAGIC: u64 = u64::from_le_bytes(*b"nf_cvac1");
 
 /// Bytes that the sums start at.
 const HEADER: usize = size_of::<nf_cv_accumulator>().next_multiple_of(8);
@@ -73,7 +73,8 @@ pub unsafe extern "C" fn nf_cv_accumulator_init(
     })())
 }
 
-/// Adds n samples, laid out as for nf_cv_estimate(): all of them or, on an error, none. A configuration with `controls`
+/// Adds n samples, laid out as for nf_cv_estimate(): all of them or, on an error, none. Several at a time are cheaper. In
+/// single precision an accumulator holds 2^22 samples: NF_ERR_RANGE beyond. A configuration with `controls`
 /// needs nf_cv_accumulator_add_with_controls().
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_add(

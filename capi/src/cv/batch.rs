@@ -7,8 +7,8 @@ use crate::status::*;
 use noisefloor_core::Error;
 use noisefloor_core::control_variate::{self as cv, Config, Estimate, Samples};
 
-/// Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL or
-/// out of range, or a size no memory has.
+/// Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL, out
+/// of range or unsupported, or a size no memory has.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_workspace_size(config: *const nf_cv_config, n: usize) -> usize {
     // SAFETY: the caller's pointer, checked there for NULL and alignment.
@@ -133,7 +133,8 @@ pub unsafe extern "C" fn nf_cv_block_workspace_size(config: *const nf_cv_config,
 /// Estimates `pixels` integrals that are alike, from n samples of each: u and f hold pixel after pixel what
 /// nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to the other pixels'
 /// samples (4.3.6): exactly unbiased for a given `ridge`; by default the block weighs four fits and the plain mean by
-/// the variance across its pixels.
+/// the variance across its pixels. Of the configuration only dims, order, channels, basis, slices, stride, precision and
+/// ridge count; NF_ERR_UNSUPPORTED for controls, skipping and luminance ratio.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_block_estimate(
     config: *const nf_cv_config,

@@ -10,11 +10,12 @@ use noisefloor_core::control_variate::{Color, Config, Estimate, Estimator, NonFi
 pub const NF_CV_ROBUST: u32 = 0;
 /// Estimator: least squares on its own samples (Alg. 1). The cheapest; bias O(1/n); needs several samples per term.
 pub const NF_CV_LEAST_SQUARES: u32 = 1;
-/// Estimator: one ridge fit, each sample corrected by the fit to all others. Exactly unbiased. Not for streaming.
+/// Estimator: one ridge fit, each sample corrected by the fit to all others. Exactly unbiased for the default or a
+/// given ridge. Not for streaming.
 pub const NF_CV_LEAVE_ONE_OUT: u32 = 2;
 /// Estimator: each fold corrected by a robust fit to the other folds (two folds: 4.2.6). Exactly unbiased.
 pub const NF_CV_K_FOLD: u32 = 3;
-/// Estimator: the fit by gradient descent on its own samples (Alg. 2). Biased as least squares is.
+/// Estimator: the fit by gradient descent on its own samples (Alg. 2). Biased, below 32 samples more than least squares.
 pub const NF_CV_GRADIENT_DESCENT: u32 = 4;
 /// Estimator: each sample corrected by a fit to those before it (4.30). Exactly unbiased after every sample.
 pub const NF_CV_INCREMENTAL: u32 = 5;
@@ -62,7 +63,7 @@ pub const NF_OPTIMIZER_PLAIN: u32 = 2;
 /// For `ridge`: of a few strengths the one with the smallest leave-one-out error.
 pub const NF_RIDGE_AUTO: f32 = -1.0;
 
-/// How to estimate. Zero in any field but dims and channels is its default.
+/// How to estimate. Zero in any field but dims, order and channels is its default; order 0 is the plain mean.
 #[repr(C)]
 #[derive(Clone, Copy)]
 #[allow(non_camel_case_types)]
@@ -101,7 +102,9 @@ pub struct nf_cv_config {
     pub iterations: u32,
     /// NF_OPTIMIZER_*
     pub optimizer: u32,
-    /// Ridge strength per sample, NF_RIDGE_AUTO, or 0 for the estimator's default.
+    /// Ridge strength per sample (at least 1e-12, in float 1e-5: less is raised to it), NF_RIDGE_AUTO, or 0 for the
+    /// estimator's default. NF_CV_ROBUST and NF_CV_GRADIENT_DESCENT do not use it; NF_RIDGE_AUTO is the default where
+    /// there are no leave-one-out errors (streaming, incremental, blocks), and biases NF_CV_LEAVE_ONE_OUT slightly.
     pub ridge: f32,
     /// Step of gradient descent: in standard deviations of the values for Adam, else times one over the largest
     /// curvature. 0 means the default.

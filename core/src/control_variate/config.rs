@@ -74,9 +74,9 @@ pub enum Ridge {
     /// The estimator's documented default.
     #[default]
     Default,
-    /// The strength with the smallest leave-one-out error of a few.
+    /// The strength with the smallest leave-one-out error of a few; the default where there are no such errors.
     Auto,
-    /// Penalty per sample on a first-degree coefficient; positive and finite.
+    /// Penalty per sample on a first-degree coefficient; positive and finite, raised to 1e-12 or in `f32` to 1e-5.
     Fixed(f32),
 }
 
@@ -115,7 +115,7 @@ pub struct Config {
     pub iterations: usize,
     /// The step rule of gradient descent.
     pub optimizer: Optimizer,
-    /// Ridge strength.
+    /// Ridge strength. [`Estimator::Robust`] and [`Estimator::GradientDescent`] do not use it.
     pub ridge: Ridge,
     /// Step length of gradient descent, in units of the value's standard deviation for Adam, and of one over the
     /// largest curvature otherwise; 0 means the default.

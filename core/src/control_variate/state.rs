@@ -145,7 +145,7 @@ impl<R: Real> State<R> {
     /// Adds samples, all or, on an error, none.
     ///
     /// # Errors
-    /// As for [`estimate`](super::estimate); adding no samples is an error too.
+    /// As for [`estimate`](super::estimate); adding no samples is an error too, and in `f32` more than 2^22 of them.
     pub fn add(&mut self, sums: &mut [R], samples: Samples<'_>) -> Result<(), Error> {
         self.check_length(sums)?;
         let reader = Reader::new(&self.config, samples)?;
