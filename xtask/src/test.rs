@@ -127,6 +127,9 @@ impl Steps<'_> {
             println!("failed: {heading}");
         }
         println!("{} passed, {} failed", self.passed, self.failed.len());
+        if self.passed == 0 && self.failed.is_empty() {
+            bail!("no step ran: no heading contains the word that was given");
+        }
         if !self.failed.is_empty() {
             bail!("{} of the steps above failed", self.failed.len());
         }
