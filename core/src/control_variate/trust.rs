@@ -13,14 +13,14 @@ const PRIOR: f64 = 8.0;
 /// candidate's errors.
 const CAUTION: f64 = 14.0;
 /// The F statistic that is still nothing to worry about.
-const USUAL_F: f64 = 1.25;
+const USUAL_F: f64 = 1.5;
 
 /// The logarithm of what trust in a fit is divided by because its samples lie to one side.
 ///
 /// If all samples lie in one part of the cube, errors on held-out samples are small and yet the fit's integral is an
 /// extrapolation. For q = `eccentricity` = n sum_i (m'A^-1 p_i)^2, with m the columns' means and p_i the centred columns,
 /// and k = `freedom` effective coefficients, Hotelling's F = (q / k) (n - 1 - k) tells: it is about 1 if the samples'
-/// centre is the cube's. Trust is divided by max(1, F / 1.25)^2.
+/// centre is the cube's. Trust is divided by max(1, F / 1.5)^2.
 #[inline(always)]
 pub(crate) fn discount<R: Real>(eccentricity: R, freedom: R, n: R) -> R {
     let freedom = freedom.min(n - R::from_f64(1.5)).max(R::EPSILON);

@@ -42,7 +42,7 @@ impl RobustRule {
     pub fn standard() -> Self {
         let penalties = [2e-5, 0.02];
         let candidates = penalties.map(|penalty| Candidate { order: usize::MAX, penalty }).to_vec();
-        Self { candidates, exponent: 1.0 / 6.0, prior: 8.0, offset: 1.25, cap: 14.0 }
+        Self { candidates, exponent: 1.0 / 6.0, prior: 8.0, offset: 1.5, cap: 14.0 }
     }
 
     /// The seven candidates of an earlier study: four ridges of the highest order and three of order 1.
