@@ -221,7 +221,7 @@ nf_status nf_cv_estimate_with_controls(const nf_cv_config *config,
 
 // As nf_cv_estimate() with NF_CV_GRADIENT_DESCENT, which `estimator` must be, starting from `coefficients`, `channels`
 // rows (1 for a luminance ratio) of nf_cv_terms() - 1 floats in the values' unit, and leaving the solution there: a
-// previous frame's is a good start (4.2.6).
+// previous frame's is a good start (4.2.6). NF_ERR_UNSUPPORTED for another estimator or `controls`.
 nf_status nf_cv_gradient_descent(const nf_cv_config *config,
                                  const float *u,
                                  const float *f,
@@ -279,7 +279,8 @@ nf_status nf_cv_accumulator_add_with_controls(nf_cv_accumulator *accumulator,
                                               const float *h_integral,
                                               size_t n);
 
-// Adds all samples of `other`, which stays as it is. NF_ERR_MISMATCH if the configurations differ.
+// Adds all samples of `other`, which stays as it is. NF_ERR_MISMATCH if the configurations differ, NF_ERR_RANGE if both
+// are the same object. Like every function of an accumulator, NF_ERR_STATE for memory that holds none.
 nf_status nf_cv_accumulator_merge(nf_cv_accumulator *accumulator, const nf_cv_accumulator *other);
 
 // Bytes of workspace that nf_cv_accumulator_estimate() needs; 0 as for nf_cv_accumulator_size().

@@ -108,7 +108,8 @@ pub unsafe extern "C" fn nf_cv_accumulator_add_with_controls(
     })())
 }
 
-/// Adds all samples of `other`, which stays as it is. NF_ERR_MISMATCH if the configurations differ.
+/// Adds all samples of `other`, which stays as it is. NF_ERR_MISMATCH if the configurations differ, NF_ERR_RANGE if both
+/// are the same object. Like every function of an accumulator, NF_ERR_STATE for memory that holds none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_merge(
     accumulator: *mut nf_cv_accumulator,

@@ -81,7 +81,7 @@ pub unsafe extern "C" fn nf_cv_estimate_with_controls(
 
 /// As nf_cv_estimate() with NF_CV_GRADIENT_DESCENT, which `estimator` must be, starting from `coefficients`, `channels`
 /// rows (1 for a luminance ratio) of nf_cv_terms() - 1 floats in the values' unit, and leaving the solution there: a
-/// previous frame's is a good start (4.2.6).
+/// previous frame's is a good start (4.2.6). NF_ERR_UNSUPPORTED for another estimator or `controls`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_gradient_descent(
     config: *const nf_cv_config,
@@ -127,6 +127,9 @@ pub unsafe extern "C" fn nf_cv_gradient_descent(
 pub unsafe extern "C" fn nf_cv_block_workspace_size(config: *const nf_cv_config, pixels: usize, n: usize) -> usize {
     // SAFETY: the caller's pointer, checked there for NULL and alignment.
     let Ok(config) = (unsafe { convert::reference(config) }) else { return 0 };
+    if config.controls > 0 {
+        return 0;
+    }
     size(config, |config, narrow| block_len(config, narrow, pixels, n))
 }
 

@@ -32,6 +32,7 @@ const SHARPNESS: f64 = 1.0 / 6.0;
 /// # Errors
 /// As for [`estimate_block`].
 pub fn block_workspace_len<R: Real>(config: &Config, pixels: usize, n: usize) -> Result<usize, Error> {
+    check_supported(config)?;
     let shape = config.checked_shape()?;
     let (columns, channels) = (config.controls + shape.columns(), config.channels);
     let sums = moments::len(columns + 1, channels);
@@ -41,6 +42,12 @@ pub fn block_workspace_len<R: Real>(config: &Config, pixels: usize, n: usize) ->
     let pixel = sums.checked_add(estimates).ok_or(Error::Memory)?;
     let fixed = 2 * sums + columns * (1 + channels) + fit;
     pixels.checked_mul(pixel).and_then(|len| len.checked_add(fixed)).ok_or(Error::Memory)
+}
+
+/// Which samples count must not depend on the pixel, and the fit is of the channels.
+fn check_supported(config: &Config) -> Result<(), Error> {
+    let supported = config.color == super::Color::PerChannel && config.non_finite == super::NonFinite::Error;
+    if supported { Ok(()) } else { Err(Error::Unsupported) }
 }
 
 /// Estimates the integral of each of `pixels` pixels, all with `samples.f.len() / (pixels channels)` samples, pixel after
@@ -58,9 +65,7 @@ pub fn estimate_block<R: Real>(
 ) -> Result<(), Error> {
     let mut basis = Basis::empty();
     basis.set(config.basis, config.checked_shape()?)?;
-    if config.color != super::Color::PerChannel || config.non_finite != super::NonFinite::Error {
-        return Err(Error::Unsupported);
-    }
+    check_supported(config)?;
     let reader = Reader::new(config, samples)?;
     let n = reader.len().checked_div(pixels).ok_or(Error::NoSamples)?;
     if n * pixels != reader.len() {
