@@ -186,7 +186,3 @@ unsafe fn with_alpha(
     })();
     status(result)
 }
-
-fn status(result: Result<(), nf_status>) -> nf_status {
-    result.err().unwrap_or(NF_OK)
-}

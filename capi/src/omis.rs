@@ -274,7 +274,3 @@ fn solver_of(solver: u32, ridge: f32) -> Result<Solver, nf_status> {
         _ => Err(NF_ERR_RANGE),
     }
 }
-
-fn status(result: Result<(), nf_status>) -> nf_status {
-    result.err().unwrap_or(NF_OK)
-}

@@ -69,3 +69,8 @@ pub(crate) fn status_of(error: Error) -> nf_status {
         _ => NF_ERR_RANGE,
     }
 }
+
+/// What a C function returns for the outcome of its body.
+pub(crate) fn status(result: Result<(), nf_status>) -> nf_status {
+    result.err().unwrap_or(NF_OK)
+}

@@ -1,6 +1,6 @@
 //! Streaming accumulators in caller memory.
 
-use super::batch::{samples, size, status};
+use super::batch::{samples, size};
 use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimate};
 use crate::convert;
 use crate::status::*;

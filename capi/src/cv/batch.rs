@@ -231,13 +231,6 @@ pub(super) fn size(config: &nf_cv_config, count: impl Fn(&Config, bool) -> Resul
     count(&core, narrow).ok().and_then(|count| count.checked_mul(width)).unwrap_or(0)
 }
 
-pub(super) fn len(count: Result<usize, Error>) -> Result<usize, nf_status> {
+fn len(count: Result<usize, Error>) -> Result<usize, nf_status> {
     count.map_err(status_of)
-}
-
-pub(super) fn status(result: Result<(), nf_status>) -> nf_status {
-    match result {
-        Ok(()) => NF_OK,
-        Err(status) => status,
-    }
 }

@@ -24,9 +24,6 @@ use crate::rows::{rows, rows_mut};
 const STRENGTHS: [f64; 2] = [0.02, 0.3];
 /// Fits: each strength with the columns of degree one and with all.
 const CANDIDATES: usize = 2 * STRENGTHS.len();
-/// Trust in a fit is its variance across pixels, relative to the mean's, to the power of minus this times the pixels.
-const SHARPNESS: f64 = 1.0 / 6.0;
-
 /// Numbers of workspace that [`estimate_block`] needs for `pixels` pixels of `n` samples.
 ///
 /// # Errors
@@ -226,7 +223,7 @@ impl<'a, R: Real> Block<'a, R> {
                 only[0] = R::ONE;
                 (R::ZERO, only)
             } else {
-                let power = R::from_usize(self.pixels) * R::from_f64(SHARPNESS);
+                let power = R::from_usize(self.pixels) * R::from_f64(trust::SHARPNESS);
                 let mut weights = [R::ZERO; CANDIDATES];
                 let pixels = R::from_usize(self.pixels);
                 let plain = trust::weigh(plain, &spreads, &[], power, pixels, &mut weights);

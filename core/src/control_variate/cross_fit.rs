@@ -16,9 +16,6 @@ use crate::error::Error;
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 
-/// Trust in a candidate is its error, relative to the mean's, to the power of minus this times the sample count.
-const SHARPNESS: f64 = 1.0 / 6.0;
-
 /// The number of candidates besides the plain mean.
 const CANDIDATES: usize = MIXED.len();
 
@@ -254,7 +251,7 @@ impl<R: Real> Judge<R> {
             for (error, all) in errors.iter_mut().zip(&self.errors).take(candidates) {
                 *error = get(all, channel);
             }
-            let power = self.count * R::from_f64(SHARPNESS);
+            let power = self.count * R::from_f64(trust::SHARPNESS);
             let discounts = self.discounts.map(|total| total / self.fits.max(R::ONE));
             let mut each = [R::ZERO; CANDIDATES];
             let plain = trust::weigh(get(&self.plain, channel), &errors, &discounts, power, self.count, &mut each);

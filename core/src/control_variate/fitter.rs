@@ -13,9 +13,6 @@ use crate::linalg::packed_len;
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 
-/// Trust in a candidate is its error, relative to the mean's, to the power of minus this times the sample count.
-const SHARPNESS: f64 = 1.0 / 6.0;
-
 /// Which fits are made and how one is made of them.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Rule {
@@ -131,7 +128,7 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
             return blend;
         }
         let n = R::from_usize(self.design.n);
-        let power = n * R::from_f64(SHARPNESS);
+        let power = n * R::from_f64(trust::SHARPNESS);
         let discounts = fits.map(|fit| trust::discount(fit.eccentricity, fit.freedom, n));
         for channel in 0..self.design.channels {
             let press = fits.map(|fit| get(&fit.press, channel));

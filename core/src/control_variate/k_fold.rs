@@ -96,6 +96,7 @@ pub(crate) fn estimate<R: Real>(
     Ok(outcome)
 }
 
+/// [`Design::load`], of which the two callers share one copy.
 #[inline(never)]
 fn load<'a, R: Real>(
     reader: &Reader<'_>,

@@ -6,6 +6,9 @@
 
 use crate::real::Real;
 
+/// Trust in a candidate is its error, relative to the mean's, to the power of minus this times the number of samples (of
+/// pixels, where pixels are compared) that judge it.
+pub(crate) const SHARPNESS: f64 = 1.0 / 6.0;
 /// How much the plain mean is trusted before any sample is seen, with 1 for all candidates together.
 const PRIOR: f64 = 8.0;
 
