@@ -91,7 +91,7 @@ pub(crate) fn path_tracer(archive: &Path) -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// README.md's first block of code is integrate.c, letter by letter.
+/// README.md's first block of code is integrate.c, letter by letter, and the two commands that do all the set-up follow.
 pub(crate) fn readme() -> Result<Outcome> {
     let read = |name: &str| fs::read_to_string(paths::root().join(name)).with_context(|| format!("cannot read {name}"));
     let (text, program) = (read("README.md")?, read("examples_c/integrate.c")?);
@@ -99,6 +99,11 @@ pub(crate) fn readme() -> Result<Outcome> {
     let block = block.and_then(|rest| rest.split_once("```")).context("README.md does not open with a block of C")?;
     if block.0 != program {
         bail!("README.md's first block of code is not examples_c/integrate.c");
+    }
+    for command in ["\ncargo xtask demo ", "\ncargo xtask test "] {
+        if !block.1.contains(command) {
+            bail!("README.md does not say `{}`", command.trim());
+        }
     }
     Ok(Outcome::Passed)
 }

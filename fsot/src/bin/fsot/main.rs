@@ -1,0 +1,3 @@
+//! `fsot`: makes point sets and sample tiles by filtered sliced optimal transport.
+
+fn main() {}

@@ -1,0 +1,15 @@
+//! Filtered sliced optimal transport (chapter 5): point sets and perceptual sample tiles, optimised offline.
+//!
+//! Chapters and equations are those of C. Salaün, "Toward Improving Monte Carlo Estimator for Rendering and Machine
+//! Learning", 2025.
+
+pub mod error;
+pub mod metrics;
+pub mod optimize;
+pub mod points;
+pub mod random;
+pub mod run;
+pub mod target;
+pub mod tile;
+
+pub use error::Error;
