@@ -3,6 +3,7 @@
 //! Chapters and equations are those of C. Salaün, "Toward Improving Monte Carlo Estimator for Rendering and Machine
 //! Learning", 2025.
 
+pub mod class;
 pub mod error;
 pub mod metrics;
 pub mod optimize;
