@@ -4,6 +4,7 @@ mod check;
 mod direction;
 mod initial;
 mod optimizer;
+mod rank;
 mod schedule;
 mod slice;
 

@@ -2,7 +2,7 @@
 
 use super::direction::direction;
 use super::schedule::{SLICES, Schedule};
-use super::slice::{Offset, Slice, Workspace, advance, transport};
+use super::slice::{Bins, Offset, Slice, Workspace, advance, transport};
 use super::{Domain, Problem, check};
 use crate::class::{Filter, normalised};
 use crate::error::Result;
@@ -76,9 +76,10 @@ impl Optimizer {
             let (class, slice) = self.draw::<D>(number, &mut rng);
             let mut workspace = self.workspaces.lock().ok().and_then(|mut all| all.pop()).unwrap_or_default();
             let target = &self.problem.classes[class].target;
-            let bins = |means: &mut [f32], density: &mut [f32], scratch: &mut Vec<f32>| {
+            let write = |means: &mut [f32], density: &mut [f32], scratch: &mut Vec<f32>| {
                 target.bins(&slice.direction, means, density, scratch);
             };
+            let bins = Bins { write, uniform: target.is_uniform() };
             let energy = transport(&slice, &[1.0; D], &self.coordinates, bins, offsets, &mut workspace);
             if let Ok(mut all) = self.workspaces.lock() {
                 all.push(workspace);
