@@ -7,6 +7,7 @@ mod optimizer;
 mod rank;
 mod schedule;
 mod slice;
+mod window;
 
 pub use optimizer::Optimizer;
 

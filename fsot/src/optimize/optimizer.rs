@@ -26,8 +26,8 @@ pub struct Optimizer {
     /// Of the classes, without the empty ones; empty if no class has points.
     pub(super) weights: Vec<f64>,
     schedule: Schedule,
-    iteration: u64,
-    coordinates: Vec<f32>,
+    pub(super) iteration: u64,
+    pub(super) coordinates: Vec<f32>,
     offsets: Vec<Vec<Offset>>,
     workspaces: Mutex<Vec<Workspace>>,
 }
@@ -162,6 +162,14 @@ impl Optimization for Optimizer {
         if self.weights.is_empty() {
             self.iteration += 1;
             return 0.0;
+        }
+        if self.iteration < self.schedule.windowed {
+            let step = self.schedule.step(self.iteration);
+            return match self.problem.dims {
+                1 => self.step_in_windows::<1>(step),
+                2 => self.step_in_windows::<2>(step),
+                _ => self.step_in_windows::<3>(step),
+            };
         }
         match self.problem.dims {
             1 => self.step_in::<1>(),
