@@ -82,7 +82,8 @@ pub(crate) fn transport<const D: usize>(
     // (5.24) has the density relative to the slice's mean density. That would weigh slices by the length of the projected domain, which
     // prefers the diagonals of a square: long runs then end in a square grid along its sides. The density itself prefers no direction.
     let mean_density = 1.0 / width;
-    let ranks = if bins.uniform && count <= Ranking::MOST_AT_ONCE { ranking.at_once(keys) } else { ranking.sorted(keys) };
+    let ranks =
+        if bins.uniform && count <= Ranking::MOST_AT_ONCE { ranking.at_once(keys) } else { ranking.sorted(keys) };
     let mut energy = 0.0;
     let mut before = 0;
     for range in &slice.selected {
@@ -184,7 +185,7 @@ pub(crate) fn advance<const D: usize>(
             }
         }
         for (i, point) in coordinates.chunks_exact_mut(D).enumerate() {
-            let factor = step * D as f32 / (weights[i] + super::schedule::P[3] as f32 * (D - 1) as f32);
+            let factor = step * D as f32 / (weights[i] + (D - 1) as f32);
             if weights[i] > 0.0 {
                 for (k, x) in point.iter_mut().enumerate() {
                     *x = settle(*x + factor * sums[k][i], k);
