@@ -5,11 +5,13 @@
 
 pub mod checkpoint;
 pub mod error;
+pub mod export;
 pub mod metrics;
 pub mod optimize;
 pub mod output;
 pub mod points;
 pub mod random;
+pub mod read;
 pub mod run;
 pub mod target;
 pub mod tile;
