@@ -1,3 +1,47 @@
 //! `fsot`: makes point sets and sample tiles by filtered sliced optimal transport.
 
-fn main() {}
+mod common;
+mod drive;
+mod interrupt;
+mod measure;
+mod points;
+
+use clap::{Parser, Subcommand};
+use fsot::Error;
+use std::process::ExitCode;
+
+/// Exit code of every error; clap uses it for arguments that it cannot parse.
+const FAILURE: u8 = 2;
+
+#[derive(Parser)]
+#[command(name = "fsot", version, about = "Optimises point sets and sample tiles by filtered sliced optimal transport")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Spread points evenly, or by a density, in classes or progressively
+    Points(points::Args),
+    /// Print how good point sets and tiles are
+    Measure(measure::Args),
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Points(args) => points::run(&args),
+        Command::Measure(args) => measure::run(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Error::Stopped(sentence)) => {
+            eprintln!("{sentence}");
+            ExitCode::from(interrupt::EXIT)
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(FAILURE)
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! Point sets and tiles in the formats of other programs.
+
+pub mod points;
