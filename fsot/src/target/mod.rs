@@ -1,5 +1,7 @@
 //! What the points of a class shall be distributed like.
 
+pub mod image;
+
 use noisefloor::rng::Rng;
 
 /// A target distribution on `[0, 1]^dims`.
