@@ -4,6 +4,7 @@
 //! Learning", 2025.
 
 pub mod checkpoint;
+pub mod class;
 pub mod error;
 pub mod export;
 pub mod metrics;
