@@ -1,14 +1,11 @@
 //! What the points of a class shall be distributed like.
 
-<<<<<<< HEAD
 mod cdf;
 mod uniform;
 
 pub use cdf::bins_of_cdf;
 pub use uniform::{Uniform, uniform_bins};
-=======
 pub mod image;
->>>>>>> pictures
 
 use noisefloor::rng::Rng;
 
