@@ -10,6 +10,7 @@ pub mod export;
 pub mod metrics;
 pub mod optimize;
 pub mod output;
+pub mod picture;
 pub mod points;
 pub mod random;
 pub mod read;

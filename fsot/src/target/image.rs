@@ -7,8 +7,9 @@ mod projection;
 pub use curve::spread;
 
 use crate::error::{Error, Result};
+use crate::picture::resample;
 use crate::target::Target;
-use grid::{Rows, resample};
+use grid::Rows;
 use noisefloor::rng::Rng;
 use projection::Profile;
 
