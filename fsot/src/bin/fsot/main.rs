@@ -4,6 +4,7 @@ mod common;
 mod drive;
 mod interrupt;
 mod points;
+mod stipple;
 
 use clap::{Parser, Subcommand};
 use fsot::Error;
@@ -23,11 +24,14 @@ struct Arguments {
 enum Command {
     /// Spread points evenly, or by a density, in classes or progressively
     Points(points::Args),
+    /// Draw a picture, or an animation, with dots
+    Stipple(stipple::Args),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Points(args) => points::run(&args),
+        Command::Stipple(args) => stipple::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -18,12 +18,8 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     let format = Picture::of(&args.common.out)?;
     let pictures = matches(pattern)?;
     let count = |value: Option<u32>| value.unwrap_or(0) as usize;
-    let windows = Windows {
-        frames: pictures.len(),
-        window: count(args.window),
-        step: count(args.step),
-        cyclic: args.cyclic,
-    };
+    let windows =
+        Windows { frames: pictures.len(), window: count(args.window), step: count(args.step), cyclic: args.cyclic };
     windows.check()?;
     let needed = windows.points();
     if let Some(n) = args.n.filter(|n| *n as usize != needed) {
