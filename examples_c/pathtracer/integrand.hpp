@@ -24,7 +24,7 @@ public:
     Pixel pixel(float x, float y) const
     {
         Pixel pixel{x, y, false, scene_.camera.ray(x, y, 0), {}};
-        if (scene_.layout != Layout::motion)
+        if (scene_.layout != Layout::motion && scene_.layout != Layout::lens)
             pixel.hit = intersector_.closest(pixel.ray, pixel.surface);
         return pixel;
     }
@@ -35,11 +35,10 @@ public:
         case Layout::direct: return pixel.hit ? direct(pixel.ray, pixel.surface, u[0], u[1], 0, 1) : Color{};
         case Layout::lights: return pixel.hit ? direct(pixel.ray, pixel.surface, u[0], u[1], choose(u[2]), count()) : Color{};
         case Layout::global: return pixel.hit ? path(pixel.ray, pixel.surface, u) : Color{};
-        case Layout::motion: break;
+        case Layout::motion: return first(scene_.camera.ray(pixel.x, pixel.y, u[0]), u + 1);
+        case Layout::lens: return first(scene_.camera.ray(pixel.x, pixel.y, u[0], u[1]), u + 2);
         }
-        Ray ray = scene_.camera.ray(pixel.x, pixel.y, u[0]);
-        Hit hit;
-        return intersector_.closest(ray, hit) ? direct(ray, hit, u[1], u[2], 0, 1) : Color{};
+        return {};
     }
 
 private:
@@ -74,6 +73,12 @@ private:
         const Light &light = scene_.lights[static_cast<size_t>(hit.light)];
         bool shines = light.kind == Light::sphere || dot(light.normal, ray.direction) < 0;
         return shines ? light.radiance : Color{};
+    }
+
+    Color first(const Ray &ray, const float *u) const
+    {
+        Hit hit;
+        return intersector_.closest(ray, hit) ? direct(ray, hit, u[0], u[1], 0, 1) : Color{};
     }
 
     // Emitted light plus next event estimation with one light, which was chosen with probability 1 / choices.

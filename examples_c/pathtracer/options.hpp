@@ -2,6 +2,7 @@
 #pragma once
 
 #include "estimators.hpp"
+#include "samplers.hpp"
 #include "scenes.hpp"
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +15,8 @@ struct Options {
     uint32_t width = 128, height = 128, spp = 64, order = 2, threads = 1;
     uint64_t seed = 1;
     std::vector<std::string> estimators{"mc", "robust"};
+    std::string sampler = "random", tile; // tile: a name or a file; empty: by scene and spp
+    uint32_t frame = 0;
     std::string output = "pathtracer";
     bool reference = false;
 };
@@ -21,11 +24,14 @@ struct Options {
 inline void print_usage(FILE *to)
 {
     std::fputs("usage: pathtracer [--scene NAME] [--width N] [--height N] [--spp N] [--estimators A,B,...] [--order N]\n"
-               "                  [--seed N] [--threads N] [--output PREFIX] [--reference]\n\n"
+               "                  [--sampler NAME] [--frame N] [--seed N] [--threads N] [--output PREFIX] [--reference]\n\n"
                "Renders PREFIX.ESTIMATOR.pfm with each estimator from the same samples and prints one line of JSON for each.\n"
                "--reference renders PREFIX.reference.pfm instead: the plain mean over a shifted lattice.\n\nscenes:",
                to);
     for (const char *name : scene_names)
+        std::fprintf(to, " %s", name);
+    std::fputs("\nsamplers:", to);
+    for (const char *name : sampler_names)
         std::fprintf(to, " %s", name);
     std::fputs("\nestimators:\n", to);
     for (const EstimatorName &estimator : estimator_names)
@@ -71,6 +77,10 @@ inline bool parse(int argc, char **argv, Options &options)
             options.threads = number(1, 256);
         else if (name == "--seed")
             options.seed = parse_number(name, value, 0, ~uint64_t{0} >> 1);
+        else if (name == "--sampler")
+            options.sampler = value;
+        else if (name == "--frame")
+            options.frame = number(0, 1 << 20);
         else if (name == "--output")
             options.output = value;
         else if (name == "--estimators") {
