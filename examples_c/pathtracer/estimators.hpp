@@ -4,6 +4,7 @@
 #include "noisefloor.h"
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -16,11 +17,19 @@ inline void check(nf_status status, const std::string &what)
         throw std::runtime_error(what + ": " + nf_status_message(status));
 }
 
+// A block of neighbouring pixels and their samples.
+struct Samples {
+    const float *u, *f;      // u[pixels * n * dims], f[pixels * n * 3]
+    const uint32_t *surface; // [pixels], the same for pixels that show the same surface; for those who ask
+    size_t pixels, n;
+};
+
 // One per thread: it owns the memory that an estimate needs, so that estimating allocates nothing.
 struct Estimator {
     virtual ~Estimator() = default;
-    // A block of neighbouring pixels, n samples of each: u[pixels * n * dims], f[pixels * n * 3] -> means[pixels * 3].
-    virtual void estimate(const float *u, const float *f, size_t pixels, size_t n, float *means) = 0;
+    // means[pixels * 3]
+    virtual void estimate(const Samples &samples, float *means) = 0;
+    virtual bool needs_surfaces() const { return false; }
 };
 
 // What looks at one pixel at a time.
@@ -28,10 +37,10 @@ class PixelEstimator : public Estimator {
 public:
     explicit PixelEstimator(size_t dims) : dims_(dims) {}
 
-    void estimate(const float *u, const float *f, size_t pixels, size_t n, float *means) final
+    void estimate(const Samples &s, float *means) final
     {
-        for (size_t p = 0; p < pixels; ++p)
-            pixel(u + p * n * dims_, f + p * n * 3, n, means + p * 3);
+        for (size_t p = 0; p < s.pixels; ++p)
+            pixel(s.u + p * s.n * dims_, s.f + p * s.n * 3, s.n, means + p * 3);
     }
 
 protected:
@@ -108,29 +117,50 @@ private:
     std::vector<uint64_t> state_, workspace_;
 };
 
-// Each pixel is corrected by a fit to the others' samples, so that even one sample a pixel is enough; and how the samples of a
-// pixel, or of the whole image, are stratified does not matter.
+// Each pixel is corrected by a fit to the others' samples: even one sample a pixel is enough, and whatever stratification the
+// samples have within the pixel, or over the image, stays. The fit helps as far as the pixels' integrands are alike, so only
+// pixels that show the same surface share one.
 constexpr uint32_t block_side = 8; // pixels
 
 class Block final : public Estimator {
 public:
     Block(const nf_cv_config &config, size_t pixels, size_t n)
-        : config_(config), workspace_(memory(nf_cv_block_workspace_size(&config, pixels, n))), results_(pixels)
+        : config_(config), workspace_(memory(nf_cv_block_workspace_size(&config, pixels, n))), u_(pixels * n * config.dims),
+          f_(pixels * n * 3), results_(pixels)
     {
+        left_.reserve(pixels);
     }
 
-    void estimate(const float *u, const float *f, size_t pixels, size_t n, float *means) override
+    void estimate(const Samples &s, float *means) override
     {
-        check(nf_cv_block_estimate(&config_, u, f, pixels, n, workspace_.data(), 8 * workspace_.size(), results_.data()),
-              "nf_cv_block_estimate");
-        for (size_t p = 0; p < pixels; ++p)
-            std::copy(results_[p].mean, results_[p].mean + 3, means + 3 * p);
+        const size_t u_size = s.n * config_.dims, f_size = s.n * 3;
+        left_.resize(s.pixels);
+        std::iota(left_.begin(), left_.end(), size_t{0});
+        while (!left_.empty()) {
+            // The pixels that show what the first one does.
+            uint32_t surface = s.surface[left_.front()];
+            auto others = std::stable_partition(left_.begin(), left_.end(), [&](size_t p) { return s.surface[p] == surface; });
+            size_t pixels = static_cast<size_t>(others - left_.begin());
+            for (size_t i = 0; i < pixels; ++i) {
+                std::copy_n(s.u + left_[i] * u_size, u_size, &u_[i * u_size]);
+                std::copy_n(s.f + left_[i] * f_size, f_size, &f_[i * f_size]);
+            }
+            check(nf_cv_block_estimate(&config_, u_.data(), f_.data(), pixels, s.n, workspace_.data(), 8 * workspace_.size(), results_.data()),
+                  "nf_cv_block_estimate");
+            for (size_t i = 0; i < pixels; ++i)
+                std::copy_n(results_[i].mean, 3, means + 3 * left_[i]);
+            left_.erase(left_.begin(), others);
+        }
     }
+
+    bool needs_surfaces() const override { return true; }
 
 private:
     nf_cv_config config_;
     std::vector<uint64_t> workspace_;
+    std::vector<float> u_, f_;
     std::vector<nf_estimate> results_;
+    std::vector<size_t> left_; // pixels that have no estimate yet
 };
 
 struct EstimatorName {

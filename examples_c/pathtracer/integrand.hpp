@@ -13,20 +13,35 @@ class Integrand {
 public:
     Integrand(const Scene &scene, const Intersector &intersector) : scene_(scene), intersector_(intersector) {}
 
-    // Where the pixel's ray ends, if that does not depend on u: it is then traced once per pixel.
+    // Where the ray through the lens' centre at time 0 ends. In most scenes that does not depend on u: it is traced once per pixel.
     struct Pixel {
-        float x, y; // in [0, 1] over the image
-        bool hit;
+        float x = 0, y = 0; // in [0, 1] over the image
+        bool traced = false, hit = false;
         Ray ray;
         Hit surface;
     };
 
     Pixel pixel(float x, float y) const
     {
-        Pixel pixel{x, y, false, scene_.camera.ray(x, y, 0), {}};
+        Pixel pixel;
+        pixel.x = x;
+        pixel.y = y;
         if (scene_.layout != Layout::motion && scene_.layout != Layout::lens)
-            pixel.hit = intersector_.closest(pixel.ray, pixel.surface);
+            trace(pixel);
         return pixel;
+    }
+
+    // A number for what the pixel shows: its material and the axis, of six, that its surface faces.
+    uint32_t surface(Pixel &pixel) const
+    {
+        if (!pixel.traced)
+            trace(pixel);
+        if (!pixel.hit)
+            return 0;
+        Vector n = pixel.surface.shading;
+        float x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
+        int axis = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
+        return 1 + 6 * pixel.surface.material + 2 * static_cast<uint32_t>(axis) + (n[axis] > 0);
     }
 
     Color operator()(const Pixel &pixel, const float *u) const
@@ -44,6 +59,13 @@ public:
 private:
     // Rays start and end this far from surfaces, in units of the scene: more than rounding, less than a visible gap.
     static constexpr float epsilon = 1e-4f;
+
+    void trace(Pixel &pixel) const
+    {
+        pixel.ray = scene_.camera.ray(pixel.x, pixel.y, 0);
+        pixel.hit = intersector_.closest(pixel.ray, pixel.surface);
+        pixel.traced = true;
+    }
 
     float count() const { return static_cast<float>(scene_.lights.size()); }
 

@@ -89,13 +89,14 @@ private:
     void bands()
     {
         const size_t n = options_.spp, pixels = size_t{side_} * side_;
-        std::vector<float> u(pixels * n * scene_.dims()), f(pixels * n * 3), means(pixels * 3);
+        Buffers buffers{std::vector<float>(pixels * n * scene_.dims()), std::vector<float>(pixels * n * 3), std::vector<float>(pixels * 3),
+                        std::vector<Integrand::Pixel>(pixels), std::vector<uint32_t>(pixels)};
         auto estimators = make_estimators();
         Times times;
         times.estimating.resize(estimators.size());
         for (uint32_t y; (y = next_row_.fetch_add(side_)) < options_.height;) {
             for (uint32_t x = 0; x < options_.width; x += side_)
-                block({x, y, std::min(side_, options_.width - x), std::min(side_, options_.height - y)}, estimators, times, u, f, means);
+                render({x, y, std::min(side_, options_.width - x), std::min(side_, options_.height - y)}, estimators, times, buffers);
             report(std::min(side_, options_.height - y));
         }
         std::lock_guard<std::mutex> lock(mutex_);
@@ -105,13 +106,18 @@ private:
             times_.estimating[e] += times.estimating[e];
     }
 
-    struct Block {
+    struct Rectangle {
         uint32_t x, y, width, height;
     };
+    struct Buffers {
+        std::vector<float> u, f, means;
+        std::vector<Integrand::Pixel> pixels;
+        std::vector<uint32_t> surface;
+    };
 
-    void block(Block b, std::vector<std::unique_ptr<Estimator>> &estimators, Times &times, std::vector<float> &u, std::vector<float> &f,
-               std::vector<float> &means)
+    void render(Rectangle b, std::vector<std::unique_ptr<Estimator>> &estimators, Times &times, Buffers &buffers)
     {
+        std::vector<float> &u = buffers.u, &f = buffers.f, &means = buffers.means;
         const size_t n = options_.spp, dims = scene_.dims(), pixels = size_t{b.width} * b.height;
         auto start = Clock::now();
         for (size_t p = 0; p < pixels; ++p)
@@ -121,13 +127,17 @@ private:
 
         start = stop;
         for (size_t p = 0; p < pixels; ++p)
-            trace(b.x + static_cast<uint32_t>(p % b.width), b.y + static_cast<uint32_t>(p / b.width), &u[p * n * dims], &f[p * n * 3]);
+            buffers.pixels[p] = trace(b.x + static_cast<uint32_t>(p % b.width), b.y + static_cast<uint32_t>(p / b.width), &u[p * n * dims],
+                                      &f[p * n * 3]);
         stop = Clock::now();
         times.tracing += seconds(start, stop);
 
         for (size_t e = 0; e < estimators.size(); ++e) {
             start = Clock::now();
-            estimators[e]->estimate(u.data(), f.data(), pixels, n, means.data());
+            if (estimators[e]->needs_surfaces())
+                for (size_t p = 0; p < pixels; ++p)
+                    buffers.surface[p] = integrand_.surface(buffers.pixels[p]);
+            estimators[e]->estimate({u.data(), f.data(), buffers.surface.data(), pixels, n}, means.data());
             stop = Clock::now();
             times.estimating[e] += seconds(start, stop);
             for (uint32_t row = 0; row < b.height; ++row)
@@ -136,7 +146,7 @@ private:
         }
     }
 
-    void trace(uint32_t x, uint32_t y, const float *u, float *f) const
+    Integrand::Pixel trace(uint32_t x, uint32_t y, const float *u, float *f) const
     {
         const uint32_t dims = scene_.dims();
         Integrand::Pixel pixel = integrand_.pixel((static_cast<float>(x) + 0.5f) / static_cast<float>(options_.width),
@@ -147,6 +157,7 @@ private:
             f[3 * i + 1] = value.y;
             f[3 * i + 2] = value.z;
         }
+        return pixel;
     }
 
     void report(uint32_t rows)
