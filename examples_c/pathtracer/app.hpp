@@ -21,7 +21,7 @@ inline void render(const Options &options, const MakeIntersector &make_intersect
     if (options.reference)
         sampler = std::make_unique<LatticeSampler>(setup);
     else
-        sampler = make_sampler(options.sampler, setup);
+        sampler = make_sampler(options.sampler, options.tile, setup);
     Renderer renderer(scene, *intersector, *sampler, options);
     renderer.run();
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "estimators.hpp"
-#include "samplers.hpp"
 #include "scenes.hpp"
+#include "tile_sampler.hpp"
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
@@ -15,7 +15,7 @@ struct Options {
     uint32_t width = 128, height = 128, spp = 64, order = 2, threads = 1;
     uint64_t seed = 1;
     std::vector<std::string> estimators{"mc", "robust"};
-    std::string sampler = "random", tile; // tile: a name or a file; empty: by scene and spp
+    std::string sampler = "random", tile; // tile: a name or a file; empty: by the samples
     uint32_t frame = 0;
     std::string output = "pathtracer";
     bool reference = false;
@@ -24,7 +24,8 @@ struct Options {
 inline void print_usage(FILE *to)
 {
     std::fputs("usage: pathtracer [--scene NAME] [--width N] [--height N] [--spp N] [--estimators A,B,...] [--order N]\n"
-               "                  [--sampler NAME] [--frame N] [--seed N] [--threads N] [--output PREFIX] [--reference]\n\n"
+               "                  [--sampler NAME] [--tile NAME|FILE.nft] [--frame N] [--seed N] [--threads N]\n"
+               "                  [--output PREFIX] [--reference]\n\n"
                "Renders PREFIX.ESTIMATOR.pfm with each estimator from the same samples and prints one line of JSON for each.\n"
                "--reference renders PREFIX.reference.pfm instead: the plain mean over a shifted lattice.\n\nscenes:",
                to);
@@ -33,6 +34,10 @@ inline void print_usage(FILE *to)
     std::fputs("\nsamplers:", to);
     for (const char *name : sampler_names)
         std::fprintf(to, " %s", name);
+    std::fputs("\ntiles:", to);
+    for (const TileName &tile : tile_names)
+        if (has_tile(tile))
+            std::fprintf(to, " %s", tile.name);
     std::fputs("\nestimators:\n", to);
     for (const EstimatorName &estimator : estimator_names)
         std::fprintf(to, "  %-17s %s\n", estimator.name, estimator.description);
@@ -79,6 +84,8 @@ inline bool parse(int argc, char **argv, Options &options)
             options.seed = parse_number(name, value, 0, ~uint64_t{0} >> 1);
         else if (name == "--sampler")
             options.sampler = value;
+        else if (name == "--tile")
+            options.tile = value;
         else if (name == "--frame")
             options.frame = number(0, 1 << 20);
         else if (name == "--output")

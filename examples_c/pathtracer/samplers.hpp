@@ -3,9 +3,6 @@
 
 #include "scene.hpp"
 #include "sobol.hpp"
-#include <memory>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 namespace demo {
@@ -104,17 +101,5 @@ private:
     Sobol sobol_;
     uint32_t levels_ = 0; // of the trees: 2^levels_ points or fewer
 };
-
-inline const char *const sampler_names[] = {"random", "sobol"};
-
-// Throws if there is no sampler of that name.
-inline std::unique_ptr<Sampler> make_sampler(const std::string &name, const SamplerSetup &setup)
-{
-    if (name == "random")
-        return std::make_unique<RandomSampler>(setup);
-    if (name == "sobol")
-        return std::make_unique<SobolSampler>(setup);
-    throw std::runtime_error("there is no sampler `" + name + "`; --help lists them");
-}
 
 } // namespace demo

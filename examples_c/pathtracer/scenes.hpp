@@ -132,8 +132,9 @@ inline bool make_scene(const std::string &name, float aspect, Scene &scene)
         builder.sphere_light({-.1f, 1.6f, .3f}, .2f, {26, 24, 21});
     } else if (name == "lens") {
         scene.layout = Layout::lens;
-        scene.camera.aperture = .2f;
-        scene.camera.focus = 3.75f; // the blue sphere's distance
+        scene.camera.look({.1f, .75f, 2.9f}, {-.05f, .5f, 0}, 34, aspect);
+        scene.camera.aperture = .12f;
+        scene.camera.focus = 2.4f; // the blue sphere's distance
         furnish(builder);
         builder.area_light({-.35f, 1.98f, -.35f}, {.7f, 0, 0}, {0, 0, .7f}, {16, 14.5f, 12});
     } else if (name == "lights") {
