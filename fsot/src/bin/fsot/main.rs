@@ -3,6 +3,7 @@
 mod common;
 mod drive;
 mod interrupt;
+mod measure;
 mod points;
 
 use clap::{Parser, Subcommand};
@@ -23,11 +24,14 @@ struct Arguments {
 enum Command {
     /// Spread points evenly, or by a density, in classes or progressively
     Points(points::Args),
+    /// Print how good point sets and tiles are
+    Measure(measure::Args),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Points(args) => points::run(&args),
+        Command::Measure(args) => measure::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
