@@ -120,6 +120,7 @@ pub(crate) fn transport<const D: usize>(
         sorted[*place as usize] = element;
         *place += 1;
     }
+    let mean_density = 1.0 / width;
     let mut energy = 0.0;
     for &element in &*sorted {
         let key = (element >> 32) as u32;
@@ -127,7 +128,8 @@ pub(crate) fn transport<const D: usize>(
         let rank = *place as usize;
         *place += 1;
         let offset = means[rank] - (low + key as i32 as f32 * quantum);
-        offsets[element as u32 as usize] = [offset * density[rank], density[rank]];
+        let weight = density[rank] * mean_density;
+        offsets[element as u32 as usize] = [offset * weight, weight];
         energy += f64::from(offset) * f64::from(offset);
     }
     energy / count as f64
@@ -165,7 +167,7 @@ pub(crate) fn advance<const D: usize>(
             }
         }
         for (i, point) in coordinates.chunks_exact_mut(D).enumerate() {
-            let factor = step * D as f32 / (weights[i] + (D - 1) as f32);
+            let factor = step * D as f32 / (weights[i] + super::schedule::P[3] as f32 * (D - 1) as f32);
             if weights[i] > 0.0 {
                 for (k, x) in point.iter_mut().enumerate() {
                     *x = settle(*x + factor * sums[k][i], k);
