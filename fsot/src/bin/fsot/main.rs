@@ -5,6 +5,7 @@ mod drive;
 mod interrupt;
 mod measure;
 mod points;
+mod stipple;
 
 use clap::{Parser, Subcommand};
 use fsot::Error;
@@ -24,6 +25,8 @@ struct Arguments {
 enum Command {
     /// Spread points evenly, or by a density, in classes or progressively
     Points(points::Args),
+    /// Draw a picture with dots
+    Stipple(stipple::Args),
     /// Print how good point sets and tiles are
     Measure(measure::Args),
 }
@@ -31,6 +34,7 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Points(args) => points::run(&args),
+        Command::Stipple(args) => stipple::run(&args),
         Command::Measure(args) => measure::run(&args),
     };
     match result {
