@@ -5,6 +5,7 @@ mod drive;
 mod interrupt;
 mod measure;
 mod points;
+mod spectrum;
 
 use clap::{Parser, Subcommand};
 use fsot::Error;
@@ -26,12 +27,15 @@ enum Command {
     Points(points::Args),
     /// Print how good point sets and tiles are
     Measure(measure::Args),
+    /// Draw the power spectrum of point sets, or of the error of tiles
+    Spectrum(spectrum::Args),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Points(args) => points::run(&args),
         Command::Measure(args) => measure::run(&args),
+        Command::Spectrum(args) => spectrum::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
