@@ -1,7 +1,7 @@
 //! Options that subcommands share, and how they report.
 
 use clap::{Args, ValueEnum};
-use fsot::{Error, error::Result, output};
+use fsot::{Error, error::Result, optimize, output};
 use serde_json::Value;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -93,6 +93,16 @@ impl Report {
 }
 
 impl Common {
+    /// What --quality and --iterations ask for.
+    pub(crate) fn effort(&self) -> optimize::Quality {
+        match (self.iterations, self.quality) {
+            (Some(iterations), _) => optimize::Quality::Iterations(iterations),
+            (None, Quality::Draft) => optimize::Quality::Draft,
+            (None, Quality::Standard) => optimize::Quality::Standard,
+            (None, Quality::High) => optimize::Quality::High,
+        }
+    }
+
     /// Where the run is saved: beside the output, or in the working folder if the output is a pipe or a device.
     pub(crate) fn checkpoint(&self) -> PathBuf {
         match &self.checkpoint {

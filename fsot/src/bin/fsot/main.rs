@@ -6,6 +6,7 @@ mod interrupt;
 mod measure;
 mod points;
 mod spectrum;
+mod stipple;
 
 use clap::{Parser, Subcommand};
 use fsot::Error;
@@ -25,6 +26,8 @@ struct Arguments {
 enum Command {
     /// Spread points evenly, or by a density, in classes or progressively
     Points(points::Args),
+    /// Draw a picture with dots
+    Stipple(stipple::Args),
     /// Print how good point sets and tiles are
     Measure(measure::Args),
     /// Draw the power spectrum of point sets, or of the error of tiles
@@ -34,6 +37,7 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Points(args) => points::run(&args),
+        Command::Stipple(args) => stipple::run(&args),
         Command::Measure(args) => measure::run(&args),
         Command::Spectrum(args) => spectrum::run(&args),
     };
