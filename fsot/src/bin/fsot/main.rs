@@ -2,6 +2,8 @@
 
 mod common;
 mod drive;
+mod export;
+mod info;
 mod interrupt;
 mod measure;
 mod points;
@@ -26,12 +28,18 @@ enum Command {
     Points(points::Args),
     /// Print how good point sets and tiles are
     Measure(measure::Args),
+    /// Write a tile as a texture, raw numbers or source code
+    Export(export::Args),
+    /// Print what a tile is and how it was made
+    Info(info::Args),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Points(args) => points::run(&args),
         Command::Measure(args) => measure::run(&args),
+        Command::Export(args) => export::run(&args),
+        Command::Info(args) => info::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
