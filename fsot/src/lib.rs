@@ -15,6 +15,7 @@ pub mod points;
 pub mod random;
 pub mod read;
 pub mod run;
+pub mod stipple;
 pub mod target;
 pub mod tile;
 

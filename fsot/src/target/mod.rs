@@ -1,11 +1,11 @@
 //! What the points of a class shall be distributed like.
 
 mod cdf;
+pub mod image;
 mod uniform;
 
 pub use cdf::bins_of_cdf;
 pub use uniform::{Uniform, uniform_bins};
-pub mod image;
 
 use noisefloor::rng::Rng;
 

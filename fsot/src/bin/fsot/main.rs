@@ -7,6 +7,7 @@ mod info;
 mod interrupt;
 mod measure;
 mod points;
+mod stipple;
 
 use clap::{Parser, Subcommand};
 use fsot::Error;
@@ -26,6 +27,8 @@ struct Arguments {
 enum Command {
     /// Spread points evenly, or by a density, in classes or progressively
     Points(points::Args),
+    /// Draw a picture, or an animation, with dots
+    Stipple(stipple::Args),
     /// Print how good point sets and tiles are
     Measure(measure::Args),
     /// Write a tile as a texture, raw numbers or source code
@@ -37,6 +40,7 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Points(args) => points::run(&args),
+        Command::Stipple(args) => stipple::run(&args),
         Command::Measure(args) => measure::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Info(args) => info::run(&args),
