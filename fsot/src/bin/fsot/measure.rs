@@ -2,9 +2,11 @@
 
 use crate::common::{Report, Threads};
 use fsot::error::{Error, Result};
+use fsot::export::nft::TileFile;
 use fsot::export::points::Table;
 use fsot::metrics::text::PrefixTable;
-use fsot::metrics::{self, TileOptions, TileView};
+use fsot::metrics::{self, TileOptions, TileView, figure};
+use fsot::output;
 use fsot::points::Points;
 use fsot::read;
 use serde_json::{Value, json};
@@ -20,6 +22,9 @@ pub(crate) struct Args {
     /// Print the error against the number of points taken from the start, averaged over the files
     #[arg(long)]
     prefix: bool,
+    /// With --prefix: draw the errors, as SVG if the name ends so, else as PNG
+    #[arg(long, value_name = "FILE", requires = "prefix")]
+    plot: Option<PathBuf>,
     /// Numbers of points per doubling that --prefix prints
     #[arg(long, value_name = "COUNT", default_value_t = 4, requires = "prefix", value_parser = clap::value_parser!(u8).range(1..=64))]
     per_octave: u8,
@@ -79,7 +84,15 @@ impl Tile {
     /// Reads a file.
     pub(crate) fn read(&self, path: &Path) -> Result<Content> {
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("nft")) {
-            return Err(Error::Input(format!("{}: tile files cannot be measured yet", path.display())));
+            let file = TileFile::read(path)?;
+            let view = file.view();
+            return Ok(Content::Tile(Samples {
+                size: view.size,
+                spp: view.spp,
+                dims: view.dims,
+                frames: view.frames,
+                coordinates: file.coordinates(),
+            }));
         }
         let table = read::points(path)?;
         metrics::check(&table.points).map_err(in_file(path))?;
@@ -103,6 +116,16 @@ impl Tile {
     }
 }
 
+/// The name of the first file and how many more there are.
+pub(crate) fn title(files: &[PathBuf]) -> String {
+    let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    match files {
+        [] => String::new(),
+        [file] => name(file),
+        [file, more @ ..] => format!("{} and {} more", name(file), more.len()),
+    }
+}
+
 /// Says of which file an error is.
 pub(crate) fn in_file(path: &Path) -> impl Fn(Error) -> Error + '_ {
     move |error| match error {
@@ -113,6 +136,9 @@ pub(crate) fn in_file(path: &Path) -> impl Fn(Error) -> Error + '_ {
 
 /// Reads every file before it measures the first, so that a wrong name costs no time.
 pub(crate) fn run(args: &Args) -> Result<()> {
+    if let Some(path) = &args.plot {
+        output::check(path)?;
+    }
     let contents: Vec<Content> = args.files.iter().map(|path| args.tile.read(path)).collect::<Result<_>>()?;
     let (text, json) =
         args.threads.install(|| if args.prefix { prefix(args, &contents) } else { all(args, &contents) })??;
@@ -176,6 +202,11 @@ fn prefix(args: &Args, contents: &[Content]) -> Result<(String, Value)> {
         .collect::<Result<_>>()?;
     let counts = metrics::log_spaced(sets.first().map_or(0, Points::len), args.per_octave.into());
     let errors = metrics::prefix_errors(&sets, &counts, args.integrands as usize)?;
+    if let Some(path) = &args.plot {
+        let sheet = figure::prefix_errors(&title(&args.files), &errors);
+        let is_svg = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+        output::write(path, &if is_svg { sheet.svg()?.into_bytes() } else { sheet.png()? })?;
+    }
     let text = format!(
         "error of the first points, averaged over {} sets and {} integrands of each family\n{}",
         sets.len(),
