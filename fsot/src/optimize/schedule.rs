@@ -29,6 +29,10 @@ impl Schedule {
             Quality::High => 4096,
             Quality::Iterations(iterations) => iterations,
         };
+        if problem.points >= WINDOWED_FROM && problem.dims <= 3 && problem.classes.iter().all(|class| class.target.is_uniform()) {
+            let global = (base as f64 * P[4]) as u64;
+            return Schedule { windowed: base - global, global };
+        }
         Schedule { windowed: 0, global: base }
     }
 
