@@ -1,6 +1,16 @@
 //! What the points of a class shall be distributed like.
 
+mod cdf;
+pub mod image;
+mod uniform;
+
+pub use cdf::bins_of_cdf;
+pub use uniform::{Uniform, uniform_bins};
+
 use noisefloor::rng::Rng;
+
+/// The most dimensions that points have here.
+pub const MAX_DIMS: usize = 8;
 
 /// A target distribution on `[0, 1]^dims`.
 pub trait Target: Send + Sync {
@@ -14,4 +24,9 @@ pub trait Target: Send + Sync {
 
     /// Draws a point.
     fn sample(&self, rng: &mut Rng, point: &mut [f32]);
+
+    /// Whether it is the uniform distribution. Only that one may be shifted around a torus, or cut into windows.
+    fn is_uniform(&self) -> bool {
+        false
+    }
 }
