@@ -14,6 +14,9 @@ use noisefloor::tile::Shape;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
+/// As in the published figures.
+const INTEGRANDS: u32 = 512;
+
 /// What `fsot tile` is asked for.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
@@ -51,7 +54,7 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 16, value_parser = bits)]
     bits: u32,
     /// Random integrands of each family for the printed quality
-    #[arg(long, value_name = "COUNT", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    #[arg(long, value_name = "COUNT", default_value_t = INTEGRANDS, value_parser = clap::value_parser!(u32).range(1..=65536))]
     integrands: u32,
     #[command(flatten)]
     common: Common,
@@ -76,10 +79,10 @@ fn make(args: &Args) -> Result<()> {
     args.common.check_outputs(sidecar.as_deref())?;
     let problem = problem(args)?;
     let shape = shape(&problem, args.bits);
-    let kernel = problem.temporal.as_ref().map_or_else(
-        || problem.kernel.to_string(),
-        |temporal| format!("{}, over frames {temporal}", problem.kernel),
-    );
+    let kernel = problem
+        .temporal
+        .as_ref()
+        .map_or_else(|| problem.kernel.to_string(), |temporal| format!("{}, over frames {temporal}", problem.kernel));
     // Refuses what a tile's file cannot hold before the work.
     TileFile::new(shape, problem.seed, &kernel, &vec![0.0; problem.coordinates()])?;
     let mut optimizer = TileOptimizer::new(problem.clone())?;
@@ -122,8 +125,7 @@ fn problem(args: &Args) -> Result<TileProblem> {
         },
     };
     let BoxClass { share, weight } = problem.box_class;
-    problem.box_class =
-        BoxClass { share: args.box_share.unwrap_or(share), weight: args.box_weight.unwrap_or(weight) };
+    problem.box_class = BoxClass { share: args.box_share.unwrap_or(share), weight: args.box_weight.unwrap_or(weight) };
     problem.seed = args.common.given_seed().unwrap_or(problem.seed);
     problem.iterations = match args.common.given_effort() {
         None => problem.iterations,
@@ -196,6 +198,9 @@ fn command(args: &Args, problem: &TileProblem) -> String {
         words.extend(args.box_weight.map(|weight| format!("--box-weight {weight}")));
     }
     words.push(format!("--bits {} --seed {} --iterations {}", args.bits, problem.seed, problem.iterations));
+    if args.integrands != INTEGRANDS {
+        words.push(format!("--integrands {}", args.integrands));
+    }
     let name = args.common.out.file_name().map_or_else(PathBuf::new, PathBuf::from);
     words.push(format!("--out {}", name.display()));
     words.join(" ")
