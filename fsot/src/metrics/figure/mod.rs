@@ -86,8 +86,10 @@ pub fn spectrum(title: &str, spectrum: &Spectrum, of: Subject) -> Sheet {
     };
     let mut sheet = Sheet::new(1240, 600);
     sheet.text([32.0, 32.0], Anchor::Start, title, BLACK);
-    let grey =
-        spectrum.power.iter().map(|p| (255.0 * (1.0 - libm::exp2(-p))).round().clamp(0.0, 255.0) as u8).collect();
+    let grey = |p: &f64| (255.0 * (1.0 - libm::exp2(-p))).round().clamp(0.0, 255.0) as u8;
+    let mut grey: Vec<u8> = spectrum.power.iter().map(grey).collect();
+    // The mean says nothing, and a white dot would draw the eye.
+    grey[spectrum.side / 2 * (spectrum.side + 1)] = 0;
     sheet.elements.push(Element::Picture { at: [32.0, 48.0], size: PICTURE, side: spectrum.side, grey });
     let end = spectrum.side as f64 / 2.0 / spectrum.unit;
     sheet.text([32.0 + PICTURE / 2.0, 584.0], Anchor::Middle, format!("-{end:.2} to {end:.2} {unit}"), BLACK);
