@@ -81,12 +81,15 @@ impl Pending {
     }
 }
 
-/// Whether a file can be written at `path`, asked before an hour of work rather than after it. Returns the place that
+/// Whether something can be written at `path`, asked before an hour of work rather than after it. Returns the place that
 /// will be written: `path`, or what it links to.
 ///
 /// # Errors
 /// The folder is missing or cannot be written to; `path` is a folder; `path` is a read-only file.
 pub fn check(path: &Path) -> Result<PathBuf> {
+    if is_stream(path) {
+        return Ok(path.to_owned());
+    }
     let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if let Ok(metadata) = fs::metadata(&place) {
         if metadata.is_dir() {
@@ -94,9 +97,6 @@ pub fn check(path: &Path) -> Result<PathBuf> {
         }
         if metadata.is_file() && metadata.permissions().readonly() {
             return Err(Error::Input(format!("{} is read-only: choose another name or remove it", path.display())));
-        }
-        if !metadata.is_file() {
-            return Ok(place);
         }
     }
     if place.file_name().is_none() {
@@ -124,9 +124,16 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     outputs.commit()
 }
 
-/// Whether `path` exists and is a pipe or a device.
+/// Whether `path` is `-` (standard output), a pipe or a device: something that is written to, not replaced.
 pub fn is_stream(path: &Path) -> bool {
-    fs::metadata(path).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
+    // What /dev/stdout stands for may be a regular file, opened by the shell.
+    is_standard_output(path)
+        || path.starts_with("/dev")
+        || fs::metadata(path).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
+}
+
+fn is_standard_output(path: &Path) -> bool {
+    path == "-" || path == "/dev/stdout"
 }
 
 fn folder(path: &Path) -> &Path {
@@ -148,6 +155,10 @@ fn temporary(path: &Path) -> std::io::Result<NamedTempFile> {
 }
 
 fn write_stream(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    if is_standard_output(path) {
+        let mut stream = std::io::stdout().lock();
+        return stream.write_all(bytes).and_then(|()| stream.flush());
+    }
     let mut stream: File = OpenOptions::new().write(true).open(path)?;
     stream.write_all(bytes)?;
     stream.flush()

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::export::points::{Json, Labels, Table};
 use crate::points::Points;
+use crate::target::image::ImageTarget;
 use image::{DynamicImage, ImageFormat, ImageReader};
 use std::fs;
 use std::io::Cursor;
@@ -50,6 +51,32 @@ pub fn decode_image(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
         }
     };
     reader.decode().map_err(|error| Error::Input(format!("{} is a damaged {name} file: {error}", path.display())))
+}
+
+/// A picture as a density for `points` points: its luma as it is stored (not linear light), or what is missing to white; transparent
+/// parts have none. Values beyond 1 (OpenEXR) are densities too, but not if inverted.
+///
+/// # Errors
+/// As [`decode_image`]; a value that is negative or not finite; a density of 0 everywhere.
+pub fn density(bytes: &[u8], path: &Path, points: usize, invert: bool) -> Result<ImageTarget> {
+    let picture = decode_image(bytes, path)?.to_luma_alpha32f();
+    let (width, height) = picture.dimensions();
+    let weights: Vec<f32> = picture
+        .pixels()
+        .map(|pixel| {
+            let [luma, alpha]: [f32; 2] = pixel.0;
+            alpha * if invert { (1.0 - luma).max(0.0) } else { luma }
+        })
+        .collect();
+    if weights.iter().all(|weight| *weight == 0.0) {
+        let colour = if invert { "white" } else { "black" };
+        return Err(Error::Input(format!(
+            "{} is {colour} everywhere: a density of 0 has no place for a point",
+            path.display()
+        )));
+    }
+    ImageTarget::new(width as usize, height as usize, &weights, points)
+        .map_err(|error| Error::Input(format!("{}: {error}", path.display())))
 }
 
 /// A point set by its content: JSON, CSV (rows with commas) or text (columns separated by spaces), as

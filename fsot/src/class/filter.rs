@@ -53,4 +53,38 @@ impl Filter {
         }
         count
     }
+
+    /// As [`select`](Filter::select), among the points with the given ascending numbers: ranges of places in `numbers`.
+    pub(crate) fn select_of(&self, z: f32, numbers: &[u32], selected: &mut Vec<Range<u32>>) -> usize {
+        selected.clear();
+        let mut count = 0;
+        let mut add = |places: Range<usize>| {
+            let places = places.start as u32..places.end as u32;
+            count += places.len();
+            match selected.last_mut() {
+                Some(last) if last.end == places.start => last.end = places.end,
+                _ if places.is_empty() => {}
+                _ => selected.push(places),
+            }
+        };
+        if self.runs.len() <= numbers.len() {
+            // Few runs: find the places of each.
+            let mut before = 0;
+            for (run, value) in &self.runs {
+                let begin = before + numbers[before..].partition_point(|&number| number < run.start);
+                before = begin + numbers[begin..].partition_point(|&number| number < run.end);
+                if *value > z {
+                    add(begin..before);
+                }
+            }
+        } else {
+            for (place, &number) in numbers.iter().enumerate() {
+                let run = self.runs.partition_point(|(run, _)| run.end <= number);
+                if self.runs.get(run).is_some_and(|(run, value)| run.contains(&number) && *value > z) {
+                    add(place..place + 1);
+                }
+            }
+        }
+        count
+    }
 }

@@ -5,6 +5,7 @@
 
 pub mod discrepancy;
 pub mod exponential_sums;
+pub mod figure;
 pub mod integrands;
 pub mod integration;
 pub mod neighbours;

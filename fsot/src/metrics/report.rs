@@ -71,12 +71,12 @@ pub fn select(points: &Points, mut wanted: impl FnMut(usize) -> bool) -> Points 
 
 /// Measures the points of every class that occurs, ascending: (class, report). Errors: not as many classes as points; see
 /// [`check`](super::check).
-pub fn by_class(points: &Points, classes: &[u32]) -> Result<Vec<(u32, PointReport)>> {
+pub fn by_class(points: &Points, classes: &[usize]) -> Result<Vec<(usize, PointReport)>> {
     if classes.len() != points.len() {
         return Err(Error::input(format!("{} classes for {} points", classes.len(), points.len())));
     }
-    let mut names = classes.to_vec();
-    names.sort_unstable();
-    names.dedup();
-    names.into_iter().map(|class| Ok((class, measure(&select(points, |i| classes[i] == class))?))).collect()
+    let mut present = classes.to_vec();
+    present.sort_unstable();
+    present.dedup();
+    present.into_iter().map(|class| Ok((class, measure(&select(points, |i| classes[i] == class))?))).collect()
 }

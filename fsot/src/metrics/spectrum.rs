@@ -19,7 +19,7 @@ pub struct Spectrum {
     pub power: Vec<f64>,
     /// The integer frequency that counts as 1: for points the principal frequency, for tiles the size (cycles per pixel).
     pub unit: f64,
-    /// How many realisations were averaged.
+    /// How many independent realisations were averaged: point sets, or frames of a tile.
     pub realisations: usize,
     /// Rings about zero frequency, of width 1, from 1.
     pub rings: Vec<Ring>,

@@ -1,7 +1,7 @@
 //! The figures as aligned text.
 
 use super::integration::PrefixError;
-use super::report::PointReport;
+use super::report::{PlaneSpectrum, PointReport};
 use super::tile::{Energies, FamilyEnergies, TileReport};
 use std::fmt::{Display, Formatter, Result};
 
@@ -23,18 +23,11 @@ impl Display for PointReport {
         let mut line =
             |name: &str, value: f64, meaning: &str| writeln!(f, "  {name:<14}{:>12}  {meaning}", number(value));
         line("points", self.points as f64, &format!("in {} dimensions", self.dims))?;
-        for spectrum in &self.spectra {
-            let [a, b] = spectrum.axes;
-            let of = if self.dims == 2 { String::new() } else { format!(" of coordinates {} and {}", a + 1, b + 1) };
-            let s = &spectrum.summary;
-            line("P_low", s.low, &format!("mean power below half the principal frequency{of} (random 1)"))?;
+        if let [PlaneSpectrum { summary: s, .. }] = &self.spectra[..] {
+            line("P_low", s.low, "mean power below half the principal frequency (random 1)")?;
             let at = number(s.peak_frequency);
-            line("P_max", s.peak, &format!("peak of the radial average{of}, at {at} principal frequencies"))?;
-            line(
-                "anisotropy",
-                s.anisotropy,
-                &format!("dB, mean over .5 to 2 principal frequencies{of} (isotropic 0)"),
-            )?;
+            line("P_max", s.peak, &format!("peak of the radial average, at {at} principal frequencies"))?;
+            line("anisotropy", s.anisotropy, "dB, mean over .5 to 2 principal frequencies (isotropic 0)")?;
         }
         if let Some(n) = &self.neighbours {
             let lattice = if self.dims == 2 { "hexagonal" } else { "densest-lattice" };
@@ -53,6 +46,14 @@ impl Display for PointReport {
         if let Some(i) = &self.integration {
             line("half-spaces", i.half_spaces, &format!("squared error over {} of them (random 1)", i.integrands))?;
             line("Gaussians", i.gaussians, &format!("squared error over {} of them (random 1)", i.integrands))?;
+        }
+        if self.spectra.len() > 1 {
+            writeln!(f, "  spectra of pairs of coordinates, mean power below half the principal frequency, peak, dB")?;
+            writeln!(f, "  {:<14}{:>12}{:>12}{:>12}", "coordinates", "P_low", "P_max", "anisotropy")?;
+            for PlaneSpectrum { axes: [a, b], summary: s } in &self.spectra {
+                let [low, peak, anisotropy] = [s.low, s.peak, s.anisotropy].map(number);
+                writeln!(f, "  {:<14}{low:>12}{peak:>12}{anisotropy:>12}", format!("{}, {}", a + 1, b + 1))?;
+            }
         }
         Ok(())
     }

@@ -206,7 +206,7 @@ pub fn error_spectrum(tile: &TileView, integrands: usize) -> Result<Spectrum> {
             power[to] = 0.5 * (sum(here) + sum(mirrored));
         }
     }
-    Ok(Spectrum::new(size, power, size as f64, 2 * integrands * tile.frames))
+    Ok(Spectrum::new(size, power, size as f64, tile.frames))
 }
 
 /// Two integrands share one complex transform. An odd number is rounded up.

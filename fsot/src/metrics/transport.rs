@@ -72,14 +72,39 @@ fn sliced(centred: &[f64], dims: usize, slices: usize, set: u64) -> (f64, f64) {
 /// The squared semi-discrete distance between points about the origin, projected on a unit direction, and the projected cube;
 /// and its lower bound for as many points.
 pub fn slice_distance(centred: &[f64], direction: &[f64]) -> (f64, f64) {
-    let mut projected: Vec<f64> =
-        centred.chunks_exact(direction.len()).map(|p| p.iter().zip(direction).map(|(x, a)| x * a).sum()).collect();
-    projected.sort_unstable_by(f64::total_cmp);
+    let along = |p: &[f64]| p.iter().zip(direction).map(|(x, a)| x * a).sum();
+    let projected: Vec<f64> = centred.chunks_exact(direction.len()).map(along).collect();
+    let law = Projection::new(direction);
+    let projected = sorted(&projected, law.half_width());
     let mut means = vec![0.0; projected.len()];
-    Projection::new(direction).bins(&mut means);
+    law.bins(&mut means);
     let count = projected.len() as f64;
     let between = projected.iter().zip(&means).map(|(p, m)| (p - m) * (p - m)).sum::<f64>() / count;
     // The cube's second moment along any unit direction is 1/12; what the bins' means do not have of it is spread within the bins.
     let within = (1.0 / 12.0 - means.iter().map(|m| m * m).sum::<f64>() / count).max(0.0);
     (between + within, within)
+}
+
+/// The values, most of them in [-half, half], in ascending order: shared out to as many buckets first, each of which is then sorted.
+fn sorted(values: &[f64], half: f64) -> Vec<f64> {
+    let count = values.len();
+    let scale = count as f64 / (2.0 * half);
+    let bucket = |x: f64| (((x + half) * scale) as usize).min(count - 1);
+    let mut ends = vec![0_u32; count + 1];
+    values.iter().for_each(|&x| ends[bucket(x) + 1] += 1);
+    (0..count).for_each(|i| ends[i + 1] += ends[i]);
+    let mut next = ends.clone();
+    let mut sorted = vec![0.0; count];
+    for &x in values {
+        let place = &mut next[bucket(x)];
+        sorted[*place as usize] = x;
+        *place += 1;
+    }
+    for ends in ends.windows(2) {
+        let part = &mut sorted[ends[0] as usize..ends[1] as usize];
+        if part.len() > 1 {
+            part.sort_unstable_by(f64::total_cmp);
+        }
+    }
+    sorted
 }

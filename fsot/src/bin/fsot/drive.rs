@@ -8,6 +8,7 @@ use fsot::output::Outputs;
 use fsot::run::Optimization;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use serde::Serialize;
+use serde_json::{Value, json};
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -36,6 +37,23 @@ pub(crate) struct Run {
     /// Of the problem and this program's version.
     pub(crate) fingerprint: String,
     checkpoint: PathBuf,
+}
+
+impl Run {
+    /// A line of a report.
+    pub(crate) fn describe(&self, text: &mut String) {
+        let energy = self.energy.map_or(String::new(), |energy| format!(", energy {energy:.3e} at the end"));
+        let resumed = if self.resumed_at > 0 { format!(", continued at {}", self.resumed_at) } else { String::new() };
+        text.push_str(&format!("  {} steps{resumed} in {:.2} s{energy}\n", self.iterations, self.seconds));
+    }
+
+    /// The same for a report in JSON.
+    pub(crate) fn json(&self) -> Value {
+        json!({
+            "iterations": self.iterations, "resumed_at": self.resumed_at, "seconds": self.seconds,
+            "energy": self.energy, "fingerprint": self.fingerprint,
+        })
+    }
 }
 
 /// Takes all steps that are left. `problem` describes everything that the result depends on.
