@@ -14,12 +14,14 @@ mod mis;
 mod omis;
 mod rng;
 mod status;
+mod tile;
 
 pub use cv::*;
 pub use mis::*;
 pub use omis::*;
 pub use rng::*;
 pub use status::*;
+pub use tile::*;
 
 /// Nothing in the library can panic (a test looks for the panic symbols in the archive), so this is never reached.
 #[cfg(all(panic = "abort", not(test)))]

@@ -27,6 +27,14 @@ pub const NF_ERR_UNSUPPORTED: nf_status = -7;
 pub const NF_ERR_STATE: nf_status = -8;
 /// Two objects were made with different configurations.
 pub const NF_ERR_MISMATCH: nf_status = -9;
+/// The bytes are no tile.
+pub const NF_ERR_FOREIGN: nf_status = -10;
+/// The tile's format is newer than this library.
+pub const NF_ERR_VERSION: nf_status = -11;
+/// The tile is truncated, or followed by other bytes.
+pub const NF_ERR_LENGTH: nf_status = -12;
+/// The tile is damaged.
+pub const NF_ERR_CORRUPT: nf_status = -13;
 
 /// The version of this header. `nf_abi_version()` returns the library's.
 pub const NF_ABI_VERSION: u32 = 1;
@@ -51,6 +59,10 @@ pub extern "C" fn nf_status_message(status: nf_status) -> *const c_char {
         NF_ERR_UNSUPPORTED => c"this combination of options is not supported",
         NF_ERR_STATE => c"the memory holds no initialised object: call the matching init function first",
         NF_ERR_MISMATCH => c"the two objects were made with different configurations",
+        NF_ERR_FOREIGN => c"the bytes are not a noisefloor tile",
+        NF_ERR_VERSION => c"the tile's format is newer than this library",
+        NF_ERR_LENGTH => c"the tile is truncated, or followed by other bytes",
+        NF_ERR_CORRUPT => c"the tile is damaged: its checksum does not match, or its fields make no sense",
         _ => c"not a noisefloor status",
     };
     text.as_ptr()
@@ -65,6 +77,10 @@ pub(crate) fn status_of(error: Error) -> nf_status {
         Error::NoSamples => NF_ERR_NO_SAMPLES,
         Error::Unsupported => NF_ERR_UNSUPPORTED,
         Error::Mismatch => NF_ERR_MISMATCH,
+        Error::Foreign => NF_ERR_FOREIGN,
+        Error::Version => NF_ERR_VERSION,
+        Error::Length => NF_ERR_LENGTH,
+        Error::Corrupt => NF_ERR_CORRUPT,
         // `Error` is non-exhaustive: a variant added there without a line here is at least an error.
         _ => NF_ERR_RANGE,
     }

@@ -18,6 +18,14 @@ pub enum Error {
     Unsupported,
     /// Two objects made with different configurations cannot be combined.
     Mismatch,
+    /// The bytes are no tile.
+    Foreign,
+    /// The tile's format is newer than this library.
+    Version,
+    /// Bytes are missing, or there are more than the tile has.
+    Length,
+    /// The tile is damaged: its checksum does not match, or its fields make no sense.
+    Corrupt,
 }
 
 impl Error {
@@ -30,6 +38,10 @@ impl Error {
             Error::NoSamples => "no samples: at least one is needed",
             Error::Unsupported => "this combination of options is not supported",
             Error::Mismatch => "the two objects were made with different configurations",
+            Error::Foreign => "the bytes are not a noisefloor tile",
+            Error::Version => "the tile's format is newer than this library",
+            Error::Length => "the tile is truncated, or followed by other bytes",
+            Error::Corrupt => "the tile is damaged: its checksum does not match, or its fields make no sense",
         }
     }
 }

@@ -5,6 +5,7 @@
 //! - [`control_variate`]: a pixel's own samples, fitted by functions with known integrals, give an estimate whose error
 //!   is usually far below the mean's and never noticeably above it (chapter 4).
 //! - [`mis`]: weights for multiple importance sampling, the variance-minimising ones included (section 2.2.2).
+//! - [`tile`]: sample points whose error over the image is the least visible (chapter 5).
 //! - [`warp`]: from primary sample space to the shapes that a scene needs (section 2.2.1).
 //! - [`rng`]: a small generator with the same stream on every target.
 //!
@@ -49,6 +50,8 @@ pub mod real;
 pub mod rng;
 #[cfg(feature = "control-variate")]
 mod rows;
+#[cfg(feature = "tile")]
+pub mod tile;
 #[cfg(feature = "warp")]
 pub mod warp;
 

@@ -13,7 +13,7 @@ struct Chapter {
 }
 
 /// Every item belongs to the chapter with the longest matching prefix.
-const CHAPTERS: [Chapter; 5] = [
+const CHAPTERS: [Chapter; 6] = [
     Chapter {
         title: "Version and status",
         prefixes: &["NF_ABI_VERSION", "nf_abi_version", "nf_status", "NF_OK|NF_ERR_", "nf_status_message"],
@@ -46,6 +46,20 @@ const CHAPTERS: [Chapter; 5] = [
     Chapter {
         title: "Optimal multiple importance sampling: weights of least variance, found from the samples",
         prefixes: &["NF_OMIS_", "nf_omis", "nf_omis_"],
+    },
+    Chapter {
+        title: "Tiles and samplers: sample points whose error is spread over the image where it shows least",
+        prefixes: &[
+            "NF_TILE_",
+            "nf_tile",
+            "nf_tile_",
+            "nf_sampler",
+            "nf_sampler_pixel",
+            "nf_sampler_domain",
+            "nf_sampler_scramble",
+            "nf_sampler_draw",
+            "nf_sampler_fill",
+        ],
     },
     Chapter { title: "Random numbers", prefixes: &["nf_rng", "nf_rng_"] },
 ];
@@ -149,9 +163,16 @@ impl Item {
         let (_, chapter, place) =
             best.with_context(|| format!("xtask/src/header.rs has no chapter for `{name}`: add its prefix"))?;
         let mut text = String::new();
+        // Arguments on lines of their own stand below the first, whose line a `struct` left out makes shorter.
+        let mut shorter = 0;
         for line in block.lines() {
-            text += &tidy(line);
+            let tidied = tidy(line);
+            let indent = line.len() - line.trim_start().len();
+            text += tidied.get(shorter.min(indent)..).unwrap_or_default();
             text.push('\n');
+            if let (Some(before), Some(after)) = (line.find('('), tidied.find('(')) {
+                shorter = before.saturating_sub(after);
+            }
         }
         Ok(Self { text, chapter, place })
     }

@@ -55,7 +55,7 @@ pub enum TargetSpec {
     /// The uniform distribution.
     #[default]
     Uniform,
-    /// The darkness of a picture.
+    /// A picture: many points where it is bright.
     Image(PathBuf),
 }
 

@@ -1,6 +1,7 @@
 //! What the points of a class shall be distributed like.
 
 mod cdf;
+pub mod image;
 mod uniform;
 
 pub use cdf::bins_of_cdf;

@@ -1,0 +1,79 @@
+//! Many pixels and samples in one call.
+
+use super::sampler::{nf_sampler, state};
+use super::view::open;
+use crate::convert;
+use crate::status::*;
+use noisefloor_core::tile::Sampler;
+
+/// How many numbers nf_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside 1..4, or
+/// memory has not that many.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_sampler_fill_len(
+    dims: *const u32,
+    domains: usize,
+    width: u32,
+    height: u32,
+    samples: u32,
+) -> usize {
+    // SAFETY: the caller passes `domains` numbers.
+    let Ok(dims) = (unsafe { convert::slice(dims, domains) }) else { return 0 };
+    len(dims, width, height, samples).unwrap_or(0)
+}
+
+/// Draws for many pixels and samples at once, for renderers that work on whole images. The same bits as single draws.
+///
+/// samplers[domains]: one for each domain, all at the first pixel and the first sample.
+/// dims[domains]: how many numbers to draw from each, 1..4.
+/// width, height: how many pixels, to the right and down. samples: how many samples of each, by ascending index.
+/// u[height][width][samples][sum of dims]: what the samplers draw there, one after the other; len numbers are there, at least
+/// nf_sampler_fill_len.
+///
+/// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: dims, or sizes that memory cannot have; NF_ERR_MEMORY: len.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_sampler_fill(
+    samplers: *const nf_sampler,
+    dims: *const u32,
+    domains: usize,
+    width: u32,
+    height: u32,
+    samples: u32,
+    u: *mut f32,
+    len: usize,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes `domains` samplers and numbers.
+        let (samplers, dims) = unsafe { (convert::slice(samplers, domains)?, convert::slice(dims, domains)?) };
+        let needed = self::len(dims, width, height, samples).ok_or(NF_ERR_RANGE)?;
+        if len < needed {
+            return Err(NF_ERR_MEMORY);
+        }
+        // SAFETY: the caller passes room for `len` numbers, which are no fewer.
+        let mut rest = unsafe { convert::slice_mut(u, needed) }?;
+        for (y, x, sample) in places(width, height, samples) {
+            for (sampler, &dims) in samplers.iter().zip(dims) {
+                let Some((u, more)) = core::mem::take(&mut rest).split_at_mut_checked(dims as usize) else {
+                    return Ok(());
+                };
+                rest = more;
+                // SAFETY: the caller passes samplers whose tiles live.
+                let tile = unsafe { open(sampler.tile) };
+                Sampler::resume(&tile, state(sampler)).moved(x, y, sample).draw_into(u);
+            }
+        }
+        Ok(())
+    })())
+}
+
+fn places(width: u32, height: u32, samples: u32) -> impl Iterator<Item = (u32, u32, u32)> {
+    (0..height).flat_map(move |y| (0..width).flat_map(move |x| (0..samples).map(move |sample| (y, x, sample))))
+}
+
+fn len(dims: &[u32], width: u32, height: u32, samples: u32) -> Option<usize> {
+    let mut sum = 0_usize;
+    for &dims in dims {
+        sum = if (1..=4).contains(&dims) { sum.checked_add(dims as usize)? } else { return None };
+    }
+    let len = (width as usize).checked_mul(height as usize)?.checked_mul(samples as usize)?.checked_mul(sum)?;
+    (len <= isize::MAX as usize / size_of::<f32>()).then_some(len)
+}

@@ -1,0 +1,9 @@
+//! Tiles, the sampler that draws from them, and its batch form.
+
+mod fill;
+mod sampler;
+mod view;
+
+pub use fill::*;
+pub use sampler::*;
+pub use view::*;

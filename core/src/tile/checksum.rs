@@ -1,0 +1,54 @@
+//! CRC-32, the checksum of a tile.
+
+/// The polynomial of IEEE 802.3, reflected.
+const POLYNOMIAL: u32 = 0xedb8_8320;
+
+/// The remainder of each byte.
+static TABLE: [u32; 256] = table();
+
+const fn table() -> [u32; 256] {
+    let mut table = [0; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        let mut remainder = byte as u32;
+        let mut bit = 0;
+        while bit < 8 {
+            remainder = (remainder >> 1) ^ (POLYNOMIAL & (remainder & 1).wrapping_neg());
+            bit += 1;
+        }
+        table[byte] = remainder;
+        byte += 1;
+    }
+    table
+}
+
+/// A running CRC-32 of IEEE 802.3: every change within 32 consecutive bits is found, others but for one in 2^32.
+#[derive(Clone, Copy)]
+pub(super) struct Crc(u32);
+
+impl Crc {
+    pub(super) const fn new() -> Crc {
+        Crc(u32::MAX)
+    }
+
+    pub(super) fn add(self, bytes: &[u8]) -> Crc {
+        Crc(bytes.iter().fold(self.0, |crc, byte| (crc >> 8) ^ TABLE[usize::from(crc as u8 ^ byte)]))
+    }
+
+    pub(super) const fn finish(self) -> u32 {
+        !self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Crc;
+
+    /// The check value of the catalogue of CRC algorithms.
+    #[test]
+    fn check_value() {
+        assert_eq!(Crc::new().add(b"123456789").finish(), 0xcbf4_3926);
+        assert_eq!(Crc::new().add(b"1234").add(b"56789").finish(), 0xcbf4_3926);
+        assert_eq!(Crc::new().finish(), 0);
+    }
+}

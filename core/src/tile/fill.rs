@@ -1,0 +1,44 @@
+//! Many pixels and samples at once, for renderers that work on whole images.
+
+use super::sampler::Sampler;
+use crate::Error;
+
+/// How many numbers [`fill`] writes; `None` for more than memory holds.
+pub fn fill_len(domains: &[(Sampler<'_>, usize)], width: usize, height: usize, samples: usize) -> Option<usize> {
+    let dims = domains.iter().try_fold(0_usize, |sum, &(_, dims)| sum.checked_add(dims))?;
+    width.checked_mul(height)?.checked_mul(samples)?.checked_mul(dims)
+}
+
+/// Draws for `width x height` pixels, `samples` samples of each, in several domains: the same bits as single draws.
+///
+/// Each element of `domains` is a sampler, for the first pixel and sample, and how many dimensions to draw from it, 1 to 4.
+/// `u[y][x][sample][..]` is what those samplers, moved by y rows, x columns and `sample` samples, draw, one after the other:
+/// [`fill_len`] numbers; more stay as they are.
+///
+/// # Errors
+/// [`Error::Range`] for dims outside 1 to 4 or sizes that overflow; [`Error::Memory`] if `u` is too short.
+pub fn fill(
+    domains: &[(Sampler<'_>, usize)],
+    width: usize,
+    height: usize,
+    samples: usize,
+    u: &mut [f32],
+) -> Result<(), Error> {
+    if domains.iter().any(|&(_, dims)| !(1..=4).contains(&dims)) {
+        return Err(Error::Range);
+    }
+    let len = fill_len(domains, width, height, samples).ok_or(Error::Range)?;
+    let mut rest = u.get_mut(..len).ok_or(Error::Memory)?;
+    for y in 0..height {
+        for x in 0..width {
+            for sample in 0..samples {
+                for &(sampler, dims) in domains {
+                    let Some((u, more)) = core::mem::take(&mut rest).split_at_mut_checked(dims) else { return Ok(()) };
+                    rest = more;
+                    sampler.moved(x as u32, y as u32, sample as u32).draw_into(u);
+                }
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,166 @@
+//! The `.nft` format, version 1: a header of 128 bytes, then the values; `docs/tiles.md` has the table.
+
+use super::checksum::Crc;
+use super::view::Shape;
+use crate::Error;
+
+/// Bytes of the header.
+pub const HEADER_BYTES: usize = 128;
+/// Bytes of the description of the kernel.
+pub const KERNEL_BYTES: usize = 80;
+/// The version this library reads and writes.
+pub const VERSION: u16 = 1;
+/// How a tile begins. As in PNG, the line ends and the byte above 127 show files that were transferred as text.
+pub const MAGIC: [u8; 8] = *b"\x8eNFT\r\n\x1a\n";
+
+const PROGRESSIVE: u32 = 1;
+
+/// What a tile's file says about it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Header {
+    shape: Shape,
+    seed: u64,
+    kernel: [u8; KERNEL_BYTES],
+}
+
+impl Header {
+    /// A header to [`encode`](Header::encode).
+    ///
+    /// `seed` is the one the tile was made with. `kernel` says what for, such as `perceptual` or `gaussian:1.5`: at most
+    /// [`KERNEL_BYTES`] printable ASCII characters and spaces.
+    ///
+    /// # Errors
+    /// [`Error::Range`] for a shape or text outside these limits.
+    pub fn new(shape: Shape, seed: u64, kernel: &str) -> Result<Header, Error> {
+        let mut text = [0; KERNEL_BYTES];
+        let place = text.get_mut(..kernel.len()).ok_or(Error::Range)?;
+        place.iter_mut().zip(kernel.bytes()).for_each(|(to, from)| *to = from);
+        let header = Header { shape, seed, kernel: text };
+        if shape.is_valid() && header.text_is_valid() { Ok(header) } else { Err(Error::Range) }
+    }
+
+    /// How many values, and how they are stored.
+    pub const fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    /// The seed the tile was made with.
+    pub const fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// What the tile was optimised for.
+    pub fn kernel(&self) -> &str {
+        let len = self.kernel.iter().position(|&byte| byte == 0).unwrap_or(KERNEL_BYTES);
+        self.kernel.get(..len).and_then(|text| core::str::from_utf8(text).ok()).unwrap_or("")
+    }
+
+    /// The bytes to write before `payload`, which is what [`Tile::new`](super::Tile::new) takes.
+    ///
+    /// # Errors
+    /// [`Error::Length`] if the payload has not the bytes that the shape says.
+    pub fn encode(&self, payload: &[u8]) -> Result<[u8; HEADER_BYTES], Error> {
+        if payload.len() as u64 != self.shape.payload_bytes() {
+            return Err(Error::Length);
+        }
+        let before = self.before_checksum();
+        let after = self.after_checksum();
+        let checksum = Crc::new().add(&before).add(&after).add(payload).finish().to_le_bytes();
+        let mut bytes = [0; HEADER_BYTES];
+        let all = before.iter().chain(&checksum).chain(&after);
+        bytes.iter_mut().zip(all).for_each(|(to, &from)| *to = from);
+        Ok(bytes)
+    }
+
+    /// The header of a file's bytes, and its payload; all bytes are checked.
+    ///
+    /// # Errors
+    /// As for [`Tile::from_bytes`](super::Tile::from_bytes).
+    pub fn decode(bytes: &[u8]) -> Result<(Header, &[u8]), Error> {
+        if bytes.iter().zip(&MAGIC).any(|(byte, magic)| byte != magic) || bytes.is_empty() {
+            return Err(Error::Foreign);
+        }
+        let Some((head, payload)) = bytes.split_first_chunk::<HEADER_BYTES>() else { return Err(Error::Length) };
+        let header = Header::parse(head)?;
+        if payload.len() as u64 != header.shape.payload_bytes() {
+            return Err(Error::Length);
+        }
+        // The header says nothing but its fields: all of its bytes are those it would be written with. Compared one by one,
+        // as `==` may call bcmp, which not every C library has.
+        let written = header.encode(payload)?;
+        let difference = head.iter().zip(&written).fold(0, |all, (a, b)| all | (a ^ b));
+        if difference == 0 { Ok((header, payload)) } else { Err(Error::Corrupt) }
+    }
+
+    /// The fields, in range, of bytes whose checksum has yet to be compared.
+    pub(super) const fn parse(b: &[u8; HEADER_BYTES]) -> Result<Header, Error> {
+        let version = u16::from_le_bytes([b[8], b[9]]);
+        if version > VERSION {
+            return Err(Error::Version);
+        }
+        let shape = Shape {
+            size: u16::from_le_bytes([b[32], b[33]]) as u32,
+            spp: u16::from_le_bytes([b[34], b[35]]) as u32,
+            frames: u16::from_le_bytes([b[36], b[37]]) as u32,
+            dims: b[38] as u32,
+            bits: b[39] as u32,
+            progressive: u32::from_le_bytes([b[40], b[41], b[42], b[43]]) & PROGRESSIVE != 0,
+        };
+        let seed = u64::from_le_bytes([b[24], b[25], b[26], b[27], b[28], b[29], b[30], b[31]]);
+        let (_, kernel) = b.split_at(HEADER_BYTES - KERNEL_BYTES);
+        let Some(kernel) = kernel.first_chunk::<KERNEL_BYTES>() else { return Err(Error::Corrupt) };
+        let header = Header { shape, seed, kernel: *kernel };
+        if version == VERSION && shape.is_valid() && header.text_is_valid() { Ok(header) } else { Err(Error::Corrupt) }
+    }
+
+    /// Bytes 0 to 12.
+    fn before_checksum(&self) -> [u8; 12] {
+        let [a, b, c, d, e, f, g, h] = MAGIC;
+        let ([i, j], [k, l]) = (VERSION.to_le_bytes(), (HEADER_BYTES as u16).to_le_bytes());
+        [a, b, c, d, e, f, g, h, i, j, k, l]
+    }
+
+    /// Bytes 16 to 128.
+    fn after_checksum(&self) -> [u8; HEADER_BYTES - 16] {
+        let Shape { size, spp, dims, frames, bits, progressive } = self.shape;
+        let flags = if progressive { PROGRESSIVE } else { 0 };
+        let fields = [
+            &self.shape.payload_bytes().to_le_bytes()[..],
+            &self.seed.to_le_bytes(),
+            &(size as u16).to_le_bytes(),
+            &(spp as u16).to_le_bytes(),
+            &(frames as u16).to_le_bytes(),
+            &[dims as u8, bits as u8],
+            &flags.to_le_bytes(),
+            // Reserved.
+            &[0; 4],
+            &self.kernel,
+        ];
+        let mut bytes = [0; HEADER_BYTES - 16];
+        let all = fields.into_iter().flatten();
+        bytes.iter_mut().zip(all).for_each(|(to, &from)| *to = from);
+        bytes
+    }
+
+    /// Printable ASCII, then zeros.
+    const fn text_is_valid(&self) -> bool {
+        let mut rest: &[u8] = &self.kernel;
+        let mut ended = false;
+        while let Some((&byte, others)) = rest.split_first() {
+            ended |= byte == 0;
+            if ended && byte != 0 || !ended && !(b' ' <= byte && byte <= b'~') {
+                return false;
+            }
+            rest = others;
+        }
+        true
+    }
+}
+
+/// The stored integer of `bits` (8 or 16) whose value, `(v + 1/2) / 2^bits`, is nearest to u in [0, 1); u outside, or NaN, is
+/// clamped.
+pub fn quantize(u: f32, bits: u32) -> u16 {
+    let levels = 1_u32 << (bits & 31).min(16);
+    // The conversion saturates, and rounds down what is positive.
+    ((u * levels as f32) as u32).min(levels - 1) as u16
+}

@@ -1,0 +1,99 @@
+//! Hashes, and the permutation of a pixel's samples.
+
+/// 32 well-mixed bits: the finaliser of MurmurHash3 (A. Appleby, 2011), a bijection that keeps 0.
+#[inline(always)]
+pub(super) const fn mix(mut h: u32) -> u32 {
+    h ^= h >> 16;
+    h = h.wrapping_mul(0x85eb_ca6b);
+    h ^= h >> 13;
+    h = h.wrapping_mul(0xc2b2_ae35);
+    h ^ (h >> 16)
+}
+
+/// The fractional part of the golden ratio, odd: multiples of it differ in many bits.
+pub(super) const GOLDEN: u32 = 0x9e37_79b9;
+
+/// The domain that `key` leads to from `domain`; never the root, 0. For either argument fixed, a bijection of the other but for
+/// that exception.
+#[inline(always)]
+pub(super) const fn child(domain: u32, key: u32) -> u32 {
+    let h = mix(key.wrapping_add(GOLDEN) ^ domain.wrapping_mul(0x2c92_77b5));
+    h + (h == 0) as u32
+}
+
+/// Where sample `index` of `2^bits` goes, bits at most 8: `a * index + b` in the field of 2^bits elements, for random
+/// b and a != 0. Of all affine bijections each is equally likely (to 2^-16), so that any two samples go to any two places with
+/// the same probability: what it takes for sums of products of two sampled domains to have the mean and the
+/// variance of random pairing.
+#[inline(always)]
+pub(super) fn permute(index: u32, bits: u32, random: u32) -> u32 {
+    let mask = (1_u32 << (bits & 15)) - 1;
+    let scale = ((random >> 16) * mask >> 16) + 1;
+    // x^bits = POLYNOMIAL(x): irreducible.
+    let polynomial = POLYNOMIALS.get(bits as usize).copied().unwrap_or(0);
+    let (mut product, mut power) = (0, scale);
+    for bit in 0..bits {
+        product ^= power & (index >> (bit & 7) & 1).wrapping_neg();
+        power = (power << 1) ^ (polynomial & (power >> ((bits - 1) & 7) & 1).wrapping_neg());
+    }
+    (product ^ random) & mask
+}
+
+/// An irreducible polynomial over the field of two elements for each degree, x^degree included.
+static POLYNOMIALS: [u32; 9] = [0, 0b11, 0b111, 0b1011, 0b1_0011, 0b10_0101, 0b100_0011, 0b1000_0011, 0b1_0001_1011];
+
+/// As [`permute`], within each octave `[2^k, 2^(k + 1))`: the first 1, 2, 4, ... samples remain those.
+#[inline(always)]
+pub(super) fn permute_octave(index: u32, random: u32) -> u32 {
+    match index.checked_ilog2() {
+        // Octaves are permuted independently.
+        Some(bits) => {
+            let first = 1 << (bits & 7);
+            first | permute(index ^ first, bits, mix(random.wrapping_add(GOLDEN.wrapping_mul(bits))))
+        }
+        None => index,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Over all affine maps of the field, each pair of samples takes each pair of places equally often.
+    #[test]
+    fn permutations_are_doubly_transitive() {
+        for bits in 1..=8 {
+            let n = 1_u32 << bits;
+            let mut seen = vec_of_zeros::<65536>();
+            for a in 0..n - 1 {
+                // The middle of the 16-bit values that give this factor.
+                let high = ((u64::from(a) << 16) + (1 << 15)) / u64::from(n - 1);
+                for b in 0..n {
+                    let random = (high as u32) << 16 | b;
+                    let (first, second) = (permute(0, bits, random), permute(n - 1, bits, random));
+                    assert!(first < n && second < n && first != second);
+                    seen[(first * n + second) as usize] += 1;
+                }
+            }
+            let pairs = seen.iter().filter(|&&count| count > 0);
+            assert_eq!(pairs.clone().count() as u32, n * (n - 1), "{bits} bits");
+            assert!(pairs.clone().all(|&count| count == 1));
+        }
+    }
+
+    fn vec_of_zeros<const N: usize>() -> [u8; N] {
+        [0; N]
+    }
+
+    #[test]
+    fn octaves_stay() {
+        for random in [0, 1, 0x1234_5678, u32::MAX] {
+            let mut seen = [false; 256];
+            for index in 0..256_u32 {
+                let to = permute_octave(index, random);
+                assert_eq!(to.checked_ilog2(), index.checked_ilog2());
+                assert!(!core::mem::replace(&mut seen[to as usize], true));
+            }
+        }
+    }
+}

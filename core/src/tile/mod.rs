@@ -1,0 +1,42 @@
+//! Tiles: tables of sample points for the pixels of an image, and the sampler that draws from them.
+//!
+//! A tile holds, for each pixel of a small square that repeats over the image, a few points of the unit cube. They are
+//! optimised offline (chapter 5) so that each pixel's points are well distributed, and so that what error remains differs as
+//! much as it can between neighbouring pixels: the eye, a filter or a denoiser then removes most of it.
+//!
+//! - [`Tile`]: a view of a table, from a file's bytes ([`Tile::from_bytes`]) or of those compiled in ([`Builtin`]).
+//! - [`Sampler`]: one sample of one pixel. Each decision of a path (lens, light, bounce) has a *domain*, a child of the
+//!   sampler by a key of its own; there are no dimension counters. Any sample can be had in any order.
+//! - [`fill`]: many pixels and samples at once, the same bits.
+//! - [`Header`]: how a tile is stored.
+//!
+//! `docs/tiles.md` has the format, the semantics and a renderer's loop.
+//!
+//! ```
+//! # #[cfg(feature = "tile-64-1spp-2d")] {
+//! use noisefloor::tile::{Builtin, Sampler};
+//!
+//! let tile = Builtin::Size64Spp1Dims2.tile().unwrap();
+//! let sampler = Sampler::pixel(&tile, 10, 20, 0, 0);
+//! let [x, y] = sampler.draw::<2>();                  // where in the pixel
+//! let [a, b] = sampler.domain(1).draw::<2>();        // where on the lens
+//! let bounce = sampler.domain(2).domain(0);          // the first bounce, and below it its own decisions
+//! let [c, d, e] = bounce.domain(7).draw::<3>();
+//! assert!([x, y, a, b, c, d, e].iter().all(|u| (0.0..1.0).contains(u)));
+//! # }
+//! ```
+
+mod builtin;
+mod checksum;
+mod fill;
+mod format;
+mod hash;
+mod sampler;
+mod sequence;
+mod view;
+
+pub use builtin::Builtin;
+pub use fill::{fill, fill_len};
+pub use format::{HEADER_BYTES, Header, KERNEL_BYTES, MAGIC, VERSION, quantize};
+pub use sampler::{Sampler, State};
+pub use view::{MAX_DIMS, MAX_FRAMES, MAX_SIZE, MAX_SPP, Shape, Tile};

@@ -1,0 +1,210 @@
+//! The sampler: one sample of one pixel, and the domains below it.
+
+use super::hash::{child, mix, permute, permute_octave};
+use super::sequence;
+use super::view::{Tile, unit};
+
+/// A sample's place, without its tile. Any value of the fields is valid; [`Sampler`] says what they mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct State {
+    /// The domain: 0 is the root, others are hashes of the keys that led there.
+    pub domain: u32,
+    /// The sample of the pixel.
+    pub index: u32,
+    /// The pixel's column, modulo the tile's size.
+    pub x: u16,
+    /// The pixel's row, modulo the tile's size.
+    pub y: u16,
+    /// The frame, modulo the tile's frames.
+    pub frame: u16,
+    /// 1 if scrambled, otherwise 0.
+    pub scrambled: u16,
+}
+
+/// One sample of one pixel: 24 bytes, to be copied freely. Drawing does not change it.
+///
+/// A sampler stands for a point of a cube with as many dimensions as are asked for, by domain: each decision of a path has
+/// its own, [`domain`](Sampler::domain) with a key of its own. A domain's numbers depend on nothing but tile, pixel, frame,
+/// index and the keys, so samples can be had in any order and on any thread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sampler<'a> {
+    tile: &'a Tile<'a>,
+    state: State,
+}
+
+/// Keeps domains of frames, scrambles and further dimensions apart from those of keys.
+const FRAMES: u32 = 0x6672_616d;
+const SCRAMBLE: u32 = 0x7363_7261;
+const DIMENSIONS: u32 = 0x6469_6d73;
+
+impl<'a> Sampler<'a> {
+    /// Sample `index` of pixel (x, y), any values: pixels repeat with the tile's size.
+    ///
+    /// The first `spp` samples are the tile's. Those that follow continue with a scrambled Sobol sequence in their place.
+    ///
+    /// Frames 0 to `frames - 1` are the tile's (a tile that is not temporal has one). Each later run of them is the tile at
+    /// another place, unrelated to it.
+    #[inline]
+    pub const fn pixel(tile: &'a Tile<'a>, x: u32, y: u32, frame: u32, index: u32) -> Sampler<'a> {
+        Sampler { tile, state: State::pixel(tile, x, y, frame, index) }
+    }
+
+    /// The sampler of a state that was kept: [`Sampler::state`].
+    #[inline]
+    pub const fn resume(tile: &'a Tile<'a>, state: State) -> Sampler<'a> {
+        Sampler { tile, state }
+    }
+
+    /// What remains when the tile is known.
+    #[inline]
+    pub const fn state(&self) -> State {
+        self.state
+    }
+
+    /// The tile it draws from.
+    #[inline]
+    pub const fn tile(&self) -> &'a Tile<'a> {
+        self.tile
+    }
+
+    /// The child domain of a key. Children of different keys are unrelated to each other and to their parent; keys mean
+    /// something only among children of one parent.
+    #[inline]
+    #[must_use]
+    pub const fn domain(self, key: u32) -> Sampler<'a> {
+        Sampler { state: self.state.domain(key), ..self }
+    }
+
+    /// An independent version for each seed but 0; seed 0 changes nothing.
+    ///
+    /// It is the tile at another place, with all values of each dimension shifted, modulo 1, by a number that only the
+    /// seed and the domain decide. Over seeds every value is uniform, so estimates have no bias at all, and the blue
+    /// distribution of the error over the image suffers little. Children of a scrambled sampler are scrambled.
+    #[inline]
+    #[must_use]
+    pub const fn scramble(self, seed: u32) -> Sampler<'a> {
+        Sampler { state: self.state.scramble(seed), ..self }
+    }
+
+    /// The same domain of the pixel `x` columns to the right and `y` rows down, and of the sample `index` further.
+    #[inline]
+    #[must_use]
+    pub const fn moved(self, x: u32, y: u32, index: u32) -> Sampler<'a> {
+        let mask = self.tile.shape().size.wrapping_sub(1);
+        let State { x: from_x, y: from_y, index: from, .. } = self.state;
+        let x = ((from_x as u32).wrapping_add(x) & mask) as u16;
+        let y = ((from_y as u32).wrapping_add(y) & mask) as u16;
+        Sampler { state: State { x, y, index: from.wrapping_add(index), ..self.state }, ..self }
+    }
+
+    /// The first N coordinates, 1 to 4, of this domain's point; each in [0, 1), a multiple of 2^-24.
+    ///
+    /// Up to the tile's dims they are optimised together; further ones come from other places of the tile.
+    #[inline]
+    pub fn draw<const N: usize>(&self) -> [f32; N] {
+        const { assert!(0 < N && N <= 4, "a domain has 1 to 4 dimensions") };
+        let mut fixed = [0; N];
+        point(self.tile, &self.state, &mut fixed);
+        fixed.map(unit)
+    }
+
+    /// As [`draw`](Sampler::draw), as many coordinates as `u` has room for, at most 4; more stay as they are.
+    #[inline]
+    pub fn draw_into(&self, u: &mut [f32]) {
+        match u {
+            [a] => [*a] = self.draw(),
+            [a, b] => [*a, *b] = self.draw(),
+            [a, b, c] => [*a, *b, *c] = self.draw(),
+            [a, b, c, d, ..] => [*a, *b, *c, *d] = self.draw(),
+            [] => {}
+        }
+    }
+}
+
+impl State {
+    /// [`Sampler::pixel`].
+    #[inline(always)]
+    pub const fn pixel(tile: &Tile<'_>, x: u32, y: u32, frame: u32, index: u32) -> State {
+        let shape = tile.shape();
+        let mask = shape.size.wrapping_sub(1);
+        let (frame, cycle) = if shape.frames > 1 { (frame % shape.frames, frame / shape.frames) } else { (0, frame) };
+        let domain = if cycle == 0 { 0 } else { child(FRAMES, cycle) };
+        State { domain, index, x: (x & mask) as u16, y: (y & mask) as u16, frame: frame as u16, scrambled: 0 }
+    }
+
+    /// [`Sampler::domain`].
+    #[inline(always)]
+    #[must_use]
+    pub const fn domain(self, key: u32) -> State {
+        State { domain: child(self.domain, key), ..self }
+    }
+
+    /// [`Sampler::scramble`].
+    #[inline(always)]
+    #[must_use]
+    pub const fn scramble(self, seed: u32) -> State {
+        if seed == 0 {
+            return self;
+        }
+        State { domain: child(self.domain ^ SCRAMBLE, seed), scrambled: 1, ..self }
+    }
+}
+
+/// The coordinates in 32-bit fixed point.
+#[inline(always)]
+pub(super) fn point(tile: &Tile<'_>, state: &State, fixed: &mut [u32]) {
+    let dims = tile.shape().dims as usize;
+    if fixed.len() <= dims {
+        group(tile, state, fixed);
+    } else {
+        // A tile has at least one dimension.
+        for (number, fixed) in fixed.chunks_mut(dims.max(1)).enumerate() {
+            let domain = match number {
+                0 => state.domain,
+                _ => child(state.domain ^ DIMENSIONS, number as u32),
+            };
+            group(tile, &State { domain, ..*state }, fixed);
+        }
+    }
+}
+
+/// At most as many coordinates as the tile has dimensions.
+#[inline(always)]
+fn group(tile: &Tile<'_>, state: &State, fixed: &mut [u32]) {
+    let shape = tile.shape();
+    let domain = state.domain;
+    let (x, y) = place(state, shape.size);
+    let spp_bits = shape.spp.trailing_zeros();
+    let within = shape.spp.wrapping_sub(1);
+    let continued = state.index > within;
+    let mut sample = if continued { 0 } else { state.index };
+    // Samples of two domains must not meet in the same order in every pixel.
+    if domain != 0 && within != 0 && !continued {
+        let pixel = x | y << 10 | u32::from(state.frame) << 20;
+        let random = mix(domain ^ pixel.wrapping_mul(0x9e37_79b1));
+        sample = if shape.progressive { permute_octave(sample, random) } else { permute(sample, spp_bits, random) };
+    }
+    tile.read(tile.place(u32::from(state.frame), y, x, sample), fixed);
+    if state.scrambled != 0 {
+        fixed.iter_mut().zip(1..).for_each(|(u, dim)| *u = u.wrapping_add(rotation(domain, dim)));
+    }
+    if continued {
+        sequence::shift(domain, state.index, fixed);
+    }
+}
+
+/// Where in the tile a domain finds the pixel: a shift and one of the eight symmetries of the square; for the root neither.
+#[inline(always)]
+fn place(state: &State, size: u32) -> (u32, u32) {
+    let mask = size.wrapping_sub(1);
+    let flip = |coordinate: u16, bit: u32| u32::from(coordinate) ^ (mask & (state.domain >> bit & 1).wrapping_neg());
+    let (x, y) = (flip(state.x, 20), flip(state.y, 21));
+    let (x, y) = if state.domain >> 22 & 1 == 0 { (x, y) } else { (y, x) };
+    (x.wrapping_add(state.domain) & mask, y.wrapping_add(state.domain >> 10) & mask)
+}
+
+/// How far a scrambled domain's values are shifted; a bijection of the domain, so over all of them each shift occurs once.
+#[inline(always)]
+const fn rotation(domain: u32, dim: u32) -> u32 {
+    mix(domain.wrapping_add(dim.wrapping_mul(super::hash::GOLDEN)))
+}

@@ -1,0 +1,160 @@
+//! What follows a tile's samples: a Sobol sequence, shuffled and scrambled for each domain.
+
+use super::hash::{GOLDEN, mix};
+use super::view::MAX_DIMS;
+
+/// Moves a pixel's first sample to where its sample `index`, at least 1, belongs.
+///
+/// That is exclusive or with point `index` of a sequence that all pixels share: S. Joe and F. Kuo's Sobol sequence (2008)
+/// in an order shuffled within each octave of indices, Owen-scrambled, and shifted so that its first point is the origin.
+/// With the pixel's first sample at index 0, any aligned run of 2^k indices is a digital net.
+#[inline]
+pub(super) fn shift(domain: u32, index: u32, fixed: &mut [u32]) {
+    let index = shuffle(index, mix(domain ^ SHUFFLE));
+    for ((u, directions), dim) in fixed.iter_mut().zip(&DIRECTIONS).zip(1_u32..) {
+        let seed = mix(domain ^ VALUES ^ dim.wrapping_mul(GOLDEN));
+        let mut point = 0;
+        let mut bits = index;
+        while bits != 0 {
+            point ^= directions[bits.trailing_zeros() as usize & 31];
+            bits &= bits - 1;
+        }
+        *u ^= (scramble(point, seed) ^ scramble(0, seed)).reverse_bits();
+    }
+}
+
+const SHUFFLE: u32 = 0x7368_7566;
+const VALUES: u32 = 0x6f77_656e;
+
+/// Owen's nested scrambling of the reversed bits of a number: whether a bit changes depends on those below it.
+///
+/// S. Laine and T. Karras, "Stratified Sampling for Stochastic Transparency", 2011, with N. Vegdahl's constants (2021).
+#[inline(always)]
+const fn scramble(mut bits: u32, seed: u32) -> u32 {
+    bits ^= bits.wrapping_mul(0x3d20_adea);
+    bits = bits.wrapping_add(seed);
+    bits = bits.wrapping_mul((seed >> 16) | 1);
+    bits ^= bits.wrapping_mul(0x0552_6c56);
+    bits ^ bits.wrapping_mul(0x53a2_2864)
+}
+
+/// A nested permutation within each octave `[2^k, 2^(k + 1))`: aligned runs of 2^j indices go to such runs.
+#[inline(always)]
+fn shuffle(index: u32, seed: u32) -> u32 {
+    match index.checked_ilog2() {
+        Some(bits @ 1..) => {
+            let first = 1 << (bits & 31);
+            // The number of `bits` bits, its highest first.
+            let reversed = (index ^ first).reverse_bits() >> ((32 - bits) & 31);
+            let shuffled = scramble(reversed, seed.wrapping_add(bits.wrapping_mul(GOLDEN))) & (first - 1);
+            first | shuffled.reverse_bits() >> ((32 - bits) & 31)
+        }
+        _ => index,
+    }
+}
+
+/// The direction numbers of each dimension, their bits reversed: S. Joe and F. Kuo, "Constructing Sobol Sequences with
+/// Better Two-Dimensional Projections", 2008, the table new-joe-kuo-6.
+static DIRECTIONS: [[u32; 32]; MAX_DIMS as usize] = [
+    van_der_corput(),
+    directions(1, 0, [1, 0, 0, 0, 0]),
+    directions(2, 1, [1, 3, 0, 0, 0]),
+    directions(3, 1, [1, 3, 1, 0, 0]),
+    directions(3, 2, [1, 1, 1, 0, 0]),
+    directions(4, 1, [1, 1, 3, 3, 0]),
+    directions(4, 4, [1, 3, 5, 13, 0]),
+    directions(5, 2, [1, 1, 5, 5, 17]),
+];
+
+/// The first dimension: bit k of the index is bit k of the reversed point.
+const fn van_der_corput() -> [u32; 32] {
+    let mut numbers = [0; 32];
+    let mut k = 0;
+    while k < 32 {
+        numbers[k] = 1 << k;
+        k += 1;
+    }
+    numbers
+}
+
+/// From a primitive polynomial's degree and inner coefficients, and the first numbers.
+const fn directions(degree: usize, coefficients: u32, initial: [u32; 5]) -> [u32; 32] {
+    // Number k is below 2^(k + 1).
+    let mut numbers = [0_u32; 32];
+    let mut k = 0;
+    while k < 32 {
+        numbers[k] = if k < degree {
+            initial[k]
+        } else {
+            let mut number = numbers[k - degree] ^ (numbers[k - degree] << degree);
+            let mut i = 1;
+            while i < degree {
+                if coefficients >> (degree - 1 - i) & 1 == 1 {
+                    number ^= numbers[k - i] << i;
+                }
+                i += 1;
+            }
+            number
+        };
+        k += 1;
+    }
+    // As a fraction, number k is shifted up by 31 - k; reversed, that is down again.
+    let mut k = 0;
+    while k < 32 {
+        numbers[k] = (numbers[k] << (31 - k)).reverse_bits();
+        k += 1;
+    }
+    numbers
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The points of the plain sequence, as fractions of 2^32.
+    fn sobol(index: u32, dim: usize) -> u32 {
+        let set = (0..32).filter(|bit| index >> bit & 1 == 1);
+        set.fold(0, |point, bit| point ^ DIRECTIONS[dim][bit]).reverse_bits()
+    }
+
+    /// In each dimension every run of 2^k points has one in each of 2^k equal intervals; the first two are a (0, 2)-sequence.
+    #[test]
+    fn points_are_nets() {
+        for bits in 0..=8 {
+            let n = 1_u32 << bits;
+            for start in [0, 3 * n, 1000 * n] {
+                for dim in 0..8 {
+                    let mut seen = [false; 256];
+                    (start..start + n).for_each(|i| seen[(u64::from(sobol(i, dim)) << bits >> 32) as usize] = true);
+                    assert_eq!(seen.iter().filter(|&&s| s).count() as u32, n);
+                }
+                for wide in 0..=bits {
+                    let mut seen = [false; 256];
+                    for i in start..start + n {
+                        let x = u64::from(sobol(i, 0)) << wide >> 32;
+                        let y = u64::from(sobol(i, 1)) << (bits - wide) >> 32;
+                        seen[(x << (bits - wide) | y) as usize] = true;
+                    }
+                    assert_eq!(seen.iter().filter(|&&s| s).count() as u32, n, "{bits} {wide}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn shuffled_octaves_are_permutations_of_aligned_runs() {
+        for seed in [0, 7, 0x8765_4321] {
+            let mut seen = [false; 1024];
+            for index in 0..1024_u32 {
+                let to = shuffle(index, seed);
+                assert_eq!(to.checked_ilog2(), index.checked_ilog2());
+                assert!(!core::mem::replace(&mut seen[to as usize], true));
+                if index >= 2 {
+                    assert_eq!(shuffle(index ^ 1, seed), to ^ 1, "neighbours stay neighbours");
+                }
+            }
+        }
+        assert!((0..16).any(|seed| shuffle(2, mix(seed)) == 3) && (0..16).any(|seed| shuffle(2, mix(seed)) == 2));
+        assert_eq!(shuffle(u32::MAX, 3) >> 31, 1);
+    }
+}

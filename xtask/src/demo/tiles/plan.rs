@@ -1,0 +1,133 @@
+//! What is rendered: scenes, samplers, sizes.
+
+use crate::demo::renderer::{Sampler, threads};
+
+/// One of the path tracer's scenes.
+pub(crate) struct Scene {
+    pub(crate) name: &'static str,
+    /// What its integral is over.
+    pub(crate) domain: &'static str,
+    /// Where the part is that the sheets show, half as wide and high as the image: its corner, in images.
+    pub(crate) crop: [f64; 2],
+    /// Roughly what a sample costs, in nanoseconds: only the progress bar uses it.
+    pub(crate) cost: f64,
+    pub(crate) samplers: &'static [Choice],
+}
+
+/// A sampler that is compared.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Choice {
+    Random,
+    Sobol,
+    /// The tile of so many dimensions that has as many samples as are drawn, or the next fewer.
+    Tile(u32),
+    /// One tile for every number of samples.
+    Progressive,
+}
+
+/// What each sampler is compared with.
+pub(crate) const BASELINE: Choice = Choice::Random;
+
+/// The plain mean, and the control variate that suits stratified samples.
+pub(crate) const ESTIMATORS: [&str; 2] = ["mc", "block"];
+
+/// Total degree of the fits.
+pub(crate) const ORDER: u32 = 2;
+
+pub(crate) const SCENES: [Scene; 2] = [
+    Scene {
+        name: "direct",
+        domain: "the light's surface (2 dims)",
+        crop: [0.1, 0.45],
+        cost: 300.0,
+        samplers: &[Choice::Random, Choice::Sobol, Choice::Tile(2), Choice::Progressive],
+    },
+    Scene {
+        name: "lens",
+        domain: "the lens and the light's surface (4 dims)",
+        crop: [0.1, 0.45],
+        cost: 800.0,
+        samplers: &[Choice::Random, Choice::Sobol, Choice::Tile(2), Choice::Tile(4)],
+    },
+];
+
+/// The tile of the animation.
+pub(crate) const TEMPORAL: &str = "128_1SPP_2D_TEMPORAL";
+
+impl Choice {
+    /// In headings and tables.
+    pub(crate) fn label(self) -> String {
+        match self {
+            Self::Random => "random".to_owned(),
+            Self::Sobol => "Owen-Sobol".to_owned(),
+            Self::Tile(dims) => format!("tile {dims}D"),
+            Self::Progressive => "progressive tile".to_owned(),
+        }
+    }
+
+    /// In names of files.
+    pub(crate) fn slug(self) -> String {
+        match self {
+            Self::Random => "random".to_owned(),
+            Self::Sobol => "sobol".to_owned(),
+            Self::Tile(dims) => format!("tile{dims}d"),
+            Self::Progressive => "progressive".to_owned(),
+        }
+    }
+
+    /// None if the library does not carry such a tile; `tiles` are those that it does.
+    pub(crate) fn sampler(self, spp: u32, tiles: &[String]) -> Option<Sampler<'_>> {
+        let find = |name: &str| tiles.iter().find(|tile| *tile == name).map(|tile| Sampler::Tile(tile));
+        match self {
+            Self::Random => Some(Sampler::Random),
+            Self::Sobol => Some(Sampler::Sobol),
+            Self::Tile(dims) => {
+                (0..=spp.ilog2()).rev().find_map(|power| find(&format!("128_{}SPP_{dims}D", 1 << power)))
+            }
+            Self::Progressive => find("128_16SPP_2D_PROGRESSIVE"),
+        }
+    }
+}
+
+/// Sizes that decide how long this part takes.
+pub(crate) struct Plan {
+    /// Width and height of every image: tiles repeat after 128 pixels.
+    pub(crate) size: u32,
+    pub(crate) spp: [u32; 3],
+    /// Renderings of each image with other samples: errors are averaged, times are medians.
+    pub(crate) frames: u32,
+    /// Samples per pixel of each of the two halves of a reference.
+    pub(crate) reference_spp: u32,
+    pub(crate) threads: u32,
+}
+
+impl Plan {
+    pub(crate) fn new(quick: bool) -> Self {
+        let (size, frames, reference_spp) = if quick { (128, 1, 128) } else { (256, 4, 400) };
+        Self { size, spp: [1, 4, 16], frames, reference_spp, threads: threads() }
+    }
+
+    /// What rendering `spp` samples per pixel with `estimators` estimators adds to the progress bar.
+    pub(crate) fn work(&self, scene: &Scene, spp: u32, estimators: usize) -> u64 {
+        let samples = f64::from(self.size) * f64::from(self.size) * f64::from(spp);
+        (samples * (scene.cost + 300.0 * estimators.saturating_sub(1) as f64) * 1e-3) as u64 + 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tile_has_no_more_samples_than_are_drawn() {
+        let tiles = ["128_1SPP_2D", "128_4SPP_2D", "128_1SPP_4D"].map(str::to_owned);
+        let name = |choice: Choice, spp| match choice.sampler(spp, &tiles) {
+            Some(Sampler::Tile(name)) => name.to_owned(),
+            _ => "none".to_owned(),
+        };
+        assert_eq!(name(Choice::Tile(2), 1), "128_1SPP_2D");
+        assert_eq!(name(Choice::Tile(2), 16), "128_4SPP_2D");
+        assert_eq!(name(Choice::Tile(4), 4), "128_1SPP_4D");
+        assert_eq!(name(Choice::Progressive, 4), "none");
+    }
+}
