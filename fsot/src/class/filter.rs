@@ -17,7 +17,7 @@ impl Filter {
         let (mut highest, mut members) = (0.0f32, 0);
         for i in 0..points {
             let value = coordinates.value(function, i, points);
-            if !(value > 0.0) {
+            if value <= 0.0 {
                 continue;
             }
             highest = highest.max(value);

@@ -71,9 +71,9 @@ pub(crate) fn transport<const D: usize>(
 
     // Position = low + key * quantum.
     let (mut low, mut width) = (0.0f32, 0.0f32);
-    for k in 0..D {
-        low += (slice.direction[k] * lengths[k]).min(0.0);
-        width += (slice.direction[k] * lengths[k]).abs();
+    for (direction, length) in slice.direction.iter().zip(lengths) {
+        low += (direction * length).min(0.0);
+        width += (direction * length).abs();
     }
     let top = ROUNDING - 1.0;
     let quantum = width / top;
@@ -122,7 +122,7 @@ fn project<const D: usize>(
     scale: f32,
     keys: &mut [u32],
 ) {
-    let key = |t: f32| (((t - low) * scale).max(0.0).min(ROUNDING - 1.0) + ROUNDING).to_bits() & ((1 << KEY_BITS) - 1);
+    let key = |t: f32| (((t - low) * scale).clamp(0.0, ROUNDING - 1.0) + ROUNDING).to_bits() & ((1 << KEY_BITS) - 1);
     let wraps = slice.shift != [0.0; D];
     let mut keys = keys;
     for range in &slice.selected {
@@ -141,8 +141,8 @@ fn project<const D: usize>(
         } else {
             for (point, place) in points.iter().zip(here) {
                 let mut t = 0.0;
-                for k in 0..D {
-                    t += point[k] * slice.direction[k];
+                for (x, direction) in point.iter().zip(&slice.direction) {
+                    t += x * direction;
                 }
                 *place = key(t);
             }
