@@ -277,3 +277,59 @@ impl Lattice {
         self.index(shift(self.past, -tap.frame), shift(self.margin, tap.dy), shift(self.margin, tap.dx))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tile::TemporalKernel;
+    use proptest::prelude::*;
+
+    /// The number of joined thresholds must not hide a subclass: all that a threshold can select, found by brute force.
+    fn subclasses(taps: &[Tap]) -> Vec<usize> {
+        let mut counts: Vec<usize> =
+            taps.iter().map(|tap| taps.iter().filter(|other| other.weight >= tap.weight).count()).collect();
+        counts.sort_unstable();
+        counts.dedup();
+        counts
+    }
+
+    proptest! {
+        /// Point-set filtering: the subclass that a threshold z selects holds the taps with w > z, and no other; its probability is that of the
+        /// thresholds that select it.
+        #[test]
+        fn a_threshold_selects_the_taps_above_it(values in prop::collection::vec(0u32..6, 25), exponent in 0.5f64..2.0) {
+            prop_assume!(values.iter().any(|&value| value > 0));
+            let rows = values.chunks(5).map(|row| row.iter().map(|&value| value as f32 / 5.0).collect()).collect();
+            let taps = sorted(Kernel::Tabulated(rows).taps().unwrap());
+            let levels = levels(&taps, exponent);
+            prop_assert_eq!(levels.iter().map(|level| level.0).collect::<Vec<_>>(), subclasses(&taps));
+            let mut above = 1.0;
+            for &(count, probability) in &levels {
+                // Thresholds in the middle of those that select this subclass.
+                let z = (above - probability / 2.0).powf(exponent);
+                prop_assert_eq!(taps.iter().filter(|tap| f64::from(tap.weight) > z).count(), count);
+                above -= probability;
+            }
+            prop_assert!(above.abs() < 1e-6);
+        }
+
+        /// However many classes, prefixes and frames: probabilities add up to 1 and every random number finds a subclass inside the lattice.
+        #[test]
+        fn every_number_finds_a_subclass(number in any::<u32>(), spp in 0u32..4, share in 0.0f32..0.5, frames in 1usize..5, progressive in any::<bool>()) {
+            let mut problem = TileProblem::new(16, 1 << spp, 2);
+            problem.box_class.share = share;
+            problem.progressive = progressive;
+            problem.frames = frames;
+            problem.temporal = (frames > 1).then_some(TemporalKernel::Ema(0.5));
+            let sum: f64 = enumerate(&problem).unwrap().iter().map(|entry| entry.probability).sum();
+            prop_assert!((sum - 1.0).abs() < 1e-6);
+            let stencils = problem.stencils().unwrap();
+            let lattice = stencils.lattice;
+            let last = lattice.index(frames - 1 + lattice.past, 15 + lattice.margin, 15 + lattice.margin) - stencils.lowest;
+            let stencil = stencils.pick(number);
+            prop_assert!(!stencil.samples.is_empty());
+            prop_assert!(stencil.samples.iter().all(|&sample| last + (sample as usize) < lattice.samples()));
+            prop_assert!(stencil.bins + stencil.samples.len() <= stencils.bins());
+        }
+    }
+}
