@@ -9,7 +9,7 @@ use fsot::export::sidecar::{Quality, Sidecar};
 use fsot::metrics::{TileOptions, TileReport, TileView, measure_tile};
 use fsot::optimize;
 use fsot::output::{self, Outputs};
-use fsot::tile::{self, BoxClass, Kernel, TemporalKernel, TileOptimizer, TileProblem, presets};
+use fsot::tile::{self, ClassShare, Kernel, TemporalKernel, TileOptimizer, TileProblem, presets};
 use noisefloor::tile::Shape;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -124,8 +124,9 @@ fn problem(args: &Args) -> Result<TileProblem> {
             ..TileProblem::new(args.size, args.spp, args.d)
         },
     };
-    let BoxClass { share, weight } = problem.box_class;
-    problem.box_class = BoxClass { share: args.box_share.unwrap_or(share), weight: args.box_weight.unwrap_or(weight) };
+    let ClassShare { share, weight } = problem.box_class;
+    problem.box_class =
+        ClassShare { share: args.box_share.unwrap_or(share), weight: args.box_weight.unwrap_or(weight) };
     problem.seed = args.common.given_seed().unwrap_or(problem.seed);
     problem.iterations = match args.common.given_effort() {
         None => problem.iterations,
@@ -160,7 +161,7 @@ fn description(problem: &TileProblem) -> Value {
         "parameters": format!(
             "{:?}",
             (
-                &problem.prefix_shares, problem.frame_share, problem.directions, projections, steps, problem.offset_correction,
+                &problem.prefixes, problem.frame_share, problem.directions, projections, steps, problem.offset_correction,
                 problem.threshold_exponent, problem.domain,
             )
         ),
