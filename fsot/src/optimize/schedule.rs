@@ -5,7 +5,9 @@ use super::{Problem, Quality};
 /// Slices per iteration. Few slices in many iterations beat many in few: at equal slices, 4096 points reach a nearest-neighbour distance
 /// of .856 of the maximum with 16, .830 with 64, .738 with 256.
 pub(crate) const SLICES: usize = 16;
-pub(crate) static P: std::sync::LazyLock<Vec<f64>> = std::sync::LazyLock::new(|| std::env::var("P").unwrap_or("1 1 1 1 0".into()).split_whitespace().map(|x| x.parse().unwrap()).collect());
+pub(crate) static P: std::sync::LazyLock<Vec<f64>> = std::sync::LazyLock::new(|| {
+    std::env::var("P").unwrap_or("1 1 1 1 0".into()).split_whitespace().map(|x| x.parse().unwrap()).collect()
+});
 
 /// Points per window of a large set.
 pub(crate) const WINDOW: usize = 1024;
@@ -29,7 +31,10 @@ impl Schedule {
             Quality::High => 4096,
             Quality::Iterations(iterations) => iterations,
         };
-        if problem.points >= WINDOWED_FROM && problem.dims <= 3 && problem.classes.iter().all(|class| class.target.is_uniform()) {
+        if problem.points >= WINDOWED_FROM
+            && problem.dims <= 3
+            && problem.classes.iter().all(|class| class.target.is_uniform())
+        {
             let global = (base as f64 * P[4]) as u64;
             return Schedule { windowed: base - global, global };
         }

@@ -82,7 +82,8 @@ pub(crate) fn transport<const D: usize>(
     // (5.24) has the density relative to the slice's mean density. That would weigh slices by the length of the projected domain, which
     // prefers the diagonals of a square: long runs then end in a square grid along its sides. The density itself prefers no direction.
     let mean_density = 1.0 / width;
-    let ranks = if bins.uniform && count <= Ranking::MOST_AT_ONCE { ranking.at_once(keys) } else { ranking.sorted(keys) };
+    let ranks =
+        if bins.uniform && count <= Ranking::MOST_AT_ONCE { ranking.at_once(keys) } else { ranking.sorted(keys) };
     let mut energy = 0.0;
     let mut before = 0;
     for range in &slice.selected {

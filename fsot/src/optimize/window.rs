@@ -1,10 +1,10 @@
 //! Windows: large uniform sets are optimised in boxes of about a thousand points, which costs less per point and moves them farther.
 
+use super::Domain;
 use super::direction::direction;
 use super::optimizer::{LARGEST, Optimizer};
 use super::schedule::{SLICES, WINDOW, WINDOW_ITERATIONS};
 use super::slice::{Bins, Offset, Slice, Workspace, advance, transport};
-use super::Domain;
 use crate::random::stream;
 use crate::target::uniform_bins;
 use noisefloor::rng::Rng;
@@ -35,7 +35,11 @@ impl Cuts {
         let mut u = x * self.count as f32;
         let window = match self.domain {
             Domain::Bounded => {
-                if u < self.offset { 0 } else { ((u - self.offset) as usize + 1).min(last) }
+                if u < self.offset {
+                    0
+                } else {
+                    ((u - self.offset) as usize + 1).min(last)
+                }
             }
             Domain::Toroidal => {
                 u += self.offset;
@@ -176,7 +180,10 @@ impl Optimizer {
         let Window { number, lengths, numbers, coordinates } = window;
         let WindowWorkspace { transport: memory, offsets } = workspace;
         offsets.resize_with(SLICES, Vec::new);
-        offsets.iter_mut().filter(|offsets| offsets.len() < numbers.len()).for_each(|o| o.resize(numbers.len(), [0.0; 2]));
+        offsets
+            .iter_mut()
+            .filter(|offsets| offsets.len() < numbers.len())
+            .for_each(|o| o.resize(numbers.len(), [0.0; 2]));
         let mut slices: Vec<Slice<D>> = (0..SLICES).map(|_| Slice::new()).collect();
         let mut first_energy = 0.0;
         for iteration in 0..WINDOW_ITERATIONS {
@@ -197,7 +204,8 @@ impl Optimizer {
                     first_energy += energy;
                 }
             }
-            let moved: Vec<(&Slice<D>, &[Offset])> = slices.iter().zip(offsets.iter().map(|offsets| &offsets[..])).collect();
+            let moved: Vec<(&Slice<D>, &[Offset])> =
+                slices.iter().zip(offsets.iter().map(|offsets| &offsets[..])).collect();
             advance(&moved, 0, step, coordinates, |x, k| x.clamp(0.0, lengths[k]));
         }
         first_energy / SLICES as f64 * numbers.len() as f64

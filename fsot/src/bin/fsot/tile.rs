@@ -76,10 +76,10 @@ fn make(args: &Args) -> Result<()> {
     args.common.check_outputs(sidecar.as_deref())?;
     let problem = problem(args)?;
     let shape = shape(&problem, args.bits);
-    let kernel = problem.temporal.as_ref().map_or_else(
-        || problem.kernel.to_string(),
-        |temporal| format!("{}, over frames {temporal}", problem.kernel),
-    );
+    let kernel = problem
+        .temporal
+        .as_ref()
+        .map_or_else(|| problem.kernel.to_string(), |temporal| format!("{}, over frames {temporal}", problem.kernel));
     // Refuses what a tile's file cannot hold before the work.
     TileFile::new(shape, problem.seed, &kernel, &vec![0.0; problem.coordinates()])?;
     let mut optimizer = TileOptimizer::new(problem.clone())?;
@@ -122,8 +122,7 @@ fn problem(args: &Args) -> Result<TileProblem> {
         },
     };
     let BoxClass { share, weight } = problem.box_class;
-    problem.box_class =
-        BoxClass { share: args.box_share.unwrap_or(share), weight: args.box_weight.unwrap_or(weight) };
+    problem.box_class = BoxClass { share: args.box_share.unwrap_or(share), weight: args.box_weight.unwrap_or(weight) };
     problem.seed = args.common.given_seed().unwrap_or(problem.seed);
     problem.iterations = match args.common.given_effort() {
         None => problem.iterations,
