@@ -2,7 +2,7 @@
 //! with the names of the fields of `TileProblem`.
 
 use fsot::run::Optimization;
-use fsot::tile::{BoxClass, Domain, Projections, Steps, TileOptimizer, TileProblem};
+use fsot::tile::{ClassShare, Domain, Projections, Steps, TileOptimizer, TileProblem};
 use std::io::Write;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -20,8 +20,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "kernel" => problem.kernel = value.parse()?,
             "temporal" => problem.temporal = Some(value.parse()?),
             "progressive" => problem.progressive = true,
-            "prefix_shares" => problem.prefix_shares = numbers,
-            "box" => problem.box_class = BoxClass { share: numbers[0], weight: numbers[1] },
+            "prefixes" => {
+                problem.prefixes = numbers.chunks(2).map(|c| ClassShare { share: c[0], weight: c[1] }).collect()
+            }
+            "box" => problem.box_class = ClassShare { share: numbers[0], weight: numbers[1] },
             "frame_share" => problem.frame_share = numbers[0],
             "seed" => problem.seed = value.parse()?,
             "iterations" => problem.iterations = value.parse()?,

@@ -111,7 +111,11 @@ pub fn check(path: &Path) -> Result<PathBuf> {
         )));
     }
     temporary(&place).map_err(Error::io(path))?;
-    Ok(place)
+    // One name for one place, whether it exists or not.
+    Ok(match (fs::canonicalize(folder), place.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => place,
+    })
 }
 
 /// Writes one file, whole or not at all.

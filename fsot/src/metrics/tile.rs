@@ -209,11 +209,17 @@ pub fn error_spectrum(tile: &TileView, integrands: usize) -> Result<Spectrum> {
     Ok(Spectrum::new(size, power, size as f64, tile.frames))
 }
 
+/// The integrands that tiles of `dims` dimensions are measured with. Normals of half-spaces have no component below .001 (.03 in more
+/// than two dimensions).
+pub fn integrands(family: Family, dims: usize, count: usize) -> Vec<Integrand> {
+    let smallest = if dims > 2 { 0.03 } else { 1e-3 };
+    (0..count as u64).map(|i| Integrand::random(family, dims, smallest, SEED, i)).collect()
+}
+
 /// Two integrands share one complex transform. An odd number is rounded up.
-fn pairs_of(family: Family, axes: &[usize], integrands: usize) -> Vec<[Integrand; 2]> {
-    let smallest = if axes.len() > 2 { 0.03 } else { 1e-3 };
-    let draw = |i: usize| Integrand::random(family, axes.len(), smallest, SEED, i as u64);
-    (0..integrands.div_ceil(2)).map(|i| [draw(2 * i), draw(2 * i + 1)]).collect()
+fn pairs_of(family: Family, axes: &[usize], count: usize) -> Vec<[Integrand; 2]> {
+    let all = integrands(family, axes.len(), count.next_multiple_of(2));
+    all.chunks_exact(2).map(|pair| [pair[0].clone(), pair[1].clone()]).collect()
 }
 
 /// Error images of a pair of integrands, as real and imaginary parts, of the first samples of every pixel: [frame][prefix] of [y][x].

@@ -8,6 +8,7 @@
 mod directions;
 mod kernel;
 mod optimizer;
+pub mod presets;
 mod problem;
 mod projection;
 mod rank;
@@ -17,6 +18,6 @@ mod temporal;
 
 pub use kernel::{Kernel, PERCEPTUAL_SIGMA, RECONSTRUCTION_SIGMA, Tap};
 pub use optimizer::TileOptimizer;
-pub use problem::{BoxClass, Domain, Projections, Quality, Steps, TileProblem};
+pub use problem::{ClassShare, Domain, Projections, Quality, Steps, TileProblem};
 pub use samples::TileSamples;
 pub use temporal::{FRAME_RATE, TemporalKernel};

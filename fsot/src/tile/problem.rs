@@ -37,11 +37,11 @@ pub struct TileProblem {
     pub temporal: Option<TemporalKernel>,
     /// Whether the first 1, 2, 4, ... samples of all pixels are tiles too.
     pub progressive: bool,
-    /// The share of the slices for each prefix of a progressive tile: of 1, 2, 4, ..., `spp` samples. Only their ratios matter. Empty: the
+    /// The classes of the prefixes of a progressive tile: of 1, 2, 4, ..., `spp` samples. Of the shares only the ratios matter. Empty: the
     /// documented default.
-    pub prefix_shares: Vec<f32>,
-    /// The class of the pixel's own samples.
-    pub box_class: BoxClass,
+    pub prefixes: Vec<ClassShare>,
+    /// The class of each pixel's own samples, beside the perceptual one: it stratifies the pixel.
+    pub box_class: ClassShare,
     /// The share of the slices of an animation that look at one frame only: 0 to 1. Ignored without [`temporal`](Self::temporal).
     pub frame_share: f32,
     /// Seed of everything random.
@@ -63,12 +63,12 @@ pub struct TileProblem {
     pub domain: Domain,
 }
 
-/// The class of each pixel's own samples, beside the perceptual one: it stratifies the pixel.
+/// What a class counts beside the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BoxClass {
+pub struct ClassShare {
     /// The share of the slices: 0 to 1.
     pub share: f32,
-    /// What its displacements count, those of the perceptual class counting 1: above 0, at most 64.
+    /// What its displacements count, those of the perceptual class of all samples counting 1: above 0, at most 1024.
     pub weight: f32,
 }
 
@@ -135,8 +135,8 @@ impl TileProblem {
             kernel: Kernel::Perceptual,
             temporal: None,
             progressive: false,
-            prefix_shares: Vec::new(),
-            box_class: BoxClass { share: if spp > 1 { 0.1 } else { 0.0 }, weight: 1.0 },
+            prefixes: Vec::new(),
+            box_class: ClassShare { share: if spp > 1 { 0.1 } else { 0.0 }, weight: 1.0 },
             frame_share: 0.0,
             seed: 1,
             iterations: Quality::Standard.iterations(),
@@ -183,9 +183,9 @@ impl TileProblem {
         check(self.coordinates() <= MAX_COORDINATES, "the number of coordinates", self.coordinates(), "at most 2^28")?;
         check((1..=MAX_ITERATIONS).contains(&self.iterations), "iterations", self.iterations, "1 to 2^24")?;
         check((1..=MAX_DIRECTIONS).contains(&self.directions), "directions", self.directions, "1 to 16 per step")?;
-        let BoxClass { share, weight } = self.box_class;
+        let ClassShare { share, weight } = self.box_class;
         check((0.0..=1.0).contains(&share), "the box class's share", share, "0 to 1")?;
-        check(weight > 0.0 && weight <= 64.0, "the box class's weight", weight, "above 0 and at most 64")?;
+        check_weight("the box class's weight", weight)?;
         check((0.0..=1.0).contains(&self.frame_share), "the frame share", self.frame_share, "0 to 1")?;
         check(
             share + self.frame_share <= 1.0,
@@ -225,21 +225,21 @@ impl TileProblem {
     }
 
     fn check_prefixes(&self) -> Result<()> {
-        if !self.progressive || self.prefix_shares.is_empty() {
+        if !self.progressive || self.prefixes.is_empty() {
             return Ok(());
         }
-        let levels = self.spp.trailing_zeros() as usize + 1;
-        check(
-            self.prefix_shares.len() == levels,
-            "the number of prefix shares",
-            self.prefix_shares.len(),
-            "one for each of 1, 2, 4, ..., spp samples",
-        )?;
-        let good = |share: &f32| (0.0..=1e6).contains(share);
-        if let Some(bad) = self.prefix_shares.iter().find(|share| !good(share)) {
-            return Err(Error::input(format!("a prefix share is {bad}; use 0 to 1e6")));
+        let (levels, given) = (self.spp.trailing_zeros() as usize + 1, self.prefixes.len());
+        check(given == levels, "the number of prefixes", given, "one for each of 1, 2, 4, ..., spp samples")?;
+        for ClassShare { share, weight } in &self.prefixes {
+            check((0.0..=1e6).contains(share), "a prefix's share", share, "0 to 1e6")?;
+            check_weight("a prefix's weight", *weight)?;
         }
-        check(self.prefix_shares.iter().any(|&share| share > 0.0), "every prefix share", 0, "a positive one at least")
+        check(
+            self.prefixes.iter().any(|prefix| prefix.share > 0.0),
+            "every prefix's share",
+            0,
+            "a positive one at least",
+        )
     }
 
     /// The step size of an iteration.
@@ -254,4 +254,9 @@ impl TileProblem {
 /// An [`Error::Input`] unless `good`.
 fn check(good: bool, what: &str, value: impl std::fmt::Display, allowed: &str) -> Result<()> {
     if good { Ok(()) } else { Err(Error::input(format!("{what} is {value}; use {allowed}"))) }
+}
+
+/// An [`Error::Input`] unless it can be a class's weight.
+fn check_weight(what: &str, weight: f32) -> Result<()> {
+    check(weight > 0.0 && weight <= 1024.0, what, weight, "above 0 and at most 1024")
 }

@@ -10,8 +10,9 @@ const MAX_SAMPLES: usize = 1 << 16;
 /// A subclass's size grows at least by this part from one threshold to the next: finer ones are joined with the next.
 const JOIN: f64 = 0.02;
 
-/// The share of each prefix of a progressive tile, relative to that of the whole, by the number of doublings to the whole.
-const PREFIX_SHARES: [f32; 9] = [1.0, 0.4, 0.4, 0.4, 0.4, 0.4, 0.4, 0.4, 0.4];
+/// The class of each prefix of a progressive tile, by the number of doublings to the whole: share and weight.
+const PREFIXES: [(f64, f32); 9] =
+    [(1.0, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0)];
 
 /// A subclass, the same at every pixel: the first `prefix` samples of the first `taps` pixels of a class.
 #[derive(Clone, Debug)]
@@ -92,9 +93,9 @@ fn entries(problem: &TileProblem, classes: &[Class]) -> Vec<Entry> {
             continue;
         }
         for (taps, probability) in levels(&class.taps, f64::from(problem.threshold_exponent)) {
-            for &(prefix, share) in &prefixes {
+            for &(prefix, share, weight) in &prefixes {
                 let probability = class.share * probability * share;
-                entries.push(Entry { class: index, taps, prefix, probability, weight: class.weight });
+                entries.push(Entry { class: index, taps, prefix, probability, weight: class.weight * weight });
             }
         }
     }
@@ -102,18 +103,18 @@ fn entries(problem: &TileProblem, classes: &[Class]) -> Vec<Entry> {
     entries
 }
 
-/// The prefixes of each pixel's samples, with their shares, which add up to 1.
-fn prefixes(problem: &TileProblem) -> Vec<(usize, f64)> {
+/// The prefixes of each pixel's samples, with their shares, which add up to 1, and weights.
+fn prefixes(problem: &TileProblem) -> Vec<(usize, f64, f32)> {
     if !problem.progressive {
-        return vec![(problem.spp, 1.0)];
+        return vec![(problem.spp, 1.0, 1.0)];
     }
     let levels = problem.spp.trailing_zeros() as usize;
-    let share = |level: usize| match problem.prefix_shares.get(level) {
-        Some(&share) => f64::from(share),
-        None => f64::from(PREFIX_SHARES[(levels - level).min(8)]),
+    let class = |level: usize| match problem.prefixes.get(level) {
+        Some(class) => (f64::from(class.share), class.weight),
+        None => PREFIXES[levels - level],
     };
-    let total: f64 = (0..=levels).map(share).sum();
-    (0..=levels).map(|level| (1 << level, share(level) / total)).collect()
+    let total: f64 = (0..=levels).map(|level| class(level).0).sum();
+    (0..=levels).map(|level| (1 << level, class(level).0 / total, class(level).1)).collect()
 }
 
 /// The subclasses of a class, each as the number of its pixels and the probability that a threshold z = u^exponent selects it: pixels of equal

@@ -5,28 +5,50 @@ use fsot::checkpoint::digest;
 use fsot::error::Result;
 use fsot::export::nft::TileFile;
 use fsot::export::sidecar::{Row, Sidecar};
+use fsot::tile::{TileProblem, presets};
 use noisefloor::tile::Shape;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What `fsot info` is asked for.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// The tile, a .nft file
+    /// The tile, a .nft file; without it, the presets of `fsot tile` are listed
     #[arg(value_name = "TILE")]
-    tile: PathBuf,
+    tile: Option<PathBuf>,
     #[command(flatten)]
     report: Report,
 }
 
 /// Reads and prints.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    let path = args.tile.display();
-    let file = TileFile::read(&args.tile)?;
-    let mut sidecar = Sidecar::read(&args.tile)?;
+    let (text, json) = args.tile.as_deref().map_or_else(list, tell)?;
+    args.report.print(&text, &json)
+}
+
+fn list() -> Result<(String, Value)> {
+    let mut text = String::new();
+    for name in presets::NAMES {
+        let Some(problem) = presets::preset(name) else { continue };
+        let TileProblem { size, spp, dims, kernel, frames, iterations, .. } = &problem;
+        let frames = if *frames > 1 { format!(", {frames} frames") } else { String::new() };
+        let progressive = if problem.progressive { ", progressive" } else { "" };
+        writeln!(
+            text,
+            "{name:<26}{size} x {size} pixels, {spp} spp, {dims} dims{frames}{progressive}, {kernel}, {iterations} steps"
+        )
+        .unwrap_or(());
+    }
+    Ok((text, json!({ "presets": presets::NAMES })))
+}
+
+fn tell(tile: &Path) -> Result<(String, Value)> {
+    let path = tile.display();
+    let file = TileFile::read(tile)?;
+    let mut sidecar = Sidecar::read(tile)?;
     if sidecar.as_ref().is_some_and(|sidecar| !sidecar.describes(file.bytes())) {
-        eprintln!("warning: {} describes another tile: its sha256 differs", Sidecar::path(&args.tile).display());
+        eprintln!("warning: {} describes another tile: its sha256 differs", Sidecar::path(tile).display());
         sidecar = None;
     }
     let header = file.header();
@@ -56,10 +78,10 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         }
     }
     let json = json!({
-        "tile": args.tile, "size": size, "spp": spp, "progressive": progressive, "dims": dims, "frames": frames, "bits": bits,
+        "tile": tile, "size": size, "spp": spp, "progressive": progressive, "dims": dims, "frames": frames, "bits": bits,
         "bytes": file.bytes().len(), "kernel": header.kernel(), "seed": header.seed(), "sha256": sha256, "sidecar": sidecar,
     });
-    args.report.print(&text, &json)
+    Ok((text, json))
 }
 
 fn describe(row: &Row) -> String {

@@ -9,10 +9,13 @@ use fsot::export::sidecar::{Quality, Sidecar};
 use fsot::metrics::{TileOptions, TileReport, TileView, measure_tile};
 use fsot::optimize;
 use fsot::output::{self, Outputs};
-use fsot::tile::{self, BoxClass, Kernel, TemporalKernel, TileOptimizer, TileProblem, presets};
+use fsot::tile::{self, ClassShare, Kernel, TemporalKernel, TileOptimizer, TileProblem, presets};
 use noisefloor::tile::Shape;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+
+/// As in the published figures.
+const INTEGRANDS: u32 = 512;
 
 /// What `fsot tile` is asked for.
 #[derive(clap::Args, Debug)]
@@ -51,7 +54,7 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 16, value_parser = bits)]
     bits: u32,
     /// Random integrands of each family for the printed quality
-    #[arg(long, value_name = "COUNT", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    #[arg(long, value_name = "COUNT", default_value_t = INTEGRANDS, value_parser = clap::value_parser!(u32).range(1..=65536))]
     integrands: u32,
     #[command(flatten)]
     common: Common,
@@ -121,8 +124,8 @@ fn problem(args: &Args) -> Result<TileProblem> {
             ..TileProblem::new(args.size, args.spp, args.d)
         },
     };
-    let BoxClass { share, weight } = problem.box_class;
-    problem.box_class = BoxClass { share: args.box_share.unwrap_or(share), weight: args.box_weight.unwrap_or(weight) };
+    let ClassShare { share, weight } = problem.box_class;
+    problem.box_class = ClassShare { share: args.box_share.unwrap_or(share), weight: args.box_weight.unwrap_or(weight) };
     problem.seed = args.common.given_seed().unwrap_or(problem.seed);
     problem.iterations = match args.common.given_effort() {
         None => problem.iterations,
@@ -157,7 +160,7 @@ fn description(problem: &TileProblem) -> Value {
         "parameters": format!(
             "{:?}",
             (
-                &problem.prefix_shares, problem.frame_share, problem.directions, projections, steps, problem.offset_correction,
+                &problem.prefixes, problem.frame_share, problem.directions, projections, steps, problem.offset_correction,
                 problem.threshold_exponent, problem.domain,
             )
         ),
@@ -195,6 +198,9 @@ fn command(args: &Args, problem: &TileProblem) -> String {
         words.extend(args.box_weight.map(|weight| format!("--box-weight {weight}")));
     }
     words.push(format!("--bits {} --seed {} --iterations {}", args.bits, problem.seed, problem.iterations));
+    if args.integrands != INTEGRANDS {
+        words.push(format!("--integrands {}", args.integrands));
+    }
     let name = args.common.out.file_name().map_or_else(PathBuf::new, PathBuf::from);
     words.push(format!("--out {}", name.display()));
     words.join(" ")
