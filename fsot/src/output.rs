@@ -49,7 +49,7 @@ impl Outputs {
         }
         let mut file = temporary(&place).map_err(Error::io(path))?;
         // Synchronised, so that a full disk or quota is noticed before anything is replaced.
-        file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(Error::io(path))?;
+        file.as_file_mut().write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(Error::io(path))?;
         self.pending.push(Pending::File { file, path: place });
         Ok(())
     }
@@ -111,7 +111,11 @@ pub fn check(path: &Path) -> Result<PathBuf> {
         )));
     }
     temporary(&place).map_err(Error::io(path))?;
-    Ok(place)
+    // One name for one place, whether it exists or not.
+    Ok(match (fs::canonicalize(folder), place.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => place,
+    })
 }
 
 /// Writes one file, whole or not at all.

@@ -34,7 +34,8 @@ fn oracle(width: usize, height: usize, weights: &[f32], direction: [f64; 2], cou
         mass += weight.max(0.0);
         moment += weight.max(0.0) * at;
     }
-    let average = (edges[count] - edges[0]) / count as f64;
+    // The mean projected length of the rectangle.
+    let average = 2.0 / std::f64::consts::PI * (width + height) as f64 / longer / count as f64;
     let density = edges.windows(2).map(|edge| average / (edge[1] - edge[0]).max(1e-9)).collect();
     (means, density)
 }

@@ -40,6 +40,17 @@ impl Filter {
         self.members
     }
 
+    /// How many different values it has above 0, but at most `most`.
+    pub(crate) fn values(&self, most: usize) -> usize {
+        let mut values: Vec<f32> = Vec::new();
+        for (_, value) in &self.runs {
+            if values.len() < most && !values.contains(value) {
+                values.push(*value);
+            }
+        }
+        values.len()
+    }
+
     /// The points with `w > z`, as ranges in ascending order that do not touch; returns their number.
     pub(crate) fn select(&self, z: f32, selected: &mut Vec<Range<u32>>) -> usize {
         selected.clear();
@@ -49,6 +60,40 @@ impl Filter {
             match selected.last_mut() {
                 Some(last) if last.end == run.start => last.end = run.end,
                 _ => selected.push(run.clone()),
+            }
+        }
+        count
+    }
+
+    /// As [`select`](Filter::select), among the points with the given ascending numbers: ranges of places in `numbers`.
+    pub(crate) fn select_of(&self, z: f32, numbers: &[u32], selected: &mut Vec<Range<u32>>) -> usize {
+        selected.clear();
+        let mut count = 0;
+        let mut add = |places: Range<usize>| {
+            let places = places.start as u32..places.end as u32;
+            count += places.len();
+            match selected.last_mut() {
+                Some(last) if last.end == places.start => last.end = places.end,
+                _ if places.is_empty() => {}
+                _ => selected.push(places),
+            }
+        };
+        if self.runs.len() <= numbers.len() {
+            // Few runs: find the places of each.
+            let mut before = 0;
+            for (run, value) in &self.runs {
+                let begin = before + numbers[before..].partition_point(|&number| number < run.start);
+                before = begin + numbers[begin..].partition_point(|&number| number < run.end);
+                if *value > z {
+                    add(begin..before);
+                }
+            }
+        } else {
+            for (place, &number) in numbers.iter().enumerate() {
+                let run = self.runs.partition_point(|(run, _)| run.end <= number);
+                if self.runs.get(run).is_some_and(|(run, value)| run.contains(&number) && *value > z) {
+                    add(place..place + 1);
+                }
             }
         }
         count

@@ -66,6 +66,11 @@ impl View<'_> {
         (f32::from(integer) + 0.5) / if self.bits == 8 { 256.0 } else { 65536.0 }
     }
 
+    /// All coordinates, in the order of the payload.
+    pub fn coordinates(&self) -> Vec<f32> {
+        (0..self.count()).map(|index| self.coordinate(self.integer(index))).collect()
+    }
+
     fn groups(&self) -> usize {
         self.dims.div_ceil(CHANNELS)
     }

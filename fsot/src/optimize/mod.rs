@@ -4,8 +4,10 @@ mod check;
 mod direction;
 mod initial;
 mod optimizer;
+mod rank;
 mod schedule;
 mod slice;
+mod window;
 
 pub use optimizer::Optimizer;
 

@@ -1,8 +1,8 @@
 //! The optimisation of a point set, step by step.
 
 use super::direction::direction;
-use super::schedule::{SLICES, Schedule};
-use super::slice::{Offset, Slice, Workspace, advance, transport};
+use super::schedule::{MOST_OBJECTIVES, SLICES, Schedule, objectives};
+use super::slice::{Bins, Offset, Slice, Workspace, advance, transport};
 use super::{Domain, Problem, check};
 use crate::class::{Filter, normalised};
 use crate::error::Result;
@@ -26,8 +26,8 @@ pub struct Optimizer {
     /// Of the classes, without the empty ones; empty if no class has points.
     pub(super) weights: Vec<f64>,
     schedule: Schedule,
-    iteration: u64,
-    coordinates: Vec<f32>,
+    pub(super) iteration: u64,
+    pub(super) coordinates: Vec<f32>,
     offsets: Vec<Vec<Offset>>,
     workspaces: Mutex<Vec<Workspace>>,
 }
@@ -48,7 +48,7 @@ impl Optimizer {
             .collect();
         let weights = problem.classes.iter().zip(&filters).map(|(class, filter)| (class.weight, filter.members() == 0));
         let weights = normalised(weights).unwrap_or_default();
-        let schedule = Schedule::new(&problem);
+        let schedule = Schedule::new(&problem, objectives(filters.iter().map(|filter| filter.values(MOST_OBJECTIVES))));
         let coordinates = super::initial::coordinates(&problem);
         let offsets = vec![Vec::new(); SLICES];
         let workspaces = Mutex::default();
@@ -76,9 +76,10 @@ impl Optimizer {
             let (class, slice) = self.draw::<D>(number, &mut rng);
             let mut workspace = self.workspaces.lock().ok().and_then(|mut all| all.pop()).unwrap_or_default();
             let target = &self.problem.classes[class].target;
-            let bins = |means: &mut [f32], density: &mut [f32], scratch: &mut Vec<f32>| {
+            let write = |means: &mut [f32], density: &mut [f32], scratch: &mut Vec<f32>| {
                 target.bins(&slice.direction, means, density, scratch);
             };
+            let bins = Bins { write, uniform: target.is_uniform() };
             let energy = transport(&slice, &[1.0; D], &self.coordinates, bins, offsets, &mut workspace);
             if let Ok(mut all) = self.workspaces.lock() {
                 all.push(workspace);
@@ -161,6 +162,14 @@ impl Optimization for Optimizer {
         if self.weights.is_empty() {
             self.iteration += 1;
             return 0.0;
+        }
+        if self.schedule.in_windows(self.iteration) {
+            let step = self.schedule.step(self.iteration);
+            return match self.problem.dims {
+                1 => self.step_in_windows::<1>(step),
+                2 => self.step_in_windows::<2>(step),
+                _ => self.step_in_windows::<3>(step),
+            };
         }
         match self.problem.dims {
             1 => self.step_in::<1>(),

@@ -1,5 +1,6 @@
 //! One slice: the points of a subclass, projected on a direction and transported to their target (5.22-5.24).
 
+use super::rank::{KEY_BITS, Ranking};
 use std::ops::Range;
 
 /// What a slice did to a point: its offset along the direction times its weight, and the weight, the factor of (5.24).
@@ -27,27 +28,31 @@ impl<const D: usize> Slice<D> {
 /// Memory that slices use one after the other; about 32 bytes per point.
 #[derive(Default)]
 pub(crate) struct Workspace {
-    elements: Vec<u64>,
-    sorted: Vec<u64>,
+    keys: Vec<u32>,
     means: Vec<f32>,
     density: Vec<f32>,
     scratch: Vec<f32>,
-    counts: Vec<u32>,
+    ranking: Ranking,
 }
 
-/// Projected coordinates are sorted as integers of this many bits: all that a single-precision sum of coordinates carries.
-const KEY_BITS: u32 = 23;
 /// Adding this to a number in [0, 2^23) leaves the number, rounded, in the low bits of its representation.
 const ROUNDING: f32 = (1u32 << KEY_BITS) as f32;
 
-/// Transports the selected points of `coordinates`, in the region [0, lengths], to the bins that `bins` writes (means, relative densities,
-/// scratch) and leaves what happened to point i in `offsets[i]`; those of other points are not touched. Returns the mean squared
-/// distance that the points have to their bins' means.
+/// The target of a slice.
+pub(crate) struct Bins<F> {
+    /// Writes means, relative densities; may use the third.
+    pub(crate) write: F,
+    /// Whether the target is uniform, so that no part of the projection is crowded.
+    pub(crate) uniform: bool,
+}
+
+/// Transports the selected points of `coordinates`, in the region [0, lengths], to their target's bins and leaves what happened to point i in
+/// `offsets[i]`; those of other points are not touched. Returns the mean squared distance that the points have to their bins' means.
 pub(crate) fn transport<const D: usize>(
     slice: &Slice<D>,
     lengths: &[f32; D],
     coordinates: &[f32],
-    bins: impl FnOnce(&mut [f32], &mut [f32], &mut Vec<f32>),
+    bins: Bins<impl FnOnce(&mut [f32], &mut [f32], &mut Vec<f32>)>,
     offsets: &mut [Offset],
     workspace: &mut Workspace,
 ) -> f64 {
@@ -55,20 +60,14 @@ pub(crate) fn transport<const D: usize>(
     if count == 0 {
         return 0.0;
     }
-    let Workspace { elements, sorted, means, density, scratch, counts } = workspace;
-    for buffer in [&mut *elements, &mut *sorted] {
-        if buffer.len() < count {
-            buffer.resize(count, 0);
-        }
+    let Workspace { keys, means, density, scratch, ranking } = workspace;
+    if keys.len() < count {
+        keys.resize(count, 0);
+        means.resize(count, 0.0);
+        density.resize(count, 0.0);
     }
-    for buffer in [&mut *means, &mut *density] {
-        if buffer.len() < count {
-            buffer.resize(count, 0.0);
-        }
-    }
-    let (elements, sorted) = (&mut elements[..count], &mut sorted[..count]);
-    let (means, density) = (&mut means[..count], &mut density[..count]);
-    bins(means, density, scratch);
+    let (keys, means, density) = (&mut keys[..count], &mut means[..count], &mut density[..count]);
+    (bins.write)(means, density, scratch);
 
     // Position = low + key * quantum.
     let (mut low, mut width) = (0.0f32, 0.0f32);
@@ -77,62 +76,81 @@ pub(crate) fn transport<const D: usize>(
         width += (slice.direction[k] * lengths[k]).abs();
     }
     let top = ROUNDING - 1.0;
-    let scale = top / width.max(f32::MIN_POSITIVE);
     let quantum = width / top;
+    project(slice, lengths, coordinates, low, top / width.max(f32::MIN_POSITIVE), keys);
 
-    // Two passes by `digit` bits each, the lowest bits left out: ranks are exact but for points nearer than a small part of a bin.
-    let digit = ((count.max(2).ilog2() + 10) / 2).clamp(7, 12);
-    let (drop, mask) = (KEY_BITS.saturating_sub(2 * digit), (1usize << digit) - 1);
-    counts.clear();
-    counts.resize(2 << digit, 0);
-    let (low_counts, high_counts) = counts.split_at_mut(1 << digit);
-
-    let wraps = slice.shift != [0.0; D];
-    let mut filled = 0;
-    for range in &slice.selected {
-        let (begin, end) = (range.start as usize, range.end as usize);
-        let points = coordinates[begin * D..end * D].chunks_exact(D);
-        for ((i, point), element) in (range.start..range.end).zip(points).zip(&mut elements[filled..]) {
-            let mut t = 0.0;
-            for k in 0..D {
-                let mut x = point[k];
-                if wraps {
-                    x += slice.shift[k];
-                    x = if x >= lengths[k] { x - lengths[k] } else { x };
-                }
-                t += x * slice.direction[k];
-            }
-            let key = (((t - low) * scale).max(0.0).min(top) + ROUNDING).to_bits() & ((1 << KEY_BITS) - 1);
-            *element = u64::from(key) << 32 | u64::from(i);
-            low_counts[(key >> drop) as usize & mask] += 1;
-            high_counts[(key >> (drop + digit)) as usize & mask] += 1;
-        }
-        filled += end - begin;
-    }
-    for counts in [&mut *low_counts, &mut *high_counts] {
-        let mut sum = 0;
-        for count in counts {
-            (*count, sum) = (sum, sum + *count);
-        }
-    }
-    for &element in &*elements {
-        let place = &mut low_counts[(element >> (32 + drop)) as usize & mask];
-        sorted[*place as usize] = element;
-        *place += 1;
-    }
+    // (5.24) has the density relative to the slice's mean density. That would weigh slices by the length of the projected domain, which
+    // prefers the diagonals of a square: long runs then end in a square grid along its sides. The density itself prefers no direction.
     let mean_density = 1.0 / width;
+    let ranks =
+        if bins.uniform && count <= Ranking::MOST_AT_ONCE { ranking.at_once(keys) } else { ranking.sorted(keys) };
     let mut energy = 0.0;
-    for &element in &*sorted {
-        let key = (element >> 32) as u32;
-        let place = &mut high_counts[(key >> (drop + digit)) as usize & mask];
-        let rank = *place as usize;
-        *place += 1;
-        let offset = means[rank] - (low + key as i32 as f32 * quantum);
-        let weight = density[rank] * mean_density;
-        offsets[element as u32 as usize] = [offset * weight, weight];
-        energy += f64::from(offset) * f64::from(offset);
+    let mut before = 0;
+    for range in &slice.selected {
+        let here = before..before + range.len();
+        before = here.end;
+        let places = &mut offsets[range.start as usize..range.end as usize];
+        let (keys, ranks) = (&keys[here.clone()], &ranks[here]);
+        // Four at a time, for the sake of vector units and because a sum waits for the one before.
+        let (quads, places_left) = places.as_chunks_mut::<4>();
+        let ((key_quads, keys_left), (rank_quads, ranks_left)) = (keys.as_chunks::<4>(), ranks.as_chunks::<4>());
+        let one = |key: u32, rank: u32| {
+            let offset = means[rank as usize] - (low + key as i32 as f32 * quantum);
+            (offset, density[rank as usize] * mean_density)
+        };
+        for ((place, keys), ranks) in quads.iter_mut().zip(key_quads).zip(rank_quads) {
+            let mut squares = [0.0; 4];
+            for i in 0..4 {
+                let (offset, weight) = one(keys[i], ranks[i]);
+                place[i] = [offset * weight, weight];
+                squares[i] = offset * offset;
+            }
+            energy += f64::from((squares[0] + squares[1]) + (squares[2] + squares[3]));
+        }
+        for ((place, &key), &rank) in places_left.iter_mut().zip(keys_left).zip(ranks_left) {
+            let (offset, weight) = one(key, rank);
+            *place = [offset * weight, weight];
+            energy += f64::from(offset * offset);
+        }
     }
     energy / count as f64
+}
+
+/// The keys of the selected points: projected coordinates as integers.
+fn project<const D: usize>(
+    slice: &Slice<D>,
+    lengths: &[f32; D],
+    coordinates: &[f32],
+    low: f32,
+    scale: f32,
+    keys: &mut [u32],
+) {
+    let key = |t: f32| (((t - low) * scale).max(0.0).min(ROUNDING - 1.0) + ROUNDING).to_bits() & ((1 << KEY_BITS) - 1);
+    let wraps = slice.shift != [0.0; D];
+    let mut keys = keys;
+    for range in &slice.selected {
+        let (here, rest) = keys.split_at_mut(range.len());
+        keys = rest;
+        let (points, _) = coordinates[range.start as usize * D..range.end as usize * D].as_chunks::<D>();
+        if wraps {
+            for (point, place) in points.iter().zip(here) {
+                let mut t = 0.0;
+                for k in 0..D {
+                    let x = point[k] + slice.shift[k];
+                    t += (if x >= lengths[k] { x - lengths[k] } else { x }) * slice.direction[k];
+                }
+                *place = key(t);
+            }
+        } else {
+            for (point, place) in points.iter().zip(here) {
+                let mut t = 0.0;
+                for k in 0..D {
+                    t += point[k] * slice.direction[k];
+                }
+                *place = key(t);
+            }
+        }
+    }
 }
 
 /// Moves the points `first..first + coordinates.len() / D`, whose coordinates are given, by the offsets that slices left for them:
@@ -167,7 +185,7 @@ pub(crate) fn advance<const D: usize>(
             }
         }
         for (i, point) in coordinates.chunks_exact_mut(D).enumerate() {
-            let factor = step * D as f32 / (weights[i] + super::schedule::P[3] as f32 * (D - 1) as f32);
+            let factor = step * D as f32 / (weights[i] + (D - 1) as f32);
             if weights[i] > 0.0 {
                 for (k, x) in point.iter_mut().enumerate() {
                     *x = settle(*x + factor * sums[k][i], k);

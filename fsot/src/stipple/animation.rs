@@ -1,6 +1,6 @@
 //! Animated stippling: frames that share points (figure 5.13).
 
-use super::{Options, inks, paper, radius};
+use super::{Options, effort, inks, paper, radius};
 use crate::class::{Class, ClassFunction, Step};
 use crate::error::{Error, Result};
 use crate::optimize::Problem;
@@ -122,7 +122,7 @@ impl Animation {
         let problem = Problem {
             classes,
             seed: options.seed,
-            quality: options.quality,
+            quality: effort(options.quality),
             initial: Some(initial),
             ..Problem::new(points, 2)
         };

@@ -33,15 +33,33 @@ pub struct Ink {
     pub density: Vec<f32>,
 }
 
-/// Area of dots per area of paper that cover a part of it, when the dots are spread evenly: where dots begin to overlap it takes more than
-/// that part.
-///
-/// A fit to optimised sets of equal discs: none overlap up to 3/4 of the area; 1.35 times the area leaves 1 % of the paper.
+/// What part of the paper equal discs cover that are spread as evenly as optimised points, when their areas sum to 0.60, 0.65, ... of it:
+/// measured on 4,000 points. Up to the first value none overlap.
+const COVERED: [f32; 15] = [
+    0.600, 0.6438, 0.6886, 0.7313, 0.7713, 0.8084, 0.8415, 0.8707, 0.8962, 0.9183, 0.9366, 0.9511, 0.9632, 0.9730,
+    0.9804,
+];
+/// Area of dots per area of paper where the paper shall be black: the last percent would take as many dots as all of a light grey.
+const BLACK_INK: f32 = 1.4;
+
+/// Area of dots per area of paper that cover a part of it: more than that part from where dots begin to overlap.
 pub fn ink_for(coverage: f32) -> f32 {
-    const FREE: f32 = 0.75;
-    let coverage = coverage.clamp(0.0, 1.0);
-    let beyond = ((coverage - FREE) / (1.0 - FREE)).max(0.0);
-    coverage + 0.35 * beyond * beyond * beyond
+    let (first, last) = (COVERED[0], COVERED[COVERED.len() - 1]);
+    let ink = |step: f32| first + 0.05 * step;
+    if coverage <= first {
+        return coverage.max(0.0);
+    }
+    let step = COVERED.partition_point(|covered| *covered < coverage);
+    match COVERED.get(step) {
+        Some(upper) => {
+            let lower = COVERED[step - 1];
+            ink(step as f32 - (upper - coverage) / (upper - lower))
+        }
+        None => {
+            let full = ink((COVERED.len() - 1) as f32);
+            full + (BLACK_INK - full) * ((coverage.min(1.0) - last) / (1.0 - last))
+        }
+    }
 }
 
 /// Black dots, or white ones on black paper.

@@ -28,6 +28,10 @@ const MAX_SIDE: usize = 4096;
 ///
 /// Projections (5.23-5.24) are analytic: a cell's footprint on a line is a trapezoid, whose mass in each bin of a histogram as
 /// wide as the longer side of the projected cell is exact; between bin boundaries the density is taken to be piecewise linear.
+///
+/// Densities are relative to the mass spread evenly over the rectangle's mean projected length, not over that of the direction at hand
+/// as in (5.24): that one is longer on diagonals, which weighs them more, and in long runs aligns the points with the axes. With a fixed
+/// length, the mean force over all directions is the isotropic gradient of the energy distance with the kernel -|x - y|.
 #[derive(Clone, Debug)]
 pub struct ImageTarget {
     /// Cells, of mean value 1; rows along x.
@@ -35,7 +39,7 @@ pub struct ImageTarget {
     /// The same, transposed: rows along y.
     columns: Rows,
     extent: [f32; 2],
-    /// Running sums of the cells, row after row; the last one is the total.
+    /// Running sums of the rows' masses; the last one is the total.
     cumulative: Vec<f64>,
 }
 
@@ -78,7 +82,7 @@ impl ImageTarget {
         let Some((_, first)) = parts.first() else {
             return Err(Error::input("a mixture of densities needs at least one"));
         };
-        let mut cells = vec![0.0_f64; first.cumulative.len()];
+        let mut cells = vec![0.0_f64; first.rows.width() * first.rows.height()];
         for (weight, part) in parts {
             if !weight.is_finite() || *weight < 0.0 {
                 return Err(Error::Input(format!(
@@ -107,9 +111,9 @@ impl ImageTarget {
         let cells: Vec<f32> = cells.into_iter().map(|cell| (cell * scale) as f32).collect();
         let mut sum = 0.0;
         let cumulative = cells
-            .iter()
-            .map(|cell| {
-                sum += f64::from(*cell);
+            .chunks_exact(width)
+            .map(|row| {
+                row.iter().for_each(|cell| sum += f64::from(*cell));
                 sum
             })
             .collect();
@@ -121,6 +125,11 @@ impl ImageTarget {
     /// The rectangle from the origin that holds all of the density: the longer side is 1.
     pub fn extent(&self) -> [f32; 2] {
         self.extent
+    }
+
+    /// The length of the rectangle's projection, in the mean of all directions: its circumference over pi.
+    fn mean_range(&self) -> f64 {
+        2.0 / std::f64::consts::PI * (f64::from(self.extent[0]) + f64::from(self.extent[1]))
     }
 
     /// Columns and rows of the grid.
@@ -166,7 +175,7 @@ impl Target for ImageTarget {
         };
         let mirrored = along < 0.0;
         let (along, across) = if mirrored { (-along, -across) } else { (along, across) };
-        Profile::of(rows, across / along, scratch).cut(along, means, density);
+        Profile::of(rows, across / along, scratch).cut(along, self.mean_range(), means, density);
         if mirrored {
             means.reverse();
             density.reverse();
@@ -175,13 +184,21 @@ impl Target for ImageTarget {
     }
 
     fn sample(&self, rng: &mut Rng, point: &mut [f32]) {
-        let total = self.cumulative[self.cumulative.len() - 1];
+        let total = self.cumulative.last().copied().unwrap_or(0.0);
         let at = rng.uniform_f64() * total;
-        // The first running sum beyond `at` belongs to a cell of positive mass. `at` may round up to the total: then the last such.
-        let cell = self.cumulative.partition_point(|sum| *sum <= at);
-        let cell =
-            if cell < self.cumulative.len() { cell } else { self.cumulative.partition_point(|sum| *sum < total) };
-        let (column, row) = (cell % self.rows.width(), cell / self.rows.width());
+        // The first running sum beyond `at` belongs to a row of positive mass. `at` may round up to the total: then the last such.
+        let row = self.cumulative.partition_point(|sum| *sum <= at);
+        let row = if row < self.cumulative.len() { row } else { self.cumulative.partition_point(|sum| *sum < total) };
+        let mut left = at - if row == 0 { 0.0 } else { self.cumulative[row - 1] };
+        let cells = self.rows.cells(row);
+        let mut column = cells.iter().rposition(|cell| *cell > 0.0).unwrap_or(0);
+        for (index, cell) in cells.iter().enumerate() {
+            left -= f64::from(*cell);
+            if left < 0.0 {
+                column = index;
+                break;
+            }
+        }
         let within = |index: usize, cells: usize, length: f32, u: f64| {
             (((index as f64 + u) / cells as f64 * f64::from(length)) as f32).min(length)
         };

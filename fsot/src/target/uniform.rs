@@ -3,6 +3,7 @@
 use super::cdf::bins_of_cdf;
 use super::{MAX_DIMS, Target};
 use noisefloor::rng::Rng;
+use std::sync::LazyLock;
 
 /// The uniform distribution on `[0, 1)^dims`.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +61,19 @@ pub fn uniform_bins(center: f32, extents: &mut [f32], means: &mut [f32], density
     }
 }
 
+/// Entries of [`TABLE`].
+const ROOTS: usize = 8192;
+
+/// [`root_bin`], which takes longer than all else here.
+static TABLE: LazyLock<Vec<[f32; 2]>> = LazyLock::new(|| (0..ROOTS).map(root_bin).collect());
+
+/// The mean of sqrt(x) over [i, i + 1], and 1 / (sqrt(i + 1) - sqrt(i)), without cancellation.
+fn root_bin(i: usize) -> [f32; 2] {
+    let (begin, end) = (i as f32, (i + 1) as f32);
+    let (a, b) = (begin.sqrt(), end.sqrt());
+    [(2.0 / 3.0) * (begin + a * b + end) / (a + b), a + b]
+}
+
 /// The projection of a rectangle: a density that is constant over `long - short` and falls linearly over `short` to both sides.
 fn trapezoid(center: f32, long: f32, short: f32, means: &mut [f32], density: &mut [f32]) {
     let bins = means.len();
@@ -77,12 +91,15 @@ fn trapezoid(center: f32, long: f32, short: f32, means: &mut [f32], density: &mu
     let average = width * share;
     let per_slope = if sloped > 0 { average / slope } else { 0.0 };
 
-    for (i, (mean, density)) in means[..sloped].iter_mut().zip(&mut density[..sloped]).enumerate() {
-        let (begin, end) = (i as f32, (i + 1) as f32);
-        let (a, b) = (begin.sqrt(), end.sqrt());
-        // The mean of sqrt over the bin, and 1 / (b - a), without cancellation.
-        *mean = low + slope * (2.0 / 3.0) * (begin + a * b + end) / (a + b);
-        *density = per_slope * (a + b);
+    let known = sloped.min(ROOTS);
+    for ((mean, density), [middle, sum]) in means[..known].iter_mut().zip(&mut density[..known]).zip(&*TABLE) {
+        *mean = low + slope * middle;
+        *density = per_slope * sum;
+    }
+    for i in known..sloped {
+        let [middle, sum] = root_bin(i);
+        means[i] = low + slope * middle;
+        density[i] = per_slope * sum;
     }
     // Behind the slope, position is linear in mass.
     let flat = |mass: f32| low + short + (mass - tail) * long * share;

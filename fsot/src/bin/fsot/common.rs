@@ -12,15 +12,15 @@ pub(crate) struct Common {
     /// The file to write; an older one is replaced when the new one is complete
     #[arg(long, short, value_name = "FILE")]
     pub(crate) out: PathBuf,
-    /// The same seed gives the same bytes, whatever the machine and the number of threads
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
-    /// How long to optimise
-    #[arg(long, value_enum, default_value_t = Quality::Standard)]
-    pub(crate) quality: Quality,
+    /// The same seed gives the same bytes, whatever the machine and the number of threads [default: 1]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// How long to optimise [default: standard]
+    #[arg(long, value_enum)]
+    quality: Option<Quality>,
     /// How long to optimise, in steps; overrides --quality
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..))]
-    pub(crate) iterations: Option<u64>,
+    iterations: Option<u64>,
     /// Where an interrupted run is saved, and continued from [default: OUT.checkpoint]
     #[arg(long, value_name = "FILE")]
     pub(crate) checkpoint: Option<PathBuf>,
@@ -93,14 +93,31 @@ impl Report {
 }
 
 impl Common {
+    /// What --seed says.
+    pub(crate) fn seed(&self) -> u64 {
+        self.seed.unwrap_or(1)
+    }
+
     /// What --quality and --iterations ask for.
     pub(crate) fn effort(&self) -> optimize::Quality {
+        self.given_effort().unwrap_or_default()
+    }
+
+    /// What --quality or --iterations ask for, if either is given.
+    pub(crate) fn given_effort(&self) -> Option<optimize::Quality> {
         match (self.iterations, self.quality) {
-            (Some(iterations), _) => optimize::Quality::Iterations(iterations),
-            (None, Quality::Draft) => optimize::Quality::Draft,
-            (None, Quality::Standard) => optimize::Quality::Standard,
-            (None, Quality::High) => optimize::Quality::High,
+            (Some(iterations), _) => Some(optimize::Quality::Iterations(iterations)),
+            (None, quality) => quality.map(|quality| match quality {
+                Quality::Draft => optimize::Quality::Draft,
+                Quality::Standard => optimize::Quality::Standard,
+                Quality::High => optimize::Quality::High,
+            }),
         }
+    }
+
+    /// What --seed says, if it is given.
+    pub(crate) fn given_seed(&self) -> Option<u64> {
+        self.seed
     }
 
     /// Where the run is saved: beside the output, or in the working folder if the output is a pipe or a device.

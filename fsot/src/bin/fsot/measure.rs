@@ -2,6 +2,7 @@
 
 use crate::common::{Report, Threads};
 use fsot::error::{Error, Result};
+use fsot::export::nft::TileFile;
 use fsot::export::points::Table;
 use fsot::metrics::text::PrefixTable;
 use fsot::metrics::{self, TileOptions, TileView, figure};
@@ -83,7 +84,15 @@ impl Tile {
     /// Reads a file.
     pub(crate) fn read(&self, path: &Path) -> Result<Content> {
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("nft")) {
-            return Err(Error::Input(format!("{}: tile files cannot be measured yet", path.display())));
+            let file = TileFile::read(path)?;
+            let view = file.view();
+            return Ok(Content::Tile(Samples {
+                size: view.size,
+                spp: view.spp,
+                dims: view.dims,
+                frames: view.frames,
+                coordinates: file.coordinates(),
+            }));
         }
         let table = read::points(path)?;
         metrics::check(&table.points).map_err(in_file(path))?;

@@ -146,14 +146,14 @@ fn problem(args: &Args) -> Result<(Problem, Value, [f32; 2])> {
         class_coordinates: ClassCoordinates::Index,
         domain: if args.toroidal { Domain::Toroidal } else { Domain::Bounded },
         axis_priority: args.axis_priority,
-        seed: common.seed,
+        seed: common.seed(),
         quality: common.effort(),
         initial: None,
     };
     let description = json!({
         "command": "points", "points": points, "dims": dims, "toroidal": args.toroidal, "axis-priority": args.axis_priority,
         "progressive": args.progressive, "classes": args.classes, "density": args.density.is_some(), "invert": args.invert,
-        "files": files, "seed": common.seed, "quality": format!("{:?}", common.effort()),
+        "files": files, "seed": common.seed(), "quality": format!("{:?}", common.effort()),
     });
     Ok((problem, description, extent))
 }

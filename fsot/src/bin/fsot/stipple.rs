@@ -149,7 +149,7 @@ impl Args {
             invert: self.invert,
             tone: if self.linear() { Tone::Linear } else { Tone::Encoded },
             grey_component: self.black,
-            seed: self.common.seed,
+            seed: self.common.seed(),
             quality: self.common.effort(),
         }
     }

@@ -43,15 +43,15 @@ impl<'a> Profile<'a> {
         Profile { masses: scratch, origin: if slope < 0.0 { -(rows.height() as f64) * shift } else { 0.0 } }
     }
 
-    /// Cuts the projection into bins of equal mass: their means, and their densities relative to the mean density (5.24).
-    /// `length`: of a bin of the histogram.
-    pub(super) fn cut(&self, length: f64, means: &mut [f32], density: &mut [f32]) {
+    /// Cuts the projection into bins of equal mass: their means, and their densities relative to that of the mass spread evenly over
+    /// `range`. `length`: of a bin of the histogram.
+    pub(super) fn cut(&self, length: f64, range: f64, means: &mut [f32], density: &mut [f32]) {
         let count = means.len().min(density.len());
         let total: f64 = self.masses.iter().map(|mass| f64::from(*mass)).sum();
         if count == 0 || total <= 0.0 {
             return;
         }
-        let mut cutter = Cutter { origin: self.origin, length, means, density, done: 0, ..Cutter::default() };
+        let mut cutter = Cutter { origin: self.origin, length, range, means, density, done: 0, ..Cutter::default() };
         let scale = count as f64 / total;
         let mass = |bin: usize| self.masses.get(bin).map_or(0.0, |mass| f64::from(*mass) * scale);
         for bin in 0..self.masses.len() {
@@ -104,6 +104,7 @@ fn limited(below: f64, centre: f64, above: f64) -> f64 {
 struct Cutter<'a> {
     origin: f64,
     length: f64,
+    range: f64,
     means: &'a mut [f32],
     density: &'a mut [f32],
     /// Bins that are complete.
@@ -112,9 +113,9 @@ struct Cutter<'a> {
     mass: f64,
     moment: f64,
     begin: f64,
-    /// Where the density begins and where the last piece ends.
-    first: Option<f64>,
+    /// Where the last piece ends.
     end: f64,
+    started: bool,
 }
 
 impl Cutter<'_> {
@@ -122,8 +123,8 @@ impl Cutter<'_> {
         if density <= 0.0 {
             return;
         }
-        if self.first.is_none() {
-            self.first = Some(from);
+        if !self.started {
+            self.started = true;
             self.begin = from;
         }
         self.end = from + length;
@@ -181,7 +182,7 @@ impl Cutter<'_> {
         let last = ((self.origin + self.end) * self.length) as f32;
         self.means[self.done..count].fill(last);
         self.density[self.done..count].fill(0.0);
-        let average = ((self.end - self.first.unwrap_or(self.end)) / count as f64) as f32;
+        let average = (self.range / self.length / count as f64) as f32;
         // A bin has a positive length except for rounding: no density is infinite.
         let shortest = average * 1e-6;
         self.density[..count].iter_mut().for_each(|value| *value = average / value.max(shortest));

@@ -9,18 +9,19 @@ mod sheet;
 mod spectrum;
 mod table;
 
+use super::Options;
 use super::metric::Reference;
 use super::output::Output;
 use super::progress;
 use super::renderer::Renderer;
 use anyhow::{Context, Result};
 use measure::{Measured, Measurement, baseline};
-use plan::{ESTIMATORS, Plan, SCENES, Scene};
+use plan::{ESTIMATORS, Plan, SCENES, Scene, Tiles};
 
 /// Writes pictures, tiles.md, tiles.csv and tiles-animation.csv; returns the tables.
-pub(crate) fn run(quick: bool, renderer: &Renderer, output: &Output) -> Result<String> {
-    let plan = Plan::new(quick);
-    let tiles = renderer.tiles()?;
+pub(crate) fn run(options: &Options, renderer: &Renderer, output: &Output) -> Result<String> {
+    let plan = Plan::new(options.quick);
+    let tiles = Tiles::new(renderer.tiles()?, options.tiles.as_deref())?;
     let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
     let bar = progress::bar(work(&plan))?;
     let measurement = Measurement { renderer, plan: &plan, bar: &bar, scratch: scratch.path(), tiles: &tiles };
