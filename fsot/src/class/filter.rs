@@ -40,6 +40,17 @@ impl Filter {
         self.members
     }
 
+    /// How many different values it has above 0, but at most `most`.
+    pub(crate) fn values(&self, most: usize) -> usize {
+        let mut values: Vec<f32> = Vec::new();
+        for (_, value) in &self.runs {
+            if values.len() < most && !values.contains(value) {
+                values.push(*value);
+            }
+        }
+        values.len()
+    }
+
     /// The points with `w > z`, as ranges in ascending order that do not touch; returns their number.
     pub(crate) fn select(&self, z: f32, selected: &mut Vec<Range<u32>>) -> usize {
         selected.clear();

@@ -1,7 +1,7 @@
 //! The optimisation of a point set, step by step.
 
 use super::direction::direction;
-use super::schedule::{SLICES, Schedule};
+use super::schedule::{MOST_OBJECTIVES, SLICES, Schedule, objectives};
 use super::slice::{Bins, Offset, Slice, Workspace, advance, transport};
 use super::{Domain, Problem, check};
 use crate::class::{Filter, normalised};
@@ -48,7 +48,7 @@ impl Optimizer {
             .collect();
         let weights = problem.classes.iter().zip(&filters).map(|(class, filter)| (class.weight, filter.members() == 0));
         let weights = normalised(weights).unwrap_or_default();
-        let schedule = Schedule::new(&problem);
+        let schedule = Schedule::new(&problem, objectives(filters.iter().map(|filter| filter.values(MOST_OBJECTIVES))));
         let coordinates = super::initial::coordinates(&problem);
         let offsets = vec![Vec::new(); SLICES];
         let workspaces = Mutex::default();
@@ -163,7 +163,7 @@ impl Optimization for Optimizer {
             self.iteration += 1;
             return 0.0;
         }
-        if self.iteration < self.schedule.windowed {
+        if self.schedule.in_windows(self.iteration) {
             let step = self.schedule.step(self.iteration);
             return match self.problem.dims {
                 1 => self.step_in_windows::<1>(step),

@@ -16,12 +16,12 @@ impl Ranking {
     /// The most keys for [`Ranking::at_once`]: beyond, its buckets would not fit the cache.
     pub(crate) const MOST_AT_ONCE: usize = 16_384;
 
-    /// The rank of every key. Keys in the same bucket, of at least four per key, are ranked in the order given.
+    /// The rank of every key. Keys in the same bucket, of at least two per key, are ranked in the order given.
     ///
     /// Where the keys are about uniform, few share a bucket, and the offsets of those that do are wrong by about a bin, which is little
     /// against what they are in a slice of random direction.
     pub(crate) fn at_once(&mut self, keys: &[u32]) -> &[u32] {
-        let bits = keys.len().max(2).next_power_of_two().ilog2() + 2;
+        let bits = keys.len().max(2).next_power_of_two().ilog2() + 1;
         let shift = KEY_BITS - bits;
         let Ranking { counts, ranks, .. } = self;
         reset(counts, 1 << bits);

@@ -125,7 +125,8 @@ fn problem(args: &Args) -> Result<TileProblem> {
         },
     };
     let ClassShare { share, weight } = problem.box_class;
-    problem.box_class = ClassShare { share: args.box_share.unwrap_or(share), weight: args.box_weight.unwrap_or(weight) };
+    problem.box_class =
+        ClassShare { share: args.box_share.unwrap_or(share), weight: args.box_weight.unwrap_or(weight) };
     problem.seed = args.common.given_seed().unwrap_or(problem.seed);
     problem.iterations = match args.common.given_effort() {
         None => problem.iterations,
