@@ -122,21 +122,22 @@ impl Placement {
 }
 
 fn classes(options: &Options, target: &Arc<dyn Target>) -> Vec<Class> {
-    let class = |name: String, function| Class { function, target: Arc::clone(target), weight: 1.0, name };
+    let class = |name: String, weight, function| Class { function, target: Arc::clone(target), weight, name };
     let mut classes = Vec::new();
     if options.colours > 1 {
         let end = |colour: usize| colour as f32 / options.colours as f32;
         for colour in 0..options.colours {
             let function = ClassFunction::Rectangle { from: [0.0, end(colour)], to: [1.0, end(colour + 1)] };
-            classes.push(class(format!("colour {colour}"), function));
+            classes.push(class(format!("colour {colour}"), 1.0, function));
         }
     }
     if options.colours > 1 || !options.sizes {
-        classes.push(class("all".into(), ClassFunction::Constant));
+        // One class against many: with equal weights all together would be far less even than each colour.
+        classes.push(class("all".into(), (options.colours as f32).sqrt(), ClassFunction::Constant));
     }
     if options.sizes {
-        classes.push(class("small".into(), ClassFunction::Ramp { rising: false }));
-        classes.push(class("large".into(), ClassFunction::Ramp { rising: true }));
+        classes.push(class("small".into(), 1.0, ClassFunction::Ramp { rising: false }));
+        classes.push(class("large".into(), 1.0, ClassFunction::Ramp { rising: true }));
     }
     classes
 }

@@ -32,7 +32,7 @@ pub struct Options {
     pub grey_component: f32,
     /// Chooses all random numbers.
     pub seed: u64,
-    /// How long to optimise: draft, standard and high are 400, 3,000 and 12,000 iterations here.
+    /// How long to optimise: draft, standard and high are 400, 4,000 and 16,000 iterations here.
     pub quality: Quality,
 }
 
@@ -40,8 +40,8 @@ pub struct Options {
 fn effort(quality: Quality) -> Quality {
     match quality {
         Quality::Draft => Quality::Iterations(400),
-        Quality::Standard => Quality::Iterations(3000),
-        Quality::High => Quality::Iterations(12_000),
+        Quality::Standard => Quality::Iterations(4000),
+        Quality::High => Quality::Iterations(16_000),
         other => other,
     }
 }
