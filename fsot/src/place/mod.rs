@@ -1,4 +1,5 @@
-//! Object placement: things of several colours and sizes, spread evenly whichever of them one looks at (5.5.1, figure 5.15).
+//! Object placement: things of several colours and sizes, spread evenly whichever of them one looks at (5.5.1, figure
+//! 5.15).
 
 mod draw;
 
@@ -23,7 +24,8 @@ pub struct Options {
     pub points: usize,
     /// How many colours, 1 to [`MAX_COLOURS`], each with about as many objects as the others.
     pub colours: usize,
-    /// Whether objects have sizes, evenly spread over [0, 1], so that the larger and the smaller ones of every size are spread evenly.
+    /// Whether objects have sizes, evenly spread over [0, 1], so that the larger and the smaller ones of every size
+    /// are spread evenly.
     pub sizes: bool,
     /// Where objects are wanted; the unit square if not given.
     pub map: Option<ImageTarget>,
@@ -56,7 +58,8 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// With colours, each colour is a class and all objects are one; with sizes, a falling and a rising ramp over the size are two.
+    /// With colours, each colour is a class and all objects are one; with sizes, a falling and a rising ramp over the
+    /// size are two.
     ///
     /// # Errors
     ///
