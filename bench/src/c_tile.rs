@@ -64,25 +64,26 @@ mod linked {
             }
         }
 
-        /// Two numbers of the pixel's own domain.
+        /// The sum of two numbers of the pixel's own domain. (To return both, Rust would load them as one, and wait for the
+        /// two stores.)
         #[inline]
-        pub fn root(&self, x: u32, y: u32, index: u32) -> [f32; 2] {
+        pub fn root(&self, x: u32, y: u32, index: u32) -> f32 {
             let mut u = [0.0; 2];
             // SAFETY: the tile lives, and there is room for two numbers.
             unsafe { nf_sampler_draw(nf_sampler_pixel(self, x, y, 0, index), 2, u.as_mut_ptr()) };
-            u
+            u[0] + u[1]
         }
 
-        /// Two numbers of a child domain.
+        /// The sum of two numbers of a child domain.
         #[inline]
-        pub fn child(&self, x: u32, y: u32, index: u32, key: u32) -> [f32; 2] {
+        pub fn child(&self, x: u32, y: u32, index: u32, key: u32) -> f32 {
             let mut u = [0.0; 2];
             // SAFETY: as above.
             unsafe {
                 let pixel = nf_sampler_pixel(self, x, y, 0, index);
                 nf_sampler_draw(nf_sampler_domain(pixel, key), 2, u.as_mut_ptr());
             }
-            u
+            u[0] + u[1]
         }
 
         /// Two numbers for each pixel and sample.
@@ -107,11 +108,11 @@ mod missing {
             panic!("libnoisefloor.a is missing: run `cargo xtask library`")
         }
 
-        pub fn root(&self, _: u32, _: u32, _: u32) -> [f32; 2] {
+        pub fn root(&self, _: u32, _: u32, _: u32) -> f32 {
             match *self {}
         }
 
-        pub fn child(&self, _: u32, _: u32, _: u32, _: u32) -> [f32; 2] {
+        pub fn child(&self, _: u32, _: u32, _: u32, _: u32) -> f32 {
             match *self {}
         }
 

@@ -19,7 +19,7 @@ fn points_that_cannot_be_measured_are_refused_by_value() {
 
 #[test]
 fn the_fewest_and_the_most_equal_points_are_measured() {
-    for dims in 1..=8 {
+    for dims in [1, 2, 4, 8] {
         for points in [
             Points::new(dims, vec![0.5; dims]),
             Points::new(dims, vec![0.0; dims]),

@@ -39,25 +39,22 @@ pub struct nf_sampler {
 /// tile: it must outlive the sampler and stay where it is. All draws of a sampler without a tile, NULL, are 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_sampler_pixel(tile: *const nf_tile, x: u32, y: u32, frame: u32, index: u32) -> nf_sampler {
-    // SAFETY: the caller passes NULL or a tile that lives on.
-    match unsafe { convert::reference(tile) } {
-        Ok(view) if view.spp > 0 => {
-            if frame == 0 {
-                // SAFETY: as above.
-                sampler(tile, State::pixel(&unsafe { core_view(view) }, x, y, 0, index))
-            } else {
-                later(view, x, y, frame, index)
-            }
-        }
-        _ => sampler(core::ptr::null(), State::default()),
+    // Draws trust the pointer: one that they cannot use is none.
+    let tile = if tile.is_aligned() { tile } else { core::ptr::null() };
+    if frame != 0 {
+        return later(tile, x, y, frame, index);
     }
+    // SAFETY: the caller passes NULL or a tile that lives on; it is aligned, as just checked.
+    let state = unsafe { core_view(tile) }.map(|view| State::pixel(&view, x, y, 0, index));
+    sampler(tile, state.unwrap_or_default())
 }
 
 /// nf_sampler_pixel of a frame other than the first: apart, so that the first is fast.
 #[inline(never)]
-fn later(tile: &nf_tile, x: u32, y: u32, frame: u32, index: u32) -> nf_sampler {
-    // SAFETY: a reference to a tile that has samples.
-    sampler(tile, State::pixel(&unsafe { core_view(tile) }, x, y, frame, index))
+fn later(tile: *const nf_tile, x: u32, y: u32, frame: u32, index: u32) -> nf_sampler {
+    // SAFETY: as in nf_sampler_pixel.
+    let state = unsafe { core_view(tile) }.map(|view| State::pixel(&view, x, y, frame, index));
+    sampler(tile, state.unwrap_or_default())
 }
 
 /// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent. Keys mean
@@ -88,11 +85,10 @@ pub unsafe extern "C" fn nf_sampler_draw(sampler: nf_sampler, dims: u32, u: *mut
     unsafe {
         if dims == 2
             && (sampler.domain, sampler.frame, sampler.scrambled) == (0, 0, 0)
-            && let Some(tile) = sampler.tile.as_ref()
-            && sampler.index < tile.spp
+            && let Some(tile) = core_view(sampler.tile)
             && let root = (State { domain: 0, frame: 0, scrambled: 0, ..state(&sampler) })
             && let Ok(u) = convert::reference_mut(u.cast::<[f32; 2]>())
-            && Sampler::resume(&core_view(tile), root).draw_stored(u)
+            && Sampler::resume(&tile, root).draw_stored(u)
         {
             return;
         }
@@ -126,12 +122,16 @@ unsafe fn write<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
     // SAFETY: passed on to the caller.
     let Ok(u) = (unsafe { convert::reference_mut(u.cast::<[f32; N]>()) }) else { return };
     // SAFETY: passed on to the caller.
-    let tile = unsafe { sampler.tile.as_ref() };
-    *u = match tile.filter(|tile| tile.spp > 0) {
-        // SAFETY: a tile that has samples, as just checked.
-        Some(tile) => unsafe { Sampler::resume(&core_view(tile), state(sampler)).draw() },
-        None => [0.0; N],
-    };
+    match unsafe { core_view(sampler.tile) } {
+        Some(tile) => {
+            let sampler = Sampler::resume(&tile, state(sampler));
+            // The same numbers either way; `draw` alone would bring them here by way of memory.
+            if !sampler.draw_stored(u) {
+                *u = sampler.draw();
+            }
+        }
+        None => *u = [0.0; N],
+    }
 }
 
 #[inline(always)]

@@ -100,7 +100,7 @@ impl<'a> Sampler<'a> {
     /// The first N coordinates, 1 to 4, of this domain's point; each in [0, 1), a multiple of 2^-24.
     ///
     /// Up to the tile's dims they are optimised together; further ones come from other places of the tile.
-    #[inline]
+    #[inline(always)]
     pub fn draw<const N: usize>(&self) -> [f32; N] {
         let mut u = [0.0; N];
         if self.draw_stored(&mut u) { u } else { point(self.tile, &self.state).map(unit) }
@@ -164,7 +164,7 @@ impl State {
 }
 
 /// The coordinates in 32-bit fixed point: of as many domains as it takes, each with the tile's dims.
-#[inline(always)]
+#[inline]
 fn point<const N: usize>(tile: &Tile<'_>, state: &State) -> [u32; N] {
     let more = |number| State { domain: child(state.domain ^ DIMENSIONS, number), ..*state };
     let all = match tile.shape().dims {

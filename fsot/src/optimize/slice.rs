@@ -79,9 +79,6 @@ pub(crate) fn transport<const D: usize>(
     let quantum = width / top;
     project(slice, lengths, coordinates, low, top / width.max(f32::MIN_POSITIVE), keys);
 
-    // (5.24) has the density relative to the slice's mean density. That would weigh slices by the length of the projected domain, which
-    // prefers the diagonals of a square: long runs then end in a square grid along its sides. The density itself prefers no direction.
-    let mean_density = 1.0 / width;
     let ranks =
         if bins.uniform && count <= Ranking::MOST_AT_ONCE { ranking.at_once(keys) } else { ranking.sorted(keys) };
     let mut energy = 0.0;
@@ -96,7 +93,7 @@ pub(crate) fn transport<const D: usize>(
         let ((key_quads, keys_left), (rank_quads, ranks_left)) = (keys.as_chunks::<4>(), ranks.as_chunks::<4>());
         let one = |key: u32, rank: u32| {
             let offset = means[rank as usize] - (low + key as i32 as f32 * quantum);
-            (offset, density[rank as usize] * mean_density)
+            (offset, density[rank as usize])
         };
         for ((place, keys), ranks) in quads.iter_mut().zip(key_quads).zip(rank_quads) {
             let mut squares = [0.0; 4];

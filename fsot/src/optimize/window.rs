@@ -6,7 +6,7 @@ use super::optimizer::{LARGEST, Optimizer};
 use super::schedule::{SLICES, WINDOW, WINDOW_ITERATIONS};
 use super::slice::{Bins, Offset, Slice, Workspace, advance, transport};
 use crate::random::stream;
-use crate::target::uniform_bins;
+use crate::target::{MEAN_COMPONENT, uniform_bins};
 use noisefloor::rng::Rng;
 use rayon::prelude::*;
 
@@ -186,6 +186,7 @@ impl Optimizer {
             .for_each(|o| o.resize(numbers.len(), [0.0; 2]));
         let mut slices: Vec<Slice<D>> = (0..SLICES).map(|_| Slice::new()).collect();
         let mut first_energy = 0.0;
+        let range = lengths.iter().sum::<f32>() * MEAN_COMPONENT[D];
         for iteration in 0..WINDOW_ITERATIONS {
             for (k, (slice, offsets)) in slices.iter_mut().zip(offsets.iter_mut()).enumerate() {
                 let turn = (number * WINDOW_ITERATIONS + iteration) * SLICES + k;
@@ -196,7 +197,7 @@ impl Optimizer {
                 let write = |means: &mut [f32], density: &mut [f32], _: &mut Vec<f32>| {
                     let mut extents: [f32; D] = std::array::from_fn(|k| slice.direction[k].abs() * lengths[k]);
                     let center = (0..D).map(|k| 0.5 * slice.direction[k] * lengths[k]).sum();
-                    uniform_bins(center, &mut extents, means, density);
+                    uniform_bins(center, &mut extents, range, means, density);
                 };
                 let bins = Bins { write, uniform: true };
                 let energy = transport(slice, &lengths, coordinates, bins, offsets, memory);

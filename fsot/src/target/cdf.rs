@@ -3,8 +3,10 @@
 /// Cuts the distribution whose cumulative mass at `start + k * step` is `cdf[k]` (not decreasing, any total above 0, linear between
 /// nodes) into `means.len()` bins of equal mass, as [`Target::bins`](super::Target::bins) wants them.
 ///
+/// Densities are relative to the mass spread over `range`.
+///
 /// A distribution without mass, or fewer than two nodes, gives bins at `start`.
-pub fn bins_of_cdf(start: f64, step: f64, cdf: &[f64], means: &mut [f32], density: &mut [f32]) {
+pub fn bins_of_cdf(start: f64, step: f64, range: f64, cdf: &[f64], means: &mut [f32], density: &mut [f32]) {
     let bins = means.len();
     let (bottom, top) = (cdf.first().copied().unwrap_or(0.0), cdf.last().copied().unwrap_or(0.0));
     let total = top - bottom;
@@ -13,11 +15,11 @@ pub fn bins_of_cdf(start: f64, step: f64, cdf: &[f64], means: &mut [f32], densit
         density.fill(1.0);
         return;
     }
-    // The support: (5.24) compares with the length between the first and the last position with mass.
     let first = cdf.iter().take_while(|&&f| f <= bottom).count() - 1;
     let last = cdf.len() - cdf.iter().rev().take_while(|&&f| f >= top).count();
-    let average = (last - first) as f64 * step / bins as f64;
-    let shortest = average * 1e-6;
+    let average = range / bins as f64;
+    // A bin without length has a point of all of its mass: as much density as the others can make up for.
+    let shortest = average * 1e-3;
     let share = total / bins as f64;
 
     let mut cell = first;

@@ -1,7 +1,7 @@
 //! The uniform distribution, whose projections have closed forms or cheap exact tables.
 
 use super::cdf::bins_of_cdf;
-use super::{MAX_DIMS, Target};
+use super::{MAX_DIMS, MEAN_COMPONENT, Target};
 use noisefloor::rng::Rng;
 use std::sync::LazyLock;
 
@@ -29,7 +29,8 @@ impl Target for Uniform {
         for (extent, &component) in extents.iter_mut().zip(direction) {
             *extent = component.abs();
         }
-        uniform_bins(0.5 * direction.iter().sum::<f32>(), &mut extents[..dims], means, density);
+        let range = dims as f32 * MEAN_COMPONENT[dims];
+        uniform_bins(0.5 * direction.iter().sum::<f32>(), &mut extents[..dims], range, means, density);
     }
 
     fn sample(&self, rng: &mut Rng, point: &mut [f32]) {
@@ -42,10 +43,11 @@ impl Target for Uniform {
 }
 
 /// [`Target::bins`] for the uniform distribution on a box, by the box's projected centre and the projected lengths of its edges
-/// (`|direction[k]|` times the length of edge k; at most 8, not negative). Reorders `extents`.
+/// (`|direction[k]|` times the length of edge k; at most 8, not negative). Reorders `extents`. Densities are relative to the mass spread over
+/// `range`.
 ///
 /// One or two edges: closed form (a trapezoid). More: the cumulative distribution at 1,024 nodes, relative error about 1e-6.
-pub fn uniform_bins(center: f32, extents: &mut [f32], means: &mut [f32], density: &mut [f32]) {
+pub fn uniform_bins(center: f32, extents: &mut [f32], range: f32, means: &mut [f32], density: &mut [f32]) {
     extents.sort_unstable_by(|a, b| b.total_cmp(a));
     let longest = extents.first().copied().unwrap_or(0.0);
     // An edge this short widens the projection by less than single precision shows.
@@ -55,9 +57,9 @@ pub fn uniform_bins(center: f32, extents: &mut [f32], means: &mut [f32], density
             means.fill(center);
             density.fill(1.0);
         }
-        1 => trapezoid(center, longest, 0.0, means, density),
-        2 => trapezoid(center, longest, extents[1], means, density),
-        _ => tabulated(center, &extents[..edges], means, density),
+        1 => trapezoid(center, [longest, 0.0], range, means, density),
+        2 => trapezoid(center, [longest, extents[1]], range, means, density),
+        _ => tabulated(center, &extents[..edges], range, means, density),
     }
 }
 
@@ -75,7 +77,7 @@ fn root_bin(i: usize) -> [f32; 2] {
 }
 
 /// The projection of a rectangle: a density that is constant over `long - short` and falls linearly over `short` to both sides.
-fn trapezoid(center: f32, long: f32, short: f32, means: &mut [f32], density: &mut [f32]) {
+fn trapezoid(center: f32, [long, short]: [f32; 2], range: f32, means: &mut [f32], density: &mut [f32]) {
     let bins = means.len();
     if bins == 0 {
         return;
@@ -88,7 +90,7 @@ fn trapezoid(center: f32, long: f32, short: f32, means: &mut [f32], density: &mu
     let tail = 0.5 * short / long * bins as f32;
     let slope = (2.0 * long * short * share).sqrt();
     let sloped = (tail as usize).min(half);
-    let average = width * share;
+    let average = range * share;
     let per_slope = if sloped > 0 { average / slope } else { 0.0 };
 
     let known = sloped.min(ROOTS);
@@ -120,7 +122,7 @@ fn trapezoid(center: f32, long: f32, short: f32, means: &mut [f32], density: &mu
         let begin = half as f32;
         means[half] = center;
         let edge = if begin >= tail { flat(begin) } else { low + slope * begin.sqrt() };
-        density[half] = average / (2.0 * (center - edge)).max(1e-6 * average);
+        density[half] = average / (2.0 * (center - edge)).max(1e-3 * average);
     }
     let (left, right) = means.split_at_mut(bins - half);
     for (right, left) in right.iter_mut().rev().zip(left) {
@@ -137,7 +139,7 @@ const CELLS: usize = 1024;
 
 /// The projection of a box of three or more edges, in descending order: the trapezoid of the longest two, averaged over each further
 /// edge in turn.
-fn tabulated(center: f32, extents: &[f32], means: &mut [f32], density: &mut [f32]) {
+fn tabulated(center: f32, extents: &[f32], range: f32, means: &mut [f32], density: &mut [f32]) {
     let width: f64 = extents.iter().map(|&extent| f64::from(extent)).sum();
     let step = width / CELLS as f64;
     let position = |k: usize| (k as f64 - 0.5 * CELLS as f64) * step;
@@ -156,7 +158,7 @@ fn tabulated(center: f32, extents: &[f32], means: &mut [f32], density: &mut [f32
         highest = highest.max(f.min(1.0));
         *f = highest;
     }
-    bins_of_cdf(f64::from(center) - 0.5 * width, step, &cdf, means, density);
+    bins_of_cdf(f64::from(center) - 0.5 * width, step, f64::from(range), &cdf, means, density);
 }
 
 fn trapezoid_cdf(t: f64, long: f64, short: f64) -> f64 {

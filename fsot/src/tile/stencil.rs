@@ -12,7 +12,7 @@ const JOIN: f64 = 0.02;
 
 /// The class of each prefix of a progressive tile, by the number of doublings to the whole: share and weight.
 const PREFIXES: [(f64, f32); 9] =
-    [(1.0, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0)];
+    [(2.0, 1.0), (0.7, 1.0), (1.5, 2.0), (0.5, 2.0), (1.0, 2.0), (0.5, 2.0), (1.0, 2.0), (0.5, 2.0), (1.0, 2.0)];
 
 /// A subclass, the same at every pixel: the first `prefix` samples of the first `taps` pixels of a class.
 #[derive(Clone, Debug)]
@@ -50,15 +50,8 @@ pub(super) fn enumerate(problem: &TileProblem) -> Result<Vec<Entry>> {
 }
 
 fn classes(problem: &TileProblem) -> Result<Vec<Class>> {
-    let spatial = sorted(problem.kernel.taps()?);
-    let radius = spatial.iter().map(|tap| tap.dx.abs().max(tap.dy.abs())).max().unwrap_or(0) as usize;
-    if 2 * radius > problem.size {
-        let (kernel, size) = (&problem.kernel, problem.size);
-        return Err(Error::input(format!(
-            "the kernel {kernel} has a radius of {radius} pixels: too wide for a tile of {size} pixels"
-        )));
-    }
-    let own = sorted(Kernel::Box.taps()?);
+    let spatial = narrow(&problem.kernel, problem.size)?;
+    let own = narrow(&problem.reconstruction, problem.size)?;
     let box_share = f64::from(problem.box_class.share);
     let box_class = Class { taps: own, share: box_share, weight: problem.box_class.weight };
     let Some(temporal) = &problem.temporal else {
@@ -77,6 +70,18 @@ fn classes(problem: &TileProblem) -> Result<Vec<Class>> {
         box_class,
         Class { taps: spatial, share: frame_share, weight: 1.0 },
     ])
+}
+
+/// A kernel's pixels in decreasing order, unless they would overlap in the tile.
+fn narrow(kernel: &Kernel, size: usize) -> Result<Vec<Tap>> {
+    let taps = sorted(kernel.taps()?);
+    let radius = taps.iter().map(|tap| tap.dx.abs().max(tap.dy.abs())).max().unwrap_or(0) as usize;
+    if 2 * radius > size {
+        return Err(Error::input(format!(
+            "the kernel {kernel} has a radius of {radius} pixels: too wide for a tile of {size} pixels"
+        )));
+    }
+    Ok(taps)
 }
 
 /// In decreasing order of weight; of equal weight, in a fixed order.
