@@ -53,7 +53,7 @@ pub(crate) fn run(measurement: &Measurement, scene: &Scene, reference: &Referenc
     let samplers = [
         ("random", Some(Sampler::Random)),
         ("Owen-Sobol", Some(Sampler::Sobol)),
-        ("tile, shifted", spatial),
+        ("shifted tile", spatial),
         ("temporal tile", temporal),
     ];
     let mut all = Vec::new();

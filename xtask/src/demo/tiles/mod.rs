@@ -110,7 +110,8 @@ fn report(plan: &Plan, [summary, samplers, animation]: &[String; 3]) -> String {
          All figures:\n\n{samplers}\n\
          - `mc`: the plain mean. `block`: `nf_cv_block_estimate()`, blocks of 8 x 8 pixels, those of one\n  \
            surface share a fit, polynomials of order {order}.\n\
-         - relMSE: as in table.md. Filtered: the error image is filtered by a Gaussian of standard deviation {sigma} pixels\n  \
+         - relMSE: as in table.md, but relative errors beyond {limit} count as {limit}: one highlight in a dark pixel would\n  \
+           otherwise decide. Filtered: the error image is filtered by a Gaussian of standard deviation {sigma} pixels\n  \
            first. Ratios are to the plain mean of as many random samples.\n\
          - low frequencies: power of the errors below .1 cycles per pixel over the mean of all frequencies; white noise has 1.\n\
          - drawing ns: making a sample's coordinates. total ns: that, tracing and estimating, per sample and thread.\n\
@@ -126,6 +127,7 @@ fn report(plan: &Plan, [summary, samplers, animation]: &[String; 3]) -> String {
         frames = plan.frames,
         order = plan::ORDER,
         sigma = filter::SIGMA,
+        limit = score::LIMIT,
         scene = SCENES[0].name,
         alpha = animation::ALPHA,
         from = animation::FRAMES,
