@@ -60,7 +60,13 @@ fn gaussian(problem: TileProblem) -> TileProblem {
     TileProblem { kernel, reconstruction, box_class: ClassShare { share: 0.1, weight: 1.0 }, ..problem }
 }
 
-/// For temporal anti-aliasing.
+/// For temporal anti-aliasing: the error is small in every frame, and in what the moving average makes of a pixel and of the image.
 fn temporal(problem: TileProblem) -> TileProblem {
-    TileProblem { frames: 16, temporal: Some(TemporalKernel::Ema(0.2)), ..problem }
+    TileProblem {
+        frames: 16,
+        temporal: Some(TemporalKernel::Ema(0.2)),
+        frame_share: 0.5,
+        box_class: ClassShare { share: 0.1, weight: 1.0 },
+        ..problem
+    }
 }

@@ -141,7 +141,7 @@ impl TileProblem {
             prefixes: Vec::new(),
             box_class: ClassShare { share: if spp >= 16 { 0.03 } else { 0.0 }, weight: 1.0 },
             reconstruction: Kernel::Box,
-            frame_share: 0.3,
+            frame_share: 0.5,
             seed: 1,
             iterations: Quality::Standard.iterations(),
             directions: 4,
