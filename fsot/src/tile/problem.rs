@@ -139,7 +139,7 @@ impl TileProblem {
             temporal: None,
             progressive: false,
             prefixes: Vec::new(),
-            box_class: ClassShare { share: if spp >= 16 { 0.03 } else { 0.0 }, weight: 1.0 },
+            box_class: ClassShare { share: if spp > 1 { 0.1 } else { 0.0 }, weight: 1.0 },
             reconstruction: Kernel::Box,
             frame_share: 0.5,
             seed: 1,
