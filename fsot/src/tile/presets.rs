@@ -28,8 +28,8 @@ pub fn preset(name: &str) -> Option<TileProblem> {
         "128_16SPP_2D_PROGRESSIVE" => progressive(plane(128, 16, 4096)),
         "128_1SPP_4D" => space(128, 1, 0.4),
         "128_4SPP_4D" => space(128, 4, 0.12),
-        "128_1SPP_2D_GAUSSIAN" => gaussian(plane(128, 1, 2048)),
-        "128_4SPP_2D_GAUSSIAN" => gaussian(plane(128, 4, 4096)),
+        "128_1SPP_2D_GAUSSIAN" => gaussian(plane(128, 1, 2048), 0.0),
+        "128_4SPP_2D_GAUSSIAN" => gaussian(plane(128, 4, 4096), 0.3),
         "128_1SPP_2D_TEMPORAL" => temporal(plane(128, 1, 1024)),
         "64_1SPP_2D" => plane(64, 1, 2048),
         "64_4SPP_2D" => plane(64, 4, 8192),
@@ -40,7 +40,8 @@ pub fn preset(name: &str) -> Option<TileProblem> {
 
 /// Two dimensions.
 fn plane(size: usize, spp: usize, iterations: u64) -> TileProblem {
-    TileProblem { iterations, ..TileProblem::new(size, spp, 2) }
+    let share = if spp < 16 { 0.0 } else { 0.03 };
+    TileProblem { iterations, box_class: ClassShare { share, weight: 1.0 }, ..TileProblem::new(size, spp, 2) }
 }
 
 /// Every power-of-two prefix a tile.
@@ -50,17 +51,25 @@ fn progressive(problem: TileProblem) -> TileProblem {
 
 /// Four dimensions; `plane` is the share of directions in the plane of two axes.
 fn space(size: usize, spp: usize, plane: f32) -> TileProblem {
-    TileProblem { iterations: 4096, projections: Projections { axis: 0.0, plane }, ..TileProblem::new(size, spp, 4) }
+    let box_class = ClassShare { share: 0.0, weight: 1.0 };
+    let projections = Projections { axis: 0.0, plane };
+    TileProblem { iterations: 4096, projections, box_class, ..TileProblem::new(size, spp, 4) }
 }
 
-/// For a renderer that reconstructs with a Gaussian.
-fn gaussian(problem: TileProblem) -> TileProblem {
+/// For a renderer that reconstructs with a Gaussian; `share` of the slices look at what it reconstructs.
+fn gaussian(problem: TileProblem, share: f32) -> TileProblem {
     let reconstruction = Kernel::Gaussian(RECONSTRUCTION_SIGMA);
     let kernel = Kernel::Convolution(Box::new(Kernel::Perceptual), Box::new(reconstruction.clone()));
-    TileProblem { kernel, reconstruction, box_class: ClassShare { share: 0.1, weight: 1.0 }, ..problem }
+    TileProblem { kernel, reconstruction, box_class: ClassShare { share, weight: 1.0 }, ..problem }
 }
 
-/// For temporal anti-aliasing.
+/// For temporal anti-aliasing: the error is small in every frame, and in what the moving average makes of a pixel and of the image.
 fn temporal(problem: TileProblem) -> TileProblem {
-    TileProblem { frames: 16, temporal: Some(TemporalKernel::Ema(0.2)), ..problem }
+    TileProblem {
+        frames: 16,
+        temporal: Some(TemporalKernel::Ema(0.2)),
+        frame_share: 0.5,
+        box_class: ClassShare { share: 0.1, weight: 1.0 },
+        ..problem
+    }
 }
