@@ -7,7 +7,7 @@ use fsot::target::image::ImageTarget;
 use std::process::Command;
 
 fn options(points: usize, colours: usize, sizes: bool) -> Options {
-    Options { points, colours, sizes, map: None, seed: 3, quality: Quality::Iterations(150) }
+    Options { points, colours, sizes, map: None, seed: 3, quality: Quality::Iterations(500) }
 }
 
 fn objects(options: &Options) -> Vec<Object> {

@@ -37,16 +37,15 @@ fn psnr(photo: &Photo, options: &Options) -> f64 {
     blurred_psnr(&drawn, photo, 1.5 * stipple.spacing() * 400.0, false, !options.cmyk)
 }
 
-/// Measured when written: see the figures beside each bound, which are 1 dB or more above it.
 #[test]
 fn tones_and_colours_are_reproduced() {
     let mono = psnr(&gradient(), &options(3000, 300));
     let inverted = psnr(&gradient(), &Options { invert: true, ..options(3000, 300) });
     let colour = psnr(&colours(), &Options { cmyk: true, ..options(3000, 300) });
-    eprintln!("{mono} {inverted} {colour}");
-    assert!(mono > 30.0, "{mono}");
-    assert!(inverted > 30.0, "{inverted}");
-    assert!(colour > 26.0, "{colour}");
+    // 37.4, 36.6 and 32.0 dB when this was written.
+    assert!(mono > 36.0, "{mono}");
+    assert!(inverted > 35.0, "{inverted}");
+    assert!(colour > 30.5, "{colour}");
 }
 
 #[test]
@@ -159,7 +158,7 @@ fn every_frame_shows_its_picture() {
             let drawn = rasterise(&drawing, 300.0).unwrap();
             let own = blurred_psnr(&drawn, photo, 12.0, false, true);
             let other = blurred_psnr(&drawn, &photos[(number + 4) % 9], 12.0, false, true);
-            assert!(own > 17.0 && own > other + 6.0, "frame {number}: {own}, as another {other}");
+            assert!(own > 15.5 && own > other + 6.0, "frame {number}: {own}, as another {other}");
         }
     }
 }

@@ -152,7 +152,8 @@ impl Header {
         let mut ended = false;
         while let Some((&byte, others)) = rest.split_first() {
             ended |= byte == 0;
-            if ended && byte != 0 || !ended && !(b' ' <= byte && byte <= b'~') {
+            let fits = if ended { byte == 0 } else { b' ' <= byte && byte <= b'~' };
+            if !fits {
                 return false;
             }
             rest = others;

@@ -7,6 +7,8 @@ mod optimizer;
 mod rank;
 mod schedule;
 mod slice;
+#[cfg(test)]
+mod tests;
 mod window;
 
 pub use optimizer::Optimizer;

@@ -40,32 +40,37 @@ impl Ranking {
         ranks
     }
 
-    /// The rank of every key, by a radix sort of two passes. Keys in the same bucket, of at least 1,024 per key (of all there are, for more
-    /// than 8,192 keys), are ranked in the order given.
+    /// The rank of every key, by a radix sort of two passes; few keys, by comparisons. Equal keys are ranked in the order given.
     pub(crate) fn sorted(&mut self, keys: &[u32]) -> &[u32] {
-        let digit = (keys.len().max(2).ilog2().div_ceil(2) + 5).clamp(8, KEY_BITS.div_ceil(2));
-        let drop = KEY_BITS.saturating_sub(2 * digit);
-        let mask = (1usize << digit) - 1;
+        const DIGIT: u32 = KEY_BITS.div_ceil(2);
+        const MASK: usize = (1 << DIGIT) - 1;
         let Ranking { counts, ranks, elements, sorted } = self;
-        reset(counts, 2 << digit);
-        let (low, high) = counts.split_at_mut(1 << digit);
+        let ranks = room(ranks, keys.len());
         elements.clear();
-        elements.extend((0u32..).zip(keys).map(|(place, &key)| {
-            low[(key >> drop) as usize & mask] += 1;
-            high[(key >> (drop + digit)) as usize & mask] += 1;
-            u64::from(key) << 32 | u64::from(place)
-        }));
+        elements.extend((0u32..).zip(keys).map(|(place, &key)| u64::from(key) << 32 | u64::from(place)));
+        if keys.len() < 512 {
+            elements.sort_unstable();
+            for (rank, &element) in (0..).zip(&*elements) {
+                ranks[element as u32 as usize] = rank;
+            }
+            return ranks;
+        }
+        reset(counts, 2 << DIGIT);
+        let (low, high) = counts.split_at_mut(1 << DIGIT);
+        for &key in keys {
+            low[key as usize & MASK] += 1;
+            high[(key >> DIGIT) as usize & MASK] += 1;
+        }
         starts(low);
         starts(high);
         let sorted = room(sorted, keys.len());
         for &element in &*elements {
-            let start = &mut low[(element >> (32 + drop)) as usize & mask];
+            let start = &mut low[(element >> 32) as usize & MASK];
             sorted[*start as usize] = element;
             *start += 1;
         }
-        let ranks = room(ranks, keys.len());
         for &element in &*sorted {
-            let start = &mut high[(element >> (32 + drop + digit)) as usize & mask];
+            let start = &mut high[(element >> (32 + DIGIT)) as usize & MASK];
             ranks[element as u32 as usize] = *start;
             *start += 1;
         }

@@ -10,7 +10,7 @@ pub(crate) const SLICES: usize = 16;
 /// Points per window of a large set.
 pub(crate) const WINDOW: usize = 1024;
 /// Sets of more points than this are optimised in windows.
-pub(crate) const WINDOWED_FROM: usize = 16_384;
+pub(crate) const WINDOWED_FROM: usize = 8192;
 /// Iterations inside each window before the set is cut into other windows.
 pub(crate) const WINDOW_ITERATIONS: usize = 4;
 /// Iterations of all points together, before those in windows and between them.
@@ -56,7 +56,7 @@ impl Schedule {
     pub(crate) fn step(&self, iteration: u64) -> f32 {
         let falling = |from: f64, to: f64, k: u64, of: u64| (from * libm::pow(to / from, k as f64 / of as f64)) as f32;
         if self.opening == self.iterations {
-            falling(2.0, 0.06, iteration, self.iterations)
+            falling(2.0, 0.03, iteration, self.iterations)
         } else if iteration < self.opening {
             1.0
         } else if self.in_windows(iteration) {
@@ -80,12 +80,12 @@ fn iterations(problem: &Problem, objectives: usize, windowed: bool) -> u64 {
         return iterations;
     }
     // An iteration in windows brings a large set as far as several bring a small one, whatever its size.
-    let (draft, standard, high) = if windowed { (80.0, 800.0, 3200.0) } else { (6.0, 32.0, 220.0) };
+    let (draft, standard, high) = if windowed { (80.0, 800.0, 3200.0) } else { (32.0, 170.0, 1250.0) };
     let base = match problem.quality {
         Quality::Draft => draft,
         Quality::High => high,
         _ => standard,
     };
-    let size = if windowed { 1.0 } else { (problem.points as f64).sqrt().max(4.0) };
+    let size = if windowed { 1.0 } else { libm::log2(problem.points as f64).max(4.0) };
     libm::ceil(base * size * objectives as f64) as u64
 }

@@ -222,3 +222,28 @@ fn place_of<const D: usize>(mut number: usize, per_axis: usize) -> [usize; D] {
     }
     places
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_point_comes_back_from_its_window(x in 0.0f32..1.0, count in 2usize..60, torus in any::<bool>(), seed in any::<u64>()) {
+            let domain = if torus { Domain::Toroidal } else { Domain::Bounded };
+            let cuts = Cuts::new(count, domain, &mut stream(seed, 0, 0));
+            let (window, local) = cuts.place(x);
+            let (start, length) = cuts.extent(window);
+            prop_assert!(window < count && (0.0..=length).contains(&local) && (0.0..1.0).contains(&start));
+            let back = cuts.coordinate(window, local);
+            let apart = (back - x).abs();
+            prop_assert!(apart.min(1.0 - apart) < 1e-6, "{x} became {back}");
+            prop_assert!((0.0..1.0).contains(&back));
+            // The windows cover the axis, none of them much smaller than the others.
+            let total: f32 = (0..count).map(|k| cuts.extent(k).1).sum();
+            prop_assert!((total - 1.0).abs() < 1e-5);
+            prop_assert!((0..count).all(|k| cuts.extent(k).1 * count as f32 > 0.499));
+        }
+    }
+}

@@ -24,8 +24,8 @@ fn mix(a: Colour, b: Colour, part: f32) -> Colour {
     std::array::from_fn(|k| (f32::from(a[k]) + part * (f32::from(b[k]) - f32::from(a[k])) + 0.5) as u8)
 }
 
-/// A tree for every object, the nearer ones, further down, in front of the others; its trunk ends at the object's place. A single colour
-/// shows the size: small trees are red, large ones green.
+/// A tree for every object, the nearer ones, further down, in front of the others; its trunk ends at the object's
+/// place. A single colour shows the size: small trees are red, large ones green.
 pub fn drawing(objects: &[Object], colours: usize, extent: [f32; 2]) -> Drawing {
     let spacing = (extent[0] * extent[1] / objects.len().max(1) as f32).sqrt();
     let tallest = 2.0 * spacing;

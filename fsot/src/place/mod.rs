@@ -1,4 +1,5 @@
-//! Object placement: things of several colours and sizes, spread evenly whichever of them one looks at (5.5.1, figure 5.15).
+//! Object placement: things of several colours and sizes, spread evenly whichever of them one looks at (5.5.1, figure
+//! 5.15).
 
 mod draw;
 
@@ -23,7 +24,8 @@ pub struct Options {
     pub points: usize,
     /// How many colours, 1 to [`MAX_COLOURS`], each with about as many objects as the others.
     pub colours: usize,
-    /// Whether objects have sizes, evenly spread over [0, 1], so that the larger and the smaller ones of every size are spread evenly.
+    /// Whether objects have sizes, evenly spread over [0, 1], so that the larger and the smaller ones of every size
+    /// are spread evenly.
     pub sizes: bool,
     /// Where objects are wanted; the unit square if not given.
     pub map: Option<ImageTarget>,
@@ -56,7 +58,8 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// With colours, each colour is a class and all objects are one; with sizes, a falling and a rising ramp over the size are two.
+    /// With colours, each colour is a class and all objects are one; with sizes, a falling and a rising ramp over the
+    /// size are two.
     ///
     /// # Errors
     ///
@@ -122,21 +125,22 @@ impl Placement {
 }
 
 fn classes(options: &Options, target: &Arc<dyn Target>) -> Vec<Class> {
-    let class = |name: String, function| Class { function, target: Arc::clone(target), weight: 1.0, name };
+    let class = |name: String, weight, function| Class { function, target: Arc::clone(target), weight, name };
     let mut classes = Vec::new();
     if options.colours > 1 {
         let end = |colour: usize| colour as f32 / options.colours as f32;
         for colour in 0..options.colours {
             let function = ClassFunction::Rectangle { from: [0.0, end(colour)], to: [1.0, end(colour + 1)] };
-            classes.push(class(format!("colour {colour}"), function));
+            classes.push(class(format!("colour {colour}"), 1.0, function));
         }
     }
     if options.colours > 1 || !options.sizes {
-        classes.push(class("all".into(), ClassFunction::Constant));
+        // One class against many: with equal weights all together would be far less even than each colour.
+        classes.push(class("all".into(), (options.colours as f32).sqrt(), ClassFunction::Constant));
     }
     if options.sizes {
-        classes.push(class("small".into(), ClassFunction::Ramp { rising: false }));
-        classes.push(class("large".into(), ClassFunction::Ramp { rising: true }));
+        classes.push(class("small".into(), 1.0, ClassFunction::Ramp { rising: false }));
+        classes.push(class("large".into(), 1.0, ClassFunction::Ramp { rising: true }));
     }
     classes
 }

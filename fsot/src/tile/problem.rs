@@ -41,7 +41,7 @@ pub struct TileProblem {
     /// documented default.
     pub prefixes: Vec<ClassShare>,
     /// The class of what the renderer reconstructs a pixel from, beside the perceptual one: it lowers the error that is there before any
-    /// perception, such as that of single pixels.
+    /// perception, such as that of single pixels. In an animation with a temporal kernel, over time.
     pub box_class: ClassShare,
     /// The spatial class function of that class: [`Kernel::Box`] unless the renderer reconstructs with another one.
     pub reconstruction: Kernel,

@@ -10,6 +10,9 @@ const MAX_SAMPLES: usize = 1 << 16;
 /// A subclass's size grows at least by this part from one threshold to the next: finer ones are joined with the next.
 const JOIN: f64 = 0.02;
 
+/// What a tap over several frames weighs at least, unless the spatial kernel has smaller ones.
+const LEAST: f32 = 1.0 / 60.0;
+
 /// The class of each prefix of a progressive tile, by the number of doublings to the whole: share and weight.
 const PREFIXES: [(f64, f32); 9] =
     [(2.0, 1.0), (0.7, 1.0), (1.5, 2.0), (0.5, 2.0), (1.0, 2.0), (0.5, 2.0), (1.0, 2.0), (0.5, 2.0), (1.0, 2.0)];
@@ -53,23 +56,27 @@ fn classes(problem: &TileProblem) -> Result<Vec<Class>> {
     let spatial = narrow(&problem.kernel, problem.size)?;
     let own = narrow(&problem.reconstruction, problem.size)?;
     let box_share = f64::from(problem.box_class.share);
-    let box_class = Class { taps: own, share: box_share, weight: problem.box_class.weight };
+    let box_class = |taps| Class { taps, share: box_share, weight: problem.box_class.weight };
     let Some(temporal) = &problem.temporal else {
-        return Ok(vec![Class { taps: spatial, share: 1.0 - box_share, weight: 1.0 }, box_class]);
+        return Ok(vec![Class { taps: spatial, share: 1.0 - box_share, weight: 1.0 }, box_class(own)]);
     };
     let weights = temporal.weights(problem.frames)?;
-    let frames = weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0);
-    let both = frames.flat_map(|(frame, weight)| {
-        spatial.iter().map(move |tap| Tap { frame: frame as i32, weight: tap.weight * weight, ..*tap })
-    });
-    let least = spatial.last().map_or(0.0, |tap| tap.weight);
-    let both = sorted(both.filter(|tap| tap.weight >= least).collect());
     let frame_share = f64::from(problem.frame_share);
     Ok(vec![
-        Class { taps: both, share: 1.0 - box_share - frame_share, weight: 1.0 },
-        box_class,
+        Class { taps: over_time(&spatial, &weights), share: 1.0 - box_share - frame_share, weight: 1.0 },
+        box_class(over_time(&own, &weights)),
         Class { taps: spatial, share: frame_share, weight: 1.0 },
     ])
+}
+
+/// The product of a spatial kernel and the weights of a frame and those before it, down to the spatial kernel's least value.
+fn over_time(spatial: &[Tap], weights: &[f32]) -> Vec<Tap> {
+    let least = spatial.last().map_or(0.0, |tap| tap.weight).min(LEAST);
+    let frames = weights.iter().enumerate();
+    let all = frames.flat_map(|(frame, weight)| {
+        spatial.iter().map(move |tap| Tap { frame: frame as i32, weight: tap.weight * weight, ..*tap })
+    });
+    sorted(all.filter(|tap| tap.weight >= least && tap.weight > 0.0).collect())
 }
 
 /// A kernel's pixels in decreasing order, unless they would overlap in the tile.

@@ -19,10 +19,12 @@ const PICTURE: f32 = 1200.0;
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// How many objects
-    #[arg(short, value_name = "COUNT", default_value_t = 2048, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    #[arg(short, value_name = "COUNT", default_value_t = 2048)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     n: u32,
     /// Colours: the objects of each are spread evenly, and so are all together
-    #[arg(long, alias = "colours", value_name = "COUNT", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, alias = "colours", value_name = "COUNT", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=256))]
     colors: u16,
     /// Sizes from 0 to 1: objects above, and below, any size are spread evenly
     #[arg(long)]
