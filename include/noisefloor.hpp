@@ -10,6 +10,7 @@
 
 #include "noisefloor.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -93,7 +94,11 @@ enum class status : nf_status {
     no_samples = NF_ERR_NO_SAMPLES,
     unsupported = NF_ERR_UNSUPPORTED,
     state = NF_ERR_STATE,
-    mismatch = NF_ERR_MISMATCH
+    mismatch = NF_ERR_MISMATCH,
+    foreign = NF_ERR_FOREIGN,
+    version = NF_ERR_VERSION,
+    length = NF_ERR_LENGTH,
+    corrupt = NF_ERR_CORRUPT
 };
 
 inline const char *message(status code) noexcept { return nf_status_message(static_cast<nf_status>(code)); }
@@ -460,6 +465,72 @@ private:
     nf_omis *handle_ = nullptr;
     std::uint32_t techniques_ = 0, integrals_ = 0;
 };
+
+// ---- Tiles and samplers ----------------------------------------------------------------------------------------------------
+
+// nf_tile: a view of sample points. The C fields remain accessible.
+struct tile : nf_tile {
+    tile() noexcept : nf_tile() {}
+    explicit tile(const nf_tile &other) noexcept : nf_tile(other) {}
+
+    // One that comes with the library: NF_TILE_128_1SPP_2D and its like.
+    static returned<tile> builtin(std::uint32_t id)
+    {
+        tile made;
+        return detail::finish(nf_tile_builtin(id, &made), made);
+    }
+    // Of an .nft file's bytes, which must outlive the tile.
+    static returned<tile> from_bytes(const void *bytes, std::size_t len)
+    {
+        tile made;
+        return detail::finish(nf_tile_from_bytes(bytes, len, &made), made);
+    }
+    static returned<tile> from_bytes(span<const unsigned char> bytes) { return from_bytes(bytes.data(), bytes.size()); }
+};
+
+// nf_sampler: one sample of one pixel, by value. `sampler(tile, x, y, frame, index).domain(3).draw<2>()`.
+class sampler {
+public:
+    // The tile must outlive the sampler and stay where it is.
+    sampler(const nf_tile &from, std::uint32_t x, std::uint32_t y, std::uint32_t frame, std::uint32_t index) noexcept
+        : state_(nf_sampler_pixel(&from, x, y, frame, index))
+    {
+    }
+    sampler(nf_tile &&, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t) = delete;
+    explicit sampler(const nf_sampler &state) noexcept : state_(state) {}
+
+    [[nodiscard]] sampler domain(std::uint32_t key) const noexcept { return sampler(nf_sampler_domain(state_, key)); }
+    [[nodiscard]] sampler scramble(std::uint32_t seed) const noexcept { return sampler(nf_sampler_scramble(state_, seed)); }
+    // The first N coordinates.
+    template <std::uint32_t N> [[nodiscard]] std::array<float, N> draw() const noexcept
+    {
+        static_assert(N >= 1 && N <= 4, "a domain has 1 to 4 dimensions");
+        std::array<float, N> u{};
+        nf_sampler_draw(state_, N, u.data());
+        return u;
+    }
+    // The first coordinate.
+    [[nodiscard]] float draw() const noexcept { return draw<1>()[0]; }
+    // As many coordinates as `u` holds, at most 4; more stay as they are.
+    void draw(span<float> u) const noexcept
+    {
+        nf_sampler_draw(state_, u.size() < 4 ? static_cast<std::uint32_t>(u.size()) : 4u, u.data());
+    }
+    const nf_sampler &state() const noexcept { return state_; }
+
+private:
+    nf_sampler state_;
+};
+
+// nf_sampler_fill(): u[height][width][samples][sum of dims] from samplers of the first pixel and sample, dims[i] from samplers[i].
+// status::range also for lengths that do not agree.
+inline returned<void> fill(span<const nf_sampler> samplers, span<const std::uint32_t> dims, std::uint32_t width, std::uint32_t height,
+                           std::uint32_t samples, span<float> u)
+{
+    return detail::finish(samplers.size() != dims.size() ? NF_ERR_RANGE
+                                                         : nf_sampler_fill(samplers.data(), dims.data(), dims.size(), width, height,
+                                                                           samples, u.data(), u.size()));
+}
 
 // ---- Random numbers --------------------------------------------------------------------------------------------------------
 

@@ -3,8 +3,7 @@
 
 #include "noisefloor.h"
 #include "samplers.hpp"
-#include <fstream>
-#include <iterator>
+#include <cstdio>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -44,15 +43,15 @@ public:
     explicit LoadedTile(const std::string &name)
     {
         for (const TileName &known : tile_names) {
-            if (name == known.name) {
-                check(nf_tile_builtin(known.id, &view_), name);
-                return;
-            }
+            if (name != known.name)
+                continue;
+            nf_status status = nf_tile_builtin(known.id, &view_);
+            if (status == NF_ERR_UNSUPPORTED)
+                throw std::runtime_error("the library was built without the tile " + name + "; --help lists those that it carries");
+            check(status, name);
+            return;
         }
-        std::ifstream file(name, std::ios::binary);
-        if (!file)
-            throw std::runtime_error("there is no tile `" + name + "`, and no file that can be read; --help lists the tiles");
-        bytes_.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+        read(name);
         check(nf_tile_from_bytes(bytes_.data(), bytes_.size(), &view_), name);
     }
     LoadedTile(const LoadedTile &) = delete;
@@ -61,6 +60,20 @@ public:
     const nf_tile &view() const { return view_; }
 
 private:
+    void read(const std::string &path)
+    {
+        FILE *file = std::fopen(path.c_str(), "rb");
+        if (!file)
+            throw std::runtime_error("there is no tile `" + path + "`, and no file that can be read; --help lists the tiles");
+        char buffer[4096];
+        for (size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;)
+            bytes_.insert(bytes_.end(), buffer, buffer + n);
+        bool good = !std::ferror(file) && !bytes_.empty();
+        std::fclose(file);
+        if (!good)
+            throw std::runtime_error(path + " cannot be read, or is empty");
+    }
+
     static void check(nf_status status, const std::string &name)
     {
         if (status != NF_OK)

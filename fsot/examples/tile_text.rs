@@ -2,7 +2,7 @@
 //! with the names of the fields of `TileProblem`.
 
 use fsot::run::Optimization;
-use fsot::tile::{ClassShare, Domain, Projections, Steps, TileOptimizer, TileProblem};
+use fsot::tile::{ClassShare, Domain, Projections, Steps, TileOptimizer, TileProblem, presets};
 use std::io::Write;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -24,6 +24,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 problem.prefixes = numbers.chunks(2).map(|c| ClassShare { share: c[0], weight: c[1] }).collect()
             }
             "box" => problem.box_class = ClassShare { share: numbers[0], weight: numbers[1] },
+            "reconstruction" => problem.reconstruction = value.parse()?,
+            "preset" => problem = presets::preset(value).ok_or("unknown preset")?,
             "frame_share" => problem.frame_share = numbers[0],
             "seed" => problem.seed = value.parse()?,
             "iterations" => problem.iterations = value.parse()?,

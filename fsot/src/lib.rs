@@ -11,6 +11,7 @@ pub mod metrics;
 pub mod optimize;
 pub mod output;
 pub mod picture;
+pub mod place;
 pub mod points;
 pub mod random;
 pub mod read;

@@ -49,7 +49,7 @@ impl Outputs {
         }
         let mut file = temporary(&place).map_err(Error::io(path))?;
         // Synchronised, so that a full disk or quota is noticed before anything is replaced.
-        file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(Error::io(path))?;
+        file.as_file_mut().write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(Error::io(path))?;
         self.pending.push(Pending::File { file, path: place });
         Ok(())
     }

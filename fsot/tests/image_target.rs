@@ -201,7 +201,8 @@ fn resolution_follows_the_number_of_points() {
     assert!(line.size()[0] <= 4096);
 }
 
-/// Counts in the four quarters of the picture, against their masses: a chi-squared test at 1e-6 (3 degrees of freedom: 30.7).
+/// Counts in the four quarters of the picture, against their masses: a chi-squared test at 1e-6 (3 degrees of
+/// freedom: 30.7).
 #[test]
 fn samples_follow_the_density() {
     let target = ImageTarget::new(2, 2, &[1.0, 2.0, 3.0, 10.0], 100).unwrap();
@@ -229,7 +230,8 @@ fn spread_points_are_stratified_in_every_set_and_in_their_union() {
     let left = |from: usize, to: usize| points[2 * from..2 * to].chunks_exact(2).filter(|p| p[0] < 0.5).count();
     assert!(left(0, 800).abs_diff(200) <= 3, "{}", left(0, 800));
     assert_eq!(left(800, 1000), 200);
-    // Sixteen squares of the left half, 400 points in all of it: 25 +- a few in each, where chance would give a deviation of 4.8.
+    // Sixteen squares of the left half, 400 points in all of it: 25 +- a few in each, where chance would give a
+    // deviation of 4.8.
     for square in 0..16 {
         let (x, y) = ((square % 4) as f32 * 0.125, (square / 4) as f32 * 0.125);
         let inside = points.chunks_exact(2).filter(|p| p[0] >= x && p[0] < x + 0.125 && p[1] >= y && p[1] < y + 0.125);

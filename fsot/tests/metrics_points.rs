@@ -207,6 +207,26 @@ fn bins_by_table_are_those_in_closed_form() {
 }
 
 #[test]
+fn bin_means_are_in_their_bins() {
+    let directions: [&[f64]; 5] = [
+        &[0.3, 0.1, -0.5],
+        &[1.0, 0.01, 0.02, 0.03],
+        &[1.0, 0.05, -0.04, 0.03, 0.1],
+        &[0.2, -0.3, 0.4, 0.1, 0.9, 0.5],
+        &[0.5, 0.1, -0.3, 0.7, 0.2, 0.2, 0.02, 0.4],
+    ];
+    for direction in directions.map(unit) {
+        let law = Projection::new(&direction);
+        let mut means = vec![0.0; 3001];
+        law.bins(&mut means);
+        for (i, mean) in means.iter().enumerate() {
+            let place = law.cdf(*mean) * 3001.0 - i as f64;
+            assert!(place > 0.05 && place < 0.95, "{direction:?}: the mean of bin {i} is at {place} of it");
+        }
+    }
+}
+
+#[test]
 fn slices_are_those_of_dense_transport() {
     for (dims, cells, tolerance) in [(1, 40_000, 1e-6), (2, 800, 5e-4), (3, 80, 2e-3)] {
         let points = random(16, dims, 7);

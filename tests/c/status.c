@@ -5,7 +5,8 @@
 static void messages(void)
 {
     static const nf_status known[] = {NF_OK, NF_ERR_NULL, NF_ERR_RANGE, NF_ERR_NOT_FINITE, NF_ERR_MEMORY, NF_ERR_ALIGNMENT,
-                                      NF_ERR_NO_SAMPLES, NF_ERR_UNSUPPORTED, NF_ERR_STATE, NF_ERR_MISMATCH};
+                                      NF_ERR_NO_SAMPLES, NF_ERR_UNSUPPORTED, NF_ERR_STATE, NF_ERR_MISMATCH,
+                                      NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT};
     static const nf_status extremes[] = {INT32_MIN, INT32_MIN + 1, INT32_MAX, INT32_MAX - 1, 65536, -65536};
     const size_t count = sizeof known / sizeof *known;
     const char *unknown = nf_status_message(1);
@@ -50,6 +51,11 @@ static void layouts(void)
     CHECK(sizeof(nf_rng) == 16);
     CHECK(offsetof(nf_rng, state) == 0);
     CHECK(offsetof(nf_rng, increment) == 8);
+    CHECK(sizeof(nf_tile) == 2 * sizeof(void *) + 24);
+    CHECK(offsetof(nf_tile, size) == 2 * sizeof(void *));
+    CHECK(sizeof(nf_sampler) == sizeof(void *) + 16);
+    CHECK(offsetof(nf_sampler, domain) == sizeof(void *));
+    CHECK(offsetof(nf_sampler, x) == sizeof(void *) + 8);
 }
 
 /* Zero is the default of every choice, and signs survive in expressions. */

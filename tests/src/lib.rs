@@ -5,3 +5,4 @@ pub mod legendre;
 pub mod oracle;
 pub mod random;
 pub mod statistics;
+pub mod tile;

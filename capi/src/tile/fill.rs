@@ -1,7 +1,7 @@
 //! Many pixels and samples in one call.
 
 use super::sampler::{nf_sampler, state};
-use super::view::open;
+use super::view::core_view;
 use crate::convert;
 use crate::status::*;
 use noisefloor_core::tile::Sampler;
@@ -56,9 +56,11 @@ pub unsafe extern "C" fn nf_sampler_fill(
                     return Ok(());
                 };
                 rest = more;
-                // SAFETY: the caller passes samplers whose tiles live.
-                let tile = unsafe { open(sampler.tile) };
-                Sampler::resume(&tile, state(sampler)).moved(x, y, sample).draw_into(u);
+                // SAFETY: the caller passes samplers whose tiles, checked by nf_sampler_pixel, are NULL or live.
+                match unsafe { core_view(sampler.tile) } {
+                    Some(tile) => Sampler::resume(&tile, state(sampler)).moved(x, y, sample).draw_into(u),
+                    None => u.fill(0.0),
+                }
             }
         }
         Ok(())

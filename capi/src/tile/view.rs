@@ -107,17 +107,18 @@ fn view(tile: Tile<'_>) -> nf_tile {
     nf_tile { values, bytes, size, spp, dims, frames, bits, progressive: progressive.into() }
 }
 
-/// The tile as the core sees it; an empty one for NULL.
+/// The tile as the core sees it; `None` for one without samples, NULL among them, of which every draw is 0.
 ///
 /// # Safety
-/// A non-NULL, aligned `tile` must be one that a function above made, or all zero, and its values be as they were.
+/// A non-NULL `tile` must be aligned, and one that a function above made, or all zero, and its values be as they were.
 #[inline(always)]
-pub(crate) unsafe fn open<'a>(tile: *const nf_tile) -> Tile<'a> {
-    const EMPTY: Shape = Shape { size: 0, spp: 0, dims: 0, frames: 0, bits: 0, progressive: false };
+pub(crate) unsafe fn core_view<'a>(tile: *const nf_tile) -> Option<Tile<'a>> {
     // SAFETY: passed on to the caller.
-    let Ok(tile) = (unsafe { convert::reference(tile) }) else { return Tile::resume(EMPTY, &[]) };
-    let nf_tile { values, bytes, size, spp, dims, frames, bits, progressive } = *tile;
-    // SAFETY: passed on to the caller; a tile that is all zero has no bytes.
-    let payload = unsafe { convert::slice(values.cast::<u8>(), bytes) }.unwrap_or(&[]);
-    Tile::resume(Shape { size, spp, dims, frames, bits, progressive: progressive != 0 }, payload)
+    let nf_tile { values, bytes, size, spp, dims, frames, bits, progressive } = *unsafe { tile.as_ref() }?;
+    if spp == 0 {
+        return None;
+    }
+    // SAFETY: the values of a tile that has any were checked when it was made.
+    let payload = unsafe { core::slice::from_raw_parts(values.cast::<u8>(), bytes) };
+    Some(Tile::resume(Shape { size, spp, dims, frames, bits, progressive: progressive != 0 }, payload))
 }

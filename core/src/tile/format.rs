@@ -36,7 +36,11 @@ impl Header {
         let place = text.get_mut(..kernel.len()).ok_or(Error::Range)?;
         place.iter_mut().zip(kernel.bytes()).for_each(|(to, from)| *to = from);
         let header = Header { shape, seed, kernel: text };
-        if shape.is_valid() && header.text_is_valid() { Ok(header) } else { Err(Error::Range) }
+        if shape.is_valid() && header.text_is_valid() && !kernel.contains('\0') {
+            Ok(header)
+        } else {
+            Err(Error::Range)
+        }
     }
 
     /// How many values, and how they are stored.
@@ -148,7 +152,8 @@ impl Header {
         let mut ended = false;
         while let Some((&byte, others)) = rest.split_first() {
             ended |= byte == 0;
-            if ended && byte != 0 || !ended && !(b' ' <= byte && byte <= b'~') {
+            let fits = if ended { byte == 0 } else { b' ' <= byte && byte <= b'~' };
+            if !fits {
                 return false;
             }
             rest = others;

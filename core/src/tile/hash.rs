@@ -28,7 +28,7 @@ pub(super) const fn child(domain: u32, key: u32) -> u32 {
 #[inline(always)]
 pub(super) fn permute(index: u32, bits: u32, random: u32) -> u32 {
     let mask = (1_u32 << (bits & 15)) - 1;
-    let scale = ((random >> 16) * mask >> 16) + 1;
+    let scale = (((random >> 16) * mask) >> 16) + 1;
     // x^bits = POLYNOMIAL(x): irreducible.
     let polynomial = POLYNOMIALS.get(bits as usize).copied().unwrap_or(0);
     let (mut product, mut power) = (0, scale);

@@ -7,7 +7,7 @@
 //! - [`Tile`]: a view of a table, from a file's bytes ([`Tile::from_bytes`]) or of those compiled in ([`Builtin`]).
 //! - [`Sampler`]: one sample of one pixel. Each decision of a path (lens, light, bounce) has a *domain*, a child of the
 //!   sampler by a key of its own; there are no dimension counters. Any sample can be had in any order.
-//! - [`fill`]: many pixels and samples at once, the same bits.
+//! - [`fill()`]: many pixels and samples at once, the same bits.
 //! - [`Header`]: how a tile is stored.
 //!
 //! `docs/tiles.md` has the format, the semantics and a renderer's loop.

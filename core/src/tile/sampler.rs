@@ -2,7 +2,7 @@
 
 use super::hash::{child, mix, permute, permute_octave};
 use super::sequence;
-use super::view::{Tile, unit};
+use super::view::{Shape, Tile, unit};
 
 /// A sample's place, without its tile. Any value of the fields is valid; [`Sampler`] says what they mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -100,12 +100,25 @@ impl<'a> Sampler<'a> {
     /// The first N coordinates, 1 to 4, of this domain's point; each in [0, 1), a multiple of 2^-24.
     ///
     /// Up to the tile's dims they are optimised together; further ones come from other places of the tile.
-    #[inline]
+    #[inline(always)]
     pub fn draw<const N: usize>(&self) -> [f32; N] {
+        let mut u = [0.0; N];
+        if self.draw_stored(&mut u) { u } else { point(self.tile, &self.state).map(unit) }
+    }
+
+    /// [`draw`](Sampler::draw), if that needs nothing but to look up stored values: for indices below the tile's spp in
+    /// unscrambled samplers, of the root or of any domain of a tile of 1 spp, with no more dimensions than the tile has.
+    /// Otherwise returns false and writes nothing.
+    #[inline(always)]
+    pub fn draw_stored<const N: usize>(&self, u: &mut [f32; N]) -> bool {
         const { assert!(0 < N && N <= 4, "a domain has 1 to 4 dimensions") };
-        let mut fixed = [0; N];
-        point(self.tile, &self.state, &mut fixed);
-        fixed.map(unit)
+        let (Shape { size, spp, dims, .. }, state) = (self.tile.shape(), &self.state);
+        let ordered = state.domain == 0 || spp == 1;
+        if N > dims as usize || state.index >= spp || !ordered || state.scrambled != 0 {
+            return false;
+        }
+        let (x, y) = place(state, size);
+        self.tile.values(self.tile.place(u32::from(state.frame), y, x, state.index), u)
     }
 
     /// As [`draw`](Sampler::draw), as many coordinates as `u` has room for, at most 4; more stay as they are.
@@ -150,47 +163,97 @@ impl State {
     }
 }
 
-/// The coordinates in 32-bit fixed point.
-#[inline(always)]
-pub(super) fn point(tile: &Tile<'_>, state: &State, fixed: &mut [u32]) {
-    let dims = tile.shape().dims as usize;
-    if fixed.len() <= dims {
-        group(tile, state, fixed);
-    } else {
-        // A tile has at least one dimension.
-        for (number, fixed) in fixed.chunks_mut(dims.max(1)).enumerate() {
-            let domain = match number {
-                0 => state.domain,
-                _ => child(state.domain ^ DIMENSIONS, number as u32),
-            };
-            group(tile, &State { domain, ..*state }, fixed);
+/// The coordinates in 32-bit fixed point: of as many domains as it takes, each with the tile's dims.
+#[inline]
+fn point<const N: usize>(tile: &Tile<'_>, state: &State) -> [u32; N] {
+    let more = |number| State { domain: child(state.domain ^ DIMENSIONS, number), ..*state };
+    let all = match tile.shape().dims {
+        1 => {
+            let one = |number| if number < N as u32 { group(tile, &more(number)) } else { [0] };
+            let ([a], [b], [c], [d]) = (group(tile, state), one(1), one(2), one(3));
+            [a, b, c, d]
         }
-    }
+        2 if N > 2 => {
+            let ([a, b], [c, d]) = (group(tile, state), group(tile, &more(1)));
+            [a, b, c, d]
+        }
+        3 if N > 3 => {
+            let ([a, b, c], [d]) = (group(tile, state), group(tile, &more(1)));
+            [a, b, c, d]
+        }
+        _ => return group(tile, state),
+    };
+    all.first_chunk().copied().unwrap_or([0; N])
 }
 
 /// At most as many coordinates as the tile has dimensions.
 #[inline(always)]
-fn group(tile: &Tile<'_>, state: &State, fixed: &mut [u32]) {
-    let shape = tile.shape();
-    let domain = state.domain;
-    let (x, y) = place(state, shape.size);
-    let spp_bits = shape.spp.trailing_zeros();
-    let within = shape.spp.wrapping_sub(1);
-    let continued = state.index > within;
-    let mut sample = if continued { 0 } else { state.index };
-    // Samples of two domains must not meet in the same order in every pixel.
-    if domain != 0 && within != 0 && !continued {
-        let pixel = x | y << 10 | u32::from(state.frame) << 20;
-        let random = mix(domain ^ pixel.wrapping_mul(0x9e37_79b1));
-        sample = if shape.progressive { permute_octave(sample, random) } else { permute(sample, spp_bits, random) };
+fn group<const N: usize>(tile: &Tile<'_>, state: &State) -> [u32; N] {
+    let State { domain, index, x, y, .. } = *state;
+    let rest = Rest::pack(tile.shape(), state);
+    group_of(tile.payload(), rest, domain, index, u32::from(x) | u32::from(y) << 16)
+}
+
+/// Where a group is, but for domain, index and pixel: 4 bits each of log2 of size and spp, and of dims; 8 of the frame; whether
+/// scrambled, progressive, of 16 bits.
+///
+/// With it all arguments of [`group_of`] travel in registers. Structs just written, field by field, would be read in larger
+/// pieces, which takes as long as the rest of the work.
+#[derive(Clone, Copy)]
+struct Rest(u32);
+
+impl Rest {
+    #[inline(always)]
+    fn pack(shape: Shape, state: &State) -> Rest {
+        let Shape { size, spp, dims, bits, progressive, .. } = shape;
+        let numbers = (size.trailing_zeros() & 15) | (spp.trailing_zeros() & 15) << 4 | (dims & 15) << 8;
+        let (scrambled, wide) = (state.scrambled != 0, bits == 16);
+        let flags = u32::from(scrambled) << 20 | u32::from(progressive) << 21 | u32::from(wide) << 22;
+        Rest(numbers | (u32::from(state.frame) & 255) << 12 | flags)
     }
-    tile.read(tile.place(u32::from(state.frame), y, x, sample), fixed);
-    if state.scrambled != 0 {
+
+    #[inline(always)]
+    fn shape(self) -> Shape {
+        let power = |shift: u32| 1 << (self.0 >> shift & 15);
+        let bits = if self.flag(22) { 16 } else { 8 };
+        Shape { size: power(0), spp: power(4), dims: self.0 >> 8 & 15, frames: 1, bits, progressive: self.flag(21) }
+    }
+
+    #[inline(always)]
+    fn frame(self) -> u16 {
+        (self.0 >> 12 & 255) as u16
+    }
+
+    #[inline(always)]
+    fn flag(self, bit: u32) -> bool {
+        self.0 >> bit & 1 != 0
+    }
+}
+
+/// [`group`].
+#[inline(never)]
+fn group_of<const N: usize>(payload: &[u8], rest: Rest, domain: u32, index: u32, xy: u32) -> [u32; N] {
+    let tile = Tile::resume(rest.shape(), payload);
+    let Shape { size, spp, progressive, .. } = tile.shape();
+    let (frame, scrambled) = (rest.frame(), rest.flag(20));
+    let (x, y) = place(&State { domain, x: xy as u16, y: (xy >> 16) as u16, ..State::default() }, size);
+    let continued = index >= spp;
+    let mut sample = if continued { 0 } else { index };
+    if domain != 0 && spp > 1 && !continued {
+        // Samples of two domains must not meet in the same order in every pixel.
+        let pixel = x | y << 10 | u32::from(frame) << 20;
+        let random = mix(domain ^ pixel.wrapping_mul(0x9e37_79b1));
+        sample =
+            if progressive { permute_octave(sample, random) } else { permute(sample, spp.trailing_zeros(), random) };
+    }
+    let mut fixed = tile.fixed(tile.place(u32::from(frame), y, x, sample)).unwrap_or([0; N]);
+    if scrambled {
         fixed.iter_mut().zip(1..).for_each(|(u, dim)| *u = u.wrapping_add(rotation(domain, dim)));
     }
     if continued {
-        sequence::shift(domain, state.index, fixed);
+        sequence::shift(domain, index, &mut fixed);
     }
+    fixed
 }
 
 /// Where in the tile a domain finds the pixel: a shift and one of the eight symmetries of the square; for the root neither.
@@ -198,6 +261,9 @@ fn group(tile: &Tile<'_>, state: &State, fixed: &mut [u32]) {
 fn place(state: &State, size: u32) -> (u32, u32) {
     let mask = size.wrapping_sub(1);
     let flip = |coordinate: u16, bit: u32| u32::from(coordinate) ^ (mask & (state.domain >> bit & 1).wrapping_neg());
+    if state.domain == 0 {
+        return (u32::from(state.x), u32::from(state.y));
+    }
     let (x, y) = (flip(state.x, 20), flip(state.y, 21));
     let (x, y) = if state.domain >> 22 & 1 == 0 { (x, y) } else { (y, x) };
     (x.wrapping_add(state.domain) & mask, y.wrapping_add(state.domain >> 10) & mask)

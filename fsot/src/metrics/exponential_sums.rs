@@ -14,7 +14,7 @@ const BAND: usize = 8;
 ///
 /// Each point is spread over 13 x 13 cells of a grid at least twice as fine as the frequencies need, the grid transformed, and the
 /// spreading divided out (Barnett, Magland, af Klinteberg 2019: "exponential of semicircle"). The error of each sum is below 1e-10
-/// times the number of points. Memory: 32 extent^2 bytes for the result, twice that while it works, plus 140 bytes per point.
+/// times the number of points. Memory: 112 extent^2 bytes, 32 of them the result, plus 230 bytes per point.
 pub fn power(points: &[[f64; 2]], extent: usize) -> Vec<f64> {
     let grid = smooth(2 * (2 * extent + 1).max(WIDTH));
     let fft = FftPlanner::new().plan_fft_forward(grid);

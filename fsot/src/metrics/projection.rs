@@ -3,8 +3,10 @@
 /// Below this share of the largest component, a direction's component is left out: it would move no quantile by 1e-8, and the
 /// inclusion-exclusion sums divide by it.
 const NEGLIGIBLE: f64 = 1e-5;
-/// Cells of the table of the cumulative distribution, over its lower half.
+/// Cells of the table of the cumulative distribution, over its lower half, in up to 4 dimensions; in more the law is smoother, and has
+/// more corners to sum.
 const CELLS: usize = 512;
+const FEWER_CELLS: usize = 160;
 
 /// The law of `sum a_i (U_i - 1/2)` for U uniform on the unit cube: symmetric about 0.
 ///
@@ -86,9 +88,10 @@ impl Projection {
     /// Bins for three dimensions and more: quantiles from a table with cubic Hermite interpolation of the cumulative distribution, whose
     /// error is below 1e-8.
     fn spline_bins(&self, means: &mut [f64]) {
-        let step = self.half / CELLS as f64;
+        let cells = if self.components.len() > 4 { FEWER_CELLS } else { CELLS };
+        let step = self.half / cells as f64;
         let node = |j: usize| j as f64 * step - self.half;
-        let table: Vec<[f64; 3]> = (0..=CELLS)
+        let table: Vec<[f64; 3]> = (0..=cells)
             .map(|j| [self.antiderivative(node(j), 0), self.density(node(j)), self.antiderivative(node(j), 1)])
             .collect();
         let n = means.len();
@@ -97,7 +100,7 @@ impl Projection {
         let mut cell = 0;
         for (i, moment) in moments.iter_mut().enumerate().skip(1) {
             let mass = (i as f64 / n as f64).min(0.5);
-            while cell + 1 < CELLS && table[cell + 1][0] < mass {
+            while cell + 1 < cells && table[cell + 1][0] < mass {
                 cell += 1;
             }
             let (x, integral) = solve(table[cell], table[cell + 1], step, mass);

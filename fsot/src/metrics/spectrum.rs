@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::points::Points;
 use serde::Serialize;
 
-/// Frequencies beyond this integer are not computed: it bounds the memory at about 0.5 GB.
+/// Frequencies beyond this integer are not computed: it bounds the memory at about 0.7 GB plus 230 bytes per point.
 const FARTHEST: usize = 2400;
 /// A ring of less power than this is empty: its anisotropy would be that of rounding errors.
 const EMPTY: f64 = 1e-14;

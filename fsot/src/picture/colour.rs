@@ -10,7 +10,8 @@ pub fn encode(light: f32) -> f32 {
     if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * libm::powf(light, 1.0 / 2.4) - 0.055 }
 }
 
-/// The weighted mean of red, green and blue with the weights of Rec. 709: luminance if they are linear light, luma if not.
+/// The weighted mean of red, green and blue with the weights of Rec. 709: luminance if they are linear light, luma if
+/// not.
 pub fn luminance(rgb: [f32; 3]) -> f32 {
     0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
 }

@@ -24,7 +24,8 @@ impl Photo {
     ///
     /// # Errors
     ///
-    /// [`Error::Io`] if it cannot be read, [`Error::Input`] if it is none of these, damaged, or holds values that are not finite.
+    /// [`Error::Io`] if it cannot be read, [`Error::Input`] if it is none of these, damaged, or holds values that are
+    /// not finite.
     pub fn read(path: &Path) -> Result<Photo> {
         Photo::new(&crate::read::image(path)?).map_err(|why| Error::Input(format!("{}: {why}", path.display())))
     }

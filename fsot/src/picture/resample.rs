@@ -1,6 +1,7 @@
 //! Grids of another resolution.
 
-/// The sums of weights over the cells of a grid of `columns * rows`, row after row; a weight is spread evenly over its pixel.
+/// The sums of weights over the cells of a grid of `columns * rows`, row after row; a weight is spread evenly over
+/// its pixel.
 pub(crate) fn resample(width: usize, height: usize, weights: &[f32], columns: usize, rows: usize) -> Vec<f64> {
     let across = shares(width, columns);
     let down = shares(height, rows);

@@ -5,12 +5,12 @@ use super::{Photo, resample};
 use image::RgbImage;
 use rayon::prelude::*;
 
-/// The peak signal-to-noise ratio, in dB, of a drawn picture against its source, both blurred by the same Gaussian of standard
-/// deviation `sigma` (pixels of the drawn picture): what an eye sees from where single dots merge.
+/// The peak signal-to-noise ratio, in dB, of a drawn picture against its source, both blurred by the same Gaussian of
+/// standard deviation `sigma` (pixels of the drawn picture): what an eye sees from where single dots merge.
 ///
-/// The source is resampled to the drawn picture's size. `linear`: compare linear light instead of encoded values. `grey`: compare
-/// with the source's grey. The mean squared error is that of all pixels and channels, the peak is 1. Equal pictures have no noise:
-/// infinity.
+/// The source is resampled to the drawn picture's size. `linear`: compare linear light instead of encoded values.
+/// `grey`: compare with the source's grey. The mean squared error is that of all pixels and channels, the peak is 1.
+/// Equal pictures have no noise: infinity.
 pub fn blurred_psnr(drawn: &RgbImage, source: &Photo, sigma: f32, linear: bool, grey: bool) -> f64 {
     let (width, height) = (drawn.width() as usize, drawn.height() as usize);
     let value = |value: f32| if linear { decode(value) } else { value };

@@ -20,16 +20,16 @@ pub struct Windows {
     pub window: usize,
     /// Points that the next frame replaces.
     pub step: usize,
-    /// Whether the first frame follows the last one: every point then takes part in `window / step` frames. If not, those of the first
-    /// and the last frames take part in fewer.
+    /// Whether the first frame follows the last one: every point then takes part in `window / step` frames. If not,
+    /// those of the first and the last frames take part in fewer.
     pub cyclic: bool,
 }
 
 impl Windows {
     /// # Errors
     ///
-    /// [`Error::Input`] if a number is 0, the step is longer than the window (points between would never be seen), or a cyclic animation
-    /// has a frame that shows a point twice.
+    /// [`Error::Input`] if a number is 0, the step is longer than the window (points between would never be seen), or
+    /// a cyclic animation has a frame that shows a point twice.
     pub fn check(&self) -> Result<()> {
         let Windows { frames, window, step, cyclic } = *self;
         if frames == 0 || window == 0 || step == 0 {
@@ -39,16 +39,18 @@ impl Windows {
         }
         if step > window {
             return Err(Error::Input(format!(
-                "a step of {step} points passes over some that no window of {window} shows: give a step of at most the window"
+                "a step of {step} points passes over some that no window of {window} shows: \
+                 give a step of at most the window"
             )));
         }
         if cyclic && frames.saturating_mul(step) < window {
             return Err(Error::Input(format!(
-                "{frames} frames with {step} new points each have {} points in a cycle, fewer than the window of {window}: give more frames or a larger step",
+                "{frames} frames with {step} new points each have {} points in a cycle, fewer than the window of {window}: \
+                 give more frames or a larger step",
                 frames * step
             )));
         }
-        Ok(())
+        super::check_points(self.points())
     }
 
     /// Points of all frames: `(frames - 1) * step + window`; `frames * step` if cyclic.
@@ -82,8 +84,8 @@ impl Animation {
     ///
     /// # Errors
     ///
-    /// [`Error::Input`] as [`Windows::check`]; there are not as many pictures as frames, or of different sizes; one has one tone only;
-    /// the options want colour.
+    /// [`Error::Input`] as [`Windows::check`]; there are not as many pictures as frames, or of different sizes; one
+    /// has one tone only; the options want colour.
     pub fn new(photos: &[Photo], windows: Windows, options: &Options) -> Result<Animation> {
         windows.check()?;
         if options.cmyk {
@@ -141,10 +143,11 @@ impl Animation {
         self.draw(points, self.windows.of_frame(frame), self.radii[frame])
     }
 
-    /// All points at once, as small as those of the frame with the smallest.
+    /// All points at once, each so much smaller as there are more of them.
     pub fn all(&self, points: &Points) -> Drawing {
-        let radius = self.radii.iter().copied().fold(f32::INFINITY, f32::min);
-        self.draw(points, vec![0..points.len()], radius)
+        let mean = self.radii.iter().sum::<f32>() / self.radii.len().max(1) as f32;
+        let more = (self.windows.window as f32 / points.len().max(1) as f32).sqrt();
+        self.draw(points, vec![0..points.len()], mean * more)
     }
 
     fn draw(&self, points: &Points, ranges: Vec<Range<usize>>, radius: f32) -> Drawing {

@@ -5,11 +5,12 @@ use crate::picture::{Photo, decode, luminance};
 /// What "half as dark" means.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub enum Tone {
-    /// Of sRGB-encoded values, which are about even in lightness: middle grey is half covered. The mean of the drawing's pixel values
-    /// is the picture's.
+    /// Of sRGB-encoded values, which are about even in lightness: middle grey is half covered. The mean of the
+    /// drawing's pixel values is the picture's.
     #[default]
     Encoded,
-    /// Of linear light: middle grey reflects 21 % and is 79 % covered. What is seen from where dots merge is the picture.
+    /// Of linear light: middle grey reflects 21 % and is 79 % covered. What is seen from where dots merge is the
+    /// picture.
     Linear,
 }
 
@@ -33,13 +34,14 @@ pub struct Ink {
     pub density: Vec<f32>,
 }
 
-/// What part of the paper equal discs cover that are spread as evenly as optimised points, when their areas sum to 0.60, 0.65, ... of it:
-/// measured on 4,000 points. Up to the first value none overlap.
+/// What part of the paper equal discs cover that are spread as evenly as optimised points, when their areas sum to
+/// 0.60, 0.65, ... of it: measured on 4,000 points. Up to the first value none overlap.
 const COVERED: [f32; 15] = [
     0.600, 0.6438, 0.6886, 0.7313, 0.7713, 0.8084, 0.8415, 0.8707, 0.8962, 0.9183, 0.9366, 0.9511, 0.9632, 0.9730,
     0.9804,
 ];
-/// Area of dots per area of paper where the paper shall be black: the last percent would take as many dots as all of a light grey.
+/// Area of dots per area of paper where the paper shall be black: the last percent would take as many dots as all of
+/// a light grey.
 const BLACK_INK: f32 = 1.4;
 
 /// Area of dots per area of paper that cover a part of it: more than that part from where dots begin to overlap.
@@ -74,9 +76,9 @@ pub fn grey(photo: &Photo, tone: Tone, invert: bool) -> Vec<Ink> {
 
 /// Cyan, magenta, yellow and black.
 ///
-/// Dots of different inks are spread evenly together, so they add up rather than fall on one another at random: cyan and black together
-/// cover what the picture lacks in red, magenta and black what it lacks in green, yellow and black what it lacks in blue. Black takes the
-/// part `grey_component`, in [0, 1], of what is common to all three.
+/// Dots of different inks are spread evenly together, so they add up rather than fall on one another at random: cyan
+/// and black together cover what the picture lacks in red, magenta and black what it lacks in green, yellow and black
+/// what it lacks in blue. Black takes the part `grey_component`, in [0, 1], of what is common to all three.
 pub fn cmyk(photo: &Photo, tone: Tone, grey_component: f32) -> Vec<Ink> {
     let mut inks = [("c", [0, 255, 255]), ("m", [255, 0, 255]), ("y", [255, 255, 0]), ("k", [0, 0, 0])]
         .map(|(name, colour)| Ink { name, colour, density: Vec::with_capacity(photo.pixels.len()) });

@@ -13,25 +13,29 @@ use grid::Rows;
 use noisefloor::rng::Rng;
 use projection::Profile;
 
-/// Cells per point of the grid that a picture is reduced to: the cells are then a third of the mean distance between points,
-/// and one projection of the grid costs about as much as sorting the points along the direction.
+/// Cells per point of the grid that a picture is reduced to: the cells are then a third of the mean distance between
+/// points, and one projection of the grid costs about as much as sorting the points along the direction.
 const CELLS_PER_POINT: usize = 8;
-/// A coarser grid would show in the projections: smaller pictures are magnified, each pixel to a block of cells of its value.
+/// A coarser grid would show in the projections: smaller pictures are magnified, each pixel to a block of cells of
+/// its value.
 const MIN_CELLS: usize = 128 * 128;
 /// The most cells on a side: pictures of a few lines are all length.
 const MAX_SIDE: usize = 4096;
 
 /// A density that is constant in each cell of a rectangular grid.
 ///
-/// The longer side of the picture is mapped to `[0, 1]`, the shorter one to `[0, shorter / longer]`, so that distances between
-/// points are distances in the picture. The first coordinate is x, to the right; the second is y, downwards from the first row.
+/// The longer side of the picture is mapped to `[0, 1]`, the shorter one to `[0, shorter / longer]`, so that
+/// distances between points are distances in the picture. The first coordinate is x, to the right; the second is y,
+/// downwards from the first row.
 ///
-/// Projections (5.23-5.24) are analytic: a cell's footprint on a line is a trapezoid, whose mass in each bin of a histogram as
-/// wide as the longer side of the projected cell is exact; between bin boundaries the density is taken to be piecewise linear.
+/// Projections (5.23-5.24) are analytic: a cell's footprint on a line is a trapezoid, whose mass in each bin of a
+/// histogram as wide as the longer side of the projected cell is exact; between bin boundaries the density is taken
+/// to be piecewise linear.
 ///
-/// Densities are relative to the mass spread evenly over the rectangle's mean projected length, not over that of the direction at hand
-/// as in (5.24): that one is longer on diagonals, which weighs them more, and in long runs aligns the points with the axes. With a fixed
-/// length, the mean force over all directions is the isotropic gradient of the energy distance with the kernel -|x - y|.
+/// Densities are relative to the mass spread evenly over the rectangle's mean projected length, not over that of the
+/// direction at hand as in (5.24): that one is longer on diagonals, which weighs them more, and in long runs aligns
+/// the points with the axes. With a fixed length, the mean force over all directions is the isotropic gradient of the
+/// energy distance with the kernel -|x - y|.
 #[derive(Clone, Debug)]
 pub struct ImageTarget {
     /// Cells, of mean value 1; rows along x.
@@ -44,13 +48,13 @@ pub struct ImageTarget {
 }
 
 impl ImageTarget {
-    /// The density of `width * height` weights, row after row from the top, at a resolution that is adequate for `points`
-    /// points: about 8 cells for each (area averages of a larger picture), never less than 128 x 128.
+    /// The density of `width * height` weights, row after row from the top, at a resolution that is adequate for
+    /// `points` points: about 8 cells for each (area averages of a larger picture), never less than 128 x 128.
     ///
     /// # Errors
     ///
-    /// [`Error::Input`] if a side is 0, the number of weights is not `width * height`, a weight is negative or not finite, or
-    /// all of them are 0.
+    /// [`Error::Input`] if a side is 0, the number of weights is not `width * height`, a weight is negative or not
+    /// finite, or all of them are 0.
     pub fn new(width: usize, height: usize, weights: &[f32], points: usize) -> Result<ImageTarget> {
         if width == 0 || height == 0 || width.checked_mul(height) != Some(weights.len()) {
             return Err(Error::Input(format!(
@@ -72,8 +76,9 @@ impl ImageTarget {
         ImageTarget::from_cells(columns, rows, cells, [(width as f64 / longer) as f32, (height as f64 / longer) as f32])
     }
 
-    /// The weighted sum of densities of the same grid, each of them normalised first: the target of the union of subsets that
-    /// have the fractions `weight` of the points ("weighted-average densities based on the respective energy", 5.5.1).
+    /// The weighted sum of densities of the same grid, each of them normalised first: the target of the union of
+    /// subsets that have the fractions `weight` of the points ("weighted-average densities based on the respective
+    /// energy", 5.5.1).
     ///
     /// # Errors
     ///
@@ -186,7 +191,8 @@ impl Target for ImageTarget {
     fn sample(&self, rng: &mut Rng, point: &mut [f32]) {
         let total = self.cumulative.last().copied().unwrap_or(0.0);
         let at = rng.uniform_f64() * total;
-        // The first running sum beyond `at` belongs to a row of positive mass. `at` may round up to the total: then the last such.
+        // The first running sum beyond `at` belongs to a row of positive mass. `at` may round up to the total: then
+        // the last such.
         let row = self.cumulative.partition_point(|sum| *sum <= at);
         let row = if row < self.cumulative.len() { row } else { self.cumulative.partition_point(|sum| *sum < total) };
         let mut left = at - if row == 0 { 0.0 } else { self.cumulative[row - 1] };

@@ -40,8 +40,11 @@ pub struct TileProblem {
     /// The classes of the prefixes of a progressive tile: of 1, 2, 4, ..., `spp` samples. Of the shares only the ratios matter. Empty: the
     /// documented default.
     pub prefixes: Vec<ClassShare>,
-    /// The class of each pixel's own samples, beside the perceptual one: it stratifies the pixel.
+    /// The class of what the renderer reconstructs a pixel from, beside the perceptual one: it lowers the error that is there before any
+    /// perception, such as that of single pixels. In an animation with a temporal kernel, over time.
     pub box_class: ClassShare,
+    /// The spatial class function of that class: [`Kernel::Box`] unless the renderer reconstructs with another one.
+    pub reconstruction: Kernel,
     /// The share of the slices of an animation that look at one frame only: 0 to 1. Ignored without [`temporal`](Self::temporal).
     pub frame_share: f32,
     /// Seed of everything random.
@@ -137,14 +140,15 @@ impl TileProblem {
             progressive: false,
             prefixes: Vec::new(),
             box_class: ClassShare { share: if spp > 1 { 0.1 } else { 0.0 }, weight: 1.0 },
-            frame_share: 0.0,
+            reconstruction: Kernel::Box,
+            frame_share: 0.5,
             seed: 1,
             iterations: Quality::Standard.iterations(),
-            directions: 3,
-            projections: Projections { axis: 0.0, plane: 0.0 },
-            steps: Steps { first: 2.0, last: 0.1, hold: 0.5 },
-            offset_correction: 0.0,
-            threshold_exponent: 1.2,
+            directions: 4,
+            projections: Projections { axis: 0.0, plane: if dims > 2 { 0.2 } else { 0.0 } },
+            steps: Steps { first: 4.0, last: 0.05, hold: 0.3 },
+            offset_correction: if spp > 1 && dims <= 2 { 0.5 } else { 0.0 },
+            threshold_exponent: if spp > 1 { 1.4 } else { 1.2 },
             domain: Domain::Bounded,
         }
     }

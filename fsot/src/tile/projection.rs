@@ -136,3 +136,63 @@ fn integrate(values: &[f64], cell: f64) -> Vec<f64> {
         }))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use noisefloor::rng::Rng;
+
+    fn unit(values: &[f32]) -> Vec<f32> {
+        let norm = values.iter().map(|value| value * value).sum::<f32>().sqrt();
+        values.iter().map(|value| value / norm).collect()
+    }
+
+    /// The analytic trapezoid, and the table for the same direction padded with a component too small to matter.
+    #[test]
+    fn the_table_is_the_trapezoid_where_both_apply() {
+        for direction in [[1.0, 0.3], [-0.5, 0.5], [0.02, -1.0]] {
+            let two = Projection::new(unit(&direction));
+            let three = Projection::new(unit(&[direction[0], direction[1], 1e-5]));
+            let mut expected = Vec::new();
+            two.bins(37, |_, mean, end| expected.push((mean, end)));
+            three.bins(37, |index, mean, end| {
+                assert!(
+                    (mean - expected[index].0).abs() < 2e-4,
+                    "{direction:?}: mean {mean} of bin {index}, not {}",
+                    expected[index].0
+                );
+                assert!(
+                    (end - expected[index].1).abs() < 2e-3,
+                    "{direction:?}: end {end} of bin {index}, not {}",
+                    expected[index].1
+                );
+            });
+        }
+    }
+
+    /// Against 2^20 projected random points, sorted. The standard error of a bin's mean is below 6e-4 everywhere (bins of 65,536 points in which
+    /// the standard deviation is below .15): 5 of them are 3e-3.
+    #[test]
+    fn bins_are_those_of_random_points() {
+        let mut rng = Rng::seed(11);
+        for direction in [
+            &[1.0][..],
+            &[0.6, -0.8],
+            &[0.5, -0.2, 0.9],
+            &[0.4, 0.4, -0.4, 0.4],
+            &[0.1, 0.2, -0.3, 0.4, 0.5, -0.6, 0.7, 0.8],
+        ] {
+            let projection = Projection::new(unit(direction));
+            let dot =
+                |rng: &mut Rng| projection.direction.iter().map(|d| f64::from(d * rng.uniform_f32())).sum::<f64>();
+            let mut points: Vec<f64> = (0..1 << 20).map(|_| dot(&mut rng) - f64::from(projection.lowest)).collect();
+            points.sort_by(f64::total_cmp);
+            projection.bins(16, |index, mean, end| {
+                let bin = &points[index << 16..(index + 1) << 16];
+                let expected = bin.iter().sum::<f64>() / bin.len() as f64;
+                assert!((mean - expected).abs() < 3e-3, "{direction:?}: mean {mean} of bin {index}, not {expected}");
+                assert!(end <= projection.length + 1e-9);
+            });
+        }
+    }
+}

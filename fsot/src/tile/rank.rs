@@ -94,3 +94,38 @@ impl Sorter {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use noisefloor::rng::Rng;
+
+    /// Lengths on both sides of [`FEW`], with many equal positions, against the standard sort.
+    #[test]
+    fn ranks_are_those_of_a_stable_sort() {
+        let mut rng = Rng::seed(3);
+        for length in [1, 2, 7, 8, 9, 47, 48, 49, 113, 256, 1808, 40_000] {
+            let mut sorter = Sorter::new(length);
+            for bits in [3, 17, POSITION_BITS] {
+                let positions: Vec<u32> =
+                    (0..length).map(|_| rng.next_u32() >> (32 - bits) << (POSITION_BITS - bits)).collect();
+                // What is too fine for the keys does not count.
+                let coarse = POSITION_BITS - POSITION_BITS.min(31 - sorter.number_bits);
+                let mut expected: Vec<usize> = (0..length).collect();
+                expected.sort_by_key(|&number| positions[number] >> coarse);
+                let mut found = vec![usize::MAX; length];
+                sorter.sort(&positions, |rank, number| found[rank] = number);
+                assert_eq!(found, expected, "{length} positions of {bits} bits");
+            }
+        }
+    }
+
+    #[test]
+    fn the_largest_position_is_not_lost() {
+        let mut sorter = Sorter::new(60);
+        let positions = vec![(1 << POSITION_BITS) - 1; 60];
+        let mut found = Vec::new();
+        sorter.sort(&positions, |rank, number| found.push((rank, number)));
+        assert_eq!(found, (0..60).map(|i| (i, i)).collect::<Vec<_>>());
+    }
+}

@@ -10,9 +10,12 @@ const MAX_SAMPLES: usize = 1 << 16;
 /// A subclass's size grows at least by this part from one threshold to the next: finer ones are joined with the next.
 const JOIN: f64 = 0.02;
 
+/// What a tap over several frames weighs at least, unless the spatial kernel has smaller ones.
+const LEAST: f32 = 1.0 / 60.0;
+
 /// The class of each prefix of a progressive tile, by the number of doublings to the whole: share and weight.
 const PREFIXES: [(f64, f32); 9] =
-    [(1.0, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0), (0.4, 1.0)];
+    [(2.0, 1.0), (0.7, 1.0), (1.5, 2.0), (0.5, 2.0), (1.0, 2.0), (0.5, 2.0), (1.0, 2.0), (0.5, 2.0), (1.0, 2.0)];
 
 /// A subclass, the same at every pixel: the first `prefix` samples of the first `taps` pixels of a class.
 #[derive(Clone, Debug)]
@@ -50,33 +53,42 @@ pub(super) fn enumerate(problem: &TileProblem) -> Result<Vec<Entry>> {
 }
 
 fn classes(problem: &TileProblem) -> Result<Vec<Class>> {
-    let spatial = sorted(problem.kernel.taps()?);
-    let radius = spatial.iter().map(|tap| tap.dx.abs().max(tap.dy.abs())).max().unwrap_or(0) as usize;
-    if 2 * radius > problem.size {
-        let (kernel, size) = (&problem.kernel, problem.size);
+    let spatial = narrow(&problem.kernel, problem.size)?;
+    let own = narrow(&problem.reconstruction, problem.size)?;
+    let box_share = f64::from(problem.box_class.share);
+    let box_class = |taps| Class { taps, share: box_share, weight: problem.box_class.weight };
+    let Some(temporal) = &problem.temporal else {
+        return Ok(vec![Class { taps: spatial, share: 1.0 - box_share, weight: 1.0 }, box_class(own)]);
+    };
+    let weights = temporal.weights(problem.frames)?;
+    let frame_share = f64::from(problem.frame_share);
+    Ok(vec![
+        Class { taps: over_time(&spatial, &weights), share: 1.0 - box_share - frame_share, weight: 1.0 },
+        box_class(over_time(&own, &weights)),
+        Class { taps: spatial, share: frame_share, weight: 1.0 },
+    ])
+}
+
+/// The product of a spatial kernel and the weights of a frame and those before it, down to the spatial kernel's least value.
+fn over_time(spatial: &[Tap], weights: &[f32]) -> Vec<Tap> {
+    let least = spatial.last().map_or(0.0, |tap| tap.weight).min(LEAST);
+    let frames = weights.iter().enumerate();
+    let all = frames.flat_map(|(frame, weight)| {
+        spatial.iter().map(move |tap| Tap { frame: frame as i32, weight: tap.weight * weight, ..*tap })
+    });
+    sorted(all.filter(|tap| tap.weight >= least && tap.weight > 0.0).collect())
+}
+
+/// A kernel's pixels in decreasing order, unless they would overlap in the tile.
+fn narrow(kernel: &Kernel, size: usize) -> Result<Vec<Tap>> {
+    let taps = sorted(kernel.taps()?);
+    let radius = taps.iter().map(|tap| tap.dx.abs().max(tap.dy.abs())).max().unwrap_or(0) as usize;
+    if 2 * radius > size {
         return Err(Error::input(format!(
             "the kernel {kernel} has a radius of {radius} pixels: too wide for a tile of {size} pixels"
         )));
     }
-    let own = sorted(Kernel::Box.taps()?);
-    let box_share = f64::from(problem.box_class.share);
-    let box_class = Class { taps: own, share: box_share, weight: problem.box_class.weight };
-    let Some(temporal) = &problem.temporal else {
-        return Ok(vec![Class { taps: spatial, share: 1.0 - box_share, weight: 1.0 }, box_class]);
-    };
-    let weights = temporal.weights(problem.frames)?;
-    let frames = weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0);
-    let both = frames.flat_map(|(frame, weight)| {
-        spatial.iter().map(move |tap| Tap { frame: frame as i32, weight: tap.weight * weight, ..*tap })
-    });
-    let least = spatial.last().map_or(0.0, |tap| tap.weight);
-    let both = sorted(both.filter(|tap| tap.weight >= least).collect());
-    let frame_share = f64::from(problem.frame_share);
-    Ok(vec![
-        Class { taps: both, share: 1.0 - box_share - frame_share, weight: 1.0 },
-        box_class,
-        Class { taps: spatial, share: frame_share, weight: 1.0 },
-    ])
+    Ok(taps)
 }
 
 /// In decreasing order of weight; of equal weight, in a fixed order.
@@ -275,5 +287,61 @@ impl Lattice {
     fn place(&self, tap: &Tap) -> usize {
         let shift = |margin: usize, by: i32| (margin as i64 + i64::from(by)) as usize;
         self.index(shift(self.past, -tap.frame), shift(self.margin, tap.dy), shift(self.margin, tap.dx))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tile::TemporalKernel;
+    use proptest::prelude::*;
+
+    /// The number of joined thresholds must not hide a subclass: all that a threshold can select, found by brute force.
+    fn subclasses(taps: &[Tap]) -> Vec<usize> {
+        let mut counts: Vec<usize> =
+            taps.iter().map(|tap| taps.iter().filter(|other| other.weight >= tap.weight).count()).collect();
+        counts.sort_unstable();
+        counts.dedup();
+        counts
+    }
+
+    proptest! {
+        /// Point-set filtering: the subclass that a threshold z selects holds the taps with w > z, and no other; its probability is that of the
+        /// thresholds that select it.
+        #[test]
+        fn a_threshold_selects_the_taps_above_it(values in prop::collection::vec(0u32..6, 25), exponent in 0.5f64..2.0) {
+            prop_assume!(values.iter().any(|&value| value > 0));
+            let rows = values.chunks(5).map(|row| row.iter().map(|&value| value as f32 / 5.0).collect()).collect();
+            let taps = sorted(Kernel::Tabulated(rows).taps().unwrap());
+            let levels = levels(&taps, exponent);
+            prop_assert_eq!(levels.iter().map(|level| level.0).collect::<Vec<_>>(), subclasses(&taps));
+            let mut above = 1.0;
+            for &(count, probability) in &levels {
+                // Thresholds in the middle of those that select this subclass.
+                let z = (above - probability / 2.0).powf(exponent);
+                prop_assert_eq!(taps.iter().filter(|tap| f64::from(tap.weight) > z).count(), count);
+                above -= probability;
+            }
+            prop_assert!(above.abs() < 1e-6);
+        }
+
+        /// However many classes, prefixes and frames: probabilities add up to 1 and every random number finds a subclass inside the lattice.
+        #[test]
+        fn every_number_finds_a_subclass(number in any::<u32>(), spp in 0u32..4, share in 0.0f32..0.5, frames in 1usize..5, progressive in any::<bool>()) {
+            let mut problem = TileProblem::new(16, 1 << spp, 2);
+            problem.box_class.share = share;
+            problem.progressive = progressive;
+            problem.frames = frames;
+            problem.temporal = (frames > 1).then_some(TemporalKernel::Ema(0.5));
+            let sum: f64 = enumerate(&problem).unwrap().iter().map(|entry| entry.probability).sum();
+            prop_assert!((sum - 1.0).abs() < 1e-6);
+            let stencils = problem.stencils().unwrap();
+            let lattice = stencils.lattice;
+            let last = lattice.index(frames - 1 + lattice.past, 15 + lattice.margin, 15 + lattice.margin) - stencils.lowest;
+            let stencil = stencils.pick(number);
+            prop_assert!(!stencil.samples.is_empty());
+            prop_assert!(stencil.samples.iter().all(|&sample| last + (sample as usize) < lattice.samples()));
+            prop_assert!(stencil.bins + stencil.samples.len() <= stencils.bins());
+        }
     }
 }

@@ -28,6 +28,9 @@ pub(crate) struct Options {
     /// One part instead of both
     #[arg(long, value_enum)]
     only: Option<Part>,
+    /// A folder of files NAME.nft that stand in for the library's tiles of the same names
+    #[arg(long, value_name = "DIR")]
+    tiles: Option<PathBuf>,
     /// Where the pictures and tables go [default: target/demo]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -51,7 +54,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
 
     let output = Output::new(&folder)?;
     let parts = [
-        (Part::Estimators, estimators::run as fn(bool, &Renderer, &Output) -> Result<String>),
+        (Part::Estimators, estimators::run as fn(&Options, &Renderer, &Output) -> Result<String>),
         (Part::Tiles, tiles::run),
     ];
     let mut tables = Vec::new();
@@ -59,7 +62,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         if options.only.is_some_and(|only| only != part) {
             continue;
         }
-        tables.push(make(options.quick, &renderer, &output)?);
+        tables.push(make(options, &renderer, &output)?);
     }
     if interrupted.load(Ordering::Relaxed) {
         bail!(INTERRUPTED);

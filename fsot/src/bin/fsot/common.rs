@@ -136,14 +136,6 @@ impl Common {
         path.into()
     }
 
-    /// The options of one of several runs of a command, which needs a checkpoint of its own.
-    #[allow(dead_code)]
-    pub(crate) fn part(&self, name: &str) -> Common {
-        let mut checkpoint = self.checkpoint().into_os_string();
-        checkpoint.push(format!(".{name}"));
-        Common { checkpoint: Some(checkpoint.into()), ..self.clone() }
-    }
-
     /// Fails if one of these files could not be written: call it before the work.
     pub(crate) fn check_outputs<'a>(&'a self, more: impl IntoIterator<Item = &'a Path>) -> Result<()> {
         let paths: Vec<PathBuf> = std::iter::once(self.out.as_path())

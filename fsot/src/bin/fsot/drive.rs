@@ -75,7 +75,9 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
     while optimization.iteration() < optimization.iterations() {
         if watch.stopped() {
             progress.clear();
-            checkpoint::save(&checkpoint, &problem, optimization)?;
+            if let Err(error) = checkpoint::save(&checkpoint, &problem, optimization) {
+                return Err(Error::Input(format!("stopped, and the state could not be saved: {error}")));
+            }
             return Err(Error::Stopped(stopped(&*optimization, common)));
         }
         let energy = optimization.step();

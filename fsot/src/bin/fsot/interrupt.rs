@@ -1,4 +1,6 @@
-//! Ctrl-C (and the system's request to end): at once, unless there is something to save or to complete first.
+//! Ctrl-C: at once, unless there is something to save or to complete first.
+//!
+//! SIGTERM and SIGHUP are left as they are, so that `nohup` works; the last periodic checkpoint then counts.
 
 use fsot::error::{Error, Result};
 use std::sync::Once;

@@ -6,6 +6,7 @@ mod export;
 mod info;
 mod interrupt;
 mod measure;
+mod place;
 mod points;
 mod spectrum;
 mod stipple;
@@ -29,6 +30,8 @@ struct Arguments {
 enum Command {
     /// Spread points evenly, or by a density, in classes or progressively
     Points(points::Args),
+    /// Place objects of several colours and sizes
+    Place(place::Args),
     /// Draw a picture, or an animation, with dots
     Stipple(stipple::Args),
     /// Make a tile of samples for the pixels of a renderer
@@ -46,6 +49,7 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Points(args) => points::run(&args),
+        Command::Place(args) => place::run(&args),
         Command::Stipple(args) => stipple::run(&args),
         Command::Tile(args) => tile::run(&args),
         Command::Measure(args) => measure::run(&args),

@@ -13,6 +13,7 @@ use fsot::picture::{Drawing, Photo, blurred_psnr, png, rasterise, svg};
 use fsot::read;
 use fsot::stipple::{Options, Stipple, Tone};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// What `fsot stipple` is asked for.
@@ -22,7 +23,8 @@ pub(crate) struct Args {
     #[arg(required_unless_present = "frames", conflicts_with = "frames")]
     image: Option<PathBuf>,
     /// Dots of all inks together; with --frames it follows from the frames, the window and the step
-    #[arg(short, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..), required_unless_present = "frames")]
+    #[arg(short, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    #[arg(required_unless_present = "frames")]
     n: Option<u32>,
     /// Cyan, magenta, yellow and black dots instead of black ones
     #[arg(long, conflicts_with = "frames")]
@@ -114,7 +116,8 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
     }
     let counts: Vec<String> = stipple.inks.iter().map(|dots| format!("{} {}", dots.range.len(), dots.name)).collect();
     let text = format!(
-        "{} dots ({}), radius {:.2} px, drawn {} x {}\n{}\nblurred PSNR {psnr:.2} dB (both blurred by sigma {sigma:.2} px, the mean distance between dots)",
+        "{} dots ({}), radius {:.2} px, drawn {} x {}\n{}\n\
+         blurred PSNR {psnr:.2} dB (both blurred by sigma {sigma:.2} px, the mean distance between dots)",
         options.points,
         counts.join(", "),
         stipple.radius * size as f32,
@@ -122,9 +125,10 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
         drawn.height(),
         took(&run),
     );
+    let inks: BTreeMap<_, _> = stipple.inks.iter().map(|dots| (dots.name, dots.range.len())).collect();
     let json = json!({
         "points": options.points,
-        "inks": stipple.inks.iter().map(|dots| (dots.name, dots.range.len())).collect::<std::collections::BTreeMap<_, _>>(),
+        "inks": inks,
         "radius": stipple.radius,
         "classes": stipple.problem.classes.len(),
         "blurred_psnr": psnr,

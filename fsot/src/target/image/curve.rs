@@ -4,12 +4,13 @@ use super::ImageTarget;
 use crate::target::Target;
 use noisefloor::rng::Rng;
 
-/// Spreads points over densities of the same grid: `counts[k]` points for `targets[k]`, the sets one after the other, x and y of
-/// each point.
+/// Spreads points over densities of the same grid: `counts[k]` points for `targets[k]`, the sets one after the other,
+/// x and y of each point.
 ///
-/// All sets are drawn in one walk along a Hilbert curve: a point is due each time another unit of mass lies behind, and it goes to
-/// the set that is furthest behind its own mass. Every set and every union then has about the right number of points in every
-/// region, which white noise reaches only after many iterations. A target that is not of the first one's grid is sampled at random.
+/// All sets are drawn in one walk along a Hilbert curve: a point is due each time another unit of mass lies behind,
+/// and it goes to the set that is furthest behind its own mass. Every set and every union then has about the right
+/// number of points in every region, which white noise reaches only after many iterations. A target that is not of
+/// the first one's grid is sampled at random.
 pub fn spread(targets: &[&ImageTarget], counts: &[usize], rng: &mut Rng) -> Vec<f32> {
     let sets = targets.len().min(counts.len());
     let mut points: Vec<Vec<f32>> = counts[..sets].iter().map(|count| Vec::with_capacity(2 * count)).collect();

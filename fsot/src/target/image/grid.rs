@@ -1,6 +1,7 @@
 //! Grids of cells, and their rows as projections read them.
 
-/// Cells of a grid, row after row, each row with two zeros on either side: what a projection, a filter of three taps, reads.
+/// Cells of a grid, row after row, each row with two zeros on either side: what a projection, a filter of three taps,
+/// reads.
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
     width: usize,
@@ -48,8 +49,8 @@ impl Rows {
         &self.padded[from..from + self.width]
     }
 
-    /// The cells of a row from the first to the last that is not 0, with two more on either side; and the index of that first
-    /// cell. `None` for a row of zeros.
+    /// The cells of a row from the first to the last that is not 0, with two more on either side; and the index of
+    /// that first cell. `None` for a row of zeros.
     pub(super) fn occupied(&self, row: usize) -> Option<(usize, &[f32])> {
         let (first, end) = self.spans[row];
         if first >= end {

@@ -13,10 +13,11 @@ pub(super) struct Profile<'a> {
 }
 
 impl<'a> Profile<'a> {
-    /// `slope`, at most 1 in size: by how much of a cell's projected length every row is shifted against the one before.
+    /// `slope`, at most 1 in size: by how much of a cell's projected length every row is shifted against the one
+    /// before.
     ///
-    /// A cell's footprint is a box of length 1 convolved with a box of length |slope|. All cells of a row lie at the same
-    /// offset from the bins, so their masses in the three bins that they may touch are one filter of three taps.
+    /// A cell's footprint is a box of length 1 convolved with a box of length |slope|. All cells of a row lie at the
+    /// same offset from the bins, so their masses in the three bins that they may touch are one filter of three taps.
     pub(super) fn of(rows: &Rows, slope: f64, scratch: &'a mut Vec<f32>) -> Profile<'a> {
         let slope = slope.clamp(-1.0, 1.0);
         let shift = slope.abs();
@@ -43,8 +44,8 @@ impl<'a> Profile<'a> {
         Profile { masses: scratch, origin: if slope < 0.0 { -(rows.height() as f64) * shift } else { 0.0 } }
     }
 
-    /// Cuts the projection into bins of equal mass: their means, and their densities relative to that of the mass spread evenly over
-    /// `range`. `length`: of a bin of the histogram.
+    /// Cuts the projection into bins of equal mass: their means, and their densities relative to that of the mass
+    /// spread evenly over `range`. `length`: of a bin of the histogram.
     pub(super) fn cut(&self, length: f64, range: f64, means: &mut [f32], density: &mut [f32]) {
         let count = means.len().min(density.len());
         let total: f64 = self.masses.iter().map(|mass| f64::from(*mass)).sum();
@@ -72,7 +73,8 @@ impl<'a> Profile<'a> {
     }
 }
 
-/// The part of a cell's footprint that lies within `x` of its beginning: a box of length 1 convolved with one of length `r <= 1`.
+/// The part of a cell's footprint that lies within `x` of its beginning: a box of length 1 convolved with one of
+/// length `r <= 1`.
 fn footprint(x: f64, r: f64) -> f64 {
     if x <= 0.0 {
         0.0
@@ -88,8 +90,8 @@ fn footprint(x: f64, r: f64) -> f64 {
     }
 }
 
-/// The slope of the density in a bin from its mass and its neighbours': the central difference, limited so that no part of the
-/// bin is below 0 or beyond a neighbour (van Leer 1977).
+/// The slope of the density in a bin from its mass and its neighbours': the central difference, limited so that no
+/// part of the bin is below 0 or beyond a neighbour (van Leer 1977).
 fn limited(below: f64, centre: f64, above: f64) -> f64 {
     let (left, right) = (centre - below, above - centre);
     if left * right <= 0.0 {
@@ -99,7 +101,8 @@ fn limited(below: f64, centre: f64, above: f64) -> f64 {
     if left < 0.0 { -size } else { size }
 }
 
-/// Takes pieces of constant density in ascending order and gives bins of mass 1. Positions are in bins of the histogram.
+/// Takes pieces of constant density in ascending order and gives bins of mass 1. Positions are in bins of the
+/// histogram.
 #[derive(Default)]
 struct Cutter<'a> {
     origin: f64,

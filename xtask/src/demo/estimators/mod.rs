@@ -5,6 +5,7 @@ mod plan;
 mod sheet;
 mod table;
 
+use super::Options;
 use super::output::Output;
 use super::progress;
 use super::renderer::Renderer;
@@ -14,8 +15,8 @@ use measure::{Measured, Measurement};
 use plan::{BASELINE, Plan, SCENES, Scene};
 
 /// Writes pictures, table.md and table.csv; returns the table.
-pub(crate) fn run(quick: bool, renderer: &Renderer, output: &Output) -> Result<String> {
-    let plan = Plan::new(quick);
+pub(crate) fn run(options: &Options, renderer: &Renderer, output: &Output) -> Result<String> {
+    let plan = Plan::new(options.quick);
     let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
     let bar = progress_bar(&plan)?;
     let measurement = Measurement { renderer, plan: &plan, bar: &bar, scratch: scratch.path() };

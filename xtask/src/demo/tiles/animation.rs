@@ -49,11 +49,11 @@ struct Measured {
 pub(crate) fn run(measurement: &Measurement, scene: &Scene, reference: &Reference, output: &Output) -> Result<String> {
     let tiles = measurement.tiles;
     let spatial = Choice::Tile(2).sampler(1, tiles);
-    let temporal = tiles.iter().find(|tile| *tile == TEMPORAL).map(|tile| Sampler::Tile(tile));
+    let temporal = tiles.find(TEMPORAL).map(Sampler::Tile);
     let samplers = [
         ("random", Some(Sampler::Random)),
         ("Owen-Sobol", Some(Sampler::Sobol)),
-        ("tile, shifted", spatial),
+        ("shifted tile", spatial),
         ("temporal tile", temporal),
     ];
     let mut all = Vec::new();

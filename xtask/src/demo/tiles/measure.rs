@@ -1,6 +1,6 @@
 //! Rendering one scene with every sampler.
 
-use super::plan::{BASELINE, Choice, ESTIMATORS, ORDER, Plan, Scene};
+use super::plan::{BASELINE, Choice, ESTIMATORS, ORDER, Plan, Scene, Tiles};
 use super::score::Score;
 use crate::demo::image::read_pfm;
 use crate::demo::metric::{Reference, median};
@@ -19,8 +19,7 @@ pub(crate) struct Measurement<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) bar: &'a ProgressBar,
     pub(crate) scratch: &'a Path,
-    /// The tiles that the library carries.
-    pub(crate) tiles: &'a [String],
+    pub(crate) tiles: &'a Tiles,
 }
 
 /// One sampler and estimator at one number of samples.

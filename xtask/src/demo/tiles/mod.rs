@@ -9,22 +9,23 @@ mod sheet;
 mod spectrum;
 mod table;
 
+use super::Options;
 use super::metric::Reference;
 use super::output::Output;
 use super::progress;
 use super::renderer::Renderer;
 use anyhow::{Context, Result};
 use measure::{Measured, Measurement, baseline};
-use plan::{ESTIMATORS, Plan, SCENES, Scene};
+use plan::{ESTIMATORS, Plan, SCENES, Scene, Tiles};
 
 /// Writes pictures, tiles.md, tiles.csv and tiles-animation.csv; returns the tables.
-pub(crate) fn run(quick: bool, renderer: &Renderer, output: &Output) -> Result<String> {
-    let plan = Plan::new(quick);
-    let tiles = renderer.tiles()?;
+pub(crate) fn run(options: &Options, renderer: &Renderer, output: &Output) -> Result<String> {
+    let plan = Plan::new(options.quick);
+    let tiles = Tiles::new(renderer.tiles()?, options.tiles.as_deref())?;
     let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
     let bar = progress::bar(work(&plan))?;
     let measurement = Measurement { renderer, plan: &plan, bar: &bar, scratch: scratch.path(), tiles: &tiles };
-    let (mut rows, mut animation) = (Vec::new(), None);
+    let (mut rows, mut summary, mut animation) = (Vec::new(), Vec::new(), None);
     for scene in &SCENES {
         let reference = measurement.reference(scene)?;
         let all = measurement.scene(scene, &reference)?;
@@ -33,12 +34,13 @@ pub(crate) fn run(quick: bool, renderer: &Renderer, output: &Output) -> Result<S
             write_sheet(output, &plan, scene, estimator, &all, &reference)?;
         }
         rows.extend(table::rows(scene.name, &all));
+        summary.extend(table::summary_rows(scene.name, &all));
         if animation.is_none() {
             animation = Some(animation::run(&measurement, scene, &reference, output)?);
         }
     }
     bar.finish_and_clear();
-    let tables = [table::markdown(&rows), animation.unwrap_or_default()];
+    let tables = [table::summary(&summary), table::markdown(&rows), animation.unwrap_or_default()];
     output.write_text("tiles.md", &report(&plan, &tables))?;
     output.write_text("tiles.csv", &table::csv(&rows))?;
     Ok(tables.join("\n"))
@@ -87,7 +89,7 @@ fn write_sheet(
                 Some(sheet::Cell { image: &one.image, caption: format!("raw {raw:.3}x filtered {filtered:.3}x") })
             };
             sheet::Row {
-                name: format!("{spp} samples per pixel"),
+                name: format!("{spp} sample{} per pixel", if spp == 1 { "" } else { "s" }),
                 cells: choices.iter().map(|&choice| cell(choice)).collect(),
             }
         })
@@ -100,12 +102,16 @@ fn write_sheet(
 }
 
 /// The tables with what their columns mean.
-fn report(plan: &Plan, [samplers, animation]: &[String; 2]) -> String {
+fn report(plan: &Plan, [summary, samplers, animation]: &[String; 3]) -> String {
     format!(
         "# Samplers in a path tracer\n\n\
-         Images of {size} x {size} pixels, {threads} threads; errors are means, times medians over {frames} frames.\n\n{samplers}\n\
-         - `mc`: the plain mean. `block`: `nf_cv_block_estimate()` over 8 x 8 pixels, polynomials of order {order}.\n\
-         - relMSE: as in table.md. Filtered: the error image is filtered by a Gaussian of standard deviation {sigma} pixels\n  \
+         Images of {size} x {size} pixels, {threads} threads; errors are means, times medians over {frames} frames.\n\n\
+         Error over that of the plain mean of as many random samples, raw / filtered:\n\n{summary}\n\
+         All figures:\n\n{samplers}\n\
+         - `mc`: the plain mean. `block`: `nf_cv_block_estimate()`, blocks of 8 x 8 pixels, those of one\n  \
+           surface share a fit, polynomials of order {order}.\n\
+         - relMSE: as in table.md, but relative errors beyond {limit} count as {limit}: one highlight in a dark pixel would\n  \
+           otherwise decide. Filtered: the error image is filtered by a Gaussian of standard deviation {sigma} pixels\n  \
            first. Ratios are to the plain mean of as many random samples.\n\
          - low frequencies: power of the errors below .1 cycles per pixel over the mean of all frequencies; white noise has 1.\n\
          - drawing ns: making a sample's coordinates. total ns: that, tracing and estimating, per sample and thread.\n\
@@ -121,6 +127,7 @@ fn report(plan: &Plan, [samplers, animation]: &[String; 2]) -> String {
         frames = plan.frames,
         order = plan::ORDER,
         sigma = filter::SIGMA,
+        limit = score::LIMIT,
         scene = SCENES[0].name,
         alpha = animation::ALPHA,
         from = animation::FRAMES,

@@ -8,7 +8,7 @@ use image::Rgb32FImage;
 /// An image's errors; or, by [`Score::mean`], those of several.
 #[derive(Clone, Copy)]
 pub(crate) struct Score {
-    /// relMSE.
+    /// relMSE, errors beyond [`LIMIT`] limited.
     pub(crate) raw: f64,
     /// relMSE of the image as it is seen: the errors are filtered, then squared.
     pub(crate) filtered: f64,
@@ -19,7 +19,7 @@ pub(crate) struct Score {
 impl Score {
     pub(crate) fn new(image: &Rgb32FImage, reference: &Reference) -> Self {
         let width = image.width() as usize;
-        let [a, b] = reference.relative_errors(image);
+        let [a, b] = limited_errors(image, reference);
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / a.len().max(1) as f64;
         Self {
             raw: product(&a, &b),
@@ -35,8 +35,17 @@ impl Score {
     }
 }
 
-/// (I - R) / sqrt(R^2 + epsilon), row after row.
+/// Relative errors beyond it count as this. One rare highlight in a dark pixel, a hundred times too bright, would otherwise
+/// outweigh all other pixels, and whether a frame has one is chance.
+pub(crate) const LIMIT: f64 = 5.0;
+
+/// [`Reference::relative_errors`], limited.
+fn limited_errors(image: &Rgb32FImage, reference: &Reference) -> [Vec<f64>; 2] {
+    reference.relative_errors(image).map(|errors| errors.into_iter().map(|error| error.clamp(-LIMIT, LIMIT)).collect())
+}
+
+/// (I - R) / sqrt(R^2 + epsilon), limited, row after row.
 pub(crate) fn signed_errors(image: &Rgb32FImage, reference: &Reference) -> Vec<f64> {
-    let [a, b] = reference.relative_errors(image);
+    let [a, b] = limited_errors(image, reference);
     a.iter().zip(&b).map(|(a, b)| 0.5 * (a + b)).collect()
 }

@@ -1,6 +1,7 @@
 //! The table of samplers.
 
 use super::measure::{Measured, baseline};
+use super::plan::{Choice, ESTIMATORS};
 use crate::demo::markdown;
 
 const HEADINGS: [&str; 13] = [
@@ -38,6 +39,9 @@ const COLUMNS: [&str; 14] = [
 
 const WORDS: [usize; 3] = [0, 2, 3];
 
+/// The columns of the summary.
+const SUMMARY: [Choice; 5] = [Choice::Random, Choice::Sobol, Choice::Tile(2), Choice::Tile(4), Choice::Progressive];
+
 /// The rows of one scene.
 pub(crate) fn rows(scene: &str, all: &[Measured]) -> Vec<[String; 14]> {
     let row = |one: &Measured| {
@@ -69,6 +73,35 @@ pub(crate) fn rows(scene: &str, all: &[Measured]) -> Vec<[String; 14]> {
 pub(crate) fn markdown(rows: &[[String; 14]]) -> String {
     let shown = rows.iter().map(|row| std::array::from_fn::<_, 13, _>(|column| row[column].clone()));
     markdown::table(&HEADINGS, &WORDS, shown)
+}
+
+/// The ratios of one scene, a row for each number of samples and estimator: raw / filtered.
+pub(crate) fn summary_rows(scene: &str, all: &[Measured]) -> Vec<[String; 8]> {
+    let mut keys: Vec<(u32, &str)> = all.iter().map(|one| (one.spp, one.estimator)).collect();
+    keys.sort_unstable_by_key(|&(spp, estimator)| (spp, estimator != ESTIMATORS[0]));
+    keys.dedup();
+    let row = |(spp, estimator): (u32, &str)| {
+        let cell = |choice: Choice| {
+            let one = all.iter().find(|one| (one.spp, one.estimator, one.choice) == (spp, estimator, choice));
+            let plain = one.and_then(|one| baseline(all, one));
+            one.zip(plain).map_or_else(
+                || "-".to_owned(),
+                |(one, plain)| {
+                    let (raw, filtered) = (one.score.raw / plain.score.raw, one.score.filtered / plain.score.filtered);
+                    format!("{raw:.3} / {filtered:.3}")
+                },
+            )
+        };
+        let [a, b, c, d, e] = SUMMARY.map(cell);
+        [scene.to_owned(), spp.to_string(), estimator.to_owned(), a, b, c, d, e]
+    };
+    keys.into_iter().map(row).collect()
+}
+
+pub(crate) fn summary(rows: &[[String; 8]]) -> String {
+    let samplers = SUMMARY.map(Choice::label);
+    let [a, b, c, d, e] = samplers.each_ref().map(String::as_str);
+    markdown::table(&["scene", "spp", "estimator", a, b, c, d, e], &[0, 2], rows.iter().cloned())
 }
 
 pub(crate) fn csv(rows: &[[String; 14]]) -> String {

@@ -67,7 +67,9 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
     let worst = ratios.iter().copied().fold(f64::INFINITY, f64::min);
     let text = format!(
-        "{needed} points in {} frames of {}, {} of them new in each\n{}\nblurred PSNR of the frames {mean:.2} dB in the mean, {worst:.2} dB at least (sigma {sigma:.2} px, the mean distance between a frame's dots)",
+        "{needed} points in {} frames of {}, {} of them new in each\n{}\n\
+         blurred PSNR of the frames {mean:.2} dB in the mean, {worst:.2} dB at least \
+         (sigma {sigma:.2} px, the mean distance between a frame's dots)",
         windows.frames,
         windows.window,
         windows.step,

@@ -1,0 +1,151 @@
+/* Tiles: those that come with the library, those of a file, and every error. */
+#include "tile_file.h"
+
+static uint32_t crc(const unsigned char *bytes, size_t count, uint32_t so_far)
+{
+    size_t i;
+    int bit;
+    for (i = 0; i < count; ++i) {
+        so_far ^= bytes[i];
+        for (bit = 0; bit < 8; ++bit)
+            so_far = (so_far >> 1) ^ (so_far & 1u ? 0xedb88320u : 0u);
+    }
+    return so_far;
+}
+
+/* Puts the checksum right after a deliberate change. */
+static void seal(unsigned char *bytes, size_t count)
+{
+    uint32_t sum = ~crc(bytes + 16, count - 16, crc(bytes, 12, 0xffffffffu));
+    int i;
+    for (i = 0; i < 4; ++i)
+        bytes[12 + i] = (unsigned char)(sum >> (8 * i));
+}
+
+static void built_in(void)
+{
+    static const struct {
+        uint32_t id, size, spp, dims, frames, progressive;
+    } all[] = {{NF_TILE_128_1SPP_2D, 128, 1, 2, 1, 0},
+               {NF_TILE_128_4SPP_2D, 128, 4, 2, 1, 0},
+               {NF_TILE_128_16SPP_2D, 128, 16, 2, 1, 0},
+               {NF_TILE_128_16SPP_2D_PROGRESSIVE, 128, 16, 2, 1, 1},
+               {NF_TILE_128_1SPP_4D, 128, 1, 4, 1, 0},
+               {NF_TILE_128_4SPP_4D, 128, 4, 4, 1, 0},
+               {NF_TILE_128_1SPP_2D_GAUSSIAN, 128, 1, 2, 1, 0},
+               {NF_TILE_128_4SPP_2D_GAUSSIAN, 128, 4, 2, 1, 0},
+               {NF_TILE_128_1SPP_2D_TEMPORAL, 128, 1, 2, 16, 0},
+               {NF_TILE_64_1SPP_2D, 64, 1, 2, 1, 0},
+               {NF_TILE_64_4SPP_2D, 64, 4, 2, 1, 0}};
+    nf_tile tile;
+    size_t i, present = 0;
+    for (i = 0; i < sizeof all / sizeof *all; ++i) {
+        nf_status status;
+        CHECK(all[i].id == i + 1);
+        poison(&tile, sizeof tile);
+        status = nf_tile_builtin(all[i].id, &tile);
+        if (status == NF_ERR_UNSUPPORTED) {
+            CHECK(is_poisoned(&tile, sizeof tile));
+            continue;
+        }
+        ++present;
+        CHECK_STATUS(status, NF_OK);
+        CHECK(tile.size == all[i].size && tile.spp == all[i].spp && tile.dims == all[i].dims);
+        CHECK(tile.frames == all[i].frames && tile.progressive == all[i].progressive);
+        CHECK(tile.bits == 8 || tile.bits == 16);
+        CHECK(tile.bytes == (size_t)tile.size * tile.size * tile.spp * tile.dims * tile.frames * tile.bits / 8);
+        CHECK(tile.values != NULL);
+    }
+    CHECK(present > 0);
+    CHECK_REFUSED(nf_tile_builtin(0, &tile), NF_ERR_RANGE, tile);
+    CHECK_REFUSED(nf_tile_builtin(12, &tile), NF_ERR_RANGE, tile);
+    CHECK_REFUSED(nf_tile_builtin(UINT32_MAX, &tile), NF_ERR_RANGE, tile);
+    CHECK_STATUS(nf_tile_builtin(NF_TILE_64_1SPP_2D, NULL), NF_ERR_NULL);
+    {
+        unsigned char room[sizeof(nf_tile) + 16];
+        poison(room, sizeof room);
+        CHECK_STATUS(nf_tile_builtin(NF_TILE_64_1SPP_2D, (nf_tile *)misaligned(((uintptr_t)room & 1) ? room + 1 : room)), NF_ERR_ALIGNMENT);
+        CHECK(is_poisoned(room, sizeof room));
+    }
+}
+
+static void from_bytes(void)
+{
+    memory file = tile_file("plain.nft"), odd, longer;
+    unsigned char *bytes = (unsigned char *)file.start;
+    nf_tile tile, again;
+    size_t i;
+    CHECK_STATUS(nf_tile_from_bytes(bytes, file.bytes, &tile), NF_OK);
+    CHECK(tile.size == 8 && tile.spp == 4 && tile.dims == 3 && tile.frames == 1 && tile.bits == 16 && tile.progressive == 0);
+    CHECK(tile.values == bytes + 128 && tile.bytes == file.bytes - 128);
+
+    /* Any alignment. */
+    odd = memory_new(file.bytes + 1);
+    memcpy(misaligned(odd.start), bytes, file.bytes);
+    CHECK_STATUS(nf_tile_from_bytes(misaligned(odd.start), file.bytes, &again), NF_OK);
+    for (i = 0; i < 16; ++i) {
+        float a[3], b[3];
+        nf_sampler_draw(nf_sampler_pixel(&tile, (uint32_t)i, 3, 0, (uint32_t)i), 3, a);
+        nf_sampler_draw(nf_sampler_pixel(&again, (uint32_t)i, 3, 0, (uint32_t)i), 3, b);
+        CHECK(memcmp(a, b, sizeof a) == 0);
+    }
+    memory_free(&odd);
+
+    CHECK_REFUSED(nf_tile_from_bytes(NULL, file.bytes, &tile), NF_ERR_NULL, tile);
+    CHECK_REFUSED(nf_tile_from_bytes(NULL, 0, &tile), NF_ERR_NULL, tile);
+    CHECK_REFUSED(nf_tile_from_bytes(bytes, SIZE_MAX, &tile), NF_ERR_RANGE, tile);
+    CHECK_STATUS(nf_tile_from_bytes(bytes, file.bytes, NULL), NF_ERR_NULL);
+    CHECK_STATUS(nf_tile_from_bytes(bytes, file.bytes, (nf_tile *)misaligned(&tile)), NF_ERR_ALIGNMENT);
+
+    /* NF_ERR_LENGTH: every truncation but the empty one, which is no tile; trailing bytes. */
+    CHECK_REFUSED(nf_tile_from_bytes(bytes, 0, &tile), NF_ERR_FOREIGN, tile);
+    for (i = 1; i < file.bytes; ++i) {
+        memory part = memory_new(i);
+        memcpy(part.start, bytes, i);
+        CHECK_REFUSED(nf_tile_from_bytes(part.start, i, &tile), NF_ERR_LENGTH, tile);
+        memory_free(&part);
+    }
+    longer = memory_new(file.bytes + 1);
+    memcpy(longer.start, bytes, file.bytes);
+    CHECK_REFUSED(nf_tile_from_bytes(longer.start, longer.bytes, &tile), NF_ERR_LENGTH, tile);
+    memory_free(&longer);
+
+    /* NF_ERR_CORRUPT: any changed byte of the payload, the checksum, the seed, the text. */
+    for (i = 12; i < file.bytes; ++i) {
+        nf_status status;
+        bytes[i] ^= 0x20;
+        poison(&tile, sizeof tile);
+        status = nf_tile_from_bytes(bytes, file.bytes, &tile);
+        /* Another shape may ask for another length. */
+        CHECK(status == NF_ERR_CORRUPT || (i >= 32 && i < 40 && status == NF_ERR_LENGTH));
+        CHECK(is_poisoned(&tile, sizeof tile));
+        bytes[i] ^= 0x20;
+    }
+    bytes[44] = 1; /* reserved */
+    seal(bytes, file.bytes);
+    CHECK_REFUSED(nf_tile_from_bytes(bytes, file.bytes, &tile), NF_ERR_CORRUPT, tile);
+    bytes[44] = 0;
+    bytes[34] = 3; /* spp */
+    seal(bytes, file.bytes);
+    CHECK_REFUSED(nf_tile_from_bytes(bytes, file.bytes, &tile), NF_ERR_CORRUPT, tile);
+    bytes[34] = 4;
+
+    /* NF_ERR_VERSION, NF_ERR_FOREIGN. */
+    bytes[8] = 2;
+    seal(bytes, file.bytes);
+    CHECK_REFUSED(nf_tile_from_bytes(bytes, file.bytes, &tile), NF_ERR_VERSION, tile);
+    bytes[8] = 1;
+    bytes[0] = 'P';
+    CHECK_REFUSED(nf_tile_from_bytes(bytes, file.bytes, &tile), NF_ERR_FOREIGN, tile);
+    bytes[0] = 0x8e;
+    seal(bytes, file.bytes);
+    CHECK_STATUS(nf_tile_from_bytes(bytes, file.bytes, &tile), NF_OK);
+    memory_free(&file);
+}
+
+int main(void)
+{
+    built_in();
+    from_bytes();
+    return report("tile");
+}

@@ -1,0 +1,269 @@
+//! What a sampler draws: the tile's values where it promises them, the same bits in any order, and never a 1.
+
+use noisefloor::Error;
+use noisefloor::tile::{Sampler, Shape, Tile, fill, fill_len};
+use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::tile::{file, noise, ordered};
+use std::collections::HashSet;
+
+const SHAPE: Shape = Shape { size: 8, spp: 4, dims: 3, frames: 1, bits: 16, progressive: false };
+
+#[test]
+fn the_root_draws_the_tile() {
+    for bits in [8, 16] {
+        let shape = Shape { bits, frames: 2, ..SHAPE };
+        let bytes = noise(shape, 1);
+        let tile = Tile::from_bytes(&bytes).unwrap();
+        for (frame, x, y, sample) in (0..512).map(|i| (i / 256, i / 4 % 8, i / 32 % 8, i % 4)) {
+            let sampler = Sampler::pixel(&tile, x, y, frame, sample);
+            let stored = [0, 1, 2].map(|dim| tile.value(frame, y, x, sample, dim).unwrap());
+            assert_eq!(sampler.draw::<3>(), stored);
+            assert_eq!(sampler.draw::<1>(), [stored[0]]);
+            assert_eq!(sampler.draw::<2>(), [stored[0], stored[1]]);
+            assert_eq!(sampler.draw::<4>()[..3], stored);
+        }
+    }
+}
+
+#[test]
+fn pixels_repeat() {
+    let bytes = noise(SHAPE, 2);
+    let tile = Tile::from_bytes(&bytes).unwrap();
+    let far = u32::MAX - 7;
+    for index in [0, 3, 4, 100] {
+        for (x, y) in [(0, 0), (3, 5), (7, 7)] {
+            let near = Sampler::pixel(&tile, x, y, 0, index);
+            assert_eq!(near, Sampler::pixel(&tile, x + 8, y + 800, 0, index));
+            assert_eq!(near, Sampler::pixel(&tile, far + x, far + y, 0, index));
+        }
+    }
+}
+
+/// In a domain or another run of frames each pixel's first samples are those of some pixel of the tile, each pixel's once.
+#[test]
+fn domains_and_frames_are_the_tile_elsewhere() {
+    for progressive in [false, true] {
+        let shape = Shape { frames: 2, progressive, ..SHAPE };
+        let bytes = noise(shape, 3);
+        let tile = Tile::from_bytes(&bytes).unwrap();
+        let set = |sampler: Sampler<'_>| {
+            let mut set: Vec<_> =
+                (0..4).map(|index| sampler.moved(0, 0, index).draw::<3>().map(f32::to_bits)).collect();
+            set.sort();
+            set
+        };
+        for frame in [0, 1, 2, 3, 19] {
+            let pixels = |sampler: &dyn Fn(u32, u32) -> Vec<[u32; 3]>| -> HashSet<Vec<[u32; 3]>> {
+                (0..64).map(|pixel| sampler(pixel % 8, pixel / 8)).collect()
+            };
+            let own = pixels(&|x, y| set(Sampler::pixel(&tile, x, y, frame % 2, 0)));
+            assert_eq!(own.len(), 64);
+            let run = pixels(&|x, y| set(Sampler::pixel(&tile, x, y, frame, 0)));
+            assert_eq!(own, run);
+            for key in [0, 1, 77, u32::MAX] {
+                let child = pixels(&|x, y| set(Sampler::pixel(&tile, x, y, frame, 0).domain(key)));
+                assert_eq!(own, child);
+                let further = pixels(&|x, y| set(Sampler::pixel(&tile, x, y, frame, 0).domain(key).domain(key)));
+                assert_eq!(own, further);
+            }
+        }
+    }
+}
+
+/// A progressive tile's first 1, 2, 4, ... samples remain those in every domain.
+#[test]
+fn progressive_prefixes_stay() {
+    let shape = Shape { spp: 16, progressive: true, ..SHAPE };
+    // The value says which sample it is; pixels do not differ.
+    let bytes = file(shape, |_, _, sample, _| sample as f32 / 16.0);
+    let tile = Tile::from_bytes(&bytes).unwrap();
+    let mut orders = HashSet::new();
+    for pixel in 0..64 {
+        let sampler = Sampler::pixel(&tile, pixel % 8, pixel / 8, 0, 0).domain(5);
+        let order: Vec<u32> = (0..16).map(|i| (sampler.moved(0, 0, i).draw::<1>()[0] * 16.0) as u32).collect();
+        for len in [1, 2, 4, 8, 16] {
+            let prefix: HashSet<u32> = order[..len].iter().copied().collect();
+            assert_eq!(prefix, (0..len as u32).collect());
+        }
+        orders.insert(order);
+    }
+    assert!(orders.len() > 50, "each pixel has an order of its own");
+}
+
+#[test]
+fn values_are_below_one_and_multiples_of_an_epsilon() {
+    for bits in [8, 16] {
+        let bytes = file(Shape { bits, ..SHAPE }, |_, _, _, _| 1.0);
+        let tile = Tile::from_bytes(&bytes).unwrap();
+        let mut rng = SplitMix64::new(4);
+        for _ in 0..20_000 {
+            let mut random = || rng.next_u64() as u32;
+            let mut sampler = Sampler::pixel(&tile, random(), random(), random() % 3, random() >> (random() % 32));
+            if random() % 2 == 0 {
+                sampler = sampler.domain(random());
+            }
+            if random() % 2 == 0 {
+                sampler = sampler.scramble(random());
+            }
+            for u in sampler.draw::<4>() {
+                assert!((0.0..1.0).contains(&u));
+                assert_eq!((u * 16_777_216.0).fract(), 0.0);
+            }
+        }
+    }
+}
+
+/// Every way to draw, each sample drawn alone, in any order and in groups: the same bits.
+#[test]
+fn random_access() {
+    for shape in [
+        SHAPE,
+        Shape { spp: 1, dims: 2, ..SHAPE },
+        Shape { dims: 1, frames: 3, ..SHAPE },
+        Shape { dims: 2, bits: 8, progressive: true, ..SHAPE },
+        Shape { dims: 8, ..SHAPE },
+    ] {
+        let bytes = noise(shape, 5);
+        let tile = Tile::from_bytes(&bytes).unwrap();
+        let place = |i: u32| {
+            let sampler = Sampler::pixel(&tile, i % 11, i / 11 % 7, i / 77 % 5, i * 3 % 17);
+            match i % 4 {
+                0 => sampler,
+                1 => sampler.domain(i),
+                2 => sampler.domain(1).scramble(i).domain(2),
+                _ => sampler.scramble(i),
+            }
+        };
+        let forward: Vec<[f32; 4]> = (0..2000).map(|i| place(i).draw()).collect();
+        let mut rng = SplitMix64::new(6);
+        for _ in 0..4000 {
+            let i = rng.below(2000);
+            let (sampler, all) = (place(i as u32), forward[i]);
+            assert_eq!(sampler.draw::<4>(), all);
+            assert_eq!(sampler.draw::<3>(), all[..3]);
+            assert_eq!(sampler.draw::<2>(), all[..2]);
+            assert_eq!(sampler.draw::<1>(), all[..1]);
+            assert_eq!(Sampler::resume(&tile, sampler.state()), sampler);
+            let mut stored = [0.0; 2];
+            assert!(!sampler.draw_stored(&mut stored) || stored == all[..2]);
+        }
+    }
+}
+
+#[test]
+fn fill_gives_the_same_bits() {
+    let (bytes, others) = (noise(SHAPE, 7), noise(Shape { size: 4, dims: 2, frames: 2, ..SHAPE }, 8));
+    let (tile, other) = (Tile::from_bytes(&bytes).unwrap(), Tile::from_bytes(&others).unwrap());
+    let (width, height, samples) = (19, 5, 9);
+    let at = |x: u32, y: u32, index: u32| {
+        let root = Sampler::pixel(&tile, x, y, 2, index);
+        [
+            (root, 2),
+            (root.domain(3), 4),
+            (root.domain(3).scramble(9).domain(1), 1),
+            (Sampler::pixel(&other, x, y, 3, index), 3),
+        ]
+    };
+    let domains = at(1000, 6, 2);
+    let len = fill_len(&domains, width, height, samples).unwrap();
+    assert_eq!(len, width * height * samples * 10);
+    let mut u = vec![-1.0; len + 3];
+    fill(&domains, width, height, samples, &mut u).unwrap();
+    assert_eq!(u[len..], [-1.0; 3]);
+    let mut drawn = u.iter();
+    for (y, x, sample) in (0..height * width * samples).map(|i| (i / samples / width, i / samples % width, i % samples))
+    {
+        for (sampler, dims) in at(1000 + x as u32, 6 + y as u32, 2 + sample as u32) {
+            let single = sampler.draw::<4>();
+            single[..dims].iter().for_each(|u| assert_eq!(Some(u), drawn.next()));
+        }
+    }
+
+    u.fill(-1.0);
+    assert_eq!(fill(&domains, width, height, samples, &mut u[..len - 1]), Err(Error::Memory));
+    assert_eq!(fill(&[(domains[0].0, 5)], 1, 1, 1, &mut u), Err(Error::Range));
+    assert_eq!(fill(&[(domains[0].0, 0)], 1, 1, 1, &mut u), Err(Error::Range));
+    assert_eq!(fill(&domains, usize::MAX, 2, 1, &mut u), Err(Error::Range));
+    assert!(u.iter().all(|&u| u == -1.0));
+    assert_eq!(fill(&domains, 0, 5, 5, &mut []), Ok(()));
+    assert_eq!(fill(&[], 5, 5, 5, &mut []), Ok(()));
+}
+
+/// Beyond the tile's dims come other places of the tile, not repetitions.
+#[test]
+fn further_dimensions_are_others() {
+    let bytes = noise(Shape { dims: 1, spp: 1, size: 64, ..SHAPE }, 9);
+    let tile = Tile::from_bytes(&bytes).unwrap();
+    for pixel in 0..100 {
+        let u = Sampler::pixel(&tile, pixel, 3, 0, 0).draw::<4>().map(f32::to_bits);
+        assert_eq!(HashSet::from(u).len(), 4);
+    }
+}
+
+#[test]
+fn seed_zero_scrambles_nothing() {
+    let bytes = noise(SHAPE, 10);
+    let tile = Tile::from_bytes(&bytes).unwrap();
+    let sampler = Sampler::pixel(&tile, 1, 2, 3, 4).domain(5);
+    assert_eq!(sampler.scramble(0), sampler);
+    assert_ne!(sampler.scramble(1).draw::<2>(), sampler.draw());
+    assert_ne!(sampler.scramble(1).draw::<2>(), sampler.scramble(2).draw());
+}
+
+#[test]
+fn samples_never_repeat() {
+    let bytes = ordered(8, 4, false, 11);
+    let tile = Tile::from_bytes(&bytes).unwrap();
+    for sampler in [Sampler::pixel(&tile, 2, 3, 0, 0), Sampler::pixel(&tile, 4, 5, 0, 0).domain(9).scramble(7)] {
+        let points: HashSet<_> = (0..1 << 16).map(|i| sampler.moved(0, 0, i).draw::<2>().map(f32::to_bits)).collect();
+        assert_eq!(points.len(), 1 << 16);
+        // Nor the last ones.
+        let last: HashSet<_> =
+            (0..1 << 12).map(|i| sampler.moved(0, 0, u32::MAX - i).draw::<2>().map(f32::to_bits)).collect();
+        assert_eq!(last.len(), 1 << 12);
+        assert!(last.is_disjoint(&points));
+    }
+}
+
+/// With a tile of 1 spp, any aligned run of 2^k indices has one point in each elementary interval of area 2^-k.
+#[test]
+fn what_follows_the_tile_is_a_net() {
+    let bytes = noise(Shape { spp: 1, dims: 2, ..SHAPE }, 12);
+    let tile = Tile::from_bytes(&bytes).unwrap();
+    let bits = 6;
+    for pixel in 0..20 {
+        let root = Sampler::pixel(&tile, pixel, 3, 0, 0);
+        for sampler in [root, root.domain(pixel)] {
+            for (first, wide) in [0, 64, 128, 1 << 20].into_iter().flat_map(|first| (0..=bits).map(move |w| (first, w)))
+            {
+                let mut cells = HashSet::new();
+                for index in first..first + (1 << bits) {
+                    let [x, y] = sampler.moved(0, 0, index).draw::<2>();
+                    cells.insert(((x * (1 << wide) as f32) as u32, (y * (1 << (bits - wide)) as f32) as u32));
+                }
+                assert_eq!(cells.len(), 1 << bits);
+            }
+        }
+    }
+}
+
+/// Tiles that no one should make draw numbers in [0, 1) and nothing worse.
+#[test]
+fn nonsense_is_harmless() {
+    let payload = [0x5a; 64];
+    for shape in [
+        Shape { size: 0, spp: 0, dims: 0, frames: 0, bits: 0, progressive: false },
+        Shape { size: 5, spp: 3, dims: 9, frames: 7, bits: 16, progressive: true },
+        Shape { size: u32::MAX, spp: u32::MAX, dims: u32::MAX, frames: u32::MAX, bits: u32::MAX, progressive: false },
+        Shape { size: 1024, spp: 256, dims: 8, frames: 256, bits: 16, progressive: true },
+    ] {
+        let tile = Tile::resume(shape, &payload);
+        for index in [0, 1, 2, 255, 256, u32::MAX] {
+            let sampler = Sampler::pixel(&tile, u32::MAX, 7, 9, index);
+            for sampler in [sampler, sampler.domain(1), sampler.scramble(2)] {
+                assert!(sampler.draw::<4>().iter().all(|u| (0.0..1.0).contains(u)));
+                assert!(sampler.draw::<1>().iter().all(|u| (0.0..1.0).contains(u)));
+            }
+        }
+    }
+}
