@@ -27,26 +27,23 @@ fn iterations(criterion: &mut Criterion, group: &str, problems: Vec<(String, Pro
 }
 
 fn points(criterion: &mut Criterion) {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-    pool.install(|| {
-        let sizes = [64, 256, 1024, 4096, 16_384];
-        let of = |points: usize| (points.to_string(), Problem::new(points, 2));
-        iterations(criterion, "fsot/uniform", sizes.into_iter().map(of).collect());
-        let torus =
-            |points: usize| (points.to_string(), Problem { domain: Domain::Toroidal, ..Problem::new(points, 2) });
-        iterations(criterion, "fsot/toroidal", [1024, 4096].into_iter().map(torus).collect());
-        let dims = |dims: usize| (format!("{dims}D"), Problem::new(4096, dims));
-        iterations(criterion, "fsot/dims/4096", (1..=8).map(dims).collect());
-        let classes = vec![
-            ("3color".to_owned(), Problem { classes: three_colors(2), ..Problem::new(4096, 2) }),
-            ("ramp".to_owned(), Problem { classes: ramp(2), ..Problem::new(4096, 2) }),
-        ];
-        iterations(criterion, "fsot/classes/4096", classes);
-        let mut hill = Problem::new(4096, 2);
-        let density = Function::new(2, 4096, |x| x[0] * x[1] + 0.1).expect("a density");
-        hill.classes[0].target = Arc::new(density);
-        iterations(criterion, "fsot/density", vec![("4096".to_owned(), hill)]);
-    });
+    rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("no pool before this one");
+    let sizes = [64, 256, 1024, 4096, 16_384];
+    let of = |points: usize| (points.to_string(), Problem::new(points, 2));
+    iterations(criterion, "fsot/uniform", sizes.into_iter().map(of).collect());
+    let torus = |points: usize| (points.to_string(), Problem { domain: Domain::Toroidal, ..Problem::new(points, 2) });
+    iterations(criterion, "fsot/toroidal", [1024, 4096].into_iter().map(torus).collect());
+    let dims = |dims: usize| (format!("{dims}D"), Problem::new(4096, dims));
+    iterations(criterion, "fsot/dims/4096", (1..=8).map(dims).collect());
+    let classes = vec![
+        ("3color".to_owned(), Problem { classes: three_colors(2), ..Problem::new(4096, 2) }),
+        ("ramp".to_owned(), Problem { classes: ramp(2), ..Problem::new(4096, 2) }),
+    ];
+    iterations(criterion, "fsot/classes/4096", classes);
+    let mut hill = Problem::new(4096, 2);
+    let density = Function::new(2, 4096, |x| x[0] * x[1] + 0.1).expect("a density");
+    hill.classes[0].target = Arc::new(density);
+    iterations(criterion, "fsot/density", vec![("4096".to_owned(), hill)]);
 }
 
 criterion_group!(benches, points);

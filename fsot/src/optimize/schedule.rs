@@ -80,7 +80,7 @@ fn iterations(problem: &Problem, objectives: usize, windowed: bool) -> u64 {
         return iterations;
     }
     // An iteration in windows brings a large set as far as several bring a small one, whatever its size.
-    let (draft, standard, high) = if windowed { (80.0, 800.0, 3200.0) } else { (32.0, 170.0, 1250.0) };
+    let (draft, standard, high) = if windowed { (80.0, 800.0, 3200.0) } else { (32.0, 170.0, 1000.0) };
     let base = match problem.quality {
         Quality::Draft => draft,
         Quality::High => high,
