@@ -229,8 +229,8 @@ impl Stencils {
         let longest = entries.iter().map(Entry::length).max().unwrap_or(0);
         if longest > MAX_SAMPLES {
             return Err(Error::input(format!(
-                "the kernel holds {longest} samples at {} per pixel, more than {MAX_SAMPLES}: take a narrower kernel or \
-                 fewer samples",
+                "the kernel holds {longest} samples at {} per pixel, more than {MAX_SAMPLES}: take a narrower kernel \
+                 or fewer samples",
                 problem.spp
             )));
         }
