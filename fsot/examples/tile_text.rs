@@ -1,5 +1,5 @@
-//! Optimises a tile and prints it as text, one row of coordinates per sample in `[y][x][sample]` order: `tile_text SIZE SPP DIMS [name=value]...`
-//! with the names of the fields of `TileProblem`.
+//! Optimises a tile and prints it as text, one row of coordinates per sample in `[y][x][sample]` order: `tile_text SIZE
+//! SPP DIMS [name=value]...` with the names of the fields of `TileProblem`.
 
 use fsot::run::Optimization;
 use fsot::tile::{ClassShare, Domain, Projections, Steps, TileOptimizer, TileProblem, presets};

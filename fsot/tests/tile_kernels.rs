@@ -78,8 +78,8 @@ fn an_exponential_moving_average_halves() {
     assert_eq!(TemporalKernel::Ema(0.05).weights(16).unwrap().len(), 16);
 }
 
-/// Published values: the sustained response peaks at 60 ms; with the transient one added, the sum peaks earlier, and has a tail of the other sign,
-/// whose absolute value is used.
+/// Published values: the sustained response peaks at 60 ms; with the transient one added, the sum peaks earlier, and
+/// has a tail of the other sign, whose absolute value is used.
 #[test]
 fn the_eye_answers_within_a_quarter_of_a_second() {
     let weights = TemporalKernel::Mantiuk.weights(32).unwrap();

@@ -1,4 +1,5 @@
-//! What optimised tiles reach: energies of the error image relative to white noise, with the metric of DESIGN.md section 4.
+//! What optimised tiles reach: energies of the error image relative to white noise, with the metric of DESIGN.md
+//! section 4.
 
 use fsot::metrics::{TileOptions, TileReport, TileView, measure_tile};
 use fsot::tile::{Projections, TemporalKernel, TileOptimizer, TileProblem, TileSamples};
@@ -13,8 +14,8 @@ fn optimised(problem: TileProblem) -> TileReport {
     measure(&TileOptimizer::new(problem).unwrap().run())
 }
 
-/// Seed and integrands are fixed, so the figures are too: each limit is what was measured, rounded up by some percent so that it survives a change of
-/// the random numbers. White noise has 1.
+/// Seed and integrands are fixed, so the figures are too: each limit is what was measured, rounded up by some percent
+/// so that it survives a change of the random numbers. White noise has 1.
 #[test]
 fn small_tiles_reach_their_figures() {
     for (spp, filtered, gaussians, raw) in [(1, 0.11, 0.032, 1.05), (4, 0.055, 0.006, 0.38)] {
@@ -49,7 +50,8 @@ fn four_dimensions_and_their_planes() {
     assert!(report.marginals.iter().all(|plane| plane.prefixes[0].energies.half_spaces.wide < 0.19), "{report}");
 }
 
-/// Frames that are optimised together, against frames that are each a tile: what an exponential moving average leaves of the error.
+/// Frames that are optimised together, against frames that are each a tile: what an exponential moving average leaves
+/// of the error.
 #[test]
 fn frames_optimised_together_are_better_over_time() {
     let alone = TileProblem { frames: 12, iterations: 256, ..TileProblem::new(16, 1, 2) };

@@ -6,8 +6,8 @@ use std::str::FromStr;
 
 /// The standard deviation, in pixels, of [`Kernel::Perceptual`].
 ///
-/// The thesis's authors' code has `exp(-r^2 / 2.1^2)`, a standard deviation of 1.48 pixels, cut to 7x7 pixels: that one is
-/// `gaussian:1.48`.
+/// The thesis's authors' code has `exp(-r^2 / 2.1^2)`, a standard deviation of 1.48 pixels, cut to 7x7 pixels: that one
+/// is `gaussian:1.48`.
 pub const PERCEPTUAL_SIGMA: f32 = 2.1;
 
 /// The standard deviation, in pixels, of the Gaussian reconstruction filter when none is given.
@@ -16,7 +16,8 @@ pub const RECONSTRUCTION_SIGMA: f32 = 0.5;
 /// The largest standard deviation of a Gaussian kernel, in pixels.
 const MAX_SIGMA: f32 = 16.0;
 
-/// The weight, relative to the largest, below which a kernel ends: a Gaussian of standard deviation s has radius 2.86 s.
+/// The weight, relative to the largest, below which a kernel ends: a Gaussian of standard deviation s has radius 2.86
+/// s.
 const CUT: f32 = 1.0 / 60.0;
 
 /// The weight of the samples of the pixel at (x + `dx`, y + `dy`), `frame` frames ago, in the class of (x, y).
@@ -32,7 +33,8 @@ pub struct Tap {
     pub weight: f32,
 }
 
-/// The spatial class function of every pixel, relative to its centre. The samples of a pixel count as being at its centre.
+/// The spatial class function of every pixel, relative to its centre. The samples of a pixel count as being at its
+/// centre.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kernel {
     /// A pixel's own samples only: what box reconstruction integrates.
@@ -48,7 +50,8 @@ pub enum Kernel {
 }
 
 impl Kernel {
-    /// Its values, the largest 1, in rows from top to bottom. An [`Error::Input`] if it is not what its description asks for.
+    /// Its values, the largest 1, in rows from top to bottom. An [`Error::Input`] if it is not what its description
+    /// asks for.
     pub fn taps(&self) -> Result<Vec<Tap>> {
         let table = self.table(1.0)?;
         let radius = (table.len() / 2) as i32;
@@ -132,7 +135,8 @@ impl FromStr for Kernel {
     fn from_str(text: &str) -> Result<Kernel> {
         let unknown = || {
             Error::input(format!(
-                "'{text}' is not a kernel: use box, perceptual, gaussian:SIGMA, or a product such as perceptual*gaussian:0.5"
+                "'{text}' is not a kernel: use box, perceptual, gaussian:SIGMA, or a convolution such as \
+                 perceptual*gaussian:0.5"
             ))
         };
         let kernel = match text.split_once('*') {

@@ -27,8 +27,8 @@ const STEP_STREAM: u64 = u64::MAX - 1;
 
 /// Optimises a tile.
 ///
-/// All sums over slices are sums of integers, so the result does not depend on the number of threads. Memory: the samples, their projections
-/// on a step's directions and, for each thread, their displacements.
+/// All sums over slices are sums of integers, so the result does not depend on the number of threads. Memory: the
+/// samples, their projections on a step's directions and, for each thread, their displacements.
 pub struct TileOptimizer {
     problem: TileProblem,
     stencils: Stencils,
@@ -143,8 +143,9 @@ impl TileOptimizer {
         }
     }
 
-    /// One slice for every pixel of some rows: adds the displacements to `sums`, each direction's and then their weight, sample by sample. Returns the
-    /// slices' squared distances, in units of 2^-32 squared lengths, per direction.
+    /// One slice for every pixel of some rows: adds the displacements to `sums`, each direction's and then their
+    /// weight, sample by sample. Returns the slices' squared distances, in units of 2^-32 squared lengths, per
+    /// direction.
     fn slices(&self, rows: std::ops::Range<usize>, sums: &mut [i64]) -> Vec<u64> {
         let lattice = self.stencils.lattice;
         let directions = self.problem.directions;

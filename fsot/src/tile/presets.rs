@@ -63,7 +63,8 @@ fn gaussian(problem: TileProblem, share: f32) -> TileProblem {
     TileProblem { kernel, reconstruction, box_class: ClassShare { share, weight: 1.0 }, ..problem }
 }
 
-/// For temporal anti-aliasing: the error is small in every frame, and in what the moving average makes of a pixel and of the image.
+/// For temporal anti-aliasing: the error is small in every frame, and in what the moving average makes of a pixel and
+/// of the image.
 fn temporal(problem: TileProblem) -> TileProblem {
     TileProblem {
         frames: 16,

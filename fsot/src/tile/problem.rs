@@ -37,15 +37,16 @@ pub struct TileProblem {
     pub temporal: Option<TemporalKernel>,
     /// Whether the first 1, 2, 4, ... samples of all pixels are tiles too.
     pub progressive: bool,
-    /// The classes of the prefixes of a progressive tile: of 1, 2, 4, ..., `spp` samples. Of the shares only the ratios matter. Empty: the
-    /// documented default.
+    /// The classes of the prefixes of a progressive tile: of 1, 2, 4, ..., `spp` samples. Of the shares only the ratios
+    /// matter. Empty: the documented default.
     pub prefixes: Vec<ClassShare>,
-    /// The class of what the renderer reconstructs a pixel from, beside the perceptual one: it lowers the error that is there before any
-    /// perception, such as that of single pixels. In an animation with a temporal kernel, over time.
+    /// The class of what the renderer reconstructs a pixel from, beside the perceptual one: it lowers the error that is
+    /// there before any perception, such as that of single pixels. In an animation with a temporal kernel, over time.
     pub box_class: ClassShare,
     /// The spatial class function of that class: [`Kernel::Box`] unless the renderer reconstructs with another one.
     pub reconstruction: Kernel,
-    /// The share of the slices of an animation that look at one frame only: 0 to 1. Ignored without [`temporal`](Self::temporal).
+    /// The share of the slices of an animation that look at one frame only: 0 to 1. Ignored without
+    /// [`temporal`](Self::temporal).
     pub frame_share: f32,
     /// Seed of everything random.
     pub seed: u64,
@@ -59,8 +60,8 @@ pub struct TileProblem {
     pub steps: Steps,
     /// The exponent of the offset correction (5.24): 1 is the thesis's, 0 none. 0 to 2.
     pub offset_correction: f32,
-    /// The threshold of a slice is z = u^e with u uniform on [0, 1): above 1 prefers wide subclasses. For a Gaussian kernel it is the same as
-    /// a standard deviation sqrt(e) times as large. 0.25 to 4.
+    /// The threshold of a slice is z = u^e with u uniform on [0, 1): above 1 prefers wide subclasses. For a Gaussian
+    /// kernel it is the same as a standard deviation sqrt(e) times as large. 0.25 to 4.
     pub threshold_exponent: f32,
     /// The domain of the samples.
     pub domain: Domain,
@@ -84,8 +85,8 @@ pub struct Projections {
     pub plane: f32,
 }
 
-/// The step size: `first`, then from `hold` (as a part of all iterations) falling linearly to `last`. 1 moves a sample by the mean of the
-/// displacements that its slices ask for.
+/// The step size: `first`, then from `hold` (as a part of all iterations) falling linearly to `last`. 1 moves a sample
+/// by the mean of the displacements that its slices ask for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steps {
     /// The step size at first: above 0, at most 16.
@@ -158,8 +159,8 @@ impl TileProblem {
         self.frames * self.size * self.size * self.spp * self.dims
     }
 
-    /// The samples that all slices of a step look at, in the mean: a step's time is in proportion to it. An [`Error::Input`] as for
-    /// [`validate`](Self::validate).
+    /// The samples that all slices of a step look at, in the mean: a step's time is in proportion to it. An
+    /// [`Error::Input`] as for [`validate`](Self::validate).
     pub fn cost(&self) -> Result<f64> {
         self.validate()?;
         let slices = (self.frames * self.size * self.size) as f64;

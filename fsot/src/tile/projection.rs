@@ -21,7 +21,8 @@ pub(super) struct Projection {
 enum Shape {
     /// A box of width `wide` convolved with one of width `narrow`: at most two components are not 0.
     Trapezoid { wide: f64, narrow: f64 },
-    /// The distribution function and its integral at the ends of [`CELLS`] cells; the cell where the search begins, by distribution value.
+    /// The distribution function and its integral at the ends of [`CELLS`] cells; the cell where the search begins, by
+    /// distribution value.
     Table { distribution: Vec<f64>, integral: Vec<f64>, guide: Vec<u32> },
 }
 
@@ -41,8 +42,8 @@ impl Projection {
         Projection { direction, lowest, length, shape }
     }
 
-    /// Calls `bin(index, mean, end)` for each of `count` bins of equal mass: its mean (the integral in (5.23), times the number of bins) and its
-    /// upper end, both from 0 to `length`.
+    /// Calls `bin(index, mean, end)` for each of `count` bins of equal mass: its mean (the integral in (5.23), times
+    /// the number of bins) and its upper end, both from 0 to `length`.
     pub(super) fn bins(&self, count: usize, mut bin: impl FnMut(usize, f64, f64)) {
         let mut below = 0.0;
         for index in 0..count {
@@ -170,8 +171,8 @@ mod tests {
         }
     }
 
-    /// Against 2^20 projected random points, sorted. The standard error of a bin's mean is below 6e-4 everywhere (bins of 65,536 points in which
-    /// the standard deviation is below .15): 5 of them are 3e-3.
+    /// Against 2^20 projected random points, sorted. The standard error of a bin's mean is below 6e-4 everywhere (bins
+    /// of 65,536 points in which the standard deviation is below .15): 5 of them are 3e-3.
     #[test]
     fn bins_are_those_of_random_points() {
         let mut rng = Rng::seed(11);

@@ -29,7 +29,8 @@ impl Sorter {
         }
     }
 
-    /// Calls `place(rank, number)` for every sample; equal positions (of 31 bits less those of a number) are in the order of their numbers.
+    /// Calls `place(rank, number)` for every sample; equal positions (of 31 bits less those of a number) are in the
+    /// order of their numbers.
     #[inline]
     pub(super) fn sort(&mut self, positions: &[u32], place: impl FnMut(usize, usize)) {
         let drop = POSITION_BITS - self.position_bits();

@@ -23,7 +23,8 @@ impl TileSamples {
         let needed = [size, size, spp, dims, frames].iter().try_fold(1usize, |product, &n| product.checked_mul(n));
         if needed != Some(coordinates.len()) {
             return Err(Error::input(format!(
-                "{} coordinates are not those of {frames} frames of {size}x{size} pixels with {spp} samples of {dims} dimensions",
+                "{} coordinates are not those of {frames} frames of {size}x{size} pixels with {spp} samples of {dims} \
+                 dimensions",
                 coordinates.len()
             )));
         }

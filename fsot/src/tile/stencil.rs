@@ -69,7 +69,8 @@ fn classes(problem: &TileProblem) -> Result<Vec<Class>> {
     ])
 }
 
-/// The product of a spatial kernel and the weights of a frame and those before it, down to the spatial kernel's least value.
+/// The product of a spatial kernel and the weights of a frame and those before it, down to the spatial kernel's least
+/// value.
 fn over_time(spatial: &[Tap], weights: &[f32]) -> Vec<Tap> {
     let least = spatial.last().map_or(0.0, |tap| tap.weight).min(LEAST);
     let frames = weights.iter().enumerate();
@@ -129,8 +130,8 @@ fn prefixes(problem: &TileProblem) -> Vec<(usize, f64, f32)> {
     (0..=levels).map(|level| (1 << level, class(level).0 / total, class(level).1)).collect()
 }
 
-/// The subclasses of a class, each as the number of its pixels and the probability that a threshold z = u^exponent selects it: pixels of equal
-/// weight come together, (5.15).
+/// The subclasses of a class, each as the number of its pixels and the probability that a threshold z = u^exponent
+/// selects it: pixels of equal weight come together, (5.15).
 fn levels(taps: &[Tap], exponent: f64) -> Vec<(usize, f64)> {
     let cut = |weight: f32| libm::pow(f64::from(weight), 1.0 / exponent);
     let equal = |a: f32, b: f32| (a - b).abs() <= 1e-5 * a;
@@ -228,7 +229,8 @@ impl Stencils {
         let longest = entries.iter().map(Entry::length).max().unwrap_or(0);
         if longest > MAX_SAMPLES {
             return Err(Error::input(format!(
-                "the kernel holds {longest} samples at {} per pixel, more than {MAX_SAMPLES}: take a narrower kernel or fewer samples",
+                "the kernel holds {longest} samples at {} per pixel, more than {MAX_SAMPLES}: take a narrower kernel \
+                 or fewer samples",
                 problem.spp
             )));
         }
@@ -306,10 +308,13 @@ mod tests {
     }
 
     proptest! {
-        /// Point-set filtering: the subclass that a threshold z selects holds the taps with w > z, and no other; its probability is that of the
-        /// thresholds that select it.
+        /// Point-set filtering: the subclass that a threshold z selects holds the taps with w > z, and no other; its
+        /// probability is that of the thresholds that select it.
         #[test]
-        fn a_threshold_selects_the_taps_above_it(values in prop::collection::vec(0u32..6, 25), exponent in 0.5f64..2.0) {
+        fn a_threshold_selects_the_taps_above_it(
+            values in prop::collection::vec(0u32..6, 25),
+            exponent in 0.5f64..2.0,
+        ) {
             prop_assume!(values.iter().any(|&value| value > 0));
             let rows = values.chunks(5).map(|row| row.iter().map(|&value| value as f32 / 5.0).collect()).collect();
             let taps = sorted(Kernel::Tabulated(rows).taps().unwrap());
@@ -325,9 +330,16 @@ mod tests {
             prop_assert!(above.abs() < 1e-6);
         }
 
-        /// However many classes, prefixes and frames: probabilities add up to 1 and every random number finds a subclass inside the lattice.
+        /// However many classes, prefixes and frames: probabilities add up to 1 and every random number finds a
+        /// subclass inside the lattice.
         #[test]
-        fn every_number_finds_a_subclass(number in any::<u32>(), spp in 0u32..4, share in 0.0f32..0.5, frames in 1usize..5, progressive in any::<bool>()) {
+        fn every_number_finds_a_subclass(
+            number in any::<u32>(),
+            spp in 0u32..4,
+            share in 0.0f32..0.5,
+            frames in 1usize..5,
+            progressive in any::<bool>(),
+        ) {
             let mut problem = TileProblem::new(16, 1 << spp, 2);
             problem.box_class.share = share;
             problem.progressive = progressive;
@@ -337,7 +349,8 @@ mod tests {
             prop_assert!((sum - 1.0).abs() < 1e-6);
             let stencils = problem.stencils().unwrap();
             let lattice = stencils.lattice;
-            let last = lattice.index(frames - 1 + lattice.past, 15 + lattice.margin, 15 + lattice.margin) - stencils.lowest;
+            let end = 15 + lattice.margin;
+            let last = lattice.index(frames - 1 + lattice.past, end, end) - stencils.lowest;
             let stencil = stencils.pick(number);
             prop_assert!(!stencil.samples.is_empty());
             prop_assert!(stencil.samples.iter().all(|&sample| last + (sample as usize) < lattice.samples()));
