@@ -1,9 +1,11 @@
-// A small path tracer that hands each pixel's samples to noisefloor.
+// A small path tracer that draws from noisefloor's tiles and hands each pixel's samples to its estimators.
 //
 //   c++ -O2 -std=c++17 -Iinclude examples_c/pathtracer.cpp target/noisefloor/libnoisefloor.a -pthread -o pathtracer
 //   ./pathtracer --scene direct --spp 64 --estimators mc,robust
+//   ./pathtracer --scene direct --spp 4 --sampler tile --estimators mc,block
 //
-// To see how the library is used, read pathtracer/estimators.hpp; how samples are made, pathtracer/integrand.hpp.
+// To see how the library is used, read pathtracer/estimators.hpp and pathtracer/tile_sampler.hpp; what samples are used for,
+// pathtracer/integrand.hpp.
 #include "pathtracer/app.hpp"
 #include "pathtracer/bvh.hpp"
 

@@ -16,7 +16,13 @@ inline void render(const Options &options, const MakeIntersector &make_intersect
     if (!make_scene(options.scene, static_cast<float>(options.width) / static_cast<float>(options.height), scene))
         throw std::runtime_error("there is no scene `" + options.scene + "`; --help lists them");
     std::unique_ptr<Intersector> intersector = make_intersector(scene.geometry);
-    Renderer renderer(scene, *intersector, options);
+    SamplerSetup setup{scene.domains(), scene.dims(), options.spp, options.frame, options.seed};
+    std::unique_ptr<Sampler> sampler;
+    if (options.reference)
+        sampler = std::make_unique<LatticeSampler>(setup);
+    else
+        sampler = make_sampler(options.sampler, options.tile, setup);
+    Renderer renderer(scene, *intersector, *sampler, options);
     renderer.run();
 
     Outputs outputs;
@@ -26,13 +32,16 @@ inline void render(const Options &options, const MakeIntersector &make_intersect
 
     const Times &times = renderer.times();
     double samples = static_cast<double>(options.width) * options.height * options.spp;
+    double sampling = times.drawing + times.tracing;
+    auto each = [&](double seconds) { return seconds / samples * 1e9; };
     for (size_t e = 0; e < renderer.names().size(); ++e)
-        std::printf("{\"scene\":\"%s\",\"estimator\":\"%s\",\"spp\":%u,\"dims\":%u,\"order\":%u,\"threads\":%u,\"width\":%u,\"height\":%u,"
-                    "\"sampling_seconds\":%.6f,\"estimating_seconds\":%.6f,\"total_seconds\":%.6f,"
-                    "\"sampling_ns_per_sample\":%.2f,\"estimating_ns_per_sample\":%.2f}\n",
-                    options.scene.c_str(), options.reference ? "reference" : renderer.names()[e].c_str(), options.spp, scene.dims(),
-                    options.order, options.threads, options.width, options.height, times.sampling, times.estimating[e],
-                    times.sampling + times.estimating[e], times.sampling / samples * 1e9, times.estimating[e] / samples * 1e9);
+        std::printf("{\"scene\":\"%s\",\"sampler\":\"%s\",\"estimator\":\"%s\",\"spp\":%u,\"dims\":%u,\"order\":%u,"
+                    "\"threads\":%u,\"width\":%u,\"height\":%u,\"total_seconds\":%.6f,\"drawing_ns_per_sample\":%.2f,"
+                    "\"tracing_ns_per_sample\":%.2f,\"sampling_ns_per_sample\":%.2f,\"estimating_ns_per_sample\":%.2f}\n",
+                    options.scene.c_str(), options.reference ? "lattice" : options.sampler.c_str(),
+                    options.reference ? "reference" : renderer.names()[e].c_str(), options.spp, scene.dims(), options.order,
+                    options.threads, options.width, options.height, sampling + times.estimating[e], each(times.drawing),
+                    each(times.tracing), each(sampling), each(times.estimating[e]));
 }
 
 inline int run(int argc, char **argv, const MakeIntersector &make_intersector)

@@ -13,20 +13,35 @@ class Integrand {
 public:
     Integrand(const Scene &scene, const Intersector &intersector) : scene_(scene), intersector_(intersector) {}
 
-    // Where the pixel's ray ends, if that does not depend on u: it is then traced once per pixel.
+    // Where the ray through the lens' centre at time 0 ends. In most scenes that does not depend on u: it is traced once per pixel.
     struct Pixel {
-        float x, y; // in [0, 1] over the image
-        bool hit;
+        float x = 0, y = 0; // in [0, 1] over the image
+        bool traced = false, hit = false;
         Ray ray;
         Hit surface;
     };
 
     Pixel pixel(float x, float y) const
     {
-        Pixel pixel{x, y, false, scene_.camera.ray(x, y, 0), {}};
-        if (scene_.layout != Layout::motion)
-            pixel.hit = intersector_.closest(pixel.ray, pixel.surface);
+        Pixel pixel;
+        pixel.x = x;
+        pixel.y = y;
+        if (scene_.layout != Layout::motion && scene_.layout != Layout::lens)
+            trace(pixel);
         return pixel;
+    }
+
+    // A number for what the pixel shows: its material and the axis, of six, that its surface faces.
+    uint32_t surface(Pixel &pixel) const
+    {
+        if (!pixel.traced)
+            trace(pixel);
+        if (!pixel.hit)
+            return 0;
+        Vector n = pixel.surface.shading;
+        float x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
+        int axis = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
+        return 1 + 6 * pixel.surface.material + 2 * static_cast<uint32_t>(axis) + (n[axis] > 0);
     }
 
     Color operator()(const Pixel &pixel, const float *u) const
@@ -35,16 +50,22 @@ public:
         case Layout::direct: return pixel.hit ? direct(pixel.ray, pixel.surface, u[0], u[1], 0, 1) : Color{};
         case Layout::lights: return pixel.hit ? direct(pixel.ray, pixel.surface, u[0], u[1], choose(u[2]), count()) : Color{};
         case Layout::global: return pixel.hit ? path(pixel.ray, pixel.surface, u) : Color{};
-        case Layout::motion: break;
+        case Layout::motion: return first(scene_.camera.ray(pixel.x, pixel.y, u[0]), u + 1);
+        case Layout::lens: return first(scene_.camera.ray(pixel.x, pixel.y, u[0], u[1]), u + 2);
         }
-        Ray ray = scene_.camera.ray(pixel.x, pixel.y, u[0]);
-        Hit hit;
-        return intersector_.closest(ray, hit) ? direct(ray, hit, u[1], u[2], 0, 1) : Color{};
+        return {};
     }
 
 private:
     // Rays start and end this far from surfaces, in units of the scene: more than rounding, less than a visible gap.
     static constexpr float epsilon = 1e-4f;
+
+    void trace(Pixel &pixel) const
+    {
+        pixel.ray = scene_.camera.ray(pixel.x, pixel.y, 0);
+        pixel.hit = intersector_.closest(pixel.ray, pixel.surface);
+        pixel.traced = true;
+    }
 
     float count() const { return static_cast<float>(scene_.lights.size()); }
 
@@ -74,6 +95,12 @@ private:
         const Light &light = scene_.lights[static_cast<size_t>(hit.light)];
         bool shines = light.kind == Light::sphere || dot(light.normal, ray.direction) < 0;
         return shines ? light.radiance : Color{};
+    }
+
+    Color first(const Ray &ray, const float *u) const
+    {
+        Hit hit;
+        return intersector_.closest(ray, hit) ? direct(ray, hit, u[0], u[1], 0, 1) : Color{};
     }
 
     // Emitted light plus next event estimation with one light, which was chosen with probability 1 / choices.

@@ -3,6 +3,7 @@
 
 #include "estimators.hpp"
 #include "scenes.hpp"
+#include "tile_sampler.hpp"
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
@@ -14,6 +15,8 @@ struct Options {
     uint32_t width = 128, height = 128, spp = 64, order = 2, threads = 1;
     uint64_t seed = 1;
     std::vector<std::string> estimators{"mc", "robust"};
+    std::string sampler = "random", tile; // tile: a name or a file; empty: by the samples
+    uint32_t frame = 0;
     std::string output = "pathtracer";
     bool reference = false;
 };
@@ -21,12 +24,20 @@ struct Options {
 inline void print_usage(FILE *to)
 {
     std::fputs("usage: pathtracer [--scene NAME] [--width N] [--height N] [--spp N] [--estimators A,B,...] [--order N]\n"
-               "                  [--seed N] [--threads N] [--output PREFIX] [--reference]\n\n"
+               "                  [--sampler NAME] [--tile NAME|FILE.nft] [--frame N] [--seed N] [--threads N]\n"
+               "                  [--output PREFIX] [--reference]\n\n"
                "Renders PREFIX.ESTIMATOR.pfm with each estimator from the same samples and prints one line of JSON for each.\n"
                "--reference renders PREFIX.reference.pfm instead: the plain mean over a shifted lattice.\n\nscenes:",
                to);
     for (const char *name : scene_names)
         std::fprintf(to, " %s", name);
+    std::fputs("\nsamplers:", to);
+    for (const char *name : sampler_names)
+        std::fprintf(to, " %s", name);
+    std::fputs("\ntiles:", to);
+    for (const TileName &tile : tile_names)
+        if (has_tile(tile))
+            std::fprintf(to, " %s", tile.name);
     std::fputs("\nestimators:\n", to);
     for (const EstimatorName &estimator : estimator_names)
         std::fprintf(to, "  %-17s %s\n", estimator.name, estimator.description);
@@ -71,6 +82,12 @@ inline bool parse(int argc, char **argv, Options &options)
             options.threads = number(1, 256);
         else if (name == "--seed")
             options.seed = parse_number(name, value, 0, ~uint64_t{0} >> 1);
+        else if (name == "--sampler")
+            options.sampler = value;
+        else if (name == "--tile")
+            options.tile = value;
+        else if (name == "--frame")
+            options.frame = number(0, 1 << 20);
         else if (name == "--output")
             options.output = value;
         else if (name == "--estimators") {

@@ -1,4 +1,4 @@
-// Sample points of the unit cube, a function of (seed, pixel, sample) alone: the image does not depend on the threads.
+// Points of the unit cube, a function of (seed, frame, pixel, sample) alone: the image does not depend on the threads.
 #pragma once
 
 #include <cmath>
@@ -17,9 +17,11 @@ inline uint64_t mix(uint64_t z)
     return z ^ (z >> 31);
 }
 
-inline uint64_t pixel_key(uint64_t seed, uint32_t x, uint32_t y)
+constexpr uint64_t golden = 0x9e3779b97f4a7c15u;
+
+inline uint64_t pixel_key(uint64_t seed, uint32_t frame, uint32_t x, uint32_t y)
 {
-    return mix(mix(seed + 0x9e3779b97f4a7c15u) ^ (uint64_t{y} << 32 | x));
+    return mix(mix(seed + golden + (uint64_t{frame} << 40)) ^ (uint64_t{y} << 32 | x));
 }
 
 // 24 bits, so that every value is exact and below 1.
@@ -30,7 +32,7 @@ inline void random_points(uint64_t key, size_t n, uint32_t dims, float *u)
 {
     size_t values = n * dims;
     for (size_t i = 0; i < values; i += 2) {
-        uint64_t bits = mix(key + (i / 2 + 1) * 0x9e3779b97f4a7c15u);
+        uint64_t bits = mix(key + (i / 2 + 1) * golden);
         u[i] = unit(static_cast<uint32_t>(bits));
         if (i + 1 < values)
             u[i + 1] = unit(static_cast<uint32_t>(bits >> 32));

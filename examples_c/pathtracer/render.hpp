@@ -5,7 +5,7 @@
 #include "image.hpp"
 #include "integrand.hpp"
 #include "options.hpp"
-#include "random.hpp"
+#include "samplers.hpp"
 #include <atomic>
 #include <chrono>
 #include <exception>
@@ -15,17 +15,24 @@ namespace demo {
 
 // Seconds, summed over the threads.
 struct Times {
-    double sampling = 0;
+    double drawing = 0; // of sample points
+    double tracing = 0;
     std::vector<double> estimating;
 };
 
 class Renderer {
 public:
-    Renderer(const Scene &scene, const Intersector &intersector, const Options &options)
-        : scene_(scene), options_(options), integrand_(scene, intersector), names_(options.estimators)
+    Renderer(const Scene &scene, const Intersector &intersector, const Sampler &sampler, const Options &options)
+        : scene_(scene), sampler_(sampler), options_(options), integrand_(scene, intersector), names_(options.estimators)
     {
         if (options.reference)
             names_ = {"mc"};
+        // As many samples as stay in the cache between sampling and estimating; blocks have their size for another reason.
+        while (side_ > 1 && size_t{side_} * side_ * options.spp > 4096)
+            side_ /= 2;
+        for (const std::string &name : names_)
+            if (name == "block")
+                side_ = block_side;
         // Fails before any work if a name or a configuration is wrong.
         make_estimators();
         images_.assign(names_.size(), Image(options.width, options.height));
@@ -54,7 +61,8 @@ private:
 
     std::vector<std::unique_ptr<Estimator>> make_estimators() const
     {
-        EstimatorSetup setup{scene_.dims(), options_.order, static_cast<uint32_t>(scene_.lights.size()), options_.spp};
+        EstimatorSetup setup{scene_.dims(), options_.order, static_cast<uint32_t>(scene_.lights.size()), size_t{side_} * side_,
+                             options_.spp, options_.sampler != "random"};
         std::vector<std::unique_ptr<Estimator>> estimators;
         for (const std::string &name : names_) {
             if (name == "slices" && scene_.layout != Layout::lights)
@@ -67,7 +75,7 @@ private:
     void work()
     {
         try {
-            rows();
+            bands();
         } catch (...) {
             std::lock_guard<std::mutex> lock(mutex_);
             if (!error_)
@@ -76,73 +84,97 @@ private:
         }
     }
 
-    // Batches of about a thousand samples: reading the clock costs nothing beside them, they stay in the cache between
-    // sampling and estimating, and every estimator meets the machine in the same mood.
-    void rows()
+    // Square blocks of pixels, taken from horizontal bands: reading the clock costs nothing beside them, and every estimator
+    // meets the machine in the same mood.
+    void bands()
     {
-        const size_t n = options_.spp, dims = scene_.dims();
-        const uint32_t batch = static_cast<uint32_t>(std::max<size_t>(1, 1024 / n));
-        std::vector<float> u(batch * n * dims), f(batch * n * 3);
+        const size_t n = options_.spp, pixels = size_t{side_} * side_;
+        Buffers buffers{std::vector<float>(pixels * n * scene_.dims()), std::vector<float>(pixels * n * 3), std::vector<float>(pixels * 3),
+                        std::vector<Integrand::Pixel>(pixels), std::vector<uint32_t>(pixels)};
         auto estimators = make_estimators();
         Times times;
         times.estimating.resize(estimators.size());
-        for (uint32_t y; (y = next_row_++) < options_.height;) {
-            for (uint32_t begin = 0; begin < options_.width; begin += batch) {
-                uint32_t end = std::min(options_.width, begin + batch);
-                auto start = Clock::now();
-                for (uint32_t x = begin; x < end; ++x)
-                    sample(x, y, &u[(x - begin) * n * dims], &f[(x - begin) * n * 3]);
-                auto stop = Clock::now();
-                times.sampling += seconds(start, stop);
-                for (size_t e = 0; e < estimators.size(); ++e) {
-                    start = stop;
-                    for (uint32_t x = begin; x < end; ++x)
-                        estimators[e]->estimate(&u[(x - begin) * n * dims], &f[(x - begin) * n * 3], n,
-                                                &images_[e].rgb[3 * (size_t{y} * options_.width + x)]);
-                    stop = Clock::now();
-                    times.estimating[e] += seconds(start, stop);
-                }
-            }
-            report();
+        for (uint32_t y; (y = next_row_.fetch_add(side_)) < options_.height;) {
+            for (uint32_t x = 0; x < options_.width; x += side_)
+                render({x, y, std::min(side_, options_.width - x), std::min(side_, options_.height - y)}, estimators, times, buffers);
+            report(std::min(side_, options_.height - y));
         }
         std::lock_guard<std::mutex> lock(mutex_);
-        times_.sampling += times.sampling;
+        times_.drawing += times.drawing;
+        times_.tracing += times.tracing;
         for (size_t e = 0; e < estimators.size(); ++e)
             times_.estimating[e] += times.estimating[e];
     }
 
-    void sample(uint32_t x, uint32_t y, float *u, float *f) const
+    struct Rectangle {
+        uint32_t x, y, width, height;
+    };
+    struct Buffers {
+        std::vector<float> u, f, means;
+        std::vector<Integrand::Pixel> pixels;
+        std::vector<uint32_t> surface;
+    };
+
+    void render(Rectangle b, std::vector<std::unique_ptr<Estimator>> &estimators, Times &times, Buffers &buffers)
     {
-        const size_t n = options_.spp;
+        std::vector<float> &u = buffers.u, &f = buffers.f, &means = buffers.means;
+        const size_t n = options_.spp, dims = scene_.dims(), pixels = size_t{b.width} * b.height;
+        auto start = Clock::now();
+        for (size_t p = 0; p < pixels; ++p)
+            sampler_.points(b.x + static_cast<uint32_t>(p % b.width), b.y + static_cast<uint32_t>(p / b.width), &u[p * n * dims]);
+        auto stop = Clock::now();
+        times.drawing += seconds(start, stop);
+
+        start = stop;
+        for (size_t p = 0; p < pixels; ++p)
+            buffers.pixels[p] = trace(b.x + static_cast<uint32_t>(p % b.width), b.y + static_cast<uint32_t>(p / b.width), &u[p * n * dims],
+                                      &f[p * n * 3]);
+        stop = Clock::now();
+        times.tracing += seconds(start, stop);
+
+        for (size_t e = 0; e < estimators.size(); ++e) {
+            start = Clock::now();
+            if (estimators[e]->needs_surfaces())
+                for (size_t p = 0; p < pixels; ++p)
+                    buffers.surface[p] = integrand_.surface(buffers.pixels[p]);
+            estimators[e]->estimate({u.data(), f.data(), buffers.surface.data(), pixels, n}, means.data());
+            stop = Clock::now();
+            times.estimating[e] += seconds(start, stop);
+            for (uint32_t row = 0; row < b.height; ++row)
+                std::copy_n(&means[size_t{row} * b.width * 3], size_t{b.width} * 3,
+                            &images_[e].rgb[3 * (size_t{b.y + row} * options_.width + b.x)]);
+        }
+    }
+
+    Integrand::Pixel trace(uint32_t x, uint32_t y, const float *u, float *f) const
+    {
         const uint32_t dims = scene_.dims();
-        uint64_t key = pixel_key(options_.seed, x, y);
-        if (options_.reference)
-            lattice_points(key, n, dims, u);
-        else
-            random_points(key, n, dims, u);
         Integrand::Pixel pixel = integrand_.pixel((static_cast<float>(x) + 0.5f) / static_cast<float>(options_.width),
                                                   (static_cast<float>(y) + 0.5f) / static_cast<float>(options_.height));
-        for (size_t i = 0; i < n; ++i) {
+        for (size_t i = 0; i < options_.spp; ++i) {
             Color value = integrand_(pixel, u + i * dims);
             f[3 * i] = value.x;
             f[3 * i + 1] = value.y;
             f[3 * i + 2] = value.z;
         }
+        return pixel;
     }
 
-    void report()
+    void report(uint32_t rows)
     {
         std::lock_guard<std::mutex> lock(mutex_);
-        std::printf("progress %.4f\n", static_cast<double>(++finished_rows_) / options_.height);
+        std::printf("progress %.4f\n", static_cast<double>(finished_rows_ += rows) / options_.height);
         std::fflush(stdout);
     }
 
     const Scene &scene_;
+    const Sampler &sampler_;
     const Options &options_;
     Integrand integrand_;
     std::vector<std::string> names_;
     std::vector<Image> images_;
     Times times_;
+    uint32_t side_ = block_side; // of a block, in pixels
     std::atomic<uint32_t> next_row_{0};
     std::mutex mutex_; // guards what follows, times_ and standard output
     uint32_t finished_rows_ = 0;

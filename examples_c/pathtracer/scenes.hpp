@@ -6,7 +6,7 @@
 
 namespace demo {
 
-inline const char *const scene_names[4] = {"direct", "motion", "lights", "global"};
+inline const char *const scene_names[5] = {"direct", "motion", "lens", "lights", "global"};
 
 class Builder {
 public:
@@ -130,6 +130,13 @@ inline bool make_scene(const std::string &name, float aspect, Scene &scene)
         builder.knot({.42f, .44f, -.3f}, .138f, builder.material({.5f, .33f, .1f}, {.35f, .3f, .2f}, 40));
         builder.sphere({-.62f, .3f, .2f}, .3f, builder.material({.12f, .2f, .42f}, {.4f, .4f, .4f}, 60), {.5f, .12f, .1f});
         builder.sphere_light({-.1f, 1.6f, .3f}, .2f, {26, 24, 21});
+    } else if (name == "lens") {
+        scene.layout = Layout::lens;
+        scene.camera.look({.1f, .75f, 2.9f}, {-.05f, .5f, 0}, 34, aspect);
+        scene.camera.aperture = .12f;
+        scene.camera.focus = 2.4f; // the blue sphere's distance
+        furnish(builder);
+        builder.area_light({-.35f, 1.98f, -.35f}, {.7f, 0, 0}, {0, 0, .7f}, {16, 14.5f, 12});
     } else if (name == "lights") {
         scene.layout = Layout::lights;
         furnish(builder);

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-/// Why something was not done. Nothing was written.
+/// Why something was not done. No output was written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -18,6 +18,9 @@ pub enum Error {
         /// What the system said.
         source: io::Error,
     },
+    /// The person at the keyboard stopped the run: the sentence says how to continue it.
+    #[error("{0}")]
+    Stopped(String),
 }
 
 /// The result of everything here that can fail.

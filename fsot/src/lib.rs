@@ -3,12 +3,20 @@
 //! Chapters and equations are those of C. Salaün, "Toward Improving Monte Carlo Estimator for Rendering and Machine
 //! Learning", 2025.
 
+pub mod checkpoint;
+pub mod class;
 pub mod error;
+pub mod export;
 pub mod metrics;
 pub mod optimize;
+pub mod output;
+pub mod picture;
+pub mod place;
 pub mod points;
 pub mod random;
+pub mod read;
 pub mod run;
+pub mod stipple;
 pub mod target;
 pub mod tile;
 

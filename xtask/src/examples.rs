@@ -5,8 +5,8 @@ use crate::test::Outcome;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use std::fs;
-use std::path::Path;
-use std::process::Stdio;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 const STRICT: [&str; 6] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O2", "-Iinclude"];
 /// Pixels on a side of the pictures that the path tracer makes.
@@ -32,63 +32,116 @@ pub(crate) fn integrate(archive: &Path) -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// pathtracer.cpp: every estimator that it lists, in every scene that it lists.
+/// pathtracer.cpp: every estimator and every sampler that it lists, in every scene that it lists.
 pub(crate) fn path_tracer(archive: &Path) -> Result<Outcome> {
     let program = output("pathtracer")?;
     let mut compiler = run::compiler("CXX", "c++");
     compiler.arg("-std=c++17").args(STRICT).arg("examples_c/pathtracer.cpp").arg(archive);
     run::check(compiler.args(["-pthread", "-o"]).arg(&program))?;
 
-    let help = run::read(run::command(&program).arg("--help"))?;
-    let scenes = help.lines().find_map(|line| line.strip_prefix("scenes:")).context("--help lists no scenes")?;
+    let tracer = PathTracer { program, prefix: output("picture")? };
+    let help = run::read(run::command(&tracer.program).arg("--help"))?;
+    let list = |name: &str| -> Result<Vec<&str>> {
+        let line = help.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(':'));
+        Ok(line.with_context(|| format!("--help lists no {name}"))?.split_whitespace().collect())
+    };
+    let (scenes, samplers, tiles) = (list("scenes")?, list("samplers")?, list("tiles")?);
     let listed = help.lines().skip_while(|line| !line.starts_with("estimators:")).skip(1);
     let estimators: Vec<_> = listed.filter_map(|line| line.split_whitespace().next()).collect();
-    if estimators.len() < 2 {
-        bail!("--help lists no estimators");
+    if estimators.len() < 2 || samplers.len() < 3 || tiles.is_empty() {
+        bail!("--help lists too few estimators, samplers or tiles");
     }
-    let prefix = output("picture")?;
-    for scene in scenes.split_whitespace() {
+    for scene in scenes {
         // What slices need, only that scene has.
         let names: Vec<_> = estimators.iter().copied().filter(|name| *name != "slices" || scene == "lights").collect();
-        println!("   {scene}: {}", names.join(", "));
+        println!("   {scene}: {}; {}", names.join(", "), samplers.join(", "));
+        tracer.render(&["--scene", scene, "--spp", "64", "--reference"])?;
+        let expected = tracer.brightness("reference")?;
+        let check = |what: &str, names: &[&str]| -> Result<()> {
+            for name in names {
+                let actual = tracer.brightness(name)?;
+                // 8192 samples, noisy ones: a tenth of the brightness is far outside what they do by chance.
+                if (actual - expected).abs() > 0.1 * expected {
+                    bail!("{scene}, {what}, {name}: the picture's mean is {actual}, the reference's {expected}");
+                }
+            }
+            Ok(())
+        };
         // Fifteen dimensions at order 2 are 136 terms: more than this short look is for.
         let order = if scene == "global" { "1" } else { "2" };
-        let size = SIZE.to_string();
-        let mut render = run::command(&program);
-        render.args(["--scene", scene, "--width", &size, "--height", &size, "--spp", "8", "--order", order]);
-        render.args(["--estimators", &names.join(","), "--output"]).arg(&prefix);
-        run::check(render.stdout(Stdio::null()))?;
-        let mut reference = run::command(&program);
-        reference.args([
-            "--scene",
-            scene,
-            "--width",
-            &size,
-            "--height",
-            &size,
-            "--spp",
-            "64",
-            "--reference",
-            "--output",
-        ]);
-        run::check(reference.arg(&prefix).stdout(Stdio::null()))?;
-        let expected = brightness(&prefix.with_extension("reference.pfm"))?;
-        for name in names {
-            let actual = brightness(&prefix.with_extension(format!("{name}.pfm")))?;
-            // 8192 samples, noisy ones: a tenth of the brightness is far outside what they do by chance.
-            if (actual - expected).abs() > 0.1 * expected {
-                bail!("{scene}, {name}: the picture's mean is {actual}, the reference's {expected}");
-            }
+        tracer.render(&["--scene", scene, "--spp", "8", "--order", order, "--estimators", &names.join(",")])?;
+        check("random", &names)?;
+        for sampler in &samplers {
+            let estimators = ["--order", order, "--estimators", "mc,block,robust"];
+            let options = ["--scene", scene, "--spp", "8", "--frame", "3", "--sampler", sampler];
+            tracer.render(&[&options[..], &estimators].concat())?;
+            check(sampler, &["mc", "block", "robust"])?;
         }
     }
-    for wrong in [["--estimators", "nonsense"], ["--scene", "nonsense"], ["--spp", "0"]] {
-        let mut command = run::command(&program);
-        command.args(wrong).arg("--output").arg(&prefix).stdout(Stdio::null()).stderr(Stdio::null());
-        if command.status().context("cannot start the path tracer")?.success() {
-            bail!("the path tracer accepts `{}`", wrong.join(" "));
+    check_tiles(&tracer, &tiles)?;
+    let wrong = [
+        &["--estimators", "nonsense"][..],
+        &["--scene", "nonsense"],
+        &["--spp", "0"],
+        &["--sampler", "nonsense"],
+        &["--sampler", "tile", "--tile", "nonsense"],
+        &["--sampler", "tile", "--tile", "README.md"],
+    ];
+    for options in wrong {
+        if tracer.accepts(options)? {
+            bail!("the path tracer accepts `{}`", options.join(" "));
         }
     }
     Ok(Outcome::Passed)
+}
+
+/// Every tile by its name, and by its file if it is there: the same picture.
+fn check_tiles(tracer: &PathTracer, tiles: &[&str]) -> Result<()> {
+    println!("   tiles: {}", tiles.join(", "));
+    for tile in tiles {
+        let options = ["--scene", "lens", "--spp", "2", "--estimators", "mc", "--sampler", "tile", "--tile"];
+        tracer.render(&[&options[..], &[tile]].concat())?;
+        let expected = tracer.brightness("mc")?;
+        let file = paths::root().join(format!("core/tiles/{tile}.nft"));
+        let name = file.to_str().with_context(|| format!("{} is not Unicode", file.display()))?;
+        if !file.exists() {
+            bail!("the library carries {tile}, but there is no {name}");
+        }
+        tracer.render(&[&options[..], &[name]].concat())?;
+        if tracer.brightness("mc")? != expected {
+            bail!("{tile} and {name} draw different samples");
+        }
+    }
+    Ok(())
+}
+
+/// The compiled program, and where its pictures go.
+struct PathTracer {
+    program: PathBuf,
+    prefix: PathBuf,
+}
+
+impl PathTracer {
+    fn command(&self, options: &[&str]) -> Command {
+        let mut command = run::command(&self.program);
+        let size = SIZE.to_string();
+        command.args(["--width", &size, "--height", &size]).args(options).arg("--output").arg(&self.prefix);
+        command.stdout(Stdio::null());
+        command
+    }
+
+    fn render(&self, options: &[&str]) -> Result<()> {
+        run::check(&mut self.command(options))
+    }
+
+    fn accepts(&self, options: &[&str]) -> Result<bool> {
+        let status = self.command(options).stderr(Stdio::null()).status();
+        Ok(status.context("cannot start the path tracer")?.success())
+    }
+
+    fn brightness(&self, name: &str) -> Result<f64> {
+        brightness(&self.prefix.with_extension(format!("{name}.pfm")))
+    }
 }
 
 /// README.md's first block of code is integrate.c, letter by letter, and the two commands that do all the set-up follow.

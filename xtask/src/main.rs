@@ -8,6 +8,7 @@ mod library;
 mod paths;
 mod run;
 mod test;
+mod tiles;
 mod tools;
 
 use clap::{Parser, Subcommand};
@@ -30,6 +31,8 @@ enum Command {
     Header,
     /// Build target/noisefloor/libnoisefloor.a, the archive that C and C++ programs link
     Library,
+    /// Make the tiles in core/tiles with fsot, or check that they are what it makes
+    Tiles(tiles::Options),
 }
 
 fn main() -> ExitCode {
@@ -37,6 +40,7 @@ fn main() -> ExitCode {
         Command::Demo(options) => demo::run(&options),
         Command::Test(options) => test::run(&options),
         Command::Header => header::write(),
+        Command::Tiles(options) => tiles::run(&options),
         Command::Library => library::build().map(|path| println!("{}", path.display())),
     };
     match result {

@@ -75,7 +75,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         .run("C tests as C++17, including noisefloor.hpp", || c_tests::run(c_tests::Language::Cpp17, &[], &archive()?));
     steps.run("C++ wrapper, with and without exceptions", || c_tests::wrapper(&archive()?));
     steps.run("examples_c/integrate.c", || examples::integrate(&archive()?));
-    steps.run("examples_c/pathtracer.cpp: every scene and estimator, 32 x 32 pixels", || {
+    steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
         examples::path_tracer(&archive()?)
     });
     steps.run("README.md opens with examples_c/integrate.c", examples::readme);

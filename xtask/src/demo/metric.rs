@@ -36,6 +36,14 @@ impl Reference {
         terms.map(|((i, (a, b)), d)| (i - a) * (i - b) / d).sum::<f64>() / self.denominators.len().max(1) as f64
     }
 
+    /// (I - A) / sqrt(R^2 + epsilon) and the same with B, row after row: the mean of their product is the relMSE.
+    pub(crate) fn relative_errors(&self, image: &Rgb32FImage) -> [Vec<f64>; 2] {
+        self.halves.each_ref().map(|half| {
+            let values = image.pixels().map(luminance).zip(half).zip(&self.denominators);
+            values.map(|((i, half), d)| (i - half) / d.sqrt()).collect()
+        })
+    }
+
     /// |I - R| / sqrt(R^2 + epsilon) of each pixel, row after row: its square is the pixel's part of the relMSE.
     pub(crate) fn error_map(&self, image: &Rgb32FImage) -> Vec<f64> {
         let pairs = image.pixels().zip(self.image.pixels()).zip(&self.denominators);

@@ -1,22 +1,19 @@
-//! `cargo xtask demo`: the path tracer with every estimator, as pictures and as a table.
+//! `cargo xtask demo`: the path tracer with every estimator and every sampler, as pictures and as tables.
 
+mod estimators;
 mod image;
-mod measure;
+mod markdown;
 mod metric;
 mod output;
-mod plan;
+mod progress;
 mod renderer;
-mod sheet;
-mod table;
 mod text;
+mod tiles;
 
 use crate::paths;
 use anyhow::{Context, Result, bail};
-use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
-use measure::{Measured, Measurement};
+use clap::{Args, ValueEnum};
 use output::Output;
-use plan::{BASELINE, Plan, SCENES, Scene};
 use renderer::Renderer;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -28,9 +25,23 @@ pub(crate) struct Options {
     /// Small images and short references: a look at whether everything works, not at the figures
     #[arg(long)]
     quick: bool,
+    /// One part instead of both
+    #[arg(long, value_enum)]
+    only: Option<Part>,
+    /// A folder of files NAME.nft that stand in for the library's tiles of the same names
+    #[arg(long, value_name = "DIR")]
+    tiles: Option<PathBuf>,
     /// Where the pictures and tables go [default: target/demo]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Part {
+    /// Control variates: every estimator, random samples
+    Estimators,
+    /// Samplers: random, Sobol, tiles; with and without the control variate
+    Tiles,
 }
 
 pub(crate) fn run(options: &Options) -> Result<()> {
@@ -39,33 +50,31 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let folder = std::path::absolute(&folder).with_context(|| format!("{} is no folder", folder.display()))?;
     let interrupted = catch_interrupts()?;
     println!("building the library and the path tracer");
-    let renderer = Renderer::build()?;
+    let renderer = Renderer::build(interrupted.clone())?;
 
-    let plan = Plan::new(options.quick);
-    let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
     let output = Output::new(&folder)?;
-    let bar = progress_bar(&plan)?;
-    let measurement = Measurement { renderer: &renderer, plan: &plan, bar: &bar, scratch: scratch.path() };
-    let mut rows = Vec::new();
-    for scene in &SCENES {
-        let measured = measurement.scene(scene);
-        if interrupted.load(Ordering::Relaxed) {
-            bail!("interrupted; nothing was written");
+    let parts = [
+        (Part::Estimators, estimators::run as fn(&Options, &Renderer, &Output) -> Result<String>),
+        (Part::Tiles, tiles::run),
+    ];
+    let mut tables = Vec::new();
+    for (part, make) in parts {
+        if options.only.is_some_and(|only| only != part) {
+            continue;
         }
-        let measured = measured?;
-        write_scene(&output, &plan, scene, &measured)?;
-        rows.extend(measured.rows);
+        tables.push(make(options, &renderer, &output)?);
     }
-    bar.finish_and_clear();
-
-    let table = table::markdown(&rows);
-    output.write_text("table.md", &report(&plan, &table))?;
-    output.write_text("table.csv", &table::csv(&rows))?;
+    if interrupted.load(Ordering::Relaxed) {
+        bail!(INTERRUPTED);
+    }
     output.commit()?;
-    println!("{table}");
+    println!("{}", tables.join("\n"));
     println!("pictures and tables: {} ({:.0} s)", folder.display(), start.elapsed().as_secs_f64());
     Ok(())
 }
+
+/// What an interrupted run says.
+const INTERRUPTED: &str = "interrupted; nothing was written";
 
 /// An interrupt reaches the path tracer too, which ends; this program then removes its temporary files.
 fn catch_interrupts() -> Result<Arc<AtomicBool>> {
@@ -73,66 +82,4 @@ fn catch_interrupts() -> Result<Arc<AtomicBool>> {
     let flag = interrupted.clone();
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot catch interrupts")?;
     Ok(interrupted)
-}
-
-fn progress_bar(plan: &Plan) -> Result<ProgressBar> {
-    let work: u64 = SCENES
-        .iter()
-        .map(|scene| {
-            let estimators = scene.estimators().len();
-            let reference = 2 * plan.work(scene, plan.reference_spp(scene), 0);
-            // An equal-time rendering per estimator, of about twice the samples.
-            let rest = plan.spp.map(|spp| {
-                u64::from(plan.repetitions) * plan.work(scene, spp, estimators)
-                    + (estimators as u64 - 1) * plan.work(scene, 2 * spp, 1)
-            });
-            reference + rest.iter().sum::<u64>()
-        })
-        .sum();
-    let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {elapsed} of about {duration}  {msg}")?;
-    let bar = ProgressBar::new(work).with_style(style);
-    bar.enable_steady_tick(std::time::Duration::from_millis(200));
-    Ok(bar)
-}
-
-fn write_scene(output: &Output, plan: &Plan, scene: &Scene, measured: &Measured) -> Result<()> {
-    let reference = &measured.reference;
-    output.write_image(&format!("{}-reference", scene.name), &reference.image, reference)?;
-    let mut columns: Vec<sheet::Column> = scene
-        .estimators()
-        .iter()
-        .map(|name| {
-            let title = if *name == BASELINE { "plain Monte Carlo".to_owned() } else { (*name).to_owned() };
-            sheet::Column { title, cells: Vec::new() }
-        })
-        .collect();
-    let count = columns.len();
-    for (index, (image, row)) in measured.images.iter().zip(&measured.rows).enumerate() {
-        output.write_image(&format!("{}-{}spp-{}", scene.name, row.spp, row.estimator), image, reference)?;
-        let caption = format!("relMSE {:.2e} ({:.2}x)", row.rel_mse, row.ratio);
-        columns[index % count].cells.push((image.clone(), caption));
-    }
-    let rows = plan.spp.map(|spp| format!("left: {spp} samples per pixel"));
-    let title = format!("{}: integral over {}; polynomials of order {}", scene.name, scene.domain, scene.order);
-    output.write_picture(&format!("{}-comparison.png", scene.name), &sheet::draw(&title, &rows, &columns, reference))
-}
-
-/// The table with what its columns mean.
-fn report(plan: &Plan, table: &str) -> String {
-    format!(
-        "# Plain Monte Carlo and noisefloor in a path tracer\n\n\
-         Images of {size} x {size} pixels, {threads} threads, medians of {repetitions} runs.\n\n{table}\n\
-         - All estimators of a scene and number of samples saw the same samples.\n\
-         - relMSE: mean over the pixels of (I - R)^2 / (R^2 + eps), luminance (Rec. 709), eps = 0.01 (mean of R)^2. The\n  \
-           reference consists of two independent halves A and B, R = (A + B) / 2, from shifted lattices and plain means;\n  \
-           (I - A)(I - B) stands for (I - R)^2, so that the reference's own noise adds nothing.\n\
-         - sampling ns, estimating ns: time per sample and thread for tracing it and for estimating from it. The time ratio\n  \
-           compares the sums of both; an estimator and the plain mean share the sampling time, batch by batch.\n\
-         - Same time: the plain mean was rendered again with so many samples (rounded up) as it makes in the estimator's\n  \
-           total time; beyond {limit} times the samples, its relMSE is scaled by 1 / samples instead.\n",
-        size = plan.size,
-        threads = plan.threads,
-        repetitions = plan.repetitions,
-        limit = measure::EQUAL_TIME_LIMIT,
-    )
 }

@@ -1,6 +1,5 @@
 //! Compiling and running the path tracer.
 
-use super::plan::{Plan, Scene};
 use crate::{library, paths, run};
 use anyhow::{Context, Result, bail};
 use indicatif::ProgressBar;
@@ -8,10 +7,13 @@ use serde::Deserialize;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The compiled path tracer.
 pub(crate) struct Renderer {
     program: PathBuf,
+    interrupted: Arc<AtomicBool>,
 }
 
 /// One line of the path tracer's output: how long one estimator took, in seconds summed over the threads.
@@ -19,40 +21,76 @@ pub(crate) struct Renderer {
 pub(crate) struct Timing {
     pub(crate) estimator: String,
     pub(crate) total_seconds: f64,
+    /// Making the sample points.
+    pub(crate) drawing_ns_per_sample: f64,
+    /// Making the points and tracing them.
     pub(crate) sampling_ns_per_sample: f64,
     pub(crate) estimating_ns_per_sample: f64,
 }
 
 /// One run of the path tracer.
 pub(crate) struct Job<'a> {
-    pub(crate) scene: &'a Scene,
+    pub(crate) scene: &'a str,
+    /// Width and height of the image.
+    pub(crate) size: u32,
     pub(crate) spp: u32,
+    /// Total degree of the fits.
+    pub(crate) order: u32,
     pub(crate) seed: u64,
+    pub(crate) frame: u32,
+    pub(crate) threads: u32,
+    pub(crate) sampler: Sampler<'a>,
     /// Empty: a reference.
     pub(crate) estimators: &'a [&'a str],
     /// Where the images go: `PREFIX.ESTIMATOR.pfm`.
     pub(crate) prefix: &'a Path,
 }
 
+/// Where the sample points come from.
+#[derive(Clone, Copy)]
+pub(crate) enum Sampler<'a> {
+    Random,
+    Sobol,
+    /// A built-in tile's name, or a file.
+    Tile(&'a str),
+}
+
+/// As many threads as there are cores.
+pub(crate) fn threads() -> u32 {
+    std::thread::available_parallelism().map_or(1, |n| n.get().min(256) as u32)
+}
+
 impl Renderer {
-    /// Builds the library and the program that links it.
-    pub(crate) fn build() -> Result<Self> {
+    /// Builds the library and the program that links it. Once `interrupted` is set, nothing is rendered any more.
+    pub(crate) fn build(interrupted: Arc<AtomicBool>) -> Result<Self> {
         let archive = library::build()?;
         let program = paths::output().join("pathtracer");
         let mut compiler = run::compiler("CXX", "c++");
         compiler.args(["-O2", "-std=c++17", "-Wall", "-Wextra", "-Iinclude", "examples_c/pathtracer.cpp"]);
         run::check(compiler.arg(&archive).args(["-pthread", "-o"]).arg(&program))?;
-        Ok(Self { program })
+        Ok(Self { program, interrupted })
+    }
+
+    /// The names of the tiles that the library carries.
+    pub(crate) fn tiles(&self) -> Result<Vec<String>> {
+        let help = run::read(run::command(&self.program).arg("--help"))?;
+        let line = help.lines().find_map(|line| line.strip_prefix("tiles:")).unwrap_or_default();
+        Ok(line.split_whitespace().map(str::to_owned).collect())
     }
 
     /// Renders, moving `bar` forward by `work` in total.
-    pub(crate) fn render(&self, plan: &Plan, job: &Job, bar: &ProgressBar, work: u64) -> Result<Vec<Timing>> {
+    pub(crate) fn render(&self, job: &Job, bar: &ProgressBar, work: u64) -> Result<Vec<Timing>> {
         let mut command = run::command(&self.program);
-        let size = plan.size.to_string();
-        command.args(["--scene", job.scene.name, "--width", &size, "--height", &size]);
-        command.args(["--spp", &job.spp.to_string(), "--order", &job.scene.order.to_string()]);
-        command.args(["--seed", &job.seed.to_string(), "--threads", &plan.threads.to_string(), "--output"]);
-        command.arg(job.prefix);
+        let size = job.size.to_string();
+        command.args(["--scene", job.scene, "--width", &size, "--height", &size]);
+        command.args(["--spp", &job.spp.to_string(), "--order", &job.order.to_string()]);
+        command.args(["--seed", &job.seed.to_string(), "--frame", &job.frame.to_string()]);
+        match job.sampler {
+            Sampler::Random => command.args(["--sampler", "random"]),
+            Sampler::Sobol => command.args(["--sampler", "sobol"]),
+            Sampler::Tile(tile) => command.args(["--sampler", "tile", "--tile", tile]),
+        };
+        command.args(["--threads", &job.threads.to_string(), "--output"]).arg(job.prefix);
         if job.estimators.is_empty() {
             command.arg("--reference");
         } else {
@@ -84,8 +122,11 @@ impl Renderer {
             stderr.read_to_string(&mut message).context("cannot read the path tracer's errors")?;
         }
         let status = child.wait().context("the path tracer was lost")?;
+        if self.interrupted.load(Ordering::Relaxed) {
+            bail!(super::INTERRUPTED);
+        }
         if !status.success() {
-            bail!("rendering `{}` failed, {status}\n{}", job.scene.name, message.trim());
+            bail!("rendering `{}` failed, {status}\n{}", job.scene, message.trim());
         }
         bar.set_position(start + work);
         Ok(timings)

@@ -1,10 +1,10 @@
 //! Rendering one scene in every way, and what that says about the estimators.
 
-use super::image::read_pfm;
-use super::metric::{Reference, median};
 use super::plan::{BASELINE, Plan, Scene};
-use super::renderer::{Job, Renderer, Timing};
 use super::table::Row;
+use crate::demo::image::read_pfm;
+use crate::demo::metric::{Reference, median};
+use crate::demo::renderer::{Job, Renderer, Sampler, Timing};
 use anyhow::{Context, Result, bail};
 use image::Rgb32FImage;
 use indicatif::ProgressBar;
@@ -38,7 +38,19 @@ impl Measurement<'_> {
     fn render(&self, scene: &Scene, spp: u32, seed: u64, estimators: &[&str]) -> Result<Vec<Timing>> {
         let prefix = self.scratch.join(scene.name);
         let work = self.plan.work(scene, spp, estimators.len());
-        self.renderer.render(self.plan, &Job { scene, spp, seed, estimators, prefix: &prefix }, self.bar, work)
+        let job = Job {
+            scene: scene.name,
+            size: self.plan.size,
+            spp,
+            order: scene.order,
+            seed,
+            frame: 0,
+            threads: self.plan.threads,
+            sampler: Sampler::Random,
+            estimators,
+            prefix: &prefix,
+        };
+        self.renderer.render(&job, self.bar, work)
     }
 
     fn image(&self, scene: &Scene, name: &str) -> Result<Rgb32FImage> {

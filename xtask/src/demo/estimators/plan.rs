@@ -1,5 +1,7 @@
 //! What is rendered: scenes, estimators, sizes.
 
+use crate::demo::renderer::threads;
+
 /// One of the path tracer's scenes and what the demo does with it.
 pub(crate) struct Scene {
     pub(crate) name: &'static str,
@@ -62,7 +64,7 @@ pub(crate) struct Plan {
 
 impl Plan {
     pub(crate) fn new(quick: bool) -> Self {
-        let threads = std::thread::available_parallelism().map_or(1, |n| n.get().min(256) as u32);
+        let threads = threads();
         if quick {
             Self { size: 64, spp: [16, 64], repetitions: 1, reference_divisor: 4, threads }
         } else {

@@ -1,5 +1,7 @@
 //! The table of results, as Markdown and as CSV.
 
+use crate::demo::markdown;
+
 /// One estimator in one scene at one number of samples per pixel.
 pub(crate) struct Row {
     pub(crate) scene: &'static str,
@@ -68,33 +70,12 @@ fn cells(row: &Row) -> [String; 11] {
     ]
 }
 
-/// A Markdown table that is also aligned as plain text.
 pub(crate) fn markdown(rows: &[Row]) -> String {
-    let body: Vec<_> = rows.iter().map(cells).collect();
-    let widths: [usize; 11] = std::array::from_fn(|column| {
-        body.iter().map(|cells| cells[column].len()).chain([HEADINGS[column].len()]).max().unwrap_or(0)
-    });
-    let line = |cells: &[String; 11]| {
-        let padded = cells.iter().zip(widths).enumerate().map(|(column, (cell, width))| {
-            if WORDS.contains(&column) { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
-        });
-        format!("| {} |\n", padded.collect::<Vec<_>>().join(" | "))
-    };
-    let mut text = line(&HEADINGS.map(str::to_owned));
-    let rule = widths
-        .iter()
-        .enumerate()
-        .map(|(column, &width)| if WORDS.contains(&column) { "-".repeat(width) } else { "-".repeat(width - 1) + ":" });
-    text += &format!("| {} |\n", rule.collect::<Vec<_>>().join(" | "));
-    text.extend(body.iter().map(line));
-    text
+    markdown::table(&HEADINGS, &WORDS, rows.iter().map(cells))
 }
 
-/// No cell contains a comma or a quote.
 pub(crate) fn csv(rows: &[Row]) -> String {
-    let mut text = COLUMNS.join(",") + "\n";
-    text.extend(rows.iter().map(|row| cells(row).join(",") + "\n"));
-    text
+    markdown::csv(&COLUMNS, rows.iter().map(cells))
 }
 
 #[cfg(test)]
@@ -117,9 +98,7 @@ mod tests {
             equal_time_ratio: 1.0,
         };
         let rows = [row];
-        let markdown = markdown(&rows);
-        assert_eq!(markdown.lines().count(), 3);
-        assert!(markdown.lines().all(|line| line.len() == markdown.lines().next().map_or(0, str::len)));
+        assert_eq!(markdown(&rows).lines().count(), 3);
         assert_eq!(csv(&rows).lines().nth(1), Some("direct,16,mc,-,1.000e-2,1.000,200.0,3.0,1.000,16,1.000"));
     }
 }

@@ -1,8 +1,8 @@
 //! The comparison picture: every estimator's image beside the others', its error map beneath it.
 
-use super::image::{exposure, tone_map};
-use super::metric::Reference;
-use super::text;
+use crate::demo::image::{exposure, tone_map};
+use crate::demo::metric::Reference;
+use crate::demo::text;
 use colorous::INFERNO;
 use image::imageops::{FilterType, replace, resize};
 use image::{Rgb, Rgb32FImage, RgbImage};

@@ -1,0 +1,105 @@
+// Where sample points come from. To see how a renderer draws from noisefloor's tiles, read TileSampler in tile_sampler.hpp.
+#pragma once
+
+#include "scene.hpp"
+#include "sobol.hpp"
+#include <vector>
+
+namespace demo {
+
+// All points of a pixel at once. Threads share one sampler: it holds nothing that changes.
+struct Sampler {
+    virtual ~Sampler() = default;
+    // u: a row of the scene's dims() numbers in [0, 1) for each sample of pixel (x, y).
+    virtual void points(uint32_t x, uint32_t y, float *u) const = 0;
+};
+
+// What is to be sampled, and what else the points depend on.
+struct SamplerSetup {
+    std::vector<Domain> domains;
+    uint32_t dims;
+    uint32_t samples; // per pixel
+    uint32_t frame;
+    uint64_t seed;
+};
+
+// Neighbouring domains that are sampled as one: they have at most `limit` dimensions together, or are a single domain.
+struct Group {
+    Domain first;
+    uint32_t dims;
+};
+
+inline std::vector<Group> group(const std::vector<Domain> &domains, uint32_t limit)
+{
+    std::vector<Group> groups;
+    for (const Domain &domain : domains) {
+        if (!groups.empty() && groups.back().dims + domain.dims <= limit)
+            groups.back().dims += domain.dims;
+        else
+            groups.push_back({domain, domain.dims});
+    }
+    return groups;
+}
+
+// Independent uniform points.
+class RandomSampler final : public Sampler {
+public:
+    explicit RandomSampler(const SamplerSetup &setup) : setup_(setup) {}
+
+    void points(uint32_t x, uint32_t y, float *u) const override
+    {
+        random_points(pixel_key(setup_.seed, setup_.frame, x, y), setup_.samples, setup_.dims, u);
+    }
+
+private:
+    SamplerSetup setup_;
+};
+
+// For references only.
+class LatticeSampler final : public Sampler {
+public:
+    explicit LatticeSampler(const SamplerSetup &setup) : setup_(setup) {}
+
+    void points(uint32_t x, uint32_t y, float *u) const override
+    {
+        lattice_points(pixel_key(setup_.seed, setup_.frame, x, y), setup_.samples, setup_.dims, u);
+    }
+
+private:
+    SamplerSetup setup_;
+};
+
+// Owen-scrambled Sobol points, scrambled anew in each pixel. Groups of up to four dimensions are paired in a random order
+// ("padding").
+class SobolSampler final : public Sampler {
+public:
+    explicit SobolSampler(const SamplerSetup &setup) : setup_(setup), groups_(group(setup.domains, sobol_dims))
+    {
+        while (levels_ < 32 && uint64_t{1} << levels_ < setup.samples)
+            ++levels_;
+    }
+
+    void points(uint32_t x, uint32_t y, float *u) const override
+    {
+        uint64_t key = pixel_key(setup_.seed, setup_.frame, x, y);
+        for (const Group &g : groups_) {
+            Tree order(key += golden), trees[sobol_dims];
+            for (uint32_t d = 0; d < g.dims; ++d)
+                trees[d] = Tree(key += golden);
+            for (uint32_t i = 0; i < setup_.samples; ++i) {
+                uint32_t index = shuffle(i, levels_, order);
+                for (uint32_t d = 0; d < g.dims; ++d)
+                    u[size_t{i} * setup_.dims + d] = unit(scramble(sobol_.digits(index, d), levels_, trees[d]));
+            }
+            u += g.dims;
+        }
+    }
+
+private:
+    SamplerSetup setup_;
+    std::vector<Group> groups_;
+    Sobol sobol_;
+    uint32_t levels_ = 0; // of the trees: 2^levels_ points or fewer
+};
+
+} // namespace demo

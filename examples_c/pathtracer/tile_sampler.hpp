@@ -1,0 +1,150 @@
+// Sample points from noisefloor's tiles: how a renderer draws, and where tiles come from.
+#pragma once
+
+#include "noisefloor.h"
+#include "samplers.hpp"
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace demo {
+
+struct TileName {
+    const char *name;
+    uint32_t id;
+};
+
+inline const TileName tile_names[] = {
+    {"128_1SPP_2D", NF_TILE_128_1SPP_2D},
+    {"128_4SPP_2D", NF_TILE_128_4SPP_2D},
+    {"128_16SPP_2D", NF_TILE_128_16SPP_2D},
+    {"128_16SPP_2D_PROGRESSIVE", NF_TILE_128_16SPP_2D_PROGRESSIVE},
+    {"128_1SPP_4D", NF_TILE_128_1SPP_4D},
+    {"128_4SPP_4D", NF_TILE_128_4SPP_4D},
+    {"128_1SPP_2D_GAUSSIAN", NF_TILE_128_1SPP_2D_GAUSSIAN},
+    {"128_4SPP_2D_GAUSSIAN", NF_TILE_128_4SPP_2D_GAUSSIAN},
+    {"128_1SPP_2D_TEMPORAL", NF_TILE_128_1SPP_2D_TEMPORAL},
+    {"64_1SPP_2D", NF_TILE_64_1SPP_2D},
+    {"64_4SPP_2D", NF_TILE_64_4SPP_2D},
+};
+
+// False if the linked library was built without it.
+inline bool has_tile(const TileName &tile)
+{
+    nf_tile view;
+    return nf_tile_builtin(tile.id, &view) == NF_OK;
+}
+
+// A tile of the library, or one from a file, whose bytes must then outlive the view.
+class LoadedTile {
+public:
+    // `name`: a name from tile_names, or a file. Throws if there is no such tile.
+    explicit LoadedTile(const std::string &name)
+    {
+        for (const TileName &known : tile_names) {
+            if (name != known.name)
+                continue;
+            nf_status status = nf_tile_builtin(known.id, &view_);
+            if (status == NF_ERR_UNSUPPORTED)
+                throw std::runtime_error("the library was built without the tile " + name + "; --help lists those that it carries");
+            check(status, name);
+            return;
+        }
+        read(name);
+        check(nf_tile_from_bytes(bytes_.data(), bytes_.size(), &view_), name);
+    }
+    LoadedTile(const LoadedTile &) = delete;
+    LoadedTile &operator=(const LoadedTile &) = delete;
+
+    const nf_tile &view() const { return view_; }
+
+private:
+    void read(const std::string &path)
+    {
+        FILE *file = std::fopen(path.c_str(), "rb");
+        if (!file)
+            throw std::runtime_error("there is no tile `" + path + "`, and no file that can be read; --help lists the tiles");
+        char buffer[4096];
+        for (size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;)
+            bytes_.insert(bytes_.end(), buffer, buffer + n);
+        bool good = !std::ferror(file) && !bytes_.empty();
+        std::fclose(file);
+        if (!good)
+            throw std::runtime_error(path + " cannot be read, or is empty");
+    }
+
+    static void check(nf_status status, const std::string &name)
+    {
+        if (status != NF_OK)
+            throw std::runtime_error("tile " + name + ": " + nf_status_message(status));
+    }
+
+    nf_tile view_;
+    std::vector<char> bytes_;
+};
+
+// If no tile is asked for: the library's tile of two dimensions with as many samples as are drawn, or the next fewer.
+inline std::string default_tile(uint32_t samples)
+{
+    const TileName *best = nullptr;
+    uint32_t best_size = 0, best_spp = 0;
+    for (const TileName &tile : tile_names) {
+        nf_tile view;
+        if (nf_tile_builtin(tile.id, &view) != NF_OK || view.dims != 2 || view.spp > samples)
+            continue;
+        // Of equals the first: those that follow are for special purposes.
+        if (!best || view.spp > best_spp || (view.spp == best_spp && view.size > best_size)) {
+            best = &tile;
+            best_size = view.size;
+            best_spp = view.spp;
+        }
+    }
+    if (!best)
+        throw std::runtime_error("the library carries no tile of two dimensions; --tile FILE names another");
+    return best->name;
+}
+
+class TileSampler final : public Sampler {
+public:
+    TileSampler(const std::string &tile, const SamplerSetup &setup)
+        : setup_(setup), tile_(tile.empty() ? default_tile(setup.samples) : tile),
+          groups_(group(setup.domains, std::min(tile_.view().dims, 4u)))
+    {
+    }
+
+    void points(uint32_t x, uint32_t y, float *u) const override
+    {
+        for (uint32_t i = 0; i < setup_.samples; ++i) {
+            nf_sampler sampler = nf_sampler_pixel(&tile_.view(), x, y, setup_.frame, i);
+            for (const Group &g : groups_) {
+                // A tree of domains: the bounce, and in it the decision. Keys are all that tells them apart: nothing is counted,
+                // and a path that takes another turn does not disturb what the others draw.
+                nf_sampler bounce = nf_sampler_domain(sampler, g.first.bounce);
+                nf_sampler_draw(nf_sampler_domain(bounce, g.first.kind), g.dims, u);
+                u += g.dims;
+            }
+        }
+    }
+
+private:
+    SamplerSetup setup_;
+    LoadedTile tile_;
+    std::vector<Group> groups_; // what one draw makes: domains that fit into the tile's dimensions are optimised together
+};
+
+inline const char *const sampler_names[] = {"random", "sobol", "tile"};
+
+// Throws if there is no sampler, or no tile, of that name.
+inline std::unique_ptr<Sampler> make_sampler(const std::string &name, const std::string &tile, const SamplerSetup &setup)
+{
+    if (name == "random")
+        return std::make_unique<RandomSampler>(setup);
+    if (name == "sobol")
+        return std::make_unique<SobolSampler>(setup);
+    if (name == "tile")
+        return std::make_unique<TileSampler>(tile, setup);
+    throw std::runtime_error("there is no sampler `" + name + "`; --help lists them");
+}
+
+} // namespace demo

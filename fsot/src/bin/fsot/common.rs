@@ -1,0 +1,169 @@
+//! Options that subcommands share, and how they report.
+
+use clap::{Args, ValueEnum};
+use fsot::{Error, error::Result, optimize, output};
+use serde_json::Value;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// The options of everything that optimises.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Common {
+    /// The file to write; an older one is replaced when the new one is complete
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// The same seed gives the same bytes, whatever the machine and the number of threads [default: 1]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// How long to optimise [default: standard]
+    #[arg(long, value_enum)]
+    quality: Option<Quality>,
+    /// How long to optimise, in steps; overrides --quality
+    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..))]
+    iterations: Option<u64>,
+    /// Where an interrupted run is saved, and continued from [default: OUT.checkpoint]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) checkpoint: Option<PathBuf>,
+    /// Seconds between two checkpoints
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, hide = true)]
+    pub(crate) checkpoint_every: f64,
+    /// Print nothing but errors
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+    #[command(flatten)]
+    pub(crate) report: Report,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+}
+
+/// How a report is printed.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Report {
+    /// Print the report as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// How many threads to work on.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Threads {
+    /// Threads to work on [default: one per core]
+    #[arg(long, value_name = "COUNT", value_parser = thread_count)]
+    threads: Option<usize>,
+}
+
+/// How long to optimise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Quality {
+    /// To try things out
+    Draft,
+    /// Good
+    Standard,
+    /// Several times longer for the last few percent
+    High,
+}
+
+fn thread_count(text: &str) -> std::result::Result<usize, String> {
+    match text.parse() {
+        Ok(count @ 1..=1024) => Ok(count),
+        _ => Err("give 1 to 1024, or leave it out to use every core".to_owned()),
+    }
+}
+
+impl Threads {
+    /// Runs `work` with rayon's work done by that many threads.
+    pub(crate) fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> Result<R> {
+        let mut builder = rayon::ThreadPoolBuilder::new();
+        if let Some(count) = self.threads {
+            builder = builder.num_threads(count);
+        }
+        let pool = builder.build().map_err(|error| Error::Input(format!("cannot start the threads: {error}")))?;
+        Ok(pool.install(work))
+    }
+}
+
+impl Report {
+    /// Prints a report to standard output: the text, or with --json the value.
+    pub(crate) fn print(&self, text: &str, json: &Value) -> Result<()> {
+        let text = if self.json { format!("{json:#}") } else { text.to_owned() };
+        let mut stdout = std::io::stdout().lock();
+        let written = writeln!(stdout, "{}", text.trim_end()).and_then(|()| stdout.flush());
+        written.map_err(Error::io("standard output"))
+    }
+}
+
+impl Common {
+    /// What --seed says.
+    pub(crate) fn seed(&self) -> u64 {
+        self.seed.unwrap_or(1)
+    }
+
+    /// What --quality and --iterations ask for.
+    pub(crate) fn effort(&self) -> optimize::Quality {
+        self.given_effort().unwrap_or_default()
+    }
+
+    /// What --quality or --iterations ask for, if either is given.
+    pub(crate) fn given_effort(&self) -> Option<optimize::Quality> {
+        match (self.iterations, self.quality) {
+            (Some(iterations), _) => Some(optimize::Quality::Iterations(iterations)),
+            (None, quality) => quality.map(|quality| match quality {
+                Quality::Draft => optimize::Quality::Draft,
+                Quality::Standard => optimize::Quality::Standard,
+                Quality::High => optimize::Quality::High,
+            }),
+        }
+    }
+
+    /// What --seed says, if it is given.
+    pub(crate) fn given_seed(&self) -> Option<u64> {
+        self.seed
+    }
+
+    /// Where the run is saved: beside the output, or in the working folder if the output is a pipe or a device.
+    pub(crate) fn checkpoint(&self) -> PathBuf {
+        match &self.checkpoint {
+            Some(path) => path.clone(),
+            None if output::is_stream(&self.out) => "fsot.checkpoint".into(),
+            None => self.sibling(".checkpoint"),
+        }
+    }
+
+    /// OUT with something appended to its name.
+    pub(crate) fn sibling(&self, suffix: &str) -> PathBuf {
+        let mut path = self.out.clone().into_os_string();
+        path.push(suffix);
+        path.into()
+    }
+
+    /// Fails if one of these files could not be written: call it before the work.
+    pub(crate) fn check_outputs<'a>(&'a self, more: impl IntoIterator<Item = &'a Path>) -> Result<()> {
+        let paths: Vec<PathBuf> = std::iter::once(self.out.as_path())
+            .chain(more)
+            .map(output::check)
+            .chain([output::check(&self.checkpoint())])
+            .collect::<Result<_>>()?;
+        for (index, path) in paths.iter().enumerate() {
+            if !output::is_stream(path) && paths[..index].contains(path) {
+                return Err(Error::Input(format!(
+                    "{} would be written twice: give each file its own name",
+                    path.display()
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Prints what was made, unless --quiet; to standard error if standard output may be the output.
+    pub(crate) fn print(&self, text: &str, json: &Value) -> Result<()> {
+        if self.quiet {
+            return Ok(());
+        }
+        if output::is_stream(&self.out) {
+            let text = if self.report.json { format!("{json:#}") } else { text.to_owned() };
+            eprintln!("{}", text.trim_end());
+            return Ok(());
+        }
+        self.report.print(text, json)
+    }
+}

@@ -1,0 +1,222 @@
+//! Runs an optimisation: cost, progress, checkpoints, interruption.
+
+use crate::common::Common;
+use crate::interrupt::Watch;
+use fsot::checkpoint::{self, Problem};
+use fsot::error::{Error, Result};
+use fsot::output::Outputs;
+use fsot::run::Optimization;
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use serde::Serialize;
+use serde_json::{Value, json};
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Steps are measured for this long before the cost is announced.
+const MEASURED: Duration = Duration::from_millis(250);
+/// Without a terminal, a line is printed this often.
+const LINE_EVERY: Duration = Duration::from_secs(10);
+/// A run that took longer is saved until its outputs are in place, in case that fails.
+const WORTH_SAVING: Duration = Duration::from_secs(5);
+/// The energy shown is a moving average over about this many steps: that of a single step depends on its directions.
+const AVERAGED: f64 = 32.0;
+
+/// A finished run, whose checkpoint stays until [`finish`].
+#[derive(Debug)]
+#[must_use]
+pub(crate) struct Run {
+    /// Steps in all.
+    pub(crate) iterations: u64,
+    /// Steps that an earlier, interrupted run had taken.
+    pub(crate) resumed_at: u64,
+    /// Time that this run took.
+    pub(crate) seconds: f64,
+    /// The moving average of the energy at the end; none if no step was left to take.
+    pub(crate) energy: Option<f64>,
+    /// Of the problem and this program's version.
+    pub(crate) fingerprint: String,
+    checkpoint: PathBuf,
+}
+
+impl Run {
+    /// A line of a report.
+    pub(crate) fn describe(&self, text: &mut String) {
+        let energy = self.energy.map_or(String::new(), |energy| format!(", energy {energy:.3e} at the end"));
+        let resumed = if self.resumed_at > 0 { format!(", continued at {}", self.resumed_at) } else { String::new() };
+        text.push_str(&format!("  {} steps{resumed} in {:.2} s{energy}\n", self.iterations, self.seconds));
+    }
+
+    /// The same for a report in JSON.
+    pub(crate) fn json(&self) -> Value {
+        json!({
+            "iterations": self.iterations, "resumed_at": self.resumed_at, "seconds": self.seconds,
+            "energy": self.energy, "fingerprint": self.fingerprint,
+        })
+    }
+}
+
+/// Takes all steps that are left. `problem` describes everything that the result depends on.
+///
+/// # Errors
+/// A checkpoint that cannot be used; [`Error::Stopped`] after Ctrl-C, with the state saved.
+pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serialize, common: &Common) -> Result<Run> {
+    let problem = Problem::new(problem)?;
+    let checkpoint = common.checkpoint();
+    let resumed = checkpoint::resume(&checkpoint, &problem, optimization)?;
+    let watch = Watch::start()?;
+    let mut progress = Progress::new(common, &*optimization);
+    if resumed {
+        progress.say(&format!("continuing from {} at step {}", checkpoint.display(), optimization.iteration()));
+    }
+    let every = Duration::try_from_secs_f64(common.checkpoint_every).unwrap_or(Duration::MAX);
+    let mut saved = Instant::now();
+    let mut can_save = true;
+    while optimization.iteration() < optimization.iterations() {
+        if watch.stopped() {
+            progress.clear();
+            if let Err(error) = checkpoint::save(&checkpoint, &problem, optimization) {
+                return Err(Error::Input(format!("stopped, and the state could not be saved: {error}")));
+            }
+            return Err(Error::Stopped(stopped(&*optimization, common)));
+        }
+        let energy = optimization.step();
+        progress.step(&*optimization, energy);
+        if saved.elapsed() >= every && can_save {
+            if let Err(error) = checkpoint::save(&checkpoint, &problem, optimization) {
+                progress.say(&format!("warning: no checkpoint can be saved: {error}"));
+                can_save = false;
+            }
+            saved = Instant::now();
+        }
+    }
+    progress.clear();
+    let seconds = progress.start.elapsed();
+    if can_save && (resumed || seconds >= WORTH_SAVING) {
+        // A full disk is about to be reported by whoever writes the output.
+        checkpoint::save(&checkpoint, &problem, optimization).ok();
+    }
+    Ok(Run {
+        iterations: optimization.iterations(),
+        resumed_at: progress.first,
+        seconds: seconds.as_secs_f64(),
+        energy: progress.energy,
+        fingerprint: problem.fingerprint(),
+        checkpoint,
+    })
+}
+
+/// Puts a command's outputs in place, all of them or none, then removes the checkpoints of its runs.
+pub(crate) fn finish(outputs: Outputs, runs: impl IntoIterator<Item = Run>) -> Result<()> {
+    let _watch = Watch::start()?;
+    outputs.commit()?;
+    for run in runs {
+        std::fs::remove_file(run.checkpoint).ok();
+    }
+    Ok(())
+}
+
+fn stopped(optimization: &dyn Optimization, common: &Common) -> String {
+    let [done, all] = [optimization.iteration(), optimization.iterations()];
+    let path = common.checkpoint();
+    format!(
+        "stopped at step {done} of {all}; the state is saved in {}. Run the same command again to continue",
+        path.display()
+    )
+}
+
+struct Progress {
+    start: Instant,
+    first: u64,
+    energy: Option<f64>,
+    announced: bool,
+    quiet: bool,
+    bar: Option<ProgressBar>,
+    line: Instant,
+}
+
+impl Progress {
+    fn new(common: &Common, optimization: &dyn Optimization) -> Progress {
+        Progress {
+            start: Instant::now(),
+            first: optimization.iteration(),
+            energy: None,
+            announced: common.quiet,
+            quiet: common.quiet,
+            bar: None,
+            line: Instant::now(),
+        }
+    }
+
+    fn say(&self, text: &str) {
+        match &self.bar {
+            _ if self.quiet => {}
+            Some(bar) => bar.println(text),
+            None => eprintln!("{text}"),
+        }
+    }
+
+    fn clear(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn step(&mut self, optimization: &dyn Optimization, energy: f64) {
+        let [done, all] = [optimization.iteration(), optimization.iterations()];
+        let steps = done.saturating_sub(self.first).max(1);
+        let weight = 1.0 / (steps as f64).min(AVERAGED);
+        self.energy = Some(self.energy.map_or(energy, |average| average + weight * (energy - average)));
+        if self.quiet {
+            return;
+        }
+        if !self.announced && (self.start.elapsed() >= MEASURED || done == all) {
+            self.announce(done, all, steps);
+        }
+        let energy = self.energy.unwrap_or(energy);
+        if let Some(bar) = &self.bar {
+            bar.set_position(done);
+            bar.set_message(format!("{energy:.3e}"));
+        } else if self.announced && self.line.elapsed() >= LINE_EVERY {
+            self.line = Instant::now();
+            let left = self.left(done, all, steps);
+            eprintln!("step {done} of {all}, energy {energy:.3e}, {} left", HumanDuration(left));
+        }
+    }
+
+    /// Says what the run costs, extrapolated from its first steps, and starts the bar if there is a terminal.
+    fn announce(&mut self, done: u64, all: u64, steps: u64) {
+        self.announced = true;
+        let threads = rayon::current_num_threads();
+        let total = self.start.elapsed() + self.left(done, all, steps);
+        let duration = if total.as_secs() < 2 {
+            format!("{:.1} seconds", total.as_secs_f64())
+        } else {
+            HumanDuration(total).to_string()
+        };
+        let memory = peak_memory().map_or(String::new(), |mebibytes| format!(", {mebibytes} MiB of memory"));
+        let plural = if threads == 1 { "" } else { "s" };
+        eprintln!("{} steps, about {duration} on {threads} thread{plural}{memory}", all - self.first);
+        if std::io::stderr().is_terminal() && done < all {
+            let style = ProgressStyle::with_template("{wide_bar} {percent}% energy {msg}, {eta} left");
+            let bar = ProgressBar::new(all).with_position(self.first);
+            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar.reset_eta();
+            self.bar = Some(bar);
+        }
+        self.line = Instant::now();
+    }
+
+    fn left(&self, done: u64, all: u64, steps: u64) -> Duration {
+        let seconds = self.start.elapsed().as_secs_f64() / steps as f64 * all.saturating_sub(done) as f64;
+        Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)
+    }
+}
+
+/// The most memory this process has used, in MiB, where the system tells.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
+    Some(kibibytes.div_ceil(1024))
+}

@@ -1,0 +1,217 @@
+//! `fsot measure`.
+
+use crate::common::{Report, Threads};
+use fsot::error::{Error, Result};
+use fsot::export::nft::TileFile;
+use fsot::export::points::Table;
+use fsot::metrics::text::PrefixTable;
+use fsot::metrics::{self, TileOptions, TileView, figure};
+use fsot::output;
+use fsot::points::Points;
+use fsot::read;
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// What `fsot measure` is asked for.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// Point sets (text, CSV or JSON) and tiles (.nft)
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// Print the error against the number of points taken from the start, averaged over the files
+    #[arg(long)]
+    prefix: bool,
+    /// With --prefix: draw the errors, as SVG if the name ends so, else as PNG
+    #[arg(long, value_name = "FILE", requires = "prefix")]
+    plot: Option<PathBuf>,
+    /// Numbers of points per doubling that --prefix prints
+    #[arg(long, value_name = "COUNT", default_value_t = 4, requires = "prefix", value_parser = clap::value_parser!(u8).range(1..=64))]
+    per_octave: u8,
+    /// Random integrands of each family, of --prefix and of tiles
+    #[arg(long, value_name = "COUNT", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    integrands: u32,
+    /// Leave out the integration error of point sets, which takes longest
+    #[arg(long)]
+    quick: bool,
+    #[command(flatten)]
+    tile: Tile,
+    /// Weight of the newest frame in a moving average over the frames of a tile; may be repeated
+    #[arg(long, value_name = "ALPHA", default_values_t = [0.1, 0.2])]
+    ema: Vec<f64>,
+    #[command(flatten)]
+    report: Report,
+    #[command(flatten)]
+    threads: Threads,
+}
+
+/// How the points of a text file make a tile.
+#[derive(clap::Args, Clone, Debug)]
+pub(crate) struct Tile {
+    /// Take the points for a tile of this many pixels per side: in order of frames, rows, pixels, samples
+    #[arg(long, value_name = "PIXELS")]
+    size: Option<usize>,
+    /// Samples per pixel of such a tile
+    #[arg(long, value_name = "COUNT", default_value_t = 1, requires = "size")]
+    spp: usize,
+}
+
+/// What a file holds.
+pub(crate) enum Content {
+    /// Points and their classes.
+    Points(Table),
+    /// The samples of a tile.
+    Tile(Samples),
+}
+
+/// The samples of a tile, laid out [frame][y][x][sample][dim].
+pub(crate) struct Samples {
+    size: usize,
+    spp: usize,
+    dims: usize,
+    frames: usize,
+    coordinates: Vec<f32>,
+}
+
+impl Samples {
+    /// For the metrics.
+    pub(crate) fn view(&self) -> Result<TileView<'_>> {
+        TileView::new(self.size, self.spp, self.dims, self.frames, &self.coordinates)
+    }
+}
+
+impl Tile {
+    /// Reads a file.
+    pub(crate) fn read(&self, path: &Path) -> Result<Content> {
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("nft")) {
+            let file = TileFile::read(path)?;
+            let view = file.view();
+            return Ok(Content::Tile(Samples {
+                size: view.size,
+                spp: view.spp,
+                dims: view.dims,
+                frames: view.frames,
+                coordinates: file.coordinates(),
+            }));
+        }
+        let table = read::points(path)?;
+        metrics::check(&table.points).map_err(in_file(path))?;
+        let Some(size) = self.size else { return Ok(Content::Points(table)) };
+        let per_frame = size.checked_mul(size).and_then(|pixels| pixels.checked_mul(self.spp)).unwrap_or(0);
+        if per_frame == 0 || table.points.len() % per_frame != 0 {
+            return Err(Error::Input(format!(
+                "{}: its {} points do not make whole frames of {size}x{size} pixels with {} samples each",
+                path.display(),
+                table.points.len(),
+                self.spp
+            )));
+        }
+        Ok(Content::Tile(Samples {
+            size,
+            spp: self.spp,
+            dims: table.points.dims(),
+            frames: table.points.len() / per_frame,
+            coordinates: table.points.coordinates().to_vec(),
+        }))
+    }
+}
+
+/// The name of the first file and how many more there are.
+pub(crate) fn title(files: &[PathBuf]) -> String {
+    let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    match files {
+        [] => String::new(),
+        [file] => name(file),
+        [file, more @ ..] => format!("{} and {} more", name(file), more.len()),
+    }
+}
+
+/// Says of which file an error is.
+pub(crate) fn in_file(path: &Path) -> impl Fn(Error) -> Error + '_ {
+    move |error| match error {
+        Error::Input(sentence) => Error::Input(format!("{}: {sentence}", path.display())),
+        other => other,
+    }
+}
+
+/// Reads every file before it measures the first, so that a wrong name costs no time.
+pub(crate) fn run(args: &Args) -> Result<()> {
+    if let Some(path) = &args.plot {
+        output::check(path)?;
+    }
+    let contents: Vec<Content> = args.files.iter().map(|path| args.tile.read(path)).collect::<Result<_>>()?;
+    let (text, json) =
+        args.threads.install(|| if args.prefix { prefix(args, &contents) } else { all(args, &contents) })??;
+    args.report.print(&text, &json)
+}
+
+fn all(args: &Args, contents: &[Content]) -> Result<(String, Value)> {
+    let mut text = String::new();
+    let mut values = Vec::new();
+    for (path, content) in args.files.iter().zip(contents) {
+        let value = match content {
+            Content::Points(table) => points(args, path, table, &mut text),
+            Content::Tile(samples) => tile(args, path, samples, &mut text),
+        };
+        values.push(value.map_err(in_file(path))?);
+    }
+    Ok((text, json!({ "files": values })))
+}
+
+fn points(args: &Args, path: &Path, table: &Table, text: &mut String) -> Result<Value> {
+    let one = |points: &Points| if args.quick { metrics::quick(points) } else { metrics::measure(points) };
+    let whole = one(&table.points)?;
+    let _ = writeln!(text, "{}\n{whole}", path.display());
+    let mut classes = Vec::new();
+    if let Some(labels) = &table.classes {
+        for (class, name) in labels.names.iter().enumerate() {
+            let members = metrics::select(&table.points, |i| labels.index[i] == class);
+            if members.is_empty() {
+                continue;
+            }
+            let report = one(&members)?;
+            let _ = writeln!(text, "{}, class {name}\n{report}", path.display());
+            classes.push(json!({ "class": name, "report": report }));
+        }
+    }
+    let mut value = json!({ "file": path, "points": whole });
+    if !classes.is_empty() {
+        value["classes"] = classes.into();
+    }
+    Ok(value)
+}
+
+fn tile(args: &Args, path: &Path, samples: &Samples, text: &mut String) -> Result<Value> {
+    let options = TileOptions { integrands: args.integrands as usize, alphas: args.ema.clone() };
+    let report = metrics::measure_tile(&samples.view()?, &options)?;
+    let _ = writeln!(text, "{}\n{report}", path.display());
+    Ok(json!({ "file": path, "tile": report }))
+}
+
+fn prefix(args: &Args, contents: &[Content]) -> Result<(String, Value)> {
+    let sets: Vec<Points> = contents
+        .iter()
+        .zip(&args.files)
+        .map(|(content, path)| match content {
+            Content::Points(table) => Ok(table.points.clone()),
+            Content::Tile(_) => Err(Error::Input(format!(
+                "{}: --prefix is for point sets; the prefixes of tiles are always printed",
+                path.display()
+            ))),
+        })
+        .collect::<Result<_>>()?;
+    let counts = metrics::log_spaced(sets.first().map_or(0, Points::len), args.per_octave.into());
+    let errors = metrics::prefix_errors(&sets, &counts, args.integrands as usize)?;
+    if let Some(path) = &args.plot {
+        let sheet = figure::prefix_errors(&title(&args.files), &errors);
+        let is_svg = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+        output::write(path, &if is_svg { sheet.svg()?.into_bytes() } else { sheet.png()? })?;
+    }
+    let text = format!(
+        "error of the first points, averaged over {} sets and {} integrands of each family\n{}",
+        sets.len(),
+        args.integrands,
+        PrefixTable(&errors)
+    );
+    Ok((text, json!({ "files": args.files, "integrands": args.integrands, "prefix": errors })))
+}

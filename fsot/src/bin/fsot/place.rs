@@ -1,0 +1,133 @@
+//! `fsot place`.
+
+use crate::common::Common;
+use crate::drive::{drive, finish};
+use fsot::checkpoint::digest;
+use fsot::error::{Error, Result};
+use fsot::optimize::Optimizer;
+use fsot::output::Outputs;
+use fsot::picture::{png, rasterise, svg};
+use fsot::place::{Object, Options, Placement, colour_of, drawing};
+use fsot::read;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// Pixels along the longer side of the ground.
+const PICTURE: f32 = 1200.0;
+
+/// What `fsot place` is asked for.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// How many objects
+    #[arg(short, value_name = "COUNT", default_value_t = 2048)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    n: u32,
+    /// Colours: the objects of each are spread evenly, and so are all together
+    #[arg(long, alias = "colours", value_name = "COUNT", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=256))]
+    colors: u16,
+    /// Sizes from 0 to 1: objects above, and below, any size are spread evenly
+    #[arg(long)]
+    sizes: bool,
+    /// Objects where this picture is dark: PNG, JPEG or OpenEXR (its longer side is the unit)
+    #[arg(long, value_name = "IMAGE")]
+    map: Option<PathBuf>,
+    /// Also draw the objects as trees
+    #[arg(long, value_name = "FILE")]
+    png: Option<PathBuf>,
+    /// Also draw the objects as a vector graphic
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Places objects; writes a table of them, and pictures.
+pub(crate) fn run(args: &Args) -> Result<()> {
+    args.common.threads.install(|| make(args))?
+}
+
+fn make(args: &Args) -> Result<()> {
+    let format = Format::of(&args.common.out)?;
+    args.common.check_outputs(args.png.iter().chain(&args.svg).map(PathBuf::as_path))?;
+    let (points, colours) = (args.n as usize, usize::from(args.colors));
+    let mut map_digest = None;
+    let mut map = None;
+    if let Some(path) = &args.map {
+        let bytes = read::bytes(path)?;
+        map_digest = Some(digest(&bytes));
+        map = Some(read::density(&bytes, path, points, true)?);
+    }
+    let (seed, quality) = (args.common.seed(), args.common.effort());
+    let placement = Placement::new(&Options { points, colours, sizes: args.sizes, map, seed, quality })?;
+    let mut optimizer = Optimizer::new(placement.problem.clone())?;
+    let description = json!({
+        "command": "place", "points": points, "colors": colours, "sizes": args.sizes, "map": map_digest, "seed": seed,
+        "quality": format!("{quality:?}"),
+    });
+    let run = drive(&mut optimizer, &description, &args.common)?;
+
+    let objects = placement.objects(&optimizer.points());
+    let mut outputs = Outputs::new();
+    outputs.add(&args.common.out, &format.encode(&objects, colours)?)?;
+    if args.png.is_some() || args.svg.is_some() {
+        let drawing = drawing(&objects, colours, placement.extent());
+        if let Some(path) = &args.png {
+            outputs.add(path, &png(&rasterise(&drawing, PICTURE)?)?)?;
+        }
+        if let Some(path) = &args.svg {
+            outputs.add(path, svg(&drawing, PICTURE).as_bytes())?;
+        }
+    }
+    let classes = placement.problem.classes.len();
+    let iterations = run.iterations - run.resumed_at;
+    let text = format!(
+        "{points} objects, {colours} colours{}: {classes} classes\n{iterations} iterations in {:.1} s",
+        if args.sizes { ", sizes from 0 to 1" } else { "" },
+        run.seconds
+    );
+    let json = json!({
+        "objects": points, "colors": colours, "sizes": args.sizes, "classes": classes, "iterations": run.iterations,
+        "seconds": run.seconds, "fingerprint": run.fingerprint,
+    });
+    finish(outputs, [run])?;
+    args.common.print(&text, &json)
+}
+
+/// The file format of a table of objects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    /// A header row `x,y,color,size`, then a row per object.
+    Csv,
+    /// `{"colors": ["#rrggbb", ...], "objects": [{"x": .., "y": .., "color": 0, "size": ..}, ...]}`.
+    Json,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Format> {
+        match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
+            Some("csv") => Ok(Format::Csv),
+            Some("json") => Ok(Format::Json),
+            _ => Err(Error::Input(format!("{} is no name for a table: end it in .csv or .json", path.display()))),
+        }
+    }
+
+    fn encode(self, objects: &[Object], colours: usize) -> Result<Vec<u8>> {
+        let failed = |error: &dyn std::fmt::Display| Error::Input(format!("the table cannot be encoded: {error}"));
+        match self {
+            Format::Csv => {
+                let mut writer = csv::Writer::from_writer(Vec::new());
+                objects.iter().try_for_each(|object| writer.serialize(object)).map_err(|error| failed(&error))?;
+                writer.into_inner().map_err(|error| failed(&error))
+            }
+            Format::Json => {
+                let hex = |[red, green, blue]: [u8; 3]| format!("#{red:02x}{green:02x}{blue:02x}");
+                let palette: Vec<String> = (0..colours).map(|color| hex(colour_of(color, colours))).collect();
+                let mut bytes = serde_json::to_vec(&json!({ "colors": palette, "objects": objects }))
+                    .map_err(|error| failed(&error))?;
+                bytes.push(b'\n');
+                Ok(bytes)
+            }
+        }
+    }
+}

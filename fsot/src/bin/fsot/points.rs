@@ -1,0 +1,188 @@
+//! `fsot points`: points in the unit cube, uniform or by a density, in classes, progressive.
+
+mod classes;
+mod report;
+
+use crate::common::Common;
+use crate::drive::{drive, finish};
+use classes::Classes;
+use fsot::checkpoint::digest;
+use fsot::class::{self, ClassCoordinates};
+use fsot::error::{Error, Result};
+use fsot::export::points::{Format, Table, encode};
+use fsot::optimize::{Domain, Optimizer, Problem};
+use fsot::output::Outputs;
+use fsot::picture::{BLACK, Colour, Drawing, png, rasterise, svg};
+use fsot::read;
+use fsot::target::Target;
+use fsot::target::image::ImageTarget;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Pixels along the longer side of a picture.
+const PICTURE: f32 = 1024.0;
+/// The colours of classes in pictures, in order; then they repeat.
+const COLOURS: [Colour; 8] = [
+    [214, 39, 40],
+    [31, 119, 180],
+    [44, 160, 44],
+    [148, 103, 189],
+    [255, 127, 14],
+    [23, 190, 207],
+    [140, 86, 75],
+    [127, 127, 127],
+];
+
+/// What `fsot points` is asked for.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// How many points
+    #[arg(short, long = "points", value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1 << 28))]
+    n: u32,
+    /// Coordinates of each point, 1 to 8
+    #[arg(short, long = "dims", value_name = "COUNT", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
+    d: u8,
+    /// Opposite faces of the cube are one: for points that will be repeated like a tile, or shifted
+    #[arg(long)]
+    toroidal: bool,
+    /// The probability of a projection along an axis: helps integrands that vary along axes (.3 is a good value)
+    #[arg(long, value_name = "PROBABILITY", default_value_t = 0.0)]
+    axis_priority: f32,
+    /// The first points are uniform too, for this many numbers of points, evenly spaced on a logarithmic scale
+    #[arg(long, value_name = "LEVELS", conflicts_with = "classes", value_parser = clap::value_parser!(u32).range(1..))]
+    progressive: Option<u32>,
+    /// 2color, 3color, ramp, or a TOML or JSON file of classes
+    #[arg(long, value_name = "CLASSES")]
+    classes: Option<String>,
+    /// Points where the picture is bright: PNG, JPEG or OpenEXR (its longer side is the unit)
+    #[arg(long, value_name = "IMAGE")]
+    density: Option<PathBuf>,
+    /// Points where the picture is dark
+    #[arg(long, requires = "density")]
+    invert: bool,
+    /// Also draw the points (their first two coordinates)
+    #[arg(long, value_name = "FILE")]
+    png: Option<PathBuf>,
+    /// Also draw the points as a vector graphic
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Makes the points, writes and measures them.
+pub(crate) fn run(args: &Args) -> Result<()> {
+    args.common.threads.install(|| make(args))?
+}
+
+fn make(args: &Args) -> Result<()> {
+    args.common.check_outputs(args.png.iter().chain(&args.svg).map(PathBuf::as_path))?;
+    if args.d < 2 && (args.png.is_some() || args.svg.is_some()) {
+        return Err(Error::input("points of 1 coordinate cannot be drawn: leave out --png and --svg"));
+    }
+    let (problem, description, extent) = problem(args)?;
+    let classes = Classes::of(&problem);
+    let mut optimizer = Optimizer::new(problem)?;
+    let run = drive(&mut optimizer, &description, &args.common)?;
+
+    let table = Table { points: optimizer.points(), classes: classes.labels() };
+    let mut outputs = Outputs::new();
+    outputs.add(&args.common.out, &encode(&table, Format::of(&args.common.out))?)?;
+    if args.png.is_some() || args.svg.is_some() {
+        let drawing = draw(&table, extent);
+        if let Some(path) = &args.png {
+            outputs.add(path, &png(&rasterise(&drawing, PICTURE)?)?)?;
+        }
+        if let Some(path) = &args.svg {
+            outputs.add(path, svg(&drawing, PICTURE).as_bytes())?;
+        }
+    }
+    let report = if args.common.quiet { None } else { Some(report::report(args, &table, &classes, &run)?) };
+    finish(outputs, [run])?;
+    report.map_or(Ok(()), |(text, json)| args.common.print(&text, &json))
+}
+
+/// The problem, all that its result depends on, and the extent of the drawing.
+fn problem(args: &Args) -> Result<(Problem, Value, [f32; 2])> {
+    let (points, dims) = (args.n as usize, usize::from(args.d));
+    let mut files = Vec::new();
+    let mut extent = [1.0; 2];
+    let mut classes = match (args.progressive, args.classes.as_deref()) {
+        (Some(levels), _) => class::progressive(dims, levels as usize, points),
+        (None, None) => class::single(dims),
+        (None, Some("2color")) => class::two_colors(dims),
+        (None, Some("3color")) => class::three_colors(dims),
+        (None, Some("ramp")) => class::ramp(dims),
+        (None, Some(name)) => {
+            let path = Path::new(name);
+            if !path.exists() {
+                return Err(Error::Input(format!("--classes {name}: give 2color, 3color, ramp or the name of a file")));
+            }
+            let bytes = read::bytes(path)?;
+            files.push(digest(&bytes));
+            let text = String::from_utf8(bytes)
+                .map_err(|_| Error::Input(format!("{}: not a class file: it is not text", path.display())))?;
+            // Pictures are named relative to the file that names them.
+            let folder = path.parent().unwrap_or(Path::new(""));
+            class::ClassFile::parse(path, &text)?.classes(dims, |image| {
+                let target = density(&folder.join(image), dims, points, false, &mut files)?;
+                extent = target.extent();
+                Ok(Arc::new(target) as Arc<dyn Target>)
+            })?
+        }
+    };
+    if let Some(path) = &args.density {
+        let target = density(path, dims, points, args.invert, &mut files)?;
+        extent = target.extent();
+        let target: Arc<dyn Target> = Arc::new(target);
+        classes.iter_mut().for_each(|class| class.target = Arc::clone(&target));
+    }
+    let common = &args.common;
+    let problem = Problem {
+        points,
+        dims,
+        classes,
+        class_coordinates: ClassCoordinates::Index,
+        domain: if args.toroidal { Domain::Toroidal } else { Domain::Bounded },
+        axis_priority: args.axis_priority,
+        seed: common.seed(),
+        quality: common.effort(),
+        initial: None,
+    };
+    let description = json!({
+        "command": "points", "points": points, "dims": dims, "toroidal": args.toroidal, "axis-priority": args.axis_priority,
+        "progressive": args.progressive, "classes": args.classes, "density": args.density.is_some(), "invert": args.invert,
+        "files": files, "seed": common.seed(), "quality": format!("{:?}", common.effort()),
+    });
+    Ok((problem, description, extent))
+}
+
+fn density(path: &Path, dims: usize, points: usize, invert: bool, files: &mut Vec<String>) -> Result<ImageTarget> {
+    if dims != 2 {
+        return Err(Error::Input(format!(
+            "{}: a picture is a density of 2 coordinates, not {dims}: use -d 2",
+            path.display()
+        )));
+    }
+    let bytes = read::bytes(path)?;
+    files.push(digest(&bytes));
+    read::density(&bytes, path, points, invert)
+}
+
+fn draw(table: &Table, extent: [f32; 2]) -> Drawing {
+    let mut drawing = Drawing::new(extent);
+    // A tenth of the area is ink.
+    let radius = (0.1 * extent[0] * extent[1] / (std::f32::consts::PI * table.points.len() as f32)).sqrt();
+    let radius = radius.clamp(0.5 / PICTURE, 0.02);
+    match &table.classes {
+        None => drawing.dots(table.points.iter(), 1.0, radius, BLACK),
+        Some(labels) => {
+            for (class, colour) in (0..labels.names.len()).zip(COLOURS.iter().cycle()) {
+                let members = table.points.iter().zip(&labels.index).filter(|(_, index)| **index == class);
+                drawing.dots(members.map(|(point, _)| point), 1.0, radius, *colour);
+            }
+        }
+    }
+    drawing
+}

@@ -1,0 +1,82 @@
+//! `fsot spectrum`.
+
+use crate::common::Threads;
+use crate::measure::{Content, Tile, title};
+use fsot::error::{Error, Result};
+use fsot::metrics::figure::{self, Subject};
+use fsot::metrics::{Spectrum, error_spectrum};
+use fsot::output::Outputs;
+use std::path::{Path, PathBuf};
+
+/// What `fsot spectrum` is asked for.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// Point sets of as many points each, or tiles of the same size; their spectra are averaged
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// The PNG file to write
+    #[arg(long, short, value_name = "PNG")]
+    out: PathBuf,
+    /// Write it as SVG too, to the same name with the ending .svg
+    #[arg(long)]
+    svg: bool,
+    /// Which two coordinates of the points
+    #[arg(long, value_name = "COORDINATE", num_args = 2, default_values_t = [1, 2], value_parser = clap::value_parser!(u8).range(1..=8))]
+    axes: Vec<u8>,
+    /// Random integrands of each family whose error spectra are averaged, for tiles
+    #[arg(long, value_name = "COUNT", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    integrands: u32,
+    #[command(flatten)]
+    tile: Tile,
+    #[command(flatten)]
+    threads: Threads,
+}
+
+/// Computes the spectra and draws their average.
+pub(crate) fn run(args: &Args) -> Result<()> {
+    let svg = args.out.with_extension("svg");
+    fsot::output::check(&args.out)?;
+    if args.svg {
+        fsot::output::check(&svg)?;
+        if svg == args.out {
+            return Err(Error::Input(format!("{}: with --svg, give --out the name of the PNG file", svg.display())));
+        }
+    }
+    let (spectrum, subject) = args.threads.install(|| average(args))??;
+    let sheet = figure::spectrum(&title(&args.files), &spectrum, subject);
+    let mut outputs = Outputs::new();
+    outputs.add(&args.out, &sheet.png()?)?;
+    if args.svg {
+        outputs.add(&svg, sheet.svg()?.as_bytes())?;
+    }
+    outputs.commit()
+}
+
+fn average(args: &Args) -> Result<(Spectrum, Subject)> {
+    let spectra: Vec<(Spectrum, Subject)> = args.files.iter().map(|path| one(args, path)).collect::<Result<_>>()?;
+    let subject = spectra.first().map_or(Subject::Points, |s| s.1);
+    if spectra.iter().any(|s| s.1 != subject) {
+        return Err(Error::Input("point sets and tiles have different spectra: give files of one kind".into()));
+    }
+    let spectra: Vec<Spectrum> = spectra.into_iter().map(|s| s.0).collect();
+    Ok((Spectrum::average(&spectra)?, subject))
+}
+
+fn one(args: &Args, path: &Path) -> Result<(Spectrum, Subject)> {
+    match args.tile.read(path)? {
+        Content::Points(table) => {
+            let dims = table.points.dims();
+            let axes = [usize::from(args.axes[0]) - 1, usize::from(args.axes[1]) - 1];
+            if axes[0] == axes[1] || axes.iter().any(|&axis| axis >= dims) {
+                return Err(Error::Input(format!(
+                    "{}: a spectrum needs two different coordinates, not {} and {} of {dims}: see --axes",
+                    path.display(),
+                    args.axes[0],
+                    args.axes[1]
+                )));
+            }
+            Ok((Spectrum::of_points(&table.points, axes)?, Subject::Points))
+        }
+        Content::Tile(samples) => Ok((error_spectrum(&samples.view()?, args.integrands as usize)?, Subject::Tile)),
+    }
+}

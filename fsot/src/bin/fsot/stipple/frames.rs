@@ -1,0 +1,113 @@
+//! `fsot stipple --frames`.
+
+use super::{Args, Picture, took};
+use crate::drive::{drive, finish};
+use fsot::checkpoint::digest;
+use fsot::error::{Error, Result};
+use fsot::export::points::{Format, Table, encode};
+use fsot::optimize::Optimizer;
+use fsot::output::{self, Outputs};
+use fsot::picture::{Photo, blurred_psnr, rasterise, svg};
+use fsot::read;
+use fsot::stipple::{Animation, Windows};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// Writes a drawing of all points to --out, and one per frame to OUT-0000.png, OUT-0001.png and so on.
+pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
+    let format = Picture::of(&args.common.out)?;
+    let pictures = matches(pattern)?;
+    let count = |value: Option<u32>| value.unwrap_or(0) as usize;
+    let windows =
+        Windows { frames: pictures.len(), window: count(args.window), step: count(args.step), cyclic: args.cyclic };
+    windows.check()?;
+    let needed = windows.points();
+    if let Some(n) = args.n.filter(|n| *n as usize != needed) {
+        return Err(Error::Input(format!(
+            "{} frames of {} points, {} of them new in each, have {needed} points together, not {n}: leave out -n",
+            windows.frames, windows.window, windows.step
+        )));
+    }
+    let outs: Vec<PathBuf> = (0..windows.frames).map(|frame| numbered(&args.common.out, frame)).collect();
+    args.common.check_outputs(args.svg.iter().chain(&args.points).map(PathBuf::as_path))?;
+    outs.iter().try_for_each(|path| output::check(path).map(drop))?;
+
+    let mut photos = Vec::with_capacity(pictures.len());
+    let mut digests = Vec::with_capacity(pictures.len());
+    for path in &pictures {
+        let bytes = read::bytes(path)?;
+        digests.push(digest(&bytes));
+        let named = |why| Error::Input(format!("{}: {why}", path.display()));
+        photos.push(Photo::new(&read::decode_image(&bytes, path)?).map_err(named)?);
+    }
+    let options = args.options(needed);
+    let animation = Animation::new(&photos, windows, &options)?;
+    let mut optimizer = Optimizer::new(animation.problem.clone())?;
+    let run = drive(&mut optimizer, &args.description(&digests, &options), &args.common)?;
+
+    let points = optimizer.points();
+    let size = args.size(animation.spacing());
+    let sigma = animation.spacing() * size as f32;
+    let mut outputs = Outputs::new();
+    let mut ratios = Vec::new();
+    for (frame, path) in outs.iter().enumerate() {
+        let drawing = animation.frame(&points, frame);
+        let drawn = rasterise(&drawing, size as f32)?;
+        ratios.push(blurred_psnr(&drawn, &photos[frame], sigma, args.linear(), true));
+        outputs.add(path, &format.encode(&drawing, &drawn, size)?)?;
+    }
+    let all = animation.all(&points);
+    outputs.add(&args.common.out, &format.encode(&all, &rasterise(&all, size as f32)?, size)?)?;
+    if let Some(path) = &args.svg {
+        outputs.add(path, svg(&all, size as f32).as_bytes())?;
+    }
+    if let Some(path) = &args.points {
+        outputs.add(path, &encode(&Table { points, classes: None }, Format::of(path))?)?;
+    }
+    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+    let worst = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+    let text = format!(
+        "{needed} points in {} frames of {}, {} of them new in each\n{}\n\
+         blurred PSNR of the frames {mean:.2} dB in the mean, {worst:.2} dB at least \
+         (sigma {sigma:.2} px, the mean distance between a frame's dots)",
+        windows.frames,
+        windows.window,
+        windows.step,
+        took(&run),
+    );
+    let json = json!({
+        "points": needed,
+        "windows": windows,
+        "radii": animation.radii,
+        "blurred_psnr": ratios,
+        "sigma_pixels": sigma,
+        "iterations": run.iterations,
+        "seconds": run.seconds,
+        "fingerprint": run.fingerprint,
+    });
+    finish(outputs, [run])?;
+    args.common.print(&text, &json)
+}
+
+/// The files that a pattern matches, by name.
+fn matches(pattern: &str) -> Result<Vec<PathBuf>> {
+    let paths = glob::glob(pattern).map_err(|error| Error::Input(format!("`{pattern}` is not a pattern: {error}")))?;
+    let mut pictures = Vec::new();
+    for path in paths {
+        let path = path.map_err(|error| Error::Io { path: error.path().to_owned(), source: error.into() })?;
+        if path.is_file() {
+            pictures.push(path);
+        }
+    }
+    if pictures.is_empty() {
+        return Err(Error::Input(format!("no file matches `{pattern}`: give the pictures of the frames, in quotes")));
+    }
+    pictures.sort();
+    Ok(pictures)
+}
+
+/// `dir/name.png` of a frame: `dir/name-0007.png`.
+fn numbered(out: &Path, frame: usize) -> PathBuf {
+    let name = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    out.with_file_name(format!("{}-{frame:04}.{}", name(out.file_stem()), name(out.extension())))
+}

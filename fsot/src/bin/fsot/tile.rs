@@ -1,0 +1,215 @@
+//! `fsot tile`: a tile of samples for the pixels of a renderer, and its sidecar.
+
+use crate::common::Common;
+use crate::drive::{Run, drive, finish};
+use fsot::checkpoint::digest;
+use fsot::error::{Error, Result};
+use fsot::export::nft::TileFile;
+use fsot::export::sidecar::{Quality, Sidecar};
+use fsot::metrics::{TileOptions, TileReport, TileView, measure_tile};
+use fsot::optimize;
+use fsot::output::{self, Outputs};
+use fsot::tile::{self, ClassShare, Kernel, TemporalKernel, TileOptimizer, TileProblem, presets};
+use noisefloor::tile::Shape;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// As in the published figures.
+const INTEGRANDS: u32 = 512;
+
+/// What `fsot tile` is asked for.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// A tile that comes with noisefloor, such as 128_4SPP_2D: sets all that follows, and the number of steps (`fsot info` lists them)
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["size", "spp", "d", "kernel", "temporal", "progressive", "box_share", "box_weight"])]
+    preset: Option<String>,
+    /// Pixels along each side, a power of two
+    #[arg(long, value_name = "PIXELS", default_value_t = 128)]
+    size: usize,
+    /// Samples per pixel, a power of two
+    #[arg(long, value_name = "COUNT", default_value_t = 1)]
+    spp: usize,
+    /// Coordinates of each sample, 1 to 8
+    #[arg(short, long = "dims", value_name = "COUNT", default_value_t = 2)]
+    d: usize,
+    /// What the image is filtered by: box, perceptual, gaussian:SIGMA (pixels), or a convolution, perceptual*gaussian:SIGMA
+    #[arg(long, default_value = "perceptual")]
+    kernel: Kernel,
+    /// An animation of this many frames
+    #[arg(long, value_name = "FRAMES", requires = "temporal_kernel")]
+    temporal: Option<usize>,
+    /// What an animation is filtered by: ema:ALPHA (an exponential moving average) or mantiuk (the eye)
+    #[arg(long, value_name = "KERNEL", requires = "temporal")]
+    temporal_kernel: Option<TemporalKernel>,
+    /// The first 1, 2, 4, ... samples of all pixels are tiles too
+    #[arg(long)]
+    progressive: bool,
+    /// The share of the slices that look at a single pixel's samples [default: tuned]
+    #[arg(long, value_name = "SHARE")]
+    box_share: Option<f32>,
+    /// How much these slices count [default: tuned]
+    #[arg(long, value_name = "WEIGHT")]
+    box_weight: Option<f32>,
+    /// Bits of each stored coordinate
+    #[arg(long, default_value_t = 16, value_parser = bits)]
+    bits: u32,
+    /// Random integrands of each family for the printed quality
+    #[arg(long, value_name = "COUNT", default_value_t = INTEGRANDS, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    integrands: u32,
+    #[command(flatten)]
+    common: Common,
+}
+
+fn bits(text: &str) -> std::result::Result<u32, String> {
+    match text {
+        "8" => Ok(8),
+        "16" => Ok(16),
+        _ => Err("give 8 or 16".to_owned()),
+    }
+}
+
+/// Makes the tile, writes and measures it.
+pub(crate) fn run(args: &Args) -> Result<()> {
+    args.common.threads.install(|| make(args))?
+}
+
+fn make(args: &Args) -> Result<()> {
+    let out = &args.common.out;
+    let sidecar = (!output::is_stream(out)).then(|| Sidecar::path(out));
+    args.common.check_outputs(sidecar.as_deref())?;
+    let problem = problem(args)?;
+    let shape = shape(&problem, args.bits);
+    let kernel = problem
+        .temporal
+        .as_ref()
+        .map_or_else(|| problem.kernel.to_string(), |temporal| format!("{}, over frames {temporal}", problem.kernel));
+    // Refuses what a tile's file cannot hold before the work.
+    TileFile::new(shape, problem.seed, &kernel, &vec![0.0; problem.coordinates()])?;
+    let mut optimizer = TileOptimizer::new(problem.clone())?;
+    let run = drive(&mut optimizer, &description(&problem), &args.common)?;
+
+    let samples = optimizer.samples();
+    let file = TileFile::new(shape, problem.seed, &kernel, &samples.coordinates)?;
+    // What is stored is measured, after rounding.
+    let report = measure(&file, &problem, args.integrands as usize)?;
+    let mut outputs = Outputs::new();
+    outputs.add(out, file.bytes())?;
+    if let Some(path) = &sidecar {
+        let sidecar = Sidecar {
+            command: command(args, &problem),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            seed: problem.seed,
+            kernel,
+            iterations: problem.iterations,
+            sha256: digest(file.bytes()),
+            quality: Quality::new(&report),
+        };
+        outputs.add(path, &sidecar.encode()?)?;
+    }
+    let (text, json) = describe(out, &report, &run);
+    finish(outputs, [run])?;
+    args.common.print(&text, &json)
+}
+
+fn problem(args: &Args) -> Result<TileProblem> {
+    let mut problem = match &args.preset {
+        Some(name) => presets::preset(name).ok_or_else(|| {
+            Error::Input(format!("--preset {name}: there is no such tile; `fsot info` lists those there are"))
+        })?,
+        None => TileProblem {
+            frames: args.temporal.unwrap_or(1),
+            kernel: args.kernel.clone(),
+            temporal: args.temporal_kernel.clone(),
+            progressive: args.progressive,
+            ..TileProblem::new(args.size, args.spp, args.d)
+        },
+    };
+    let ClassShare { share, weight } = problem.box_class;
+    problem.box_class =
+        ClassShare { share: args.box_share.unwrap_or(share), weight: args.box_weight.unwrap_or(weight) };
+    problem.seed = args.common.given_seed().unwrap_or(problem.seed);
+    problem.iterations = match args.common.given_effort() {
+        None => problem.iterations,
+        Some(optimize::Quality::Draft) => tile::Quality::Draft.iterations(),
+        Some(optimize::Quality::Standard) => tile::Quality::Standard.iterations(),
+        Some(optimize::Quality::High) => tile::Quality::High.iterations(),
+        Some(optimize::Quality::Iterations(iterations)) => iterations,
+    };
+    problem.validate()?;
+    Ok(problem)
+}
+
+fn shape(problem: &TileProblem, bits: u32) -> Shape {
+    Shape {
+        size: problem.size as u32,
+        spp: problem.spp as u32,
+        dims: problem.dims as u32,
+        frames: problem.frames as u32,
+        bits,
+        progressive: problem.progressive,
+    }
+}
+
+/// All that the samples depend on.
+fn description(problem: &TileProblem) -> Value {
+    let TileProblem { box_class, projections, steps, .. } = problem;
+    json!({
+        "command": "tile", "size": problem.size, "spp": problem.spp, "dims": problem.dims, "frames": problem.frames,
+        "kernel": problem.kernel.to_string(), "temporal-kernel": problem.temporal.as_ref().map(ToString::to_string),
+        "progressive": problem.progressive, "seed": problem.seed, "iterations": problem.iterations,
+        "box-share": box_class.share, "box-weight": box_class.weight,
+        "parameters": format!(
+            "{:?}",
+            (
+                &problem.prefixes, problem.frame_share, problem.directions, projections, steps, problem.offset_correction,
+                problem.threshold_exponent, problem.domain,
+            )
+        ),
+    })
+}
+
+fn measure(file: &TileFile, problem: &TileProblem, integrands: usize) -> Result<TileReport> {
+    let mut options = TileOptions { integrands, ..TileOptions::default() };
+    if let Some(TemporalKernel::Ema(alpha)) = problem.temporal {
+        let alpha = f64::from((alpha * 1e6).round()) / 1e6;
+        if !options.alphas.contains(&alpha) {
+            options.alphas.push(alpha);
+        }
+    }
+    let coordinates = file.coordinates();
+    let view = TileView::new(problem.size, problem.spp, problem.dims, problem.frames, &coordinates)?;
+    measure_tile(&view, &options)
+}
+
+/// The command that makes the same file wherever it runs.
+fn command(args: &Args, problem: &TileProblem) -> String {
+    let mut words = vec!["fsot tile".to_owned()];
+    if let Some(name) = &args.preset {
+        words.push(format!("--preset {name}"));
+    } else {
+        let TileProblem { size, spp, dims, kernel, frames, .. } = problem;
+        words.push(format!("--size {size} --spp {spp} --dims {dims} --kernel '{kernel}'"));
+        if let Some(temporal) = &problem.temporal {
+            words.push(format!("--temporal {frames} --temporal-kernel {temporal}"));
+        }
+        if problem.progressive {
+            words.push("--progressive".to_owned());
+        }
+        words.extend(args.box_share.map(|share| format!("--box-share {share}")));
+        words.extend(args.box_weight.map(|weight| format!("--box-weight {weight}")));
+    }
+    words.push(format!("--bits {} --seed {} --iterations {}", args.bits, problem.seed, problem.iterations));
+    if args.integrands != INTEGRANDS {
+        words.push(format!("--integrands {}", args.integrands));
+    }
+    let name = args.common.out.file_name().map_or_else(PathBuf::new, PathBuf::from);
+    words.push(format!("--out {}", name.display()));
+    words.join(" ")
+}
+
+fn describe(out: &Path, report: &TileReport, run: &Run) -> (String, Value) {
+    let mut text = format!("{}\n", out.display());
+    run.describe(&mut text);
+    text.push_str(&report.to_string());
+    (text, json!({ "out": out, "run": run.json(), "tile": report }))
+}

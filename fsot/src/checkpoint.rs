@@ -1,0 +1,170 @@
+//! Checkpoints: an interrupted optimisation continues with the same bits.
+//!
+//! A file is, little-endian: `FSOTCKP1`, the length of the header (u32), the header (JSON: version, problem, iteration,
+//! number of coordinates), the coordinates (f32), the SHA-256 of all of that.
+
+use crate::error::{Error, Result};
+use crate::output;
+use crate::run::Optimization;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::fs;
+use std::path::Path;
+
+const MAGIC: &[u8; 8] = b"FSOTCKP1";
+const DIGEST: usize = 32;
+/// Differences that an error lists.
+const LISTED: usize = 4;
+
+/// What an optimisation is made from, in canonical form: whatever changes a bit of the result belongs into it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    description: Value,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Header {
+    version: String,
+    problem: Value,
+    iteration: u64,
+    coordinates: u64,
+}
+
+impl Problem {
+    /// From anything serde can describe. Files belong into it by their content: see [`digest`].
+    ///
+    /// # Errors
+    /// `description` is not representable in JSON.
+    pub fn new(description: &impl Serialize) -> Result<Problem> {
+        let mut description = serde_json::to_value(description)
+            .map_err(|error| Error::Input(format!("the problem cannot be described: {error}")))?;
+        description.sort_all_objects();
+        Ok(Problem { description })
+    }
+
+    /// The SHA-256, in hexadecimal, of the canonical JSON and this program's version.
+    pub fn fingerprint(&self) -> String {
+        digest(format!("{}\n{}", env!("CARGO_PKG_VERSION"), self.description).as_bytes())
+    }
+}
+
+/// The SHA-256 of some bytes, in hexadecimal.
+pub fn digest(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Saves the state of an optimisation; an older checkpoint is replaced atomically.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn save(path: &Path, problem: &Problem, optimization: &dyn Optimization) -> Result<()> {
+    let coordinates = optimization.coordinates();
+    let header = Header {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        problem: problem.description.clone(),
+        iteration: optimization.iteration(),
+        coordinates: coordinates.len() as u64,
+    };
+    let header = serde_json::to_vec(&header).map_err(|error| Error::Io { path: path.into(), source: error.into() })?;
+    let mut bytes = Vec::with_capacity(MAGIC.len() + 4 + header.len() + 4 * coordinates.len() + DIGEST);
+    bytes.extend_from_slice(MAGIC);
+    bytes.extend_from_slice(&(header.len() as u32).to_le_bytes());
+    bytes.extend_from_slice(&header);
+    bytes.extend(coordinates.iter().flat_map(|value| value.to_le_bytes()));
+    let digest = Sha256::digest(&bytes);
+    bytes.extend_from_slice(&digest);
+    output::write(path, &bytes)
+}
+
+/// Continues an optimisation from a checkpoint of the same problem. Returns false, and changes nothing, if there is none.
+///
+/// # Errors
+/// The file cannot be read, is no checkpoint, is truncated or damaged, or belongs to another problem or version: the
+/// sentence says which, and what differs.
+pub fn resume(path: &Path, problem: &Problem, optimization: &mut dyn Optimization) -> Result<bool> {
+    let bytes = match fs::read(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(false),
+        result => result.map_err(Error::io(path))?,
+    };
+    let refuse = |why: String| {
+        Error::Input(format!(
+            "cannot continue from the checkpoint {}: {why}. Remove it to start anew, or name another with --checkpoint",
+            path.display()
+        ))
+    };
+    let (header, coordinates) = decode(&bytes).map_err(|why| refuse(why.to_owned()))?;
+    if header.version != env!("CARGO_PKG_VERSION") {
+        let version = env!("CARGO_PKG_VERSION");
+        return Err(refuse(format!("it is of version {}, this is fsot {version}", header.version)));
+    }
+    if header.problem != problem.description {
+        return Err(refuse(format!(
+            "it is of another problem ({})",
+            differences(&header.problem, &problem.description)
+        )));
+    }
+    if !optimization.restore(header.iteration, &coordinates) {
+        return Err(refuse("its state is not one of this problem's".to_owned()));
+    }
+    Ok(true)
+}
+
+fn decode(bytes: &[u8]) -> std::result::Result<(Header, Vec<f32>), &'static str> {
+    const TRUNCATED: &str = "it is truncated";
+    const DAMAGED: &str = "it is damaged (its checksum does not match)";
+    if bytes.is_empty() {
+        return Err("it is empty");
+    }
+    let rest = bytes.strip_prefix(MAGIC).ok_or("it is not a checkpoint of fsot")?;
+    let (length, rest) = rest.split_first_chunk::<4>().ok_or(TRUNCATED)?;
+    let (header, rest) = rest.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or(TRUNCATED)?;
+    let header: Header = serde_json::from_slice(header).map_err(|_| DAMAGED)?;
+    let expected = header.coordinates.checked_mul(4).and_then(|size| size.checked_add(DIGEST as u64)).ok_or(DAMAGED)?;
+    if (rest.len() as u64) < expected {
+        return Err(TRUNCATED);
+    }
+    let (content, digest) = bytes.split_at(bytes.len() - DIGEST);
+    if rest.len() as u64 != expected || Sha256::digest(content).as_slice() != digest {
+        return Err(DAMAGED);
+    }
+    let coordinates = rest[..rest.len() - DIGEST].as_chunks::<4>().0;
+    Ok((header, coordinates.iter().map(|value| f32::from_le_bytes(*value)).collect()))
+}
+
+/// "points: 4096 there, 1024 here; ..."
+fn differences(there: &Value, here: &Value) -> String {
+    let mut list = Vec::new();
+    compare("", there, here, &mut list);
+    let more = list.len().saturating_sub(LISTED);
+    list.truncate(LISTED);
+    let mut text = list.join("; ");
+    if more > 0 {
+        text.push_str(&format!("; and {more} more"));
+    }
+    text
+}
+
+fn compare(name: &str, there: &Value, here: &Value, list: &mut Vec<String>) {
+    match (there, here) {
+        (a, b) if a == b => {}
+        (Value::Object(a), Value::Object(b)) => {
+            let mut keys: Vec<_> = a.keys().chain(b.keys()).collect();
+            keys.sort();
+            keys.dedup();
+            for key in keys {
+                let inner = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
+                compare(&inner, a.get(key).unwrap_or(&Value::Null), b.get(key).unwrap_or(&Value::Null), list);
+            }
+        }
+        (a, b) => list.push(format!("{name}: {} there, {} here", short(a), short(b))),
+    }
+}
+
+fn short(value: &Value) -> String {
+    let text = match value {
+        Value::Null => "none".to_owned(),
+        value => value.to_string(),
+    };
+    if text.chars().count() <= 40 { text } else { text.chars().take(37).chain("...".chars()).collect() }
+}

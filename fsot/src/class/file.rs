@@ -1,0 +1,102 @@
+//! Class files: classes written down by a person, in TOML or JSON.
+
+use super::{Class, ClassFunction};
+use crate::Error;
+use crate::error::Result;
+use crate::target::{Target, Uniform};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What a class file says.
+///
+/// ```toml
+/// [[class]]
+/// name = "red"
+/// function = { box = { from = 0.0, to = 0.5 } }
+///
+/// [[class]]
+/// name = "all"
+/// weight = 0.5
+/// function = "constant"
+/// target = { image = "density.png" }
+/// ```
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ClassFile {
+    /// The classes, in order.
+    pub class: Vec<ClassEntry>,
+}
+
+/// A class of a [`ClassFile`].
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ClassEntry {
+    /// Its name.
+    pub name: String,
+    /// Its weight, 1 if not given.
+    #[serde(default = "one")]
+    pub weight: f32,
+    /// Its class function.
+    pub function: ClassFunction,
+    /// Its target, uniform if not given.
+    #[serde(default)]
+    pub target: TargetSpec,
+}
+
+fn one() -> f32 {
+    1.0
+}
+
+/// A target in a [`ClassFile`].
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TargetSpec {
+    /// The uniform distribution.
+    #[default]
+    Uniform,
+    /// A picture: many points where it is bright.
+    Image(PathBuf),
+}
+
+impl ClassFile {
+    /// Reads the text of a class file; `path` is for messages, and for the format: JSON if it ends so, else TOML.
+    pub fn parse(path: &Path, text: &str) -> Result<ClassFile> {
+        let json = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
+        let parsed: std::result::Result<ClassFile, String> = if json {
+            serde_json::from_str(text).map_err(|error| error.to_string())
+        } else {
+            toml::from_str(text).map_err(|error| error.to_string())
+        };
+        let file = parsed.map_err(|error| Error::Input(format!("{}: not a class file: {error}", path.display())))?;
+        if file.class.is_empty() {
+            return Err(Error::Input(format!("{}: no class: give at least one", path.display())));
+        }
+        for entry in &file.class {
+            entry.function.check(&entry.name)?;
+            super::check_weight(entry.weight, &entry.name)?;
+        }
+        Ok(file)
+    }
+
+    /// Reads a class file.
+    pub fn read(path: &Path) -> Result<ClassFile> {
+        let text = std::fs::read_to_string(path).map_err(Error::io(path))?;
+        ClassFile::parse(path, &text)
+    }
+
+    /// Its classes, for points of `dims` coordinates; `image` opens the targets that are pictures.
+    pub fn classes(self, dims: usize, mut image: impl FnMut(&Path) -> Result<Arc<dyn Target>>) -> Result<Vec<Class>> {
+        let uniform: Arc<dyn Target> = Arc::new(Uniform::new(dims));
+        self.class
+            .into_iter()
+            .map(|entry| {
+                let target = match &entry.target {
+                    TargetSpec::Uniform => Arc::clone(&uniform),
+                    TargetSpec::Image(path) => image(path)?,
+                };
+                Ok(Class { function: entry.function, target, weight: entry.weight, name: entry.name })
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,169 @@
+//! Files that appear whole or not at all.
+//!
+//! [`Outputs`] writes every file of a command beside its final place first; only when all are complete does
+//! [`commit`](Outputs::commit) rename them, which replaces an older file atomically.
+
+use crate::error::{Error, Result};
+use std::fs::{self, File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use tempfile::{Builder, NamedTempFile};
+
+/// Files that are complete but not yet in their place. Dropped before [`commit`](Outputs::commit), they leave nothing.
+#[derive(Debug, Default)]
+pub struct Outputs {
+    pending: Vec<Pending>,
+}
+
+#[derive(Debug)]
+enum Pending {
+    File {
+        file: NamedTempFile,
+        path: PathBuf,
+    },
+    /// Something that is not a regular file, a pipe or a device, cannot be replaced: it is written to.
+    Stream {
+        bytes: Vec<u8>,
+        path: PathBuf,
+    },
+}
+
+impl Outputs {
+    /// No files yet.
+    pub fn new() -> Outputs {
+        Outputs::default()
+    }
+
+    /// Prepares the file `path` with this content.
+    ///
+    /// # Errors
+    /// As [`check`]; the folder's disk is full; `path` was added before.
+    pub fn add(&mut self, path: &Path, bytes: &[u8]) -> Result<()> {
+        let place = check(path)?;
+        if self.pending.iter().any(|pending| pending.path() == place) {
+            return Err(Error::Input(format!("two outputs have the same name {}: give each its own", path.display())));
+        }
+        if is_stream(&place) {
+            self.pending.push(Pending::Stream { bytes: bytes.to_vec(), path: place });
+            return Ok(());
+        }
+        let mut file = temporary(&place).map_err(Error::io(path))?;
+        // Synchronised, so that a full disk or quota is noticed before anything is replaced.
+        file.as_file_mut().write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(Error::io(path))?;
+        self.pending.push(Pending::File { file, path: place });
+        Ok(())
+    }
+
+    /// Puts all files into their places, those first that cannot be replaced atomically.
+    ///
+    /// # Errors
+    /// What the system says of a stream that takes no more, or of a folder that vanished meanwhile.
+    pub fn commit(self) -> Result<()> {
+        let (streams, files): (Vec<_>, Vec<_>) =
+            self.pending.into_iter().partition(|pending| matches!(pending, Pending::Stream { .. }));
+        for pending in streams.into_iter().chain(files) {
+            match pending {
+                Pending::Stream { bytes, path } => write_stream(&path, &bytes).map_err(Error::io(path))?,
+                Pending::File { file, path } => {
+                    file.persist(&path).map_err(|error| Error::Io { path, source: error.error })?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Pending {
+    fn path(&self) -> &Path {
+        match self {
+            Pending::File { path, .. } | Pending::Stream { path, .. } => path,
+        }
+    }
+}
+
+/// Whether something can be written at `path`, asked before an hour of work rather than after it. Returns the place that
+/// will be written: `path`, or what it links to.
+///
+/// # Errors
+/// The folder is missing or cannot be written to; `path` is a folder; `path` is a read-only file.
+pub fn check(path: &Path) -> Result<PathBuf> {
+    if is_stream(path) {
+        return Ok(path.to_owned());
+    }
+    let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if let Ok(metadata) = fs::metadata(&place) {
+        if metadata.is_dir() {
+            return Err(Error::Input(format!("{} is a folder: give the name of a file in it", path.display())));
+        }
+        if metadata.is_file() && metadata.permissions().readonly() {
+            return Err(Error::Input(format!("{} is read-only: choose another name or remove it", path.display())));
+        }
+    }
+    if place.file_name().is_none() {
+        return Err(Error::Input(format!("`{}` is not the name of a file", path.display())));
+    }
+    let folder = folder(&place);
+    if !folder.is_dir() {
+        return Err(Error::Input(format!(
+            "cannot write {}: the folder {} does not exist; create it first",
+            path.display(),
+            folder.display()
+        )));
+    }
+    temporary(&place).map_err(Error::io(path))?;
+    // One name for one place, whether it exists or not.
+    Ok(match (fs::canonicalize(folder), place.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => place,
+    })
+}
+
+/// Writes one file, whole or not at all.
+///
+/// # Errors
+/// As [`Outputs::add`] and [`Outputs::commit`].
+pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    let mut outputs = Outputs::new();
+    outputs.add(path, bytes)?;
+    outputs.commit()
+}
+
+/// Whether `path` is `-` (standard output), a pipe or a device: something that is written to, not replaced.
+pub fn is_stream(path: &Path) -> bool {
+    // What /dev/stdout stands for may be a regular file, opened by the shell.
+    is_standard_output(path)
+        || path.starts_with("/dev")
+        || fs::metadata(path).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
+}
+
+fn is_standard_output(path: &Path) -> bool {
+    path == "-" || path == "/dev/stdout"
+}
+
+fn folder(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// In the folder of `path`, because files are renamed only within one file system; with the permissions that a new file, or
+/// the file that it replaces, has.
+fn temporary(path: &Path) -> std::io::Result<NamedTempFile> {
+    let mut builder = Builder::new();
+    builder.prefix(".fsot-");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let file = builder.tempfile_in(folder(path))?;
+    if let Ok(metadata) = fs::metadata(path) {
+        file.as_file().set_permissions(metadata.permissions())?;
+    }
+    Ok(file)
+}
+
+fn write_stream(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    if is_standard_output(path) {
+        let mut stream = std::io::stdout().lock();
+        return stream.write_all(bytes).and_then(|()| stream.flush());
+    }
+    let mut stream: File = OpenOptions::new().write(true).open(path)?;
+    stream.write_all(bytes)?;
+    stream.flush()
+}

@@ -1,0 +1,101 @@
+//! How much a picture made of dots looks like its source.
+
+use super::colour::{decode, luminance};
+use super::{Photo, resample};
+use image::RgbImage;
+use rayon::prelude::*;
+
+/// The peak signal-to-noise ratio, in dB, of a drawn picture against its source, both blurred by the same Gaussian of
+/// standard deviation `sigma` (pixels of the drawn picture): what an eye sees from where single dots merge.
+///
+/// The source is resampled to the drawn picture's size. `linear`: compare linear light instead of encoded values.
+/// `grey`: compare with the source's grey. The mean squared error is that of all pixels and channels, the peak is 1.
+/// Equal pictures have no noise: infinity.
+pub fn blurred_psnr(drawn: &RgbImage, source: &Photo, sigma: f32, linear: bool, grey: bool) -> f64 {
+    let (width, height) = (drawn.width() as usize, drawn.height() as usize);
+    let value = |value: f32| if linear { decode(value) } else { value };
+    // Pixels of the drawing per pixel of the source: sums become means.
+    let area = (width * height) as f64 / (source.width * source.height) as f64;
+    let mut squares = 0.0;
+    for channel in 0..3 {
+        let expected: Vec<f32> = source
+            .pixels
+            .iter()
+            .map(|rgb| {
+                let rgb = rgb.map(value);
+                if grey { luminance(rgb) } else { rgb[channel] }
+            })
+            .collect();
+        let expected = resample(source.width, source.height, &expected, width, height);
+        let difference: Vec<f32> = drawn
+            .pixels()
+            .zip(expected)
+            .map(|(pixel, expected)| value(f32::from(pixel.0[channel]) / 255.0) - (expected * area) as f32)
+            .collect();
+        // The difference of blurred pictures is the blurred difference.
+        squares += blur(&difference, width, height, sigma).iter().map(|error| f64::from(*error).powi(2)).sum::<f64>();
+    }
+    -10.0 * libm::log10(squares / (3 * width * height) as f64)
+}
+
+/// A Gaussian blur, cut at three standard deviations; at the borders, of what lies inside.
+fn blur(values: &[f32], width: usize, height: usize, sigma: f32) -> Vec<f32> {
+    let once = transposed_blur(values, width, sigma);
+    transposed_blur(&once, height, sigma)
+}
+
+/// Blurs the rows, and gives the columns of the result.
+fn transposed_blur(values: &[f32], width: usize, sigma: f32) -> Vec<f32> {
+    let radius = libm::ceilf(3.0 * sigma.max(0.0)) as usize;
+    let kernel: Vec<f32> = (0..=radius)
+        .map(|at| if at == 0 { 1.0 } else { libm::expf(-0.5 * (at as f32 / sigma) * (at as f32 / sigma)) })
+        .collect();
+    let weights: Vec<f32> = (0..width)
+        .map(|x| (x.saturating_sub(radius)..(x + radius + 1).min(width)).map(|at| kernel[at.abs_diff(x)]).sum())
+        .collect();
+    let height = values.len() / width;
+    let blurred: Vec<Vec<f32>> = values
+        .par_chunks_exact(width)
+        .map(|row| {
+            (0..width)
+                .map(|x| {
+                    let from = x.saturating_sub(radius);
+                    let inside = &row[from..(x + radius + 1).min(width)];
+                    let sum: f32 = inside.iter().enumerate().map(|(at, v)| v * kernel[(from + at).abs_diff(x)]).sum();
+                    sum / weights[x]
+                })
+                .collect()
+        })
+        .collect();
+    (0..width * height).map(|i| blurred[i % height][i / height]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::Rgb;
+
+    #[test]
+    fn a_constant_difference_has_the_same_ratio_at_any_blur() {
+        let photo = Photo::from_fn(3, 2, |_, _| [0.5, 0.5, 0.5]);
+        let drawn = RgbImage::from_pixel(60, 40, Rgb([153; 3]));
+        for sigma in [0.0, 1.0, 7.5] {
+            let ratio = blurred_psnr(&drawn, &photo, sigma, false, true);
+            assert!((ratio - 20.0).abs() < 1e-3, "{ratio}");
+        }
+        let light = decode(0.6) - decode(0.5);
+        let ratio = blurred_psnr(&drawn, &photo, 2.0, true, false);
+        assert!((ratio + 20.0 * f64::from(light).log10()).abs() < 1e-3);
+    }
+
+    #[test]
+    fn blurring_keeps_sums_and_spreads_as_far_as_it_says() {
+        let (width, height) = (41, 31);
+        let mut values = vec![0.0; width * height];
+        values[15 * width + 20] = 1.0;
+        let blurred = blur(&values, width, height, 2.5);
+        let sum: f32 = blurred.iter().sum();
+        let variance: f32 = blurred.iter().enumerate().map(|(i, v)| v * ((i % width) as f32 - 20.0).powi(2)).sum();
+        assert!((sum - 1.0).abs() < 1e-5 && (variance - 6.25).abs() < 0.25, "{sum} {variance}");
+    }
+}

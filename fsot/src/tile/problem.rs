@@ -1,0 +1,266 @@
+//! What a tile shall be.
+
+use super::kernel::Kernel;
+use super::stencil::{self, Stencils};
+use super::temporal::TemporalKernel;
+use crate::{Error, error::Result};
+
+/// The largest side of a tile, in pixels.
+const MAX_SIZE: usize = 1024;
+/// The most samples per pixel.
+const MAX_SPP: usize = 256;
+/// The most coordinates per sample.
+const MAX_DIMS: usize = 8;
+/// The most frames.
+const MAX_FRAMES: usize = 256;
+/// The most coordinates in all.
+const MAX_COORDINATES: usize = 1 << 28;
+/// The most iterations.
+const MAX_ITERATIONS: u64 = 1 << 24;
+/// The most directions of an iteration.
+const MAX_DIRECTIONS: usize = 16;
+
+/// A tile to be optimised. [`TileProblem::new`] gives one whose parameters were tuned; any may be changed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TileProblem {
+    /// Pixels along each side: a power of two from 8 to 1024, at least twice the kernel's radius.
+    pub size: usize,
+    /// Samples per pixel: a power of two from 1 to 256.
+    pub spp: usize,
+    /// Coordinates per sample: 1 to 8.
+    pub dims: usize,
+    /// Frames: 1 for a still tile, else 2 to 256 that loop.
+    pub frames: usize,
+    /// The spatial class function.
+    pub kernel: Kernel,
+    /// The temporal class function that multiplies it; None: the frames are independent tiles.
+    pub temporal: Option<TemporalKernel>,
+    /// Whether the first 1, 2, 4, ... samples of all pixels are tiles too.
+    pub progressive: bool,
+    /// The classes of the prefixes of a progressive tile: of 1, 2, 4, ..., `spp` samples. Of the shares only the ratios matter. Empty: the
+    /// documented default.
+    pub prefixes: Vec<ClassShare>,
+    /// The class of what the renderer reconstructs a pixel from, beside the perceptual one: it lowers the error that is there before any
+    /// perception, such as that of single pixels. In an animation with a temporal kernel, over time.
+    pub box_class: ClassShare,
+    /// The spatial class function of that class: [`Kernel::Box`] unless the renderer reconstructs with another one.
+    pub reconstruction: Kernel,
+    /// The share of the slices of an animation that look at one frame only: 0 to 1. Ignored without [`temporal`](Self::temporal).
+    pub frame_share: f32,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Steps in all: 1 to 2^24. See [`Quality`].
+    pub iterations: u64,
+    /// Directions drawn for each step; every slice takes one of them. 1 to 16.
+    pub directions: usize,
+    /// How the directions are drawn.
+    pub projections: Projections,
+    /// How far a step goes.
+    pub steps: Steps,
+    /// The exponent of the offset correction (5.24): 1 is the thesis's, 0 none. 0 to 2.
+    pub offset_correction: f32,
+    /// The threshold of a slice is z = u^e with u uniform on [0, 1): above 1 prefers wide subclasses. For a Gaussian kernel it is the same as
+    /// a standard deviation sqrt(e) times as large. 0.25 to 4.
+    pub threshold_exponent: f32,
+    /// The domain of the samples.
+    pub domain: Domain,
+}
+
+/// What a class counts beside the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClassShare {
+    /// The share of the slices: 0 to 1.
+    pub share: f32,
+    /// What its displacements count, those of the perceptual class of all samples counting 1: above 0, at most 1024.
+    pub weight: f32,
+}
+
+/// What a slice is projected on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projections {
+    /// The probability of an axis.
+    pub axis: f32,
+    /// The probability of a direction in the plane of two axes.
+    pub plane: f32,
+}
+
+/// The step size: `first`, then from `hold` (as a part of all iterations) falling linearly to `last`. 1 moves a sample by the mean of the
+/// displacements that its slices ask for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steps {
+    /// The step size at first: above 0, at most 16.
+    pub first: f32,
+    /// The step size at the end: 0 to 16.
+    pub last: f32,
+    /// Where it begins to fall: 0 to 1.
+    pub hold: f32,
+}
+
+/// The domain of the samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Domain {
+    /// The unit cube.
+    Bounded,
+    /// The unit torus: every step looks at it from another random shift.
+    Toroidal,
+}
+
+/// How long to optimise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quality {
+    /// To look at.
+    Draft,
+    /// The knee of error against time.
+    Standard,
+    /// The shipped tiles.
+    High,
+}
+
+impl Quality {
+    /// Iterations.
+    pub fn iterations(self) -> u64 {
+        match self {
+            Quality::Draft => 256,
+            Quality::Standard => 1024,
+            Quality::High => 4096,
+        }
+    }
+}
+
+impl TileProblem {
+    /// A still tile for the perceptual kernel, of standard quality.
+    pub fn new(size: usize, spp: usize, dims: usize) -> TileProblem {
+        TileProblem {
+            size,
+            spp,
+            dims,
+            frames: 1,
+            kernel: Kernel::Perceptual,
+            temporal: None,
+            progressive: false,
+            prefixes: Vec::new(),
+            box_class: ClassShare { share: if spp > 1 { 0.1 } else { 0.0 }, weight: 1.0 },
+            reconstruction: Kernel::Box,
+            frame_share: 0.5,
+            seed: 1,
+            iterations: Quality::Standard.iterations(),
+            directions: 4,
+            projections: Projections { axis: 0.0, plane: if dims > 2 { 0.2 } else { 0.0 } },
+            steps: Steps { first: 4.0, last: 0.05, hold: 0.3 },
+            offset_correction: if spp > 1 && dims <= 2 { 0.5 } else { 0.0 },
+            threshold_exponent: if spp > 1 { 1.4 } else { 1.2 },
+            domain: Domain::Bounded,
+        }
+    }
+
+    /// All coordinates: of every dimension of every sample of every pixel of every frame.
+    pub fn coordinates(&self) -> usize {
+        self.frames * self.size * self.size * self.spp * self.dims
+    }
+
+    /// The samples that all slices of a step look at, in the mean: a step's time is in proportion to it. An [`Error::Input`] as for
+    /// [`validate`](Self::validate).
+    pub fn cost(&self) -> Result<f64> {
+        self.validate()?;
+        let slices = (self.frames * self.size * self.size) as f64;
+        Ok(slices
+            * stencil::enumerate(self)?.iter().map(|entry| entry.probability * entry.length() as f64).sum::<f64>())
+    }
+
+    /// An [`Error::Input`] that names the first value that cannot be.
+    pub fn validate(&self) -> Result<()> {
+        self.stencils().map(|_| ())
+    }
+
+    /// Everything that a slice may select; checks all parameters.
+    pub(super) fn stencils(&self) -> Result<Stencils> {
+        self.check_ranges()?;
+        Stencils::new(self)
+    }
+
+    fn check_ranges(&self) -> Result<()> {
+        let power = |n: usize, from: usize, to: usize| n.is_power_of_two() && (from..=to).contains(&n);
+        check(power(self.size, 8, MAX_SIZE), "size", self.size, "a power of two from 8 to 1024 pixels")?;
+        check(power(self.spp, 1, MAX_SPP), "spp", self.spp, "a power of two from 1 to 256 samples per pixel")?;
+        check((1..=MAX_DIMS).contains(&self.dims), "dims", self.dims, "1 to 8 dimensions")?;
+        check((1..=MAX_FRAMES).contains(&self.frames), "frames", self.frames, "1 to 256 frames")?;
+        check(self.coordinates() <= MAX_COORDINATES, "the number of coordinates", self.coordinates(), "at most 2^28")?;
+        check((1..=MAX_ITERATIONS).contains(&self.iterations), "iterations", self.iterations, "1 to 2^24")?;
+        check((1..=MAX_DIRECTIONS).contains(&self.directions), "directions", self.directions, "1 to 16 per step")?;
+        let ClassShare { share, weight } = self.box_class;
+        check((0.0..=1.0).contains(&share), "the box class's share", share, "0 to 1")?;
+        check_weight("the box class's weight", weight)?;
+        check((0.0..=1.0).contains(&self.frame_share), "the frame share", self.frame_share, "0 to 1")?;
+        check(
+            share + self.frame_share <= 1.0,
+            "the shares of the box and frame classes together",
+            share + self.frame_share,
+            "at most 1",
+        )?;
+        let Projections { axis, plane } = self.projections;
+        check((0.0..=1.0).contains(&axis), "the probability of an axis", axis, "0 to 1")?;
+        check(
+            (0.0..=1.0 - axis).contains(&plane),
+            "the probability of a plane",
+            plane,
+            "0 to 1, together with that of an axis",
+        )?;
+        let Steps { first, last, hold } = self.steps;
+        check(first > 0.0 && first <= 16.0, "the first step size", first, "above 0 and at most 16")?;
+        check((0.0..=16.0).contains(&last), "the last step size", last, "0 to 16")?;
+        check((0.0..=1.0).contains(&hold), "the iterations before the step size falls", hold, "0 to 1 of all")?;
+        check(
+            (0.0..=2.0).contains(&self.offset_correction),
+            "the offset correction",
+            self.offset_correction,
+            "0 to 2",
+        )?;
+        check(
+            (0.25..=4.0).contains(&self.threshold_exponent),
+            "the threshold exponent",
+            self.threshold_exponent,
+            "0.25 to 4",
+        )?;
+        self.check_prefixes()?;
+        if self.temporal.is_some() && self.frames < 2 {
+            return Err(Error::input("a temporal kernel is for an animation: ask for at least 2 frames"));
+        }
+        Ok(())
+    }
+
+    fn check_prefixes(&self) -> Result<()> {
+        if !self.progressive || self.prefixes.is_empty() {
+            return Ok(());
+        }
+        let (levels, given) = (self.spp.trailing_zeros() as usize + 1, self.prefixes.len());
+        check(given == levels, "the number of prefixes", given, "one for each of 1, 2, 4, ..., spp samples")?;
+        for ClassShare { share, weight } in &self.prefixes {
+            check((0.0..=1e6).contains(share), "a prefix's share", share, "0 to 1e6")?;
+            check_weight("a prefix's weight", *weight)?;
+        }
+        check(
+            self.prefixes.iter().any(|prefix| prefix.share > 0.0),
+            "every prefix's share",
+            0,
+            "a positive one at least",
+        )
+    }
+
+    /// The step size of an iteration.
+    pub(super) fn step_size(&self, iteration: u64) -> f64 {
+        let Steps { first, last, hold } = self.steps;
+        let done = iteration as f64 / self.iterations as f64;
+        let falling = ((done - f64::from(hold)) / (1.0 - f64::from(hold)).max(1e-9)).clamp(0.0, 1.0);
+        f64::from(first) + falling * (f64::from(last) - f64::from(first))
+    }
+}
+
+/// An [`Error::Input`] unless `good`.
+fn check(good: bool, what: &str, value: impl std::fmt::Display, allowed: &str) -> Result<()> {
+    if good { Ok(()) } else { Err(Error::input(format!("{what} is {value}; use {allowed}"))) }
+}
+
+/// An [`Error::Input`] unless it can be a class's weight.
+fn check_weight(what: &str, weight: f32) -> Result<()> {
+    check(weight > 0.0 && weight <= 1024.0, what, weight, "above 0 and at most 1024")
+}

@@ -1,0 +1,184 @@
+//! Everything bad that a person can give: exit code 2, a sentence, and no file changed.
+
+mod cli_support;
+
+use cli_support::{Place, error};
+use image::GrayImage;
+
+#[test]
+fn numbers_out_of_range() {
+    let place = Place::new();
+    for (arguments, message) in [
+        ("points -n 0 --out p.txt", "0 is not in"),
+        ("points -n -5 --out p.txt", "-5"),
+        ("points -n 9999999999 --out p.txt", "9999999999"),
+        ("points -n 10 -d 0 --out p.txt", "0"),
+        ("points -n 10 -d 9 --out p.txt", "9 is not in 1..=8"),
+        ("points -n 10 --axis-priority 1.5 --out p.txt", "axis priority 1.5"),
+        ("points -n 10 --axis-priority nan --out p.txt", "axis priority NaN"),
+        ("points -n 10 --progressive 0 --out p.txt", "0"),
+        ("points -n 10 --iterations 0 --out p.txt", "0"),
+        ("points -n 10 --quality best --out p.txt", "draft"),
+        ("points -n 10 --threads 0 --out p.txt", "1 to 1024"),
+        ("points -n 10 --threads 99999 --out p.txt", "1 to 1024"),
+        ("points -n 10 --seed -1 --out p.txt", "-1"),
+        ("points -n 10 -d 1 --png p.png --out p.txt", "cannot be drawn"),
+        ("points -n 10", "--out"),
+        ("points --out p.txt", "--points"),
+        ("tile --size 0 --out t.nft", "size is 0"),
+        ("tile --size 100 --out t.nft", "size is 100"),
+        ("tile --size 4096 --out t.nft", "size is 4096"),
+        ("tile --spp 3 --out t.nft", "spp is 3"),
+        ("tile -d 9 --out t.nft", "dims is 9"),
+        ("tile -d 0 --out t.nft", "dims is 0"),
+        ("tile --kernel gaussian:0 --out t.nft", "Gaussian"),
+        ("tile --kernel sinc --out t.nft", "not a kernel"),
+        ("tile --size 16 --temporal 1 --temporal-kernel mantiuk --out t.nft", "frames"),
+        ("tile --size 16 --temporal 4 --temporal-kernel ema:2 --out t.nft", "ema:2"),
+        ("tile --size 16 --temporal 4 --out t.nft", "--temporal-kernel"),
+        ("tile --size 16 --bits 12 --out t.nft", "8 or 16"),
+        ("tile --size 16 --integrands 0 --out t.nft", "0"),
+        ("tile --preset nothing --out t.nft", "fsot info"),
+        ("tile --preset 64_1SPP_2D --size 32 --out t.nft", "--size"),
+        ("blow", "blow"),
+        ("", "Usage"),
+    ] {
+        if arguments.is_empty() {
+            assert_eq!(place.run(arguments).status.code(), Some(2));
+        } else {
+            place.refuse(arguments, message);
+        }
+    }
+}
+
+#[test]
+fn pictures_that_are_none() {
+    let place = Place::new();
+    GrayImage::new(16, 16).save(place.path("black.png")).unwrap();
+    GrayImage::from_pixel(16, 16, image::Luma([255])).save(place.path("white.png")).unwrap();
+    let png = place.read("white.png");
+    place.write("cut.png", &png[..png.len() / 2]);
+    place.write("empty.png", "");
+    place.write("text.png", "no picture at all");
+    place.write("broken.jpg", b"\xff\xd8\xff\xe0 and no more");
+    std::fs::create_dir(place.path("folder.png")).unwrap();
+    for (options, message) in [
+        ("--density missing.png", "missing.png"),
+        ("--density black.png", "black.png is black everywhere"),
+        ("--density white.png --invert", "white.png is white everywhere"),
+        ("--density cut.png", "cut.png is a damaged PNG file"),
+        ("--density empty.png", "empty.png is empty"),
+        ("--density text.png", "text.png is not a picture"),
+        ("--density broken.jpg", "broken.jpg is a damaged JPEG file"),
+        ("--density folder.png", "folder.png is a folder"),
+        ("--density white.png -d 3", "use -d 2"),
+        ("--density white.png --toroidal", "torus"),
+        ("--invert", "--density"),
+    ] {
+        place.refuse(&format!("points -n 10 {options} --out p.txt"), message);
+    }
+}
+
+#[test]
+fn class_files_that_are_none() {
+    let place = Place::new();
+    place.write("bad.toml", "[[class]]\nname = 1\n");
+    place.write("empty.toml", "");
+    place.write("binary.toml", [0xff, 0xfe]);
+    place.write("box.json", r#"{"class": [{"name": "a", "function": {"box": {"from": 0.7, "to": 0.2}}}]}"#);
+    place
+        .write("picture.toml", "[[class]]\nname = \"a\"\nfunction = \"constant\"\ntarget = { image = \"none.png\" }\n");
+    for (classes, message) in [
+        ("4color", "give 2color, 3color, ramp"),
+        ("bad.toml", "bad.toml"),
+        ("empty.toml", "empty.toml is empty"),
+        ("binary.toml", "not text"),
+        ("box.json", "0.7"),
+        ("picture.toml", "none.png"),
+        ("2color --progressive 3", "--progressive"),
+    ] {
+        place.refuse(&format!("points -n 10 --classes {classes} --out p.txt"), message);
+    }
+}
+
+#[test]
+fn outputs_that_cannot_be() {
+    let place = Place::new();
+    place.write("locked.txt", "mine");
+    std::fs::create_dir(place.path("folder")).unwrap();
+    let mut permissions = std::fs::metadata(place.path("locked.txt")).unwrap().permissions();
+    permissions.set_readonly(true);
+    std::fs::set_permissions(place.path("locked.txt"), permissions).unwrap();
+    for (options, message) in [
+        ("--out missing/p.txt", "the folder missing does not exist"),
+        ("--out folder", "folder is a folder"),
+        ("--out locked.txt", "locked.txt is read-only"),
+        ("--out locked.txt/p.txt", "does not exist"),
+        ("--out p.txt --png missing/p.png", "the folder missing does not exist"),
+        ("--out p.txt --svg p.txt", "twice"),
+        ("--out p.txt --svg ./p.txt", "twice"),
+        ("--out p.txt --checkpoint missing/c", "the folder missing does not exist"),
+        ("--out p.txt --checkpoint p.txt", "twice"),
+        ("--out ..", "is a folder"),
+    ] {
+        place.refuse(&format!("points -n 10 {options} --iterations 3"), message);
+    }
+    place.refuse("tile --size 16 --out t.toml --iterations 3", "twice");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_leaves_nothing() {
+    let place = Place::new();
+    place.refuse("points -n 10 --out /dev/full --iterations 3", "No space left");
+
+    // No file may grow beyond 8 blocks, and the signal that would end the program is ignored: writes fail half way.
+    place.write("p.txt", "old");
+    for arguments in [
+        "points -n 4000 --iterations 3 --out p.txt",
+        "points -n 50 --iterations 3 --png p.png --out p.txt",
+        "tile --size 64 --iterations 1 --integrands 1 --out t.nft",
+    ] {
+        let names = place.names();
+        let script = format!("trap '' XFSZ; ulimit -f 8; exec '{}' {arguments}", env!("CARGO_BIN_EXE_fsot"));
+        let output =
+            std::process::Command::new("sh").args(["-c", &script]).current_dir(place.path("")).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments}: {}", error(&output));
+        assert!(error(&output).contains("too large"), "{}", error(&output));
+        assert_eq!(place.names(), names, "{arguments}");
+        assert_eq!(place.read("p.txt"), b"old");
+    }
+}
+
+#[test]
+fn tiles_that_are_none() {
+    let place = Place::new();
+    place.succeed("tile --size 16 --integrands 1 --iterations 1 --out t.nft --quiet");
+    let tile = place.read("t.nft");
+    place.write("cut.nft", &tile[..tile.len() - 1]);
+    place.write("long.nft", [tile.as_slice(), b"x"].concat());
+    let mut flipped = tile.clone();
+    flipped[200] ^= 1;
+    place.write("flipped.nft", flipped);
+    let mut newer = tile;
+    newer[8] = 2;
+    place.write("newer.nft", newer);
+    place.write("text.nft", "hello");
+    place.write("empty.nft", "");
+    for (name, message) in [
+        ("cut.nft", "truncated"),
+        ("long.nft", "trailing"),
+        ("flipped.nft", "damaged"),
+        ("newer.nft", "newer version"),
+        ("text.nft", "not a tile file"),
+        ("empty.nft", "is empty"),
+        ("none.nft", "none.nft"),
+    ] {
+        place.refuse(&format!("info {name}"), message);
+        place.refuse(&format!("export {name} --format raw --out x"), message);
+        place.refuse(&format!("measure {name}"), message);
+    }
+    place.refuse("export t.nft --format bmp --out x", "bmp");
+    place.refuse("export t.nft --format raw --out missing/x", "the folder missing does not exist");
+    place.refuse("export t.nft --format raw --out /dev/full", "No space left");
+}

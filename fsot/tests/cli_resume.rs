@@ -1,0 +1,96 @@
+//! An interrupted run, continued, gives the bytes of one that was not.
+
+#![cfg(unix)]
+
+mod cli_support;
+
+use cli_support::{Place, error};
+use std::process::Command;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// The longest that anything here may take on a slow machine.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+fn signal(name: &str, process: u32) {
+    Command::new("sh").args(["-c", &format!("kill -{name} {process}")]).status().unwrap();
+}
+
+/// Starts a run, waits for a checkpoint that was not there before, and sends a signal. Returns the exit code (none if killed)
+/// and what was printed to standard error.
+fn interrupt(place: &Place, command: &str, checkpoint: &str, name: &str) -> (Option<i32>, String) {
+    let path = place.path(checkpoint);
+    let before = std::fs::read(&path).ok();
+    let mut child = place.start(command);
+    let start = Instant::now();
+    loop {
+        let now = std::fs::read(&path).ok();
+        if now.is_some() && now != before || child.try_wait().unwrap().is_some() {
+            break;
+        }
+        assert!(start.elapsed() < PATIENCE, "no checkpoint was written: {command}");
+        sleep(Duration::from_millis(2));
+    }
+    signal(name, child.id());
+    let output = child.wait_with_output().unwrap();
+    (output.status.code(), error(&output))
+}
+
+fn interrupted_run_equals_whole(command: &str) {
+    let whole = Place::new();
+    whole.succeed(&format!("{command} --threads 1"));
+    let expected = whole.read("out");
+
+    let place = Place::new();
+    let often = format!("{command} --threads 1 --checkpoint-every 0.02");
+    let (code, message) = interrupt(&place, &often, "out.checkpoint", "INT");
+    assert_eq!(code, Some(130), "{message}");
+    assert!(message.contains("Run the same command again") && message.contains("out.checkpoint"), "{message}");
+    assert_eq!(place.names(), ["out.checkpoint"]);
+
+    // Killed outright: the last periodic checkpoint counts.
+    let (code, message) = interrupt(&place, &often, "out.checkpoint", "KILL");
+    assert_eq!(code, None, "{message}");
+
+    // Another seed, size or version is refused.
+    place.refuse(&format!("{command} --seed 9"), "seed: 1 there, 9 here");
+    let saved = place.read("out.checkpoint");
+    place.write("cut", &saved[..saved.len() - 5]);
+    place.refuse(&format!("{command} --checkpoint cut"), "cut: it is truncated");
+    let mut damaged = saved;
+    let last = damaged.len() - 40;
+    damaged[last] ^= 1;
+    place.write("damaged", damaged);
+    place.refuse(&format!("{command} --checkpoint damaged"), "damaged: it is damaged");
+    place.refuse(&format!("{command} --checkpoint {}", env!("CARGO_BIN_EXE_fsot")), "not a checkpoint");
+
+    // With other threads than before.
+    let output = place.run(&format!("{command} --threads 3"));
+    assert!(output.status.success(), "{}", error(&output));
+    assert!(error(&output).contains("continuing from out.checkpoint"), "{}", error(&output));
+    assert_eq!(place.read("out"), expected, "the continued run gave other bytes");
+    assert!(!place.names().contains(&"out.checkpoint".to_owned()), "a finished run removes its checkpoint");
+}
+
+#[test]
+fn points() {
+    interrupted_run_equals_whole("points -n 600 --classes 2color --iterations 6000 --out out");
+}
+
+#[test]
+fn tile() {
+    interrupted_run_equals_whole("tile --size 16 --spp 2 --iterations 3000 --integrands 1 --out out");
+}
+
+#[test]
+fn an_interrupted_run_is_refused_to_another_command() {
+    let place = Place::new();
+    let command = "points -n 600 --iterations 6000 --out out --checkpoint state --checkpoint-every 0.02";
+    let (code, message) = interrupt(&place, command, "state", "INT");
+    assert_eq!(code, Some(130), "{message}");
+    place.refuse("points -n 500 --iterations 6000 --out out --checkpoint state", "points: 600 there, 500 here");
+    place.refuse(
+        "tile --size 16 --iterations 2 --out out --checkpoint state",
+        "command: \"points\" there, \"tile\" here",
+    );
+}

@@ -1,0 +1,121 @@
+//! Kernels: what they are, how they are written, what is refused.
+
+use fsot::tile::{Kernel, TemporalKernel, TileProblem, TileSamples, presets};
+
+#[test]
+fn the_perceptual_kernel_is_a_disc_of_radius_6() {
+    let taps = Kernel::Perceptual.taps().unwrap();
+    assert_eq!(taps.len(), 113);
+    for tap in &taps {
+        let square = (tap.dx * tap.dx + tap.dy * tap.dy) as f32;
+        assert!(square <= 36.0);
+        assert!((tap.weight - (-square / (2.0 * 2.1 * 2.1)).exp()).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn the_convolution_of_gaussians_is_nearly_the_gaussian_of_their_summed_variance() {
+    let taps = "gaussian:1.5*gaussian:2".parse::<Kernel>().unwrap().taps().unwrap();
+    for tap in taps {
+        let square = (tap.dx * tap.dx + tap.dy * tap.dy) as f32;
+        let expected = (-square / (2.0 * 2.5 * 2.5)).exp();
+        assert!((tap.weight - expected).abs() < 0.01, "{tap:?}, not {expected}");
+    }
+}
+
+#[test]
+fn convolution_with_a_box_changes_nothing() {
+    let plain = Kernel::Tabulated(vec![vec![0.0, 0.5, 0.0], vec![0.25, 1.0, 0.25], vec![0.0, 0.5, 0.0]]);
+    let both = Kernel::Convolution(Box::new(plain.clone()), Box::new(Kernel::Box));
+    assert_eq!(both.taps().unwrap(), plain.taps().unwrap());
+}
+
+#[test]
+fn kernels_are_written_as_they_are_read() {
+    for text in ["box", "perceptual", "gaussian:0.5", "perceptual*gaussian:0.5", "gaussian:1.48"] {
+        assert_eq!(text.parse::<Kernel>().unwrap().to_string(), text);
+    }
+    assert_eq!("perceptual*gaussian".parse::<Kernel>().unwrap(), "perceptual*gaussian:0.5".parse().unwrap());
+    for text in ["ema:0.2", "mantiuk"] {
+        assert_eq!(text.parse::<TemporalKernel>().unwrap().to_string(), text);
+    }
+    for text in [
+        "",
+        "perceptive",
+        "gaussian:",
+        "gaussian:-1",
+        "gaussian:nan",
+        "gaussian:99",
+        "box:2",
+        "perceptual*",
+        "*",
+        "gaussian:1:2",
+    ] {
+        assert!(text.parse::<Kernel>().is_err(), "'{text}' was accepted");
+    }
+    for text in ["", "ema", "ema:0", "ema:1.5", "ema:x", "mantiuk:3", "box"] {
+        assert!(text.parse::<TemporalKernel>().is_err(), "'{text}' was accepted");
+    }
+}
+
+#[test]
+fn tables_that_are_no_kernels_are_refused() {
+    let bad =
+        [vec![], vec![vec![1.0; 2]; 2], vec![vec![1.0; 3]; 1], vec![vec![0.0]], vec![vec![-1.0]], vec![vec![f32::NAN]]];
+    for table in bad {
+        assert!(Kernel::Tabulated(table.clone()).taps().is_err(), "{table:?} was accepted");
+    }
+    for table in [vec![], vec![0.0], vec![-1.0], vec![f32::INFINITY], vec![1.0; 5]] {
+        assert!(TemporalKernel::Tabulated(table.clone()).weights(4).is_err(), "{table:?} was accepted");
+    }
+}
+
+#[test]
+fn an_exponential_moving_average_halves() {
+    assert_eq!(TemporalKernel::Ema(0.5).weights(16).unwrap(), [1.0, 0.5, 0.25, 0.125, 0.0625]);
+    assert_eq!(TemporalKernel::Ema(1.0).weights(16).unwrap(), [1.0]);
+    // Cut at the animation's length.
+    assert_eq!(TemporalKernel::Ema(0.05).weights(16).unwrap().len(), 16);
+}
+
+/// Published values: the sustained response peaks at 60 ms; with the transient one added, the sum peaks earlier, and has a tail of the other sign,
+/// whose absolute value is used.
+#[test]
+fn the_eye_answers_within_a_quarter_of_a_second() {
+    let weights = TemporalKernel::Mantiuk.weights(32).unwrap();
+    let peak = weights.iter().position(|&weight| weight == 1.0).unwrap();
+    assert!((1..=3).contains(&peak), "peak at frame {peak}: {weights:?}");
+    assert!(weights.len() <= 16, "{weights:?}");
+    let zero = weights[peak..].windows(3).position(|w| w[1] < w[0] && w[1] < w[2]);
+    assert!(zero.is_some(), "no change of sign: {weights:?}");
+}
+
+#[test]
+fn samples_are_checked_and_quantised() {
+    assert!(TileSamples::new(2, 1, 1, 1, vec![0.0; 3]).is_err());
+    assert!(TileSamples::new(2, 1, 1, 1, vec![0.0, 0.5, 1.0, 0.0]).is_err());
+    assert!(TileSamples::new(2, 1, 1, 1, vec![0.0, 0.5, f32::NAN, 0.0]).is_err());
+    assert!(TileSamples::new(usize::MAX, 2, 1, 1, Vec::new()).is_err());
+    let tile = TileSamples::new(2, 2, 1, 1, vec![0.0, 0.5, 0.999_999_94, 0.25, 0.1, 0.2, 0.3, 0.4]).unwrap();
+    assert_eq!(tile.pixel(1, 0, 0), [0.999_999_94, 0.25]);
+    assert_eq!(tile.pixel(3, 2, 5), [0.999_999_94, 0.25]);
+    assert_eq!(tile.quantise(8).unwrap()[..4], [0, 128, 255, 64]);
+    assert_eq!(tile.quantise(16).unwrap()[2], 65535);
+    assert!(tile.quantise(0).is_err() && tile.quantise(17).is_err());
+    assert_eq!(tile.prefix(1).unwrap().coordinates, [0.0, 0.999_999_94, 0.1, 0.3]);
+    assert!(tile.prefix(0).is_err() && tile.prefix(3).is_err());
+}
+
+#[test]
+fn every_shipped_tile_is_what_its_name_says() {
+    for name in presets::NAMES {
+        let problem = presets::preset(name).unwrap();
+        problem.validate().unwrap();
+        let TileProblem { size, spp, dims, .. } = problem;
+        assert!(name.starts_with(&format!("{size}_{spp}SPP_{dims}D")), "{name}");
+        assert_eq!(problem.progressive, name.ends_with("PROGRESSIVE"));
+        assert_eq!(problem.temporal.is_some(), name.ends_with("TEMPORAL"));
+        assert_eq!(problem.frames > 1, name.ends_with("TEMPORAL"));
+    }
+    assert!(presets::preset("128_2SPP_2D").is_none());
+}

@@ -1,0 +1,48 @@
+//! Tables as Markdown, aligned as plain text too, and as CSV.
+
+/// `words`: the columns that are words and aligned left; columns of numbers are aligned right.
+pub(crate) fn table<const N: usize>(
+    headings: &[&str; N],
+    words: &[usize],
+    rows: impl IntoIterator<Item = [String; N]>,
+) -> String {
+    let rows: Vec<_> = rows.into_iter().collect();
+    let widths: [usize; N] = std::array::from_fn(|column| {
+        rows.iter().map(|cells| cells[column].len()).chain([headings[column].len()]).max().unwrap_or(0)
+    });
+    let line = |cells: &[String; N]| {
+        let padded = cells.iter().zip(widths).enumerate().map(|(column, (cell, width))| {
+            if words.contains(&column) { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+        });
+        format!("| {} |\n", padded.collect::<Vec<_>>().join(" | "))
+    };
+    let mut text = line(&headings.map(str::to_owned));
+    let rule = widths
+        .iter()
+        .enumerate()
+        .map(|(column, &width)| if words.contains(&column) { "-".repeat(width) } else { "-".repeat(width - 1) + ":" });
+    text += &format!("| {} |\n", rule.collect::<Vec<_>>().join(" | "));
+    text.extend(rows.iter().map(line));
+    text
+}
+
+/// No cell may contain a comma or a quote.
+pub(crate) fn csv<const N: usize>(columns: &[&str; N], rows: impl IntoIterator<Item = [String; N]>) -> String {
+    let mut text = columns.join(",") + "\n";
+    text.extend(rows.into_iter().map(|cells| cells.join(",") + "\n"));
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_equally_long() {
+        let rows = [["mean".to_owned(), "1.25".to_owned()], ["control variate".to_owned(), "0".to_owned()]];
+        let text = table(&["estimator", "ratio"], &[0], rows);
+        assert_eq!(text.lines().count(), 4);
+        assert!(text.lines().all(|line| line.len() == "| control variate | ratio |".len()));
+        assert_eq!(text.lines().nth(1), Some("| --------------- | ----: |"));
+    }
+}
