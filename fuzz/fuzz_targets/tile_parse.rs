@@ -12,6 +12,9 @@ fn draw(tile: &Tile<'_>, numbers: &[u8]) {
     for sampler in [root, root.domain(number(2)), root.scramble(number(5)).domain(number(9))] {
         let all = sampler.draw::<4>();
         assert!(all.iter().all(|u| (0.0..1.0).contains(u)), "{all:?}");
+        if !tile.shape().is_valid() {
+            continue;
+        }
         assert_eq!(sampler.draw::<1>(), all[..1]);
         assert_eq!(sampler.draw::<2>(), all[..2]);
         assert_eq!(sampler.draw::<3>(), all[..3]);
