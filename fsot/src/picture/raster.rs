@@ -20,7 +20,8 @@ const MAX_PIXELS: f64 = 4e8;
 /// [`Error::Input`] if the picture would have no pixels or more than 400 million.
 pub fn rasterise(drawing: &Drawing, scale: f32) -> Result<RgbImage> {
     let [width, height] = drawing.size.map(|side| (f64::from(side) * f64::from(scale)).round().max(1.0));
-    if !(width * height <= MAX_PIXELS) || scale <= 0.0 {
+    let drawable = width * height <= MAX_PIXELS && scale > 0.0;
+    if !drawable {
         return Err(Error::Input(format!(
             "a picture of {width} x {height} pixels cannot be drawn: choose a size of at most 400 million pixels"
         )));

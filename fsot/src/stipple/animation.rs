@@ -58,11 +58,12 @@ impl Windows {
         if self.cyclic { self.frames * self.step } else { (self.frames.max(1) - 1) * self.step + self.window }
     }
 
-    /// The points of a frame, as one range, or two if they reach beyond the last point of a cycle.
-    pub fn of_frame(&self, frame: usize) -> Vec<Range<usize>> {
+    /// The points of a frame: a range, and the rest of it if it reaches beyond the last point of a cycle; ascending, one may be
+    /// empty.
+    pub fn of_frame(&self, frame: usize) -> [Range<usize>; 2] {
         let (begin, points) = (frame * self.step, self.points());
         let end = begin + self.window;
-        if end <= points { vec![begin..end] } else { vec![0..end - points, begin..points] }
+        if end <= points { [begin..end, end..end] } else { [0..end - points, begin..points] }
     }
 }
 
@@ -140,22 +141,22 @@ impl Animation {
 
     /// The points of a frame, in units of the picture's longer side.
     pub fn frame(&self, points: &Points, frame: usize) -> Drawing {
-        self.draw(points, self.windows.of_frame(frame), self.radii[frame])
+        self.draw(points, &self.windows.of_frame(frame), self.radii[frame])
     }
 
     /// All points at once, each so much smaller as there are more of them.
     pub fn all(&self, points: &Points) -> Drawing {
         let mean = self.radii.iter().sum::<f32>() / self.radii.len().max(1) as f32;
         let more = (self.windows.window as f32 / points.len().max(1) as f32).sqrt();
-        self.draw(points, vec![0..points.len()], mean * more)
+        self.draw(points, &[0..points.len(), 0..0], mean * more)
     }
 
-    fn draw(&self, points: &Points, ranges: Vec<Range<usize>>, radius: f32) -> Drawing {
+    fn draw(&self, points: &Points, ranges: &[Range<usize>; 2], radius: f32) -> Drawing {
         let mut drawing = paper(self.extent, self.invert, self.linear);
         let colour = if self.invert { crate::picture::WHITE } else { crate::picture::BLACK };
         let all: Vec<&[f32]> = points.iter().collect();
         for range in ranges {
-            drawing.dots(all.get(range).unwrap_or_default().iter().copied(), 1.0, radius, colour);
+            drawing.dots(all.get(range.clone()).unwrap_or_default().iter().copied(), 1.0, radius, colour);
         }
         drawing
     }
@@ -167,11 +168,11 @@ impl Animation {
 }
 
 /// 1 for the points of some ascending ranges, else 0.
-fn shown(ranges: &[Range<usize>], points: usize) -> ClassFunction {
+fn shown(ranges: &[Range<usize>; 2], points: usize) -> ClassFunction {
     let mut steps = Vec::new();
     let to = |end: usize| (end as f64 / points as f64) as f32;
     let mut behind = 0;
-    for range in ranges {
+    for range in ranges.iter().filter(|range| !range.is_empty()) {
         if range.start > behind {
             steps.push(Step { to: to(range.start), value: 0.0 });
         }
@@ -209,8 +210,8 @@ mod tests {
         // The thesis's 18 frames and 1,000 points, 250 of them new in each frame.
         let all = windows(18, 1000, 250, false);
         assert_eq!(all.points(), 5250);
-        assert_eq!(all.of_frame(0), [0..1000]);
-        assert_eq!(all.of_frame(17), [4250..5250]);
+        assert_eq!(all.of_frame(0), [0..1000, 1000..1000]);
+        assert_eq!(all.of_frame(17), [4250..5250, 5250..5250]);
     }
 
     #[test]
