@@ -73,8 +73,30 @@ impl Builtin {
     /// The bytes of its file; `None` if its feature is off. A new tile needs a line here and one in Cargo.toml.
     pub const fn bytes(self) -> Option<&'static [u8]> {
         match self {
+            #[cfg(feature = "tile-128-1spp-2d")]
+            Builtin::Size128Spp1Dims2 => Some(include_bytes!("../../tiles/128_1SPP_2D.nft")),
+            #[cfg(feature = "tile-128-4spp-2d")]
+            Builtin::Size128Spp4Dims2 => Some(include_bytes!("../../tiles/128_4SPP_2D.nft")),
+            #[cfg(feature = "tile-128-16spp-2d")]
+            Builtin::Size128Spp16Dims2 => Some(include_bytes!("../../tiles/128_16SPP_2D.nft")),
+            #[cfg(feature = "tile-128-16spp-2d-progressive")]
+            Builtin::Size128Spp16Dims2Progressive => Some(include_bytes!("../../tiles/128_16SPP_2D_PROGRESSIVE.nft")),
+            #[cfg(feature = "tile-128-1spp-4d")]
+            Builtin::Size128Spp1Dims4 => Some(include_bytes!("../../tiles/128_1SPP_4D.nft")),
+            #[cfg(feature = "tile-128-4spp-4d")]
+            Builtin::Size128Spp4Dims4 => Some(include_bytes!("../../tiles/128_4SPP_4D.nft")),
+            #[cfg(feature = "tile-128-1spp-2d-gaussian")]
+            Builtin::Size128Spp1Dims2Gaussian => Some(include_bytes!("../../tiles/128_1SPP_2D_GAUSSIAN.nft")),
+            #[cfg(feature = "tile-128-4spp-2d-gaussian")]
+            Builtin::Size128Spp4Dims2Gaussian => Some(include_bytes!("../../tiles/128_4SPP_2D_GAUSSIAN.nft")),
+            #[cfg(feature = "tile-128-1spp-2d-temporal")]
+            Builtin::Size128Spp1Dims2Temporal => Some(include_bytes!("../../tiles/128_1SPP_2D_TEMPORAL.nft")),
             #[cfg(feature = "tile-64-1spp-2d")]
             Builtin::Size64Spp1Dims2 => Some(include_bytes!("../../tiles/64_1SPP_2D.nft")),
+            #[cfg(feature = "tile-64-4spp-2d")]
+            Builtin::Size64Spp4Dims2 => Some(include_bytes!("../../tiles/64_4SPP_2D.nft")),
+            // Not reached where all are compiled in.
+            #[allow(unreachable_patterns)]
             _ => None,
         }
     }
