@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-/// Why something was not done. No output was written.
+/// Why something was not done. No output is half-written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

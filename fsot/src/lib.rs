@@ -7,6 +7,7 @@ pub mod checkpoint;
 pub mod class;
 pub mod error;
 pub mod export;
+pub mod memory;
 pub mod metrics;
 pub mod optimize;
 pub mod output;

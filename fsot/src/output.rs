@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all.
 //!
 //! [`Outputs`] writes every file of a command beside its final place first; only when all are complete does
-//! [`commit`](Outputs::commit) rename them, which replaces an older file atomically.
+//! [`commit`](Outputs::commit) rename them, one after the other, each of which replaces an older file atomically.
 
 use crate::error::{Error, Result};
 use std::fs::{self, File, OpenOptions};
@@ -57,7 +57,7 @@ impl Outputs {
     /// Puts all files into their places, those first that cannot be replaced atomically.
     ///
     /// # Errors
-    /// What the system says of a stream that takes no more, or of a folder that vanished meanwhile.
+    /// What the system says of a stream that takes no more, or of a folder that vanished meanwhile: the files renamed before that stay.
     pub fn commit(self) -> Result<()> {
         let (streams, files): (Vec<_>, Vec<_>) =
             self.pending.into_iter().partition(|pending| matches!(pending, Pending::Stream { .. }));
@@ -128,13 +128,17 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     outputs.commit()
 }
 
-/// Whether `path` is `-` (standard output), a pipe or a device: something that is written to, not replaced.
+/// Whether `path` is `-` (standard output), an open file of this process by its name in `/dev`, a pipe or a device: something that is
+/// written to, not replaced.
 pub fn is_stream(path: &Path) -> bool {
-    // What /dev/stdout stands for may be a regular file, opened by the shell.
+    // What these names stand for may be a regular file, opened by the shell.
     is_standard_output(path)
-        || path.starts_with("/dev")
+        || path == STANDARD_ERROR
+        || path.parent() == Some(Path::new("/dev/fd"))
         || fs::metadata(path).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
 }
+
+const STANDARD_ERROR: &str = "/dev/stderr";
 
 fn is_standard_output(path: &Path) -> bool {
     path == "-" || path == "/dev/stdout"
@@ -161,6 +165,10 @@ fn temporary(path: &Path) -> std::io::Result<NamedTempFile> {
 fn write_stream(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     if is_standard_output(path) {
         let mut stream = std::io::stdout().lock();
+        return stream.write_all(bytes).and_then(|()| stream.flush());
+    }
+    if path == STANDARD_ERROR {
+        let mut stream = std::io::stderr().lock();
         return stream.write_all(bytes).and_then(|()| stream.flush());
     }
     let mut stream: File = OpenOptions::new().write(true).open(path)?;

@@ -65,7 +65,9 @@ pub fn density(bytes: &[u8], path: &Path, points: usize, invert: bool) -> Result
         .pixels()
         .map(|pixel| {
             let [luma, alpha]: [f32; 2] = pixel.0;
-            alpha * if invert { (1.0 - luma).max(0.0) } else { luma }
+            // A value that is refused is refused as it is.
+            let inverted = invert && luma.is_finite() && luma >= 0.0;
+            alpha * if inverted { (1.0 - luma).max(0.0) } else { luma }
         })
         .collect();
     if weights.iter().all(|weight| *weight == 0.0) {

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Options {
     /// Which tiles, such as 64_1SPP_2D [default: all]
     names: Vec<String>,
-    /// Make them elsewhere, and fail if a byte differs from those in core/tiles
+    /// Make them elsewhere, and fail if a byte differs from those in core/tiles, or a sidecar says another thing
     #[arg(long)]
     check: bool,
     /// Threads to work on [default: one per core]
@@ -31,13 +31,20 @@ struct Info {
     sidecar: Option<Sidecar>,
 }
 
+/// Without the version, which need not change a tile.
 #[derive(Deserialize)]
 struct Sidecar {
+    command: String,
+    seed: u64,
+    kernel: String,
+    iterations: u64,
+    sha256: String,
     quality: Quality,
 }
 
 #[derive(Deserialize)]
 struct Quality {
+    integrands: u64,
     energy: Vec<Row>,
     #[serde(default)]
     marginal: Vec<Row>,
@@ -51,8 +58,18 @@ struct Row {
     axes: Option<[u32; 2]>,
     alpha: Option<f64>,
     filtered: [f64; 2],
+    perceptual: [f64; 2],
     raw: [f64; 2],
 }
+
+impl Quality {
+    fn rows(&self) -> impl Iterator<Item = &Row> {
+        self.energy.iter().chain(&self.marginal).chain(&self.temporal)
+    }
+}
+
+/// What a measured energy may differ by, relatively: its last digits depend on the Fourier transform.
+const TOLERANCE: f64 = 0.02;
 
 /// Makes the tiles, or checks them, and prints what they are worth.
 pub(crate) fn run(options: &Options) -> Result<()> {
@@ -72,13 +89,14 @@ pub(crate) fn run(options: &Options) -> Result<()> {
             command.arg("--threads").arg(threads.to_string());
         }
         run::check(&mut command)?;
-        describe(&program, name, &path, &mut table)?;
+        let made = info(&program, &path)?;
+        describe(name, &made, &mut table);
         if options.check {
-            for file in [format!("{name}.nft"), format!("{name}.toml")] {
-                let read = |folder: &Path| fs::read(folder.join(&file));
-                if read(&shipped).ok() != read(folder).ok() {
-                    different.push(file);
-                }
+            let shipped = shipped.join(format!("{name}.nft"));
+            if fs::read(&shipped).ok() != Some(fs::read(&path)?) {
+                different.push(format!("{name}.nft"));
+            } else if !same(&info(&program, &shipped)?.sidecar, &made.sidecar) {
+                different.push(format!("{name}.toml"));
             }
         }
     }
@@ -104,17 +122,44 @@ fn names(program: &Path, wanted: &[String]) -> Result<Vec<String>> {
     Ok(if wanted.is_empty() { presets } else { wanted.to_vec() })
 }
 
-fn describe(program: &Path, name: &str, path: &Path, table: &mut String) -> Result<()> {
+/// What a tile's file and its sidecar say.
+struct Made {
+    bytes: u64,
+    sidecar: Sidecar,
+}
+
+fn info(program: &Path, path: &Path) -> Result<Made> {
     let json = run::read(run::command(program).args(["info", "--json"]).arg(path))?;
-    let info: Info = serde_json::from_str(&json).context("fsot info --json is not as expected")?;
-    table.push_str(&format!("{name}, {} bytes\n", info.bytes));
-    let Some(Sidecar { quality }) = info.sidecar else { bail!("{name} has no sidecar") };
-    for row in quality.energy.iter().chain(&quality.marginal).chain(&quality.temporal) {
+    let Info { bytes, sidecar } = serde_json::from_str(&json).context("fsot info --json is not as expected")?;
+    let sidecar = sidecar.with_context(|| format!("{} has no sidecar that describes it", path.display()))?;
+    Ok(Made { bytes, sidecar })
+}
+
+/// Whether two sidecars say the same, but for the version and the last digits of what was measured.
+fn same(a: &Sidecar, b: &Sidecar) -> bool {
+    a.command == b.command
+        && a.seed == b.seed
+        && a.kernel == b.kernel
+        && a.sha256 == b.sha256
+        && a.iterations == b.iterations
+        && a.quality.integrands == b.quality.integrands
+        && a.quality.rows().count() == b.quality.rows().count()
+        && a.quality.rows().zip(b.quality.rows()).all(|(a, b)| close(a, b))
+}
+
+fn close(a: &Row, b: &Row) -> bool {
+    let energies = |row: &Row| [row.filtered, row.perceptual, row.raw].concat();
+    (a.spp, a.axes, a.alpha) == (b.spp, b.axes, b.alpha)
+        && energies(a).iter().zip(energies(b)).all(|(a, b)| (a - b).abs() <= TOLERANCE * a.abs())
+}
+
+fn describe(name: &str, made: &Made, table: &mut String) {
+    table.push_str(&format!("{name}, {} bytes\n", made.bytes));
+    for row in made.sidecar.quality.rows() {
         let axes = row.axes.map_or(String::new(), |[a, b]| format!(", dims {a} and {b}"));
         let alpha = row.alpha.map_or(String::new(), |alpha| format!(", after EMA {alpha}"));
         let case = format!("{} spp{axes}{alpha}", row.spp);
         let ([a, b], [c, d]) = (row.filtered, row.raw);
         table.push_str(&format!("  {case:<28}filtered {a:<8} / {b:<10} raw {c:<8} / {d}\n"));
     }
-    Ok(())
 }

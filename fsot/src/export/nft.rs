@@ -13,23 +13,31 @@ pub struct TileFile {
     bytes: Vec<u8>,
 }
 
+/// The header of a tile's file, which holds for any coordinates.
+///
+/// # Errors
+/// A shape that tiles cannot have; a kernel's text of more than 80 bytes or not ASCII.
+pub fn header(shape: Shape, seed: u64, kernel: &str) -> Result<Header> {
+    let Shape { size, spp, dims, frames, bits, .. } = shape;
+    Header::new(shape, seed, kernel).map_err(|_| {
+        Error::Input(format!(
+            "a tile file cannot hold {frames} frames of {size}x{size} pixels with {spp} samples of {dims} dimensions in {bits} bits, \
+             made for `{kernel}`: the size is a power of two up to 1024, the samples one up to 256, and there are at most 256 frames"
+        ))
+    })
+}
+
 impl TileFile {
     /// Quantises `coordinates`, `[frame][y][x][sample][dim]` in [0, 1), to `shape.bits` bits. `kernel` says what the tile was optimised for.
     ///
     /// # Errors
-    /// A shape that tiles cannot have; not as many coordinates as it says; a kernel's text of more than 80 bytes or not ASCII.
+    /// As [`header`]; not as many coordinates as the shape says.
     pub fn new(shape: Shape, seed: u64, kernel: &str, coordinates: &[f32]) -> Result<TileFile> {
-        let Shape { size, spp, dims, frames, bits, .. } = shape;
-        let header = Header::new(shape, seed, kernel).map_err(|_| {
-            Error::Input(format!(
-                "a tile file cannot hold {frames} frames of {size}x{size} pixels with {spp} samples of {dims} dimensions in {bits} bits, \
-                 made for `{kernel}`: the size is a power of two up to 1024, the samples one up to 256, and there are at most 256 frames"
-            ))
-        })?;
-        let payload: Vec<u8> = if bits == 8 {
-            coordinates.iter().map(|u| quantize(*u, bits) as u8).collect()
+        let header = header(shape, seed, kernel)?;
+        let payload: Vec<u8> = if shape.bits == 8 {
+            coordinates.iter().map(|u| quantize(*u, shape.bits) as u8).collect()
         } else {
-            coordinates.iter().flat_map(|u| quantize(*u, bits).to_le_bytes()).collect()
+            coordinates.iter().flat_map(|u| quantize(*u, shape.bits).to_le_bytes()).collect()
         };
         let head = header
             .encode(&payload)

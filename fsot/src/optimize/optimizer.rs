@@ -6,6 +6,7 @@ use super::slice::{Bins, Offset, Slice, Workspace, advance, transport};
 use super::{Domain, Problem, check};
 use crate::class::{Filter, normalised};
 use crate::error::Result;
+use crate::memory;
 use crate::points::Points;
 use crate::random::stream;
 use crate::run::Optimization;
@@ -32,14 +33,23 @@ pub struct Optimizer {
     workspaces: Mutex<Vec<Workspace>>,
 }
 
+/// The memory of an optimisation: coordinates, the offsets of all slices, and a workspace for each thread.
+fn bytes(problem: &Problem) -> u64 {
+    let threads = rayon::current_num_threads().min(SLICES);
+    let per_point = 4 * problem.dims + SLICES * size_of::<Offset>() + 32 * threads;
+    problem.points as u64 * per_point as u64
+}
+
 impl Optimizer {
     /// Prepares an optimisation.
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) for numbers out of range, targets of other dimensions than the points, functions that are not
-    /// class functions, initial points that do not fit, and a torus with targets that are not uniform.
+    /// class functions, initial points that do not fit, a torus with targets that are not uniform, and more memory than
+    /// [`memory::MOST`] or than the system gives.
     pub fn new(problem: Problem) -> Result<Optimizer> {
         check::check(&problem)?;
+        memory::check(bytes(&problem))?;
         let points = problem.points;
         let filters: Vec<Filter> = problem
             .classes

@@ -7,6 +7,7 @@ use super::rank::{POSITION_BITS, Sorter};
 use super::samples::TileSamples;
 use super::stencil::{Lattice, Stencils, WEIGHT_UNIT};
 use crate::error::Result;
+use crate::memory;
 use crate::random::stream;
 use crate::run::Optimization;
 use rayon::prelude::*;
@@ -51,10 +52,19 @@ struct Bin {
     weight: i32,
 }
 
+/// The memory of an optimisation: the coordinates, the positions of all samples with their margins, and each thread's displacements.
+fn bytes(problem: &TileProblem, samples: usize) -> u64 {
+    let (directions, samples) = (problem.directions as u64, samples as u64);
+    let sums = 8 * (directions + 1) * samples * rayon::current_num_threads() as u64;
+    4 * problem.coordinates() as u64 + 4 * directions * samples + sums
+}
+
 impl TileOptimizer {
-    /// Starts from random samples. An [`Error::Input`](crate::Error::Input) if the problem is not valid.
+    /// Starts from random samples. An [`Error::Input`](crate::Error::Input) if the problem is not valid, or needs more memory than
+    /// [`memory::MOST`] or than the system gives.
     pub fn new(problem: TileProblem) -> Result<TileOptimizer> {
         let stencils = problem.stencils()?;
+        memory::check(bytes(&problem, stencils.lattice.samples()))?;
         let mut rng = stream(problem.seed, 0, START_STREAM);
         let coordinates = (0..problem.coordinates()).map(|_| rng.uniform_f32()).collect();
         let positions = vec![0; problem.directions * stencils.lattice.samples()];

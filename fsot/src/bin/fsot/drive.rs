@@ -106,7 +106,7 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
     })
 }
 
-/// Puts a command's outputs in place, all of them or none, then removes the checkpoints of its runs.
+/// Puts a command's outputs in place, then removes the checkpoints of its runs.
 pub(crate) fn finish(outputs: Outputs, runs: impl IntoIterator<Item = Run>) -> Result<()> {
     let _watch = Watch::start()?;
     outputs.commit()?;

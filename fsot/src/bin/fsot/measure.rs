@@ -174,7 +174,7 @@ fn points(args: &Args, path: &Path, table: &Table, text: &mut String) -> Result<
             classes.push(json!({ "class": name, "report": report }));
         }
     }
-    let mut value = json!({ "file": path, "points": whole });
+    let mut value = json!({ "file": path.to_string_lossy(), "points": whole });
     if !classes.is_empty() {
         value["classes"] = classes.into();
     }
@@ -185,7 +185,7 @@ fn tile(args: &Args, path: &Path, samples: &Samples, text: &mut String) -> Resul
     let options = TileOptions { integrands: args.integrands as usize, alphas: args.ema.clone() };
     let report = metrics::measure_tile(&samples.view()?, &options)?;
     let _ = writeln!(text, "{}\n{report}", path.display());
-    Ok(json!({ "file": path, "tile": report }))
+    Ok(json!({ "file": path.to_string_lossy(), "tile": report }))
 }
 
 fn prefix(args: &Args, contents: &[Content]) -> Result<(String, Value)> {
@@ -213,5 +213,6 @@ fn prefix(args: &Args, contents: &[Content]) -> Result<(String, Value)> {
         args.integrands,
         PrefixTable(&errors)
     );
-    Ok((text, json!({ "files": args.files, "integrands": args.integrands, "prefix": errors })))
+    let files: Vec<_> = args.files.iter().map(|path| path.to_string_lossy()).collect();
+    Ok((text, json!({ "files": files, "integrands": args.integrands, "prefix": errors })))
 }

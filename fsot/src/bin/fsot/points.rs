@@ -22,6 +22,8 @@ use std::sync::Arc;
 
 /// Pixels along the longer side of a picture.
 const PICTURE: f32 = 1024.0;
+/// Pictures whose sides differ by no more than this part have the same shape: their sides are whole pixels.
+const SAME_SHAPE: f32 = 0.01;
 /// The colours of classes in pictures, in order; then they repeat.
 const COLOURS: [Colour; 8] = [
     [214, 39, 40],
@@ -82,8 +84,8 @@ fn make(args: &Args) -> Result<()> {
         return Err(Error::input("points of 1 coordinate cannot be drawn: leave out --png and --svg"));
     }
     let (problem, description, extent) = problem(args)?;
-    let classes = Classes::of(&problem);
     let mut optimizer = Optimizer::new(problem)?;
+    let classes = Classes::of(optimizer.problem());
     let run = drive(&mut optimizer, &description, &args.common)?;
 
     let table = Table { points: optimizer.points(), classes: classes.labels() };
@@ -125,11 +127,26 @@ fn problem(args: &Args) -> Result<(Problem, Value, [f32; 2])> {
                 .map_err(|_| Error::Input(format!("{}: not a class file: it is not text", path.display())))?;
             // Pictures are named relative to the file that names them.
             let folder = path.parent().unwrap_or(Path::new(""));
-            class::ClassFile::parse(path, &text)?.classes(dims, |image| {
-                let target = density(&folder.join(image), dims, points, false, &mut files)?;
-                extent = target.extent();
+            let mut shape: Option<[f32; 2]> = None;
+            let classes = class::ClassFile::parse(path, &text)?.classes(dims, |image| {
+                let image = folder.join(image);
+                let target = density(&image, dims, points, false, &mut files)?;
+                let this = target.extent();
+                if shape.is_some_and(|first| (0..2).any(|axis| (first[axis] - this[axis]).abs() > SAME_SHAPE)) {
+                    return Err(Error::Input(format!(
+                        "{}: {} has another shape than the picture before: give all of them the same ratio of width to height",
+                        path.display(),
+                        image.display()
+                    )));
+                }
+                shape.get_or_insert(this);
                 Ok(Arc::new(target) as Arc<dyn Target>)
-            })?
+            })?;
+            // Uniform points are in the whole square.
+            if let Some(shape) = shape.filter(|_| !classes.iter().any(|class| class.target.is_uniform())) {
+                extent = shape;
+            }
+            classes
         }
     };
     if let Some(path) = &args.density {

@@ -4,7 +4,7 @@ use crate::common::Common;
 use crate::drive::{Run, drive, finish};
 use fsot::checkpoint::digest;
 use fsot::error::{Error, Result};
-use fsot::export::nft::TileFile;
+use fsot::export::nft::{self, TileFile};
 use fsot::export::sidecar::{Quality, Sidecar};
 use fsot::metrics::{TileOptions, TileReport, TileView, measure_tile};
 use fsot::optimize;
@@ -12,7 +12,7 @@ use fsot::output::{self, Outputs};
 use fsot::tile::{self, ClassShare, Kernel, TemporalKernel, TileOptimizer, TileProblem, presets};
 use noisefloor::tile::Shape;
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// As in the published figures.
 const INTEGRANDS: u32 = 512;
@@ -21,7 +21,7 @@ const INTEGRANDS: u32 = 512;
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// A tile that comes with noisefloor, such as 128_4SPP_2D: sets all that follows, and the number of steps (`fsot info` lists them)
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["size", "spp", "d", "kernel", "temporal", "progressive", "box_share", "box_weight"])]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["size", "spp", "d", "kernel", "reconstruction", "temporal", "progressive", "box_share", "box_weight"])]
     preset: Option<String>,
     /// Pixels along each side, a power of two
     #[arg(long, value_name = "PIXELS", default_value_t = 128)]
@@ -35,6 +35,9 @@ pub(crate) struct Args {
     /// What the image is filtered by: box, perceptual, gaussian:SIGMA (pixels), or a convolution, perceptual*gaussian:SIGMA
     #[arg(long, default_value = "perceptual")]
     kernel: Kernel,
+    /// What the renderer reconstructs a pixel by: the kernel of the slices that --box-share counts [default: the second factor of a convolution, else box]
+    #[arg(long, value_name = "KERNEL")]
+    reconstruction: Option<Kernel>,
     /// An animation of this many frames
     #[arg(long, value_name = "FRAMES", requires = "temporal_kernel")]
     temporal: Option<usize>,
@@ -44,7 +47,7 @@ pub(crate) struct Args {
     /// The first 1, 2, 4, ... samples of all pixels are tiles too
     #[arg(long)]
     progressive: bool,
-    /// The share of the slices that look at a single pixel's samples [default: tuned]
+    /// The share of the slices that look at what a pixel is reconstructed from [default: tuned]
     #[arg(long, value_name = "SHARE")]
     box_share: Option<f32>,
     /// How much these slices count [default: tuned]
@@ -84,7 +87,7 @@ fn make(args: &Args) -> Result<()> {
         .as_ref()
         .map_or_else(|| problem.kernel.to_string(), |temporal| format!("{}, over frames {temporal}", problem.kernel));
     // Refuses what a tile's file cannot hold before the work.
-    TileFile::new(shape, problem.seed, &kernel, &vec![0.0; problem.coordinates()])?;
+    nft::header(shape, problem.seed, &kernel)?;
     let mut optimizer = TileOptimizer::new(problem.clone())?;
     let run = drive(&mut optimizer, &description(&problem), &args.common)?;
 
@@ -119,6 +122,7 @@ fn problem(args: &Args) -> Result<TileProblem> {
         None => TileProblem {
             frames: args.temporal.unwrap_or(1),
             kernel: args.kernel.clone(),
+            reconstruction: args.reconstruction.clone().unwrap_or_else(|| reconstruction(&args.kernel)),
             temporal: args.temporal_kernel.clone(),
             progressive: args.progressive,
             ..TileProblem::new(args.size, args.spp, args.d)
@@ -139,6 +143,14 @@ fn problem(args: &Args) -> Result<TileProblem> {
     Ok(problem)
 }
 
+/// What a renderer reconstructs by whose images a kernel judges: in `p * r` of 5.6.1 it is r.
+fn reconstruction(kernel: &Kernel) -> Kernel {
+    match kernel {
+        Kernel::Convolution(_, second) => (**second).clone(),
+        _ => Kernel::Box,
+    }
+}
+
 fn shape(problem: &TileProblem, bits: u32) -> Shape {
     Shape {
         size: problem.size as u32,
@@ -155,9 +167,10 @@ fn description(problem: &TileProblem) -> Value {
     let TileProblem { box_class, projections, steps, .. } = problem;
     json!({
         "command": "tile", "size": problem.size, "spp": problem.spp, "dims": problem.dims, "frames": problem.frames,
-        "kernel": problem.kernel.to_string(), "temporal-kernel": problem.temporal.as_ref().map(ToString::to_string),
-        "progressive": problem.progressive, "seed": problem.seed, "iterations": problem.iterations,
-        "box-share": box_class.share, "box-weight": box_class.weight,
+        "kernel": format!("{:?}", problem.kernel), "reconstruction": format!("{:?}", problem.reconstruction),
+        "temporal-kernel": problem.temporal.as_ref().map(|kernel| format!("{kernel:?}")), "progressive": problem.progressive,
+        "seed": problem.seed, "iterations": problem.iterations, "box-share": box_class.share,
+        "box-weight": box_class.weight,
         "parameters": format!(
             "{:?}",
             (
@@ -189,6 +202,9 @@ fn command(args: &Args, problem: &TileProblem) -> String {
     } else {
         let TileProblem { size, spp, dims, kernel, frames, .. } = problem;
         words.push(format!("--size {size} --spp {spp} --dims {dims} --kernel '{kernel}'"));
+        if problem.reconstruction != reconstruction(kernel) {
+            words.push(format!("--reconstruction '{}'", problem.reconstruction));
+        }
         if let Some(temporal) = &problem.temporal {
             words.push(format!("--temporal {frames} --temporal-kernel {temporal}"));
         }
@@ -202,14 +218,21 @@ fn command(args: &Args, problem: &TileProblem) -> String {
     if args.integrands != INTEGRANDS {
         words.push(format!("--integrands {}", args.integrands));
     }
-    let name = args.common.out.file_name().map_or_else(PathBuf::new, PathBuf::from);
-    words.push(format!("--out {}", name.display()));
+    let name = args.common.out.file_name().unwrap_or_default().to_string_lossy();
+    words.push(format!("--out {}", quoted(&name)));
     words.join(" ")
+}
+
+/// A file's name as a word of a shell, and not an option.
+fn quoted(name: &str) -> String {
+    let name = if name.starts_with('-') { format!("./{name}") } else { name.to_owned() };
+    let plain = |c: char| c.is_ascii_alphanumeric() || "._-+/=:@%,".contains(c);
+    if !name.is_empty() && name.chars().all(plain) { name } else { format!("'{}'", name.replace('\'', r"'\''")) }
 }
 
 fn describe(out: &Path, report: &TileReport, run: &Run) -> (String, Value) {
     let mut text = format!("{}\n", out.display());
     run.describe(&mut text);
     text.push_str(&report.to_string());
-    (text, json!({ "out": out, "run": run.json(), "tile": report }))
+    (text, json!({ "out": out.to_string_lossy(), "run": run.json(), "tile": report }))
 }

@@ -9,6 +9,8 @@ pub(super) struct Classes {
     names: Vec<String>,
     /// Of each class, at each point.
     values: Vec<Vec<f32>>,
+    /// Whether each class follows the uniform distribution.
+    uniform: Vec<bool>,
     /// The points of a progressive set that are uniform: the first of them, by number.
     prefixes: Vec<usize>,
 }
@@ -19,12 +21,15 @@ impl Classes {
             (0..problem.points).map(|i| problem.class_coordinates.value(function, i, problem.points)).collect()
         };
         let prefixes = match problem.classes.as_slice() {
-            [class] if !matches!(class.function, ClassFunction::Constant) => prefixes(&values(&class.function)),
+            [class] if class.target.is_uniform() && !matches!(class.function, ClassFunction::Constant) => {
+                prefixes(&values(&class.function))
+            }
             _ => Vec::new(),
         };
         Classes {
             names: problem.classes.iter().map(|class| class.name.clone()).collect(),
             values: problem.classes.iter().map(|class| values(&class.function)).collect(),
+            uniform: problem.classes.iter().map(|class| class.target.is_uniform()).collect(),
             prefixes,
         }
     }
@@ -46,14 +51,22 @@ impl Classes {
         (labels.names.len() > 1).then_some(labels)
     }
 
-    /// Classes that hold some points but not all: name, and whether each point belongs.
+    /// Whether all points together shall be uniform: every class that holds them all, or every class if none does.
+    pub(super) fn all_uniform(&self) -> bool {
+        let all = |values: &Vec<f32>| values.iter().all(|value| *value > 0.0);
+        let whole = self.values.iter().any(all);
+        self.values.iter().zip(&self.uniform).all(|(values, uniform)| *uniform || (whole && !all(values)))
+    }
+
+    /// Uniform classes that hold some points but not all: name, and whether each point belongs.
     pub(super) fn parts(&self) -> impl Iterator<Item = (&str, &[f32])> {
         let part = |values: &[f32]| values.iter().any(|value| *value > 0.0) && values.iter().any(|value| *value <= 0.0);
         self.names
             .iter()
             .zip(&self.values)
-            .filter(move |(_, values)| part(values))
-            .map(|(name, values)| (&name[..], &values[..]))
+            .zip(&self.uniform)
+            .filter(move |((_, values), uniform)| **uniform && part(values))
+            .map(|((name, values), _)| (&name[..], &values[..]))
     }
 
     /// Numbers of points, ascending, whose first points are a subclass.

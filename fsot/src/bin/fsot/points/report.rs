@@ -19,15 +19,15 @@ const INTEGRANDS: usize = 256;
 
 pub(super) fn report(args: &Args, table: &Table, classes: &Classes, run: &Run) -> Result<(String, Value)> {
     let mut text = format!("{}\n", args.common.out.display());
-    let mut json = json!({ "out": args.common.out, "run": run.json() });
+    let mut json = json!({ "out": args.common.out.to_string_lossy(), "run": run.json() });
     run.describe(&mut text);
     // The metrics compare with the uniform distribution.
-    if args.density.is_some() {
-        return Ok((text, json));
-    }
     let points = &table.points;
-    let whole = if points.len() > INTEGRATED { metrics::quick(points)? } else { metrics::measure(points)? };
-    text.push_str(&whole.to_string());
+    if classes.all_uniform() {
+        let whole = if points.len() > INTEGRATED { metrics::quick(points)? } else { metrics::measure(points)? };
+        text.push_str(&whole.to_string());
+        json["quality"] = json!(whole);
+    }
     let mut rows = Vec::new();
     for (name, values) in classes.parts().take(ROWS) {
         rows.push((name, metrics::quick(&metrics::select(points, |i| values[i] > 0.0))?));
@@ -45,7 +45,6 @@ pub(super) fn report(args: &Args, table: &Table, classes: &Classes, run: &Run) -
         write!(text, "  errors of the first points\n{}", PrefixTable(&errors)).ok();
         json["prefixes"] = json!(errors);
     }
-    json["quality"] = json!(whole);
     Ok((text, json))
 }
 

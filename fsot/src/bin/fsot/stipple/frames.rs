@@ -108,6 +108,8 @@ fn matches(pattern: &str) -> Result<Vec<PathBuf>> {
 
 /// `dir/name.png` of a frame: `dir/name-0007.png`.
 fn numbered(out: &Path, frame: usize) -> PathBuf {
-    let name = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
-    out.with_file_name(format!("{}-{frame:04}.{}", name(out.file_stem()), name(out.extension())))
+    let mut name = out.file_stem().unwrap_or_default().to_owned();
+    name.push(format!("-{frame:04}."));
+    name.push(out.extension().unwrap_or_default());
+    out.with_file_name(name)
 }

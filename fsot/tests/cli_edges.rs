@@ -1,0 +1,197 @@
+//! Names, pictures and sizes that are seldom: what is made of them, or why nothing is.
+
+mod cli_support;
+
+use cli_support::{Place, error};
+use fsot::export::sidecar::Sidecar;
+use fsot::read;
+use image::{GrayImage, Luma, Rgb, Rgb32FImage};
+use serde_json::Value;
+
+const FAST: &str = "--iterations 5";
+
+fn json(place: &Place, arguments: &str) -> Value {
+    serde_json::from_str(&place.succeed(arguments)).unwrap()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_of_memory_in_dev_holds_files_like_any_other() {
+    let Ok(folder) = tempfile::tempdir_in("/dev/shm") else { return };
+    let place = Place::new();
+    let out = folder.path().join("t.nft");
+    let arguments = format!("tile --size 16 --iterations 2 --integrands 1 --out {}", out.display());
+    let printed = place.succeed(&arguments);
+    assert!(printed.contains("t.nft"), "{printed}");
+    assert!(Sidecar::read(&out).unwrap().is_some());
+    std::fs::write(&out, "old").unwrap();
+    place.succeed(&arguments);
+    assert!(std::fs::read(&out).unwrap().starts_with(b"\x8eNFT"));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    assert!(place.names().is_empty());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn devices_and_open_files_are_written_to() {
+    use std::os::unix::fs::FileTypeExt;
+    let place = Place::new();
+    place.succeed(&format!("points -n 10 --out p.txt {FAST}"));
+    place.succeed(&format!("points -n 10 --out /dev/null {FAST}"));
+    assert!(std::fs::metadata("/dev/null").unwrap().file_type().is_char_device());
+    let output = place.run(&format!("points -n 10 --quiet --out /dev/stderr {FAST}"));
+    assert_eq!(output.stderr, place.read("p.txt"));
+    let output = place.run(&format!("points -n 10 --quiet --out /dev/fd/1 {FAST}"));
+    assert_eq!(output.stdout, place.read("p.txt"), "{}", error(&output));
+    assert_eq!(place.names(), ["p.txt"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn names_that_are_not_unicode() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let place = Place::new();
+    let name = |name: &[u8]| OsStr::from_bytes(name).to_owned();
+    let run = |arguments: &str, file: &[u8]| {
+        let output = place.command(arguments).arg(name(file)).output().unwrap();
+        assert!(output.status.success(), "{arguments}: {}", error(&output));
+        output
+    };
+    run("points -n 20 --iterations 2 --json --out", b"p\xff.txt");
+    run("measure --quick --json", b"p\xff.txt");
+    run("measure --prefix --integrands 2 --json", b"p\xff.txt");
+    run("tile --size 16 --iterations 2 --integrands 1 --json --out", b"t\xff.nft");
+    run("measure --integrands 1 --json", b"t\xff.nft");
+    let info = run("info --json", b"t\xff.nft");
+    let info: Value = serde_json::from_slice(&info.stdout).unwrap();
+    assert_eq!(info["tile"], "t\u{fffd}.nft");
+    run("export --format c-header --out t.h", b"t\xff.nft");
+    run("place -n 20 --iterations 2 --json --out o.csv --png", b"o\xff.png");
+    run("spectrum --out s.png", b"p\xff.txt");
+}
+
+#[test]
+fn the_command_of_a_sidecar_is_one_of_a_shell() {
+    let place = Place::new();
+    for (name, words) in [
+        ("t.nft", "--out t.nft"),
+        ("a b.nft", "--out 'a b.nft'"),
+        ("it's.nft", r"--out 'it'\''s.nft'"),
+        ("$HOME.nft", "--out '$HOME.nft'"),
+    ] {
+        let mut command = place.command("tile --size 16 --iterations 1 --integrands 1 --out");
+        assert!(command.arg(name).output().unwrap().status.success());
+        let sidecar = Sidecar::read(&place.path(name)).unwrap().unwrap();
+        assert!(sidecar.command.ends_with(words), "{}", sidecar.command);
+        assert!(!sidecar.command.contains("--reconstruction"), "{}", sidecar.command);
+    }
+}
+
+#[test]
+fn reconstruction_is_the_second_factor_unless_given() {
+    let place = Place::new();
+    let make = |options: &str| {
+        let arguments = "tile --size 16 --spp 4 --iterations 8 --integrands 1 --quiet --out t.nft --kernel";
+        place.succeed(&format!("{arguments} {options}"));
+        (place.read("t.nft"), Sidecar::read(&place.path("t.nft")).unwrap().unwrap().command)
+    };
+    let (gaussian, command) = make("box*gaussian:0.7");
+    assert!(!command.contains("--reconstruction"), "{command}");
+    assert_eq!(make("box*gaussian:0.7 --reconstruction gaussian:0.7"), (gaussian.clone(), command));
+    let (boxed, command) = make("box*gaussian:0.7 --reconstruction box");
+    assert!(boxed != gaussian);
+    assert!(command.contains(" --reconstruction 'box' "), "{command}");
+    let (perceptual, _) = make("perceptual");
+    assert!(perceptual == make("perceptual --reconstruction box").0);
+    assert!(perceptual != make("perceptual --reconstruction gaussian:0.7").0);
+    place.refuse("tile --preset 64_1SPP_2D --reconstruction box --out t.nft", "--reconstruction");
+    place.refuse("tile --size 16 --reconstruction sinc --out t.nft", "not a kernel");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_checkpoint_of_another_reconstruction_is_refused() {
+    let place = Place::new();
+    let arguments = "tile --size 16 --spp 4 --iterations 100000 --checkpoint-every 0 --checkpoint c --out t.nft";
+    let mut child = place.start(arguments);
+    while !place.path("c").exists() {
+        assert!(child.try_wait().unwrap().is_none());
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let output = place.run(&format!("{arguments} --reconstruction gaussian:0.5"));
+    assert_eq!(output.status.code(), Some(2));
+    assert!(error(&output).contains("reconstruction"), "{}", error(&output));
+}
+
+#[test]
+fn metrics_are_those_of_uniform_classes() {
+    let place = Place::new();
+    GrayImage::from_fn(8, 8, |x, _| Luma([if x < 4 { 255 } else { 0 }])).save(place.path("left.png")).unwrap();
+    let class = |name: &str, function: &str, target: &str| {
+        format!("[[class]]\nname = \"{name}\"\nfunction = {function}\ntarget = {target}\n")
+    };
+    let (half, rest) = ("{ box = { from = 0.0, to = 0.5 } }", "{ box = { from = 0.5, to = 1.0 } }");
+    let picture = "{ image = \"left.png\" }";
+    let report = |text: String| {
+        place.write("c.toml", text);
+        let report = json(&place, &format!("points -n 64 --classes c.toml --json --out p.txt {FAST}"));
+        let classes = report["classes"].as_array().cloned().unwrap_or_default();
+        let names: Vec<String> = classes.iter().map(|class| class["class"].as_str().unwrap().to_owned()).collect();
+        (report.get("quality").is_some(), names)
+    };
+    let both = class("a", half, picture) + &class("b", rest, "\"uniform\"");
+    assert_eq!(report(both.clone()), (false, vec!["b".to_owned()]));
+    assert_eq!(report(both + &class("all", "\"constant\"", "\"uniform\"")), (true, vec!["b".to_owned()]));
+    assert_eq!(report(class("all", "\"constant\"", picture)), (false, vec![]));
+    assert_eq!(report(class("all", "{ ramp = { rising = false } }", picture)), (false, vec![]));
+    assert_eq!(report(class("all", "\"constant\"", "\"uniform\"")), (true, vec![]));
+}
+
+#[test]
+fn pictures_of_several_shapes_are_refused() {
+    let place = Place::new();
+    for (name, width, height) in [("a.png", 20, 10), ("b.png", 40, 20), ("c.png", 10, 20)] {
+        GrayImage::from_pixel(width, height, Luma([200])).save(place.path(name)).unwrap();
+    }
+    let classes = |first: &str, second: &str| {
+        format!(
+            "[[class]]\nname = \"a\"\nfunction = {{ box = {{ from = 0.0, to = 0.5 }} }}\ntarget = {{ image = \"{first}\" }}\n\
+             [[class]]\nname = \"b\"\nfunction = {{ box = {{ from = 0.5, to = 1.0 }} }}\ntarget = {{ image = \"{second}\" }}\n"
+        )
+    };
+    place.write("same.toml", classes("a.png", "b.png"));
+    place.write("other.toml", classes("a.png", "c.png"));
+    place.succeed(&format!("points -n 20 --classes same.toml --png p.png --out p.txt {FAST}"));
+    assert_eq!(image::image_dimensions(place.path("p.png")).unwrap(), (1024, 512));
+    place.refuse(&format!("points -n 20 --classes other.toml --out q.txt {FAST}"), "another shape");
+}
+
+#[test]
+fn a_pixel_that_is_no_density_is_refused_inverted_too() {
+    let place = Place::new();
+    for (value, name) in [(f32::NAN, "nan.exr"), (f32::INFINITY, "infinite.exr"), (-1.0, "negative.exr")] {
+        let mut picture = Rgb32FImage::from_pixel(8, 8, Rgb([0.25; 3]));
+        picture.put_pixel(3, 5, Rgb([value; 3]));
+        picture.save(place.path(name)).unwrap();
+        for invert in [false, true] {
+            let found = read::density(&place.read(name), name.as_ref(), 16, invert);
+            let message = found.map(|_| ()).unwrap_err().to_string();
+            assert!(message.contains("column 3, row 5"), "{message}");
+        }
+    }
+}
+
+#[test]
+fn more_memory_than_there_is() {
+    let place = Place::new();
+    for arguments in [
+        "points -n 268435456 -d 8",
+        "points -n 268435456 --progressive 3",
+        "tile --size 1024 --spp 256 -d 1 --threads 2",
+    ] {
+        place.refuse(&format!("{arguments} --out p.nft"), "bytes of memory");
+    }
+}
