@@ -601,9 +601,9 @@ nf_sampler nf_sampler_domain(nf_sampler sampler,
 
 // An independent version of the sampler for each seed but 0; seed 0 changes nothing.
 //
-// It is the tile at another place, with all values of a dimension shifted, modulo 1, by a number that only seed and domain
-// decide. Over random seeds every value is uniform, so an estimate has no bias at all (the tile's own values are fixed, and an
-// estimate from them is what it is). Children of a scrambled sampler are scrambled.
+// It is the tile at another place, with all values of a dimension shifted, modulo 1, by a hash of seed and domain. Over random
+// seeds every value is uniform, so an estimate is unbiased, as far as a hash of 32 bits is random (the tile's own values are
+// fixed, and an estimate from them is what it is). Children of a scrambled sampler are scrambled.
 nf_sampler nf_sampler_scramble(nf_sampler sampler,
                                uint32_t seed);
 

@@ -36,6 +36,22 @@ pub(crate) unsafe fn reference_mut<'a, T>(pointer: *mut T) -> Result<&'a mut T, 
     Ok(unsafe { &mut *pointer })
 }
 
+/// Writes one object to where there may never have been one.
+///
+/// # Safety
+/// A non-NULL, aligned `pointer` must be the start of room for a `T` that no one else uses.
+pub(crate) unsafe fn write<T>(pointer: *mut T, value: T) -> Result<(), nf_status> {
+    if pointer.is_null() {
+        return Err(NF_ERR_NULL);
+    }
+    if !pointer.is_aligned() {
+        return Err(NF_ERR_ALIGNMENT);
+    }
+    // SAFETY: passed on to the caller.
+    unsafe { pointer.write(value) };
+    Ok(())
+}
+
 /// `len` elements to read; a zero length gives an empty slice whatever the pointer.
 ///
 /// # Safety

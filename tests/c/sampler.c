@@ -122,6 +122,7 @@ static void fill(const nf_tile *tile)
     CHECK_STATUS(nf_sampler_fill(s, bad, 3, 1, 1, 1, u, COUNT), NF_ERR_RANGE);
     CHECK_STATUS(nf_sampler_fill(s, dims, 3, UINT32_MAX, UINT32_MAX, UINT32_MAX, u, SIZE_MAX), NF_ERR_RANGE);
     CHECK_STATUS(nf_sampler_fill(s, dims, 3, WIDTH, HEIGHT, SAMPLES, u, COUNT - 1), NF_ERR_MEMORY);
+    CHECK_STATUS(nf_sampler_fill(NULL, NULL, 0, 0xffff, 0xffff, 1, NULL, 0), NF_OK); /* nothing to draw, at once */
     CHECK(is_poisoned(u, room.bytes));
     CHECK(nf_sampler_fill_len(bad, 3, 1, 1, 1) == 0);
     CHECK(nf_sampler_fill_len(NULL, 3, 1, 1, 1) == 0);

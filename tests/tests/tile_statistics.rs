@@ -56,7 +56,7 @@ fn domains_are_uncorrelated() {
 }
 
 /// Joint histograms of the stratum of a sample in one domain and in another, over pixels and samples, for tiles whose sample
-/// j always lies in stratum j, and for the whole pixel and each octave of a progressive tile: 60 deviates.
+/// j always lies in stratum j, and for the whole pixel and each octave of a progressive tile: 80 deviates.
 ///
 /// Each pixel contributes permutations, so a statistic of k strata is `k / (k - 1)` times a chi-square of `(k - 1)^2` degrees.
 #[test]

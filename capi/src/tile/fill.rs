@@ -45,6 +45,10 @@ pub unsafe extern "C" fn nf_sampler_fill(
         // SAFETY: the caller passes `domains` samplers and numbers.
         let (samplers, dims) = unsafe { (convert::slice(samplers, domains)?, convert::slice(dims, domains)?) };
         let needed = self::len(dims, width, height, samples).ok_or(NF_ERR_RANGE)?;
+        // Without domains or samples, as many places as there may be have nothing to draw.
+        if needed == 0 {
+            return Ok(());
+        }
         if len < needed {
             return Err(NF_ERR_MEMORY);
         }

@@ -75,9 +75,8 @@ pub struct nf_tile {
 pub unsafe extern "C" fn nf_tile_builtin(id: u32, out: *mut nf_tile) -> nf_status {
     status((|| {
         let tile = Builtin::from_id(id).ok_or(NF_ERR_RANGE)?.tile().map_err(status_of)?;
-        // SAFETY: the caller passes NULL or a place for a tile.
-        *unsafe { convert::reference_mut(out) }? = view(tile);
-        Ok(())
+        // SAFETY: the caller passes NULL or room for a tile.
+        unsafe { convert::write(out, view(tile)) }
     })())
 }
 
@@ -95,9 +94,8 @@ pub unsafe extern "C" fn nf_tile_from_bytes(bytes: *const c_void, len: usize, ou
         // SAFETY: the caller passes `len` bytes that no one writes meanwhile.
         let bytes = unsafe { convert::slice(bytes.cast::<u8>(), len) }?;
         let tile = Tile::from_bytes(bytes).map_err(status_of)?;
-        // SAFETY: the caller passes NULL or a place for a tile.
-        *unsafe { convert::reference_mut(out) }? = view(tile);
-        Ok(())
+        // SAFETY: the caller passes NULL or room for a tile.
+        unsafe { convert::write(out, view(tile)) }
     })())
 }
 

@@ -28,6 +28,10 @@ pub fn fill(
         return Err(Error::Range);
     }
     let len = fill_len(domains, width, height, samples).ok_or(Error::Range)?;
+    // Without domains or samples, as many places as there may be have nothing to draw.
+    if len == 0 {
+        return Ok(());
+    }
     let mut rest = u.get_mut(..len).ok_or(Error::Memory)?;
     for y in 0..height {
         for x in 0..width {
