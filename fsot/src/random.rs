@@ -7,6 +7,23 @@ pub fn stream(seed: u64, iteration: u64, slice: u64) -> Rng {
     Rng::new(mix(seed, iteration, slice, 1), mix(seed, iteration, slice, 2))
 }
 
+/// A unit vector, uniform on the sphere.
+pub(crate) fn direction(dims: usize, rng: &mut Rng) -> Vec<f64> {
+    loop {
+        let normal: Vec<f64> = (0..dims).map(|_| gaussian(rng)).collect();
+        let length = normal.iter().map(|a| a * a).sum::<f64>().sqrt();
+        if length > 1e-9 {
+            return normal.iter().map(|a| a / length).collect();
+        }
+    }
+}
+
+/// A standard normal number (Box and Muller 1958).
+fn gaussian(rng: &mut Rng) -> f64 {
+    let radius = (-2.0 * libm::log(1.0 - rng.uniform_f64())).sqrt();
+    radius * libm::cos(std::f64::consts::TAU * rng.uniform_f64())
+}
+
 /// The finaliser of SplitMix64 (Steele, Lea, Flood 2014) over a chain of numbers.
 fn mix(seed: u64, iteration: u64, slice: u64, salt: u64) -> u64 {
     [seed, iteration, slice].into_iter().fold(salt.wrapping_mul(0x9e37_79b9_7f4a_7c15), |state, value| {

@@ -215,3 +215,33 @@ fn functions_that_are_no_densities() {
     assert!(Function::new(0, 10, |_| 1.0).is_err());
     assert!(Function::new(9, 10, |_| 1.0).unwrap_err().to_string().contains("1 to 8"));
 }
+
+#[test]
+fn the_scale_of_a_density_does_not_matter() {
+    for dims in 1..=4 {
+        let of = |scale: f32| Function::new(dims, 4096, move |x| scale * hill(x)).unwrap();
+        let direction = direction(dims, 2);
+        let bins = |target: &Function| {
+            let (mut means, mut density) = ([f32::NAN; 64], [f32::NAN; 64]);
+            target.bins(&direction, &mut means, &mut density, &mut Vec::new());
+            (means, density)
+        };
+        let (means, density) = bins(&of(1.0));
+        for scale in [1e35, 1e-35] {
+            let target = of(scale);
+            let (scaled_means, scaled_density) = bins(&target);
+            for i in 0..64 {
+                assert!((means[i] - scaled_means[i]).abs() < 1e-5, "{} for {}", scaled_means[i], means[i]);
+                assert!(
+                    (density[i] / scaled_density[i] - 1.0).abs() < 1e-3,
+                    "{} for {}",
+                    scaled_density[i],
+                    density[i]
+                );
+            }
+            let mut point = vec![f32::NAN; dims];
+            target.sample(&mut stream(1, 0, 0), &mut point);
+            assert!(point.iter().all(|x| (0.0..1.0).contains(x)), "{point:?}");
+        }
+    }
+}

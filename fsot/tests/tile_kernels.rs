@@ -24,6 +24,24 @@ fn the_convolution_of_gaussians_is_nearly_the_gaussian_of_their_summed_variance(
 }
 
 #[test]
+fn convolutions_have_two_factors_and_a_largest_radius() {
+    for factors in [3, 1000] {
+        let error = vec!["perceptual"; factors].join("*").parse::<Kernel>().unwrap_err().to_string();
+        assert!(error.contains(&format!("not of {factors}")), "{error}");
+    }
+    let nested = Kernel::Convolution(Box::new("box*box".parse().unwrap()), Box::new(Kernel::Box));
+    assert!(nested.taps().is_err());
+    // Radii, tails included: 68 and 68, 68 and 2, 48 and 48.
+    let error = "gaussian:16*gaussian:16".parse::<Kernel>().unwrap_err().to_string();
+    assert!(error.contains("at most 96"), "{error}");
+    for good in ["gaussian:16*gaussian:0.5", "gaussian:11.2*gaussian:11.2", "perceptual*perceptual"] {
+        good.parse::<Kernel>().unwrap();
+    }
+    let wide = Kernel::Tabulated(vec![vec![1.0; 301]; 301]);
+    assert!(Kernel::Convolution(Box::new(wide), Box::new(Kernel::Box)).taps().is_err());
+}
+
+#[test]
 fn convolution_with_a_box_changes_nothing() {
     let plain = Kernel::Tabulated(vec![vec![0.0, 0.5, 0.0], vec![0.25, 1.0, 0.25], vec![0.0, 0.5, 0.0]]);
     let both = Kernel::Convolution(Box::new(plain.clone()), Box::new(Kernel::Box));
@@ -118,4 +136,13 @@ fn every_shipped_tile_is_what_its_name_says() {
         assert_eq!(problem.frames > 1, name.ends_with("TEMPORAL"));
     }
     assert!(presets::preset("128_2SPP_2D").is_none());
+}
+
+#[test]
+fn the_presets_are_the_tiles_of_the_core_crate() {
+    let mut names = presets::NAMES;
+    let mut builtin = noisefloor::tile::Builtin::ALL.map(noisefloor::tile::Builtin::name);
+    names.sort_unstable();
+    builtin.sort_unstable();
+    assert_eq!(names, builtin);
 }

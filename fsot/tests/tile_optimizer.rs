@@ -165,7 +165,7 @@ fn whatever_is_out_of_range_is_named() {
         change(&mut problem);
         problem.validate().expect_err("accepted").to_string()
     };
-    let cases: [(&str, String); 26] = [
+    let cases: [(&str, String); 28] = [
         ("size is 24", with(|p| p.size = 24)),
         ("size is 4", with(|p| p.size = 4)),
         ("size is 2048", with(|p| p.size = 2048)),
@@ -181,6 +181,21 @@ fn whatever_is_out_of_range_is_named() {
         ("box class's share is 1.5", with(|p| p.box_class.share = 1.5)),
         ("box class's weight is NaN", with(|p| p.box_class.weight = f32::NAN)),
         ("frame share is -1", with(|p| p.frame_share = -1.0)),
+        (
+            "box and frame classes together is 1.4",
+            with(|p| {
+                (p.frames, p.temporal) = (16, Some(TemporalKernel::Ema(0.5)));
+                (p.box_class.share, p.frame_share) = (0.9, 0.5);
+            }),
+        ),
+        (
+            "all classes weigh",
+            with(|p| {
+                p.box_class = ClassShare { share: 0.5, weight: 1024.0 };
+                p.progressive = true;
+                p.prefixes = vec![ClassShare { share: 1.0, weight: 1024.0 }; p.spp.trailing_zeros() as usize + 1];
+            }),
+        ),
         ("probability of an axis is 2", with(|p| p.projections.axis = 2.0)),
         ("probability of a plane is 0.7", with(|p| p.projections = Projections { axis: 0.5, plane: 0.7 })),
         ("first step size is 0", with(|p| p.steps.first = 0.0)),
@@ -199,4 +214,32 @@ fn whatever_is_out_of_range_is_named() {
     for (expected, message) in cases {
         assert!(message.contains(expected), "'{message}' does not say '{expected}'");
     }
+}
+
+#[test]
+fn a_still_tile_has_no_frame_class() {
+    let mut problem = TileProblem::new(16, 4, 2);
+    (problem.box_class.share, problem.frame_share) = (0.9, 0.5);
+    problem.validate().unwrap();
+    (problem.frames, problem.temporal) = (2, None);
+    problem.validate().unwrap();
+}
+
+/// Sums of displacements are of 64 bits: two classes of 6,587 pixels (about) hold 2^18 = 262,144 times the weight 1
+/// between them when each weighs 19.9.
+#[test]
+fn weights_have_a_largest_sum() {
+    let weighing = |weight: f32| TileProblem {
+        kernel: Kernel::Gaussian(16.0),
+        reconstruction: Kernel::Gaussian(16.0),
+        box_class: ClassShare { share: 0.5, weight: 1.0 },
+        progressive: true,
+        prefixes: vec![ClassShare { share: 1.0, weight }],
+        ..TileProblem::new(128, 1, 2)
+    };
+    weighing(19.5).validate().unwrap();
+    assert!(weighing(20.5).validate().is_err());
+    // The perceptual kernel takes every weight that a class may have.
+    let heavy = TileProblem { prefixes: weighing(1024.0).prefixes, progressive: true, ..TileProblem::new(16, 1, 2) };
+    heavy.validate().unwrap();
 }

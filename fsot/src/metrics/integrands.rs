@@ -2,7 +2,6 @@
 
 use super::projection::Projection;
 use crate::random;
-use noisefloor::rng::Rng;
 use serde::Serialize;
 
 /// The two families.
@@ -39,7 +38,7 @@ impl Integrand {
         let mut rng = random::stream(seed, family as u64, index);
         match family {
             Family::HalfSpace => loop {
-                let normal = direction(dims, &mut rng);
+                let normal = random::direction(dims, &mut rng);
                 if dims > 1 && normal.iter().any(|a| a.abs() < smallest) {
                     continue;
                 }
@@ -76,23 +75,6 @@ impl Integrand {
             }
         }
     }
-}
-
-/// A uniform random direction of length 1.
-pub(crate) fn direction(dims: usize, rng: &mut Rng) -> Vec<f64> {
-    loop {
-        let normal: Vec<f64> = (0..dims).map(|_| gaussian(rng)).collect();
-        let length = normal.iter().map(|a| a * a).sum::<f64>().sqrt();
-        if length > 1e-9 {
-            return normal.iter().map(|a| a / length).collect();
-        }
-    }
-}
-
-/// A standard normal number (Box and Muller 1958).
-fn gaussian(rng: &mut Rng) -> f64 {
-    let radius = (-2.0 * libm::log(1.0 - rng.uniform_f64())).sqrt();
-    radius * libm::cos(std::f64::consts::TAU * rng.uniform_f64())
 }
 
 /// The integral over the unit cube of exp(-|x - c|^2 / (2 s^2)).

@@ -1,9 +1,8 @@
 //! The sliced Wasserstein distance to the uniform distribution (5.6), exact along every slice.
 
-use super::integrands::direction;
 use super::projection::Projection;
 use crate::points::Points;
-use crate::random;
+use crate::random::{self, direction};
 use rayon::prelude::*;
 use serde::Serialize;
 

@@ -1,7 +1,12 @@
 //! Ranks of projected points, in linear time.
 
+use std::ops::RangeInclusive;
+
 /// Projected coordinates are integers of this many bits: all that a sum of single-precision coordinates carries.
 pub(crate) const KEY_BITS: u32 = 23;
+
+/// Fewer keys than these are sorted by comparisons.
+const FEW: usize = 512;
 
 /// Memory for ranking; about 24 bytes per point.
 #[derive(Default)]
@@ -13,8 +18,9 @@ pub(crate) struct Ranking {
 }
 
 impl Ranking {
-    /// The most keys for [`Ranking::at_once`]: beyond, its buckets would not fit the cache.
-    pub(crate) const MOST_AT_ONCE: usize = 16_384;
+    /// The numbers of keys for [`Ranking::at_once`]: of fewer, a wrong bin is a large error; the buckets of more would not
+    /// fit the cache.
+    pub(crate) const AT_ONCE: RangeInclusive<usize> = FEW..=16_384;
 
     /// The rank of every key. Keys in the same bucket, of at least two per key, are ranked in the order given.
     ///
@@ -48,7 +54,7 @@ impl Ranking {
         let ranks = room(ranks, keys.len());
         elements.clear();
         elements.extend((0u32..).zip(keys).map(|(place, &key)| u64::from(key) << 32 | u64::from(place)));
-        if keys.len() < 512 {
+        if keys.len() < FEW {
             elements.sort_unstable();
             for (rank, &element) in (0..).zip(&*elements) {
                 ranks[element as u32 as usize] = rank;

@@ -80,7 +80,7 @@ pub(crate) fn transport<const D: usize>(
     project(slice, lengths, coordinates, low, top / width.max(f32::MIN_POSITIVE), keys);
 
     let ranks =
-        if bins.uniform && count <= Ranking::MOST_AT_ONCE { ranking.at_once(keys) } else { ranking.sorted(keys) };
+        if bins.uniform && Ranking::AT_ONCE.contains(&count) { ranking.at_once(keys) } else { ranking.sorted(keys) };
     let mut energy = 0.0;
     let mut before = 0;
     for range in &slice.selected {

@@ -50,12 +50,24 @@ impl Windows {
                 frames * step
             )));
         }
-        super::check_points(self.points())
+        let points = self.checked_points().ok_or_else(|| {
+            Error::Input(format!("{frames} frames of {window} points, {step} of them new in each, are too many points"))
+        })?;
+        super::check_points(points)
     }
 
-    /// Points of all frames: `(frames - 1) * step + window`; `frames * step` if cyclic.
+    /// Points of all frames: `(frames - 1) * step + window`; `frames * step` if cyclic. `usize::MAX` if there are more,
+    /// which [`check`](Self::check) refuses.
     pub fn points(&self) -> usize {
-        if self.cyclic { self.frames * self.step } else { (self.frames.max(1) - 1) * self.step + self.window }
+        self.checked_points().unwrap_or(usize::MAX)
+    }
+
+    fn checked_points(&self) -> Option<usize> {
+        if self.cyclic {
+            self.frames.checked_mul(self.step)
+        } else {
+            self.frames.saturating_sub(1).checked_mul(self.step)?.checked_add(self.window)
+        }
     }
 
     /// The points of a frame: a range, and the rest of it if it reaches beyond the last point of a cycle; ascending, one may be
@@ -182,7 +194,7 @@ fn shown(ranges: &[Range<usize>; 2], points: usize) -> ClassFunction {
     ClassFunction::Staircase(steps)
 }
 
-/// Points begin where the first frame that shows them has density.
+/// Points begin where a frame that shows them has density: the first one, or the last one of a cycle.
 fn starting(targets: &[Arc<ImageTarget>], windows: Windows, seed: u64) -> Points {
     let mut coordinates = Vec::with_capacity(2 * windows.points());
     for (frame, target) in targets.iter().enumerate() {
@@ -238,6 +250,14 @@ mod tests {
             [(0, 1, 1, false), (1, 0, 1, false), (1, 1, 0, false), (3, 10, 11, false), (3, 10, 3, true)]
         {
             assert!(matches!(windows(frames, window, step, cyclic).check(), Err(Error::Input(_))));
+        }
+        // Products and sums that a usize cannot hold.
+        const HUGE: usize = usize::MAX / 2 + 1;
+        for (frames, window, step) in [(4, HUGE, HUGE), (2, usize::MAX, 1), (HUGE, 2, 2), (HUGE + 1, 2, 2)] {
+            for cyclic in [false, true] {
+                let error = windows(frames, window, step, cyclic).check().unwrap_err();
+                assert!(matches!(error, Error::Input(_)), "{error}");
+            }
         }
         assert!(windows(1, 1, 1, false).check().is_ok());
     }

@@ -88,6 +88,7 @@ struct Cloud {
     dims: usize,
     /// Places with mass, one after the other.
     places: Vec<f32>,
+    /// The largest is from 1/2 to 1.
     masses: Vec<f32>,
     /// Running sums of the masses.
     cumulative: Vec<f64>,
@@ -106,7 +107,6 @@ impl Cloud {
         let mut steps = [0.0f64; MAX_DIMS];
         steps.iter_mut().enumerate().for_each(|(k, step)| *step = libm::pow(root, -(k as f64 + 1.0)));
         let mut cloud = Cloud { dims, places: Vec::new(), masses: Vec::new(), cumulative: Vec::new(), spacing: 0.0 };
-        let mut sum = 0.0;
         for i in 0..count {
             let mut place = [0.0f32; MAX_DIMS];
             for (x, step) in place.iter_mut().zip(steps) {
@@ -117,12 +117,19 @@ impl Cloud {
             if mass > 0.0 {
                 cloud.places.extend(&place[..dims]);
                 cloud.masses.push(mass);
-                sum += f64::from(mass);
-                cloud.cumulative.push(sum);
             }
         }
-        if sum <= 0.0 {
+        let largest = cloud.masses.iter().copied().fold(0.0, f32::max);
+        if largest <= 0.0 {
             return Err(nothing());
+        }
+        // Any scale is allowed, but sums are in f32. A power of two, so that no mass is rounded.
+        let scale = libm::ldexp(1.0, -libm::frexp(f64::from(largest)).1);
+        let mut sum = 0.0;
+        for mass in &mut cloud.masses {
+            *mass = (f64::from(*mass) * scale) as f32;
+            sum += f64::from(*mass);
+            cloud.cumulative.push(sum);
         }
         cloud.spacing = libm::pow(count as f64, -1.0 / dims as f64) as f32;
         Ok(cloud)

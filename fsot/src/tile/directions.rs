@@ -1,6 +1,7 @@
 //! The directions that the samples are projected on.
 
 use super::problem::TileProblem;
+use crate::random;
 use core::f64::consts::PI;
 use noisefloor::rng::Rng;
 
@@ -19,7 +20,7 @@ pub(super) fn draw(problem: &TileProblem, rng: &mut Rng) -> Vec<Vec<f32>> {
             } else if kind < problem.projections.axis + problem.projections.plane {
                 plane(problem.dims, turn, rng)
             } else {
-                sphere(problem.dims, rng)
+                random::direction(problem.dims, rng).into_iter().map(|value| value as f32).collect()
             }
         })
         .collect()
@@ -40,22 +41,4 @@ fn plane(dims: usize, turn: f64, rng: &mut Rng) -> Vec<f32> {
     direction[first] = libm::cos(PI * turn) as f32;
     direction[second] = libm::sin(PI * turn) as f32;
     direction
-}
-
-/// Uniform on the sphere: a normalised Gaussian vector.
-fn sphere(dims: usize, rng: &mut Rng) -> Vec<f32> {
-    loop {
-        let mut direction: Vec<f64> = (0..dims).map(|_| normal(rng)).collect();
-        let norm = direction.iter().map(|value| value * value).sum::<f64>().sqrt();
-        if norm > 1e-6 {
-            direction.iter_mut().for_each(|value| *value /= norm);
-            return direction.iter().map(|&value| value as f32).collect();
-        }
-    }
-}
-
-/// Standard normal (Box, Muller 1958).
-fn normal(rng: &mut Rng) -> f64 {
-    let radius = (-2.0 * libm::log(1.0 - rng.uniform_f64())).sqrt();
-    radius * libm::cos(2.0 * PI * rng.uniform_f64())
 }

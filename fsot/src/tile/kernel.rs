@@ -16,6 +16,10 @@ pub const RECONSTRUCTION_SIGMA: f32 = 0.5;
 /// The largest standard deviation of a Gaussian kernel, in pixels.
 const MAX_SIGMA: f32 = 16.0;
 
+/// The largest sum of the radii of two kernels that are convolved, in pixels. A Gaussian of standard deviation s counts
+/// 4.29 s: the result needs more of it than it will keep.
+const MAX_RADIUS: usize = 96;
+
 /// The weight, relative to the largest, below which a kernel ends: a Gaussian of standard deviation s has radius 2.86
 /// s.
 const CUT: f32 = 1.0 / 60.0;
@@ -43,7 +47,8 @@ pub enum Kernel {
     Gaussian(f32),
     /// A Gaussian of standard deviation [`PERCEPTUAL_SIGMA`]: what the eye makes of the pixels at a usual distance.
     Perceptual,
-    /// The convolution of two kernels: `p * r` in 5.6.1.
+    /// The convolution of two kernels, themselves no convolutions: `p * r` in 5.6.1. A Gaussian's radius is 4.29 standard
+    /// deviations here; the radii of both add up to at most 96 pixels.
     Convolution(Box<Kernel>, Box<Kernel>),
     /// Any non-negative function: an odd number of rows as long as there are rows, the pixel itself in the centre.
     Tabulated(Vec<Vec<f32>>),
@@ -82,7 +87,21 @@ impl Kernel {
             Kernel::Box => Ok(vec![vec![1.0]]),
             Kernel::Perceptual => gaussian(PERCEPTUAL_SIGMA, reach),
             Kernel::Gaussian(sigma) => gaussian(*sigma, reach),
-            Kernel::Convolution(first, second) => Ok(convolve(&first.table(1.5)?, &second.table(1.5)?)),
+            Kernel::Convolution(first, second) => {
+                let nested = |kernel: &Kernel| matches!(kernel, Kernel::Convolution(..));
+                if nested(first) || nested(second) {
+                    return Err(Error::input("a kernel is the convolution of two others at most"));
+                }
+                let (first, second) = (first.table(1.5)?, second.table(1.5)?);
+                let (a, b) = (first.len() / 2, second.len() / 2);
+                if a + b > MAX_RADIUS {
+                    return Err(Error::input(format!(
+                        "kernels of radius {a} and {b} pixels, tails included, are too wide to convolve: the radii add \
+                         up to at most {MAX_RADIUS}"
+                    )));
+                }
+                Ok(convolve(&first, &second))
+            }
             Kernel::Tabulated(rows) => {
                 let side = rows.len();
                 let square = side % 2 == 1 && rows.iter().all(|row| row.len() == side);
@@ -140,6 +159,12 @@ impl FromStr for Kernel {
             ))
         };
         let kernel = match text.split_once('*') {
+            Some((_, second)) if second.contains('*') => {
+                let factors = text.split('*').count();
+                return Err(Error::input(format!(
+                    "a kernel is the convolution of two others at most, not of {factors}"
+                )));
+            }
             Some((first, second)) => Kernel::Convolution(Box::new(first.parse()?), Box::new(second.parse()?)),
             None => match text.trim().split_once(':') {
                 None => match text.trim() {

@@ -73,6 +73,8 @@ pub struct ClassShare {
     /// The share of the slices: 0 to 1.
     pub share: f32,
     /// What its displacements count, those of the perceptual class of all samples counting 1: above 0, at most 1024.
+    /// The weight of a class times that of a prefix may be less: times the pixels of the class, over all classes, it
+    /// adds up to at most 2^18, so that sums of displacements fit 64 bits. The perceptual kernel has 113 pixels.
     pub weight: f32,
 }
 
@@ -193,7 +195,7 @@ impl TileProblem {
         check_weight("the box class's weight", weight)?;
         check((0.0..=1.0).contains(&self.frame_share), "the frame share", self.frame_share, "0 to 1")?;
         check(
-            share + self.frame_share <= 1.0,
+            self.temporal.is_none() || share + self.frame_share <= 1.0,
             "the shares of the box and frame classes together",
             share + self.frame_share,
             "at most 1",

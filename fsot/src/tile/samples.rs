@@ -47,8 +47,7 @@ impl TileSamples {
         if !(1..=16).contains(&bits) {
             return Err(Error::input(format!("a coordinate is stored in 1 to 16 bits, not in {bits}")));
         }
-        let levels = (1u32 << bits) as f32;
-        Ok(self.coordinates.iter().map(|&value| (value * levels).min(levels - 1.0) as u16).collect())
+        Ok(self.coordinates.iter().map(|&value| noisefloor::tile::quantize(value, bits)).collect())
     }
 
     /// The tile with `spp` samples per pixel, the first ones of each. An [`Error::Input`] if there are not as many.
