@@ -117,7 +117,7 @@ mod tests {
             prop::collection::vec(unit.clone(), 1..9).prop_map(ClassFunction::Tabulated),
             prop::collection::vec(unit, 1..9).prop_map(|values| {
                 let count = values.len() as f32;
-                let step = |(i, value)| Step { to: (i as f32 + 1.0) / count, value };
+                let step = |(i, value)| Step { to: (i + 1.0) / count, value };
                 ClassFunction::Staircase(
                     (0..).zip(values).map(|(i, value): (u16, f32)| step((f32::from(i), value))).collect(),
                 )
