@@ -12,7 +12,7 @@ use serde::Serialize;
 const PARTS: usize = 16;
 const SEED: u64 = 0x711e;
 
-/// The samples of a tile: `coordinates` is laid out [frame][y][x][sample][dim].
+/// The samples of a tile: `coordinates` is laid out `[frame][y][x][sample][dim]`.
 #[derive(Clone, Copy, Debug)]
 pub struct TileView<'a> {
     size: usize,
@@ -223,7 +223,7 @@ fn pairs_of(family: Family, axes: &[usize], count: usize) -> Vec<[Integrand; 2]>
     all.chunks_exact(2).map(|pair| [pair[0].clone(), pair[1].clone()]).collect()
 }
 
-/// Error images of a pair of integrands, as real and imaginary parts, of the first samples of every pixel: [frame][prefix] of [y][x].
+/// Error images of a pair of integrands, as real and imaginary parts, of the first samples of every pixel: `[frame][prefix]` of `[y][x]`.
 fn errors(tile: &TileView, axes: &[usize], pair: &[Integrand; 2], prefixes: &[usize]) -> Vec<Plane> {
     let pixels = tile.size * tile.size;
     let mut images = vec![vec![Complex::new(0.0, 0.0); pixels]; tile.frames * prefixes.len()];
@@ -255,16 +255,16 @@ fn errors(tile: &TileView, axes: &[usize], pair: &[Integrand; 2], prefixes: &[us
     images
 }
 
-/// Sums over integrands of mean squares: [family] of each filter.
+/// Sums over integrands of mean squares: `[family]` of each filter.
 type Sums = [f64; 4];
 
 /// Sums of one family.
 struct Parts {
-    /// [prefix], over frames.
+    /// `[prefix]`, over frames.
     prefixes: Vec<Sums>,
-    /// [frame], all samples.
+    /// `[frame]`, all samples.
     frames: Vec<Sums>,
-    /// [temporal frequency], all samples.
+    /// `[temporal frequency]`, all samples.
     times: Vec<Sums>,
 }
 
