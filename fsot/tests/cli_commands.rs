@@ -1,8 +1,6 @@
 //! Every subcommand's ordinary use, in small.
 
-mod cli_support;
-
-use cli_support::Place;
+use crate::cli_support::{Place, error};
 use fsot::export::nft::TileFile;
 use fsot::export::sidecar::Sidecar;
 use fsot::read;
@@ -156,7 +154,7 @@ fn a_tile_is_told_about_and_exported() {
     place.write("t.toml", String::from_utf8(place.read("t.toml")).unwrap().replace("sha256 = \"", "sha256 = \"0"));
     let output = place.run("info t.nft");
     assert!(output.status.success());
-    assert!(cli_support::error(&output).contains("describes another tile"));
+    assert!(error(&output).contains("describes another tile"));
 }
 
 #[test]
