@@ -83,7 +83,7 @@ impl Samples {
 impl Tile {
     /// Reads a file.
     pub(crate) fn read(&self, path: &Path) -> Result<Content> {
-        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("nft")) {
+        if read::ending(path) == "nft" {
             let file = TileFile::read(path)?;
             let view = file.view();
             return Ok(Content::Tile(Samples {
@@ -204,7 +204,7 @@ fn prefix(args: &Args, contents: &[Content]) -> Result<(String, Value)> {
     let errors = metrics::prefix_errors(&sets, &counts, args.integrands as usize)?;
     if let Some(path) = &args.plot {
         let sheet = figure::prefix_errors(&title(&args.files), &errors);
-        let is_svg = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+        let is_svg = read::ending(path) == "svg";
         output::write(path, &if is_svg { sheet.svg()?.into_bytes() } else { sheet.png()? })?;
     }
     let text = format!(
