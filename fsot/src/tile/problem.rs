@@ -3,6 +3,7 @@
 use super::kernel::Kernel;
 use super::stencil::{self, Stencils};
 use super::temporal::TemporalKernel;
+use crate::optimize::Quality;
 use crate::{Error, error::Result};
 
 /// The largest side of a tile, in pixels.
@@ -50,7 +51,7 @@ pub struct TileProblem {
     pub frame_share: f32,
     /// Seed of everything random.
     pub seed: u64,
-    /// Steps in all: 1 to 2^24. See [`Quality`].
+    /// Steps in all: 1 to 2^24. See [`iterations`].
     pub iterations: u64,
     /// Directions drawn for each step; every slice takes one of them. 1 to 16.
     pub directions: usize,
@@ -108,25 +109,13 @@ pub enum Domain {
     Toroidal,
 }
 
-/// How long to optimise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quality {
-    /// To look at.
-    Draft,
-    /// The knee of error against time.
-    Standard,
-    /// The shipped tiles.
-    High,
-}
-
-impl Quality {
-    /// Iterations.
-    pub fn iterations(self) -> u64 {
-        match self {
-            Quality::Draft => 256,
-            Quality::Standard => 1024,
-            Quality::High => 4096,
-        }
+/// The steps that a tile takes: those to look at it, the knee of error against time, or those of most shipped tiles.
+pub fn iterations(quality: Quality) -> u64 {
+    match quality {
+        Quality::Draft => 256,
+        Quality::Standard => 1024,
+        Quality::High => 4096,
+        Quality::Iterations(iterations) => iterations,
     }
 }
 
@@ -146,7 +135,7 @@ impl TileProblem {
             reconstruction: Kernel::Box,
             frame_share: 0.5,
             seed: 1,
-            iterations: Quality::Standard.iterations(),
+            iterations: iterations(Quality::Standard),
             directions: 4,
             projections: Projections { axis: 0.0, plane: if dims > 2 { 0.2 } else { 0.0 } },
             steps: Steps { first: 4.0, last: 0.05, hold: 0.3 },
