@@ -1,13 +1,14 @@
 //! Stochastic descent of the sliced barycentre (5.18) of all pixels' classes, one slice per pixel and step.
 
 use super::directions;
-use super::problem::{Domain, TileProblem};
+use super::problem::TileProblem;
 use super::projection::Projection;
 use super::rank::{POSITION_BITS, Sorter};
 use super::samples::TileSamples;
 use super::stencil::{Lattice, Stencils, WEIGHT_UNIT};
 use crate::error::Result;
 use crate::memory;
+use crate::optimize::Domain;
 use crate::points::BELOW_ONE;
 use crate::random::stream;
 use crate::run::Optimization;

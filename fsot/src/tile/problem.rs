@@ -3,7 +3,7 @@
 use super::kernel::Kernel;
 use super::stencil::{self, Stencils};
 use super::temporal::TemporalKernel;
-use crate::optimize::Quality;
+use crate::optimize::{Domain, Quality};
 use crate::{Error, error::Result};
 
 /// The largest side of a tile, in pixels.
@@ -64,7 +64,7 @@ pub struct TileProblem {
     /// The threshold of a slice is z = u^e with u uniform on [0, 1): above 1 prefers wide subclasses. For a Gaussian
     /// kernel it is the same as a standard deviation sqrt(e) times as large. 0.25 to 4.
     pub threshold_exponent: f32,
-    /// The domain of the samples.
+    /// The domain of the samples. Every step looks at a torus from another random shift.
     pub domain: Domain,
 }
 
@@ -98,15 +98,6 @@ pub struct Steps {
     pub last: f32,
     /// Where it begins to fall: 0 to 1.
     pub hold: f32,
-}
-
-/// The domain of the samples.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Domain {
-    /// The unit cube.
-    Bounded,
-    /// The unit torus: every step looks at it from another random shift.
-    Toroidal,
 }
 
 /// The steps that a tile takes: those to look at it, the knee of error against time, or those of most shipped tiles.
