@@ -9,6 +9,7 @@ use fsot::metrics::{self, TileOptions, TileView, figure};
 use fsot::output;
 use fsot::points::Points;
 use fsot::read;
+use noisefloor::tile::Shape;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -85,14 +86,9 @@ impl Tile {
     pub(crate) fn read(&self, path: &Path) -> Result<Content> {
         if read::ending(path) == "nft" {
             let file = TileFile::read(path)?;
-            let view = file.view();
-            return Ok(Content::Tile(Samples {
-                size: view.size,
-                spp: view.spp,
-                dims: view.dims,
-                frames: view.frames,
-                coordinates: file.coordinates(),
-            }));
+            let Shape { size, spp, dims, frames, .. } = file.header().shape();
+            let [size, spp, dims, frames] = [size, spp, dims, frames].map(|length| length as usize);
+            return Ok(Content::Tile(Samples { size, spp, dims, frames, coordinates: file.coordinates() }));
         }
         let table = read::points(path)?;
         metrics::check(&table.points).map_err(in_file(path))?;
