@@ -5,15 +5,8 @@ use super::stencil::{self, Stencils};
 use super::temporal::TemporalKernel;
 use crate::optimize::{Domain, Quality};
 use crate::{Error, error::Result};
+use noisefloor::tile::{MAX_DIMS, MAX_FRAMES, MAX_SIZE, MAX_SPP};
 
-/// The largest side of a tile, in pixels.
-const MAX_SIZE: usize = 1024;
-/// The most samples per pixel.
-const MAX_SPP: usize = 256;
-/// The most coordinates per sample.
-const MAX_DIMS: usize = 8;
-/// The most frames.
-const MAX_FRAMES: usize = 256;
 /// The most coordinates in all.
 const MAX_COORDINATES: usize = 1 << 28;
 /// The most iterations.
@@ -162,11 +155,12 @@ impl TileProblem {
     }
 
     fn check_ranges(&self) -> Result<()> {
-        let power = |n: usize, from: usize, to: usize| n.is_power_of_two() && (from..=to).contains(&n);
+        let within = |n: usize, from: usize, to: u32| (from..=to as usize).contains(&n);
+        let power = |n: usize, from: usize, to: u32| n.is_power_of_two() && within(n, from, to);
         check(power(self.size, 8, MAX_SIZE), "size", self.size, "a power of two from 8 to 1024 pixels")?;
         check(power(self.spp, 1, MAX_SPP), "spp", self.spp, "a power of two from 1 to 256 samples per pixel")?;
-        check((1..=MAX_DIMS).contains(&self.dims), "dims", self.dims, "1 to 8 dimensions")?;
-        check((1..=MAX_FRAMES).contains(&self.frames), "frames", self.frames, "1 to 256 frames")?;
+        check(within(self.dims, 1, MAX_DIMS), "dims", self.dims, "1 to 8 dimensions")?;
+        check(within(self.frames, 1, MAX_FRAMES), "frames", self.frames, "1 to 256 frames")?;
         check(self.coordinates() <= MAX_COORDINATES, "the number of coordinates", self.coordinates(), "at most 2^28")?;
         check((1..=MAX_ITERATIONS).contains(&self.iterations), "iterations", self.iterations, "1 to 2^24")?;
         check((1..=MAX_DIRECTIONS).contains(&self.directions), "directions", self.directions, "1 to 16 per step")?;
