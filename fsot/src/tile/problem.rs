@@ -129,6 +129,14 @@ impl TileProblem {
         }
     }
 
+    /// The spatial and the temporal class function in words, as a tile's file names them.
+    pub fn kernels(&self) -> String {
+        match &self.temporal {
+            None => self.kernel.to_string(),
+            Some(temporal) => format!("{}, over frames {temporal}", self.kernel),
+        }
+    }
+
     /// All coordinates: of every dimension of every sample of every pixel of every frame.
     pub fn coordinates(&self) -> usize {
         self.frames * self.size * self.size * self.spp * self.dims

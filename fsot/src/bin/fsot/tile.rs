@@ -81,10 +81,7 @@ fn make(args: &Args) -> Result<()> {
     args.common.check_outputs(sidecar.as_deref())?;
     let problem = problem(args)?;
     let shape = shape(&problem, args.bits);
-    let kernel = problem
-        .temporal
-        .as_ref()
-        .map_or_else(|| problem.kernel.to_string(), |temporal| format!("{}, over frames {temporal}", problem.kernel));
+    let kernel = problem.kernels();
     // Refuses what a tile's file cannot hold before the work.
     nft::header(shape, problem.seed, &kernel)?;
     let mut optimizer = TileOptimizer::new(problem.clone())?;
