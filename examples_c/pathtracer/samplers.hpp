@@ -41,33 +41,23 @@ inline std::vector<Group> group(const std::vector<Domain> &domains, uint32_t lim
     return groups;
 }
 
-// Independent uniform points.
-class RandomSampler final : public Sampler {
+// What one function makes from a pixel's key.
+template <void (*make_points)(uint64_t key, size_t n, uint32_t dims, float *u)>
+class KeyedSampler final : public Sampler {
 public:
-    explicit RandomSampler(const SamplerSetup &setup) : setup_(setup) {}
+    explicit KeyedSampler(const SamplerSetup &setup) : setup_(setup) {}
 
     void points(uint32_t x, uint32_t y, float *u) const override
     {
-        random_points(pixel_key(setup_.seed, setup_.frame, x, y), setup_.samples, setup_.dims, u);
+        make_points(pixel_key(setup_.seed, setup_.frame, x, y), setup_.samples, setup_.dims, u);
     }
 
 private:
     SamplerSetup setup_;
 };
 
-// For references only.
-class LatticeSampler final : public Sampler {
-public:
-    explicit LatticeSampler(const SamplerSetup &setup) : setup_(setup) {}
-
-    void points(uint32_t x, uint32_t y, float *u) const override
-    {
-        lattice_points(pixel_key(setup_.seed, setup_.frame, x, y), setup_.samples, setup_.dims, u);
-    }
-
-private:
-    SamplerSetup setup_;
-};
+using RandomSampler = KeyedSampler<random_points>;   // independent uniform points
+using LatticeSampler = KeyedSampler<lattice_points>; // for references only
 
 // Owen-scrambled Sobol points, scrambled anew in each pixel. Groups of up to four dimensions are paired in a random order
 // ("padding").

@@ -1,8 +1,9 @@
 //! Optimises a tile and prints it as text, one row of coordinates per sample in `[y][x][sample]` order: `tile_text SIZE
 //! SPP DIMS [name=value]...` with the names of the fields of `TileProblem`.
 
+use fsot::optimize::Domain;
 use fsot::run::Optimization;
-use fsot::tile::{ClassShare, Domain, Projections, Steps, TileOptimizer, TileProblem, presets};
+use fsot::tile::{ClassShare, Projections, Steps, TileOptimizer, TileProblem, presets};
 use std::io::Write;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -39,7 +39,7 @@ impl Outputs {
     /// # Errors
     /// As [`check`]; the folder's disk is full; `path` was added before.
     pub fn add(&mut self, path: &Path, bytes: &[u8]) -> Result<()> {
-        let place = check(path)?;
+        let place = place(path)?;
         if self.pending.iter().any(|pending| pending.path() == place) {
             return Err(Error::Input(format!("two outputs have the same name {}: give each its own", path.display())));
         }
@@ -87,6 +87,15 @@ impl Pending {
 /// # Errors
 /// The folder is missing or cannot be written to; `path` is a folder; `path` is a read-only file.
 pub fn check(path: &Path) -> Result<PathBuf> {
+    let place = place(path)?;
+    if !is_stream(&place) {
+        temporary(&place).map_err(Error::io(path))?;
+    }
+    Ok(place)
+}
+
+/// As [`check`], but for whether a file can be made in the folder.
+fn place(path: &Path) -> Result<PathBuf> {
     if is_stream(path) {
         return Ok(path.to_owned());
     }
@@ -110,7 +119,6 @@ pub fn check(path: &Path) -> Result<PathBuf> {
             folder.display()
         )));
     }
-    temporary(&place).map_err(Error::io(path))?;
     // One name for one place, whether it exists or not.
     Ok(match (fs::canonicalize(folder), place.file_name()) {
         (Ok(folder), Some(name)) => folder.join(name),

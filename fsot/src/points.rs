@@ -1,5 +1,8 @@
 //! Point sets.
 
+/// The largest coordinate: the number before 1.
+pub(crate) const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
+
 /// Points of `dims` coordinates each, one after the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Points {

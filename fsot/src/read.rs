@@ -24,6 +24,11 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// The ending of a file's name, in lower case; empty if it has none.
+pub fn ending(path: &Path) -> String {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
+}
+
 /// A picture, PNG, JPEG or OpenEXR by its content, whatever its name says.
 ///
 /// # Errors

@@ -1,12 +1,11 @@
 //! Every subcommand's ordinary use, in small.
 
-mod cli_support;
-
-use cli_support::Place;
+use crate::cli_support::{Place, error};
 use fsot::export::nft::TileFile;
 use fsot::export::sidecar::Sidecar;
 use fsot::read;
 use image::{GrayImage, Luma};
+use noisefloor::tile::Shape;
 use serde_json::Value;
 
 const FAST: &str = "--iterations 20";
@@ -112,8 +111,8 @@ fn a_tile_and_its_sidecar() {
             place.succeed(&format!("tile --size 16 {options} --seed 3 --integrands 8 --out t.nft --iterations 4"));
         assert!(printed.contains("half-spaces"), "{printed}");
         let file = TileFile::read(&place.path("t.nft")).unwrap();
-        let view = file.view();
-        assert_eq!((view.size, view.spp, view.dims, view.frames, view.bits), shape);
+        let Shape { size, spp, dims, frames, bits, .. } = file.view().shape();
+        assert_eq!((size, spp, dims, frames, bits), shape);
         let sidecar = Sidecar::read(&place.path("t.nft")).unwrap().unwrap();
         assert!(sidecar.describes(file.bytes()));
         assert_eq!((sidecar.seed, sidecar.iterations), (3, 4));
@@ -146,7 +145,7 @@ fn a_tile_is_told_about_and_exported() {
         place.succeed(&format!("export t.nft --format {format} --out t.{format}"));
     }
     let file = TileFile::read(&place.path("t.nft")).unwrap();
-    assert_eq!(place.read("t.raw"), file.view().payload);
+    assert_eq!(place.read("t.raw"), file.view().payload());
     assert_eq!(image::open(place.path("t.png")).unwrap().into_rgb16().dimensions(), (16, 32));
     let exr = image::open(place.path("t.exr")).unwrap().into_rgb32f();
     assert_eq!(exr.get_pixel(0, 0).0[..2], file.coordinates()[..2]);
@@ -156,7 +155,7 @@ fn a_tile_is_told_about_and_exported() {
     place.write("t.toml", String::from_utf8(place.read("t.toml")).unwrap().replace("sha256 = \"", "sha256 = \"0"));
     let output = place.run("info t.nft");
     assert!(output.status.success());
-    assert!(cli_support::error(&output).contains("describes another tile"));
+    assert!(error(&output).contains("describes another tile"));
 }
 
 #[test]

@@ -1,8 +1,6 @@
 //! Names, pictures and sizes that are seldom: what is made of them, or why nothing is.
 
-mod cli_support;
-
-use cli_support::{Place, error};
+use crate::cli_support::{Place, error};
 use fsot::export::sidecar::Sidecar;
 use fsot::read;
 use image::{GrayImage, Luma, Rgb, Rgb32FImage};

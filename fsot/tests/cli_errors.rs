@@ -1,8 +1,6 @@
 //! Everything bad that a person can give: exit code 2, a sentence, and no file changed.
 
-mod cli_support;
-
-use cli_support::{Place, error};
+use crate::cli_support::{Place, error};
 use image::GrayImage;
 
 #[test]

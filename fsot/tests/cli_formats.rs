@@ -1,9 +1,10 @@
 //! Point sets read back as they were written; exports that other programs accept.
 
 use fsot::export::points::{Format, Labels, Table, encode};
-use fsot::export::tile::{self, View};
+use fsot::export::tile;
 use fsot::points::Points;
 use fsot::read;
+use noisefloor::tile::{Shape, Tile};
 use std::fs;
 use std::process::Command;
 
@@ -13,6 +14,12 @@ fn table(dims: usize, classes: bool) -> Table {
         (0..20 * dims).map(|_| rng.uniform_f32()).chain(vec![f32::MIN_POSITIVE; dims]).collect();
     let names = (0..21).map(|index| ["red", "blue"][index % 2].to_owned());
     Table { points: Points::new(dims, coordinates), classes: classes.then(|| Labels::from_names(names)) }
+}
+
+/// Of size, samples, dimensions, frames and bits.
+fn view_of([size, spp, dims, frames, bits]: [usize; 5], payload: &[u8]) -> Tile<'_> {
+    let [size, spp, dims, frames, bits] = [size, spp, dims, frames, bits].map(|length| length as u32);
+    Tile::new(Shape { size, spp, dims, frames, bits, progressive: false }, payload).unwrap()
 }
 
 #[test]
@@ -73,7 +80,7 @@ fn textures_have_the_documented_layout() {
     let (size, spp, dims, frames) = (2, 2, 5, 3);
     let count = frames * size * size * spp * dims;
     let payload: Vec<u8> = (0..count as u16).flat_map(|v| (v * 7).to_le_bytes()).collect();
-    let view = View { size, spp, dims, frames, bits: 16, payload: &payload };
+    let view = view_of([size, spp, dims, frames, 16], &payload);
     let png = image::load_from_memory(&tile::png(&view).unwrap()).unwrap().into_rgba16();
     let exr = image::load_from_memory(&tile::exr(&view).unwrap()).unwrap().into_rgba32f();
     assert_eq!(png.dimensions(), (2, (2 * frames * spp * 2) as u32));
@@ -84,7 +91,7 @@ fn textures_have_the_documented_layout() {
         assert_eq!(png.get_pixel(texel.0, texel.1).0[dim % 4], value);
         assert_eq!(exr.get_pixel(texel.0, texel.1).0[dim % 4], (f32::from(value) + 0.5) / 65536.0);
     }
-    let short = View { payload: &payload[1..], ..view };
+    let short = Tile::resume(view.shape(), &payload[1..]);
     assert!(tile::png(&short).is_err() && tile::exr(&short).is_err());
     assert!(tile::c_header(&short, "t").is_err() && tile::rust(&short, "t").is_err());
 }
@@ -93,7 +100,7 @@ fn textures_have_the_documented_layout() {
 fn textures_of_few_dims_and_bits() {
     for (dims, colour) in [(1, image::ColorType::L8), (2, image::ColorType::Rgb8), (4, image::ColorType::Rgba8)] {
         let payload: Vec<u8> = (0..4 * dims as u8).map(|v| 255 - v).collect();
-        let view = View { size: 2, spp: 1, dims, frames: 1, bits: 8, payload: &payload };
+        let view = view_of([2, 1, dims, 1, 8], &payload);
         let png = image::load_from_memory(&tile::png(&view).unwrap()).unwrap();
         assert_eq!(png.color(), colour);
         let first = png.into_rgba8().get_pixel(1, 0).0[0];
@@ -106,7 +113,7 @@ fn textures_of_few_dims_and_bits() {
 fn source_code_compiles_and_holds_the_numbers() {
     let folder = tempfile::tempdir().unwrap();
     let payload: Vec<u8> = (0..64u16).flat_map(|v| (v * 1000).to_le_bytes()).collect();
-    let view = View { size: 4, spp: 2, dims: 2, frames: 1, bits: 16, payload: &payload };
+    let view = view_of([4, 2, 2, 1, 16], &payload);
     let run = |command: &mut Command| assert!(command.current_dir(folder.path()).status().unwrap().success());
     let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
 

@@ -2,9 +2,7 @@
 
 #![cfg(unix)]
 
-mod cli_support;
-
-use cli_support::{Place, error};
+use crate::cli_support::{Place, error};
 use std::process::Command;
 use std::thread::sleep;
 use std::time::{Duration, Instant};

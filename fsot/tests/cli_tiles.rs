@@ -1,8 +1,6 @@
 //! The tiles that come with the library are what their sidecars say, and the smallest is made anew.
 
-mod cli_support;
-
-use cli_support::Place;
+use crate::cli_support::Place;
 use fsot::export::nft::TileFile;
 use fsot::export::sidecar::{Quality, Row, Sidecar};
 use fsot::tile::presets;

@@ -1,9 +1,7 @@
 //! `fsot measure` and `fsot spectrum` as programs.
 
-mod metrics_common;
-
+use crate::metrics_common::random;
 use fsot::points::Points;
-use metrics_common::random;
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

@@ -1,12 +1,10 @@
 //! Test integrands and integration errors against quadrature and plain sums.
 
-mod metrics_common;
-
+use crate::metrics_common::{assert_mean, assert_near, random};
 use fsot::metrics::integrands::{Family, Integrand};
 use fsot::metrics::integration::integration;
 use fsot::metrics::{log_spaced, prefix_errors, tile};
 use fsot::points::Points;
-use metrics_common::{assert_mean, assert_near, random};
 
 const FAMILIES: [Family; 2] = [Family::HalfSpace, Family::Gaussian];
 

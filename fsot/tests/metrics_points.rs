@@ -1,13 +1,11 @@
 //! Neighbours, discrepancy, sliced Wasserstein distance against slow definitions.
 
-mod metrics_common;
-
+use crate::metrics_common::{assert_mean, assert_near, coarse, grid, random};
 use fsot::metrics::discrepancy::discrepancy;
 use fsot::metrics::neighbours::{lattice_distance, neighbours};
 use fsot::metrics::projection::Projection;
 use fsot::metrics::transport::{slice_distance, transport};
 use fsot::points::Points;
-use metrics_common::{assert_mean, assert_near, coarse, grid, random};
 
 /// Mean and smallest distance to the nearest other point, over all pairs.
 fn slow_neighbours(points: &Points, toroidal: bool) -> [f64; 2] {

@@ -1,11 +1,9 @@
 //! Whole reports: what is refused, what is absent, threads, text and JSON.
 
-mod metrics_common;
-
+use crate::metrics_common::random;
 use fsot::metrics::tile::{TileOptions, TileView};
 use fsot::metrics::{by_class, check, measure, measure_tile, prefix_errors, quick, select};
 use fsot::points::Points;
-use metrics_common::random;
 
 #[test]
 fn points_that_cannot_be_measured_are_refused_by_value() {

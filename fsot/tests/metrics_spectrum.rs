@@ -1,11 +1,9 @@
 //! Power spectra against sums by definition.
 
-mod metrics_common;
-
+use crate::metrics_common::{assert_mean, assert_near, grid, random};
 use fsot::metrics::exponential_sums::power;
 use fsot::metrics::spectrum::{Spectrum, principal_frequency};
 use fsot::points::Points;
-use metrics_common::{assert_mean, assert_near, grid, random};
 
 /// The squared magnitude of the exponential sum, term by term.
 fn slow(points: &Points, kx: f64, ky: f64) -> f64 {

@@ -1,12 +1,10 @@
 //! Energies of tiles against direct convolution.
 
-mod metrics_common;
-
+use crate::metrics_common::{assert_mean, assert_near, random};
 use fsot::metrics::integrands::{Family, Integrand};
 use fsot::metrics::tile::{Energies, FILTERS, FamilyEnergies, TileOptions, TileReport, TileView, integrands};
 use fsot::metrics::{error_spectrum, measure_tile};
 use fsot::points::Points;
-use metrics_common::{assert_mean, assert_near, random};
 
 const FAMILIES: [Family; 2] = [Family::HalfSpace, Family::Gaussian];
 

@@ -86,9 +86,9 @@ fn two_colors() {
 }
 
 /// What docs/fsot_points.md says of long runs. Half a minute of one core; the next one, two minutes:
-/// `cargo test --profile fsot -p noisefloor-fsot --test points_quality -- --ignored`.
+/// `cargo test --profile fsot -p noisefloor-fsot --test fsot points_quality:: -- --ignored`.
 #[test]
-#[ignore = "slow: cargo test --profile fsot -p noisefloor-fsot --test points_quality -- --ignored"]
+#[ignore = "slow: cargo test --profile fsot -p noisefloor-fsot --test fsot points_quality:: -- --ignored"]
 fn four_thousand_points_of_high_quality() {
     let points = optimize(Problem { quality: Quality::High, seed: 1, ..Problem::new(4096, 2) }).unwrap();
     let report = fsot::metrics::measure(&points).unwrap();
@@ -100,7 +100,7 @@ fn four_thousand_points_of_high_quality() {
 }
 
 #[test]
-#[ignore = "slow: cargo test --profile fsot -p noisefloor-fsot --test points_quality -- --ignored"]
+#[ignore = "slow: cargo test --profile fsot -p noisefloor-fsot --test fsot points_quality:: -- --ignored"]
 fn a_quarter_of_a_million_points() {
     let points = optimize(Problem { seed: 1, ..Problem::new(262_144, 2) }).unwrap();
     let nn = fsot::metrics::neighbours::neighbours(&points).unwrap().mean;

@@ -1,7 +1,8 @@
 //! The tile optimiser: its gradient, and that nothing but the problem decides the result.
 
+use fsot::optimize::Domain;
 use fsot::run::Optimization;
-use fsot::tile::{ClassShare, Domain, Kernel, Projections, Steps, TemporalKernel, TileOptimizer, TileProblem};
+use fsot::tile::{ClassShare, Kernel, Projections, Steps, TemporalKernel, TileOptimizer, TileProblem};
 
 /// A problem whose slices all select 3x3 pixels: each sample takes part in 9 of them.
 fn even(dims: usize, spp: usize) -> TileProblem {

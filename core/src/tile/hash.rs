@@ -64,7 +64,7 @@ mod tests {
     fn permutations_are_doubly_transitive() {
         for bits in 1..=8 {
             let n = 1_u32 << bits;
-            let mut seen = vec_of_zeros::<65536>();
+            let mut seen = [0_u8; 65536];
             for a in 0..n - 1 {
                 // The middle of the 16-bit values that give this factor.
                 let high = ((u64::from(a) << 16) + (1 << 15)) / u64::from(n - 1);
@@ -79,10 +79,6 @@ mod tests {
             assert_eq!(pairs.clone().count() as u32, n * (n - 1), "{bits} bits");
             assert!(pairs.clone().all(|&count| count == 1));
         }
-    }
-
-    fn vec_of_zeros<const N: usize>() -> [u8; N] {
-        [0; N]
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::{Class, ClassFunction};
 use crate::Error;
 use crate::error::Result;
+use crate::read;
 use crate::target::{Target, Uniform};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -62,8 +63,7 @@ pub enum TargetSpec {
 impl ClassFile {
     /// Reads the text of a class file; `path` is for messages, and for the format: JSON if it ends so, else TOML.
     pub fn parse(path: &Path, text: &str) -> Result<ClassFile> {
-        let json = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
-        let parsed: std::result::Result<ClassFile, String> = if json {
+        let parsed: std::result::Result<ClassFile, String> = if read::ending(path) == "json" {
             serde_json::from_str(text).map_err(|error| error.to_string())
         } else {
             toml::from_str(text).map_err(|error| error.to_string())

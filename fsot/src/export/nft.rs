@@ -1,9 +1,9 @@
 //! Tile files (`.nft`), written and read through `noisefloor::tile`.
 
-use super::tile::View;
+use super::tile;
 use crate::error::{Error, Result};
 use crate::read;
-use noisefloor::tile::{Header, Shape, quantize};
+use noisefloor::tile::{HEADER_BYTES, Header, Shape, Tile, quantize};
 use std::path::Path;
 
 /// A tile's file, checked.
@@ -74,21 +74,12 @@ impl TileFile {
     }
 
     /// The integers, as [`export::tile`](super::tile) takes them.
-    pub fn view(&self) -> View<'_> {
-        let Shape { size, spp, dims, frames, bits, .. } = self.header.shape();
-        let payload = self.bytes.get(self.bytes.len() - self.header.shape().payload_bytes() as usize..);
-        View {
-            size: size as usize,
-            spp: spp as usize,
-            dims: dims as usize,
-            frames: frames as usize,
-            bits: bits as usize,
-            payload: payload.unwrap_or_default(),
-        }
+    pub fn view(&self) -> Tile<'_> {
+        Tile::resume(self.header.shape(), self.bytes.get(HEADER_BYTES..).unwrap_or_default())
     }
 
     /// The coordinates as a sampler returns them, `[frame][y][x][sample][dim]`.
     pub fn coordinates(&self) -> Vec<f32> {
-        self.view().coordinates()
+        tile::coordinates(&self.view())
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::points::Points;
+use crate::read;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -66,9 +67,9 @@ pub(crate) struct Json {
 impl Format {
     /// By the ending of the name: `.csv`, `.json`; anything else is text.
     pub fn of(path: &Path) -> Format {
-        match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
-            Some("csv") => Format::Csv,
-            Some("json") => Format::Json,
+        match read::ending(path).as_str() {
+            "csv" => Format::Csv,
+            "json" => Format::Json,
             _ => Format::Text,
         }
     }

@@ -278,14 +278,16 @@ fn energies(tile: &TileView, axes: &[usize], options: &TileOptions) -> TileRepor
     let white: Sums =
         std::array::from_fn(|f| filters.get(f).map_or(1.0, |k: &Vec<f64>| k.iter().sum::<f64>() / pixels));
     let temporal = tile.frames > 1 && !options.alphas.is_empty();
-    let measure = |image: &Plane, sums: &mut Sums| {
-        for (f, sum) in sums.iter_mut().enumerate() {
-            *sum += match filters.get(f) {
-                Some(filter) => image.iter().zip(filter).map(|(z, k)| z.norm_sqr() * k).sum::<f64>(),
-                None => image.iter().map(|z| z.norm_sqr()).sum::<f64>(),
-            } / (pixels * pixels);
-        }
+    let measure = |image: &Plane| -> Sums {
+        std::array::from_fn(|f| {
+            let sum: f64 = match filters.get(f) {
+                Some(filter) => image.iter().zip(filter).map(|(z, k)| z.norm_sqr() * k).sum(),
+                None => image.iter().map(|z| z.norm_sqr()).sum(),
+            };
+            sum / (pixels * pixels)
+        })
     };
+    let add = |sums: &mut Sums, more: Sums| sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
     let families = [Family::HalfSpace, Family::Gaussian].map(|family| {
         let pairs = pairs_of(family, axes, options.integrands);
         let variance: f64 = pairs.iter().flatten().map(|i| i.variance).sum();
@@ -298,17 +300,19 @@ fn energies(tile: &TileView, axes: &[usize], options: &TileOptions) -> TileRepor
             for pair in pairs.iter().skip(part).step_by(PARTS) {
                 let mut images = errors(tile, axes, pair, &prefixes);
                 for (frame, images) in images.chunks_mut(prefixes.len()).enumerate() {
+                    let mut whole = [0.0; 4];
                     for (image, sums) in images.iter_mut().zip(&mut sums.prefixes) {
                         transform.forward(image);
-                        measure(image, sums);
+                        whole = measure(image);
+                        add(sums, whole);
                     }
-                    measure(&images[prefixes.len() - 1], &mut sums.frames[frame]);
+                    add(&mut sums.frames[frame], whole);
                 }
                 if temporal {
                     let mut last: Vec<Plane> =
                         images.into_iter().skip(prefixes.len() - 1).step_by(prefixes.len()).collect();
                     super::plane::over_time(&mut last);
-                    last.iter().zip(&mut sums.times).for_each(|(image, sums)| measure(image, sums));
+                    last.iter().zip(&mut sums.times).for_each(|(image, sums)| add(sums, measure(image)));
                 }
             }
             sums

@@ -1,7 +1,7 @@
 //! Where points begin.
 
 use super::Problem;
-use super::optimizer::LARGEST;
+use crate::points::BELOW_ONE;
 use crate::random::stream;
 use std::collections::HashSet;
 
@@ -22,7 +22,7 @@ pub(super) fn coordinates(problem: &Problem) -> Vec<f32> {
         } else {
             coordinates.fill_with(|| rng.uniform_f32());
         }
-        coordinates.iter_mut().for_each(|x| *x = x.clamp(0.0, LARGEST));
+        coordinates.iter_mut().for_each(|x| *x = x.clamp(0.0, BELOW_ONE));
         return coordinates;
     };
     let mut coordinates = initial.coordinates().to_vec();
@@ -35,7 +35,7 @@ pub(super) fn coordinates(problem: &Problem) -> Vec<f32> {
         if !places.insert(place) {
             for x in point {
                 let moved = *x + APART * (2.0 * rng.uniform_f32() - 1.0);
-                *x = if moved < 0.0 { -moved } else { moved.min(LARGEST) };
+                *x = if moved < 0.0 { -moved } else { moved.min(BELOW_ONE) };
             }
         }
     }

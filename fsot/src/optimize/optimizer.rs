@@ -7,15 +7,12 @@ use super::{Domain, Problem, check};
 use crate::class::{Filter, normalised};
 use crate::error::Result;
 use crate::memory;
-use crate::points::Points;
+use crate::points::{BELOW_ONE, Points};
 use crate::random::stream;
 use crate::run::Optimization;
 use noisefloor::rng::Rng;
 use rayon::prelude::*;
 use std::sync::Mutex;
-
-/// The largest coordinate, the number before 1.
-pub(super) const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// An optimisation of a point set (5.18).
 ///
@@ -151,7 +148,7 @@ impl Optimizer {
 /// What keeps a coordinate in the domain.
 fn settle(domain: Domain) -> impl Fn(f32, usize) -> f32 + Copy + Send + Sync {
     move |x, _| match domain {
-        Domain::Bounded => x.clamp(0.0, LARGEST),
+        Domain::Bounded => x.clamp(0.0, BELOW_ONE),
         Domain::Toroidal => {
             let x = x - x.floor();
             if x < 1.0 { x } else { 0.0 }

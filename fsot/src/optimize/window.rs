@@ -2,9 +2,10 @@
 
 use super::Domain;
 use super::direction::direction;
-use super::optimizer::{LARGEST, Optimizer};
+use super::optimizer::Optimizer;
 use super::schedule::{SLICES, WINDOW, WINDOW_ITERATIONS};
 use super::slice::{Bins, Offset, Slice, Workspace, advance, transport};
+use crate::points::BELOW_ONE;
 use crate::random::stream;
 use crate::target::{MEAN_COMPONENT, uniform_bins};
 use noisefloor::rng::Rng;
@@ -69,10 +70,10 @@ impl Cuts {
     pub(super) fn coordinate(&self, window: usize, local: f32) -> f32 {
         let x = self.extent(window).0 + local;
         match self.domain {
-            Domain::Bounded => x.clamp(0.0, LARGEST),
+            Domain::Bounded => x.clamp(0.0, BELOW_ONE),
             Domain::Toroidal => {
                 let x = x - self.offset / self.count as f32;
-                (if x < 0.0 { x + 1.0 } else { x }).clamp(0.0, LARGEST)
+                (if x < 0.0 { x + 1.0 } else { x }).clamp(0.0, BELOW_ONE)
             }
         }
     }

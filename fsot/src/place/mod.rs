@@ -8,7 +8,7 @@ pub use draw::{colour_of, drawing};
 use crate::class::{Class, ClassCoordinates, ClassFunction};
 use crate::error::{Error, Result};
 use crate::optimize::{Problem, Quality};
-use crate::points::Points;
+use crate::points::{BELOW_ONE, Points};
 use crate::random::stream;
 use crate::target::image::{ImageTarget, spread};
 use crate::target::{Target, Uniform};
@@ -92,7 +92,7 @@ impl Placement {
             let mut coordinates = spread(&[map], &[points], &mut stream(options.seed, u64::MAX - 1, 0));
             // The spread follows a curve: neighbours would otherwise be of one colour and size.
             shuffle(&mut coordinates, options.seed);
-            coordinates.iter_mut().for_each(|x| *x = x.min(1.0 - f32::EPSILON / 2.0));
+            coordinates.iter_mut().for_each(|x| *x = x.min(BELOW_ONE));
             Points::new(2, coordinates)
         });
         let problem = Problem {

@@ -5,7 +5,7 @@ use crate::class::{Class, ClassFunction, Step};
 use crate::error::{Error, Result};
 use crate::optimize::Problem;
 use crate::picture::{Drawing, Photo};
-use crate::points::Points;
+use crate::points::{BELOW_ONE, Points};
 use crate::random::stream;
 use crate::target::image::{ImageTarget, spread};
 use std::ops::Range;
@@ -205,7 +205,7 @@ fn starting(targets: &[Arc<ImageTarget>], windows: Windows, seed: u64) -> Points
         let mut rng = stream(seed, super::STARTING, frame as u64);
         coordinates.extend(spread(&[target], &[new], &mut rng));
     }
-    coordinates.iter_mut().for_each(|x: &mut f32| *x = x.min(1.0 - f32::EPSILON / 2.0));
+    coordinates.iter_mut().for_each(|x: &mut f32| *x = x.min(BELOW_ONE));
     Points::new(2, coordinates)
 }
 

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::export::points::Labels;
 use crate::optimize::{Domain, Problem, Quality};
 use crate::picture::{BLACK, Blend, Drawing, Photo, WHITE};
-use crate::points::Points;
+use crate::points::{BELOW_ONE, Points};
 use crate::random::stream;
 use crate::target::image::{ImageTarget, spread};
 use std::ops::Range;
@@ -223,7 +223,7 @@ fn starting(targets: &[ImageTarget], dots: &[Dots], seed: u64) -> Points {
     let targets: Vec<&ImageTarget> = targets.iter().collect();
     let counts: Vec<usize> = dots.iter().map(|dots| dots.range.len()).collect();
     let mut coordinates = spread(&targets, &counts, &mut stream(seed, STARTING, 0));
-    coordinates.iter_mut().for_each(|x| *x = x.min(1.0 - f32::EPSILON / 2.0));
+    coordinates.iter_mut().for_each(|x| *x = x.min(BELOW_ONE));
     Points::new(2, coordinates)
 }
 

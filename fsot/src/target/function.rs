@@ -4,6 +4,7 @@ use super::image::ImageTarget;
 use super::{MAX_DIMS, MEAN_COMPONENT, Target, bins_of_cdf};
 use crate::Error;
 use crate::error::Result;
+use crate::points::BELOW_ONE;
 use noisefloor::rng::Rng;
 
 /// A distribution whose density is a function on `[0, 1]^dims`, known up to a factor.
@@ -111,7 +112,7 @@ impl Cloud {
             let mut place = [0.0f32; MAX_DIMS];
             for (x, step) in place.iter_mut().zip(steps) {
                 let u = 0.5 + i as f64 * step;
-                *x = ((u - u.floor()) as f32).min(1.0 - f32::EPSILON / 2.0);
+                *x = ((u - u.floor()) as f32).min(BELOW_ONE);
             }
             let mass = density(&place[..dims])?;
             if mass > 0.0 {
@@ -166,7 +167,7 @@ impl Cloud {
         for (x, center) in point.iter_mut().zip(&self.places[place * self.dims..]) {
             // Reflected at the faces.
             let moved = (center + (rng.uniform_f32() - 0.5) * self.spacing).abs();
-            *x = if moved >= 1.0 { (2.0 - moved).min(1.0 - f32::EPSILON / 2.0) } else { moved };
+            *x = if moved >= 1.0 { (2.0 - moved).min(BELOW_ONE) } else { moved };
         }
     }
 }
@@ -201,7 +202,7 @@ impl Target for Function {
                 let total = cdf.last().copied().unwrap_or(0.0);
                 let at = rng.uniform_f64() * total;
                 let cell = cdf.partition_point(|sum| *sum <= at).clamp(1, LINE) - 1;
-                point[0] = ((cell as f32 + rng.uniform_f32()) / LINE as f32).min(1.0 - f32::EPSILON / 2.0);
+                point[0] = ((cell as f32 + rng.uniform_f32()) / LINE as f32).min(BELOW_ONE);
             }
             Form::Plane(image) => image.sample(rng, point),
             Form::Space(cloud) => cloud.sample(rng, point),

@@ -18,6 +18,6 @@ mod temporal;
 
 pub use kernel::{Kernel, PERCEPTUAL_SIGMA, RECONSTRUCTION_SIGMA, Tap};
 pub use optimizer::TileOptimizer;
-pub use problem::{ClassShare, Domain, Projections, Quality, Steps, TileProblem};
+pub use problem::{ClassShare, Projections, Steps, TileProblem, iterations};
 pub use samples::TileSamples;
 pub use temporal::{FRAME_RATE, TemporalKernel};

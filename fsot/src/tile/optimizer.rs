@@ -1,13 +1,15 @@
 //! Stochastic descent of the sliced barycentre (5.18) of all pixels' classes, one slice per pixel and step.
 
 use super::directions;
-use super::problem::{Domain, TileProblem};
+use super::problem::TileProblem;
 use super::projection::Projection;
 use super::rank::{POSITION_BITS, Sorter};
 use super::samples::TileSamples;
 use super::stencil::{Lattice, Stencils, WEIGHT_UNIT};
 use crate::error::Result;
 use crate::memory;
+use crate::optimize::Domain;
+use crate::points::BELOW_ONE;
 use crate::random::stream;
 use crate::run::Optimization;
 use rayon::prelude::*;
@@ -18,9 +20,6 @@ const ROWS: usize = 4;
 
 /// Projected coordinates are integers: this many for the whole length of the projection.
 const POSITIONS: f64 = (1u64 << POSITION_BITS) as f64;
-
-/// The largest f32 below 1.
-const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// Streams of random numbers that are not those of a row of pixels.
 const START_STREAM: u64 = u64::MAX;

@@ -3,16 +3,10 @@
 use super::kernel::Kernel;
 use super::stencil::{self, Stencils};
 use super::temporal::TemporalKernel;
+use crate::optimize::{Domain, Quality};
 use crate::{Error, error::Result};
+use noisefloor::tile::{MAX_DIMS, MAX_FRAMES, MAX_SIZE, MAX_SPP};
 
-/// The largest side of a tile, in pixels.
-const MAX_SIZE: usize = 1024;
-/// The most samples per pixel.
-const MAX_SPP: usize = 256;
-/// The most coordinates per sample.
-const MAX_DIMS: usize = 8;
-/// The most frames.
-const MAX_FRAMES: usize = 256;
 /// The most coordinates in all.
 const MAX_COORDINATES: usize = 1 << 28;
 /// The most iterations.
@@ -50,7 +44,7 @@ pub struct TileProblem {
     pub frame_share: f32,
     /// Seed of everything random.
     pub seed: u64,
-    /// Steps in all: 1 to 2^24. See [`Quality`].
+    /// Steps in all: 1 to 2^24. See [`iterations`].
     pub iterations: u64,
     /// Directions drawn for each step; every slice takes one of them. 1 to 16.
     pub directions: usize,
@@ -63,7 +57,7 @@ pub struct TileProblem {
     /// The threshold of a slice is z = u^e with u uniform on [0, 1): above 1 prefers wide subclasses. For a Gaussian
     /// kernel it is the same as a standard deviation sqrt(e) times as large. 0.25 to 4.
     pub threshold_exponent: f32,
-    /// The domain of the samples.
+    /// The domain of the samples. Every step looks at a torus from another random shift.
     pub domain: Domain,
 }
 
@@ -99,34 +93,13 @@ pub struct Steps {
     pub hold: f32,
 }
 
-/// The domain of the samples.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Domain {
-    /// The unit cube.
-    Bounded,
-    /// The unit torus: every step looks at it from another random shift.
-    Toroidal,
-}
-
-/// How long to optimise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quality {
-    /// To look at.
-    Draft,
-    /// The knee of error against time.
-    Standard,
-    /// The shipped tiles.
-    High,
-}
-
-impl Quality {
-    /// Iterations.
-    pub fn iterations(self) -> u64 {
-        match self {
-            Quality::Draft => 256,
-            Quality::Standard => 1024,
-            Quality::High => 4096,
-        }
+/// The steps that a tile takes: those to look at it, the knee of error against time, or those of most shipped tiles.
+pub fn iterations(quality: Quality) -> u64 {
+    match quality {
+        Quality::Draft => 256,
+        Quality::Standard => 1024,
+        Quality::High => 4096,
+        Quality::Iterations(iterations) => iterations,
     }
 }
 
@@ -146,13 +119,21 @@ impl TileProblem {
             reconstruction: Kernel::Box,
             frame_share: 0.5,
             seed: 1,
-            iterations: Quality::Standard.iterations(),
+            iterations: iterations(Quality::Standard),
             directions: 4,
             projections: Projections { axis: 0.0, plane: if dims > 2 { 0.2 } else { 0.0 } },
             steps: Steps { first: 4.0, last: 0.05, hold: 0.3 },
             offset_correction: if spp > 1 && dims <= 2 { 0.5 } else { 0.0 },
             threshold_exponent: if spp > 1 { 1.4 } else { 1.2 },
             domain: Domain::Bounded,
+        }
+    }
+
+    /// The spatial and the temporal class function in words, as a tile's file names them.
+    pub fn kernels(&self) -> String {
+        match &self.temporal {
+            None => self.kernel.to_string(),
+            Some(temporal) => format!("{}, over frames {temporal}", self.kernel),
         }
     }
 
@@ -182,11 +163,12 @@ impl TileProblem {
     }
 
     fn check_ranges(&self) -> Result<()> {
-        let power = |n: usize, from: usize, to: usize| n.is_power_of_two() && (from..=to).contains(&n);
+        let within = |n: usize, from: usize, to: u32| (from..=to as usize).contains(&n);
+        let power = |n: usize, from: usize, to: u32| n.is_power_of_two() && within(n, from, to);
         check(power(self.size, 8, MAX_SIZE), "size", self.size, "a power of two from 8 to 1024 pixels")?;
         check(power(self.spp, 1, MAX_SPP), "spp", self.spp, "a power of two from 1 to 256 samples per pixel")?;
-        check((1..=MAX_DIMS).contains(&self.dims), "dims", self.dims, "1 to 8 dimensions")?;
-        check((1..=MAX_FRAMES).contains(&self.frames), "frames", self.frames, "1 to 256 frames")?;
+        check(within(self.dims, 1, MAX_DIMS), "dims", self.dims, "1 to 8 dimensions")?;
+        check(within(self.frames, 1, MAX_FRAMES), "frames", self.frames, "1 to 256 frames")?;
         check(self.coordinates() <= MAX_COORDINATES, "the number of coordinates", self.coordinates(), "at most 2^28")?;
         check((1..=MAX_ITERATIONS).contains(&self.iterations), "iterations", self.iterations, "1 to 2^24")?;
         check((1..=MAX_DIRECTIONS).contains(&self.directions), "directions", self.directions, "1 to 16 per step")?;

@@ -51,7 +51,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let bytes = match args.format {
         Format::Png => tile::png(&view)?,
         Format::Exr => tile::exr(&view)?,
-        Format::Raw => view.payload.to_vec(),
+        Format::Raw => view.payload().to_vec(),
         Format::CHeader => tile::c_header(&view, &name)?,
         Format::Rust => tile::rust(&view, &name)?,
     };

@@ -31,12 +31,13 @@ fn list() -> Result<(String, Value)> {
     let mut text = String::new();
     for name in presets::NAMES {
         let Some(problem) = presets::preset(name) else { continue };
-        let TileProblem { size, spp, dims, kernel, frames, iterations, .. } = &problem;
+        let TileProblem { size, spp, dims, frames, iterations, .. } = &problem;
         let frames = if *frames > 1 { format!(", {frames} frames") } else { String::new() };
+        let kernels = problem.kernels();
         let progressive = if problem.progressive { ", progressive" } else { "" };
         writeln!(
             text,
-            "{name:<26}{size} x {size} pixels, {spp} spp, {dims} dims{frames}{progressive}, {kernel}, {iterations} steps"
+            "{name:<26}{size} x {size} pixels, {spp} spp, {dims} dims{frames}{progressive}, {kernels}, {iterations} steps"
         )
         .unwrap_or(());
     }

@@ -6,6 +6,7 @@ mod export;
 mod info;
 mod interrupt;
 mod measure;
+mod pictures;
 mod place;
 mod points;
 mod spectrum;

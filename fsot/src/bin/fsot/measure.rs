@@ -9,6 +9,7 @@ use fsot::metrics::{self, TileOptions, TileView, figure};
 use fsot::output;
 use fsot::points::Points;
 use fsot::read;
+use noisefloor::tile::Shape;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -83,16 +84,11 @@ impl Samples {
 impl Tile {
     /// Reads a file.
     pub(crate) fn read(&self, path: &Path) -> Result<Content> {
-        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("nft")) {
+        if read::ending(path) == "nft" {
             let file = TileFile::read(path)?;
-            let view = file.view();
-            return Ok(Content::Tile(Samples {
-                size: view.size,
-                spp: view.spp,
-                dims: view.dims,
-                frames: view.frames,
-                coordinates: file.coordinates(),
-            }));
+            let Shape { size, spp, dims, frames, .. } = file.header().shape();
+            let [size, spp, dims, frames] = [size, spp, dims, frames].map(|length| length as usize);
+            return Ok(Content::Tile(Samples { size, spp, dims, frames, coordinates: file.coordinates() }));
         }
         let table = read::points(path)?;
         metrics::check(&table.points).map_err(in_file(path))?;
@@ -204,7 +200,7 @@ fn prefix(args: &Args, contents: &[Content]) -> Result<(String, Value)> {
     let errors = metrics::prefix_errors(&sets, &counts, args.integrands as usize)?;
     if let Some(path) = &args.plot {
         let sheet = figure::prefix_errors(&title(&args.files), &errors);
-        let is_svg = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+        let is_svg = read::ending(path) == "svg";
         output::write(path, &if is_svg { sheet.svg()?.into_bytes() } else { sheet.png()? })?;
     }
     let text = format!(

@@ -2,11 +2,11 @@
 
 use crate::common::Common;
 use crate::drive::{drive, finish};
+use crate::pictures::Pictures;
 use fsot::checkpoint::digest;
 use fsot::error::{Error, Result};
 use fsot::optimize::Optimizer;
 use fsot::output::Outputs;
-use fsot::picture::{png, rasterise, svg};
 use fsot::place::{Object, Options, Placement, colour_of, drawing};
 use fsot::read;
 use serde_json::json;
@@ -32,12 +32,8 @@ pub(crate) struct Args {
     /// Objects where this picture is dark: PNG, JPEG or OpenEXR (its longer side is the unit)
     #[arg(long, value_name = "IMAGE")]
     map: Option<PathBuf>,
-    /// Also draw the objects as trees
-    #[arg(long, value_name = "FILE")]
-    png: Option<PathBuf>,
-    /// Also draw the objects as a vector graphic
-    #[arg(long, value_name = "FILE")]
-    svg: Option<PathBuf>,
+    #[command(flatten)]
+    pictures: Pictures,
     #[command(flatten)]
     common: Common,
 }
@@ -49,7 +45,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 
 fn make(args: &Args) -> Result<()> {
     let format = Format::of(&args.common.out)?;
-    args.common.check_outputs(args.png.iter().chain(&args.svg).map(PathBuf::as_path))?;
+    args.common.check_outputs(args.pictures.paths())?;
     let (points, colours) = (args.n as usize, usize::from(args.colors));
     let mut map_digest = None;
     let mut map = None;
@@ -70,15 +66,7 @@ fn make(args: &Args) -> Result<()> {
     let objects = placement.objects(&optimizer.points());
     let mut outputs = Outputs::new();
     outputs.add(&args.common.out, &format.encode(&objects, colours)?)?;
-    if args.png.is_some() || args.svg.is_some() {
-        let drawing = drawing(&objects, colours, placement.extent());
-        if let Some(path) = &args.png {
-            outputs.add(path, &png(&rasterise(&drawing, PICTURE)?)?)?;
-        }
-        if let Some(path) = &args.svg {
-            outputs.add(path, svg(&drawing, PICTURE).as_bytes())?;
-        }
-    }
+    args.pictures.add(&mut outputs, PICTURE, || drawing(&objects, colours, placement.extent()))?;
     let classes = placement.problem.classes.len();
     let iterations = run.iterations - run.resumed_at;
     let text = format!(
@@ -105,9 +93,9 @@ enum Format {
 
 impl Format {
     fn of(path: &Path) -> Result<Format> {
-        match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
-            Some("csv") => Ok(Format::Csv),
-            Some("json") => Ok(Format::Json),
+        match read::ending(path).as_str() {
+            "csv" => Ok(Format::Csv),
+            "json" => Ok(Format::Json),
             _ => Err(Error::Input(format!("{} is no name for a table: end it in .csv or .json", path.display()))),
         }
     }

@@ -5,6 +5,7 @@ mod report;
 
 use crate::common::Common;
 use crate::drive::{drive, finish};
+use crate::pictures::Pictures;
 use classes::Classes;
 use fsot::checkpoint::digest;
 use fsot::class::{self, ClassCoordinates};
@@ -12,7 +13,7 @@ use fsot::error::{Error, Result};
 use fsot::export::points::{Format, Table, encode};
 use fsot::optimize::{Domain, Optimizer, Problem};
 use fsot::output::Outputs;
-use fsot::picture::{BLACK, Colour, Drawing, png, rasterise, svg};
+use fsot::picture::{BLACK, Colour, Drawing};
 use fsot::read;
 use fsot::target::Target;
 use fsot::target::image::ImageTarget;
@@ -63,12 +64,8 @@ pub(crate) struct Args {
     /// Points where the picture is dark
     #[arg(long, requires = "density")]
     invert: bool,
-    /// Also draw the points (their first two coordinates)
-    #[arg(long, value_name = "FILE")]
-    png: Option<PathBuf>,
-    /// Also draw the points as a vector graphic
-    #[arg(long, value_name = "FILE")]
-    svg: Option<PathBuf>,
+    #[command(flatten)]
+    pictures: Pictures,
     #[command(flatten)]
     common: Common,
 }
@@ -79,8 +76,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 }
 
 fn make(args: &Args) -> Result<()> {
-    args.common.check_outputs(args.png.iter().chain(&args.svg).map(PathBuf::as_path))?;
-    if args.d < 2 && (args.png.is_some() || args.svg.is_some()) {
+    args.common.check_outputs(args.pictures.paths())?;
+    if args.d < 2 && args.pictures.paths().next().is_some() {
         return Err(Error::input("points of 1 coordinate cannot be drawn: leave out --png and --svg"));
     }
     let (problem, description, extent) = problem(args)?;
@@ -91,15 +88,7 @@ fn make(args: &Args) -> Result<()> {
     let table = Table { points: optimizer.points(), classes: classes.labels() };
     let mut outputs = Outputs::new();
     outputs.add(&args.common.out, &encode(&table, Format::of(&args.common.out))?)?;
-    if args.png.is_some() || args.svg.is_some() {
-        let drawing = draw(&table, extent);
-        if let Some(path) = &args.png {
-            outputs.add(path, &png(&rasterise(&drawing, PICTURE)?)?)?;
-        }
-        if let Some(path) = &args.svg {
-            outputs.add(path, svg(&drawing, PICTURE).as_bytes())?;
-        }
-    }
+    args.pictures.add(&mut outputs, PICTURE, || draw(&table, extent))?;
     let report = if args.common.quiet { None } else { Some(report::report(args, &table, &classes, &run)?) };
     finish(outputs, [run])?;
     report.map_or(Ok(()), |(text, json)| args.common.print(&text, &json))

@@ -53,14 +53,21 @@ pub(crate) struct Args {
     /// Pixels on the longer side of the drawing [default: 8 times the mean distance between dots, at least 1024]
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(16..=20_000))]
     size: Option<u32>,
+    #[command(flatten)]
+    copies: Copies,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What is drawn, in other forms.
+#[derive(clap::Args, Clone, Debug)]
+struct Copies {
     /// Also write the drawing as SVG
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
     /// Also write the points: CSV or JSON by the name's ending, else text
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
-    #[command(flatten)]
-    common: Common,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -89,7 +96,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 
 fn picture(args: &Args, image: &Path) -> Result<()> {
     let format = Picture::of(&args.common.out)?;
-    args.common.check_outputs(args.svg.iter().chain(&args.points).map(PathBuf::as_path))?;
+    args.common.check_outputs(args.copies.paths())?;
     let bytes = read::bytes(image)?;
     let named = |why| Error::Input(format!("{}: {why}", image.display()));
     let photo = Photo::new(&read::decode_image(&bytes, image)?).map_err(named)?;
@@ -107,13 +114,8 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
 
     let mut outputs = Outputs::new();
     outputs.add(&args.common.out, &format.encode(&drawing, &drawn, size)?)?;
-    if let Some(path) = &args.svg {
-        outputs.add(path, svg(&drawing, size as f32).as_bytes())?;
-    }
-    if let Some(path) = &args.points {
-        let table = Table { points, classes: Some(stipple.labels()) };
-        outputs.add(path, &encode(&table, Format::of(path))?)?;
-    }
+    let table = Table { points, classes: Some(stipple.labels()) };
+    args.copies.add(&mut outputs, &drawing, size, &table)?;
     let counts: Vec<String> = stipple.inks.iter().map(|dots| format!("{} {}", dots.range.len(), dots.name)).collect();
     let text = format!(
         "{} dots ({}), radius {:.2} px, drawn {} x {}\n{}\n\
@@ -143,6 +145,22 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
 
 fn took(run: &Run) -> String {
     format!("{} iterations in {:.1} s", run.iterations - run.resumed_at, run.seconds)
+}
+
+impl Copies {
+    fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.svg.iter().chain(&self.points).map(PathBuf::as_path)
+    }
+
+    fn add(&self, outputs: &mut Outputs, drawing: &Drawing, size: u32, table: &Table) -> Result<()> {
+        if let Some(path) = &self.svg {
+            outputs.add(path, svg(drawing, size as f32).as_bytes())?;
+        }
+        if let Some(path) = &self.points {
+            outputs.add(path, &encode(table, Format::of(path))?)?;
+        }
+        Ok(())
+    }
 }
 
 impl Args {
@@ -194,9 +212,9 @@ enum Picture {
 
 impl Picture {
     fn of(path: &Path) -> Result<Picture> {
-        match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
-            Some("png") => Ok(Picture::Png),
-            Some("svg") => Ok(Picture::Svg),
+        match read::ending(path).as_str() {
+            "png" => Ok(Picture::Png),
+            "svg" => Ok(Picture::Svg),
             _ => Err(Error::Input(format!("{} is no name for a drawing: end it in .png or .svg", path.display()))),
         }
     }

@@ -7,7 +7,6 @@ use fsot::error::{Error, Result};
 use fsot::export::nft::{self, TileFile};
 use fsot::export::sidecar::{Quality, Sidecar};
 use fsot::metrics::{TileOptions, TileReport, TileView, measure_tile};
-use fsot::optimize;
 use fsot::output::{self, Outputs};
 use fsot::tile::{self, ClassShare, Kernel, TemporalKernel, TileOptimizer, TileProblem, presets};
 use noisefloor::tile::Shape;
@@ -82,10 +81,7 @@ fn make(args: &Args) -> Result<()> {
     args.common.check_outputs(sidecar.as_deref())?;
     let problem = problem(args)?;
     let shape = shape(&problem, args.bits);
-    let kernel = problem
-        .temporal
-        .as_ref()
-        .map_or_else(|| problem.kernel.to_string(), |temporal| format!("{}, over frames {temporal}", problem.kernel));
+    let kernel = problem.kernels();
     // Refuses what a tile's file cannot hold before the work.
     nft::header(shape, problem.seed, &kernel)?;
     let mut optimizer = TileOptimizer::new(problem.clone())?;
@@ -132,13 +128,7 @@ fn problem(args: &Args) -> Result<TileProblem> {
     problem.box_class =
         ClassShare { share: args.box_share.unwrap_or(share), weight: args.box_weight.unwrap_or(weight) };
     problem.seed = args.common.given_seed().unwrap_or(problem.seed);
-    problem.iterations = match args.common.given_effort() {
-        None => problem.iterations,
-        Some(optimize::Quality::Draft) => tile::Quality::Draft.iterations(),
-        Some(optimize::Quality::Standard) => tile::Quality::Standard.iterations(),
-        Some(optimize::Quality::High) => tile::Quality::High.iterations(),
-        Some(optimize::Quality::Iterations(iterations)) => iterations,
-    };
+    problem.iterations = args.common.given_effort().map_or(problem.iterations, tile::iterations);
     problem.validate()?;
     Ok(problem)
 }

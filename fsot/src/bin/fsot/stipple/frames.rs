@@ -4,10 +4,10 @@ use super::{Args, Picture, took};
 use crate::drive::{drive, finish};
 use fsot::checkpoint::digest;
 use fsot::error::{Error, Result};
-use fsot::export::points::{Format, Table, encode};
+use fsot::export::points::Table;
 use fsot::optimize::Optimizer;
 use fsot::output::{self, Outputs};
-use fsot::picture::{Photo, blurred_psnr, rasterise, svg};
+use fsot::picture::{Photo, blurred_psnr, rasterise};
 use fsot::read;
 use fsot::stipple::{Animation, Windows};
 use serde_json::json;
@@ -29,7 +29,7 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
         )));
     }
     let outs: Vec<PathBuf> = (0..windows.frames).map(|frame| numbered(&args.common.out, frame)).collect();
-    args.common.check_outputs(args.svg.iter().chain(&args.points).map(PathBuf::as_path))?;
+    args.common.check_outputs(args.copies.paths())?;
     outs.iter().try_for_each(|path| output::check(path).map(drop))?;
 
     let mut photos = Vec::with_capacity(pictures.len());
@@ -58,12 +58,7 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     }
     let all = animation.all(&points);
     outputs.add(&args.common.out, &format.encode(&all, &rasterise(&all, size as f32)?, size)?)?;
-    if let Some(path) = &args.svg {
-        outputs.add(path, svg(&all, size as f32).as_bytes())?;
-    }
-    if let Some(path) = &args.points {
-        outputs.add(path, &encode(&Table { points, classes: None }, Format::of(path))?)?;
-    }
+    args.copies.add(&mut outputs, &all, size, &Table { points, classes: None })?;
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
     let worst = ratios.iter().copied().fold(f64::INFINITY, f64::min);
     let text = format!(

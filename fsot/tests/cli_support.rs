@@ -1,7 +1,5 @@
 //! Runs the program in a folder of its own.
 
-#![allow(dead_code)] // Each test file uses a part of it.
-
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Child, Command, Output, Stdio};
