@@ -201,6 +201,28 @@ typedef struct nf_estimate {
 // of range or unsupported, or a size no memory has.
 size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
+// The pixels of an image, or of a part of one, and what is known of them. All zero but width and height: nothing.
+// Pixel (x, y) of frame t has the number (t height + y) width + x.
+typedef struct nf_cv_image {
+    // Pixels in a row.
+    uint32_t width;
+    // Rows.
+    uint32_t height;
+    // Images of the same pixels at other times, which share fits; 0 means 1.
+    uint32_t frames;
+    // Width and height of the windows that pixels share a fit in; 0 means 8. At most 1024 pixels in all frames together.
+    uint32_t window;
+    // Pixels from one window to the next, at most `window`; 0 means half of it. Where windows overlap corrections are
+    // averaged. The time of an estimate goes with the square of window / stride.
+    uint32_t stride;
+    // A number for each pixel, or NULL: only pixels with the same number share a fit. What shows the same material under
+    // a similar normal and depth, for example.
+    const uint32_t *surfaces;
+    // `channels` numbers for each pixel, or NULL: what its values are divided by before a fit and multiplied by after
+    // it, such as its albedo. Finite and not negative; 0 counts as 1.
+    const float *factors;
+} nf_cv_image;
+
 // Estimates an integral from n samples: u has n rows of `stride` floats (the last may end after `dims`), f has n rows
 // of `channels`. The workspace's content is used up.
 //
@@ -239,14 +261,39 @@ nf_status nf_cv_gradient_descent(const nf_cv_config *config,
                                  size_t bytes,
                                  nf_estimate *out);
 
+// Bytes of workspace that nf_cv_image_estimate() needs for n samples in each pixel; 0 as for nf_cv_workspace_size(), and
+// for an image that is NULL or has no pixels or too large windows.
+size_t nf_cv_image_workspace_size(const nf_cv_config *config,
+                                  const nf_cv_image *image,
+                                  size_t n);
+
+// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of the
+// same window and surface share a fit. Fits also follow integrands that change across the window.
+//
+// NF_ERR_RANGE also for an image without pixels, for windows that nf_cv_image does not allow and for negative factors,
+// NF_ERR_NOT_FINITE for factors that are not finite.
+nf_status nf_cv_image_estimate(const nf_cv_config *config,
+                               const nf_cv_image *image,
+                               const float *u,
+                               const float *f,
+                               size_t n,
+                               void *workspace,
+                               size_t bytes,
+                               nf_estimate *out);
+
 // Bytes of workspace that nf_cv_block_estimate() needs; 0 as for nf_cv_workspace_size().
 size_t nf_cv_block_workspace_size(const nf_cv_config *config, size_t pixels, size_t n);
 
 // Estimates `pixels` integrals that are alike, from n samples of each: u and f hold pixel after pixel what
 // nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to the other pixels'
-// samples (4.3.6): exactly unbiased for a given `ridge`; by default the block weighs four fits and the plain mean by
-// the variance across its pixels. Of the configuration only dims, order, channels, basis, slices, stride, precision and
-// ridge count; NF_ERR_UNSUPPORTED for controls, skipping and luminance ratio.
+// samples (4.3.6), even from one sample in each.
+//
+// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance of
+// their estimates across the pixels, whatever stratification the samples have; unbiased as the block grows.
+// NF_CV_K_FOLD lets two halves of the pixels choose for each other, NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both
+// exactly unbiased, if the pixels' samples are independent.
+//
+// NF_ERR_UNSUPPORTED for other estimators, controls, skipping and luminance ratio; else as nf_cv_estimate().
 nf_status nf_cv_block_estimate(const nf_cv_config *config,
                                const float *u,
                                const float *f,

@@ -4,7 +4,7 @@
 //! the same bits. This is the only file that calls code for a feature the build does not assume.
 
 use noisefloor_core::Error;
-use noisefloor_core::control_variate::{self as cv, Config, Estimate, Samples};
+use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Samples};
 
 /// [`cv::estimate`] in double precision.
 pub(crate) fn estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f64]) -> Result<Estimate, Error> {
@@ -14,6 +14,38 @@ pub(crate) fn estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f
         return unsafe { x86::estimate(config, samples, workspace) };
     }
     cv::estimate(config, samples, workspace)
+}
+
+/// [`cv::estimate_block`] in double precision.
+pub(crate) fn estimate_block(
+    config: &Config,
+    samples: Samples<'_>,
+    pixels: usize,
+    workspace: &mut [f64],
+    out: impl FnMut(usize, Estimate),
+) -> Result<(), Error> {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        // SAFETY: as above.
+        return unsafe { x86::estimate_block(config, samples, pixels, workspace, out) };
+    }
+    cv::estimate_block(config, samples, pixels, workspace, out)
+}
+
+/// [`cv::estimate_image`] in double precision.
+pub(crate) fn estimate_image(
+    config: &Config,
+    image: &Image<'_>,
+    samples: Samples<'_>,
+    workspace: &mut [f64],
+    out: impl FnMut(usize, Estimate),
+) -> Result<(), Error> {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        // SAFETY: as above.
+        return unsafe { x86::estimate_image(config, image, samples, workspace, out) };
+    }
+    cv::estimate_image(config, image, samples, workspace, out)
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -32,6 +64,28 @@ mod x86 {
     #[target_feature(enable = "avx2")]
     pub(super) fn estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f64]) -> Result<Estimate, Error> {
         cv::estimate(config, samples, workspace)
+    }
+
+    #[target_feature(enable = "avx2")]
+    pub(super) fn estimate_block(
+        config: &Config,
+        samples: Samples<'_>,
+        pixels: usize,
+        workspace: &mut [f64],
+        out: impl FnMut(usize, Estimate),
+    ) -> Result<(), Error> {
+        cv::estimate_block(config, samples, pixels, workspace, out)
+    }
+
+    #[target_feature(enable = "avx2")]
+    pub(super) fn estimate_image(
+        config: &Config,
+        image: &Image<'_>,
+        samples: Samples<'_>,
+        workspace: &mut [f64],
+        out: impl FnMut(usize, Estimate),
+    ) -> Result<(), Error> {
+        cv::estimate_image(config, image, samples, workspace, out)
     }
 
     #[inline(always)]

@@ -41,6 +41,16 @@ pub(crate) fn plus_product<R: Real, const L: usize>(a: Lanes<R, L>, b: Lanes<R, 
     out
 }
 
+/// `a - b * c` lane by lane.
+#[inline(always)]
+pub(crate) fn minus_product<R: Real, const L: usize>(a: Lanes<R, L>, b: Lanes<R, L>, c: Lanes<R, L>) -> Lanes<R, L> {
+    let mut out = a;
+    for l in 0..L {
+        out[l] -= b[l] * c[l];
+    }
+    out
+}
+
 /// `a += b * c` lane by lane.
 #[inline(always)]
 pub(crate) fn add_product<R: Real, const L: usize>(a: &mut Lanes<R, L>, b: &Lanes<R, L>, c: &Lanes<R, L>) {

@@ -195,7 +195,9 @@ fn errors() {
     assert_eq!(run(&skip, &u, &f, 3, 1000), Err(Error::Unsupported));
     assert_eq!(run(&Config::new(0, 1, 1), &u, &f, 3, 1000), Err(Error::Range));
     assert_eq!(block_workspace_len::<f64>(&config, usize::MAX, 2), Err(Error::Memory));
-    // The estimator of a configuration is not asked for.
-    let any = Config { estimator: Estimator::LeaveOneOut, ..config };
-    assert_eq!(block::<f64>(&any, &u, &f, 3), block::<f64>(&config, &u, &f, 3));
+    for estimator in [Estimator::LeastSquares, Estimator::GradientDescent, Estimator::Incremental] {
+        let other = Config { estimator, ..config };
+        assert_eq!(run(&other, &u, &f, 3, 1000), Err(Error::Unsupported));
+        assert_eq!(block_workspace_len::<f64>(&other, 3, 2), Err(Error::Unsupported));
+    }
 }

@@ -122,71 +122,6 @@ pub unsafe extern "C" fn nf_cv_gradient_descent(
     })())
 }
 
-/// Bytes of workspace that nf_cv_block_estimate() needs; 0 as for nf_cv_workspace_size().
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_cv_block_workspace_size(config: *const nf_cv_config, pixels: usize, n: usize) -> usize {
-    // SAFETY: the caller's pointer, checked there for NULL and alignment.
-    let Ok(config) = (unsafe { convert::reference(config) }) else { return 0 };
-    if config.controls > 0 {
-        return 0;
-    }
-    size(config, |config, narrow| block_len(config, narrow, pixels, n))
-}
-
-/// Estimates `pixels` integrals that are alike, from n samples of each: u and f hold pixel after pixel what
-/// nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to the other pixels'
-/// samples (4.3.6): exactly unbiased for a given `ridge`; by default the block weighs four fits and the plain mean by
-/// the variance across its pixels. Of the configuration only dims, order, channels, basis, slices, stride, precision and
-/// ridge count; NF_ERR_UNSUPPORTED for controls, skipping and luminance ratio.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_cv_block_estimate(
-    config: *const nf_cv_config,
-    u: *const f32,
-    f: *const f32,
-    pixels: usize,
-    n: usize,
-    workspace: *mut core::ffi::c_void,
-    bytes: usize,
-    out: *mut nf_estimate,
-) -> nf_status {
-    status((|| {
-        // SAFETY: the caller's pointer, checked there.
-        let config = unsafe { convert::reference(config)? };
-        let (core, narrow) = (core_config(config)?, is_narrow(config)?);
-        if core.controls > 0 {
-            return Err(NF_ERR_UNSUPPORTED);
-        }
-        let total = convert::product(pixels, n)?;
-        // SAFETY: the caller's arrays, of the lengths the header states.
-        let (samples, out) = unsafe {
-            (samples(&core, u, f, core::ptr::null(), core::ptr::null(), total)?, convert::slice_mut(out, pixels)?)
-        };
-        let needed = len(block_len(&core, narrow, pixels, n))?;
-        let mut write = |pixel: usize, estimate: Estimate| {
-            if let Some(out) = out.get_mut(pixel) {
-                *out = c_estimate(&estimate);
-            }
-        };
-        if narrow {
-            // SAFETY: the caller's workspace, `bytes` long.
-            let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
-            cv::estimate_block(&core, samples, pixels, workspace, &mut write).map_err(status_of)
-        } else {
-            // SAFETY: the caller's workspace, `bytes` long.
-            let workspace = unsafe { convert::workspace::<f64>(workspace, bytes, needed)? };
-            cv::estimate_block(&core, samples, pixels, workspace, &mut write).map_err(status_of)
-        }
-    })())
-}
-
-fn block_len(config: &Config, narrow: bool, pixels: usize, n: usize) -> Result<usize, Error> {
-    if narrow {
-        cv::block_workspace_len::<f32>(config, pixels, n)
-    } else {
-        cv::block_workspace_len::<f64>(config, pixels, n)
-    }
-}
-
 /// Single precision is for targets without wide vectors: one version will do.
 #[inline(never)]
 fn narrow_estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f32]) -> Result<Estimate, Error> {
@@ -231,6 +166,6 @@ pub(super) fn size(config: &nf_cv_config, count: impl Fn(&Config, bool) -> Resul
     count(&core, narrow).ok().and_then(|count| count.checked_mul(width)).unwrap_or(0)
 }
 
-fn len(count: Result<usize, Error>) -> Result<usize, nf_status> {
+pub(super) fn len(count: Result<usize, Error>) -> Result<usize, nf_status> {
     count.map_err(status_of)
 }

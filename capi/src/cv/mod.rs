@@ -2,8 +2,10 @@
 
 mod accumulator;
 mod batch;
+mod block;
 mod config;
 
 pub use accumulator::*;
 pub use batch::*;
+pub use block::*;
 pub use config::*;

@@ -150,6 +150,11 @@ impl Basis {
         if self.shape.order > 0 { self.shape.continuous + self.shape.slices } else { 0 }
     }
 
+    /// How many leading functions are of at most this degree. Slices' copies of functions come last and do not count.
+    pub(crate) fn up_to_degree(&self, degree: usize) -> usize {
+        (0..self.shape.shared + self.shape.slices).take_while(|&column| self.degree(column) <= degree).count()
+    }
+
     /// The ridge penalty of each column, relative: 4^(degree - 1) times the number of columns of that degree.
     ///
     /// High degrees are less often needed, and the more functions share a degree the less each one explains.

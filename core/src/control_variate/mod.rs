@@ -27,7 +27,7 @@ mod trust;
 
 pub use accumulator::Accumulator;
 pub use batch::{estimate, workspace_len};
-pub use block::{block_workspace_len, estimate_block};
+pub use block::{Image, block_workspace_len, estimate_block, estimate_image, image_workspace_len};
 pub use config::{Color, Config, Estimate, Estimator, NonFinite, Optimizer, Ridge, Solver};
 pub use gradient_descent::estimate_from as gradient_descent;
 pub use regressor::Regressor;

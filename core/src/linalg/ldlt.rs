@@ -1,7 +1,7 @@
 //! A = L D L' for symmetric positive semidefinite matrices: the direct solver of (4.27).
 
 use super::{packed_len, row, row_mut};
-use crate::lanes::{self, Lanes, dot};
+use crate::lanes::{self, LANES, Lanes, dot};
 use crate::real::Real;
 
 /// A pivot below this fraction of its diagonal entry, in units of the type's epsilon, is rounding noise. Its column
@@ -81,15 +81,64 @@ pub(crate) fn inverse_pivot<R: Real>(factor: &[R], j: usize) -> R {
     row(factor, j).last().copied().unwrap_or(R::ZERO)
 }
 
-/// X := L^-1 X for eight right-hand sides side by side.
+/// X := L^-1 X for eight right-hand sides side by side; rows before `first` are zero and stay so.
 #[inline(always)]
-pub(crate) fn forward_lanes<R: Real>(factor: &[R], x: &mut [Lanes<R>]) {
-    for j in 0..x.len() {
+pub(crate) fn forward_lanes<R: Real>(factor: &[R], first: usize, x: &mut [Lanes<R>]) {
+    for j in first..x.len() {
         let (before, from_j) = x.split_at_mut_checked(j).unwrap_or((&mut [], &mut []));
         if let Some(value) = from_j.first_mut() {
             let mut sum = *value;
-            for (x, &l) in before.iter().zip(row(factor, j)) {
+            for (x, &l) in before.iter().zip(row(factor, j)).skip(first) {
                 lanes::subtract_scaled(&mut sum, l, x);
+            }
+            *value = sum;
+        }
+    }
+}
+
+/// [`factor`] of eight matrices side by side.
+#[inline(always)]
+pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
+    let tolerance = R::from_f64(DEPENDENT) * R::EPSILON;
+    for j in 0..n {
+        let Some((done, rest)) = matrices.split_at_mut_checked(packed_len(j)) else { return };
+        let Some((diagonal, row_j)) = rest.get_mut(..=j).and_then(<[Lanes<R>]>::split_last_mut) else { return };
+        for k in 0..j {
+            let (before, from_k) = row_j.split_at_mut_checked(k).unwrap_or((&mut [], &mut []));
+            if let Some(value) = from_k.first_mut() {
+                let mut sum = *value;
+                for (a, b) in before.iter().zip(row(done, k)) {
+                    sum = lanes::minus_product(sum, *a, *b);
+                }
+                *value = sum;
+            }
+        }
+        let mut pivot = *diagonal;
+        for (k, value) in row_j.iter_mut().enumerate() {
+            let inverse = row(done, k).last().copied().unwrap_or([R::ZERO; LANES]);
+            let l = lanes::zip(value, &inverse, |value, inverse| value * inverse);
+            pivot = lanes::minus_product(pivot, *value, l);
+            *value = l;
+        }
+        *diagonal = lanes::zip(
+            &pivot,
+            diagonal,
+            |pivot, whole| {
+                if pivot > tolerance * whole { R::ONE / pivot } else { R::ZERO }
+            },
+        );
+    }
+}
+
+/// X := L^-1 X for eight systems side by side; rows before `first` are zero and stay so.
+#[inline(always)]
+pub(crate) fn forward_each<R: Real>(factors: &[Lanes<R>], first: usize, x: &mut [Lanes<R>]) {
+    for j in first..x.len() {
+        let (before, from_j) = x.split_at_mut_checked(j).unwrap_or((&mut [], &mut []));
+        if let Some(value) = from_j.first_mut() {
+            let mut sum = *value;
+            for (x, l) in before.iter().zip(row(factors, j)).skip(first) {
+                sum = lanes::minus_product(sum, *x, *l);
             }
             *value = sum;
         }

@@ -1,0 +1,189 @@
+//! Estimates of neighbouring pixels, which share fits.
+
+use super::batch::{len, samples, size};
+use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimate};
+use crate::convert;
+use crate::dispatch;
+use crate::status::*;
+use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image};
+
+/// The pixels of an image, or of a part of one, and what is known of them. All zero but width and height: nothing.
+/// Pixel (x, y) of frame t has the number (t height + y) width + x.
+#[repr(C)]
+#[derive(Clone, Copy)]
+#[allow(non_camel_case_types)]
+pub struct nf_cv_image {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Images of the same pixels at other times, which share fits; 0 means 1.
+    pub frames: u32,
+    /// Width and height of the windows that pixels share a fit in; 0 means 8. At most 1024 pixels in all frames together.
+    pub window: u32,
+    /// Pixels from one window to the next, at most `window`; 0 means half of it. Where windows overlap corrections are
+    /// averaged. The time of an estimate goes with the square of window / stride.
+    pub stride: u32,
+    /// A number for each pixel, or NULL: only pixels with the same number share a fit. What shows the same material under
+    /// a similar normal and depth, for example.
+    pub surfaces: *const u32,
+    /// `channels` numbers for each pixel, or NULL: what its values are divided by before a fit and multiplied by after
+    /// it, such as its albedo. Finite and not negative; 0 counts as 1.
+    pub factors: *const f32,
+}
+
+/// Bytes of workspace that nf_cv_block_estimate() needs; 0 as for nf_cv_workspace_size().
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_block_workspace_size(config: *const nf_cv_config, pixels: usize, n: usize) -> usize {
+    // SAFETY: the caller's pointer, checked there for NULL and alignment.
+    let Ok(config) = (unsafe { convert::reference(config) }) else { return 0 };
+    if config.controls > 0 {
+        return 0;
+    }
+    size(config, |config, narrow| {
+        if narrow {
+            cv::block_workspace_len::<f32>(config, pixels, n)
+        } else {
+            cv::block_workspace_len::<f64>(config, pixels, n)
+        }
+    })
+}
+
+/// Estimates `pixels` integrals that are alike, from n samples of each: u and f hold pixel after pixel what
+/// nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to the other pixels'
+/// samples (4.3.6), even from one sample in each.
+///
+/// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance of
+/// their estimates across the pixels, whatever stratification the samples have; unbiased as the block grows.
+/// NF_CV_K_FOLD lets two halves of the pixels choose for each other, NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both
+/// exactly unbiased, if the pixels' samples are independent.
+///
+/// NF_ERR_UNSUPPORTED for other estimators, controls, skipping and luminance ratio; else as nf_cv_estimate().
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_block_estimate(
+    config: *const nf_cv_config,
+    u: *const f32,
+    f: *const f32,
+    pixels: usize,
+    n: usize,
+    workspace: *mut core::ffi::c_void,
+    bytes: usize,
+    out: *mut nf_estimate,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller's pointer, checked there.
+        let config = unsafe { convert::reference(config)? };
+        let (core, narrow) = (supported(config)?, is_narrow(config)?);
+        let total = convert::product(pixels, n)?;
+        // SAFETY: the caller's arrays, of the lengths the header states.
+        let (samples, out) = unsafe {
+            (samples(&core, u, f, core::ptr::null(), core::ptr::null(), total)?, convert::slice_mut(out, pixels)?)
+        };
+        if narrow {
+            let needed = len(cv::block_workspace_len::<f32>(&core, pixels, n))?;
+            // SAFETY: the caller's workspace, `bytes` long.
+            let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
+            cv::estimate_block(&core, samples, pixels, workspace, writer(out)).map_err(status_of)
+        } else {
+            let needed = len(cv::block_workspace_len::<f64>(&core, pixels, n))?;
+            // SAFETY: the caller's workspace, `bytes` long.
+            let workspace = unsafe { convert::workspace::<f64>(workspace, bytes, needed)? };
+            dispatch::estimate_block(&core, samples, pixels, workspace, writer(out)).map_err(status_of)
+        }
+    })())
+}
+
+/// Bytes of workspace that nf_cv_image_estimate() needs for n samples in each pixel; 0 as for nf_cv_workspace_size(), and
+/// for an image that is NULL or has no pixels or too large windows.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_image_workspace_size(
+    config: *const nf_cv_config,
+    image: *const nf_cv_image,
+    n: usize,
+) -> usize {
+    // SAFETY: the caller's pointers, checked there for NULL and alignment.
+    let (Ok(config), Ok(image)) = (unsafe { (convert::reference(config), convert::reference(image)) }) else {
+        return 0;
+    };
+    if config.controls > 0 {
+        return 0;
+    }
+    let image = size_of_image(image);
+    size(config, |config, narrow| {
+        if narrow {
+            cv::image_workspace_len::<f32>(config, &image, n)
+        } else {
+            cv::image_workspace_len::<f64>(config, &image, n)
+        }
+    })
+}
+
+/// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of the
+/// same window and surface share a fit. Fits also follow integrands that change across the window.
+///
+/// NF_ERR_RANGE also for an image without pixels, for windows that nf_cv_image does not allow and for negative factors,
+/// NF_ERR_NOT_FINITE for factors that are not finite.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_image_estimate(
+    config: *const nf_cv_config,
+    image: *const nf_cv_image,
+    u: *const f32,
+    f: *const f32,
+    n: usize,
+    workspace: *mut core::ffi::c_void,
+    bytes: usize,
+    out: *mut nf_estimate,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller's pointers, checked there.
+        let (config, given) = unsafe { (convert::reference(config)?, convert::reference(image)?) };
+        let (core, narrow) = (supported(config)?, is_narrow(config)?);
+        let mut image = size_of_image(given);
+        let pixels = convert::product(convert::product(image.width, image.height)?, image.frames)?;
+        let total = convert::product(pixels, n)?;
+        // SAFETY: the caller's arrays, of the lengths the header states.
+        let (samples, out) = unsafe {
+            (samples(&core, u, f, core::ptr::null(), core::ptr::null(), total)?, convert::slice_mut(out, pixels)?)
+        };
+        if !given.surfaces.is_null() {
+            // SAFETY: as above.
+            image.surfaces = unsafe { convert::slice(given.surfaces, pixels)? };
+        }
+        if !given.factors.is_null() {
+            // SAFETY: as above.
+            image.factors = unsafe { convert::slice(given.factors, convert::product(pixels, core.channels)?)? };
+        }
+        if narrow {
+            let needed = len(cv::image_workspace_len::<f32>(&core, &image, n))?;
+            // SAFETY: the caller's workspace, `bytes` long.
+            let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
+            cv::estimate_image(&core, &image, samples, workspace, writer(out)).map_err(status_of)
+        } else {
+            let needed = len(cv::image_workspace_len::<f64>(&core, &image, n))?;
+            // SAFETY: the caller's workspace, `bytes` long.
+            let workspace = unsafe { convert::workspace::<f64>(workspace, bytes, needed)? };
+            dispatch::estimate_image(&core, &image, samples, workspace, writer(out)).map_err(status_of)
+        }
+    })())
+}
+
+/// The core's configuration.
+fn supported(config: &nf_cv_config) -> Result<Config, nf_status> {
+    let core = core_config(config)?;
+    if core.controls > 0 { Err(NF_ERR_UNSUPPORTED) } else { Ok(core) }
+}
+
+/// The image without its arrays.
+fn size_of_image(image: &nf_cv_image) -> Image<'static> {
+    let [width, height, frames, window, stride] =
+        [image.width, image.height, image.frames.max(1), image.window, image.stride].map(|value| value as usize);
+    Image { frames, window, stride, ..Image::new(width, height) }
+}
+
+fn writer(out: &mut [nf_estimate]) -> impl FnMut(usize, Estimate) + '_ {
+    |pixel, estimate| {
+        if let Some(out) = out.get_mut(pixel) {
+            *out = c_estimate(&estimate);
+        }
+    }
+}

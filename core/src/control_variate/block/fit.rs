@@ -1,0 +1,452 @@
+//! Fits to all pixels of a group but one, for each pixel.
+
+use super::super::config::{Config, Estimator, Ridge};
+use super::super::design::{Design, Units};
+use super::super::per_channel::get;
+use super::super::ridge;
+use super::super::samples::Reader;
+use super::choice::{Spreads, Weights, last_only};
+use super::members::Members;
+use super::terms::Terms;
+use crate::arena::Arena;
+use crate::basis::{Basis, MAX_DIMS};
+use crate::error::Error;
+use crate::lanes::{self, LANES, Lanes};
+use crate::linalg::{ldlt, packed_len, row, row_mut};
+use crate::real::Real;
+use crate::rows::{rows, rows_mut};
+
+/// Ridge strength per sample if the caller gives none.
+const STRENGTH: f64 = 0.003;
+
+/// Everything that the fits of a call have in common.
+pub(super) struct Problem<'a> {
+    pub(super) config: &'a Config,
+    pub(super) basis: &'a Basis,
+    pub(super) reader: Reader<'a>,
+    /// Samples of a pixel.
+    pub(super) n: usize,
+    /// What the values of a pixel are divided by before the fit, a row for each pixel; empty: 1.
+    pub(super) factors: &'a [f32],
+}
+
+/// Eight pixels.
+struct Panel {
+    pixels: [usize; LANES],
+    /// How many of them there are.
+    used: usize,
+}
+
+/// What the fits of a group have in common.
+struct Setting<'s, R> {
+    terms: &'s Terms,
+    units: [Units<R>; Config::MAX_CHANNELS],
+    /// Panel after panel the lanes of [`Members::places`].
+    places: &'s [Lanes<R>],
+}
+
+impl<R> Setting<'_, R> {
+    /// Panels of pixels with their places.
+    #[inline(always)]
+    fn places(&self) -> impl Iterator<Item = &[Lanes<R>]> {
+        rows(self.places, self.terms.fixed())
+    }
+
+    /// Groups of lanes in a panel's estimates.
+    #[inline(always)]
+    fn estimates(&self, channels: usize) -> usize {
+        (self.terms.ends.len() + 1) * channels
+    }
+}
+
+/// What a group's fits say.
+pub(super) struct Group<'a, R> {
+    pub(super) units: [Units<R>; Config::MAX_CHANNELS],
+    /// Panel after panel: the plain means of all channels, then each fit's estimates.
+    estimates: &'a [Lanes<R>],
+    fits: usize,
+    channels: usize,
+    pub(super) spreads: Spreads<R>,
+}
+
+impl<R: Real> Group<'_, R> {
+    /// What the mixture adds to the plain mean of member `index`: zero if that is not finite.
+    #[inline(always)]
+    pub(super) fn correction(&self, index: usize, weights: &Weights<R>, channel: usize) -> R {
+        let width = (self.fits + 1) * self.channels;
+        let row = rows(self.estimates, width).nth(index / LANES).unwrap_or(&[]);
+        let at = |fit: usize| {
+            row.get(fit * self.channels + channel)
+                .and_then(|lanes| lanes.get(index % LANES))
+                .copied()
+                .unwrap_or(R::ZERO)
+        };
+        let plain = at(0);
+        let mut sum = R::ZERO;
+        for (fit, weight) in weights.iter().enumerate().take(self.fits + 1).skip(1) {
+            sum += get(weight, channel) * (at(fit) - plain);
+        }
+        if sum.is_finite() { sum } else { R::ZERO }
+    }
+}
+
+impl<'a> Problem<'a> {
+    /// Which columns a fit to these pixels has.
+    #[inline(always)]
+    pub(super) fn terms(&self, members: &Members<'_>) -> Terms {
+        self.terms_of(members.axes(), members.len)
+    }
+
+    fn terms_of(&self, axes: usize, pixels: usize) -> Terms {
+        let single = self.config.estimator == Estimator::LeaveOneOut || matches!(self.config.ridge, Ridge::Fixed(_));
+        Terms::new(self.config, self.basis, axes, pixels.saturating_mul(self.n), single)
+    }
+
+    /// Numbers that [`Problem::fit`] takes for as many pixels; fewer need no more.
+    pub(super) fn size(config: &Config, basis: &Basis, axes: usize, pixels: usize, n: usize) -> Option<usize> {
+        let terms = Terms::new(config, basis, axes, pixels.checked_mul(n)?, false);
+        let (columns, channels) = (terms.columns(), config.channels);
+        let sums = packed_len(columns) + columns * channels;
+        let panels = pixels.div_ceil(LANES);
+        let each = terms.fixed() + (terms.ends.len() + 1) * channels + if n == 1 { columns + channels } else { sums };
+        let scratch = 2 * columns + if n == 1 { 0 } else { sums };
+        let lanes = panels.checked_mul(each)?.checked_add(scratch)?.checked_mul(LANES)?;
+        lanes.checked_add(sums + columns)
+    }
+
+    /// Fits to all members but one, for each of them, of which there are at least two.
+    #[inline(always)]
+    pub(super) fn fit<'b, R: Real>(
+        &self,
+        members: &Members<'_>,
+        terms: &Terms,
+        arena: &mut Arena<'b, R>,
+    ) -> Result<Group<'b, R>, Error> {
+        let channels = self.config.channels;
+        let (fixed, fits) = (terms.fixed(), terms.ends.len());
+        let panels = members.len.div_ceil(LANES);
+        let places = arena.take_lanes(panels * fixed)?;
+        for (panel, out) in rows_mut(places, fixed).enumerate() {
+            for (out, place) in out.iter_mut().zip(members.places(panel * LANES)) {
+                *out = place;
+            }
+        }
+        let setting = Setting { terms, units: self.units(members), places };
+        let estimates = arena.take_lanes(panels * setting.estimates(channels))?;
+        if self.n == 1 {
+            self.one_sample(members, &setting, estimates, arena)?;
+        } else {
+            self.several_samples(members, &setting, estimates, arena)?;
+        }
+        let Setting { units, .. } = setting;
+        let spreads = Spreads::new(members.len, places, fixed, estimates, fits, channels);
+        Ok(Group { units, estimates, fits, channels, spreads })
+    }
+
+    /// How far the mean and the fits are trusted, by a group that has at least two members.
+    #[inline(always)]
+    pub(super) fn weights<R: Real>(&self, group: &Group<'_, R>) -> Weights<R> {
+        match (self.config.estimator, self.config.ridge) {
+            (Estimator::LeaveOneOut, _) | (_, Ridge::Fixed(_)) => last_only(group.fits),
+            _ => group.spreads.weights(self.config.channels),
+        }
+    }
+
+    /// What a pixel's values are divided by. Black says nothing about what it multiplies: 1.
+    #[inline(always)]
+    pub(super) fn factor(&self, pixel: usize, channel: usize) -> f64 {
+        let factor = self.factors.get(pixel * self.config.channels + channel).copied().unwrap_or(1.0);
+        if factor > 0.0 { f64::from(factor) } else { 1.0 }
+    }
+
+    /// As for one pixel's samples: the zero at the first value and, for a narrow type, the unit near the largest.
+    #[inline(always)]
+    fn units<R: Real>(&self, members: &Members<'_>) -> [Units<R>; Config::MAX_CHANNELS] {
+        let mut units = [Units::default(); Config::MAX_CHANNELS];
+        if R::NARROW {
+            let mut largest = [0.0f64; Config::MAX_CHANNELS];
+            for index in 0..members.len * self.n {
+                let pixel = members.pixel(index.checked_div(self.n).unwrap_or(0));
+                let sample = self.reader.get(pixel * self.n + index.checked_rem(self.n).unwrap_or(0));
+                for (channel, largest) in largest.iter_mut().enumerate().take(self.config.channels) {
+                    let value = get(&self.reader.values::<f64>(&sample), channel) / self.factor(pixel, channel);
+                    *largest = largest.max(Real::abs(value));
+                }
+            }
+            for (unit, largest) in units.iter_mut().zip(largest) {
+                unit.exponent = Real::exponent(largest);
+            }
+        }
+        let pixel = members.pixel(0);
+        let first = self.reader.values::<f64>(&self.reader.get(pixel * self.n));
+        for (channel, (unit, value)) in units.iter_mut().zip(first).enumerate().take(self.config.channels) {
+            unit.offset = R::from_f64(libm::scalbn(value / self.factor(pixel, channel), -unit.exponent));
+        }
+        units
+    }
+
+    #[inline(always)]
+    fn panel(&self, members: &Members<'_>, start: usize) -> Panel {
+        let used = LANES.min(members.len.saturating_sub(start));
+        let mut pixels = [0; LANES];
+        for (lane, pixel) in pixels.iter_mut().enumerate().take(used) {
+            *pixel = members.pixel(start + lane);
+        }
+        Panel { pixels, used }
+    }
+
+    /// Writes sample `sample` of a panel's pixels: their columns, and their values in `units`. Zero in unused lanes.
+    #[inline(always)]
+    fn load<R: Real>(
+        &self,
+        setting: &Setting<'_, R>,
+        panel: &Panel,
+        sample: usize,
+        places: &[Lanes<R>],
+        columns: &mut [Lanes<R>],
+        values: &mut [Lanes<R>],
+    ) {
+        let mut x = [[R::ZERO; LANES]; MAX_DIMS];
+        let mut h = [[R::ZERO; LANES]; Config::MAX_CONTROLS];
+        for value in values.iter_mut() {
+            *value = [R::ZERO; LANES];
+        }
+        for (lane, &pixel) in panel.pixels.iter().enumerate().take(panel.used) {
+            let sample = self.reader.get(pixel * self.n + sample);
+            sample.put(lane, &mut x, &mut h);
+            let f = self.reader.values::<f64>(&sample);
+            for (channel, ((out, value), unit)) in values.iter_mut().zip(f).zip(&setting.units).enumerate() {
+                let mut value = value;
+                if !self.factors.is_empty() {
+                    value /= self.factor(pixel, channel);
+                }
+                if R::NARROW {
+                    value = libm::scalbn(value, -unit.exponent);
+                }
+                if let Some(out) = out.get_mut(lane) {
+                    *out = R::from_f64(value) - unit.offset;
+                }
+            }
+        }
+        let terms = setting.terms;
+        let (fixed, rest) = columns.split_at_mut_checked(terms.fixed()).unwrap_or((&mut [], &mut []));
+        for (out, place) in fixed.iter_mut().zip(places) {
+            *out = *place;
+        }
+        let (functions, products) = rest.split_at_mut_checked(terms.functions).unwrap_or((&mut [], &mut []));
+        self.reader.columns(self.basis, &x, &h, functions);
+        if panel.used < LANES {
+            for column in functions.iter_mut() {
+                for value in column.iter_mut().skip(panel.used) {
+                    *value = R::ZERO;
+                }
+            }
+        }
+        let (first, count) = terms.moving;
+        let moving = functions.get(first..first + count).unwrap_or(&[]);
+        for (products, axis) in rows_mut(products, count).zip(places.iter().skip(1)) {
+            for (out, function) in products.iter_mut().zip(moving) {
+                *out = lanes::zip(function, axis, |a, b| a * b);
+            }
+        }
+    }
+
+    /// Adds what ridge a fit to `samples` samples has to the diagonal of the sums of products.
+    #[inline(always)]
+    fn add_ridge<R: Real>(&self, terms: &Terms, samples: usize, gram: &mut [R], penalties: &mut [R]) {
+        let count = gram.first().copied().unwrap_or(R::ONE);
+        let mean_square = |j: usize| row(gram, j).last().copied().unwrap_or(R::ZERO) / count;
+        terms.penalties(self.config, self.basis, mean_square, penalties);
+        let strength = match self.config.ridge {
+            Ridge::Fixed(_) => ridge::single::<R>(self.config.ridge),
+            Ridge::Default | Ridge::Auto => STRENGTH,
+        };
+        let strength = R::from_f64(strength) * R::from_usize(samples);
+        ldlt::add_diagonal(gram, terms.columns(), |j| strength * penalties.get(j).copied().unwrap_or(R::ONE));
+    }
+
+    /// One sample in each pixel: one factorisation A = L D L', and the leave-one-out residual in closed form. Every
+    /// candidate is a prefix of the columns and so of L: with z = L^-1 x, its leverage, its fit at x and its
+    /// correction are partial sums over z.
+    #[inline(always)]
+    fn one_sample<R: Real>(
+        &self,
+        members: &Members<'_>,
+        setting: &Setting<'_, R>,
+        estimates: &mut [Lanes<R>],
+        arena: &mut Arena<'_, R>,
+    ) -> Result<(), Error> {
+        let mut arena = arena.scratch();
+        let terms = setting.terms;
+        let (width, channels) = (terms.columns(), self.config.channels);
+        let count = members.len.div_ceil(LANES);
+        let columns = arena.take_lanes(count * width)?;
+        let values = arena.take_lanes(count * channels)?;
+        let scratch = arena.take_lanes(2 * width)?;
+        let gram = arena.take(packed_len(width))?;
+        let rhs = arena.take(width * channels)?;
+        let penalties = arena.take(width)?;
+        let loads = rows_mut(columns, width).zip(rows_mut(values, channels)).zip(setting.places());
+        for (index, ((columns, values), places)) in loads.enumerate() {
+            self.load(setting, &self.panel(members, index * LANES), 0, places, columns, values);
+        }
+        let design = Design {
+            n: members.len,
+            columns: width,
+            channels,
+            panels: columns,
+            values,
+            column_means: &mut [],
+            units: setting.units,
+        };
+        design.normal_equations(gram, rhs, scratch.get_mut(..width).unwrap_or(&mut []));
+        self.add_ridge(terms, members.len - 1, gram, penalties);
+        ldlt::factor(gram, width);
+        for rhs in rows_mut(rhs, width) {
+            ldlt::forward(gram, rhs);
+            ldlt::scale_by_inverse_diagonal(gram, rhs);
+        }
+        let fixed = terms.fixed();
+        for ((columns, values), out) in design.each_panel().zip(rows_mut(estimates, setting.estimates(channels))) {
+            // z for the whole row, y for the part of it that corrects.
+            let (z, y) = scratch.split_at_mut_checked(width).unwrap_or((&mut [], &mut []));
+            for (index, ((z, y), column)) in z.iter_mut().zip(y.iter_mut()).zip(columns).enumerate() {
+                *z = *column;
+                *y = if index < fixed { [R::ZERO; LANES] } else { *column };
+            }
+            ldlt::forward_lanes(gram, 0, z);
+            ldlt::forward_lanes(gram, fixed, y);
+            let mut out = rows_mut(out, channels);
+            for (out, value) in out.next().unwrap_or(&mut []).iter_mut().zip(values) {
+                *out = *value;
+            }
+            let mut leverage = [R::ZERO; LANES];
+            let mut reach = [R::ZERO; LANES];
+            let mut fitted = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
+            let mut corrected = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
+            let mut begin = 0;
+            for (&end, out) in terms.ends.iter().zip(out) {
+                for j in begin..end {
+                    let (Some(z), Some(y)) = (z.get(j), y.get(j)) else { continue };
+                    let scaled = z.map(|z| z * ldlt::inverse_pivot(gram, j));
+                    lanes::add_product(&mut leverage, z, &scaled);
+                    lanes::add_product(&mut reach, y, &scaled);
+                    let sums = fitted.iter_mut().zip(&mut corrected).zip(rows(rhs, width));
+                    for ((fitted, corrected), rhs) in sums {
+                        let b = rhs.get(j).copied().unwrap_or(R::ZERO);
+                        lanes::add_scaled(fitted, b, z);
+                        lanes::add_scaled(corrected, b, y);
+                    }
+                }
+                begin = end;
+                let left = leverage.map(|h| (R::ONE - h).max(R::from_f64(64.0) * R::EPSILON));
+                let gain = lanes::zip(&reach, &left, |reach, left| reach / left);
+                for (channel, (out, value)) in out.iter_mut().zip(values).enumerate() {
+                    let (Some(fitted), Some(corrected)) = (fitted.get(channel), corrected.get(channel)) else {
+                        continue;
+                    };
+                    let residual = lanes::zip(value, fitted, |a, b| a - b);
+                    let plain = lanes::zip(value, corrected, |a, b| a - b);
+                    *out = lanes::plus_product(plain, gain, residual);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Several samples in each pixel: A less the pixel's own products, factored for eight pixels at a time, which takes
+    /// less time than updating one factor by rank n.
+    #[inline(always)]
+    fn several_samples<R: Real>(
+        &self,
+        members: &Members<'_>,
+        setting: &Setting<'_, R>,
+        estimates: &mut [Lanes<R>],
+        arena: &mut Arena<'_, R>,
+    ) -> Result<(), Error> {
+        let mut arena = arena.scratch();
+        let terms = setting.terms;
+        let (width, channels) = (terms.columns(), self.config.channels);
+        let (squares, all) = (packed_len(width), packed_len(width) + width * channels);
+        let count = members.len.div_ceil(LANES);
+        let own = arena.take_lanes(count * all)?;
+        let system = arena.take_lanes(all)?;
+        let scratch = arena.take_lanes(2 * width)?;
+        let total = arena.take(all)?;
+        let penalties = arena.take(width)?;
+        for value in total.iter_mut() {
+            *value = R::ZERO;
+        }
+        for (index, (own, places)) in rows_mut(own, all).zip(setting.places()).enumerate() {
+            for value in own.iter_mut() {
+                *value = [R::ZERO; LANES];
+            }
+            let (gram, rhs) = own.split_at_mut_checked(squares).unwrap_or((&mut [], &mut []));
+            let panel = self.panel(members, index * LANES);
+            let columns = scratch.get_mut(..width).unwrap_or(&mut []);
+            let mut values = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
+            for sample in 0..self.n {
+                self.load(setting, &panel, sample, places, columns, values.get_mut(..channels).unwrap_or(&mut []));
+                for (j, column) in columns.iter().enumerate() {
+                    for (out, other) in row_mut(gram, j).iter_mut().zip(columns.iter()) {
+                        lanes::add_product(out, column, other);
+                    }
+                }
+                for (rhs, value) in rows_mut(rhs, width).zip(&values) {
+                    for (out, column) in rhs.iter_mut().zip(columns.iter()) {
+                        lanes::add_product(out, value, column);
+                    }
+                }
+            }
+            for (total, own) in total.iter_mut().zip(own.iter()) {
+                *total += lanes::sum(own);
+            }
+        }
+        let training = (members.len - 1) * self.n;
+        self.add_ridge(terms, training, total.get_mut(..squares).unwrap_or(&mut []), penalties);
+        let inverse = R::ONE / R::from_usize(self.n);
+        let fixed = terms.fixed();
+        for (own, out) in rows(own, all).zip(rows_mut(estimates, setting.estimates(channels))) {
+            for ((out, &total), own) in system.iter_mut().zip(total.iter()).zip(own) {
+                *out = own.map(|own| total - own);
+            }
+            let (gram, rhs) = system.split_at_mut_checked(squares).unwrap_or((&mut [], &mut []));
+            let (own_gram, own_rhs) = own.split_at_checked(squares).unwrap_or((&[], &[]));
+            ldlt::factor_each(gram, width);
+            // The means of the pixel's columns, which its fit is corrected by.
+            let y = scratch.get_mut(..width).unwrap_or(&mut []);
+            for (j, y) in y.iter_mut().enumerate() {
+                let sum = row(own_gram, j).first().copied().unwrap_or([R::ZERO; LANES]);
+                *y = if j < fixed { [R::ZERO; LANES] } else { sum.map(|sum| sum * inverse) };
+            }
+            ldlt::forward_each(gram, fixed, y);
+            for (j, y) in y.iter_mut().enumerate() {
+                let pivot = row(gram, j).last().copied().unwrap_or([R::ZERO; LANES]);
+                *y = lanes::zip(y, &pivot, |y, pivot| y * pivot);
+            }
+            let mut corrected = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
+            for (rhs, (own, corrected)) in rows_mut(rhs, width).zip(rows(own_rhs, width).zip(&mut corrected)) {
+                ldlt::forward_each(gram, 0, rhs);
+                let sum = own.first().copied().unwrap_or([R::ZERO; LANES]);
+                *corrected = sum.map(|sum| sum * inverse);
+            }
+            let mut out = rows_mut(out, channels);
+            for (out, mean) in out.next().unwrap_or(&mut []).iter_mut().zip(&corrected) {
+                *out = *mean;
+            }
+            let mut begin = 0;
+            for (&end, out) in terms.ends.iter().zip(out) {
+                for (corrected, rhs) in corrected.iter_mut().zip(rows(rhs, width)) {
+                    for (rhs, y) in rhs.iter().zip(y.iter()).take(end).skip(begin) {
+                        *corrected = lanes::minus_product(*corrected, *rhs, *y);
+                    }
+                }
+                begin = end;
+                for (out, corrected) in out.iter_mut().zip(&corrected) {
+                    *out = *corrected;
+                }
+            }
+        }
+        Ok(())
+    }
+}

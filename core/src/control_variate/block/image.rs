@@ -1,0 +1,113 @@
+//! The pixels of an image, and which of them share fits.
+
+use super::members::Area;
+use crate::control_variate::Config;
+use crate::error::Error;
+
+/// The pixels of an image, or of a part of one, and what is known of them. `Image::new(width, height)` knows nothing.
+///
+/// Pixel (x, y) of frame t has the number (t height + y) width + x.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Image<'a> {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Images of the same pixels, at other times; they share fits. 1 for a single one.
+    pub frames: usize,
+    /// Width and height of the square windows that pixels share a fit in; 0 means 8. A window has at most
+    /// [`Image::MAX_WINDOW`] pixels in all frames together.
+    pub window: usize,
+    /// Pixels from one window to the next, at most `window`; 0 means half of it. Where windows overlap a pixel's
+    /// corrections are averaged, those of windows that have it near their centre counting more.
+    pub stride: usize,
+    /// A number for each pixel, or empty: only pixels with the same number share a fit. What shows the same material
+    /// under a similar normal and depth, for example.
+    pub surfaces: &'a [u32],
+    /// `channels` numbers for each pixel, or empty: what its values are divided by before a fit and multiplied by
+    /// after it, such as its albedo. Finite and not negative; 0 counts as 1.
+    pub factors: &'a [f32],
+}
+
+impl Image<'_> {
+    /// The most pixels of a window, all frames counted.
+    pub const MAX_WINDOW: usize = 1024;
+
+    /// An image of which nothing is known but its size.
+    #[inline]
+    pub const fn new(width: usize, height: usize) -> Self {
+        Self { width, height, frames: 1, window: 0, stride: 0, surfaces: &[], factors: &[] }
+    }
+
+    /// Width and height of a window, and the steps from one to the next.
+    pub(super) fn windows(&self) -> Result<Windows, Error> {
+        let side = if self.window == 0 { 8 } else { self.window };
+        let stride = if self.stride == 0 { side.div_ceil(2) } else { self.stride };
+        let (width, height) = (side.min(self.width), side.min(self.height));
+        let pixels = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(self.frames));
+        let fits = pixels.is_some_and(|pixels| (1..=Self::MAX_WINDOW).contains(&pixels));
+        if !fits || stride > side {
+            return Err(Error::Range);
+        }
+        let image = [self.width, self.height, self.frames];
+        Ok(Windows { width, height, stride, image })
+    }
+
+    /// All pixels of all frames.
+    pub(super) fn pixels(&self) -> Result<usize, Error> {
+        let pixels = self.width.checked_mul(self.height).and_then(|pixels| pixels.checked_mul(self.frames));
+        pixels.filter(|&pixels| u32::try_from(pixels).is_ok()).ok_or(Error::Range)
+    }
+
+    /// Checks everything but the windows.
+    pub(super) fn check(&self, config: &Config) -> Result<(), Error> {
+        let pixels = self.pixels()?;
+        let fits = |len: usize, each: usize| len == 0 || pixels.checked_mul(each) == Some(len);
+        if !fits(self.surfaces.len(), 1) || !fits(self.factors.len(), config.channels) {
+            return Err(Error::Range);
+        }
+        if !self.factors.iter().all(|factor| factor.is_finite()) {
+            return Err(Error::NotFinite);
+        }
+        if self.factors.iter().any(|&factor| factor < 0.0) { Err(Error::Range) } else { Ok(()) }
+    }
+}
+
+/// Where windows lie.
+#[derive(Clone, Copy)]
+pub(super) struct Windows {
+    width: usize,
+    height: usize,
+    stride: usize,
+    /// Width, height and frames of the image.
+    image: [usize; 3],
+}
+
+impl Windows {
+    /// Pixels of a window, in all frames.
+    pub(super) fn pixels(&self) -> usize {
+        self.width * self.height * self.image[2]
+    }
+
+    /// The first window.
+    pub(super) fn first(&self) -> Area {
+        self.at(0, 0)
+    }
+
+    fn at(&self, x: usize, y: usize) -> Area {
+        let [image_width, image_height, frames] = self.image;
+        Area { x, y, width: self.width, height: self.height, frames, image_width, image_height }
+    }
+
+    /// All windows, row by row. The last of a row or column ends where the image does.
+    pub(super) fn each(self) -> impl Iterator<Item = Area> {
+        let [image_width, image_height, _] = self.image;
+        let starts = move |extent: usize, window: usize| {
+            let last = extent.saturating_sub(window);
+            let steps = last.div_ceil(self.stride.max(1));
+            (0..=steps).map(move |step| (step * self.stride).min(last))
+        };
+        let columns = move || starts(image_width, self.width);
+        starts(image_height, self.height).flat_map(move |y| columns().map(move |x| self.at(x, y)))
+    }
+}

@@ -1,0 +1,103 @@
+//! Which columns a shared fit has, and which of them each candidate uses.
+
+use super::super::config::Config;
+use super::super::ridge;
+use crate::basis::{Basis, MAX_ORDER};
+use crate::real::Real;
+use heapless::Vec;
+
+/// The most candidates: one for each degree, one with every slice's own functions, one with all columns.
+pub(super) const MAX_FITS: usize = MAX_ORDER + 2;
+/// The pixels' axes: x, y and frames.
+pub(super) const MAX_AXES: usize = 3;
+/// The highest degree of the functions whose coefficients may change across a block.
+const MOVING_DEGREE: usize = 2;
+/// Relative penalty of the values' trend along an axis: next to none.
+const TREND_PENALTY: f64 = 1e-3;
+/// Penalty of a product with an axis, relative to that of the function.
+const MOVING_PENALTY: f64 = 8.0;
+
+/// Columns of a fit, in this order, so that each candidate is a prefix: the constant and the pixels' axes, which follow
+/// the signal and correct nothing; control functions and basis, degree by degree; and low-degree functions times each
+/// axis, for integrands that change across the block.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Terms {
+    /// Axes along which the pixels differ.
+    pub(super) axes: usize,
+    /// Control functions and basis.
+    pub(super) functions: usize,
+    /// Where among the functions those with products begin, and how many they are.
+    pub(super) moving: (usize, usize),
+    /// For each candidate the number of columns.
+    pub(super) ends: Vec<usize, MAX_FITS>,
+}
+
+impl Terms {
+    /// For a fit to `samples` samples of pixels that differ along `axes` axes. With `all`, one candidate: every column.
+    #[inline(always)]
+    pub(super) fn new(config: &Config, basis: &Basis, axes: usize, samples: usize, all: bool) -> Self {
+        let functions = config.controls + basis.columns();
+        let fixed = 1 + axes;
+        let mut terms = Self { axes, functions, moving: (config.controls, 0), ends: Vec::new() };
+        if functions == 0 {
+            return terms;
+        }
+        if axes > 0 {
+            // As many degrees as leave two samples to each column.
+            let highest = MOVING_DEGREE.min(config.order.saturating_sub(1)).max(1);
+            let fits = |&moving: &usize| 2 * (fixed + functions + axes * moving) <= samples;
+            let counts = (1..=highest).rev().map(|degree| basis.up_to_degree(degree));
+            terms.moving.1 = counts.into_iter().find(fits).unwrap_or(0);
+        }
+        let mut end = |columns: usize| {
+            if !all && terms.ends.last().is_none_or(|&last| last < columns) {
+                // There is room for all: degrees, copies, products.
+                let _ = terms.ends.push(columns);
+            }
+        };
+        for degree in 1..=config.order {
+            end(fixed + config.controls + basis.up_to_degree(degree));
+        }
+        end(fixed + functions);
+        end(fixed + functions + axes * terms.moving.1);
+        if all {
+            let _ = terms.ends.push(terms.columns());
+        }
+        terms
+    }
+
+    /// The constant and the axes.
+    #[inline(always)]
+    pub(super) fn fixed(&self) -> usize {
+        1 + self.axes
+    }
+
+    /// All columns.
+    #[inline(always)]
+    pub(super) fn columns(&self) -> usize {
+        self.fixed() + self.functions + self.axes * self.moving.1
+    }
+
+    /// The penalty of each column, relative to the strength times the number of samples.
+    #[inline(always)]
+    pub(super) fn penalties<R: Real>(
+        &self,
+        config: &Config,
+        basis: &Basis,
+        mean_square: impl Fn(usize) -> R,
+        out: &mut [R],
+    ) {
+        let fixed = self.fixed();
+        let (own, rest) = out.split_at_mut_checked(fixed).unwrap_or((&mut [], &mut []));
+        for (index, penalty) in own.iter_mut().enumerate() {
+            *penalty = if index == 0 { R::ZERO } else { R::from_f64(TREND_PENALTY) };
+        }
+        let (functions, products) = rest.split_at_mut_checked(self.functions).unwrap_or((&mut [], &mut []));
+        ridge::penalties(config, basis, |j| mean_square(fixed + j), functions);
+        let (first, count) = self.moving;
+        let moving = functions.get(first..first + count).unwrap_or(&[]);
+        for (penalty, &function) in products.iter_mut().zip(moving.iter().cycle()) {
+            *penalty = R::from_f64(MOVING_PENALTY) * function;
+        }
+    }
+}
