@@ -16,22 +16,6 @@ pub(crate) fn estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f
     cv::estimate(config, samples, workspace)
 }
 
-/// [`cv::estimate_block`] in double precision.
-pub(crate) fn estimate_block(
-    config: &Config,
-    samples: Samples<'_>,
-    pixels: usize,
-    workspace: &mut [f64],
-    out: impl FnMut(usize, Estimate),
-) -> Result<(), Error> {
-    #[cfg(target_arch = "x86_64")]
-    if x86::has_avx2() {
-        // SAFETY: as above.
-        return unsafe { x86::estimate_block(config, samples, pixels, workspace, out) };
-    }
-    cv::estimate_block(config, samples, pixels, workspace, out)
-}
-
 /// [`cv::estimate_image`] in double precision.
 pub(crate) fn estimate_image(
     config: &Config,
@@ -64,17 +48,6 @@ mod x86 {
     #[target_feature(enable = "avx2")]
     pub(super) fn estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f64]) -> Result<Estimate, Error> {
         cv::estimate(config, samples, workspace)
-    }
-
-    #[target_feature(enable = "avx2")]
-    pub(super) fn estimate_block(
-        config: &Config,
-        samples: Samples<'_>,
-        pixels: usize,
-        workspace: &mut [f64],
-        out: impl FnMut(usize, Estimate),
-    ) -> Result<(), Error> {
-        cv::estimate_block(config, samples, pixels, workspace, out)
     }
 
     #[target_feature(enable = "avx2")]

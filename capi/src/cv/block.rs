@@ -5,7 +5,7 @@ use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimat
 use crate::convert;
 use crate::dispatch;
 use crate::status::*;
-use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image};
+use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Samples};
 
 /// The pixels of an image, or of a part of one, and what is known of them. All zero but width and height: nothing.
 /// Pixel (x, y) of frame t has the number (t height + y) width + x.
@@ -79,17 +79,9 @@ pub unsafe extern "C" fn nf_cv_block_estimate(
         let (samples, out) = unsafe {
             (samples(&core, u, f, core::ptr::null(), core::ptr::null(), total)?, convert::slice_mut(out, pixels)?)
         };
-        if narrow {
-            let needed = len(cv::block_workspace_len::<f32>(&core, pixels, n))?;
-            // SAFETY: the caller's workspace, `bytes` long.
-            let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
-            cv::estimate_block(&core, samples, pixels, workspace, writer(out)).map_err(status_of)
-        } else {
-            let needed = len(cv::block_workspace_len::<f64>(&core, pixels, n))?;
-            // SAFETY: the caller's workspace, `bytes` long.
-            let workspace = unsafe { convert::workspace::<f64>(workspace, bytes, needed)? };
-            dispatch::estimate_block(&core, samples, pixels, workspace, writer(out)).map_err(status_of)
-        }
+        let image = Image::unordered(pixels);
+        // SAFETY: the caller's workspace, `bytes` long.
+        unsafe { estimate(&core, narrow, &image, samples, n, (workspace, bytes), out) }
     })())
 }
 
@@ -153,17 +145,8 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
             // SAFETY: as above.
             image.factors = unsafe { convert::slice(given.factors, convert::product(pixels, core.channels)?)? };
         }
-        if narrow {
-            let needed = len(cv::image_workspace_len::<f32>(&core, &image, n))?;
-            // SAFETY: the caller's workspace, `bytes` long.
-            let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
-            cv::estimate_image(&core, &image, samples, workspace, writer(out)).map_err(status_of)
-        } else {
-            let needed = len(cv::image_workspace_len::<f64>(&core, &image, n))?;
-            // SAFETY: the caller's workspace, `bytes` long.
-            let workspace = unsafe { convert::workspace::<f64>(workspace, bytes, needed)? };
-            dispatch::estimate_image(&core, &image, samples, workspace, writer(out)).map_err(status_of)
-        }
+        // SAFETY: the caller's workspace, `bytes` long.
+        unsafe { estimate(&core, narrow, &image, samples, n, (workspace, bytes), out) }
     })())
 }
 
@@ -180,10 +163,31 @@ fn size_of_image(image: &nf_cv_image) -> Image<'static> {
     Image { frames, window, stride, ..Image::new(width, height) }
 }
 
-fn writer(out: &mut [nf_estimate]) -> impl FnMut(usize, Estimate) + '_ {
-    |pixel, estimate| {
+/// # Safety
+/// The workspace's pointer must be NULL or point to as many bytes as stand beside it.
+unsafe fn estimate(
+    config: &Config,
+    narrow: bool,
+    image: &Image<'_>,
+    samples: Samples<'_>,
+    n: usize,
+    (workspace, bytes): (*mut core::ffi::c_void, usize),
+    out: &mut [nf_estimate],
+) -> Result<(), nf_status> {
+    let write = |pixel: usize, estimate: Estimate| {
         if let Some(out) = out.get_mut(pixel) {
             *out = c_estimate(&estimate);
         }
+    };
+    if narrow {
+        let needed = len(cv::image_workspace_len::<f32>(config, image, n))?;
+        // SAFETY: the caller's promise, see above.
+        let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
+        cv::estimate_image(config, image, samples, workspace, write).map_err(status_of)
+    } else {
+        let needed = len(cv::image_workspace_len::<f64>(config, image, n))?;
+        // SAFETY: as above.
+        let workspace = unsafe { convert::workspace::<f64>(workspace, bytes, needed)? };
+        dispatch::estimate_image(config, image, samples, workspace, write).map_err(status_of)
     }
 }

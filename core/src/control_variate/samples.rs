@@ -283,6 +283,12 @@ impl<'a> Reader<'a> {
         values
     }
 
+    /// One channel of a sample.
+    #[inline(always)]
+    pub(crate) fn value(&self, index: usize, channel: usize) -> f64 {
+        self.samples.f.get(index * self.inputs + channel).copied().map_or(0.0, f64::from)
+    }
+
     /// Evaluates control functions and basis at `L` positions; `x` has a group of lanes for each coordinate, `h` one
     /// for each control function, and `out` one for each column, control functions first.
     #[inline(always)]

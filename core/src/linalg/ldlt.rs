@@ -145,6 +145,23 @@ pub(crate) fn forward_each<R: Real>(factors: &[Lanes<R>], first: usize, x: &mut 
     }
 }
 
+/// X := A^-1 X for eight systems side by side.
+#[inline(always)]
+pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
+    forward_each(factors, 0, x);
+    for (j, value) in x.iter_mut().enumerate() {
+        let inverse = row(factors, j).last().copied().unwrap_or([R::ZERO; LANES]);
+        *value = lanes::zip(value, &inverse, |value, inverse| value * inverse);
+    }
+    for j in (0..x.len()).rev() {
+        let (before, from_j) = x.split_at_mut_checked(j).unwrap_or((&mut [], &mut []));
+        let value = from_j.first().copied().unwrap_or([R::ZERO; LANES]);
+        for (x, l) in before.iter_mut().zip(row(factors, j)) {
+            *x = lanes::minus_product(*x, *l, value);
+        }
+    }
+}
+
 /// Writes the diagonal of A^-1 to `diagonal`, using `inverse` (a packed triangle) for L^-1.
 #[inline(always)]
 pub(crate) fn inverse_diagonal<R: Real>(factor: &[R], n: usize, inverse: &mut [R], diagonal: &mut [R]) {

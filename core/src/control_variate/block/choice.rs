@@ -97,11 +97,12 @@ impl<R: Real> Spreads<R> {
         weights
     }
 
-    /// The spread of a mixture relative to the plain mean's, or 1 if that is zero.
+    /// The spread of a mixture relative to the plain mean's, or 1 if there is no such number.
     #[inline(always)]
     pub(super) fn gain(&self, weights: &Weights<R>, channel: usize) -> R {
         let plain = get(&self.sums[0], channel);
-        if plain > R::ZERO { self.mixed(weights, channel) / plain } else { R::ONE }
+        let gain = self.mixed(weights, channel) / plain;
+        if gain.is_finite() { gain } else { R::ONE }
     }
 
     /// A mixture's spread per degree of freedom: the variance of its estimates, and what signal is left in it.

@@ -18,6 +18,28 @@ use crate::rows::{rows, rows_mut};
 
 /// Ridge strength per sample if the caller gives none.
 const STRENGTH: f64 = 0.003;
+/// The least that 1 less a sample's leverage is taken for, in units of the type's epsilon.
+const SINGULAR: f64 = 64.0;
+
+/// Whether pixels of `n` samples are few enough to leave their samples out of one factor of `columns` columns.
+fn has_few(n: usize, columns: usize) -> bool {
+    n == 1 || 4 * n <= columns
+}
+
+/// Numbers that a fit with so many columns takes.
+fn size_of_fit(config: &Config, terms: &Terms, columns: usize, pixels: usize, n: usize) -> Option<usize> {
+    let (channels, fixed) = (config.channels, terms.fixed());
+    let sums = packed_len(columns) + columns * channels;
+    let (each, scratch) = if has_few(n, columns) {
+        let each = n.checked_mul(columns + channels)?;
+        (each, n * (columns + fixed + channels + 1) + 2 * packed_len(n))
+    } else {
+        (sums, columns + sums)
+    };
+    let each = each.checked_add(fixed + (terms.ends.len() + 1) * channels)?;
+    let lanes = pixels.div_ceil(LANES).checked_mul(each)?.checked_add(scratch)?.checked_mul(LANES)?;
+    lanes.checked_add(sums + columns + fixed * columns)
+}
 
 /// Everything that the fits of a call have in common.
 pub(super) struct Problem<'a> {
@@ -96,16 +118,12 @@ impl<'a> Problem<'a> {
         Terms::new(self.config, &self.shape, members.axes(), members.len.saturating_mul(self.n), single)
     }
 
-    /// Numbers that [`Problem::fit`] takes for as many pixels; fewer need no more.
+    /// Numbers that [`Problem::fit`] takes for at most so many pixels.
     pub(super) fn size(config: &Config, shape: &Shape, axes: usize, pixels: usize, n: usize) -> Option<usize> {
         let terms = Terms::new(config, shape, axes, pixels.checked_mul(n)?, false);
-        let (columns, channels) = (terms.columns(), config.channels);
-        let sums = packed_len(columns) + columns * channels;
-        let panels = pixels.div_ceil(LANES);
-        let each = terms.fixed() + (terms.ends.len() + 1) * channels + if n == 1 { columns + channels } else { sums };
-        let scratch = if n == 1 { columns } else { columns + sums };
-        let lanes = panels.checked_mul(each)?.checked_add(scratch)?.checked_mul(LANES)?;
-        lanes.checked_add(sums + columns + terms.fixed() * columns)
+        // Fewer pixels may have fewer columns, and then go the other way.
+        let sizes = terms.fewer_columns(shape).map(|columns| size_of_fit(config, &terms, columns, pixels, n));
+        sizes.into_iter().try_fold(0, |largest, size| Some(size?.max(largest)))
     }
 
     /// Fits to all members but one, for each of them, of which there are at least two.
@@ -128,9 +146,12 @@ impl<'a> Problem<'a> {
         let setting = Setting { terms, units: self.units(members), places };
         let estimates = arena.take_lanes(panels * setting.estimates(channels))?;
         if self.n == 1 {
-            self.one_sample(members, &setting, estimates, arena)?;
+            // A copy of its own: loops over one sample vanish.
+            self.by_one_factor(members, &setting, 1, estimates, arena)?;
+        } else if has_few(self.n, terms.columns()) {
+            self.by_one_factor(members, &setting, self.n, estimates, arena)?;
         } else {
-            self.several_samples(members, &setting, estimates, arena)?;
+            self.by_factor_each(members, &setting, estimates, arena)?;
         }
         let Setting { units, .. } = setting;
         let spreads = Spreads::new(members.len, places, fixed, estimates, fits, channels);
@@ -168,7 +189,7 @@ impl<'a> Problem<'a> {
                 }
             }
             for (unit, largest) in units.iter_mut().zip(largest) {
-                unit.exponent = Real::exponent(largest);
+                unit.exponent = Real::exponent(largest).clamp(-126, 126);
             }
         }
         let pixel = members.pixel(0);
@@ -283,34 +304,44 @@ impl<'a> Problem<'a> {
         ldlt::add_diagonal(gram, terms.columns(), |j| strength * penalties.get(j).copied().unwrap_or(R::ONE));
     }
 
-    /// One sample in each pixel: one factorisation A = L D L', and the leave-one-out residual in closed form. Every
-    /// candidate is a prefix of the columns and so of L: with z = L^-1 x its leverage z'D^-1 z, its fit and its
-    /// correction are partial sums over z.
+    /// Few samples in each pixel: one factorisation A = L D L', from which each pixel's n samples are left out in closed
+    /// form. With X their rows, H = X A^-1 X' and e their residuals, the residuals under the fit to all others are
+    /// r = (I - H)^-1 e, and its coefficients b - A^-1 X' r. Every candidate is a prefix of the columns and so of L: with
+    /// Z = L^-1 X', H = Z'D^-1 Z and all else are partial sums over the rows of Z.
     #[inline(always)]
-    fn one_sample<R: Real>(
+    fn by_one_factor<R: Real>(
         &self,
         members: &Members<'_>,
         setting: &Setting<'_, R>,
+        n: usize,
         estimates: &mut [Lanes<R>],
         arena: &mut Arena<'_, R>,
     ) -> Result<(), Error> {
         let mut arena = arena.scratch();
         let terms = setting.terms;
-        let (width, channels) = (terms.columns(), self.config.channels);
+        let (width, fixed, channels) = (terms.columns(), terms.fixed(), self.config.channels);
         let count = members.len.div_ceil(LANES);
-        let columns = arena.take_lanes(count * width)?;
-        let values = arena.take_lanes(count * channels)?;
-        let z = arena.take_lanes(width)?;
+        let columns = arena.take_lanes(count * n * width)?;
+        let values = arena.take_lanes(count * n * channels)?;
+        let z = arena.take_lanes(n * width)?;
+        let products = arena.take_lanes(packed_len(n))?;
+        let system = arena.take_lanes(packed_len(n))?;
+        let parts = arena.take_lanes(fixed * n)?;
+        let fitted = arena.take_lanes(channels * n)?;
+        let residuals = arena.take_lanes(n)?;
         let gram = arena.take(packed_len(width))?;
         let rhs = arena.take(width * channels)?;
         let penalties = arena.take(width)?;
-        let units = arena.take(terms.fixed() * width)?;
-        let loads = rows_mut(columns, width).zip(rows_mut(values, channels)).zip(setting.places());
+        let units = arena.take(fixed * width)?;
+        let loads = rows_mut(columns, n * width).zip(rows_mut(values, n * channels)).zip(setting.places());
         for (index, ((columns, values), places)) in loads.enumerate() {
-            self.load(setting, &self.panel(members, index * LANES), 0, places, columns, values);
+            let panel = self.panel(members, index * LANES);
+            for (sample, (columns, values)) in rows_mut(columns, width).zip(rows_mut(values, channels)).enumerate() {
+                self.load(setting, &panel, sample, places, columns, values);
+            }
         }
         let design = Design {
-            n: members.len,
+            n: members.len * n,
             columns: width,
             channels,
             panels: columns,
@@ -319,77 +350,119 @@ impl<'a> Problem<'a> {
             units: setting.units,
         };
         design.normal_equations(gram, rhs);
-        self.add_ridge(terms, members.len - 1, gram, penalties);
+        self.add_ridge(terms, (members.len - 1) * n, gram, penalties);
         ldlt::factor(gram, width);
         for rhs in rows_mut(rhs, width) {
             ldlt::forward(gram, rhs);
             ldlt::scale_by_inverse_diagonal(gram, rhs);
         }
-        // The fixed columns' part of x, which corrects nothing, has L^-1 of the columns of the unit matrix: what it adds to
-        // a sum over z is its places times that sum over those.
+        // The fixed columns' part of a row, which corrects nothing, has L^-1 of the columns of the unit matrix: what it
+        // adds to a sum over Z is its places times that sum over those.
         for (k, unit) in rows_mut(units, width).enumerate() {
             for (j, value) in unit.iter_mut().enumerate() {
                 *value = if j == k { R::ONE } else { R::ZERO };
             }
             ldlt::forward(gram, unit);
         }
-        let panels = design.each_panel().zip(setting.places()).zip(rows_mut(estimates, setting.estimates(channels)));
-        for (((columns, values), places), out) in panels {
-            for (z, column) in z.iter_mut().zip(columns) {
-                *z = *column;
+        let smallest = R::from_f64(SINGULAR) * R::EPSILON;
+        let inverse_n = R::ONE / R::from_usize(n);
+        let panels = rows(design.panels, n * width).zip(rows(design.values, n * channels)).zip(setting.places());
+        for (((columns, values), places), out) in panels.zip(rows_mut(estimates, setting.estimates(channels))) {
+            for (z, columns) in rows_mut(z, width).zip(rows(columns, width)) {
+                for (z, column) in z.iter_mut().zip(columns) {
+                    *z = *column;
+                }
+                ldlt::forward_lanes(gram, 0, z);
             }
-            ldlt::forward_lanes(gram, 0, z);
-            let mut out = rows_mut(out, channels);
-            for (out, value) in out.next().unwrap_or(&mut []).iter_mut().zip(values) {
-                *out = *value;
+            for sum in products.iter_mut().chain(parts.iter_mut()).chain(fitted.iter_mut()) {
+                *sum = [R::ZERO; LANES];
             }
-            let mut leverage = [R::ZERO; LANES];
-            // Of each fixed column, its part of the leverage and of each channel's fit.
-            let mut parts = [[R::ZERO; LANES]; 1 + MAX_AXES];
             let mut trends = [[R::ZERO; 1 + MAX_AXES]; Config::MAX_CHANNELS];
-            let mut fitted = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
+            let mut means = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
+            for values in rows(values, channels) {
+                for (mean, value) in means.iter_mut().zip(values) {
+                    lanes::add_scaled(mean, inverse_n, value);
+                }
+            }
+            let mut out = rows_mut(out, channels);
+            for (out, mean) in out.next().unwrap_or(&mut []).iter_mut().zip(&means) {
+                *out = *mean;
+            }
             let mut begin = 0;
             for (&end, out) in terms.ends.iter().zip(out) {
-                for (j, z) in z.iter().enumerate().take(end).skip(begin) {
+                for j in begin..end {
                     let inverse = ldlt::inverse_pivot(gram, j);
-                    let scaled = z.map(|z| z * inverse);
-                    lanes::add_product(&mut leverage, z, &scaled);
-                    for (part, unit) in parts.iter_mut().zip(rows(units, width)) {
-                        lanes::add_scaled(part, unit.get(j).copied().unwrap_or(R::ZERO), &scaled);
+                    for (s, row_s) in rows(z, width).enumerate() {
+                        let at = row_s.get(j).copied().unwrap_or([R::ZERO; LANES]);
+                        let scaled = at.map(|z| z * inverse);
+                        for (sum, other) in row_mut(products, s).iter_mut().zip(rows(z, width)) {
+                            lanes::add_product(sum, other.get(j).unwrap_or(&[R::ZERO; LANES]), &scaled);
+                        }
+                        for (parts, unit) in rows_mut(parts, n).zip(rows(units, width)) {
+                            if let (Some(part), Some(&unit)) = (parts.get_mut(s), unit.get(j)) {
+                                lanes::add_scaled(part, unit, &scaled);
+                            }
+                        }
+                        for (fitted, rhs) in rows_mut(fitted, n).zip(rows(rhs, width)) {
+                            if let (Some(fitted), Some(&b)) = (fitted.get_mut(s), rhs.get(j)) {
+                                lanes::add_scaled(fitted, b, &at);
+                            }
+                        }
                     }
-                    for ((fitted, trend), rhs) in fitted.iter_mut().zip(&mut trends).zip(rows(rhs, width)) {
-                        let b = rhs.get(j).copied().unwrap_or(R::ZERO);
-                        lanes::add_scaled(fitted, b, z);
+                    for (trend, rhs) in trends.iter_mut().zip(rows(rhs, width)) {
                         for (trend, unit) in trend.iter_mut().zip(rows(units, width)) {
-                            *trend += b * unit.get(j).copied().unwrap_or(R::ZERO);
+                            *trend += rhs.get(j).copied().unwrap_or(R::ZERO) * unit.get(j).copied().unwrap_or(R::ZERO);
                         }
                     }
                 }
                 begin = end;
-                let mut reach = leverage;
-                for (part, place) in parts.iter().zip(places) {
-                    reach = lanes::minus_product(reach, *part, *place);
-                }
-                let gain = lanes::zip(&reach, &leverage, |reach, leverage| {
-                    reach / (R::ONE - leverage).max(R::from_f64(64.0) * R::EPSILON)
-                });
-                for (((out, value), fitted), trend) in out.iter_mut().zip(values).zip(&fitted).zip(&trends) {
-                    let residual = lanes::zip(value, fitted, |a, b| a - b);
-                    let mut plain = residual;
-                    for (&trend, place) in trend.iter().zip(places) {
-                        lanes::add_scaled(&mut plain, trend, place);
+                for s in 0..n {
+                    let pairs = row_mut(system, s).iter_mut().zip(row(products, s)).enumerate();
+                    for (t, (out, product)) in pairs {
+                        *out = product.map(|h| if s == t { (R::ONE - h).max(smallest) } else { -h });
                     }
-                    *out = lanes::plus_product(plain, gain, residual);
+                }
+                ldlt::factor_each(system, n);
+                for (channel, (out, mean)) in out.iter_mut().zip(&means).enumerate() {
+                    let fitted = rows(fitted, n).nth(channel).unwrap_or(&[]);
+                    // The mean of f - b'p without the fixed columns, then what leaving the pixel out changes.
+                    let mut estimate = *mean;
+                    for fitted in fitted {
+                        lanes::add_scaled(&mut estimate, -inverse_n, fitted);
+                    }
+                    for (&trend, place) in trends.get(channel).into_iter().flatten().zip(places) {
+                        lanes::add_scaled(&mut estimate, trend, place);
+                    }
+                    let values = rows(values, channels).map(|values| values.get(channel));
+                    for ((residual, value), fitted) in residuals.iter_mut().zip(values).zip(fitted) {
+                        *residual =
+                            lanes::zip(value.unwrap_or(&[R::ZERO; LANES]), fitted, |value, fitted| value - fitted);
+                    }
+                    ldlt::solve_each(system, residuals);
+                    for (t, residual) in residuals.iter().enumerate() {
+                        let mut reach = [R::ZERO; LANES];
+                        for s in 0..n {
+                            let product = row(products, s.max(t)).get(s.min(t)).copied().unwrap_or([R::ZERO; LANES]);
+                            lanes::add_scaled(&mut reach, inverse_n, &product);
+                        }
+                        for (parts, place) in rows(parts, n).zip(places) {
+                            if let Some(part) = parts.get(t) {
+                                reach = lanes::minus_product(reach, *part, *place);
+                            }
+                        }
+                        lanes::add_product(&mut estimate, &reach, residual);
+                    }
+                    *out = estimate;
                 }
             }
         }
         Ok(())
     }
 
-    /// Several samples in each pixel: A less the pixel's own products, factored for eight pixels at a time, which takes
-    /// less time than updating one factor by rank n.
+    /// Many samples in each pixel: A less the pixel's own products, factored for eight pixels at a time, which takes less
+    /// time than updating one factor by rank n.
     #[inline(always)]
-    fn several_samples<R: Real>(
+    fn by_factor_each<R: Real>(
         &self,
         members: &Members<'_>,
         setting: &Setting<'_, R>,

@@ -15,6 +15,8 @@ pub struct Image<'a> {
     pub height: usize,
     /// Images of the same pixels, at other times; they share fits. 1 for a single one.
     pub frames: usize,
+    /// Whether the pixels have no places: all of the same surface then share one fit, whatever `window` and `stride` say.
+    pub unordered: bool,
     /// Width and height of the square windows that pixels share a fit in; 0 means 8. A window has at most
     /// [`Image::MAX_WINDOW`] pixels in all frames together.
     pub window: usize,
@@ -36,11 +38,24 @@ impl Image<'_> {
     /// An image of which nothing is known but its size.
     #[inline]
     pub const fn new(width: usize, height: usize) -> Self {
-        Self { width, height, frames: 1, window: 0, stride: 0, surfaces: &[], factors: &[] }
+        Self { width, height, frames: 1, unordered: false, window: 0, stride: 0, surfaces: &[], factors: &[] }
+    }
+
+    /// Pixels in no order.
+    #[inline]
+    pub const fn unordered(pixels: usize) -> Self {
+        Self { unordered: true, ..Self::new(pixels, 1) }
     }
 
     /// Width and height of a window, and the steps from one to the next.
     pub(super) fn windows(&self) -> Result<Windows, Error> {
+        if self.unordered {
+            let pixels = self.pixels()?;
+            let fits = pixels > 0 && (self.surfaces.is_empty() || pixels <= Self::MAX_WINDOW);
+            let windows =
+                Windows { width: pixels, height: 1, stride: pixels, image: [pixels, 1, 1], is_ordered: false };
+            return if fits { Ok(windows) } else { Err(Error::Range) };
+        }
         let side = if self.window == 0 { 8 } else { self.window };
         let stride = if self.stride == 0 { side.div_ceil(2) } else { self.stride };
         let (width, height) = (side.min(self.width), side.min(self.height));
@@ -50,7 +65,7 @@ impl Image<'_> {
             return Err(Error::Range);
         }
         let image = [self.width, self.height, self.frames];
-        Ok(Windows { width, height, stride, image })
+        Ok(Windows { width, height, stride, image, is_ordered: true })
     }
 
     /// All pixels of all frames.
@@ -81,6 +96,7 @@ pub(super) struct Windows {
     stride: usize,
     /// Width, height and frames of the image.
     image: [usize; 3],
+    is_ordered: bool,
 }
 
 impl Windows {
@@ -96,7 +112,16 @@ impl Windows {
 
     fn at(&self, x: usize, y: usize) -> Area {
         let [image_width, image_height, frames] = self.image;
-        Area { x, y, width: self.width, height: self.height, frames, image_width, image_height }
+        Area {
+            x,
+            y,
+            width: self.width,
+            height: self.height,
+            frames,
+            image_width,
+            image_height,
+            is_ordered: self.is_ordered,
+        }
     }
 
     /// All windows, row by row. The last of a row or column ends where the image does.

@@ -17,6 +17,8 @@ pub(super) struct Area {
     pub(super) frames: usize,
     pub(super) image_width: usize,
     pub(super) image_height: usize,
+    /// Whether the pixels have places; otherwise they are one row in no order.
+    pub(super) is_ordered: bool,
 }
 
 impl Area {
@@ -28,6 +30,9 @@ impl Area {
     #[inline(always)]
     fn split(&self, index: usize) -> [usize; MAX_AXES] {
         // An area has as few pixels as 32 bits count, which divide faster than 64.
+        if !self.is_ordered {
+            return [index, 0, 0];
+        }
         let (index, width, height) = (index as u32, self.width as u32, self.height as u32);
         let row = index.checked_div(width).unwrap_or(0);
         let frame = row.checked_div(height).unwrap_or(0);
@@ -47,11 +52,14 @@ impl Area {
 
     /// The axes along which the area's pixels differ.
     pub(super) fn axes(&self) -> usize {
-        self.extents().into_iter().filter(|&extent| extent > 1).count()
+        if self.is_ordered { self.extents().into_iter().filter(|&extent| extent > 1).count() } else { 0 }
     }
 
     /// How near pixel `index` is to the centre: 1 there, falling linearly along x and y to almost 0.
     pub(super) fn nearness<R: Real>(&self, index: usize) -> R {
+        if !self.is_ordered {
+            return R::ONE;
+        }
         let [x, y, _] = self.split(index);
         let hat = |at: usize, extent: usize| R::ONE - Self::place::<R>(at, extent).abs();
         hat(x, self.width) * hat(y, self.height)
@@ -67,8 +75,7 @@ impl Area {
 /// Every `step`-th of some of an area's pixels, from the `first` on.
 #[derive(Clone, Copy)]
 pub(super) struct Members<'a> {
-    /// None for pixels in no order: numbered from 0 on, and all alike.
-    pub(super) area: Option<Area>,
+    pub(super) area: Area,
     /// Numbers within the area; None for all.
     pub(super) list: Option<&'a [u16]>,
     pub(super) first: usize,
@@ -78,7 +85,7 @@ pub(super) struct Members<'a> {
 
 impl Members<'_> {
     pub(super) fn axes(&self) -> usize {
-        self.area.map_or(0, |area| area.axes())
+        self.area.axes()
     }
 
     /// Every second of these.
@@ -100,8 +107,7 @@ impl Members<'_> {
     /// The caller's number for member `index`.
     #[inline(always)]
     pub(super) fn pixel(&self, index: usize) -> usize {
-        let local = self.local(index);
-        self.area.map_or(local, |area| area.pixel(local))
+        self.area.pixel(self.local(index))
     }
 
     /// A group of lanes of ones, and one for each axis, of unit variance: members from `start` on, zero after the last.
@@ -112,9 +118,11 @@ impl Members<'_> {
         for lane in 0..LANES.min(self.len.saturating_sub(start)) {
             let [ones, axes @ ..] = &mut places;
             ones[lane] = R::ONE;
-            let Some(area) = self.area else { continue };
-            let at = area.split(self.local(start + lane));
-            let used = at.into_iter().zip(area.extents()).filter(|&(_, extent)| extent > 1);
+            if !self.area.is_ordered {
+                continue;
+            }
+            let at = self.area.split(self.local(start + lane));
+            let used = at.into_iter().zip(self.area.extents()).filter(|&(_, extent)| extent > 1);
             for (axis, (at, extent)) in axes.iter_mut().zip(used) {
                 axis[lane] = scale * Area::place(at, extent);
             }

@@ -25,7 +25,6 @@ mod terms;
 pub use image::Image;
 
 use super::config::{Color, Config, Estimate, Estimator, NonFinite, Ridge};
-use super::per_channel::get;
 use super::result::saturate;
 use super::samples::{Reader, Samples};
 use crate::arena::Arena;
@@ -43,21 +42,19 @@ use members::{Area, Members};
 /// # Errors
 /// As for [`estimate_block`].
 pub fn block_workspace_len<R: Real>(config: &Config, pixels: usize, n: usize) -> Result<usize, Error> {
-    workspace_len(config, 0, pixels, pixels, n)
+    // More pixels than 32 bits count need more memory than there is.
+    u32::try_from(pixels).map_err(|_| Error::Memory)?;
+    image_workspace_len::<R>(config, &Image::unordered(pixels), n)
 }
 
 /// Numbers of workspace that [`estimate_image`] needs for `n` samples in each pixel.
 ///
 /// # Errors
-/// As for [`estimate_image`].
+/// As for [`estimate_image`]; [`Error::Memory`] if no memory could be large enough.
 pub fn image_workspace_len<R: Real>(config: &Config, image: &Image<'_>, n: usize) -> Result<usize, Error> {
-    let windows = image.windows()?;
-    workspace_len(config, windows.first().axes(), windows.pixels(), image.pixels()?, n)
-}
-
-fn workspace_len(config: &Config, axes: usize, window: usize, pixels: usize, n: usize) -> Result<usize, Error> {
     check_supported(config)?;
-    let fit = Problem::size(config, &config.checked_shape()?, axes, window, n).ok_or(Error::Memory)?;
+    let (shape, windows, pixels) = (config.checked_shape()?, image.windows()?, image.pixels()?);
+    let fit = Problem::size(config, &shape, windows.first().axes(), windows.pixels(), n).ok_or(Error::Memory)?;
     pixels.checked_mul(sums_len(config.channels)).and_then(|sums| sums.checked_add(fit)).ok_or(Error::Memory)
 }
 
@@ -68,13 +65,11 @@ fn check_supported(config: &Config) -> Result<(), Error> {
     if supported { Ok(()) } else { Err(Error::Unsupported) }
 }
 
-/// Estimates the integral of each of `pixels` pixels that are alike, in no order, all with
-/// `samples.f.len() / (pixels channels)` samples, pixel after pixel. `out` is called once for each pixel in order, and
-/// only if all succeed.
+/// Estimates the integral of each of `pixels` pixels that are alike, in no order: [`estimate_image`] for
+/// [`Image::unordered`].
 ///
 /// # Errors
-/// As for [`estimate`](super::estimate); [`Error::Unsupported`] for a luminance ratio, for skipping samples, and for
-/// estimators other than the robust, leave-one-out and K-fold ones.
+/// As for [`estimate_image`].
 #[inline(always)]
 pub fn estimate_block<R: Real>(
     config: &Config,
@@ -83,83 +78,56 @@ pub fn estimate_block<R: Real>(
     workspace: &mut [R],
     out: impl FnMut(usize, Estimate),
 ) -> Result<(), Error> {
-    let len = |n| block_workspace_len::<R>(config, pixels, n);
-    let shared = |call: &mut Call<'_, '_, R>| {
-        let members = Members { area: None, list: None, first: 0, step: 1, len: pixels };
-        call.group(&members, |_| R::ONE)
-    };
-    let request = Request { config, samples, pixels, factors: &[] };
-    request.run(workspace, len, shared, out)
+    if pixels == 0 {
+        return Err(Error::NoSamples);
+    }
+    estimate_image(config, &Image::unordered(pixels), samples, workspace, out)
 }
 
 /// Estimates every pixel of an image from `samples.f.len() / (pixels channels)` samples in each, pixel after pixel. `out`
 /// is called once for each pixel in order, and only if all succeed.
 ///
 /// # Errors
-/// As for [`estimate_block`]; [`Error::Range`] also for an image without pixels, for windows that [`Image`] does not
-/// allow, and for negative factors or arrays of the wrong length, [`Error::NotFinite`] for factors that are not finite.
+/// As for [`estimate`](super::estimate); [`Error::Unsupported`] also for a luminance ratio, for skipping samples and for
+/// estimators other than the robust, leave-one-out and K-fold ones; [`Error::Range`] also for an image without pixels, for
+/// windows that [`Image`] does not allow, for negative factors and for arrays of the wrong length;
+/// [`Error::NotFinite`] for factors that are not finite.
 #[inline(always)]
 pub fn estimate_image<R: Real>(
     config: &Config,
     image: &Image<'_>,
     samples: Samples<'_>,
     workspace: &mut [R],
-    out: impl FnMut(usize, Estimate),
+    mut out: impl FnMut(usize, Estimate),
 ) -> Result<(), Error> {
-    let windows = image.windows()?;
+    let shape = config.checked_shape()?;
+    let mut basis = Basis::empty();
+    basis.set(config.basis, shape)?;
+    check_supported(config)?;
+    let reader = Reader::new(config, samples)?;
+    let (windows, pixels) = (image.windows()?, image.pixels()?);
     image.check(config)?;
-    let len = |n| image_workspace_len::<R>(config, image, n);
-    let shared = |call: &mut Call<'_, '_, R>| windows.each().try_for_each(|area| call.window(area, image.surfaces));
-    let request = Request { config, samples, pixels: image.pixels()?, factors: image.factors };
-    request.run(workspace, len, shared, out)
-}
-
-/// What a caller asks for.
-struct Request<'c> {
-    config: &'c Config,
-    samples: Samples<'c>,
-    pixels: usize,
-    factors: &'c [f32],
-}
-
-impl Request<'_> {
-    /// Checks everything, lets `shared` add up corrections, and reports each pixel.
-    #[inline(always)]
-    fn run<'a, R: Real>(
-        &self,
-        workspace: &'a mut [R],
-        len: impl FnOnce(usize) -> Result<usize, Error>,
-        shared: impl FnOnce(&mut Call<'_, 'a, R>) -> Result<(), Error>,
-        mut out: impl FnMut(usize, Estimate),
-    ) -> Result<(), Error> {
-        let Self { config, samples, pixels, factors } = *self;
-        let shape = config.checked_shape()?;
-        let mut basis = Basis::empty();
-        basis.set(config.basis, shape)?;
-        check_supported(config)?;
-        let reader = Reader::new(config, samples)?;
-        let n = reader.len().checked_div(pixels).ok_or(Error::NoSamples)?;
-        if n * pixels != reader.len() {
-            return Err(Error::Range);
-        }
-        reader.check()?;
-        if workspace.len() < len(n)? {
-            return Err(Error::Memory);
-        }
-        let mut arena = Arena::new(workspace);
-        let width = sums_len(config.channels);
-        let sums = arena.take(pixels * width)?;
-        for value in sums.iter_mut() {
-            *value = R::ZERO;
-        }
-        let problem = Problem { config, shape, basis: &basis, reader, n, factors };
-        let mut call = Call { problem, sums, arena };
-        shared(&mut call)?;
-        for (pixel, sums) in rows(call.sums, width).enumerate() {
-            out(pixel, call.problem.pixel(pixel, sums));
-        }
-        Ok(())
+    let n = reader.len() / pixels.max(1);
+    if n == 0 || n * pixels != reader.len() {
+        return Err(Error::Range);
     }
+    reader.check()?;
+    if workspace.len() < image_workspace_len::<R>(config, image, n)? {
+        return Err(Error::Memory);
+    }
+    let mut arena = Arena::new(workspace);
+    let width = sums_len(config.channels);
+    let sums = arena.take(pixels * width)?;
+    for value in sums.iter_mut() {
+        *value = R::ZERO;
+    }
+    let problem = Problem { config, shape, basis: &basis, reader, n, factors: image.factors };
+    let mut call = Call { problem, sums, arena };
+    windows.each().try_for_each(|area| call.window(area, image.surfaces))?;
+    for (pixel, sums) in rows(call.sums, width).enumerate() {
+        out(pixel, call.problem.pixel(pixel, sums));
+    }
+    Ok(())
 }
 
 /// Numbers that are summed for each pixel: over the groups that it was in, their weight and gain, and for each channel its
@@ -180,26 +148,32 @@ impl<R: Real> Call<'_, '_, R> {
     #[inline(always)]
     fn window(&mut self, area: Area, surfaces: &[u32]) -> Result<(), Error> {
         let pixels = area.pixels();
-        let near = |index: usize| area.nearness(index);
-        if surfaces.is_empty() {
-            return self.group(&Members { area: Some(area), list: None, first: 0, step: 1, len: pixels }, near);
-        }
         let surface = |index: &u16| surfaces.get(area.pixel(usize::from(*index))).copied().unwrap_or(0);
-        let mut left: Vec<u16, { Image::MAX_WINDOW }> = (0..pixels as u16).collect();
-        let mut list: Vec<u16, { Image::MAX_WINDOW }> = Vec::new();
-        while let Some(first) = left.first().map(surface) {
-            list.clear();
-            list.extend(left.iter().copied().filter(|index| surface(index) == first));
-            left.retain(|index| surface(index) != first);
-            let members = Members { area: Some(area), list: Some(&list), first: 0, step: 1, len: list.len() };
-            self.group(&members, near)?;
+        let mut left: Vec<u16, { Image::MAX_WINDOW }> = Vec::new();
+        if !surfaces.is_empty() {
+            // A window with surfaces has no more pixels than that.
+            (0..pixels as u16).for_each(|index| left.push(index).unwrap_or(()));
         }
-        Ok(())
+        let mut list: Vec<u16, { Image::MAX_WINDOW }> = Vec::new();
+        loop {
+            let first = left.first().map(surface);
+            if let Some(first) = first {
+                list.clear();
+                let same = left.iter().copied().filter(|index| surface(index) == first);
+                same.for_each(|index| list.push(index).unwrap_or(()));
+                left.retain(|index| surface(index) != first);
+            }
+            let (list, len) = if first.is_some() { (Some(list.as_slice()), list.len()) } else { (None, pixels) };
+            self.group(&Members { area, list, first: 0, step: 1, len })?;
+            if left.is_empty() {
+                return Ok(());
+            }
+        }
     }
 
     /// Fits a group and adds its pixels' corrections, times their weight.
     #[inline(always)]
-    fn group(&mut self, members: &Members<'_>, near: impl Fn(usize) -> R) -> Result<(), Error> {
+    fn group(&mut self, members: &Members<'_>) -> Result<(), Error> {
         let terms = self.problem.terms(members);
         if members.len < 2 || terms.ends.is_empty() {
             return Ok(());
@@ -216,12 +190,12 @@ impl<R: Real> Call<'_, '_, R> {
                 *weights = self.problem.weights(&group);
             }
             let group = self.problem.fit(members, &terms, &mut self.arena.scratch())?;
-            self.problem.add(members, &group, &weights, near, self.sums);
+            self.problem.add(members, &group, &weights, self.sums);
             return Ok(());
         }
         let group = self.problem.fit(members, &terms, &mut self.arena.scratch())?;
         let weights = self.problem.weights(&group);
-        self.problem.add(members, &group, &[weights], near, self.sums);
+        self.problem.add(members, &group, &[weights], self.sums);
         Ok(())
     }
 }
@@ -229,14 +203,7 @@ impl<R: Real> Call<'_, '_, R> {
 impl Problem<'_> {
     /// Adds a group's corrections to its pixels' sums.
     #[inline(always)]
-    fn add<R: Real>(
-        &self,
-        members: &Members<'_>,
-        group: &Group<'_, R>,
-        choices: &[Weights<R>],
-        near: impl Fn(usize) -> R,
-        sums: &mut [R],
-    ) {
+    fn add<R: Real>(&self, members: &Members<'_>, group: &Group<'_, R>, choices: &[Weights<R>], sums: &mut [R]) {
         let channels = self.config.channels;
         let width = sums_len(channels);
         for (turn, weights) in choices.iter().enumerate() {
@@ -247,7 +214,8 @@ impl Problem<'_> {
                 *unit = R::ONE.scale(units.exponent);
                 let ratio = group.spreads.gain(weights, channel);
                 *error = if self.error_is_the_blocks() {
-                    group.spreads.variance(weights, channel).map_or(R::INFINITY, |variance| variance.sqrt() * *unit)
+                    let variance = group.spreads.variance(weights, channel).filter(|variance| variance.is_finite());
+                    variance.map_or(R::INFINITY, |variance| variance.sqrt() * *unit)
                 } else {
                     ratio.sqrt()
                 };
@@ -257,7 +225,7 @@ impl Problem<'_> {
             for index in (turn..members.len).step_by(choices.len()) {
                 let pixel = members.pixel(index);
                 let Some(sums) = sums.get_mut(pixel * width..(pixel + 1) * width) else { continue };
-                let near = near(members.local(index));
+                let near = members.area.nearness::<R>(members.local(index));
                 let (common, each) = sums.split_at_mut_checked(2).unwrap_or((&mut [], &mut []));
                 for (sum, value) in common.iter_mut().zip([R::ONE, gain]) {
                     *sum += near * value;
@@ -285,16 +253,6 @@ impl Problem<'_> {
     /// The estimate of a pixel.
     #[inline(always)]
     fn pixel<R: Real>(&self, pixel: usize, sums: &[R]) -> Estimate {
-        let n = self.n as f64;
-        let (mut total, mut squares) = ([0.0f64; Config::MAX_CHANNELS], [0.0f64; Config::MAX_CHANNELS]);
-        let first = self.reader.values::<f64>(&self.reader.get(pixel * self.n));
-        for sample in 1..self.n {
-            let values = self.reader.values::<f64>(&self.reader.get(pixel * self.n + sample));
-            for (((total, square), value), first) in total.iter_mut().zip(&mut squares).zip(values).zip(first) {
-                *total += value - first;
-                *square += (value - first) * (value - first);
-            }
-        }
         let (common, each) = sums.split_at_checked(2).unwrap_or((&[], &[]));
         let [weight, gain] = [0, 1].map(|index| common.get(index).map_or(0.0, |value| value.to_f64()));
         let mean_of = |sum: f64, otherwise: f64| if weight > 0.0 { sum / weight } else { otherwise };
@@ -308,8 +266,17 @@ impl Problem<'_> {
         for (channel, (mean, error)) in outputs.enumerate().take(self.config.channels) {
             let each = [2 * channel, 2 * channel + 1].map(|index| each.get(index).map_or(0.0, |value| value.to_f64()));
             let [correction, spread] = each;
-            let (total, square) = (get(&total, channel), get(&squares, channel));
-            *mean = saturate(get(&first, channel) + total / n + mean_of(correction, 0.0));
+            let value = |sample: usize| self.reader.value(pixel * self.n + sample, channel);
+            let first = value(0);
+            let (mut total, mut square) = (0.0, 0.0);
+            for sample in 1..self.n {
+                let value = value(sample) - first;
+                total += value;
+                square += value * value;
+            }
+            let n = self.n as f64;
+            let correction = if correction.is_finite() { mean_of(correction, 0.0) } else { 0.0 };
+            *mean = saturate(first + total / n + correction);
             let spread = mean_of(spread, 1.0);
             *error = if weight > 0.0 && self.error_is_the_blocks() {
                 spread as f32

@@ -78,6 +78,14 @@ impl Terms {
         self.fixed() + self.functions + self.axes * self.moving.1
     }
 
+    /// As many columns as fits to fewer samples can have.
+    pub(super) fn fewer_columns(&self, shape: &Shape) -> [usize; MOVING_DEGREE + 1] {
+        core::array::from_fn(|degree| {
+            let moving = shape.up_to_degree(degree).min(self.moving.1);
+            self.fixed() + self.functions + self.axes * moving
+        })
+    }
+
     /// The penalty of each column, relative to the strength times the number of samples.
     #[inline(always)]
     pub(super) fn penalties<R: Real>(
