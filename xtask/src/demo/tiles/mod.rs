@@ -29,6 +29,7 @@ pub(crate) fn run(options: &Options, renderer: &Renderer, output: &Output) -> Re
     let runs = Runs::new(renderer, &bar, plan.size)?;
     let measurement = Measurement { runs: &runs, plan: &plan, tiles: &tiles };
     let (mut rows, mut summary, mut shared, mut animation) = (Vec::new(), Vec::new(), Vec::new(), None);
+    let mut largest = 0.0_f64;
     for scene in &SCENES {
         let reference = measurement.reference(scene)?;
         let all = measurement.scene(scene, &reference)?;
@@ -37,14 +38,15 @@ pub(crate) fn run(options: &Options, renderer: &Renderer, output: &Output) -> Re
         rows.extend(table::rows(scene.name, &all));
         summary.extend(table::summary_rows(scene.name, &all));
         shared.extend(table::shared_rows(scene, &all));
+        largest = largest.max(table::largest_shared_ratio(&all));
         if animation.is_none() {
-            output.write_picture("shared.png", &hero::draw(&plan, scene, &all, &reference))?;
+            output.write_picture("shared.png", &hero::draw(&plan, &all, &reference))?;
             animation = Some(animation::run(&measurement, scene, &reference, output)?);
         }
     }
     bar.finish_and_clear();
-    let tables =
-        [table::summary(&summary), table::shared(&shared), table::markdown(&rows), animation.unwrap_or_default()];
+    let shared = format!("{}\nLargest raw ratio: {largest:.3}.\n", table::shared(&shared));
+    let tables = [table::summary(&summary), shared, table::markdown(&rows), animation.unwrap_or_default()];
     output.write_text("tiles.md", &report(&plan, &tables))?;
     output.write_text("tiles.csv", &table::csv(&rows))?;
     Ok(tables.join("\n"))

@@ -1,6 +1,5 @@
 //! A part of the images, enlarged: as it looks, and how it errs.
 
-use super::plan::Scene;
 use super::score::signed_errors;
 use super::spectrum::Spectra;
 use crate::demo::image::{exposure, tone_map};
@@ -20,11 +19,10 @@ pub(crate) struct Part<'a> {
 }
 
 impl<'a> Part<'a> {
-    /// `width` x `height` pixels from the scene's corner on.
-    pub(crate) fn new(scene: &Scene, [width, height]: [u32; 2], zoom: u32, reference: &'a Reference) -> Self {
+    /// `width` x `height` pixels; `x` and `y` say where they begin, in images.
+    pub(crate) fn new([x, y]: [f64; 2], [width, height]: [u32; 2], zoom: u32, reference: &'a Reference) -> Self {
         let [whole_width, whole_height] = [reference.image.width(), reference.image.height()];
         let (width, height) = (width.min(whole_width), height.min(whole_height));
-        let [x, y] = scene.crop;
         let corner = |at: f64, whole: u32, size: u32| ((at * f64::from(whole)) as u32).min(whole - size);
         let (x, y) = (corner(x, whole_width, width), corner(y, whole_height, height));
         Self { reference, x, y, width, height, zoom, exposure: exposure(&reference.image) }

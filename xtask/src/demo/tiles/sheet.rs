@@ -29,7 +29,7 @@ pub(crate) fn draw(title: &str, columns: &[String], rows: &[Row], scene: &Scene,
     let size = reference.image.width().min(reference.image.height());
     let side = (size / 2 / WINDOW as u32).max(1) * WINDOW as u32;
     let zoom = (256 / side).max(1);
-    let part = Part::new(scene, [side; 2], zoom, reference);
+    let part = Part::new(scene.crop, [side; 2], zoom, reference);
     let side = side * zoom;
     let row_height = 3 * (side + GAP / 2) + 2 * text::LINE;
     let top = GAP + 2 * text::LINE;

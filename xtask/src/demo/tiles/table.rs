@@ -122,6 +122,13 @@ pub(crate) fn shared_rows(scene: &Scene, all: &[Measured]) -> Vec<[String; 9]> {
     spps(all).into_iter().map(row).collect()
 }
 
+/// The largest raw error of shared fits over that of the same sampler's plain mean.
+pub(crate) fn largest_shared_ratio(all: &[Measured]) -> f64 {
+    let [mean, .., shared] = ESTIMATORS;
+    let fits = all.iter().filter(|one| one.estimator == shared);
+    fits.map(|one| ratios(one, find(all, one.choice, one.spp, mean))[0]).fold(0.0, f64::max)
+}
+
 pub(crate) fn shared(rows: &[[String; 9]]) -> String {
     let samplers = SUMMARY.map(Choice::label);
     let [a, b, c, d, e] = samplers.each_ref().map(String::as_str);
