@@ -99,6 +99,12 @@ impl Shape {
     pub(crate) fn columns(&self) -> usize {
         self.shared + self.slices + self.slices * self.copies
     }
+
+    /// How many leading functions are of at most this degree. Slices' copies of functions come last and do not count.
+    pub(crate) fn up_to_degree(&self, degree: usize) -> usize {
+        let degree = degree.min(self.order);
+        if degree == 0 { 0 } else { count(self.continuous, degree) + self.slices }
+    }
 }
 
 /// The multi-indices over `dims` coordinates of degree 1 to `order`: binomial(dims + order, order) - 1.
@@ -148,11 +154,6 @@ impl Basis {
     #[inline(always)]
     pub fn first_degree(&self) -> usize {
         if self.shape.order > 0 { self.shape.continuous + self.shape.slices } else { 0 }
-    }
-
-    /// How many leading functions are of at most this degree. Slices' copies of functions come last and do not count.
-    pub(crate) fn up_to_degree(&self, degree: usize) -> usize {
-        (0..self.shape.shared + self.shape.slices).take_while(|&column| self.degree(column) <= degree).count()
     }
 
     /// The ridge penalty of each column, relative: 4^(degree - 1) times the number of columns of that degree.

@@ -6,7 +6,7 @@ use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
-use crate::linalg::packed_len;
+use crate::linalg::row_mut;
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 
@@ -198,40 +198,55 @@ impl<'a, R: Real> Design<'a, R> {
     }
 
     /// Writes the packed matrix of column products (4.28), and for each channel the products with its values.
-    /// `partial` holds one group of lanes for each column.
+    ///
+    /// Two columns times two at a time: their sums stay in registers.
     #[inline(always)]
-    pub(crate) fn normal_equations(&self, gram: &mut [R], rhs: &mut [R], partial: &mut [Lanes<R>]) {
-        for j in 0..self.columns {
-            let start = packed_len(j);
-            let row = gram.get_mut(start..start + j + 1).unwrap_or(&mut []);
-            let width = j + 1;
-            self.products(|panel, _| panel.get(j).copied(), partial.get_mut(..width).unwrap_or(&mut []), row);
+    pub(crate) fn normal_equations(&self, gram: &mut [R], rhs: &mut [R]) {
+        for j in (0..self.columns).step_by(2) {
+            for k in (0..=j).step_by(2) {
+                let sums = self.products(|panel, _| two(panel, j), k);
+                for (step, sums) in sums.iter().enumerate() {
+                    let row = row_mut(gram, j + step).get_mut(k..).unwrap_or(&mut []);
+                    for (out, sum) in row.iter_mut().zip(sums) {
+                        *out = lanes::sum(sum);
+                    }
+                }
+            }
         }
-        for (channel, row) in rows_mut(rhs, self.columns).enumerate() {
-            self.products(|_, values| values.get(channel).copied(), partial, row);
+        for channel in (0..self.channels).step_by(2) {
+            for k in (0..self.columns).step_by(2) {
+                let sums = self.products(|_, values| two(values, channel), k);
+                for (row, sums) in rows_mut(rhs, self.columns).skip(channel).zip(&sums) {
+                    for (out, sum) in row.get_mut(k..).unwrap_or(&mut []).iter_mut().zip(sums) {
+                        *out = lanes::sum(sum);
+                    }
+                }
+            }
         }
     }
 
-    /// Sums, over the samples, of one quantity times each of the first columns.
+    /// Sums, over the panels, of two quantities times columns k and k + 1.
     #[inline(always)]
-    fn products(
-        &self,
-        quantity: impl Fn(&[Lanes<R>], &[Lanes<R>]) -> Option<Lanes<R>>,
-        partial: &mut [Lanes<R>],
-        out: &mut [R],
-    ) {
-        for partial in partial.iter_mut() {
-            *partial = [R::ZERO; LANES];
-        }
+    fn products(&self, quantities: impl Fn(&[Lanes<R>], &[Lanes<R>]) -> [Lanes<R>; 2], k: usize) -> [[Lanes<R>; 2]; 2] {
+        let [mut a, mut b, mut c, mut d] = [[R::ZERO; LANES]; 4];
         for (panel, values) in self.each_panel() {
-            let quantity = quantity(panel, values).unwrap_or([R::ZERO; LANES]);
-            for (partial, column) in partial.iter_mut().zip(panel) {
-                lanes::add_product(partial, &quantity, column);
-            }
+            let ([p, q], [x, y]) = (quantities(panel, values), two(panel, k));
+            a = lanes::plus_product(a, p, x);
+            b = lanes::plus_product(b, p, y);
+            c = lanes::plus_product(c, q, x);
+            d = lanes::plus_product(d, q, y);
         }
-        for (out, partial) in out.iter_mut().zip(partial) {
-            *out = lanes::sum(partial);
-        }
+        [[a, b], [c, d]]
+    }
+}
+
+/// Groups `first` and the next; zero where there is none.
+#[inline(always)]
+fn two<R: Real>(groups: &[Lanes<R>], first: usize) -> [Lanes<R>; 2] {
+    match groups.get(first..).unwrap_or(&[]) {
+        [a, b, ..] => [*a, *b],
+        [a] => [*a, [R::ZERO; LANES]],
+        [] => [[R::ZERO; LANES]; 2],
     }
 }
 

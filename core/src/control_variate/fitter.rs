@@ -63,8 +63,7 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         let rhs = arena.take(columns * design.channels)?;
         let penalties = arena.take(columns)?;
         if !use_dual {
-            let partial = arena.scratch().take_lanes(columns)?;
-            design.normal_equations(gram, rhs, partial);
+            design.normal_equations(gram, rhs);
         }
         let per_sample = R::ONE / R::from_usize(design.n);
         ridge::penalties(config, basis, |j| ridge_fit::diagonal_entry(gram, j) * per_sample, penalties);

@@ -226,12 +226,9 @@ impl<'a> Reader<'a> {
         h: &mut [Lanes<R>; Config::MAX_CONTROLS],
         f: &mut [Lanes<R>; Config::MAX_CHANNELS],
     ) -> usize {
-        let whole = matches!(subset, Subset::All) && !self.skip && !self.luminance && self.n - *next >= LANES;
-        if whole && self.controls == 0 {
-            let start = *next;
+        if matches!(subset, Subset::All) && self.is_simple() && self.n - *next >= LANES {
+            self.rows(*next, 1, x, f);
             *next += LANES;
-            transpose(self.samples.u.get(start * self.stride..).unwrap_or(&[]), self.stride, self.dims, x);
-            transpose(self.samples.f.get(start * self.inputs..).unwrap_or(&[]), self.inputs, self.inputs, f);
             return LANES;
         }
         let mut lane = 0;
@@ -250,6 +247,26 @@ impl<'a> Reader<'a> {
             }
         }
         lane
+    }
+
+    /// Whether samples are positions and values, all of which count.
+    #[inline(always)]
+    pub(crate) fn is_simple(&self) -> bool {
+        !self.skip && !self.luminance && self.controls == 0
+    }
+
+    /// Reads `LANES` samples from `first` on, `step` apart; zero where there are none.
+    #[inline(always)]
+    pub(crate) fn rows<R: Real>(
+        &self,
+        first: usize,
+        step: usize,
+        x: &mut [Lanes<R>; MAX_DIMS],
+        f: &mut [Lanes<R>; Config::MAX_CHANNELS],
+    ) {
+        let from = |array: &'a [f32], width: usize| array.get(first * width..).unwrap_or(&[]);
+        transpose(from(self.samples.u, self.stride), step * self.stride, self.dims, x);
+        transpose(from(self.samples.f, self.inputs), step * self.inputs, self.inputs, f);
     }
 
     /// The values of a sample that are regressed: its channels, or its luminance.

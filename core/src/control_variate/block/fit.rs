@@ -7,9 +7,9 @@ use super::super::ridge;
 use super::super::samples::Reader;
 use super::choice::{Spreads, Weights, last_only};
 use super::members::Members;
-use super::terms::Terms;
+use super::terms::{MAX_AXES, Terms};
 use crate::arena::Arena;
-use crate::basis::{Basis, MAX_DIMS};
+use crate::basis::{Basis, MAX_DIMS, Shape};
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::{ldlt, packed_len, row, row_mut};
@@ -22,6 +22,7 @@ const STRENGTH: f64 = 0.003;
 /// Everything that the fits of a call have in common.
 pub(super) struct Problem<'a> {
     pub(super) config: &'a Config,
+    pub(super) shape: Shape,
     pub(super) basis: &'a Basis,
     pub(super) reader: Reader<'a>,
     /// Samples of a pixel.
@@ -73,13 +74,10 @@ impl<R: Real> Group<'_, R> {
     /// What the mixture adds to the plain mean of member `index`: zero if that is not finite.
     #[inline(always)]
     pub(super) fn correction(&self, index: usize, weights: &Weights<R>, channel: usize) -> R {
-        let width = (self.fits + 1) * self.channels;
-        let row = rows(self.estimates, width).nth(index / LANES).unwrap_or(&[]);
+        let start = index / LANES * (self.fits + 1) * self.channels + channel;
         let at = |fit: usize| {
-            row.get(fit * self.channels + channel)
-                .and_then(|lanes| lanes.get(index % LANES))
-                .copied()
-                .unwrap_or(R::ZERO)
+            let lanes = self.estimates.get(start + fit * self.channels);
+            lanes.and_then(|lanes| lanes.get(index % LANES)).copied().unwrap_or(R::ZERO)
         };
         let plain = at(0);
         let mut sum = R::ZERO;
@@ -94,24 +92,20 @@ impl<'a> Problem<'a> {
     /// Which columns a fit to these pixels has.
     #[inline(always)]
     pub(super) fn terms(&self, members: &Members<'_>) -> Terms {
-        self.terms_of(members.axes(), members.len)
-    }
-
-    fn terms_of(&self, axes: usize, pixels: usize) -> Terms {
         let single = self.config.estimator == Estimator::LeaveOneOut || matches!(self.config.ridge, Ridge::Fixed(_));
-        Terms::new(self.config, self.basis, axes, pixels.saturating_mul(self.n), single)
+        Terms::new(self.config, &self.shape, members.axes(), members.len.saturating_mul(self.n), single)
     }
 
     /// Numbers that [`Problem::fit`] takes for as many pixels; fewer need no more.
-    pub(super) fn size(config: &Config, basis: &Basis, axes: usize, pixels: usize, n: usize) -> Option<usize> {
-        let terms = Terms::new(config, basis, axes, pixels.checked_mul(n)?, false);
+    pub(super) fn size(config: &Config, shape: &Shape, axes: usize, pixels: usize, n: usize) -> Option<usize> {
+        let terms = Terms::new(config, shape, axes, pixels.checked_mul(n)?, false);
         let (columns, channels) = (terms.columns(), config.channels);
         let sums = packed_len(columns) + columns * channels;
         let panels = pixels.div_ceil(LANES);
         let each = terms.fixed() + (terms.ends.len() + 1) * channels + if n == 1 { columns + channels } else { sums };
-        let scratch = 2 * columns + if n == 1 { 0 } else { sums };
+        let scratch = if n == 1 { columns } else { columns + sums };
         let lanes = panels.checked_mul(each)?.checked_add(scratch)?.checked_mul(LANES)?;
-        lanes.checked_add(sums + columns)
+        lanes.checked_add(sums + columns + terms.fixed() * columns)
     }
 
     /// Fits to all members but one, for each of them, of which there are at least two.
@@ -211,6 +205,16 @@ impl<'a> Problem<'a> {
         for value in values.iter_mut() {
             *value = [R::ZERO; LANES];
         }
+        let [first, .., last] = panel.pixels;
+        // Neighbours in a row, as most are.
+        if panel.used == LANES && last == first + LANES - 1 && self.factors.is_empty() && self.reader.is_simple() {
+            let mut f = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
+            self.reader.rows(first * self.n + sample, self.n, &mut x, &mut f);
+            for ((out, f), unit) in values.iter_mut().zip(&f).zip(&setting.units) {
+                *out = f.map(|f| (if R::NARROW { f.scale(-unit.exponent) } else { f }) - unit.offset);
+            }
+            return self.expand(setting, panel, places, &x, &h, columns);
+        }
         for (lane, &pixel) in panel.pixels.iter().enumerate().take(panel.used) {
             let sample = self.reader.get(pixel * self.n + sample);
             sample.put(lane, &mut x, &mut h);
@@ -228,13 +232,27 @@ impl<'a> Problem<'a> {
                 }
             }
         }
+        self.expand(setting, panel, places, &x, &h, columns);
+    }
+
+    /// A panel's columns at positions `x` with control functions `h`. Zero in unused lanes.
+    #[inline(always)]
+    fn expand<R: Real>(
+        &self,
+        setting: &Setting<'_, R>,
+        panel: &Panel,
+        places: &[Lanes<R>],
+        x: &[Lanes<R>; MAX_DIMS],
+        h: &[Lanes<R>; Config::MAX_CONTROLS],
+        columns: &mut [Lanes<R>],
+    ) {
         let terms = setting.terms;
         let (fixed, rest) = columns.split_at_mut_checked(terms.fixed()).unwrap_or((&mut [], &mut []));
         for (out, place) in fixed.iter_mut().zip(places) {
             *out = *place;
         }
         let (functions, products) = rest.split_at_mut_checked(terms.functions).unwrap_or((&mut [], &mut []));
-        self.reader.columns(self.basis, &x, &h, functions);
+        self.reader.columns(self.basis, x, h, functions);
         if panel.used < LANES {
             for column in functions.iter_mut() {
                 for value in column.iter_mut().skip(panel.used) {
@@ -266,7 +284,7 @@ impl<'a> Problem<'a> {
     }
 
     /// One sample in each pixel: one factorisation A = L D L', and the leave-one-out residual in closed form. Every
-    /// candidate is a prefix of the columns and so of L: with z = L^-1 x, its leverage, its fit at x and its
+    /// candidate is a prefix of the columns and so of L: with z = L^-1 x its leverage z'D^-1 z, its fit and its
     /// correction are partial sums over z.
     #[inline(always)]
     fn one_sample<R: Real>(
@@ -282,10 +300,11 @@ impl<'a> Problem<'a> {
         let count = members.len.div_ceil(LANES);
         let columns = arena.take_lanes(count * width)?;
         let values = arena.take_lanes(count * channels)?;
-        let scratch = arena.take_lanes(2 * width)?;
+        let z = arena.take_lanes(width)?;
         let gram = arena.take(packed_len(width))?;
         let rhs = arena.take(width * channels)?;
         let penalties = arena.take(width)?;
+        let units = arena.take(terms.fixed() * width)?;
         let loads = rows_mut(columns, width).zip(rows_mut(values, channels)).zip(setting.places());
         for (index, ((columns, values), places)) in loads.enumerate() {
             self.load(setting, &self.panel(members, index * LANES), 0, places, columns, values);
@@ -299,54 +318,67 @@ impl<'a> Problem<'a> {
             column_means: &mut [],
             units: setting.units,
         };
-        design.normal_equations(gram, rhs, scratch.get_mut(..width).unwrap_or(&mut []));
+        design.normal_equations(gram, rhs);
         self.add_ridge(terms, members.len - 1, gram, penalties);
         ldlt::factor(gram, width);
         for rhs in rows_mut(rhs, width) {
             ldlt::forward(gram, rhs);
             ldlt::scale_by_inverse_diagonal(gram, rhs);
         }
-        let fixed = terms.fixed();
-        for ((columns, values), out) in design.each_panel().zip(rows_mut(estimates, setting.estimates(channels))) {
-            // z for the whole row, y for the part of it that corrects.
-            let (z, y) = scratch.split_at_mut_checked(width).unwrap_or((&mut [], &mut []));
-            for (index, ((z, y), column)) in z.iter_mut().zip(y.iter_mut()).zip(columns).enumerate() {
+        // The fixed columns' part of x, which corrects nothing, has L^-1 of the columns of the unit matrix: what it adds to
+        // a sum over z is its places times that sum over those.
+        for (k, unit) in rows_mut(units, width).enumerate() {
+            for (j, value) in unit.iter_mut().enumerate() {
+                *value = if j == k { R::ONE } else { R::ZERO };
+            }
+            ldlt::forward(gram, unit);
+        }
+        let panels = design.each_panel().zip(setting.places()).zip(rows_mut(estimates, setting.estimates(channels)));
+        for (((columns, values), places), out) in panels {
+            for (z, column) in z.iter_mut().zip(columns) {
                 *z = *column;
-                *y = if index < fixed { [R::ZERO; LANES] } else { *column };
             }
             ldlt::forward_lanes(gram, 0, z);
-            ldlt::forward_lanes(gram, fixed, y);
             let mut out = rows_mut(out, channels);
             for (out, value) in out.next().unwrap_or(&mut []).iter_mut().zip(values) {
                 *out = *value;
             }
             let mut leverage = [R::ZERO; LANES];
-            let mut reach = [R::ZERO; LANES];
+            // Of each fixed column, its part of the leverage and of each channel's fit.
+            let mut parts = [[R::ZERO; LANES]; 1 + MAX_AXES];
+            let mut trends = [[R::ZERO; 1 + MAX_AXES]; Config::MAX_CHANNELS];
             let mut fitted = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
-            let mut corrected = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
             let mut begin = 0;
             for (&end, out) in terms.ends.iter().zip(out) {
-                for j in begin..end {
-                    let (Some(z), Some(y)) = (z.get(j), y.get(j)) else { continue };
-                    let scaled = z.map(|z| z * ldlt::inverse_pivot(gram, j));
+                for (j, z) in z.iter().enumerate().take(end).skip(begin) {
+                    let inverse = ldlt::inverse_pivot(gram, j);
+                    let scaled = z.map(|z| z * inverse);
                     lanes::add_product(&mut leverage, z, &scaled);
-                    lanes::add_product(&mut reach, y, &scaled);
-                    let sums = fitted.iter_mut().zip(&mut corrected).zip(rows(rhs, width));
-                    for ((fitted, corrected), rhs) in sums {
+                    for (part, unit) in parts.iter_mut().zip(rows(units, width)) {
+                        lanes::add_scaled(part, unit.get(j).copied().unwrap_or(R::ZERO), &scaled);
+                    }
+                    for ((fitted, trend), rhs) in fitted.iter_mut().zip(&mut trends).zip(rows(rhs, width)) {
                         let b = rhs.get(j).copied().unwrap_or(R::ZERO);
                         lanes::add_scaled(fitted, b, z);
-                        lanes::add_scaled(corrected, b, y);
+                        for (trend, unit) in trend.iter_mut().zip(rows(units, width)) {
+                            *trend += b * unit.get(j).copied().unwrap_or(R::ZERO);
+                        }
                     }
                 }
                 begin = end;
-                let left = leverage.map(|h| (R::ONE - h).max(R::from_f64(64.0) * R::EPSILON));
-                let gain = lanes::zip(&reach, &left, |reach, left| reach / left);
-                for (channel, (out, value)) in out.iter_mut().zip(values).enumerate() {
-                    let (Some(fitted), Some(corrected)) = (fitted.get(channel), corrected.get(channel)) else {
-                        continue;
-                    };
+                let mut reach = leverage;
+                for (part, place) in parts.iter().zip(places) {
+                    reach = lanes::minus_product(reach, *part, *place);
+                }
+                let gain = lanes::zip(&reach, &leverage, |reach, leverage| {
+                    reach / (R::ONE - leverage).max(R::from_f64(64.0) * R::EPSILON)
+                });
+                for (((out, value), fitted), trend) in out.iter_mut().zip(values).zip(&fitted).zip(&trends) {
                     let residual = lanes::zip(value, fitted, |a, b| a - b);
-                    let plain = lanes::zip(value, corrected, |a, b| a - b);
+                    let mut plain = residual;
+                    for (&trend, place) in trend.iter().zip(places) {
+                        lanes::add_scaled(&mut plain, trend, place);
+                    }
                     *out = lanes::plus_product(plain, gain, residual);
                 }
             }
@@ -371,7 +403,7 @@ impl<'a> Problem<'a> {
         let count = members.len.div_ceil(LANES);
         let own = arena.take_lanes(count * all)?;
         let system = arena.take_lanes(all)?;
-        let scratch = arena.take_lanes(2 * width)?;
+        let scratch = arena.take_lanes(width)?;
         let total = arena.take(all)?;
         let penalties = arena.take(width)?;
         for value in total.iter_mut() {
@@ -383,7 +415,7 @@ impl<'a> Problem<'a> {
             }
             let (gram, rhs) = own.split_at_mut_checked(squares).unwrap_or((&mut [], &mut []));
             let panel = self.panel(members, index * LANES);
-            let columns = scratch.get_mut(..width).unwrap_or(&mut []);
+            let columns = &mut *scratch;
             let mut values = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
             for sample in 0..self.n {
                 self.load(setting, &panel, sample, places, columns, values.get_mut(..channels).unwrap_or(&mut []));
@@ -414,7 +446,7 @@ impl<'a> Problem<'a> {
             let (own_gram, own_rhs) = own.split_at_checked(squares).unwrap_or((&[], &[]));
             ldlt::factor_each(gram, width);
             // The means of the pixel's columns, which its fit is corrected by.
-            let y = scratch.get_mut(..width).unwrap_or(&mut []);
+            let y = &mut *scratch;
             for (j, y) in y.iter_mut().enumerate() {
                 let sum = row(own_gram, j).first().copied().unwrap_or([R::ZERO; LANES]);
                 *y = if j < fixed { [R::ZERO; LANES] } else { sum.map(|sum| sum * inverse) };

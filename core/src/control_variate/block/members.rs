@@ -4,6 +4,9 @@ use super::terms::MAX_AXES;
 use crate::lanes::{LANES, Lanes};
 use crate::real::Real;
 
+/// Uniform coordinates from -1 to 1 times this have unit variance.
+const SQRT_3: f64 = 1.732_050_807_568_877_2;
+
 /// A part of an image, in all of its frames.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Area {
@@ -105,7 +108,7 @@ impl Members<'_> {
     #[inline(always)]
     pub(super) fn places<R: Real>(&self, start: usize) -> [Lanes<R>; 1 + MAX_AXES] {
         let mut places = [[R::ZERO; LANES]; 1 + MAX_AXES];
-        let scale = R::from_usize(3).sqrt();
+        let scale = R::from_f64(SQRT_3);
         for lane in 0..LANES.min(self.len.saturating_sub(start)) {
             let [ones, axes @ ..] = &mut places;
             ones[lane] = R::ONE;

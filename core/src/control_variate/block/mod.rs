@@ -57,9 +57,7 @@ pub fn image_workspace_len<R: Real>(config: &Config, image: &Image<'_>, n: usize
 
 fn workspace_len(config: &Config, axes: usize, window: usize, pixels: usize, n: usize) -> Result<usize, Error> {
     check_supported(config)?;
-    let mut basis = Basis::empty();
-    basis.set(config.basis, config.checked_shape()?)?;
-    let fit = Problem::size(config, &basis, axes, window, n).ok_or(Error::Memory)?;
+    let fit = Problem::size(config, &config.checked_shape()?, axes, window, n).ok_or(Error::Memory)?;
     pixels.checked_mul(sums_len(config.channels)).and_then(|sums| sums.checked_add(fit)).ok_or(Error::Memory)
 }
 
@@ -135,8 +133,9 @@ impl Request<'_> {
         mut out: impl FnMut(usize, Estimate),
     ) -> Result<(), Error> {
         let Self { config, samples, pixels, factors } = *self;
+        let shape = config.checked_shape()?;
         let mut basis = Basis::empty();
-        basis.set(config.basis, config.checked_shape()?)?;
+        basis.set(config.basis, shape)?;
         check_supported(config)?;
         let reader = Reader::new(config, samples)?;
         let n = reader.len().checked_div(pixels).ok_or(Error::NoSamples)?;
@@ -153,7 +152,7 @@ impl Request<'_> {
         for value in sums.iter_mut() {
             *value = R::ZERO;
         }
-        let problem = Problem { config, basis: &basis, reader, n, factors };
+        let problem = Problem { config, shape, basis: &basis, reader, n, factors };
         let mut call = Call { problem, sums, arena };
         shared(&mut call)?;
         for (pixel, sums) in rows(call.sums, width).enumerate() {
@@ -211,18 +210,18 @@ impl<R: Real> Call<'_, '_, R> {
                 return Ok(());
             }
             let mut weights = [Weights::default(); 2];
+            // Even members take what the odd ones chose.
             for (half, weights) in [odd, even].iter().zip(&mut weights) {
                 let group = self.problem.fit(half, &terms, &mut self.arena.scratch())?;
                 *weights = self.problem.weights(&group);
             }
             let group = self.problem.fit(members, &terms, &mut self.arena.scratch())?;
-            let [for_even, for_odd] = &weights;
-            self.problem.add(members, &group, |index| if index % 2 == 0 { for_even } else { for_odd }, near, self.sums);
+            self.problem.add(members, &group, &weights, near, self.sums);
             return Ok(());
         }
         let group = self.problem.fit(members, &terms, &mut self.arena.scratch())?;
         let weights = self.problem.weights(&group);
-        self.problem.add(members, &group, |_| &weights, near, self.sums);
+        self.problem.add(members, &group, &[weights], near, self.sums);
         Ok(())
     }
 }
@@ -230,41 +229,49 @@ impl<R: Real> Call<'_, '_, R> {
 impl Problem<'_> {
     /// Adds a group's corrections to its pixels' sums.
     #[inline(always)]
-    fn add<'w, R: Real>(
+    fn add<R: Real>(
         &self,
         members: &Members<'_>,
         group: &Group<'_, R>,
-        weights: impl Fn(usize) -> &'w Weights<R>,
+        choices: &[Weights<R>],
         near: impl Fn(usize) -> R,
         sums: &mut [R],
     ) {
         let channels = self.config.channels;
         let width = sums_len(channels);
-        let from_block = self.error_is_the_blocks();
-        for index in 0..members.len {
-            let (pixel, weights) = (members.pixel(index), weights(index));
-            let Some(sums) = sums.get_mut(pixel * width..(pixel + 1) * width) else { continue };
-            let near = near(members.local(index));
-            let (common, each) = sums.split_at_mut_checked(2).unwrap_or((&mut [], &mut []));
+        for (turn, weights) in choices.iter().enumerate() {
             let mut gain = R::ZERO;
-            for (channel, each) in rows_mut(each, 2).enumerate() {
-                let Some(unit) = group.units.get(channel) else { continue };
-                let factor = R::from_f64(self.factor(pixel, channel));
-                let correction = group.correction(index, weights, channel).scale(unit.exponent) * factor;
+            let mut units = [R::ONE; Config::MAX_CHANNELS];
+            let mut errors = [R::ONE; Config::MAX_CHANNELS];
+            for (channel, ((unit, error), units)) in units.iter_mut().zip(&mut errors).zip(&group.units).enumerate() {
+                *unit = R::ONE.scale(units.exponent);
                 let ratio = group.spreads.gain(weights, channel);
-                let error = if from_block {
-                    let variance = group.spreads.variance(weights, channel).unwrap_or(R::INFINITY);
-                    variance.sqrt().scale(unit.exponent) * factor
+                *error = if self.error_is_the_blocks() {
+                    group.spreads.variance(weights, channel).map_or(R::INFINITY, |variance| variance.sqrt() * *unit)
                 } else {
                     ratio.sqrt()
                 };
-                gain += ratio;
-                for (sum, value) in each.iter_mut().zip([correction, error]) {
+                gain += if channel < channels { ratio } else { R::ZERO };
+            }
+            gain = gain / R::from_usize(channels);
+            for index in (turn..members.len).step_by(choices.len()) {
+                let pixel = members.pixel(index);
+                let Some(sums) = sums.get_mut(pixel * width..(pixel + 1) * width) else { continue };
+                let near = near(members.local(index));
+                let (common, each) = sums.split_at_mut_checked(2).unwrap_or((&mut [], &mut []));
+                for (sum, value) in common.iter_mut().zip([R::ONE, gain]) {
                     *sum += near * value;
                 }
-            }
-            for (sum, value) in common.iter_mut().zip([R::ONE, gain / R::from_usize(channels)]) {
-                *sum += near * value;
+                let per_channel = rows_mut(each, 2).zip(units).zip(errors).enumerate();
+                for (channel, ((each, unit), error)) in per_channel {
+                    let factor =
+                        if self.factors.is_empty() { R::ONE } else { R::from_f64(self.factor(pixel, channel)) };
+                    let correction = group.correction(index, weights, channel) * unit * factor;
+                    let error = if self.error_is_the_blocks() { error * factor } else { error };
+                    for (sum, value) in each.iter_mut().zip([correction, error]) {
+                        *sum += near * value;
+                    }
+                }
             }
         }
     }
@@ -276,11 +283,12 @@ impl Problem<'_> {
     }
 
     /// The estimate of a pixel.
+    #[inline(always)]
     fn pixel<R: Real>(&self, pixel: usize, sums: &[R]) -> Estimate {
         let n = self.n as f64;
         let (mut total, mut squares) = ([0.0f64; Config::MAX_CHANNELS], [0.0f64; Config::MAX_CHANNELS]);
         let first = self.reader.values::<f64>(&self.reader.get(pixel * self.n));
-        for sample in 0..self.n {
+        for sample in 1..self.n {
             let values = self.reader.values::<f64>(&self.reader.get(pixel * self.n + sample));
             for (((total, square), value), first) in total.iter_mut().zip(&mut squares).zip(values).zip(first) {
                 *total += value - first;
@@ -302,10 +310,14 @@ impl Problem<'_> {
             let [correction, spread] = each;
             let (total, square) = (get(&total, channel), get(&squares, channel));
             *mean = saturate(get(&first, channel) + total / n + mean_of(correction, 0.0));
-            let plain = ((square - total * total / n).max(0.0) / (n * (n - 1.0))).max(0.0);
-            let plain = if self.n > 1 { libm::sqrt(plain) } else { f64::INFINITY };
             let spread = mean_of(spread, 1.0);
-            *error = (if weight > 0.0 && self.error_is_the_blocks() { spread } else { plain * spread }) as f32;
+            *error = if weight > 0.0 && self.error_is_the_blocks() {
+                spread as f32
+            } else if self.n > 1 {
+                (libm::sqrt((square - total * total / n).max(0.0) / (n * (n - 1.0))) * spread) as f32
+            } else {
+                f32::INFINITY
+            };
         }
         estimate
     }

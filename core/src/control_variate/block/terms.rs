@@ -2,7 +2,7 @@
 
 use super::super::config::Config;
 use super::super::ridge;
-use crate::basis::{Basis, MAX_ORDER};
+use crate::basis::{Basis, MAX_ORDER, Shape};
 use crate::real::Real;
 use heapless::Vec;
 
@@ -35,8 +35,8 @@ pub(super) struct Terms {
 impl Terms {
     /// For a fit to `samples` samples of pixels that differ along `axes` axes. With `all`, one candidate: every column.
     #[inline(always)]
-    pub(super) fn new(config: &Config, basis: &Basis, axes: usize, samples: usize, all: bool) -> Self {
-        let functions = config.controls + basis.columns();
+    pub(super) fn new(config: &Config, shape: &Shape, axes: usize, samples: usize, all: bool) -> Self {
+        let functions = config.controls + shape.columns();
         let fixed = 1 + axes;
         let mut terms = Self { axes, functions, moving: (config.controls, 0), ends: Vec::new() };
         if functions == 0 {
@@ -46,7 +46,7 @@ impl Terms {
             // As many degrees as leave two samples to each column.
             let highest = MOVING_DEGREE.min(config.order.saturating_sub(1)).max(1);
             let fits = |&moving: &usize| 2 * (fixed + functions + axes * moving) <= samples;
-            let counts = (1..=highest).rev().map(|degree| basis.up_to_degree(degree));
+            let counts = (1..=highest).rev().map(|degree| shape.up_to_degree(degree));
             terms.moving.1 = counts.into_iter().find(fits).unwrap_or(0);
         }
         let mut end = |columns: usize| {
@@ -56,7 +56,7 @@ impl Terms {
             }
         };
         for degree in 1..=config.order {
-            end(fixed + config.controls + basis.up_to_degree(degree));
+            end(fixed + config.controls + shape.up_to_degree(degree));
         }
         end(fixed + functions);
         end(fixed + functions + axes * terms.moving.1);
