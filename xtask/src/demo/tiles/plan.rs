@@ -59,7 +59,7 @@ pub(crate) const SCENES: [Scene; 5] = [
         domain: "the lens and the light's surface (4 dims)",
         crop: [0.1, 0.45],
         order: 2,
-        frames: 4,
+        frames: 2,
         reference_spp: 400,
         cost: 800.0,
         samplers: &[Choice::Random, Choice::Sobol, Choice::Tile(2), Choice::Tile(4)],
