@@ -28,10 +28,11 @@ public:
         if (options.reference)
             names_ = {"mc"};
         // As many samples as stay in the cache between sampling and estimating; pixels that share fits need neighbours.
-        while (side_ > 1 && size_t{side_} * side_ * options.spp > 4096)
+        bool shared = std::find(names_.begin(), names_.end(), "shared") != names_.end();
+        const size_t most = shared ? 1 << 19 : 1 << 12;
+        side_ = shared ? 64 : 8;
+        while (side_ > (shared ? 8u : 1u) && size_t{side_} * side_ * options.spp > most)
             side_ /= 2;
-        if (std::find(names_.begin(), names_.end(), "shared") != names_.end())
-            side_ = 64;
         // Fails before any work if a name or a configuration is wrong.
         make_estimators();
         images_.assign(names_.size(), Image(options.width, options.height));
@@ -180,7 +181,7 @@ private:
     std::vector<std::string> names_;
     std::vector<Image> images_;
     Times times_;
-    uint32_t side_ = 8; // of a bucket, in pixels
+    uint32_t side_ = 1; // of a bucket, in pixels
     std::atomic<uint64_t> next_{0}; // bucket
     std::mutex mutex_; // guards what follows, times_ and standard output
     size_t finished_ = 0; // pixels
