@@ -2,7 +2,7 @@
 //
 //   c++ -O2 -std=c++17 -Iinclude examples_c/pathtracer.cpp target/noisefloor/libnoisefloor.a -pthread -o pathtracer
 //   ./pathtracer --scene direct --spp 64 --estimators mc,robust
-//   ./pathtracer --scene direct --spp 4 --sampler tile --estimators mc,block
+//   ./pathtracer --scene direct --spp 4 --sampler tile --estimators mc,shared
 //
 // To see how the library is used, read pathtracer/estimators.hpp and pathtracer/tile_sampler.hpp; what samples are used for,
 // pathtracer/integrand.hpp.

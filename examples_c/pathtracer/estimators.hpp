@@ -4,7 +4,6 @@
 #include "noisefloor.h"
 #include <algorithm>
 #include <memory>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -17,11 +16,14 @@ inline void check(nf_status status, const std::string &what)
         throw std::runtime_error(what + ": " + nf_status_message(status));
 }
 
-// A block of neighbouring pixels and their samples.
+// A rectangle of pixels, row after row, and their samples.
 struct Samples {
     const float *u, *f;      // u[pixels * n * dims], f[pixels * n * 3]
     const uint32_t *surface; // [pixels], the same for pixels that show the same surface; for those who ask
-    size_t pixels, n;
+    uint32_t width, height;
+    size_t n; // of each pixel
+
+    size_t pixels() const { return size_t{width} * height; }
 };
 
 // One per thread: it owns the memory that an estimate needs, so that estimating allocates nothing.
@@ -39,7 +41,7 @@ public:
 
     void estimate(const Samples &s, float *means) final
     {
-        for (size_t p = 0; p < s.pixels; ++p)
+        for (size_t p = 0; p < s.pixels(); ++p)
             pixel(s.u + p * s.n * dims_, s.f + p * s.n * 3, s.n, means + p * 3);
     }
 
@@ -117,40 +119,30 @@ private:
     std::vector<uint64_t> state_, workspace_;
 };
 
-// Each pixel is corrected by a fit to the others' samples: even one sample a pixel is enough, and whatever stratification the
-// samples have within the pixel, or over the image, stays. The fit helps as far as the pixels' integrands are alike, so only
-// pixels that show the same surface share one.
-constexpr uint32_t block_side = 8; // pixels
-
-class Block final : public Estimator {
+// Each pixel is corrected by fits to the samples of its neighbours: even one sample a pixel is enough, and whatever
+// stratification the samples have within the pixel, or over the image, stays. The fits help as far as the pixels' integrands
+// are alike, so only pixels that show the same surface share them.
+class Shared final : public Estimator {
 public:
-    Block(const nf_cv_config &config, size_t pixels, size_t n)
-        : config_(config), workspace_(memory(nf_cv_block_workspace_size(&config, pixels, n))), u_(pixels * n * config.dims),
-          f_(pixels * n * 3), results_(pixels)
+    // For rectangles of at most `side` x `side` pixels. Windows do not reach beyond a rectangle, which should be large beside
+    // them: theirs are 8 x 8 pixels.
+    Shared(const nf_cv_config &config, uint32_t side, size_t n) : config_(config), results_(size_t{side} * side)
     {
-        left_.reserve(pixels);
+        nf_cv_image image = {};
+        image.width = image.height = side;
+        workspace_ = memory(nf_cv_image_workspace_size(&config, &image, n));
     }
 
     void estimate(const Samples &s, float *means) override
     {
-        const size_t u_size = s.n * config_.dims, f_size = s.n * 3;
-        left_.resize(s.pixels);
-        std::iota(left_.begin(), left_.end(), size_t{0});
-        while (!left_.empty()) {
-            // The pixels that show what the first one does.
-            uint32_t surface = s.surface[left_.front()];
-            auto others = std::stable_partition(left_.begin(), left_.end(), [&](size_t p) { return s.surface[p] == surface; });
-            size_t pixels = static_cast<size_t>(others - left_.begin());
-            for (size_t i = 0; i < pixels; ++i) {
-                std::copy_n(s.u + left_[i] * u_size, u_size, &u_[i * u_size]);
-                std::copy_n(s.f + left_[i] * f_size, f_size, &f_[i * f_size]);
-            }
-            check(nf_cv_block_estimate(&config_, u_.data(), f_.data(), pixels, s.n, workspace_.data(), 8 * workspace_.size(), results_.data()),
-                  "nf_cv_block_estimate");
-            for (size_t i = 0; i < pixels; ++i)
-                std::copy_n(results_[i].mean, 3, means + 3 * left_[i]);
-            left_.erase(left_.begin(), others);
-        }
+        nf_cv_image image = {};
+        image.width = s.width;
+        image.height = s.height;
+        image.surfaces = s.surface;
+        check(nf_cv_image_estimate(&config_, &image, s.u, s.f, s.n, workspace_.data(), 8 * workspace_.size(), results_.data()),
+              "nf_cv_image_estimate");
+        for (size_t p = 0; p < s.pixels(); ++p)
+            std::copy_n(results_[p].mean, 3, means + 3 * p);
     }
 
     bool needs_surfaces() const override { return true; }
@@ -158,9 +150,7 @@ public:
 private:
     nf_cv_config config_;
     std::vector<uint64_t> workspace_;
-    std::vector<float> u_, f_;
     std::vector<nf_estimate> results_;
-    std::vector<size_t> left_; // pixels that have no estimate yet
 };
 
 struct EstimatorName {
@@ -177,14 +167,15 @@ inline const EstimatorName estimator_names[] = {
     {"k_fold", NF_CV_K_FOLD, "each fold against a fit to the others; unbiased"},
     {"gradient_descent", NF_CV_GRADIENT_DESCENT, "least squares by gradient descent"},
     {"incremental", NF_CV_INCREMENTAL, "each sample against a fit to those before it; streamed, 8 samples at a time"},
-    {"block", NF_CV_ROBUST, "blocks of 8 x 8 pixels, each pixel against a fit to the others; suits every sampler"},
+    {"shared", NF_CV_ROBUST, "each pixel against fits to its neighbours; suits every sampler"},
     {"slices", NF_CV_ROBUST, "robust, told that the last dimension picks a light; `lights` only"},
 };
 
 struct EstimatorSetup {
     uint32_t dims, order, lights;
-    size_t pixels;  // of a block, at most
-    size_t samples; // of a pixel
+    uint32_t choice; // numbers of u up to the first that picks a light; 0 if none does
+    uint32_t side;   // of the rectangles that pixels come in, at most
+    size_t samples;  // of a pixel
     bool stratified;
 };
 
@@ -202,14 +193,21 @@ inline std::unique_ptr<Estimator> make_estimator(const std::string &name, const 
         config.order = setup.order;
         config.channels = 3;
         config.estimator = known.id;
-        config.slices = name == "slices" ? setup.lights : 0;
         // The robust estimator is then the plain mean: a pixel's few samples do not tell what their stratification gains.
         config.stratified = setup.stratified;
-        bool block = name == "block";
-        if ((block ? nf_cv_block_workspace_size(&config, setup.pixels, setup.samples) : nf_cv_workspace_size(&config, setup.samples)) == 0)
+        bool shared = name == "shared";
+        if (name == "slices")
+            config.slices = setup.lights;
+        if (shared && setup.choice > 0) {
+            // Which light was picked is known, and explains most. Of long paths only what comes before is regressed.
+            config.dims = setup.choice;
+            config.stride = setup.dims;
+            config.slices = setup.lights;
+        }
+        if (nf_cv_workspace_size(&config, setup.samples) == 0)
             throw std::runtime_error("noisefloor refuses estimator " + name + " with dims " + std::to_string(setup.dims) + ", order " + std::to_string(setup.order));
-        if (block)
-            return std::make_unique<Block>(config, setup.pixels, setup.samples);
+        if (shared)
+            return std::make_unique<Shared>(config, setup.side, setup.samples);
         if (name == "incremental")
             return std::make_unique<Streaming>(config);
         return std::make_unique<Regression>(config, setup.samples);

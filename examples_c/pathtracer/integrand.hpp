@@ -13,7 +13,8 @@ class Integrand {
 public:
     Integrand(const Scene &scene, const Intersector &intersector) : scene_(scene), intersector_(intersector) {}
 
-    // Where the ray through the lens' centre at time 0 ends. In most scenes that does not depend on u: it is traced once per pixel.
+    // Where the ray through the lens' centre, amid the exposure, ends. In most scenes that does not depend on u: it is traced once
+    // per pixel.
     struct Pixel {
         float x = 0, y = 0; // in [0, 1] over the image
         bool traced = false, hit = false;
@@ -62,7 +63,7 @@ private:
 
     void trace(Pixel &pixel) const
     {
-        pixel.ray = scene_.camera.ray(pixel.x, pixel.y, 0);
+        pixel.ray = scene_.camera.ray(pixel.x, pixel.y, 0.5f);
         pixel.hit = intersector_.closest(pixel.ray, pixel.surface);
         pixel.traced = true;
     }

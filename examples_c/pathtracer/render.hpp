@@ -27,12 +27,12 @@ public:
     {
         if (options.reference)
             names_ = {"mc"};
-        // As many samples as stay in the cache between sampling and estimating; blocks have their size for another reason.
-        while (side_ > 1 && size_t{side_} * side_ * options.spp > 4096)
+        // As many samples as stay in the cache between sampling and estimating; pixels that share fits need neighbours.
+        bool shared = std::find(names_.begin(), names_.end(), "shared") != names_.end();
+        const size_t most = shared ? 1 << 19 : 1 << 12;
+        side_ = shared ? 64 : 8;
+        while (side_ > (shared ? 8u : 1u) && size_t{side_} * side_ * options.spp > most)
             side_ /= 2;
-        for (const std::string &name : names_)
-            if (name == "block")
-                side_ = block_side;
         // Fails before any work if a name or a configuration is wrong.
         make_estimators();
         images_.assign(names_.size(), Image(options.width, options.height));
@@ -61,7 +61,7 @@ private:
 
     std::vector<std::unique_ptr<Estimator>> make_estimators() const
     {
-        EstimatorSetup setup{scene_.dims(), options_.order, static_cast<uint32_t>(scene_.lights.size()), size_t{side_} * side_,
+        EstimatorSetup setup{scene_.dims(), options_.order, static_cast<uint32_t>(scene_.lights.size()), scene_.choice(), side_,
                              options_.spp, options_.sampler != "random"};
         std::vector<std::unique_ptr<Estimator>> estimators;
         for (const std::string &name : names_) {
@@ -75,18 +75,18 @@ private:
     void work()
     {
         try {
-            bands();
+            buckets();
         } catch (...) {
             std::lock_guard<std::mutex> lock(mutex_);
             if (!error_)
                 error_ = std::current_exception();
-            next_row_ = options_.height; // the others stop
+            next_ = ~uint64_t{0} >> 1; // the others stop
         }
     }
 
-    // Square blocks of pixels, taken from horizontal bands: reading the clock costs nothing beside them, and every estimator
-    // meets the machine in the same mood.
-    void bands()
+    // Square buckets of pixels: reading the clock costs nothing beside them, and every estimator meets the machine in the same
+    // mood.
+    void buckets()
     {
         const size_t n = options_.spp, pixels = size_t{side_} * side_;
         Buffers buffers{std::vector<float>(pixels * n * scene_.dims()), std::vector<float>(pixels * n * 3), std::vector<float>(pixels * 3),
@@ -94,10 +94,12 @@ private:
         auto estimators = make_estimators();
         Times times;
         times.estimating.resize(estimators.size());
-        for (uint32_t y; (y = next_row_.fetch_add(side_)) < options_.height;) {
-            for (uint32_t x = 0; x < options_.width; x += side_)
-                render({x, y, std::min(side_, options_.width - x), std::min(side_, options_.height - y)}, estimators, times, buffers);
-            report(std::min(side_, options_.height - y));
+        const uint64_t columns = (options_.width + side_ - 1) / side_, rows = (options_.height + side_ - 1) / side_;
+        for (uint64_t i; (i = next_++) < columns * rows;) {
+            uint32_t x = static_cast<uint32_t>(i % columns) * side_, y = static_cast<uint32_t>(i / columns) * side_;
+            Rectangle bucket{x, y, std::min(side_, options_.width - x), std::min(side_, options_.height - y)};
+            render(bucket, estimators, times, buffers);
+            report(size_t{bucket.width} * bucket.height);
         }
         std::lock_guard<std::mutex> lock(mutex_);
         times_.drawing += times.drawing;
@@ -137,7 +139,7 @@ private:
             if (estimators[e]->needs_surfaces())
                 for (size_t p = 0; p < pixels; ++p)
                     buffers.surface[p] = integrand_.surface(buffers.pixels[p]);
-            estimators[e]->estimate({u.data(), f.data(), buffers.surface.data(), pixels, n}, means.data());
+            estimators[e]->estimate({u.data(), f.data(), buffers.surface.data(), b.width, b.height, n}, means.data());
             stop = Clock::now();
             times.estimating[e] += seconds(start, stop);
             for (uint32_t row = 0; row < b.height; ++row)
@@ -160,10 +162,15 @@ private:
         return pixel;
     }
 
-    void report(uint32_t rows)
+    // At most a hundred lines.
+    void report(size_t pixels)
     {
         std::lock_guard<std::mutex> lock(mutex_);
-        std::printf("progress %.4f\n", static_cast<double>(finished_rows_ += rows) / options_.height);
+        const size_t all = size_t{options_.width} * options_.height, before = 100 * finished_ / all;
+        finished_ += pixels;
+        if (100 * finished_ / all == before)
+            return;
+        std::printf("progress %.4f\n", static_cast<double>(finished_) / static_cast<double>(all));
         std::fflush(stdout);
     }
 
@@ -174,10 +181,10 @@ private:
     std::vector<std::string> names_;
     std::vector<Image> images_;
     Times times_;
-    uint32_t side_ = block_side; // of a block, in pixels
-    std::atomic<uint32_t> next_row_{0};
+    uint32_t side_ = 1; // of a bucket, in pixels
+    std::atomic<uint64_t> next_{0}; // bucket
     std::mutex mutex_; // guards what follows, times_ and standard output
-    uint32_t finished_rows_ = 0;
+    size_t finished_ = 0; // pixels
     std::exception_ptr error_;
 };
 

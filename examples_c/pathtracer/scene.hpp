@@ -82,6 +82,18 @@ struct Scene {
             sum += domain.dims;
         return sum;
     }
+
+    // Numbers of the sample vector up to the first that picks a light; 0 if none does.
+    uint32_t choice() const
+    {
+        uint32_t sum = 0;
+        for (const Domain &domain : domains()) {
+            sum += domain.dims;
+            if (domain.kind == Domain::choice)
+                return sum;
+        }
+        return 0;
+    }
 };
 
 } // namespace demo

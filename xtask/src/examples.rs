@@ -72,10 +72,10 @@ pub(crate) fn path_tracer(archive: &Path) -> Result<Outcome> {
         tracer.render(&["--scene", scene, "--spp", "8", "--order", order, "--estimators", &names.join(",")])?;
         check("random", &names)?;
         for sampler in &samplers {
-            let estimators = ["--order", order, "--estimators", "mc,block,robust"];
+            let estimators = ["--order", order, "--estimators", "mc,shared,robust"];
             let options = ["--scene", scene, "--spp", "8", "--frame", "3", "--sampler", sampler];
             tracer.render(&[&options[..], &estimators].concat())?;
-            check(sampler, &["mc", "block", "robust"])?;
+            check(sampler, &["mc", "shared", "robust"])?;
         }
     }
     check_tiles(&tracer, &tiles)?;

@@ -7,6 +7,7 @@ mod metric;
 mod output;
 mod progress;
 mod renderer;
+mod runs;
 mod text;
 mod tiles;
 
@@ -40,7 +41,7 @@ pub(crate) struct Options {
 enum Part {
     /// Control variates: every estimator, random samples
     Estimators,
-    /// Samplers: random, Sobol, tiles; with and without the control variate
+    /// Samplers: random, Sobol, tiles; plain means, and control variates of each pixel and shared by neighbours
     Tiles,
 }
 

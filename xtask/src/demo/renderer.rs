@@ -31,19 +31,16 @@ pub(crate) struct Timing {
 /// One run of the path tracer.
 pub(crate) struct Job<'a> {
     pub(crate) scene: &'a str,
-    /// Width and height of the image.
-    pub(crate) size: u32,
     pub(crate) spp: u32,
     /// Total degree of the fits.
     pub(crate) order: u32,
     pub(crate) seed: u64,
     pub(crate) frame: u32,
-    pub(crate) threads: u32,
     pub(crate) sampler: Sampler<'a>,
     /// Empty: a reference.
     pub(crate) estimators: &'a [&'a str],
-    /// Where the images go: `PREFIX.ESTIMATOR.pfm`.
-    pub(crate) prefix: &'a Path,
+    /// What it adds to the progress bar.
+    pub(crate) work: u64,
 }
 
 /// Where the sample points come from.
@@ -78,10 +75,10 @@ impl Renderer {
         Ok(line.split_whitespace().map(str::to_owned).collect())
     }
 
-    /// Renders, moving `bar` forward by `work` in total.
-    pub(crate) fn render(&self, job: &Job, bar: &ProgressBar, work: u64) -> Result<Vec<Timing>> {
+    /// Renders `size` x `size` pixels to `PREFIX.ESTIMATOR.pfm`.
+    pub(crate) fn render(&self, job: &Job, size: u32, prefix: &Path, bar: &ProgressBar) -> Result<Vec<Timing>> {
         let mut command = run::command(&self.program);
-        let size = job.size.to_string();
+        let size = size.to_string();
         command.args(["--scene", job.scene, "--width", &size, "--height", &size]);
         command.args(["--spp", &job.spp.to_string(), "--order", &job.order.to_string()]);
         command.args(["--seed", &job.seed.to_string(), "--frame", &job.frame.to_string()]);
@@ -90,7 +87,7 @@ impl Renderer {
             Sampler::Sobol => command.args(["--sampler", "sobol"]),
             Sampler::Tile(tile) => command.args(["--sampler", "tile", "--tile", tile]),
         };
-        command.args(["--threads", &job.threads.to_string(), "--output"]).arg(job.prefix);
+        command.args(["--threads", &threads().to_string(), "--output"]).arg(prefix);
         if job.estimators.is_empty() {
             command.arg("--reference");
         } else {
@@ -110,7 +107,7 @@ impl Renderer {
                 let line = line.context("cannot read the path tracer's output")?;
                 if let Some(part) = line.strip_prefix("progress ") {
                     let part: f64 = part.parse().with_context(|| format!("the path tracer said `{line}`"))?;
-                    bar.set_position(start + (part * work as f64) as u64);
+                    bar.set_position(start + (part * job.work as f64) as u64);
                 } else {
                     timings
                         .push(serde_json::from_str(&line).with_context(|| format!("the path tracer said `{line}`"))?);
@@ -128,7 +125,7 @@ impl Renderer {
         if !status.success() {
             bail!("rendering `{}` failed, {status}\n{}", job.scene, message.trim());
         }
-        bar.set_position(start + work);
+        bar.set_position(start + job.work);
         Ok(timings)
     }
 }

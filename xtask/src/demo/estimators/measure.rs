@@ -2,18 +2,13 @@
 
 use super::plan::{BASELINE, Plan, Scene};
 use super::table::Row;
-use crate::demo::image::read_pfm;
 use crate::demo::metric::{Reference, median};
-use crate::demo::renderer::{Job, Renderer, Sampler, Timing};
-use anyhow::{Context, Result, bail};
+use crate::demo::renderer::{Job, Sampler, Timing};
+use crate::demo::runs::{Runs, SEED};
+use anyhow::{Context, Result};
 use image::Rgb32FImage;
-use indicatif::ProgressBar;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::path::Path;
-
-const SEED: u64 = 1;
-const REFERENCE_SEEDS: [u64; 2] = [1001, 1002];
 
 /// The plain mean is rendered with up to so many times the samples. Beyond that (an estimator that is very slow beside the
 /// scene) its relMSE is computed instead: it falls exactly as 1 / samples.
@@ -28,53 +23,23 @@ pub(crate) struct Measured {
 
 /// Everything that a measurement needs.
 pub(crate) struct Measurement<'a> {
-    pub(crate) renderer: &'a Renderer,
+    pub(crate) runs: &'a Runs<'a>,
     pub(crate) plan: &'a Plan,
-    pub(crate) bar: &'a ProgressBar,
-    pub(crate) scratch: &'a Path,
 }
 
 impl Measurement<'_> {
-    fn render(&self, scene: &Scene, spp: u32, seed: u64, estimators: &[&str]) -> Result<Vec<Timing>> {
-        let prefix = self.scratch.join(scene.name);
-        let work = self.plan.work(scene, spp, estimators.len());
-        let job = Job {
-            scene: scene.name,
-            size: self.plan.size,
-            spp,
-            order: scene.order,
-            seed,
-            frame: 0,
-            threads: self.plan.threads,
-            sampler: Sampler::Random,
-            estimators,
-            prefix: &prefix,
-        };
-        self.renderer.render(&job, self.bar, work)
-    }
-
-    fn image(&self, scene: &Scene, name: &str) -> Result<Rgb32FImage> {
-        read_pfm(&self.scratch.join(format!("{}.{name}.pfm", scene.name)))
-    }
-
-    fn reference(&self, scene: &Scene) -> Result<Reference> {
-        let mut halves = Vec::new();
-        for seed in REFERENCE_SEEDS {
-            self.render(scene, self.plan.reference_spp(scene), seed, &[])?;
-            halves.push(self.image(scene, "reference")?);
-        }
-        match &halves[..] {
-            [a, b] => Ok(Reference::new(a, b)),
-            _ => bail!("a reference needs two halves"),
-        }
+    fn render(&self, scene: &Scene, spp: u32, estimators: &[&str]) -> Result<Vec<Timing>> {
+        let (order, work) = (scene.order, self.plan.work(scene, spp, estimators.len()));
+        let sampler = Sampler::Random;
+        self.runs.render(&Job { scene: scene.name, spp, order, seed: SEED, frame: 0, sampler, estimators, work })
     }
 
     pub(crate) fn scene(&self, scene: &'static Scene) -> Result<Measured> {
-        self.bar.set_message(format!("{}: reference", scene.name));
-        let reference = self.reference(scene)?;
+        let spp = self.plan.reference_spp(scene);
+        let reference = self.runs.reference(scene.name, spp, self.plan.work(scene, spp, 0))?;
         let mut measured = Measured { reference, images: Vec::new(), rows: Vec::new() };
         for spp in self.plan.spp {
-            self.bar.set_message(format!("{}: {spp} samples per pixel", scene.name));
+            self.runs.say(format!("{}: {spp} samples per pixel", scene.name));
             self.estimators(scene, spp, &mut measured)?;
         }
         Ok(measured)
@@ -85,11 +50,11 @@ impl Measurement<'_> {
         let names = scene.estimators();
         let mut runs = Vec::new();
         for _ in 0..self.plan.repetitions {
-            runs.push(self.render(scene, spp, SEED, &names)?);
+            runs.push(self.render(scene, spp, &names)?);
         }
         let mut rel_mse = BTreeMap::new();
         for name in &names {
-            let image = self.image(scene, name)?;
+            let image = self.runs.image(scene.name, name)?;
             rel_mse.insert(*name, measured.reference.rel_mse(&image));
             measured.images.push(image);
         }
@@ -102,8 +67,8 @@ impl Measurement<'_> {
             let equal_spp = ((f64::from(spp) * time_ratio - 1e-9).ceil() as u32).max(spp);
             let rendered_spp = equal_spp.min(EQUAL_TIME_LIMIT * spp);
             if let Entry::Vacant(entry) = equal_time.entry(rendered_spp) {
-                self.render(scene, rendered_spp, SEED, &[BASELINE])?;
-                entry.insert(measured.reference.rel_mse(&self.image(scene, BASELINE)?));
+                self.render(scene, rendered_spp, &[BASELINE])?;
+                entry.insert(measured.reference.rel_mse(&self.runs.image(scene.name, BASELINE)?));
             }
             let rendered = equal_time.get(&rendered_spp).copied().unwrap_or(f64::NAN);
             let plain_then = rendered * f64::from(rendered_spp) / f64::from(equal_spp);

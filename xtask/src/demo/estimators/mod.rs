@@ -8,8 +8,9 @@ mod table;
 use super::Options;
 use super::output::Output;
 use super::progress;
-use super::renderer::Renderer;
-use anyhow::{Context, Result};
+use super::renderer::{Renderer, threads};
+use super::runs::Runs;
+use anyhow::Result;
 use indicatif::ProgressBar;
 use measure::{Measured, Measurement};
 use plan::{BASELINE, Plan, SCENES, Scene};
@@ -17,9 +18,9 @@ use plan::{BASELINE, Plan, SCENES, Scene};
 /// Writes pictures, table.md and table.csv; returns the table.
 pub(crate) fn run(options: &Options, renderer: &Renderer, output: &Output) -> Result<String> {
     let plan = Plan::new(options.quick);
-    let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
     let bar = progress_bar(&plan)?;
-    let measurement = Measurement { renderer, plan: &plan, bar: &bar, scratch: scratch.path() };
+    let runs = Runs::new(renderer, &bar, plan.size)?;
+    let measurement = Measurement { runs: &runs, plan: &plan };
     let mut rows = Vec::new();
     for scene in &SCENES {
         let measured = measurement.scene(scene)?;
@@ -86,7 +87,7 @@ fn report(plan: &Plan, table: &str) -> String {
          - Same time: the plain mean was rendered again with so many samples (rounded up) as it makes in the estimator's\n  \
            total time; beyond {limit} times the samples, its relMSE is scaled by 1 / samples instead.\n",
         size = plan.size,
-        threads = plan.threads,
+        threads = threads(),
         repetitions = plan.repetitions,
         limit = measure::EQUAL_TIME_LIMIT,
     )

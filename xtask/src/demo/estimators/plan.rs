@@ -1,7 +1,5 @@
 //! What is rendered: scenes, estimators, sizes.
 
-use crate::demo::renderer::threads;
-
 /// One of the path tracer's scenes and what the demo does with it.
 pub(crate) struct Scene {
     pub(crate) name: &'static str,
@@ -59,16 +57,14 @@ pub(crate) struct Plan {
     pub(crate) repetitions: u32,
     /// Divides the reference's samples.
     pub(crate) reference_divisor: u32,
-    pub(crate) threads: u32,
 }
 
 impl Plan {
     pub(crate) fn new(quick: bool) -> Self {
-        let threads = threads();
         if quick {
-            Self { size: 64, spp: [16, 64], repetitions: 1, reference_divisor: 4, threads }
+            Self { size: 64, spp: [16, 64], repetitions: 1, reference_divisor: 4 }
         } else {
-            Self { size: 128, spp: [16, 64], repetitions: 3, reference_divisor: 1, threads }
+            Self { size: 128, spp: [16, 64], repetitions: 3, reference_divisor: 1 }
         }
     }
 

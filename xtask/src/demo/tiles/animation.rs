@@ -59,7 +59,7 @@ pub(crate) fn run(measurement: &Measurement, scene: &Scene, reference: &Referenc
     let mut all = Vec::new();
     for (label, sampler) in samplers {
         if let Some(sampler) = sampler {
-            measurement.bar.set_message(format!("{}: animation, {label}", scene.name));
+            measurement.runs.say(format!("{}: animation, {label}", scene.name));
             all.push(measure(measurement, scene, reference, label, sampler)?);
         }
     }

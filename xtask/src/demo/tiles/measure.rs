@@ -1,24 +1,17 @@
 //! Rendering one scene with every sampler.
 
-use super::plan::{BASELINE, Choice, ESTIMATORS, ORDER, Plan, Scene, Tiles};
+use super::plan::{BASELINE, Choice, ESTIMATORS, Plan, Scene, Tiles};
 use super::score::Score;
-use crate::demo::image::read_pfm;
 use crate::demo::metric::{Reference, median};
-use crate::demo::renderer::{Job, Renderer, Sampler, Timing};
+use crate::demo::renderer::{Job, Sampler, Timing};
+use crate::demo::runs::{Runs, SEED};
 use anyhow::{Context, Result, bail};
 use image::Rgb32FImage;
-use indicatif::ProgressBar;
-use std::path::Path;
-
-const SEED: u64 = 1;
-const REFERENCE_SEEDS: [u64; 2] = [1001, 1002];
 
 /// Everything that a measurement needs.
 pub(crate) struct Measurement<'a> {
-    pub(crate) renderer: &'a Renderer,
+    pub(crate) runs: &'a Runs<'a>,
     pub(crate) plan: &'a Plan,
-    pub(crate) bar: &'a ProgressBar,
-    pub(crate) scratch: &'a Path,
     pub(crate) tiles: &'a Tiles,
 }
 
@@ -51,61 +44,40 @@ impl Measurement<'_> {
         sampler: Sampler,
         spp: u32,
         frame: u32,
-        seed: u64,
         estimators: &[&str],
     ) -> Result<Vec<Timing>> {
-        let job = Job {
-            scene: scene.name,
-            size: self.plan.size,
-            spp,
-            order: ORDER,
-            seed,
-            frame,
-            threads: self.plan.threads,
-            sampler,
-            estimators,
-            prefix: &self.scratch.join(scene.name),
-        };
-        self.renderer.render(&job, self.bar, self.plan.work(scene, spp, estimators.len()))
-    }
-
-    fn image(&self, scene: &Scene, name: &str) -> Result<Rgb32FImage> {
-        read_pfm(&self.scratch.join(format!("{}.{name}.pfm", scene.name)))
+        let (order, work) = (scene.order, self.plan.work(scene, spp, estimators.len()));
+        self.runs.render(&Job { scene: scene.name, spp, order, seed: SEED, frame, sampler, estimators, work })
     }
 
     pub(crate) fn reference(&self, scene: &Scene) -> Result<Reference> {
-        self.bar.set_message(format!("{}: reference", scene.name));
-        let half = |seed| {
-            self.render(scene, Sampler::Random, self.plan.reference_spp, 0, seed, &[])?;
-            self.image(scene, "reference")
-        };
-        let [a, b] = REFERENCE_SEEDS;
-        Ok(Reference::new(&half(a)?, &half(b)?))
+        let spp = self.plan.reference_spp(scene);
+        self.runs.reference(scene.name, spp, self.plan.work(scene, spp, 0))
     }
 
     /// One frame by the plain mean.
     pub(crate) fn frame(&self, scene: &Scene, sampler: Sampler, spp: u32, frame: u32) -> Result<Rgb32FImage> {
-        self.render(scene, sampler, spp, frame, SEED, &["mc"])?;
-        self.image(scene, "mc")
+        self.render(scene, sampler, spp, frame, &["mc"])?;
+        self.runs.image(scene.name, "mc")
     }
 
     /// Every sampler that there is and every estimator, sampler by sampler within each number of samples.
     pub(crate) fn scene(&self, scene: &Scene, reference: &Reference) -> Result<Vec<Measured>> {
         let mut all = Vec::new();
         for spp in self.plan.spp {
-            self.bar.set_message(format!("{}: {spp} samples per pixel", scene.name));
+            self.runs.say(format!("{}: {spp} samples per pixel", scene.name));
             let choices: Vec<_> = scene
                 .samplers
                 .iter()
                 .filter_map(|&choice| choice.sampler(spp, self.tiles).map(|sampler| (choice, sampler)))
                 .collect();
             // frames[choice][estimator][frame]; frame by frame, so that all samplers meet the machine in the same mood.
-            let mut frames: Vec<[Vec<Frame>; 2]> = choices.iter().map(|_| Default::default()).collect();
-            for frame in 0..self.plan.frames {
+            let mut frames: Vec<[Vec<Frame>; ESTIMATORS.len()]> = choices.iter().map(|_| Default::default()).collect();
+            for frame in 0..self.plan.frames(scene) {
                 for (index, &(_, sampler)) in choices.iter().enumerate() {
-                    let timings = self.render(scene, sampler, spp, frame, SEED, &ESTIMATORS)?;
+                    let timings = self.render(scene, sampler, spp, frame, &ESTIMATORS)?;
                     for (estimator, name) in ESTIMATORS.iter().enumerate() {
-                        let image = self.image(scene, name)?;
+                        let image = self.runs.image(scene.name, name)?;
                         let score = Score::new(&image, reference);
                         let timing = timings.iter().find(|timing| timing.estimator == *name).cloned();
                         let timing = timing.context("the path tracer printed no times")?;
@@ -133,7 +105,17 @@ fn summary(choice: Choice, tile: String, spp: u32, estimator: &'static str, fram
     Ok(Measured { choice, tile, spp, estimator, image: first.image, score: Score::mean(&scores), drawing_ns, total_ns })
 }
 
+pub(crate) fn find<'a>(all: &'a [Measured], choice: Choice, spp: u32, estimator: &str) -> Option<&'a Measured> {
+    all.iter().find(|one| (one.choice, one.spp, one.estimator) == (choice, spp, estimator))
+}
+
 /// The plain mean of random samples, as many as `of` has.
 pub(crate) fn baseline<'a>(all: &'a [Measured], of: &Measured) -> Option<&'a Measured> {
-    all.iter().find(|one| one.choice == BASELINE && one.estimator == ESTIMATORS[0] && one.spp == of.spp)
+    find(all, BASELINE, of.spp, ESTIMATORS[0])
+}
+
+/// The errors of `of` over those of `to`: raw, filtered.
+pub(crate) fn ratios(of: &Measured, to: Option<&Measured>) -> [f64; 2] {
+    let ratio = |error: fn(&Score) -> f64| to.map_or(f64::NAN, |to| error(&of.score) / error(&to.score));
+    [ratio(|score| score.raw), ratio(|score| score.filtered)]
 }

@@ -25,7 +25,7 @@ impl Score {
             raw: product(&a, &b),
             // As for the relMSE, two halves of the reference keep its own noise out.
             filtered: product(&gaussian(&a, width), &gaussian(&b, width)),
-            low: Spectra::new(&signed_errors(image, reference), width).low(),
+            low: Spectra::new(&average(&a, &b), width).low(),
         }
     }
 
@@ -47,5 +47,9 @@ fn limited_errors(image: &Rgb32FImage, reference: &Reference) -> [Vec<f64>; 2] {
 /// (I - R) / sqrt(R^2 + epsilon), limited, row after row.
 pub(crate) fn signed_errors(image: &Rgb32FImage, reference: &Reference) -> Vec<f64> {
     let [a, b] = limited_errors(image, reference);
-    a.iter().zip(&b).map(|(a, b)| 0.5 * (a + b)).collect()
+    average(&a, &b)
+}
+
+fn average(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect()
 }

@@ -1,7 +1,7 @@
 //! The table of samplers.
 
-use super::measure::{Measured, baseline};
-use super::plan::{Choice, ESTIMATORS};
+use super::measure::{Measured, baseline, find, ratios};
+use super::plan::{Choice, ESTIMATORS, Scene};
 use crate::demo::markdown;
 
 const HEADINGS: [&str; 13] = [
@@ -46,10 +46,9 @@ const SUMMARY: [Choice; 5] = [Choice::Random, Choice::Sobol, Choice::Tile(2), Ch
 pub(crate) fn rows(scene: &str, all: &[Measured]) -> Vec<[String; 14]> {
     let row = |one: &Measured| {
         let plain = baseline(all, one);
-        let ratio = |of: fn(&Measured) -> f64| plain.map_or(f64::NAN, |plain| of(one) / of(plain));
-        let (raw, filtered) = (ratio(|one| one.score.raw), ratio(|one| one.score.filtered));
+        let [raw, filtered] = ratios(one, plain);
         // The plain mean's error falls as 1 / samples, that is as 1 / time.
-        let time = ratio(|one| one.total_ns);
+        let time = plain.map_or(f64::NAN, |plain| one.total_ns / plain.total_ns);
         [
             scene.to_owned(),
             one.spp.to_string(),
@@ -75,33 +74,67 @@ pub(crate) fn markdown(rows: &[[String; 14]]) -> String {
     markdown::table(&HEADINGS, &WORDS, shown)
 }
 
-/// The ratios of one scene, a row for each number of samples and estimator: raw / filtered.
+fn cell([raw, filtered]: [f64; 2]) -> String {
+    format!("{raw:.3} / {filtered:.3}")
+}
+
+/// The ratios of one scene to random samples' plain mean, a row for each number of samples and estimator: raw / filtered.
 pub(crate) fn summary_rows(scene: &str, all: &[Measured]) -> Vec<[String; 8]> {
-    let mut keys: Vec<(u32, &str)> = all.iter().map(|one| (one.spp, one.estimator)).collect();
-    keys.sort_unstable_by_key(|&(spp, estimator)| (spp, estimator != ESTIMATORS[0]));
-    keys.dedup();
     let row = |(spp, estimator): (u32, &str)| {
-        let cell = |choice: Choice| {
-            let one = all.iter().find(|one| (one.spp, one.estimator, one.choice) == (spp, estimator, choice));
-            let plain = one.and_then(|one| baseline(all, one));
-            one.zip(plain).map_or_else(
-                || "-".to_owned(),
-                |(one, plain)| {
-                    let (raw, filtered) = (one.score.raw / plain.score.raw, one.score.filtered / plain.score.filtered);
-                    format!("{raw:.3} / {filtered:.3}")
-                },
-            )
-        };
-        let [a, b, c, d, e] = SUMMARY.map(cell);
+        let cells = SUMMARY.map(|choice| {
+            let one = find(all, choice, spp, estimator);
+            one.map_or_else(|| "-".to_owned(), |one| cell(ratios(one, baseline(all, one))))
+        });
+        let [a, b, c, d, e] = cells;
         [scene.to_owned(), spp.to_string(), estimator.to_owned(), a, b, c, d, e]
     };
-    keys.into_iter().map(row).collect()
+    spps(all).into_iter().flat_map(|spp| ESTIMATORS.map(|estimator| (spp, estimator))).map(row).collect()
 }
 
 pub(crate) fn summary(rows: &[[String; 8]]) -> String {
     let samplers = SUMMARY.map(Choice::label);
     let [a, b, c, d, e] = samplers.each_ref().map(String::as_str);
     markdown::table(&["scene", "spp", "estimator", a, b, c, d, e], &[0, 2], rows.iter().cloned())
+}
+
+fn spps(all: &[Measured]) -> Vec<u32> {
+    let mut spps: Vec<u32> = all.iter().map(|one| one.spp).collect();
+    spps.sort_unstable();
+    spps.dedup();
+    spps
+}
+
+/// What shared fits gain with each sampler in one scene, a row for each number of samples.
+pub(crate) fn shared_rows(scene: &Scene, all: &[Measured]) -> Vec<[String; 9]> {
+    let [mean, .., shared] = ESTIMATORS;
+    let row = |spp: u32| {
+        let cells = SUMMARY.map(|choice| {
+            let one = find(all, choice, spp, shared);
+            one.map_or_else(|| "-".to_owned(), |one| cell(ratios(one, find(all, choice, spp, mean))))
+        });
+        let [a, b, c, d, e] = cells;
+        let time = |estimator| {
+            find(all, Choice::Tile(2), spp, estimator)
+                .map_or_else(|| "-".to_owned(), |one| format!("{:.0}", one.total_ns))
+        };
+        [scene.name.to_owned(), spp.to_string(), a, b, c, d, e, time(mean), time(shared)]
+    };
+    spps(all).into_iter().map(row).collect()
+}
+
+/// The largest raw error of shared fits over that of the same sampler's plain mean.
+pub(crate) fn largest_shared_ratio(all: &[Measured]) -> f64 {
+    let [mean, .., shared] = ESTIMATORS;
+    let fits = all.iter().filter(|one| one.estimator == shared);
+    fits.map(|one| ratios(one, find(all, one.choice, one.spp, mean))[0]).fold(0.0, f64::max)
+}
+
+pub(crate) fn shared(rows: &[[String; 9]]) -> String {
+    let samplers = SUMMARY.map(Choice::label);
+    let [a, b, c, d, e] = samplers.each_ref().map(String::as_str);
+    let times = ["tile 2D, plain mean: ns per sample", "shared: ns per sample"];
+    let [plain, shared] = times;
+    markdown::table(&["scene", "spp", a, b, c, d, e, plain, shared], &[0], rows.iter().cloned())
 }
 
 pub(crate) fn csv(rows: &[[String; 14]]) -> String {
