@@ -1,8 +1,8 @@
 //! Which shared fits are exactly unbiased, and how little the others are biased.
 //!
 //! Seeds are fixed. A z-test is two-sided at |z| < 4.75, probability 2e-6. For each setting the mean over an image's pixels, its
-//! difference between left and right half, and five pixels are tested: 7 deviates, 378 in all, so that the chance that any
-//! failed by chance was below 1e-3 when the seeds were chosen.
+//! difference between left and right half, and five pixels are tested: 7 deviates, 210 in all, so that the chance that any
+//! failed by chance was below 5e-4 when the seeds were chosen. Eight times as many samples found nothing either.
 
 mod cv_support;
 
@@ -40,7 +40,7 @@ const SCENES: [(&str, Scene); 3] = [
     }),
 ];
 
-/// What is known of the image.
+/// What is known of the image: surfaces and factors at random.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Known {
     Nothing,
@@ -97,8 +97,11 @@ fn exactly_unbiased(estimator: Estimator, ridge: Ridge) {
     for (index, (name, scene)) in SCENES.into_iter().enumerate() {
         for n in [1, 4] {
             for known in [Known::Nothing, Known::Surfaces, Known::Factors] {
-                let repetitions = if n == 1 { 6000 } else { 2500 };
-                let errors = Errors::new(&config, scene, n, known, repetitions, 10 + index as u64);
+                if known != Known::Nothing && index < 2 {
+                    continue;
+                }
+                let repetitions = if n == 1 { 4000 } else { 1500 };
+                let errors = Errors::new(&config, scene, n, known, repetitions, 110 + index as u64);
                 let (z, bias) = (errors.z(), errors.tested[0].mean() / errors.squares.mean().sqrt());
                 println!("{estimator:?}, {name}, {known:?}, {n} samples: |z| <= {z:.2}, bias {bias:.4} of the RMSE");
                 assert!(z < Z_LIMIT, "{estimator:?}, {name}, {known:?}, {n}: {z}");
@@ -173,8 +176,8 @@ fn bias(
     Bias { typical: squares.mean().max(0.0).sqrt(), largest: largest.sqrt(), chance: chance.mean().sqrt() }
 }
 
-/// The robust mixture, one independent sample: a bias of .036 of the RMSE (largest .09) in windows of 4, falling with the
-/// window.
+/// The robust mixture, one independent sample: a bias of .024 of the RMSE in windows of 4 x 4 pixels (largest of 24
+/// integrands .078), .009 (.028) in windows of 8, .002 (.008) in windows of 16, where chance alone would show .004.
 #[test]
 fn robust_on_independent_samples() {
     let mut typical = vec![];
@@ -182,13 +185,14 @@ fn robust_on_independent_samples() {
         let bias = bias(&Config::new(2, 3, 1), side, 1, repetitions, |rng| points(side * side, 2, rng));
         println!("robust, independent, window {side}: {bias:?}");
         typical.push(bias.typical);
-        assert!(bias.largest < 0.1, "{side}: {bias:?}");
+        assert!(bias.largest < 0.1 && bias.chance < 0.01, "{side}: {bias:?}");
     }
-    assert!(typical[2] < typical[0], "{typical:?}");
+    assert!(typical[1] < typical[0] && typical[2] < typical[1], "{typical:?}");
 }
 
 /// Samples of the built-in tiles, a random part of it with all values shifted at random, which leaves each uniform but not
-/// independent.
+/// independent: not exactly unbiased for any estimator, but the bias is at most .01 of the RMSE. One sample: robust .005
+/// (largest of 24 integrands .017), leave-one-out .008 (.022), two halves .005 (.018). Four samples: .003 (.009) or less.
 #[test]
 fn on_the_built_in_tiles() {
     for (builtin, n) in [(Builtin::Size128Spp1Dims2, 1), (Builtin::Size128Spp4Dims2, 4)] {
@@ -202,9 +206,9 @@ fn on_the_built_in_tiles() {
         };
         for estimator in [Estimator::Robust, Estimator::LeaveOneOut, Estimator::KFold] {
             let config = Config { estimator, ..Config::new(2, 3, 1) };
-            let bias = bias(&config, 8, n, 800 / n, draw);
+            let bias = bias(&config, 8, n, 600 / n, draw);
             println!("{estimator:?}, tile of {n} samples: {bias:?}");
-            assert!(bias.typical < 0.1, "{estimator:?} {n}: {bias:?}");
+            assert!(bias.typical < 0.02 && bias.largest < 0.05, "{estimator:?} {n}: {bias:?}");
         }
     }
 }
