@@ -250,7 +250,10 @@ impl Problem<'_> {
             for (channel, each) in rows_mut(each, 2).enumerate() {
                 let Some(unit) = group.units.get(channel) else { continue };
                 let factor = R::from_f64(self.factor(pixel, channel));
-                let correction = group.correction(index, weights, channel).scale(unit.exponent) * factor;
+                // Values of an `f32` over a small factor may be beyond any `f32`, and two infinities cancel to NaN.
+                let most = f64::from(f32::MAX);
+                let correction = libm::scalbn(group.correction(index, weights, channel).to_f64(), unit.exponent);
+                let correction = R::from_f64((correction * self.factor(pixel, channel)).clamp(-most, most));
                 let ratio = group.spreads.gain(weights, channel);
                 let error = if from_block {
                     let variance = group.spreads.variance(weights, channel).unwrap_or(R::INFINITY);
