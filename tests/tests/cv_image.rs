@@ -102,8 +102,8 @@ fn factors_are_demodulation() {
     }
 }
 
-/// Constant values are exact; constant pixels of different values, which no function of the samples explains, are exact in
-/// `f64` to rounding.
+/// Constant values are exact. Constant pixels of different values, of which the mean is exact, are not: what is left of the
+/// fits in the mixture adds noise, here less than .12 where the values are uniform in 0 to 1.
 #[test]
 fn constants() {
     let mut rng = SplitMix64::new(4);
@@ -126,9 +126,10 @@ fn constants() {
             let levels: Vec<f32> = (0..pixels).map(|_| rng.uniform_f32()).collect();
             let f: Vec<f32> = (0..pixels * n).map(|i| levels[i / n]).collect();
             let estimates = image(&Config::new(2, 2, 1), &of, Samples::new(&u, &f)).unwrap();
-            // Mixed with the mean, whose estimates vary least: what is left of the fits is small.
             let error: f64 = estimates.iter().zip(&levels).map(|(a, b)| f64::from(a.mean[0] - b).powi(2)).sum();
-            assert!((error / pixels as f64).sqrt() < 0.12, "{width} {height} {frames} {n}: {error}");
+            let error = (error / pixels as f64).sqrt();
+            println!("constant pixels, {width} x {height} x {frames}, {n} samples: {error:.4}");
+            assert!(error < 0.12, "{width} {height} {frames} {n}: {error}");
         }
     }
 }
