@@ -235,6 +235,11 @@ struct config : nf_cv_config {
     // Bytes; 0 for a configuration that is out of range.
     std::size_t workspace_size(std::size_t n) const noexcept { return nf_cv_workspace_size(this, n); }
     std::size_t block_workspace_size(std::size_t pixels, std::size_t n) const noexcept { return nf_cv_block_workspace_size(this, pixels, n); }
+    // For n samples in each pixel.
+    std::size_t image_workspace_size(const nf_cv_image &where, std::size_t n) const noexcept
+    {
+        return nf_cv_image_workspace_size(this, &where, n);
+    }
     std::size_t accumulator_size() const noexcept { return nf_cv_accumulator_size(this); }
     std::size_t accumulator_workspace_size() const noexcept { return nf_cv_accumulator_workspace_size(this); }
 
@@ -245,6 +250,63 @@ private:
         copy.*field = value;
         return copy;
     }
+};
+
+// nf_cv_image: the pixels of an image and what is known of them, and functions that add one thing and can be chained:
+// `image(640, 480).with_surfaces(ids).with_window(16)`. The C fields remain accessible, but the lengths of arrays that they
+// point to are then unknown: only the functions set them. The arrays must outlive the image.
+class image : public nf_cv_image {
+public:
+    image(std::uint32_t width_, std::uint32_t height_, std::uint32_t frames_ = 1) noexcept : nf_cv_image()
+    {
+        width = width_;
+        height = height_;
+        frames = frames_;
+    }
+
+    // 0 for the default `step`, half of `side`.
+    image with_window(std::uint32_t side, std::uint32_t step = 0) const noexcept
+    {
+        image copy = *this;
+        copy.window = side;
+        copy.stride = step;
+        return copy;
+    }
+    // A number for each pixel.
+    image with_surfaces(span<const std::uint32_t> ids) const noexcept
+    {
+        image copy = *this;
+        copy.surfaces = ids.data();
+        copy.surfaces_ = ids.size();
+        return copy;
+    }
+    // config::channels numbers for each pixel.
+    image with_factors(span<const float> values) const noexcept
+    {
+        image copy = *this;
+        copy.factors = values.data();
+        copy.factors_ = values.size();
+        return copy;
+    }
+
+    // Of all frames; 0 if that is more than a std::size_t counts.
+    std::size_t pixels() const noexcept
+    {
+        const std::size_t most = SIZE_MAX, rows = height, all_frames = frames == 0 ? 1 : frames;
+        if (rows == 0 || width > most / rows || width * rows > most / all_frames)
+            return 0;
+        return width * rows * all_frames;
+    }
+    // Whether the arrays are as long as they must be.
+    bool fits(const nf_cv_config &how) const noexcept
+    {
+        const bool surfaces_fit = surfaces == nullptr || surfaces_ == pixels();
+        const bool divides = how.channels != 0 && factors_ % how.channels == 0;
+        return surfaces_fit && (factors == nullptr || (divides && factors_ / how.channels == pixels()));
+    }
+
+private:
+    std::size_t surfaces_ = 0, factors_ = 0;
 };
 
 // Samples in caller arrays. The number of samples is f.size() / channels, and all lengths must agree with it.
@@ -311,6 +373,18 @@ inline returned<void> estimate_block(const nf_cv_config &how, const samples &wha
         code = NF_ERR_RANGE;
     if (code == NF_OK)
         code = nf_cv_block_estimate(&how, what.u.data(), what.f.data(), out.size(), n / out.size(), workspace.data(), workspace.bytes(), out.data());
+    return detail::finish(code);
+}
+
+// nf_cv_image_estimate(): one estimate for each pixel, as many as `out` has elements, from as many samples of each.
+inline returned<void> estimate_image(const nf_cv_config &how, const image &where, const samples &what, memory workspace, span<nf_estimate> out)
+{
+    std::size_t n = 0;
+    nf_status code = detail::count(how, what, n);
+    if (code == NF_OK && (out.empty() || out.size() != where.pixels() || n % out.size() != 0 || !where.fits(how)))
+        code = NF_ERR_RANGE;
+    if (code == NF_OK)
+        code = nf_cv_image_estimate(&how, &where, what.u.data(), what.f.data(), n / out.size(), workspace.data(), workspace.bytes(), out.data());
     return detail::finish(code);
 }
 

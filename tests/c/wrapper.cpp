@@ -156,6 +156,55 @@ static void estimates()
 #endif
 }
 
+static void images()
+{
+    using nf::span;
+    using nf::status;
+    const nf::config config(2, 2);
+    std::array<std::uint64_t, 4096> workspace{};
+    std::array<nf_estimate, 16> pixels{}, expected{};
+    const nf::image image = nf::image(4, 4).with_window(4, 2);
+    CHECK(image.width == 4 && image.height == 4 && image.frames == 1 && image.window == 4 && image.stride == 2);
+    CHECK(image.surfaces == nullptr && image.factors == nullptr && image.pixels() == 16 && nf::image(2, 4, 2).pixels() == 16);
+    CHECK(nf::image(UINT32_MAX, UINT32_MAX, UINT32_MAX).pixels() == 0 && nf::image(0, 4).pixels() == 0);
+    CHECK(image.with_window(6).window == 6 && image.with_window(6).stride == 0);
+    const nf_cv_image plain = {4, 4, 1, 4, 2, nullptr, nullptr};
+    CHECK(config.image_workspace_size(image, 4) == nf_cv_image_workspace_size(&config, &plain, 4));
+    CHECK(config.image_workspace_size(image, 4) > 0 && config.image_workspace_size(image, 4) <= sizeof workspace);
+    CHECK(config.image_workspace_size(nf::image(4, 4, 200), 4) == 0);
+    CHECK(nf_cv_image_estimate(&config, &plain, u, f, 4, workspace.data(), sizeof workspace, expected.data()) == NF_OK);
+    const std::size_t before = allocations;
+    SUCCEED(nf::estimate_image(config, image, {u, f}, workspace, pixels));
+    CHECK(std::memcmp(pixels.data(), expected.data(), sizeof expected) == 0 && pixels[15].samples == 4);
+
+    std::array<std::uint32_t, 16> surfaces{};
+    std::array<float, 16> factors{};
+    surfaces.fill(3);
+    factors.fill(2.0f);
+    SUCCEED(nf::estimate_image(config, image.with_surfaces(surfaces).with_factors(factors), {u, f}, workspace, pixels));
+    for (std::size_t pixel = 0; pixel < 16; ++pixel)
+        CHECK(std::fabs(pixels[pixel].mean[0] - expected[pixel].mean[0]) < 1e-5f);
+
+    const span<const std::uint32_t> few(surfaces.data(), 15);
+    CHECK(CODE(nf::estimate_image(config, image.with_surfaces(few), {u, f}, workspace, pixels)) == status::range);
+    CHECK(CODE(nf::estimate_image(config, image.with_factors({factors.data(), 15}), {u, f}, workspace, pixels)) == status::range);
+    CHECK(CODE(nf::estimate_image(config, image, {u, f}, workspace, {pixels.data(), 8})) == status::range);
+    CHECK(CODE(nf::estimate_image(config, image, {u, f}, workspace, {})) == status::range);
+    CHECK(CODE(nf::estimate_image(config, nf::image(4, 3), {u, f}, workspace, {pixels.data(), 12})) == status::range);
+    CHECK(CODE(nf::estimate_image(config, image, {span<const float>(u, 2 * n - 1), f}, workspace, pixels)) == status::range);
+    CHECK(CODE(nf::estimate_image(config, image, {}, workspace, pixels)) == status::no_samples);
+    CHECK(CODE(nf::estimate_image(config, image, {u, f}, {}, pixels)) == status::null);
+    CHECK(CODE(nf::estimate_image(config, image, {u, f}, {workspace.data(), 8}, pixels)) == status::memory);
+    CHECK(CODE(nf::estimate_image(config, image.with_window(4, 5), {u, f}, workspace, pixels)) == status::range);
+    factors[3] = -1.0f;
+    CHECK(CODE(nf::estimate_image(config, image.with_factors(factors), {u, f}, workspace, pixels)) == status::range);
+#ifdef NOISEFLOOR_NO_EXCEPTIONS
+    CHECK(allocations == before);
+#else
+    static_cast<void>(before); // as above
+#endif
+}
+
 static void accumulators()
 {
     const nf::config config = nf::config(2, 2).with(nf::estimator::least_squares);
@@ -275,6 +324,7 @@ int main()
     views();
     configurations();
     estimates();
+    images();
     accumulators();
     mis();
     tiles();

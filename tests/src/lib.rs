@@ -3,6 +3,8 @@
 pub mod integrands;
 pub mod legendre;
 pub mod oracle;
+pub mod planar;
 pub mod random;
+pub mod shared;
 pub mod statistics;
 pub mod tile;

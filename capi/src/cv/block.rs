@@ -132,6 +132,9 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
         let (core, narrow) = (supported(config)?, is_narrow(config)?);
         let mut image = size_of_image(given);
         let pixels = convert::product(convert::product(image.width, image.height)?, image.frames)?;
+        if pixels == 0 {
+            return Err(NF_ERR_RANGE);
+        }
         let total = convert::product(pixels, n)?;
         // SAFETY: the caller's arrays, of the lengths the header states.
         let (samples, out) = unsafe {

@@ -208,14 +208,14 @@ impl Problem<'_> {
         let width = sums_len(channels);
         for (turn, weights) in choices.iter().enumerate() {
             let mut gain = R::ZERO;
-            let mut units = [R::ONE; Config::MAX_CHANNELS];
+            let mut units = [1.0f64; Config::MAX_CHANNELS];
             let mut errors = [R::ONE; Config::MAX_CHANNELS];
             for (channel, ((unit, error), units)) in units.iter_mut().zip(&mut errors).zip(&group.units).enumerate() {
-                *unit = R::ONE.scale(units.exponent);
+                *unit = libm::scalbn(1.0, units.exponent);
                 let ratio = group.spreads.gain(weights, channel);
                 *error = if self.error_is_the_blocks() {
                     let variance = group.spreads.variance(weights, channel).filter(|variance| variance.is_finite());
-                    variance.map_or(R::INFINITY, |variance| variance.sqrt() * *unit)
+                    variance.map_or(R::INFINITY, |variance| variance.sqrt() * R::from_f64(*unit))
                 } else {
                     ratio.sqrt()
                 };
@@ -232,10 +232,12 @@ impl Problem<'_> {
                 }
                 let per_channel = rows_mut(each, 2).zip(units).zip(errors).enumerate();
                 for (channel, ((each, unit), error)) in per_channel {
-                    let factor =
-                        if self.factors.is_empty() { R::ONE } else { R::from_f64(self.factor(pixel, channel)) };
-                    let correction = group.correction(index, weights, channel) * unit * factor;
-                    let error = if self.error_is_the_blocks() { error * factor } else { error };
+                    let factor = if self.factors.is_empty() { 1.0 } else { self.factor(pixel, channel) };
+                    // Values of an `f32` over a small factor may be beyond any `f32`, and two infinities cancel to NaN.
+                    let most = f64::from(f32::MAX);
+                    let correction = group.correction(index, weights, channel).to_f64() * unit * factor;
+                    let correction = R::from_f64(correction.clamp(-most, most));
+                    let error = if self.error_is_the_blocks() { error * R::from_f64(factor) } else { error };
                     for (sum, value) in each.iter_mut().zip([correction, error]) {
                         *sum += near * value;
                     }

@@ -1,0 +1,147 @@
+//! Any configuration, any image and any samples through the shared fits: an error or finite numbers, never a panic.
+#![no_main]
+
+use arbitrary::{Arbitrary, Unstructured};
+use libfuzzer_sys::fuzz_target;
+use noisefloor::Error;
+use noisefloor::basis::Family;
+use noisefloor::control_variate::{
+    Color, Config, Estimator, Image, NonFinite, Ridge, Samples, estimate_image, image_workspace_len,
+};
+use noisefloor::real::Real;
+
+/// Workspaces beyond this many numbers are not allocated.
+const MOST: usize = 1 << 20;
+
+#[derive(Debug)]
+struct Input {
+    config: Config,
+    shape: [usize; 5],
+    surfaces: Vec<u32>,
+    factors: Vec<f32>,
+    u: Vec<f32>,
+    f: Vec<f32>,
+    controls: Vec<f32>,
+    control_integrals: Vec<f32>,
+}
+
+fn small(bytes: &mut Unstructured<'_>, most: u8) -> arbitrary::Result<usize> {
+    // Now and then far out of range.
+    Ok(match u8::arbitrary(bytes)? {
+        255 => usize::arbitrary(bytes)?,
+        byte => usize::from(byte % (most + 1)),
+    })
+}
+
+/// As many as there are bytes for, then more of the last.
+fn list<'a, T: Copy>(
+    bytes: &mut Unstructured<'a>,
+    len: usize,
+    mut item: impl FnMut(&mut Unstructured<'a>) -> arbitrary::Result<T>,
+) -> arbitrary::Result<Vec<T>> {
+    let mut out = Vec::new();
+    while out.len() < len {
+        match out.last() {
+            Some(&last) if bytes.is_empty() => out.resize(len, last),
+            _ => out.push(item(bytes)?),
+        }
+    }
+    Ok(out)
+}
+
+impl<'a> Arbitrary<'a> for Input {
+    fn arbitrary(bytes: &mut Unstructured<'a>) -> arbitrary::Result<Self> {
+        let rarely = |bytes: &mut Unstructured<'a>| Ok::<_, arbitrary::Error>(u8::arbitrary(bytes)? > 240);
+        let config = Config {
+            dims: small(bytes, 5)?,
+            order: small(bytes, 7)?,
+            channels: small(bytes, 4)?,
+            estimator: *bytes.choose(&[
+                Estimator::Robust,
+                Estimator::Robust,
+                Estimator::LeaveOneOut,
+                Estimator::KFold,
+                Estimator::LeastSquares,
+            ])?,
+            basis: *bytes.choose(&[Family::Legendre, Family::Step, Family::Sine, Family::Gaussian])?,
+            stratified: bool::arbitrary(bytes)?,
+            slices: small(bytes, 8)?.saturating_sub(3),
+            controls: small(bytes, 6)?.saturating_sub(2),
+            stride: small(bytes, 18)?.saturating_sub(10),
+            non_finite: if rarely(bytes)? { NonFinite::Skip } else { NonFinite::Error },
+            color: if rarely(bytes)? { Color::LuminanceRatio } else { Color::PerChannel },
+            ridge: match u8::arbitrary(bytes)? % 4 {
+                0 => Ridge::Auto,
+                1 => Ridge::Fixed(f32::arbitrary(bytes)?),
+                _ => Ridge::Default,
+            },
+            ..Config::new(1, 1, 1)
+        };
+        let shape =
+            [small(bytes, 12)?, small(bytes, 12)?, small(bytes, 3)?.max(1), small(bytes, 12)?, small(bytes, 8)?];
+        let [width, height, frames, ..] = shape;
+        let pixels = width.saturating_mul(height).saturating_mul(frames).min(512);
+        let n = usize::from(u8::arbitrary(bytes)? % 6);
+        let slack = usize::from(u8::arbitrary(bytes)? / 250);
+        let step = if config.stride == 0 { config.dims } else { config.stride };
+        let len = |width: usize| (pixels * n).saturating_mul(width).min(1 << 15) + slack;
+        let surfaces = if bool::arbitrary(bytes)? { pixels + slack } else { 0 };
+        let surfaces = list(bytes, surfaces, |bytes| Ok(u32::from(u8::arbitrary(bytes)? % 4)))?;
+        let factors = if bool::arbitrary(bytes)? { pixels * config.channels.min(4) + slack } else { 0 };
+        let finite = !rarely(bytes)?;
+        let value = |bytes: &mut Unstructured<'a>| {
+            let value = f32::arbitrary(bytes)?;
+            Ok(if finite && !value.is_finite() { 1.0 } else { value })
+        };
+        let factors = list(bytes, factors, |bytes| value(bytes).map(|value| if finite { value.abs() } else { value }))?;
+        Ok(Self {
+            config,
+            shape,
+            surfaces,
+            factors,
+            u: list(bytes, len(step), |bytes| {
+                Ok(if finite { f32::from(u16::arbitrary(bytes)?) / 65535.0 } else { f32::arbitrary(bytes)? })
+            })?,
+            f: list(bytes, len(config.channels), value)?,
+            controls: list(bytes, len(config.controls), value)?,
+            control_integrals: list(bytes, config.controls.min(8), value)?,
+        })
+    }
+}
+
+fn run<R: Real>(input: &Input) {
+    let Input { config, shape: [width, height, frames, window, stride], .. } = *input;
+    let image = Image { frames, window, stride, surfaces: &input.surfaces, factors: &input.factors, width, height };
+    let samples =
+        Samples { u: &input.u, f: &input.f, controls: &input.controls, control_integrals: &input.control_integrals };
+    let pixels = width.saturating_mul(height).saturating_mul(frames);
+    let n = input.f.len().checked_div(config.channels).and_then(|total| total.checked_div(pixels)).unwrap_or(0);
+    let nan = R::from_f64(f64::NAN);
+    let len = match image_workspace_len::<R>(&config, &image, n) {
+        Ok(len) if len <= MOST => len,
+        Ok(_) => return,
+        Err(_) => {
+            let never = |_, _| panic!("called on an error");
+            assert!(estimate_image(&config, &image, samples, &mut [nan; 256], never).is_err());
+            return;
+        }
+    };
+    let mut workspace = vec![nan; len];
+    for part in [len, len / 2] {
+        let mut count = 0;
+        let result = estimate_image(&config, &image, samples, &mut workspace[..part], |index, estimate| {
+            assert_eq!(index, count);
+            count += 1;
+            assert!(estimate.mean.iter().all(|mean| mean.is_finite()), "{estimate:?}");
+            assert!(estimate.std_error.iter().all(|&error| error >= 0.0), "{estimate:?}");
+            assert!(!estimate.gain.is_nan(), "{estimate:?}");
+        });
+        assert_eq!(count, if result.is_ok() { pixels } else { 0 });
+        assert!(part < len || result != Err(Error::Memory));
+    }
+}
+
+fuzz_target!(|input: Input| {
+    run::<f64>(&input);
+    run::<f32>(&input);
+});

@@ -1,0 +1,312 @@
+/* The pixels of an image, which share fits within windows: nf_cv_image_estimate(). */
+#include "check.h"
+
+#define WIDTH 11
+#define HEIGHT 7
+#define PIXELS (WIDTH * HEIGHT)
+#define N 4
+static float u[PIXELS * N * 2], f[PIXELS * N * 3];
+
+static nf_cv_image make_image(uint32_t width, uint32_t height)
+{
+    nf_cv_image image;
+    memset(&image, 0, sizeof image);
+    image.width = width;
+    image.height = height;
+    return image;
+}
+
+/* Pixel (x, y) integrates (1 + u0 + u1) (1 + x / 16): fits must follow it across the image. */
+static float brightness(size_t pixel) { return 1.0f + (float)(pixel % WIDTH) / 16.0f; }
+
+static void fill_pixels(size_t channels)
+{
+    size_t p, i;
+    fill_linear(f, u, PIXELS * N, 2, channels);
+    for (p = 0; p < PIXELS; ++p)
+        for (i = 0; i < N * channels; ++i)
+            f[p * N * channels + i] *= brightness(p);
+}
+
+static void estimate(const nf_cv_config *config, const nf_cv_image *image, size_t n, nf_estimate *out)
+{
+    memory work = memory_new(nf_cv_image_workspace_size(config, image, n));
+    CHECK(work.bytes > 0);
+    CHECK_STATUS(nf_cv_image_estimate(config, image, u, f, n, work.start, work.bytes, out), NF_OK);
+    memory_free(&work);
+}
+
+static void estimates(void)
+{
+    static const uint32_t estimators[] = {NF_CV_ROBUST, NF_CV_LEAVE_ONE_OUT, NF_CV_K_FOLD};
+    uint32_t channels, precision, c;
+    size_t p, i, e;
+    nf_estimate out[PIXELS];
+    for (precision = 0; precision < 2; ++precision)
+        for (channels = 1; channels <= 3; ++channels)
+            for (e = 0; e < 3; ++e) {
+                nf_cv_config config = make_config(2, 2, channels, estimators[e]);
+                const nf_cv_image image = make_image(WIDTH, HEIGHT);
+                double plain_error = 0.0, error = 0.0;
+                config.precision = precision;
+                fill_pixels(channels);
+                estimate(&config, &image, N, out);
+                for (p = 0; p < PIXELS; ++p) {
+                    const double truth = 2.0 * brightness(p);
+                    double mean = 0.0;
+                    for (i = 0; i < N; ++i)
+                        mean += f[(p * N + i) * channels] / (double)N;
+                    plain_error += (mean - truth) * (mean - truth);
+                    error += (out[p].mean[0] - truth) * (out[p].mean[0] - truth);
+                    CHECK(out[p].samples == N && isfinite(out[p].gain));
+                    for (c = 0; c < 4; ++c)
+                        CHECK(c < channels ? out[p].std_error[c] >= 0.0f : out[p].mean[c] == 0.0f && out[p].std_error[c] == 0.0f);
+                    if (channels > 1)
+                        CHECK(fabsf(out[p].mean[1] - 2.0f * out[p].mean[0]) < 1e-3f);
+                }
+                CHECK(error < 0.01 * plain_error);
+            }
+}
+
+/* One sample in each pixel is enough. */
+static void one_sample(void)
+{
+    nf_cv_config config = make_config(2, 1, 1, NF_CV_ROBUST);
+    const nf_cv_image image = make_image(WIDTH, HEIGHT);
+    nf_estimate out[PIXELS];
+    size_t p;
+    fill_linear(f, u, PIXELS, 2, 1);
+    estimate(&config, &image, 1, out);
+    for (p = 0; p < PIXELS; ++p)
+        CHECK(fabsf(out[p].mean[0] - 2.0f) < 0.1f && out[p].samples == 1 && isfinite(out[p].std_error[0]));
+}
+
+/* What is 0 or NULL, what it stands for, and what says nothing: the same bit for bit. */
+static void defaults_and_trivial_knowledge(void)
+{
+    static uint32_t surfaces[PIXELS];
+    static float factors[PIXELS * 2];
+    nf_cv_config config = make_config(2, 2, 2, NF_CV_ROBUST);
+    nf_cv_image image = make_image(WIDTH, HEIGHT);
+    nf_estimate expected[PIXELS], out[PIXELS];
+    size_t i;
+    uint32_t precision;
+    fill_pixels(2);
+    for (precision = 0; precision < 2; ++precision) {
+        config.precision = precision;
+        image = make_image(WIDTH, HEIGHT);
+        estimate(&config, &image, N, expected);
+        image.frames = 1;
+        estimate(&config, &image, N, out);
+        CHECK(memcmp(out, expected, sizeof out) == 0);
+        image.window = 8;
+        estimate(&config, &image, N, out);
+        CHECK(memcmp(out, expected, sizeof out) == 0);
+        image.stride = 4;
+        estimate(&config, &image, N, out);
+        CHECK(memcmp(out, expected, sizeof out) == 0);
+
+        for (i = 0; i < PIXELS; ++i)
+            surfaces[i] = 0xffffffffu;
+        image.surfaces = surfaces;
+        estimate(&config, &image, N, out);
+        CHECK(memcmp(out, expected, sizeof out) == 0);
+        image.surfaces = NULL;
+        for (i = 0; i < PIXELS * 2; ++i)
+            factors[i] = i % 3 == 0 ? 0.0f : 1.0f;
+        image.factors = factors;
+        estimate(&config, &image, N, out);
+        CHECK(memcmp(out, expected, sizeof out) == 0);
+        image.surfaces = surfaces;
+        estimate(&config, &image, N, out);
+        CHECK(memcmp(out, expected, sizeof out) == 0);
+
+        /* And what does say something changes the estimates. */
+        image.stride = 2;
+        estimate(&config, &image, N, out);
+        CHECK(memcmp(out, expected, sizeof out) != 0);
+        image.stride = 4;
+        surfaces[0] = surfaces[1] = surfaces[2] = 1;
+        estimate(&config, &image, N, out);
+        CHECK(memcmp(out, expected, sizeof out) != 0);
+        surfaces[0] = surfaces[1] = surfaces[2] = 0xffffffffu;
+        for (i = 0; i < PIXELS * 2; ++i)
+            factors[i] = brightness(i / 2);
+        estimate(&config, &image, N, out);
+        CHECK(memcmp(out, expected, sizeof out) != 0);
+    }
+}
+
+static void constant_pixels_are_exact(void)
+{
+    static const float constants[] = {0.0f, 1.0f, -3.5f, 1e30f, 16777215.0f};
+    const nf_cv_image image = make_image(WIDTH, HEIGHT);
+    nf_estimate out[PIXELS];
+    size_t i, k;
+    uint32_t precision;
+    for (precision = 0; precision < 2; ++precision)
+        for (k = 0; k < sizeof constants / sizeof *constants; ++k) {
+            nf_cv_config config = make_config(2, 3, 1, NF_CV_ROBUST);
+            config.precision = precision;
+            for (i = 0; i < PIXELS * N; ++i)
+                f[i] = constants[k];
+            estimate(&config, &image, N, out);
+            for (i = 0; i < PIXELS; ++i)
+                CHECK(out[i].mean[0] == constants[k] && out[i].std_error[0] == 0.0f && out[i].gain == 1.0f);
+        }
+}
+
+#define REFUSED(expected) CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), expected, out)
+
+static void errors(void)
+{
+    static uint32_t surfaces[PIXELS + 1];
+    static float factors[PIXELS + 1];
+    static const uint32_t sizes[] = {0x10000u, 0x7fffffffu, 0x80000000u, 0xffffffffu};
+    nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
+    nf_cv_image image = make_image(WIDTH, HEIGHT);
+    const size_t bytes = nf_cv_image_workspace_size(&config, &image, N);
+    memory work = memory_new(bytes);
+    nf_estimate out[PIXELS];
+    float saved;
+    size_t i, j;
+    fill_pixels(1);
+    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out), NF_OK);
+    CHECK_REFUSED(nf_cv_image_estimate(NULL, &image, u, f, N, work.start, bytes, out), NF_ERR_NULL, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, NULL, u, f, N, work.start, bytes, out), NF_ERR_NULL, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, NULL, f, N, work.start, bytes, out), NF_ERR_NULL, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, NULL, N, work.start, bytes, out), NF_ERR_NULL, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, NULL, bytes, out), NF_ERR_NULL, out);
+    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, NULL), NF_ERR_NULL);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, 0, work.start, bytes, out), NF_ERR_NO_SAMPLES, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes - 1, out), NF_ERR_MEMORY, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, 0, out), NF_ERR_MEMORY, out);
+
+    /* Alignment, of everything that is pointed to. */
+    CHECK_REFUSED(nf_cv_image_estimate(&config, (const nf_cv_image *)misaligned(&image), u, f, N, work.start, bytes, out), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_image_estimate((const nf_cv_config *)misaligned(&config), &image, u, f, N, work.start, bytes, out), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, (const float *)misaligned(u), f, N, work.start, bytes, out), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, (const float *)misaligned(f), N, work.start, bytes, out), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, misaligned(work.start), bytes - 1, out), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, (nf_estimate *)misaligned(out)), NF_ERR_ALIGNMENT, out);
+    image.surfaces = (const uint32_t *)misaligned(surfaces);
+    REFUSED(NF_ERR_ALIGNMENT);
+    image.surfaces = NULL;
+    image.factors = (const float *)misaligned(factors);
+    REFUSED(NF_ERR_ALIGNMENT);
+
+    /* Factors: the last pixel's, so that nothing of the first may have been written by then. */
+    for (i = 0; i < PIXELS; ++i)
+        factors[i] = 1.0f;
+    image.factors = factors;
+    factors[PIXELS - 1] = -1.0f;
+    REFUSED(NF_ERR_RANGE);
+    factors[PIXELS - 1] = not_a_number();
+    REFUSED(NF_ERR_NOT_FINITE);
+    factors[PIXELS - 1] = infinity_f();
+    REFUSED(NF_ERR_NOT_FINITE);
+    factors[PIXELS - 1] = -infinity_f();
+    REFUSED(NF_ERR_NOT_FINITE);
+    factors[PIXELS - 1] = -0.0f;
+    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out), NF_OK);
+    image.factors = NULL;
+
+    /* Sizes, windows, strides. */
+    image = make_image(0, HEIGHT);
+    REFUSED(NF_ERR_RANGE);
+    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    image = make_image(WIDTH, 0);
+    REFUSED(NF_ERR_RANGE);
+    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    image = make_image(WIDTH, HEIGHT);
+    image.window = 4;
+    image.stride = 5;
+    REFUSED(NF_ERR_RANGE);
+    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    image.window = 0;
+    image.stride = 9;
+    REFUSED(NF_ERR_RANGE);
+    image = make_image(33, 32);
+    image.window = 33;
+    CHECK(nf_cv_image_workspace_size(&config, &image, 1) == 0);
+    image.window = 32;
+    CHECK(nf_cv_image_workspace_size(&config, &image, 1) > 0);
+    image = make_image(8, 8);
+    image.frames = 16;
+    CHECK(nf_cv_image_workspace_size(&config, &image, 1) > 0);
+    image.frames = 17;
+    CHECK(nf_cv_image_workspace_size(&config, &image, 1) == 0);
+    /* A window may be larger than the image, if the image is small enough. */
+    image = make_image(WIDTH, HEIGHT);
+    image.window = image.stride = 0xffffffffu;
+    CHECK(nf_cv_image_workspace_size(&config, &image, N) > 0);
+    for (i = 0; i < sizeof sizes / sizeof *sizes; ++i)
+        for (j = 0; j < sizeof sizes / sizeof *sizes; ++j) {
+            nf_status status;
+            image = make_image(sizes[i], sizes[j]);
+            poison(out, sizeof out);
+            status = nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out);
+            CHECK(status == NF_ERR_RANGE || status == NF_ERR_MEMORY);
+            image = make_image(WIDTH, HEIGHT);
+            image.frames = sizes[i];
+            status = nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out);
+            CHECK(status == NF_ERR_RANGE || status == NF_ERR_MEMORY);
+            image.frames = 0;
+            status = nf_cv_image_estimate(&config, &image, u, f, SIZE_MAX / (i + 1), work.start, bytes, out);
+            CHECK(status == NF_ERR_RANGE || status == NF_ERR_MEMORY);
+            CHECK(is_poisoned(out, sizeof out));
+            CHECK(nf_cv_image_workspace_size(&config, &image, SIZE_MAX / (i + 1)) == 0);
+        }
+    image = make_image(WIDTH, HEIGHT);
+
+    /* Samples: the last of the last pixel. */
+    saved = f[PIXELS * N - 1];
+    f[PIXELS * N - 1] = not_a_number();
+    REFUSED(NF_ERR_NOT_FINITE);
+    f[PIXELS * N - 1] = saved;
+    saved = u[PIXELS * N * 2 - 1];
+    u[PIXELS * N * 2 - 1] = 1.5f;
+    REFUSED(NF_ERR_RANGE);
+    u[PIXELS * N * 2 - 1] = saved;
+    memory_free(&work);
+
+    /* Configurations. */
+    work = memory_new(1 << 20);
+    config.estimator = NF_CV_LEAST_SQUARES;
+    REFUSED(NF_ERR_UNSUPPORTED);
+    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    config.estimator = NF_CV_GRADIENT_DESCENT;
+    REFUSED(NF_ERR_UNSUPPORTED);
+    config.estimator = NF_CV_INCREMENTAL;
+    REFUSED(NF_ERR_UNSUPPORTED);
+    config.estimator = 99;
+    REFUSED(NF_ERR_RANGE);
+    config = make_config(2, 2, 1, NF_CV_ROBUST);
+    config.controls = 1;
+    REFUSED(NF_ERR_UNSUPPORTED);
+    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    config = make_config(2, 2, 1, NF_CV_ROBUST);
+    config.nonfinite = NF_NONFINITE_SKIP;
+    REFUSED(NF_ERR_UNSUPPORTED);
+    config = make_config(2, 2, 3, NF_CV_ROBUST);
+    config.color = NF_COLOR_LUMINANCE_RATIO;
+    fill_pixels(3);
+    REFUSED(NF_ERR_UNSUPPORTED);
+    config = make_config(0, 2, 1, NF_CV_ROBUST);
+    REFUSED(NF_ERR_RANGE);
+    config = make_config(2, 2, 1, NF_CV_ROBUST);
+    CHECK(nf_cv_image_workspace_size(NULL, &image, N) == 0);
+    CHECK(nf_cv_image_workspace_size(&config, NULL, N) == 0);
+    memory_free(&work);
+}
+
+int main(void)
+{
+    fill_uniform(u, PIXELS * N * 2, 12);
+    estimates();
+    one_sample();
+    defaults_and_trivial_knowledge();
+    constant_pixels_are_exact();
+    errors();
+    return report("image");
+}

@@ -1,0 +1,311 @@
+//! Shared fits over the pixels of an image: what the arguments mean, errors, exactness, scale, determinism.
+
+mod cv_support;
+
+use cv_support::{is_sound, largest, points, smooth, wide};
+use noisefloor::Error;
+use noisefloor::basis::Family;
+use noisefloor::control_variate::{
+    Color, Config, Estimate, Estimator, Image, NonFinite, Ridge, Samples, estimate_image, image_workspace_len,
+};
+use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::shared::{block, image, image_narrow};
+use proptest::prelude::*;
+
+const SHARED: [Estimator; 3] = [Estimator::Robust, Estimator::LeaveOneOut, Estimator::KFold];
+const BOTH: [fn(&Config, &Image<'_>, Samples<'_>) -> Result<Vec<Estimate>, Error>; 2] = [image, image_narrow];
+
+/// Points of an image, and values that change across it.
+fn scene(pixels: usize, n: usize, channels: usize, rng: &mut SplitMix64) -> (Vec<f32>, Vec<f32>) {
+    let u = points(pixels * n, 2, rng);
+    let value = |(i, u): (usize, &[f64])| (1.0 + 0.02 * (i / n) as f64) * smooth(u);
+    let f = wide(&u).chunks(2).enumerate().map(value).collect::<Vec<f64>>();
+    let f = f.iter().flat_map(|f| (0..channels).map(move |channel| ((1.0 + channel as f64) * f) as f32)).collect();
+    (u, f)
+}
+
+/// Knowledge that says nothing changes no bit: one surface, factors of 1 or 0, defaults that are spelled out, fresh calls.
+#[test]
+fn trivial_knowledge_changes_nothing() {
+    let mut rng = SplitMix64::new(1);
+    for (width, height, frames, n) in [(11, 9, 1, 1), (9, 10, 2, 3), (5, 1, 1, 4)] {
+        let pixels = width * height * frames;
+        let (u, f) = scene(pixels, n, 2, &mut rng);
+        let samples = Samples::new(&u, &f);
+        let (surfaces, ones) = (vec![u32::MAX; pixels], vec![1.0; 2 * pixels]);
+        let zeros: Vec<f32> = (0..2 * pixels).map(|i| [0.0, 1.0, -0.0][i % 3]).collect();
+        let plain = Image { frames, ..Image::new(width, height) };
+        for estimator in SHARED {
+            let config = Config { estimator, ..Config::new(2, 2, 2) };
+            for call in BOTH {
+                let expected = call(&config, &plain, samples).unwrap();
+                for same in [
+                    plain,
+                    Image { window: 8, ..plain },
+                    Image { stride: 4, ..plain },
+                    Image { surfaces: &surfaces, ..plain },
+                    Image { factors: &ones, ..plain },
+                    Image { factors: &zeros, surfaces: &surfaces, ..plain },
+                ] {
+                    assert_eq!(call(&config, &same, samples).unwrap(), expected, "{same:?}");
+                }
+            }
+        }
+    }
+}
+
+/// A surface's pixels do not see the others: the estimates of one are those of an image where the others' samples differ.
+#[test]
+fn surfaces_are_separate() {
+    let mut rng = SplitMix64::new(2);
+    for n in [1, 3] {
+        let (u, mut f) = scene(12 * 12, n, 1, &mut rng);
+        let surfaces: Vec<u32> = (0..144).map(|_| rng.below(3) as u32 * 1_000_000_007).collect();
+        let of = Image { surfaces: &surfaces, ..Image::new(12, 12) };
+        for estimator in SHARED {
+            let config = Config { estimator, ..Config::new(2, 2, 1) };
+            let before = image(&config, &of, Samples::new(&u, &f)).unwrap();
+            for (pixel, own) in f.chunks_mut(n).enumerate() {
+                if surfaces[pixel] != 0 {
+                    own.iter_mut().for_each(|f| *f = 30.0 - 7.0 * *f);
+                }
+            }
+            let after = image(&config, &of, Samples::new(&u, &f)).unwrap();
+            for ((before, after), surface) in before.iter().zip(&after).zip(&surfaces) {
+                assert_eq!(before == after, *surface == 0);
+            }
+        }
+    }
+}
+
+/// Values divided by the factors, estimated, multiplied: the same as factors, within the rounding of outputs and inputs.
+#[test]
+fn factors_are_demodulation() {
+    let mut rng = SplitMix64::new(3);
+    let (width, height, n) = (9, 6, 2);
+    let (u, f) = scene(width * height, n, 2, &mut rng);
+    // Powers of two, so that nothing is rounded.
+    let factors: Vec<f32> = (0..2 * width * height).map(|_| 2.0_f32.powi(rng.below(12) as i32 - 6)).collect();
+    let modulated: Vec<f32> = f.iter().enumerate().map(|(i, f)| f * factors[i / (2 * n) * 2 + i % 2]).collect();
+    for estimator in SHARED {
+        let config = Config { estimator, ..Config::new(2, 2, 2) };
+        let plain = image(&config, &Image::new(width, height), Samples::new(&u, &f)).unwrap();
+        let of = Image { factors: &factors, ..Image::new(width, height) };
+        let estimates = image(&config, &of, Samples::new(&u, &modulated)).unwrap();
+        for (pixel, (a, b)) in estimates.iter().zip(&plain).enumerate() {
+            for channel in 0..2 {
+                let factor = factors[2 * pixel + channel];
+                let error = (a.mean[channel] / factor - b.mean[channel]).abs();
+                assert!(error <= 1e-6 * largest(&f) as f32, "{estimator:?} {pixel}: {error}");
+            }
+        }
+    }
+}
+
+/// Constant values are exact. Constant pixels of different values, of which the mean is exact, are not: what is left of the
+/// fits in the mixture adds noise, here at most .018 where the values are uniform in 0 to 1.
+#[test]
+fn constants() {
+    let mut rng = SplitMix64::new(4);
+    for (width, height, frames) in [(1, 1, 1), (1, 7, 1), (2, 1, 1), (12, 12, 1), (4, 4, 5)] {
+        let pixels = width * height * frames;
+        let of = Image { frames, ..Image::new(width, height) };
+        for n in [1, 2, 5] {
+            let u = points(pixels * n, 2, &mut rng);
+            for (order, estimator) in [(0, SHARED[0]), (1, SHARED[1]), (3, SHARED[2]), (7, SHARED[0])] {
+                let config = Config { estimator, ..Config::new(2, order, 1) };
+                for constant in [0.0, 1.0, -1e30, 1e-30, 16_777_215.0] {
+                    let f = vec![constant; pixels * n];
+                    for call in BOTH {
+                        for estimate in call(&config, &of, Samples::new(&u, &f)).unwrap() {
+                            assert_eq!((estimate.mean[0], estimate.gain), (constant, 1.0), "{pixels} {n} {order}");
+                        }
+                    }
+                }
+            }
+            let levels: Vec<f32> = (0..pixels).map(|_| rng.uniform_f32()).collect();
+            let f: Vec<f32> = (0..pixels * n).map(|i| levels[i / n]).collect();
+            let estimates = image(&Config::new(2, 2, 1), &of, Samples::new(&u, &f)).unwrap();
+            let error: f64 = estimates.iter().zip(&levels).map(|(a, b)| f64::from(a.mean[0] - b).powi(2)).sum();
+            let error = (error / pixels as f64).sqrt();
+            println!("constant pixels, {width} x {height} x {frames}, {n} samples: {error:.4}");
+            assert!(error < 0.03, "{width} {height} {frames} {n}: {error}");
+        }
+    }
+}
+
+/// Values times 1e-30 to 1e30: the estimates scale, in both precisions.
+#[test]
+fn any_scale() {
+    let mut rng = SplitMix64::new(5);
+    for n in [1, 4] {
+        let (u, f) = scene(10 * 10, n, 1, &mut rng);
+        for estimator in SHARED {
+            let config = Config { estimator, ..Config::new(2, 3, 1) };
+            for (call, tolerance) in BOTH.into_iter().zip([[1e-6, 1e-4], [1e-4, 1e-2]]) {
+                let plain = call(&config, &Image::new(10, 10), Samples::new(&u, &f)).unwrap();
+                for scale in [1e-30, 1e-20, 1e-5, 1e10, 1e20, 1e30] {
+                    let scaled: Vec<f32> = f.iter().map(|f| f * scale).collect();
+                    let estimates = call(&config, &Image::new(10, 10), Samples::new(&u, &scaled)).unwrap();
+                    for (a, b) in estimates.iter().zip(&plain) {
+                        let error = f64::from((a.mean[0] / scale - b.mean[0]).abs()) / largest(&f);
+                        assert!(error < tolerance[0], "{estimator:?} {scale:e} {n}: {error:e}");
+                        let errors = [a.std_error[0] / scale, b.std_error[0]];
+                        let error = f64::from((errors[0] - errors[1]).abs() / errors[1]);
+                        assert!(error <= tolerance[1], "{scale:e} {errors:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// `f32` estimates are within 1e-3 of the `f64` ones, relative to the largest value, of all orders and estimators.
+#[test]
+fn precisions_agree() {
+    let mut rng = SplitMix64::new(6);
+    for (order, n) in [(1, 1), (3, 1), (4, 1), (2, 2), (4, 4), (7, 2)] {
+        let (u, f) = scene(16 * 16, n, 1, &mut rng);
+        for estimator in SHARED {
+            let config = Config { estimator, ..Config::new(2, order, 1) };
+            let [wide, narrow] = BOTH.map(|call| call(&config, &Image::new(16, 16), Samples::new(&u, &f)).unwrap());
+            let error = wide.iter().zip(&narrow).map(|(a, b)| (a.mean[0] - b.mean[0]).abs()).fold(0.0, f32::max);
+            println!("{estimator:?}, order {order}, {n} samples: {error:e}");
+            assert!(f64::from(error) < 1e-3 * largest(&f), "{estimator:?} {order} {n}: {error:e}");
+        }
+    }
+}
+
+/// Channels are fitted together but each for itself; pixels in no order are a window without axes.
+#[test]
+fn channels_are_separate() {
+    let mut rng = SplitMix64::new(7);
+    let (u, f) = scene(8 * 8, 2, 3, &mut rng);
+    let of = Image::new(8, 8);
+    let together = image(&Config::new(2, 2, 3), &of, Samples::new(&u, &f)).unwrap();
+    for channel in 0..3 {
+        let own: Vec<f32> = f.iter().skip(channel).step_by(3).copied().collect();
+        let alone = image(&Config::new(2, 2, 1), &of, Samples::new(&u, &own)).unwrap();
+        for (all, alone) in together.iter().zip(alone) {
+            assert!((all.mean[channel] - alone.mean[0]).abs() <= 1e-6 * largest(&own) as f32);
+        }
+    }
+    let (u, f) = scene(1, 8, 1, &mut rng);
+    let config = Config::new(2, 2, 1);
+    let alone = image(&config, &Image::new(1, 1), Samples::new(&u, &f)).unwrap();
+    assert_eq!(alone, block(&config, 1, Samples::new(&u, &f)).unwrap());
+}
+
+#[test]
+fn errors() {
+    let config = Config::new(2, 1, 1);
+    let (u, f) = ([0.5; 24], [1.0; 12]);
+    let run = |config: &Config, image: Image<'_>, u: &[f32], f: &[f32], len: usize| {
+        let never = |_, _| panic!("called on an error");
+        estimate_image(config, &image, Samples::new(u, f), &mut vec![f64::NAN; len], never)
+    };
+    let of = Image::new(3, 2);
+    let len = image_workspace_len::<f64>(&config, &of, 2).unwrap();
+    assert_eq!(run(&config, of, &u, &f, len - 1), Err(Error::Memory));
+    assert_eq!(run(&config, Image::new(0, 2), &u, &f, 9999), Err(Error::Range));
+    assert_eq!(run(&config, Image::new(3, 0), &u, &f, 9999), Err(Error::Range));
+    assert_eq!(run(&config, Image { frames: 0, ..of }, &u, &f, 9999), Err(Error::Range));
+    assert_eq!(run(&config, Image::new(5, 2), &u, &f, 9999), Err(Error::Range));
+    assert_eq!(run(&config, Image { window: 2, stride: 3, ..of }, &u, &f, 9999), Err(Error::Range));
+    assert_eq!(run(&config, of, &[], &[], 9999), Err(Error::NoSamples));
+    assert_eq!(run(&config, of, &u[..23], &f, 9999), Err(Error::Range));
+    for len in [1, 5, 7] {
+        assert_eq!(run(&config, Image { surfaces: &vec![0; len], ..of }, &u, &f, 9999), Err(Error::Range));
+        assert_eq!(run(&config, Image { factors: &vec![1.0; len], ..of }, &u, &f, 9999), Err(Error::Range));
+    }
+    for (bad, error) in [
+        (-1.0, Error::Range),
+        (-f32::MIN_POSITIVE, Error::Range),
+        (f32::NAN, Error::NotFinite),
+        (f32::INFINITY, Error::NotFinite),
+        (f32::NEG_INFINITY, Error::NotFinite),
+    ] {
+        assert_eq!(run(&config, Image { factors: &[1.0, 1.0, 1.0, 1.0, 1.0, bad], ..of }, &u, &f, 9999), Err(error));
+    }
+    let mut bad = f;
+    bad[11] = f32::NAN;
+    assert_eq!(run(&config, of, &u, &bad, 9999), Err(Error::NotFinite));
+    let mut bad = u;
+    bad[23] = 1.5;
+    assert_eq!(run(&config, of, &bad, &f, 9999), Err(Error::Range));
+    for estimator in [Estimator::LeastSquares, Estimator::GradientDescent, Estimator::Incremental] {
+        let other = Config { estimator, ..config };
+        assert_eq!(run(&other, of, &u, &f, 9999), Err(Error::Unsupported));
+        assert_eq!(image_workspace_len::<f64>(&other, &of, 2), Err(Error::Unsupported));
+    }
+    assert_eq!(run(&Config { non_finite: NonFinite::Skip, ..config }, of, &u, &f, 9999), Err(Error::Unsupported));
+    let luminance = Config { color: Color::LuminanceRatio, channels: 3, ..config };
+    assert_eq!(image_workspace_len::<f64>(&luminance, &of, 2), Err(Error::Unsupported));
+    for (window, frames, fits) in [(32, 1, true), (33, 1, false), (8, 16, true), (8, 17, false), (usize::MAX, 1, false)]
+    {
+        let large = Image { window, frames, ..Image::new(100, 100) };
+        assert_eq!(image_workspace_len::<f64>(&config, &large, 1).is_ok(), fits, "{window} {frames}");
+    }
+    let all = Image { window: usize::MAX, stride: usize::MAX, ..Image::new(30, 30) };
+    assert!(image_workspace_len::<f64>(&config, &all, 1).is_ok());
+    for huge in [usize::MAX, usize::MAX / 2 + 1] {
+        assert!(image_workspace_len::<f64>(&config, &Image::new(huge, 8), 1).is_err());
+        assert!(image_workspace_len::<f64>(&config, &Image::new(8, huge), 1).is_err());
+        assert!(image_workspace_len::<f64>(&config, &Image { frames: huge, ..Image::new(8, 8) }, 1).is_err());
+        assert!(image_workspace_len::<f64>(&config, &Image::new(8, 8), huge).is_err());
+    }
+}
+
+/// A configuration, an image and samples that belong together.
+fn any_call() -> impl Strategy<Value = (Config, [usize; 5], usize, u64)> {
+    let config = (1..5_usize, 0..5_usize, 1..5_usize, 0..3_usize, 0..4_usize, 0..3_usize, 0..5_usize, any::<bool>());
+    let config = config.prop_map(|(dims, order, channels, estimator, family, ridge, slices, stratified)| Config {
+        estimator: SHARED[estimator],
+        basis: [Family::Legendre, Family::Step, Family::Sine, Family::Gaussian][family],
+        ridge: [Ridge::Default, Ridge::Auto, Ridge::Fixed(0.01)][ridge],
+        slices: if dims > 1 { slices } else { 0 },
+        stratified,
+        ..Config::new(dims, order, channels)
+    });
+    let shape = (1..14_usize, 1..14_usize, 1..4_usize, 0..12_usize, 0..12_usize);
+    let shape =
+        shape.prop_map(|(w, h, t, window, stride)| [w, h, t, window, stride.min(if window == 0 { 8 } else { window })]);
+    (config, shape, 1..5_usize, any::<u64>())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 150, rng_seed: proptest::test_runner::RngSeed::Fixed(8), failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Any shape and configuration, values of any size, surfaces and factors: finite numbers, each pixel once and in order
+    /// (which the calls check), the same again.
+    #[test]
+    fn any_shape_gives_finite_numbers((config, [width, height, frames, window, stride], n, seed) in any_call()) {
+        let mut rng = SplitMix64::new(seed);
+        let pixels = width * height * frames;
+        let u = points(pixels * n, config.dims, &mut rng);
+        let exponent = rng.below(77) as i32 - 38;
+        let wild = rng.below(2) == 0;
+        let value = |rng: &mut SplitMix64| {
+            let own = if wild { rng.below(77) as i32 - 38 } else { exponent };
+            [0.0, 1.0, rng.normal() as f32, -1.0][rng.below(4)] * 10.0_f32.powi(own)
+        };
+        let f: Vec<f32> = (0..pixels * n * config.channels).map(|_| value(&mut rng)).collect();
+        let f: Vec<f32> = f.iter().map(|f| f.clamp(-f32::MAX, f32::MAX)).collect();
+        let surfaces: Vec<u32> = (0..pixels).map(|_| rng.below(3) as u32).collect();
+        let factors: Vec<f32> = (0..pixels * config.channels).map(|_| [0.0, 1e-30, 0.5, 1e20][rng.below(4)]).collect();
+        let mut of = Image { frames, window, stride, ..Image::new(width, height) };
+        if seed % 2 == 0 {
+            of.surfaces = &surfaces;
+        }
+        if seed % 3 == 0 {
+            of.factors = &factors;
+        }
+        for call in BOTH {
+            let estimates = call(&config, &of, Samples::new(&u, &f)).unwrap();
+            for estimate in &estimates {
+                prop_assert!(is_sound(estimate), "{estimate:?}");
+            }
+            prop_assert_eq!(&estimates, &call(&config, &of, Samples::new(&u, &f)).unwrap());
+        }
+    }
+}

@@ -1,0 +1,270 @@
+//! Shared fits of an image against their definition: pixel by pixel the ridge fit to the other pixels' samples.
+
+mod cv_support;
+
+use cv_support::{design, points, smooth, wide};
+use noisefloor::control_variate::{Config, Estimate, Estimator, Image, Ridge, Samples};
+use noisefloor_tests::oracle::{Design, Regression};
+use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::shared::{image, image_narrow};
+
+/// Samples of a whole image.
+struct Case {
+    config: Config,
+    /// Width, height, frames.
+    shape: [usize; 3],
+    n: usize,
+    u: Vec<f32>,
+    f: Vec<f32>,
+    controls: Vec<f32>,
+    integrals: Vec<f32>,
+    surfaces: Vec<u32>,
+    factors: Vec<f32>,
+}
+
+impl Case {
+    /// Integrands that differ from pixel to pixel.
+    fn new(config: Config, shape: [usize; 3], n: usize, rng: &mut SplitMix64) -> Self {
+        let pixels = shape.iter().product::<usize>();
+        let u = points(pixels * n, config.dims, rng);
+        let mut f = vec![];
+        for (sample, u) in wide(&u).chunks(config.dims).enumerate() {
+            let pixel = sample / n;
+            for channel in 0..config.channels {
+                f.push(((1.0 + channel as f64) * smooth(u) * (1.0 + 0.1 * pixel as f64) + 0.3 * pixel as f64) as f32);
+            }
+        }
+        let (controls, integrals) = (vec![], vec![]);
+        Self { config, shape, n, u, f, controls, integrals, surfaces: vec![], factors: vec![] }
+    }
+
+    fn with_surfaces(mut self, count: usize, rng: &mut SplitMix64) -> Self {
+        self.surfaces = (0..self.pixels()).map(|_| 7 + 1_000_000 * rng.below(count) as u32).collect();
+        self
+    }
+
+    /// Factors from 0, which counts as 1, to 8.
+    fn with_factors(mut self, rng: &mut SplitMix64) -> Self {
+        let factor = |_| [0.0, 0.25, 1.0, 3.0, 8.0][rng.below(5)];
+        self.factors = (0..self.pixels() * self.config.channels).map(factor).collect();
+        self
+    }
+
+    /// Control functions that explain some, with integrals of their own.
+    fn with_controls(mut self, count: usize) -> Self {
+        self.config.controls = count;
+        for u in self.u.chunks(self.config.dims) {
+            self.controls.extend((0..count).map(|k| (3.0 * u[0] + k as f32).sin() + 0.25 * k as f32));
+        }
+        self.integrals = (0..count).map(|k| 0.5 - 0.125 * k as f32).collect();
+        self
+    }
+
+    fn pixels(&self) -> usize {
+        self.shape.iter().product()
+    }
+
+    fn samples(&self) -> Samples<'_> {
+        Samples { u: &self.u, f: &self.f, controls: &self.controls, control_integrals: &self.integrals }
+    }
+
+    /// One window: the whole image.
+    fn image(&self) -> Image<'_> {
+        let [width, height, frames] = self.shape;
+        let window = width.max(height);
+        let (surfaces, factors) = (&self.surfaces[..], &self.factors[..]);
+        Image { frames, window, stride: window, surfaces, factors, ..Image::new(width, height) }
+    }
+
+    fn estimates(&self) -> [Vec<Estimate>; 2] {
+        [image, image_narrow].map(|call| call(&self.config, &self.image(), self.samples()).unwrap())
+    }
+
+    fn factor(&self, pixel: usize, channel: usize) -> f64 {
+        match self.factors.get(pixel * self.config.channels + channel) {
+            Some(&factor) if factor > 0.0 => f64::from(factor),
+            _ => 1.0,
+        }
+    }
+
+    /// Where a pixel is along the axes that have more than one place, in units of unit variance.
+    fn place(&self, pixel: usize) -> Vec<f64> {
+        let [width, height, _] = self.shape;
+        let at = [pixel % width, pixel / width % height, pixel / width / height];
+        let along = |(at, extent): (usize, usize)| 3.0_f64.sqrt() * ((2 * at + 1) as f64 / extent as f64 - 1.0);
+        at.into_iter().zip(self.shape).filter(|&(_, extent)| extent > 1).map(along).collect()
+    }
+
+    /// What the documentation says: for pixels that share a fit the columns constant, axes, control functions, basis, and
+    /// functions of low degree times each axis; then the estimate is the pixel's mean, without what functions and products
+    /// explain there.
+    fn expected(&self, pixel: usize, channel: usize) -> f64 {
+        let (config, n) = (&self.config, self.n);
+        let own_surface = self.surfaces.get(pixel);
+        let group: Vec<usize> = (0..self.pixels()).filter(|&other| self.surfaces.get(other) == own_surface).collect();
+        let value = |sample: usize, pixel: usize| {
+            f64::from(self.f[sample * config.channels + channel]) / self.factor(pixel, channel)
+        };
+        let samples = |pixel: usize| (pixel * n..(pixel + 1) * n).map(move |sample| (sample, pixel));
+        let all: Vec<(usize, usize)> = group.iter().flat_map(|&pixel| samples(pixel)).collect();
+        let mean = samples(pixel).map(|(sample, pixel)| value(sample, pixel)).sum::<f64>() / n as f64;
+        if group.len() < 2 || (config.order == 0 && config.controls == 0) {
+            return mean * self.factor(pixel, channel);
+        }
+        let basis = design(&Config { controls: 0, ..*config }, &wide(&self.u));
+        let axes = self.place(pixel).len();
+        // Functions with products: whole degrees, at most 2, below the order, two samples for each column.
+        let degrees: Vec<usize> = basis_degrees(config);
+        let up_to = |degree: usize| degrees.iter().filter(|&&other| other <= degree).count();
+        let columns = 1 + axes + config.controls + basis.weights.len();
+        let highest = 2.min(config.order.saturating_sub(1)).max(1);
+        let fits = |&degree: &usize| 2 * (columns + axes * up_to(degree)) <= all.len();
+        let moving = if axes == 0 { None } else { (1..=highest).rev().find(fits) };
+        let moving: Vec<usize> =
+            (0..degrees.len()).filter(|&j| moving.is_some_and(|most| degrees[j] <= most)).collect();
+
+        let row = |&(sample, pixel): &(usize, usize)| {
+            let controls = (0..config.controls)
+                .map(|k| f64::from(self.controls[sample * config.controls + k]) - f64::from(self.integrals[k]));
+            let (place, functions) = (self.place(pixel), &basis.rows[sample]);
+            let products = place.iter().flat_map(|place| moving.iter().map(move |&j| place * functions[j]));
+            place.iter().copied().chain(controls).chain(functions.iter().copied()).chain(products).collect::<Vec<f64>>()
+        };
+        let rows: Vec<Vec<f64>> = all.iter().map(row).collect();
+        let square = |k: usize| rows.iter().map(|row| row[axes + k].powi(2)).sum::<f64>() / rows.len() as f64;
+        let mut weights = vec![1e-3; axes];
+        weights.extend((0..config.controls).map(|k| 1e-7 * square(k)));
+        weights.extend(&basis.weights);
+        weights.extend((0..axes).flat_map(|_| moving.iter().map(|&j| 8.0 * basis.weights[j])));
+
+        let whole = Design { rows, weights };
+        let (own, others): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|&i| all[i].1 == pixel);
+        let values: Vec<f64> = others.iter().map(|&i| value(all[i].0, all[i].1)).collect();
+        let strength = match config.ridge {
+            Ridge::Fixed(strength) => f64::from(strength),
+            _ => 0.003,
+        };
+        let mut fit = Regression::fit(&whole.select(&others), &values, strength * others.len() as f64);
+        fit.slopes[..axes].fill(0.0);
+        let explained = own.iter().map(|&i| fit.control(&whole.rows[i])).sum::<f64>() / n as f64;
+        (mean - explained) * self.factor(pixel, channel)
+    }
+
+    /// The largest error relative to the largest value, in `f64` and `f32`.
+    fn errors(&self) -> [f64; 2] {
+        self.estimates().map(|estimates| {
+            let mut largest = 0.0_f64;
+            for (pixel, estimate) in estimates.iter().enumerate() {
+                for channel in 0..self.config.channels {
+                    // Relative to what the pixel's values become, not to those of its bright neighbours.
+                    let scale = (0..self.pixels())
+                        .flat_map(|other| (0..self.n).map(move |i| (other, other * self.n + i)))
+                        .map(|(other, i)| {
+                            f64::from(self.f[i * self.config.channels + channel].abs()) / self.factor(other, channel)
+                        })
+                        .fold(0.0, f64::max)
+                        * self.factor(pixel, channel);
+                    let error = (f64::from(estimate.mean[channel]) - self.expected(pixel, channel)).abs() / scale;
+                    largest = largest.max(error);
+                }
+            }
+            largest
+        })
+    }
+
+    /// Within 1e-6 in `f64`, whose outputs are `f32`.
+    fn check_wide(&self, what: &str) -> f64 {
+        let errors = self.errors();
+        println!("{what} {:?} {} samples: {:.1e} {:.1e}", self.shape, self.n, errors[0], errors[1]);
+        assert!(errors[0] < 1e-6, "{what} {:?} {}: {errors:?}", self.shape, self.n);
+        errors[1]
+    }
+
+    /// And within 1e-3 in `f32`.
+    fn check(&self, what: &str) {
+        let error = self.check_wide(what);
+        assert!(error < 1e-3, "{what} {:?} {}: {error}", self.shape, self.n);
+    }
+}
+
+/// Degrees of the functions that all slices share and of the slices' indicators, in the order of `design`.
+fn basis_degrees(config: &Config) -> Vec<usize> {
+    let sliced = config.slices > 1 && config.order > 0;
+    let dims = config.dims - usize::from(sliced);
+    let terms = noisefloor_tests::legendre::terms(dims, config.order);
+    let shared = terms.iter().map(|term| noisefloor_tests::legendre::degree(term)).filter(|&degree| degree > 0);
+    shared.chain((0..if sliced { config.slices } else { 0 }).map(|_| 1)).collect()
+}
+
+const SHAPES: [[usize; 3]; 3] = [[5, 4, 1], [1, 7, 1], [3, 3, 2]];
+
+/// One fit with every column, by estimator or by a fixed ridge, of all orders.
+#[test]
+fn one_fit() {
+    let mut rng = SplitMix64::new(1);
+    for shape in SHAPES {
+        for n in [1, 2, 5] {
+            for (order, channels) in [(0, 1), (1, 1), (2, 2), (3, 1)] {
+                let base = Config::new(2, order, channels);
+                let left_out = Config { estimator: Estimator::LeaveOneOut, ..base };
+                Case::new(left_out, shape, n, &mut rng).check("leave one out");
+                for estimator in [Estimator::Robust, Estimator::LeaveOneOut, Estimator::KFold] {
+                    let fixed = Config { ridge: Ridge::Fixed(0.05), estimator, ..base };
+                    Case::new(fixed, shape, n, &mut rng).check("ridge .05");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn surfaces_and_factors() {
+    let mut rng = SplitMix64::new(2);
+    for shape in SHAPES {
+        for n in [1, 2, 5] {
+            let config = Config { estimator: Estimator::LeaveOneOut, ..Config::new(2, 2, 2) };
+            let case = |rng: &mut SplitMix64| Case::new(config, shape, n, rng);
+            case(&mut rng).with_surfaces(2, &mut rng).check("two surfaces");
+            case(&mut rng).with_surfaces(9, &mut rng).check("nine surfaces");
+            case(&mut rng).with_factors(&mut rng).check("factors");
+            case(&mut rng).with_surfaces(2, &mut rng).with_factors(&mut rng).check("surfaces and factors");
+        }
+    }
+}
+
+#[test]
+fn slices_and_controls() {
+    let mut rng = SplitMix64::new(3);
+    for shape in SHAPES {
+        for n in [1, 2, 5] {
+            let base = Config { estimator: Estimator::LeaveOneOut, ..Config::new(2, 1, 1) };
+            for order in [1, 2] {
+                let sliced = Config { slices: 3, dims: 3, order, ..base };
+                Case::new(sliced, shape, n, &mut rng).check("slices");
+                Case::new(Config { order, ..base }, shape, n, &mut rng).with_controls(2).check("controls");
+                let both = Case::new(sliced, shape, n, &mut rng).with_controls(1);
+                let both = both.with_surfaces(2, &mut rng).with_factors(&mut rng);
+                // Two pixels of one sample and a function with next to no penalty leave `f32` no digits.
+                if n == 1 {
+                    both.check_wide("everything");
+                } else {
+                    both.check("everything");
+                }
+            }
+            Case::new(Config { order: 0, ..base }, shape, n, &mut rng).with_controls(1).check("controls alone");
+        }
+    }
+}
+
+/// The tests above can fail: by a ridge of .051 instead of .05.
+#[test]
+fn the_oracle_is_sharp() {
+    let mut rng = SplitMix64::new(4);
+    let config = Config { ridge: Ridge::Fixed(0.05), ..Config::new(2, 2, 1) };
+    let case = Case::new(config, [5, 4, 1], 2, &mut rng);
+    let other = Config { ridge: Ridge::Fixed(0.051), ..config };
+    let estimates = image(&other, &case.image(), case.samples()).unwrap();
+    let expected = (0..20).map(|pixel| case.expected(pixel, 0));
+    let far = estimates.iter().zip(expected).filter(|(a, b)| (f64::from(a.mean[0]) - b).abs() > 1e-5).count();
+    assert!(far > 10, "{far}");
+}
