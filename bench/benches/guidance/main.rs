@@ -19,9 +19,12 @@ use study::{COUNTS, DIMS};
 /// Measures errors and times of samplers and estimators, and prints tables.
 #[derive(Parser)]
 struct Options {
-    /// Four times the integrands.
+    /// Four times the integrands, and the cells that take longest.
     #[arg(long)]
     full: bool,
+    /// Only these dims.
+    #[arg(long, value_delimiter = ',', default_values_t = DIMS)]
+    dims: Vec<usize>,
     /// Where tables.md and cells.csv go.
     #[arg(long, default_value_os_t = default_output())]
     output: PathBuf,
@@ -39,14 +42,18 @@ fn default_output() -> PathBuf {
 fn main() -> Result<()> {
     let options = Options::parse();
     fs::create_dir_all(&options.output).with_context(|| format!("cannot create {}", options.output.display()))?;
-    let bar = ProgressBar::new((DIMS.len() * COUNTS.len()) as u64)
+    let bar = ProgressBar::new((options.dims.len() * COUNTS.len()) as u64)
         .with_style(ProgressStyle::with_template("{elapsed_precise} {wide_bar} {pos}/{len} {msg}")?);
     let mut cells = Vec::new();
-    for dims in DIMS {
+    for dims in options.dims {
         for n in COUNTS {
             bar.set_message(format!("{dims} dims, {n} samples"));
-            study::measure(&mut cells, dims, n, if options.full { 4 } else { 1 })?;
+            study::measure(&mut cells, dims, n, options.full)?;
             bar.inc(1);
+            // Where no one sees the bar.
+            if bar.is_hidden() {
+                eprintln!("{dims} dims, {n} samples");
+            }
         }
     }
     bar.finish_and_clear();

@@ -1,7 +1,7 @@
 //! The tables: Markdown to read, CSV to look further into.
 
 use crate::samplers::Source;
-use crate::study::{COUNTS, Cell, DIMS, Kind};
+use crate::study::{CHANNELS, COUNTS, Cell, DIMS, Kind};
 use anyhow::Result;
 use noisefloor_tests::statistics::{geometric_mean, median};
 use std::fmt::Write;
@@ -26,10 +26,16 @@ fn summary(cell: &Cell, cells: &[Cell]) -> Summary {
         let own = |index: usize| mean.map_or(1.0, |mean| of(&mean.errors[index]));
         cell.errors.iter().enumerate().map(|(index, errors)| of(errors) / own(index)).fold(0.0, f64::max)
     };
+    // A filtered image has few independent pixels, and a logarithm of few is too small: first the mean of what is alike.
+    let filtered: Vec<f64> = cell
+        .errors
+        .chunks(CHANNELS)
+        .map(|all| all.iter().map(|e| e.filtered).sum::<f64>() / all.len() as f64)
+        .collect();
     Summary {
         raw: geometric_mean(&all(|errors| errors.raw)),
         worst: worst(|errors| errors.raw),
-        filtered: geometric_mean(&all(|errors| errors.filtered)),
+        filtered: geometric_mean(&filtered),
         worst_filtered: worst(|errors| errors.filtered),
         ns: median(&cell.ns),
     }
@@ -38,8 +44,8 @@ fn summary(cell: &Cell, cells: &[Cell]) -> Summary {
 /// Three significant digits without a leading zero.
 fn figure(value: f64) -> String {
     let text = match value {
-        10.0.. => format!("{value:.0}"),
-        1.0.. => format!("{value:.1}"),
+        9.95.. => format!("{value:.0}"),
+        0.995.. => format!("{value:.1}"),
         0.1.. => format!("{value:.2}"),
         0.01.. => format!("{value:.3}"),
         0.001.. => format!("{value:.4}"),
@@ -57,6 +63,7 @@ pub(crate) fn markdown(cells: &[Cell]) -> Result<String> {
         rows(cells, dims, &mut out, |s| format!("{}, {} ({})", figure(s.raw), figure(s.filtered), figure(s.worst)))?;
         writeln!(out)?;
     }
+    decisions(cells, &mut out)?;
     writeln!(out, "### Nanoseconds per sample\n")?;
     for dims in DIMS {
         writeln!(out, "| {dims} dims | estimator |{}", COUNTS.map(|n| format!(" n = {n} |")).concat())?;
@@ -81,6 +88,66 @@ fn rows(cells: &[Cell], dims: usize, out: &mut String, text: impl Fn(&Summary) -
         let here: Vec<&Cell> = cells.iter().filter(|cell| cell.source == source && cell.dims == dims).collect();
         line(&here, cells, dims, out, &text)?;
     }
+    Ok(())
+}
+
+/// Nanoseconds that a sample is taken to cost for each of its dims.
+const COST: f64 = 1000.0;
+/// How much worse than the plain mean of the same samples an estimator may be for any integrand.
+const TOLERANCE: f64 = 1.05;
+
+/// The geometric mean of raw and filtered error.
+fn error(s: &Summary) -> f64 {
+    (s.raw * s.filtered).sqrt()
+}
+
+/// What is best: of the kinds of stratified samples by the plain mean's error, of estimators by error times time.
+fn decisions(cells: &[Cell], out: &mut String) -> Result<()> {
+    let at = |dims: usize, n: usize| cells.iter().filter(move |cell| (cell.dims, cell.n) == (dims, n));
+    let header = COUNTS.map(|n| format!(" n = {n} |")).concat();
+    writeln!(out, "### Best\n\n| dims | samples | neighbours |{header}\n|---|---|---|{}", "---|".repeat(COUNTS.len()))?;
+    for dims in DIMS {
+        let best = |n: usize| {
+            let means = at(dims, n).filter(|cell| cell.method.kind == Kind::Mean && cell.source != Source::Independent);
+            let means = means.map(|cell| (cell.source, error(&summary(cell, cells))));
+            means
+                .min_by(|a, b| a.1.total_cmp(&b.1))
+                .map_or(" – |".to_owned(), |(source, _)| format!(" {} |", source.name()))
+        };
+        writeln!(out, "| {dims} | stratified | |{}", COUNTS.map(best).concat())?;
+        for stratified in [false, true] {
+            for shared in [false, true] {
+                let best = |n: usize| {
+                    // A recommended kind, or one that stands for it: a tile of 1 sample, continued, is a Sobol sequence.
+                    let source = match (stratified, n) {
+                        (false, _) => Source::Independent,
+                        (true, ..4) if Source::Tile4.is_main(dims, n) => Source::Tile4,
+                        (true, ..64) => Source::Tile,
+                        (true, _) => Source::Sobol,
+                    };
+                    let here = at(dims, n).filter(|cell| cell.source == source).filter(|cell| match cell.method.kind {
+                        Kind::Mean => true,
+                        Kind::PerPixel => !stratified,
+                        Kind::Blocks | Kind::Windows => shared,
+                    });
+                    let worth = |cell: &Cell| {
+                        let s = summary(cell, cells);
+                        let safe = cell.method.kind == Kind::Mean || s.worst < TOLERANCE;
+                        (safe && cell.method.regressed == dims).then(|| error(&s) * (COST * dims as f64 + s.ns))
+                    };
+                    let all = here.filter_map(|cell| Some((cell, worth(cell)?)));
+                    all.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(" – |".to_owned(), |(cell, _)| {
+                        let s = summary(cell, cells);
+                        format!(" {}: {}, {} |", cell.method.name(dims), figure(s.raw), figure(s.filtered))
+                    })
+                };
+                let names =
+                    [["independent", "stratified"][usize::from(stratified)], ["–", "shared"][usize::from(shared)]];
+                writeln!(out, "| {dims} | {} | {} |{}", names[0], names[1], COUNTS.map(best).concat())?;
+            }
+        }
+    }
+    writeln!(out)?;
     Ok(())
 }
 

@@ -48,8 +48,8 @@ impl Source {
     }
 
     /// Whether all estimators are measured on it, instead of the plain mean alone.
-    pub(crate) fn is_main(self) -> bool {
-        matches!(self, Self::Independent | Self::Sobol | Self::Tile)
+    pub(crate) fn is_main(self, dims: usize, n: usize) -> bool {
+        matches!(self, Self::Independent | Self::Sobol | Self::Tile) || (self == Self::Tile4 && dims == 4 && n <= 4)
     }
 
     /// The points of a square image: pixel after pixel, sample after sample.
