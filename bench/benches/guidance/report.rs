@@ -69,17 +69,19 @@ pub(crate) fn markdown(cells: &[Cell]) -> Result<String> {
     decisions(cells, &mut out)?;
     writeln!(out, "### Nanoseconds per sample\n")?;
     for dims in DIMS {
-        writeln!(out, "| {dims} dims | estimator |{}", COUNTS.map(|n| format!(" n = {n} |")).concat())?;
+        writeln!(out, "| {dims} dims | |{}", COUNTS.map(|n| format!(" n = {n} |")).concat())?;
         writeln!(out, "|---|---|{}", "---|".repeat(COUNTS.len()))?;
         let independent: Vec<&Cell> =
             cells.iter().filter(|cell| cell.source == Source::Independent && cell.dims == dims).collect();
-        line(&independent, cells, dims, &mut out, |s| figure(s.ns))?;
+        line("estimate", &independent, cells, dims, &mut out, |s| figure(s.ns))?;
         for source in Source::ALL {
             let here = |n: usize| {
                 let mut here = cells.iter().filter(|cell| (cell.dims, cell.n, cell.source) == (dims, n, source));
                 here.next().map_or(" – |".to_owned(), |cell| format!(" {} |", figure(median(&cell.draw_ns))))
             };
-            writeln!(out, "| {} | drawing |{}", source.name(), COUNTS.map(here).concat())?;
+            if cells.iter().any(|cell| (cell.dims, cell.source) == (dims, source)) {
+                writeln!(out, "| drawing | {} |{}", source.name(), COUNTS.map(here).concat())?;
+            }
         }
         writeln!(out)?;
     }
@@ -89,7 +91,7 @@ pub(crate) fn markdown(cells: &[Cell]) -> Result<String> {
 fn rows(cells: &[Cell], dims: usize, out: &mut String, text: impl Fn(&Summary) -> String) -> Result<()> {
     for source in Source::ALL {
         let here: Vec<&Cell> = cells.iter().filter(|cell| cell.source == source && cell.dims == dims).collect();
-        line(&here, cells, dims, out, &text)?;
+        line(source.name(), &here, cells, dims, out, &text)?;
     }
     Ok(())
 }
@@ -156,6 +158,7 @@ fn decisions(cells: &[Cell], out: &mut String) -> Result<()> {
 
 /// A row for each method.
 fn line(
+    label: &str,
     here: &[&Cell],
     cells: &[Cell],
     dims: usize,
@@ -175,8 +178,7 @@ fn line(
             let cell = here.iter().find(|cell| cell.n == n && cell.method == method);
             cell.map_or(" – |".to_owned(), |cell| format!(" {} |", text(&summary(cell, cells))))
         };
-        let source = here.first().map_or("", |cell| cell.source.name());
-        writeln!(out, "| {source} | {} |{}", method.name(dims), COUNTS.map(of).concat())?;
+        writeln!(out, "| {label} | {} |{}", method.name(dims), COUNTS.map(of).concat())?;
     }
     Ok(())
 }
