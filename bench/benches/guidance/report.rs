@@ -57,9 +57,14 @@ fn figure(value: f64) -> String {
     text.strip_prefix('0').map_or(text.clone(), str::to_owned)
 }
 
+/// The dims that there are.
+fn measured(cells: &[Cell]) -> impl Iterator<Item = usize> {
+    DIMS.into_iter().filter(|&dims| cells.iter().any(|cell| cell.dims == dims))
+}
+
 pub(crate) fn markdown(cells: &[Cell]) -> Result<String> {
     let mut out = String::new();
-    for dims in DIMS {
+    for dims in measured(cells) {
         writeln!(out, "### {dims} dims\n")?;
         writeln!(out, "| samples | estimator |{}", COUNTS.map(|n| format!(" n = {n} |")).concat())?;
         writeln!(out, "|---|---|{}", "---|".repeat(COUNTS.len()))?;
@@ -68,7 +73,7 @@ pub(crate) fn markdown(cells: &[Cell]) -> Result<String> {
     }
     decisions(cells, &mut out)?;
     writeln!(out, "### Nanoseconds per sample\n")?;
-    for dims in DIMS {
+    for dims in measured(cells) {
         writeln!(out, "| {dims} dims | |{}", COUNTS.map(|n| format!(" n = {n} |")).concat())?;
         writeln!(out, "|---|---|{}", "---|".repeat(COUNTS.len()))?;
         let independent: Vec<&Cell> =
@@ -111,7 +116,7 @@ fn decisions(cells: &[Cell], out: &mut String) -> Result<()> {
     let at = |dims: usize, n: usize| cells.iter().filter(move |cell| (cell.dims, cell.n) == (dims, n));
     let header = COUNTS.map(|n| format!(" n = {n} |")).concat();
     writeln!(out, "### Best\n\n| dims | samples | neighbours |{header}\n|---|---|---|{}", "---|".repeat(COUNTS.len()))?;
-    for dims in DIMS {
+    for dims in measured(cells) {
         let best = |n: usize| {
             let means = at(dims, n).filter(|cell| cell.method.kind == Kind::Mean && cell.source != Source::Independent);
             let means = means.map(|cell| (cell.source, error(&summary(cell, cells))));
