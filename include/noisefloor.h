@@ -350,6 +350,48 @@ nf_status nf_cv_accumulator_estimate(const nf_cv_accumulator *accumulator,
 // Forgets all samples.
 nf_status nf_cv_accumulator_reset(nf_cv_accumulator *accumulator);
 
+/* Guidance: which estimator and which tile to use */
+
+// Sampling: a pixel's samples are independent of each other.
+#define NF_SAMPLING_INDEPENDENT 0
+// Sampling: a tile's, a Sobol sequence's, or jittered.
+#define NF_SAMPLING_STRATIFIED 1
+
+// Method: the mean of the values; nf_cv_estimate() with order 0 gives it, too.
+#define NF_METHOD_PLAIN_MEAN 0
+// Method: nf_cv_estimate() for each pixel.
+#define NF_METHOD_PER_PIXEL 1
+// Method: nf_cv_image_estimate().
+#define NF_METHOD_SHARED 2
+
+// What nf_recommend() says.
+typedef struct nf_recommendation {
+    // How to make estimates of the samples: NF_METHOD_*
+    uint32_t method;
+    // The `stride` of nf_cv_image for NF_METHOD_SHARED.
+    uint32_t image_stride;
+    // Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued as a
+    // Sobol sequence.
+    uint32_t tile_samples;
+    // The same: its dims.
+    uint32_t tile_dims;
+    // What to expect: mean squared error over that of the plain mean of independent samples.
+    float error;
+    // The same of the image filtered by a Gaussian of 2.1 pixels.
+    float filtered_error;
+    // How to estimate. `channels` is 1: set your own. `stride` is all dims.
+    nf_cv_config config;
+} nf_recommendation;
+
+// Which estimator, of which order, and which of the library's tiles to use for samples of `dims` coordinates and `spp` of
+// them per pixel, both at least 1. `sampling` is NF_SAMPLING_*; `can_share` is 1 if neighbouring pixels' samples are at
+// hand together and integrate similar functions, else 0. docs/choosing.md has the measurements that it rests on.
+nf_status nf_recommend(uint32_t dims,
+                       uint32_t spp,
+                       uint32_t sampling,
+                       uint32_t can_share,
+                       nf_recommendation *out);
+
 /* Multiple importance sampling: the weight of one technique at one point */
 
 // The most techniques that multiple importance sampling combines.
@@ -727,6 +769,8 @@ NF_ASSERT_LAYOUT(sizeof(nf_cv_config) == 76 && offsetof(nf_cv_config, ridge) == 
 NF_ASSERT_ALIGNED_AS(nf_cv_config, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_estimate) == 40 && offsetof(nf_estimate, samples) == 32);
 NF_ASSERT_ALIGNED_AS(nf_estimate, float);
+NF_ASSERT_LAYOUT(sizeof(nf_recommendation) == 100 && offsetof(nf_recommendation, config) == 24);
+NF_ASSERT_ALIGNED_AS(nf_recommendation, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_tile) == 2 * sizeof(void *) + 24 && offsetof(nf_tile, size) == 2 * sizeof(void *));
 NF_ASSERT_ALIGNED_AS(nf_tile, void *);
 NF_ASSERT_LAYOUT(sizeof(nf_sampler) == sizeof(void *) + 16 && offsetof(nf_sampler, domain) == sizeof(void *));

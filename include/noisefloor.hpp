@@ -423,6 +423,14 @@ private:
     nf_cv_config how_{};
 };
 
+// nf_recommend(): which estimator and which tile to use for `spp` samples per pixel of `dims` coordinates.
+inline returned<nf_recommendation> recommend(std::uint32_t dims, std::uint32_t spp, bool stratified, bool can_share)
+{
+    nf_recommendation out{};
+    const nf_status code = nf_recommend(dims, spp, stratified ? 1u : 0u, can_share ? 1u : 0u, &out);
+    return detail::finish(code, out);
+}
+
 // ---- Multiple importance sampling ------------------------------------------------------------------------------------------
 
 namespace mis {

@@ -4,6 +4,7 @@
 //!
 //! - [`control_variate`]: a pixel's own samples, fitted by functions with known integrals, give an estimate whose error
 //!   is usually far below the mean's and never noticeably above it (chapter 4).
+//! - [`recommend`](mod@recommend): which estimator and which tile to use, from measurements.
 //! - [`mis`]: weights for multiple importance sampling, the variance-minimising ones included (section 2.2.2).
 //! - [`tile`]: sample points whose error over the image is the least visible (chapter 5).
 //! - [`warp`]: from primary sample space to the shapes that a scene needs (section 2.2.1).
@@ -47,6 +48,8 @@ mod linalg;
 pub mod mis;
 #[cfg(feature = "control-variate")]
 pub mod real;
+#[cfg(feature = "control-variate")]
+pub mod recommend;
 pub mod rng;
 #[cfg(feature = "control-variate")]
 mod rows;

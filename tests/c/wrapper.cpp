@@ -316,6 +316,15 @@ static void random_numbers()
     CHECK(die >= 1 && die <= 6);
 }
 
+static void recommendations()
+{
+    nf_recommendation expected;
+    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, &expected), NF_OK);
+    const nf_recommendation actual = value_of(nf::recommend(2, 4, true, true));
+    CHECK(actual.method == expected.method && actual.config.order == expected.config.order);
+    CHECK(CODE(nf::recommend(0, 4, false, false)) == nf::status::range);
+}
+
 int main()
 {
     CHECK(nf::abi_matches());
@@ -329,5 +338,6 @@ int main()
     mis();
     tiles();
     random_numbers();
+    recommendations();
     return report("wrapper");
 }

@@ -13,7 +13,7 @@ struct Chapter {
 }
 
 /// Every item belongs to the chapter with the longest matching prefix.
-const CHAPTERS: [Chapter; 6] = [
+const CHAPTERS: [Chapter; 7] = [
     Chapter {
         title: "Version and status",
         prefixes: &["NF_ABI_VERSION", "nf_abi_version", "nf_status", "NF_OK|NF_ERR_", "nf_status_message"],
@@ -38,6 +38,10 @@ const CHAPTERS: [Chapter; 6] = [
             "nf_cv_accumulator",
             "nf_cv_accumulator_",
         ],
+    },
+    Chapter {
+        title: "Guidance: which estimator and which tile to use",
+        prefixes: &["NF_SAMPLING_", "NF_METHOD_", "nf_recommendation", "nf_recommend"],
     },
     Chapter {
         title: "Multiple importance sampling: the weight of one technique at one point",

@@ -133,27 +133,32 @@ pub struct nf_estimate {
 pub unsafe extern "C" fn nf_cv_config_default(config: *mut nf_cv_config) {
     // SAFETY: the caller's pointer, checked there for NULL and alignment.
     if let Ok(config) = unsafe { convert::reference_mut(config) } {
-        *config = nf_cv_config {
-            dims: 2,
-            order: 2,
-            channels: 1,
-            estimator: NF_CV_ROBUST,
-            basis: NF_BASIS_LEGENDRE,
-            stratified: 0,
-            slices: 0,
-            controls: 0,
-            stride: 0,
-            solver: NF_SOLVER_AUTO,
-            precision: NF_PRECISION_F64,
-            nonfinite: NF_NONFINITE_ERROR,
-            color: NF_COLOR_PER_CHANNEL,
-            folds: 0,
-            iterations: 0,
-            optimizer: NF_OPTIMIZER_MOMENTUM,
-            ridge: 0.0,
-            learning_rate: 0.0,
-            momentum: 0.0,
-        };
+        *config = default_config();
+    }
+}
+
+/// What nf_cv_config_default() sets.
+pub(crate) fn default_config() -> nf_cv_config {
+    nf_cv_config {
+        dims: 2,
+        order: 2,
+        channels: 1,
+        estimator: NF_CV_ROBUST,
+        basis: NF_BASIS_LEGENDRE,
+        stratified: 0,
+        slices: 0,
+        controls: 0,
+        stride: 0,
+        solver: NF_SOLVER_AUTO,
+        precision: NF_PRECISION_F64,
+        nonfinite: NF_NONFINITE_ERROR,
+        color: NF_COLOR_PER_CHANNEL,
+        folds: 0,
+        iterations: 0,
+        optimizer: NF_OPTIMIZER_MOMENTUM,
+        ridge: 0.0,
+        learning_rate: 0.0,
+        momentum: 0.0,
     }
 }
 

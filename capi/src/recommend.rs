@@ -1,0 +1,86 @@
+//! Which estimator and which sampler to use.
+
+use crate::convert;
+use crate::cv::{default_config, nf_cv_config};
+use crate::status::*;
+use noisefloor_core::recommend::{Method, Sampling, recommend};
+
+/// Sampling: a pixel's samples are independent of each other.
+pub const NF_SAMPLING_INDEPENDENT: u32 = 0;
+/// Sampling: a tile's, a Sobol sequence's, or jittered.
+pub const NF_SAMPLING_STRATIFIED: u32 = 1;
+
+/// Method: the mean of the values; nf_cv_estimate() with order 0 gives it, too.
+pub const NF_METHOD_PLAIN_MEAN: u32 = 0;
+/// Method: nf_cv_estimate() for each pixel.
+pub const NF_METHOD_PER_PIXEL: u32 = 1;
+/// Method: nf_cv_image_estimate().
+pub const NF_METHOD_SHARED: u32 = 2;
+
+/// What nf_recommend() says.
+#[repr(C)]
+#[derive(Clone, Copy)]
+#[allow(non_camel_case_types)]
+pub struct nf_recommendation {
+    /// How to make estimates of the samples: NF_METHOD_*
+    pub method: u32,
+    /// The `stride` of nf_cv_image for NF_METHOD_SHARED.
+    pub image_stride: u32,
+    /// Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued as a
+    /// Sobol sequence.
+    pub tile_samples: u32,
+    /// The same: its dims.
+    pub tile_dims: u32,
+    /// What to expect: mean squared error over that of the plain mean of independent samples.
+    pub error: f32,
+    /// The same of the image filtered by a Gaussian of 2.1 pixels.
+    pub filtered_error: f32,
+    /// How to estimate. `channels` is 1: set your own. `stride` is all dims.
+    pub config: nf_cv_config,
+}
+
+/// Which estimator, of which order, and which of the library's tiles to use for samples of `dims` coordinates and `spp` of
+/// them per pixel, both at least 1. `sampling` is NF_SAMPLING_*; `can_share` is 1 if neighbouring pixels' samples are at
+/// hand together and integrate similar functions, else 0. docs/choosing.md has the measurements that it rests on.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_recommend(
+    dims: u32,
+    spp: u32,
+    sampling: u32,
+    can_share: u32,
+    out: *mut nf_recommendation,
+) -> nf_status {
+    status((|| {
+        let sampling = match sampling {
+            NF_SAMPLING_INDEPENDENT => Sampling::Independent,
+            NF_SAMPLING_STRATIFIED => Sampling::Stratified,
+            _ => return Err(NF_ERR_RANGE),
+        };
+        if can_share > 1 {
+            return Err(NF_ERR_RANGE);
+        }
+        let of = recommend(dims as usize, spp as usize, sampling, can_share == 1).map_err(status_of)?;
+        let config = nf_cv_config {
+            dims: of.config.dims as u32,
+            order: of.config.order as u32,
+            stratified: u32::from(of.config.stratified),
+            stride: dims,
+            ..default_config()
+        };
+        let found = nf_recommendation {
+            method: match of.method {
+                Method::PlainMean => NF_METHOD_PLAIN_MEAN,
+                Method::PerPixel => NF_METHOD_PER_PIXEL,
+                Method::Shared => NF_METHOD_SHARED,
+            },
+            image_stride: of.image_stride as u32,
+            tile_samples: of.tile_samples as u32,
+            tile_dims: of.tile_dims as u32,
+            error: of.error,
+            filtered_error: of.filtered_error,
+            config,
+        };
+        // SAFETY: the caller's pointer, checked there.
+        unsafe { convert::write(out, found) }
+    })())
+}

@@ -1,0 +1,261 @@
+//! Which estimator, of which order, and which built-in tile to use: a table of what was measured.
+//!
+//! `docs/choosing.md` has the measurements, how to read and repeat them, and when not to follow them.
+//!
+//! ```
+//! use noisefloor::recommend::{Method, Sampling, recommend};
+//!
+//! // 4 samples per pixel of 2 dims, from a tile, whole images at a time.
+//! let best = recommend(2, 4, Sampling::Stratified, true)?;
+//! assert_eq!(best.method, Method::Shared);
+//! assert_eq!((best.tile_samples, best.tile_dims), (4, 2));
+//! let config = noisefloor::control_variate::Config { channels: 3, ..best.config };
+//! # assert!(config.terms().is_ok());
+//! # Ok::<(), noisefloor::Error>(())
+//! ```
+
+use crate::basis::MAX_DIMS;
+use crate::control_variate::Config;
+use crate::error::Error;
+
+/// What a pixel's samples are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Sampling {
+    /// Independent of each other.
+    Independent,
+    /// A tile's, a Sobol sequence's, or jittered.
+    Stratified,
+}
+
+/// How samples become estimates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// The mean of the values.
+    PlainMean,
+    /// [`estimate`](crate::control_variate::estimate) for each pixel.
+    PerPixel,
+    /// [`estimate_image`](crate::control_variate::estimate_image), with windows of 8 x 8 pixels.
+    Shared,
+}
+
+/// What [`recommend`] says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recommendation {
+    /// How to make estimates of the samples.
+    pub method: Method,
+    /// With which configuration. Its `channels` is 1: set your own. Its `stride` is all dims, its `dims` those that are
+    /// regressed.
+    pub config: Config,
+    /// The [`Image::stride`](crate::control_variate::Image::stride) of [`Method::Shared`].
+    pub image_stride: usize,
+    /// Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued as a
+    /// Sobol sequence that all pixels share.
+    pub tile_samples: usize,
+    /// The same: its dims.
+    pub tile_dims: usize,
+    /// What to expect: the mean squared error over that of the plain mean of as many independent samples, the geometric
+    /// mean over the integrands of the study.
+    pub error: f32,
+    /// The same of the image filtered by a Gaussian of 2.1 pixels.
+    pub filtered_error: f32,
+}
+
+/// What is best for samples of `dims` coordinates, `samples_per_pixel` of them, both at least 1. `can_share` says whether
+/// neighbouring pixels' samples are at hand together and integrate similar functions.
+///
+/// What was measured are 2, 4, 8 and 15 dims with 1, 4, 16, 64 and 256 samples: dims are rounded up, samples down.
+///
+/// # Errors
+/// [`Error::Range`] if `dims` or `samples_per_pixel` is 0.
+pub fn recommend(
+    dims: usize,
+    samples_per_pixel: usize,
+    sampling: Sampling,
+    can_share: bool,
+) -> Result<Recommendation, Error> {
+    if dims == 0 || samples_per_pixel == 0 {
+        return Err(Error::Range);
+    }
+    let table = match (sampling, can_share) {
+        (Sampling::Independent, false) => &INDEPENDENT_ALONE,
+        (Sampling::Independent, true) => &INDEPENDENT_SHARED,
+        (Sampling::Stratified, false) => &STRATIFIED_ALONE,
+        (Sampling::Stratified, true) => &STRATIFIED_SHARED,
+    };
+    let Cell { method, order, image_stride, error, filtered_error } = cell(table, dims, samples_per_pixel);
+    let (tile_samples, tile_dims) = cell(&TILES, dims, samples_per_pixel);
+    // 15 dims are the most of order 2.
+    let regressed = dims.min(if order < 2 { MAX_DIMS } else { 15 });
+    let config =
+        Config { stride: dims, stratified: sampling == Sampling::Stratified, ..Config::new(regressed, order, 1) };
+    Ok(Recommendation { method, config, image_stride, tile_samples, tile_dims, error, filtered_error })
+}
+
+/// For 1, 4, 16, 64 and 256 samples.
+type Row<T> = [T; 5];
+/// For 2, 4, 8 and 15 dims.
+type Table<T> = [Row<T>; 4];
+
+fn cell<T: Copy>(table: &Table<T>, dims: usize, samples: usize) -> T {
+    let [two, four, eight, more] = table;
+    let [one, few, some, many, most] = match dims {
+        ..=2 => two,
+        3..=4 => four,
+        5..=8 => eight,
+        _ => more,
+    };
+    *match samples {
+        ..4 => one,
+        4..16 => few,
+        16..64 => some,
+        64..256 => many,
+        _ => most,
+    }
+}
+
+/// A decision, and the errors that were measured: mean squares over those of the plain mean of independent samples, raw and
+/// filtered by a Gaussian of 2.1 pixels.
+#[derive(Clone, Copy)]
+struct Cell {
+    method: Method,
+    order: usize,
+    image_stride: usize,
+    error: f32,
+    filtered_error: f32,
+}
+
+const fn plain(error: f32, filtered_error: f32) -> Cell {
+    Cell { method: Method::PlainMean, order: 0, image_stride: 8, error, filtered_error }
+}
+
+const fn pixel(order: usize, error: f32, filtered_error: f32) -> Cell {
+    Cell { method: Method::PerPixel, order, image_stride: 8, error, filtered_error }
+}
+
+/// Windows of 8 x 8 pixels, one beside the other.
+const fn blocks(order: usize, error: f32, filtered_error: f32) -> Cell {
+    Cell { method: Method::Shared, order, image_stride: 8, error, filtered_error }
+}
+
+/// Windows that overlap by half.
+const fn windows(order: usize, error: f32, filtered_error: f32) -> Cell {
+    Cell { method: Method::Shared, order, image_stride: 4, error, filtered_error }
+}
+
+/// Independent samples of one pixel: a fit, as soon as there are several samples to a term.
+#[rustfmt::skip]
+const INDEPENDENT_ALONE: Table<Cell> = [
+    [plain(1.0, 1.0),            plain(1.0, 1.0),            pixel(3, 0.27, 0.36),       pixel(3, 0.086, 0.11),      pixel(3, 0.064, 0.085)],
+    [plain(1.0, 0.99),           plain(0.99, 1.0),           pixel(3, 0.49, 0.58),       pixel(3, 0.16, 0.21),       pixel(3, 0.079, 0.11)],
+    [plain(0.98, 0.98),          plain(1.0, 1.0),            pixel(2, 0.74, 0.75),       pixel(2, 0.39, 0.44),       pixel(2, 0.21, 0.22)],
+    [plain(0.94, 0.92),          plain(0.99, 0.94),          pixel(2, 0.89, 0.88),       pixel(1, 0.58, 0.59),       pixel(1, 0.47, 0.33)],
+];
+
+/// Independent samples of an image.
+#[rustfmt::skip]
+const INDEPENDENT_SHARED: Table<Cell> = [
+    [blocks(3, 0.13, 0.17),      blocks(3, 0.11, 0.14),      blocks(3, 0.12, 0.15),      pixel(3, 0.086, 0.11),      pixel(3, 0.064, 0.085)],
+    [blocks(2, 0.25, 0.3),       blocks(2, 0.21, 0.23),      blocks(3, 0.14, 0.18),      pixel(3, 0.16, 0.21),       pixel(3, 0.079, 0.11)],
+    [blocks(2, 0.39, 0.39),      blocks(2, 0.28, 0.29),      blocks(2, 0.27, 0.28),      blocks(2, 0.29, 0.3),       pixel(2, 0.21, 0.22)],
+    [blocks(1, 0.58, 0.57),      blocks(1, 0.51, 0.51),      blocks(1, 0.52, 0.58),      blocks(1, 0.54, 0.56),      pixel(1, 0.47, 0.33)],
+];
+
+/// Stratified samples of one pixel: leave-one-out errors do not see strata, and a fit may be many times worse.
+/// From 64 samples on the figures, here and below, are those of Sobol points scrambled in each pixel.
+#[rustfmt::skip]
+const STRATIFIED_ALONE: Table<Cell> = [
+    [plain(0.99, 0.045),         plain(0.2, 0.011),          plain(0.052, 0.0035),       plain(0.009, 0.012),        plain(0.0016, 0.0022)],
+    [plain(0.99, 0.08),          plain(0.36, 0.026),         plain(0.15, 0.091),         plain(0.028, 0.035),        plain(0.011, 0.014)],
+    [plain(1.0, 0.24),           plain(0.33, 0.18),          plain(0.2, 0.13),           plain(0.14, 0.17),          plain(0.1, 0.12)],
+    [plain(1.0, 0.28),           plain(0.38, 0.23),          plain(0.24, 0.16),          plain(0.2, 0.2),            plain(0.16, 0.13)],
+];
+
+/// Stratified samples of an image.
+#[rustfmt::skip]
+const STRATIFIED_SHARED: Table<Cell> = [
+    [blocks(3, 0.13, 0.048),     blocks(3, 0.079, 0.011),    windows(3, 0.032, 0.0028),  blocks(3, 0.0073, 0.01),    blocks(3, 0.0015, 0.0019)],
+    [blocks(2, 0.25, 0.096),     blocks(2, 0.19, 0.028),     blocks(3, 0.073, 0.054),    plain(0.028, 0.035),        plain(0.011, 0.014)],
+    [blocks(2, 0.39, 0.26),      plain(0.33, 0.18),          blocks(2, 0.15, 0.1),       blocks(2, 0.1, 0.12),       blocks(2, 0.078, 0.086)],
+    [blocks(1, 0.61, 0.32),      plain(0.38, 0.23),          plain(0.24, 0.16),          plain(0.2, 0.2),            plain(0.16, 0.13)],
+];
+
+/// Samples and dims of the tile with the least error of the plain mean, √(raw filtered). From 64 samples on a tile of 1 sample,
+/// continued as a Sobol sequence: at 64 samples it has .0096 in 2 dims and .033 in 4, the tile of 16 samples, continued, .029 and .12.
+const TILES: Table<(usize, usize)> = [
+    [(1, 2), (4, 2), (16, 2), (1, 2), (1, 2)],
+    [(1, 4), (4, 4), (16, 2), (1, 4), (1, 4)],
+    [(1, 4), (4, 2), (16, 2), (1, 4), (1, 4)],
+    [(1, 2), (4, 2), (16, 2), (1, 4), (1, 4)],
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOTH: [Sampling; 2] = [Sampling::Independent, Sampling::Stratified];
+
+    #[test]
+    fn every_recommendation_is_valid() {
+        for dims in 1..=64 {
+            for samples in 1..=4096 {
+                for (sampling, share) in BOTH.into_iter().flat_map(|sampling| [(sampling, false), (sampling, true)]) {
+                    let of = recommend(dims, samples, sampling, share).unwrap();
+                    let terms = of.config.terms().unwrap();
+                    assert_eq!(terms == 1, of.method == Method::PlainMean);
+                    assert_eq!(of.config.dims, dims.min(of.config.dims));
+                    assert_eq!((of.config.stride, of.config.channels), (dims, 1));
+                    assert_eq!(of.config.stratified, sampling == Sampling::Stratified);
+                    assert!(share || of.method != Method::Shared);
+                    assert!((1..=samples).contains(&of.tile_samples) && [2, 4].contains(&of.tile_dims));
+                    assert!(of.error > 0.0 && of.error <= 1.05 && of.filtered_error > 0.0);
+                }
+            }
+        }
+        for samples in [1, usize::MAX] {
+            assert!(recommend(usize::MAX, samples, Sampling::Independent, true).unwrap().config.terms().is_ok());
+        }
+    }
+
+    #[test]
+    fn nothing_to_recommend() {
+        assert_eq!(recommend(0, 1, Sampling::Independent, true), Err(Error::Range));
+        assert_eq!(recommend(2, 0, Sampling::Stratified, false), Err(Error::Range));
+    }
+
+    /// More information is never of less use, by error alone.
+    #[test]
+    fn neighbours_and_strata_lower_the_error() {
+        for dims in [2, 4, 8, 15] {
+            for samples in [4, 16, 64, 256] {
+                let error = |sampling, share| {
+                    let of = recommend(dims, samples, sampling, share).unwrap();
+                    libm::sqrtf(of.error * of.filtered_error)
+                };
+                for sampling in BOTH {
+                    assert!(error(sampling, true) <= error(sampling, false), "{dims} {samples} {sampling:?}");
+                }
+                for share in [false, true] {
+                    assert!(
+                        error(Sampling::Stratified, share) < error(Sampling::Independent, share),
+                        "{dims} {samples}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn examples() {
+        // A fit to a pixel's own samples spoils their stratification.
+        for samples in 1..=4096 {
+            let of = recommend(2, samples, Sampling::Stratified, false).unwrap();
+            assert_eq!(of.method, Method::PlainMean);
+        }
+        // One sample has nothing to be fitted to, but neighbours have.
+        assert_eq!(recommend(4, 1, Sampling::Independent, false).unwrap().method, Method::PlainMean);
+        assert_eq!(recommend(4, 1, Sampling::Independent, true).unwrap().method, Method::Shared);
+        // Tiles of as many samples; beyond 16, a sequence.
+        let tile = |samples| recommend(2, samples, Sampling::Stratified, true).unwrap().tile_samples;
+        assert_eq!([1, 3, 4, 15, 16, 63, 64, 4096].map(tile), [1, 1, 4, 4, 16, 16, 1, 1]);
+    }
+}

@@ -1,0 +1,77 @@
+/* What to use for how many samples: nf_recommend(). */
+#include "check.h"
+
+static void every_recommendation_can_be_used(void)
+{
+    static const uint32_t counts[] = {1, 2, 3, 4, 8, 16, 64, 256, 4096, UINT32_MAX};
+    static const uint32_t dims[] = {1, 2, 3, 4, 5, 8, 9, 15, 16, 17, 64, UINT32_MAX};
+    uint32_t sampling, share;
+    size_t i, j;
+    for (i = 0; i < sizeof counts / sizeof *counts; ++i)
+        for (j = 0; j < sizeof dims / sizeof *dims; ++j)
+            for (sampling = 0; sampling < 2; ++sampling)
+                for (share = 0; share < 2; ++share) {
+                    nf_recommendation out;
+                    CHECK_STATUS(nf_recommend(dims[j], counts[i], sampling, share, &out), NF_OK);
+                    CHECK(out.method <= (share ? NF_METHOD_SHARED : NF_METHOD_PER_PIXEL));
+                    CHECK(nf_cv_terms(&out.config) > 0);
+                    CHECK(out.config.dims <= dims[j] && out.config.channels == 1);
+                    CHECK(out.config.stride == dims[j] && out.config.stratified == sampling);
+                    CHECK((out.config.order == 0) == (out.method == NF_METHOD_PLAIN_MEAN));
+                    CHECK(out.tile_samples >= 1 && out.tile_samples <= counts[i]);
+                    CHECK(out.tile_dims == 2 || out.tile_dims == 4);
+                    CHECK(out.image_stride == 4 || out.image_stride == 8);
+                    CHECK(out.error > 0.0f && out.error < 1.1f && out.filtered_error > 0.0f);
+                }
+}
+
+/* 4 x 4 pixels of 4 samples each, of f = 1 + x + y. */
+static void shared_estimates_follow(void)
+{
+    static float u[16 * 4 * 2], f[16 * 4];
+    nf_recommendation out;
+    nf_cv_image image;
+    nf_estimate estimates[16];
+    memory work;
+    double plain_error = 0.0, error = 0.0;
+    size_t p, i;
+    fill_uniform(u, 16 * 4 * 2, 3);
+    fill_linear(f, u, 16 * 4, 2, 1);
+    memset(&image, 0, sizeof image);
+    image.width = image.height = 4;
+    image.window = 4;
+    image.stride = 4;
+    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_INDEPENDENT, 1, &out), NF_OK);
+    CHECK(out.method == NF_METHOD_SHARED);
+    work = memory_new(nf_cv_image_workspace_size(&out.config, &image, 4));
+    CHECK_STATUS(nf_cv_image_estimate(&out.config, &image, u, f, 4, work.start, work.bytes, estimates), NF_OK);
+    for (p = 0; p < 16; ++p) {
+        double mean = 0.0;
+        for (i = 0; i < 4; ++i)
+            mean += f[p * 4 + i] / 4.0;
+        plain_error += (mean - 2.0) * (mean - 2.0);
+        error += (estimates[p].mean[0] - 2.0) * (estimates[p].mean[0] - 2.0);
+    }
+    CHECK(error < 0.5 * plain_error);
+    memory_free(&work);
+}
+
+static void errors(void)
+{
+    nf_recommendation out;
+    CHECK_REFUSED(nf_recommend(0, 4, NF_SAMPLING_INDEPENDENT, 1, &out), NF_ERR_RANGE, out);
+    CHECK_REFUSED(nf_recommend(2, 0, NF_SAMPLING_INDEPENDENT, 1, &out), NF_ERR_RANGE, out);
+    CHECK_REFUSED(nf_recommend(2, 4, 2, 1, &out), NF_ERR_RANGE, out);
+    CHECK_REFUSED(nf_recommend(2, 4, UINT32_MAX, 1, &out), NF_ERR_RANGE, out);
+    CHECK_REFUSED(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 2, &out), NF_ERR_RANGE, out);
+    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, NULL), NF_ERR_NULL);
+    CHECK_REFUSED(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, (nf_recommendation *)misaligned(&out)), NF_ERR_ALIGNMENT, out);
+}
+
+int main(void)
+{
+    every_recommendation_can_be_used();
+    shared_estimates_follow();
+    errors();
+    return report("recommend");
+}
