@@ -45,7 +45,7 @@ impl Scene {
 }
 
 fn checker(pixel: usize) -> f64 {
-    f64::from(u8::from((pixel % SIDE + pixel / SIDE) % 2 == 0))
+    f64::from(u8::from((pixel % SIDE + pixel / SIDE).is_multiple_of(2)))
 }
 
 fn bright(pixel: usize) -> bool {
