@@ -13,7 +13,10 @@ use noisefloor_tests::shared::{block, image, image_narrow};
 use proptest::prelude::*;
 
 const SHARED: [Estimator; 3] = [Estimator::Robust, Estimator::LeaveOneOut, Estimator::KFold];
-const BOTH: [fn(&Config, &Image<'_>, Samples<'_>) -> Result<Vec<Estimate>, Error>; 2] = [image, image_narrow];
+/// An estimate in one of the two precisions.
+type Call = fn(&Config, &Image<'_>, Samples<'_>) -> Result<Vec<Estimate>, Error>;
+
+const BOTH: [Call; 2] = [image, image_narrow];
 
 /// Points of an image, and values that change across it.
 fn scene(pixels: usize, n: usize, channels: usize, rng: &mut SplitMix64) -> (Vec<f32>, Vec<f32>) {

@@ -143,7 +143,7 @@ impl Method {
             Self::Blocks(order) => {
                 let config = Config::new(2, order, 4);
                 let mut out = vec![0.0; SIZE * SIZE * 4];
-                for first in (0..SIZE * SIZE).filter(|pixel| pixel % 8 == 0 && pixel / SIZE % 8 == 0) {
+                for first in (0..SIZE * SIZE).filter(|pixel| pixel % 8 == 0 && (pixel / SIZE).is_multiple_of(8)) {
                     let pixels: Vec<usize> = (0..64).map(|i| first + i / 8 * SIZE + i % 8).collect();
                     let gather = |values: &[f32], width: usize| {
                         pixels.iter().flat_map(|&p| values[p * width..(p + 1) * width].to_vec()).collect::<Vec<f32>>()
