@@ -116,5 +116,29 @@ fn solve(criterion: &mut Criterion) {
     bench::<3, 10>(&mut group);
 }
 
-criterion_group!(benches, solve, streaming, estimates);
+/// Fits that the pixels of 32 x 32 share, through the C ABI: blocks of 8 x 8 in no order, windows of 8 x 8 side by side, and
+/// overlapping by half.
+fn shared(criterion: &mut Criterion) {
+    if !c_abi::LINKED {
+        return;
+    }
+    const SIDE: usize = 32;
+    for (order, channels) in [(2, 1), (2, 3), (3, 1), (3, 3)] {
+        for (name, stride) in [("block", 0), ("image, stride 8", 8), ("image, stride 4", 4)] {
+            let mut group = group(criterion, &format!("C/2D{order}/{channels} channels/{name}"));
+            for n in [1, 4, 16] {
+                let (u, f) = samples(2, SIDE * SIDE * n);
+                let f: Vec<f32> = f.iter().flat_map(|&f| vec![f; channels as usize]).collect();
+                let config = c_abi::Config { dims: 2, order, channels, ..c_abi::Config::default() };
+                let mut prepared = c_abi::Shared::new(config, SIDE, n, stride);
+                group.throughput(Throughput::Elements((SIDE * SIDE * n) as u64));
+                group.bench_function(n.to_string(), |bencher| {
+                    bencher.iter(|| prepared.estimate(black_box(&u), black_box(&f)));
+                });
+            }
+        }
+    }
+}
+
+criterion_group!(benches, solve, streaming, shared, estimates);
 criterion_main!(benches);

@@ -50,13 +50,27 @@ pub fn estimator(estimator: Estimator) -> u32 {
 }
 
 #[cfg(archive)]
-pub use linked::{Accumulator, Batch};
+pub use linked::{Accumulator, Batch, Shared};
 #[cfg(not(archive))]
-pub use missing::{Accumulator, Batch};
+pub use missing::{Accumulator, Batch, Shared};
+
+/// `nf_cv_image`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+#[allow(missing_docs, reason = "include/noisefloor.h documents the fields")]
+pub struct Image {
+    pub width: u32,
+    pub height: u32,
+    pub frames: u32,
+    pub window: u32,
+    pub stride: u32,
+    pub surfaces: *const u32,
+    pub factors: *const f32,
+}
 
 #[cfg(archive)]
 mod linked {
-    use super::Config;
+    use super::{Config, Image};
     use std::ffi::c_void;
 
     /// `nf_estimate`.
@@ -75,6 +89,28 @@ mod linked {
             config: *const Config,
             u: *const f32,
             f: *const f32,
+            n: usize,
+            workspace: *mut c_void,
+            bytes: usize,
+            out: *mut Estimate,
+        ) -> i32;
+        fn nf_cv_image_workspace_size(config: *const Config, image: *const Image, n: usize) -> usize;
+        fn nf_cv_image_estimate(
+            config: *const Config,
+            image: *const Image,
+            u: *const f32,
+            f: *const f32,
+            n: usize,
+            workspace: *mut c_void,
+            bytes: usize,
+            out: *mut Estimate,
+        ) -> i32;
+        fn nf_cv_block_workspace_size(config: *const Config, pixels: usize, n: usize) -> usize;
+        fn nf_cv_block_estimate(
+            config: *const Config,
+            u: *const f32,
+            f: *const f32,
+            pixels: usize,
             n: usize,
             workspace: *mut c_void,
             bytes: usize,
@@ -142,6 +178,67 @@ mod linked {
                 )
             });
             out.mean[0]
+        }
+    }
+
+    /// Estimates of the pixels of a square image that share fits: `nf_cv_image_estimate`, or `nf_cv_block_estimate` for
+    /// square blocks.
+    pub struct Shared {
+        config: Config,
+        image: Option<Image>,
+        block: usize,
+        n: usize,
+        workspace: Vec<u64>,
+        out: Vec<Estimate>,
+    }
+
+    impl Shared {
+        /// `side` x `side` pixels of `n` samples. With `stride` 0 blocks of 8 x 8 pixels in no order, else windows.
+        pub fn new(config: Config, side: usize, n: usize, stride: usize) -> Self {
+            let (block, pixels) = (64, side * side);
+            assert_eq!(pixels % block, 0);
+            let [width, stride] = [side, stride].map(|value| value as u32);
+            let image = (stride > 0).then_some(Image {
+                width,
+                height: width,
+                frames: 1,
+                window: 8,
+                stride,
+                surfaces: std::ptr::null(),
+                factors: std::ptr::null(),
+            });
+            // SAFETY: a valid configuration and image are all that is read.
+            let bytes = unsafe {
+                match &image {
+                    Some(image) => nf_cv_image_workspace_size(&config, image, n),
+                    None => nf_cv_block_workspace_size(&config, block, n),
+                }
+            };
+            Self { config, image, block, n, workspace: memory(bytes), out: vec![Estimate::default(); pixels] }
+        }
+
+        /// All pixels' estimates; returns the first. `u` and `f` hold the samples of pixel after pixel, or block after block.
+        pub fn estimate(&mut self, u: &[f32], f: &[f32]) -> f32 {
+            let (dims, channels) = (self.config.dims as usize, self.config.channels as usize);
+            let samples = self.out.len() * self.n;
+            assert!(u.len() >= samples * dims && f.len() >= samples * channels);
+            let (workspace, bytes) = (self.workspace.as_mut_ptr().cast(), self.workspace.len() * 8);
+            if let Some(image) = &self.image {
+                let (u, f, out) = (u.as_ptr(), f.as_ptr(), self.out.as_mut_ptr());
+                // SAFETY: the arrays are as long as was just checked, the workspace as long as said.
+                check(unsafe { nf_cv_image_estimate(&self.config, image, u, f, self.n, workspace, bytes, out) });
+            } else {
+                let rows = self.block * self.n;
+                let blocks = u.chunks(rows * dims).zip(f.chunks(rows * channels)).zip(self.out.chunks_mut(self.block));
+                for ((u, f), out) in blocks {
+                    let (u, f, out) = (u.as_ptr(), f.as_ptr(), out.as_mut_ptr());
+                    // SAFETY: as above, of whole blocks.
+                    check(unsafe {
+                        nf_cv_block_estimate(&self.config, u, f, self.block, self.n, workspace, bytes, out)
+                    });
+                }
+            }
+            self.out[0].mean[0]
         }
     }
 
@@ -214,6 +311,18 @@ mod missing {
 
     impl Batch {
         pub fn new(_: Config, _: usize) -> Self {
+            panic!("{MESSAGE}")
+        }
+
+        pub fn estimate(&mut self, _: &[f32], _: &[f32]) -> f32 {
+            match *self {}
+        }
+    }
+
+    pub enum Shared {}
+
+    impl Shared {
+        pub fn new(_: Config, _: usize, _: usize, _: usize) -> Self {
             panic!("{MESSAGE}")
         }
 

@@ -223,22 +223,36 @@ impl<'a> Problem<'a> {
     ) {
         let mut x = [[R::ZERO; LANES]; MAX_DIMS];
         let mut h = [[R::ZERO; LANES]; Config::MAX_CONTROLS];
-        for value in values.iter_mut() {
-            *value = [R::ZERO; LANES];
-        }
+        self.gather(setting, panel, sample, (&mut x, &mut h), values);
+        self.expand(setting, panel, places, &x, &h, columns);
+    }
+
+    /// Reads sample `sample` of a panel's pixels. Zero in unused lanes.
+    #[inline(always)]
+    fn gather<R: Real>(
+        &self,
+        setting: &Setting<'_, R>,
+        panel: &Panel,
+        sample: usize,
+        (x, h): (&mut [Lanes<R>; MAX_DIMS], &mut [Lanes<R>; Config::MAX_CONTROLS]),
+        values: &mut [Lanes<R>],
+    ) {
         let [first, .., last] = panel.pixels;
         // Neighbours in a row, as most are.
         if panel.used == LANES && last == first + LANES - 1 && self.factors.is_empty() && self.reader.is_simple() {
             let mut f = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
-            self.reader.rows(first * self.n + sample, self.n, &mut x, &mut f);
+            self.reader.rows(first * self.n + sample, self.n, x, &mut f);
             for ((out, f), unit) in values.iter_mut().zip(&f).zip(&setting.units) {
                 *out = f.map(|f| (if R::NARROW { f.scale(-unit.exponent) } else { f }) - unit.offset);
             }
-            return self.expand(setting, panel, places, &x, &h, columns);
+            return;
+        }
+        for value in values.iter_mut() {
+            *value = [R::ZERO; LANES];
         }
         for (lane, &pixel) in panel.pixels.iter().enumerate().take(panel.used) {
             let sample = self.reader.get(pixel * self.n + sample);
-            sample.put(lane, &mut x, &mut h);
+            sample.put(lane, x, h);
             let f = self.reader.values::<f64>(&sample);
             for (channel, ((out, value), unit)) in values.iter_mut().zip(f).zip(&setting.units).enumerate() {
                 let mut value = value;
@@ -253,7 +267,6 @@ impl<'a> Problem<'a> {
                 }
             }
         }
-        self.expand(setting, panel, places, &x, &h, columns);
     }
 
     /// A panel's columns at positions `x` with control functions `h`. Zero in unused lanes.

@@ -178,24 +178,28 @@ impl<R: Real> Call<'_, '_, R> {
         if members.len < 2 || terms.ends.is_empty() {
             return Ok(());
         }
-        if self.problem.config.estimator == Estimator::KFold && !matches!(self.problem.config.ridge, Ridge::Fixed(_)) {
-            let [even, odd] = [0, 1].map(|first| members.half(first));
-            if odd.len < 2 {
-                return Ok(());
-            }
-            let mut weights = [Weights::default(); 2];
-            // Even members take what the odd ones chose.
-            for (half, weights) in [odd, even].iter().zip(&mut weights) {
-                let group = self.problem.fit(half, &terms, &mut self.arena.scratch())?;
-                *weights = self.problem.weights(&group);
-            }
-            let group = self.problem.fit(members, &terms, &mut self.arena.scratch())?;
-            self.problem.add(members, &group, &weights, self.sums);
+        let config = self.problem.config;
+        let has_halves = config.estimator == Estimator::KFold && !matches!(config.ridge, Ridge::Fixed(_));
+        let [even, odd] = [0, 1].map(|first| members.half(first));
+        if has_halves && odd.len < 2 {
             return Ok(());
         }
-        let group = self.problem.fit(members, &terms, &mut self.arena.scratch())?;
-        let weights = self.problem.weights(&group);
-        self.problem.add(members, &group, &[weights], self.sums);
+        // Even members take what the odd ones chose. One loop, as each call of `fit` is a copy of it.
+        let mut weights = [Weights::default(); 2];
+        let passes = if has_halves { [Some(odd), Some(even), Some(*members)] } else { [None, None, Some(*members)] };
+        for (pass, members) in passes.iter().enumerate() {
+            let Some(members) = members else { continue };
+            let group = self.problem.fit(members, &terms, &mut self.arena.scratch())?;
+            if let Some(weights) = weights.get_mut(pass) {
+                *weights = self.problem.weights(&group);
+                continue;
+            }
+            if !has_halves {
+                weights = [self.problem.weights(&group); 2];
+            }
+            let used = if has_halves { weights.as_slice() } else { &weights[..1] };
+            self.problem.add(members, &group, used, self.sums);
+        }
         Ok(())
     }
 }
