@@ -30,6 +30,7 @@ use super::samples::{Reader, Samples};
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
+use crate::lanes::LANES;
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 use choice::Weights;
@@ -124,8 +125,19 @@ pub fn estimate_image<R: Real>(
     let problem = Problem { config, shape, basis: &basis, reader, n, factors: image.factors };
     let mut call = Call { problem, sums, arena };
     windows.each().try_for_each(|area| call.window(area, image.surfaces))?;
-    for (pixel, sums) in rows(call.sums, width).enumerate() {
-        out(pixel, call.problem.pixel(pixel, sums));
+    // Eight at a time: what was just written number by number is slow to read as a whole.
+    let samples = u32::try_from(n).unwrap_or(u32::MAX);
+    let mut batch = [Estimate { mean: [0.0; 4], std_error: [0.0; 4], samples, gain: 1.0 }; LANES];
+    let mut rest = rows(call.sums, width);
+    for start in (0..pixels).step_by(LANES) {
+        let mut pixel = start;
+        for (estimate, sums) in batch.iter_mut().zip(rest.by_ref()) {
+            call.problem.finish(pixel, sums, estimate);
+            pixel += 1;
+        }
+        for (pixel, estimate) in (start..pixel).zip(&batch) {
+            out(pixel, *estimate);
+        }
     }
     Ok(())
 }
@@ -258,16 +270,12 @@ impl Problem<'_> {
 
     /// The estimate of a pixel.
     #[inline(always)]
-    fn pixel<R: Real>(&self, pixel: usize, sums: &[R]) -> Estimate {
+    fn finish<R: Real>(&self, pixel: usize, sums: &[R], estimate: &mut Estimate) {
         let (common, each) = sums.split_at_checked(2).unwrap_or((&[], &[]));
         let [weight, gain] = [0, 1].map(|index| common.get(index).map_or(0.0, |value| value.to_f64()));
-        let mean_of = |sum: f64, otherwise: f64| if weight > 0.0 { sum / weight } else { otherwise };
-        let mut estimate = Estimate {
-            mean: [0.0; 4],
-            std_error: [0.0; 4],
-            samples: u32::try_from(self.n).unwrap_or(u32::MAX),
-            gain: mean_of(gain, 1.0) as f32,
-        };
+        let inverse = 1.0 / weight;
+        let mean_of = |sum: f64, otherwise: f64| if weight > 0.0 { sum * inverse } else { otherwise };
+        estimate.gain = mean_of(gain, 1.0) as f32;
         let outputs = estimate.mean.iter_mut().zip(&mut estimate.std_error);
         for (channel, (mean, error)) in outputs.enumerate().take(self.config.channels) {
             let each = [2 * channel, 2 * channel + 1].map(|index| each.get(index).map_or(0.0, |value| value.to_f64()));
@@ -282,7 +290,8 @@ impl Problem<'_> {
             }
             let n = self.n as f64;
             let correction = if correction.is_finite() { mean_of(correction, 0.0) } else { 0.0 };
-            *mean = saturate(first + total / n + correction);
+            let plain = if self.n > 1 { first + total / n } else { first };
+            *mean = saturate(plain + correction);
             let spread = mean_of(spread, 1.0);
             *error = if weight > 0.0 && self.error_is_the_blocks() {
                 spread as f32
@@ -292,6 +301,5 @@ impl Problem<'_> {
                 f32::INFINITY
             };
         }
-        estimate
     }
 }
