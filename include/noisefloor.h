@@ -215,11 +215,15 @@ typedef struct nf_cv_image {
     // Pixels from one window to the next, at most `window`; 0 means half of it. Where windows overlap corrections are
     // averaged. The time of an estimate goes with the square of window / stride.
     uint32_t stride;
+    // 1 if the pixels have no places: all of the same surface, in all frames, then share one fit, whatever `window` and
+    // `stride` say. With `surfaces` they are at most 1024.
+    uint32_t unordered;
     // A number for each pixel, or NULL: only pixels with the same number share a fit. What shows the same material under
-    // a similar normal and depth, for example.
+    // a similar normal and depth, for example. Must not depend on the pixel's own samples, or no estimator is unbiased.
     const uint32_t *surfaces;
     // `channels` numbers for each pixel, or NULL: what its values are divided by before a fit and multiplied by after
-    // it, such as its albedo. Finite and not negative; 0 counts as 1.
+    // it, such as its albedo. Finite and not negative; 0 counts as 1. Must not depend on the pixel's own samples either.
+    // Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
     const float *factors;
 } nf_cv_image;
 
@@ -291,7 +295,11 @@ size_t nf_cv_block_workspace_size(const nf_cv_config *config, size_t pixels, siz
 // The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance of
 // their estimates across the pixels, whatever stratification the samples have; unbiased as the block grows.
 // NF_CV_K_FOLD lets two halves of the pixels choose for each other, NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both
-// exactly unbiased, if the pixels' samples are independent.
+// exactly unbiased, if the pixels' samples are independent. NF_CV_K_FOLD leaves groups of 2 or 3 pixels at their mean; one
+// fit to 2 to 12 pixels can be a fifth worse than the mean.
+//
+// With one sample, or `stratified`, std_error is the spread of the pixels' estimates about their linear trend: an upper
+// bound where the signal varies otherwise.
 //
 // NF_ERR_UNSUPPORTED for other estimators, controls, skipping and luminance ratio; else as nf_cv_estimate().
 nf_status nf_cv_block_estimate(const nf_cv_config *config,
@@ -769,6 +777,7 @@ NF_ASSERT_LAYOUT(sizeof(nf_cv_config) == 76 && offsetof(nf_cv_config, ridge) == 
 NF_ASSERT_ALIGNED_AS(nf_cv_config, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_estimate) == 40 && offsetof(nf_estimate, samples) == 32);
 NF_ASSERT_ALIGNED_AS(nf_estimate, float);
+NF_ASSERT_LAYOUT(sizeof(nf_cv_image) == 24 + 2 * sizeof(void *) && offsetof(nf_cv_image, surfaces) == 24);
 NF_ASSERT_LAYOUT(sizeof(nf_recommendation) == 100 && offsetof(nf_recommendation, config) == 24);
 NF_ASSERT_ALIGNED_AS(nf_recommendation, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_tile) == 2 * sizeof(void *) + 24 && offsetof(nf_tile, size) == 2 * sizeof(void *));

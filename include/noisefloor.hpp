@@ -278,6 +278,7 @@ public:
         image copy = *this;
         copy.surfaces = ids.data();
         copy.surfaces_ = ids.size();
+        copy.has_surfaces_ = true;
         return copy;
     }
     // config::channels numbers for each pixel.
@@ -286,6 +287,15 @@ public:
         image copy = *this;
         copy.factors = values.data();
         copy.factors_ = values.size();
+        copy.has_factors_ = true;
+        return copy;
+    }
+
+    // Pixels in no order: nf_cv_image::unordered.
+    image without_places(bool value = true) const noexcept
+    {
+        image copy = *this;
+        copy.unordered = value ? 1u : 0u;
         return copy;
     }
 
@@ -300,12 +310,14 @@ public:
     // Whether the arrays are as long as they must be.
     bool fits(const nf_cv_config &how) const noexcept
     {
-        const bool surfaces_fit = surfaces == nullptr || surfaces_ == pixels();
         const bool divides = how.channels != 0 && factors_ % how.channels == 0;
-        return surfaces_fit && (factors == nullptr || (divides && factors_ / how.channels == pixels()));
+        const bool surfaces_fit = !has_surfaces_ || surfaces_ == pixels();
+        return surfaces_fit && (!has_factors_ || (divides && factors_ / how.channels == pixels()));
     }
 
 private:
+    // An array that was given but is empty is an error, not "none".
+    bool has_surfaces_ = false, has_factors_ = false;
     std::size_t surfaces_ = 0, factors_ = 0;
 };
 

@@ -64,6 +64,7 @@ pub struct Image {
     pub frames: u32,
     pub window: u32,
     pub stride: u32,
+    pub unordered: u32,
     pub surfaces: *const u32,
     pub factors: *const f32,
 }
@@ -204,6 +205,7 @@ mod linked {
                 frames: 1,
                 window: 8,
                 stride,
+                unordered: 0,
                 surfaces: std::ptr::null(),
                 factors: std::ptr::null(),
             });

@@ -17,6 +17,7 @@ const MOST: usize = 1 << 20;
 struct Input {
     config: Config,
     shape: [usize; 5],
+    unordered: bool,
     surfaces: Vec<u32>,
     factors: Vec<f32>,
     u: Vec<f32>,
@@ -97,6 +98,7 @@ impl<'a> Arbitrary<'a> for Input {
         Ok(Self {
             config,
             shape,
+            unordered: rarely(bytes)?,
             surfaces,
             factors,
             u: list(bytes, len(step), |bytes| {
@@ -110,8 +112,9 @@ impl<'a> Arbitrary<'a> for Input {
 }
 
 fn run<R: Real>(input: &Input) {
-    let Input { config, shape: [width, height, frames, window, stride], .. } = *input;
-    let image = Image { frames, window, stride, surfaces: &input.surfaces, factors: &input.factors, width, height };
+    let Input { config, shape: [width, height, frames, window, stride], unordered, .. } = *input;
+    let image =
+        Image { frames, window, stride, unordered, surfaces: &input.surfaces, factors: &input.factors, width, height };
     let samples =
         Samples { u: &input.u, f: &input.f, controls: &input.controls, control_integrals: &input.control_integrals };
     let pixels = width.saturating_mul(height).saturating_mul(frames);

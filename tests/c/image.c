@@ -156,6 +156,25 @@ static void constant_pixels_are_exact(void)
         }
 }
 
+/* Pixels without places are a block. */
+static void unordered(void)
+{
+    nf_cv_config config = make_config(2, 3, 1, NF_CV_ROBUST);
+    nf_cv_image image = make_image(WIDTH, HEIGHT);
+    nf_estimate out[PIXELS], expected[PIXELS];
+    memory work = memory_new(nf_cv_block_workspace_size(&config, PIXELS, N));
+    fill_pixels(1);
+    image.unordered = 1;
+    CHECK(nf_cv_image_workspace_size(&config, &image, N) == work.bytes);
+    estimate(&config, &image, N, out);
+    CHECK_STATUS(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, work.bytes, expected), NF_OK);
+    CHECK(memcmp(out, expected, sizeof out) == 0);
+    image.unordered = 2;
+    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_RANGE, out);
+    memory_free(&work);
+}
+
 #define REFUSED(expected) CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), expected, out)
 
 static void errors(void)
@@ -307,6 +326,7 @@ int main(void)
     one_sample();
     defaults_and_trivial_knowledge();
     constant_pixels_are_exact();
+    unordered();
     errors();
     return report("image");
 }

@@ -24,11 +24,15 @@ pub struct nf_cv_image {
     /// Pixels from one window to the next, at most `window`; 0 means half of it. Where windows overlap corrections are
     /// averaged. The time of an estimate goes with the square of window / stride.
     pub stride: u32,
+    /// 1 if the pixels have no places: all of the same surface, in all frames, then share one fit, whatever `window` and
+    /// `stride` say. With `surfaces` they are at most 1024.
+    pub unordered: u32,
     /// A number for each pixel, or NULL: only pixels with the same number share a fit. What shows the same material under
-    /// a similar normal and depth, for example.
+    /// a similar normal and depth, for example. Must not depend on the pixel's own samples, or no estimator is unbiased.
     pub surfaces: *const u32,
     /// `channels` numbers for each pixel, or NULL: what its values are divided by before a fit and multiplied by after
-    /// it, such as its albedo. Finite and not negative; 0 counts as 1.
+    /// it, such as its albedo. Finite and not negative; 0 counts as 1. Must not depend on the pixel's own samples either.
+    /// Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
     pub factors: *const f32,
 }
 
@@ -37,16 +41,7 @@ pub struct nf_cv_image {
 pub unsafe extern "C" fn nf_cv_block_workspace_size(config: *const nf_cv_config, pixels: usize, n: usize) -> usize {
     // SAFETY: the caller's pointer, checked there for NULL and alignment.
     let Ok(config) = (unsafe { convert::reference(config) }) else { return 0 };
-    if config.controls > 0 {
-        return 0;
-    }
-    size(config, |config, narrow| {
-        if narrow {
-            cv::block_workspace_len::<f32>(config, pixels, n)
-        } else {
-            cv::block_workspace_len::<f64>(config, pixels, n)
-        }
-    })
+    workspace_size(config, &Image::unordered(pixels), n)
 }
 
 /// Estimates `pixels` integrals that are alike, from n samples of each: u and f hold pixel after pixel what
@@ -56,7 +51,11 @@ pub unsafe extern "C" fn nf_cv_block_workspace_size(config: *const nf_cv_config,
 /// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance of
 /// their estimates across the pixels, whatever stratification the samples have; unbiased as the block grows.
 /// NF_CV_K_FOLD lets two halves of the pixels choose for each other, NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both
-/// exactly unbiased, if the pixels' samples are independent.
+/// exactly unbiased, if the pixels' samples are independent. NF_CV_K_FOLD leaves groups of 2 or 3 pixels at their mean; one
+/// fit to 2 to 12 pixels can be a fifth worse than the mean.
+///
+/// With one sample, or `stratified`, std_error is the spread of the pixels' estimates about their linear trend: an upper
+/// bound where the signal varies otherwise.
 ///
 /// NF_ERR_UNSUPPORTED for other estimators, controls, skipping and luminance ratio; else as nf_cv_estimate().
 #[unsafe(no_mangle)]
@@ -97,17 +96,10 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
     let (Ok(config), Ok(image)) = (unsafe { (convert::reference(config), convert::reference(image)) }) else {
         return 0;
     };
-    if config.controls > 0 {
-        return 0;
+    match core_image(image) {
+        Ok(image) => workspace_size(config, &image, n),
+        Err(_) => 0,
     }
-    let image = size_of_image(image);
-    size(config, |config, narrow| {
-        if narrow {
-            cv::image_workspace_len::<f32>(config, &image, n)
-        } else {
-            cv::image_workspace_len::<f64>(config, &image, n)
-        }
-    })
 }
 
 /// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of the
@@ -130,8 +122,8 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
         // SAFETY: the caller's pointers, checked there.
         let (config, given) = unsafe { (convert::reference(config)?, convert::reference(image)?) };
         let (core, narrow) = (supported(config)?, is_narrow(config)?);
-        let mut image = size_of_image(given);
-        let pixels = convert::product(convert::product(image.width, image.height)?, image.frames)?;
+        let mut image = core_image(given)?;
+        let pixels = convert::product(convert::product(image.width, image.height)?, image.frames.max(1))?;
         if pixels == 0 {
             return Err(NF_ERR_RANGE);
         }
@@ -160,10 +152,29 @@ fn supported(config: &nf_cv_config) -> Result<Config, nf_status> {
 }
 
 /// The image without its arrays.
-fn size_of_image(image: &nf_cv_image) -> Image<'static> {
+fn core_image(image: &nf_cv_image) -> Result<Image<'static>, nf_status> {
     let [width, height, frames, window, stride] =
-        [image.width, image.height, image.frames.max(1), image.window, image.stride].map(|value| value as usize);
-    Image { frames, window, stride, ..Image::new(width, height) }
+        [image.width, image.height, image.frames, image.window, image.stride].map(|value| value as usize);
+    let unordered = match image.unordered {
+        0 => false,
+        1 => true,
+        _ => return Err(NF_ERR_RANGE),
+    };
+    Ok(Image { frames, window, stride, unordered, ..Image::new(width, height) })
+}
+
+/// Bytes, 0 for what is not supported or out of range.
+fn workspace_size(config: &nf_cv_config, image: &Image<'_>, n: usize) -> usize {
+    if config.controls > 0 {
+        return 0;
+    }
+    size(config, |config, narrow| {
+        if narrow {
+            cv::image_workspace_len::<f32>(config, image, n)
+        } else {
+            cv::image_workspace_len::<f64>(config, image, n)
+        }
+    })
 }
 
 /// # Safety

@@ -145,7 +145,7 @@ fn residuals<R: Real>(
         for (z, column) in z.iter_mut().zip(panel) {
             *z = *column;
         }
-        ldlt::forward_lanes(factor, 0, z);
+        ldlt::forward_lanes(factor, z);
         // leverage = p'A^-1 p, shift = m'A^-1 p
         let (mut leverage, mut shift) = (zero, zero);
         for (j, (z, &mean)) in z.iter().zip(means).enumerate() {

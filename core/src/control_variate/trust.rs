@@ -46,10 +46,8 @@ pub(crate) fn weigh<R: Real>(plain: R, errors: &[R], discounts: &[R], power: R, 
     let smallest = R::from_f64(1e-30);
     let mut largest = R::ZERO;
     for (weight, &error) in weights.iter_mut().zip(errors) {
-        *weight = -power * (error / plain).max(smallest).ln();
-        if !weight.is_finite() {
-            *weight = -R::ONE / R::EPSILON;
-        }
+        let ratio = error / plain;
+        *weight = if ratio.is_finite() { -power * ratio.max(smallest).ln() } else { -R::ONE / R::EPSILON };
         largest = largest.max(*weight);
     }
     let caution = (largest - n * n / R::from_f64(CAUTION)).max(R::ZERO);

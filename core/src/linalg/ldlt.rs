@@ -81,14 +81,14 @@ pub(crate) fn inverse_pivot<R: Real>(factor: &[R], j: usize) -> R {
     row(factor, j).last().copied().unwrap_or(R::ZERO)
 }
 
-/// X := L^-1 X for eight right-hand sides side by side; rows before `first` are zero and stay so.
+/// X := L^-1 X for eight right-hand sides side by side.
 #[inline(always)]
-pub(crate) fn forward_lanes<R: Real>(factor: &[R], first: usize, x: &mut [Lanes<R>]) {
-    for j in first..x.len() {
+pub(crate) fn forward_lanes<R: Real>(factor: &[R], x: &mut [Lanes<R>]) {
+    for j in 0..x.len() {
         let (before, from_j) = x.split_at_mut_checked(j).unwrap_or((&mut [], &mut []));
         if let Some(value) = from_j.first_mut() {
             let mut sum = *value;
-            for (x, &l) in before.iter().zip(row(factor, j)).skip(first) {
+            for (x, &l) in before.iter().zip(row(factor, j)) {
                 lanes::subtract_scaled(&mut sum, l, x);
             }
             *value = sum;

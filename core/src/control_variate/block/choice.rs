@@ -70,7 +70,7 @@ impl<R: Real> Spreads<R> {
                 }
                 // What is left of a signal that is its trend is rounding noise.
                 let noise = whole * R::EPSILON * R::from_f64(64.0);
-                set(sums, channel, if left > noise { left } else { R::ZERO });
+                set(sums, channel, if left <= noise { R::ZERO } else { left });
             }
         }
         Self { sums, fits, freedom }
@@ -105,10 +105,11 @@ impl<R: Real> Spreads<R> {
         if gain.is_finite() { gain } else { R::ONE }
     }
 
-    /// A mixture's spread per degree of freedom: the variance of its estimates, and what signal is left in it.
+    /// A mixture's spread per degree of freedom, of which there must be some: the variance of its estimates, and what signal
+    /// is left in it.
     #[inline(always)]
-    pub(super) fn variance(&self, weights: &Weights<R>, channel: usize) -> Option<R> {
-        (self.freedom > R::ZERO).then(|| self.mixed(weights, channel) / self.freedom)
+    pub(super) fn variance(&self, weights: &Weights<R>, channel: usize) -> R {
+        self.mixed(weights, channel) / self.freedom
     }
 
     fn mixed(&self, weights: &Weights<R>, channel: usize) -> R {

@@ -1,26 +1,23 @@
 //! Fits to all pixels of a group but one, for each pixel.
 
 use super::super::config::{Config, Estimator, Ridge};
-use super::super::design::{Design, Units};
+use super::super::design::Units;
 use super::super::per_channel::get;
 use super::super::ridge;
 use super::super::samples::Reader;
 use super::choice::{Spreads, Weights, last_only};
 use super::members::Members;
-use super::terms::{MAX_AXES, Terms};
+use super::terms::Terms;
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS, Shape};
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
-use crate::linalg::{ldlt, packed_len, row, row_mut};
+use crate::linalg::{ldlt, packed_len, row};
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 
 /// Ridge strength per sample if the caller gives none.
 const STRENGTH: f64 = 0.003;
-/// The least that 1 less a sample's leverage is taken for, in units of the type's epsilon.
-const SINGULAR: f64 = 64.0;
-
 /// Whether pixels of `n` samples are few enough to leave their samples out of one factor of `columns` columns.
 fn has_few(n: usize, columns: usize) -> bool {
     n == 1 || 4 * n <= columns
@@ -54,16 +51,16 @@ pub(super) struct Problem<'a> {
 }
 
 /// Eight pixels.
-struct Panel {
+pub(super) struct Panel {
     pixels: [usize; LANES],
     /// How many of them there are.
     used: usize,
 }
 
 /// What the fits of a group have in common.
-struct Setting<'s, R> {
-    terms: &'s Terms,
-    units: [Units<R>; Config::MAX_CHANNELS],
+pub(super) struct Setting<'s, R> {
+    pub(super) terms: &'s Terms,
+    pub(super) units: [Units<R>; Config::MAX_CHANNELS],
     /// Panel after panel the lanes of [`Members::places`].
     places: &'s [Lanes<R>],
 }
@@ -71,13 +68,13 @@ struct Setting<'s, R> {
 impl<R> Setting<'_, R> {
     /// Panels of pixels with their places.
     #[inline(always)]
-    fn places(&self) -> impl Iterator<Item = &[Lanes<R>]> {
+    pub(super) fn places(&self) -> impl Iterator<Item = &[Lanes<R>]> {
         rows(self.places, self.terms.fixed())
     }
 
     /// Groups of lanes in a panel's estimates.
     #[inline(always)]
-    fn estimates(&self, channels: usize) -> usize {
+    pub(super) fn estimates(&self, channels: usize) -> usize {
         (self.terms.ends.len() + 1) * channels
     }
 }
@@ -114,8 +111,12 @@ impl<'a> Problem<'a> {
     /// Which columns a fit to these pixels has.
     #[inline(always)]
     pub(super) fn terms(&self, members: &Members<'_>) -> Terms {
-        let single = self.config.estimator == Estimator::LeaveOneOut || matches!(self.config.ridge, Ridge::Fixed(_));
-        Terms::new(self.config, &self.shape, members.axes(), members.len.saturating_mul(self.n), single)
+        Terms::new(self.config, &self.shape, members.axes(), members.len.saturating_mul(self.n), self.is_single_fit())
+    }
+
+    /// Whether there is one candidate, all of whose columns are used.
+    pub(super) fn is_single_fit(&self) -> bool {
+        self.config.estimator == Estimator::LeaveOneOut || matches!(self.config.ridge, Ridge::Fixed(_))
     }
 
     /// Numbers that [`Problem::fit`] takes for at most so many pixels.
@@ -161,10 +162,7 @@ impl<'a> Problem<'a> {
     /// How far the mean and the fits are trusted, by a group that has at least two members.
     #[inline(always)]
     pub(super) fn weights<R: Real>(&self, group: &Group<'_, R>) -> Weights<R> {
-        match (self.config.estimator, self.config.ridge) {
-            (Estimator::LeaveOneOut, _) | (_, Ridge::Fixed(_)) => last_only(group.fits),
-            _ => group.spreads.weights(self.config.channels),
-        }
+        if self.is_single_fit() { last_only(group.fits) } else { group.spreads.weights(self.config.channels) }
     }
 
     /// What a pixel's values are divided by. Black says nothing about what it multiplies: 1.
@@ -201,7 +199,7 @@ impl<'a> Problem<'a> {
     }
 
     #[inline(always)]
-    fn panel(&self, members: &Members<'_>, start: usize) -> Panel {
+    pub(super) fn panel(&self, members: &Members<'_>, start: usize) -> Panel {
         let used = LANES.min(members.len.saturating_sub(start));
         let mut pixels = [0; LANES];
         for (lane, pixel) in pixels.iter_mut().enumerate().take(used) {
@@ -212,7 +210,7 @@ impl<'a> Problem<'a> {
 
     /// Writes sample `sample` of a panel's pixels: their columns, and their values in `units`. Zero in unused lanes.
     #[inline(always)]
-    fn load<R: Real>(
+    pub(super) fn load<R: Real>(
         &self,
         setting: &Setting<'_, R>,
         panel: &Panel,
@@ -305,7 +303,7 @@ impl<'a> Problem<'a> {
 
     /// Adds what ridge a fit to `samples` samples has to the diagonal of the sums of products.
     #[inline(always)]
-    fn add_ridge<R: Real>(&self, terms: &Terms, samples: usize, gram: &mut [R], penalties: &mut [R]) {
+    pub(super) fn add_ridge<R: Real>(&self, terms: &Terms, samples: usize, gram: &mut [R], penalties: &mut [R]) {
         let count = gram.first().copied().unwrap_or(R::ONE);
         let mean_square = |j: usize| row(gram, j).last().copied().unwrap_or(R::ZERO) / count;
         terms.penalties(self.config, self.basis, mean_square, penalties);
@@ -315,256 +313,5 @@ impl<'a> Problem<'a> {
         };
         let strength = R::from_f64(strength) * R::from_usize(samples);
         ldlt::add_diagonal(gram, terms.columns(), |j| strength * penalties.get(j).copied().unwrap_or(R::ONE));
-    }
-
-    /// Few samples in each pixel: one factorisation A = L D L', from which each pixel's n samples are left out in closed
-    /// form. With X their rows, H = X A^-1 X' and e their residuals, the residuals under the fit to all others are
-    /// r = (I - H)^-1 e, and its coefficients b - A^-1 X' r. Every candidate is a prefix of the columns and so of L: with
-    /// Z = L^-1 X', H = Z'D^-1 Z and all else are partial sums over the rows of Z.
-    #[inline(always)]
-    fn by_one_factor<R: Real>(
-        &self,
-        members: &Members<'_>,
-        setting: &Setting<'_, R>,
-        n: usize,
-        estimates: &mut [Lanes<R>],
-        arena: &mut Arena<'_, R>,
-    ) -> Result<(), Error> {
-        let mut arena = arena.scratch();
-        let terms = setting.terms;
-        let (width, fixed, channels) = (terms.columns(), terms.fixed(), self.config.channels);
-        let count = members.len.div_ceil(LANES);
-        let columns = arena.take_lanes(count * n * width)?;
-        let values = arena.take_lanes(count * n * channels)?;
-        let z = arena.take_lanes(n * width)?;
-        let products = arena.take_lanes(packed_len(n))?;
-        let system = arena.take_lanes(packed_len(n))?;
-        let parts = arena.take_lanes(fixed * n)?;
-        let fitted = arena.take_lanes(channels * n)?;
-        let residuals = arena.take_lanes(n)?;
-        let gram = arena.take(packed_len(width))?;
-        let rhs = arena.take(width * channels)?;
-        let penalties = arena.take(width)?;
-        let units = arena.take(fixed * width)?;
-        let loads = rows_mut(columns, n * width).zip(rows_mut(values, n * channels)).zip(setting.places());
-        for (index, ((columns, values), places)) in loads.enumerate() {
-            let panel = self.panel(members, index * LANES);
-            for (sample, (columns, values)) in rows_mut(columns, width).zip(rows_mut(values, channels)).enumerate() {
-                self.load(setting, &panel, sample, places, columns, values);
-            }
-        }
-        let design = Design {
-            n: members.len * n,
-            columns: width,
-            channels,
-            panels: columns,
-            values,
-            column_means: &mut [],
-            units: setting.units,
-        };
-        design.normal_equations(gram, rhs);
-        self.add_ridge(terms, (members.len - 1) * n, gram, penalties);
-        ldlt::factor(gram, width);
-        for rhs in rows_mut(rhs, width) {
-            ldlt::forward(gram, rhs);
-            ldlt::scale_by_inverse_diagonal(gram, rhs);
-        }
-        // The fixed columns' part of a row, which corrects nothing, has L^-1 of the columns of the unit matrix: what it
-        // adds to a sum over Z is its places times that sum over those.
-        for (k, unit) in rows_mut(units, width).enumerate() {
-            for (j, value) in unit.iter_mut().enumerate() {
-                *value = if j == k { R::ONE } else { R::ZERO };
-            }
-            ldlt::forward(gram, unit);
-        }
-        let smallest = R::from_f64(SINGULAR) * R::EPSILON;
-        let inverse_n = R::ONE / R::from_usize(n);
-        let panels = rows(design.panels, n * width).zip(rows(design.values, n * channels)).zip(setting.places());
-        for (((columns, values), places), out) in panels.zip(rows_mut(estimates, setting.estimates(channels))) {
-            for (z, columns) in rows_mut(z, width).zip(rows(columns, width)) {
-                for (z, column) in z.iter_mut().zip(columns) {
-                    *z = *column;
-                }
-                ldlt::forward_lanes(gram, 0, z);
-            }
-            for sum in products.iter_mut().chain(parts.iter_mut()).chain(fitted.iter_mut()) {
-                *sum = [R::ZERO; LANES];
-            }
-            let mut trends = [[R::ZERO; 1 + MAX_AXES]; Config::MAX_CHANNELS];
-            let mut means = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
-            for values in rows(values, channels) {
-                for (mean, value) in means.iter_mut().zip(values) {
-                    lanes::add_scaled(mean, inverse_n, value);
-                }
-            }
-            let mut out = rows_mut(out, channels);
-            for (out, mean) in out.next().unwrap_or(&mut []).iter_mut().zip(&means) {
-                *out = *mean;
-            }
-            let mut begin = 0;
-            for (&end, out) in terms.ends.iter().zip(out) {
-                for j in begin..end {
-                    let inverse = ldlt::inverse_pivot(gram, j);
-                    for (s, row_s) in rows(z, width).enumerate() {
-                        let at = row_s.get(j).copied().unwrap_or([R::ZERO; LANES]);
-                        let scaled = at.map(|z| z * inverse);
-                        for (sum, other) in row_mut(products, s).iter_mut().zip(rows(z, width)) {
-                            lanes::add_product(sum, other.get(j).unwrap_or(&[R::ZERO; LANES]), &scaled);
-                        }
-                        for (parts, unit) in rows_mut(parts, n).zip(rows(units, width)) {
-                            if let (Some(part), Some(&unit)) = (parts.get_mut(s), unit.get(j)) {
-                                lanes::add_scaled(part, unit, &scaled);
-                            }
-                        }
-                        for (fitted, rhs) in rows_mut(fitted, n).zip(rows(rhs, width)) {
-                            if let (Some(fitted), Some(&b)) = (fitted.get_mut(s), rhs.get(j)) {
-                                lanes::add_scaled(fitted, b, &at);
-                            }
-                        }
-                    }
-                    for (trend, rhs) in trends.iter_mut().zip(rows(rhs, width)) {
-                        for (trend, unit) in trend.iter_mut().zip(rows(units, width)) {
-                            *trend += rhs.get(j).copied().unwrap_or(R::ZERO) * unit.get(j).copied().unwrap_or(R::ZERO);
-                        }
-                    }
-                }
-                begin = end;
-                for s in 0..n {
-                    let pairs = row_mut(system, s).iter_mut().zip(row(products, s)).enumerate();
-                    for (t, (out, product)) in pairs {
-                        *out = product.map(|h| if s == t { (R::ONE - h).max(smallest) } else { -h });
-                    }
-                }
-                ldlt::factor_each(system, n);
-                for (channel, (out, mean)) in out.iter_mut().zip(&means).enumerate() {
-                    let fitted = rows(fitted, n).nth(channel).unwrap_or(&[]);
-                    // The mean of f - b'p without the fixed columns, then what leaving the pixel out changes.
-                    let mut estimate = *mean;
-                    for fitted in fitted {
-                        lanes::add_scaled(&mut estimate, -inverse_n, fitted);
-                    }
-                    for (&trend, place) in trends.get(channel).into_iter().flatten().zip(places) {
-                        lanes::add_scaled(&mut estimate, trend, place);
-                    }
-                    let values = rows(values, channels).map(|values| values.get(channel));
-                    for ((residual, value), fitted) in residuals.iter_mut().zip(values).zip(fitted) {
-                        *residual =
-                            lanes::zip(value.unwrap_or(&[R::ZERO; LANES]), fitted, |value, fitted| value - fitted);
-                    }
-                    ldlt::solve_each(system, residuals);
-                    for (t, residual) in residuals.iter().enumerate() {
-                        let mut reach = [R::ZERO; LANES];
-                        for s in 0..n {
-                            let product = row(products, s.max(t)).get(s.min(t)).copied().unwrap_or([R::ZERO; LANES]);
-                            lanes::add_scaled(&mut reach, inverse_n, &product);
-                        }
-                        for (parts, place) in rows(parts, n).zip(places) {
-                            if let Some(part) = parts.get(t) {
-                                reach = lanes::minus_product(reach, *part, *place);
-                            }
-                        }
-                        lanes::add_product(&mut estimate, &reach, residual);
-                    }
-                    *out = estimate;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Many samples in each pixel: A less the pixel's own products, factored for eight pixels at a time, which takes less
-    /// time than updating one factor by rank n.
-    #[inline(always)]
-    fn by_factor_each<R: Real>(
-        &self,
-        members: &Members<'_>,
-        setting: &Setting<'_, R>,
-        estimates: &mut [Lanes<R>],
-        arena: &mut Arena<'_, R>,
-    ) -> Result<(), Error> {
-        let mut arena = arena.scratch();
-        let terms = setting.terms;
-        let (width, channels) = (terms.columns(), self.config.channels);
-        let (squares, all) = (packed_len(width), packed_len(width) + width * channels);
-        let count = members.len.div_ceil(LANES);
-        let own = arena.take_lanes(count * all)?;
-        let system = arena.take_lanes(all)?;
-        let scratch = arena.take_lanes(width)?;
-        let total = arena.take(all)?;
-        let penalties = arena.take(width)?;
-        for value in total.iter_mut() {
-            *value = R::ZERO;
-        }
-        for (index, (own, places)) in rows_mut(own, all).zip(setting.places()).enumerate() {
-            for value in own.iter_mut() {
-                *value = [R::ZERO; LANES];
-            }
-            let (gram, rhs) = own.split_at_mut_checked(squares).unwrap_or((&mut [], &mut []));
-            let panel = self.panel(members, index * LANES);
-            let columns = &mut *scratch;
-            let mut values = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
-            for sample in 0..self.n {
-                self.load(setting, &panel, sample, places, columns, values.get_mut(..channels).unwrap_or(&mut []));
-                for (j, column) in columns.iter().enumerate() {
-                    for (out, other) in row_mut(gram, j).iter_mut().zip(columns.iter()) {
-                        lanes::add_product(out, column, other);
-                    }
-                }
-                for (rhs, value) in rows_mut(rhs, width).zip(&values) {
-                    for (out, column) in rhs.iter_mut().zip(columns.iter()) {
-                        lanes::add_product(out, value, column);
-                    }
-                }
-            }
-            for (total, own) in total.iter_mut().zip(own.iter()) {
-                *total += lanes::sum(own);
-            }
-        }
-        let training = (members.len - 1) * self.n;
-        self.add_ridge(terms, training, total.get_mut(..squares).unwrap_or(&mut []), penalties);
-        let inverse = R::ONE / R::from_usize(self.n);
-        let fixed = terms.fixed();
-        for (own, out) in rows(own, all).zip(rows_mut(estimates, setting.estimates(channels))) {
-            for ((out, &total), own) in system.iter_mut().zip(total.iter()).zip(own) {
-                *out = own.map(|own| total - own);
-            }
-            let (gram, rhs) = system.split_at_mut_checked(squares).unwrap_or((&mut [], &mut []));
-            let (own_gram, own_rhs) = own.split_at_checked(squares).unwrap_or((&[], &[]));
-            ldlt::factor_each(gram, width);
-            // The means of the pixel's columns, which its fit is corrected by.
-            let y = &mut *scratch;
-            for (j, y) in y.iter_mut().enumerate() {
-                let sum = row(own_gram, j).first().copied().unwrap_or([R::ZERO; LANES]);
-                *y = if j < fixed { [R::ZERO; LANES] } else { sum.map(|sum| sum * inverse) };
-            }
-            ldlt::forward_each(gram, fixed, y);
-            for (j, y) in y.iter_mut().enumerate() {
-                let pivot = row(gram, j).last().copied().unwrap_or([R::ZERO; LANES]);
-                *y = lanes::zip(y, &pivot, |y, pivot| y * pivot);
-            }
-            let mut corrected = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
-            for (rhs, (own, corrected)) in rows_mut(rhs, width).zip(rows(own_rhs, width).zip(&mut corrected)) {
-                ldlt::forward_each(gram, 0, rhs);
-                let sum = own.first().copied().unwrap_or([R::ZERO; LANES]);
-                *corrected = sum.map(|sum| sum * inverse);
-            }
-            let mut out = rows_mut(out, channels);
-            for (out, mean) in out.next().unwrap_or(&mut []).iter_mut().zip(&corrected) {
-                *out = *mean;
-            }
-            let mut begin = 0;
-            for (&end, out) in terms.ends.iter().zip(out) {
-                for (corrected, rhs) in corrected.iter_mut().zip(rows(rhs, width)) {
-                    for (rhs, y) in rhs.iter().zip(y.iter()).take(end).skip(begin) {
-                        *corrected = lanes::minus_product(*corrected, *rhs, *y);
-                    }
-                }
-                begin = end;
-                for (out, corrected) in out.iter_mut().zip(&corrected) {
-                    *out = *corrected;
-                }
-            }
-        }
-        Ok(())
     }
 }

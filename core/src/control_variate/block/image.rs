@@ -13,9 +13,10 @@ pub struct Image<'a> {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// Images of the same pixels, at other times; they share fits. 1 for a single one.
+    /// Images of the same pixels, at other times; they share fits. 0 means 1.
     pub frames: usize,
-    /// Whether the pixels have no places: all of the same surface then share one fit, whatever `window` and `stride` say.
+    /// Whether the pixels have no places: all of the same surface, in all frames, then share one fit, whatever `window` and
+    /// `stride` say. With `surfaces` they are at most [`Image::MAX_WINDOW`].
     pub unordered: bool,
     /// Width and height of the square windows that pixels share a fit in; 0 means 8. A window has at most
     /// [`Image::MAX_WINDOW`] pixels in all frames together.
@@ -24,10 +25,12 @@ pub struct Image<'a> {
     /// corrections are averaged, those of windows that have it near their centre counting more.
     pub stride: usize,
     /// A number for each pixel, or empty: only pixels with the same number share a fit. What shows the same material
-    /// under a similar normal and depth, for example.
+    /// under a similar normal and depth, for example. Must not depend on the pixel's own samples, or no estimator is
+    /// unbiased.
     pub surfaces: &'a [u32],
     /// `channels` numbers for each pixel, or empty: what its values are divided by before a fit and multiplied by
-    /// after it, such as its albedo. Finite and not negative; 0 counts as 1.
+    /// after it, such as its albedo. Finite and not negative; 0 counts as 1. Must not depend on the pixel's own samples
+    /// either. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
     pub factors: &'a [f32],
 }
 
@@ -59,18 +62,22 @@ impl Image<'_> {
         let side = if self.window == 0 { 8 } else { self.window };
         let stride = if self.stride == 0 { side.div_ceil(2) } else { self.stride };
         let (width, height) = (side.min(self.width), side.min(self.height));
-        let pixels = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(self.frames));
+        let pixels = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(self.frames()));
         let fits = pixels.is_some_and(|pixels| (1..=Self::MAX_WINDOW).contains(&pixels));
         if !fits || stride > side {
             return Err(Error::Range);
         }
-        let image = [self.width, self.height, self.frames];
+        let image = [self.width, self.height, self.frames()];
         Ok(Windows { width, height, stride, image, is_ordered: true })
+    }
+
+    fn frames(&self) -> usize {
+        self.frames.max(1)
     }
 
     /// All pixels of all frames.
     pub(super) fn pixels(&self) -> Result<usize, Error> {
-        let pixels = self.width.checked_mul(self.height).and_then(|pixels| pixels.checked_mul(self.frames));
+        let pixels = self.width.checked_mul(self.height).and_then(|pixels| pixels.checked_mul(self.frames()));
         pixels.filter(|&pixels| u32::try_from(pixels).is_ok()).ok_or(Error::Range)
     }
 

@@ -17,14 +17,16 @@
 //! measured in the tests.
 
 mod choice;
+mod factor_each;
 mod fit;
 mod image;
 mod members;
+mod one_factor;
 mod terms;
 
 pub use image::Image;
 
-use super::config::{Color, Config, Estimate, Estimator, NonFinite, Ridge};
+use super::config::{Color, Config, Estimate, Estimator, NonFinite};
 use super::result::saturate;
 use super::samples::{Reader, Samples};
 use crate::arena::Arena;
@@ -142,11 +144,14 @@ pub fn estimate_image<R: Real>(
     Ok(())
 }
 
-/// Numbers that are summed for each pixel: over the groups that it was in, their weight and gain, and for each channel its
-/// correction and what its standard error comes from.
+/// Numbers that are summed for each pixel over the groups that it was in: their weight, that of those with an error, their
+/// gain, and for each channel the correction and what the standard error comes from.
 fn sums_len(channels: usize) -> usize {
-    2 + 2 * channels
+    COMMON + 2 * channels
 }
+
+/// Sums that are not a channel's.
+const COMMON: usize = 3;
 
 /// A call under way.
 struct Call<'c, 'a, R> {
@@ -190,8 +195,7 @@ impl<R: Real> Call<'_, '_, R> {
         if members.len < 2 || terms.ends.is_empty() {
             return Ok(());
         }
-        let config = self.problem.config;
-        let has_halves = config.estimator == Estimator::KFold && !matches!(config.ridge, Ridge::Fixed(_));
+        let has_halves = self.problem.config.estimator == Estimator::KFold && !self.problem.is_single_fit();
         let [even, odd] = [0, 1].map(|first| members.half(first));
         if has_halves && odd.len < 2 {
             return Ok(());
@@ -222,40 +226,39 @@ impl Problem<'_> {
     fn add<R: Real>(&self, members: &Members<'_>, group: &Group<'_, R>, choices: &[Weights<R>], sums: &mut [R]) {
         let channels = self.config.channels;
         let width = sums_len(channels);
+        // Without freedom there is no spread to tell the error from.
+        let has_error = !self.error_is_the_blocks() || group.spreads.freedom > R::ZERO;
         for (turn, weights) in choices.iter().enumerate() {
             let mut gain = R::ZERO;
             let mut units = [1.0f64; Config::MAX_CHANNELS];
-            let mut errors = [R::ONE; Config::MAX_CHANNELS];
-            for (channel, ((unit, error), units)) in units.iter_mut().zip(&mut errors).zip(&group.units).enumerate() {
+            let mut errors = [0.0f64; Config::MAX_CHANNELS];
+            let outputs = units.iter_mut().zip(&mut errors).zip(&group.units).enumerate();
+            for (channel, ((unit, error), units)) in outputs.take(channels) {
                 *unit = libm::scalbn(1.0, units.exponent);
                 let ratio = group.spreads.gain(weights, channel);
-                *error = if self.error_is_the_blocks() {
-                    let variance = group.spreads.variance(weights, channel).filter(|variance| variance.is_finite());
-                    variance.map_or(R::INFINITY, |variance| variance.sqrt() * R::from_f64(*unit))
-                } else {
-                    ratio.sqrt()
-                };
-                gain += if channel < channels { ratio } else { R::ZERO };
+                gain += ratio;
+                if !self.error_is_the_blocks() {
+                    *error = ratio.sqrt().to_f64();
+                } else if has_error {
+                    *error = group.spreads.variance(weights, channel).sqrt().to_f64() * *unit;
+                }
             }
             gain = gain / R::from_usize(channels);
             for index in (turn..members.len).step_by(choices.len()) {
                 let pixel = members.pixel(index);
                 let Some(sums) = sums.get_mut(pixel * width..(pixel + 1) * width) else { continue };
                 let near = members.area.nearness::<R>(members.local(index));
-                let (common, each) = sums.split_at_mut_checked(2).unwrap_or((&mut [], &mut []));
-                for (sum, value) in common.iter_mut().zip([R::ONE, gain]) {
+                let (common, each) = sums.split_at_mut_checked(COMMON).unwrap_or((&mut [], &mut []));
+                for (sum, value) in common.iter_mut().zip([R::ONE, if has_error { R::ONE } else { R::ZERO }, gain]) {
                     *sum += near * value;
                 }
                 let per_channel = rows_mut(each, 2).zip(units).zip(errors).enumerate();
                 for (channel, ((each, unit), error)) in per_channel {
                     let factor = if self.factors.is_empty() { 1.0 } else { self.factor(pixel, channel) };
-                    // Values of an `f32` over a small factor may be beyond any `f32`, and two infinities cancel to NaN.
-                    let most = f64::from(f32::MAX);
                     let correction = group.correction(index, weights, channel).to_f64() * unit * factor;
-                    let correction = R::from_f64(correction.clamp(-most, most));
-                    let error = if self.error_is_the_blocks() { error * R::from_f64(factor) } else { error };
+                    let error = if self.error_is_the_blocks() { error * factor } else { error };
                     for (sum, value) in each.iter_mut().zip([correction, error]) {
-                        *sum += near * value;
+                        *sum += near * R::from_f64(value);
                     }
                 }
             }
@@ -271,15 +274,15 @@ impl Problem<'_> {
     /// The estimate of a pixel.
     #[inline(always)]
     fn finish<R: Real>(&self, pixel: usize, sums: &[R], estimate: &mut Estimate) {
-        let (common, each) = sums.split_at_checked(2).unwrap_or((&[], &[]));
-        let [weight, gain] = [0, 1].map(|index| common.get(index).map_or(0.0, |value| value.to_f64()));
-        let inverse = 1.0 / weight;
-        let mean_of = |sum: f64, otherwise: f64| if weight > 0.0 { sum * inverse } else { otherwise };
-        estimate.gain = mean_of(gain, 1.0) as f32;
+        let (common, each) = sums.split_at_checked(COMMON).unwrap_or((&[], &[]));
+        let at = |sums: &[R], index: usize| sums.get(index).map_or(0.0, |value| value.to_f64());
+        let [weight, error_weight, gain] = [0, 1, 2].map(|index| at(common, index));
+        let (inverse, error_inverse) = (1.0 / weight, 1.0 / error_weight);
+        estimate.gain = if weight > 0.0 { (gain * inverse) as f32 } else { 1.0 };
         let outputs = estimate.mean.iter_mut().zip(&mut estimate.std_error);
         for (channel, (mean, error)) in outputs.enumerate().take(self.config.channels) {
-            let each = [2 * channel, 2 * channel + 1].map(|index| each.get(index).map_or(0.0, |value| value.to_f64()));
-            let [correction, spread] = each;
+            let correction = at(each, 2 * channel) * inverse;
+            let spread = at(each, 2 * channel + 1) * error_inverse;
             let value = |sample: usize| self.reader.value(pixel * self.n + sample, channel);
             let first = value(0);
             let (mut total, mut square) = (0.0, 0.0);
@@ -289,14 +292,14 @@ impl Problem<'_> {
                 square += value * value;
             }
             let n = self.n as f64;
-            let correction = if correction.is_finite() { mean_of(correction, 0.0) } else { 0.0 };
             let plain = if self.n > 1 { first + total / n } else { first };
-            *mean = saturate(plain + correction);
-            let spread = mean_of(spread, 1.0);
-            *error = if weight > 0.0 && self.error_is_the_blocks() {
+            // In no group there is no correction; nor is one that left the type's range.
+            *mean = saturate(if correction.is_finite() { plain + correction } else { plain });
+            *error = if error_weight > 0.0 && self.error_is_the_blocks() {
                 spread as f32
             } else if self.n > 1 {
-                (libm::sqrt((square - total * total / n).max(0.0) / (n * (n - 1.0))) * spread) as f32
+                let plain = libm::sqrt((square - total * total / n).max(0.0) / (n * (n - 1.0)));
+                (if error_weight > 0.0 { plain * spread } else { plain }) as f32
             } else {
                 f32::INFINITY
             };
