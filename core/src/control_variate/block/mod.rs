@@ -295,14 +295,16 @@ impl Problem<'_> {
             let plain = if self.n > 1 { first + total / n } else { first };
             // In no group there is no correction; nor is one that left the type's range.
             *mean = saturate(if correction.is_finite() { plain + correction } else { plain });
-            *error = if error_weight > 0.0 && self.error_is_the_blocks() {
-                spread as f32
+            let told = if error_weight > 0.0 && self.error_is_the_blocks() {
+                spread
             } else if self.n > 1 {
                 let plain = libm::sqrt((square - total * total / n).max(0.0) / (n * (n - 1.0)));
-                (if error_weight > 0.0 { plain * spread } else { plain }) as f32
+                if error_weight > 0.0 { plain * spread } else { plain }
             } else {
-                f32::INFINITY
+                f64::INFINITY
             };
+            // Spreads of values at the end of a narrow type's range may be no numbers.
+            *error = if told.is_nan() { f32::INFINITY } else { told as f32 };
         }
     }
 }
