@@ -435,11 +435,13 @@ private:
     nf_cv_config how_{};
 };
 
+enum class sampling : std::uint32_t { independent = NF_SAMPLING_INDEPENDENT, stratified = NF_SAMPLING_STRATIFIED };
+
 // nf_recommend(): which estimator and which tile to use for `spp` samples per pixel of `dims` coordinates.
-inline returned<nf_recommendation> recommend(std::uint32_t dims, std::uint32_t spp, bool stratified, bool can_share)
+inline returned<nf_recommendation> recommend(std::uint32_t dims, std::uint32_t spp, sampling kind, bool can_share)
 {
     nf_recommendation out{};
-    const nf_status code = nf_recommend(dims, spp, stratified ? 1u : 0u, can_share ? 1u : 0u, &out);
+    const nf_status code = nf_recommend(dims, spp, static_cast<std::uint32_t>(kind), can_share ? 1u : 0u, &out);
     return detail::finish(code, out);
 }
 

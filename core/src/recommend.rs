@@ -55,8 +55,13 @@ pub struct Recommendation {
     pub tile_dims: usize,
     /// What to expect: the mean squared error over that of the plain mean of as many independent samples, the geometric
     /// mean over the integrands of the study.
+    ///
+    /// Of stratified samples it was measured on the tile named here, with two exceptions. For 5 to 8 dims and 1 to 3 samples
+    /// it is that of the tile of 2 dims. From 64 samples on it is that of Sobol points scrambled in each pixel: on the tile of 1
+    /// sample, continued, only the plain mean was measured, at .84 to 1.1 times this error.
     pub error: f32,
-    /// The same of the image filtered by a Gaussian of 2.1 pixels.
+    /// The same of the image filtered by a Gaussian of 2.1 pixels, with the same exceptions: from 64 stratified samples on it is that
+    /// of Sobol points scrambled in each pixel; the plain mean of the tile of 1 sample, continued, has .92 to 1.4 times this.
     pub filtered_error: f32,
 }
 
@@ -161,7 +166,8 @@ const INDEPENDENT_SHARED: Table<Cell> = [
 ];
 
 /// Stratified samples of one pixel: leave-one-out errors do not see strata, and a fit may be many times worse.
-/// From 64 samples on the figures, here and below, are those of Sobol points scrambled in each pixel.
+/// From 64 samples on the figures, here and below, are those of Sobol points scrambled in each pixel;
+/// for 8 dims and 1 sample, of the tile of 2 dims.
 #[rustfmt::skip]
 const STRATIFIED_ALONE: Table<Cell> = [
     [plain(0.99, 0.045),         plain(0.2, 0.011),          plain(0.052, 0.0035),       plain(0.009, 0.012),        plain(0.0016, 0.0022)],
@@ -202,7 +208,7 @@ mod tests {
                     let of = recommend(dims, samples, sampling, share).unwrap();
                     let terms = of.config.terms().unwrap();
                     assert_eq!(terms == 1, of.method == Method::PlainMean);
-                    assert_eq!(of.config.dims, dims.min(of.config.dims));
+                    assert!(of.config.dims <= dims);
                     assert_eq!((of.config.stride, of.config.channels), (dims, 1));
                     assert_eq!(of.config.stratified, sampling == Sampling::Stratified);
                     assert!(share || of.method != Method::Shared);

@@ -321,9 +321,11 @@ static void recommendations()
 {
     nf_recommendation expected;
     CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, &expected), NF_OK);
-    const nf_recommendation actual = value_of(nf::recommend(2, 4, true, true));
+    const nf_recommendation actual = value_of(nf::recommend(2, 4, nf::sampling::stratified, true));
     CHECK(actual.method == expected.method && actual.config.order == expected.config.order);
-    CHECK(CODE(nf::recommend(0, 4, false, false)) == nf::status::range);
+    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_INDEPENDENT, 0, &expected), NF_OK);
+    CHECK(value_of(nf::recommend(2, 4, nf::sampling::independent, false)).method == expected.method);
+    CHECK(CODE(nf::recommend(0, 4, nf::sampling::independent, false)) == nf::status::range);
 }
 
 int main()
