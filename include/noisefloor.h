@@ -145,7 +145,8 @@ typedef struct nf_cv_config {
     // NF_BASIS_*
     uint32_t basis;
     // 1 if the samples are stratified (a tile, Sobol), 0 if independent. Leave-one-out errors cannot see
-    // stratification: with 1, NF_CV_ROBUST returns the plain mean.
+    // stratification: with 1, NF_CV_ROBUST of one pixel is the plain mean. Fits shared by pixels correct all the same, and
+    // take their std_error from the pixels' spread.
     uint32_t stratified;
     // If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (figure 4.15).
     uint32_t slices;
@@ -376,7 +377,7 @@ nf_status nf_cv_accumulator_reset(nf_cv_accumulator *accumulator);
 typedef struct nf_recommendation {
     // How to make estimates of the samples: NF_METHOD_*
     uint32_t method;
-    // The `stride` of nf_cv_image for NF_METHOD_SHARED.
+    // The `stride` of nf_cv_image for NF_METHOD_SHARED, for windows of 8. With surfaces leave it 0, for overlapping windows.
     uint32_t image_stride;
     // Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued as a
     // Sobol sequence.

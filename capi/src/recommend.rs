@@ -24,7 +24,7 @@ pub const NF_METHOD_SHARED: u32 = 2;
 pub struct nf_recommendation {
     /// How to make estimates of the samples: NF_METHOD_*
     pub method: u32,
-    /// The `stride` of nf_cv_image for NF_METHOD_SHARED.
+    /// The `stride` of nf_cv_image for NF_METHOD_SHARED, for windows of 8. With surfaces leave it 0, for overlapping windows.
     pub image_stride: u32,
     /// Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued as a
     /// Sobol sequence.

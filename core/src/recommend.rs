@@ -46,7 +46,8 @@ pub struct Recommendation {
     /// With which configuration. Its `channels` is 1: set your own. Its `stride` is all dims, its `dims` those that are
     /// regressed.
     pub config: Config,
-    /// The [`Image::stride`](crate::control_variate::Image::stride) of [`Method::Shared`].
+    /// The [`Image::stride`](crate::control_variate::Image::stride) of [`Method::Shared`], for windows of 8. With surfaces
+    /// leave it 0, for overlapping windows.
     pub image_stride: usize,
     /// Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued as a
     /// Sobol sequence that all pixels share.

@@ -13,17 +13,18 @@ const STRICT: [&str; 6] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O2", "-
 const SIZE: usize = 32;
 
 /// integrate.c: its estimate must be closer than the mean.
-pub(crate) fn integrate(archive: &Path) -> Result<Outcome> {
-    let program = output("integrate")?;
+pub(crate) fn integrate(archive: &Path, name: &str) -> Result<Outcome> {
+    let program = output(name)?;
     let mut compiler = run::compiler("CC", "cc");
-    compiler.arg("-std=c99").args(STRICT).arg("examples_c/integrate.c").arg(archive).args(["-lm", "-o"]).arg(&program);
+    let source = format!("examples_c/{name}.c");
+    compiler.arg("-std=c99").args(STRICT).arg(source).arg(archive).args(["-lm", "-o"]).arg(&program);
     run::check(&mut compiler)?;
     let text = run::read(&mut run::command(&program))?;
     print!("{text}");
     let error = |name: &str| -> Result<f64> {
         let line = text.lines().find(|line| line.starts_with(name));
         let value = line.and_then(|line| line.split_whitespace().last()).and_then(|word| word.parse().ok());
-        value.with_context(|| format!("integrate printed no error of `{name}`"))
+        value.with_context(|| format!("the example printed no error of `{name}`"))
     };
     let (mean, ours) = (error("mean")?.abs(), error("noisefloor")?.abs());
     if ours >= mean {

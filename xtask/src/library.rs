@@ -30,14 +30,16 @@ pub(crate) fn build() -> Result<PathBuf> {
             .args(["--wildcard", "--keep-global-symbol=nf_*", "--strip-debug", "-R", ".eh_frame", "-R", ".llvmbc"])
             .arg(&object),
     )?;
-    // `ar` adds to an archive that exists.
-    match fs::remove_file(&archive) {
+    // `ar` adds to an archive that exists, and another program may be linking the one in place.
+    let new = output.join("libnoisefloor.a.new");
+    match fs::remove_file(&new) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            return Err(error).with_context(|| format!("cannot replace {}", archive.display()));
+            return Err(error).with_context(|| format!("cannot replace {}", new.display()));
         }
         _ => {}
     }
-    run::check(run::command("ar").arg("rcs").arg(&archive).arg(&object))?;
+    run::check(run::command("ar").arg("rcs").arg(&new).arg(&object))?;
+    fs::rename(&new, &archive).with_context(|| format!("cannot replace {}", archive.display()))?;
     Ok(archive)
 }
 

@@ -74,7 +74,8 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps
         .run("C tests as C++17, including noisefloor.hpp", || c_tests::run(c_tests::Language::Cpp17, &[], &archive()?));
     steps.run("C++ wrapper, with and without exceptions", || c_tests::wrapper(&archive()?));
-    steps.run("examples_c/integrate.c", || examples::integrate(&archive()?));
+    steps.run("examples_c/integrate.c", || examples::integrate(&archive()?, "integrate"));
+    steps.run("examples_c/shared.c", || examples::integrate(&archive()?, "shared"));
     steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
         examples::path_tracer(&archive()?)
     });

@@ -79,7 +79,8 @@ pub struct nf_cv_config {
     /// NF_BASIS_*
     pub basis: u32,
     /// 1 if the samples are stratified (a tile, Sobol), 0 if independent. Leave-one-out errors cannot see
-    /// stratification: with 1, NF_CV_ROBUST returns the plain mean.
+    /// stratification: with 1, NF_CV_ROBUST of one pixel is the plain mean. Fits shared by pixels correct all the same, and
+    /// take their std_error from the pixels' spread.
     pub stratified: u32,
     /// If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (figure 4.15).
     pub slices: u32,

@@ -94,7 +94,8 @@ pub struct Config {
     /// The functions that are combined.
     pub basis: Family,
     /// Whether the samples are stratified (a tile, Sobol) instead of independent. The leave-one-out errors that the
-    /// robust mixture trusts cannot see stratification, so [`Estimator::Robust`] then returns the mean.
+    /// robust mixture trusts cannot see stratification, so [`Estimator::Robust`] of one pixel is then the
+    /// mean. Fits shared by pixels correct all the same, and take their standard errors from the pixels' spread.
     pub stratified: bool,
     /// If above 1, the last coordinate picks one of this many equally likely alternatives (figure 4.15).
     pub slices: usize,
