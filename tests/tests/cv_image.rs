@@ -9,7 +9,7 @@ use noisefloor::control_variate::{
     Color, Config, Estimate, Estimator, Image, NonFinite, Ridge, Samples, estimate_image, image_workspace_len,
 };
 use noisefloor_tests::random::SplitMix64;
-use noisefloor_tests::shared::{block, image, image_narrow};
+use noisefloor_tests::shared::{block, block_narrow, image, image_narrow};
 use proptest::prelude::*;
 
 const SHARED: [Estimator; 3] = [Estimator::Robust, Estimator::LeaveOneOut, Estimator::KFold];
@@ -17,6 +17,8 @@ const SHARED: [Estimator; 3] = [Estimator::Robust, Estimator::LeaveOneOut, Estim
 type Call = fn(&Config, &Image<'_>, Samples<'_>) -> Result<Vec<Estimate>, Error>;
 
 const BOTH: [Call; 2] = [image, image_narrow];
+/// The same of pixels in no order.
+const BLOCKS: [fn(&Config, usize, Samples<'_>) -> Result<Vec<Estimate>, Error>; 2] = [block, block_narrow];
 
 /// Points of an image, and values that change across it.
 fn scene(pixels: usize, n: usize, channels: usize, rng: &mut SplitMix64) -> (Vec<f32>, Vec<f32>) {
@@ -179,7 +181,7 @@ fn precisions_agree() {
     }
 }
 
-/// Channels are fitted together but each for itself; pixels in no order are a window without axes.
+/// Channels are fitted together but each for itself.
 #[test]
 fn channels_are_separate() {
     let mut rng = SplitMix64::new(7);
@@ -193,10 +195,90 @@ fn channels_are_separate() {
             assert!((all.mean[channel] - alone.mean[0]).abs() <= 1e-6 * largest(&own) as f32);
         }
     }
-    let (u, f) = scene(1, 8, 1, &mut rng);
-    let config = Config::new(2, 2, 1);
-    let alone = image(&config, &Image::new(1, 1), Samples::new(&u, &f)).unwrap();
-    assert_eq!(alone, block(&config, 1, Samples::new(&u, &f)).unwrap());
+}
+
+/// Pixels in no order are a block, whatever their width, height and frames, bit by bit.
+#[test]
+fn unordered_is_a_block() {
+    let mut rng = SplitMix64::new(9);
+    for n in [1, 2, 8] {
+        let (u, f) = scene(12, n, 2, &mut rng);
+        let samples = Samples::new(&u, &f);
+        for estimator in SHARED {
+            let config = Config { estimator, ..Config::new(2, 2, 2) };
+            for (call, block) in BOTH.into_iter().zip(BLOCKS) {
+                let expected = block(&config, 12, samples).unwrap();
+                let of = Image::unordered(12);
+                for same in [
+                    of,
+                    Image { width: 4, height: 3, ..of },
+                    Image { width: 2, height: 2, frames: 3, ..of },
+                    Image { width: 1, frames: 12, window: 1, ..of },
+                    Image { window: 2, stride: 99, ..of },
+                ] {
+                    assert_eq!(call(&config, &same, samples).unwrap(), expected, "{same:?}");
+                }
+                // And places matter to pixels that have them.
+                assert!(call(&config, &Image::new(12, 1), samples).unwrap() != expected, "{estimator:?} {n}");
+            }
+        }
+    }
+}
+
+/// A block with surfaces is a block of each, with its factors, bit by bit.
+#[test]
+fn unordered_surfaces_are_blocks() {
+    let mut rng = SplitMix64::new(10);
+    for n in [1, 2, 8] {
+        let (u, f) = scene(40, n, 2, &mut rng);
+        let surfaces: Vec<u32> = (0..40).map(|_| rng.below(4) as u32 * 1_000_000_007).collect();
+        let factors: Vec<f32> = (0..80).map(|_| [0.0, 0.3, 1.0, 7.0][rng.below(4)]).collect();
+        for factors in [&[][..], &factors] {
+            for (estimator, call) in SHARED.into_iter().flat_map(|estimator| BOTH.map(|call| (estimator, call))) {
+                let config = Config { estimator, ..Config::new(2, 2, 2) };
+                let of = Image { surfaces: &surfaces, factors, width: 5, height: 2, frames: 4, ..Image::unordered(40) };
+                let all = call(&config, &of, Samples::new(&u, &f)).unwrap();
+                for surface in [0, 1, 2, 3].map(|surface| surface * 1_000_000_007) {
+                    let own: Vec<usize> = (0..40).filter(|&pixel| surfaces[pixel] == surface).collect();
+                    let take = |from: &[f32], each: usize| -> Vec<f32> {
+                        own.iter().flat_map(|pixel| from[pixel * each..(pixel + 1) * each].to_vec()).collect()
+                    };
+                    let (u, f) = (take(&u, 2 * n), take(&f, 2 * n));
+                    let factors = if factors.is_empty() { vec![] } else { take(factors, 2) };
+                    let alone = Image { factors: &factors, ..Image::unordered(own.len()) };
+                    let alone = call(&config, &alone, Samples::new(&u, &f)).unwrap();
+                    let together: Vec<Estimate> = own.iter().map(|&pixel| all[pixel]).collect();
+                    assert_eq!(together, alone, "{estimator:?} {n} {surface}");
+                }
+            }
+        }
+    }
+}
+
+/// Surfaces of a block are told apart in at most `Image::MAX_WINDOW` pixels; without, there is no limit.
+#[test]
+fn unordered_limit() {
+    let config = Config::new(2, 1, 1);
+    let mut rng = SplitMix64::new(11);
+    for (pixels, fits) in [(1024, true), (1025, false)] {
+        let (u, f) = scene(pixels, 1, 1, &mut rng);
+        let samples = Samples::new(&u, &f);
+        let surfaces: Vec<u32> = (0..pixels).map(|pixel| pixel as u32 % 3).collect();
+        for call in BOTH {
+            assert_eq!(call(&config, &Image::unordered(pixels), samples).unwrap().len(), pixels);
+            let of = Image { surfaces: &surfaces, ..Image::unordered(pixels) };
+            let result = call(&config, &of, samples);
+            assert_eq!(result.as_ref().err(), if fits { None } else { Some(&Error::Range) });
+        }
+        if !fits {
+            // With any workspace, and in rows too.
+            let of = Image { surfaces: &surfaces, width: 205, height: 5, ..Image::unordered(pixels) };
+            let never = |_, _| panic!("called on an error");
+            assert_eq!(estimate_image(&config, &of, samples, &mut vec![0.0; 1 << 20], never), Err(Error::Range));
+        }
+    }
+    let none = Image::unordered(0);
+    assert_eq!(image_workspace_len::<f64>(&config, &none, 1), Err(Error::Range));
 }
 
 #[test]
@@ -302,6 +384,7 @@ proptest! {
         if seed % 3 == 0 {
             of.factors = &factors;
         }
+        of.unordered = seed % 5 == 0;
         for call in BOTH {
             let estimates = call(&config, &of, Samples::new(&u, &f)).unwrap();
             for estimate in &estimates {

@@ -1,0 +1,429 @@
+//! Shared fits that choose, robust and by two halves, against their definition: every candidate a fit of its own, solved
+//! for each pixel that is left out, every window by itself.
+
+mod cv_support;
+
+use cv_support::{design, largest, points, smooth, wide};
+use noisefloor::control_variate::{Config, Estimate, Estimator, Image, Samples};
+use noisefloor_tests::legendre;
+use noisefloor_tests::oracle::{Design, Regression};
+use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::shared::{block, block_narrow, image, image_narrow};
+
+/// Within this of the largest value, of the gain, and of the standard error, in `f64` and in `f32`.
+const TOLERANCE: [f64; 2] = [1e-6, 1e-3];
+/// Spreads of few pixels that are nearly their trend have few digits in `f32`.
+const SMALL: [f64; 2] = [1e-6, 0.05];
+
+/// How candidates are judged, and pixels of overlapping windows averaged.
+#[derive(Clone, Copy, Debug)]
+struct Rule {
+    /// Trust in a candidate of relative spread r is r^(-sharpness nu) at nu degrees of freedom.
+    sharpness: f64,
+    /// Trust in the mean, relative to the number of candidates.
+    prior: f64,
+    /// The mean keeps at least prior e^(-nu^2 / caution) of any candidate's trust.
+    caution: f64,
+    /// The penalty of all fits, per sample.
+    ridge: f64,
+    /// Whether what is nearer the centre of its window counts more.
+    hat: bool,
+    /// Whether a half chooses for the other.
+    crossed: bool,
+    /// Whether spreads are about the linear trend, or about the mean.
+    trend: bool,
+}
+
+const RULE: Rule =
+    Rule { sharpness: 1.0 / 6.0, prior: 8.0, caution: 14.0, ridge: 0.003, hat: true, crossed: true, trend: true };
+
+/// A pixel within a window.
+#[derive(Clone)]
+struct Member {
+    pixel: usize,
+    /// From -1 to 1 along each axis.
+    at: Vec<f64>,
+}
+
+/// Estimates of one channel.
+struct Fits {
+    /// The plain means of all members, then each candidate's estimates.
+    estimates: Vec<Vec<f64>>,
+    /// Sums of squares about the trend, of each.
+    spreads: Vec<f64>,
+    freedom: f64,
+}
+
+/// What a pixel should come to.
+#[derive(Clone, Default)]
+struct Expected {
+    means: Vec<f64>,
+    std_errors: Vec<f64>,
+    gain: f64,
+}
+
+struct Case {
+    config: Config,
+    width: usize,
+    height: usize,
+    unordered: bool,
+    n: usize,
+    u: Vec<f32>,
+    f: Vec<f32>,
+    surfaces: Vec<u32>,
+    factors: Vec<f32>,
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn without(mut a: Vec<f64>, unit: &[f64]) -> Vec<f64> {
+    let along = dot(&a, unit);
+    a.iter_mut().zip(unit).for_each(|(a, unit)| *a -= along * unit);
+    a
+}
+
+impl Case {
+    /// Integrands that change across the image, another in each channel.
+    fn new(estimator: Estimator, [width, height]: [usize; 2], unordered: bool, n: usize, rng: &mut SplitMix64) -> Self {
+        let config = Config { estimator, ..Config::new(2, 3, 2) };
+        let u = points(width * height * n, 2, rng);
+        let mut f = vec![];
+        for (sample, u) in wide(&u).chunks(2).enumerate() {
+            let (x, y) = ((sample / n % width) as f64, (sample / n / width) as f64);
+            let first = smooth(u) * (1.0 + 0.02 * x) + 0.03 * y;
+            let second = f64::from(u8::from(u[0] + 0.5 * u[1] < 0.6 + 0.02 * x - 0.01 * y)) + 0.2 * rng.uniform();
+            f.extend([first as f32, 2.0 * second as f32]);
+        }
+        Self { config, width, height, unordered, n, u, f, surfaces: vec![], factors: vec![] }
+    }
+
+    fn pixels(&self) -> usize {
+        self.width * self.height
+    }
+
+    fn with_surfaces(mut self, count: usize, rng: &mut SplitMix64) -> Self {
+        self.surfaces = (0..self.pixels()).map(|_| 3 + rng.below(count) as u32).collect();
+        self
+    }
+
+    /// Nearly linear and alike, so that fits are far better than the mean.
+    fn with_planes(mut self) -> Self {
+        for (f, u) in self.f.chunks_mut(2).zip(self.u.chunks(2)) {
+            f.copy_from_slice(&[u[0] - 2.0 * u[1] + 0.01 * (9.0 * u[0]).sin(), 1.0 - u[1]]);
+        }
+        self
+    }
+
+    fn with_factors(mut self, rng: &mut SplitMix64) -> Self {
+        self.factors = (0..2 * self.pixels()).map(|_| [0.0, 0.5, 1.0, 2.0][rng.below(4)]).collect();
+        self
+    }
+
+    fn factor(&self, pixel: usize, channel: usize) -> f64 {
+        match self.factors.get(2 * pixel + channel) {
+            Some(&factor) if factor > 0.0 => f64::from(factor),
+            _ => 1.0,
+        }
+    }
+
+    /// A pixel's values of a channel, as they are.
+    fn values(&self, pixel: usize, channel: usize) -> Vec<f64> {
+        (0..self.n).map(|i| f64::from(self.f[2 * (pixel * self.n + i) + channel])).collect()
+    }
+
+    /// The members of each window, row by row.
+    fn windows(&self) -> Vec<Vec<Member>> {
+        if self.unordered {
+            return vec![(0..self.pixels()).map(|pixel| Member { pixel, at: vec![] }).collect()];
+        }
+        // Each fourth pixel begins a window of eight, and the last window ends where the image does.
+        let starts = |extent: usize| {
+            let last = extent.saturating_sub(8);
+            (0..last).step_by(4).chain([last]).collect::<Vec<usize>>()
+        };
+        let place = |at: usize, extent: usize| (2 * at + 1) as f64 / extent.min(8) as f64 - 1.0;
+        let mut windows = vec![];
+        for top in starts(self.height) {
+            for left in starts(self.width) {
+                let mut window = vec![];
+                for y in 0..self.height.min(8) {
+                    for x in 0..self.width.min(8) {
+                        let at = vec![place(x, self.width), place(y, self.height)];
+                        window.push(Member { pixel: (top + y) * self.width + left + x, at });
+                    }
+                }
+                windows.push(window);
+            }
+        }
+        windows
+    }
+
+    /// How many functions have products with the axes, in fits to a group and to its halves: degree 2 or 1 or none, as far as
+    /// there are two samples for each column.
+    fn moving(&self, group: &[Member], degrees: &[usize]) -> usize {
+        let axes = group[0].at.len();
+        let up_to = |degree: usize| degrees.iter().filter(|&&other| other <= degree).count();
+        let fits = |&moving: &usize| 2 * (1 + axes + degrees.len() + axes * moving) <= group.len() * self.n;
+        if axes == 0 { 0 } else { [up_to(2), up_to(1)].into_iter().find(fits).unwrap_or(0) }
+    }
+
+    /// Every candidate's estimates from the other members' samples.
+    fn fits(&self, rule: &Rule, group: &[Member], moving: usize, degrees: &[usize], channel: usize) -> Fits {
+        let (n, axes) = (self.n, group[0].at.len());
+        let basis = design(&self.config, &wide(&self.u));
+        let scaled = |at: &[f64]| at.iter().map(|at| 3.0_f64.sqrt() * at).collect::<Vec<f64>>();
+        let (mut rows, mut values, mut estimates) = (vec![], vec![], vec![vec![]]);
+        for member in group {
+            let own: Vec<f64> = self
+                .values(member.pixel, channel)
+                .iter()
+                .map(|value| value / self.factor(member.pixel, channel))
+                .collect();
+            estimates[0].push(own.iter().sum::<f64>() / n as f64);
+            values.extend(own);
+            for functions in &basis.rows[member.pixel * n..(member.pixel + 1) * n] {
+                let place = scaled(&member.at);
+                let products = place.iter().flat_map(|place| functions[..moving].iter().map(move |own| place * own));
+                rows.push([&place[..], functions, &products.collect::<Vec<f64>>()].concat());
+            }
+        }
+        let products = (0..axes).flat_map(|_| basis.weights[..moving].iter().map(|weight| 8.0 * weight));
+        let weights = [&vec![1e-3; axes][..], &basis.weights, &products.collect::<Vec<f64>>()].concat();
+
+        let mut ends: Vec<usize> =
+            (1..=3).map(|most| axes + degrees.iter().filter(|&&degree| degree <= most).count()).collect();
+        ends.push(weights.len());
+        ends.dedup();
+        for end in ends {
+            let rows = rows.iter().map(|row: &Vec<f64>| row[..end].to_vec()).collect();
+            let whole = Design { rows, weights: weights[..end].to_vec() };
+            let each = (0..group.len()).map(|left_out| {
+                let others: Vec<usize> = (0..values.len()).filter(|sample| sample / n != left_out).collect();
+                let f: Vec<f64> = others.iter().map(|&sample| values[sample]).collect();
+                let mut fit = Regression::fit(&whole.select(&others), &f, rule.ridge * others.len() as f64);
+                // The constant and the places follow the signal and correct nothing.
+                fit.slopes[..axes].fill(0.0);
+                let own = left_out * n..(left_out + 1) * n;
+                own.map(|sample| values[sample] - fit.control(&whole.rows[sample])).sum::<f64>() / n as f64
+            });
+            let each = each.collect();
+            estimates.push(each);
+        }
+        // An orthonormal basis of the linear functions of the place.
+        let mut trend: Vec<Vec<f64>> = vec![];
+        for axis in 0..=if rule.trend { axes } else { 0 } {
+            let along: Vec<f64> =
+                group.iter().map(|member| if axis == 0 { 1.0 } else { member.at[axis - 1] }).collect();
+            let rest = trend.iter().fold(along, |rest, unit| without(rest, unit));
+            let length = dot(&rest, &rest).sqrt();
+            if length > 1e-9 {
+                trend.push(rest.iter().map(|value| value / length).collect());
+            }
+        }
+        let freedom = (group.len() - trend.len()) as f64;
+        let spread = |estimates: &Vec<f64>| {
+            let rest = trend.iter().fold(estimates.clone(), |rest, unit| without(rest, unit));
+            if freedom > 0.0 { dot(&rest, &rest) } else { 0.0 }
+        };
+        let spreads = estimates.iter().map(spread).collect();
+        Fits { estimates, spreads, freedom }
+    }
+
+    /// By the definition, with what windows say of a pixel averaged.
+    fn expected(&self, rule: &Rule) -> Vec<Expected> {
+        let terms = legendre::terms(2, 3);
+        let degrees: Vec<usize> = terms[1..].iter().map(|term| legendre::degree(term)).collect();
+        let empty = Expected { means: vec![0.0; 2], std_errors: vec![0.0; 2], gain: 0.0 };
+        let (mut sums, mut total) = (vec![empty; self.pixels()], vec![0.0; self.pixels()]);
+        for window in self.windows() {
+            let mut surfaces: Vec<u32> = window.iter().map(|member| self.surface(member.pixel)).collect();
+            surfaces.sort_unstable();
+            surfaces.dedup();
+            for surface in surfaces {
+                let own = window.iter().filter(|member| self.surface(member.pixel) == surface);
+                let group: Vec<Member> = own.cloned().collect();
+                let halves = self.config.estimator == Estimator::KFold;
+                if group.len() < if halves { 4 } else { 2 } {
+                    continue;
+                }
+                let moving = self.moving(&group, &degrees);
+                for channel in 0..2 {
+                    let fits = self.fits(rule, &group, moving, &degrees, channel);
+                    let choices = [0, 1].map(|turn| {
+                        if !halves {
+                            return weights(rule, &fits);
+                        }
+                        let judges = if rule.crossed { 1 - turn } else { turn };
+                        let half: Vec<Member> = group.iter().skip(judges).step_by(2).cloned().collect();
+                        weights(rule, &self.fits(rule, &half, moving, &degrees, channel))
+                    });
+                    for (index, member) in group.iter().enumerate() {
+                        let weights = &choices[index % 2];
+                        let mixed = dot(weights, &fits.spreads);
+                        let ratio = if fits.spreads[0] > 0.0 { mixed / fits.spreads[0] } else { 1.0 };
+                        let near: f64 = member.at.iter().map(|at| 1.0 - at.abs()).product();
+                        let near = if rule.hat { near } else { 1.0 };
+                        let estimate: f64 = weights.iter().zip(&fits.estimates).map(|(w, each)| w * each[index]).sum();
+                        let factor = self.factor(member.pixel, channel);
+                        let error = if self.n > 1 { ratio.sqrt() } else { (mixed / fits.freedom).sqrt() * factor };
+                        let sums = &mut sums[member.pixel];
+                        sums.means[channel] += near * (estimate - fits.estimates[0][index]) * factor;
+                        sums.std_errors[channel] += near * error;
+                        sums.gain += near * ratio / 2.0;
+                        total[member.pixel] += near / 2.0;
+                    }
+                }
+            }
+        }
+        for (pixel, (sums, total)) in sums.iter_mut().zip(total).enumerate() {
+            sums.gain = if total > 0.0 { sums.gain / total } else { 1.0 };
+            for channel in 0..2 {
+                let values = self.values(pixel, channel);
+                let count = self.n as f64;
+                let mean = values.iter().sum::<f64>() / count;
+                let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+                let correction = if total > 0.0 { sums.means[channel] / total } else { 0.0 };
+                sums.means[channel] = mean + correction;
+                let own = if self.n > 1 { (squares / (count * (count - 1.0))).sqrt() } else { 1.0 };
+                let unknown = if self.n > 1 { 1.0 } else { f64::INFINITY };
+                let spread = if total > 0.0 { sums.std_errors[channel] / total } else { unknown };
+                sums.std_errors[channel] = own * spread;
+            }
+        }
+        sums
+    }
+
+    fn surface(&self, pixel: usize) -> u32 {
+        self.surfaces.get(pixel).copied().unwrap_or(0)
+    }
+
+    /// In `f64` and `f32`.
+    fn estimates(&self) -> [Vec<Estimate>; 2] {
+        let samples = Samples::new(&self.u, &self.f);
+        if self.unordered && self.surfaces.is_empty() && self.factors.is_empty() {
+            return [block, block_narrow].map(|call| call(&self.config, self.pixels(), samples).unwrap());
+        }
+        let (surfaces, factors) = (&self.surfaces[..], &self.factors[..]);
+        let of = Image { unordered: self.unordered, surfaces, factors, ..Image::new(self.width, self.height) };
+        [image, image_narrow].map(|call| call(&self.config, &of, samples).unwrap())
+    }
+
+    /// The largest differences of the means, relative to the largest value, of gain, and of standard errors.
+    fn errors(&self, rule: &Rule) -> [[f64; 3]; 2] {
+        let expected = self.expected(rule);
+        let scale = largest(&self.f);
+        self.estimates().map(|estimates| {
+            let mut errors = [0.0_f64; 3];
+            for (estimate, expected) in estimates.iter().zip(&expected) {
+                errors[1] = errors[1].max((f64::from(estimate.gain) - expected.gain).abs());
+                for channel in 0..2 {
+                    let error = (f64::from(estimate.mean[channel]) - expected.means[channel]).abs();
+                    errors[0] = errors[0].max(error / scale);
+                    let pair = [f64::from(estimate.std_error[channel]), expected.std_errors[channel]];
+                    if pair[0] != pair[1] {
+                        errors[2] = errors[2].max((pair[0] - pair[1]).abs() / scale);
+                    }
+                }
+            }
+            errors
+        })
+    }
+
+    fn check(&self, what: &str) {
+        self.check_within(what, TOLERANCE);
+    }
+
+    fn check_within(&self, what: &str, tolerance: [f64; 2]) {
+        let errors = self.errors(&RULE);
+        let line = format!("{what}, {:?}, {} samples: {errors:?}", self.config.estimator, self.n);
+        println!("{line}");
+        for (errors, tolerance) in errors.iter().zip(tolerance) {
+            assert!(errors.iter().all(|&error| error < tolerance), "{line}");
+        }
+    }
+}
+
+/// How far the mean and the candidates are trusted.
+fn weights(rule: &Rule, fits: &Fits) -> Vec<f64> {
+    let (plain, candidates) = fits.spreads.split_first().unwrap();
+    let mut trust = vec![0.0; fits.spreads.len()];
+    trust[0] = 1.0;
+    if *plain > 0.0 {
+        let power = rule.sharpness * fits.freedom;
+        let logarithms: Vec<f64> = candidates.iter().map(|spread| -power * (spread / plain).ln()).collect();
+        let highest = logarithms.iter().copied().fold(0.0, f64::max);
+        let count = candidates.len() as f64;
+        let cautious = (highest - fits.freedom.powi(2) / rule.caution).max(0.0);
+        trust[0] = rule.prior * count * (cautious - highest).exp();
+        trust.iter_mut().skip(1).zip(logarithms).for_each(|(trust, logarithm)| *trust = (logarithm - highest).exp());
+    }
+    let sum: f64 = trust.iter().sum();
+    trust.iter().map(|trust| trust / sum).collect()
+}
+
+const CHOOSING: [Estimator; 2] = [Estimator::Robust, Estimator::KFold];
+
+/// Four windows of 8 x 8 pixels that overlap; at 1 and 2 samples one factor, at 8 one for each pixel.
+#[test]
+fn images() {
+    let mut rng = SplitMix64::new(1);
+    for estimator in CHOOSING {
+        for n in [1, 2, 8] {
+            Case::new(estimator, [11, 9], false, n, &mut rng).check("image");
+        }
+    }
+}
+
+/// Two surfaces, and nine of which some have too few pixels; factors.
+#[test]
+fn images_with_surfaces_and_factors() {
+    let mut rng = SplitMix64::new(2);
+    for estimator in CHOOSING {
+        for n in [1, 2, 8] {
+            let case = |rng: &mut SplitMix64| Case::new(estimator, [9, 7], false, n, rng);
+            case(&mut rng).with_surfaces(2, &mut rng).check("two surfaces");
+            if estimator == Estimator::Robust {
+                case(&mut rng).with_surfaces(9, &mut rng).check_within("nine surfaces", SMALL);
+            }
+            case(&mut rng).with_surfaces(2, &mut rng).with_factors(&mut rng).check("two surfaces, factors");
+        }
+    }
+}
+
+/// Pixels in no order: few, where caution decides, more, and surfaces among them.
+#[test]
+fn blocks() {
+    let mut rng = SplitMix64::new(3);
+    for estimator in CHOOSING {
+        for n in [1, 2, 8] {
+            Case::new(estimator, [10, 1], true, n, &mut rng).check("block");
+            Case::new(estimator, [6, 1], true, n, &mut rng).with_planes().check_within("small block of planes", SMALL);
+            Case::new(estimator, [36, 1], true, n, &mut rng).check("large block");
+            let case = Case::new(estimator, [24, 1], true, n, &mut rng);
+            case.with_surfaces(2, &mut rng).with_factors(&mut rng).check("block with surfaces and factors");
+        }
+    }
+}
+
+/// The tests above can fail: by any number of the rule.
+#[test]
+fn the_oracle_is_sharp() {
+    let mut rng = SplitMix64::new(4);
+    let image = Case::new(Estimator::KFold, [11, 9], false, 1, &mut rng);
+    let block = Case::new(Estimator::Robust, [6, 1], true, 8, &mut rng).with_planes();
+    for (case, rule) in [
+        (&image, Rule { sharpness: 1.0 / 6.1, ..RULE }),
+        (&image, Rule { prior: 8.1, ..RULE }),
+        (&image, Rule { ridge: 0.0031, ..RULE }),
+        (&image, Rule { hat: false, ..RULE }),
+        (&image, Rule { crossed: false, ..RULE }),
+        (&image, Rule { trend: false, ..RULE }),
+        (&block, Rule { caution: 14.1, ..RULE }),
+    ] {
+        let [errors, _] = case.errors(&rule);
+        println!("{rule:?}: {errors:?}");
+        assert!(errors[0] > 10.0 * TOLERANCE[0], "{rule:?}: {errors:?}");
+    }
+}
