@@ -384,9 +384,7 @@ fn images_with_surfaces_and_factors() {
         for n in [1, 2, 8] {
             let case = |rng: &mut SplitMix64| Case::new(estimator, [9, 7], false, n, rng);
             case(&mut rng).with_surfaces(2, &mut rng).check("two surfaces");
-            if estimator == Estimator::Robust {
-                case(&mut rng).with_surfaces(9, &mut rng).check_within("nine surfaces", SMALL);
-            }
+            case(&mut rng).with_surfaces(9, &mut rng).check_within("nine surfaces", SMALL);
             case(&mut rng).with_surfaces(2, &mut rng).with_factors(&mut rng).check("two surfaces, factors");
         }
     }
