@@ -64,13 +64,22 @@ impl<R: Real> Spreads<R> {
                 let mut explained = products.map(|product| lanes::sum(&product));
                 let explained = explained.get_mut(..fixed).unwrap_or(&mut []);
                 ldlt::forward(&trend, explained);
-                let mut left = whole;
-                for (j, &value) in explained.iter().enumerate() {
-                    left -= value * value * ldlt::inverse_pivot(&trend, j);
+                ldlt::scale_by_inverse_diagonal(&trend, explained);
+                ldlt::backward(&trend, explained);
+                // The difference of the sums of squares would lose the digits that matter beside a strong trend.
+                let mut left = [R::ZERO; LANES];
+                for (places, row) in rows(places, fixed).zip(rows(estimates, (fits + 1) * channels)) {
+                    let mut rest = row.get(fit * channels + channel).copied().unwrap_or([R::ZERO; LANES]);
+                    for (place, &slope) in places.iter().zip(explained.iter()) {
+                        lanes::subtract_scaled(&mut rest, slope, place);
+                    }
+                    lanes::add_product(&mut left, &rest, &rest);
                 }
-                // What is left of a signal that is its trend is rounding noise.
-                let noise = whole * R::EPSILON * R::from_f64(64.0);
-                set(sums, channel, if left <= noise { R::ZERO } else { left });
+                let left = lanes::sum(&left);
+                // What is left of a signal that is its trend, or of as many pixels as the trend has coefficients, is
+                // rounding noise.
+                let noise = whole * R::EPSILON * R::EPSILON * R::from_f64(4096.0);
+                set(sums, channel, if left <= noise || freedom <= R::ZERO { R::ZERO } else { left });
             }
         }
         Self { sums, fits, freedom }
