@@ -16,9 +16,11 @@ const SHARED: [Estimator; 3] = [Estimator::Robust, Estimator::LeaveOneOut, Estim
 /// An estimate in one of the two precisions.
 type Call = fn(&Config, &Image<'_>, Samples<'_>) -> Result<Vec<Estimate>, Error>;
 
-const BOTH: [Call; 2] = [image, image_narrow];
 /// The same of pixels in no order.
-const BLOCKS: [fn(&Config, usize, Samples<'_>) -> Result<Vec<Estimate>, Error>; 2] = [block, block_narrow];
+type BlockCall = fn(&Config, usize, Samples<'_>) -> Result<Vec<Estimate>, Error>;
+
+const BOTH: [Call; 2] = [image, image_narrow];
+const BLOCKS: [BlockCall; 2] = [block, block_narrow];
 
 /// Points of an image, and values that change across it.
 fn scene(pixels: usize, n: usize, channels: usize, rng: &mut SplitMix64) -> (Vec<f32>, Vec<f32>) {
