@@ -267,7 +267,7 @@ nf_status nf_cv_gradient_descent(const nf_cv_config *config,
                                  nf_estimate *out);
 
 // Bytes of workspace that nf_cv_image_estimate() needs for n samples in each pixel; 0 as for nf_cv_workspace_size(), and
-// for an image that is NULL or has no pixels or too large windows.
+// for an image that is NULL, has no pixels, or has windows that nf_cv_image does not allow.
 size_t nf_cv_image_workspace_size(const nf_cv_config *config,
                                   const nf_cv_image *image,
                                   size_t n);

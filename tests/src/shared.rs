@@ -27,8 +27,13 @@ pub fn block_narrow(config: &Config, pixels: usize, samples: Samples<'_>) -> Res
     block_of::<f32>(config, pixels, samples)
 }
 
+/// [`block()`] or [`block_narrow()`], as `R` is.
+pub fn block_as<R: Real>(config: &Config, pixels: usize, samples: Samples<'_>) -> Result<Vec<Estimate>, Error> {
+    if R::NARROW { block_narrow(config, pixels, samples) } else { block(config, pixels, samples) }
+}
+
 fn image_of<R: Real>(config: &Config, image: &Image<'_>, samples: Samples<'_>) -> Result<Vec<Estimate>, Error> {
-    let pixels = image.width.saturating_mul(image.height).saturating_mul(image.frames);
+    let pixels = image.width.saturating_mul(image.height).saturating_mul(image.frames.max(1));
     let n = samples.f.len().checked_div(pixels.saturating_mul(config.channels)).unwrap_or(0);
     let mut workspace = vec![R::from_f64(f64::NAN); image_workspace_len::<R>(config, image, n)?];
     let mut out = Vec::new();

@@ -10,18 +10,11 @@ use noisefloor::control_variate::{
 use noisefloor::real::Real;
 use noisefloor_tests::oracle::Regression;
 use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::shared::block_as;
 use noisefloor_tests::statistics::rmse_ratio;
 
 fn block<R: Real>(config: &Config, u: &[f32], f: &[f32], pixels: usize) -> Result<Vec<Estimate>, Error> {
-    let n = f.len() / pixels / config.channels;
-    let mut workspace = vec![R::from_f64(f64::NAN); block_workspace_len::<R>(config, pixels, n)?];
-    let mut out = Vec::new();
-    let samples = Samples::new(u, f);
-    estimate_block(config, samples, pixels, &mut workspace, |index, estimate| {
-        assert_eq!(index, out.len());
-        out.push(estimate);
-    })?;
-    Ok(out)
+    block_as::<R>(config, pixels, Samples::new(u, f))
 }
 
 /// A fixed ridge: pixel by pixel the mean of f - b'phi with b from the other pixels' samples, within 4e-7 of the largest

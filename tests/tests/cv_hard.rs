@@ -15,6 +15,7 @@ use noisefloor::control_variate::{
 use noisefloor::real::Real;
 use noisefloor_tests::oracle::{Regression, RobustRule};
 use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::shared::block_as;
 use noisefloor_tests::statistics::rmse_ratio;
 
 const F64: f64 = 4e-7;
@@ -53,11 +54,7 @@ fn every_estimate(config: &Config, u: &[f32], f: &[f32]) -> Vec<(String, Estimat
 
 /// Estimates of a block of one row of pixels, of `n` samples each.
 fn block<R: Real>(config: &Config, u: &[f32], f: &[f32], n: usize) -> Vec<Estimate> {
-    let pixels = f.len() / n / config.channels;
-    let mut workspace = vec![R::from_f64(f64::NAN); block_workspace_len::<R>(config, pixels, n).unwrap()];
-    let mut out = Vec::new();
-    estimate_block(config, Samples::new(u, f), pixels, &mut workspace, |_, estimate| out.push(estimate)).unwrap();
-    out
+    block_as::<R>(config, f.len() / n / config.channels, Samples::new(u, f)).unwrap()
 }
 
 /// Sets of positions that starve or mislead a fit.

@@ -2,11 +2,10 @@
 
 use noisefloor::basis::Family;
 use noisefloor::control_variate::Regressor;
-use noisefloor::control_variate::{
-    Accumulator, Config, Estimate, Estimator, Samples, State, block_workspace_len, estimate_block,
-};
+use noisefloor::control_variate::{Accumulator, Config, Estimate, Estimator, Samples, State};
 use noisefloor::real::Real;
 use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::shared::block_as;
 
 /// exp(-x - y) and its integral.
 fn smooth(u: &[f32]) -> f32 {
@@ -56,10 +55,7 @@ fn block_of_many_pixels() {
         const PIXELS: usize = 1024;
         let config = Config::new(2, 2, 1);
         let (u, f) = draw(PIXELS * n, 5);
-        let mut workspace = vec![R::ZERO; block_workspace_len::<R>(&config, PIXELS, n).unwrap()];
-        let mut estimates = Vec::new();
-        estimate_block(&config, Samples::new(&u, &f), PIXELS, &mut workspace, |_, estimate| estimates.push(estimate))
-            .unwrap();
+        let estimates = block_as::<R>(&config, PIXELS, Samples::new(&u, &f)).unwrap();
         assert_eq!(estimates.len(), PIXELS);
         let square = |value: f64| (value - EXACT) * (value - EXACT);
         let plain: f64 = f.chunks(n).map(|f| square(f.iter().map(|&f| f64::from(f)).sum::<f64>() / n as f64)).sum();

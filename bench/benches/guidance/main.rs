@@ -13,7 +13,7 @@ use anyhow::{Context, Result};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use study::{COUNTS, DIMS};
 
 /// Measures errors and times of samplers and estimators, and prints tables.
@@ -26,17 +26,11 @@ struct Options {
     #[arg(long, value_delimiter = ',', default_values_t = DIMS)]
     dims: Vec<usize>,
     /// Where tables.md and cells.csv go.
-    #[arg(long, default_value_os_t = default_output())]
+    #[arg(long, default_value_os_t = noisefloor_bench::output("guidance"))]
     output: PathBuf,
     /// What cargo adds.
     #[arg(long, hide = true)]
     bench: bool,
-}
-
-fn default_output() -> PathBuf {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder));
-    target.join("guidance")
 }
 
 fn main() -> Result<()> {

@@ -16,7 +16,7 @@ use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use noisefloor_bench::{Door, c_abi};
 use noisefloor_tests::integrands;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Measures error against speed and writes a report.
 #[derive(Parser)]
@@ -25,17 +25,11 @@ struct Options {
     #[arg(long)]
     full: bool,
     /// Where report.md, cells.csv and speed.csv go.
-    #[arg(long, default_value_os_t = default_output())]
+    #[arg(long, default_value_os_t = noisefloor_bench::output("bench-report"))]
     output: PathBuf,
     /// What cargo adds.
     #[arg(long, hide = true)]
     bench: bool,
-}
-
-fn default_output() -> PathBuf {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder));
-    target.join("bench-report")
 }
 
 /// All that a run measures.

@@ -85,7 +85,7 @@ pub unsafe extern "C" fn nf_cv_block_estimate(
 }
 
 /// Bytes of workspace that nf_cv_image_estimate() needs for n samples in each pixel; 0 as for nf_cv_workspace_size(), and
-/// for an image that is NULL or has no pixels or too large windows.
+/// for an image that is NULL, has no pixels, or has windows that nf_cv_image does not allow.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_workspace_size(
     config: *const nf_cv_config,

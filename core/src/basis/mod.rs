@@ -150,12 +150,6 @@ impl Basis {
         self.shape.columns()
     }
 
-    /// How many leading functions are of degree one.
-    #[inline(always)]
-    pub fn first_degree(&self) -> usize {
-        if self.shape.order > 0 { self.shape.continuous + self.shape.slices } else { 0 }
-    }
-
     /// The ridge penalty of each column, relative: 4^(degree - 1) times the number of columns of that degree.
     ///
     /// High degrees are less often needed, and the more functions share a degree the less each one explains.

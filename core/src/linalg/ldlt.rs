@@ -145,14 +145,20 @@ pub(crate) fn forward_each<R: Real>(factors: &[Lanes<R>], first: usize, x: &mut 
     }
 }
 
-/// X := A^-1 X for eight systems side by side.
+/// X := D^-1 X for eight systems side by side.
 #[inline(always)]
-pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
-    forward_each(factors, 0, x);
+pub(crate) fn scale_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
     for (j, value) in x.iter_mut().enumerate() {
         let inverse = row(factors, j).last().copied().unwrap_or([R::ZERO; LANES]);
         *value = lanes::zip(value, &inverse, |value, inverse| value * inverse);
     }
+}
+
+/// X := A^-1 X for eight systems side by side.
+#[inline(always)]
+pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
+    forward_each(factors, 0, x);
+    scale_each(factors, x);
     for j in (0..x.len()).rev() {
         let (before, from_j) = x.split_at_mut_checked(j).unwrap_or((&mut [], &mut []));
         let value = from_j.first().copied().unwrap_or([R::ZERO; LANES]);

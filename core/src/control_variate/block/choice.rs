@@ -15,7 +15,7 @@ use crate::rows::rows;
 /// correlated; what the trend takes away is almost only signal.
 pub(super) struct Spreads<R> {
     /// The plain mean's first.
-    pub(super) sums: [PerChannel<R>; MAX_FITS + 1],
+    sums: [PerChannel<R>; MAX_FITS + 1],
     pub(super) fits: usize,
     /// Pixels less the trend's coefficients.
     pub(super) freedom: R,

@@ -77,10 +77,7 @@ impl Problem<'_> {
                 *y = if j < fixed { [R::ZERO; LANES] } else { sum.map(|sum| sum * inverse) };
             }
             ldlt::forward_each(gram, fixed, y);
-            for (j, y) in y.iter_mut().enumerate() {
-                let pivot = row(gram, j).last().copied().unwrap_or([R::ZERO; LANES]);
-                *y = lanes::zip(y, &pivot, |y, pivot| y * pivot);
-            }
+            ldlt::scale_each(gram, y);
             let mut corrected = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
             for (rhs, (own, corrected)) in rows_mut(rhs, width).zip(rows(own_rhs, width).zip(&mut corrected)) {
                 ldlt::forward_each(gram, 0, rhs);

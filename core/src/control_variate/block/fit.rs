@@ -18,6 +18,7 @@ use crate::rows::{rows, rows_mut};
 
 /// Ridge strength per sample if the caller gives none.
 const STRENGTH: f64 = 0.003;
+
 /// Whether pixels of `n` samples are few enough to leave their samples out of one factor of `columns` columns.
 fn has_few(n: usize, columns: usize) -> bool {
     n == 1 || 4 * n <= columns
@@ -84,7 +85,6 @@ pub(super) struct Group<'a, R> {
     pub(super) units: [Units<R>; Config::MAX_CHANNELS],
     /// Panel after panel: the plain means of all channels, then each fit's estimates.
     estimates: &'a [Lanes<R>],
-    fits: usize,
     channels: usize,
     pub(super) spreads: Spreads<R>,
 }
@@ -93,14 +93,15 @@ impl<R: Real> Group<'_, R> {
     /// What the mixture adds to the plain mean of member `index`: zero if that is not finite.
     #[inline(always)]
     pub(super) fn correction(&self, index: usize, weights: &Weights<R>, channel: usize) -> R {
-        let start = index / LANES * (self.fits + 1) * self.channels + channel;
+        let fits = self.spreads.fits;
+        let start = index / LANES * (fits + 1) * self.channels + channel;
         let at = |fit: usize| {
             let lanes = self.estimates.get(start + fit * self.channels);
             lanes.and_then(|lanes| lanes.get(index % LANES)).copied().unwrap_or(R::ZERO)
         };
         let plain = at(0);
         let mut sum = R::ZERO;
-        for (fit, weight) in weights.iter().enumerate().take(self.fits + 1).skip(1) {
+        for (fit, weight) in weights.iter().enumerate().take(fits + 1).skip(1) {
             sum += get(weight, channel) * (at(fit) - plain);
         }
         if sum.is_finite() { sum } else { R::ZERO }
@@ -136,7 +137,7 @@ impl<'a> Problem<'a> {
         arena: &mut Arena<'b, R>,
     ) -> Result<Group<'b, R>, Error> {
         let channels = self.config.channels;
-        let (fixed, fits) = (terms.fixed(), terms.ends.len());
+        let fixed = terms.fixed();
         let panels = members.len.div_ceil(LANES);
         let places = arena.take_lanes(panels * fixed)?;
         for (panel, out) in rows_mut(places, fixed).enumerate() {
@@ -154,15 +155,14 @@ impl<'a> Problem<'a> {
         } else {
             self.by_factor_each(members, &setting, estimates, arena)?;
         }
-        let Setting { units, .. } = setting;
-        let spreads = Spreads::new(members.len, places, fixed, estimates, fits, channels);
-        Ok(Group { units, estimates, fits, channels, spreads })
+        let spreads = Spreads::new(members.len, places, fixed, estimates, terms.ends.len(), channels);
+        Ok(Group { units: setting.units, estimates, channels, spreads })
     }
 
     /// How far the mean and the fits are trusted, by a group that has at least two members.
     #[inline(always)]
     pub(super) fn weights<R: Real>(&self, group: &Group<'_, R>) -> Weights<R> {
-        if self.is_single_fit() { last_only(group.fits) } else { group.spreads.weights(self.config.channels) }
+        if self.is_single_fit() { last_only(group.spreads.fits) } else { group.spreads.weights(self.config.channels) }
     }
 
     /// What a pixel's values are divided by. Black says nothing about what it multiplies: 1.

@@ -172,6 +172,7 @@ impl<R: Real> Call<'_, '_, R> {
             (0..pixels as u16).for_each(|index| left.push(index).unwrap_or(()));
         }
         let mut list: Vec<u16, { Image::MAX_WINDOW }> = Vec::new();
+        // One loop, with surfaces or without, as each call of `group` is a copy of it.
         loop {
             let first = left.first().map(surface);
             if let Some(first) = first {

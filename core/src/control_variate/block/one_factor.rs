@@ -140,7 +140,7 @@ impl Problem<'_> {
                     // The mean of f - b'p without the fixed columns, then what leaving the pixel out changes.
                     let mut estimate = *mean;
                     for fitted in fitted {
-                        lanes::add_scaled(&mut estimate, -inverse_n, fitted);
+                        lanes::subtract_scaled(&mut estimate, inverse_n, fitted);
                     }
                     for (&trend, place) in trends.get(channel).into_iter().flatten().zip(places) {
                         lanes::add_scaled(&mut estimate, trend, place);
