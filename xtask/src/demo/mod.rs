@@ -1,15 +1,18 @@
-//! `cargo xtask demo`: the path tracer with every estimator and every sampler, as pictures and as tables.
+//! `cargo xtask demo`: the path tracer with every estimator and every sampler, and the trainers with every kind of
+//! minibatch, as pictures and as tables.
 
 mod estimators;
 mod image;
 mod markdown;
 mod metric;
 mod output;
+mod plot;
 mod progress;
 mod renderer;
 mod runs;
 mod text;
 mod tiles;
+mod training;
 
 use crate::paths;
 use anyhow::{Context, Result, bail};
@@ -26,7 +29,7 @@ pub(crate) struct Options {
     /// Small images and short references: a look at whether everything works, not at the figures
     #[arg(long)]
     quick: bool,
-    /// One part instead of both
+    /// One part instead of all
     #[arg(long, value_enum)]
     only: Option<Part>,
     /// A folder of files NAME.nft that stand in for the library's tiles of the same names
@@ -43,6 +46,8 @@ enum Part {
     Estimators,
     /// Samplers: random, Sobol, tiles; plain means, and control variates of each pixel and shared by neighbours
     Tiles,
+    /// Minibatches: trainers with uniform, importance, adaptive and optimal-MIS sampling
+    Training,
 }
 
 pub(crate) fn run(options: &Options) -> Result<()> {
@@ -50,20 +55,23 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let folder = options.out.clone().unwrap_or_else(|| paths::target().join("demo"));
     let folder = std::path::absolute(&folder).with_context(|| format!("{} is no folder", folder.display()))?;
     let interrupted = catch_interrupts()?;
-    println!("building the library and the path tracer");
-    let renderer = Renderer::build(interrupted.clone())?;
-
     let output = Output::new(&folder)?;
-    let parts = [
-        (Part::Estimators, estimators::run as fn(&Options, &Renderer, &Output) -> Result<String>),
-        (Part::Tiles, tiles::run),
-    ];
+    let wanted = |part| options.only.is_none_or(|only| only == part);
     let mut tables = Vec::new();
-    for (part, make) in parts {
-        if options.only.is_some_and(|only| only != part) {
-            continue;
+    if wanted(Part::Estimators) || wanted(Part::Tiles) {
+        println!("building the library and the path tracer");
+        let renderer = Renderer::build(interrupted.clone())?;
+        let parts = [
+            (Part::Estimators, estimators::run as fn(&Options, &Renderer, &Output) -> Result<String>),
+            (Part::Tiles, tiles::run),
+        ];
+        for (_, make) in parts.into_iter().filter(|(part, _)| wanted(*part)) {
+            tables.push(make(options, &renderer, &output)?);
         }
-        tables.push(make(options, &renderer, &output)?);
+    }
+    if wanted(Part::Training) {
+        println!("building the library and the trainers");
+        tables.push(training::run(options, &interrupted, &output)?);
     }
     if interrupted.load(Ordering::Relaxed) {
         bail!(INTERRUPTED);

@@ -1,0 +1,28 @@
+//! Trainers that draw their minibatches from noisefloor: each makes CSV, a table and plots.
+
+mod program;
+
+use super::Options;
+use super::output::Output;
+use crate::library;
+use anyhow::Result;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+/// What every trainer's part needs.
+struct Training<'a> {
+    quick: bool,
+    /// The C library.
+    archive: PathBuf,
+    interrupted: &'a AtomicBool,
+    output: &'a Output,
+}
+
+/// The trainers, in the order of their tables: each compiles its program, runs it, writes its files and returns its table.
+const TRAINERS: [fn(&Training) -> Result<String>; 0] = [];
+
+pub(crate) fn run(options: &Options, interrupted: &AtomicBool, output: &Output) -> Result<String> {
+    let training = Training { quick: options.quick, archive: library::build()?, interrupted, output };
+    let tables: Vec<String> = TRAINERS.iter().map(|trainer| trainer(&training)).collect::<Result<_>>()?;
+    Ok(tables.join("\n"))
+}

@@ -1,0 +1,81 @@
+//! Compiling and running a trainer of `examples_c`.
+
+use super::super::INTERRUPTED;
+use crate::{paths, run};
+use anyhow::{Context, Result, bail};
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+
+/// What a trainer is written in.
+#[derive(Clone, Copy)]
+pub(crate) enum Language {
+    C99,
+}
+
+/// What a run wrote.
+pub(crate) struct Written {
+    /// Standard output: CSV.
+    pub(crate) csv: String,
+    /// Standard error: a summary, as Markdown.
+    pub(crate) summary: String,
+}
+
+/// A compiled trainer.
+pub(crate) struct Program {
+    path: PathBuf,
+}
+
+impl Program {
+    /// Compiles `examples_c/SOURCE` against the library, for this machine: what is measured is time.
+    pub(crate) fn compile(source: &str, language: Language, archive: &Path) -> Result<Self> {
+        let source = Path::new("examples_c").join(source);
+        let name = source.file_stem().with_context(|| format!("{} has no name", source.display()))?;
+        let path = paths::output().join(name);
+        let mut compiler = match language {
+            Language::C99 => run::compiler("CC", "cc"),
+        };
+        compiler.arg(match language {
+            Language::C99 => "-std=c99",
+        });
+        compiler.args(["-O3", "-march=native", "-Wall", "-Wextra", "-Iinclude"]).arg(&source).arg(archive);
+        run::check(compiler.args(["-lm", "-o"]).arg(&path))?;
+        Ok(Self { path })
+    }
+
+    /// Runs to the end. `line` sees each line of standard output as it comes, for progress.
+    pub(crate) fn run(
+        &self,
+        arguments: &[&str],
+        interrupted: &AtomicBool,
+        mut line: impl FnMut(&str),
+    ) -> Result<Written> {
+        let mut command: Command = run::command(&self.path);
+        command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().with_context(|| format!("cannot start {}", self.path.display()))?;
+        let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
+        // Beside the other stream: a full pipe would stop the trainer.
+        let reader = thread::spawn(move || {
+            let mut text = String::new();
+            stderr.map_or(Ok(0), |mut stderr| stderr.read_to_string(&mut text)).map(|_| text)
+        });
+        let mut csv = String::new();
+        for text in stdout.into_iter().flat_map(|stdout| BufReader::new(stdout).lines()) {
+            let text = text.with_context(|| format!("cannot read what {} says", self.path.display()))?;
+            line(&text);
+            csv += &text;
+            csv.push('\n');
+        }
+        let summary = reader.join().ok().context("a thread was lost")?.context("cannot read the trainer's errors")?;
+        let status = child.wait().context("the trainer was lost")?;
+        if interrupted.load(Ordering::Relaxed) {
+            bail!(INTERRUPTED);
+        }
+        if !status.success() {
+            bail!("{} {} failed, {status}\n{}", self.path.display(), arguments.join(" "), summary.trim());
+        }
+        Ok(Written { csv, summary })
+    }
+}
