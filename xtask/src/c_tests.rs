@@ -16,7 +16,7 @@ pub(crate) enum Language {
 }
 
 const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O1"];
-const SANITIZERS: [&str; 3] = ["-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=undefined"];
+pub(crate) const SANITIZERS: [&str; 3] = ["-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=undefined"];
 
 /// Compiles and runs every `tests/c/*.c`, with more compiler options.
 pub(crate) fn run(language: Language, options: &[&str], archive: &Path) -> Result<Outcome> {
@@ -71,20 +71,24 @@ fn check_coverage(sources: &[PathBuf]) -> Result<()> {
 
 /// As [`run()`], under the sanitizers, if the compiler has them.
 pub(crate) fn sanitized(language: Language, archive: &Path) -> Result<Outcome> {
+    if !has_sanitizers()? {
+        return Ok(Outcome::NotRun(
+            "the C compiler has no -fsanitize=address,undefined; gcc (Debian: libgcc-12-dev) and clang have".to_owned(),
+        ));
+    }
+    run(language, &SANITIZERS, archive)
+}
+
+/// Whether the C compiler has [`SANITIZERS`].
+pub(crate) fn has_sanitizers() -> Result<bool> {
     let source = output("sanitizers.c")?;
     fs::write(&source, "int main(void) { return 0; }\n")
         .with_context(|| format!("cannot write {}", source.display()))?;
     let program = output("sanitizers")?;
     let mut compiler = run::compiler("CC", "cc");
     compiler.args(SANITIZERS).arg(source).arg("-o").arg(&program).stdout(Stdio::null()).stderr(Stdio::null());
-    let works = compiler.status().is_ok_and(|status| status.success())
-        && run::command(program).status().is_ok_and(|status| status.success());
-    if !works {
-        return Ok(Outcome::NotRun(
-            "the C compiler has no -fsanitize=address,undefined; gcc (Debian: libgcc-12-dev) and clang have".to_owned(),
-        ));
-    }
-    run(language, &SANITIZERS, archive)
+    Ok(compiler.status().is_ok_and(|status| status.success())
+        && run::command(program).status().is_ok_and(|status| status.success()))
 }
 
 /// The test of noisefloor.hpp, where errors are thrown, where the caller turned that off, and where the compiler did.

@@ -10,6 +10,7 @@ mod run;
 mod test;
 mod tiles;
 mod tools;
+mod train_mlp;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

@@ -1,6 +1,6 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
-use crate::{c_tests, examples, header, library, run, tools};
+use crate::{c_tests, examples, header, library, run, tools, train_mlp};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -79,6 +79,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
         examples::path_tracer(&archive()?)
     });
+    steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("README.md opens with examples_c/integrate.c", examples::readme);
     steps.finish(start)
 }

@@ -1,5 +1,8 @@
 //! Trainers that draw their minibatches from noisefloor: each makes CSV, a table and plots.
 
+mod curves;
+mod data;
+mod mlp;
 mod program;
 
 use super::Options;
@@ -19,7 +22,7 @@ struct Training<'a> {
 }
 
 /// The trainers, in the order of their tables: each compiles its program, runs it, writes its files and returns its table.
-const TRAINERS: [fn(&Training) -> Result<String>; 0] = [];
+const TRAINERS: [fn(&Training) -> Result<String>; 1] = [mlp::run];
 
 pub(crate) fn run(options: &Options, interrupted: &AtomicBool, output: &Output) -> Result<String> {
     let training = Training { quick: options.quick, archive: library::build()?, interrupted, output };
