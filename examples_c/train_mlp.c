@@ -56,13 +56,15 @@ static void sgd(size_t n, float rate, float momentum, const float *restrict grad
     }
 }
 
-static void optimizer_step(optimizer *opt, const options *o, mlp *net)
+/* `part`: how much of the training is done. */
+static void optimizer_step(optimizer *opt, const options *o, double part, mlp *net)
 {
+    float rate = (float)(o->rate * (1.0 + (o->final_rate - 1.0) * part));
     ++opt->steps;
     if (o->adam)
-        adam(net->parameters, o->rate, opt->steps, opt->gradient, opt->first, opt->second, net->theta);
+        adam(net->parameters, rate, opt->steps, opt->gradient, opt->first, opt->second, net->theta);
     else
-        sgd(net->parameters, o->rate, o->sgd_momentum, opt->gradient, opt->first, net->theta);
+        sgd(net->parameters, rate, o->sgd_momentum, opt->gradient, opt->first, net->theta);
 }
 
 /* ---- training ---- */
@@ -114,7 +116,7 @@ static void step(run *r, const options *o, const dataset *data, workspace *space
     backward(&r->net, space, count);
     memset(r->opt.gradient, 0, r->net.parameters * sizeof(float));
     add_gradient(&r->net, space, count, r->opt.gradient);
-    optimizer_step(&r->opt, o, &r->net);
+    optimizer_step(&r->opt, o, (epoch + (double)position / data->items) / o->epochs, &r->net);
 }
 
 /* Items of the training set that the training loss is the mean over: enough for a curve, and soon evaluated. */

@@ -22,7 +22,7 @@ typedef struct options {
     uint32_t epochs, batch, rows;
     uint32_t hidden[2];
     int adam;
-    float rate, sgd_momentum;
+    float rate, final_rate, sgd_momentum;
     float gamma, delta, epsilon;
     int stratified;
     uint32_t techniques;
@@ -44,6 +44,7 @@ static const char usage[] =
     "  --hidden A,B        128,64: sizes of the hidden layers\n"
     "  --optimizer NAME    adam (default) or sgd\n"
     "  --rate X            learning rate: 0.001 with adam, 0.1 with sgd\n"
+    "  --final-rate X      1: the rate falls linearly, after the last step to that share of itself\n"
     "  --sgd-momentum X    0.9\n"
     "  --gamma X           0.3: an item's importance is gamma old + (1 - gamma) new\n"
     "  --delta X           0.2: share of items drawn uniformly; bounds every weight by 1 / delta\n"
@@ -102,7 +103,7 @@ static options options_parse(int count, char **words)
     o.modes[0] = UNIFORM, o.modes[1] = IMPORTANCE, o.mode_count = 2;
     o.seed = 1, o.seeds = 1, o.epochs = 10, o.batch = 64, o.rows = 1;
     o.hidden[0] = 128, o.hidden[1] = 64;
-    o.adam = 1, o.sgd_momentum = 0.9f;
+    o.adam = 1, o.final_rate = 1.0f, o.sgd_momentum = 0.9f;
     o.gamma = 0.3f, o.delta = 0.2f, o.techniques = 8;
     for (int i = 1; i < count; ++i) {
         const char *name = words[i];
@@ -147,6 +148,8 @@ static options options_parse(int count, char **words)
                 fail("there is no optimizer `%s`", value);
         } else if (strcmp(name, "--rate") == 0)
             o.rate = (float)option_number(name, value, 1e-9, 1e3);
+        else if (strcmp(name, "--final-rate") == 0)
+            o.final_rate = (float)option_number(name, value, 0.0, 1.0);
         else if (strcmp(name, "--sgd-momentum") == 0)
             o.sgd_momentum = (float)option_number(name, value, 0.0, 0.9999);
         else if (strcmp(name, "--gamma") == 0)
