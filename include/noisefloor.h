@@ -767,6 +767,206 @@ uint32_t nf_rng_next(nf_rng *rng);
 // The next number uniform in [0, 1), a multiple of 2^-24; 0 if `rng` is NULL.
 float nf_rng_uniform(nf_rng *rng);
 
+/* Minibatches: items of a data set drawn in proportion to their importance */
+
+// The importances of the items of a data set, from which minibatches are drawn (Algorithm 3).
+//
+// Item i is drawn with probability p_i = (1 - d) q_i / sum q + d / N: q_i is its importance, d the uniform fraction, .2
+// unless set. No weight 1 / (N p_i) is then above 1 / d. Where all importances are 0 draws are uniform, or
+// NF_ERR_NO_SAMPLES if d is 0.
+//
+// A complete struct that refers to the memory its items live in; the fields are to be read, never written. A copy refers to
+// the same memory: keep one. Nothing to destroy.
+typedef struct nf_table {
+    // The importance of each item, in the memory given to nf_table_init.
+    float *importance;
+    // The sums over them, behind.
+    int64_t *sums;
+    // A power of two: importances times this are what is summed.
+    double scale;
+    // How many items there are: N.
+    uint32_t items;
+    // How many blocks of 16 items there is room for.
+    uint32_t blocks;
+    // The part of draws that are uniform.
+    float uniform_fraction;
+    // Zero.
+    uint32_t reserved;
+} nf_table;
+
+// The bytes of memory a table of so many items needs, at most 4.6 for each and a few hundred; 0 for 0 items or a size that no
+// memory has.
+size_t nf_table_size(uint32_t items);
+
+// Makes a table of `items` items in `memory`.
+//
+// memory: at least nf_table_size(items) bytes, 8-byte aligned; what it holds is lost. More is room for nf_table_append.
+// importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch that visits every
+// item (Algorithm 4).
+//
+// NF_ERR_NULL; NF_ERR_RANGE: no items, or a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all are 0;
+// NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+nf_status nf_table_init(nf_table *table, void *memory, size_t bytes, uint32_t items, const float *importance);
+
+// Draws `batch` items with replacement, independently, in proportion to importance.
+//
+// index[batch]: the items. weight[batch]: 1 / (N p) of each, for importance sampling: gradients times weights, averaged over
+// the batch, estimate the gradient of the mean loss without bias (6.3). NULL where they are not wanted: without weights it is
+// adaptive sampling (w = p in Algorithm 3), which favours important items, a bias by design.
+//
+// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_NO_SAMPLES: nothing can be drawn. A batch of 0 is no error.
+nf_status nf_table_draw(const nf_table *table,
+                        nf_rng *rng,
+                        uint32_t batch,
+                        uint32_t *index,
+                        float *weight);
+
+// As nf_table_draw, from `batch` equal parts of the line of importances: item i comes `batch` p_i times, rounded up or down,
+// so that the estimate varies less, above all where neighbouring items are alike. Items come in the order of the data set, those
+// drawn uniformly last: use the batch as a whole.
+nf_status nf_table_draw_stratified(const nf_table *table,
+                                   nf_rng *rng,
+                                   uint32_t batch,
+                                   uint32_t *index,
+                                   float *weight);
+
+// Draws `batch` different items, without replacement. Weights make the same estimate as nf_table_draw's, without bias
+// (Raj 1956): (1 / c_k + batch - k) / N, c_k the probability that the k-th item had among those left.
+//
+// The table is the same afterwards, but is written meanwhile.
+//
+// Other arguments and errors as for nf_table_draw; NF_ERR_RANGE: more than there are items; NF_ERR_NO_SAMPLES also where the
+// uniform fraction is 0 and fewer items have an importance above 0.
+nf_status nf_table_draw_distinct(nf_table *table,
+                                 nf_rng *rng,
+                                 uint32_t batch,
+                                 uint32_t *index,
+                                 float *weight);
+
+// Sets the importance of visited items, one after the other: q = momentum q + (1 - momentum) importance (line 13 of
+// Algorithm 3, (6.11)). An item that comes twice is changed twice.
+//
+// index[batch]; importance[batch]: at least 0, finite. momentum: 0..1; 0 forgets the old value, .3 is a good choice.
+//
+// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item that does not exist, a negative importance, momentum;
+// NF_ERR_NOT_FINITE.
+nf_status nf_table_update(nf_table *table,
+                          const uint32_t *index,
+                          const float *importance,
+                          uint32_t batch,
+                          float momentum);
+
+// Sets the uniform fraction d, 0..1. 0 draws by importance alone: an item of importance 0 is never drawn, and one whose
+// importance is out of date can get a weight of thousands. 1 draws uniformly.
+//
+// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE; NF_ERR_NOT_FINITE.
+nf_status nf_table_set_uniform_fraction(nf_table *table, float fraction);
+
+// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3, after an epoch. The uniform fraction does as much and
+// costs nothing.
+//
+// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE; NF_ERR_NOT_FINITE.
+nf_status nf_table_add_epsilon(nf_table *table,
+                               float epsilon);
+
+// Adds `count` items behind the last.
+//
+// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_MEMORY: the memory given to nf_table_init has no room; NF_ERR_RANGE: a negative
+// importance; NF_ERR_NOT_FINITE.
+nf_status nf_table_append(nf_table *table, const float *importance, uint32_t count);
+
+// The probability p_i of drawing an item; 0 if there is no such item or no table. It comes with the item in
+// nf_table_draw's weight; this is for items that another table drew.
+float nf_table_probability(const nf_table *table, uint32_t item);
+
+// The probabilities of count items: p[k * stride] of index[k]. With J tables, stride J and p + j for the j-th table make the
+// rows of densities that nf_omis_weights takes.
+//
+// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item that does not exist, or stride 0; NF_ERR_NO_SAMPLES as for
+// nf_table_draw.
+nf_status nf_table_probabilities(const nf_table *table,
+                                 const uint32_t *index,
+                                 uint32_t count,
+                                 uint32_t stride,
+                                 float *p);
+
+// The importance q_i of an item; 0 if there is no such item or no table.
+float nf_table_importance(const nf_table *table, uint32_t item);
+
+// The sum of all importances; 0 if there is no table.
+double nf_table_total(const nf_table *table);
+
+// The bytes that nf_table_save writes; 0 if there is no table.
+size_t nf_table_saved_size(const nf_table *table);
+
+// Writes the table, the same bytes on every target, to exactly nf_table_saved_size bytes, of any alignment.
+//
+// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_LENGTH.
+nf_status nf_table_save(const nf_table *table, void *saved, size_t len);
+
+// The number of items in what nf_table_save wrote, to make memory for it with nf_table_size; 0 if it is no saved table. Only
+// the first bytes are looked at.
+uint32_t nf_table_saved_items(const void *saved,
+                              size_t len);
+
+// A table as it was when nf_table_save wrote it, in memory as for nf_table_init. It draws the same items from the same
+// generator.
+//
+// NF_ERR_NULL; NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: what is wrong with the bytes;
+// NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+nf_status nf_table_load(nf_table *table, void *memory, size_t bytes, const void *saved, size_t len);
+
+// What the processes of a data-parallel trainer must know of each other's tables. Each owns the table of its part of the
+// data; before a draw all gather these 16 bytes from each (MPI_Allgather, for example).
+typedef struct nf_shard {
+    // The sum of the importances.
+    double importance;
+    // The number of items.
+    uint64_t items;
+} nf_shard;
+
+// What the other processes must know of this table.
+//
+// NF_ERR_NULL; NF_ERR_STATE.
+nf_status nf_table_shard(const nf_table *table, nf_shard *out);
+
+// How many of a batch's items each process draws: counts[shards], in proportion to the shards' probabilities, rounded up or
+// down at random so that each is right on average. They sum to batch.
+//
+// Every process calls it with the same shards and a generator of the same seed, and finds its own count among the results.
+// uniform_fraction: 0..1, that of all tables.
+//
+// NF_ERR_NULL; NF_ERR_RANGE: a negative sum, 2^53 items or more, uniform_fraction; NF_ERR_NOT_FINITE;
+// NF_ERR_NO_SAMPLES: no shards, no items, or nothing that can be drawn.
+nf_status nf_shards_allocate(const nf_shard *shard,
+                             uint32_t shards,
+                             float uniform_fraction,
+                             nf_rng *rng,
+                             uint32_t batch,
+                             uint32_t *counts);
+
+// As nf_table_draw, for this process's part of a batch over all shards, of which this table is one: weights are those of the
+// whole. Gradients times weights, summed over all processes and divided by the whole batch's size, estimate the gradient of
+// the mean loss over all items.
+//
+// All tables must have the same uniform fraction; batch is what nf_shards_allocate gave to this process.
+//
+// Other arguments and errors as for nf_table_draw and nf_shards_allocate; NF_ERR_RANGE: the shards together have less than this table.
+nf_status nf_table_draw_shard(const nf_table *table,
+                              const nf_shard *shard,
+                              uint32_t shards,
+                              nf_rng *rng,
+                              uint32_t batch,
+                              uint32_t *index,
+                              float *weight);
+
+// The element at `position` of a random permutation of 0..items-1, which seed chooses: the order of an initial epoch
+// (Algorithm 4), or of minibatches drawn uniformly without replacement, with no array of indices. 0 if there are no items;
+// positions beyond the last start again.
+uint32_t nf_shuffle(uint64_t seed,
+                    uint32_t items,
+                    uint32_t position);
+
 /* Layouts: what the library was compiled with. C99 has no alignment operator. */
 #if defined(__cplusplus) && __cplusplus >= 201103L
 #define NF_ASSERT_LAYOUT(condition) static_assert(condition, "noisefloor: unexpected struct layout")

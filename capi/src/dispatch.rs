@@ -5,6 +5,9 @@
 
 use noisefloor_core::Error;
 use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Samples};
+use noisefloor_core::rng::Rng;
+
+use crate::table::{Reader, Writer};
 
 /// [`cv::estimate`] in double precision.
 pub(crate) fn estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f64]) -> Result<Estimate, Error> {
@@ -30,6 +33,46 @@ pub(crate) fn estimate_image(
         return unsafe { x86::estimate_image(config, image, samples, workspace, out) };
     }
     cv::estimate_image(config, image, samples, workspace, out)
+}
+
+/// [`Reader::draw`].
+pub(crate) fn table_draw(
+    table: &Reader<'_>,
+    rng: &mut Rng,
+    index: &mut [u32],
+    weight: Option<&mut [f32]>,
+) -> Result<(), Error> {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        // SAFETY: as above.
+        return unsafe { x86::table_draw(table, rng, index, weight) };
+    }
+    table.draw(rng, index, weight)
+}
+
+/// [`Writer::update`].
+pub(crate) fn table_update(
+    table: &mut Writer<'_>,
+    index: &[u32],
+    importance: &[f32],
+    momentum: f32,
+) -> Result<(), Error> {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        // SAFETY: as above.
+        return unsafe { x86::table_update(table, index, importance, momentum) };
+    }
+    table.update(index, importance, momentum)
+}
+
+/// [`Writer::add_epsilon`].
+pub(crate) fn table_add_epsilon(table: &mut Writer<'_>, epsilon: f32) -> Result<(), Error> {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        // SAFETY: as above.
+        return unsafe { x86::table_add_epsilon(table, epsilon) };
+    }
+    table.add_epsilon(epsilon)
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -61,6 +104,31 @@ mod x86 {
         cv::estimate_image(config, image, samples, workspace, out)
     }
 
+    #[target_feature(enable = "avx2,popcnt")]
+    pub(super) fn table_draw(
+        table: &Reader<'_>,
+        rng: &mut Rng,
+        index: &mut [u32],
+        weight: Option<&mut [f32]>,
+    ) -> Result<(), Error> {
+        table.draw(rng, index, weight)
+    }
+
+    #[target_feature(enable = "avx2,popcnt")]
+    pub(super) fn table_update(
+        table: &mut Writer<'_>,
+        index: &[u32],
+        importance: &[f32],
+        momentum: f32,
+    ) -> Result<(), Error> {
+        table.update(index, importance, momentum)
+    }
+
+    #[target_feature(enable = "avx2,popcnt")]
+    pub(super) fn table_add_epsilon(table: &mut Writer<'_>, epsilon: f32) -> Result<(), Error> {
+        table.add_epsilon(epsilon)
+    }
+
     #[inline(always)]
     pub(super) fn has_avx2() -> bool {
         match AVX2.load(Ordering::Relaxed) {
@@ -71,12 +139,12 @@ mod x86 {
 
     #[cold]
     fn ask() -> bool {
-        const OSXSAVE_AND_AVX: u32 = 1 << 27 | 1 << 28;
+        const OSXSAVE_AVX_POPCNT: u32 = 1 << 27 | 1 << 28 | 1 << 23;
         const AVX2_BIT: u32 = 1 << 5;
         /// The operating system keeps the xmm and ymm registers.
         const REGISTERS: u64 = 0b110;
         let present = __cpuid(0).eax >= 7
-            && __cpuid(1).ecx & OSXSAVE_AND_AVX == OSXSAVE_AND_AVX
+            && __cpuid(1).ecx & OSXSAVE_AVX_POPCNT == OSXSAVE_AVX_POPCNT
             // SAFETY: the OSXSAVE bit says that the instruction exists.
             && unsafe { _xgetbv(0) } & REGISTERS == REGISTERS
             && __cpuid_count(7, 0).ebx & AVX2_BIT != 0;

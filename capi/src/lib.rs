@@ -14,7 +14,9 @@ mod mis;
 mod omis;
 mod recommend;
 mod rng;
+mod shard;
 mod status;
+mod table;
 mod tile;
 
 pub use cv::*;
@@ -22,7 +24,9 @@ pub use mis::*;
 pub use omis::*;
 pub use recommend::*;
 pub use rng::*;
+pub use shard::*;
 pub use status::*;
+pub use table::*;
 pub use tile::*;
 
 /// Nothing in the library can panic (a test looks for the panic symbols in the archive), so this is never reached.

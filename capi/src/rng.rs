@@ -1,7 +1,8 @@
 //! Random numbers.
 
 use crate::convert;
-use noisefloor_core::rng::Rng;
+use crate::status::nf_status;
+pub(crate) use noisefloor_core::rng::Rng;
 
 /// A PCG32 random number generator (O'Neill 2014), for examples and tests: the same numbers on every target.
 ///
@@ -49,6 +50,22 @@ unsafe fn with<T: Default>(rng: *mut nf_rng, draw: impl FnOnce(&mut Rng) -> T) -
     let value = draw(&mut generator);
     store(rng, generator);
     value
+}
+
+/// A draw that can fail, and then leaves the generator where it was.
+///
+/// # Safety
+/// A non-NULL `rng` must be a generator that nothing else uses meanwhile.
+pub(crate) unsafe fn try_with(
+    rng: *mut nf_rng,
+    draw: impl FnOnce(&mut Rng) -> Result<(), nf_status>,
+) -> Result<(), nf_status> {
+    // SAFETY: passed on to the caller.
+    let rng = unsafe { convert::reference_mut(rng) }?;
+    let mut generator = Rng { state: rng.state, increment: rng.increment };
+    draw(&mut generator)?;
+    store(rng, generator);
+    Ok(())
 }
 
 fn store(rng: &mut nf_rng, generator: Rng) {

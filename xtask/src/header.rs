@@ -13,7 +13,7 @@ struct Chapter {
 }
 
 /// Every item belongs to the chapter with the longest matching prefix.
-const CHAPTERS: [Chapter; 7] = [
+const CHAPTERS: [Chapter; 8] = [
     Chapter {
         title: "Version and status",
         prefixes: &["NF_ABI_VERSION", "nf_abi_version", "nf_status", "NF_OK|NF_ERR_", "nf_status_message"],
@@ -66,6 +66,18 @@ const CHAPTERS: [Chapter; 7] = [
         ],
     },
     Chapter { title: "Random numbers", prefixes: &["nf_rng", "nf_rng_"] },
+    Chapter {
+        title: "Minibatches: items of a data set drawn in proportion to their importance",
+        prefixes: &[
+            "nf_table",
+            "nf_table_",
+            "nf_shard",
+            "nf_table_shard",
+            "nf_shards_",
+            "nf_table_draw_shard",
+            "nf_shuffle",
+        ],
+    },
 ];
 
 /// Rewrites `include/noisefloor.h` from the `capi` crate.

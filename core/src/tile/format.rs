@@ -1,8 +1,8 @@
 //! The `.nft` format, version 1: a header of 128 bytes, then the values; `docs/tiles.md` has the table.
 
-use super::checksum::Crc;
 use super::view::Shape;
 use crate::Error;
+use crate::checksum::Crc;
 
 /// Bytes of the header.
 pub const HEADER_BYTES: usize = 128;

@@ -27,7 +27,6 @@
 //! ```
 
 mod builtin;
-mod checksum;
 mod fill;
 mod format;
 mod hash;

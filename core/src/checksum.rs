@@ -1,4 +1,4 @@
-//! CRC-32, the checksum of a tile.
+//! CRC-32, the checksum of tiles and saved tables.
 
 /// The polynomial of IEEE 802.3, reflected.
 const POLYNOMIAL: u32 = 0xedb8_8320;
@@ -24,18 +24,18 @@ const fn table() -> [u32; 256] {
 
 /// A running CRC-32 of IEEE 802.3: every change within 32 consecutive bits is found, others but for one in 2^32.
 #[derive(Clone, Copy)]
-pub(super) struct Crc(u32);
+pub(crate) struct Crc(u32);
 
 impl Crc {
-    pub(super) const fn new() -> Crc {
+    pub(crate) const fn new() -> Crc {
         Crc(u32::MAX)
     }
 
-    pub(super) fn add(self, bytes: &[u8]) -> Crc {
+    pub(crate) fn add(self, bytes: &[u8]) -> Crc {
         Crc(bytes.iter().fold(self.0, |crc, byte| (crc >> 8) ^ TABLE[usize::from(crc as u8 ^ byte)]))
     }
 
-    pub(super) const fn finish(self) -> u32 {
+    pub(crate) const fn finish(self) -> u32 {
         !self.0
     }
 }

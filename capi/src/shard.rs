@@ -1,0 +1,107 @@
+//! Tables of several processes, drawn as one; and shuffling.
+
+use crate::convert;
+use crate::rng::{self, nf_rng};
+use crate::status::*;
+use crate::table::{nf_table, open, weights};
+use noisefloor_core::minibatch::{
+    self,
+    table::{self, Shard},
+};
+
+/// What the processes of a data-parallel trainer must know of each other's tables. Each owns the table of its part of the
+/// data; before a draw all gather these 16 bytes from each (MPI_Allgather, for example).
+#[repr(C)]
+#[allow(non_camel_case_types)]
+#[derive(Clone, Copy)]
+pub struct nf_shard {
+    /// The sum of the importances.
+    pub importance: f64,
+    /// The number of items.
+    pub items: u64,
+}
+
+/// What the other processes must know of this table.
+///
+/// NF_ERR_NULL; NF_ERR_STATE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_shard(table: *const nf_table, out: *mut nf_shard) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes a table that no one writes meanwhile, and room for the result.
+        unsafe {
+            let Shard { importance, items } = open(table)?.shard();
+            convert::write(out, nf_shard { importance, items })
+        }
+    })())
+}
+
+/// How many of a batch's items each process draws: counts[shards], in proportion to the shards' probabilities, rounded up or
+/// down at random so that each is right on average. They sum to batch.
+///
+/// Every process calls it with the same shards and a generator of the same seed, and finds its own count among the results.
+/// uniform_fraction: 0..1, that of all tables.
+///
+/// NF_ERR_NULL; NF_ERR_RANGE: a negative sum, 2^53 items or more, uniform_fraction; NF_ERR_NOT_FINITE;
+/// NF_ERR_NO_SAMPLES: no shards, no items, or nothing that can be drawn.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_shards_allocate(
+    shard: *const nf_shard,
+    shards: u32,
+    uniform_fraction: f32,
+    rng: *mut nf_rng,
+    batch: u32,
+    counts: *mut u32,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes `shards` shards, a generator that no one else uses, and room for as many counts.
+        unsafe {
+            let shard = convert::slice(shard, shards as usize)?;
+            let counts = convert::slice_mut(counts, shards as usize)?;
+            rng::try_with(rng, |rng| {
+                table::allocate(shared(shard), uniform_fraction, rng, batch, counts).map_err(status_of)
+            })
+        }
+    })())
+}
+
+/// As nf_table_draw, for this process's part of a batch over all shards, of which this table is one: weights are those of the
+/// whole. Gradients times weights, summed over all processes and divided by the whole batch's size, estimate the gradient of
+/// the mean loss over all items.
+///
+/// All tables must have the same uniform fraction; batch is what nf_shards_allocate gave to this process.
+///
+/// Other arguments and errors as for nf_table_draw and nf_shards_allocate; NF_ERR_RANGE: the shards together have less than this table.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_draw_shard(
+    table: *const nf_table,
+    shard: *const nf_shard,
+    shards: u32,
+    rng: *mut nf_rng,
+    batch: u32,
+    index: *mut u32,
+    weight: *mut f32,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes a table that no one writes meanwhile, `shards` shards, a generator that no one else uses,
+        // and outputs of `batch` elements.
+        unsafe {
+            let table = open(table)?;
+            let all = Shard::sum(shared(convert::slice(shard, shards as usize)?)).map_err(status_of)?;
+            let (index, weight) = (convert::slice_mut(index, batch as usize)?, weights(weight, batch)?);
+            rng::try_with(rng, |rng| table.draw_shard(&all, rng, index, weight).map_err(status_of))
+        }
+    })())
+}
+
+/// As the core has them.
+fn shared(shards: &[nf_shard]) -> impl Iterator<Item = Shard> + Clone {
+    shards.iter().map(|&nf_shard { importance, items }| Shard { importance, items })
+}
+
+/// The element at `position` of a random permutation of 0..items-1, which seed chooses: the order of an initial epoch
+/// (Algorithm 4), or of minibatches drawn uniformly without replacement, with no array of indices. 0 if there are no items;
+/// positions beyond the last start again.
+#[unsafe(no_mangle)]
+pub extern "C" fn nf_shuffle(seed: u64, items: u32, position: u32) -> u32 {
+    minibatch::shuffle(seed, items, position)
+}

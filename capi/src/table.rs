@@ -1,0 +1,493 @@
+//! Tables of importances, and minibatches drawn from them.
+
+use crate::convert;
+use crate::dispatch;
+use crate::rng::{self, nf_rng};
+use crate::status::*;
+use core::ffi::c_void;
+use noisefloor_core::minibatch::table::{self, State, Table};
+
+/// The importances of the items of a data set, from which minibatches are drawn (Algorithm 3).
+///
+/// Item i is drawn with probability p_i = (1 - d) q_i / sum q + d / N: q_i is its importance, d the uniform fraction, .2
+/// unless set. No weight 1 / (N p_i) is then above 1 / d. Where all importances are 0 draws are uniform, or
+/// NF_ERR_NO_SAMPLES if d is 0.
+///
+/// A complete struct that refers to the memory its items live in; the fields are to be read, never written. A copy refers to
+/// the same memory: keep one. Nothing to destroy.
+#[repr(C)]
+#[allow(non_camel_case_types)]
+pub struct nf_table {
+    /// The importance of each item, in the memory given to nf_table_init.
+    pub importance: *mut f32,
+    /// The sums over them, behind.
+    pub sums: *mut i64,
+    /// A power of two: importances times this are what is summed.
+    pub scale: f64,
+    /// How many items there are: N.
+    pub items: u32,
+    /// How many blocks of 16 items there is room for.
+    pub blocks: u32,
+    /// The part of draws that are uniform.
+    pub uniform_fraction: f32,
+    /// Zero.
+    pub reserved: u32,
+}
+
+/// A block of items is a cache line, and starts where one does.
+const ALIGNMENT: usize = 64;
+/// What aligning memory that is aligned to 8 bytes takes at most.
+const SLACK: usize = ALIGNMENT - 8;
+const BLOCK: usize = 16;
+const MAX_BLOCKS: u32 = 1 << 28;
+
+/// The bytes of memory a table of so many items needs, at most 4.6 for each and a few hundred; 0 for 0 items or a size that no
+/// memory has.
+#[unsafe(no_mangle)]
+pub extern "C" fn nf_table_size(items: u32) -> usize {
+    let blocks = items.div_ceil(BLOCK as u32);
+    match (items, parts(blocks)) {
+        (1.., Some((importance, sums))) => importance + sums + SLACK,
+        _ => 0,
+    }
+}
+
+/// The bytes of the importances and of the sums of so many blocks, or nothing if no memory has them.
+fn parts(blocks: u32) -> Option<(usize, usize)> {
+    // The last block of all would be one item too many.
+    let items = u32::try_from(u64::from(blocks) * BLOCK as u64).unwrap_or(u32::MAX);
+    let importance = table::importance_len(items).checked_mul(size_of::<f32>())?;
+    let sums = table::sums_len(items).checked_mul(size_of::<i64>())?;
+    let all = importance.checked_add(sums)?.checked_add(SLACK)?;
+    (importance > 0 && all <= isize::MAX as usize).then_some((importance, sums))
+}
+
+/// Makes a table of `items` items in `memory`.
+///
+/// memory: at least nf_table_size(items) bytes, 8-byte aligned; what it holds is lost. More is room for nf_table_append.
+/// importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch that visits every
+/// item (Algorithm 4).
+///
+/// NF_ERR_NULL; NF_ERR_RANGE: no items, or a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all are 0;
+/// NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_init(
+    table: *mut nf_table,
+    memory: *mut c_void,
+    bytes: usize,
+    items: u32,
+    importance: *const f32,
+) -> nf_status {
+    status((|| {
+        check_place(table)?;
+        if items == 0 {
+            return Err(NF_ERR_RANGE);
+        }
+        let values = match importance.is_null() {
+            true => None,
+            // SAFETY: the caller passes as many importances as items.
+            false => Some(unsafe { convert::slice(importance, items as usize) }?),
+        };
+        // Before anything is written.
+        if let Some(values) = values {
+            table::check_importances(values).map_err(status_of)?;
+            if values.iter().all(|&q| q == 0.0) {
+                return Err(NF_ERR_NO_SAMPLES);
+            }
+        }
+        // SAFETY: the caller passes memory that no one else uses.
+        let (importance, sums, blocks) = unsafe { room(memory, bytes, items) }?;
+        let made = Table::new(importance, sums, items, values).map_err(status_of)?;
+        let state = made.state();
+        // SAFETY: the caller passes room for a table.
+        unsafe { put(table, memory, blocks, state) }
+    })())
+}
+
+/// Draws `batch` items with replacement, independently, in proportion to importance.
+///
+/// index[batch]: the items. weight[batch]: 1 / (N p) of each, for importance sampling: gradients times weights, averaged over
+/// the batch, estimate the gradient of the mean loss without bias (6.3). NULL where they are not wanted: without weights it is
+/// adaptive sampling (w = p in Algorithm 3), which favours important items, a bias by design.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_NO_SAMPLES: nothing can be drawn. A batch of 0 is no error.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_draw(
+    table: *const nf_table,
+    rng: *mut nf_rng,
+    batch: u32,
+    index: *mut u32,
+    weight: *mut f32,
+) -> nf_status {
+    // SAFETY: passed on to the caller.
+    unsafe { draw(table, rng, batch, index, weight, dispatch::table_draw) }
+}
+
+/// As nf_table_draw, from `batch` equal parts of the line of importances: item i comes `batch` p_i times, rounded up or down,
+/// so that the estimate varies less, above all where neighbouring items are alike. Items come in the order of the data set, those
+/// drawn uniformly last: use the batch as a whole.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_draw_stratified(
+    table: *const nf_table,
+    rng: *mut nf_rng,
+    batch: u32,
+    index: *mut u32,
+    weight: *mut f32,
+) -> nf_status {
+    // SAFETY: passed on to the caller.
+    unsafe {
+        draw(table, rng, batch, index, weight, |table, rng, index, weight| table.draw_stratified(rng, index, weight))
+    }
+}
+
+/// Draws `batch` different items, without replacement. Weights make the same estimate as nf_table_draw's, without bias
+/// (Raj 1956): (1 / c_k + batch - k) / N, c_k the probability that the k-th item had among those left.
+///
+/// The table is the same afterwards, but is written meanwhile.
+///
+/// Other arguments and errors as for nf_table_draw; NF_ERR_RANGE: more than there are items; NF_ERR_NO_SAMPLES also where the
+/// uniform fraction is 0 and fewer items have an importance above 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_draw_distinct(
+    table: *mut nf_table,
+    rng: *mut nf_rng,
+    batch: u32,
+    index: *mut u32,
+    weight: *mut f32,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes a table and a generator that no one else uses, and outputs of `batch` elements.
+        let (mut opened, index, weight) =
+            unsafe { (open_mut(table)?, convert::slice_mut(index, batch as usize)?, weights(weight, batch)?) };
+        // SAFETY: as above.
+        unsafe { rng::try_with(rng, |rng| opened.draw_distinct(rng, index, weight).map_err(status_of)) }
+        // What it changes it changes back: the struct stays as it is.
+    })())
+}
+
+/// Sets the importance of visited items, one after the other: q = momentum q + (1 - momentum) importance (line 13 of
+/// Algorithm 3, (6.11)). An item that comes twice is changed twice.
+///
+/// index[batch]; importance[batch]: at least 0, finite. momentum: 0..1; 0 forgets the old value, .3 is a good choice.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item that does not exist, a negative importance, momentum;
+/// NF_ERR_NOT_FINITE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_update(
+    table: *mut nf_table,
+    index: *const u32,
+    importance: *const f32,
+    batch: u32,
+    momentum: f32,
+) -> nf_status {
+    // SAFETY: the caller passes arrays of `batch` elements and a table that no one else uses.
+    unsafe {
+        change(table, |table| {
+            let (index, importance) =
+                (convert::slice(index, batch as usize)?, convert::slice(importance, batch as usize)?);
+            dispatch::table_update(table, index, importance, momentum).map_err(status_of)
+        })
+    }
+}
+
+/// Sets the uniform fraction d, 0..1. 0 draws by importance alone: an item of importance 0 is never drawn, and one whose
+/// importance is out of date can get a weight of thousands. 1 draws uniformly.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE; NF_ERR_NOT_FINITE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_set_uniform_fraction(table: *mut nf_table, fraction: f32) -> nf_status {
+    // SAFETY: the caller passes a table that no one else uses.
+    unsafe { change(table, |table| table.set_uniform_fraction(fraction).map_err(status_of)) }
+}
+
+/// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3, after an epoch. The uniform fraction does as much and
+/// costs nothing.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE; NF_ERR_NOT_FINITE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_add_epsilon(table: *mut nf_table, epsilon: f32) -> nf_status {
+    // SAFETY: the caller passes a table that no one else uses.
+    unsafe { change(table, |table| dispatch::table_add_epsilon(table, epsilon).map_err(status_of)) }
+}
+
+/// Adds `count` items behind the last.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_MEMORY: the memory given to nf_table_init has no room; NF_ERR_RANGE: a negative
+/// importance; NF_ERR_NOT_FINITE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_append(table: *mut nf_table, importance: *const f32, count: u32) -> nf_status {
+    // SAFETY: the caller passes `count` importances and a table that no one else uses.
+    unsafe { change(table, |table| table.append(convert::slice(importance, count as usize)?).map_err(status_of)) }
+}
+
+/// The probability p_i of drawing an item; 0 if there is no such item or no table. It comes with the item in
+/// nf_table_draw's weight; this is for items that another table drew.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_probability(table: *const nf_table, item: u32) -> f32 {
+    // SAFETY: the caller passes NULL or a table that no one writes meanwhile.
+    unsafe { open(table) }.map_or(0.0, |table| table.probability(item))
+}
+
+/// The probabilities of count items: p[k * stride] of index[k]. With J tables, stride J and p + j for the j-th table make the
+/// rows of densities that nf_omis_weights takes.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item that does not exist, or stride 0; NF_ERR_NO_SAMPLES as for
+/// nf_table_draw.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_probabilities(
+    table: *const nf_table,
+    index: *const u32,
+    count: u32,
+    stride: u32,
+    p: *mut f32,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes a table that no one writes meanwhile, and `count` items.
+        let (table, index) = unsafe { (open(table)?, convert::slice(index, count as usize)?) };
+        let len = match count.checked_sub(1) {
+            Some(last) => convert::product(last as usize, stride as usize)?.checked_add(1).ok_or(NF_ERR_RANGE)?,
+            None => 0,
+        };
+        if p.is_null() && len > 0 {
+            return Err(NF_ERR_NULL);
+        }
+        table.check_items(index).map_err(status_of)?;
+        if stride == 0 {
+            return Err(NF_ERR_RANGE);
+        }
+        // SAFETY: the caller passes room for the last of them. Elements between may be uninitialised: they are neither read
+        // nor written.
+        let p = unsafe { convert::slice_mut(p, len) }?;
+        table.probabilities(index, stride as usize, p).map_err(status_of)
+    })())
+}
+
+/// The importance q_i of an item; 0 if there is no such item or no table.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_importance(table: *const nf_table, item: u32) -> f32 {
+    // SAFETY: the caller passes NULL or a table that no one writes meanwhile.
+    unsafe { open(table) }.map_or(0.0, |table| table.importance(item))
+}
+
+/// The sum of all importances; 0 if there is no table.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_total(table: *const nf_table) -> f64 {
+    // SAFETY: the caller passes NULL or a table that no one writes meanwhile.
+    unsafe { open(table) }.map_or(0.0, |table| table.total())
+}
+
+/// The bytes that nf_table_save writes; 0 if there is no table.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_saved_size(table: *const nf_table) -> usize {
+    // SAFETY: the caller passes NULL or a table that no one writes meanwhile.
+    unsafe { open(table) }.map_or(0, |table| table::saved_len(table.items()))
+}
+
+/// Writes the table, the same bytes on every target, to exactly nf_table_saved_size bytes, of any alignment.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_LENGTH.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_save(table: *const nf_table, saved: *mut c_void, len: usize) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes a table that no one writes meanwhile, and room for `len` bytes.
+        let (table, saved) = unsafe { (open(table)?, convert::slice_mut(saved.cast::<u8>(), len)?) };
+        table.save(saved).map_err(status_of)
+    })())
+}
+
+/// The number of items in what nf_table_save wrote, to make memory for it with nf_table_size; 0 if it is no saved table. Only
+/// the first bytes are looked at.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_saved_items(saved: *const c_void, len: usize) -> u32 {
+    // SAFETY: the caller passes `len` bytes.
+    let saved = unsafe { convert::slice(saved.cast::<u8>(), len) };
+    saved.ok().and_then(|saved| table::saved_items(saved).ok()).unwrap_or(0)
+}
+
+/// A table as it was when nf_table_save wrote it, in memory as for nf_table_init. It draws the same items from the same
+/// generator.
+///
+/// NF_ERR_NULL; NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: what is wrong with the bytes;
+/// NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_table_load(
+    table: *mut nf_table,
+    memory: *mut c_void,
+    bytes: usize,
+    saved: *const c_void,
+    len: usize,
+) -> nf_status {
+    status((|| {
+        check_place(table)?;
+        // SAFETY: the caller passes `len` bytes.
+        let saved = unsafe { convert::slice(saved.cast::<u8>(), len) }?;
+        let items = table::check_saved(saved).map_err(status_of)?;
+        // SAFETY: the caller passes memory that no one else uses.
+        let (importance, sums, blocks) = unsafe { room(memory, bytes, items) }?;
+        let state = Table::load(importance, sums, saved).map_err(status_of)?.state();
+        // SAFETY: the caller passes room for a table.
+        unsafe { put(table, memory, blocks, state) }
+    })())
+}
+
+/// # Safety
+/// As for [`nf_table_draw`].
+unsafe fn draw(
+    table: *const nf_table,
+    rng: *mut nf_rng,
+    batch: u32,
+    index: *mut u32,
+    weight: *mut f32,
+    draw: impl FnOnce(&Reader<'_>, &mut rng::Rng, &mut [u32], Option<&mut [f32]>) -> Result<(), noisefloor_core::Error>,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes a table that no one writes meanwhile, a generator that no one else uses, and outputs of
+        // `batch` elements.
+        let (table, index, weight) =
+            unsafe { (open(table)?, convert::slice_mut(index, batch as usize)?, weights(weight, batch)?) };
+        // SAFETY: as above.
+        unsafe { rng::try_with(rng, |rng| draw(&table, rng, index, weight).map_err(status_of)) }
+    })())
+}
+
+/// The weights, unless NULL says that they are not wanted.
+///
+/// # Safety
+/// A non-NULL `weight` must be room for `batch` elements that no one else uses.
+pub(crate) unsafe fn weights<'a>(weight: *mut f32, batch: u32) -> Result<Option<&'a mut [f32]>, nf_status> {
+    // SAFETY: passed on to the caller.
+    if weight.is_null() { Ok(None) } else { unsafe { convert::slice_mut(weight, batch as usize) }.map(Some) }
+}
+
+pub(crate) type Reader<'a> = Table<&'a [f32], &'a [i64]>;
+pub(crate) type Writer<'a> = Table<&'a mut [f32], &'a mut [i64]>;
+
+/// The table as the core sees it, to read.
+///
+/// # Safety
+/// A non-NULL `table` must be one that nf_table_init or nf_table_load made, whose memory no one writes during `'a`.
+pub(crate) unsafe fn open<'a>(table: *const nf_table) -> Result<Reader<'a>, nf_status> {
+    // SAFETY: passed on to the caller.
+    let table = unsafe { convert::reference(table) }?;
+    let (importance, sums) = lengths(table)?;
+    // SAFETY: nf_table_init made both of these lengths.
+    let (importance, sums) =
+        unsafe { (convert::slice(table.importance, importance)?, convert::slice(table.sums, sums)?) };
+    Table::resume(importance, sums, state(table)).map_err(|_| NF_ERR_STATE)
+}
+
+/// As [`open`], to write the items; the struct itself is the caller's to write.
+///
+/// # Safety
+/// As for [`open`], and no one may read the memory during `'a`.
+unsafe fn open_mut<'a>(table: *mut nf_table) -> Result<Writer<'a>, nf_status> {
+    // SAFETY: passed on to the caller.
+    let table = unsafe { convert::reference(table) }?;
+    let (importance, sums) = lengths(table)?;
+    // SAFETY: nf_table_init made both of these lengths.
+    let (importance, sums) =
+        unsafe { (convert::slice_mut(table.importance, importance)?, convert::slice_mut(table.sums, sums)?) };
+    Table::resume(importance, sums, state(table)).map_err(|_| NF_ERR_STATE)
+}
+
+/// Changes a table.
+///
+/// # Safety
+/// As for [`open_mut`].
+unsafe fn change(table: *mut nf_table, change: impl FnOnce(&mut Writer<'_>) -> Result<(), nf_status>) -> nf_status {
+    status((|| {
+        let state = {
+            // SAFETY: passed on to the caller.
+            let mut opened = unsafe { open_mut(table) }?;
+            change(&mut opened)?;
+            opened.state()
+        };
+        // SAFETY: as above; nothing else refers to the struct any more.
+        let table = unsafe { convert::reference_mut(table) }?;
+        (table.scale, table.items, table.uniform_fraction) = (state.scale, state.items, state.uniform_fraction);
+        Ok(())
+    })())
+}
+
+fn state(table: &nf_table) -> State {
+    State { scale: table.scale, items: table.items, uniform_fraction: table.uniform_fraction }
+}
+
+/// How many importances and sums a table's memory has.
+fn lengths(table: &nf_table) -> Result<(usize, usize), nf_status> {
+    if table.importance.is_null() || table.blocks > MAX_BLOCKS {
+        return Err(NF_ERR_STATE);
+    }
+    let (importance, sums) = parts(table.blocks).ok_or(NF_ERR_STATE)?;
+    Ok((importance / size_of::<f32>(), sums / size_of::<i64>()))
+}
+
+/// Whether a struct can be written there, before anything else is.
+fn check_place(table: *const nf_table) -> Result<(), nf_status> {
+    if table.is_null() {
+        return Err(NF_ERR_NULL);
+    }
+    if table.is_aligned() { Ok(()) } else { Err(NF_ERR_ALIGNMENT) }
+}
+
+/// Memory for at least `items` items, divided, cleared, and how many blocks it has room for.
+///
+/// # Safety
+/// A non-NULL `memory` must be the start of `bytes` bytes that no one else uses during `'a`.
+unsafe fn room<'a>(
+    memory: *mut c_void,
+    bytes: usize,
+    items: u32,
+) -> Result<(&'a mut [f32], &'a mut [i64], u32), nf_status> {
+    let needed = nf_table_size(items);
+    if needed == 0 {
+        return Err(NF_ERR_MEMORY);
+    }
+    // SAFETY: passed on to the caller.
+    unsafe { convert::memory(memory, bytes, needed) }?;
+    let fits = |blocks| parts(blocks).is_some_and(|(importance, sums)| importance + sums + SLACK <= bytes);
+    // The most blocks that fit, by bisection: those of `items` do, one more than the most there can be does not.
+    let (mut fit, mut not) = (items.div_ceil(BLOCK as u32), MAX_BLOCKS + 1);
+    while not - fit > 1 {
+        let middle = fit + (not - fit) / 2;
+        if fits(middle) { fit = middle } else { not = middle }
+    }
+    let (importance, sums) = parts(fit).ok_or(NF_ERR_MEMORY)?;
+    let start = aligned(memory);
+    // SAFETY: `start` is aligned for both, and at most SLACK bytes behind the start of memory that holds as much and both.
+    // All zero bits are numbers.
+    unsafe {
+        start.write_bytes(0, importance + sums);
+        Ok((
+            convert::slice_mut(start.cast(), importance / size_of::<f32>())?,
+            convert::slice_mut(start.add(importance).cast(), sums / size_of::<i64>())?,
+            fit,
+        ))
+    }
+}
+
+/// The first cache line that begins in the memory.
+fn aligned(memory: *mut c_void) -> *mut u8 {
+    let start = memory.cast::<u8>();
+    start.wrapping_add(start.addr().wrapping_neg() % ALIGNMENT)
+}
+
+/// Writes the struct of a table whose memory has been made.
+///
+/// # Safety
+/// `table` must be room for a table, and `memory` what [`room`] was given.
+unsafe fn put(table: *mut nf_table, memory: *mut c_void, blocks: u32, state: State) -> Result<(), nf_status> {
+    let (importance, _) = parts(blocks).ok_or(NF_ERR_MEMORY)?;
+    let start = aligned(memory);
+    let made = nf_table {
+        importance: start.cast(),
+        sums: start.wrapping_add(importance).cast(),
+        scale: state.scale,
+        items: state.items,
+        blocks,
+        uniform_fraction: state.uniform_fraction,
+        reserved: 0,
+    };
+    // SAFETY: passed on to the caller.
+    unsafe { convert::write(table, made) }
+}

@@ -1,0 +1,41 @@
+//! A random permutation, one element at a time.
+
+/// The element at `position` of a random permutation of `0..items`, which `seed` chooses: the first epoch's order
+/// (Algorithm 4), and minibatches drawn uniformly without replacement, without an array of indices.
+///
+/// A position beyond the last counts from the start again; 0 where there are no items. Any seed is good.
+///
+/// A Feistel network over the next power of two, walked until it arrives in `0..items` (J. Black and P. Rogaway,
+/// "Ciphers with Arbitrary Finite Domains", 2002): two networks on average. Not for cryptography.
+pub fn shuffle(seed: u64, items: u32, position: u32) -> u32 {
+    let Some(start) = position.checked_rem(items) else { return 0 };
+    // At least two bits, so that both halves have one.
+    let bits = (u32::BITS - (items - 1).leading_zeros()).max(2);
+    let low_bits = bits / 2;
+    let low_mask = (1u32 << low_bits) - 1;
+    let high_mask = (1u32 << (bits - low_bits)) - 1;
+    let mut at = start;
+    loop {
+        let (mut low, mut high) = (at & low_mask, at >> low_bits);
+        for round in 0..ROUNDS {
+            high ^= noise(seed, 2 * round, low) & high_mask;
+            low ^= noise(seed, 2 * round + 1, high) & low_mask;
+        }
+        at = (high << low_bits) | low;
+        // The network is a permutation of the power of two: its cycle through a start below `items` returns there.
+        if at < items {
+            return at;
+        }
+    }
+}
+
+/// Pairs of half rounds. Halves of one or two bits need more of them than long ones.
+const ROUNDS: u64 = 6;
+
+fn noise(seed: u64, round: u64, half: u32) -> u32 {
+    let mut z = seed.wrapping_add((round + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15))
+        ^ u64::from(half).wrapping_mul(0xd6e8_feb8_6659_fd93);
+    z = (z ^ (z >> 32)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 29)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    (z >> 32) as u32
+}

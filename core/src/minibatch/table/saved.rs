@@ -1,0 +1,124 @@
+//! A table as bytes.
+//!
+//! Little-endian: the magic "nf_table", version u32, items u32, scale f64, uniform fraction f32, CRC-32 of all other bytes
+//! u32, and an f32 for each item. The sums are made again: they are the same.
+
+use super::{State, Table, is_scale};
+use crate::Error;
+use crate::checksum::Crc;
+
+/// Bytes before the importances.
+pub const HEADER_BYTES: usize = 32;
+const MAGIC: [u8; 8] = *b"nf_table";
+const VERSION: u32 = 1;
+/// Where the checksum stands.
+const CHECKSUM: usize = 28;
+
+/// How many bytes a table of so many items takes; 0 if no memory has them.
+pub const fn saved_len(items: u32) -> usize {
+    let len = HEADER_BYTES as u64 + items as u64 * size_of::<f32>() as u64;
+    if len <= isize::MAX as u64 { len as usize } else { 0 }
+}
+
+impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
+    /// Writes the table to exactly [`saved_len`] bytes. A table loaded from them draws the same items from the same generator.
+    ///
+    /// Errors: [`Error::Length`] for another number of bytes.
+    pub fn save(&self, bytes: &mut [u8]) -> Result<(), Error> {
+        let items = self.state.items;
+        if bytes.len() != saved_len(items) {
+            return Err(Error::Length);
+        }
+        let fraction = self.state.uniform_fraction.to_le_bytes();
+        let fields =
+            [&MAGIC[..], &VERSION.to_le_bytes(), &items.to_le_bytes(), &self.state.scale.to_le_bytes(), &fraction];
+        let importances = self.importance.as_ref().iter().take(items as usize);
+        for (to, from) in bytes.iter_mut().zip(fields.into_iter().flatten()) {
+            *to = *from;
+        }
+        for (to, q) in bytes.get_mut(HEADER_BYTES..).unwrap_or_default().chunks_exact_mut(4).zip(importances) {
+            to.iter_mut().zip(q.to_le_bytes()).for_each(|(to, from)| *to = from);
+        }
+        let checksum = checksum(bytes).to_le_bytes();
+        for (to, from) in bytes.iter_mut().skip(CHECKSUM).zip(checksum) {
+            *to = from;
+        }
+        Ok(())
+    }
+}
+
+/// The number of items in a saved table, to make memory for it. Only the header is looked at.
+///
+/// Errors: [`Error::Length`] for less than a header, [`Error::Foreign`] for other bytes, [`Error::Version`].
+pub fn saved_items(bytes: &[u8]) -> Result<u32, Error> {
+    let mut reader = Reader(bytes);
+    let magic: [u8; 8] = reader.take().ok_or(Error::Length)?;
+    let version = u32::from_le_bytes(reader.take().ok_or(Error::Length)?);
+    let items = u32::from_le_bytes(reader.take().ok_or(Error::Length)?);
+    // Comparing arrays may call bcmp, which a freestanding target need not have.
+    if u64::from_le_bytes(magic) != u64::from_le_bytes(MAGIC) {
+        return Err(Error::Foreign);
+    }
+    if version != VERSION { Err(Error::Version) } else { Ok(items) }
+}
+
+impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S> {
+    /// A table as it was when it was saved, in memory for at least as many items.
+    ///
+    /// Errors, before which no memory is touched: [`Error::Foreign`] for other bytes, [`Error::Version`],
+    /// [`Error::Length`], [`Error::Corrupt`] if they are damaged; [`Error::Memory`].
+    pub fn load(importance: I, sums: S, bytes: &[u8]) -> Result<Self, Error> {
+        let mut table = Table::resume(importance, sums, check(bytes)?)?;
+        let memory = table.importance.as_mut();
+        memory.fill(0.0);
+        memory.iter_mut().zip(values(bytes)).for_each(|(to, from)| *to = from);
+        if !table.rebuild_at_scale() {
+            // No library has saved this scale with these importances, but nothing is lost.
+            table.rebuild();
+        }
+        Ok(table)
+    }
+}
+
+/// The number of items in a saved table that [`Table::load`] would accept. Errors: as there, but for memory.
+pub fn check_saved(bytes: &[u8]) -> Result<u32, Error> {
+    Ok(check(bytes)?.items)
+}
+
+fn check(bytes: &[u8]) -> Result<State, Error> {
+    let items = saved_items(bytes)?;
+    if bytes.len() != saved_len(items) {
+        return Err(Error::Length);
+    }
+    let mut reader = Reader(bytes.get(16..).unwrap_or_default());
+    let scale = f64::from_le_bytes(reader.take().ok_or(Error::Length)?);
+    let uniform_fraction = f32::from_le_bytes(reader.take().ok_or(Error::Length)?);
+    let stored = u32::from_le_bytes(reader.take().ok_or(Error::Length)?);
+    let sound = stored == checksum(bytes)
+        && items > 0
+        && is_scale(scale)
+        && (0.0..=1.0).contains(&uniform_fraction)
+        && values(bytes).all(|q| q.is_finite() && q.is_sign_positive());
+    if sound { Ok(State { scale, items, uniform_fraction }) } else { Err(Error::Corrupt) }
+}
+
+fn values(bytes: &[u8]) -> impl Iterator<Item = f32> {
+    bytes.get(HEADER_BYTES..).unwrap_or_default().as_chunks().0.iter().map(|&q| f32::from_le_bytes(q))
+}
+
+/// That of all bytes but the checksum's own.
+fn checksum(bytes: &[u8]) -> u32 {
+    let before = bytes.get(..CHECKSUM).unwrap_or_default();
+    Crc::new().add(before).add(bytes.get(HEADER_BYTES..).unwrap_or_default()).finish()
+}
+
+/// Takes fields off the front of bytes.
+struct Reader<'a>(&'a [u8]);
+
+impl Reader<'_> {
+    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (field, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(*field)
+    }
+}

@@ -1,0 +1,135 @@
+//! Several tables drawn as one: each process of a data-parallel trainer owns the table of its part of the data.
+
+use super::Table;
+use super::draw::Mixture;
+use crate::Error;
+use crate::rng::Rng;
+
+/// What the others must know of one process's table: 16 bytes that all processes exchange before a draw.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shard {
+    /// The sum of its importances.
+    pub importance: f64,
+    /// How many items it has.
+    pub items: u64,
+}
+
+impl Shard {
+    /// What all of these are together; every process must add them in the same order, for the same bits.
+    ///
+    /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative sum or 2^53 items or more; [`Error::NoSamples`] if there is no
+    /// item.
+    pub fn sum(shards: impl IntoIterator<Item = Shard>) -> Result<Shard, Error> {
+        let mut all = Shard::default();
+        for shard in shards {
+            if !shard.importance.is_finite() {
+                return Err(Error::NotFinite);
+            }
+            let items = all.items.saturating_add(shard.items);
+            if shard.importance < 0.0 || items >= 1 << 53 {
+                return Err(Error::Range);
+            }
+            all = Shard { importance: all.importance + shard.importance, items };
+        }
+        match (all.importance.is_finite(), all.items) {
+            (false, _) => Err(Error::NotFinite),
+            (true, 0) => Err(Error::NoSamples),
+            (true, _) => Ok(all),
+        }
+    }
+
+    /// The probability that a draw from `all` falls to this part by importance, and uniformly.
+    ///
+    /// Errors: [`Error::NoSamples`] if nothing can be drawn.
+    fn ways(&self, all: &Shard, uniform_fraction: f64) -> Result<(f64, f64), Error> {
+        let by_items = self.items as f64 / all.items as f64;
+        match (all.importance > 0.0, uniform_fraction > 0.0) {
+            (true, _) => {
+                Ok(((1.0 - uniform_fraction) * (self.importance / all.importance), uniform_fraction * by_items))
+            }
+            (false, true) => Ok((0.0, by_items)),
+            (false, false) => Err(Error::NoSamples),
+        }
+    }
+}
+
+/// How many of a batch's items come from each shard: in proportion to their probabilities, rounded up or down at random so
+/// that each is right on average (systematic sampling). `counts`, as long as `shards`, sums to `batch`.
+///
+/// Every process calls it with the same shards and a generator of the same seed, and so learns its own part.
+///
+/// Errors: as for [`Shard::sum`]; [`Error::Range`] for different lengths or a fraction outside 0..=1; [`Error::NotFinite`];
+/// [`Error::NoSamples`] if every importance and the fraction are 0.
+pub fn allocate(
+    shards: impl Iterator<Item = Shard> + Clone,
+    uniform_fraction: f32,
+    rng: &mut Rng,
+    batch: u32,
+    counts: &mut [u32],
+) -> Result<(), Error> {
+    if !uniform_fraction.is_finite() {
+        return Err(Error::NotFinite);
+    }
+    if shards.clone().count() != counts.len() || !(0.0..=1.0).contains(&uniform_fraction) {
+        return Err(Error::Range);
+    }
+    let all = Shard::sum(shards.clone())?;
+    let fraction = f64::from(uniform_fraction);
+    all.ways(&all, fraction)?;
+    let offset = rng.uniform_f64();
+    let mut end = 0.0;
+    let mut before = 0;
+    // The last shard that can be drawn from takes what rounding leaves.
+    let possible = |shard: Shard| shard.ways(&all, fraction).is_ok_and(|(tree, uniform)| tree + uniform > 0.0);
+    let last = shards.clone().enumerate().filter(|&(_, shard)| possible(shard)).map(|(i, _)| i).last();
+    for (i, (shard, count)) in shards.zip(counts).enumerate() {
+        let (tree, uniform) = shard.ways(&all, fraction)?;
+        end += tree + uniform;
+        // How many of the points offset, offset + 1, ... lie before the shard's end.
+        let until = match last.is_some_and(|last| i < last) {
+            true => libm::ceil(end * f64::from(batch) - offset).clamp(f64::from(before), f64::from(batch)) as u32,
+            false => batch,
+        };
+        *count = until - before;
+        before = until;
+    }
+    Ok(())
+}
+
+impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
+    /// What other processes must know of this table.
+    pub fn shard(&self) -> Shard {
+        Shard { importance: self.total(), items: u64::from(self.state.items) }
+    }
+
+    /// As [`Table::draw`] for this process's part of a batch over several tables that are, together, `all` (their
+    /// [`Shard::sum`], this table's [`Table::shard`] included): weights are those of the whole. Gradients times weights, summed over
+    /// the parts and divided by the whole batch's size, estimate the gradient of the mean loss over all items.
+    ///
+    /// All tables must have the same uniform fraction. How many items each process draws, [`allocate`] says.
+    ///
+    /// Errors: [`Error::Range`] for another number of weights, or if `all` is less than this table alone;
+    /// [`Error::NotFinite`]; [`Error::NoSamples`] if nothing can be drawn from this table.
+    pub fn draw_shard(
+        &self,
+        all: &Shard,
+        rng: &mut Rng,
+        index: &mut [u32],
+        weight: Option<&mut [f32]>,
+    ) -> Result<(), Error> {
+        if !all.importance.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        let own = self.shard();
+        if all.items < own.items || all.items >= 1 << 53 || all.importance < own.importance {
+            return Err(Error::Range);
+        }
+        let (tree, uniform) = own.ways(all, f64::from(self.state.uniform_fraction))?;
+        let share = tree + uniform;
+        if share <= 0.0 {
+            return Err(Error::NoSamples);
+        }
+        let mixture = Mixture::of(self.sum(), self.state.items, uniform / share)?;
+        self.draw_mixture(&mixture, share * all.items as f64, rng, index, weight)
+    }
+}

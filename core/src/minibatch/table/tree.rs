@@ -1,0 +1,108 @@
+//! The tree of sums over the blocks: nodes of 16 children, level by level.
+//!
+//! A node holds running sums of its children's weights, as integers: a draw compares 16 numbers and counts, a change adds a
+//! difference to some of them, and as integers lose nothing the sums are those of a tree built afresh, bit for bit.
+
+use super::block::ARITY;
+
+/// Where each child ends, in units of the table's scale: the last element is the node's weight.
+pub(super) type Node = [i64; ARITY];
+
+/// The blocks of the most items there can be.
+pub(super) const MAX_BLOCKS: usize = 1 << 28;
+const MAX_LEVELS: usize = 7;
+
+/// Where the levels of a tree lie among its nodes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Levels {
+    /// The first node of each level, lowest first, and behind the highest its end: the root is the one before that.
+    start: [usize; MAX_LEVELS + 1],
+    depth: usize,
+}
+
+impl Levels {
+    /// Those over so many blocks, at most [`MAX_BLOCKS`].
+    #[inline]
+    pub(super) const fn new(blocks: usize) -> Levels {
+        let mut start = [0; MAX_LEVELS + 1];
+        let mut nodes = blocks.div_ceil(ARITY);
+        let mut depth = 0;
+        while depth < MAX_LEVELS {
+            start[depth + 1] = start[depth] + nodes;
+            depth += 1;
+            if nodes <= 1 {
+                break;
+            }
+            nodes = nodes.div_ceil(ARITY);
+        }
+        Levels { start, depth }
+    }
+
+    /// How many nodes there are.
+    pub(super) const fn nodes(&self) -> usize {
+        self.start[self.depth % (MAX_LEVELS + 1)]
+    }
+
+    /// The first node of each level, from the lowest to the highest.
+    #[inline(always)]
+    pub(super) fn starts(&self) -> &[usize] {
+        self.start.get(..self.depth).unwrap_or_default()
+    }
+}
+
+/// The child that `r`, below the node's weight, falls on; never one of weight 0. With it, where the child begins and ends.
+#[inline(always)]
+pub(super) fn find(node: &Node, r: i64) -> (usize, i64, i64) {
+    let mut count = 0;
+    for &end in node {
+        count += i64::from(end <= r);
+    }
+    let child = count as usize % ARITY;
+    let (begin, end) = span(node, child);
+    (child, begin, end)
+}
+
+/// Where a child begins and ends.
+#[inline(always)]
+pub(super) fn span(node: &Node, child: usize) -> (i64, i64) {
+    // A mask, not a branch that would be mispredicted once in 16 times.
+    let before = node[child.wrapping_sub(1) % ARITY] & -i64::from(child != 0);
+    (before, node[child % ARITY])
+}
+
+/// Changes a child's weight by `difference`.
+#[inline(always)]
+pub(super) fn add(node: &mut Node, child: usize, difference: i64) {
+    let mut ends = *node;
+    for (i, end) in ends.iter_mut().enumerate() {
+        *end = end.wrapping_add(if i >= child { difference } else { 0 });
+    }
+    *node = ends;
+}
+
+/// Changes each child's weight by its difference.
+#[inline(always)]
+pub(super) fn add_all(node: &mut Node, differences: &Node) {
+    let mut sum = 0i64;
+    for (end, difference) in node.iter_mut().zip(differences) {
+        sum = sum.wrapping_add(*difference);
+        *end = end.wrapping_add(sum);
+    }
+}
+
+/// Makes the levels above the lowest from it.
+pub(super) fn raise(nodes: &mut [Node], levels: &Levels) {
+    for pair in levels.starts().windows(2) {
+        let &[below, above] = pair else { return };
+        let Some((lower, upper)) = nodes.split_at_mut_checked(above) else { return };
+        let lower = lower.get(below..).unwrap_or_default();
+        for (node, children) in upper.iter_mut().zip(lower.chunks(ARITY)) {
+            let mut sum = 0;
+            let mut children = children.iter();
+            *node = core::array::from_fn(|_| {
+                sum += children.next().map_or(0, |child| child[ARITY - 1]);
+                sum
+            });
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Changing importances.
+
+use super::block::{self, ARITY, Block};
+use super::tree::{self, Levels, Node};
+use super::{Table, check_importances, power_of_two};
+use crate::Error;
+
+/// How many changes go up the tree together.
+const CHUNK: usize = 64;
+/// A scale is chosen so that the sum has this many bits: room to grow by a factor of 2^11, and to shrink by 2^6 with the
+/// most items there can be, by 2^18 with a million.
+const BITS: i64 = 51;
+/// The sum stays below this.
+const LARGEST_SUM: i64 = 1 << 62;
+/// The sum stays above this times the number of blocks, so that rounding a block's weight changes little.
+const LEAST_WEIGHT: i64 = 1 << 16;
+
+impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S> {
+    /// Sets the importance of the visited items: `q = momentum q + (1 - momentum) importance` (line 13 of Algorithm 3,
+    /// (6.11)), one after the other, so that an item that comes twice is changed twice. Momentum 0 forgets the old value;
+    /// .3 is a good choice.
+    ///
+    /// Where the sum of all has grown or shrunk by orders of magnitude since the table was built, it is built again at a new
+    /// scale, which takes time for every item; else a change costs the same few nanoseconds however many items there are.
+    ///
+    /// Errors, which change nothing: [`Error::Range`] for different lengths, an item that does not exist, a negative
+    /// importance, or a momentum outside 0..=1; [`Error::NotFinite`].
+    #[inline(always)]
+    pub fn update(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
+        check_importances(importance)?;
+        if !momentum.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        if !(0.0..=1.0).contains(&momentum) || index.len() != importance.len() {
+            return Err(Error::Range);
+        }
+        self.check_items(index)?;
+        let fresh = 1.0 - momentum;
+        let mut in_range = true;
+        for (index, importance) in index.chunks(CHUNK).zip(importance.chunks(CHUNK)) {
+            let mix = |&q: &f32| move |old: f32| (momentum * old + fresh * q).min(f32::MAX);
+            in_range &= self.change(index.iter().copied().zip(importance.iter().map(mix)));
+        }
+        self.restore_scale(in_range);
+        Ok(())
+    }
+
+    /// Adds items behind the last. Takes the time of an update for each, or of building the table if they are many.
+    ///
+    /// Errors, which change nothing: [`Error::Memory`] if there is no room; [`Error::Range`] for a negative importance;
+    /// [`Error::NotFinite`].
+    pub fn append(&mut self, importance: &[f32]) -> Result<(), Error> {
+        check_importances(importance)?;
+        let room = (self.capacity() - self.state.items) as usize;
+        if importance.len() > room {
+            return Err(Error::Memory);
+        }
+        let first = self.state.items;
+        self.state.items += importance.len() as u32;
+        if importance.len() >= first as usize / ARITY {
+            let places = self.importance.as_mut().iter_mut().skip(first as usize);
+            places.zip(importance).for_each(|(to, &from)| *to = from + 0.0);
+            self.rebuild();
+        } else {
+            let mut in_range = true;
+            for (chunk, start) in importance.chunks(CHUNK).zip((first..).step_by(CHUNK)) {
+                in_range &= self.change((start..).zip(chunk.iter().map(|&q| move |_| q + 0.0)));
+            }
+            self.restore_scale(in_range);
+        }
+        Ok(())
+    }
+
+    /// Adds `epsilon` to every importance, as Algorithm 3 does after an epoch so that no item is forgotten. Exact: every
+    /// importance is the f32 sum. Takes time for every item; the uniform fraction does the same for nothing.
+    ///
+    /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative number.
+    #[inline(always)]
+    pub fn add_epsilon(&mut self, epsilon: f32) -> Result<(), Error> {
+        check_importances(&[epsilon])?;
+        let items = self.state.items as usize;
+        let scale = self.state.scale;
+        let levels = self.levels;
+        let (blocks, nodes) = self.parts();
+        let (full, rest) = blocks.split_at_mut_checked(items / ARITY).unwrap_or_default();
+        for block in full.iter_mut() {
+            *block = block.map(|q| (q + epsilon).min(f32::MAX));
+        }
+        for q in rest.iter_mut().flatten().take(items % ARITY) {
+            *q = (*q + epsilon).min(f32::MAX);
+        }
+        let in_range = build(blocks, nodes, &levels, scale);
+        self.restore_scale(in_range);
+        Ok(())
+    }
+
+    /// Makes the sums follow an item whose importance has been changed.
+    pub(super) fn refresh(&mut self, item: u32) {
+        let in_range = self.change(core::iter::once((item, |q| q)));
+        self.restore_scale(in_range);
+    }
+
+    /// At most [`CHUNK`] changes: an item, and its new importance from the old. False if the sums are beyond their range, and wrong until they are built again.
+    #[inline(always)]
+    fn change<F: Fn(f32) -> f32>(&mut self, changes: impl Iterator<Item = (u32, F)>) -> bool {
+        let scale = self.state.scale;
+        let levels = self.levels;
+        let (blocks, nodes) = self.parts();
+        let (lowest, upper) = levels.starts().split_first().unwrap_or((&0, &[]));
+        // For each change the block and by how much its weight differs.
+        let mut pending = [(0u32, 0i64); CHUNK];
+        let mut count = 0;
+        let mut in_range = true;
+        for (pending, (item, change)) in pending.iter_mut().zip(changes) {
+            let which = item as usize / ARITY;
+            let (Some(block), Some(node)) = (blocks.get_mut(which), nodes.get_mut(lowest + which / ARITY)) else {
+                continue;
+            };
+            let q = &mut block[item as usize % ARITY];
+            *q = change(*q);
+            let weight = weight(block::total(block), scale);
+            in_range &= weight < LARGEST_SUM;
+            let (begin, end) = tree::span(node, which % ARITY);
+            let difference = weight.wrapping_sub(end.wrapping_sub(begin));
+            tree::add(node, which % ARITY, difference);
+            *pending = (which as u32 / ARITY as u32, difference);
+            count += 1;
+        }
+        let pending = pending.get_mut(..count).unwrap_or_default();
+        // All changes meet in the root: they are added up first, or each would wait for the one before it.
+        let (root, between) = upper.split_last().map_or((None, upper), |(root, between)| (Some(root), between));
+        for start in between {
+            for (below, difference) in pending.iter_mut() {
+                let which = *below as usize / ARITY;
+                let Some(node) = nodes.get_mut(start + which) else { continue };
+                tree::add(node, *below as usize % ARITY, *difference);
+                *below = which as u32;
+            }
+        }
+        if let Some(node) = root.and_then(|&root| nodes.get_mut(root)) {
+            let mut differences = [0i64; ARITY];
+            for (below, difference) in pending {
+                let sum = &mut differences[*below as usize % ARITY];
+                *sum = sum.wrapping_add(*difference);
+            }
+            tree::add_all(node, &differences);
+        }
+        in_range && (0..LARGEST_SUM).contains(&nodes.last().map_or(0, |root| root[ARITY - 1]))
+    }
+
+    /// Builds the table again if its sum has left the range of its scale.
+    #[inline(always)]
+    pub(super) fn restore_scale(&mut self, in_range: bool) {
+        let sum = self.sum();
+        let least = i64::from(self.state.items / ARITY as u32 + 1) * LEAST_WEIGHT;
+        if !in_range || (sum > 0 && sum < least) {
+            self.rebuild();
+        }
+    }
+
+    /// Builds the sums from the importances, at the scale that suits them.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn rebuild(&mut self) {
+        let sum: f64 = self.blocks().iter().map(block::total).sum();
+        if sum > 0.0 {
+            // Between 2^-149 and 2^160: the exponent of a normal f64.
+            let exponent = (sum.to_bits() >> 52) as i64 - 1023;
+            self.state.scale = power_of_two(BITS - 1 - exponent);
+        }
+        self.rebuild_at_scale();
+    }
+
+    /// Builds the sums at the scale there is. False if they are beyond their range.
+    pub(super) fn rebuild_at_scale(&mut self) -> bool {
+        let (levels, scale) = (self.levels, self.state.scale);
+        let (blocks, nodes) = self.parts();
+        build(blocks, nodes, &levels, scale)
+    }
+
+    /// The blocks and the nodes, to write.
+    #[inline(always)]
+    fn parts(&mut self) -> (&mut [Block], &mut [Node]) {
+        let (blocks, _) = self.importance.as_mut().as_chunks_mut();
+        let (nodes, _) = self.sums.as_mut().as_chunks_mut();
+        (blocks.get_mut(..self.blocks).unwrap_or_default(), nodes.get_mut(..self.levels.nodes()).unwrap_or_default())
+    }
+}
+
+/// The weight of a block: its sum times the scale, rounded, at least 1 if it is not 0.
+#[inline(always)]
+fn weight(total: f64, scale: f64) -> i64 {
+    let rounded = (total * scale + 0.5) as i64;
+    if total > 0.0 { rounded.max(1) } else { 0 }
+}
+
+/// All sums. False if they are beyond their range.
+#[inline(always)]
+fn build(blocks: &[Block], nodes: &mut [Node], levels: &Levels, scale: f64) -> bool {
+    let mut in_range = true;
+    let mut sum_of_all = 0i64;
+    for (node, blocks) in nodes.iter_mut().zip(blocks.chunks(ARITY)) {
+        let mut sum = 0i64;
+        let mut blocks = blocks.iter();
+        for end in node.iter_mut() {
+            let weight = blocks.next().map_or(0, |block| weight(block::total(block), scale));
+            in_range &= weight < LARGEST_SUM;
+            sum = sum.wrapping_add(weight);
+            *end = sum;
+        }
+        in_range &= (0..LARGEST_SUM).contains(&sum);
+        sum_of_all = sum_of_all.saturating_add(sum);
+    }
+    tree::raise(nodes, levels);
+    in_range && sum_of_all < LARGEST_SUM
+}
