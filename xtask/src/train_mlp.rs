@@ -18,26 +18,17 @@ pub(crate) fn digits(archive: &Path) -> Result<Outcome> {
     let trainer = Trainer::compile("train_mlp", &["-O2"], archive)?;
     learns(&trainer)?;
     variances(&trainer)?;
-    let sanitized =
-        if has_sanitizers()? { Some(Trainer::compile("train_mlp_sanitized", &SANITIZERS, archive)?) } else { None };
+    let sanitized = if has_sanitizers()? {
+        Some(Trainer::compile("train_mlp_sanitized", &[&["-O1"], &SANITIZERS[..]].concat(), archive)?)
+    } else {
+        None
+    };
     if let Some(trainer) = &sanitized {
         println!("   under the sanitizers");
-        let file = output("train_mlp_sanitized.csv")?;
-        let file = text(&file)?;
-        trainer.run(&[
-            "--data",
-            DATA,
-            "--modes",
-            MODES,
-            "--epochs",
-            "2",
-            "--rows",
-            "3",
-            "--epsilon",
-            "0.001",
-            "--stratified",
-        ])?;
-        trainer.run(&["--data", DATA, "--epochs", "1", "--variance", file])?;
+        // Small: it is memory that is looked at, and slowly.
+        let small = ["--data", DATA, "--hidden", "9,6", "--epochs", "2", "--modes", MODES];
+        trainer.run(&[&small[..], &["--rows", "3", "--epsilon", "0.001", "--stratified"]].concat())?;
+        trainer.run(&[&small[..], &["--variance", text(&output("train_mlp_sanitized.csv")?)?]].concat())?;
     }
     refuses(sanitized.as_ref().unwrap_or(&trainer))?;
     Ok(Outcome::Passed)
@@ -49,9 +40,14 @@ fn learns(trainer: &Trainer) -> Result<()> {
     let sgd = [&adam[..], &["--optimizer", "sgd", "--rate", "0.05", "--stratified", "--epsilon", "1e-4"]].concat();
     for arguments in [&adam[..], &sgd] {
         let csv = trainer.run(arguments)?;
-        let again = trainer.run(arguments)?;
-        if without_seconds(&csv) != without_seconds(&again) {
-            bail!("the same seeds gave other numbers");
+        if csv.lines().count() != 1 + 5 * 2 * 16 {
+            bail!("the trainer wrote {} lines", csv.lines().count());
+        }
+        // The second seed's rows, whatever came before them, and however fast.
+        let again = trainer.run(&[arguments, &["--seed", "2", "--seeds", "1"]].concat())?;
+        let second = without_seconds(&csv).into_iter().filter(|row| row.split(',').nth(1) != Some("1"));
+        if !second.eq(without_seconds(&again)) {
+            bail!("the same seed gave other numbers");
         }
         for mode in MODES.split(',') {
             for seed in ["1", "2"] {
@@ -68,7 +64,8 @@ fn learns(trainer: &Trainer) -> Result<()> {
 /// The table of variances is complete, and importance lowers the variance.
 fn variances(trainer: &Trainer) -> Result<()> {
     let path = output("train_mlp.csv")?;
-    trainer.run(&["--data", DATA, "--epochs", "6", "--variance", text(&path)?])?;
+    let small = ["--data", DATA, "--hidden", "32,16", "--rate", "0.005", "--epochs", "6"];
+    trainer.run(&[&small[..], &["--variance", text(&path)?]].concat())?;
     let csv = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
     let ratio = |start: &str| -> Result<f64> {
         let line = csv.lines().find(|line| line.starts_with(start));
@@ -77,8 +74,8 @@ fn variances(trainer: &Trainer) -> Result<()> {
     };
     let optimal = ratio("6,gradient_norm,0,")?;
     let (ours, drawn) = (ratio("6,importance,0.2,")?, ratio("6,importance_drawn,0.2,")?);
-    // Measured: .24, .29, and within .03 of that.
-    if !(optimal < ours && ours < 0.5 && (drawn - ours).abs() < 0.25 * ours) {
+    // Measured: .21 without a uniform fraction, .23 with, and .230 +- .009 by drawing.
+    if !(optimal < ours && ours < 0.5 && (drawn - ours).abs() < 0.2 * ours) {
         bail!("variance over uniform's: optimal {optimal}, importance {ours}, by drawing {drawn}");
     }
     for name in ["loss", "last_layer", "importance_stale", "balance", "omis", "balance_stale", "omis_stale"] {
@@ -125,18 +122,18 @@ fn refuses(trainer: &Trainer) -> Result<()> {
         (|bytes| bytes[8..].fill(7), "t10k-labels-idx1-ubyte", ""),
         (|bytes| bytes[8..].fill(0), labels, "training images"),
     ];
+    let small = ["--data", text(&folder)?, "--epochs", "1", "--hidden", "9,6"];
     for (change, file, message) in damage {
         copy_digits(&folder)?;
-        trainer.run(&["--data", text(&folder)?, "--epochs", "1"])?;
         let path = folder.join(file);
         let mut bytes = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
         change(&mut bytes);
         fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
         if message.is_empty() {
             // Wrong, but well formed: bad results, no error.
-            trainer.run(&["--data", text(&folder)?, "--epochs", "1"])?;
+            trainer.run(&small)?;
         } else {
-            trainer.refuses(&["--data", text(&folder)?, "--epochs", "1"], message)?;
+            trainer.refuses(&small, message)?;
         }
     }
     fs::remove_file(folder.join(images)).with_context(|| format!("cannot remove {images}"))?;
