@@ -11,8 +11,8 @@ use std::process::Stdio;
 const STRICT: [&str; 6] = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-Iinclude"];
 const DATA: &str = "examples_c/data/digits";
 const MODES: &str = "uniform,importance,adaptive,balance,omis";
-/// After 15 epochs every mode's test error is .08 to .11; after none it is about .9.
-const ERROR_BOUND: f64 = 0.15;
+/// After 15 epochs: .06 to .10, and once .14 (adaptive, SGD). After none: about .9.
+const ERROR_BOUND: f64 = 0.2;
 
 pub(crate) fn digits(archive: &Path) -> Result<Outcome> {
     let trainer = Trainer::compile("train_mlp", &["-O2"], archive)?;
