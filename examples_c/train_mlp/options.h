@@ -169,6 +169,9 @@ static options options_parse(int count, char **words)
     }
     if (o.data == NULL)
         fail("--data FOLDER is missing; --help lists the options");
+    for (uint32_t i = 0; i < o.mode_count; ++i)
+        if ((o.modes[i] == BALANCE || o.modes[i] == OMIS) && o.techniques > o.batch)
+            fail("%s: a batch of %u has no item for each of %u distributions", mode_name[o.modes[i]], o.batch, o.techniques);
     if (o.rate == 0.0f)
         o.rate = o.adam ? 0.001f : 0.1f;
     return o;

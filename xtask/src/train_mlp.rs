@@ -89,7 +89,7 @@ fn variances(trainer: &Trainer) -> Result<()> {
 
 /// Options and files that are wrong: an error that names them, and nothing worse.
 fn refuses(trainer: &Trainer) -> Result<()> {
-    let wrong: [(&[&str], &str); 14] = [
+    let wrong: [(&[&str], &str); 15] = [
         (&[], "--data"),
         (&["--data"], "--data"),
         (&["--nonsense", "1"], "--nonsense"),
@@ -102,6 +102,7 @@ fn refuses(trainer: &Trainer) -> Result<()> {
         (&["--data", DATA, "--gamma", "nan"], "--gamma"),
         (&["--data", DATA, "--hidden", "5"], "--hidden"),
         (&["--data", DATA, "--techniques", "3"], "--techniques"),
+        (&["--data", DATA, "--mode", "omis", "--batch", "4"], "distributions"),
         (&["--data", DATA, "--optimizer", "nonsense"], "nonsense"),
         (&["--data", DATA, "--epochs", "1", "--variance", "nowhere/nothing.csv"], "nowhere/nothing.csv"),
     ];
