@@ -43,43 +43,46 @@ static double error_at(const curve *run, uint32_t points, double seconds)
     return run->error[points];
 }
 
-/* curves[mode of o->modes][seed]. The time is that of the first mode's last epoch, uniform's if it is among them; and the
-   differences are to that mode too, seed by seed: both begin with the same network and see the same first epoch. */
+static void print_cell(const double *value, uint32_t count, int empty, const char *format)
+{
+    fprintf(stderr, " | ");
+    if (empty)
+        fprintf(stderr, "-");
+    else
+        print_interval(value, count, format);
+}
+
+/* curves[mode of o->modes][seed], half-way and at the end. Equal time is that which uniform takes for these epochs (or the first
+   mode); differences are to it too, seed by seed: the modes begin with the same network and see the same first epoch. */
 static void print_summary(const options *o, curve (*curves)[MAX_SEEDS])
 {
-    uint32_t points = o->epochs * o->rows, base = 0;
+    uint32_t base = 0;
     for (uint32_t m = 0; m < o->mode_count; ++m)
         if (o->modes[m] == UNIFORM)
             base = m;
     const char *name = mode_name[o->modes[base]];
-    fprintf(stderr, "| mode | seeds | test error %% after %u epochs | minus %s's | test error %% in %s's time | minus %s's | "
-                    "time / %s's |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n",
-            o->epochs, name, name, name, name);
-    for (uint32_t m = 0; m < o->mode_count; ++m) {
-        double epochs[MAX_SEEDS], less[MAX_SEEDS], timed[MAX_SEEDS], timed_less[MAX_SEEDS], time = 0.0;
-        for (uint32_t s = 0; s < o->seeds; ++s) {
-            const curve *own = &curves[m][s], *other = &curves[base][s];
-            epochs[s] = own->error[points];
-            less[s] = epochs[s] - other->error[points];
-            timed[s] = error_at(own, points, other->seconds[points]);
-            timed_less[s] = timed[s] - other->error[points];
-            time += own->seconds[points] / other->seconds[points] / o->seeds;
+    fprintf(stderr, "| epochs | mode | seeds | test error %%, equal epochs | minus %s's | test error %%, equal time | minus %s's | "
+                    "time / %s's |\n| ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n",
+            name, name, name);
+    for (uint32_t half = o->epochs < 4; half < 2; ++half) {
+        uint32_t epochs = half == 0 ? o->epochs / 2 : o->epochs, point = epochs * o->rows;
+        for (uint32_t m = 0; m < o->mode_count; ++m) {
+            double equal[MAX_SEEDS], less[MAX_SEEDS], timed[MAX_SEEDS], timed_less[MAX_SEEDS], time = 0.0;
+            for (uint32_t s = 0; s < o->seeds; ++s) {
+                const curve *own = &curves[m][s], *other = &curves[base][s];
+                equal[s] = own->error[point];
+                less[s] = equal[s] - other->error[point];
+                timed[s] = error_at(own, o->epochs * o->rows, other->seconds[point]);
+                timed_less[s] = timed[s] - other->error[point];
+                time += own->seconds[point] / other->seconds[point] / o->seeds;
+            }
+            fprintf(stderr, "| %u | %s | %u", epochs, mode_name[o->modes[m]], o->seeds);
+            print_cell(equal, o->seeds, 0, "%.3f");
+            print_cell(less, o->seeds, m == base, "%+.3f");
+            print_cell(timed, o->seeds, 0, "%.3f");
+            print_cell(timed_less, o->seeds, m == base, "%+.3f");
+            fprintf(stderr, " | %.3f |\n", time);
         }
-        fprintf(stderr, "| %s | %u | ", mode_name[o->modes[m]], o->seeds);
-        print_interval(epochs, o->seeds, "%.3f");
-        fprintf(stderr, " | ");
-        if (m == base)
-            fprintf(stderr, "-");
-        else
-            print_interval(less, o->seeds, "%+.3f");
-        fprintf(stderr, " | ");
-        print_interval(timed, o->seeds, "%.3f");
-        fprintf(stderr, " | ");
-        if (m == base)
-            fprintf(stderr, "-");
-        else
-            print_interval(timed_less, o->seeds, "%+.3f");
-        fprintf(stderr, " | %.3f |\n", time);
     }
 }
 
