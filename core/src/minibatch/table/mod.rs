@@ -13,18 +13,21 @@
 mod block;
 mod distinct;
 mod draw;
+mod kernel;
 mod saved;
 mod shard;
 mod tree;
 mod update;
 
+pub use block::{ARITY, Block};
+pub use kernel::{Kernel, Portable};
 pub use saved::{HEADER_BYTES, check_saved, saved_items, saved_len};
 pub use shard::{Shard, allocate};
+pub use tree::Node;
 
 use crate::Error;
-use block::{ARITY, Block};
 use draw::Mixture;
-use tree::{Levels, MAX_BLOCKS, Node};
+use tree::{Levels, MAX_BLOCKS};
 
 /// The uniform fraction of a new table: no weight above 5. Measured best on classification (.2 to .5 are close).
 pub const DEFAULT_UNIFORM_FRACTION: f32 = 0.2;
@@ -161,7 +164,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         let q = self.importance.as_ref().get(item).copied().unwrap_or(0.0);
         let (begin, end) =
             self.nodes().get(item / ARITY / ARITY).map_or((0, 0), |node| tree::span(node, item / ARITY % ARITY));
-        mixture.probability(q, block.map_or(0.0, block::total), end - begin)
+        mixture.probability(q, block.map_or(0.0, Portable::total), end - begin)
     }
 
     /// Whether the table has these items: else [`Error::Range`].

@@ -4,9 +4,10 @@
 //! difference to some of them, and as integers lose nothing the sums are those of a tree built afresh, bit for bit.
 
 use super::block::ARITY;
+use core::hint::select_unpredictable;
 
 /// Where each child ends, in units of the table's scale: the last element is the node's weight.
-pub(super) type Node = [i64; ARITY];
+pub type Node = [i64; ARITY];
 
 /// The blocks of the most items there can be.
 pub(super) const MAX_BLOCKS: usize = 1 << 28;
@@ -50,24 +51,22 @@ impl Levels {
     }
 }
 
-/// The child that `r`, below the node's weight, falls on; never one of weight 0. With it, where the child begins and ends.
+/// How many children end at or before `r`: the child that `r`, below the node's weight, falls on. Never one of weight 0.
 #[inline(always)]
-pub(super) fn find(node: &Node, r: i64) -> (usize, i64, i64) {
+pub(super) fn find(node: &Node, r: i64) -> usize {
     let mut count = 0;
     for &end in node {
         count += i64::from(end <= r);
     }
-    let child = count as usize % ARITY;
-    let (begin, end) = span(node, child);
-    (child, begin, end)
+    count as usize
 }
 
 /// Where a child begins and ends.
 #[inline(always)]
 pub(super) fn span(node: &Node, child: usize) -> (i64, i64) {
-    // A mask, not a branch that would be mispredicted once in 16 times.
-    let before = node[child.wrapping_sub(1) % ARITY] & -i64::from(child != 0);
-    (before, node[child % ARITY])
+    // A branch would be mispredicted once in 16 times.
+    let begin = select_unpredictable(child == 0, 0, node[child.wrapping_sub(1) % ARITY]);
+    (begin, node[child % ARITY])
 }
 
 /// Changes a child's weight by `difference`.
