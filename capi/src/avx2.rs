@@ -118,9 +118,9 @@ fn find_item(block: &Block, u: f64) -> (usize, f64) {
 /// A quarter of a node.
 #[inline]
 #[target_feature(enable = "avx2,popcnt")]
-fn ends(node: &Node, quarter: usize) -> __m256i {
+fn quarter(node: &Node, which: usize) -> __m256i {
     let (quarters, _) = node.as_chunks::<4>();
-    let &[a, b, c, d] = &quarters[quarter % 4];
+    let &[a, b, c, d] = &quarters[which % 4];
     _mm256_setr_epi64x(a, b, c, d)
 }
 
@@ -128,10 +128,10 @@ fn ends(node: &Node, quarter: usize) -> __m256i {
 #[target_feature(enable = "avx2,popcnt")]
 fn find_child(node: &Node, r: i64) -> usize {
     let r = _mm256_set1_epi64x(r);
-    let later = |quarter| _mm256_cmpgt_epi64(ends(node, quarter), r);
-    // How many end later: two bits for each, in an order that does not matter.
-    let bytes = _mm256_packs_epi16(_mm256_packs_epi32(later(0), later(1)), _mm256_packs_epi32(later(2), later(3)));
-    16 - (_mm256_movemask_epi8(bytes) as u32).count_ones() as usize / 2
+    let later = |which| _mm256_cmpgt_epi64(quarter(node, which), r);
+    // Two bits for each that ends later, in an order that does not matter.
+    let all = _mm256_packs_epi16(_mm256_packs_epi32(later(0), later(1)), _mm256_packs_epi32(later(2), later(3)));
+    16 - (_mm256_movemask_epi8(all) as u32).count_ones() as usize / 2
 }
 
 #[inline]

@@ -1,13 +1,14 @@
 //! Drawing batches with replacement.
 
-use super::{ARITY, Block, Kernel, Levels, Node, Portable, Table, tree};
+use super::{ARITY, Block, CHILDREN, Kernel, Levels, Node, Portable, Table, tree};
 use crate::Error;
 use crate::rng::Rng;
-use core::marker::PhantomData;
 use core::num::NonZeroU128;
 
 /// How many draws go down the tree together: enough to hide the latency of memory, few enough for the first cache.
 const CHUNK: usize = 64;
+/// How many nodes the first cache holds beside what else a draw needs.
+const NEAR: usize = 128;
 
 /// The two ways to an item: by the tree, and uniformly.
 #[derive(Clone, Copy, Debug)]
@@ -171,19 +172,19 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         weight: Option<&mut [f32]>,
         bits: impl Fn(u64) -> u64,
     ) {
-        let descent = Descent::<K>::new(self, mixture, factor);
+        let descent = Descent::new(self, mixture, factor);
         let mut first = 0;
         let mut weights = weight.map(|weight| weight.chunks_mut(CHUNK));
         for index in index.chunks_mut(CHUNK) {
             let weight = weights.as_mut().and_then(Iterator::next).unwrap_or_default();
-            descent.draw(first, index, weight, &bits);
+            descent.draw::<K>(first, index, weight, &bits);
             first += CHUNK as u64;
         }
     }
 }
 
 /// What all draws of a batch share.
-struct Descent<'a, K> {
+struct Descent<'a> {
     blocks: &'a [Block],
     nodes: &'a [Node],
     levels: Levels,
@@ -193,10 +194,9 @@ struct Descent<'a, K> {
     /// What an item's weight in the tree, and what its existence adds to `factor` times its probability.
     by_weight: f64,
     by_item: f64,
-    kernel: PhantomData<K>,
 }
 
-impl<'a, K: Kernel> Descent<'a, K> {
+impl<'a> Descent<'a> {
     fn new<I: AsRef<[f32]>, S: AsRef<[i64]>>(table: &'a Table<I, S>, mixture: &Mixture, factor: f64) -> Self {
         let (by_weight, by_item) = mixture.factors(factor);
         let ways = mixture.ways();
@@ -208,92 +208,136 @@ impl<'a, K: Kernel> Descent<'a, K> {
             ways,
             by_weight,
             by_item,
-            kernel: PhantomData,
         }
     }
 
     /// At most [`CHUNK`] draws, the first being number `first` of the batch; as many weights as draws, or none.
     #[inline(always)]
-    fn draw(&self, first: u64, index: &mut [u32], weight: &mut [f32], bits: &impl Fn(u64) -> u64) {
-        // The draws by the tree: which of the chunk's they are, and where they are in it.
+    fn draw<K: Kernel>(&self, first: u64, index: &mut [u32], weight: &mut [f32], bits: &impl Fn(u64) -> u64) {
+        // The draws by the tree: which of the chunk's they are, in which node or block they are, the position among its
+        // weights, and behind its point.
         let mut slot = [0u8; CHUNK];
-        let mut at = [At::default(); CHUNK];
+        let mut place = [0u32; CHUNK];
+        let mut rest = [0i64; CHUNK];
+        let mut fraction = [0f64; CHUNK];
         let mut uniform_slot = [0u8; CHUNK];
         let mut trees = 0;
         // Without branches, which could not be predicted: every draw is written as both, and one of them counts.
         for (i, out) in index.iter_mut().enumerate().take(CHUNK) {
             let bits = bits(first + i as u64);
             let uniform = self.ways.last_uniform.is_some_and(|last| bits <= last);
-            let (place, below) = self.ways.weight.map(bits.wrapping_sub(self.first_tree));
+            let (whole, below) = self.ways.weight.map(bits.wrapping_sub(self.first_tree));
             slot[trees % CHUNK] = i as u8;
+            rest[trees % CHUNK] = whole as i64;
             // 53 bits: 0 to less than 1.
-            let fraction = (below >> 11) as i64 as f64 * (1.0 / 9_007_199_254_740_992.0);
-            at[trees % CHUNK] = At { place: 0, rest: place as i64, fraction };
+            fraction[trees % CHUNK] = (below >> 11) as i64 as f64 * (1.0 / 9_007_199_254_740_992.0);
             uniform_slot[(i - trees) % CHUNK] = i as u8;
             *out = self.ways.item.map(bits).0 as u32;
             trees += usize::from(!uniform);
         }
-        let at = at.get_mut(..trees).unwrap_or_default();
-        for pair in self.levels.starts().windows(2).rev() {
-            let &[below, start] = pair else { continue };
-            for at in at.iter_mut() {
-                let Some(node) = self.nodes.get(start + at.place as usize) else { continue };
-                let child = K::find_child(node, at.rest) % ARITY;
-                at.rest -= tree::span(node, child).0;
-                at.place = at.place * ARITY as u32 + child as u32;
-                if let Some(next) = self.nodes.get(below + at.place as usize) {
-                    K::prefetch(next);
-                }
-            }
-        }
-        for at in at.iter_mut() {
-            let Some(node) = self.nodes.get(at.place as usize) else { continue };
-            let child = K::find_child(node, at.rest) % ARITY;
+        self.descend::<K>(trees, &mut place, &mut rest);
+        // The weights of their blocks.
+        let mut weights = [1f64; CHUNK];
+        for (((place, rest), fraction), weight) in
+            place.iter_mut().zip(&rest).zip(&mut fraction).zip(&mut weights).take(trees)
+        {
+            let Some(node) = self.nodes.get(*place as usize) else { continue };
+            let child = K::find_child(node, *rest) % CHILDREN;
             let (begin, end) = tree::span(node, child);
-            // From here on the block's weight, and where in the block the draw falls.
-            at.fraction = (((at.rest - begin) as f64 + at.fraction) / (end - begin) as f64).min(BELOW_ONE);
-            at.rest = end - begin;
-            at.place = at.place * ARITY as u32 + child as u32;
-            if let Some(next) = self.blocks.get(at.place as usize) {
+            *fraction += (*rest - begin) as f64;
+            *weight = (end - begin) as f64;
+            *place = *place * CHILDREN as u32 + child as u32;
+            if let Some(next) = self.blocks.get(*place as usize) {
                 K::prefetch(next);
             }
         }
-        for (at, &slot) in at.iter().zip(&slot) {
-            let Some(block) = self.blocks.get(at.place as usize) else { continue };
-            let (item, total) = K::find_item(block, at.fraction);
+        // Where in the block.
+        for (fraction, weight) in fraction.iter_mut().zip(&weights) {
+            *fraction = (*fraction / weight).min(BELOW_ONE);
+        }
+        let mut totals = [1f64; CHUNK];
+        let mut importance = [0f32; CHUNK];
+        for ((((&place, &fraction), &slot), total), q) in
+            place.iter().zip(&fraction).zip(&slot).zip(&mut totals).zip(&mut importance).take(trees)
+        {
+            let Some(block) = self.blocks.get(place as usize) else { continue };
+            let (item, sum) = K::find_item(block, fraction);
+            (*total, *q) = (sum, block[item % ARITY]);
             if let Some(out) = index.get_mut(slot as usize) {
-                *out = at.place * ARITY as u32 + item as u32;
+                *out = place * ARITY as u32 + item as u32;
             }
+        }
+        if weight.is_empty() {
+            return;
+        }
+        let mut results = [0f32; CHUNK];
+        for (((result, &q), &total), &weight) in results.iter_mut().zip(&importance).zip(&totals).zip(&weights) {
+            *result = self.weight(q, total, weight);
+        }
+        for (&result, &slot) in results.iter().zip(&slot).take(trees) {
             if let Some(out) = weight.get_mut(slot as usize) {
-                *out = self.weight(block[item % ARITY], total, at.rest);
+                *out = result;
             }
         }
         for &slot in uniform_slot.iter().take(weight.len().saturating_sub(trees)) {
             let (Some(&item), Some(out)) = (index.get(slot as usize), weight.get_mut(slot as usize)) else { continue };
             let which = item as usize / ARITY;
-            let (Some(block), Some(node)) = (self.blocks.get(which), self.nodes.get(which / ARITY)) else { continue };
-            let (begin, end) = tree::span(node, which % ARITY);
-            *out = self.weight(block[item as usize % ARITY], K::total(block), end - begin);
+            let (Some(block), Some(node)) = (self.blocks.get(which), self.nodes.get(which / CHILDREN)) else {
+                continue;
+            };
+            let (begin, end) = tree::span(node, which % CHILDREN);
+            let total = K::total(block);
+            // A block of importance 0 can be drawn from uniformly only.
+            let (q, total) = if total > 0.0 { (block[item as usize % ARITY], total) } else { (0.0, 1.0) };
+            *out = self.weight(q, total, (end - begin) as f64);
         }
     }
 
-    /// 1 / (factor p), with one division.
+    /// Takes the draws from the root to the nodes of the lowest level.
     #[inline(always)]
-    fn weight(&self, q: f32, total: f64, weight: i64) -> f32 {
-        let q = f64::from(q);
-        // A block of importance 0 can be drawn from uniformly only.
-        let (q, total) = if total > 0.0 { (q, total) } else { (0.0, 1.0) };
-        (total / (self.by_weight * weight as f64 * q + self.by_item * total)) as f32
+    fn descend<K: Kernel>(&self, draws: usize, place: &mut [u32; CHUNK], rest: &mut [i64; CHUNK]) {
+        let starts = self.levels.starts();
+        // Levels that the first cache holds in one go, the others one by one, so that many accesses are under way at a time.
+        let near = starts.iter().position(|&start| self.nodes.len() - start <= NEAR).unwrap_or(0).max(1);
+        let (far, near) = starts.split_at_checked(near).unwrap_or_default();
+        for (place, rest) in place.iter_mut().zip(rest.iter_mut()).take(draws) {
+            let mut at = (0, *rest);
+            for start in near.iter().rev() {
+                self.step::<K>(*start, &mut at.0, &mut at.1);
+            }
+            (*place, *rest) = at;
+            self.prefetch::<K>(far.last(), *place);
+        }
+        let (_, between) = far.split_first().unwrap_or((&0, &[]));
+        for (below, start) in far.iter().zip(between).rev() {
+            for (place, rest) in place.iter_mut().zip(rest.iter_mut()).take(draws) {
+                self.step::<K>(*start, place, rest);
+                self.prefetch::<K>(Some(below), *place);
+            }
+        }
     }
-}
 
-#[derive(Clone, Copy, Default)]
-struct At {
-    /// Which node of the level, and in the end which block.
-    place: u32,
-    /// The position among the node's weights, and behind its point.
-    rest: i64,
-    fraction: f64,
+    /// From a node of the level that starts at `start` to one of its children.
+    #[inline(always)]
+    fn step<K: Kernel>(&self, start: usize, place: &mut u32, rest: &mut i64) {
+        let Some(node) = self.nodes.get(start + *place as usize) else { return };
+        let child = K::find_child(node, *rest) % CHILDREN;
+        *rest -= tree::span(node, child).0;
+        *place = *place * CHILDREN as u32 + child as u32;
+    }
+
+    #[inline(always)]
+    fn prefetch<K: Kernel>(&self, start: Option<&usize>, place: u32) {
+        if let Some(node) = start.and_then(|start| self.nodes.get(start + place as usize)) {
+            K::prefetch(node);
+        }
+    }
+
+    /// 1 / (factor p), with one division, for an item of importance `q` in a block of this sum and weight.
+    #[inline(always)]
+    fn weight(&self, q: f32, total: f64, weight: f64) -> f32 {
+        (total / (self.by_weight * weight * f64::from(q) + self.by_item * total)) as f32
+    }
 }
 
 /// The largest number below 1: times a total it is below the total.

@@ -1,7 +1,7 @@
 //! Changing importances.
 
 use super::tree::{self, Levels};
-use super::{ARITY, Block, Kernel, Node, Portable, Table, check_importances, power_of_two};
+use super::{ARITY, Block, CHILDREN, Kernel, Node, Portable, Table, check_importances, power_of_two};
 use crate::Error;
 
 /// How many changes go up the tree together.
@@ -45,7 +45,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         for (index, importance) in index.chunks(CHUNK).zip(importance.chunks(CHUNK)) {
             for &item in index {
                 let which = item as usize / ARITY;
-                if let (Some(block), Some(node)) = (self.blocks().get(which), self.nodes().get(which / ARITY)) {
+                if let (Some(block), Some(node)) = (self.blocks().get(which), self.nodes().get(which / CHILDREN)) {
                     K::prefetch(block);
                     K::prefetch(node);
                 }
@@ -131,17 +131,17 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         let mut in_range = true;
         for (pending, (item, change)) in pending.iter_mut().zip(changes) {
             let which = item as usize / ARITY;
-            let (Some(block), Some(node)) = (blocks.get_mut(which), nodes.get_mut(lowest + which / ARITY)) else {
+            let (Some(block), Some(node)) = (blocks.get_mut(which), nodes.get_mut(lowest + which / CHILDREN)) else {
                 continue;
             };
             let item = item as usize % ARITY;
             let q = change(block[item]);
             let weight = weight(K::replace(block, item, q), scale);
             in_range &= weight < LARGEST_SUM;
-            let (begin, end) = tree::span(node, which % ARITY);
+            let (begin, end) = tree::span(node, which % CHILDREN);
             let difference = weight.wrapping_sub(end.wrapping_sub(begin));
-            K::add(node, which % ARITY, difference);
-            *pending = (which as u32 / ARITY as u32, difference);
+            K::add(node, which % CHILDREN, difference);
+            *pending = ((which / CHILDREN) as u32, difference);
             count += 1;
         }
         let pending = pending.get_mut(..count).unwrap_or_default();
@@ -149,21 +149,21 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         let (root, between) = upper.split_last().map_or((None, upper), |(root, between)| (Some(root), between));
         for start in between {
             for (below, difference) in pending.iter_mut() {
-                let which = *below as usize / ARITY;
+                let which = *below as usize / CHILDREN;
                 let Some(node) = nodes.get_mut(start + which) else { continue };
-                K::add(node, *below as usize % ARITY, *difference);
+                K::add(node, *below as usize % CHILDREN, *difference);
                 *below = which as u32;
             }
         }
         if let Some(node) = root.and_then(|&root| nodes.get_mut(root)) {
-            let mut differences = [0i64; ARITY];
+            let mut differences = [0i64; CHILDREN];
             for (below, difference) in pending {
-                let sum = &mut differences[*below as usize % ARITY];
+                let sum = &mut differences[*below as usize % CHILDREN];
                 *sum = sum.wrapping_add(*difference);
             }
             tree::add_all(node, &differences);
         }
-        in_range && (0..LARGEST_SUM).contains(&nodes.last().map_or(0, |root| root[ARITY - 1]))
+        in_range && (0..LARGEST_SUM).contains(&nodes.last().map_or(0, |root| root[CHILDREN - 1]))
     }
 
     /// Builds the table again if its sum has left the range of its scale.
@@ -217,7 +217,7 @@ fn weight(total: f64, scale: f64) -> i64 {
 fn build<K: Kernel>(blocks: &[Block], nodes: &mut [Node], levels: &Levels, scale: f64) -> bool {
     let mut in_range = true;
     let mut sum_of_all = 0i64;
-    for (node, blocks) in nodes.iter_mut().zip(blocks.chunks(ARITY)) {
+    for (node, blocks) in nodes.iter_mut().zip(blocks.chunks(CHILDREN)) {
         let mut sum = 0i64;
         let mut blocks = blocks.iter();
         for end in node.iter_mut() {
