@@ -821,9 +821,9 @@ nf_status nf_table_draw(const nf_table *table,
                         uint32_t *index,
                         float *weight);
 
-// As nf_table_draw, from `batch` equal parts of the line of importances: item i comes `batch` p_i times, rounded up or down,
-// so that the estimate varies less, above all where neighbouring items are alike. Items come in the order of the data set, those
-// drawn uniformly last: use the batch as a whole.
+// As nf_table_draw, from `batch` equal parts of the line of probabilities: item i comes about `batch` p_i times, so that the
+// estimate varies less where neighbouring items are alike. Items drawn uniformly come first, and all in the order of the data
+// set: use the batch as a whole.
 nf_status nf_table_draw_stratified(const nf_table *table,
                                    nf_rng *rng,
                                    uint32_t batch,

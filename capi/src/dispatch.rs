@@ -50,6 +50,21 @@ pub(crate) fn table_draw(
     table.draw(rng, index, weight)
 }
 
+/// [`Reader::draw_stratified`].
+pub(crate) fn table_draw_stratified(
+    table: &Reader<'_>,
+    rng: &mut Rng,
+    index: &mut [u32],
+    weight: Option<&mut [f32]>,
+) -> Result<(), Error> {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        // SAFETY: as above.
+        return unsafe { x86::table_draw_stratified(table, rng, index, weight) };
+    }
+    table.draw_stratified(rng, index, weight)
+}
+
 /// [`Writer::update`].
 pub(crate) fn table_update(
     table: &mut Writer<'_>,
@@ -78,6 +93,7 @@ pub(crate) fn table_add_epsilon(table: &mut Writer<'_>, epsilon: f32) -> Result<
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::*;
+    use crate::avx2::Avx2;
     use core::arch::x86_64::{__cpuid, __cpuid_count, _xgetbv};
     use core::sync::atomic::{AtomicU8, Ordering};
 
@@ -111,7 +127,17 @@ mod x86 {
         index: &mut [u32],
         weight: Option<&mut [f32]>,
     ) -> Result<(), Error> {
-        table.draw(rng, index, weight)
+        table.draw_by::<Avx2>(rng, index, weight)
+    }
+
+    #[target_feature(enable = "avx2,popcnt")]
+    pub(super) fn table_draw_stratified(
+        table: &Reader<'_>,
+        rng: &mut Rng,
+        index: &mut [u32],
+        weight: Option<&mut [f32]>,
+    ) -> Result<(), Error> {
+        table.draw_stratified_by::<Avx2>(rng, index, weight)
     }
 
     #[target_feature(enable = "avx2,popcnt")]
@@ -121,12 +147,12 @@ mod x86 {
         importance: &[f32],
         momentum: f32,
     ) -> Result<(), Error> {
-        table.update(index, importance, momentum)
+        table.update_by::<Avx2>(index, importance, momentum)
     }
 
     #[target_feature(enable = "avx2,popcnt")]
     pub(super) fn table_add_epsilon(table: &mut Writer<'_>, epsilon: f32) -> Result<(), Error> {
-        table.add_epsilon(epsilon)
+        table.add_epsilon_by::<Avx2>(epsilon)
     }
 
     #[inline(always)]

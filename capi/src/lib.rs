@@ -7,6 +7,8 @@
 // What a caller must promise is written for C readers, once, at the head of the header.
 #![allow(clippy::missing_safety_doc)]
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 mod convert;
 mod cv;
 mod dispatch;
