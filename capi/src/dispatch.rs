@@ -5,6 +5,8 @@
 
 use noisefloor_core::Error;
 use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Samples};
+use noisefloor_core::minibatch::{Batch, Gradient};
+use noisefloor_core::mis::Solver;
 
 /// [`cv::estimate`] in double precision.
 pub(crate) fn estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f64]) -> Result<Estimate, Error> {
@@ -30,6 +32,23 @@ pub(crate) fn estimate_image(
         return unsafe { x86::estimate_image(config, image, samples, workspace, out) };
     }
     cv::estimate_image(config, image, samples, workspace, out)
+}
+
+/// [`Gradient::estimate`].
+pub(crate) fn gradient(
+    state: &mut Gradient<&mut [f32]>,
+    batch: &Batch<'_>,
+    solver: Solver,
+    beta: f32,
+    gradient: &[f32],
+    estimate: &mut [f32],
+) -> Result<(), Error> {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        // SAFETY: as above.
+        return unsafe { x86::gradient(state, batch, solver, beta, gradient, estimate) };
+    }
+    state.estimate(batch, solver, beta, gradient, estimate)
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -59,6 +78,18 @@ mod x86 {
         out: impl FnMut(usize, Estimate),
     ) -> Result<(), Error> {
         cv::estimate_image(config, image, samples, workspace, out)
+    }
+
+    #[target_feature(enable = "avx2")]
+    pub(super) fn gradient(
+        state: &mut Gradient<&mut [f32]>,
+        batch: &Batch<'_>,
+        solver: Solver,
+        beta: f32,
+        gradient: &[f32],
+        estimate: &mut [f32],
+    ) -> Result<(), Error> {
+        state.estimate(batch, solver, beta, gradient, estimate)
     }
 
     #[inline(always)]

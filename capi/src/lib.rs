@@ -10,6 +10,8 @@
 mod convert;
 mod cv;
 mod dispatch;
+mod gradient;
+mod importance;
 mod mis;
 mod omis;
 mod recommend;
@@ -18,6 +20,8 @@ mod status;
 mod tile;
 
 pub use cv::*;
+pub use gradient::*;
+pub use importance::*;
 pub use mis::*;
 pub use omis::*;
 pub use recommend::*;

@@ -6,6 +6,8 @@
 //!   is usually far below the mean's and never noticeably above it (chapter 4).
 //! - [`recommend`](mod@recommend): which estimator and which tile to use, from measurements.
 //! - [`mis`]: weights for multiple importance sampling, the variance-minimising ones included (section 2.2.2).
+//! - [`minibatch`]: gradients of a data set from few of its items: importance functions, and optimal MIS gradients
+//!   (chapter 6).
 //! - [`tile`]: sample points whose error over the image is the least visible (chapter 5).
 //! - [`warp`]: from primary sample space to the shapes that a scene needs (section 2.2.1).
 //! - [`rng`]: a small generator with the same stream on every target.
@@ -44,6 +46,8 @@ pub mod error;
 mod lanes;
 #[cfg(feature = "control-variate")]
 mod linalg;
+#[cfg(feature = "minibatch")]
+pub mod minibatch;
 #[cfg(feature = "mis")]
 pub mod mis;
 #[cfg(feature = "control-variate")]

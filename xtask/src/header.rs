@@ -13,7 +13,7 @@ struct Chapter {
 }
 
 /// Every item belongs to the chapter with the longest matching prefix.
-const CHAPTERS: [Chapter; 7] = [
+const CHAPTERS: [Chapter; 8] = [
     Chapter {
         title: "Version and status",
         prefixes: &["NF_ABI_VERSION", "nf_abi_version", "nf_status", "NF_OK|NF_ERR_", "nf_status_message"],
@@ -50,6 +50,18 @@ const CHAPTERS: [Chapter; 7] = [
     Chapter {
         title: "Optimal multiple importance sampling: weights of least variance, found from the samples",
         prefixes: &["NF_OMIS_", "nf_omis", "nf_omis_"],
+    },
+    Chapter {
+        title: "Minibatch importance sampling: gradients of a data set from few of its items",
+        prefixes: &[
+            "NF_NODES_",
+            "nf_importance_",
+            "nf_cross_entropy_gradient",
+            "nf_importance_nodes",
+            "nf_omis_weights",
+            "nf_gradient",
+            "nf_gradient_",
+        ],
     },
     Chapter {
         title: "Tiles and samplers: sample points whose error is spread over the image where it shows least",
