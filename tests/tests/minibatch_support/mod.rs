@@ -17,7 +17,7 @@ pub struct Problem {
     pub gradient: Vec<f32>,
     pub parameters: usize,
     /// Sums of probabilities up to each item, `[J][N]`.
-    sums: Vec<Vec<f64>>,
+    pub sums: Vec<Vec<f64>>,
 }
 
 impl Problem {
