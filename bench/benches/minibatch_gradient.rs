@@ -1,7 +1,7 @@
-//! Optimal MIS gradients from explicit per-item gradients: time per parameter, and bytes of gradient per second, against
-//! adding up the same matrix and against the two passes that the library makes over it: a check that all is finite, and
-//! sums over samples. Throughput is in bytes of the matrix, so that criterion's "GiB/s" compare. 64 samples x 100,000
-//! parameters of f32 are 25.6 MB.
+//! Optimal MIS gradients from explicit per-item gradients: time per parameter, and bytes of gradient per second,
+//! against adding up the same matrix and against the two passes that the library makes over it: a check that all is
+//! finite, and sums over samples. Throughput is in bytes of the matrix, so that criterion's "GiB/s" compare. 64 samples
+//! x 100,000 parameters of f32 are 25.6 MB.
 
 #![cfg_attr(not(archive), allow(unreachable_code, unused_variables))]
 

@@ -5,13 +5,13 @@ use crate::status::*;
 use crate::{convert, dispatch};
 use noisefloor_core::minibatch::{self, Batch, Gradient, System};
 
-/// Optimal MIS gradients from explicit per-item gradients, with momentum over steps (6.2.3): averages over the batches so far
-/// of the linear system that all parameters share, and J + 1 floats per parameter.
+/// Optimal MIS gradients from explicit per-item gradients, with momentum over steps (6.2.3): averages over the batches
+/// so far of the linear system that all parameters share, and J + 1 floats per parameter.
 ///
 /// Without momentum nf_omis_weights gives the same estimate, at the cost of one weighted backward pass.
 ///
-/// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; may be moved and copied as bytes between calls; nothing
-/// to destroy.
+/// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; may be moved and copied as bytes between calls;
+/// nothing to destroy.
 #[allow(non_camel_case_types)]
 pub struct nf_gradient {
     _private: (),
@@ -30,8 +30,8 @@ struct Header {
 /// "nf_grad" and the version of the layout.
 const MAGIC: u64 = u64::from_le_bytes(*b"nf_grad\x01");
 
-/// The bytes of memory an nf_gradient needs: 4 (techniques + 1) per parameter and about 1.4 kB. 0 unless techniques is in
-/// 1..NF_MIS_MAX_TECHNIQUES, parameters at least 1, and the size one that memory can have.
+/// The bytes of memory an nf_gradient needs: 4 (techniques + 1) per parameter and about 1.4 kB. 0 unless techniques is
+/// in 1..NF_MIS_MAX_TECHNIQUES, parameters at least 1, and the size one that memory can have.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_gradient_size(techniques: u32, parameters: u32) -> usize {
     match minibatch::len(techniques as usize, parameters as usize) {
@@ -66,8 +66,8 @@ pub unsafe extern "C" fn nf_gradient_init(
         let out = unsafe { convert::reference_mut(out) }?;
         // SAFETY: the caller passes memory of the size it says.
         let place = unsafe { convert::memory(memory, bytes, size) }?.cast::<Header>();
-        // SAFETY: not NULL, aligned and of at least `size` bytes, which is what the header and the averages take; all-zero
-        // averages are those of no batches.
+        // SAFETY: not NULL, aligned and of at least `size` bytes, which is what the header and the averages take;
+        // all-zero averages are those of no batches.
         unsafe {
             core::ptr::write_bytes(place.cast::<u8>(), 0, size);
             place.write(Header { magic: MAGIC, techniques, parameters, system: System::new(techniques as usize) });
@@ -79,22 +79,23 @@ pub unsafe extern "C" fn nf_gradient_init(
 
 /// Adds a batch of drawn items, and estimates the gradient of the mean loss from it and, with momentum, those before.
 ///
-/// solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN or NF_OMIS_BALANCE, and ridge, as for nf_omis_weights, where it is said which is
-/// unbiased. They may change from call to call.
-/// beta: 0..1, the momentum. A batch that is t steps old counts beta^t, divided by the sum of those weights: the estimate has
-/// its right size from the first step on. 0 forgets the earlier batches, and the estimate is that of nf_omis_weights; 1
-/// averages all. Older gradients lag: under an optimiser with momentum of its own, such as Adam, use 0.
+/// solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN or NF_OMIS_BALANCE, and ridge, as for nf_omis_weights, where it is said which
+/// is unbiased. They may change from call to call.
+/// beta: 0..1, the momentum. A batch that is t steps old counts beta^t, divided by the sum of those weights: the
+/// estimate has its right size from the first step on. 0 forgets the earlier batches, and the estimate is that of
+/// nf_omis_weights; 1 averages all. Older gradients lag: under an optimiser with momentum of its own, such as Adam, use
+/// 0.
 /// items, pdf[batch * techniques], technique[batch]: as for nf_omis_weights, with the techniques of nf_gradient_init.
-/// gradient[batch * parameters]: that of sample s by parameter p at s * parameters + p, finite, unweighted. It is
-/// read twice, in blocks of parameters, and nothing else takes time in proportion to it.
-/// batch: the number of samples. estimate[parameters]: the output. One beyond the range of float becomes the largest finite
-/// float.
+/// gradient[batch * parameters]: that of sample s by parameter p at s * parameters + p, finite, unweighted.
+/// It is read twice: once to see that all of it is finite.
+/// batch: the number of samples. estimate[parameters]: the output. One beyond the range of float becomes the largest
+/// finite float.
 ///
 /// Sums are in float, in an order that does not depend on the processor.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver, ridge, beta, items, a technique or probability, or gradients over
-/// probabilities beyond the range of float; NF_ERR_NOT_FINITE: ridge, beta, a probability or gradient; NF_ERR_NO_SAMPLES: an empty batch;
-/// NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.
+/// probabilities beyond the range of float; NF_ERR_NOT_FINITE: ridge, beta, a probability or gradient;
+/// NF_ERR_NO_SAMPLES: an empty batch; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_gradient_estimate(
     state: *mut nf_gradient,
@@ -146,7 +147,8 @@ pub unsafe extern "C" fn nf_gradient_reset(state: *mut nf_gradient) -> nf_status
 /// The object's header and averages.
 ///
 /// # Safety
-/// A non-NULL `state` must be 8-byte-aligned memory that nf_gradient_init was given and that no one else uses during `'a`.
+/// A non-NULL `state` must be 8-byte-aligned memory that nf_gradient_init was given and that no one else uses during
+/// `'a`.
 unsafe fn open<'a>(state: *mut nf_gradient) -> Result<(&'a mut Header, &'a mut [f32]), nf_status> {
     // Only the first words until the magic number says that the rest can be trusted.
     // SAFETY: passed on to the caller.

@@ -6,8 +6,8 @@ use noisefloor_core::minibatch::importance::{self, Split};
 
 /// nf_importance_nodes split: one importance per group of nodes, the norm over it.
 pub const NF_NODES_NORM: u32 = 0;
-/// nf_importance_nodes split: two per group, the norm of the positive parts and that of the negative parts. Importances of
-/// one sign can combine linearly to the derivative itself, which norms cannot: the choice for optimal MIS.
+/// nf_importance_nodes split: two per group, the norm of the positive parts and that of the negative parts. Importances
+/// of one sign can combine linearly to the derivative itself, which norms cannot: the choice for optimal MIS.
 pub const NF_NODES_SIGN: u32 = 1;
 
 /// || softmax(logits) - onehot(label) ||, the norm of the cross-entropy loss's derivative by the logits (6.10): 0..1.4143.
@@ -23,8 +23,8 @@ pub unsafe extern "C" fn nf_importance_cross_entropy(logits: *const f32, classes
         .map_or(f32::NAN, |logits| importance::cross_entropy(logits, label as usize))
 }
 
-/// The cross-entropy loss -ln softmax(logits)[label] itself, at least 0; one beyond the range of float becomes the largest
-/// finite float.
+/// The cross-entropy loss -ln softmax(logits)[label] itself, at least 0; one beyond the range of float becomes the
+/// largest finite float.
 ///
 /// Arguments, and NaN, as for nf_importance_cross_entropy.
 #[unsafe(no_mangle)]
@@ -59,8 +59,8 @@ pub unsafe extern "C" fn nf_importance_gradient(gradient: *const f32, outputs: u
     unsafe { convert::slice(gradient, outputs as usize) }.map_or(f32::NAN, importance::gradient)
 }
 
-/// The derivative of the cross-entropy loss by the logits, softmax(logits) - onehot(label) (6.10), where backpropagation
-/// starts.
+/// The derivative of the cross-entropy loss by the logits, softmax(logits) - onehot(label) (6.10), where
+/// backpropagation starts.
 ///
 /// logits[classes]: finite, of any size. label: below classes. gradient[classes]: the output.
 ///
@@ -82,8 +82,8 @@ pub unsafe extern "C" fn nf_cross_entropy_gradient(
 
 /// Importances of one item for several tables, from the derivative of the loss by each output node (6.2.3).
 ///
-/// gradient[outputs]: dL/dm, finite; at least one node per group. Node k belongs to group k % groups, so that every node has
-/// its table: a subset of the nodes, as section 6.2.3 proposes, leaves the gradients of the others uncovered.
+/// gradient[outputs]: dL/dm, finite; at least one node per group. Node k belongs to group k % groups, so that every
+/// node has its table: a subset of the nodes, as section 6.2.3 proposes, leaves the gradients of the others uncovered.
 /// split: NF_NODES_NORM: groups = techniques, importance[g] = the norm over group g. NF_NODES_SIGN: techniques is even,
 /// groups = techniques / 2, importance[2 g] = the norm of max(gradient, 0) over group g, importance[2 g + 1] that of
 /// max(-gradient, 0).

@@ -229,24 +229,24 @@ pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis
 /// (1 / batch) sum_s weight[s] * gradient_s for every parameter at once, so that one backward pass over weighted losses
 /// computes it. The same convention as the weights of nf_table_draw.
 ///
-/// solver: NF_OMIS_RIDGE, the default: shrinks to the balance heuristic where the batch says little. NF_OMIS_PLAIN: exact where
-/// a gradient is a linear combination of the probabilities; heavy-tailed with similar techniques or small batches. Both
-/// are consistent, not unbiased, and their weights may be negative. NF_OMIS_BALANCE: unbiased, positive.
+/// solver: NF_OMIS_RIDGE, the default: shrinks to the balance heuristic where the batch says little. NF_OMIS_PLAIN:
+/// exact where a gradient is a linear combination of the probabilities; heavy-tailed with similar techniques or small
+/// batches. Both are consistent, not unbiased, and their weights may be negative. NF_OMIS_BALANCE: unbiased, positive.
 /// ridge: for NF_OMIS_RIDGE, 1e-8..1e8, or 0 for the default .03; otherwise ignored.
 /// techniques: J in 1..NF_MIS_MAX_TECHNIQUES. items: N, the size of the data set, at least 1.
-/// pdf[batch * techniques]: at s * techniques + j the probability with which technique j draws the item of sample s; each
-/// technique's sum to 1 over the items. Finite and at least 0, positive for the technique that drew it. Those of before the batch was drawn:
-/// tables may be updated meanwhile.
-/// technique[batch]: which technique drew sample s. Their numbers n_j are counted from it; a technique that drew nothing has no
-/// part in the weights.
-/// batch: the number of samples, at least 1. weight[batch]: the output. One beyond the range of float becomes the largest finite
-/// float.
+/// pdf[batch * techniques]: at s * techniques + j the probability with which technique j draws the item of sample s;
+/// each technique's sum to 1 over the items. Finite and at least 0, positive for the technique that drew it. Those of
+/// before the batch was drawn: tables may be updated meanwhile.
+/// technique[batch]: which technique drew sample s. Their numbers n_j are counted from it; a technique that drew
+/// nothing has no part in the weights.
+/// batch: the number of samples, at least 1. weight[batch]: the output. One beyond the range of float becomes the
+/// largest finite float.
 ///
 /// With S_s = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2,
 /// weight_s = (1 / S_s - (q - 1)' (A + ridge)^-1 p_s / S_s^2) batch / items.
 ///
-/// NF_ERR_NULL; NF_ERR_RANGE: solver, ridge, techniques, items, a technique or a probability; NF_ERR_NOT_FINITE: ridge or a probability;
-/// NF_ERR_NO_SAMPLES: an empty batch; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.
+/// NF_ERR_NULL; NF_ERR_RANGE: solver, ridge, techniques, items, a technique or a probability; NF_ERR_NOT_FINITE: ridge
+/// or a probability; NF_ERR_NO_SAMPLES: an empty batch; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_omis_weights(
     solver: u32,

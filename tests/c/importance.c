@@ -3,7 +3,10 @@
 
 #define IS_NAN(x) ((x) != (x))
 
-static int close_to(float actual, double expected) { return fabs((double)actual - expected) <= 2e-7 * fabs(expected) + 1e-30; }
+static int close_to(float actual, double expected)
+{
+    return fabs((double)actual - expected) <= 2e-7 * fabs(expected) + 1e-30;
+}
 
 static void values(void)
 {

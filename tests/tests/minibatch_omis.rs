@@ -143,7 +143,8 @@ fn uniform_sampling_has_weight_one() {
     }
 }
 
-/// Plain weights recover any linear combination of the probabilities without error, from any batch that tells them apart.
+/// Plain weights recover any linear combination of the probabilities without error, from any batch that tells them
+/// apart.
 #[test]
 fn linear_combinations_are_exact() {
     let mut rng = Rng::seed(2);
@@ -171,7 +172,8 @@ fn linear_combinations_are_exact() {
     }
 }
 
-/// Algorithm 5 prints W = n_j p_j / S where p_j / S belongs. One uniform technique drawn 8 times, a constant gradient of 1 over 100
+/// Algorithm 5 prints W = n_j p_j / S where p_j / S belongs. One uniform technique drawn 8 times, a constant gradient
+/// of 1 over 100
 /// items: the sum of alpha must be 100, and the printed one is an eighth of it.
 #[test]
 fn algorithm_5_as_printed_is_too_small_by_the_count() {
@@ -223,6 +225,31 @@ fn gradients_are_the_weights() {
                 assert!((f64::from(a) - e).abs() < 1e-5 * size, "{a} is not {e} ({solver:?}, size {size})");
             }
         }
+    }
+}
+
+/// The copy for wider registers gives the same bits.
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn wider_registers_change_no_bit() {
+    #[target_feature(enable = "avx2")]
+    fn wide(state: &mut Gradient<Vec<f32>>, drawn: &Drawn, estimate: &mut [f32]) {
+        state.estimate(&drawn.batch(), RIDGE, 0.6, &drawn.gradient, estimate).unwrap();
+    }
+    if !std::arch::is_x86_feature_detected!("avx2") {
+        return;
+    }
+    let mut rng = Rng::seed(12);
+    let problem = random_problem(12, 5, 60, 1300);
+    let (mut a, mut b) = (gradient(5, 1300), gradient(5, 1300));
+    for _ in 0..4 {
+        let drawn = problem.draw(&[14; 5], &mut rng);
+        let (mut x, mut y) = (vec![0.0; 1300], vec![1.0; 1300]);
+        a.estimate(&drawn.batch(), RIDGE, 0.6, &drawn.gradient, &mut x).unwrap();
+        // SAFETY: the processor has AVX2, as just found out.
+        unsafe { wide(&mut b, &drawn, &mut y) };
+        assert!(x.iter().zip(&y).all(|(x, y)| x.to_bits() == y.to_bits()));
+        assert_eq!(a, b);
     }
 }
 

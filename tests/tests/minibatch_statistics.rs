@@ -1,7 +1,7 @@
 //! Optimal MIS gradients: which are unbiased, how biased the others are, and what they gain.
 //!
-//! Seeds are fixed. Each z-test is at significance 1e-5. `cargo test --test minibatch_statistics -- --nocapture` prints what is
-//! measured.
+//! Seeds are fixed. Each z-test is at significance 1e-5. `cargo test --test minibatch_statistics -- --nocapture` prints
+//! what is measured.
 
 mod minibatch_support;
 
@@ -62,8 +62,8 @@ fn moments(problem: &Problem, counts: &[usize], solver: Solver, batches: usize, 
     moments
 }
 
-/// Regression by a polynomial of order 6 on [-2, 2] (6.2.4): the loss sum (f(x) - y)^2 over 2,000 points, and the state that
-/// a trainer reaches after some steps of gradient descent.
+/// Regression by a polynomial of order 6 on [-2, 2] (6.2.4): the loss sum (f(x) - y)^2 over 2,000 points, and the state
+/// that a trainer reaches after some steps of gradient descent.
 struct Regression {
     /// Powers 0..=6 of x / 2, and the target, of each point.
     points: Vec<([f64; 7], f64)>,
@@ -166,7 +166,8 @@ fn bias_of_ridge_and_plain_shrinks() {
     }
 }
 
-/// Squared errors of batches of 32, over uniform sampling's: importance sampling gains, optimal MIS with signed tables much more.
+/// Squared errors of batches of 32, over uniform sampling's: importance sampling gains, optimal MIS with signed tables
+/// much more.
 #[test]
 fn polynomial_regression() {
     for steps in [0, 30, 300] {
@@ -191,8 +192,8 @@ fn polynomial_regression() {
     }
 }
 
-/// A linear classifier of 5 classes: signed tables of every class gain over balance weights and over one table of norms; so few samples
-/// that A is nearly singular ruin the plain solve and not the ridge.
+/// A linear classifier of 5 classes: signed tables of every class gain over balance weights and over one table of
+/// norms; so few samples that A is nearly singular ruin the plain solve and not the ridge.
 #[test]
 fn classification() {
     for steps in [20, 300] {

@@ -1,6 +1,7 @@
 //! Optimal MIS gradients from explicit per-item gradients, with momentum.
 
 use super::Batch;
+use super::batch::Sample;
 use super::system::System;
 use crate::Error;
 use crate::mis::linear::Vector;
@@ -8,12 +9,16 @@ use crate::mis::optimal::to_f32;
 use crate::mis::{MAX_TECHNIQUES, Solver};
 
 /// Parameters that are worked on together: their sums and a few rows of gradients stay in the first-level cache.
-const BLOCK: usize = 256;
+const BLOCK: usize = 512;
 /// Rows of gradients that are added to a sum at once.
 const ROWS: usize = 4;
+/// Samples that all blocks of parameters see before the next ones come.
+const GROUP: usize = 64;
+/// The sums of one parameter, at most.
+const SUMS: usize = MAX_TECHNIQUES + 1;
 
-/// The f32 that [`Gradient`] needs: J + 1 per parameter. 0 if `techniques` is not in 1..=16, `parameters` is 0, or no memory
-/// could hold them.
+/// The f32 that [`Gradient`] needs: J + 1 per parameter. 0 if `techniques` is not in 1..=16, `parameters` is 0, or no
+/// memory could hold them.
 pub const fn len(techniques: usize, parameters: usize) -> usize {
     if techniques == 0 || techniques > MAX_TECHNIQUES {
         return 0;
@@ -24,16 +29,17 @@ pub const fn len(techniques: usize, parameters: usize) -> usize {
     }
 }
 
-/// Gradients of the mean loss from each drawn item's own, for any number of parameters, with momentum over steps (6.2.3).
+/// Gradients of the mean loss from each drawn item's own, for any number of parameters, with momentum over steps
+/// (6.2.3).
 ///
-/// Each parameter has the averages of its balance estimate and of its b over the batches so far, in `f32`; what they share
-/// is a [`System`]. With beta = 0 the estimate is that of [`weights`](super::weights()), whose one backward pass is much
-/// cheaper: this is for momentum.
+/// Each parameter has the averages of its balance estimate and of its b over the batches so far, in `f32`; what they
+/// share is a [`System`]. With beta = 0 the estimate is that of [`weights`](super::weights()), whose one backward pass
+/// is much cheaper: this is for momentum.
 ///
-/// **Momentum** beta gives a batch that is t steps old the weight beta^t, in A, b, q and the balance estimate alike, and
-/// divides by the sum of those weights. So from the first step on the estimate has its right size (Algorithm 5 multiplies by 1 - beta and does
-/// not divide: its ridge-free quotient does not need it, the ridge would). The older gradients lag: under an optimiser
-/// with momentum of its own, such as Adam, use 0.
+/// **Momentum** beta gives a batch that is t steps old the weight beta^t, in A, b, q and the balance estimate alike,
+/// and divides by the sum of those weights. So from the first step on the estimate has its right size (Algorithm 5
+/// multiplies by 1 - beta and does not divide: its ridge-free quotient does not need it, the ridge would). The older
+/// gradients lag: under an optimiser with momentum of its own, such as Adam, use 0.
 ///
 /// ```
 /// use noisefloor::minibatch::{Batch, Gradient, len};
@@ -91,12 +97,12 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
     /// - `beta` in 0..=1: the weight that earlier batches keep; 0 forgets them, 1 averages all.
     /// - `gradient[s * parameters + p]`: the gradient of sample s by parameter p, finite.
     ///
-    /// Sums are in `f32`, added in an order that does not depend on the processor. An estimate beyond the range of `f32` becomes
-    /// the largest finite one. The gradients are read twice, once to see that they are finite.
+    /// Sums are in `f32`, added in an order that does not depend on the processor. An estimate beyond the range of
+    /// `f32` becomes the largest finite one. The gradients are read twice, once to see that they are finite.
     ///
-    /// Errors, which leave everything as it was: [`Error::Range`] for a wrong length, number of techniques, beta or ridge,
-    /// or where gradients over probabilities are beyond the range of `f32`; [`Error::NotFinite`] for NaN or infinity among the
-    /// gradients, beta or ridge; [`Error::Unsupported`] for [`Solver::Progressive`].
+    /// Errors, which leave everything as it was: [`Error::Range`] for a wrong length, number of techniques, beta or
+    /// ridge, or where gradients over probabilities are beyond the range of `f32`; [`Error::NotFinite`] for NaN or
+    /// infinity among the gradients, beta or ridge; [`Error::Unsupported`] for [`Solver::Progressive`].
     // Inlined into copies for wider registers.
     #[inline(always)]
     pub fn estimate(
@@ -118,14 +124,28 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
 
         self.system = system;
         let sums = system.techniques() + 1;
-        let mut rest = self.memory.as_mut();
-        for (block, estimate) in estimate.chunks_mut(BLOCK).enumerate() {
-            let Some((averages, behind)) = rest.split_at_mut_checked(estimate.len() * sums) else { break };
-            rest = behind;
-            let rows = gradient
-                .chunks_exact(parameters.max(1))
-                .filter_map(|row| row.get(block * BLOCK..)?.get(..estimate.len()));
-            add(averages, estimate.len(), keep as f32, part, batch, rows);
+        let memory = self.memory.as_mut();
+        let mut samples = batch.samples();
+        for (group, rows) in gradient.chunks(parameters.max(1).saturating_mul(GROUP)).enumerate() {
+            let coefficients = Coefficients::new(samples.by_ref().take(GROUP), part / batch.items());
+            // The old averages fade once.
+            let keep = if group == 0 { keep as f32 } else { 1.0 };
+            let blocks = memory.chunks_mut(BLOCK * sums).zip(estimate.chunks(BLOCK));
+            for (block, (averages, estimate)) in blocks.enumerate() {
+                let len = estimate.len();
+                let Some(averages) = averages.get_mut(..len * sums) else { break };
+                fade(averages, keep);
+                let rows = rows.chunks_exact(parameters.max(1));
+                let rows = rows.filter_map(|row| row.get(block * BLOCK..)?.get(..len));
+                // Loops of known length are the faster ones.
+                if len == BLOCK {
+                    add(averages, BLOCK, &coefficients, rows);
+                } else {
+                    add(averages, len, &coefficients, rows);
+                }
+            }
+        }
+        for (averages, estimate) in memory.chunks(BLOCK * sums).zip(estimate.chunks_mut(BLOCK)) {
             solve(averages, &correction, estimate);
         }
         Ok(())
@@ -153,53 +173,55 @@ fn check(batch: &Batch<'_>, gradient: &[f32], parameters: usize) -> Result<(), E
     if overflow || bound > 0.25 * f64::from(f32::MAX) { Err(Error::Range) } else { Ok(()) }
 }
 
-/// Averages of one block: `keep` of the old ones, and the batch's sums times `part`.
-#[inline(always)]
-fn add<'a>(
-    averages: &mut [f32],
-    len: usize,
-    keep: f32,
-    part: f64,
-    batch: &Batch<'_>,
-    rows: impl Iterator<Item = &'a [f32]>,
-) {
-    if keep > 0.0 {
-        averages.iter_mut().for_each(|average| *average *= keep);
-    } else {
-        averages.fill(0.0);
-    }
-    let part = part / batch.items();
-    let mut pairs = rows.zip(batch.samples());
-    loop {
-        // Missing rows at the end are zeros times zero.
-        let mut four: [&[f32]; ROWS] = [&ZEROS; ROWS];
-        let mut coefficients = [[0.0; ROWS]; MAX_TECHNIQUES + 1];
-        let mut found = false;
-        for (k, (row, sample)) in pairs.by_ref().take(ROWS).enumerate() {
-            found = true;
-            four[k % ROWS] = row;
+/// What the gradients of a group of samples are multiplied by, for the balance estimate and each b: four samples at a
+/// time, those that are missing with zeros.
+struct Coefficients([[[f32; ROWS]; SUMS]; GROUP / ROWS]);
+
+impl Coefficients {
+    fn new(samples: impl Iterator<Item = Sample>, part: f64) -> Coefficients {
+        let mut all = [[[0.0; ROWS]; SUMS]; GROUP / ROWS];
+        for (s, sample) in samples.take(GROUP).enumerate() {
             let balance = part * sample.balance;
             let ratios = core::iter::once(&1.0).chain(&sample.ratio);
-            coefficients.iter_mut().zip(ratios).for_each(|(c, ratio)| c[k % ROWS] = (balance * ratio) as f32);
+            let four = &mut all[s / ROWS % (GROUP / ROWS)];
+            four.iter_mut().zip(ratios).for_each(|(c, ratio)| c[s % ROWS] = (balance * ratio) as f32);
         }
-        if !found {
-            break;
-        }
-        for (average, coefficient) in averages.chunks_exact_mut(len.max(1)).zip(&coefficients) {
-            add_rows(average, &four, coefficient);
+        Coefficients(all)
+    }
+}
+
+#[inline(always)]
+fn fade(averages: &mut [f32], keep: f32) {
+    if keep == 0.0 {
+        averages.fill(0.0);
+    } else if keep != 1.0 {
+        averages.iter_mut().for_each(|average| *average *= keep);
+    }
+}
+
+/// Adds a group of samples to the averages of one block of `len` parameters.
+#[inline(always)]
+fn add<'a>(averages: &mut [f32], len: usize, coefficients: &Coefficients, mut rows: impl Iterator<Item = &'a [f32]>) {
+    for coefficients in &coefficients.0 {
+        let Some(first) = rows.next() else { break };
+        // A missing row may be any: its coefficients are 0.
+        let mut row = || rows.next().unwrap_or(first);
+        let [a, b, c, d] = [first, row(), row(), row()];
+        let four = (a.get(..len), b.get(..len), c.get(..len), d.get(..len));
+        let (Some(a), Some(b), Some(c), Some(d)) = four else { break };
+        for (average, coefficients) in averages.chunks_exact_mut(len.max(1)).zip(coefficients) {
+            add_four(average, [a, b, c, d], coefficients);
         }
     }
 }
 
-static ZEROS: [f32; BLOCK] = [0.0; BLOCK];
-
-/// The order of the sum is the same on every processor.
+/// Adds in an order that is the same on every processor.
 #[inline(always)]
-fn add_rows(sum: &mut [f32], rows: &[&[f32]; ROWS], coefficient: &[f32; ROWS]) {
-    let [a, b, c, d] = *rows;
-    let [ca, cb, cc, cd] = *coefficient;
+fn add_four(sums: &mut [f32], rows: [&[f32]; ROWS], coefficients: &[f32; ROWS]) {
+    let [a, b, c, d] = rows;
+    let [ca, cb, cc, cd] = *coefficients;
     let rows = a.iter().zip(b).zip(c.iter().zip(d));
-    for (sum, ((a, b), (c, d))) in sum.iter_mut().zip(rows) {
+    for (sum, ((a, b), (c, d))) in sums.iter_mut().zip(rows) {
         *sum += (a * ca + b * cb) + (c * cc + d * cd);
     }
 }

@@ -1,9 +1,9 @@
 //! How important an item is: the norm of the loss's derivative by the network's outputs (6.1.4).
 //!
 //! By the chain rule the norm of an item's parameter gradient is at most a constant times it, and it needs no backward
-//! pass. Everything is in `f64` inside: finite inputs of any size give finite results, one beyond the range of `f32` becoming
-//! the largest finite `f32`. Functions that return a number return NaN for wrong input: nothing given, a NaN or infinity
-//! among it, slices of different lengths, or a label that does not exist.
+//! pass. Everything is in `f64` inside: finite inputs of any size give finite results, one beyond the range of `f32`
+//! becoming the largest finite `f32`. Functions that return a number return NaN for wrong input: nothing given, a NaN
+//! or infinity among it, slices of different lengths, or a label that does not exist.
 
 use crate::Error;
 use crate::mis::MAX_TECHNIQUES;
@@ -71,11 +71,12 @@ pub enum Split {
 
 /// Importances for several distributions, from the derivative of the loss by each output node.
 ///
-/// Node k belongs to group k mod G, so that every node is covered; G is `importance.len()` with [`Split::Norm`] and half of it with
-/// [`Split::Sign`]. (6.2.3) proposes a subset of the nodes, which leaves gradients to the other nodes without an importance.
+/// Node k belongs to group k mod G, so that every node is covered; G is `importance.len()` with [`Split::Norm`] and
+/// half of it with [`Split::Sign`]. (6.2.3) proposes a subset of the nodes, which leaves gradients to the other nodes
+/// without an importance.
 ///
-/// Errors, which leave `importance` as it was: [`Error::Range`] unless there are 1..=16 importances, an even number with
-/// [`Split::Sign`], and at least one node per group; [`Error::NotFinite`] for NaN or infinity in `gradient`.
+/// Errors, which leave `importance` as it was: [`Error::Range`] unless there are 1..=16 importances, an even number
+/// with [`Split::Sign`], and at least one node per group; [`Error::NotFinite`] for NaN or infinity in `gradient`.
 pub fn nodes(gradient: &[f32], split: Split, importance: &mut [f32]) -> Result<(), Error> {
     let techniques = importance.len();
     let signs = if split == Split::Sign { 2 } else { 1 };

@@ -1,16 +1,16 @@
 //! The linear system of optimal MIS, which all parameters share.
 //!
-//! With S = sum_k n_k p_k and s over a batch's samples, `sum_s h / S` estimates the sum of h over all items without bias,
-//! for any h. So do `q = sum_s p / S` the ones to which probabilities sum, `A = sum_s p p' / S^2` the matrix of (6.17), and
-//! `b = sum_s g p / S^2` its right-hand side for a gradient g. The estimate of the sum of all gradients is
+//! With S = sum_k n_k p_k and s over a batch's samples, `sum_s h / S` estimates the sum of h over all items without
+//! bias, for any h. So do `q = sum_s p / S` the ones to which probabilities sum, `A = sum_s p p' / S^2` the matrix of
+//! (6.17), and `b = sum_s g p / S^2` its right-hand side for a gradient g. The estimate of the sum of all gradients is
 //!
 //! `sum_s g / S - (q - 1)' alpha`, alpha = (A + L)^-1 b:
 //!
 //! the balance heuristic's, less what the batch got wrong about sums that are known. A and q belong to no parameter, so
 //! with `c = (A + L)^-1 (q - 1)` it is `sum_s g / S - c' b`, linear in the gradients: one solve serves every parameter.
 //!
-//! Algorithm 5 prints W = n_j p_j / S where this has p_j / S. Its matrix is N A N and its right-hand side N b, for N the counts,
-//! so that its sum of alpha is that of N^-1 A^-1 b: too small by n_j.
+//! Algorithm 5 prints W = n_j p_j / S where this has p_j / S. Its matrix is N A N and its right-hand side N b, for N
+//! the counts, so that its sum of alpha is that of N^-1 A^-1 b: too small by n_j.
 
 use super::Batch;
 use crate::Error;
@@ -48,8 +48,8 @@ impl System {
         self.techniques
     }
 
-    /// Multiplies the weights of the earlier batches by `beta` in 0..=1 and adds `batch`. Returned are the parts that the old averages
-    /// and the batch have in the new ones, which sum to 1.
+    /// Multiplies the weights of the earlier batches by `beta` in 0..=1 and adds `batch`. Returned are the parts that
+    /// the old averages and the batch have in the new ones, which sum to 1.
     pub(super) fn add(&mut self, batch: &Batch<'_>, beta: f32) -> Result<(f64, f64), Error> {
         if !beta.is_finite() {
             return Err(Error::NotFinite);

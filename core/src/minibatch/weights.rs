@@ -6,23 +6,24 @@ use crate::Error;
 use crate::mis::Solver;
 use crate::mis::optimal::to_f32;
 
-/// The optimal MIS gradient as weights: the gradient of the mean loss is `(1 / batch) sum_s weight[s] gradient_s`, for every
-/// parameter at once. One backward pass over the weighted losses computes it; no per-item gradient is needed (6.2).
+/// The optimal MIS gradient as weights: the gradient of the mean loss is `(1 / batch) sum_s weight[s] gradient_s`, for
+/// every parameter at once. One backward pass over the weighted losses computes it; no per-item gradient is needed
+/// (6.2).
 ///
 /// weight = v batch / N with, for S = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2,
 ///
 /// `v_s = 1 / S_s - (q - 1)' (A + L)^-1 p_s / S_s^2`
 ///
 /// and L the ridge of [`Solver::Ridge`], or the pseudo-inverse without one ([`Solver::Plain`]: then v_s is also
-/// 1' A^+ p_s / S_s^2), or only the first term ([`Solver::Balance`]). The balance weights are positive and unbiased. The others are
-/// consistent, not unbiased, as A comes from the samples it is applied to; they may be negative. A gradient that is
-/// a linear combination of the p_j at every item is estimated exactly by [`Solver::Plain`].
+/// 1' A^+ p_s / S_s^2), or only the first term ([`Solver::Balance`]). The balance weights are positive and unbiased.
+/// The others are consistent, not unbiased, as A comes from the samples it is applied to; they may be negative. A
+/// gradient that is a linear combination of the p_j at every item is estimated exactly by [`Solver::Plain`].
 ///
 /// `weight` has one element per sample; one beyond the range of `f32` becomes the largest finite one.
 ///
 /// Errors, which leave `weight` as it was: [`Error::Range`] for a wrong length, or a ridge outside
-/// [`RIDGE_RANGE`](crate::mis::RIDGE_RANGE); [`Error::NotFinite`] for a ridge that is NaN or infinite; [`Error::Unsupported`] for
-/// [`Solver::Progressive`].
+/// [`RIDGE_RANGE`](crate::mis::RIDGE_RANGE); [`Error::NotFinite`] for a ridge that is NaN or infinite;
+/// [`Error::Unsupported`] for [`Solver::Progressive`].
 ///
 /// ```
 /// use noisefloor::minibatch::{Batch, weights};
