@@ -130,10 +130,11 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
             let coefficients = Coefficients::new(samples.by_ref().take(GROUP), part / batch.items());
             // The old averages fade once.
             let keep = if group == 0 { keep as f32 } else { 1.0 };
-            let blocks = memory.chunks_mut(BLOCK * sums).zip(estimate.chunks(BLOCK));
-            for (block, (averages, estimate)) in blocks.enumerate() {
+            let mut rest = &mut *memory;
+            for (block, estimate) in estimate.chunks(BLOCK).enumerate() {
                 let len = estimate.len();
-                let Some(averages) = averages.get_mut(..len * sums) else { break };
+                let Some((averages, behind)) = rest.split_at_mut_checked(len * sums) else { break };
+                rest = behind;
                 fade(averages, keep);
                 let rows = rows.chunks_exact(parameters.max(1));
                 let rows = rows.filter_map(|row| row.get(block * BLOCK..)?.get(..len));
@@ -145,7 +146,10 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
                 }
             }
         }
-        for (averages, estimate) in memory.chunks(BLOCK * sums).zip(estimate.chunks_mut(BLOCK)) {
+        let mut rest = &*memory;
+        for estimate in estimate.chunks_mut(BLOCK) {
+            let Some((averages, behind)) = rest.split_at_checked(estimate.len() * sums) else { break };
+            rest = behind;
             solve(averages, &correction, estimate);
         }
         Ok(())
