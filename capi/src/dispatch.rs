@@ -5,6 +5,8 @@
 
 use noisefloor_core::Error;
 use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Samples};
+use noisefloor_core::minibatch::{Batch, Gradient};
+use noisefloor_core::mis::Solver;
 use noisefloor_core::rng::Rng;
 
 use crate::table::{Reader, Writer};
@@ -90,6 +92,23 @@ pub(crate) fn table_add_epsilon(table: &mut Writer<'_>, epsilon: f32) -> Result<
     table.add_epsilon(epsilon)
 }
 
+/// [`Gradient::estimate`].
+pub(crate) fn gradient(
+    state: &mut Gradient<&mut [f32]>,
+    batch: &Batch<'_>,
+    solver: Solver,
+    beta: f32,
+    gradient: &[f32],
+    estimate: &mut [f32],
+) -> Result<(), Error> {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        // SAFETY: as above.
+        return unsafe { x86::gradient(state, batch, solver, beta, gradient, estimate) };
+    }
+    state.estimate(batch, solver, beta, gradient, estimate)
+}
+
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::*;
@@ -153,6 +172,18 @@ mod x86 {
     #[target_feature(enable = "avx2,popcnt")]
     pub(super) fn table_add_epsilon(table: &mut Writer<'_>, epsilon: f32) -> Result<(), Error> {
         table.add_epsilon_by::<Avx2>(epsilon)
+    }
+
+    #[target_feature(enable = "avx2")]
+    pub(super) fn gradient(
+        state: &mut Gradient<&mut [f32]>,
+        batch: &Batch<'_>,
+        solver: Solver,
+        beta: f32,
+        gradient: &[f32],
+        estimate: &mut [f32],
+    ) -> Result<(), Error> {
+        state.estimate(batch, solver, beta, gradient, estimate)
     }
 
     #[inline(always)]

@@ -12,6 +12,8 @@ mod avx2;
 mod convert;
 mod cv;
 mod dispatch;
+mod gradient;
+mod importance;
 mod mis;
 mod omis;
 mod recommend;
@@ -22,6 +24,8 @@ mod table;
 mod tile;
 
 pub use cv::*;
+pub use gradient::*;
+pub use importance::*;
 pub use mis::*;
 pub use omis::*;
 pub use recommend::*;
