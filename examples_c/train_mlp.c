@@ -1,6 +1,6 @@
 /* Trains a multilayer perceptron with minibatches that noisefloor draws, and prints test error against steps and time.
  *
- *     cc -std=c99 -O3 -march=native -Iinclude examples_c/train_mlp.c libnoisefloor.a -lm -o train_mlp
+ *     cc -std=c99 -O3 -march=native -fno-math-errno -Iinclude examples_c/train_mlp.c libnoisefloor.a -lm -o train_mlp
  *     ./train_mlp --data examples_c/data/digits --modes uniform,importance,adaptive,omis --seeds 5
  *
  * What a trainer needs of noisefloor is in train_mlp/sampler.h; step() below shows where it is called. */
@@ -122,7 +122,7 @@ static void step(run *r, const options *o, const dataset *data, workspace *space
 /* Items of the training set that the training loss is the mean over: enough for a curve, and soon evaluated. */
 #define TRAIN_LOSS_ITEMS 10000
 
-#include "train_mlp/variance.h"
+#include "train_mlp/variance.h" /* here, because it trains a network with step() */
 
 static void print_row(const options *o, enum mode mode, uint32_t seed, uint32_t point, run *r, const quality *train,
                       const quality *test)

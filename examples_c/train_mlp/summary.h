@@ -52,8 +52,8 @@ static void print_cell(const double *value, uint32_t count, int empty, const cha
         print_interval(value, count, format);
 }
 
-/* curves[mode of o->modes][seed], half-way and at the end. Equal time is that which uniform takes for these epochs (or the first
-   mode); differences are to it too, seed by seed: the modes begin with the same network and see the same first epoch. */
+/* curves[mode of o->modes][seed], half-way and at the end. Equal time is that which uniform (or the first mode) takes for these
+   epochs; differences are to it too, seed by seed: the modes begin with the same network and see the same first epoch. */
 static void print_summary(const options *o, curve (*curves)[MAX_SEEDS])
 {
     uint32_t base = 0;
@@ -61,8 +61,8 @@ static void print_summary(const options *o, curve (*curves)[MAX_SEEDS])
         if (o->modes[m] == UNIFORM)
             base = m;
     const char *name = mode_name[o->modes[base]];
-    fprintf(stderr, "| epochs | mode | seeds | test error %%, equal epochs | minus %s's | test error %%, equal time | minus %s's | "
-                    "time / %s's |\n| ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n",
+    fprintf(stderr, "| epochs | mode | seeds | test error %%, equal epochs | minus %s's | test error %%, equal time | "
+                    "minus %s's | time / %s's |\n| ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n",
             name, name, name);
     for (uint32_t half = o->epochs < 4; half < 2; ++half) {
         uint32_t epochs = half == 0 ? o->epochs / 2 : o->epochs, point = epochs * o->rows;
