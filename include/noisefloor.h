@@ -52,7 +52,7 @@ typedef int32_t nf_status;
 #define NF_ERR_MEMORY (-4)
 // Caller-supplied memory is not aligned as its type needs.
 #define NF_ERR_ALIGNMENT (-5)
-// There is nothing to estimate from.
+// There is nothing to estimate or to draw from.
 #define NF_ERR_NO_SAMPLES (-6)
 // The options exist, but not in this combination.
 #define NF_ERR_UNSUPPORTED (-7)
@@ -60,13 +60,13 @@ typedef int32_t nf_status;
 #define NF_ERR_STATE (-8)
 // Two objects were made with different configurations.
 #define NF_ERR_MISMATCH (-9)
-// The bytes are no tile.
+// The bytes are no tile, or no table.
 #define NF_ERR_FOREIGN (-10)
-// The tile's format is newer than this library.
+// The format is newer than this library.
 #define NF_ERR_VERSION (-11)
-// The tile is truncated, or followed by other bytes.
+// Bytes are missing, or there are too many.
 #define NF_ERR_LENGTH (-12)
-// The tile is damaged.
+// The bytes are damaged.
 #define NF_ERR_CORRUPT (-13)
 
 // A static, NUL-terminated sentence for a status; never NULL, also for values that are no status.
@@ -1143,6 +1143,10 @@ NF_ASSERT_LAYOUT(sizeof(nf_sampler) == sizeof(void *) + 16 && offsetof(nf_sample
 NF_ASSERT_ALIGNED_AS(nf_sampler, void *);
 NF_ASSERT_LAYOUT(sizeof(nf_rng) == 16 && offsetof(nf_rng, increment) == 8);
 NF_ASSERT_ALIGNED_AS(nf_rng, uint64_t);
+NF_ASSERT_LAYOUT(sizeof(nf_table) == 2 * sizeof(void *) + 24 && offsetof(nf_table, items) == 2 * sizeof(void *) + 8);
+NF_ASSERT_ALIGNED_AS(nf_table, double);
+NF_ASSERT_LAYOUT(sizeof(nf_shard) == 16 && offsetof(nf_shard, items) == 8);
+NF_ASSERT_ALIGNED_AS(nf_shard, uint64_t);
 #undef NF_ASSERT_LAYOUT
 #undef NF_ASSERT_ALIGNED_AS
 

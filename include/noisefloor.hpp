@@ -646,10 +646,121 @@ public:
             value = uniform();
     }
     const nf_rng &state() const noexcept { return state_; }
+    nf_rng &state() noexcept { return state_; }
 
 private:
     nf_rng state_{};
 };
+
+// ---- Minibatches -----------------------------------------------------------------------------------------------------------
+
+// nf_table: the importances of a data set's items, in memory of the caller's. It may be moved, not copied: the memory would be
+// shared. Lengths that do not agree are status::range; an empty `weight` stands for none.
+class table {
+public:
+    // Bytes.
+    static std::size_t size(std::uint32_t items) noexcept { return nf_table_size(items); }
+
+    // A table that cannot be used before init() or load().
+    table() noexcept = default;
+    table(table &&other) noexcept : state_(std::exchange(other.state_, nf_table{})) {}
+    table &operator=(table &&other) noexcept
+    {
+        state_ = std::exchange(other.state_, nf_table{});
+        return *this;
+    }
+
+    // Makes a table of `items` items of importance 1.
+    returned<void> init(memory where, std::uint32_t items)
+    {
+        return detail::finish(nf_table_init(&state_, where.data(), where.bytes(), items, nullptr));
+    }
+    // Makes a table of these importances.
+    returned<void> init(memory where, span<const float> importance)
+    {
+        const bool fits = importance.size() <= UINT32_MAX && importance.data() != nullptr;
+        return detail::finish(fits ? nf_table_init(&state_, where.data(), where.bytes(), length(importance), importance.data()) : NF_ERR_RANGE);
+    }
+    returned<void> draw(rng &random, span<std::uint32_t> index, span<float> weight = {}) const
+    {
+        return finish_draw(nf_table_draw, &state_, random, index, weight);
+    }
+    returned<void> draw_stratified(rng &random, span<std::uint32_t> index, span<float> weight = {}) const
+    {
+        return finish_draw(nf_table_draw_stratified, &state_, random, index, weight);
+    }
+    returned<void> draw_distinct(rng &random, span<std::uint32_t> index, span<float> weight = {})
+    {
+        return finish_draw(nf_table_draw_distinct, &state_, random, index, weight);
+    }
+    // This process's part of a batch over all shards.
+    returned<void> draw_shard(span<const nf_shard> all, rng &random, span<std::uint32_t> index, span<float> weight = {}) const
+    {
+        const bool fit = fits(index, weight) && all.size() <= UINT32_MAX;
+        return detail::finish(fit ? nf_table_draw_shard(&state_, all.data(), length(all), &random.state(), length(index), index.data(), weight.data())
+                                  : NF_ERR_RANGE);
+    }
+    returned<void> update(span<const std::uint32_t> index, span<const float> importance, float momentum)
+    {
+        const bool fits = index.size() == importance.size() && index.size() <= UINT32_MAX;
+        return detail::finish(fits ? nf_table_update(&state_, index.data(), importance.data(), length(index), momentum) : NF_ERR_RANGE);
+    }
+    returned<void> set_uniform_fraction(float fraction) { return detail::finish(nf_table_set_uniform_fraction(&state_, fraction)); }
+    returned<void> add_epsilon(float epsilon) { return detail::finish(nf_table_add_epsilon(&state_, epsilon)); }
+    returned<void> append(span<const float> importance)
+    {
+        return detail::finish(importance.size() <= UINT32_MAX ? nf_table_append(&state_, importance.data(), length(importance)) : NF_ERR_RANGE);
+    }
+
+    std::uint32_t items() const noexcept { return state_.items; }
+    float probability(std::uint32_t item) const noexcept { return nf_table_probability(&state_, item); }
+    // p[k * stride] of index[k].
+    returned<void> probabilities(span<const std::uint32_t> index, span<float> p, std::uint32_t stride = 1) const
+    {
+        const bool fits = index.size() <= UINT32_MAX && stride > 0 && (index.empty() || (p.size() > 0 && (p.size() - 1) / stride >= index.size() - 1));
+        return detail::finish(fits ? nf_table_probabilities(&state_, index.data(), length(index), stride, p.data()) : NF_ERR_RANGE);
+    }
+    float importance(std::uint32_t item) const noexcept { return nf_table_importance(&state_, item); }
+    double total() const noexcept { return nf_table_total(&state_); }
+    returned<nf_shard> shard() const
+    {
+        nf_shard out{};
+        return detail::finish(nf_table_shard(&state_, &out), out);
+    }
+
+    std::size_t saved_size() const noexcept { return nf_table_saved_size(&state_); }
+    returned<void> save(span<unsigned char> saved) const { return detail::finish(nf_table_save(&state_, saved.data(), saved.size())); }
+    returned<void> load(memory where, span<const unsigned char> saved)
+    {
+        return detail::finish(nf_table_load(&state_, where.data(), where.bytes(), saved.data(), saved.size()));
+    }
+    const nf_table &state() const noexcept { return state_; }
+
+private:
+    template <class T> static std::uint32_t length(const span<T> &what) noexcept { return static_cast<std::uint32_t>(what.size()); }
+    static bool fits(const span<std::uint32_t> &index, const span<float> &weight) noexcept
+    {
+        return index.size() <= UINT32_MAX && (weight.empty() || weight.size() == index.size());
+    }
+    template <class F, class T>
+    static returned<void> finish_draw(F function, T *state, rng &random, const span<std::uint32_t> &index, const span<float> &weight)
+    {
+        return detail::finish(fits(index, weight) ? function(state, &random.state(), length(index), index.data(), weight.data()) : NF_ERR_RANGE);
+    }
+
+    nf_table state_{};
+};
+
+// nf_omis_weights(): pdf[batch * techniques], technique[batch], weight[batch].
+inline returned<void> omis_weights(std::uint32_t techniques, std::uint32_t items, span<const float> pdf, span<const std::uint32_t> technique,
+                                   span<float> weight, optimal_mis::solver how = optimal_mis::solver::ridge, float ridge = 0.0f)
+{
+    const std::size_t batch = weight.size();
+    const bool fits = batch <= UINT32_MAX && technique.size() == batch && techniques > 0 && pdf.size() % techniques == 0 && pdf.size() / techniques == batch;
+    return detail::finish(fits ? nf_omis_weights(static_cast<std::uint32_t>(how), ridge, techniques, items, pdf.data(), technique.data(),
+                                                 static_cast<std::uint32_t>(batch), weight.data())
+                               : NF_ERR_RANGE);
+}
 
 static_assert(sizeof(config) == sizeof(nf_cv_config), "config is an nf_cv_config");
 static_assert(std::is_trivially_copyable_v<config> && std::is_trivially_copyable_v<accumulator>, "views and values only");

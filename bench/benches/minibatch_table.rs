@@ -2,7 +2,8 @@
 //! `cargo bench --package noisefloor-bench --bench minibatch_table`.
 //!
 //! All methods take turns, a chunk of steps at a time, so that a busy machine slows all alike; figures are medians over the
-//! chunks. "Warm" steps follow each other at once; before each "cold" step 64 MB are read, as a training step does.
+//! chunks. "Warm" steps follow each other at once, and as many that are not timed; before each "cold" draw and update 64 MB are
+//! read, as a training step does.
 
 // Without the archive the C table is a type of no values.
 #![cfg_attr(not(archive), allow(unreachable_code, unused_variables))]
@@ -18,6 +19,8 @@ use std::hint::black_box;
 use std::time::Instant;
 
 const BATCH: usize = 64;
+/// Steps of a chunk: enough to bring a table of a million items into the caches.
+const STEPS: usize = 2000;
 
 /// One method's table, and how it makes a step's draws and updates.
 trait Method {
@@ -139,9 +142,9 @@ fn measure(methods: &mut [(Box<dyn Method>, usize)], chunks: usize, cold: Option
     let mut times: Vec<Times> = methods.iter().map(|_| Times::default()).collect();
     for chunk in 0..chunks {
         for ((method, steps), times) in methods.iter_mut().zip(&mut times) {
-            let steps = if cold.is_some() { 1 } else { *steps };
+            let (warm_up, steps) = if cold.is_some() { (0, 1) } else { (*steps, *steps) };
             let (mut draw, mut update) = (0.0, 0.0);
-            for _ in 0..steps {
+            for step in 0..warm_up + steps {
                 let importance = std::array::from_fn(|_| rng.uniform_f32());
                 let (mut index, mut weight) = ([0; BATCH], [0.0; BATCH]);
                 if let Some(memory) = cold {
@@ -156,9 +159,12 @@ fn measure(methods: &mut [(Box<dyn Method>, usize)], chunks: usize, cold: Option
                 }
                 let updating = Instant::now();
                 method.update(black_box(&index), &importance);
-                update += updating.elapsed().as_secs_f64();
-                draw += (drawn - start).as_secs_f64();
+                let updated = Instant::now();
                 black_box(&weight);
+                if step >= warm_up {
+                    update += (updated - updating).as_secs_f64();
+                    draw += (drawn - start).as_secs_f64();
+                }
             }
             // The first chunk finds caches and predictors of other work.
             if chunk > 0 {
@@ -181,17 +187,17 @@ fn main() {
         let mut rng = Rng::seed(3);
         let q: Vec<f32> = (0..items).map(|_| libm::expf(4.0 * rng.uniform_f32() - 2.0)).collect();
         // An alias table is built in milliseconds to seconds: few steps of it.
-        let rebuilds = (2_000_000 / items as usize).clamp(1, 20);
+        let rebuilds = (1_000_000 / items as usize).clamp(1, 10);
         let mut methods: Vec<(Box<dyn Method>, usize)> = Vec::new();
         if c_abi::LINKED {
-            methods.push((Box::new(CTable(c_table::Table::new(&q), Rng::seed(1))), 200));
+            methods.push((Box::new(CTable(c_table::Table::new(&q), Rng::seed(1))), STEPS));
         }
-        methods.push((Box::new(RustTable::new(&q)), 200));
-        methods.push((Box::new(Tree(WeightedTreeIndex::new(q.clone()).unwrap(), SmallRng::seed_from_u64(1))), 200));
+        methods.push((Box::new(RustTable::new(&q)), STEPS));
+        methods.push((Box::new(Tree(WeightedTreeIndex::new(q.clone()).unwrap(), SmallRng::seed_from_u64(1))), STEPS));
         let alias = WeightedAliasIndex::new(q.clone()).unwrap();
         methods.push((Box::new(Alias(alias, q.clone(), SmallRng::seed_from_u64(1))), rebuilds));
         println!("\n{items} items; ns of a draw / of an update, us of a step of {BATCH} of both; warm, then cold");
-        let warm = measure(&mut methods, if items > 1_000_000 { 12 } else { 41 }, None);
+        let warm = measure(&mut methods, if items > 1_000_000 { 8 } else { 31 }, None);
         let _ = methods.pop();
         let cold = measure(&mut methods, 101, Some(&memory));
         let mut first = None;

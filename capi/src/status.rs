@@ -19,7 +19,7 @@ pub const NF_ERR_NOT_FINITE: nf_status = -3;
 pub const NF_ERR_MEMORY: nf_status = -4;
 /// Caller-supplied memory is not aligned as its type needs.
 pub const NF_ERR_ALIGNMENT: nf_status = -5;
-/// There is nothing to estimate from.
+/// There is nothing to estimate or to draw from.
 pub const NF_ERR_NO_SAMPLES: nf_status = -6;
 /// The options exist, but not in this combination.
 pub const NF_ERR_UNSUPPORTED: nf_status = -7;
@@ -27,13 +27,13 @@ pub const NF_ERR_UNSUPPORTED: nf_status = -7;
 pub const NF_ERR_STATE: nf_status = -8;
 /// Two objects were made with different configurations.
 pub const NF_ERR_MISMATCH: nf_status = -9;
-/// The bytes are no tile.
+/// The bytes are no tile, or no table.
 pub const NF_ERR_FOREIGN: nf_status = -10;
-/// The tile's format is newer than this library.
+/// The format is newer than this library.
 pub const NF_ERR_VERSION: nf_status = -11;
-/// The tile is truncated, or followed by other bytes.
+/// Bytes are missing, or there are too many.
 pub const NF_ERR_LENGTH: nf_status = -12;
-/// The tile is damaged.
+/// The bytes are damaged.
 pub const NF_ERR_CORRUPT: nf_status = -13;
 
 /// The version of this header. `nf_abi_version()` returns the library's.
@@ -55,14 +55,14 @@ pub extern "C" fn nf_status_message(status: nf_status) -> *const c_char {
         NF_ERR_NOT_FINITE => c"an input value is NaN or infinite",
         NF_ERR_MEMORY => c"caller-supplied memory is too small: ask the matching size function",
         NF_ERR_ALIGNMENT => c"caller-supplied memory is not aligned: 8 bytes are needed",
-        NF_ERR_NO_SAMPLES => c"no samples: at least one is needed",
+        NF_ERR_NO_SAMPLES => c"no samples, or nothing that can be drawn",
         NF_ERR_UNSUPPORTED => c"this combination of options is not supported",
         NF_ERR_STATE => c"the memory holds no initialised object: call the matching init function first",
         NF_ERR_MISMATCH => c"the two objects were made with different configurations",
-        NF_ERR_FOREIGN => c"the bytes are not a noisefloor tile",
-        NF_ERR_VERSION => c"the tile's format is newer than this library",
-        NF_ERR_LENGTH => c"the tile is truncated, or followed by other bytes",
-        NF_ERR_CORRUPT => c"the tile is damaged: its checksum does not match, or its fields make no sense",
+        NF_ERR_FOREIGN => c"the bytes are not a noisefloor tile or table",
+        NF_ERR_VERSION => c"the format is newer than this library",
+        NF_ERR_LENGTH => c"bytes are missing, or there are too many",
+        NF_ERR_CORRUPT => c"the bytes are damaged: the checksum does not match, or fields make no sense",
         _ => c"not a noisefloor status",
     };
     text.as_ptr()

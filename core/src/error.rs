@@ -12,19 +12,19 @@ pub enum Error {
     NotFinite,
     /// A caller-supplied buffer is too small.
     Memory,
-    /// There is nothing to estimate from.
+    /// There is nothing to estimate or to draw from.
     NoSamples,
     /// The options exist, but not in this combination.
     Unsupported,
     /// Two objects made with different configurations cannot be combined.
     Mismatch,
-    /// The bytes are no tile.
+    /// The bytes are no tile, or no table.
     Foreign,
-    /// The tile's format is newer than this library.
+    /// The format is newer than this library.
     Version,
-    /// Bytes are missing, or there are more than the tile has.
+    /// Bytes are missing, or there are too many.
     Length,
-    /// The tile is damaged: its checksum does not match, or its fields make no sense.
+    /// The bytes are damaged: the checksum does not match, or fields make no sense.
     Corrupt,
 }
 
@@ -35,13 +35,13 @@ impl Error {
             Error::Range => "an argument is outside its documented range",
             Error::NotFinite => "an input value is NaN or infinite",
             Error::Memory => "a caller-supplied buffer is too small: ask the matching size function",
-            Error::NoSamples => "no samples: at least one is needed",
+            Error::NoSamples => "no samples, or nothing that can be drawn",
             Error::Unsupported => "this combination of options is not supported",
             Error::Mismatch => "the two objects were made with different configurations",
-            Error::Foreign => "the bytes are not a noisefloor tile",
-            Error::Version => "the tile's format is newer than this library",
-            Error::Length => "the tile is truncated, or followed by other bytes",
-            Error::Corrupt => "the tile is damaged: its checksum does not match, or its fields make no sense",
+            Error::Foreign => "the bytes are not a noisefloor tile or table",
+            Error::Version => "the format is newer than this library",
+            Error::Length => "bytes are missing, or there are too many",
+            Error::Corrupt => "the bytes are damaged: the checksum does not match, or fields make no sense",
         }
     }
 }

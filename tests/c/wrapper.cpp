@@ -317,6 +317,71 @@ static void random_numbers()
     CHECK(die >= 1 && die <= 6);
 }
 
+static void minibatches()
+{
+    const std::array<float, 5> importance{0.0f, 1.0f, 2.0f, 3.0f, 4.0f};
+    std::vector<std::uint64_t> room(nf::table::size(6) / 8 + 1), other(room.size());
+    nf::table table;
+    nf::rng rng(1);
+    std::array<std::uint32_t, 8> index{};
+    std::array<float, 8> weight{};
+    CHECK(CODE(table.draw(rng, index)) == nf::status::state);
+    SUCCEED(table.init(room, importance));
+    CHECK(table.items() == 5 && table.total() == 10.0 && table.importance(3) == 3.0f);
+    SUCCEED(table.set_uniform_fraction(0.0f));
+    CHECK(table.probability(4) == 0.4f && table.probability(0) == 0.0f);
+
+    nf_rng expected_rng;
+    nf_rng_seed(&expected_rng, 1);
+    std::array<std::uint32_t, 8> expected{};
+    CHECK_STATUS(nf_table_draw(&table.state(), &expected_rng, 8, expected.data(), nullptr), NF_OK);
+    SUCCEED(table.draw(rng, index, weight));
+    CHECK(index == expected);
+    for (std::size_t i = 0; i < index.size(); ++i)
+        CHECK(index[i] > 0 && std::fabs(weight[i] * 5.0f * table.probability(index[i]) - 1.0f) < 1e-6f);
+    SUCCEED(table.draw_stratified(rng, index));
+    SUCCEED(table.draw_distinct(rng, {index.data(), 4}, {weight.data(), 4}));
+    CHECK(CODE(table.draw(rng, index, {weight.data(), 7})) == nf::status::range);
+    CHECK(CODE(table.draw_distinct(rng, {index.data(), 5})) == nf::status::no_samples);
+
+    const std::uint32_t first[] = {0};
+    const float ten[] = {10.0f};
+    SUCCEED(table.update(first, ten, 0.5f));
+    CHECK(table.importance(0) == 5.0f);
+    CHECK(CODE(table.update(index, ten, 0.5f)) == nf::status::range);
+    SUCCEED(table.append(ten));
+    SUCCEED(table.add_epsilon(1.0f));
+    CHECK(table.items() == 6 && table.importance(5) == 11.0f);
+    std::array<float, 3> p{};
+    SUCCEED(table.probabilities({index.data(), 2}, p, 2));
+    CHECK(p[2] == table.probability(index[1]) && p[1] == 0.0f);
+    CHECK(CODE(table.probabilities({index.data(), 3}, p, 2)) == nf::status::range);
+
+    std::vector<unsigned char> saved(table.saved_size());
+    SUCCEED(table.save(saved));
+    nf::table loaded;
+    SUCCEED(loaded.load(other, saved));
+    CHECK(loaded.total() == table.total());
+    saved.back() ^= 1u;
+    CHECK(CODE(loaded.load(other, saved)) == nf::status::corrupt);
+    nf::table moved(std::move(loaded));
+    CHECK(moved.items() == 6 && loaded.items() == 0);
+
+    const nf_shard all[] = {value_of(table.shard()), value_of(moved.shard())};
+    SUCCEED(moved.draw_shard(all, rng, index, weight));
+    SUCCEED(moved.init(other, 3));
+    CHECK(moved.total() == 3.0);
+    static_assert(!std::is_copy_constructible_v<nf::table>, "a copy would share the memory");
+
+    const float pdf[] = {0.1f, 0.2f, 0.3f, 0.1f};
+    const std::uint32_t technique[] = {0, 1};
+    float direct[2], wrapped[2];
+    CHECK_STATUS(nf_omis_weights(NF_OMIS_RIDGE, 0.0f, 2, 10, pdf, technique, 2, direct), NF_OK);
+    SUCCEED(nf::omis_weights(2, 10, pdf, technique, wrapped));
+    CHECK(direct[0] == wrapped[0] && direct[1] == wrapped[1]);
+    CHECK(CODE(nf::omis_weights(3, 10, pdf, technique, wrapped)) == nf::status::range);
+}
+
 static void recommendations()
 {
     nf_recommendation expected;
@@ -341,6 +406,7 @@ int main()
     mis();
     tiles();
     random_numbers();
+    minibatches();
     recommendations();
     return report("wrapper");
 }
