@@ -376,6 +376,12 @@ static void estimate_gradient(sampler *s, const problem *p, const double *coeffi
 static void start_tables(sampler *s)
 {
     for (uint32_t j = 0; j < s->method->tables; ++j) {
+        /* Where no residual has the table's sign, it has nothing to draw by: it is uniform until a visit finds one. */
+        float largest = 0.0f;
+        for (uint32_t i = 0; i < s->options->items; ++i)
+            largest = fmaxf(largest, s->initial[j][i]);
+        for (uint32_t i = 0; largest == 0.0f && i < s->options->items; ++i)
+            s->initial[j][i] = 1e-20f;
         check(nf_table_init(&s->tables[j], s->memory[j], s->bytes, s->options->items, s->initial[j]), "nf_table_init");
         check(nf_table_set_uniform_fraction(&s->tables[j], (float)s->options->uniform_fraction),
               "nf_table_set_uniform_fraction");

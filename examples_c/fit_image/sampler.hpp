@@ -148,6 +148,9 @@ private:
     void start()
     {
         for (std::uint32_t j = 0; j < method_.tables; ++j) {
+            // Where no derivative has the table's sign, it has nothing to draw by: it is uniform until a visit finds one.
+            if (*std::max_element(initial_[j].begin(), initial_[j].end()) == 0.0f)
+                std::fill(initial_[j].begin(), initial_[j].end(), 1e-20f);
             const std::size_t bytes = memory_[j].size() * sizeof(std::uint64_t);
             check(nf_table_init(&tables_[j], memory_[j].data(), bytes, items_, initial_[j].data()), "nf_table_init");
             check(nf_table_set_uniform_fraction(&tables_[j], uniform_fraction_), "nf_table_set_uniform_fraction");
