@@ -16,7 +16,7 @@ struct Options {
     std::string output; // what the pictures' names start with; empty: none
     std::vector<const Method *> chosen;
     std::uint32_t steps = 4000, seeds = 3, batch = 256, width = 64, records = 40, batches = 100;
-    float rate = 5e-3f, uniform_fraction = 0.2f, momentum = 0.5f;
+    float rate = 2e-2f, uniform_fraction = 0.2f, momentum = 0.5f;
     bool stratified = false, variance = false, help = false;
 };
 
@@ -30,7 +30,7 @@ inline void usage()
                "  --seeds N             networks and runs [3]\n"
                "  --batch N             pixels of a minibatch, a multiple of 16 [256]\n"
                "  --width N             nodes of a hidden layer, a multiple of 4 [64]\n"
-               "  --rate R              Adam's learning rate at the start; it falls to 0 [.005]\n"
+               "  --rate R              Adam's learning rate at the start; it falls to 0 [.02]\n"
                "  --records N           how often the whole picture is evaluated [40]\n"
                "  --uniform-fraction D  part of every distribution that is uniform [.2]\n"
                "  --momentum M          how much of an importance is kept when its pixel is visited [.5]\n"
