@@ -50,11 +50,12 @@ static void compare_training(problem *p, const options *o)
     const uint32_t count = records(o);
     double *losses = allocate(count * sizeof *losses);
     double *means = allocate((size_t)METHOD_COUNT * count * sizeof *means);
-    double final_mean[METHOD_COUNT] = {0}, final_square[METHOD_COUNT] = {0};
+    double final_mean[METHOD_COUNT] = {0}, ratio_mean[METHOD_COUNT] = {0}, ratio_square[METHOD_COUNT] = {0};
     for (size_t i = 0; i < (size_t)METHOD_COUNT * count; ++i)
         means[i] = 0.0;
     printf("method,seed,step,loss\n");
     for (uint32_t seed = 1; seed <= o->seeds; ++seed) {
+        double exact = 0.0;
         make_problem(p, o, seed);
         for (int m = 0; m < METHOD_COUNT; ++m) {
             if (!is_run(&METHODS[m], o))
@@ -64,21 +65,26 @@ static void compare_training(problem *p, const options *o)
                 printf("%s,%u,%u,%.6e\n", METHODS[m].name, (unsigned)seed, (unsigned)record_step(o, r), losses[r]);
                 means[(size_t)m * count + r] += losses[r] / o->seeds;
             }
+            if (m == EXACT)
+                exact = losses[count - 1];
+            double ratio = log(losses[count - 1] / exact);
             final_mean[m] += losses[count - 1] / o->seeds;
-            final_square[m] += losses[count - 1] * losses[count - 1] / o->seeds;
+            ratio_mean[m] += ratio / o->seeds;
+            ratio_square[m] += ratio * ratio / o->seeds;
         }
     }
-    fprintf(stderr, "| method     | loss at the end | standard error | over exact |\n");
-    fprintf(stderr, "| ---------- | --------------: | -------------: | ---------: |\n");
+    /* Problems differ a hundredfold, so ratios are taken problem by problem. */
+    fprintf(stderr, "| method     | mean loss at the end | over exact | problem by problem | standard error |\n");
+    fprintf(stderr, "| ---------- | -------------------: | ---------: | -----------------: | -------------: |\n");
     for (int m = 0; m < METHOD_COUNT; ++m) {
         if (!is_run(&METHODS[m], o))
             continue;
         for (uint32_t r = 0; r < count; ++r)
             printf("%s,mean,%u,%.6e\n", METHODS[m].name, (unsigned)record_step(o, r), means[(size_t)m * count + r]);
-        double variance = final_square[m] - final_mean[m] * final_mean[m];
-        double error = o->seeds > 1 ? sqrt((variance > 0.0 ? variance : 0.0) / (o->seeds - 1)) : 0.0;
-        fprintf(stderr, "| %-10s | %15.3e | %14.1e | %10.3f |\n", METHODS[m].name, final_mean[m], error,
-                final_mean[m] / final_mean[EXACT]);
+        double variance = ratio_square[m] - ratio_mean[m] * ratio_mean[m], mean = exp(ratio_mean[m]);
+        double error = o->seeds > 1 ? mean * sqrt((variance > 0.0 ? variance : 0.0) / (o->seeds - 1)) : 0.0;
+        fprintf(stderr, "| %-10s | %20.3e | %10.3f | %18.3f | %14.3f |\n", METHODS[m].name, final_mean[m],
+                final_mean[m] / final_mean[EXACT], mean, error);
     }
     free(losses);
     free(means);

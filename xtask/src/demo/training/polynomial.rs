@@ -10,7 +10,8 @@ use anyhow::Result;
 /// Writes training-polynomial*.csv, .md and .svg; returns the tables.
 pub(super) fn run(training: &Training) -> Result<String> {
     let program = Program::compile("fit_polynomial.c", Language::C99, &training.archive)?;
-    let small: &[&str] = if training.quick { &["--seeds", "3", "--steps", "1000", "--batches", "200"] } else { &[] };
+    let small: &[&str] =
+        if training.quick { &["--seeds", "3", "--steps", "1000", "--batches", "200"] } else { &["--seeds", "40"] };
     let bar = progress::bar(2)?;
     bar.set_message("polynomial");
     let losses = program.run(small, training.interrupted, |_| ())?;
