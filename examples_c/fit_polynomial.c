@@ -3,7 +3,7 @@
  *
  *   cc -std=c99 -O3 -Iinclude examples_c/fit_polynomial.c target/noisefloor/libnoisefloor.a -lm -o fit_polynomial
  *   ./fit_polynomial > losses.csv            # method,seed,step,loss; a table on standard error
- *   ./fit_polynomial --variance > errors.csv # state,method,coefficient,error: of the gradient, over uniform sampling's
+ *   ./fit_polynomial --variance > errors.csv # step,method,coefficient,error,bias: of the gradient, over uniform's error
  *
  * To see how the library is used, read fit_polynomial/sampler.h. */
 #include "fit_polynomial/sampler.h"
@@ -92,9 +92,10 @@ static void compare_training(problem *p, const options *o)
 
 /* ---- errors of the estimates at the same states ---- */
 
-/* Mean squared errors of a method's estimates at STATES states on the way that the exact gradient takes. The method's
- * tables are what its own batches on that way have made them. */
-static void measure(const problem *p, const method *m, const options *o, uint32_t seed, double (*errors)[TERMS])
+/* Mean squared errors of a method's estimates, and means of their errors, at STATES states on the way that the exact
+ * gradient takes. The method's tables are what its own batches on that way have made them. */
+static void measure(const problem *p, const method *m, const options *o, uint32_t seed, double (*errors)[TERMS],
+                    double (*biases)[TERMS])
 {
     sampler *s = allocate(sizeof *s);
     sampler_start(s, m, o, seed);
@@ -109,8 +110,10 @@ static void measure(const problem *p, const method *m, const options *o, uint32_
             for (uint32_t b = 0; b < o->batches; ++b) {
                 draw_batch(s);
                 estimate_gradient(s, p, coefficients, estimate);
-                for (int k = 0; k < TERMS; ++k)
+                for (int k = 0; k < TERMS; ++k) {
                     errors[state][k] += pow(estimate[k] - exact[k], 2.0) / o->batches;
+                    biases[state][k] += (estimate[k] - exact[k]) / o->batches;
+                }
             }
             ++state;
         }
@@ -127,40 +130,48 @@ static void compare_errors(problem *p, const options *o)
 {
     if (o->steps / STATES <= o->items / o->batch + 1)
         fail("--variance", "needs more --steps: the tables start after an epoch");
-    double relative[METHOD_COUNT][STATES][TERMS];
+    double relative[METHOD_COUNT][STATES][TERMS], bias[METHOD_COUNT][STATES][TERMS];
     memset(relative, 0, sizeof relative);
+    memset(bias, 0, sizeof bias);
     for (uint32_t seed = 1; seed <= o->seeds; ++seed) {
         make_problem(p, o, seed);
         double uniform[STATES][TERMS] = {{0.0}};
         for (int m = UNIFORM; m < METHOD_COUNT; ++m) {
             if (METHODS[m].explicit_gradients) /* Its momentum would join states that are not the same. */
                 continue;
-            double errors[STATES][TERMS];
+            double errors[STATES][TERMS], biases[STATES][TERMS];
             memset(errors, 0, sizeof errors);
-            measure(p, &METHODS[m], o, seed, errors);
+            memset(biases, 0, sizeof biases);
+            measure(p, &METHODS[m], o, seed, errors, biases);
             if (m == UNIFORM)
                 memcpy(uniform, errors, sizeof uniform);
             for (int state = 0; state < STATES; ++state)
-                for (int k = 0; k < TERMS; ++k)
+                for (int k = 0; k < TERMS; ++k) {
+                    /* The mean of so many batches is not exact: what that adds to the square is taken off. */
+                    double square = pow(biases[state][k], 2.0);
+                    square = (square - (errors[state][k] - square) / (o->batches - 1));
                     relative[m][state][k] += errors[state][k] / uniform[state][k] / o->seeds;
+                    bias[m][state][k] += square / uniform[state][k] / o->seeds;
+                }
         }
     }
-    printf("step,method,coefficient,error\n");
-    fprintf(stderr, "| step | method   |   mean |  worst | by coefficient, of power 0 to 6\n");
-    fprintf(stderr, "| ---: | -------- | -----: | -----: | -----: | -----: | -----: | -----: | -----: | -----: | -----: |\n");
+    printf("step,method,coefficient,error,bias\n");
+    fprintf(stderr, "| step | method   |   mean |  worst | squared bias | x^0    | x^1    | x^2    | x^3    | x^4    | x^5    | x^6    |\n");
+    fprintf(stderr, "| ---: | -------- | -----: | -----: | -----------: | -----: | -----: | -----: | -----: | -----: | -----: | -----: |\n");
     for (int state = 0; state < STATES; ++state)
         for (int m = UNIFORM; m < METHOD_COUNT; ++m) {
             if (METHODS[m].explicit_gradients)
                 continue;
             unsigned step = (unsigned)((uint64_t)o->steps * ((uint32_t)state + 1) / STATES);
-            double mean = 0.0, worst = 0.0;
+            double mean = 0.0, worst = 0.0, squared_bias = 0.0;
             for (int k = 0; k < TERMS; ++k) {
                 double value = relative[m][state][k];
-                printf("%u,%s,%d,%.6e\n", step, METHODS[m].name, k, value);
+                printf("%u,%s,%d,%.6e,%.6e\n", step, METHODS[m].name, k, value, bias[m][state][k]);
                 mean += value / TERMS;
+                squared_bias += bias[m][state][k] / TERMS;
                 worst = value > worst ? value : worst;
             }
-            fprintf(stderr, "| %4u | %-8s | %6.3f | %6.3f |", step, METHODS[m].name, mean, worst);
+            fprintf(stderr, "| %4u | %-8s | %6.3f | %6.3f | %12.4f |", step, METHODS[m].name, mean, worst, squared_bias);
             for (int k = 0; k < TERMS; ++k)
                 fprintf(stderr, " %6.3f |", relative[m][state][k]);
             fputc('\n', stderr);

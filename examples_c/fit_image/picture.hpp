@@ -40,7 +40,7 @@ inline std::uint64_t morton(std::uint64_t x, std::uint64_t y)
     return code;
 }
 
-// In Morton's order a stratum of a table is a patch of the picture; in that of rows it is part of a row, as long as it may be.
+// In Morton's order a stratum of a table is a patch of the picture; in that of rows it would be a part of a row.
 inline Picture read_ppm(const std::string &path)
 {
     std::ifstream file(path, std::ios::binary);

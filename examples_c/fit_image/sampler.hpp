@@ -47,7 +47,8 @@ public:
     Sampler(const Method &method, std::uint32_t items, std::uint32_t batch, float uniform_fraction, float momentum,
             bool stratified, std::uint64_t seed)
         : method_(method), items_(items), batch_(batch), uniform_fraction_(uniform_fraction), momentum_(momentum),
-          draw_(stratified ? nf_table_draw_stratified : nf_table_draw), shuffle_(seed << 32), index_(batch), technique_(batch), weight_(batch),
+          draw_(stratified ? nf_table_draw_stratified : nf_table_draw), shuffle_(seed << 32), index_(batch),
+          technique_(batch), weight_(batch),
           pdf_(std::size_t(batch) * MAX_TABLES)
     {
         nf_rng_seed(&rng_, seed);

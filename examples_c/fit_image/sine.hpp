@@ -21,11 +21,10 @@ inline void sine_and_cosine(std::size_t count, const float *x, float *sine, floa
         const float odd = half_turns - 2.0f * nearest(0.5f * half_turns); // -1, 0 or 1
         const float sign = 1.0f - 2.0f * odd * odd;
         const float s = r * r; // Taylor's series: |r| is at most pi / 2.
-        sine[i] = sign * r *
-                  (1.0f + s * (-1.0f / 6 + s * (1.0f / 120 + s * (-1.0f / 5040 + s * (1.0f / 362880 + s * (-1.0f / 39916800))))));
-        cosine[i] =
-            sign *
-            (1.0f + s * (-0.5f + s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320 + s * (-1.0f / 3628800 + s / 479001600))))));
+        const float high_sine = 1.0f / 362880 - s / 39916800;
+        const float high_cosine = 1.0f / 40320 + s * (-1.0f / 3628800 + s / 479001600);
+        sine[i] = sign * r * (1.0f + s * (-1.0f / 6 + s * (1.0f / 120 + s * (-1.0f / 5040 + s * high_sine))));
+        cosine[i] = sign * (1.0f + s * (-0.5f + s * (1.0f / 24 + s * (-1.0f / 720 + s * high_cosine))));
     }
 }
 

@@ -13,9 +13,9 @@ namespace fit {
 class Trainer {
 public:
     Trainer(const Picture &picture, const Options &options, std::uint64_t seed)
-        : picture_(picture), batch_(options.batch), rate_(options.rate), rng_(seeded(seed)), network_(options.width, options.batch, rng_),
-          points_(Network::INPUTS * batch_), target_(Network::OUTPUTS * batch_),
-          derivative_(Network::OUTPUTS * batch_)
+        : picture_(picture), batch_(options.batch), rate_(options.rate), rng_(seeded(seed)),
+          network_(options.width, options.batch, rng_), points_(Network::INPUTS * batch_),
+          target_(Network::OUTPUTS * batch_), derivative_(Network::OUTPUTS * batch_)
     {
     }
 
