@@ -767,7 +767,7 @@ uint32_t nf_rng_next(nf_rng *rng);
 // The next number uniform in [0, 1), a multiple of 2^-24; 0 if `rng` is NULL.
 float nf_rng_uniform(nf_rng *rng);
 
-/* Minibatches: items of a data set drawn in proportion to their importance */
+/* Minibatches: items drawn in proportion to their importance, and gradients of the mean loss from them */
 
 // The importances of the items of a data set, from which minibatches are drawn (Algorithm 3).
 //
@@ -821,9 +821,9 @@ nf_status nf_table_draw(const nf_table *table,
                         uint32_t *index,
                         float *weight);
 
-// As nf_table_draw, from `batch` equal parts of the line of importances: item i comes `batch` p_i times, rounded up or down,
-// so that the estimate varies less, above all where neighbouring items are alike. Items come in the order of the data set, those
-// drawn uniformly last: use the batch as a whole.
+// As nf_table_draw, from `batch` equal parts of the line of probabilities: item i comes about `batch` p_i times, so that the
+// estimate varies less where neighbouring items are alike. Items drawn uniformly come first, and all in the order of the data
+// set: use the batch as a whole.
 nf_status nf_table_draw_stratified(const nf_table *table,
                                    nf_rng *rng,
                                    uint32_t batch,
@@ -966,6 +966,158 @@ nf_status nf_table_draw_shard(const nf_table *table,
 uint32_t nf_shuffle(uint64_t seed,
                     uint32_t items,
                     uint32_t position);
+
+// nf_importance_nodes split: one importance per group of nodes, the norm over it.
+#define NF_NODES_NORM 0
+// nf_importance_nodes split: two per group, the norm of the positive parts and that of the negative parts. Importances
+// of one sign can combine linearly to the derivative itself, which norms cannot: the choice for optimal MIS.
+#define NF_NODES_SIGN 1
+
+// || softmax(logits) - onehot(label) ||, the norm of the cross-entropy loss's derivative by the logits (6.10): 0..1.4143.
+//
+// logits[classes]: finite, of any size. label: below classes. No backward pass is needed; a norm near 0 keeps its
+// relative accuracy.
+//
+// NaN, which nf_table_update refuses, for NULL, misaligned, a label out of range, or a logit that is NaN or infinite.
+float nf_importance_cross_entropy(const float *logits,
+                                  uint32_t classes,
+                                  uint32_t label);
+
+// The cross-entropy loss -ln softmax(logits)[label] itself, at least 0; one beyond the range of float becomes the
+// largest finite float.
+//
+// Arguments, and NaN, as for nf_importance_cross_entropy.
+float nf_importance_cross_entropy_loss(const float *logits, uint32_t classes, uint32_t label);
+
+// || 2 (output - target) ||, the norm of the derivative of the loss sum (output - target)^2 by the outputs.
+//
+// output[outputs], target[outputs]: finite. One beyond the range of float becomes the largest finite float.
+//
+// NaN for NULL, misaligned, no outputs, or a value that is NaN or infinite.
+float nf_importance_squared_error(const float *output, const float *target, uint32_t outputs);
+
+// The L2 norm of any derivative of the loss by the outputs: || dL/dm || of (6.1.4).
+//
+// gradient[outputs]: finite. A norm beyond the range of float becomes the largest finite float.
+//
+// NaN for NULL, misaligned, no outputs, or a value that is NaN or infinite.
+float nf_importance_gradient(const float *gradient, uint32_t outputs);
+
+// The derivative of the cross-entropy loss by the logits, softmax(logits) - onehot(label) (6.10), where
+// backpropagation starts.
+//
+// logits[classes]: finite, of any size. label: below classes. gradient[classes]: the output.
+//
+// NF_ERR_NULL; NF_ERR_RANGE: label; NF_ERR_NOT_FINITE: a logit.
+nf_status nf_cross_entropy_gradient(const float *logits, uint32_t classes, uint32_t label, float *gradient);
+
+// Importances of one item for several tables, from the derivative of the loss by each output node (6.2.3).
+//
+// gradient[outputs]: dL/dm, finite; at least one node per group. Node k belongs to group k % groups, so that every
+// node has its table: a subset of the nodes, as section 6.2.3 proposes, leaves the gradients of the others uncovered.
+// split: NF_NODES_NORM: groups = techniques, importance[g] = the norm over group g. NF_NODES_SIGN: techniques is even,
+// groups = techniques / 2, importance[2 g] = the norm of max(gradient, 0) over group g, importance[2 g + 1] that of
+// max(-gradient, 0).
+// techniques: 1..NF_MIS_MAX_TECHNIQUES. importance[techniques]: the output, at least 0. An importance may be 0: the
+// tables' uniform fraction is what still draws the item.
+//
+// NF_ERR_NULL; NF_ERR_RANGE: split, techniques, or fewer outputs than groups; NF_ERR_NOT_FINITE: a gradient.
+nf_status nf_importance_nodes(const float *gradient,
+                              uint32_t outputs,
+                              uint32_t split,
+                              uint32_t techniques,
+                              float *importance);
+
+// The optimal MIS gradient of a minibatch as one weight per drawn item (6.2): the gradient of the mean loss is
+// (1 / batch) sum_s weight[s] * gradient_s for every parameter at once, so that one backward pass over weighted losses
+// computes it. The same convention as the weights of nf_table_draw.
+//
+// solver: NF_OMIS_RIDGE, the default: shrinks to the balance heuristic where the batch says little. NF_OMIS_PLAIN:
+// exact where a gradient is a linear combination of the probabilities; heavy-tailed with similar techniques or small
+// batches. Both are consistent, not unbiased, and their weights may be negative. NF_OMIS_BALANCE: unbiased, positive.
+// ridge: for NF_OMIS_RIDGE, 1e-8..1e8, or 0 for the default .03; otherwise ignored.
+// techniques: J in 1..NF_MIS_MAX_TECHNIQUES. items: N, the size of the data set, at least 1.
+// pdf[batch * techniques]: at s * techniques + j the probability with which technique j draws the item of sample s;
+// each technique's sum to 1 over the items. Finite and at least 0, positive for the technique that drew it. Those of
+// before the batch was drawn: tables may be updated meanwhile.
+// technique[batch]: which technique drew sample s. Their numbers n_j are counted from it; a technique that drew
+// nothing has no part in the weights.
+// batch: the number of samples, at least 1. weight[batch]: the output. One beyond the range of float becomes the
+// largest finite float.
+//
+// With S_s = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2,
+// weight_s = (1 / S_s - (q - 1)' (A + ridge)^-1 p_s / S_s^2) batch / items.
+//
+// NF_ERR_NULL; NF_ERR_RANGE: solver, ridge, techniques, items, a technique or a probability; NF_ERR_NOT_FINITE: ridge
+// or a probability; NF_ERR_NO_SAMPLES: an empty batch; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.
+nf_status nf_omis_weights(uint32_t solver,
+                          float ridge,
+                          uint32_t techniques,
+                          uint32_t items,
+                          const float *pdf,
+                          const uint32_t *technique,
+                          uint32_t batch,
+                          float *weight);
+
+// Optimal MIS gradients from explicit per-item gradients, with momentum over steps (6.2.3): averages over the batches
+// so far of the linear system that all parameters share, and J + 1 floats per parameter.
+//
+// Without momentum nf_omis_weights gives the same estimate, at the cost of one weighted backward pass.
+//
+// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; may be moved and copied as bytes between calls;
+// nothing to destroy.
+typedef struct nf_gradient nf_gradient;
+
+// The bytes of memory an nf_gradient needs: 4 (techniques + 1) per parameter and about 1.4 kB. 0 unless techniques is
+// in 1..NF_MIS_MAX_TECHNIQUES, parameters at least 1, and the size one that memory can have.
+size_t nf_gradient_size(uint32_t techniques, uint32_t parameters);
+
+// Makes an nf_gradient that has seen no batch in `memory`, `*out` being its handle (the same address).
+//
+// memory: at least nf_gradient_size(techniques, parameters) bytes, 8-byte aligned; what it holds is lost.
+// techniques: J in 1..NF_MIS_MAX_TECHNIQUES. parameters: at least 1.
+//
+// NF_ERR_NULL; NF_ERR_RANGE: techniques or parameters; NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+nf_status nf_gradient_init(void *memory,
+                           size_t bytes,
+                           uint32_t techniques,
+                           uint32_t parameters,
+                           nf_gradient **out);
+
+// Adds a batch of drawn items, and estimates the gradient of the mean loss from it and, with momentum, those before.
+//
+// solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN or NF_OMIS_BALANCE, and ridge, as for nf_omis_weights, where it is said which
+// is unbiased. They may change from call to call.
+// beta: 0..1, the momentum. A batch that is t steps old counts beta^t, divided by the sum of those weights: the
+// estimate has its right size from the first step on. 0 forgets the earlier batches, and the estimate is that of
+// nf_omis_weights; 1 averages all. Older gradients lag: under an optimiser with momentum of its own, such as Adam, use
+// 0.
+// items, pdf[batch * techniques], technique[batch]: as for nf_omis_weights, with the techniques of nf_gradient_init.
+// gradient[batch * parameters]: that of sample s by parameter p at s * parameters + p, finite, unweighted.
+// It is read twice: once to see that all of it is finite.
+// batch: the number of samples. estimate[parameters]: the output. One beyond the range of float becomes the largest
+// finite float.
+//
+// Sums are in float, in an order that does not depend on the processor.
+//
+// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver, ridge, beta, items, a technique or probability, or gradients over
+// probabilities beyond the range of float; NF_ERR_NOT_FINITE: ridge, beta, a probability or gradient;
+// NF_ERR_NO_SAMPLES: an empty batch; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.
+nf_status nf_gradient_estimate(nf_gradient *state,
+                               uint32_t solver,
+                               float ridge,
+                               float beta,
+                               uint32_t items,
+                               const float *pdf,
+                               const uint32_t *technique,
+                               const float *gradient,
+                               uint32_t batch,
+                               float *estimate);
+
+// Forgets every batch; techniques and parameters stay.
+//
+// NF_ERR_NULL; NF_ERR_STATE.
+nf_status nf_gradient_reset(nf_gradient *state);
 
 /* Layouts: what the library was compiled with. C99 has no alignment operator. */
 #if defined(__cplusplus) && __cplusplus >= 201103L

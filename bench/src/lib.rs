@@ -1,6 +1,8 @@
 //! What the benchmarks share: the two doors to the library, and how its estimators are configured.
 
 pub mod c_abi;
+pub mod c_gradient;
+pub mod c_table;
 pub mod c_tile;
 pub mod method;
 

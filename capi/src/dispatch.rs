@@ -5,6 +5,8 @@
 
 use noisefloor_core::Error;
 use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Samples};
+use noisefloor_core::minibatch::{Batch, Gradient};
+use noisefloor_core::mis::Solver;
 use noisefloor_core::rng::Rng;
 
 use crate::table::{Reader, Writer};
@@ -50,6 +52,21 @@ pub(crate) fn table_draw(
     table.draw(rng, index, weight)
 }
 
+/// [`Reader::draw_stratified`].
+pub(crate) fn table_draw_stratified(
+    table: &Reader<'_>,
+    rng: &mut Rng,
+    index: &mut [u32],
+    weight: Option<&mut [f32]>,
+) -> Result<(), Error> {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        // SAFETY: as above.
+        return unsafe { x86::table_draw_stratified(table, rng, index, weight) };
+    }
+    table.draw_stratified(rng, index, weight)
+}
+
 /// [`Writer::update`].
 pub(crate) fn table_update(
     table: &mut Writer<'_>,
@@ -75,9 +92,27 @@ pub(crate) fn table_add_epsilon(table: &mut Writer<'_>, epsilon: f32) -> Result<
     table.add_epsilon(epsilon)
 }
 
+/// [`Gradient::estimate`].
+pub(crate) fn gradient(
+    state: &mut Gradient<&mut [f32]>,
+    batch: &Batch<'_>,
+    solver: Solver,
+    beta: f32,
+    gradient: &[f32],
+    estimate: &mut [f32],
+) -> Result<(), Error> {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        // SAFETY: as above.
+        return unsafe { x86::gradient(state, batch, solver, beta, gradient, estimate) };
+    }
+    state.estimate(batch, solver, beta, gradient, estimate)
+}
+
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::*;
+    use crate::avx2::Avx2;
     use core::arch::x86_64::{__cpuid, __cpuid_count, _xgetbv};
     use core::sync::atomic::{AtomicU8, Ordering};
 
@@ -111,7 +146,17 @@ mod x86 {
         index: &mut [u32],
         weight: Option<&mut [f32]>,
     ) -> Result<(), Error> {
-        table.draw(rng, index, weight)
+        table.draw_by::<Avx2>(rng, index, weight)
+    }
+
+    #[target_feature(enable = "avx2,popcnt")]
+    pub(super) fn table_draw_stratified(
+        table: &Reader<'_>,
+        rng: &mut Rng,
+        index: &mut [u32],
+        weight: Option<&mut [f32]>,
+    ) -> Result<(), Error> {
+        table.draw_stratified_by::<Avx2>(rng, index, weight)
     }
 
     #[target_feature(enable = "avx2,popcnt")]
@@ -121,12 +166,24 @@ mod x86 {
         importance: &[f32],
         momentum: f32,
     ) -> Result<(), Error> {
-        table.update(index, importance, momentum)
+        table.update_by::<Avx2>(index, importance, momentum)
     }
 
     #[target_feature(enable = "avx2,popcnt")]
     pub(super) fn table_add_epsilon(table: &mut Writer<'_>, epsilon: f32) -> Result<(), Error> {
-        table.add_epsilon(epsilon)
+        table.add_epsilon_by::<Avx2>(epsilon)
+    }
+
+    #[target_feature(enable = "avx2")]
+    pub(super) fn gradient(
+        state: &mut Gradient<&mut [f32]>,
+        batch: &Batch<'_>,
+        solver: Solver,
+        beta: f32,
+        gradient: &[f32],
+        estimate: &mut [f32],
+    ) -> Result<(), Error> {
+        state.estimate(batch, solver, beta, gradient, estimate)
     }
 
     #[inline(always)]

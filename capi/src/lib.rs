@@ -7,9 +7,13 @@
 // What a caller must promise is written for C readers, once, at the head of the header.
 #![allow(clippy::missing_safety_doc)]
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 mod convert;
 mod cv;
 mod dispatch;
+mod gradient;
+mod importance;
 mod mis;
 mod omis;
 mod recommend;
@@ -20,6 +24,8 @@ mod table;
 mod tile;
 
 pub use cv::*;
+pub use gradient::*;
+pub use importance::*;
 pub use mis::*;
 pub use omis::*;
 pub use recommend::*;

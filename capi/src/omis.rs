@@ -2,6 +2,7 @@
 
 use crate::convert;
 use crate::status::*;
+use noisefloor_core::minibatch::{self, Batch};
 use noisefloor_core::mis::{self, DEFAULT_RIDGE, MAX_TECHNIQUES, OptimalMis, Solver};
 
 /// nf_omis solver: alpha = (A + ridge)^-1 b, which shrinks to the balance heuristic where the samples say little. The
@@ -224,6 +225,55 @@ pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis
     })())
 }
 
+/// The optimal MIS gradient of a minibatch as one weight per drawn item (6.2): the gradient of the mean loss is
+/// (1 / batch) sum_s weight[s] * gradient_s for every parameter at once, so that one backward pass over weighted losses
+/// computes it. The same convention as the weights of nf_table_draw.
+///
+/// solver: NF_OMIS_RIDGE, the default: shrinks to the balance heuristic where the batch says little. NF_OMIS_PLAIN:
+/// exact where a gradient is a linear combination of the probabilities; heavy-tailed with similar techniques or small
+/// batches. Both are consistent, not unbiased, and their weights may be negative. NF_OMIS_BALANCE: unbiased, positive.
+/// ridge: for NF_OMIS_RIDGE, 1e-8..1e8, or 0 for the default .03; otherwise ignored.
+/// techniques: J in 1..NF_MIS_MAX_TECHNIQUES. items: N, the size of the data set, at least 1.
+/// pdf[batch * techniques]: at s * techniques + j the probability with which technique j draws the item of sample s;
+/// each technique's sum to 1 over the items. Finite and at least 0, positive for the technique that drew it. Those of
+/// before the batch was drawn: tables may be updated meanwhile.
+/// technique[batch]: which technique drew sample s. Their numbers n_j are counted from it; a technique that drew
+/// nothing has no part in the weights.
+/// batch: the number of samples, at least 1. weight[batch]: the output. One beyond the range of float becomes the
+/// largest finite float.
+///
+/// With S_s = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2,
+/// weight_s = (1 / S_s - (q - 1)' (A + ridge)^-1 p_s / S_s^2) batch / items.
+///
+/// NF_ERR_NULL; NF_ERR_RANGE: solver, ridge, techniques, items, a technique or a probability; NF_ERR_NOT_FINITE: ridge
+/// or a probability; NF_ERR_NO_SAMPLES: an empty batch; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_omis_weights(
+    solver: u32,
+    ridge: f32,
+    techniques: u32,
+    items: u32,
+    pdf: *const f32,
+    technique: *const u32,
+    batch: u32,
+    weight: *mut f32,
+) -> nf_status {
+    status((|| {
+        if techniques as usize > MAX_TECHNIQUES {
+            return Err(NF_ERR_RANGE);
+        }
+        let samples = batch as usize;
+        let pdfs = convert::product(samples, techniques as usize)?;
+        // SAFETY: the caller passes arrays of these lengths, of which the last is written and no part of another.
+        let (pdf, technique, weight) = unsafe {
+            (convert::slice(pdf, pdfs)?, convert::slice(technique, samples)?, convert::slice_mut(weight, samples)?)
+        };
+        let solver = solver_of(solver, ridge)?;
+        let batch = Batch::new(items, techniques as usize, pdf, technique).map_err(status_of)?;
+        minibatch::weights(&batch, solver, weight).map_err(status_of)
+    })())
+}
+
 /// The object as the core sees it, to read.
 ///
 /// # Safety
@@ -264,7 +314,7 @@ fn used_counts(header: &Header) -> Result<&[u32], nf_status> {
     header.counts.get(..header.techniques as usize).ok_or(NF_ERR_STATE)
 }
 
-fn solver_of(solver: u32, ridge: f32) -> Result<Solver, nf_status> {
+pub(crate) fn solver_of(solver: u32, ridge: f32) -> Result<Solver, nf_status> {
     match solver {
         NF_OMIS_RIDGE if ridge == 0.0 => Ok(Solver::Ridge(DEFAULT_RIDGE)),
         NF_OMIS_RIDGE => Ok(Solver::Ridge(ridge)),

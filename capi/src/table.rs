@@ -123,9 +123,9 @@ pub unsafe extern "C" fn nf_table_draw(
     unsafe { draw(table, rng, batch, index, weight, dispatch::table_draw) }
 }
 
-/// As nf_table_draw, from `batch` equal parts of the line of importances: item i comes `batch` p_i times, rounded up or down,
-/// so that the estimate varies less, above all where neighbouring items are alike. Items come in the order of the data set, those
-/// drawn uniformly last: use the batch as a whole.
+/// As nf_table_draw, from `batch` equal parts of the line of probabilities: item i comes about `batch` p_i times, so that the
+/// estimate varies less where neighbouring items are alike. Items drawn uniformly come first, and all in the order of the data
+/// set: use the batch as a whole.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_draw_stratified(
     table: *const nf_table,
@@ -135,9 +135,7 @@ pub unsafe extern "C" fn nf_table_draw_stratified(
     weight: *mut f32,
 ) -> nf_status {
     // SAFETY: passed on to the caller.
-    unsafe {
-        draw(table, rng, batch, index, weight, |table, rng, index, weight| table.draw_stratified(rng, index, weight))
-    }
+    unsafe { draw(table, rng, batch, index, weight, dispatch::table_draw_stratified) }
 }
 
 /// Draws `batch` different items, without replacement. Weights make the same estimate as nf_table_draw's, without bias

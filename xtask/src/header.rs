@@ -67,7 +67,7 @@ const CHAPTERS: [Chapter; 8] = [
     },
     Chapter { title: "Random numbers", prefixes: &["nf_rng", "nf_rng_"] },
     Chapter {
-        title: "Minibatches: items of a data set drawn in proportion to their importance",
+        title: "Minibatches: items drawn in proportion to their importance, and gradients of the mean loss from them",
         prefixes: &[
             "nf_table",
             "nf_table_",
@@ -76,6 +76,13 @@ const CHAPTERS: [Chapter; 8] = [
             "nf_shards_",
             "nf_table_draw_shard",
             "nf_shuffle",
+            "NF_NODES_",
+            "nf_importance_",
+            "nf_cross_entropy_gradient",
+            "nf_importance_nodes",
+            "nf_omis_weights",
+            "nf_gradient",
+            "nf_gradient_",
         ],
     },
 ];

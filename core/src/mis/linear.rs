@@ -2,11 +2,11 @@
 
 use super::MAX_TECHNIQUES;
 
-pub(super) type Vector = [f64; MAX_TECHNIQUES];
-pub(super) type Matrix = [Vector; MAX_TECHNIQUES];
+pub(crate) type Vector = [f64; MAX_TECHNIQUES];
+pub(crate) type Matrix = [Vector; MAX_TECHNIQUES];
 
 /// Something that solves M x = b for any number of right-hand sides; only the first `n` unknowns are used.
-pub(super) enum Factor {
+pub(crate) enum Factor {
     Cholesky { lower: Matrix, n: usize },
     Spectral { vectors: Matrix, inverse: Vector, n: usize },
 }
@@ -16,7 +16,7 @@ const RANK_TOLERANCE: f64 = 1e-12;
 
 impl Factor {
     /// M = L L', for a positive definite M of which the lower triangle is read.
-    pub(super) fn cholesky(mut lower: Matrix, n: usize) -> Factor {
+    pub(crate) fn cholesky(mut lower: Matrix, n: usize) -> Factor {
         let n = n.min(MAX_TECHNIQUES);
         for j in 0..n {
             let pivot = lower[j].iter().take(j).fold(lower[j][j], |sum, &x| sum - x * x);
@@ -33,7 +33,7 @@ impl Factor {
 
     /// M = V D V' by Jacobi rotations, for any symmetric M given in full. It then solves in the least-squares sense of
     /// least norm: the pseudo-inverse.
-    pub(super) fn spectral(mut m: Matrix, n: usize) -> Factor {
+    pub(crate) fn spectral(mut m: Matrix, n: usize) -> Factor {
         let n = n.min(MAX_TECHNIQUES);
         let mut vectors = Matrix::default();
         for (i, row) in vectors.iter_mut().enumerate() {
@@ -60,7 +60,7 @@ impl Factor {
         Factor::Spectral { vectors, inverse, n }
     }
 
-    pub(super) fn solve(&self, b: &Vector) -> Vector {
+    pub(crate) fn solve(&self, b: &Vector) -> Vector {
         let mut x = Vector::default();
         match self {
             Factor::Cholesky { lower, n } => {
@@ -84,6 +84,32 @@ impl Factor {
         }
         x
     }
+
+    /// N^1/2 M^-1 N^1/2 b / divisor, for `scale`, the diagonal of N^1/2: with M from [`scaled`], A^-1 b.
+    pub(crate) fn solve_scaled(&self, scale: &Vector, b: &[f64], divisor: f64) -> Vector {
+        let mut right = Vector::default();
+        right.iter_mut().zip(b.iter().zip(scale)).for_each(|(out, (b, scale))| *out = scale * (b / divisor));
+        let mut x = self.solve(&right);
+        x.iter_mut().zip(scale).for_each(|(x, scale)| *x *= scale);
+        x
+    }
+}
+
+/// N^1/2 (A / divisor) N^1/2, for the lower triangle of A by rows and `scale`, the diagonal of N^1/2.
+///
+/// With N the counts, and A per round, its largest eigenvalue tends to 1, with the counts' square roots as its vector,
+/// whatever the techniques and counts are: the scale on which a ridge or a rank means the same everywhere.
+pub(crate) fn scaled(cells: &[f64], divisor: f64, scale: &Vector, n: usize) -> Matrix {
+    let mut matrix = Matrix::default();
+    let mut cells = cells.iter();
+    for j in 0..n.min(MAX_TECHNIQUES) {
+        for (k, &cell) in (0..=j).zip(&mut cells) {
+            let value = scale[j] * scale[k] * (cell / divisor);
+            matrix[j][k] = value;
+            matrix[k][j] = value;
+        }
+    }
+    matrix
 }
 
 /// The dot product of the first `n` entries.

@@ -9,9 +9,9 @@
 //! weights of Veach and Guibas (1995); [`OptimalMis`] finds those of least variance, (2.15), from the samples.
 
 mod heuristics;
-mod linear;
+pub(crate) mod linear;
 mod memory;
-mod optimal;
+pub(crate) mod optimal;
 mod weight;
 
 pub use heuristics::{DEFAULT_BETA, balance, cutoff, maximum, power};

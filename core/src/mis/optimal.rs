@@ -12,7 +12,7 @@
 //!
 //! the balance estimate less what the samples got wrong about the densities' integrals, each of which is 1.
 
-use super::linear::{Factor, Matrix, Vector};
+use super::linear::{self, Factor, Matrix, Vector};
 use super::memory::{self, RecordMut, Sums};
 use super::{MAX_TECHNIQUES, len};
 use crate::Error;
@@ -45,6 +45,33 @@ impl Default for Solver {
     /// [`Solver::Ridge`] with [`DEFAULT_RIDGE`].
     fn default() -> Solver {
         Solver::Ridge(DEFAULT_RIDGE)
+    }
+}
+
+impl Solver {
+    /// Refuses a ridge that is no number, or outside [`RIDGE_RANGE`].
+    pub(crate) fn check(self) -> Result<(), Error> {
+        match self {
+            Solver::Ridge(ridge) if !ridge.is_finite() => Err(Error::NotFinite),
+            Solver::Ridge(ridge) if !RIDGE_RANGE.contains(&ridge) => Err(Error::Range),
+            _ => Ok(()),
+        }
+    }
+
+    /// The factorised `matrix` of [`linear::scaled`], for a solver that needs it. The ridge is relative to its mean
+    /// diagonal over `used` techniques: those of the `n` whose rows are not 0.
+    pub(crate) fn factor(self, matrix: impl FnOnce() -> Matrix, n: usize, used: usize) -> Option<Factor> {
+        match self {
+            Solver::Balance | Solver::Progressive => None,
+            Solver::Plain => Some(Factor::spectral(matrix(), n)),
+            Solver::Ridge(ridge) => {
+                let mut matrix = matrix();
+                let trace: f64 = matrix.iter().enumerate().map(|(i, row)| row[i]).sum();
+                let diagonal = f64::from(ridge) * trace / used as f64;
+                matrix.iter_mut().enumerate().for_each(|(i, row)| row[i] += diagonal);
+                Some(Factor::cholesky(matrix, n))
+            }
+        }
     }
 }
 
@@ -119,7 +146,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         for (out, record) in estimate.iter_mut().zip(memory::records(sums.rest, self.techniques, self.integrals)) {
             let value = match (&factor, solver) {
                 (Some(factor), _) => {
-                    let alpha = coefficients(factor, &scale, record.moment, rounds);
+                    let alpha = factor.solve_scaled(&scale, record.moment, rounds);
                     let error = sums.ratio.iter().zip(&alpha).map(|(ratio, alpha)| (ratio / rounds - 1.0) * alpha);
                     record.balance / rounds - error.sum::<f64>()
                 }
@@ -147,7 +174,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         for (row, record) in rows.zip(memory::records(sums.rest, self.techniques, self.integrals)) {
             match (&factor, solver) {
                 (Some(factor), _) => {
-                    let solved = coefficients(factor, &scale, record.moment, rounds);
+                    let solved = factor.solve_scaled(&scale, record.moment, rounds);
                     row.iter_mut().zip(solved).for_each(|(out, alpha)| *out = to_f32(alpha));
                 }
                 (None, Solver::Progressive) => {
@@ -161,43 +188,10 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
 
     /// The factorised system of a solver that needs one.
     fn factor(&self, solver: Solver) -> Result<Option<Factor>, Error> {
-        if let Solver::Ridge(ridge) = solver {
-            if !ridge.is_finite() {
-                return Err(Error::NotFinite);
-            }
-            if !RIDGE_RANGE.contains(&ridge) {
-                return Err(Error::Range);
-            }
-        }
+        solver.check()?;
         let (sums, rounds) = self.sums()?;
-        let n = self.techniques;
-        match solver {
-            Solver::Balance | Solver::Progressive => Ok(None),
-            Solver::Plain => Ok(Some(Factor::spectral(self.scaled_matrix(&sums, rounds), n))),
-            Solver::Ridge(ridge) => {
-                let mut matrix = self.scaled_matrix(&sums, rounds);
-                let trace: f64 = matrix.iter().enumerate().map(|(i, row)| row[i]).sum();
-                let diagonal = f64::from(ridge) * trace / n as f64;
-                matrix.iter_mut().enumerate().for_each(|(i, row)| row[i] += diagonal);
-                Ok(Some(Factor::cholesky(matrix, n)))
-            }
-        }
-    }
-
-    /// N^1/2 A N^1/2 per round. Its largest eigenvalue tends to 1, with the counts' square roots as its vector, whatever
-    /// the techniques and counts are: the scale on which a ridge or a rank means the same everywhere.
-    fn scaled_matrix(&self, sums: &Sums<'_>, rounds: f64) -> Matrix {
-        let scale = root_counts(&self.counts);
-        let mut matrix = Matrix::default();
-        let mut cells = sums.matrix.iter();
-        for j in 0..self.techniques.min(MAX_TECHNIQUES) {
-            for (k, &cell) in (0..=j).zip(&mut cells) {
-                let value = scale[j] * scale[k] * (cell / rounds);
-                matrix[j][k] = value;
-                matrix[k][j] = value;
-            }
-        }
-        matrix
+        let (n, scale) = (self.techniques, root_counts(&self.counts));
+        Ok(solver.factor(|| linear::scaled(sums.matrix, rounds, &scale, n), n, n))
     }
 
     fn sum_counts(&self) -> f64 {
@@ -289,7 +283,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         let sums = memory::sums_mut(self.memory.as_mut(), self.techniques).ok_or(Error::Memory)?;
         for record in memory::records_mut(sums.rest, self.techniques, self.integrals) {
             let solved = match &factor {
-                Some(factor) => coefficients(factor, &scale, record.moment, rounds),
+                Some(factor) => factor.solve_scaled(&scale, record.moment, rounds),
                 None => Vector::default(),
             };
             record.alpha.iter_mut().zip(solved).for_each(|(alpha, solved)| *alpha = solved);
@@ -343,15 +337,6 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     }
 }
 
-/// alpha of one integral: N^1/2 M^-1 N^1/2 b, for the factorised M = N^1/2 A N^1/2 and `scale`, the diagonal of N^1/2.
-fn coefficients(factor: &Factor, scale: &Vector, moment: &[f64], rounds: f64) -> Vector {
-    let mut right = Vector::default();
-    right.iter_mut().zip(moment.iter().zip(scale)).for_each(|(out, (b, scale))| *out = scale * (b / rounds));
-    let mut alpha = factor.solve(&right);
-    alpha.iter_mut().zip(scale).for_each(|(alpha, scale)| *alpha *= scale);
-    alpha
-}
-
 /// Equality without `bcmp`, which a freestanding target need not have.
 fn same(a: &[u32; MAX_TECHNIQUES], b: &[u32; MAX_TECHNIQUES]) -> bool {
     a.iter().zip(b).fold(0, |difference, (a, b)| difference | (a ^ b)) == 0
@@ -362,6 +347,6 @@ fn root_counts(counts: &[u32; MAX_TECHNIQUES]) -> Vector {
 }
 
 /// Rounds to f32, a value beyond its range to the largest finite one.
-fn to_f32(value: f64) -> f32 {
+pub(crate) fn to_f32(value: f64) -> f32 {
     (value as f32).clamp(f32::MIN, f32::MAX)
 }

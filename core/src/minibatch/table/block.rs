@@ -4,9 +4,10 @@
 //! a few more to join them. In f64 they lose nothing that a draw of 64 random bits could see.
 
 /// How many importances a block has, and how many children a node of the tree.
-pub(super) const ARITY: usize = 16;
+pub const ARITY: usize = 16;
 
-pub(super) type Block = [f32; ARITY];
+/// Importances, in four rows of four columns.
+pub type Block = [f32; ARITY];
 
 type Row = [f64; 4];
 

@@ -1,7 +1,7 @@
 //! Drawing without replacement.
 
-use super::Table;
 use super::draw::check_lengths;
+use super::{Portable, Table};
 use crate::Error;
 use crate::rng::Rng;
 
@@ -40,7 +40,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
             let Ok(mixture) = self.mixture() else { break };
             let mut item = [0];
             loop {
-                self.draw_mixture(&mixture, 1.0, rng, &mut item, None)?;
+                self.draw_mixture::<Portable>(&mixture, 1.0, rng, &mut item, None)?;
                 // What has been taken is met by a uniform draw only.
                 if !self.is_taken(item[0]) {
                     break;

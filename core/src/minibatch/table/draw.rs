@@ -1,12 +1,14 @@
 //! Drawing batches with replacement.
 
-use super::block::{self, ARITY};
-use super::{Levels, Table, tree};
+use super::{ARITY, Block, CHILDREN, Kernel, Levels, Node, Portable, Table, tree};
 use crate::Error;
 use crate::rng::Rng;
+use core::num::NonZeroU128;
 
 /// How many draws go down the tree together: enough to hide the latency of memory, few enough for the first cache.
 const CHUNK: usize = 64;
+/// How many nodes the first cache holds beside what else a draw needs.
+const NEAR: usize = 128;
 
 /// The two ways to an item: by the tree, and uniformly.
 #[derive(Clone, Copy, Debug)]
@@ -42,20 +44,53 @@ impl Mixture {
         (factor * self.tree / self.sum.max(1) as f64, factor * self.uniform / f64::from(self.items))
     }
 
-    /// Uniform draws are those whose 64 random bits are at most this; none if there is no number.
-    fn threshold(&self) -> Option<u64> {
-        if self.uniform > 0.0 { Some((self.uniform * TWO_64) as u64) } else { None }
+    /// The numbers of 64 bits, divided between the ways.
+    fn ways(&self) -> Ways {
+        let uniform = if self.uniform < 1.0 { (self.uniform * TWO_64) as u128 } else { 1 << 64 };
+        Ways {
+            last_uniform: uniform.checked_sub(1).map(|last| last as u64),
+            item: Scale::new(uniform, u64::from(self.items)),
+            weight: Scale::new((1 << 64) - uniform, self.sum as u64),
+        }
+    }
+}
+
+/// 64 random bits choose the way, and what remains of them the place.
+struct Ways {
+    /// Draws of at most this are uniform, over the items; those above go by the tree, over the sum of its weights.
+    last_uniform: Option<u64>,
+    item: Scale,
+    weight: Scale,
+}
+
+/// Maps a number below a span to one below n, and what is left to a fraction.
+struct Scale {
+    shift: u32,
+    factor: u64,
+    last: u64,
+}
+
+impl Scale {
+    /// For a span of at most 2^64.
+    fn new(span: u128, n: u64) -> Scale {
+        let Some(last) = span.checked_sub(1) else { return Scale { shift: 0, factor: 0, last: 0 } };
+        // The span stretched to between 2^63 and 2^64, so that the factor, n to 2 n, fits in 64 bits.
+        let shift = (last as u64).leading_zeros().min(63);
+        let stretched = NonZeroU128::new(span << shift).unwrap_or(NonZeroU128::MAX);
+        // Rounded up, so that the last number is reached.
+        let factor = (u128::from(n) << 64) / stretched + 1;
+        Scale { shift, factor: u64::try_from(factor).unwrap_or(u64::MAX), last: n.saturating_sub(1) }
+    }
+
+    /// The place, and the bits behind its point.
+    #[inline(always)]
+    fn map(&self, x: u64) -> (u64, u64) {
+        let product = u128::from(x << self.shift) * u128::from(self.factor);
+        (((product >> 64) as u64).min(self.last), product as u64)
     }
 }
 
 const TWO_64: f64 = 18_446_744_073_709_551_616.0;
-
-/// Where in the tree or among the items a draw falls, as 64 random bits, and by which way.
-#[derive(Clone, Copy)]
-struct Position {
-    bits: u64,
-    uniform: bool,
-}
 
 impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// Draws items with replacement, independent of each other.
@@ -70,12 +105,23 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// fraction are 0.
     #[inline(always)]
     pub fn draw(&self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
-        self.draw_mixture(&self.mixture()?, f64::from(self.state.items), rng, index, weight)
+        self.draw_by::<Portable>(rng, index, weight)
+    }
+
+    /// [`Table::draw`] by another [`Kernel`]: the same bits.
+    #[inline(always)]
+    pub fn draw_by<K: Kernel>(
+        &self,
+        rng: &mut Rng,
+        index: &mut [u32],
+        weight: Option<&mut [f32]>,
+    ) -> Result<(), Error> {
+        self.draw_mixture::<K>(&self.mixture()?, f64::from(self.state.items), rng, index, weight)
     }
 
     /// As [`Table::draw`], for a mixture of its own; weights are 1 / (`factor` p).
     #[inline(always)]
-    pub(super) fn draw_mixture(
+    pub(super) fn draw_mixture<K: Kernel>(
         &self,
         mixture: &Mixture,
         factor: f64,
@@ -85,55 +131,53 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     ) -> Result<(), Error> {
         check_lengths(index, &weight)?;
         let seed = rng.next_u64();
-        let threshold = mixture.threshold();
-        self.draw_at(mixture, factor, index, weight, |k| Position {
-            bits: noise(seed, 2 * k),
-            uniform: threshold.is_some_and(|threshold| noise(seed, 2 * k + 1) <= threshold),
-        });
+        self.draw_at::<K>(mixture, factor, index, weight, |k| noise(seed, k));
         Ok(())
     }
 
-    /// As [`Table::draw`], from equal parts of the line of all importances: item i comes B p_i times, rounded up or down
-    /// but for the uniform part, which is divided into equal parts too. Less variance than independent draws wherever neighbouring items
-    /// are alike, and never more than a little; weights and their use are the same.
+    /// As [`Table::draw`], from as many equal parts of the line of probabilities as there are draws: item i comes B p_i times,
+    /// rounded up or down for each of the two ways to it. Less variance than independent draws wherever neighbouring items
+    /// are alike; weights and their use are the same.
     ///
-    /// The items come in the order of the data set, those of the uniform part last: use the batch as a whole.
+    /// Those drawn uniformly come first, and both in the order of the data set: use the batch as a whole.
     #[inline(always)]
     pub fn draw_stratified(&self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
+        self.draw_stratified_by::<Portable>(rng, index, weight)
+    }
+
+    /// [`Table::draw_stratified`] by another [`Kernel`]: the same bits.
+    #[inline(always)]
+    pub fn draw_stratified_by<K: Kernel>(
+        &self,
+        rng: &mut Rng,
+        index: &mut [u32],
+        weight: Option<&mut [f32]>,
+    ) -> Result<(), Error> {
         let mixture = self.mixture()?;
         check_lengths(index, &weight)?;
         let seed = rng.next_u64();
-        let batch = index.len() as u64;
-        // As many uniform draws as fall to them, the fraction of one at random.
-        let share = mixture.uniform * batch as f64 + noise(seed, u64::MAX) as f64 / TWO_64;
-        let uniforms = (share as u64).min(batch);
-        let trees = batch - uniforms;
-        let stratum = |k: u64, of: u64| {
-            let width = u64::MAX / of.max(1);
-            k.wrapping_mul(width).wrapping_add(high_product(noise(seed, 2 * k), width))
-        };
-        self.draw_at(&mixture, f64::from(self.state.items), index, weight, |k| match k.checked_sub(trees) {
-            None => Position { bits: stratum(k, trees), uniform: false },
-            Some(k) => Position { bits: stratum(k, uniforms), uniform: true },
+        let width = u64::MAX / (index.len() as u64).max(1);
+        self.draw_at::<K>(&mixture, f64::from(self.state.items), index, weight, |k| {
+            k.wrapping_mul(width).wrapping_add(high_product(noise(seed, k), width))
         });
         Ok(())
     }
 
     #[inline(always)]
-    fn draw_at(
+    fn draw_at<K: Kernel>(
         &self,
         mixture: &Mixture,
         factor: f64,
         index: &mut [u32],
         weight: Option<&mut [f32]>,
-        position: impl Fn(u64) -> Position,
+        bits: impl Fn(u64) -> u64,
     ) {
         let descent = Descent::new(self, mixture, factor);
         let mut first = 0;
         let mut weights = weight.map(|weight| weight.chunks_mut(CHUNK));
         for index in index.chunks_mut(CHUNK) {
             let weight = weights.as_mut().and_then(Iterator::next).unwrap_or_default();
-            descent.draw(first, index, weight, &position);
+            descent.draw::<K>(first, index, weight, &bits);
             first += CHUNK as u64;
         }
     }
@@ -141,90 +185,159 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
 
 /// What all draws of a batch share.
 struct Descent<'a> {
-    blocks: &'a [block::Block],
-    nodes: &'a [tree::Node],
+    blocks: &'a [Block],
+    nodes: &'a [Node],
     levels: Levels,
-    mixture: &'a Mixture,
+    ways: Ways,
+    /// The least bits of a draw by the tree.
+    first_tree: u64,
     /// What an item's weight in the tree, and what its existence adds to `factor` times its probability.
     by_weight: f64,
     by_item: f64,
 }
 
 impl<'a> Descent<'a> {
-    fn new<I: AsRef<[f32]>, S: AsRef<[i64]>>(table: &'a Table<I, S>, mixture: &'a Mixture, factor: f64) -> Descent<'a> {
+    fn new<I: AsRef<[f32]>, S: AsRef<[i64]>>(table: &'a Table<I, S>, mixture: &Mixture, factor: f64) -> Self {
         let (by_weight, by_item) = mixture.factors(factor);
-        Descent { blocks: table.blocks(), nodes: table.nodes(), levels: table.levels, mixture, by_weight, by_item }
+        let ways = mixture.ways();
+        Descent {
+            blocks: table.blocks(),
+            nodes: table.nodes(),
+            levels: table.levels,
+            first_tree: ways.last_uniform.map_or(0, |last| last.wrapping_add(1)),
+            ways,
+            by_weight,
+            by_item,
+        }
     }
 
     /// At most [`CHUNK`] draws, the first being number `first` of the batch; as many weights as draws, or none.
     #[inline(always)]
-    fn draw(&self, first: u64, index: &mut [u32], weight: &mut [f32], position: &impl Fn(u64) -> Position) {
-        // The draws by the tree: which of the chunk's they are, and where they are in it.
+    fn draw<K: Kernel>(&self, first: u64, index: &mut [u32], weight: &mut [f32], bits: &impl Fn(u64) -> u64) {
+        // The draws by the tree: which of the chunk's they are, in which node or block they are, the position among its
+        // weights, and behind its point.
         let mut slot = [0u8; CHUNK];
-        let mut at = [At { node: 0, rest: 0, fraction: 0.0 }; CHUNK];
+        let mut place = [0u32; CHUNK];
+        let mut rest = [0i64; CHUNK];
+        let mut fraction = [0f64; CHUNK];
         let mut uniform_slot = [0u8; CHUNK];
         let mut trees = 0;
         // Without branches, which could not be predicted: every draw is written as both, and one of them counts.
         for (i, out) in index.iter_mut().enumerate().take(CHUNK) {
-            let position = position(first + i as u64);
-            let product = u128::from(position.bits) * self.mixture.sum as u128;
+            let bits = bits(first + i as u64);
+            let uniform = self.ways.last_uniform.is_some_and(|last| bits <= last);
+            let (whole, below) = self.ways.weight.map(bits.wrapping_sub(self.first_tree));
             slot[trees % CHUNK] = i as u8;
-            at[trees % CHUNK] =
-                At { node: 0, rest: (product >> 64) as i64, fraction: product as u64 as f64 * (1.0 / TWO_64) };
+            rest[trees % CHUNK] = whole as i64;
+            // 53 bits: 0 to less than 1.
+            fraction[trees % CHUNK] = (below >> 11) as i64 as f64 * (1.0 / 9_007_199_254_740_992.0);
             uniform_slot[(i - trees) % CHUNK] = i as u8;
-            *out = high_product(position.bits, u64::from(self.mixture.items)) as u32;
-            trees += usize::from(!position.uniform);
+            *out = self.ways.item.map(bits).0 as u32;
+            trees += usize::from(!uniform);
         }
-        let at = at.get_mut(..trees).unwrap_or_default();
-        let (lowest, upper) = self.levels.starts().split_first().unwrap_or((&0, &[]));
-        for start in upper.iter().rev() {
-            for at in at.iter_mut() {
-                let Some(node) = self.nodes.get(start + at.node as usize) else { continue };
-                let (child, begin, _) = tree::find(node, at.rest);
-                at.rest -= begin;
-                at.node = at.node * ARITY as u32 + child as u32;
+        self.descend::<K>(trees, &mut place, &mut rest);
+        // The weights of their blocks.
+        let mut weights = [1f64; CHUNK];
+        for (((place, rest), fraction), weight) in
+            place.iter_mut().zip(&rest).zip(&mut fraction).zip(&mut weights).take(trees)
+        {
+            let Some(node) = self.nodes.get(*place as usize) else { continue };
+            let child = K::find_child(node, *rest) % CHILDREN;
+            let (begin, end) = tree::span(node, child);
+            *fraction += (*rest - begin) as f64;
+            *weight = (end - begin) as f64;
+            *place = *place * CHILDREN as u32 + child as u32;
+            if let Some(next) = self.blocks.get(*place as usize) {
+                K::prefetch(next);
             }
         }
-        for (at, &slot) in at.iter().zip(&slot) {
-            let Some(node) = self.nodes.get(lowest + at.node as usize) else { continue };
-            let (child, begin, end) = tree::find(node, at.rest);
-            let which = at.node as usize * ARITY + child;
-            let Some(block) = self.blocks.get(which) else { continue };
-            let share = ((at.rest - begin) as f64 + at.fraction) / (end - begin) as f64;
-            let (item, total) = block::find(block, share.min(BELOW_ONE));
+        // Where in the block.
+        for (fraction, weight) in fraction.iter_mut().zip(&weights) {
+            *fraction = (*fraction / weight).min(BELOW_ONE);
+        }
+        let mut totals = [1f64; CHUNK];
+        let mut importance = [0f32; CHUNK];
+        for ((((&place, &fraction), &slot), total), q) in
+            place.iter().zip(&fraction).zip(&slot).zip(&mut totals).zip(&mut importance).take(trees)
+        {
+            let Some(block) = self.blocks.get(place as usize) else { continue };
+            let (item, sum) = K::find_item(block, fraction);
+            (*total, *q) = (sum, block[item % ARITY]);
             if let Some(out) = index.get_mut(slot as usize) {
-                *out = (which * ARITY + item) as u32;
+                *out = place * ARITY as u32 + item as u32;
             }
+        }
+        if weight.is_empty() {
+            return;
+        }
+        let mut results = [0f32; CHUNK];
+        for (((result, &q), &total), &weight) in results.iter_mut().zip(&importance).zip(&totals).zip(&weights) {
+            *result = self.weight(q, total, weight);
+        }
+        for (&result, &slot) in results.iter().zip(&slot).take(trees) {
             if let Some(out) = weight.get_mut(slot as usize) {
-                *out = self.weight(block[item % ARITY], total, end - begin);
+                *out = result;
             }
         }
         for &slot in uniform_slot.iter().take(weight.len().saturating_sub(trees)) {
             let (Some(&item), Some(out)) = (index.get(slot as usize), weight.get_mut(slot as usize)) else { continue };
             let which = item as usize / ARITY;
-            let (Some(block), Some(node)) = (self.blocks.get(which), self.nodes.get(which / ARITY)) else { continue };
-            let (begin, end) = tree::span(node, which % ARITY);
-            *out = self.weight(block[item as usize % ARITY], block::total(block), end - begin);
+            let (Some(block), Some(node)) = (self.blocks.get(which), self.nodes.get(which / CHILDREN)) else {
+                continue;
+            };
+            let (begin, end) = tree::span(node, which % CHILDREN);
+            let total = K::total(block);
+            // A block of importance 0 can be drawn from uniformly only.
+            let (q, total) = if total > 0.0 { (block[item as usize % ARITY], total) } else { (0.0, 1.0) };
+            *out = self.weight(q, total, (end - begin) as f64);
         }
     }
 
-    /// 1 / (factor p), with one division.
+    /// Takes the draws from the root to the nodes of the lowest level.
     #[inline(always)]
-    fn weight(&self, q: f32, total: f64, weight: i64) -> f32 {
-        let q = f64::from(q);
-        // A block of importance 0 can be drawn from uniformly only.
-        let (q, total) = if total > 0.0 { (q, total) } else { (0.0, 1.0) };
-        (total / (self.by_weight * weight as f64 * q + self.by_item * total)) as f32
+    fn descend<K: Kernel>(&self, draws: usize, place: &mut [u32; CHUNK], rest: &mut [i64; CHUNK]) {
+        let starts = self.levels.starts();
+        // Levels that the first cache holds in one go, the others one by one, so that many accesses are under way at a time.
+        let near = starts.iter().position(|&start| self.nodes.len() - start <= NEAR).unwrap_or(0).max(1);
+        let (far, near) = starts.split_at_checked(near).unwrap_or_default();
+        for (place, rest) in place.iter_mut().zip(rest.iter_mut()).take(draws) {
+            let mut at = (0, *rest);
+            for start in near.iter().rev() {
+                self.step::<K>(*start, &mut at.0, &mut at.1);
+            }
+            (*place, *rest) = at;
+            self.prefetch::<K>(far.last(), *place);
+        }
+        let (_, between) = far.split_first().unwrap_or((&0, &[]));
+        for (below, start) in far.iter().zip(between).rev() {
+            for (place, rest) in place.iter_mut().zip(rest.iter_mut()).take(draws) {
+                self.step::<K>(*start, place, rest);
+                self.prefetch::<K>(Some(below), *place);
+            }
+        }
     }
-}
 
-#[derive(Clone, Copy)]
-struct At {
-    /// Which node of the level.
-    node: u32,
-    /// The position among the node's weights, and behind its point.
-    rest: i64,
-    fraction: f64,
+    /// From a node of the level that starts at `start` to one of its children.
+    #[inline(always)]
+    fn step<K: Kernel>(&self, start: usize, place: &mut u32, rest: &mut i64) {
+        let Some(node) = self.nodes.get(start + *place as usize) else { return };
+        let child = K::find_child(node, *rest) % CHILDREN;
+        *rest -= tree::span(node, child).0;
+        *place = *place * CHILDREN as u32 + child as u32;
+    }
+
+    #[inline(always)]
+    fn prefetch<K: Kernel>(&self, start: Option<&usize>, place: u32) {
+        if let Some(node) = start.and_then(|start| self.nodes.get(start + place as usize)) {
+            K::prefetch(node);
+        }
+    }
+
+    /// 1 / (factor p), with one division, for an item of importance `q` in a block of this sum and weight.
+    #[inline(always)]
+    fn weight(&self, q: f32, total: f64, weight: f64) -> f32 {
+        (total / (self.by_weight * weight * f64::from(q) + self.by_item * total)) as f32
+    }
 }
 
 /// The largest number below 1: times a total it is below the total.

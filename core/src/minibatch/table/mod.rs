@@ -13,18 +13,21 @@
 mod block;
 mod distinct;
 mod draw;
+mod kernel;
 mod saved;
 mod shard;
 mod tree;
 mod update;
 
+pub use block::{ARITY, Block};
+pub use kernel::{Kernel, Portable};
 pub use saved::{HEADER_BYTES, check_saved, saved_items, saved_len};
 pub use shard::{Shard, allocate};
+pub use tree::{CHILDREN, Node};
 
 use crate::Error;
-use block::{ARITY, Block};
 use draw::Mixture;
-use tree::{Levels, MAX_BLOCKS, Node};
+use tree::{Levels, MAX_BLOCKS};
 
 /// The uniform fraction of a new table: no weight above 5. Measured best on classification (.2 to .5 are close).
 pub const DEFAULT_UNIFORM_FRACTION: f32 = 0.2;
@@ -36,9 +39,9 @@ pub const fn importance_len(items: u32) -> usize {
     if len <= (isize::MAX as usize / size_of::<f32>()) as u64 { len as usize } else { 0 }
 }
 
-/// How many i64 of sums a table for so many items needs: about a fifteenth of the items. 0 if no memory has the importances.
+/// How many i64 of sums a table for so many items needs: one for 15 items or so. 0 if no memory has the importances.
 pub const fn sums_len(items: u32) -> usize {
-    Levels::new(importance_len(items) / ARITY).nodes() * ARITY
+    Levels::new(importance_len(items) / ARITY).nodes() * CHILDREN
 }
 
 /// What a table knows besides its memory; see [`Table::resume`].
@@ -95,7 +98,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         }
         let mut blocks = (importance.as_ref().len() / ARITY).min(MAX_BLOCKS);
         // Sums made for the same items fit; others are for half as many, or fewer.
-        while blocks > 0 && Levels::new(blocks).nodes() * ARITY > sums.as_ref().len() {
+        while blocks > 0 && Levels::new(blocks).nodes() * CHILDREN > sums.as_ref().len() {
             blocks /= 2;
         }
         if blocks * ARITY < state.items as usize {
@@ -159,9 +162,8 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         let item = item as usize;
         let block = self.blocks().get(item / ARITY);
         let q = self.importance.as_ref().get(item).copied().unwrap_or(0.0);
-        let (begin, end) =
-            self.nodes().get(item / ARITY / ARITY).map_or((0, 0), |node| tree::span(node, item / ARITY % ARITY));
-        mixture.probability(q, block.map_or(0.0, block::total), end - begin)
+        let (begin, end) = self.span(item / ARITY);
+        mixture.probability(q, block.map_or(0.0, Portable::total), end - begin)
     }
 
     /// Whether the table has these items: else [`Error::Range`].
@@ -171,13 +173,18 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         if beyond { Err(Error::Range) } else { Ok(()) }
     }
 
+    /// Where a block begins and ends among those of its node.
+    fn span(&self, block: usize) -> (i64, i64) {
+        self.nodes().get(block / CHILDREN).map_or((0, 0), |node| tree::span(node, block % CHILDREN))
+    }
+
     fn mixture(&self) -> Result<Mixture, Error> {
         Mixture::of(self.sum(), self.state.items, f64::from(self.state.uniform_fraction))
     }
 
     /// The sum of all weights, below 2^62.
     fn sum(&self) -> i64 {
-        self.nodes().last().map_or(0, |root| root[ARITY - 1]).max(0)
+        self.nodes().last().map_or(0, |root| root[CHILDREN - 1]).max(0)
     }
 
     /// The blocks there is room for.

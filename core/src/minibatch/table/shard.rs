@@ -1,7 +1,7 @@
 //! Several tables drawn as one: each process of a data-parallel trainer owns the table of its part of the data.
 
-use super::Table;
 use super::draw::Mixture;
+use super::{Portable, Table};
 use crate::Error;
 use crate::rng::Rng;
 
@@ -130,6 +130,6 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
             return Err(Error::NoSamples);
         }
         let mixture = Mixture::of(self.sum(), self.state.items, uniform / share)?;
-        self.draw_mixture(&mixture, share * all.items as f64, rng, index, weight)
+        self.draw_mixture::<Portable>(&mixture, share * all.items as f64, rng, index, weight)
     }
 }

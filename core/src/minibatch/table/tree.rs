@@ -3,10 +3,13 @@
 //! A node holds running sums of its children's weights, as integers: a draw compares 16 numbers and counts, a change adds a
 //! difference to some of them, and as integers lose nothing the sums are those of a tree built afresh, bit for bit.
 
-use super::block::ARITY;
+use core::hint::select_unpredictable;
+
+/// How many children a node has.
+pub const CHILDREN: usize = 16;
 
 /// Where each child ends, in units of the table's scale: the last element is the node's weight.
-pub(super) type Node = [i64; ARITY];
+pub type Node = [i64; CHILDREN];
 
 /// The blocks of the most items there can be.
 pub(super) const MAX_BLOCKS: usize = 1 << 28;
@@ -25,7 +28,7 @@ impl Levels {
     #[inline]
     pub(super) const fn new(blocks: usize) -> Levels {
         let mut start = [0; MAX_LEVELS + 1];
-        let mut nodes = blocks.div_ceil(ARITY);
+        let mut nodes = blocks.div_ceil(CHILDREN);
         let mut depth = 0;
         while depth < MAX_LEVELS {
             start[depth + 1] = start[depth] + nodes;
@@ -33,7 +36,7 @@ impl Levels {
             if nodes <= 1 {
                 break;
             }
-            nodes = nodes.div_ceil(ARITY);
+            nodes = nodes.div_ceil(CHILDREN);
         }
         Levels { start, depth }
     }
@@ -50,24 +53,22 @@ impl Levels {
     }
 }
 
-/// The child that `r`, below the node's weight, falls on; never one of weight 0. With it, where the child begins and ends.
+/// How many children end at or before `r`: the child that `r`, below the node's weight, falls on. Never one of weight 0.
 #[inline(always)]
-pub(super) fn find(node: &Node, r: i64) -> (usize, i64, i64) {
+pub(super) fn find(node: &Node, r: i64) -> usize {
     let mut count = 0;
     for &end in node {
         count += i64::from(end <= r);
     }
-    let child = count as usize % ARITY;
-    let (begin, end) = span(node, child);
-    (child, begin, end)
+    count as usize
 }
 
 /// Where a child begins and ends.
 #[inline(always)]
 pub(super) fn span(node: &Node, child: usize) -> (i64, i64) {
-    // A mask, not a branch that would be mispredicted once in 16 times.
-    let before = node[child.wrapping_sub(1) % ARITY] & -i64::from(child != 0);
-    (before, node[child % ARITY])
+    // A branch would be mispredicted once in 16 times.
+    let begin = select_unpredictable(child == 0, 0, node[child.wrapping_sub(1) % CHILDREN]);
+    (begin, node[child % CHILDREN])
 }
 
 /// Changes a child's weight by `difference`.
@@ -96,11 +97,11 @@ pub(super) fn raise(nodes: &mut [Node], levels: &Levels) {
         let &[below, above] = pair else { return };
         let Some((lower, upper)) = nodes.split_at_mut_checked(above) else { return };
         let lower = lower.get(below..).unwrap_or_default();
-        for (node, children) in upper.iter_mut().zip(lower.chunks(ARITY)) {
+        for (node, children) in upper.iter_mut().zip(lower.chunks(CHILDREN)) {
             let mut sum = 0;
             let mut children = children.iter();
             *node = core::array::from_fn(|_| {
-                sum += children.next().map_or(0, |child| child[ARITY - 1]);
+                sum += children.next().map_or(0, |child| child[CHILDREN - 1]);
                 sum
             });
         }

@@ -1,8 +1,7 @@
 //! Changing importances.
 
-use super::block::{self, ARITY, Block};
-use super::tree::{self, Levels, Node};
-use super::{Table, check_importances, power_of_two};
+use super::tree::{self, Levels};
+use super::{ARITY, Block, CHILDREN, Kernel, Node, Portable, Table, check_importances, power_of_two};
 use crate::Error;
 
 /// How many changes go up the tree together.
@@ -27,6 +26,12 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     /// importance, or a momentum outside 0..=1; [`Error::NotFinite`].
     #[inline(always)]
     pub fn update(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
+        self.update_by::<Portable>(index, importance, momentum)
+    }
+
+    /// [`Table::update`] by another [`Kernel`]: the same bits.
+    #[inline(always)]
+    pub fn update_by<K: Kernel>(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
         check_importances(importance)?;
         if !momentum.is_finite() {
             return Err(Error::NotFinite);
@@ -38,8 +43,15 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         let fresh = 1.0 - momentum;
         let mut in_range = true;
         for (index, importance) in index.chunks(CHUNK).zip(importance.chunks(CHUNK)) {
+            for &item in index {
+                let which = item as usize / ARITY;
+                if let (Some(block), Some(node)) = (self.blocks().get(which), self.nodes().get(which / CHILDREN)) {
+                    K::prefetch(block);
+                    K::prefetch(node);
+                }
+            }
             let mix = |&q: &f32| move |old: f32| (momentum * old + fresh * q).min(f32::MAX);
-            in_range &= self.change(index.iter().copied().zip(importance.iter().map(mix)));
+            in_range &= self.change::<K, _>(index.iter().copied().zip(importance.iter().map(mix)));
         }
         self.restore_scale(in_range);
         Ok(())
@@ -64,7 +76,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         } else {
             let mut in_range = true;
             for (chunk, start) in importance.chunks(CHUNK).zip((first..).step_by(CHUNK)) {
-                in_range &= self.change((start..).zip(chunk.iter().map(|&q| move |_| q + 0.0)));
+                in_range &= self.change::<Portable, _>((start..).zip(chunk.iter().map(|&q| move |_| q + 0.0)));
             }
             self.restore_scale(in_range);
         }
@@ -77,6 +89,12 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative number.
     #[inline(always)]
     pub fn add_epsilon(&mut self, epsilon: f32) -> Result<(), Error> {
+        self.add_epsilon_by::<Portable>(epsilon)
+    }
+
+    /// [`Table::add_epsilon`] by another [`Kernel`]: the same bits.
+    #[inline(always)]
+    pub fn add_epsilon_by<K: Kernel>(&mut self, epsilon: f32) -> Result<(), Error> {
         check_importances(&[epsilon])?;
         let items = self.state.items as usize;
         let scale = self.state.scale;
@@ -89,20 +107,20 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         for q in rest.iter_mut().flatten().take(items % ARITY) {
             *q = (*q + epsilon).min(f32::MAX);
         }
-        let in_range = build(blocks, nodes, &levels, scale);
+        let in_range = build::<K>(blocks, nodes, &levels, scale);
         self.restore_scale(in_range);
         Ok(())
     }
 
     /// Makes the sums follow an item whose importance has been changed.
     pub(super) fn refresh(&mut self, item: u32) {
-        let in_range = self.change(core::iter::once((item, |q| q)));
+        let in_range = self.change::<Portable, _>(core::iter::once((item, |q| q)));
         self.restore_scale(in_range);
     }
 
     /// At most [`CHUNK`] changes: an item, and its new importance from the old. False if the sums are beyond their range, and wrong until they are built again.
     #[inline(always)]
-    fn change<F: Fn(f32) -> f32>(&mut self, changes: impl Iterator<Item = (u32, F)>) -> bool {
+    fn change<K: Kernel, F: Fn(f32) -> f32>(&mut self, changes: impl Iterator<Item = (u32, F)>) -> bool {
         let scale = self.state.scale;
         let levels = self.levels;
         let (blocks, nodes) = self.parts();
@@ -113,17 +131,17 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         let mut in_range = true;
         for (pending, (item, change)) in pending.iter_mut().zip(changes) {
             let which = item as usize / ARITY;
-            let (Some(block), Some(node)) = (blocks.get_mut(which), nodes.get_mut(lowest + which / ARITY)) else {
+            let (Some(block), Some(node)) = (blocks.get_mut(which), nodes.get_mut(lowest + which / CHILDREN)) else {
                 continue;
             };
-            let q = &mut block[item as usize % ARITY];
-            *q = change(*q);
-            let weight = weight(block::total(block), scale);
+            let item = item as usize % ARITY;
+            let q = change(block[item]);
+            let weight = weight(K::replace(block, item, q), scale);
             in_range &= weight < LARGEST_SUM;
-            let (begin, end) = tree::span(node, which % ARITY);
+            let (begin, end) = tree::span(node, which % CHILDREN);
             let difference = weight.wrapping_sub(end.wrapping_sub(begin));
-            tree::add(node, which % ARITY, difference);
-            *pending = (which as u32 / ARITY as u32, difference);
+            K::add(node, which % CHILDREN, difference);
+            *pending = ((which / CHILDREN) as u32, difference);
             count += 1;
         }
         let pending = pending.get_mut(..count).unwrap_or_default();
@@ -131,21 +149,21 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         let (root, between) = upper.split_last().map_or((None, upper), |(root, between)| (Some(root), between));
         for start in between {
             for (below, difference) in pending.iter_mut() {
-                let which = *below as usize / ARITY;
+                let which = *below as usize / CHILDREN;
                 let Some(node) = nodes.get_mut(start + which) else { continue };
-                tree::add(node, *below as usize % ARITY, *difference);
+                K::add(node, *below as usize % CHILDREN, *difference);
                 *below = which as u32;
             }
         }
         if let Some(node) = root.and_then(|&root| nodes.get_mut(root)) {
-            let mut differences = [0i64; ARITY];
+            let mut differences = [0i64; CHILDREN];
             for (below, difference) in pending {
-                let sum = &mut differences[*below as usize % ARITY];
+                let sum = &mut differences[*below as usize % CHILDREN];
                 *sum = sum.wrapping_add(*difference);
             }
             tree::add_all(node, &differences);
         }
-        in_range && (0..LARGEST_SUM).contains(&nodes.last().map_or(0, |root| root[ARITY - 1]))
+        in_range && (0..LARGEST_SUM).contains(&nodes.last().map_or(0, |root| root[CHILDREN - 1]))
     }
 
     /// Builds the table again if its sum has left the range of its scale.
@@ -162,7 +180,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     #[cold]
     #[inline(never)]
     pub(super) fn rebuild(&mut self) {
-        let sum: f64 = self.blocks().iter().map(block::total).sum();
+        let sum: f64 = self.blocks().iter().map(Portable::total).sum();
         if sum > 0.0 {
             // Between 2^-149 and 2^160: the exponent of a normal f64.
             let exponent = (sum.to_bits() >> 52) as i64 - 1023;
@@ -175,7 +193,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     pub(super) fn rebuild_at_scale(&mut self) -> bool {
         let (levels, scale) = (self.levels, self.state.scale);
         let (blocks, nodes) = self.parts();
-        build(blocks, nodes, &levels, scale)
+        build::<Portable>(blocks, nodes, &levels, scale)
     }
 
     /// The blocks and the nodes, to write.
@@ -196,14 +214,14 @@ fn weight(total: f64, scale: f64) -> i64 {
 
 /// All sums. False if they are beyond their range.
 #[inline(always)]
-fn build(blocks: &[Block], nodes: &mut [Node], levels: &Levels, scale: f64) -> bool {
+fn build<K: Kernel>(blocks: &[Block], nodes: &mut [Node], levels: &Levels, scale: f64) -> bool {
     let mut in_range = true;
     let mut sum_of_all = 0i64;
-    for (node, blocks) in nodes.iter_mut().zip(blocks.chunks(ARITY)) {
+    for (node, blocks) in nodes.iter_mut().zip(blocks.chunks(CHILDREN)) {
         let mut sum = 0i64;
         let mut blocks = blocks.iter();
         for end in node.iter_mut() {
-            let weight = blocks.next().map_or(0, |block| weight(block::total(block), scale));
+            let weight = blocks.next().map_or(0, |block| weight(K::total(block), scale));
             in_range &= weight < LARGEST_SUM;
             sum = sum.wrapping_add(weight);
             *end = sum;

@@ -1,0 +1,167 @@
+//! Optimal MIS gradients with momentum.
+
+use crate::omis::solver_of;
+use crate::status::*;
+use crate::{convert, dispatch};
+use noisefloor_core::minibatch::{self, Batch, Gradient, System};
+
+/// Optimal MIS gradients from explicit per-item gradients, with momentum over steps (6.2.3): averages over the batches
+/// so far of the linear system that all parameters share, and J + 1 floats per parameter.
+///
+/// Without momentum nf_omis_weights gives the same estimate, at the cost of one weighted backward pass.
+///
+/// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; may be moved and copied as bytes between calls;
+/// nothing to destroy.
+#[allow(non_camel_case_types)]
+pub struct nf_gradient {
+    _private: (),
+}
+
+/// What stands at the start of the memory, before the f32 averages.
+#[repr(C, align(8))]
+#[derive(Clone, Copy)]
+struct Header {
+    magic: u64,
+    techniques: u32,
+    parameters: u32,
+    system: System,
+}
+
+/// "nf_grad" and the version of the layout.
+const MAGIC: u64 = u64::from_le_bytes(*b"nf_grad\x01");
+
+/// The bytes of memory an nf_gradient needs: 4 (techniques + 1) per parameter and about 1.4 kB. 0 unless techniques is
+/// in 1..NF_MIS_MAX_TECHNIQUES, parameters at least 1, and the size one that memory can have.
+#[unsafe(no_mangle)]
+pub extern "C" fn nf_gradient_size(techniques: u32, parameters: u32) -> usize {
+    match minibatch::gradient_len(techniques as usize, parameters as usize) {
+        0 => 0,
+        len => match len.checked_mul(size_of::<f32>()).and_then(|bytes| bytes.checked_add(size_of::<Header>())) {
+            Some(bytes) if bytes <= isize::MAX as usize => bytes,
+            _ => 0,
+        },
+    }
+}
+
+/// Makes an nf_gradient that has seen no batch in `memory`, `*out` being its handle (the same address).
+///
+/// memory: at least nf_gradient_size(techniques, parameters) bytes, 8-byte aligned; what it holds is lost.
+/// techniques: J in 1..NF_MIS_MAX_TECHNIQUES. parameters: at least 1.
+///
+/// NF_ERR_NULL; NF_ERR_RANGE: techniques or parameters; NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_gradient_init(
+    memory: *mut core::ffi::c_void,
+    bytes: usize,
+    techniques: u32,
+    parameters: u32,
+    out: *mut *mut nf_gradient,
+) -> nf_status {
+    status((|| {
+        let size = nf_gradient_size(techniques, parameters);
+        if size == 0 {
+            return Err(NF_ERR_RANGE);
+        }
+        // SAFETY: the caller passes a place for a pointer.
+        let out = unsafe { convert::reference_mut(out) }?;
+        // SAFETY: the caller passes memory of the size it says.
+        let place = unsafe { convert::memory(memory, bytes, size) }?.cast::<Header>();
+        // SAFETY: not NULL, aligned and of at least `size` bytes, which is what the header and the averages take;
+        // all-zero averages are those of no batches.
+        unsafe {
+            core::ptr::write_bytes(place.cast::<u8>(), 0, size);
+            place.write(Header { magic: MAGIC, techniques, parameters, system: System::new(techniques as usize) });
+        }
+        *out = place.cast();
+        Ok(())
+    })())
+}
+
+/// Adds a batch of drawn items, and estimates the gradient of the mean loss from it and, with momentum, those before.
+///
+/// solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN or NF_OMIS_BALANCE, and ridge, as for nf_omis_weights, where it is said which
+/// is unbiased. They may change from call to call.
+/// beta: 0..1, the momentum. A batch that is t steps old counts beta^t, divided by the sum of those weights: the
+/// estimate has its right size from the first step on. 0 forgets the earlier batches, and the estimate is that of
+/// nf_omis_weights; 1 averages all. Older gradients lag: under an optimiser with momentum of its own, such as Adam, use
+/// 0.
+/// items, pdf[batch * techniques], technique[batch]: as for nf_omis_weights, with the techniques of nf_gradient_init.
+/// gradient[batch * parameters]: that of sample s by parameter p at s * parameters + p, finite, unweighted.
+/// It is read twice: once to see that all of it is finite.
+/// batch: the number of samples. estimate[parameters]: the output. One beyond the range of float becomes the largest
+/// finite float.
+///
+/// Sums are in float, in an order that does not depend on the processor.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver, ridge, beta, items, a technique or probability, or gradients over
+/// probabilities beyond the range of float; NF_ERR_NOT_FINITE: ridge, beta, a probability or gradient;
+/// NF_ERR_NO_SAMPLES: an empty batch; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_gradient_estimate(
+    state: *mut nf_gradient,
+    solver: u32,
+    ridge: f32,
+    beta: f32,
+    items: u32,
+    pdf: *const f32,
+    technique: *const u32,
+    gradient: *const f32,
+    batch: u32,
+    estimate: *mut f32,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes an object that no one else uses meanwhile.
+        let (header, averages) = unsafe { open(state) }?;
+        let (techniques, parameters) = (header.techniques as usize, header.parameters as usize);
+        let samples = batch as usize;
+        let (pdfs, gradients) = (convert::product(samples, techniques)?, convert::product(samples, parameters)?);
+        // SAFETY: the caller passes arrays of these lengths, none of which is written.
+        let (pdf, technique, gradient) = unsafe {
+            (convert::slice(pdf, pdfs)?, convert::slice(technique, samples)?, convert::slice(gradient, gradients)?)
+        };
+        // SAFETY: as above, but written, and no part of another.
+        let estimate = unsafe { convert::slice_mut(estimate, parameters) }?;
+        let solver = solver_of(solver, ridge)?;
+        let batch = Batch::new(items, techniques, pdf, technique).map_err(status_of)?;
+        let mut state = Gradient::resume(averages, header.system, parameters).map_err(status_of)?;
+        dispatch::gradient(&mut state, &batch, solver, beta, gradient, estimate).map_err(status_of)?;
+        header.system = *state.system();
+        Ok(())
+    })())
+}
+
+/// Forgets every batch; techniques and parameters stay.
+///
+/// NF_ERR_NULL; NF_ERR_STATE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_gradient_reset(state: *mut nf_gradient) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes an object that no one else uses meanwhile.
+        let (header, averages) = unsafe { open(state) }?;
+        header.system = System::new(header.techniques as usize);
+        averages.fill(0.0);
+        Ok(())
+    })())
+}
+
+/// The object's header and averages.
+///
+/// # Safety
+/// A non-NULL `state` must be 8-byte-aligned memory that nf_gradient_init was given and that no one else uses during
+/// `'a`.
+unsafe fn open<'a>(state: *mut nf_gradient) -> Result<(&'a mut Header, &'a mut [f32]), nf_status> {
+    // Only the first words until the magic number says that the rest can be trusted.
+    // SAFETY: passed on to the caller.
+    if *unsafe { convert::reference(state.cast::<u64>()) }? != MAGIC {
+        return Err(NF_ERR_STATE);
+    }
+    // SAFETY: passed on to the caller.
+    let header = unsafe { convert::reference_mut(state.cast::<Header>()) }?;
+    let len = minibatch::gradient_len(header.techniques as usize, header.parameters as usize);
+    if len == 0 {
+        return Err(NF_ERR_STATE);
+    }
+    // SAFETY: nf_gradient_init made the averages right behind the header, which is no part of them.
+    let averages = unsafe { convert::slice_mut(state.cast::<Header>().add(1).cast::<f32>(), len) }?;
+    Ok((header, averages))
+}

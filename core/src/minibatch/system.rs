@@ -1,0 +1,98 @@
+//! The linear system of optimal MIS, which all parameters share.
+//!
+//! With S = sum_k n_k p_k and s over a batch's samples, `sum_s h / S` estimates the sum of h over all items without
+//! bias, for any h. So do `q = sum_s p / S` the ones to which probabilities sum, `A = sum_s p p' / S^2` the matrix of
+//! (6.17), and `b = sum_s g p / S^2` its right-hand side for a gradient g. The estimate of the sum of all gradients is
+//!
+//! `sum_s g / S - (q - 1)' alpha`, alpha = (A + L)^-1 b:
+//!
+//! the balance heuristic's, less what the batch got wrong about sums that are known. A and q belong to no parameter, so
+//! with `c = (A + L)^-1 (q - 1)` it is `sum_s g / S - c' b`, linear in the gradients: one solve serves every parameter.
+//!
+//! Algorithm 5 prints W = n_j p_j / S where this has p_j / S. Its matrix is N A N and its right-hand side N b, for N
+//! the counts, so that its sum of alpha is that of N^-1 A^-1 b: too small by n_j.
+
+use super::Batch;
+use crate::Error;
+use crate::mis::linear::{self, Vector};
+use crate::mis::{MAX_TECHNIQUES, Solver};
+
+const CELLS: usize = MAX_TECHNIQUES * (MAX_TECHNIQUES + 1) / 2;
+
+/// Averages of A, q - 1 and the counts over the batches so far, newer ones counting for more.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct System {
+    techniques: usize,
+    /// The sum of the weights that the batches have: 1 for the newest, beta times as much for each one before.
+    weight: f64,
+    counts: Vector,
+    /// q_j - 1, which is 0 in a batch where technique j drew nothing.
+    error: Vector,
+    /// A, its lower triangle by rows.
+    cells: [f64; CELLS],
+}
+
+impl System {
+    /// No batches yet. A number of techniques outside 1..=16 fits no batch.
+    pub const fn new(techniques: usize) -> System {
+        System {
+            techniques,
+            weight: 0.0,
+            counts: [0.0; MAX_TECHNIQUES],
+            error: [0.0; MAX_TECHNIQUES],
+            cells: [0.0; CELLS],
+        }
+    }
+
+    pub(super) fn techniques(&self) -> usize {
+        self.techniques
+    }
+
+    /// Multiplies the weights of the earlier batches by `beta` in 0..=1 and adds `batch`. Returned are the parts that
+    /// the old averages and the batch have in the new ones, which sum to 1.
+    pub(super) fn add(&mut self, batch: &Batch<'_>, beta: f32) -> Result<(f64, f64), Error> {
+        if !beta.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        if !(0.0..=1.0).contains(&beta) || batch.techniques() != self.techniques {
+            return Err(Error::Range);
+        }
+        let earlier = f64::from(beta) * self.weight;
+        self.weight = earlier + 1.0;
+        let (keep, part) = (earlier / self.weight, 1.0 / self.weight);
+        self.error.iter_mut().chain(&mut self.counts).chain(&mut self.cells).for_each(|average| *average *= keep);
+        for (j, &count) in batch.counts().iter().enumerate() {
+            self.counts[j] += part * count;
+            if count > 0.0 {
+                self.error[j] -= part;
+            }
+        }
+        for sample in batch.samples() {
+            self.error.iter_mut().zip(&sample.ratio).for_each(|(error, ratio)| *error += part * ratio);
+            let mut cells = self.cells.iter_mut();
+            for (j, row) in sample.ratio.iter().enumerate().take(self.techniques) {
+                for (column, cell) in sample.ratio.iter().take(j + 1).zip(&mut cells) {
+                    *cell += part * (row * column);
+                }
+            }
+        }
+        Ok((keep, part))
+    }
+
+    /// c, solved in the scale of [`linear::scaled`]: zeros for [`Solver::Balance`].
+    ///
+    /// A technique that never drew has a row of zeros there, and gets a c of 0.
+    pub(super) fn correction(&self, solver: Solver) -> Result<Vector, Error> {
+        solver.check()?;
+        if solver == Solver::Progressive {
+            return Err(Error::Unsupported);
+        }
+        let n = self.techniques;
+        let used = self.counts.iter().filter(|&&count| count > 0.0).count();
+        let scale = self.counts.map(libm::sqrt);
+        Ok(match solver.factor(|| linear::scaled(&self.cells, 1.0, &scale, n), n, used) {
+            Some(factor) => factor.solve_scaled(&scale, &self.error, 1.0),
+            None => Vector::default(),
+        })
+    }
+}
