@@ -3,6 +3,7 @@
 mod c_tests;
 mod demo;
 mod examples;
+mod fit;
 mod header;
 mod library;
 mod paths;

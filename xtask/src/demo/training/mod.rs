@@ -3,6 +3,8 @@
 mod curves;
 mod data;
 mod mlp;
+mod photograph;
+mod polynomial;
 mod program;
 
 use super::Options;
@@ -22,7 +24,7 @@ struct Training<'a> {
 }
 
 /// The trainers, in the order of their tables: each compiles its program, runs it, writes its files and returns its table.
-const TRAINERS: [fn(&Training) -> Result<String>; 1] = [mlp::run];
+const TRAINERS: [fn(&Training) -> Result<String>; 3] = [mlp::run, polynomial::run, photograph::run];
 
 pub(crate) fn run(options: &Options, interrupted: &AtomicBool, output: &Output) -> Result<String> {
     let training = Training { quick: options.quick, archive: library::build()?, interrupted, output };

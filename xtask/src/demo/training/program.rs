@@ -13,6 +13,7 @@ use std::thread;
 #[derive(Clone, Copy)]
 pub(super) enum Language {
     C99,
+    Cpp17,
 }
 
 /// What a run wrote.
@@ -37,9 +38,11 @@ impl Program {
         let path = paths::output().join(name);
         let mut compiler = match language {
             Language::C99 => run::compiler("CC", "cc"),
+            Language::Cpp17 => run::compiler("CXX", "c++"),
         };
         compiler.arg(match language {
             Language::C99 => "-std=c99",
+            Language::Cpp17 => "-std=c++17",
         });
         compiler
             .args(["-O3", "-march=native", "-fno-math-errno", "-Wall", "-Wextra", "-Iinclude"])

@@ -1,0 +1,89 @@
+//! fit_polynomial.c: loss against steps, and errors of the gradient by coefficient (figure 6.10).
+
+use super::Training;
+use super::curves::Rows;
+use super::program::{Language, Program};
+use crate::demo::plot::{Axis, Plot, Series};
+use crate::demo::progress;
+use anyhow::Result;
+
+/// Writes training-polynomial*.csv, .md and .svg; returns the tables.
+pub(super) fn run(training: &Training) -> Result<String> {
+    let program = Program::compile("fit_polynomial.c", Language::C99, &training.archive)?;
+    let small: &[&str] =
+        if training.quick { &["--seeds", "3", "--steps", "1000", "--batches", "200"] } else { &["--seeds", "40"] };
+    let bar = progress::bar(2)?;
+    bar.set_message("polynomial");
+    let trained = program.run(small, training.interrupted, |_| ())?;
+    bar.inc(1);
+    let errors = program.run(&[small, &["--variance"]].concat(), training.interrupted, |_| ())?;
+    bar.finish_and_clear();
+
+    let output = training.output;
+    output.write_text("training-polynomial.csv", &trained.csv)?;
+    output.write_text("training-polynomial-variance.csv", &errors.csv)?;
+    output.write_text("training-polynomial.svg", &loss_plot(&trained.csv)?)?;
+    output.write_text("training-polynomial-ratio.svg", &ratio_plot(&trained.csv)?)?;
+    output.write_text("training-polynomial-variance.svg", &error_plot(&errors.csv)?)?;
+    let table = format!("{}\n{}", trained.summary, errors.summary);
+    output.write_text(
+        "training-polynomial.md",
+        &format!(
+            "# A polynomial of order 6 (figure 6.10)\n\nMade by examples_c/fit_polynomial.c. The mean loss at the end:\n\n{}\n\
+             Mean squared errors of the gradient's estimates over those of uniform sampling, at the same states, where the\n\
+             exact gradient leads:\n\n{}",
+            trained.summary, errors.summary
+        ),
+    )?;
+    Ok(format!("fit_polynomial\n\n{table}"))
+}
+
+/// A method has the same colour in every plot.
+const METHODS: [&str; 8] = ["exact", "uniform", "is", "balance2", "omis2", "balance4", "omis4", "omis4-beta"];
+
+fn coloured(mut series: Series) -> Series {
+    series.colour = METHODS.iter().position(|method| *method == series.name);
+    series
+}
+
+/// The means over the seeds: single problems differ a hundredfold, their order does not.
+fn losses(csv: &str) -> Result<Vec<Series>> {
+    let rows = Rows::parse(csv)?.only("seed", "mean")?;
+    let line = |method: &str| rows.only("method", method)?.line(method, "step", "step", ("loss", 1.0)).map(coloured);
+    rows.words("method")?.into_iter().map(line).collect()
+}
+
+fn loss_plot(csv: &str) -> Result<String> {
+    let series = losses(csv)?;
+    let x = Axis { label: "steps", logarithmic: false, range: None };
+    let y = Axis { label: "mean loss", logarithmic: true, range: None };
+    Plot { title: "Polynomial of order 6, batches of 32, Adam", x, y, series: &series }.svg()
+}
+
+/// The same over the loss that the exact gradient has at the same step.
+fn ratio_plot(csv: &str) -> Result<String> {
+    let mut series = losses(csv)?;
+    let exact: Vec<_> = series.first().map(|exact| exact.points.clone()).unwrap_or_default();
+    for (point, exact) in series.iter_mut().flat_map(|series| series.points.iter_mut().zip(&exact)) {
+        point.1 /= exact.1;
+    }
+    let x = Axis { label: "steps", logarithmic: false, range: None };
+    let y = Axis { label: "mean loss / the exact gradient's", logarithmic: false, range: None };
+    Plot { title: "Polynomial of order 6, batches of 32, Adam", x, y, series: &series }.svg()
+}
+
+/// At the last state.
+fn error_plot(csv: &str) -> Result<String> {
+    let rows = Rows::parse(csv)?;
+    let last = rows.words("step")?.pop().unwrap_or_default();
+    let rows = rows.only("step", last)?;
+    let line = |method: &str| -> Result<Series> {
+        let rows = rows.only("method", method)?;
+        Ok(coloured(rows.line(method, "coefficient", "coefficient", ("error", 1.0))?))
+    };
+    let series: Vec<Series> = rows.words("method")?.into_iter().map(line).collect::<Result<_>>()?;
+    let title = format!("Error of the gradient's estimate, step {last}");
+    let x = Axis { label: "power whose coefficient it is", logarithmic: false, range: None };
+    let y = Axis { label: "mean squared error / uniform's", logarithmic: true, range: None };
+    Plot { title: &title, x, y, series: &series }.svg()
+}
