@@ -7,7 +7,7 @@ static const uint32_t sizes[SHARDS] = {50, 7, 20};
 
 typedef struct set {
     nf_table table[SHARDS];
-    memory memory[SHARDS];
+    memory room[SHARDS];
     nf_shard shard[SHARDS];
 } set;
 
@@ -22,8 +22,8 @@ static void make(set *s, float fraction)
             every[i] = i;
             q[i] = k == 1 ? 0.0f : k == 2 ? 10.0f : 1.0f + (float)(i % 4);
         }
-        s->memory[k] = memory_new(nf_table_size(sizes[k]));
-        CHECK_STATUS(nf_table_init(&s->table[k], s->memory[k].start, s->memory[k].bytes, sizes[k], NULL), NF_OK);
+        s->room[k] = memory_new(nf_table_size(sizes[k]));
+        CHECK_STATUS(nf_table_init(&s->table[k], s->room[k].start, s->room[k].bytes, sizes[k], NULL), NF_OK);
         CHECK_STATUS(nf_table_update(&s->table[k], every, q, sizes[k], 0.0f), NF_OK);
         CHECK_STATUS(nf_table_set_uniform_fraction(&s->table[k], fraction), NF_OK);
         CHECK_STATUS(nf_table_shard(&s->table[k], &s->shard[k]), NF_OK);
@@ -35,7 +35,7 @@ static void set_free(set *s)
 {
     uint32_t k;
     for (k = 0; k < SHARDS; ++k)
-        memory_free(&s->memory[k]);
+        memory_free(&s->room[k]);
 }
 
 /* The mean of a value that each item has, from 4000 batches of 10: at significance 1e-5. */
