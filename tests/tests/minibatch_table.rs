@@ -89,7 +89,7 @@ fn drift(updates: usize, items: u32, spread: f64, seed: u64) {
     for batch in 0..updates / 64 {
         for (index, importance) in index.iter_mut().zip(&mut importance) {
             let bits = rng.next_u64();
-            *index = ((bits >> 32) * u64::from(items) >> 32) as u32;
+            *index = (((bits >> 32) * u64::from(items)) >> 32) as u32;
             *importance = values[bits as usize % values.len()];
         }
         table.update(&index, &importance, if batch % 2 == 0 { 0.0 } else { 0.3 }).unwrap();
