@@ -33,6 +33,19 @@ pub(crate) fn integrate(archive: &Path, name: &str) -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
+/// shards.c: its processes check their estimates themselves.
+pub(crate) fn shards(archive: &Path) -> Result<Outcome> {
+    if !cfg!(unix) {
+        return Ok(Outcome::NotRun("the example uses fork and pipe, which POSIX systems have".to_owned()));
+    }
+    let program = output("shards")?;
+    let mut compiler = run::compiler("CC", "cc");
+    compiler.arg("-std=c99").args(STRICT).arg("examples_c/shards.c").arg(archive).args(["-lm", "-o"]).arg(&program);
+    run::check(&mut compiler)?;
+    run::check(&mut run::command(&program))?;
+    Ok(Outcome::Passed)
+}
+
 /// pathtracer.cpp: every estimator and every sampler that it lists, in every scene that it lists.
 pub(crate) fn path_tracer(archive: &Path) -> Result<Outcome> {
     let program = output("pathtracer")?;

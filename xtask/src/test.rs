@@ -76,6 +76,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("C++ wrapper, with and without exceptions", || c_tests::wrapper(&archive()?));
     steps.run("examples_c/integrate.c", || examples::integrate(&archive()?, "integrate"));
     steps.run("examples_c/shared.c", || examples::integrate(&archive()?, "shared"));
+    steps.run("examples_c/shards.c: four processes", || examples::shards(&archive()?));
     steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
         examples::path_tracer(&archive()?)
     });

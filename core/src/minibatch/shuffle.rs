@@ -14,10 +14,11 @@ pub fn shuffle(seed: u64, items: u32, position: u32) -> u32 {
     let low_bits = bits / 2;
     let low_mask = (1u32 << low_bits) - 1;
     let high_mask = (1u32 << (bits - low_bits)) - 1;
+    let rounds = if bits < 12 { SHORT_ROUNDS } else { ROUNDS };
     let mut at = start;
     loop {
         let (mut low, mut high) = (at & low_mask, at >> low_bits);
-        for round in 0..ROUNDS {
+        for round in 0..rounds {
             high ^= noise(seed, 2 * round, low) & high_mask;
             low ^= noise(seed, 2 * round + 1, high) & low_mask;
         }
@@ -29,8 +30,10 @@ pub fn shuffle(seed: u64, items: u32, position: u32) -> u32 {
     }
 }
 
-/// Pairs of half rounds. Halves of one or two bits need more of them than long ones.
+/// Pairs of half rounds.
 const ROUNDS: u64 = 6;
+/// Halves of a few bits need more of them: a round has few functions to choose from.
+const SHORT_ROUNDS: u64 = 16;
 
 fn noise(seed: u64, round: u64, half: u32) -> u32 {
     let mut z = seed.wrapping_add((round + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15))

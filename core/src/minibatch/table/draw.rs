@@ -65,27 +65,30 @@ struct Ways {
 
 /// Maps a number below a span to one below n, and what is left to a fraction.
 struct Scale {
-    shift: u32,
+    left: u32,
     factor: u64,
+    right: u32,
     last: u64,
 }
 
 impl Scale {
-    /// For a span of at most 2^64.
+    /// For a span of at most 2^64, and n below 2^63.
     fn new(span: u128, n: u64) -> Scale {
-        let Some(last) = span.checked_sub(1) else { return Scale { shift: 0, factor: 0, last: 0 } };
-        // The span stretched to between 2^63 and 2^64, so that the factor, n to 2 n, fits in 64 bits.
-        let shift = (last as u64).leading_zeros().min(63);
-        let stretched = NonZeroU128::new(span << shift).unwrap_or(NonZeroU128::MAX);
+        let Some(last) = span.checked_sub(1) else { return Scale { left: 0, factor: 0, right: 0, last: 0 } };
+        // The span stretched to between 2^63 and 2^64, and n likewise, so that the factor has 62 bits however small n is.
+        let left = (last as u64).leading_zeros().min(63);
+        let stretched = NonZeroU128::new(span << left).unwrap_or(NonZeroU128::MAX);
+        let right = n.leading_zeros().clamp(2, 64) - 2;
         // Rounded up, so that the last number is reached.
-        let factor = (u128::from(n) << 64) / stretched + 1;
-        Scale { shift, factor: u64::try_from(factor).unwrap_or(u64::MAX), last: n.saturating_sub(1) }
+        let factor = (u128::from(n << right) << 64) / stretched + 1;
+        let factor = u64::try_from(factor).unwrap_or(u64::MAX);
+        Scale { left, factor, right, last: n.saturating_sub(1) }
     }
 
     /// The place, and the bits behind its point.
     #[inline(always)]
     fn map(&self, x: u64) -> (u64, u64) {
-        let product = u128::from(x << self.shift) * u128::from(self.factor);
+        let product = (u128::from(x << self.left) * u128::from(self.factor)) >> (self.right % 64);
         (((product >> 64) as u64).min(self.last), product as u64)
     }
 }

@@ -1,6 +1,6 @@
 //! Several tables drawn as one: each process of a data-parallel trainer owns the table of its part of the data.
 
-use super::draw::Mixture;
+use super::draw::{Mixture, check_lengths};
 use super::{Portable, Table};
 use crate::Error;
 use crate::rng::Rng;
@@ -109,7 +109,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// All tables must have the same uniform fraction. How many items each process draws, [`allocate`] says.
     ///
     /// Errors: [`Error::Range`] for another number of weights, or if `all` is less than this table alone;
-    /// [`Error::NotFinite`]; [`Error::NoSamples`] if nothing can be drawn from this table.
+    /// [`Error::NotFinite`]; [`Error::NoSamples`] if nothing can be drawn from any, or from this table and `index` is not empty.
     pub fn draw_shard(
         &self,
         all: &Shard,
@@ -127,7 +127,9 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         let (tree, uniform) = own.ways(all, f64::from(self.state.uniform_fraction))?;
         let share = tree + uniform;
         if share <= 0.0 {
-            return Err(Error::NoSamples);
+            // What `allocate` asks of such a table.
+            check_lengths(index, &weight)?;
+            return if index.is_empty() { Ok(()) } else { Err(Error::NoSamples) };
         }
         let mixture = Mixture::of(self.sum(), self.state.items, uniform / share)?;
         self.draw_mixture::<Portable>(&mixture, share * all.items as f64, rng, index, weight)

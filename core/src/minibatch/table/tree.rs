@@ -101,7 +101,7 @@ pub(super) fn raise(nodes: &mut [Node], levels: &Levels) {
             let mut sum = 0;
             let mut children = children.iter();
             *node = core::array::from_fn(|_| {
-                sum += children.next().map_or(0, |child| child[CHILDREN - 1]);
+                sum = children.next().map_or(sum, |child| child[CHILDREN - 1].wrapping_add(sum));
                 sum
             });
         }

@@ -128,7 +128,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         // For each change the block and by how much its weight differs.
         let mut pending = [(0u32, 0i64); CHUNK];
         let mut count = 0;
-        let mut in_range = true;
+        // The sum of new weights: while it is in range, no sum in the tree can have wrapped around to a harmless number.
+        let mut fresh = 0i64;
         for (pending, (item, change)) in pending.iter_mut().zip(changes) {
             let which = item as usize / ARITY;
             let (Some(block), Some(node)) = (blocks.get_mut(which), nodes.get_mut(lowest + which / CHILDREN)) else {
@@ -137,7 +138,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
             let item = item as usize % ARITY;
             let q = change(block[item]);
             let weight = weight(K::replace(block, item, q), scale);
-            in_range &= weight < LARGEST_SUM;
+            fresh = fresh.saturating_add(weight);
             let (begin, end) = tree::span(node, which % CHILDREN);
             let difference = weight.wrapping_sub(end.wrapping_sub(begin));
             K::add(node, which % CHILDREN, difference);
@@ -163,7 +164,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
             }
             tree::add_all(node, &differences);
         }
-        in_range && (0..LARGEST_SUM).contains(&nodes.last().map_or(0, |root| root[CHILDREN - 1]))
+        fresh < LARGEST_SUM && (0..LARGEST_SUM).contains(&nodes.last().map_or(0, |root| root[CHILDREN - 1]))
     }
 
     /// Builds the table again if its sum has left the range of its scale.
@@ -222,11 +223,11 @@ fn build<K: Kernel>(blocks: &[Block], nodes: &mut [Node], levels: &Levels, scale
         let mut blocks = blocks.iter();
         for end in node.iter_mut() {
             let weight = blocks.next().map_or(0, |block| weight(K::total(block), scale));
-            in_range &= weight < LARGEST_SUM;
-            sum = sum.wrapping_add(weight);
+            // Wrapping around could end at a harmless number.
+            sum = sum.saturating_add(weight);
             *end = sum;
         }
-        in_range &= (0..LARGEST_SUM).contains(&sum);
+        in_range &= sum < LARGEST_SUM;
         sum_of_all = sum_of_all.saturating_add(sum);
     }
     tree::raise(nodes, levels);

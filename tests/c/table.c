@@ -1,0 +1,435 @@
+/* Tables of importances: nf_table_*(). */
+#include "check.h"
+
+#define ITEMS 100
+static float ones[ITEMS], mixed[ITEMS];
+
+static void fill(void)
+{
+    uint32_t i;
+    for (i = 0; i < ITEMS; ++i) {
+        ones[i] = 1.0f;
+        mixed[i] = i % 3 == 1 ? 0.0f : (float)(i + 1);
+    }
+}
+
+static memory make(nf_table *table, uint32_t items, const float *importance)
+{
+    memory m = memory_new(nf_table_size(items));
+    CHECK_STATUS(nf_table_init(table, m.start, m.bytes, items, importance), NF_OK);
+    return m;
+}
+
+/* Items that exist, with the weights of their probabilities. */
+static void check_batch(const nf_table *table, const uint32_t *index, const float *weight, uint32_t batch)
+{
+    const double items = table->items;
+    uint32_t k;
+    for (k = 0; k < batch; ++k) {
+        CHECK(index[k] < table->items);
+        CHECK(fabs(weight[k] * items * nf_table_probability(table, index[k]) - 1.0) < 1e-6);
+    }
+}
+
+static void normal_use(void)
+{
+    nf_table table;
+    memory m = make(&table, ITEMS, mixed);
+    nf_rng rng, copy;
+    uint32_t index[64], again[64], i;
+    float weight[64], p[3 * 64], fresh[64];
+    double sum = 0.0;
+    for (i = 0; i < ITEMS; ++i) {
+        CHECK(nf_table_importance(&table, i) == mixed[i]);
+        sum += mixed[i];
+    }
+    CHECK(table.items == ITEMS && nf_table_total(&table) == sum && table.uniform_fraction == 0.2f);
+    CHECK(nf_table_importance(&table, ITEMS) == 0.0f && nf_table_probability(&table, ITEMS) == 0.0f);
+    CHECK(fabsf(nf_table_probability(&table, 1) - 0.002f) < 1e-9f);
+
+    nf_rng_seed(&rng, 1);
+    copy = rng;
+    CHECK_STATUS(nf_table_draw(&table, &rng, 64, index, weight), NF_OK);
+    check_batch(&table, index, weight, 64);
+    CHECK_STATUS(nf_table_draw(&table, &copy, 64, again, NULL), NF_OK);
+    CHECK(memcmp(index, again, sizeof index) == 0 && memcmp(&rng, &copy, sizeof rng) == 0);
+    CHECK_STATUS(nf_table_draw_stratified(&table, &rng, 64, index, weight), NF_OK);
+    check_batch(&table, index, weight, 64);
+    CHECK_STATUS(nf_table_draw_stratified(&table, &copy, 64, again, NULL), NF_OK);
+    CHECK(memcmp(index, again, sizeof index) == 0);
+    CHECK_STATUS(nf_table_draw_distinct(&table, &rng, 64, index, weight), NF_OK);
+    CHECK_STATUS(nf_table_draw_distinct(&table, &copy, 64, again, NULL), NF_OK);
+    CHECK(memcmp(index, again, sizeof index) == 0);
+    {
+        unsigned char seen[ITEMS] = {0};
+        for (i = 0; i < 64; ++i) {
+            CHECK(index[i] < ITEMS && !seen[index[i] % ITEMS] && weight[i] > 0.0f);
+            seen[index[i] % ITEMS] = 1;
+        }
+    }
+    for (i = 0; i < ITEMS; ++i)
+        CHECK(nf_table_importance(&table, i) == mixed[i]);
+    CHECK(nf_table_total(&table) == sum);
+
+    /* With a fraction of 0 no item without importance comes; with 1 all weights are 1. */
+    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 0.0f), NF_OK);
+    for (i = 0; i < 100; ++i) {
+        uint32_t k;
+        CHECK_STATUS(nf_table_draw(&table, &rng, 64, index, NULL), NF_OK);
+        for (k = 0; k < 64; ++k)
+            CHECK(mixed[index[k]] > 0.0f);
+    }
+    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 1.0f), NF_OK);
+    CHECK_STATUS(nf_table_draw(&table, &rng, 64, index, weight), NF_OK);
+    for (i = 0; i < 64; ++i)
+        CHECK(fabsf(weight[i] - 1.0f) < 1e-6f);
+    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 0.2f), NF_OK);
+
+    /* One column of three: the others stay as they are. */
+    poison(p, sizeof p);
+    CHECK_STATUS(nf_table_probabilities(&table, index, 64, 3, p), NF_OK);
+    for (i = 0; i < 64; ++i) {
+        CHECK(p[3 * i] == nf_table_probability(&table, index[i]));
+        CHECK(is_poisoned(p + 3 * i + 1, 2 * sizeof *p));
+    }
+
+    /* Updates in order, an item twice; 0 forgets, 1 keeps. */
+    for (i = 0; i < 4; ++i)
+        again[i] = i == 3 ? 7 : 5;
+    fresh[0] = 10.0f;
+    fresh[1] = 20.0f;
+    fresh[2] = 0.0f;
+    fresh[3] = 2.0f;
+    CHECK_STATUS(nf_table_update(&table, again, fresh, 4, 0.5f), NF_OK);
+    CHECK(nf_table_importance(&table, 5) == ((6.0f + 10.0f) / 2.0f + 20.0f) / 2.0f / 2.0f);
+    CHECK(nf_table_importance(&table, 7) == 1.0f);
+    CHECK_STATUS(nf_table_update(&table, again, fresh, 4, 1.0f), NF_OK);
+    CHECK(nf_table_importance(&table, 7) == 1.0f);
+    CHECK_STATUS(nf_table_update(&table, again, fresh, 4, 0.0f), NF_OK);
+    CHECK(nf_table_importance(&table, 5) == 0.0f && nf_table_importance(&table, 7) == 2.0f);
+    CHECK_STATUS(nf_table_add_epsilon(&table, 0.5f), NF_OK);
+    CHECK(nf_table_importance(&table, 5) == 0.5f && nf_table_importance(&table, 7) == 2.5f);
+
+    /* Nothing at all is no error. */
+    CHECK_STATUS(nf_table_draw(&table, &rng, 0, NULL, NULL), NF_OK);
+    CHECK_STATUS(nf_table_draw_stratified(&table, &rng, 0, NULL, NULL), NF_OK);
+    CHECK_STATUS(nf_table_draw_distinct(&table, &rng, 0, NULL, NULL), NF_OK);
+    CHECK_STATUS(nf_table_update(&table, NULL, NULL, 0, 0.3f), NF_OK);
+    CHECK_STATUS(nf_table_append(&table, NULL, 0), NF_OK);
+    CHECK_STATUS(nf_table_probabilities(&table, NULL, 0, 1, NULL), NF_OK);
+    memory_free(&m);
+
+    m = make(&table, ITEMS, NULL);
+    CHECK(nf_table_total(&table) == ITEMS && nf_table_importance(&table, ITEMS - 1) == 1.0f);
+    memory_free(&m);
+}
+
+static void sizes_and_init(void)
+{
+    static const uint32_t some[] = {1, 15, 16, 17, 255, 256, 257, 4096, 4097, 60000, 1000000};
+    float bad[3] = {1.0f, 2.0f, 3.0f};
+    const size_t bytes = nf_table_size(3);
+    memory m = memory_new(bytes);
+    nf_table out;
+    size_t k;
+    CHECK(nf_table_size(0) == 0);
+    for (k = 0; k < sizeof some / sizeof *some; ++k) {
+        CHECK((double)nf_table_size(some[k]) <= 4.6 * some[k] + 400.0);
+        CHECK(some[k] < 60000 || nf_table_size(some[k]) <= 5 * (size_t)some[k]);
+    }
+    CHECK(sizeof(size_t) < 8 ? nf_table_size(UINT32_MAX) == 0 : nf_table_size(UINT32_MAX) > UINT32_MAX);
+
+    CHECK_STATUS(nf_table_init(NULL, m.start, bytes, 3, ones), NF_ERR_NULL);
+    CHECK_REFUSED(nf_table_init(&out, NULL, bytes, 3, ones), NF_ERR_NULL, out);
+    CHECK_STATUS(nf_table_init((nf_table *)misaligned(&out), m.start, bytes, 3, ones), NF_ERR_ALIGNMENT);
+    CHECK_REFUSED(nf_table_init(&out, misaligned(m.start), bytes, 3, ones), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_table_init(&out, (char *)m.start + 4, bytes, 3, ones), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_table_init(&out, m.start, bytes, 3, (const float *)misaligned(ones)), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_table_init(&out, m.start, bytes - 1, 3, ones), NF_ERR_MEMORY, out);
+    CHECK_REFUSED(nf_table_init(&out, m.start, 0, 3, ones), NF_ERR_MEMORY, out);
+    CHECK_REFUSED(nf_table_init(&out, m.start, bytes, UINT32_MAX, NULL), NF_ERR_MEMORY, out);
+    CHECK_REFUSED(nf_table_init(&out, m.start, bytes, 0, ones), NF_ERR_RANGE, out);
+    bad[1] = -1.0f;
+    CHECK_REFUSED(nf_table_init(&out, m.start, bytes, 3, bad), NF_ERR_RANGE, out);
+    bad[1] = not_a_number();
+    CHECK_REFUSED(nf_table_init(&out, m.start, bytes, 3, bad), NF_ERR_NOT_FINITE, out);
+    bad[1] = infinity_f();
+    CHECK_REFUSED(nf_table_init(&out, m.start, bytes, 3, bad), NF_ERR_NOT_FINITE, out);
+    bad[0] = bad[2] = 0.0f;
+    bad[1] = -0.0f;
+    CHECK_REFUSED(nf_table_init(&out, m.start, bytes, 3, bad), NF_ERR_NO_SAMPLES, out);
+    CHECK(is_poisoned(m.start, bytes));
+    memory_free(&m);
+
+    /* Any alignment to 8 bytes will do. */
+    for (k = 0; k < 64; k += 8) {
+        memory shifted = memory_new(nf_table_size(ITEMS) + k);
+        CHECK_STATUS(nf_table_init(&out, (char *)shifted.start + k, shifted.bytes - k, ITEMS, mixed), NF_OK);
+        CHECK(nf_table_importance(&out, ITEMS - 1) == mixed[ITEMS - 1]);
+        memory_free(&shifted);
+    }
+}
+
+/* Whatever is refused leaves the struct, the memory, the generator and the outputs as they were. */
+static void errors(void)
+{
+    nf_table table, before_struct, *odd = (nf_table *)misaligned(&table);
+    memory m = make(&table, ITEMS, mixed), before = memory_new(m.bytes);
+    nf_rng rng, before_rng;
+    uint32_t index[4] = {0, 1, 2, 3}, out[4], k;
+    float weight[4], value[4] = {1.0f, 2.0f, 3.0f, 4.0f};
+    const float nan = not_a_number(), infinite = infinity_f();
+    nf_status (*const draw[2])(const nf_table *, nf_rng *, uint32_t, uint32_t *, float *) = {nf_table_draw, nf_table_draw_stratified};
+    nf_rng_seed(&rng, 1);
+    before_rng = rng;
+    before_struct = table;
+    memcpy(before.start, m.start, m.bytes);
+
+    for (k = 0; k < 2; ++k) {
+        poison(weight, sizeof weight);
+        CHECK_REFUSED(draw[k](NULL, &rng, 4, out, weight), NF_ERR_NULL, out);
+        CHECK_REFUSED(draw[k](odd, &rng, 4, out, weight), NF_ERR_ALIGNMENT, out);
+        CHECK_REFUSED(draw[k](&table, NULL, 4, out, weight), NF_ERR_NULL, out);
+        CHECK_REFUSED(draw[k](&table, &rng, 4, out, (float *)misaligned(weight)), NF_ERR_ALIGNMENT, out);
+        CHECK_STATUS(draw[k](&table, &rng, 4, NULL, weight), NF_ERR_NULL);
+        CHECK_STATUS(draw[k](&table, &rng, 4, (uint32_t *)misaligned(out), weight), NF_ERR_ALIGNMENT);
+        CHECK(is_poisoned(weight, sizeof weight));
+    }
+    CHECK_REFUSED(nf_table_draw_distinct(NULL, &rng, 4, out, weight), NF_ERR_NULL, out);
+    CHECK_REFUSED(nf_table_draw_distinct(odd, &rng, 4, out, weight), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_table_draw_distinct(&table, NULL, 4, out, weight), NF_ERR_NULL, out);
+    CHECK_STATUS(nf_table_draw_distinct(&table, &rng, 4, NULL, weight), NF_ERR_NULL);
+    {
+        uint32_t many[ITEMS + 1];
+        CHECK_REFUSED(nf_table_draw_distinct(&table, &rng, ITEMS + 1, many, NULL), NF_ERR_RANGE, many);
+    }
+    CHECK(is_poisoned(weight, sizeof weight));
+
+    CHECK_STATUS(nf_table_update(NULL, index, value, 4, 0.0f), NF_ERR_NULL);
+    CHECK_STATUS(nf_table_update(odd, index, value, 4, 0.0f), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_table_update(&table, NULL, value, 4, 0.0f), NF_ERR_NULL);
+    CHECK_STATUS(nf_table_update(&table, index, NULL, 4, 0.0f), NF_ERR_NULL);
+    CHECK_STATUS(nf_table_update(&table, index, (const float *)misaligned(value), 4, 0.0f), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_table_update(&table, index, value, 4, -0.1f), NF_ERR_RANGE);
+    CHECK_STATUS(nf_table_update(&table, index, value, 4, 1.1f), NF_ERR_RANGE);
+    CHECK_STATUS(nf_table_update(&table, index, value, 4, nan), NF_ERR_NOT_FINITE);
+    index[3] = ITEMS;
+    CHECK_STATUS(nf_table_update(&table, index, value, 4, 0.0f), NF_ERR_RANGE);
+    CHECK_REFUSED(nf_table_probabilities(&table, index, 4, 1, weight), NF_ERR_RANGE, weight);
+    index[3] = UINT32_MAX;
+    CHECK_STATUS(nf_table_update(&table, index, value, 4, 0.0f), NF_ERR_RANGE);
+    CHECK_REFUSED(nf_table_probabilities(&table, index, 4, 1, weight), NF_ERR_RANGE, weight);
+    index[3] = 3;
+    value[3] = -1.0f;
+    CHECK_STATUS(nf_table_update(&table, index, value, 4, 0.0f), NF_ERR_RANGE);
+    CHECK_STATUS(nf_table_append(&table, value, 4), NF_ERR_RANGE);
+    value[3] = nan;
+    CHECK_STATUS(nf_table_update(&table, index, value, 4, 0.0f), NF_ERR_NOT_FINITE);
+    CHECK_STATUS(nf_table_append(&table, value, 4), NF_ERR_NOT_FINITE);
+    value[3] = infinite;
+    CHECK_STATUS(nf_table_update(&table, index, value, 4, 0.0f), NF_ERR_NOT_FINITE);
+    value[3] = 4.0f;
+    CHECK_STATUS(nf_table_append(NULL, value, 4), NF_ERR_NULL);
+    CHECK_STATUS(nf_table_append(&table, NULL, 4), NF_ERR_NULL);
+
+    CHECK_REFUSED(nf_table_probabilities(NULL, index, 4, 1, weight), NF_ERR_NULL, weight);
+    CHECK_REFUSED(nf_table_probabilities(&table, NULL, 4, 1, weight), NF_ERR_NULL, weight);
+    CHECK_STATUS(nf_table_probabilities(&table, index, 4, 1, NULL), NF_ERR_NULL);
+    CHECK_REFUSED(nf_table_probabilities(&table, index, 4, 0, weight), NF_ERR_RANGE, weight);
+
+    CHECK_STATUS(nf_table_set_uniform_fraction(NULL, 0.1f), NF_ERR_NULL);
+    CHECK_STATUS(nf_table_set_uniform_fraction(&table, -0.1f), NF_ERR_RANGE);
+    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 1.1f), NF_ERR_RANGE);
+    CHECK_STATUS(nf_table_set_uniform_fraction(&table, nan), NF_ERR_NOT_FINITE);
+    CHECK_STATUS(nf_table_set_uniform_fraction(&table, infinite), NF_ERR_NOT_FINITE);
+    CHECK_STATUS(nf_table_add_epsilon(NULL, 0.1f), NF_ERR_NULL);
+    CHECK_STATUS(nf_table_add_epsilon(&table, -0.1f), NF_ERR_RANGE);
+    CHECK_STATUS(nf_table_add_epsilon(&table, nan), NF_ERR_NOT_FINITE);
+    CHECK_STATUS(nf_table_add_epsilon(&table, infinite), NF_ERR_NOT_FINITE);
+    CHECK(nf_table_probability(NULL, 0) == 0.0f && nf_table_importance(NULL, 0) == 0.0f && nf_table_total(NULL) == 0.0);
+    CHECK(nf_table_saved_size(NULL) == 0);
+    CHECK(memcmp(before.start, m.start, m.bytes) == 0 && memcmp(&before_struct, &table, sizeof table) == 0);
+    CHECK(memcmp(&before_rng, &rng, sizeof rng) == 0);
+
+    /* Fewer items than are asked for can be drawn. */
+    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 0.0f), NF_OK);
+    {
+        uint32_t many[ITEMS];
+        CHECK_REFUSED(nf_table_draw_distinct(&table, &rng, ITEMS, many, NULL), NF_ERR_NO_SAMPLES, many);
+    }
+    CHECK(memcmp(&before_rng, &rng, sizeof rng) == 0);
+    /* And it can still be used. */
+    CHECK_STATUS(nf_table_draw(&table, &rng, 4, out, weight), NF_OK);
+    check_batch(&table, out, weight, 4);
+    memory_free(&before);
+    memory_free(&m);
+}
+
+static void no_table(void)
+{
+    nf_table table;
+    nf_rng rng;
+    nf_shard shard, all = {1.0, 1};
+    uint32_t index[2] = {0, 0}, k;
+    float value[2] = {1.0f, 1.0f};
+    char bytes[64];
+    nf_rng_seed(&rng, 1);
+    for (k = 0; k < 2; ++k) {
+        memset(&table, k == 0 ? 0 : POISON, sizeof table);
+        if (k == 1)
+            table.importance = value;
+        CHECK_REFUSED(nf_table_draw(&table, &rng, 2, index, NULL), NF_ERR_STATE, index);
+        CHECK_REFUSED(nf_table_draw_stratified(&table, &rng, 2, index, NULL), NF_ERR_STATE, index);
+        CHECK_REFUSED(nf_table_draw_distinct(&table, &rng, 2, index, NULL), NF_ERR_STATE, index);
+        CHECK_REFUSED(nf_table_draw_shard(&table, &all, 1, &rng, 2, index, NULL), NF_ERR_STATE, index);
+        CHECK_REFUSED(nf_table_shard(&table, &shard), NF_ERR_STATE, shard);
+        index[0] = index[1] = 0;
+        CHECK_STATUS(nf_table_update(&table, index, value, 2, 0.0f), NF_ERR_STATE);
+        CHECK_REFUSED(nf_table_probabilities(&table, index, 2, 1, value), NF_ERR_STATE, value);
+        value[0] = value[1] = 1.0f;
+        CHECK_STATUS(nf_table_append(&table, value, 2), NF_ERR_STATE);
+        CHECK_STATUS(nf_table_set_uniform_fraction(&table, 0.5f), NF_ERR_STATE);
+        CHECK_STATUS(nf_table_add_epsilon(&table, 0.5f), NF_ERR_STATE);
+        CHECK_REFUSED(nf_table_save(&table, bytes, sizeof bytes), NF_ERR_STATE, bytes);
+        CHECK(nf_table_saved_size(&table) == 0 && nf_table_total(&table) == 0.0);
+        CHECK(nf_table_importance(&table, 0) == 0.0f && nf_table_probability(&table, 0) == 0.0f);
+    }
+}
+
+/* A table of zeros draws uniformly, or not at all. */
+static void zeros(void)
+{
+    nf_table table;
+    memory m = make(&table, ITEMS, ones);
+    nf_rng rng;
+    uint32_t every[ITEMS], index[8], i;
+    float none[ITEMS] = {0}, weight[8];
+    for (i = 0; i < ITEMS; ++i)
+        every[i] = i;
+    nf_rng_seed(&rng, 4);
+    CHECK_STATUS(nf_table_update(&table, every, none, ITEMS, 0.0f), NF_OK);
+    CHECK(nf_table_total(&table) == 0.0);
+    CHECK_STATUS(nf_table_draw(&table, &rng, 8, index, weight), NF_OK);
+    for (i = 0; i < 8; ++i)
+        CHECK(fabsf(weight[i] - 1.0f) < 1e-6f);
+    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 0.0f), NF_OK);
+    CHECK_REFUSED(nf_table_draw(&table, &rng, 8, index, NULL), NF_ERR_NO_SAMPLES, index);
+    CHECK_REFUSED(nf_table_draw_stratified(&table, &rng, 8, index, NULL), NF_ERR_NO_SAMPLES, index);
+    CHECK_REFUSED(nf_table_draw_distinct(&table, &rng, 8, index, NULL), NF_ERR_NO_SAMPLES, index);
+    CHECK_REFUSED(nf_table_probabilities(&table, every, 8, 1, weight), NF_ERR_NO_SAMPLES, weight);
+    CHECK(nf_table_probability(&table, 0) == 0.0f);
+    CHECK_STATUS(nf_table_add_epsilon(&table, 1e-30f), NF_OK);
+    CHECK_STATUS(nf_table_draw(&table, &rng, 8, index, weight), NF_OK);
+    check_batch(&table, index, weight, 8);
+    memory_free(&m);
+}
+
+static void growing(void)
+{
+    nf_table table;
+    memory m = memory_new(nf_table_size(1000));
+    uint32_t count = 0, index[16];
+    float weight[16];
+    nf_rng rng;
+    nf_rng_seed(&rng, 5);
+    CHECK_STATUS(nf_table_init(&table, m.start, m.bytes, 1, ones), NF_OK);
+    for (;;) {
+        const uint32_t before = table.items, more = 1 + count++ % 7;
+        const double total = nf_table_total(&table);
+        const nf_status status = nf_table_append(&table, ones, more);
+        if (status != NF_OK) {
+            CHECK_STATUS(status, NF_ERR_MEMORY);
+            CHECK(table.items == before && nf_table_total(&table) == total);
+            break;
+        }
+        CHECK(table.items == before + more && nf_table_total(&table) == before + more);
+        CHECK(nf_table_importance(&table, before + more - 1) == 1.0f);
+    }
+    CHECK(table.items >= 994);
+    CHECK_STATUS(nf_table_draw(&table, &rng, 16, index, weight), NF_OK);
+    check_batch(&table, index, weight, 16);
+    memory_free(&m);
+}
+
+static void saving(void)
+{
+    nf_table table, loaded;
+    memory m = make(&table, ITEMS, mixed), m2 = memory_new(nf_table_size(ITEMS)), saved, changed;
+    nf_rng rng, copy;
+    uint32_t index[32], again[32];
+    float weight[32], weight_again[32];
+    size_t i, len;
+    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 0.3f), NF_OK);
+    len = nf_table_saved_size(&table);
+    CHECK(len == 32 + 4 * ITEMS);
+    saved = memory_new(len);
+    changed = memory_new(len + 1);
+    CHECK_STATUS(nf_table_save(NULL, saved.start, len), NF_ERR_NULL);
+    CHECK_STATUS(nf_table_save(&table, NULL, len), NF_ERR_NULL);
+    CHECK_STATUS(nf_table_save(&table, saved.start, len - 1), NF_ERR_LENGTH);
+    CHECK_STATUS(nf_table_save(&table, saved.start, 0), NF_ERR_LENGTH);
+    CHECK_STATUS(nf_table_save(&table, changed.start, len + 1), NF_ERR_LENGTH);
+    CHECK(is_poisoned(saved.start, len) && is_poisoned(changed.start, len + 1));
+    CHECK_STATUS(nf_table_save(&table, saved.start, len), NF_OK);
+    /* Of any alignment. */
+    CHECK_STATUS(nf_table_save(&table, misaligned(changed.start), len), NF_OK);
+    CHECK(memcmp(saved.start, misaligned(changed.start), len) == 0);
+    CHECK(nf_table_saved_items(saved.start, len) == ITEMS && nf_table_saved_items(NULL, len) == 0);
+    CHECK(nf_table_saved_items(saved.start, 15) == 0 && nf_table_saved_items(changed.start, len) == 0);
+
+    CHECK_STATUS(nf_table_load(NULL, m2.start, m2.bytes, saved.start, len), NF_ERR_NULL);
+    CHECK_REFUSED(nf_table_load(&loaded, NULL, m2.bytes, saved.start, len), NF_ERR_NULL, loaded);
+    CHECK_REFUSED(nf_table_load(&loaded, m2.start, m2.bytes, NULL, len), NF_ERR_NULL, loaded);
+    CHECK_REFUSED(nf_table_load(&loaded, m2.start, m2.bytes - 1, saved.start, len), NF_ERR_MEMORY, loaded);
+    CHECK_REFUSED(nf_table_load(&loaded, misaligned(m2.start), m2.bytes, saved.start, len), NF_ERR_ALIGNMENT, loaded);
+    CHECK_STATUS(nf_table_load((nf_table *)misaligned(&loaded), m2.start, m2.bytes, saved.start, len), NF_ERR_ALIGNMENT);
+    for (i = 0; i < len; ++i) {
+        const nf_status expected = i < 8 ? NF_ERR_FOREIGN : i < 12 ? NF_ERR_VERSION : i < 16 ? NF_ERR_LENGTH : NF_ERR_CORRUPT;
+        CHECK_REFUSED(nf_table_load(&loaded, m2.start, m2.bytes, saved.start, i), NF_ERR_LENGTH, loaded);
+        memcpy(changed.start, saved.start, len);
+        ((unsigned char *)changed.start)[i] ^= 0xff;
+        CHECK_REFUSED(nf_table_load(&loaded, m2.start, m2.bytes, changed.start, len), expected, loaded);
+    }
+    memcpy(changed.start, saved.start, len);
+    CHECK_REFUSED(nf_table_load(&loaded, m2.start, m2.bytes, changed.start, len + 1), NF_ERR_LENGTH, loaded);
+    CHECK(is_poisoned(m2.start, m2.bytes));
+
+    memcpy(misaligned(changed.start), saved.start, len);
+    CHECK_STATUS(nf_table_load(&loaded, m2.start, m2.bytes, misaligned(changed.start), len), NF_OK);
+    CHECK(loaded.items == ITEMS && nf_table_total(&loaded) == nf_table_total(&table) && loaded.uniform_fraction == 0.3f);
+    nf_rng_seed(&rng, 6);
+    copy = rng;
+    CHECK_STATUS(nf_table_draw(&table, &rng, 32, index, weight), NF_OK);
+    CHECK_STATUS(nf_table_draw(&loaded, &copy, 32, again, weight_again), NF_OK);
+    CHECK(memcmp(index, again, sizeof index) == 0 && memcmp(weight, weight_again, sizeof weight) == 0);
+    memory_free(&m);
+    memory_free(&m2);
+    memory_free(&saved);
+    memory_free(&changed);
+}
+
+static void shuffling(void)
+{
+    unsigned char seen[1000] = {0};
+    uint32_t i;
+    for (i = 0; i < 1000; ++i) {
+        const uint32_t item = nf_shuffle(7, 1000, i);
+        CHECK(item < 1000 && !seen[item % 1000]);
+        seen[item % 1000] = 1;
+    }
+    CHECK(nf_shuffle(7, 0, 3) == 0 && nf_shuffle(7, 1, 3) == 0 && nf_shuffle(7, 1000, 1003) == nf_shuffle(7, 1000, 3));
+}
+
+int main(void)
+{
+    fill();
+    normal_use();
+    sizes_and_init();
+    errors();
+    no_table();
+    zeros();
+    growing();
+    saving();
+    shuffling();
+    return report("table");
+}
