@@ -87,7 +87,8 @@ pub fn allocate(
         end += tree + uniform;
         // How many of the points offset, offset + 1, ... lie before the shard's end.
         let until = match last.is_some_and(|last| i < last) {
-            true => libm::ceil(end * f64::from(batch) - offset).clamp(f64::from(before), f64::from(batch)) as u32,
+            // Not `clamp`, which can panic.
+            true => (libm::ceil(end * f64::from(batch) - offset) as u32).max(before).min(batch),
             false => batch,
         };
         *count = until - before;
