@@ -6,7 +6,7 @@
 #![cfg_attr(not(archive), allow(unreachable_code, unused_variables))]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use noisefloor::minibatch::{Batch, Gradient, len, weights};
+use noisefloor::minibatch::{Batch, Gradient, gradient_len, weights};
 use noisefloor::mis::Solver;
 use noisefloor::rng::Rng;
 use noisefloor_bench::c_abi;
@@ -58,7 +58,7 @@ fn gradients(criterion: &mut Criterion) {
         } else {
             println!("libnoisefloor.a is missing, so its C functions are skipped: run `cargo xtask library`");
         }
-        let memory = vec![0.0; len(techniques, PARAMETERS)];
+        let memory = vec![0.0; gradient_len(techniques, PARAMETERS)];
         let mut state = Gradient::new(memory, techniques, PARAMETERS).expect("a valid size");
         let mut estimate = vec![0.0; PARAMETERS];
         group.bench_function(format!("Rust, J = {techniques}, beta = 0.7"), |bencher| {

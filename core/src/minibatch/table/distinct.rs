@@ -40,7 +40,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
             let Ok(mixture) = self.mixture() else { break };
             let mut item = [0];
             loop {
-                self.draw_mixture::<Portable>(&mixture, 1.0, rng, &mut item, None)?;
+                self.draw_mixture::<Portable>(&mixture, 1.0, rng, &mut item, None);
                 // What has been taken is met by a uniform draw only.
                 if !self.is_taken(item[0]) {
                     break;

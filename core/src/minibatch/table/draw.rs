@@ -102,7 +102,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// gradient of the mean loss without bias (importance sampling; the weight 1 / p of Algorithm 3 over N). With `None`,
     /// or where the weights are not used, it is adaptive sampling (w = p): biased towards important items by design.
     ///
-    /// The generator advances by 64 bits, whatever the length. An empty `index` is no error.
+    /// The generator advances by 64 bits, whatever the length. An empty `index` is no error, and leaves it where it is.
     ///
     /// Errors: [`Error::Range`] for another number of weights; [`Error::NoSamples`] where every importance and the uniform
     /// fraction are 0.
@@ -119,10 +119,15 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         index: &mut [u32],
         weight: Option<&mut [f32]>,
     ) -> Result<(), Error> {
-        self.draw_mixture::<K>(&self.mixture()?, f64::from(self.state.items), rng, index, weight)
+        check_lengths(index, &weight)?;
+        if index.is_empty() {
+            return Ok(());
+        }
+        self.draw_mixture::<K>(&self.mixture()?, f64::from(self.state.items), rng, index, weight);
+        Ok(())
     }
 
-    /// As [`Table::draw`], for a mixture of its own; weights are 1 / (`factor` p).
+    /// As [`Table::draw`], for a mixture of its own and checked lengths; weights are 1 / (`factor` p).
     #[inline(always)]
     pub(super) fn draw_mixture<K: Kernel>(
         &self,
@@ -131,11 +136,9 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         rng: &mut Rng,
         index: &mut [u32],
         weight: Option<&mut [f32]>,
-    ) -> Result<(), Error> {
-        check_lengths(index, &weight)?;
+    ) {
         let seed = rng.next_u64();
         self.draw_at::<K>(mixture, factor, index, weight, |k| noise(seed, k));
-        Ok(())
     }
 
     /// As [`Table::draw`], from as many equal parts of the line of probabilities as there are draws: item i comes B p_i times,
@@ -156,8 +159,11 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         index: &mut [u32],
         weight: Option<&mut [f32]>,
     ) -> Result<(), Error> {
-        let mixture = self.mixture()?;
         check_lengths(index, &weight)?;
+        if index.is_empty() {
+            return Ok(());
+        }
+        let mixture = self.mixture()?;
         let seed = rng.next_u64();
         let width = u64::MAX / (index.len() as u64).max(1);
         self.draw_at::<K>(&mixture, f64::from(self.state.items), index, weight, |k| {

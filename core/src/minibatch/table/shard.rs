@@ -118,6 +118,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         index: &mut [u32],
         weight: Option<&mut [f32]>,
     ) -> Result<(), Error> {
+        check_lengths(index, &weight)?;
         if !all.importance.is_finite() {
             return Err(Error::NotFinite);
         }
@@ -127,12 +128,15 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         }
         let (tree, uniform) = own.ways(all, f64::from(self.state.uniform_fraction))?;
         let share = tree + uniform;
+        // What `allocate` asks of a table from which nothing can be drawn.
+        if index.is_empty() {
+            return Ok(());
+        }
         if share <= 0.0 {
-            // What `allocate` asks of such a table.
-            check_lengths(index, &weight)?;
-            return if index.is_empty() { Ok(()) } else { Err(Error::NoSamples) };
+            return Err(Error::NoSamples);
         }
         let mixture = Mixture::of(self.sum(), self.state.items, uniform / share)?;
-        self.draw_mixture::<Portable>(&mixture, share * all.items as f64, rng, index, weight)
+        self.draw_mixture::<Portable>(&mixture, share * all.items as f64, rng, index, weight);
+        Ok(())
     }
 }

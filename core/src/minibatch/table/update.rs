@@ -67,6 +67,9 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         if importance.len() > room {
             return Err(Error::Memory);
         }
+        if importance.is_empty() {
+            return Ok(());
+        }
         let first = self.state.items;
         self.state.items += importance.len() as u32;
         if importance.len() >= first as usize / ARITY {
