@@ -1,15 +1,13 @@
 //! The tests of `examples_c/fit_polynomial.c` and `examples_c/fit_image.cpp`: short runs, and what they say to bad options and
 //! bad files.
 
-use crate::c_tests::{SANITIZERS, has_sanitizers, output};
+use crate::c_tests::output;
 use crate::test::Outcome;
-use crate::{paths, run};
+use crate::trainer::{Program, text, without_seconds};
 use anyhow::{Context, Result, bail};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Stdio;
+use std::path::Path;
 
-const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-Iinclude"];
 const PHOTOGRAPH: &str = "examples_c/data/house_cat.ppm";
 
 pub(crate) fn polynomial(archive: &Path) -> Result<Outcome> {
@@ -150,10 +148,6 @@ fn refuses_pictures(program: &Program) -> Result<()> {
     Ok(())
 }
 
-fn text(path: &Path) -> Result<&str> {
-    path.to_str().with_context(|| format!("{} is not Unicode", path.display()))
-}
-
 /// The number behind `start` in the line that begins with it.
 fn value(csv: &str, start: &str) -> Result<f64> {
     let rest = csv.lines().find_map(|line| line.strip_prefix(start));
@@ -163,63 +157,4 @@ fn value(csv: &str, start: &str) -> Result<f64> {
         bail!("`{start}` is {number}");
     }
     Ok(number)
-}
-
-/// All columns but the fourth.
-fn without_seconds(csv: &str) -> Vec<Vec<&str>> {
-    csv.lines()
-        .map(|line| line.split(',').enumerate().filter(|&(column, _)| column != 3).map(|(_, cell)| cell).collect())
-        .collect()
-}
-
-struct Program {
-    name: &'static str,
-    path: PathBuf,
-}
-
-impl Program {
-    fn compile(
-        name: &'static str,
-        extension: &str,
-        executable: &str,
-        options: &[&str],
-        archive: &Path,
-    ) -> Result<Self> {
-        let path = output(executable)?;
-        let (variable, default, standard) =
-            if extension == "c" { ("CC", "cc", "-std=c99") } else { ("CXX", "c++", "-std=c++17") };
-        let source = paths::root().join("examples_c").join(name).with_extension(extension);
-        let mut compiler = run::compiler(variable, default);
-        compiler.arg(standard).args(STRICT).args(options).arg(source).arg(archive).args(["-lm", "-o"]).arg(&path);
-        run::check(&mut compiler)?;
-        Ok(Self { name, path })
-    }
-
-    /// None: the compiler has no sanitizers.
-    fn sanitized(name: &'static str, extension: &str, archive: &Path) -> Result<Option<Self>> {
-        if !has_sanitizers()? {
-            return Ok(None);
-        }
-        println!("   under the sanitizers");
-        let executable = format!("{name}_sanitized");
-        Self::compile(name, extension, &executable, &[&["-O1"], &SANITIZERS[..]].concat(), archive).map(Some)
-    }
-
-    /// Runs to the end; returns the CSV.
-    fn run(&self, arguments: &[&str]) -> Result<String> {
-        run::read(run::command(&self.path).args(arguments).stderr(Stdio::null()))
-    }
-
-    /// Fails unless the program exits as programs do after an error, with a message that contains `word`.
-    fn refuses(&self, arguments: &[&str], word: &str) -> Result<()> {
-        let mut command = run::command(&self.path);
-        let output = command.args(arguments).stdin(Stdio::null()).output().context("cannot start the program")?;
-        let message = String::from_utf8_lossy(&output.stderr);
-        let last = message.lines().last().unwrap_or_default();
-        let start = format!("{}: ", self.name);
-        if output.status.code() != Some(1) || !last.starts_with(&start) || !last.contains(word) {
-            bail!("`{}`: {}, and it says `{}`", arguments.join(" "), output.status, message.trim());
-        }
-        Ok(())
-    }
 }

@@ -12,6 +12,7 @@ mod test;
 mod tiles;
 mod tools;
 mod train_mlp;
+mod trainer;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

@@ -1,30 +1,24 @@
 //! The test of `examples_c/train_mlp.c`: every mode on the small digits, and what it says to bad options and bad files.
 
-use crate::c_tests::{SANITIZERS, has_sanitizers, output};
+use crate::c_tests::output;
+use crate::paths;
 use crate::test::Outcome;
-use crate::{paths, run};
+use crate::trainer::{Program, text, without_seconds};
 use anyhow::{Context, Result, bail};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Stdio;
+use std::path::Path;
 
-const STRICT: [&str; 6] = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-Iinclude"];
 const DATA: &str = "examples_c/data/digits";
 const MODES: &str = "uniform,importance,adaptive,balance,omis";
-/// After 15 epochs: .06 to .10, and once .14 (adaptive, SGD). After none: about .9.
+/// After 15 epochs, of 20 seeds: at most .15 (adaptive, SGD; at a rate of .05 it is erratic and reaches .24). After none: about .9.
 const ERROR_BOUND: f64 = 0.2;
 
 pub(crate) fn digits(archive: &Path) -> Result<Outcome> {
-    let trainer = Trainer::compile("train_mlp", &["-O2"], archive)?;
+    let trainer = Program::compile("train_mlp", "c", "train_mlp", &["-O2"], archive)?;
     learns(&trainer)?;
     variances(&trainer)?;
-    let sanitized = if has_sanitizers()? {
-        Some(Trainer::compile("train_mlp_sanitized", &[&["-O1"], &SANITIZERS[..]].concat(), archive)?)
-    } else {
-        None
-    };
+    let sanitized = Program::sanitized("train_mlp", "c", archive)?;
     if let Some(trainer) = &sanitized {
-        println!("   under the sanitizers");
         // Small: it is memory that is looked at, and slowly.
         let small = ["--data", DATA, "--hidden", "9,6", "--epochs", "2", "--modes", MODES];
         trainer.run(&[&small[..], &["--rows", "3", "--epsilon", "0.001", "--stratified"]].concat())?;
@@ -35,9 +29,9 @@ pub(crate) fn digits(archive: &Path) -> Result<Outcome> {
 }
 
 /// Every mode learns, with both optimisers; the same seed gives the same numbers.
-fn learns(trainer: &Trainer) -> Result<()> {
+fn learns(trainer: &Program) -> Result<()> {
     let adam = ["--data", DATA, "--modes", MODES, "--epochs", "15", "--seeds", "2"];
-    let sgd = [&adam[..], &["--optimizer", "sgd", "--rate", "0.05", "--stratified", "--epsilon", "1e-4"]].concat();
+    let sgd = [&adam[..], &["--optimizer", "sgd", "--rate", "0.02", "--stratified", "--epsilon", "1e-4"]].concat();
     for arguments in [&adam[..], &sgd] {
         let csv = trainer.run(arguments)?;
         if csv.lines().count() != 1 + 5 * 2 * 16 {
@@ -45,7 +39,7 @@ fn learns(trainer: &Trainer) -> Result<()> {
         }
         // The second seed's rows, whatever came before them, and however fast.
         let again = trainer.run(&[arguments, &["--seed", "2", "--seeds", "1"]].concat())?;
-        let second = without_seconds(&csv).into_iter().filter(|row| row.split(',').nth(1) != Some("1"));
+        let second = without_seconds(&csv).into_iter().filter(|row| row.get(1) != Some(&"1"));
         if !second.eq(without_seconds(&again)) {
             bail!("the same seed gave other numbers");
         }
@@ -62,7 +56,7 @@ fn learns(trainer: &Trainer) -> Result<()> {
 }
 
 /// The table of variances is complete, and importance lowers the variance.
-fn variances(trainer: &Trainer) -> Result<()> {
+fn variances(trainer: &Program) -> Result<()> {
     let path = output("train_mlp.csv")?;
     let small = ["--data", DATA, "--hidden", "32,16", "--rate", "0.005", "--epochs", "6"];
     trainer.run(&[&small[..], &["--variance", text(&path)?]].concat())?;
@@ -88,7 +82,7 @@ fn variances(trainer: &Trainer) -> Result<()> {
 }
 
 /// Options and files that are wrong: an error that names them, and nothing worse.
-fn refuses(trainer: &Trainer) -> Result<()> {
+fn refuses(trainer: &Program) -> Result<()> {
     let wrong: [(&[&str], &str); 15] = [
         (&[], "--data"),
         (&["--data"], "--data"),
@@ -153,19 +147,6 @@ fn copy_digits(folder: &Path) -> Result<()> {
     copy().with_context(|| format!("cannot copy {DATA} to {}", folder.display()))
 }
 
-fn text(path: &Path) -> Result<&str> {
-    path.to_str().with_context(|| format!("{} is not Unicode", path.display()))
-}
-
-/// All columns but the fifth.
-fn without_seconds(csv: &str) -> Vec<String> {
-    let keep = |line: &str| {
-        let cells = line.split(',').enumerate().filter(|&(column, _)| column != 4);
-        cells.map(|(_, cell)| cell).collect::<Vec<_>>().join(",")
-    };
-    csv.lines().map(keep).collect()
-}
-
 fn last_error(csv: &str, mode: &str, seed: &str) -> Result<f64> {
     let start = format!("{mode},{seed},");
     let line = csv.lines().rfind(|line| line.starts_with(&start));
@@ -175,39 +156,3 @@ fn last_error(csv: &str, mode: &str, seed: &str) -> Result<f64> {
 
 /// A change of a file's bytes.
 type Damage = fn(&mut Vec<u8>);
-
-struct Trainer {
-    program: PathBuf,
-}
-
-impl Trainer {
-    fn compile(name: &str, options: &[&str], archive: &Path) -> Result<Self> {
-        let program = output(name)?;
-        let mut compiler = run::compiler("CC", "cc");
-        compiler
-            .args(STRICT)
-            .args(options)
-            .arg("examples_c/train_mlp.c")
-            .arg(archive)
-            .args(["-lm", "-o"])
-            .arg(&program);
-        run::check(&mut compiler)?;
-        Ok(Self { program })
-    }
-
-    /// Runs to the end; returns the CSV.
-    fn run(&self, arguments: &[&str]) -> Result<String> {
-        run::read(run::command(&self.program).args(arguments))
-    }
-
-    /// Fails unless the trainer exits as programs do after an error, with a message that contains `word`.
-    fn refuses(&self, arguments: &[&str], word: &str) -> Result<()> {
-        let mut command = run::command(&self.program);
-        let output = command.args(arguments).stdin(Stdio::null()).output().context("cannot start the trainer")?;
-        let message = String::from_utf8_lossy(&output.stderr);
-        if output.status.code() != Some(1) || !message.starts_with("train_mlp: ") || !message.contains(word) {
-            bail!("`{}`: {}, and it says `{}`", arguments.join(" "), output.status, message.trim());
-        }
-        Ok(())
-    }
-}
