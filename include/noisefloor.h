@@ -790,8 +790,8 @@ typedef struct nf_table {
     uint32_t blocks;
     // The part of draws that are uniform.
     float uniform_fraction;
-    // Zero.
-    uint32_t reserved;
+    // Says that this is a table.
+    uint32_t magic;
 } nf_table;
 
 // The bytes of memory a table of so many items needs, at most 4.6 for each and a few hundred; 0 for 0 items or a size that no
@@ -830,10 +830,13 @@ nf_status nf_table_draw_stratified(const nf_table *table,
                                    uint32_t *index,
                                    float *weight);
 
-// Draws `batch` different items, without replacement. Weights make the same estimate as nf_table_draw's, without bias
-// (Raj 1956): (1 / c_k + batch - k) / N, c_k the probability that the k-th item had among those left.
+// Draws `batch` different items, without replacement, the k-th being item i with probability
+//     c_i = ((1 - d) q_i / sum q + d / N) / (1 - d (k - 1) / N),
+// the sum being that of the items not yet drawn, and d the uniform fraction (1 where that sum is 0). Weights make the same
+// estimate as nf_table_draw's, without bias (Raj 1956): (1 / c_k + batch - k) / N for the k-th item.
 //
-// The table is the same afterwards, but is written meanwhile.
+// The table is the same afterwards, but is written meanwhile. A draw takes the time of some ten updates; where a few items have
+// nearly all of the sum the table is built again without them, which takes time for every item.
 //
 // Other arguments and errors as for nf_table_draw; NF_ERR_RANGE: more than there are items; NF_ERR_NO_SAMPLES also where the
 // uniform fraction is 0 and fewer items have an importance above 0.
@@ -951,7 +954,8 @@ nf_status nf_shards_allocate(const nf_shard *shard,
 //
 // All tables must have the same uniform fraction; batch is what nf_shards_allocate gave to this process.
 //
-// Other arguments and errors as for nf_table_draw and nf_shards_allocate; NF_ERR_RANGE: the shards together have less than this table.
+// Other arguments and errors as for nf_table_draw and nf_shards_allocate; NF_ERR_RANGE: the shards together have
+// less than this table. A table must not have changed since its nf_shard was made. Where the others dwarf it a weight may be infinite.
 nf_status nf_table_draw_shard(const nf_table *table,
                               const nf_shard *shard,
                               uint32_t shards,
@@ -1038,7 +1042,7 @@ nf_status nf_importance_nodes(const float *gradient,
 // ridge: for NF_OMIS_RIDGE, 1e-8..1e8, or 0 for the default .03; otherwise ignored.
 // techniques: J in 1..NF_MIS_MAX_TECHNIQUES. items: N, the size of the data set, at least 1.
 // pdf[batch * techniques]: at s * techniques + j the probability with which technique j draws the item of sample s;
-// each technique's sum to 1 over the items. Finite and at least 0, positive for the technique that drew it. Those of
+// each technique's sum to 1 over the items. Finite, at least 0 and at most 1, positive for the technique that drew it. Those of
 // before the batch was drawn: tables may be updated meanwhile.
 // technique[batch]: which technique drew sample s. Their numbers n_j are counted from it; a technique that drew
 // nothing has no part in the weights.

@@ -20,7 +20,7 @@ mod linked {
         items: u32,
         blocks: u32,
         uniform_fraction: f32,
-        reserved: u32,
+        magic: u32,
     }
 
     /// `nf_rng`.

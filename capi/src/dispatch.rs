@@ -1,10 +1,12 @@
 //! Choosing, at run time, code for the vector units that the processor has.
 //!
-//! Every version is the same Rust code, compiled for more registers. No operation is fused or reordered, so all return
-//! the same bits. This is the only file that calls code for a feature the build does not assume.
+//! Every version is the same Rust code, compiled for more registers, but for the inner operations of tables, which
+//! [`avx2`](crate::avx2) writes out. No operation is fused or reordered, so all return the same bits. Code for a feature that the
+//! build does not assume is entered here alone.
 
 use noisefloor_core::Error;
 use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Samples};
+use noisefloor_core::minibatch::table::Shard;
 use noisefloor_core::minibatch::{Batch, Gradient};
 use noisefloor_core::mis::Solver;
 use noisefloor_core::rng::Rng;
@@ -65,6 +67,37 @@ pub(crate) fn table_draw_stratified(
         return unsafe { x86::table_draw_stratified(table, rng, index, weight) };
     }
     table.draw_stratified(rng, index, weight)
+}
+
+/// [`Reader::draw_shard`].
+pub(crate) fn table_draw_shard(
+    table: &Reader<'_>,
+    all: &Shard,
+    rng: &mut Rng,
+    index: &mut [u32],
+    weight: Option<&mut [f32]>,
+) -> Result<(), Error> {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        // SAFETY: as above.
+        return unsafe { x86::table_draw_shard(table, all, rng, index, weight) };
+    }
+    table.draw_shard(all, rng, index, weight)
+}
+
+/// [`Writer::draw_distinct`].
+pub(crate) fn table_draw_distinct(
+    table: &mut Writer<'_>,
+    rng: &mut Rng,
+    index: &mut [u32],
+    weight: Option<&mut [f32]>,
+) -> Result<(), Error> {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        // SAFETY: as above.
+        return unsafe { x86::table_draw_distinct(table, rng, index, weight) };
+    }
+    table.draw_distinct(rng, index, weight)
 }
 
 /// [`Writer::update`].
@@ -157,6 +190,27 @@ mod x86 {
         weight: Option<&mut [f32]>,
     ) -> Result<(), Error> {
         table.draw_stratified_by::<Avx2>(rng, index, weight)
+    }
+
+    #[target_feature(enable = "avx2,popcnt")]
+    pub(super) fn table_draw_shard(
+        table: &Reader<'_>,
+        all: &Shard,
+        rng: &mut Rng,
+        index: &mut [u32],
+        weight: Option<&mut [f32]>,
+    ) -> Result<(), Error> {
+        table.draw_shard_by::<Avx2>(all, rng, index, weight)
+    }
+
+    #[target_feature(enable = "avx2,popcnt")]
+    pub(super) fn table_draw_distinct(
+        table: &mut Writer<'_>,
+        rng: &mut Rng,
+        index: &mut [u32],
+        weight: Option<&mut [f32]>,
+    ) -> Result<(), Error> {
+        table.draw_distinct_by::<Avx2>(rng, index, weight)
     }
 
     #[target_feature(enable = "avx2,popcnt")]

@@ -235,7 +235,7 @@ pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis
 /// ridge: for NF_OMIS_RIDGE, 1e-8..1e8, or 0 for the default .03; otherwise ignored.
 /// techniques: J in 1..NF_MIS_MAX_TECHNIQUES. items: N, the size of the data set, at least 1.
 /// pdf[batch * techniques]: at s * techniques + j the probability with which technique j draws the item of sample s;
-/// each technique's sum to 1 over the items. Finite and at least 0, positive for the technique that drew it. Those of
+/// each technique's sum to 1 over the items. Finite, at least 0 and at most 1, positive for the technique that drew it. Those of
 /// before the batch was drawn: tables may be updated meanwhile.
 /// technique[batch]: which technique drew sample s. Their numbers n_j are counted from it; a technique that drew
 /// nothing has no part in the weights.

@@ -1,6 +1,7 @@
 //! Tables of several processes, drawn as one; and shuffling.
 
 use crate::convert;
+use crate::dispatch;
 use crate::rng::{self, nf_rng};
 use crate::status::*;
 use crate::table::{nf_table, open, weights};
@@ -70,7 +71,8 @@ pub unsafe extern "C" fn nf_shards_allocate(
 ///
 /// All tables must have the same uniform fraction; batch is what nf_shards_allocate gave to this process.
 ///
-/// Other arguments and errors as for nf_table_draw and nf_shards_allocate; NF_ERR_RANGE: the shards together have less than this table.
+/// Other arguments and errors as for nf_table_draw and nf_shards_allocate; NF_ERR_RANGE: the shards together have
+/// less than this table. A table must not have changed since its nf_shard was made. Where the others dwarf it a weight may be infinite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_draw_shard(
     table: *const nf_table,
@@ -88,7 +90,7 @@ pub unsafe extern "C" fn nf_table_draw_shard(
             let table = open(table)?;
             let all = Shard::sum(shared(convert::slice(shard, shards as usize)?)).map_err(status_of)?;
             let (index, weight) = (convert::slice_mut(index, batch as usize)?, weights(weight, batch)?);
-            rng::try_with(rng, |rng| table.draw_shard(&all, rng, index, weight).map_err(status_of))
+            rng::try_with(rng, |rng| dispatch::table_draw_shard(&table, &all, rng, index, weight).map_err(status_of))
         }
     })())
 }

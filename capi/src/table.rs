@@ -30,10 +30,12 @@ pub struct nf_table {
     pub blocks: u32,
     /// The part of draws that are uniform.
     pub uniform_fraction: f32,
-    /// Zero.
-    pub reserved: u32,
+    /// Says that this is a table.
+    pub magic: u32,
 }
 
+/// "nf_t", read on a little-endian machine.
+const MAGIC: u32 = u32::from_le_bytes(*b"nf_t");
 /// A block of items is a cache line, and starts where one does.
 const ALIGNMENT: usize = 64;
 /// What aligning memory that is aligned to 8 bytes takes at most.
@@ -138,10 +140,13 @@ pub unsafe extern "C" fn nf_table_draw_stratified(
     unsafe { draw(table, rng, batch, index, weight, dispatch::table_draw_stratified) }
 }
 
-/// Draws `batch` different items, without replacement. Weights make the same estimate as nf_table_draw's, without bias
-/// (Raj 1956): (1 / c_k + batch - k) / N, c_k the probability that the k-th item had among those left.
+/// Draws `batch` different items, without replacement, the k-th being item i with probability
+///     c_i = ((1 - d) q_i / sum q + d / N) / (1 - d (k - 1) / N),
+/// the sum being that of the items not yet drawn, and d the uniform fraction (1 where that sum is 0). Weights make the same
+/// estimate as nf_table_draw's, without bias (Raj 1956): (1 / c_k + batch - k) / N for the k-th item.
 ///
-/// The table is the same afterwards, but is written meanwhile.
+/// The table is the same afterwards, but is written meanwhile. A draw takes the time of some ten updates; where a few items have
+/// nearly all of the sum the table is built again without them, which takes time for every item.
 ///
 /// Other arguments and errors as for nf_table_draw; NF_ERR_RANGE: more than there are items; NF_ERR_NO_SAMPLES also where the
 /// uniform fraction is 0 and fewer items have an importance above 0.
@@ -158,7 +163,9 @@ pub unsafe extern "C" fn nf_table_draw_distinct(
         let (mut opened, index, weight) =
             unsafe { (open_mut(table)?, convert::slice_mut(index, batch as usize)?, weights(weight, batch)?) };
         // SAFETY: as above.
-        unsafe { rng::try_with(rng, |rng| opened.draw_distinct(rng, index, weight).map_err(status_of)) }
+        unsafe {
+            rng::try_with(rng, |rng| dispatch::table_draw_distinct(&mut opened, rng, index, weight).map_err(status_of))
+        }
         // What it changes it changes back: the struct stays as it is.
     })())
 }
@@ -242,21 +249,29 @@ pub unsafe extern "C" fn nf_table_probabilities(
     status((|| {
         // SAFETY: the caller passes a table that no one writes meanwhile, and `count` items.
         let (table, index) = unsafe { (open(table)?, convert::slice(index, count as usize)?) };
-        let len = match count.checked_sub(1) {
-            Some(last) => convert::product(last as usize, stride as usize)?.checked_add(1).ok_or(NF_ERR_RANGE)?,
-            None => 0,
-        };
-        if p.is_null() && len > 0 {
+        let Some(last) = count.checked_sub(1) else { return Ok(()) };
+        if p.is_null() {
             return Err(NF_ERR_NULL);
         }
-        table.check_items(index).map_err(status_of)?;
-        if stride == 0 {
+        if !p.is_aligned() {
+            return Err(NF_ERR_ALIGNMENT);
+        }
+        let bytes = convert::product(last as usize, stride as usize)?.checked_mul(size_of::<f32>());
+        if stride == 0 || bytes.is_none_or(|bytes| bytes >= isize::MAX as usize) {
             return Err(NF_ERR_RANGE);
         }
-        // SAFETY: the caller passes room for the last of them. Elements between may be uninitialised: they are neither read
-        // nor written.
-        let p = unsafe { convert::slice_mut(p, len) }?;
-        table.probabilities(index, stride as usize, p).map_err(status_of)
+        table.check_items(index).map_err(status_of)?;
+        let mut place = p;
+        for index in index.chunks(64) {
+            let mut probability = [0.0; 64];
+            table.probabilities(index, 1, &mut probability).map_err(status_of)?;
+            for &value in probability.iter().take(index.len()) {
+                // SAFETY: the caller passes room for the last of them. Those between are another's: no slice may cover them.
+                unsafe { place.write(value) };
+                place = place.wrapping_add(stride as usize);
+            }
+        }
+        Ok(())
     })())
 }
 
@@ -413,7 +428,7 @@ fn state(table: &nf_table) -> State {
 
 /// How many importances and sums a table's memory has.
 fn lengths(table: &nf_table) -> Result<(usize, usize), nf_status> {
-    if table.importance.is_null() || table.blocks > MAX_BLOCKS {
+    if table.magic != MAGIC || table.importance.is_null() || table.blocks > MAX_BLOCKS {
         return Err(NF_ERR_STATE);
     }
     let (importance, sums) = parts(table.blocks).ok_or(NF_ERR_STATE)?;
@@ -484,7 +499,7 @@ unsafe fn put(table: *mut nf_table, memory: *mut c_void, blocks: u32, state: Sta
         items: state.items,
         blocks,
         uniform_fraction: state.uniform_fraction,
-        reserved: 0,
+        magic: MAGIC,
     };
     // SAFETY: passed on to the caller.
     unsafe { convert::write(table, made) }

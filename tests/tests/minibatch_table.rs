@@ -277,3 +277,28 @@ fn damaged_bytes_are_refused() {
     assert_eq!(small, Err(Error::Memory));
     assert_eq!(saved_items(&good[..15]), Err(Error::Length));
 }
+
+/// A sign stands for items that are taken out: none may come in from outside.
+#[test]
+fn zeros_have_no_sign() {
+    let mut table = table(&[1.0, 2.0, 3.0], 0.2);
+    table.update(&[0, 1], &[-0.0, -0.0], -0.0).unwrap();
+    assert!(table.importance(0).is_sign_positive() && table.importance(1).is_sign_positive());
+    assert_eq!(check_saved(&saved(&table)), Ok(3));
+    let mut index = [0; 3];
+    table.draw_distinct(&mut Rng::seed(1), &mut index, None).unwrap();
+    index.sort_unstable();
+    assert_eq!(index, [0, 1, 2]);
+}
+
+/// More memory of one kind than of the other is no reason to refuse.
+#[test]
+fn memory_need_not_match() {
+    let made = |importance, sums| Table::new(vec![0.0; importance], vec![0; sums], 1000, None).map(|t| t.capacity());
+    let (importance, sums) = (importance_len(1000), sums_len(1000));
+    assert_eq!(made(importance, sums), Ok(1008));
+    // Sums of one node more than the 63 blocks of 1000 items need are still those of at most 64 blocks.
+    assert_eq!(made(2000, sums), Ok(1024));
+    assert_eq!(made(importance, 4000), Ok(1008));
+    assert_eq!(made(importance, sums - 1), Err(Error::Memory));
+}

@@ -114,7 +114,7 @@ fn few_items() {
     }
 }
 
-/// In a stratified batch an item comes B p times, rounded up or down for each of the two ways to it.
+/// In a stratified batch an item comes B p times, give or take less than two for each of the two ways to it.
 #[test]
 fn stratified_batches_hold_what_they_should() {
     for (name, importance) in families(1000, 13) {

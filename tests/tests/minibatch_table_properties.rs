@@ -42,7 +42,7 @@ fn fraction() -> impl Strategy<Value = f32> {
 fn operation() -> impl Strategy<Value = Operation> {
     let draws = || prop_oneof![1_usize..5, 60_usize..70, Just(0), 1_usize..300];
     let items = prop::collection::vec((any::<u16>(), any_importance()), 0..150);
-    let momentum = prop_oneof![4 => Just(0.0_f32), 4 => Just(0.3), 1 => Just(1.0), 1 => 0.0_f32..1.0, 1 => Just(1.1)];
+    let momentum = prop_oneof![3 => Just(0.0_f32), 1 => Just(-0.0_f32), 4 => Just(0.3), 1 => Just(1.0), 1 => 0.0_f32..1.0, 1 => Just(1.1)];
     prop_oneof![
         4 => (draws(), any::<bool>()).prop_map(|(draws, stratified)| Operation::Draw { draws, stratified }),
         2 => draws().prop_map(|draws| Operation::Distinct { draws }),
@@ -89,7 +89,7 @@ impl Model {
                 }
                 for (item, new) in self.items(items) {
                     let old = &mut self.q[item as usize];
-                    *old = (momentum * *old + (1.0 - momentum) * new).min(f32::MAX);
+                    *old = ((momentum + 0.0) * *old + (1.0 - momentum) * new + 0.0).min(f32::MAX);
                 }
             }
             Operation::Append(values) => {

@@ -15,13 +15,17 @@ pub struct Batch<'a> {
     technique: &'a [u32],
 }
 
+/// A probability of 1 with room for rounding: what is above is no probability, but a weight or a density.
+const LARGEST: f32 = 1.001;
+
 impl<'a> Batch<'a> {
     /// Checks a minibatch of `technique.len()` drawn items.
     ///
     /// - `items`: N, the size of the data set, at least 1.
     /// - `techniques`: J in 1..=16.
     /// - `pdf[s * J + j]`: the probability with which technique j draws the item of sample s; over the N items each
-    ///   technique's probabilities sum to 1. Finite and at least 0; positive for the technique that drew it.
+    ///   technique's probabilities sum to 1. Finite, at least 0 and, but for rounding, at most 1; positive for the technique
+    ///   that drew it.
     /// - `technique[s]`: the one that drew it, below J. n_j is the number of its samples; one that drew nothing has no
     ///   part in the batch, whatever its probabilities.
     ///
@@ -46,7 +50,9 @@ impl<'a> Batch<'a> {
             let Some(count) = counts.get_mut(own as usize).filter(|_| drawn) else { return Err(Error::Range) };
             *count += 1.0;
         }
-        if pdf.iter().any(|&p| p < 0.0) {
+        let most = counts.map(|count| if count > 0.0 { LARGEST } else { f32::MAX });
+        let rows = pdf.chunks_exact(techniques);
+        if !rows.flat_map(|p| p.iter().zip(&most)).all(|(p, most)| (0.0..=*most).contains(p)) {
             return Err(Error::Range);
         }
         Ok(Batch { items: items.into(), techniques, counts, pdf, technique })

@@ -1,24 +1,35 @@
 //! Drawing without replacement.
 
 use super::draw::check_lengths;
-use super::{Portable, Table};
+use super::{Kernel, Portable, Table};
 use crate::Error;
 use crate::rng::Rng;
 
 impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S> {
-    /// Draws different items, one after the other, each with the probabilities of [`Table::draw`] among those not yet drawn.
+    /// Draws different items, one after the other. The k-th is item i with probability
+    ///
+    /// `c_i = ((1 - d) q_i / sum q + d / N) / (1 - d (k - 1) / N)`,
+    ///
+    /// the sum being that of the items not yet drawn, and d the uniform fraction (1 if that sum is 0).
     ///
     /// Weights make the same estimate as those of [`Table::draw`], gradients times weights averaged over the batch, without
-    /// bias: with c_k the probability that the k-th of B draws had among those left, `weight = (1 / c_k + B - k) / N`
-    /// (D. Raj, "Some Estimators in Sampling with Varying Probabilities without Replacement", 1956). The whole data set as
-    /// one batch gives the exact mean in the last draw's estimate, not in their average.
+    /// bias: with c_k the probability of the k-th of B draws, `weight = (1 / c_k + B - k) / N` (D. Raj, "Some Estimators in Sampling with
+    /// Varying Probabilities without Replacement", 1956).
     ///
-    /// Items drawn are taken out of the table while the others are drawn, and put back with the same bits: this takes the time of
-    /// three updates for each, and exclusive access.
+    /// Items drawn are taken out of the table while the others are drawn, and put back with the same bits: a draw takes the time
+    /// of ten updates or so, and exclusive access. Where a few items have nearly all of the sum, the table is built again without
+    /// them, which takes time for every item.
     ///
-    /// Errors, which change nothing but the generator: [`Error::Range`] for more draws than items, or another number of
+    /// Errors, which change nothing: [`Error::Range`] for more draws than items, or another number of
     /// weights; [`Error::NoSamples`] where the uniform fraction is 0 and fewer items have an importance above 0.
-    pub fn draw_distinct(
+    #[inline(always)]
+    pub fn draw_distinct(&mut self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
+        self.draw_distinct_by::<Portable>(rng, index, weight)
+    }
+
+    /// [`Table::draw_distinct`] by another [`Kernel`]: the same bits.
+    #[inline(always)]
+    pub fn draw_distinct_by<K: Kernel>(
         &mut self,
         rng: &mut Rng,
         index: &mut [u32],
@@ -40,7 +51,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
             let Ok(mixture) = self.mixture() else { break };
             let mut item = [0];
             loop {
-                self.draw_mixture::<Portable>(&mixture, 1.0, rng, &mut item, None);
+                self.draw_mixture::<K, 1>(&mixture, 1.0, rng, &mut item, None);
                 // What has been taken is met by a uniform draw only.
                 if !self.is_taken(item[0]) {
                     break;
@@ -55,12 +66,12 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
                 *out = item[0];
             }
             self.turn(item[0]);
-            self.refresh(item[0]);
+            self.refresh::<K>(item[0]);
         }
         for &item in index.iter() {
             self.turn(item);
             if self.state.scale == scale {
-                self.refresh(item);
+                self.refresh::<K>(item);
             }
         }
         if self.state.scale != scale {

@@ -6,7 +6,7 @@ use crate::rng::Rng;
 use core::num::NonZeroU128;
 
 /// How many draws go down the tree together: enough to hide the latency of memory, few enough for the first cache.
-const CHUNK: usize = 64;
+pub(super) const CHUNK: usize = 64;
 /// How many nodes the first cache holds beside what else a draw needs.
 const NEAR: usize = 128;
 
@@ -49,22 +49,25 @@ impl Mixture {
         let uniform = if self.uniform < 1.0 { (self.uniform * TWO_64) as u128 } else { 1 << 64 };
         Ways {
             last_uniform: uniform.checked_sub(1).map(|last| last as u64),
-            item: Scale::new(uniform, u64::from(self.items)),
-            weight: Scale::new((1 << 64) - uniform, self.sum as u64),
+            scales: [
+                Scale::new(uniform as u64, (1 << 64) - uniform, self.sum as u64),
+                Scale::new(0, uniform, u64::from(self.items)),
+            ],
         }
     }
 }
 
 /// 64 random bits choose the way, and what remains of them the place.
 struct Ways {
-    /// Draws of at most this are uniform, over the items; those above go by the tree, over the sum of its weights.
+    /// Draws of at most this are uniform; those above go by the tree.
     last_uniform: Option<u64>,
-    item: Scale,
-    weight: Scale,
+    /// Over the sum of the tree's weights, and, uniformly, over the items.
+    scales: [Scale; 2],
 }
 
-/// Maps a number below a span to one below n, and what is left to a fraction.
+/// Maps the numbers of a span to those below n, and what is left to a fraction.
 struct Scale {
+    first: u64,
     left: u32,
     factor: u64,
     right: u32,
@@ -72,9 +75,9 @@ struct Scale {
 }
 
 impl Scale {
-    /// For a span of at most 2^64, and n below 2^63.
-    fn new(span: u128, n: u64) -> Scale {
-        let Some(last) = span.checked_sub(1) else { return Scale { left: 0, factor: 0, right: 0, last: 0 } };
+    /// For a span of at most 2^64 numbers from `first` on, and n below 2^63.
+    fn new(first: u64, span: u128, n: u64) -> Scale {
+        let Some(last) = span.checked_sub(1) else { return Scale { first, left: 0, factor: 0, right: 0, last: 0 } };
         // The span stretched to between 2^63 and 2^64, and n likewise, so that the factor has 62 bits however small n is.
         let left = (last as u64).leading_zeros().min(63);
         let stretched = NonZeroU128::new(span << left).unwrap_or(NonZeroU128::MAX);
@@ -82,13 +85,14 @@ impl Scale {
         // Rounded up, so that the last number is reached.
         let factor = (u128::from(n << right) << 64) / stretched + 1;
         let factor = u64::try_from(factor).unwrap_or(u64::MAX);
-        Scale { left, factor, right, last: n.saturating_sub(1) }
+        Scale { first, left, factor, right, last: n.saturating_sub(1) }
     }
 
     /// The place, and the bits behind its point.
     #[inline(always)]
     fn map(&self, x: u64) -> (u64, u64) {
-        let product = (u128::from(x << self.left) * u128::from(self.factor)) >> (self.right % 64);
+        let product =
+            (u128::from(x.wrapping_sub(self.first) << self.left) * u128::from(self.factor)) >> (self.right % 64);
         (((product >> 64) as u64).min(self.last), product as u64)
     }
 }
@@ -123,13 +127,13 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         if index.is_empty() {
             return Ok(());
         }
-        self.draw_mixture::<K>(&self.mixture()?, f64::from(self.state.items), rng, index, weight);
+        self.draw_mixture::<K, CHUNK>(&self.mixture()?, f64::from(self.state.items), rng, index, weight);
         Ok(())
     }
 
     /// As [`Table::draw`], for a mixture of its own and checked lengths; weights are 1 / (`factor` p).
     #[inline(always)]
-    pub(super) fn draw_mixture<K: Kernel>(
+    pub(super) fn draw_mixture<K: Kernel, const AT_ONCE: usize>(
         &self,
         mixture: &Mixture,
         factor: f64,
@@ -138,11 +142,11 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         weight: Option<&mut [f32]>,
     ) {
         let seed = rng.next_u64();
-        self.draw_at::<K>(mixture, factor, index, weight, |k| noise(seed, k));
+        self.draw_at::<K, AT_ONCE>(mixture, factor, index, weight, |k| noise(seed, k));
     }
 
-    /// As [`Table::draw`], from as many equal parts of the line of probabilities as there are draws: item i comes B p_i times,
-    /// rounded up or down for each of the two ways to it. Less variance than independent draws wherever neighbouring items
+    /// As [`Table::draw`], one draw from each of as many equal parts of the line of probabilities as there are draws: for each of the
+    /// two ways to it, an item comes less than two times more or less often than on average. Less variance than independent draws wherever neighbouring items
     /// are alike; weights and their use are the same.
     ///
     /// Those drawn uniformly come first, and both in the order of the data set: use the batch as a whole.
@@ -166,14 +170,14 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         let mixture = self.mixture()?;
         let seed = rng.next_u64();
         let width = u64::MAX / (index.len() as u64).max(1);
-        self.draw_at::<K>(&mixture, f64::from(self.state.items), index, weight, |k| {
+        self.draw_at::<K, CHUNK>(&mixture, f64::from(self.state.items), index, weight, |k| {
             k.wrapping_mul(width).wrapping_add(high_product(noise(seed, k), width))
         });
         Ok(())
     }
 
     #[inline(always)]
-    fn draw_at<K: Kernel>(
+    fn draw_at<K: Kernel, const AT_ONCE: usize>(
         &self,
         mixture: &Mixture,
         factor: f64,
@@ -183,11 +187,11 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     ) {
         let descent = Descent::new(self, mixture, factor);
         let mut first = 0;
-        let mut weights = weight.map(|weight| weight.chunks_mut(CHUNK));
-        for index in index.chunks_mut(CHUNK) {
+        let mut weights = weight.map(|weight| weight.chunks_mut(AT_ONCE));
+        for index in index.chunks_mut(AT_ONCE) {
             let weight = weights.as_mut().and_then(Iterator::next).unwrap_or_default();
-            descent.draw::<K>(first, index, weight, &bits);
-            first += CHUNK as u64;
+            descent.draw::<K, AT_ONCE>(first, index, weight, &bits);
+            first += AT_ONCE as u64;
         }
     }
 }
@@ -198,8 +202,6 @@ struct Descent<'a> {
     nodes: &'a [Node],
     levels: Levels,
     ways: Ways,
-    /// The least bits of a draw by the tree.
-    first_tree: u64,
     /// What an item's weight in the tree, and what its existence adds to `factor` times its probability.
     by_weight: f64,
     by_item: f64,
@@ -208,45 +210,49 @@ struct Descent<'a> {
 impl<'a> Descent<'a> {
     fn new<I: AsRef<[f32]>, S: AsRef<[i64]>>(table: &'a Table<I, S>, mixture: &Mixture, factor: f64) -> Self {
         let (by_weight, by_item) = mixture.factors(factor);
-        let ways = mixture.ways();
         Descent {
             blocks: table.blocks(),
             nodes: table.nodes(),
             levels: table.levels,
-            first_tree: ways.last_uniform.map_or(0, |last| last.wrapping_add(1)),
-            ways,
+            ways: mixture.ways(),
             by_weight,
             by_item,
         }
     }
 
-    /// At most [`CHUNK`] draws, the first being number `first` of the batch; as many weights as draws, or none.
+    /// At most `AT_ONCE` draws, the first being number `first` of the batch; as many weights as draws, or none.
     #[inline(always)]
-    fn draw<K: Kernel>(&self, first: u64, index: &mut [u32], weight: &mut [f32], bits: &impl Fn(u64) -> u64) {
+    fn draw<K: Kernel, const AT_ONCE: usize>(
+        &self,
+        first: u64,
+        index: &mut [u32],
+        weight: &mut [f32],
+        bits: &impl Fn(u64) -> u64,
+    ) {
         // The draws by the tree: which of the chunk's they are, in which node or block they are, the position among its
         // weights, and behind its point.
-        let mut slot = [0u8; CHUNK];
-        let mut place = [0u32; CHUNK];
-        let mut rest = [0i64; CHUNK];
-        let mut fraction = [0f64; CHUNK];
-        let mut uniform_slot = [0u8; CHUNK];
+        let mut slot = [0u8; AT_ONCE];
+        let mut place = [0u32; AT_ONCE];
+        let mut rest = [0i64; AT_ONCE];
+        let mut fraction = [0f64; AT_ONCE];
+        let mut uniform_slot = [0u8; AT_ONCE];
         let mut trees = 0;
         // Without branches, which could not be predicted: every draw is written as both, and one of them counts.
-        for (i, out) in index.iter_mut().enumerate().take(CHUNK) {
+        for (i, out) in index.iter_mut().enumerate().take(AT_ONCE) {
             let bits = bits(first + i as u64);
             let uniform = self.ways.last_uniform.is_some_and(|last| bits <= last);
-            let (whole, below) = self.ways.weight.map(bits.wrapping_sub(self.first_tree));
-            slot[trees % CHUNK] = i as u8;
-            rest[trees % CHUNK] = whole as i64;
+            let (place, below) = self.ways.scales[usize::from(uniform)].map(bits);
+            slot[trees % AT_ONCE] = i as u8;
+            rest[trees % AT_ONCE] = place as i64;
             // 53 bits: 0 to less than 1.
-            fraction[trees % CHUNK] = (below >> 11) as i64 as f64 * (1.0 / 9_007_199_254_740_992.0);
-            uniform_slot[(i - trees) % CHUNK] = i as u8;
-            *out = self.ways.item.map(bits).0 as u32;
+            fraction[trees % AT_ONCE] = (below >> 11) as i64 as f64 * (1.0 / 9_007_199_254_740_992.0);
+            uniform_slot[(i - trees) % AT_ONCE] = i as u8;
+            *out = place as u32;
             trees += usize::from(!uniform);
         }
-        self.descend::<K>(trees, &mut place, &mut rest);
+        self.descend::<K, AT_ONCE>(trees, &mut place, &mut rest);
         // The weights of their blocks.
-        let mut weights = [1f64; CHUNK];
+        let mut weights = [1f64; AT_ONCE];
         for (((place, rest), fraction), weight) in
             place.iter_mut().zip(&rest).zip(&mut fraction).zip(&mut weights).take(trees)
         {
@@ -264,8 +270,8 @@ impl<'a> Descent<'a> {
         for (fraction, weight) in fraction.iter_mut().zip(&weights) {
             *fraction = (*fraction / weight).min(BELOW_ONE);
         }
-        let mut totals = [1f64; CHUNK];
-        let mut importance = [0f32; CHUNK];
+        let mut totals = [1f64; AT_ONCE];
+        let mut importance = [0f32; AT_ONCE];
         for ((((&place, &fraction), &slot), total), q) in
             place.iter().zip(&fraction).zip(&slot).zip(&mut totals).zip(&mut importance).take(trees)
         {
@@ -279,7 +285,7 @@ impl<'a> Descent<'a> {
         if weight.is_empty() {
             return;
         }
-        let mut results = [0f32; CHUNK];
+        let mut results = [0f32; AT_ONCE];
         for (((result, &q), &total), &weight) in results.iter_mut().zip(&importance).zip(&totals).zip(&weights) {
             *result = self.weight(q, total, weight);
         }
@@ -304,7 +310,12 @@ impl<'a> Descent<'a> {
 
     /// Takes the draws from the root to the nodes of the lowest level.
     #[inline(always)]
-    fn descend<K: Kernel>(&self, draws: usize, place: &mut [u32; CHUNK], rest: &mut [i64; CHUNK]) {
+    fn descend<K: Kernel, const AT_ONCE: usize>(
+        &self,
+        draws: usize,
+        place: &mut [u32; AT_ONCE],
+        rest: &mut [i64; AT_ONCE],
+    ) {
         let starts = self.levels.starts();
         // Levels that the first cache holds in one go, the others one by one, so that many accesses are under way at a time.
         let near = starts.iter().position(|&start| self.nodes.len() - start <= NEAR).unwrap_or(0).max(1);

@@ -91,15 +91,22 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// Takes up memory that a table of this state has used.
     ///
     /// Errors: [`Error::Memory`] if it is too small for the items, [`Error::Range`] for a state that no table has. The contents
-    /// are not checked: other numbers give other draws, and nothing worse.
+    /// are not checked: they must be what that table left there, or draws may be of items that do not exist.
     pub fn resume(importance: I, sums: S, state: State) -> Result<Self, Error> {
         if state.items == 0 || !is_scale(state.scale) || !(0.0..=1.0).contains(&state.uniform_fraction) {
             return Err(Error::Range);
         }
-        let mut blocks = (importance.as_ref().len() / ARITY).min(MAX_BLOCKS);
-        // Sums made for the same items fit; others are for half as many, or fewer.
-        while blocks > 0 && Levels::new(blocks).nodes() * CHILDREN > sums.as_ref().len() {
-            blocks /= 2;
+        // The most blocks that the sums are for, by bisection.
+        let fits = |blocks| Levels::new(blocks).nodes() * CHILDREN <= sums.as_ref().len();
+        let most = (importance.as_ref().len() / ARITY).min(MAX_BLOCKS);
+        let mut blocks = most;
+        if !fits(most) {
+            let mut not = most;
+            blocks = 0;
+            while not - blocks > 1 {
+                let middle = blocks + (not - blocks) / 2;
+                if fits(middle) { blocks = middle } else { not = middle }
+            }
         }
         if blocks * ARITY < state.items as usize {
             return Err(Error::Memory);

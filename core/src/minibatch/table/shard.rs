@@ -1,7 +1,7 @@
 //! Several tables drawn as one: each process of a data-parallel trainer owns the table of its part of the data.
 
-use super::draw::{Mixture, check_lengths};
-use super::{Portable, Table};
+use super::draw::{CHUNK, Mixture, check_lengths};
+use super::{Kernel, Portable, Table};
 use crate::Error;
 use crate::rng::Rng;
 
@@ -110,8 +110,22 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// All tables must have the same uniform fraction. How many items each process draws, [`allocate`] says.
     ///
     /// Errors: [`Error::Range`] for another number of weights, or if `all` is less than this table alone;
-    /// [`Error::NotFinite`]; [`Error::NoSamples`] if nothing can be drawn from any, or from this table and `index` is not empty.
+    /// [`Error::NotFinite`]; [`Error::NoSamples`] if nothing can be drawn from any,
+    /// or from this table and `index` is not empty. Where `all` dwarfs this table a weight may be infinite.
+    #[inline(always)]
     pub fn draw_shard(
+        &self,
+        all: &Shard,
+        rng: &mut Rng,
+        index: &mut [u32],
+        weight: Option<&mut [f32]>,
+    ) -> Result<(), Error> {
+        self.draw_shard_by::<Portable>(all, rng, index, weight)
+    }
+
+    /// [`Table::draw_shard`] by another [`Kernel`]: the same bits.
+    #[inline(always)]
+    pub fn draw_shard_by<K: Kernel>(
         &self,
         all: &Shard,
         rng: &mut Rng,
@@ -136,7 +150,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
             return Err(Error::NoSamples);
         }
         let mixture = Mixture::of(self.sum(), self.state.items, uniform / share)?;
-        self.draw_mixture::<Portable>(&mixture, share * all.items as f64, rng, index, weight);
+        self.draw_mixture::<K, CHUNK>(&mixture, share * all.items as f64, rng, index, weight);
         Ok(())
     }
 }

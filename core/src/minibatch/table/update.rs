@@ -40,6 +40,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
             return Err(Error::Range);
         }
         self.check_items(index)?;
+        // -0 would make importances of -0, a sign that stands for items taken out.
+        let momentum = momentum + 0.0;
         let fresh = 1.0 - momentum;
         let mut in_range = true;
         for (index, importance) in index.chunks(CHUNK).zip(importance.chunks(CHUNK)) {
@@ -50,7 +52,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
                     K::prefetch(node);
                 }
             }
-            let mix = |&q: &f32| move |old: f32| (momentum * old + fresh * q).min(f32::MAX);
+            let mix = |&q: &f32| move |old: f32| (momentum * old + fresh * q + 0.0).min(f32::MAX);
             in_range &= self.change::<K, _>(index.iter().copied().zip(importance.iter().map(mix)));
         }
         self.restore_scale(in_range);
@@ -116,8 +118,9 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     }
 
     /// Makes the sums follow an item whose importance has been changed.
-    pub(super) fn refresh(&mut self, item: u32) {
-        let in_range = self.change::<Portable, _>(core::iter::once((item, |q| q)));
+    #[inline(always)]
+    pub(super) fn refresh<K: Kernel>(&mut self, item: u32) {
+        let in_range = self.change::<K, _>(core::iter::once((item, |q| q)));
         self.restore_scale(in_range);
     }
 
