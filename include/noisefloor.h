@@ -13,6 +13,7 @@
  *    copied while it is in use, unless its description says otherwise.
  *  - Threads: no locks, and no shared state but a cached answer of the processor's. Any number of threads may read an
  *    object; one at a time may write it.
+ *  - Arithmetic: IEEE 754, rounding to nearest, subnormal numbers not flushed to zero.
  *  - Configurations are plain numbers; zero in an optional field means the documented default (of nf_cv_config all but
  *    dims, order and channels are optional), an unknown value is NF_ERR_RANGE.
  *  - References such as (4.22) are to C. Salaun, "Toward Improving Monte Carlo Estimator for Rendering and
@@ -745,7 +746,7 @@ nf_status nf_sampler_fill(const nf_sampler *samplers,
 
 /* Random numbers */
 
-// A PCG32 random number generator (O'Neill 2014), for examples and tests: the same numbers on every target.
+// A PCG32 random number generator (O'Neill 2014), for minibatches, examples and tests: the same numbers on every target.
 //
 // A complete struct, kept by value. A copy repeats the numbers its original has yet to give. Give each thread its own,
 // with its own seed. Any value of the fields is valid; nf_rng_seed sets them well. Not for cryptography.
@@ -1094,7 +1095,7 @@ nf_status nf_gradient_init(void *memory,
 // is unbiased. They may change from call to call.
 // beta: 0..1, the momentum. A batch that is t steps old counts beta^t, divided by the sum of those weights: the
 // estimate has its right size from the first step on. 0 forgets the earlier batches, and the estimate is that of
-// nf_omis_weights; 1 averages all. Older gradients lag: under an optimiser with momentum of its own, such as Adam, use
+// nf_omis_weights but for rounding, which NF_OMIS_PLAIN magnifies where techniques are nearly alike; 1 averages all. Older gradients lag: under an optimiser with momentum of its own, such as Adam, use
 // 0.
 // items, pdf[batch * techniques], technique[batch]: as for nf_omis_weights, with the techniques of nf_gradient_init.
 // gradient[batch * parameters]: that of sample s by parameter p at s * parameters + p, finite, unweighted.

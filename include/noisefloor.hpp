@@ -655,7 +655,7 @@ private:
 // ---- Minibatches -----------------------------------------------------------------------------------------------------------
 
 // nf_table: the importances of a data set's items, in memory of the caller's. It may be moved, not copied: the memory would be
-// shared. Lengths that do not agree are status::range; an empty `weight` stands for none.
+// shared. The importance functions, nf_shuffle() and nf_gradient_*() are called as in C. Lengths that do not agree are status::range; an empty `weight` stands for none.
 class table {
 public:
     // Bytes.
@@ -750,6 +750,15 @@ private:
 
     nf_table state_{};
 };
+
+// nf_shards_allocate(): how many of a batch's items each shard draws.
+inline returned<void> allocate(span<const nf_shard> shards, float uniform_fraction, rng &random, std::uint32_t batch, span<std::uint32_t> counts)
+{
+    const bool fits = shards.size() == counts.size() && shards.size() <= UINT32_MAX;
+    return detail::finish(fits ? nf_shards_allocate(shards.data(), static_cast<std::uint32_t>(shards.size()), uniform_fraction, &random.state(), batch,
+                                                    counts.data())
+                               : NF_ERR_RANGE);
+}
 
 // nf_omis_weights(): pdf[batch * techniques], technique[batch], weight[batch].
 inline returned<void> omis_weights(std::uint32_t techniques, std::uint32_t items, span<const float> pdf, span<const std::uint32_t> technique,

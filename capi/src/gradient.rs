@@ -83,7 +83,7 @@ pub unsafe extern "C" fn nf_gradient_init(
 /// is unbiased. They may change from call to call.
 /// beta: 0..1, the momentum. A batch that is t steps old counts beta^t, divided by the sum of those weights: the
 /// estimate has its right size from the first step on. 0 forgets the earlier batches, and the estimate is that of
-/// nf_omis_weights; 1 averages all. Older gradients lag: under an optimiser with momentum of its own, such as Adam, use
+/// nf_omis_weights but for rounding, which NF_OMIS_PLAIN magnifies where techniques are nearly alike; 1 averages all. Older gradients lag: under an optimiser with momentum of its own, such as Adam, use
 /// 0.
 /// items, pdf[batch * techniques], technique[batch]: as for nf_omis_weights, with the techniques of nf_gradient_init.
 /// gradient[batch * parameters]: that of sample s by parameter p at s * parameters + p, finite, unweighted.

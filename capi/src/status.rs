@@ -51,7 +51,7 @@ pub extern "C" fn nf_status_message(status: nf_status) -> *const c_char {
     let text = match status {
         NF_OK => c"success",
         NF_ERR_NULL => c"a required pointer is NULL",
-        NF_ERR_RANGE => c"an argument is outside its documented range",
+        NF_ERR_RANGE => c"an argument is outside its documented range: the function's description lists what can be",
         NF_ERR_NOT_FINITE => c"an input value is NaN or infinite",
         NF_ERR_MEMORY => c"caller-supplied memory is too small: ask the matching size function",
         NF_ERR_ALIGNMENT => c"caller-supplied memory is not aligned: 8 bytes are needed",
@@ -61,7 +61,7 @@ pub extern "C" fn nf_status_message(status: nf_status) -> *const c_char {
         NF_ERR_MISMATCH => c"the two objects were made with different configurations",
         NF_ERR_FOREIGN => c"the bytes are not a noisefloor tile or table",
         NF_ERR_VERSION => c"the format is newer than this library",
-        NF_ERR_LENGTH => c"bytes are missing, or there are too many",
+        NF_ERR_LENGTH => c"bytes are missing, or there are too many: ask the matching size function",
         NF_ERR_CORRUPT => c"the bytes are damaged: the checksum does not match, or fields make no sense",
         _ => c"not a noisefloor status",
     };

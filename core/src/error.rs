@@ -32,7 +32,7 @@ impl Error {
     /// A static sentence that says what was wrong.
     pub const fn message(self) -> &'static str {
         match self {
-            Error::Range => "an argument is outside its documented range",
+            Error::Range => "an argument is outside its documented range: the function's description lists what can be",
             Error::NotFinite => "an input value is NaN or infinite",
             Error::Memory => "a caller-supplied buffer is too small: ask the matching size function",
             Error::NoSamples => "no samples, or nothing that can be drawn",
@@ -40,7 +40,7 @@ impl Error {
             Error::Mismatch => "the two objects were made with different configurations",
             Error::Foreign => "the bytes are not a noisefloor tile or table",
             Error::Version => "the format is newer than this library",
-            Error::Length => "bytes are missing, or there are too many",
+            Error::Length => "bytes are missing, or there are too many: ask the matching size function",
             Error::Corrupt => "the bytes are damaged: the checksum does not match, or fields make no sense",
         }
     }

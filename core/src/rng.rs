@@ -1,4 +1,4 @@
-//! Random numbers for examples and tests: PCG32, the same stream on every target.
+//! Random numbers for minibatches, examples and tests: PCG32, the same stream on every target.
 //!
 //! M. E. O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random Number
 //! Generation", 2014: a 64-bit linear congruential generator whose output is the XSH-RR permutation of its state. Not

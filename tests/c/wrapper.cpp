@@ -368,6 +368,10 @@ static void minibatches()
     CHECK(moved.items() == 6 && loaded.items() == 0);
 
     const nf_shard all[] = {value_of(table.shard()), value_of(moved.shard())};
+    std::array<std::uint32_t, 2> counts{};
+    SUCCEED(nf::allocate(all, 0.0f, rng, 8, counts));
+    CHECK(counts[0] + counts[1] == 8);
+    CHECK(CODE(nf::allocate(all, 0.0f, rng, 8, {counts.data(), 1})) == nf::status::range);
     SUCCEED(moved.draw_shard(all, rng, index, weight));
     SUCCEED(moved.init(other, 3));
     CHECK(moved.total() == 3.0);

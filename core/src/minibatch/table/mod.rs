@@ -8,7 +8,7 @@
 //! importances give in a tree built afresh at the same scale. The scale is a power of two, so chosen that the sum is
 //! near 2^50, and changed when the sum leaves its range: a block's weight is its sum rounded to 1 / 2^50 or so of all, and never to 0. Within
 //! a block f64 decides. What [`Table::probability`] says is the probability of these rounded weights, so that estimates are
-//! unbiased, however small an importance is.
+//! unbiased, down to probabilities of 2^-53 within a block.
 
 mod block;
 mod distinct;
