@@ -82,9 +82,12 @@ static void compare_training(problem *p, const options *o)
         for (uint32_t r = 0; r < count; ++r)
             printf("%s,mean,%u,%.6e\n", METHODS[m].name, (unsigned)record_step(o, r), means[(size_t)m * count + r]);
         double variance = ratio_square[m] - ratio_mean[m] * ratio_mean[m], mean = exp(ratio_mean[m]);
-        double error = o->seeds > 1 ? mean * sqrt((variance > 0.0 ? variance : 0.0) / (o->seeds - 1)) : 0.0;
-        fprintf(stderr, "| %-10s | %20.3e | %10.3f | %18.3f | %14.3f |\n", METHODS[m].name, final_mean[m],
-                final_mean[m] / final_mean[EXACT], mean, error);
+        fprintf(stderr, "| %-10s | %20.3e | %10.3f | %18.3f | ", METHODS[m].name, final_mean[m],
+                final_mean[m] / final_mean[EXACT], mean);
+        if (o->seeds > 1)
+            fprintf(stderr, "%14.3f |\n", mean * sqrt((variance > 0.0 ? variance : 0.0) / (o->seeds - 1)));
+        else
+            fprintf(stderr, "%14s |\n", "-");
     }
     free(losses);
     free(means);

@@ -69,9 +69,12 @@ inline void compare_training(const Picture &picture, const Options &options)
                stderr);
     for (std::size_t m = 0; m < sums.size(); ++m) {
         const double spread = std::max(0.0, sums[m].square - sums[m].loss * sums[m].loss);
-        const double error = options.seeds > 1 ? std::sqrt(spread / (options.seeds - 1)) : 0.0;
-        std::fprintf(stderr, "| %-8s | %18.4e | %14.1e | %5.2f | %11.0f |\n", options.chosen[m]->name, sums[m].loss,
-                     error, decibels(sums[m].loss), 1e6 * sums[m].seconds / options.steps);
+        std::fprintf(stderr, "| %-8s | %18.4e | ", options.chosen[m]->name, sums[m].loss);
+        if (options.seeds > 1)
+            std::fprintf(stderr, "%14.1e", std::sqrt(spread / (options.seeds - 1)));
+        else
+            std::fprintf(stderr, "%14s", "-");
+        std::fprintf(stderr, " | %5.2f | %11.0f |\n", decibels(sums[m].loss), 1e6 * sums[m].seconds / options.steps);
     }
 }
 

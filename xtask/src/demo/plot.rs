@@ -82,8 +82,8 @@ impl Plot<'_> {
             .bold_line_style(RGBColor(225, 225, 225))
             .label_style((FONT, 14))
             .axis_desc_style((FONT, 15))
-            .x_desc(self.x.label)
-            .y_desc(self.y.label)
+            .x_desc(description(&self.x))
+            .y_desc(description(&self.y))
             .x_labels(10)
             .y_labels(10)
             .draw()?;
@@ -143,6 +143,12 @@ fn spread(wanted: &[f64]) -> Vec<f64> {
         free = *height - LABEL_HEIGHT;
     }
     heights
+}
+
+/// A logarithmic axis says so.
+fn description(axis: &Axis) -> String {
+    let scale = if axis.logarithmic { " (logarithmic)" } else { "" };
+    format!("{}{scale}", axis.label)
 }
 
 fn shows(axis: &Axis, value: f64) -> bool {
@@ -276,6 +282,7 @@ mod tests {
         for logarithmic in [false, true] {
             let (x, y) = (axis(logarithmic, None), axis(logarithmic, None));
             let text = Plot { title: "plot", x, y, series: &series }.svg().expect("a drawing");
+            assert_eq!(text.contains("what (logarithmic)"), logarithmic);
             assert!(text.starts_with("<svg") && text.contains("one") && text.contains("two") && text.contains("what"));
         }
         let empty = Plot { title: "empty", x: axis(true, None), y: axis(false, None), series: &[] };

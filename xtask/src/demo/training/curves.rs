@@ -66,22 +66,39 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// 97.5 % of Student's t for 1, 2, ... degrees of freedom; the normal distribution's after them.
+/// 97.5 % of Student's t for 1, 2, ... degrees of freedom.
 const STUDENT: [f64; 15] =
     [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.16, 2.145, 2.131];
+
+/// 97.5 % of Student's t; beyond the table by the normal distribution's and three terms of Cornish and Fisher's expansion,
+/// right to .0003.
+fn student(freedom: usize) -> f64 {
+    let beyond = || {
+        let inverse = 1.0 / freedom as f64;
+        1.95996 + inverse * (2.37227 + inverse * (2.82246 + inverse * 2.5559))
+    };
+    freedom.checked_sub(1).map_or(f64::NAN, |index| STUDENT.get(index).copied().unwrap_or_else(beyond))
+}
 
 /// The mean, and half the width of its 95 % confidence interval: NaN for one value.
 fn interval(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
-    let student = values.len().checked_sub(2).map_or(f64::NAN, |index| STUDENT.get(index).copied().unwrap_or(2.0));
-    (mean, student * (square / (n - 1.0) / n).sqrt())
+    (mean, student(values.len().saturating_sub(1)) * (square / (n - 1.0) / n).sqrt())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn student_beyond_the_table() {
+        for (freedom, value) in [(15, 2.1314), (16, 2.1199), (19, 2.0930), (30, 2.0423), (120, 1.9799)] {
+            assert!((student(freedom) - value).abs() < 5e-4, "{freedom}");
+        }
+        assert!(student(0).is_nan());
+    }
 
     #[test]
     fn seeds_are_averaged() {

@@ -109,7 +109,7 @@ fn error_plot(plan: &Plan, rows: &Rows, column: &str, label: &str) -> Result<Str
         line.points.retain(|&(at, _)| at > 0.0);
         line.band.retain(|&(at, ..)| at > 0.0);
     }
-    let title = format!("{}: mean of {} seeds, 95 % confidence intervals", plan.name, plan.seeds);
+    let title = format!("{}, rate {}: mean of {} seeds, 95 % confidence intervals", plan.name, plan.rate, plan.seeds);
     let x = Axis { label, logarithmic: false, range: None };
     let y = Axis { label: "test error, %", logarithmic: true, range: None };
     Plot { title: &title, x, y, series: &series }.svg()
@@ -123,8 +123,8 @@ const METHODS: [(&str, &str, &str, usize); 11] = [
     ("importance", "0.2", "importance, delta .2", 1),
     ("last_layer", "0", "last layer", 6),
     ("gradient_norm", "0", "gradient norm", 3),
-    ("importance_stale", "0", "importance, as kept", 2),
-    ("importance_stale", "0.2", "as kept, delta .2", 2),
+    ("importance_stale", "0", "importance, as kept, delta 0", 2),
+    ("importance_stale", "0.2", "importance, as kept, delta .2", 2),
     ("balance", "0.2", "balance, delta .2", 7),
     ("omis", "0.2", "omis, delta .2", 5),
     ("omis_stale", "0.2", "omis, as kept, delta .2", 0),
@@ -139,7 +139,8 @@ fn variance_plot(plan: &Plan, rows: &Rows) -> Result<String> {
         Ok(series)
     };
     let series: Vec<Series> = METHODS.iter().map(line).collect::<Result<_>>()?;
-    let title = format!("{}: variance of the gradient estimate, one network trained uniformly", plan.name);
+    let title =
+        format!("{}, rate {}: variance of the gradient estimate, one network trained uniformly", plan.name, plan.rate);
     let x = Axis { label: "epoch", logarithmic: false, range: None };
     let y = Axis { label: "variance / uniform's", logarithmic: true, range: None };
     Plot { title: &title, x, y, series: &series }.svg()
@@ -173,8 +174,8 @@ fn report(plan: &Plan, summary: &str, variance: &str) -> String {
            same network and the same first epoch.\n\
          - Time: processor time of training alone. Modes take turns, an epoch at a time.\n\n\
          ## Variance of the gradient estimate\n\nAt the same states of one network that is trained uniformly (figure 6.2).\n\n{variance}\n\
-         - delta .2: a fifth of the draws uniform. As kept: importances from when an item was last drawn, momentum .3; the others\n  \
-           are fresh.\n\
+         - delta .2: a fifth of the draws uniform; where no delta is named it is 0. As kept: importances from when an item was\n  \
+           last drawn, momentum .3; the others are fresh.\n\
          - balance, omis: mean squared distance to the exact gradient, bias included, over 200 batches of 64 draws. The others\n  \
            are exact.\n",
         name = plan.name,

@@ -23,6 +23,13 @@ struct Training<'a> {
     output: &'a Output,
 }
 
+impl Training<'_> {
+    /// For headings: less was run than documents quote.
+    fn quick_note(&self) -> &'static str {
+        if self.quick { " (--quick)" } else { "" }
+    }
+}
+
 /// The trainers, in the order of their tables: each compiles its program, runs it, writes its files and returns its table.
 const TRAINERS: [fn(&Training) -> Result<String>; 3] = [mlp::run, polynomial::run, photograph::run];
 

@@ -21,8 +21,8 @@ const PART: (u32, u32, u32) = (8, 116, 72);
 /// Writes training-image*.csv, .md, .svg and .png; returns the tables.
 pub(super) fn run(training: &Training) -> Result<String> {
     let program = Program::compile("fit_image.cpp", Language::Cpp17, &training.archive)?;
-    let small: &[&str] =
-        if training.quick { &["--seeds", "1", "--steps", "1000", "--batches", "20"] } else { &["--seeds", "3"] };
+    let (seeds, steps, batches) = if training.quick { ("1", "1000", "20") } else { ("3", "4000", "100") };
+    let small = ["--seeds", seeds, "--steps", steps, "--batches", batches];
     let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
     let prefix = scratch.path().join("picture");
     let prefix_text = prefix.to_str().with_context(|| format!("{} is not Unicode", prefix.display()))?;
@@ -30,7 +30,7 @@ pub(super) fn run(training: &Training) -> Result<String> {
     let bar = progress::bar(4)?;
     let run = |message: &'static str, more: &[&str]| -> Result<_> {
         bar.set_message(message);
-        let written = program.run(&[small, more].concat(), training.interrupted, |_| ());
+        let written = program.run(&[&small[..], more].concat(), training.interrupted, |_| ());
         bar.inc(1);
         written
     };
@@ -56,7 +56,11 @@ pub(super) fn run(training: &Training) -> Result<String> {
          Draws from strata:\n\n{}",
         losses.summary, strata.summary, errors.summary, strata_errors.summary
     );
-    let heading = "# A photograph learned by a network (figure 6.13)\n\nMade by examples_c/fit_image.cpp.";
+    let heading = format!(
+        "# A photograph learned by a network (figure 6.13)\n\n\
+         Made by examples_c/fit_image.cpp: networks (seeds): {seeds}; {steps} steps{}; errors over {batches} batches.",
+        training.quick_note()
+    );
     output.write_text("training-image.md", &format!("{heading} {tables}"))?;
     Ok(format!("fit_image\n\n{tables}"))
 }

@@ -10,13 +10,13 @@ use anyhow::Result;
 /// Writes training-polynomial*.csv, .md and .svg; returns the tables.
 pub(super) fn run(training: &Training) -> Result<String> {
     let program = Program::compile("fit_polynomial.c", Language::C99, &training.archive)?;
-    let small: &[&str] =
-        if training.quick { &["--seeds", "3", "--steps", "1000", "--batches", "200"] } else { &["--seeds", "40"] };
+    let (seeds, steps, batches) = if training.quick { ("3", "1000", "200") } else { ("40", "3000", "2000") };
+    let small = ["--seeds", seeds, "--steps", steps, "--batches", batches];
     let bar = progress::bar(2)?;
     bar.set_message("polynomial");
-    let trained = program.run(small, training.interrupted, |_| ())?;
+    let trained = program.run(&small, training.interrupted, |_| ())?;
     bar.inc(1);
-    let errors = program.run(&[small, &["--variance"]].concat(), training.interrupted, |_| ())?;
+    let errors = program.run(&[&small[..], &["--variance"]].concat(), training.interrupted, |_| ())?;
     bar.finish_and_clear();
 
     let output = training.output;
@@ -26,12 +26,14 @@ pub(super) fn run(training: &Training) -> Result<String> {
     output.write_text("training-polynomial-ratio.svg", &ratio_plot(&trained.csv)?)?;
     output.write_text("training-polynomial-variance.svg", &error_plot(&errors.csv)?)?;
     let table = format!("{}\n{}", trained.summary, errors.summary);
+    let quick = training.quick_note();
     output.write_text(
         "training-polynomial.md",
         &format!(
-            "# A polynomial of order 6 (figure 6.10)\n\nMade by examples_c/fit_polynomial.c. The mean loss at the end:\n\n{}\n\
+            "# A polynomial of order 6 (figure 6.10)\n\nMade by examples_c/fit_polynomial.c: {seeds} problems, {steps} steps{quick}. The\n\
+             mean loss at the end:\n\n{}\n\
              Mean squared errors of the gradient's estimates over those of uniform sampling, at the same states, where the\n\
-             exact gradient leads:\n\n{}",
+             exact gradient leads, {batches} batches each:\n\n{}",
             trained.summary, errors.summary
         ),
     )?;
