@@ -116,6 +116,28 @@ pub(crate) unsafe fn workspace<'a, T: Real>(
     }
 }
 
+/// The bytes of an object in caller memory: an `H`, and `len` `T` right behind it. 0 for a `len` of 0 or a size no memory has.
+pub(crate) fn object_size<H, T>(len: usize) -> usize {
+    match len.checked_mul(size_of::<T>()).and_then(|bytes| bytes.checked_add(size_of::<H>())) {
+        Some(bytes) if len > 0 && bytes <= isize::MAX as usize => bytes,
+        _ => 0,
+    }
+}
+
+/// Makes an object of `size` bytes: its header, and zeros behind it.
+///
+/// # Safety
+/// As for [`memory`]; `size` must be at least that of an `H`, whose alignment must be at most 8.
+pub(crate) unsafe fn create<H>(memory: *mut c_void, bytes: usize, size: usize, header: H) -> Result<*mut H, nf_status> {
+    // SAFETY: passed on to the caller; the memory is aligned to 8 bytes and of at least `size`.
+    unsafe {
+        let place = self::memory(memory, bytes, size)?;
+        place.write_bytes(0, size);
+        place.cast::<H>().write(header);
+        Ok(place.cast())
+    }
+}
+
 /// `a * b` elements, or the status for a length that no array can have.
 pub(crate) fn product(a: usize, b: usize) -> Result<usize, nf_status> {
     a.checked_mul(b).ok_or(NF_ERR_RANGE)

@@ -34,13 +34,7 @@ const MAGIC: u64 = u64::from_le_bytes(*b"nf_grad\x01");
 /// in 1..NF_MIS_MAX_TECHNIQUES, parameters at least 1, and the size one that memory can have.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_gradient_size(techniques: u32, parameters: u32) -> usize {
-    match minibatch::gradient_len(techniques as usize, parameters as usize) {
-        0 => 0,
-        len => match len.checked_mul(size_of::<f32>()).and_then(|bytes| bytes.checked_add(size_of::<Header>())) {
-            Some(bytes) if bytes <= isize::MAX as usize => bytes,
-            _ => 0,
-        },
-    }
+    convert::object_size::<Header, f32>(minibatch::gradient_len(techniques as usize, parameters as usize))
 }
 
 /// Makes an nf_gradient that has seen no batch in `memory`, `*out` being its handle (the same address).
@@ -64,15 +58,9 @@ pub unsafe extern "C" fn nf_gradient_init(
         }
         // SAFETY: the caller passes a place for a pointer.
         let out = unsafe { convert::reference_mut(out) }?;
-        // SAFETY: the caller passes memory of the size it says.
-        let place = unsafe { convert::memory(memory, bytes, size) }?.cast::<Header>();
-        // SAFETY: not NULL, aligned and of at least `size` bytes, which is what the header and the averages take;
-        // all-zero averages are those of no batches.
-        unsafe {
-            core::ptr::write_bytes(place.cast::<u8>(), 0, size);
-            place.write(Header { magic: MAGIC, techniques, parameters, system: System::new(techniques as usize) });
-        }
-        *out = place.cast();
+        let header = Header { magic: MAGIC, techniques, parameters, system: System::new(techniques as usize) };
+        // SAFETY: the caller passes memory of the size it says; all-zero averages are those of no batches.
+        *out = unsafe { convert::create(memory, bytes, size, header) }?.cast();
         Ok(())
     })())
 }

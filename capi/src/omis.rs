@@ -46,13 +46,7 @@ const MAGIC: u64 = u64::from_le_bytes(*b"nf_omis\x01");
 /// size one that memory can have.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_omis_size(techniques: u32, integrals: u32) -> usize {
-    match mis::len(techniques as usize, integrals as usize) {
-        0 => 0,
-        len => match len.checked_mul(size_of::<f64>()).and_then(|bytes| bytes.checked_add(size_of::<Header>())) {
-            Some(bytes) if bytes <= isize::MAX as usize => bytes,
-            _ => 0,
-        },
-    }
+    convert::object_size::<Header, f64>(mis::len(techniques as usize, integrals as usize))
 }
 
 /// Makes an empty nf_omis in `memory`, `*out` being its handle (the same address).
@@ -84,23 +78,8 @@ pub unsafe extern "C" fn nf_omis_init(
         header.counts.iter_mut().zip(counts).for_each(|(to, &from)| *to = from);
         // SAFETY: the caller passes a place for a pointer.
         let out = unsafe { convert::reference_mut(out) }?;
-        let place = memory.cast::<Header>();
-        if place.is_null() {
-            return Err(NF_ERR_NULL);
-        }
-        if !place.is_aligned() {
-            return Err(NF_ERR_ALIGNMENT);
-        }
-        if bytes < size {
-            return Err(NF_ERR_MEMORY);
-        }
-        // SAFETY: not NULL, aligned and of at least `size` bytes, which is what the header and the sums take; all-zero
-        // sums are those of no samples.
-        unsafe {
-            core::ptr::write_bytes(memory.cast::<u8>(), 0, size);
-            place.write(header);
-        }
-        *out = memory.cast();
+        // SAFETY: the caller passes memory of the size it says; all-zero sums are those of no samples.
+        *out = unsafe { convert::create(memory, bytes, size, header) }?.cast();
         Ok(())
     })())
 }
