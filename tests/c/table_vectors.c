@@ -1,5 +1,6 @@
 /* The batches pinned in tests/vectors/table.txt, to the bit; the file's head says what its columns are. */
 #include "check.h"
+#include "vector_file.h"
 
 /* An importance from 32 random bits: 2^-12 to 2^19, or 0. */
 static float importance(uint32_t bits)
@@ -136,21 +137,6 @@ static void check_line(const char *line, int number)
 
 int main(void)
 {
-    char line[512];
-    int number = 0, used = 0;
-    FILE *file = fopen("tests/vectors/table.txt", "r");
-    if (!file) {
-        fprintf(stderr, "cannot open tests/vectors/table.txt: run this in the repository's root\n");
-        return 2;
-    }
-    while (fgets(line, sizeof line, file)) {
-        ++number;
-        if (line[0] != '#' && line[0] != '\n') {
-            check_line(line, number);
-            ++used;
-        }
-    }
-    fclose(file);
-    CHECK(used == 32);
+    CHECK(each_vector("tests/vectors/table.txt", check_line) == 32);
     return report("table_vectors");
 }

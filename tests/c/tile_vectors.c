@@ -1,5 +1,6 @@
 /* The draws pinned in tests/vectors/tile.txt, to the bit; the file's head says how they are made. */
 #include "tile_file.h"
+#include "vector_file.h"
 
 static void check_line(const char *line, int number)
 {
@@ -38,21 +39,6 @@ static void check_line(const char *line, int number)
 
 int main(void)
 {
-    char line[512];
-    int number = 0, used = 0;
-    FILE *file = fopen("tests/vectors/tile.txt", "r");
-    if (!file) {
-        fprintf(stderr, "cannot open tests/vectors/tile.txt: run this in the repository's root\n");
-        return 2;
-    }
-    while (fgets(line, sizeof line, file)) {
-        ++number;
-        if (line[0] != '#' && line[0] != '\n') {
-            check_line(line, number);
-            ++used;
-        }
-    }
-    fclose(file);
-    CHECK(used == 300);
+    CHECK(each_vector("tests/vectors/tile.txt", check_line) == 300);
     return report("tile_vectors");
 }

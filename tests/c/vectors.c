@@ -1,5 +1,6 @@
 /* The outputs pinned in tests/vectors/cv.txt, to the bit; the file's head says how they are made. */
 #include "check.h"
+#include "vector_file.h"
 
 static uint32_t bits_of(float value)
 {
@@ -77,22 +78,6 @@ static void check_line(const char *line, int number)
 
 int main(int argc, char **argv)
 {
-    const char *path = argc > 1 ? argv[1] : "tests/vectors/cv.txt";
-    char line[512];
-    int number = 0, used = 0;
-    FILE *file = fopen(path, "r");
-    if (!file) {
-        fprintf(stderr, "cannot open %s: run this in the repository's root, or name the file\n", path);
-        return 2;
-    }
-    while (fgets(line, sizeof line, file)) {
-        ++number;
-        if (line[0] != '#' && line[0] != '\n') {
-            check_line(line, number);
-            ++used;
-        }
-    }
-    fclose(file);
-    CHECK(used > 100);
+    CHECK(each_vector(argc > 1 ? argv[1] : "tests/vectors/cv.txt", check_line) > 100);
     return report("vectors");
 }

@@ -12,13 +12,21 @@ const STRICT: [&str; 6] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O2", "-
 /// Pixels on a side of the pictures that the path tracer makes.
 const SIZE: usize = 32;
 
+/// Compiles `examples_c/SOURCE` with the library, as C99 or C++17 by its extension.
+pub(crate) fn compile(source: &str, options: &[&str], archive: &Path, program: &Path) -> Result<()> {
+    let (mut compiler, standard) = match source.ends_with(".c") {
+        true => (run::compiler("CC", "cc"), "-std=c99"),
+        false => (run::compiler("CXX", "c++"), "-std=c++17"),
+    };
+    let source = Path::new("examples_c").join(source);
+    compiler.arg(standard).args(options).arg(source).arg(archive).args(["-lm", "-o"]).arg(program);
+    run::check(&mut compiler)
+}
+
 /// integrate.c: its estimate must be closer than the mean.
 pub(crate) fn integrate(archive: &Path, name: &str) -> Result<Outcome> {
     let program = output(name)?;
-    let mut compiler = run::compiler("CC", "cc");
-    let source = format!("examples_c/{name}.c");
-    compiler.arg("-std=c99").args(STRICT).arg(source).arg(archive).args(["-lm", "-o"]).arg(&program);
-    run::check(&mut compiler)?;
+    compile(&format!("{name}.c"), &STRICT, archive, &program)?;
     let text = run::read(&mut run::command(&program))?;
     print!("{text}");
     let error = |name: &str| -> Result<f64> {
@@ -39,9 +47,7 @@ pub(crate) fn shards(archive: &Path) -> Result<Outcome> {
         return Ok(Outcome::NotRun("the example uses fork and pipe, which POSIX systems have".to_owned()));
     }
     let program = output("shards")?;
-    let mut compiler = run::compiler("CC", "cc");
-    compiler.arg("-std=c99").args(STRICT).arg("examples_c/shards.c").arg(archive).args(["-lm", "-o"]).arg(&program);
-    run::check(&mut compiler)?;
+    compile("shards.c", &STRICT, archive, &program)?;
     run::check(&mut run::command(&program))?;
     Ok(Outcome::Passed)
 }
@@ -49,9 +55,7 @@ pub(crate) fn shards(archive: &Path) -> Result<Outcome> {
 /// pathtracer.cpp: every estimator and every sampler that it lists, in every scene that it lists.
 pub(crate) fn path_tracer(archive: &Path) -> Result<Outcome> {
     let program = output("pathtracer")?;
-    let mut compiler = run::compiler("CXX", "c++");
-    compiler.arg("-std=c++17").args(STRICT).arg("examples_c/pathtracer.cpp").arg(archive);
-    run::check(compiler.args(["-pthread", "-o"]).arg(&program))?;
+    compile("pathtracer.cpp", &[&STRICT[..], &["-pthread"]].concat(), archive, &program)?;
 
     let tracer = PathTracer { program, prefix: output("picture")? };
     let help = run::read(run::command(&tracer.program).arg("--help"))?;

@@ -1,7 +1,7 @@
 //! A trainer of `examples_c`, compiled strictly for a test: what it computes, and what it refuses.
 
 use crate::c_tests::{SANITIZERS, has_sanitizers, output};
-use crate::{paths, run};
+use crate::{examples, run};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -24,12 +24,7 @@ impl Program {
         archive: &Path,
     ) -> Result<Self> {
         let path = output(executable)?;
-        let (variable, default, standard) =
-            if extension == "c" { ("CC", "cc", "-std=c99") } else { ("CXX", "c++", "-std=c++17") };
-        let source = paths::root().join("examples_c").join(name).with_extension(extension);
-        let mut compiler = run::compiler(variable, default);
-        compiler.arg(standard).args(STRICT).args(options).arg(source).arg(archive).args(["-lm", "-o"]).arg(&path);
-        run::check(&mut compiler)?;
+        examples::compile(&format!("{name}.{extension}"), &[&STRICT[..], options].concat(), archive, &path)?;
         Ok(Self { name, path })
     }
 

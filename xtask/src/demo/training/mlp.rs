@@ -3,7 +3,7 @@
 use super::Training;
 use super::curves::Rows;
 use super::data;
-use super::program::{Language, Program};
+use super::program::Program;
 use crate::demo::plot::{Axis, Plot, Series};
 use crate::demo::progress;
 use anyhow::{Context, Result};
@@ -49,7 +49,7 @@ impl Plan {
 
 /// Writes training-mlp*.csv, .md and .svg; returns the table.
 pub(super) fn run(training: &Training) -> Result<String> {
-    let program = Program::compile("train_mlp.c", Language::C99, &training.archive)?;
+    let program = Program::compile("train_mlp.c", &training.archive)?;
     let plan = Plan::new(training.quick);
     let rows = u64::from(plan.seeds) * MODES.len() as u64 * (u64::from(plan.epochs) + 1);
     // An epoch under the measurement of variance takes as long as about ten others.

@@ -2,7 +2,7 @@
 
 use super::Training;
 use super::curves::Rows;
-use super::program::{Language, Program};
+use super::program::Program;
 use crate::demo::plot::{Axis, Plot, Series};
 use crate::demo::{progress, text};
 use crate::paths;
@@ -20,7 +20,7 @@ const PART: (u32, u32, u32) = (8, 116, 72);
 
 /// Writes training-image*.csv, .md, .svg and .png; returns the tables.
 pub(super) fn run(training: &Training) -> Result<String> {
-    let program = Program::compile("fit_image.cpp", Language::Cpp17, &training.archive)?;
+    let program = Program::compile("fit_image.cpp", &training.archive)?;
     let (seeds, steps, batches) = if training.quick { ("1", "1000", "20") } else { ("3", "4000", "100") };
     let small = ["--seeds", seeds, "--steps", steps, "--batches", batches];
     let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;

@@ -2,14 +2,14 @@
 
 use super::Training;
 use super::curves::Rows;
-use super::program::{Language, Program};
+use super::program::Program;
 use crate::demo::plot::{Axis, Plot, Series};
 use crate::demo::progress;
 use anyhow::Result;
 
 /// Writes training-polynomial*.csv, .md and .svg; returns the tables.
 pub(super) fn run(training: &Training) -> Result<String> {
-    let program = Program::compile("fit_polynomial.c", Language::C99, &training.archive)?;
+    let program = Program::compile("fit_polynomial.c", &training.archive)?;
     let (seeds, steps, batches) = if training.quick { ("3", "1000", "200") } else { ("40", "3000", "2000") };
     let small = ["--seeds", seeds, "--steps", steps, "--batches", batches];
     let bar = progress::bar(2)?;

@@ -1,20 +1,13 @@
 //! Compiling and running a trainer of `examples_c`.
 
 use super::super::INTERRUPTED;
-use crate::{paths, run};
+use crate::{examples, paths, run};
 use anyhow::{Context, Result, bail};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
-
-/// What a trainer is written in.
-#[derive(Clone, Copy)]
-pub(super) enum Language {
-    C99,
-    Cpp17,
-}
 
 /// What a run wrote.
 pub(super) struct Written {
@@ -32,23 +25,11 @@ pub(super) struct Program {
 impl Program {
     /// Compiles `examples_c/SOURCE` against the library, for this machine: what is measured is time. Without errno the
     /// compiler vectorises square roots.
-    pub(super) fn compile(source: &str, language: Language, archive: &Path) -> Result<Self> {
-        let source = Path::new("examples_c").join(source);
-        let name = source.file_stem().with_context(|| format!("{} has no name", source.display()))?;
+    pub(super) fn compile(source: &str, archive: &Path) -> Result<Self> {
+        let name = Path::new(source).file_stem().with_context(|| format!("{source} has no name"))?;
         let path = paths::output().join(name);
-        let mut compiler = match language {
-            Language::C99 => run::compiler("CC", "cc"),
-            Language::Cpp17 => run::compiler("CXX", "c++"),
-        };
-        compiler.arg(match language {
-            Language::C99 => "-std=c99",
-            Language::Cpp17 => "-std=c++17",
-        });
-        compiler
-            .args(["-O3", "-march=native", "-fno-math-errno", "-Wall", "-Wextra", "-Iinclude"])
-            .arg(&source)
-            .arg(archive);
-        run::check(compiler.args(["-lm", "-o"]).arg(&path))?;
+        let options = ["-O3", "-march=native", "-fno-math-errno", "-Wall", "-Wextra", "-Iinclude"];
+        examples::compile(source, &options, archive, &path)?;
         Ok(Self { path })
     }
 
