@@ -13,14 +13,21 @@ use noisefloor_core::rng::Rng;
 
 use crate::table::{Reader, Writer};
 
+/// The version of a function that the processor runs fastest, or else the second expression.
+macro_rules! by_processor {
+    ($name:ident($($argument:expr),*), $portable:expr) => {{
+        #[cfg(target_arch = "x86_64")]
+        if x86::has_avx2() {
+            // SAFETY: the processor and the operating system support AVX2 and POPCNT, as just found out.
+            return unsafe { x86::$name($($argument),*) };
+        }
+        $portable
+    }};
+}
+
 /// [`cv::estimate`] in double precision.
 pub(crate) fn estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f64]) -> Result<Estimate, Error> {
-    #[cfg(target_arch = "x86_64")]
-    if x86::has_avx2() {
-        // SAFETY: the processor and the operating system support AVX2, as just found out.
-        return unsafe { x86::estimate(config, samples, workspace) };
-    }
-    cv::estimate(config, samples, workspace)
+    by_processor!(estimate(config, samples, workspace), cv::estimate(config, samples, workspace))
 }
 
 /// [`cv::estimate_image`] in double precision.
@@ -31,12 +38,10 @@ pub(crate) fn estimate_image(
     workspace: &mut [f64],
     out: impl FnMut(usize, Estimate),
 ) -> Result<(), Error> {
-    #[cfg(target_arch = "x86_64")]
-    if x86::has_avx2() {
-        // SAFETY: as above.
-        return unsafe { x86::estimate_image(config, image, samples, workspace, out) };
-    }
-    cv::estimate_image(config, image, samples, workspace, out)
+    by_processor!(
+        estimate_image(config, image, samples, workspace, out),
+        cv::estimate_image(config, image, samples, workspace, out)
+    )
 }
 
 /// [`Reader::draw`].
@@ -46,12 +51,7 @@ pub(crate) fn table_draw(
     index: &mut [u32],
     weight: Option<&mut [f32]>,
 ) -> Result<(), Error> {
-    #[cfg(target_arch = "x86_64")]
-    if x86::has_avx2() {
-        // SAFETY: as above.
-        return unsafe { x86::table_draw(table, rng, index, weight) };
-    }
-    table.draw(rng, index, weight)
+    by_processor!(table_draw(table, rng, index, weight), table.draw(rng, index, weight))
 }
 
 /// [`Reader::draw_stratified`].
@@ -61,12 +61,7 @@ pub(crate) fn table_draw_stratified(
     index: &mut [u32],
     weight: Option<&mut [f32]>,
 ) -> Result<(), Error> {
-    #[cfg(target_arch = "x86_64")]
-    if x86::has_avx2() {
-        // SAFETY: as above.
-        return unsafe { x86::table_draw_stratified(table, rng, index, weight) };
-    }
-    table.draw_stratified(rng, index, weight)
+    by_processor!(table_draw_stratified(table, rng, index, weight), table.draw_stratified(rng, index, weight))
 }
 
 /// [`Reader::draw_shard`].
@@ -77,12 +72,7 @@ pub(crate) fn table_draw_shard(
     index: &mut [u32],
     weight: Option<&mut [f32]>,
 ) -> Result<(), Error> {
-    #[cfg(target_arch = "x86_64")]
-    if x86::has_avx2() {
-        // SAFETY: as above.
-        return unsafe { x86::table_draw_shard(table, all, rng, index, weight) };
-    }
-    table.draw_shard(all, rng, index, weight)
+    by_processor!(table_draw_shard(table, all, rng, index, weight), table.draw_shard(all, rng, index, weight))
 }
 
 /// [`Writer::draw_distinct`].
@@ -92,12 +82,7 @@ pub(crate) fn table_draw_distinct(
     index: &mut [u32],
     weight: Option<&mut [f32]>,
 ) -> Result<(), Error> {
-    #[cfg(target_arch = "x86_64")]
-    if x86::has_avx2() {
-        // SAFETY: as above.
-        return unsafe { x86::table_draw_distinct(table, rng, index, weight) };
-    }
-    table.draw_distinct(rng, index, weight)
+    by_processor!(table_draw_distinct(table, rng, index, weight), table.draw_distinct(rng, index, weight))
 }
 
 /// [`Writer::update`].
@@ -107,22 +92,12 @@ pub(crate) fn table_update(
     importance: &[f32],
     momentum: f32,
 ) -> Result<(), Error> {
-    #[cfg(target_arch = "x86_64")]
-    if x86::has_avx2() {
-        // SAFETY: as above.
-        return unsafe { x86::table_update(table, index, importance, momentum) };
-    }
-    table.update(index, importance, momentum)
+    by_processor!(table_update(table, index, importance, momentum), table.update(index, importance, momentum))
 }
 
 /// [`Writer::add_epsilon`].
 pub(crate) fn table_add_epsilon(table: &mut Writer<'_>, epsilon: f32) -> Result<(), Error> {
-    #[cfg(target_arch = "x86_64")]
-    if x86::has_avx2() {
-        // SAFETY: as above.
-        return unsafe { x86::table_add_epsilon(table, epsilon) };
-    }
-    table.add_epsilon(epsilon)
+    by_processor!(table_add_epsilon(table, epsilon), table.add_epsilon(epsilon))
 }
 
 /// [`Gradient::estimate`].
@@ -134,12 +109,10 @@ pub(crate) fn gradient(
     gradient: &[f32],
     estimate: &mut [f32],
 ) -> Result<(), Error> {
-    #[cfg(target_arch = "x86_64")]
-    if x86::has_avx2() {
-        // SAFETY: as above.
-        return unsafe { x86::gradient(state, batch, solver, beta, gradient, estimate) };
-    }
-    state.estimate(batch, solver, beta, gradient, estimate)
+    by_processor!(
+        gradient(state, batch, solver, beta, gradient, estimate),
+        state.estimate(batch, solver, beta, gradient, estimate)
+    )
 }
 
 #[cfg(target_arch = "x86_64")]
