@@ -25,19 +25,9 @@ pub(crate) fn ensure() -> Result<()> {
     if missing.is_empty() {
         return Ok(());
     }
-    if Path::new("/etc/debian_version").exists() && is_root() {
+    if can_install() {
         println!("missing: {}; installing gcc, g++ and binutils", missing.join(", "));
-        run::check(run::command("apt-get").args(["update", "-qq"]))?;
-        run::check(run::command("apt-get").env("DEBIAN_FRONTEND", "noninteractive").args([
-            "install",
-            "-y",
-            "-qq",
-            "--no-install-recommends",
-            "gcc",
-            "g++",
-            "libc6-dev",
-            "binutils",
-        ]))?;
+        install(&["gcc", "g++", "libc6-dev", "binutils"])?;
     }
     let missing = missing_compilers();
     if !missing.is_empty() {
@@ -48,6 +38,45 @@ pub(crate) fn ensure() -> Result<()> {
         );
     }
     Ok(())
+}
+
+/// A Debian package, and a file that it brings: if that is there, the package or an equal of it is installed.
+pub(crate) struct Package {
+    pub(crate) name: &'static str,
+    pub(crate) file: &'static str,
+}
+
+/// Installs those that are missing where that is allowed; otherwise returns what is missing and what to do.
+pub(crate) fn packages(wanted: &[Package]) -> Result<Option<String>> {
+    let missing = |wanted: &[Package]| -> Vec<&str> {
+        wanted.iter().filter(|package| !Path::new(package.file).exists()).map(|package| package.name).collect()
+    };
+    let before = missing(wanted);
+    if before.is_empty() {
+        return Ok(None);
+    }
+    if can_install() {
+        println!("   installing {}", before.join(", "));
+        install(&before)?;
+        let after = missing(wanted);
+        if !after.is_empty() {
+            bail!("the packages {} were installed, but their files are not where Debian has them", after.join(", "));
+        }
+        return Ok(None);
+    }
+    Ok(Some(format!("missing: {0}. On Debian: apt-get install {0}", before.join(" "))))
+}
+
+/// Debian's package manager is there and this user may use it.
+fn can_install() -> bool {
+    Path::new("/etc/debian_version").exists() && is_root()
+}
+
+fn install(packages: &[&str]) -> Result<()> {
+    run::check(run::command("apt-get").args(["update", "-qq"]))?;
+    let mut install = run::command("apt-get");
+    install.env("DEBIAN_FRONTEND", "noninteractive").args(["install", "-y", "-qq", "--no-install-recommends"]);
+    run::check(install.args(packages))
 }
 
 fn missing_compilers() -> Vec<String> {
