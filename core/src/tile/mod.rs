@@ -30,6 +30,7 @@ mod builtin;
 mod fill;
 mod format;
 mod hash;
+mod net;
 mod sampler;
 mod sequence;
 mod view;

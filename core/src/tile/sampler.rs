@@ -1,6 +1,7 @@
 //! The sampler: one sample of one pixel, and the domains below it.
 
 use super::hash::{child, mix, permute, permute_octave};
+use super::net;
 use super::sequence;
 use super::view::{Shape, Tile, unit};
 
@@ -99,7 +100,8 @@ impl<'a> Sampler<'a> {
 
     /// The first N coordinates, 1 to 4, of this domain's point; each in [0, 1), a multiple of 2^-24.
     ///
-    /// Up to the tile's dims they are optimised together; further ones come from other places of the tile.
+    /// Up to the tile's dims they are optimised together; further ones come from other places of the tile. If it has at least two
+    /// dimensions and samples, and is not progressive, further coordinates of its samples are stratified by themselves and with the first two.
     #[inline(always)]
     pub fn draw<const N: usize>(&self) -> [f32; N] {
         let mut u = [0.0; N];
@@ -167,14 +169,24 @@ impl State {
 #[inline]
 fn point<const N: usize>(tile: &Tile<'_>, state: &State) -> [u32; N] {
     let more = |number| State { domain: child(state.domain ^ DIMENSIONS, number), ..*state };
-    let all = match tile.shape().dims {
+    let Shape { spp, dims, progressive, .. } = tile.shape();
+    let netted = spp > 1 && !progressive;
+    let all = match dims {
         1 => {
             let one = |number| if number < N as u32 { group(tile, &more(number)) } else { [0] };
             let ([a], [b], [c], [d]) = (group(tile, state), one(1), one(2), one(3));
             [a, b, c, d]
         }
+        2 if N > 2 && netted => {
+            let ([a, b], [c, d]) = (group(tile, state), further(tile, state));
+            [a, b, c, d]
+        }
         2 if N > 2 => {
             let ([a, b], [c, d]) = (group(tile, state), group(tile, &more(1)));
+            [a, b, c, d]
+        }
+        3 if N > 3 && netted => {
+            let ([a, b, c], [d, _]) = (group(tile, state), further(tile, state));
             [a, b, c, d]
         }
         3 if N > 3 => {
@@ -234,24 +246,67 @@ impl Rest {
 #[inline(never)]
 fn group_of<const N: usize>(payload: &[u8], rest: Rest, domain: u32, index: u32, xy: u32) -> [u32; N] {
     let tile = Tile::resume(rest.shape(), payload);
-    let Shape { size, spp, progressive, .. } = tile.shape();
+    let Shape { size, spp, .. } = tile.shape();
     let (frame, scrambled) = (rest.frame(), rest.flag(20));
     let (x, y) = place(&State { domain, x: xy as u16, y: (xy >> 16) as u16, ..State::default() }, size);
     let continued = index >= spp;
-    let mut sample = if continued { 0 } else { index };
-    if domain != 0 && spp > 1 && !continued {
-        // Samples of two domains must not meet in the same order in every pixel.
-        let pixel = x | y << 10 | u32::from(frame) << 20;
-        let random = mix(domain ^ pixel.wrapping_mul(0x9e37_79b1));
-        sample =
-            if progressive { permute_octave(sample, random) } else { permute(sample, spp.trailing_zeros(), random) };
-    }
+    let sample = sample_of(tile.shape(), domain, index, hash_of(domain, x, y, frame));
     let mut fixed = tile.fixed(tile.place(u32::from(frame), y, x, sample)).unwrap_or([0; N]);
     if scrambled {
         fixed.iter_mut().zip(1..).for_each(|(u, dim)| *u = u.wrapping_add(rotation(domain, dim)));
     }
     if continued {
         sequence::shift(domain, index, &mut fixed);
+    }
+    fixed
+}
+
+/// Random bits of a domain at a place of the tile.
+#[inline(always)]
+fn hash_of(domain: u32, x: u32, y: u32, frame: u16) -> u32 {
+    let pixel = x | y << 10 | u32::from(frame) << 20;
+    mix(domain ^ pixel.wrapping_mul(0x9e37_79b1))
+}
+
+/// Which of the tile's samples of a pixel stands for `index`.
+#[inline(always)]
+fn sample_of(shape: Shape, domain: u32, index: u32, random: u32) -> u32 {
+    let Shape { spp, progressive, .. } = shape;
+    if index >= spp {
+        return 0;
+    }
+    if domain == 0 || spp == 1 {
+        return index;
+    }
+    // Samples of two domains must not meet in the same order in every pixel.
+    if progressive { permute_octave(index, random) } else { permute(index, spp.trailing_zeros(), random) }
+}
+
+/// The two coordinates after those of the tile, whose samples are in the order that [`net`] needs.
+///
+/// Each is in a stratum of its own, of spp, and where in it comes from another place of the tile: from another sample of it for each
+/// stratum, so that the sum over the pixel is as even as the tile's.
+#[inline(never)]
+fn further(tile: &Tile<'_>, state: &State) -> [u32; 2] {
+    let Shape { size, spp, .. } = tile.shape();
+    let (x, y) = place(state, size);
+    let sample = sample_of(tile.shape(), state.domain, state.index, hash_of(state.domain, x, y, state.frame));
+    let bits = spp.trailing_zeros();
+    let mut fixed = [0, 1].map(|number| {
+        let more = State { domain: child(state.domain ^ DIMENSIONS, number + 1), ..*state };
+        let (x, y) = place(&more, size);
+        let random = hash_of(more.domain, x, y, more.frame);
+        let stratum = net::stratum(sample, bits, number, random);
+        let within = (stratum ^ random >> 8) & spp.wrapping_sub(1);
+        let [within] = tile.fixed(tile.place(u32::from(more.frame), y, x, within)).unwrap_or([0]);
+        stratum << ((32 - bits) & 31) | within >> (bits & 31)
+    });
+    let domain = child(state.domain ^ DIMENSIONS, 1);
+    if state.scrambled != 0 {
+        fixed.iter_mut().zip(1..).for_each(|(u, dim)| *u = u.wrapping_add(rotation(domain, dim)));
+    }
+    if state.index >= spp {
+        sequence::shift(domain, state.index, &mut fixed);
     }
     fixed
 }

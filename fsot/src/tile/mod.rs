@@ -8,6 +8,7 @@
 mod directions;
 mod kernel;
 mod optimizer;
+mod order;
 pub mod presets;
 mod problem;
 mod projection;

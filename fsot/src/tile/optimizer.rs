@@ -84,10 +84,11 @@ impl TileOptimizer {
         &self.problem
     }
 
-    /// The samples as they are now.
+    /// The samples as they are now; unless they are progressive, those of each pixel [ordered](TileSamples::ordered).
     pub fn samples(&self) -> TileSamples {
         let TileProblem { size, spp, dims, frames, .. } = self.problem;
-        TileSamples { size, spp, dims, frames, coordinates: self.coordinates.clone() }
+        let samples = TileSamples { size, spp, dims, frames, coordinates: self.coordinates.clone() };
+        if self.problem.progressive { samples } else { samples.ordered() }
     }
 
     /// Takes all steps that remain.

@@ -1,0 +1,89 @@
+//! Dimensions beyond the tile's: each is stratified by itself, and with the tile's two first.
+//!
+//! A tile's samples come in an order that tells where they are: bit 0 of the index says in which half of the pixel's points one is by
+//! the first coordinate, bits 0 and 1 together, added, in which half of those by the second, bits 2 and 3 the same of quarters, and so on, all
+//! exclusive-or a constant of the pixel's. A further coordinate's stratum, one of spp, is a linear function of those bits over the field of
+//! two elements, so chosen that the points are a digital net (Niederreiter 1992, chapter 4): each box of volume 1 / spp with sides that are
+//! powers of two has one point.
+
+use super::hash::permute;
+
+/// For 2, 4, 8, 16 samples: for the first and the second further dimension, which bits of the index add up to the bits of the
+/// stratum, from the most significant. With the first, every elementary interval in three dimensions has its point; with the second,
+/// every one in two of the four. None exists for the second below 8 samples.
+static ROWS: [[[u32; 4]; 2]; 5] = [
+    [[0; 4]; 2],
+    [[1, 0, 0, 0], [0; 4]],
+    [[2, 1, 0, 0], [0; 4]],
+    [[7, 2, 1, 0], [6, 2, 1, 0]],
+    [[8, 6, 2, 1], [9, 2, 4, 1]],
+];
+
+/// The stratum, of 2^bits, that sample `index` of a pixel has in further dimension `number`, 0 or 1: a bijection of the index for each `random`.
+#[inline(always)]
+pub(super) fn stratum(index: u32, bits: u32, number: u32, random: u32) -> u32 {
+    if number > 0 && bits < 3 {
+        return permute(index, bits, random);
+    }
+    let top = if bits < 4 { bits } else { 4 };
+    let rows = ROWS.get(top as usize).and_then(|both| both.get(number as usize)).copied().unwrap_or_default();
+    let leading = rows.iter().take(top as usize).fold(0, |sum, row| sum << 1 | (index & row).count_ones() & 1);
+    let rest = bits.saturating_sub(top);
+    let mask = (1_u32 << (bits & 15)) - 1;
+    ((leading << (rest & 15) | index >> (top & 7)) ^ random) & mask
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_stratum_has_one_sample() {
+        for bits in 0..=8 {
+            for (number, random) in [(0, 0), (1, 0), (0, 0xdead_beef), (1, 0x1234_5678)] {
+                let mut seen = [false; 256];
+                for index in 0..1 << bits {
+                    assert!(!core::mem::replace(&mut seen[stratum(index, bits, number, random) as usize], true));
+                }
+            }
+        }
+    }
+
+    /// The cell of a sample along each of the two coordinates that order the tile, and both further ones: of 2^bits each, as far as the order says.
+    fn cells(index: u32, bits: u32) -> [u32; 4] {
+        let side = |split: u32| match split % 2 {
+            0 => index >> split & 1,
+            _ => (index >> split ^ index >> (split - 1)) & 1,
+        };
+        let along = |axis: u32| {
+            let splits = (0..bits.div_ceil(2)).map(|k| 2 * k + axis).filter(|&split| split < bits);
+            splits.fold(0, |sum, split| sum << 1 | side(split))
+        };
+        [along(0), along(1), stratum(index, bits, 0, 0), stratum(index, bits, 1, 0)]
+    }
+
+    #[test]
+    fn elementary_intervals_have_one_sample_each() {
+        for bits in 2..=4_u32 {
+            let digits = [bits.div_ceil(2), bits / 2, bits, bits];
+            // How many bits each coordinate's cells are cut by: their sum is `bits`.
+            for cut in 0..5_u32.pow(4) {
+                let cut = [cut % 5, cut / 5 % 5, cut / 25 % 5, cut / 125];
+                let used = cut.iter().filter(|&&k| k > 0).count();
+                let kept = (cut[3] == 0 && used <= 3) || (bits > 2 && used <= 2);
+                if cut.iter().sum::<u32>() != bits || cut.iter().zip(digits).any(|(&k, digits)| k > digits) || !kept {
+                    continue;
+                }
+                let mut seen = [false; 16];
+                for index in 0..1 << bits {
+                    let cell = cells(index, bits)
+                        .iter()
+                        .zip(cut)
+                        .zip(digits)
+                        .fold(0, |sum, ((cell, k), digits)| sum << k | cell >> (digits - k));
+                    assert!(!core::mem::replace(&mut seen[cell as usize], true), "{bits} bits, {cut:?}");
+                }
+            }
+        }
+    }
+}
