@@ -80,6 +80,9 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
         path_tracer::check(&archive()?)
     });
+    steps.run("parts of examples_c/pathtracer: lights, surfaces, the image plane, paths", || {
+        path_tracer::parts(&archive()?)
+    });
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));
     steps.run("examples_c/fit_image.cpp: short runs", || fit::photograph(&archive()?));
