@@ -33,7 +33,6 @@ public:
         scene_.reset(rtcNewScene(device_.get()));
         // Without it, rays may slip through the edges between triangles.
         rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-        rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
         std::vector<uint32_t> still, moving;
         for (uint32_t i = 0; i < geometry.triangles.size(); ++i)
             (moves(geometry.triangles[i].motion) ? moving : still).push_back(i);
