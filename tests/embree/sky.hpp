@@ -32,13 +32,13 @@ inline std::shared_ptr<const demo::Environment> map(uint32_t width, uint32_t hei
 // A lobe of light around a unit direction, 1 in its middle; the larger `sharpness`, the smaller.
 inline float glow(Vector direction, Vector around, float sharpness) { return std::exp(sharpness * (dot(direction, demo::normalize(around)) - 1)); }
 
-// Evening: blue above, warm at the horizon, a large soft glow where the sun is, and another colour opposite.
-inline std::shared_ptr<const demo::Environment> smooth_sky(Vector sun)
+// Evening: blue above, warm at the horizon, a glow where the sun is, large and soft unless it is sharpened, and another colour opposite.
+inline std::shared_ptr<const demo::Environment> smooth_sky(Vector sun, float sharpness = 9, float strength = 1)
 {
     return map(128, 64, [=](Vector d) {
         Color sky = mix({.95f, .78f, .62f}, {.22f, .38f, .72f}, smoothstep(-.05f, .7f, d.y));
         sky = mix({.3f, .26f, .22f}, sky, smoothstep(-.25f, .05f, d.y));
-        sky += glow(d, sun, 9) * Color{5.2f, 3.9f, 2.5f};
+        sky += glow(d, sun, sharpness) * (strength * sharpness / 9) * Color{5.2f, 3.9f, 2.5f};
         sky += glow(d, {-sun.x, .25f, -sun.z}, 5) * Color{.35f, .25f, .6f};
         return sky;
     });

@@ -28,7 +28,7 @@ inline void make_animation(uint32_t frame, float aspect, Scene &scene)
     // A ball rolls past the turntable.
     const float way = .045f * time;
     stage.sphere({-1.05f + way, .13f, 1.12f - .2f * way}, .13f, stage.material({.6f, .12f, .08f}, {.2f, .2f, .2f}, 50));
-    stage.area_light({-2.1f, 3, .3f}, {1.5f, 0, .3f}, {-.2f, .4f, 1.4f}, {11.5f, 10.8f, 9.6f});
+    stage.area_light({-2.1f, 3, .3f}, {1.5f, 0, .3f}, {-.2f, .4f, 1.4f}, {34, 32, 28});
 }
 
 } // namespace harness

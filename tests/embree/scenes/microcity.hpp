@@ -10,7 +10,7 @@ class City {
 public:
     explicit City(Stage &stage) : stage_(stage)
     {
-        const Color paints[7] = {{.62f, .52f, .4f}, {.55f, .3f, .22f}, {.66f, .64f, .6f}, {.36f, .4f, .45f}, {.7f, .58f, .34f}, {.45f, .34f, .28f}, {.5f, .55f, .52f}};
+        const Color paints[7] = {{.68f, .5f, .3f}, {.58f, .24f, .15f}, {.66f, .62f, .55f}, {.25f, .36f, .5f}, {.74f, .56f, .2f}, {.5f, .3f, .2f}, {.35f, .52f, .45f}};
         for (Color paint : paints)
             walls_.push_back(stage.material(paint));
         const Color cars[5] = {{.6f, .08f, .06f}, {.1f, .2f, .5f}, {.75f, .75f, .72f}, {.08f, .08f, .09f}, {.75f, .55f, .08f}};
@@ -73,7 +73,7 @@ private:
     {
         const Transform place = move(foot) * turn_up(degrees);
         const float columns = std::max(1.0f, std::floor(width / .12f)), pitch = width / columns;
-        const Mesh frame = box({pitch * .62f, storey * .66f, .016f}), pane = box({pitch * .46f, storey * .52f, .02f});
+        const Mesh frame = box({pitch * .56f, storey * .62f, .012f}), pane = box({pitch * .46f, storey * .52f, .016f});
         const bool balconies = number() < .3f;
         const Mesh balcony = box({pitch * .8f, storey * .22f, .05f});
         for (float row = 0; row < floors; ++row)
@@ -131,7 +131,7 @@ inline void make_microcity(uint32_t, float aspect, Scene &scene)
                     city.house(center.x - .5f * block + .07f + static_cast<float>(a) * (width + .06f), center.z - .5f * block + .06f + static_cast<float>(b) * (width + .02f),
                                width - city.number(0, .12f), width - city.number(0, .12f), tall * city.number(.55f, 1.35f));
         }
-    stage.environment(smooth_sky({-.8f, .55f, .35f}));
+    stage.environment(smooth_sky({-.75f, .55f, .65f}, 60, 2));
 }
 
 } // namespace harness
