@@ -79,6 +79,19 @@ pub(crate) fn check(archive: &Path) -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
+/// The programs of `tests/pathtracer`: the path tracer's parts, one by one.
+pub(crate) fn parts(archive: &Path) -> Result<Outcome> {
+    for name in ["lights", "surfaces", "image_plane", "paths"] {
+        println!("   {name}");
+        let program = output(&format!("pathtracer_{name}"))?;
+        let mut compiler = run::compiler("CXX", "c++");
+        compiler.arg("-std=c++17").args(STRICT).arg(format!("tests/pathtracer/{name}.cpp"));
+        run::check(compiler.arg(archive).args(["-pthread", "-o"]).arg(&program))?;
+        run::check(&mut run::command(&program))?;
+    }
+    Ok(Outcome::Passed)
+}
+
 /// Every tile by its name, and by its file if it is there: the same picture.
 fn check_tiles(tracer: &PathTracer, tiles: &[&str]) -> Result<()> {
     println!("   tiles: {}", tiles.join(", "));
