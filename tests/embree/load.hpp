@@ -24,7 +24,8 @@ inline Mesh load(const std::string &path)
     const aiScene *file = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals |
                                                       aiProcess_PreTransformVertices | aiProcess_FindDegenerates | aiProcess_SortByPType);
     if (!file)
-        throw std::runtime_error("cannot load the mesh " + path + ": " + importer.GetErrorString());
+        throw std::runtime_error("cannot load the mesh " + path + ": " + importer.GetErrorString() +
+                                 " $NOISEFLOOR_MESHES may name the folder, which is tests/embree/meshes of the sources.");
     Mesh mesh;
     for (unsigned m = 0; m < file->mNumMeshes; ++m) {
         const aiMesh &part = *file->mMeshes[m];
