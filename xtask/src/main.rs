@@ -6,6 +6,7 @@ mod examples;
 mod fit;
 mod header;
 mod library;
+mod measure;
 mod paths;
 mod run;
 mod test;

@@ -2,12 +2,12 @@
 
 use super::measure::Measurement;
 use super::plan::{Choice, Scene, TEMPORAL};
-use super::score::Score;
 use super::sheet;
-use crate::demo::markdown;
-use crate::demo::metric::Reference;
-use crate::demo::output::Output;
-use crate::demo::renderer::Sampler;
+use crate::measure::markdown;
+use crate::measure::metric::Reference;
+use crate::measure::output::Output;
+use crate::measure::renderer::Sampler;
+use crate::measure::score::Score;
 use anyhow::Result;
 use image::Rgb32FImage;
 

@@ -1,22 +1,18 @@
 //! The path tracer with random samples, Owen-scrambled Sobol points and noisefloor's tiles.
 
 mod animation;
-mod filter;
 mod hero;
 mod measure;
-mod part;
 mod plan;
-mod score;
 mod sheet;
-mod spectrum;
 mod table;
 
 use super::Options;
-use super::metric::Reference;
-use super::output::Output;
-use super::progress;
-use super::renderer::{Renderer, threads};
-use super::runs::Runs;
+use crate::measure::metric::Reference;
+use crate::measure::output::Output;
+use crate::measure::progress;
+use crate::measure::renderer::{Renderer, threads};
+use crate::measure::runs::Runs;
 use anyhow::Result;
 use measure::{Measured, Measurement, baseline, find, ratios};
 use plan::{BASELINE, Choice, ESTIMATORS, Plan, SCENES, Scene, Tiles};
@@ -133,8 +129,8 @@ fn report(plan: &Plan, [summary, shared, samplers, animation]: &[String; 4]) -> 
         threads = threads(),
         frames = frames.join(", "),
         orders = orders.join(", "),
-        sigma = filter::SIGMA,
-        limit = score::LIMIT,
+        sigma = crate::measure::filter::SIGMA,
+        limit = crate::measure::score::LIMIT,
         scene = SCENES[0].name,
         alpha = animation::ALPHA,
         from = animation::FRAMES,

@@ -1,10 +1,10 @@
 //! The comparison picture: a part of every sampler's image, its errors beneath it, and their spectra (figure 5.20).
 
-use super::part::Part;
 use super::plan::Scene;
-use super::spectrum::WINDOW;
-use crate::demo::metric::Reference;
-use crate::demo::text;
+use crate::measure::metric::Reference;
+use crate::measure::part::Part;
+use crate::measure::spectrum::WINDOW;
+use crate::measure::text;
 use image::imageops::replace;
 use image::{Rgb, Rgb32FImage, RgbImage};
 
