@@ -66,10 +66,15 @@ impl Running {
         for (child, log) in &mut self.0 {
             let status = child.wait().context("povray was lost")?;
             if !status.success() {
-                let text = fs::read(&*log).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default();
+                let text =
+                    fs::read(&*log).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default();
                 // What went wrong stands before "Fatal error"; the credits and settings before that are long.
                 let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
-                bail!("povray {}.pov failed, {status}:\n{}", scene.name, lines[lines.len().saturating_sub(6)..].join("\n"));
+                bail!(
+                    "povray {}.pov failed, {status}:\n{}",
+                    scene.name,
+                    lines[lines.len().saturating_sub(6)..].join("\n")
+                );
             }
         }
         Ok(())

@@ -1,10 +1,13 @@
 //! POV-Ray as an oracle: scenes in which it computes what one sample sees, cell by cell of a grid over the unit cube, so that
 //! every estimator and sampler can be compared with the exact mean.
 
+mod bias;
 mod frames;
+mod oracle;
 mod ppm;
 mod scenes;
 mod stack;
+pub(crate) mod test;
 
 use crate::tools::Package;
 

@@ -35,6 +35,26 @@ pub(crate) struct Scene {
     pub(crate) small: &'static [u32],
 }
 
+impl Scene {
+    /// Every estimator that suits the scene, by the names of the path tracer.
+    pub(crate) fn estimators(&self) -> Vec<&'static str> {
+        let all =
+            ["mc", "robust", "least_squares", "leave_one_out", "k_fold", "gradient_descent", "incremental", "shared"];
+        let slices = self.axes.contains(&Choice).then_some("slices");
+        all.into_iter().chain(slices).collect()
+    }
+
+    /// The built-in tile that suits its dimensions: what depends on each other is best drawn together, from one tile. Empty: the
+    /// path tracer's own choice among those of two dimensions.
+    pub(crate) fn tile(&self, spp: u32) -> &'static str {
+        match (self.axes.len(), spp) {
+            (..=2, _) | (_, 5..) => "",
+            (_, ..4) => "128_1SPP_4D",
+            (_, 4) => "128_4SPP_4D",
+        }
+    }
+}
+
 use Decision::{Choice, Lens, Light, Time};
 
 pub(crate) const SCENES: [Scene; 5] = [
