@@ -115,7 +115,7 @@ public:
         std::vector<LightTriangle> shining;
         for (size_t i = first; i < triangles(); ++i) {
             Triangle &t = scene_.geometry.triangles[i];
-            shining.push_back({t.corner[0], t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]});
+            shining.emplace_back(t.corner[0], t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
             t.light = next_light();
         }
         scene_.lights.push_back(mesh_light(std::move(shining), radiance));

@@ -9,7 +9,10 @@
 namespace demo {
 
 struct LightTriangle {
-    Vector origin, edge1, edge2; // shines to the side of cross(edge1, edge2)
+    Vector origin, edge1, edge2;
+    Vector normal; // unit, along cross(edge1, edge2): the side that shines
+
+    LightTriangle(Vector corner, Vector e1, Vector e2) : origin(corner), edge1(e1), edge2(e2), normal(normalize(cross(e1, e2))) {}
 };
 
 struct Light {
@@ -17,6 +20,7 @@ struct Light {
     Color radiance; // not of environments: their map says it
     Vector origin;  // a corner, or the centre
     Vector edge1, edge2;
+    Vector normal; // of flat ones, unit: the side that shines
     float radius = 0;
     float area = 0;                        // of all but spheres and environments
     std::vector<LightTriangle> triangles;  // of meshes
@@ -26,22 +30,22 @@ struct Light {
 
 inline Light parallelogram_light(Vector corner, Vector edge1, Vector edge2, Color radiance)
 {
-    return {Light::parallelogram, radiance, corner, edge1, edge2, 0, length(cross(edge1, edge2)), {}, {}, {}};
+    return {Light::parallelogram, radiance, corner, edge1, edge2, normalize(cross(edge1, edge2)), 0, length(cross(edge1, edge2)), {}, {}, {}};
 }
 
 inline Light triangle_light(Vector corner, Vector edge1, Vector edge2, Color radiance)
 {
-    return {Light::triangle, radiance, corner, edge1, edge2, 0, length(cross(edge1, edge2)) / 2, {}, {}, {}};
+    return {Light::triangle, radiance, corner, edge1, edge2, normalize(cross(edge1, edge2)), 0, length(cross(edge1, edge2)) / 2, {}, {}, {}};
 }
 
 inline Light sphere_light(Vector center, float radius, Color radiance)
 {
-    return {Light::sphere, radiance, center, {}, {}, radius, 0, {}, {}, {}};
+    return {Light::sphere, radiance, center, {}, {}, {}, radius, 0, {}, {}, {}};
 }
 
 inline Light mesh_light(std::vector<LightTriangle> triangles, Color radiance)
 {
-    Light light{Light::mesh, radiance, {}, {}, {}, 0, 0, std::move(triangles), {}, {}};
+    Light light{Light::mesh, radiance, {}, {}, {}, {}, 0, 0, std::move(triangles), {}, {}};
     double area = 0;
     for (const LightTriangle &t : light.triangles)
         light.areas.push_back(static_cast<float>(area += length(cross(t.edge1, t.edge2)) / 2));
@@ -53,7 +57,7 @@ inline Light mesh_light(std::vector<LightTriangle> triangles, Color radiance)
 
 inline Light environment_light(std::shared_ptr<const Environment> map)
 {
-    return {Light::environment, {}, {}, {}, {}, 0, 0, {}, {}, std::move(map)};
+    return {Light::environment, {}, {}, {}, {}, {}, 0, 0, {}, {}, std::move(map)};
 }
 
 struct LightSample {
@@ -93,18 +97,18 @@ inline float light_pdf(const Light &light, Vector from, Vector direction, float 
 }
 
 // The point at (u, v) of a surface that `from` may see.
-inline LightSample sample_surface(const Light &light, Vector point, Vector edge1, Vector edge2, Vector from)
+inline LightSample sample_surface(const Light &light, Vector point, Vector normal, Vector from)
 {
     Vector to = point - from;
     float distance = length(to);
     Vector direction = to / distance;
-    return {direction, distance, light_pdf(light, from, direction, distance, normalize(cross(edge1, edge2))), light.radiance};
+    return {direction, distance, light_pdf(light, from, direction, distance, normal), light.radiance};
 }
 
-inline Vector triangle_point(const LightTriangle &t, float u, float v)
+inline Vector triangle_point(Vector corner, Vector edge1, Vector edge2, float u, float v)
 {
     float root = std::sqrt(u);
-    return t.origin + (1 - root) * t.edge1 + v * root * t.edge2;
+    return corner + (1 - root) * edge1 + v * root * edge2;
 }
 
 // One triangle of a mesh is picked by area with u, which is then reused: what (u, v) stands for jumps from triangle to triangle.
@@ -116,7 +120,7 @@ inline LightSample sample_mesh(const Light &light, Vector from, float u, float v
     float before = i ? light.areas[i - 1] : 0.0f, area = light.areas[i] - before;
     const LightTriangle &t = light.triangles[i];
     float rest = area > 0 ? std::min((at - before) / area, 1.0f) : 0.5f;
-    return sample_surface(light, triangle_point(t, rest, v), t.edge1, t.edge2, from);
+    return sample_surface(light, triangle_point(t.origin, t.edge1, t.edge2, rest, v), t.normal, from);
 }
 
 inline LightSample sample_sphere(const Light &light, Vector from, float u, float v)
@@ -138,9 +142,9 @@ inline LightSample sample_light(const Light &light, Vector from, float u, float 
 {
     switch (light.kind) {
     case Light::parallelogram:
-        return sample_surface(light, light.origin + u * light.edge1 + v * light.edge2, light.edge1, light.edge2, from);
+        return sample_surface(light, light.origin + u * light.edge1 + v * light.edge2, light.normal, from);
     case Light::triangle:
-        return sample_surface(light, triangle_point({light.origin, light.edge1, light.edge2}, u, v), light.edge1, light.edge2, from);
+        return sample_surface(light, triangle_point(light.origin, light.edge1, light.edge2, u, v), light.normal, from);
     case Light::sphere: return sample_sphere(light, from, u, v);
     case Light::mesh: return sample_mesh(light, from, u, v);
     case Light::environment: break;

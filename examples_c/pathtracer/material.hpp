@@ -18,7 +18,7 @@ struct Material {
 
 // A surface as seen along `out`: unit vectors pointing away from it, normals turned to the side of `out`.
 struct Shading {
-    Material material;
+    const Material &material;
     Vector geometric, normal, out;
     bool inside; // whether `out` is at the back of the surface
 };
