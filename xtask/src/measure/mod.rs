@@ -1,5 +1,6 @@
 //! What the demo and the report share: running a renderer, reading its images, judging them, and showing the outcome.
 
+pub(crate) mod error_sheet;
 pub(crate) mod filter;
 pub(crate) mod image;
 pub(crate) mod interrupt;
@@ -13,4 +14,5 @@ pub(crate) mod renderer;
 pub(crate) mod runs;
 pub(crate) mod score;
 pub(crate) mod spectrum;
+pub(crate) mod spectrum_sheet;
 pub(crate) mod text;

@@ -2,10 +2,10 @@
 
 mod measure;
 mod plan;
-mod sheet;
 mod table;
 
 use super::Options;
+use crate::measure::error_sheet as sheet;
 use crate::measure::output::Output;
 use crate::measure::progress;
 use crate::measure::renderer::{Renderer, threads};

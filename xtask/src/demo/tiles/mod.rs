@@ -4,7 +4,6 @@ mod animation;
 mod hero;
 mod measure;
 mod plan;
-mod sheet;
 mod table;
 
 use super::Options;
@@ -13,6 +12,7 @@ use crate::measure::output::Output;
 use crate::measure::progress;
 use crate::measure::renderer::{Renderer, threads};
 use crate::measure::runs::Runs;
+use crate::measure::spectrum_sheet as sheet;
 use anyhow::Result;
 use measure::{Measured, Measurement, baseline, find, ratios};
 use plan::{BASELINE, Choice, ESTIMATORS, Plan, SCENES, Scene, Tiles};
@@ -95,7 +95,7 @@ fn write_sheet(output: &Output, plan: &Plan, scene: &Scene, all: &[Measured], re
     let names: Vec<String> =
         columns.iter().map(|(choice, estimator)| format!("{}, {estimator}", choice.label())).collect();
     let title = format!("{}: integral over {}; polynomials of order {}", scene.name, scene.domain, scene.order);
-    let picture = sheet::draw(&title, &names, &rows, scene, reference);
+    let picture = sheet::draw(&title, &names, &rows, scene.crop, reference);
     output.write_picture(&format!("tiles-{}.png", scene.name), &picture)
 }
 
