@@ -8,6 +8,7 @@ mod header;
 mod library;
 mod measure;
 mod paths;
+mod povray;
 mod report;
 mod run;
 mod test;

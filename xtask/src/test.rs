@@ -1,6 +1,6 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
-use crate::{c_tests, examples, fit, header, library, run, tools, train_mlp};
+use crate::{c_tests, examples, fit, header, library, povray, run, tools, train_mlp};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -79,6 +79,9 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("examples_c/shards.c: four processes", || examples::shards(&archive()?));
     steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
         examples::path_tracer(&archive()?)
+    });
+    steps.run("tests/povray: POV-Ray's pictures as integrands, every estimator and sampler, 32 x 32 pixels", || {
+        povray::test::run(&archive()?)
     });
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));

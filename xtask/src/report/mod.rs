@@ -9,7 +9,7 @@ mod measurement;
 mod pictures;
 mod plan;
 mod scenes;
-mod statistics;
+pub(crate) mod statistics;
 mod tables;
 
 use crate::measure::interrupt::{self, Interrupted};
