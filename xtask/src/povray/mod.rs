@@ -1,15 +1,17 @@
 //! POV-Ray as an oracle: scenes in which it computes what one sample sees, cell by cell of a grid over the unit cube, so that
 //! every estimator and sampler can be compared with the exact mean.
 
-mod bias;
+pub(crate) mod bias;
 mod frames;
-mod oracle;
+pub(crate) mod oracle;
 mod ppm;
-mod scenes;
+pub(crate) mod scenes;
 mod stack;
 pub(crate) mod test;
 
 use crate::tools::Package;
+
+pub(crate) use frames::version;
 
 /// What renders the scenes.
 pub(crate) const PACKAGES: [Package; 2] = [

@@ -8,6 +8,7 @@ mod figure;
 mod measurement;
 mod pictures;
 mod plan;
+mod povray;
 mod scenes;
 pub(crate) mod statistics;
 mod tables;
@@ -46,6 +47,8 @@ pub(crate) struct Options {
 enum Part {
     /// Embree's intersector: the scenes of the thesis's chapters 4 and 5
     Embree,
+    /// POV-Ray's pictures as integrands
+    Povray,
 }
 
 /// What a chapter needs.
@@ -71,7 +74,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let large = folder(beside, paths::target().join("report"))?;
     let interrupted = interrupt::catch()?;
     let (output, pictures) = (Output::new(&small)?, Output::new(&large)?);
-    let chapters = [(Part::Embree, embree::write as fn(&Report) -> Result<()>)];
+    let chapters = [(Part::Embree, embree::write as fn(&Report) -> Result<()>), (Part::Povray, povray::write)];
     let report = Report {
         plan: Plan::new(options.quick, options.full),
         program: options.program.clone(),
