@@ -19,18 +19,13 @@ pub(crate) fn check(archive: &Path) -> Result<Outcome> {
     compile("pathtracer.cpp", &[&STRICT[..], &["-pthread"]].concat(), archive, &program)?;
 
     let tracer = PathTracer { program, prefix: output("picture")? };
-    let help = run::read(run::command(&tracer.program).arg("--help"))?;
+    let help = tracer.help()?;
     let list = |name: &str| -> Result<Vec<&str>> {
         let line = help.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(':'));
         Ok(line.with_context(|| format!("--help lists no {name}"))?.split_whitespace().collect())
     };
-    // Names with descriptions, indented under a heading.
-    let block = |name: &str| -> Vec<&str> {
-        let lines = help.lines().skip_while(|line| line.strip_suffix(':') != Some(name)).skip(1);
-        lines.take_while(|line| line.starts_with(' ')).filter_map(|line| line.split_whitespace().next()).collect()
-    };
     let (samplers, tiles, filters) = (list("samplers")?, list("tiles")?, list("filters")?);
-    let (scenes, estimators) = (block("scenes"), block("estimators"));
+    let (scenes, estimators) = (block(&help, "scenes"), block(&help, "estimators"));
     if scenes.len() < 5 || estimators.len() < 2 || samplers.len() < 3 || tiles.is_empty() || filters.len() < 3 {
         bail!("--help lists too few scenes, estimators, samplers, tiles or filters");
     }
@@ -41,16 +36,7 @@ pub(crate) fn check(archive: &Path) -> Result<Outcome> {
         println!("   {scene}: {}; {}", names.join(", "), samplers.join(", "));
         tracer.render(&["--scene", scene, "--spp", "64", "--reference"])?;
         let expected = tracer.brightness("reference")?;
-        let check = |what: &str, names: &[&str]| -> Result<()> {
-            for name in names {
-                let actual = tracer.brightness(name)?;
-                // 8192 samples, noisy ones: a tenth of the brightness is far outside what they do by chance.
-                if (actual - expected).abs() > 0.1 * expected {
-                    bail!("{scene}, {what}, {name}: the picture's mean is {actual}, the reference's {expected}");
-                }
-            }
-            Ok(())
-        };
+        let check = |what: &str, names: &[&str]| tracer.check(&format!("{scene}, {what}"), names, expected);
         // Fifteen dimensions at order 2 are 136 terms: more than this short look is for.
         let order = if scene == "global" { "1" } else { "2" };
         tracer.render(&["--scene", scene, "--spp", "8", "--order", order, "--estimators", &names.join(",")])?;
@@ -67,12 +53,7 @@ pub(crate) fn check(archive: &Path) -> Result<Outcome> {
         tracer.render(&["--scene", "direct", "--spp", "64", "--filter", filter, "--reference"])?;
         let expected = tracer.brightness("reference")?;
         tracer.render(&["--scene", "direct", "--spp", "8", "--filter", filter, "--estimators", "mc,robust,shared"])?;
-        for name in ["mc", "robust", "shared"] {
-            let actual = tracer.brightness(name)?;
-            if (actual - expected).abs() > 0.1 * expected {
-                bail!("filter {filter}, {name}: the picture's mean is {actual}, the reference's {expected}");
-            }
-        }
+        tracer.check(&format!("filter {filter}"), &["mc", "robust", "shared"], expected)?;
     }
     check_tiles(&tracer, &tiles)?;
     check_seeds(&tracer)?;
@@ -171,10 +152,16 @@ fn check_seeds(tracer: &PathTracer) -> Result<()> {
     Ok(())
 }
 
-/// The compiled program, and where its pictures go.
-struct PathTracer {
-    program: PathBuf,
-    prefix: PathBuf,
+/// The names in a program's help that are listed, with descriptions, indented under a heading.
+pub(crate) fn block<'a>(help: &'a str, heading: &str) -> Vec<&'a str> {
+    let lines = help.lines().skip_while(|line| line.strip_suffix(':') != Some(heading)).skip(1);
+    lines.take_while(|line| line.starts_with(' ')).filter_map(|line| line.split_whitespace().next()).collect()
+}
+
+/// A compiled program with the path tracer's command line, and where its pictures go.
+pub(crate) struct PathTracer {
+    pub(crate) program: PathBuf,
+    pub(crate) prefix: PathBuf,
 }
 
 impl PathTracer {
@@ -186,18 +173,34 @@ impl PathTracer {
         command
     }
 
-    fn render(&self, options: &[&str]) -> Result<()> {
+    pub(crate) fn help(&self) -> Result<String> {
+        run::read(run::command(&self.program).arg("--help"))
+    }
+
+    pub(crate) fn render(&self, options: &[&str]) -> Result<()> {
         run::check(&mut self.command(options))
     }
 
-    fn accepts(&self, options: &[&str]) -> Result<bool> {
+    pub(crate) fn accepts(&self, options: &[&str]) -> Result<bool> {
         let status = self.command(options).stderr(Stdio::null()).status();
         Ok(status.context("cannot start the path tracer")?.success())
     }
 
-    fn brightness(&self, name: &str) -> Result<f64> {
+    pub(crate) fn brightness(&self, name: &str) -> Result<f64> {
         let values = self.values(name)?;
         Ok(values.iter().sum::<f64>() / values.len() as f64)
+    }
+
+    /// Fails unless the pictures of all these estimators are as bright as they should be.
+    pub(crate) fn check(&self, what: &str, names: &[&str], expected: f64) -> Result<()> {
+        for name in names {
+            let actual = self.brightness(name)?;
+            // 8192 samples, noisy ones: a tenth of the brightness is far outside what they do by chance.
+            if (actual - expected).abs() > 0.1 * expected {
+                bail!("{what}, {name}: the picture's mean is {actual}, the reference's {expected}");
+            }
+        }
+        Ok(())
     }
 
     fn picture(&self, name: &str) -> PathBuf {

@@ -1,6 +1,6 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
-use crate::{c_tests, examples, fit, header, library, path_tracer, run, tools, train_mlp};
+use crate::{c_tests, embree, examples, fit, header, library, path_tracer, run, tools, train_mlp};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -83,6 +83,10 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("parts of examples_c/pathtracer: lights, surfaces, the image plane, paths", || {
         path_tracer::parts(&archive()?)
     });
+    steps.run("tests/embree: Embree meets the same surfaces as the path tracer's own tree", || {
+        embree::agreement(&archive()?)
+    });
+    steps.run("tests/embree: every scene, three samplers, 32 x 32 pixels", || embree::scenes(&archive()?));
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));
     steps.run("examples_c/fit_image.cpp: short runs", || fit::photograph(&archive()?));
