@@ -55,7 +55,10 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.setting("relMSE is shown times", 1000);
     section.chapter.table("indirect", &columns, 2, rows);
     write_sheet(section, &orders)?;
-    write_lengths(section)
+    if section.measurement.renderer.help()?.contains("--bounces") {
+        write_lengths(section)?;
+    }
+    Ok(())
 }
 
 /// Ratios in the upper and in the lower half of the image.

@@ -17,6 +17,7 @@ const SAMPLERS: [(&str, &str); 4] = [
 pub(super) struct Public {
     program: PathBuf,
     folder: PathBuf,
+    known: bool,
 }
 
 impl Public {
@@ -25,11 +26,11 @@ impl Public {
         let mut cargo = run::cargo();
         cargo.args(["build", "--quiet", "--profile", "xtask", "--package", "noisefloor-bench", "--example", "points"]);
         run::check(&mut cargo)?;
-        Ok(Self { program: paths::target().join("xtask/examples/points"), folder: measurement.path("points") })
+        Ok(Self { program: paths::target().join("xtask/examples/points"), folder: measurement.path("points"), known: measurement.renderer.help()?.lines().any(|l| l.starts_with("samplers:") && l.contains("table")) })
     }
 
-    pub(super) fn labels(&self) -> impl Iterator<Item = String> {
-        SAMPLERS.iter().map(|(_, label)| (*label).to_owned())
+    pub(super) fn labels(&self) -> impl Iterator<Item = String> + '_ {
+        SAMPLERS.iter().filter(|_| self.known).map(|(_, label)| (*label).to_owned())
     }
 
     /// One file for each sampler, of so many samples and dimensions.
@@ -43,7 +44,7 @@ impl Public {
             }
             Ok(file)
         };
-        SAMPLERS.iter().map(|(name, _)| file(name)).collect()
+        SAMPLERS.iter().filter(|_| self.known).map(|(name, _)| file(name)).collect()
     }
 
     pub(super) fn description(&self) -> &'static str {
