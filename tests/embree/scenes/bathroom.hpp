@@ -100,7 +100,7 @@ inline void make_bathroom(uint32_t, float aspect, Scene &scene)
         stage.put(rod({x, 1.62f, -1.5f}, {x, 1.62f, -1.36f}, .02f), chrome);
         stage.lamp(ball({.09f, .09f, .09f}, 16), {17, 14.6f, 11.2f}, move({x, 1.62f, -1.3f}));
     }
-    stage.lamp(torus(.34f, .05f, 24, 8), {17, 15.5f, 13.5f}, move({.1f, 2.35f, .35f}));
+    stage.lamp(torus(.34f, .05f, 24, 8), {26, 23.8f, 20.5f}, move({.1f, 2.35f, .35f}));
     stage.put(box({.05f, .95f, .8f}, .02f), oak, move({-1.71f, 1.55f, 1}));
     stage.lamp(rectangle({-1.68f, 1.6f, 1.35f}, {0, 0, -.7f}, {0, .85f, 0}), {9, 11.5f, 14.5f});
     stage.put(box({.5f, .025f, .2f}, .01f), oak, move({1.12f, 1.4f, -1.4f}));

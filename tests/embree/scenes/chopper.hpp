@@ -62,7 +62,7 @@ inline void make_chopper(uint32_t, float aspect, Scene &scene)
 {
     Stage stage(scene);
     scene.camera.look({2.1f, 2.05f, 3.6f}, {-.52f, .58f, -.1f}, 38, aspect);
-    // The pad: concrete slabs, a ring and an H.
+    // The pad: concrete slabs, and a ring.
     const uint32_t slab[2] = {stage.material({.42f, .41f, .39f}), stage.material({.38f, .375f, .36f})}, paint = stage.material({.75f, .68f, .3f});
     stage.put(lathe({{0, -.04f}, {40, -.04f}, {40, -.03f}, {0, -.03f}}, 64), stage.material({.3f, .3f, .29f}));
     const Mesh tile = box({.985f, .03f, .985f}, .008f, 2);

@@ -21,7 +21,7 @@ inline void make_glass(uint32_t, float aspect, Scene &scene)
     scene.geometry.spheres.push_back({{.72f, .295f, .25f}, .28f, {}, glass, -1});
     stage.put(lathe(rounded({{0, 0}, {.2f, 0}, {.23f, .05f}, {.2f, .5f}, {.25f, .78f}, {.25f, .8f}, {.235f, .8f}, {.19f, .5f}, {.2f, .12f}, {.12f, .08f}, {0, .075f}}), 72, 60), glass,
               move({.3f, .013f, -.62f}));
-    stage.sphere({-.82f, .165f, .75f}, .15f, stage.material({.1f, .2f, .5f}, {.2f, .2f, .2f}, 40));
+    stage.sphere({-.74f, .165f, .72f}, .15f, stage.material({.1f, .2f, .5f}, {.2f, .2f, .2f}, 40));
     stage.sphere({.12f, .105f, .85f}, .09f, stage.material({.7f, .45f, .1f}, {.2f, .2f, .2f}, 40));
     stage.area_light({-1.5f, 3.1f, -.6f}, {2.6f, 0, 0}, {0, .5f, 2.2f}, {4.2f, 4, 3.7f});
 }

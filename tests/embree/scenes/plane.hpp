@@ -9,7 +9,7 @@ inline void make_plane(uint32_t side, float aspect, Scene &scene)
 {
     Stage stage(scene);
     scene.layout.choice = side > 1;
-    scene.camera.look({0, .62f, 3.5f}, {0, .2f, 0}, 37, aspect);
+    scene.camera.look({0, .62f, 3.5f}, {0, .16f, 0}, 36, aspect);
     stage.put(backdrop(8, 5, 1.3f, 5, .5f), stage.material({.72f, .7f, .67f}));
     const float step = 2 / static_cast<float>(side), half = .27f * step;
     for (uint32_t j = 0; j < side; ++j)
@@ -21,7 +21,7 @@ inline void make_plane(uint32_t side, float aspect, Scene &scene)
             const Transform lean = turn({1, 0, 0}, side > 1 ? 20 * (number(2) - .5f) : 0);
             const Vector right = lean.direction({2 * half, 0, 0}), back = lean.direction({0, 0, 2 * half});
             Color color = side > 1 ? mix({1, .68f, .4f}, {.5f, .75f, 1}, number(3)) : Color{1, .93f, .82f};
-            stage.area_light(Vector{x, y, z} - .5f * (right + back), right, back, 10 * (side > 1 ? .55f + .9f * number(4) : 1.0f) * color);
+            stage.area_light(Vector{x, y, z} - .5f * (right + back), right, back, 5.5f * (side > 1 ? .55f + .9f * number(4) : 1.0f) * color);
         }
 }
 
