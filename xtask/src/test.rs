@@ -80,7 +80,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
         path_tracer::check(&archive()?)
     });
-    steps.run("parts of examples_c/pathtracer: lights, surfaces, the image plane, paths", || {
+    steps.run("parts of examples_c/pathtracer: lights, surfaces, the image plane, paths, MIS", || {
         path_tracer::parts(&archive()?)
     });
     steps.run("tests/embree: Embree meets the same surfaces as the path tracer's own tree", || {
