@@ -1,6 +1,6 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
-use crate::{c_tests, examples, fit, header, library, povray, run, tools, train_mlp};
+use crate::{c_tests, embree, examples, fit, header, library, path_tracer, povray, run, tools, train_mlp};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -78,8 +78,15 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("examples_c/shared.c", || examples::integrate(&archive()?, "shared"));
     steps.run("examples_c/shards.c: four processes", || examples::shards(&archive()?));
     steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
-        examples::path_tracer(&archive()?)
+        path_tracer::check(&archive()?)
     });
+    steps.run("parts of examples_c/pathtracer: lights, surfaces, the image plane, paths, MIS", || {
+        path_tracer::parts(&archive()?)
+    });
+    steps.run("tests/embree: Embree meets the same surfaces as the path tracer's own tree", || {
+        embree::agreement(&archive()?)
+    });
+    steps.run("tests/embree: every scene, three samplers, 32 x 32 pixels", || embree::scenes(&archive()?));
     steps.run("tests/povray: POV-Ray's pictures as integrands, every estimator and sampler, 32 x 32 pixels", || {
         povray::test::run(&archive()?)
     });

@@ -115,7 +115,7 @@ fn unbiased(oracle: &Oracle, scene: &Scene, view: &View) -> Result<()> {
 
 /// Every estimator with every sampler: pictures of the exact mean's brightness.
 fn everything(oracle: &Oracle, scene: &Scene, view: &View) -> Result<()> {
-    let names = scene.estimators();
+    let names = [scene.estimators(), vec!["luminance", "robust_luminance"]].concat();
     for (sampler, sampler_name) in [(Sampler::Random, "random"), (Sampler::Sobol, "sobol"), (Sampler::Tile(""), "tile")]
     {
         for model in [Model::Cells, Model::Linear] {
@@ -123,7 +123,7 @@ fn everything(oracle: &Oracle, scene: &Scene, view: &View) -> Result<()> {
             let renderings = oracle.render(view, &request, &ProgressBar::hidden())?;
             for (name, one) in names.iter().zip(renderings) {
                 // Least squares follows noise if it has fewer samples than terms.
-                let limit = if ["least_squares", "gradient_descent"].contains(name) { 0.5 } else { 0.05 };
+                let limit = if ["least_squares", "gradient_descent", "luminance"].contains(name) { 0.5 } else { 0.05 };
                 let error = bias::brightness(&one.images, &view.reference);
                 if error.abs() > limit {
                     bail!(

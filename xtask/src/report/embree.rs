@@ -17,7 +17,7 @@ pub(super) fn write(report: &Report) -> Result<()> {
     println!("building the library and the Embree harness");
     let program = match &report.program {
         Some(program) => program.clone(),
-        None => anyhow::bail!("no program"),
+        None => crate::embree::build()?,
     };
     let renderer = Renderer::new(program, report.interrupted.clone());
     let bar = progress::bar(SECTIONS.iter().map(|(seconds, _)| seconds * SECOND).sum())?;

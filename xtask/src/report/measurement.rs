@@ -165,8 +165,8 @@ impl<'a> Measurement<'a> {
         renderings.collect()
     }
 
-    /// The mean over as many seeds, and the mean of (I - A)(I - B) pixel by pixel, of each estimator.
-    pub(crate) fn statistics(&self, experiment: &Experiment) -> Result<Vec<[Rgb32FImage; 2]>> {
+    /// The mean over as many seeds, from `first` on, and the mean of (I - A)(I - B) pixel by pixel, of each estimator.
+    pub(crate) fn statistics(&self, experiment: &Experiment, first: u32) -> Result<Vec<[Rgb32FImage; 2]>> {
         let Experiment { view, seeds, estimators, .. } = *experiment;
         self.reference(view)?;
         let references = self.references.borrow();
@@ -175,7 +175,7 @@ impl<'a> Measurement<'a> {
         let options = [view.options, experiment.options, &["--statistics", &files]].concat();
         let prefix = self.path("statistics");
         self.bar.set_message(format!("{}: {seeds} seeds", view.scene));
-        let job = Job { options: &options, ..self.job(experiment, SEED, seeds) };
+        let job = Job { options: &options, ..self.job(experiment, SEED + u64::from(first), seeds) };
         self.renderer.render(&job, view.size, &prefix, self.bar)?;
         let read = |estimator: &&str, what: &str| read_pfm(&prefix.with_extension(format!("{estimator}.{what}.pfm")));
         estimators.iter().map(|estimator| Ok([read(estimator, "mean")?, read(estimator, "mse")?])).collect()

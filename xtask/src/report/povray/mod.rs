@@ -7,13 +7,13 @@ mod tables;
 
 use super::Report;
 use super::chapter::{Chapter, row};
-use super::check::numbers_are_recorded;
 use super::tables::targets::Targets;
 use crate::measure::interrupt;
 use crate::measure::progress;
 use crate::povray::oracle::{Model, Oracle};
 use crate::povray::scenes::{SCENES, Scene};
 use crate::povray::{PACKAGES, version};
+use crate::report::numbers_are_recorded;
 use crate::{library, tools};
 use anyhow::{Result, bail};
 use measure::{Measured, Measurement, SPP};
