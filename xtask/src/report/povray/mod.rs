@@ -1,6 +1,7 @@
 //! The chapter of the POV-Ray oracle.
 
 mod bias;
+mod findings;
 mod measure;
 mod sheet;
 mod tables;
@@ -63,6 +64,7 @@ pub(super) fn write(report: &Report) -> Result<()> {
     }
     bias::write(report, &oracle, &mut body, &mut targets)?;
     targets.write(&mut chapter);
+    findings::write(&mut chapter, &all)?;
     tables::models(&mut body, &all)?;
     tables::times(&mut body, &all)?;
     sheet::write(report.output, &all)?;
