@@ -55,10 +55,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.setting("relMSE is shown times", 1000);
     section.chapter.table("indirect", &columns, 2, rows);
     write_sheet(section, &orders)?;
-    if section.measurement.renderer.help()?.contains("--bounces") {
-        write_lengths(section)?;
-    }
-    Ok(())
+    write_lengths(section)
 }
 
 /// Ratios in the upper and in the lower half of the image.
@@ -104,7 +101,7 @@ fn write_lengths(section: &mut Section) -> Result<()> {
         "Paths of one, two and three bounces (figure 4.8), order 2 and 1, ratios to MC of the same samples:",
     );
     let mut rows = Vec::new();
-    for (length, options) in LENGTHS {
+    for &(length, options) in plan.some(&LENGTHS) {
         let view = View { options, ..View::new(SCENE, plan.small) };
         let mut cells = row![length];
         for order in [1, 2] {

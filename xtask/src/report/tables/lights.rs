@@ -28,7 +28,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     let mut series: Vec<Series> =
         names.iter().map(|name| Series { name: (*name).to_owned(), ..Series::default() }).collect();
     let mut rows = Vec::new();
-    for (scene, lights) in SCENES {
+    for &(scene, lights) in plan.some(&SCENES) {
         let estimators: &[&str] = match lights {
             1 => &[BASELINE, DEFAULT, LEAST_SQUARES],
             _ => &[BASELINE, DEFAULT, LEAST_SQUARES, SLICES],
