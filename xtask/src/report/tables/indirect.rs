@@ -48,7 +48,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
             rows.push(row![label, order, thousandfold(outcome, estimator)?, same_samples, upper, lower, same_time]);
         }
         let statement = format!("15 dims, order {order}: default over MC, below 1 outside its interval");
-        section.targets.at_most(&statement, SCENE, outcome.ratio(DEFAULT)?, Unit::Ratio, 1.0);
+        section.targets.below(&statement, SCENE, outcome.ratio(DEFAULT)?, Unit::Ratio, 1.0);
     }
     let columns =
         ["estimator", "order", "relMSE x 1000", "ratio to MC", "upper half", "lower half", "ratio, same time"];

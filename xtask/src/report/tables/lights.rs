@@ -34,7 +34,10 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
             _ => &[BASELINE, DEFAULT, LEAST_SQUARES, SLICES],
         };
         let run = |order| {
-            let experiment = Experiment { order, ..Experiment::new(View::new(scene, size), spp, estimators) };
+            let experiment = Experiment {
+                order,
+                ..Experiment::new(View { precision: 8, ..View::new(scene, size) }, spp, estimators)
+            };
             section.measurement.run(&seeds(section, experiment))
         };
         let orders = [run(1)?, run(2)?, run(3)?];

@@ -19,7 +19,6 @@ const ESTIMATORS: [(&str, &str); 4] = [
     ("optimal", "optimal"),
     ("optimal_regression", "optimal, regression"),
 ];
-const OPTIONS: &[&str] = &["--mis"];
 
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Multiple importance sampling", "figure 4.9");
@@ -34,8 +33,9 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     let names = ESTIMATORS.map(|(name, _)| name);
     let mut rows = Vec::new();
     for &scene in plan.some(&SCENES) {
-        let view = View { options: OPTIONS, ..View::new(scene, plan.size) };
-        let outcome = section.measurement.run(&seeds(section, Experiment::new(view, spp, &names)))?;
+        let experiment =
+            Experiment { options: &["--mis"], ..Experiment::new(View::new(scene, plan.size), spp, &names) };
+        let outcome = section.measurement.run(&seeds(section, experiment))?;
         let mut cells = row![scene];
         for (name, _) in ESTIMATORS {
             cells.push(thousandfold(&outcome, name)?.into());

@@ -11,6 +11,8 @@ struct Target {
     estimate: Estimate,
     unit: Unit,
     bound: f64,
+    /// The whole interval shall keep the bound.
+    strict: bool,
 }
 
 /// Collected as the sections measure.
@@ -23,13 +25,15 @@ pub(crate) struct Targets {
 
 impl Target {
     fn is_kept(&self) -> bool {
-        self.estimate.value <= self.bound
+        let figure = if self.strict { self.estimate.high } else { self.estimate.value };
+        figure <= self.bound
     }
 
     fn verdict(&self) -> &'static str {
         let Estimate { value, low, high, .. } = self.estimate;
         match () {
             () if high <= self.bound => "reached",
+            () if self.strict && low <= self.bound => "not reached, the interval holds the bound",
             () if value <= self.bound => "reached, the interval goes beyond",
             () if low <= self.bound => "not reached, the interval holds the bound",
             () => "NOT REACHED",
@@ -41,7 +45,13 @@ impl Targets {
     /// The figure shall be `bound` at most.
     pub(crate) fn at_most(&mut self, statement: &str, scene: &str, estimate: Estimate, unit: Unit, bound: f64) {
         let (statement, scene) = (statement.to_owned(), scene.to_owned());
-        self.all.push(Target { statement, scene, estimate, unit, bound });
+        self.all.push(Target { statement, scene, estimate, unit, bound, strict: false });
+    }
+
+    /// The figure's interval shall lie below `bound`.
+    pub(crate) fn below(&mut self, statement: &str, scene: &str, estimate: Estimate, unit: Unit, bound: f64) {
+        let (statement, scene) = (statement.to_owned(), scene.to_owned());
+        self.all.push(Target { statement, scene, estimate, unit, bound, strict: true });
     }
 
     /// Said where a target that begins like this is missed.
@@ -147,13 +157,14 @@ mod tests {
         let exact = |value| Estimate { value, low: value - 0.1, high: value + 0.1, seeds: 8 };
         targets.at_most("error", "kitchen", exact(0.3), Unit::Ratio, 0.5);
         targets.at_most("error", "garden", exact(0.7), Unit::Ratio, 0.5);
+        targets.below("strictly", "garden", exact(0.45), Unit::Ratio, 0.5);
         targets.at_most("time", "garden", exact(0.45), Unit::Ratio, 0.5);
         targets.reason("err", "Leaves.");
         let mut chapter = Chapter::new("Title");
         targets.write_summary(&mut chapter);
         targets.write_all(&mut chapter);
         let text = chapter.markdown();
-        assert!(text.contains("Kept in every scene: 1 of 2."), "{text}");
+        assert!(text.contains("Kept in every scene: 1 of 3."), "{text}");
         assert!(text.contains("- error: garden 0.700. Leaves."), "{text}");
         assert!(text.contains("reached, the interval goes beyond") && text.contains("NOT REACHED"), "{text}");
         assert_eq!(text.matches("kitchen").count(), 1, "only in the table of all scenes");
