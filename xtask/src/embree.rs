@@ -58,6 +58,17 @@ pub(crate) fn scenes(archive: &Path) -> Result<Outcome> {
             tracer.check(&format!("{scene}, {sampler}"), &estimators, expected)?;
         }
     }
+    let [first, last] = ["0", "17"].map(|frame| {
+        tracer.render(&["--scene", "animation", "--spp", "1", "--frame", frame, "--reference"])?;
+        tracer.brightness("reference")
+    });
+    if first? == last? {
+        bail!("the animation stands still");
+    }
+    tracer.render(&["--scene", "veach", "--spp", "64", "--reference"])?;
+    let expected = tracer.brightness("reference")?;
+    tracer.render(&["--scene", "veach", "--spp", "64", "--mis"])?;
+    tracer.check("veach, --mis", &["balance", "balance_regression", "optimal", "optimal_regression"], expected)?;
     for options in [["--scene", "nonsense"], ["--sampler", "nonsense"]] {
         if tracer.accepts(&options)? {
             bail!("the harness accepts `{}`", options.join(" "));
