@@ -58,11 +58,31 @@ pub(crate) fn scenes(archive: &Path) -> Result<Outcome> {
             tracer.check(&format!("{scene}, {sampler}"), &estimators, expected)?;
         }
     }
+    let [first, last] = ["0", "17"].map(|frame| {
+        tracer.render(&["--scene", "animation", "--spp", "1", "--frame", frame, "--reference"])?;
+        tracer.brightness("reference")
+    });
+    if first? == last? {
+        bail!("the animation stands still");
+    }
+    tracer.render(&["--scene", "veach", "--spp", "64", "--reference"])?;
+    let expected = tracer.brightness("reference")?;
+    tracer.render(&["--scene", "veach", "--spp", "64", "--mis"])?;
+    tracer.check("veach, --mis", &["balance", "balance_regression", "optimal", "optimal_regression"], expected)?;
     for options in [["--scene", "nonsense"], ["--sampler", "nonsense"]] {
         if tracer.accepts(&options)? {
             bail!("the harness accepts `{}`", options.join(" "));
         }
     }
+    Ok(Outcome::Passed)
+}
+
+/// What `check` says of the report that is made with the harness.
+pub(crate) fn report(check: impl FnOnce() -> Result<()>) -> Result<Outcome> {
+    if let Some(missing) = packages()? {
+        return Ok(Outcome::NotRun(missing));
+    }
+    check()?;
     Ok(Outcome::Passed)
 }
 

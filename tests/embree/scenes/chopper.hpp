@@ -72,10 +72,10 @@ inline void make_chopper(uint32_t, float aspect, Scene &scene)
     stage.put(lathe({{1.45f, 0}, {1.6f, 0}, {1.6f, .003f}, {1.45f, .003f}}, 96), paint);
     const Helicopter h = helicopter();
     const Transform place = turn_up(12);
-    stage.put(h.hull, stage.material({.5f, .08f, .06f}, {.25f, .25f, .25f}, 45), place);
-    stage.put(h.glass, stage.material({.02f, .03f, .04f}, {.6f, .6f, .6f}, 60), place);
-    stage.put(h.metal, stage.material({.1f, .1f, .11f}, {.5f, .5f, .5f}, 30), place);
-    stage.put(h.marks, stage.material({.7f, .7f, .68f}, {.2f, .2f, .2f}, 40), place);
+    stage.put(h.hull, stage.material({.5f, .08f, .06f}, {.22f, .22f, .22f}, 22), place);
+    stage.put(h.glass, stage.material({.04f, .05f, .06f}, {.42f, .42f, .42f}, 22), place);
+    stage.put(h.metal, stage.material({.13f, .13f, .14f}, {.36f, .36f, .36f}, 14), place);
+    stage.put(h.marks, stage.material({.7f, .7f, .68f}, {.15f, .15f, .15f}, 20), place);
     stage.environment(smooth_sky({-.4f, .55f, .75f}));
 }
 

@@ -60,10 +60,10 @@ inline void make_lens(uint32_t, float aspect, Scene &scene)
     scene.camera.look(eye, {.3f, .45f, 0}, 36, aspect);
     scene.camera.aperture = .17f;
     scene.camera.focus = demo::dot(sharp - eye, scene.camera.forward);
-    const uint32_t light = stage.material({.72f, .62f, .46f}, {.1f, .1f, .1f}, 40), dark = stage.material({.2f, .11f, .07f}, {.1f, .1f, .1f}, 40);
-    const uint32_t ivory = stage.material({.74f, .68f, .55f}, {.15f, .15f, .15f}, 45), ebony = stage.material({.07f, .05f, .05f}, {.35f, .33f, .3f}, 45);
+    const uint32_t light = stage.material({.72f, .62f, .46f}, {.08f, .08f, .08f}, 16), dark = stage.material({.22f, .12f, .075f}, {.08f, .08f, .08f}, 16);
+    const uint32_t ivory = stage.material({.74f, .68f, .55f}, {.1f, .1f, .1f}, 16), ebony = stage.material({.09f, .06f, .055f}, {.16f, .15f, .14f}, 12);
     stage.put(lathe({{0, -.5f}, {40, -.5f}, {40, -.49f}, {0, -.49f}}, 64), stage.material({.3f, .36f, .3f}));
-    stage.put(box({8.8f, .3f, 8.8f}, .08f), stage.material({.3f, .16f, .08f}, {.12f, .12f, .12f}, 30), move({0, -.32f, 0}));
+    stage.put(box({8.8f, .3f, 8.8f}, .08f), stage.material({.3f, .16f, .08f}, {.1f, .1f, .1f}, 16), move({0, -.32f, 0}));
     const Mesh square = box({.985f, .1f, .985f}, .012f, 2);
     for (int i = 0; i < 8; ++i)
         for (int j = 0; j < 8; ++j)

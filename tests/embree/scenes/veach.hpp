@@ -14,7 +14,7 @@ inline void make_veach(uint32_t, float aspect, Scene &scene)
     const uint32_t wall = stage.material({.7f, .68f, .64f});
     stage.parallelogram({-6, -.6f, 4}, {12, 0, 0}, {0, 0, -7}, wall);
     stage.parallelogram({-6, -.6f, -2.4f}, {12, 0, 0}, {0, 6, 0}, wall);
-    const float sharpness[4] = {800, 200, 60, 16};
+    const float sharpness[4] = {400, 120, 40, 14};
     const Vector at[4] = {{0, .86f, -1.35f}, {0, .42f, -.75f}, {0, .06f, 0}, {0, -.22f, 1}}, middle{0, 2, -1.1f};
     for (int i = 0; i < 4; ++i) {
         // So that it mirrors the lights' middle into the camera.

@@ -36,13 +36,15 @@ pub(crate) struct View {
     /// Pixels on a side.
     pub(crate) size: u32,
     pub(crate) frame: u32,
+    /// Samples of the reference, over what the scene's references have.
+    pub(crate) precision: u32,
     /// Words of the command line that change what is integrated.
     pub(crate) options: &'static [&'static str],
 }
 
 impl View {
     pub(crate) fn new(scene: &'static str, size: u32) -> Self {
-        Self { scene, size, frame: 0, options: &[] }
+        Self { scene, size, frame: 0, precision: 1, options: &[] }
     }
 }
 
@@ -112,7 +114,7 @@ impl<'a> Measurement<'a> {
             return Ok(known.reference.clone());
         }
         self.bar.set_message(format!("{}: reference", view.scene));
-        let spp = (scenes::find(view.scene).reference_spp / self.plan.reference_divisor).max(16);
+        let spp = (view.precision * scenes::find(view.scene).reference_spp / self.plan.reference_divisor).max(16);
         let index = self.references.borrow().len();
         let half = |seed| -> Result<PathBuf> {
             let prefix = self.path(&format!("half-{index}-{seed}"));

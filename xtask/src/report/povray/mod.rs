@@ -14,7 +14,7 @@ use crate::measure::progress;
 use crate::povray::oracle::{Model, Oracle};
 use crate::povray::scenes::{SCENES, Scene};
 use crate::povray::{PACKAGES, version};
-use crate::report::numbers_are_recorded;
+use crate::report::check::numbers_are_recorded;
 use crate::{library, tools};
 use anyhow::{Result, bail};
 use measure::{Measured, Measurement, SPP};
@@ -63,13 +63,14 @@ pub(super) fn write(report: &Report) -> Result<()> {
         all.push(Measured { scene, reference: view.reference, all: measured, linear });
     }
     bias::write(report, &oracle, &mut body, &mut targets)?;
-    targets.write(&mut chapter);
+    targets.write_summary(&mut chapter);
     findings::write(&mut chapter, &all)?;
     tables::models(&mut body, &all)?;
     tables::times(&mut body, &all)?;
     sheet::write(report.output, &all)?;
     chapter.picture("povray.png", "each scene by the plain mean, by control variates and by tiles, and its exact mean");
     chapter.append(body);
+    targets.write_all(&mut chapter);
     let (text, json) = (chapter.markdown(), format!("{:#}\n", chapter.json()));
     numbers_are_recorded(text, &json)?;
     report.output.write_text("povray.md", text)?;

@@ -22,7 +22,7 @@ fn filtered(way: &Way) -> &[f64] {
 /// Two tables: the errors, and as they are seen.
 pub(super) fn scene(chapter: &mut Chapter, scene: &Scene, all: &[Way]) -> Result<()> {
     chapter.section(&format!("Scene `{}`: {}", scene.name, scene.shows), "");
-    chapter.paragraph("relMSE; of `mc` with random samples itself, else over that of as many random samples:");
+    chapter.paragraph("relMSE times a thousand of `mc` with random samples; all else over it:");
     errors(chapter, "errors", scene, all, raw)?;
     chapter.paragraph("The same of the filtered errors:");
     errors(chapter, "filtered errors", scene, all, filtered)
@@ -38,7 +38,7 @@ fn errors(chapter: &mut Chapter, name: &'static str, scene: &Scene, all: &[Way],
             for estimator in &estimators {
                 let way = find(all, spp, points, estimator)?;
                 cells.push(if std::ptr::eq(way, plain) {
-                    Figure::new(Estimate::median(of(way)), Unit::RelMse).into()
+                    Figure::new(Estimate::median(of(way)), Unit::RelMseE3).into()
                 } else {
                     Figure::new(Estimate::ratio(of(way), of(plain)), Unit::Ratio).into()
                 });

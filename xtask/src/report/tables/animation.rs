@@ -71,9 +71,14 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
          seen. Moving average: weight {alpha} for the newest frame, as in temporal anti-aliasing; eye: the kernel of Mantiuk et al. at {rate} frames \
          per second. The shifted tile is optimised over the image alone and shifted anew in every frame. {size} x {size} pixels."
     ));
+    section.targets.reason(
+        "temporal tile",
+        "The temporal tile has one sample per pixel and frame and was optimised for the moving average: at 4 samples the further ones come from a sequence \
+         that is not part of it.",
+    );
     let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
     let mut rows = Vec::new();
-    for (spp, last) in SPP.into_iter().zip(plan.animation) {
+    for (&spp, last) in plan.some(&SPP).iter().zip(plan.animation) {
         let references = references(section, last)?;
         let samplers = [
             ("random", Some(Sampler::Random)),
@@ -114,7 +119,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     }
     let columns = ["samples", "frame", "filter", "sampler", "relMSE x 1000", "over random"];
     section.chapter.table("animation", &columns, 4, rows);
-    for spp in SPP {
+    for &spp in plan.some(&SPP) {
         let description =
             format!("The last frame filtered along time, {spp} samples per pixel: image, errors, spectra");
         section.chapter.setting(format!("samples per pixel of the animation, {spp}"), spp);

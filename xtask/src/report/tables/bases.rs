@@ -19,7 +19,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
         "Order 2 and bases of as many functions; {spp} samples per pixel, ratios to MC of the same samples."
     ));
     let mut rows = Vec::new();
-    for scene in SCENES {
+    for &scene in plan.some(&SCENES) {
         let view = View::new(scene, plan.size);
         let mut outcomes = Vec::new();
         for basis in BASES {

@@ -14,7 +14,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
         "`dragon`: an object under a high-frequency map; `chopper`: glossy objects under a low-frequency one. Order 2, ratios to MC.",
     );
     let mut rows = Vec::new();
-    for scene in SCENES {
+    for &scene in plan.some(&SCENES) {
         for &spp in plan.spp {
             let experiment = Experiment::new(View::new(scene, plan.size), spp, &[BASELINE, DEFAULT, LEAST_SQUARES]);
             let experiment = seeds(section, experiment);

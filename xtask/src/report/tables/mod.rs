@@ -8,6 +8,7 @@ mod environment;
 mod indirect;
 mod lights;
 mod luminance;
+mod mis;
 mod never_worse;
 mod overhead;
 mod public;
@@ -39,6 +40,7 @@ type Entry = (u64, fn(&mut Section) -> Result<()>);
 pub(crate) const SECTIONS: &[Entry] = &[
     (40, direct::write),
     (30, indirect::write),
+    (10, mis::write),
     (15, environment::write),
     (15, bases::write),
     (30, lights::write),

@@ -25,10 +25,10 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     ));
     let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
     let mut rows = Vec::new();
-    for scene in SCENES {
-        for (filter, options) in FILTERS {
+    for &scene in plan.some(&SCENES) {
+        for &(filter, options) in plan.some(&FILTERS) {
             let view = View { options, ..View::new(scene, plan.tile_size) };
-            for spp in SPP {
+            for &spp in plan.some(&SPP) {
                 let run = |sampler: Sampler| -> Result<Errors> {
                     let experiment =
                         Experiment { sampler, seeds: plan.seeds, ..Experiment::new(view, spp, &[BASELINE]) };

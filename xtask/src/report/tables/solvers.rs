@@ -28,8 +28,8 @@ fn write_descent(section: &mut Section) -> Result<()> {
         "`bathroom`: relMSE over MC's of the same samples, and the estimator's own time in nanoseconds per sample. Direct: least squares.",
     );
     let mut rows = Vec::new();
-    for spp in [32, plan.many] {
-        for order in [2, 5, 7] {
+    for &spp in plan.some(&[32, plan.many]) {
+        for &order in plan.some(&[2, 5, 7]) {
             let view = View::new(SCENE, plan.small);
             let estimators = [BASELINE, LEAST_SQUARES, DESCENT, DEFAULT];
             let experiment = Experiment { order, ..Experiment::new(view, spp, &estimators) };
