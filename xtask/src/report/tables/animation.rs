@@ -21,8 +21,10 @@ const TEMPORAL: &str = "128_1SPP_2D_TEMPORAL";
 const ALPHA: f64 = 0.2;
 /// The figures' samples per pixel.
 const SPP: [u32; 2] = [1, 4];
+/// The weights of so many frames.
+type Kernel = fn(usize) -> Vec<f64>;
 /// Kernels and their names.
-const KERNELS: [(&str, fn(usize) -> Vec<f64>); 2] = [("moving average", average), ("eye", eye)];
+const KERNELS: [(&str, Kernel); 2] = [("moving average", average), ("eye", eye)];
 
 /// Weights of the newest frame, the one before it and so on.
 fn average(frames: usize) -> Vec<f64> {
