@@ -79,6 +79,8 @@ inline void render(const Options &options, const Program &program)
         throw std::runtime_error("there is no scene `" + options.scene + "`; --help lists them");
     Scene scene;
     entry->build(options.frame, static_cast<float>(options.width) / static_cast<float>(options.height), scene);
+    if (options.bounces > 0)
+        scene.layout.bounces = options.bounces;
     std::unique_ptr<Intersector> intersector = program.make_intersector(scene.geometry);
     if (options.mis) {
         // A sample vector is two samples.

@@ -23,6 +23,7 @@ struct Options {
     Filter filter = Filter::center;
     std::string output = "pathtracer";
     bool reference = false;
+    uint32_t bounces = 0; // of the paths; 0: as the scene has them
     bool mis = false; // the estimators are those of mis_estimators.hpp
     uint32_t accumulate = 0; // samples of a pass over the image; 0: pixel by pixel
     std::vector<std::string> statistics; // two halves of a reference; empty: images are written
@@ -47,13 +48,14 @@ inline void print_usage(FILE *to, const Program &program)
     std::fprintf(to, "usage: %s [--scene NAME] [--width N] [--height N] [--spp N] [--estimators A,B,...] [--order N]\n"
                "                  [--basis NAME] [--regressed N] [--sampler NAME] [--tile NAME|FILE.nft] [--table FILE] [--filter NAME]\n"
                "                  [--frame N] [--seed N] [--seeds N] [--statistics A.pfm,B.pfm] [--threads N] [--output PREFIX]\n"
-               "                  [--accumulate N] [--mis] [--reference]\n\n"
+               "                  [--accumulate N] [--bounces N] [--mis] [--reference]\n\n"
                "Renders PREFIX.ESTIMATOR.pfm with each estimator from the same samples and prints one line of JSON for each.\n"
                "--reference renders PREFIX.reference.pfm instead: the plain mean over a shifted lattice.\n"
                "--seeds renders PREFIX.ESTIMATOR.SEED.pfm with each of so many seeds.\n"
                "--statistics writes PREFIX.ESTIMATOR.mean.pfm and PREFIX.ESTIMATOR.mse.pfm over all seeds instead: the mean image, and\n"
                "the mean squared error of each pixel and channel, (I - A)(I - B) for two independent halves of a reference.\n"
                "--accumulate: threads render passes of N samples (a multiple of 4) over the image into accumulators of their own.\n"
+               "--bounces: how many reflections paths have, instead of as many as the scene says.\n"
                "--mis: direct light by two techniques, a half of the samples each: light sampling and direction sampling.\n"
                "--table: points for the sampler of that name, made elsewhere; their format is in pathtracer/table_sampler.hpp.\n"
                "--regressed: how many of the sample vector's numbers the estimators regress, from its start.\n\nsamplers:",
@@ -169,6 +171,8 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
             options.accumulate = number(1, 1 << 20);
         else if (name == "--basis")
             options.basis = parse_basis(value);
+        else if (name == "--bounces")
+            options.bounces = number(1, 16);
         else if (name == "--regressed")
             options.regressed = number(1, 16);
         else

@@ -47,8 +47,8 @@ struct PointTable {
     }
 };
 
-// The table, repeated over the image. Domains that do not fit into its dimensions take it at another place, by a hash, and add a hashed
-// number to all values, modulo 1; so do all domains of other frames than 0 and other seeds than 1.
+// The table, repeated over the image. Other frames than 0 and other seeds than 1 take it at another place, by a hash; so do domains that do
+// not fit into its dimensions, which also add a hashed number to all values, modulo 1: two places of one table need not be independent.
 class TableSampler final : public Sampler {
 public:
     TableSampler(const std::string &path, const SamplerSetup &setup)
@@ -72,7 +72,7 @@ public:
             size_t column = (x + (place & 0xffffff)) % table_.width, row = (y + (place >> 40)) % table_.height;
             const float *from = &table_.values[((row * table_.width + column) * table_.samples + first) * table_.dims];
             for (uint32_t d = 0; d < groups_[g].dims; ++d, ++u, ++from) {
-                float shift = as_it_is ? 0 : unit(static_cast<uint32_t>(mix(key + (d + 2) * golden) >> 32));
+                float shift = g == 0 ? 0 : unit(static_cast<uint32_t>(mix(key + (d + 2) * golden) >> 32));
                 for (uint32_t i = 0; i < count; ++i) {
                     float value = from[size_t{i} * table_.dims] + shift;
                     u[size_t{i} * setup_.dims] = std::min(value < 1 ? value : value - 1, 0x1.fffffep-1f);

@@ -77,6 +77,15 @@ pub(crate) fn scenes(archive: &Path) -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
+/// What `check` says of the report that is made with the harness.
+pub(crate) fn report(check: impl FnOnce() -> Result<()>) -> Result<Outcome> {
+    if let Some(missing) = packages()? {
+        return Ok(Outcome::NotRun(missing));
+    }
+    check()?;
+    Ok(Outcome::Passed)
+}
+
 /// Installs what the harness needs, or says what is missing.
 fn packages() -> Result<Option<String>> {
     if has_embree_4() { tools::packages(&[ASSIMP]) } else { tools::packages(&[EMBREE_3, ASSIMP]) }

@@ -1,6 +1,6 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
-use crate::{c_tests, embree, examples, fit, header, library, path_tracer, run, tools, train_mlp};
+use crate::{c_tests, embree, examples, fit, header, library, path_tracer, povray, report, run, tools, train_mlp};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -87,6 +87,12 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         embree::agreement(&archive()?)
     });
     steps.run("tests/embree: every scene, three samplers, 32 x 32 pixels", || embree::scenes(&archive()?));
+    steps.run("tests/povray: POV-Ray's pictures as integrands, every estimator and sampler, 32 x 32 pixels", || {
+        povray::test::run(&archive()?)
+    });
+    steps.run("cargo xtask report --quick: every number of the text is in the JSON", || {
+        embree::report(report::check_quick)
+    });
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));
     steps.run("examples_c/fit_image.cpp: short runs", || fit::photograph(&archive()?));

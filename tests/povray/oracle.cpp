@@ -1,0 +1,97 @@
+// The path tracer's samplers and estimators on integrands that POV-Ray computed.
+//
+//   cargo xtask test povray
+//   c++ -O2 -std=c++17 -Iinclude tests/povray/oracle.cpp target/noisefloor/libnoisefloor.a -pthread -o oracle
+//   ./oracle --scene target/povray/area-32-....stack --width 32 --height 32 --spp 16 --estimators mc,robust
+//
+// The path tracer's command line, where the scene is the file of a stack, and one option more:
+//
+//   --model cells|linear  what lies between the centres of the stack's cells: stack_integrand.hpp
+//
+// --reference writes the exact mean.
+#include "stack_integrand.hpp"
+#include "../../examples_c/pathtracer/app.hpp"
+
+namespace povray {
+
+// Takes the further option out of the command line.
+inline std::vector<char *> take(int argc, char **argv, Model &model)
+{
+    std::vector<char *> rest;
+    for (int i = 0; i < argc; ++i) {
+        if (std::string(argv[i]) != "--model") {
+            rest.push_back(argv[i]);
+            continue;
+        }
+        const std::string value = ++i < argc ? argv[i] : "";
+        if (value != "cells" && value != "linear")
+            throw std::runtime_error("--model takes `cells` or `linear`, not `" + value + "`");
+        model = value == "cells" ? Model::cells : Model::linear;
+    }
+    return rest;
+}
+
+// For tiles, seeds number frames: each is the tile at another place. A tile's own seeds also shift its values, modulo 1, across the
+// border of the unit cube in which they were stratified; measured here, that doubles the error.
+inline void render_frames(demo::Options options, const demo::Integrand &integrand)
+{
+    demo::Outputs outputs;
+    for (uint32_t i = 0; i < options.seeds; ++i) {
+        const uint64_t seed = options.seed + i;
+        options.frame = static_cast<uint32_t>(seed);
+        demo::SamplerSetup setup{integrand.domains(), dims(integrand.domains()), options.spp, options.frame, 1};
+        auto sampler = demo::make_sampler(options.sampler, options.tile, options.table, setup);
+        demo::Renderer renderer(integrand, *sampler, options);
+        renderer.run(double(i) / options.seeds, double(i + 1) / options.seeds);
+        const std::string number = options.seeds > 1 ? "." + std::to_string(seed) : "";
+        for (size_t e = 0; e < options.estimators.size(); ++e)
+            outputs.add(options.output + "." + options.estimators[e] + number + ".pfm", renderer.images()[e]);
+        demo::print(options, integrand, 1, renderer, options.estimators, seed);
+    }
+    outputs.commit();
+}
+
+inline void run(int argc, char **argv)
+{
+    Model model = Model::cells;
+    std::vector<char *> rest = take(argc, argv, model);
+    demo::Options options;
+    const demo::Program program{"oracle", {}, nullptr};
+    if (!demo::parse(static_cast<int>(rest.size()), rest.data(), program, options)) {
+        demo::print_usage(stdout, program);
+        std::puts("here, --scene FILE.stack; further: [--model cells|linear], see tests/povray/oracle.cpp");
+        return;
+    }
+    if (options.scene.empty())
+        throw std::runtime_error("--scene FILE.stack says what is rendered; `cargo xtask test povray` makes stacks in target/povray");
+    if (options.filter != demo::Filter::center || options.mis)
+        throw std::runtime_error("a stack's pixels are single points, and its lights are sampled one way: no --filter, no --mis");
+    const Stack stack(options.scene);
+    if (options.width != stack.width() || options.height != stack.height())
+        throw std::runtime_error("the stack " + options.scene + " has other pixels: say --width " + std::to_string(stack.width()) +
+                                 " --height " + std::to_string(stack.height()));
+    const StackIntegrand integrand(stack, model);
+    if (options.reference) {
+        demo::Outputs outputs;
+        outputs.add(options.output + ".reference.pfm", integrand.reference());
+        outputs.commit();
+        return;
+    }
+    if (options.sampler == "tile" && !options.accumulate && options.statistics.empty())
+        render_frames(options, integrand);
+    else
+        demo::render(options, integrand);
+}
+
+} // namespace povray
+
+int main(int argc, char **argv)
+{
+    try {
+        povray::run(argc, argv);
+        return 0;
+    } catch (const std::exception &error) {
+        std::fprintf(stderr, "oracle: %s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,92 @@
+//! Rendering an animation with many POV-Rays at once.
+
+use super::scenes::Scene;
+use crate::{paths, run};
+use anyhow::{Context, Result, bail};
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Stdio};
+
+/// POV-Ray sleeps most of the time between two small frames: many processes share a core well.
+const PROCESSES: u32 = 32;
+/// The longest sample vector that stack.inc knows.
+const AXES: usize = 4;
+
+/// What POV-Ray says of itself.
+pub(crate) fn version() -> Result<String> {
+    // It goes to the standard error, and the licence follows.
+    let output = run::command("povray").arg("--version").output().context("cannot start povray")?;
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    let line = text.lines().find(|line| line.contains("POV-Ray")).context("povray does not tell its version")?;
+    Ok(line.trim().to_owned())
+}
+
+/// The folder of the scenes.
+pub(crate) fn folder() -> PathBuf {
+    paths::root().join("tests/povray/scenes")
+}
+
+/// Where frame `number`, from 0, of `count` is.
+pub(crate) fn path(out: &Path, number: usize, count: usize) -> PathBuf {
+    let digits = count.to_string().len();
+    out.join(format!("frame{:0digits$}.ppm", number + 1))
+}
+
+/// Renders `count` frames of a scene whose sample vector has `cells` along its axes, `size` x `size` pixels each.
+pub(crate) fn render(scene: &Scene, cells: &[u32], count: usize, size: u32, out: &Path) -> Result<()> {
+    let count = u32::try_from(count).context("too many frames")?;
+    let processes = PROCESSES.min(count);
+    let mut running = Running(Vec::new());
+    for process in 0..processes {
+        let log = out.join(format!("log{process}"));
+        let mut command = run::command("povray");
+        command.current_dir(folder()).arg(format!("{}.pov", scene.name));
+        command.args([format!("+W{size}"), format!("+H{size}")]);
+        // Linear values of 16 bits, one ray through each pixel's centre, whatever the user's own settings are.
+        command.args(["+FP16", "File_Gamma=1.0", "-A", "Dither=off", "Quality=9", "Output_Alpha=off", "-D", "+WT1"]);
+        command.args(["+KFI1".to_owned(), format!("+KFF{count}")]);
+        let range = [count * process / processes + 1, count * (process + 1) / processes];
+        command.args([format!("+SF{}", range[0]), format!("+EF{}", range[1])]);
+        for axis in 0..AXES {
+            command.arg(format!("Declare=Cells_{axis}={}", cells.get(axis).unwrap_or(&1)));
+        }
+        command.arg(format!("+O{}", out.join("frame").display()));
+        let messages = File::create(&log).with_context(|| format!("cannot create {}", log.display()))?;
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(messages);
+        running.0.push((command.spawn().context("cannot start povray")?, log));
+    }
+    running.wait(scene)
+}
+
+/// Processes and what they say; they end with this.
+struct Running(Vec<(Child, PathBuf)>);
+
+impl Running {
+    fn wait(&mut self, scene: &Scene) -> Result<()> {
+        for (child, log) in &mut self.0 {
+            let status = child.wait().context("povray was lost")?;
+            if !status.success() {
+                let text =
+                    fs::read(&*log).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default();
+                // What went wrong stands before "Fatal error"; the credits and settings before that are long.
+                let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
+                bail!(
+                    "povray {}.pov failed, {status}:\n{}",
+                    scene.name,
+                    lines[lines.len().saturating_sub(6)..].join("\n")
+                );
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        for (child, _) in &mut self.0 {
+            // Neither does anything to a process that has been waited for.
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
