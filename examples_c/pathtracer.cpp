@@ -5,11 +5,13 @@
 //   ./pathtracer --scene direct --spp 4 --sampler tile --estimators mc,shared
 //
 // To see how the library is used, read pathtracer/estimators.hpp and pathtracer/tile_sampler.hpp; what samples are used for,
-// pathtracer/integrand.hpp.
+// pathtracer/scene_integrand.hpp.
 #include "pathtracer/app.hpp"
 #include "pathtracer/bvh.hpp"
+#include "pathtracer/scenes.hpp"
 
 int main(int argc, char **argv)
 {
-    return demo::run(argc, argv, [](const demo::Geometry &geometry) { return std::make_unique<demo::Bvh>(geometry); });
+    auto make_intersector = [](const demo::Geometry &geometry) { return std::make_unique<demo::Bvh>(geometry); };
+    return demo::run(argc, argv, {"pathtracer", demo::box_scenes(), make_intersector});
 }

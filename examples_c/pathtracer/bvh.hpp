@@ -1,4 +1,4 @@
-// The demo's own intersector: a bounding volume hierarchy over triangles and moving spheres.
+// The demo's own intersector: a bounding volume hierarchy over triangles and spheres; boxes hold all of a motion.
 #pragma once
 
 #include "intersector.hpp"
@@ -65,8 +65,11 @@ private:
     {
         Box box;
         if (primitive < geometry_.triangles.size()) {
-            for (Vector corner : geometry_.triangles[primitive].corner)
-                box.add({corner, corner});
+            const Triangle &triangle = geometry_.triangles[primitive];
+            for (Vector corner : triangle.corner) {
+                Vector end = corner + triangle.motion;
+                box.add({minimum(corner, end), maximum(corner, end)});
+            }
         } else {
             const Sphere &sphere = geometry_.spheres[primitive - geometry_.triangles.size()];
             Vector r{sphere.radius, sphere.radius, sphere.radius}, end = sphere.center + sphere.motion;
@@ -184,7 +187,7 @@ private:
         if (determinant == 0)
             return false;
         float inverse = 1 / determinant;
-        Vector s = ray.origin - t.corner[0];
+        Vector s = ray.origin - (t.corner[0] + ray.time * t.motion);
         float b1 = dot(s, p) * inverse;
         Vector q = cross(s, e1);
         float b2 = dot(ray.direction, q) * inverse;

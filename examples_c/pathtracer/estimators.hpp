@@ -168,7 +168,7 @@ inline const EstimatorName estimator_names[] = {
     {"gradient_descent", NF_CV_GRADIENT_DESCENT, "least squares by gradient descent"},
     {"incremental", NF_CV_INCREMENTAL, "each sample against a fit to those before it; streamed, 8 samples at a time"},
     {"shared", NF_CV_ROBUST, "each pixel against fits to its neighbours; suits every sampler"},
-    {"slices", NF_CV_ROBUST, "robust, told that the last dimension picks a light; `lights` only"},
+    {"slices", NF_CV_ROBUST, "robust, told which light was picked; for scenes that pick one"},
 };
 
 struct EstimatorSetup {
@@ -196,9 +196,9 @@ inline std::unique_ptr<Estimator> make_estimator(const std::string &name, const 
         // The robust estimator is then the plain mean: a pixel's few samples do not tell what their stratification gains.
         config.stratified = setup.stratified;
         bool shared = name == "shared";
-        if (name == "slices")
-            config.slices = setup.lights;
-        if (shared && setup.choice > 0) {
+        if (name == "slices" && setup.choice == 0)
+            throw std::runtime_error("`slices` needs a scene that picks one of several lights");
+        if ((shared || name == "slices") && setup.choice > 0) {
             // Which light was picked is known, and explains most. Of long paths only what comes before is regressed.
             config.dims = setup.choice;
             config.stride = setup.dims;

@@ -8,14 +8,16 @@
 
 namespace demo {
 
+// Like spheres, triangles move on a line: what is said of their places holds at time 0, and at time t in [0, 1] they are
+// t * motion further. Lights do not move.
 struct Triangle {
     Vector corner[3];
     Vector normal[3]; // unit shading normals at the corners, interpolated
     uint32_t material;
     int32_t light; // index into the scene's lights, or -1
+    Vector motion = {};
 };
 
-// Moves on a line: its centre is `center + time * motion`, time in [0, 1].
 struct Sphere {
     Vector center;
     float radius;

@@ -1,8 +1,8 @@
-// Reflection: Lambert's diffuse term plus the normalised Phong lobe (Lafortune and Willems 1994). It reflects at most
-// diffuse + glossy of the light that arrives, and scenes keep that sum at or below 1.
+// Surfaces: smooth glass (dielectric.hpp), or reflection by Lambert's diffuse term plus the normalised Phong lobe (Lafortune and Willems 1994). The latter
+// reflects at most diffuse + glossy of the light that arrives, and scenes keep that sum at or below 1.
 #pragma once
 
-#include "vector.hpp"
+#include "dielectric.hpp"
 
 namespace demo {
 
@@ -10,12 +10,17 @@ struct Material {
     Color diffuse;
     Color glossy;
     float exponent = 0;
+    float index = 0; // of refraction; above 0: smooth glass, and the others say nothing
+
+    bool specular() const { return index > 0; }
+    bool dark() const { return black(diffuse) && black(glossy) && !specular(); }
 };
 
 // A surface as seen along `out`: unit vectors pointing away from it, normals turned to the side of `out`.
 struct Shading {
-    Material material;
+    const Material &material;
     Vector geometric, normal, out;
+    bool inside; // whether `out` is at the back of the surface
 };
 
 inline float power(float base, float exponent) { return base > 0 ? std::pow(base, exponent) : 0.0f; }

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "estimators.hpp"
-#include "scenes.hpp"
+#include "filter.hpp"
+#include "program.hpp"
 #include "tile_sampler.hpp"
 #include <cstdio>
 #include <cstdlib>
@@ -11,34 +12,38 @@
 namespace demo {
 
 struct Options {
-    std::string scene = "direct";
+    std::string scene; // empty: the first
     uint32_t width = 128, height = 128, spp = 64, order = 2, threads = 1;
     uint64_t seed = 1;
     std::vector<std::string> estimators{"mc", "robust"};
     std::string sampler = "random", tile; // tile: a name or a file; empty: by the samples
     uint32_t frame = 0;
+    Filter filter = Filter::center;
     std::string output = "pathtracer";
     bool reference = false;
 };
 
-inline void print_usage(FILE *to)
+inline void print_usage(FILE *to, const Program &program)
 {
-    std::fputs("usage: pathtracer [--scene NAME] [--width N] [--height N] [--spp N] [--estimators A,B,...] [--order N]\n"
+    std::fprintf(to, "usage: %s [--scene NAME] [--width N] [--height N] [--spp N] [--estimators A,B,...] [--order N]\n"
                "                  [--sampler NAME] [--tile NAME|FILE.nft] [--frame N] [--seed N] [--threads N]\n"
-               "                  [--output PREFIX] [--reference]\n\n"
+               "                  [--filter NAME] [--output PREFIX] [--reference]\n\n"
                "Renders PREFIX.ESTIMATOR.pfm with each estimator from the same samples and prints one line of JSON for each.\n"
-               "--reference renders PREFIX.reference.pfm instead: the plain mean over a shifted lattice.\n\nscenes:",
-               to);
-    for (const char *name : scene_names)
-        std::fprintf(to, " %s", name);
-    std::fputs("\nsamplers:", to);
+               "--reference renders PREFIX.reference.pfm instead: the plain mean over a shifted lattice.\n\nsamplers:",
+               program.name.c_str());
     for (const char *name : sampler_names)
         std::fprintf(to, " %s", name);
     std::fputs("\ntiles:", to);
     for (const TileName &tile : tile_names)
         if (has_tile(tile))
             std::fprintf(to, " %s", tile.name);
-    std::fputs("\nestimators:\n", to);
+    std::fputs("\nfilters:", to);
+    for (const FilterName &filter : filter_names)
+        std::fprintf(to, " %s", filter.name);
+    std::fputs("\nscenes:\n", to);
+    for (const SceneEntry &scene : program.scenes)
+        std::fprintf(to, "  %-17s %s\n", scene.name.c_str(), scene.description.c_str());
+    std::fputs("estimators:\n", to);
     for (const EstimatorName &estimator : estimator_names)
         std::fprintf(to, "  %-17s %s\n", estimator.name, estimator.description);
 }
@@ -52,10 +57,20 @@ inline uint64_t parse_number(const std::string &option, const std::string &text,
     return value;
 }
 
+inline Filter parse_filter(const std::string &text)
+{
+    for (const FilterName &known : filter_names)
+        if (text == known.name)
+            return known.filter;
+    throw std::runtime_error("there is no filter `" + text + "`; --help lists them");
+}
+
 // Throws on a wrong command line; returns false if only help was asked for.
-inline bool parse(int argc, char **argv, Options &options)
+inline bool parse(int argc, char **argv, const Program &program, Options &options)
 {
     options.threads = std::max(1u, std::thread::hardware_concurrency());
+    if (!program.scenes.empty())
+        options.scene = program.scenes[0].name;
     for (int i = 1; i < argc; ++i) {
         std::string name = argv[i];
         if (name == "--help" || name == "-h")
@@ -88,6 +103,8 @@ inline bool parse(int argc, char **argv, Options &options)
             options.tile = value;
         else if (name == "--frame")
             options.frame = number(0, 1 << 20);
+        else if (name == "--filter")
+            options.filter = parse_filter(value);
         else if (name == "--output")
             options.output = value;
         else if (name == "--estimators") {

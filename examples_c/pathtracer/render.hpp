@@ -3,7 +3,6 @@
 
 #include "estimators.hpp"
 #include "image.hpp"
-#include "integrand.hpp"
 #include "options.hpp"
 #include "samplers.hpp"
 #include <atomic>
@@ -22,8 +21,9 @@ struct Times {
 
 class Renderer {
 public:
-    Renderer(const Scene &scene, const Intersector &intersector, const Sampler &sampler, const Options &options)
-        : scene_(scene), sampler_(sampler), options_(options), integrand_(scene, intersector), names_(options.estimators)
+    // All three must outlive it.
+    Renderer(const Integrand &integrand, const Sampler &sampler, const Options &options)
+        : integrand_(integrand), sampler_(sampler), options_(options), dims_(dims(integrand.domains())), names_(options.estimators)
     {
         if (options.reference)
             names_ = {"mc"};
@@ -61,14 +61,11 @@ private:
 
     std::vector<std::unique_ptr<Estimator>> make_estimators() const
     {
-        EstimatorSetup setup{scene_.dims(), options_.order, static_cast<uint32_t>(scene_.lights.size()), scene_.choice(), side_,
+        EstimatorSetup setup{dims_, options_.order, integrand_.lights(), choice(integrand_.domains()), side_,
                              options_.spp, options_.sampler != "random"};
         std::vector<std::unique_ptr<Estimator>> estimators;
-        for (const std::string &name : names_) {
-            if (name == "slices" && scene_.layout != Layout::lights)
-                throw std::runtime_error("`slices` needs the scene `lights`, whose last dimension picks a light");
+        for (const std::string &name : names_)
             estimators.push_back(make_estimator(name, setup));
-        }
         return estimators;
     }
 
@@ -89,8 +86,8 @@ private:
     void buckets()
     {
         const size_t n = options_.spp, pixels = size_t{side_} * side_;
-        Buffers buffers{std::vector<float>(pixels * n * scene_.dims()), std::vector<float>(pixels * n * 3), std::vector<float>(pixels * 3),
-                        std::vector<Integrand::Pixel>(pixels), std::vector<uint32_t>(pixels)};
+        Buffers buffers{std::vector<float>(pixels * n * dims_), std::vector<float>(pixels * n * 3), std::vector<float>(pixels * 3),
+                        std::vector<uint32_t>(pixels)};
         auto estimators = make_estimators();
         Times times;
         times.estimating.resize(estimators.size());
@@ -113,53 +110,41 @@ private:
     };
     struct Buffers {
         std::vector<float> u, f, means;
-        std::vector<Integrand::Pixel> pixels;
         std::vector<uint32_t> surface;
     };
 
     void render(Rectangle b, std::vector<std::unique_ptr<Estimator>> &estimators, Times &times, Buffers &buffers)
     {
         std::vector<float> &u = buffers.u, &f = buffers.f, &means = buffers.means;
-        const size_t n = options_.spp, dims = scene_.dims(), pixels = size_t{b.width} * b.height;
+        const size_t n = options_.spp, pixels = size_t{b.width} * b.height;
+        auto column = [&](size_t p) { return b.x + static_cast<uint32_t>(p % b.width); };
+        auto row = [&](size_t p) { return b.y + static_cast<uint32_t>(p / b.width); };
         auto start = Clock::now();
         for (size_t p = 0; p < pixels; ++p)
-            sampler_.points(b.x + static_cast<uint32_t>(p % b.width), b.y + static_cast<uint32_t>(p / b.width), &u[p * n * dims]);
+            sampler_.points(column(p), row(p), &u[p * n * dims_]);
         auto stop = Clock::now();
         times.drawing += seconds(start, stop);
 
+        // The number of a pixel's surface comes with its samples, or costs a ray: that is the estimator's who asks for it.
         start = stop;
+        bool free_surface = !integrand_.camera_ray_per_sample();
         for (size_t p = 0; p < pixels; ++p)
-            buffers.pixels[p] = trace(b.x + static_cast<uint32_t>(p % b.width), b.y + static_cast<uint32_t>(p / b.width), &u[p * n * dims],
-                                      &f[p * n * 3]);
+            integrand_.evaluate(column(p), row(p), n, &u[p * n * dims_], &f[p * n * 3], free_surface ? &buffers.surface[p] : nullptr);
         stop = Clock::now();
         times.tracing += seconds(start, stop);
 
         for (size_t e = 0; e < estimators.size(); ++e) {
             start = Clock::now();
-            if (estimators[e]->needs_surfaces())
+            if (estimators[e]->needs_surfaces() && !free_surface)
                 for (size_t p = 0; p < pixels; ++p)
-                    buffers.surface[p] = integrand_.surface(buffers.pixels[p]);
+                    integrand_.evaluate(column(p), row(p), 0, nullptr, nullptr, &buffers.surface[p]);
             estimators[e]->estimate({u.data(), f.data(), buffers.surface.data(), b.width, b.height, n}, means.data());
             stop = Clock::now();
             times.estimating[e] += seconds(start, stop);
-            for (uint32_t row = 0; row < b.height; ++row)
-                std::copy_n(&means[size_t{row} * b.width * 3], size_t{b.width} * 3,
-                            &images_[e].rgb[3 * (size_t{b.y + row} * options_.width + b.x)]);
+            for (uint32_t y = 0; y < b.height; ++y)
+                std::copy_n(&means[size_t{y} * b.width * 3], size_t{b.width} * 3,
+                            &images_[e].rgb[3 * (size_t{b.y + y} * options_.width + b.x)]);
         }
-    }
-
-    Integrand::Pixel trace(uint32_t x, uint32_t y, const float *u, float *f) const
-    {
-        const uint32_t dims = scene_.dims();
-        Integrand::Pixel pixel = integrand_.pixel((static_cast<float>(x) + 0.5f) / static_cast<float>(options_.width),
-                                                  (static_cast<float>(y) + 0.5f) / static_cast<float>(options_.height));
-        for (size_t i = 0; i < options_.spp; ++i) {
-            Color value = integrand_(pixel, u + i * dims);
-            f[3 * i] = value.x;
-            f[3 * i + 1] = value.y;
-            f[3 * i + 2] = value.z;
-        }
-        return pixel;
     }
 
     // At most a hundred lines.
@@ -174,10 +159,10 @@ private:
         std::fflush(stdout);
     }
 
-    const Scene &scene_;
+    const Integrand &integrand_;
     const Sampler &sampler_;
     const Options &options_;
-    Integrand integrand_;
+    const uint32_t dims_; // of the sample vector
     std::vector<std::string> names_;
     std::vector<Image> images_;
     Times times_;

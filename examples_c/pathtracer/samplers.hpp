@@ -1,7 +1,7 @@
 // Where sample points come from. To see how a renderer draws from noisefloor's tiles, read TileSampler in tile_sampler.hpp.
 #pragma once
 
-#include "scene.hpp"
+#include "integrand.hpp"
 #include "sobol.hpp"
 #include <vector>
 
@@ -10,7 +10,7 @@ namespace demo {
 // All points of a pixel at once. Threads share one sampler: it holds nothing that changes.
 struct Sampler {
     virtual ~Sampler() = default;
-    // u: a row of the scene's dims() numbers in [0, 1) for each sample of pixel (x, y).
+    // u: a row of the integrand's dims numbers in [0, 1) for each sample of pixel (x, y).
     virtual void points(uint32_t x, uint32_t y, float *u) const = 0;
 };
 

@@ -63,15 +63,20 @@ pub(crate) fn path_tracer(archive: &Path) -> Result<Outcome> {
         let line = help.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(':'));
         Ok(line.with_context(|| format!("--help lists no {name}"))?.split_whitespace().collect())
     };
-    let (scenes, samplers, tiles) = (list("scenes")?, list("samplers")?, list("tiles")?);
-    let listed = help.lines().skip_while(|line| !line.starts_with("estimators:")).skip(1);
-    let estimators: Vec<_> = listed.filter_map(|line| line.split_whitespace().next()).collect();
-    if estimators.len() < 2 || samplers.len() < 3 || tiles.is_empty() {
-        bail!("--help lists too few estimators, samplers or tiles");
+    // Names with descriptions, indented under a heading.
+    let block = |name: &str| -> Vec<&str> {
+        let lines = help.lines().skip_while(|line| line.strip_suffix(':') != Some(name)).skip(1);
+        lines.take_while(|line| line.starts_with(' ')).filter_map(|line| line.split_whitespace().next()).collect()
+    };
+    let (samplers, tiles, filters) = (list("samplers")?, list("tiles")?, list("filters")?);
+    let (scenes, estimators) = (block("scenes"), block("estimators"));
+    if scenes.len() < 5 || estimators.len() < 2 || samplers.len() < 3 || tiles.is_empty() || filters.len() < 3 {
+        bail!("--help lists too few scenes, estimators, samplers, tiles or filters");
     }
     for scene in scenes {
-        // What slices need, only that scene has.
-        let names: Vec<_> = estimators.iter().copied().filter(|name| *name != "slices" || scene == "lights").collect();
+        // What slices need, a choice of lights, only those scenes have.
+        let chooses = ["lights", "global"].contains(&scene);
+        let names: Vec<_> = estimators.iter().copied().filter(|name| *name != "slices" || chooses).collect();
         println!("   {scene}: {}; {}", names.join(", "), samplers.join(", "));
         tracer.render(&["--scene", scene, "--spp", "64", "--reference"])?;
         let expected = tracer.brightness("reference")?;
@@ -96,12 +101,26 @@ pub(crate) fn path_tracer(archive: &Path) -> Result<Outcome> {
             check(sampler, &["mc", "shared", "robust"])?;
         }
     }
+    for filter in filters {
+        println!("   filter {filter}");
+        tracer.render(&["--scene", "direct", "--spp", "64", "--filter", filter, "--reference"])?;
+        let expected = tracer.brightness("reference")?;
+        tracer.render(&["--scene", "direct", "--spp", "8", "--filter", filter, "--estimators", "mc,robust,shared"])?;
+        for name in ["mc", "robust", "shared"] {
+            let actual = tracer.brightness(name)?;
+            if (actual - expected).abs() > 0.1 * expected {
+                bail!("filter {filter}, {name}: the picture's mean is {actual}, the reference's {expected}");
+            }
+        }
+    }
     check_tiles(&tracer, &tiles)?;
     let wrong = [
         &["--estimators", "nonsense"][..],
         &["--scene", "nonsense"],
         &["--spp", "0"],
         &["--sampler", "nonsense"],
+        &["--filter", "nonsense"],
+        &["--scene", "direct", "--estimators", "slices"],
         &["--sampler", "tile", "--tile", "nonsense"],
         &["--sampler", "tile", "--tile", "README.md"],
     ];

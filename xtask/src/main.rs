@@ -6,7 +6,9 @@ mod examples;
 mod fit;
 mod header;
 mod library;
+mod measure;
 mod paths;
+mod report;
 mod run;
 mod test;
 mod tiles;
@@ -28,6 +30,8 @@ struct Arguments {
 enum Command {
     /// Render with every estimator: pictures and a table in target/demo
     Demo(demo::Options),
+    /// Measure errors and times in the renderer harnesses, and write docs/report
+    Report(report::Options),
     /// Run every test; installs what it needs when it may
     Test(test::Options),
     /// Regenerate include/noisefloor.h
@@ -41,6 +45,7 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Demo(options) => demo::run(&options),
+        Command::Report(options) => report::run(&options),
         Command::Test(options) => test::run(&options),
         Command::Header => header::write(),
         Command::Tiles(options) => tiles::run(&options),

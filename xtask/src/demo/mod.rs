@@ -2,26 +2,16 @@
 //! minibatch, as pictures and as tables.
 
 mod estimators;
-mod image;
-mod markdown;
-mod metric;
-mod output;
-mod plot;
-mod progress;
-mod renderer;
-mod runs;
-mod text;
 mod tiles;
 mod training;
 
+use crate::measure::interrupt;
+use crate::measure::output::Output;
+use crate::measure::renderer::Renderer;
 use crate::paths;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
-use output::Output;
-use renderer::Renderer;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 #[derive(Args)]
@@ -54,7 +44,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let start = Instant::now();
     let folder = options.out.clone().unwrap_or_else(|| paths::target().join("demo"));
     let folder = std::path::absolute(&folder).with_context(|| format!("{} is no folder", folder.display()))?;
-    let interrupted = catch_interrupts()?;
+    let interrupted = interrupt::catch()?;
     let output = Output::new(&folder)?;
     let wanted = |part| options.only.is_none_or(|only| only == part);
     let mut tables = Vec::new();
@@ -73,22 +63,9 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         println!("building the library and the trainers");
         tables.push(training::run(options, &interrupted, &output)?);
     }
-    if interrupted.load(Ordering::Relaxed) {
-        bail!(INTERRUPTED);
-    }
+    interrupt::check(&interrupted)?;
     output.commit()?;
     println!("{}", tables.join("\n"));
     println!("pictures and tables: {} ({:.0} s)", folder.display(), start.elapsed().as_secs_f64());
     Ok(())
-}
-
-/// What an interrupted run says.
-const INTERRUPTED: &str = "interrupted; nothing was written";
-
-/// An interrupt reaches the path tracer too, which ends; this program then removes its temporary files.
-fn catch_interrupts() -> Result<Arc<AtomicBool>> {
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let flag = interrupted.clone();
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot catch interrupts")?;
-    Ok(interrupted)
 }

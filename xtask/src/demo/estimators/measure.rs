@@ -2,9 +2,9 @@
 
 use super::plan::{BASELINE, Plan, Scene};
 use super::table::Row;
-use crate::demo::metric::{Reference, median};
-use crate::demo::renderer::{Job, Sampler, Timing};
-use crate::demo::runs::{Runs, SEED};
+use crate::measure::metric::{Reference, median};
+use crate::measure::renderer::{Job, Sampler, Timing};
+use crate::measure::runs::{Runs, SEED};
 use anyhow::{Context, Result};
 use image::Rgb32FImage;
 use std::collections::BTreeMap;
@@ -31,7 +31,8 @@ impl Measurement<'_> {
     fn render(&self, scene: &Scene, spp: u32, estimators: &[&str]) -> Result<Vec<Timing>> {
         let (order, work) = (scene.order, self.plan.work(scene, spp, estimators.len()));
         let sampler = Sampler::Random;
-        self.runs.render(&Job { scene: scene.name, spp, order, seed: SEED, frame: 0, sampler, estimators, work })
+        let (scene, seed) = (scene.name, SEED);
+        self.runs.render(&Job { scene, spp, order, seed, seeds: 1, frame: 0, sampler, estimators, options: &[], work })
     }
 
     pub(crate) fn scene(&self, scene: &'static Scene) -> Result<Measured> {

@@ -2,14 +2,14 @@
 
 mod measure;
 mod plan;
-mod sheet;
 mod table;
 
 use super::Options;
-use super::output::Output;
-use super::progress;
-use super::renderer::{Renderer, threads};
-use super::runs::Runs;
+use crate::measure::error_sheet as sheet;
+use crate::measure::output::Output;
+use crate::measure::progress;
+use crate::measure::renderer::{Renderer, threads};
+use crate::measure::runs::Runs;
 use anyhow::Result;
 use indicatif::ProgressBar;
 use measure::{Measured, Measurement};

@@ -1,6 +1,6 @@
 //! The table of results, as Markdown and as CSV.
 
-use crate::demo::markdown;
+use crate::measure::markdown;
 
 /// One estimator in one scene at one number of samples per pixel.
 pub(crate) struct Row {

@@ -2,12 +2,12 @@
 
 use super::measure::Measurement;
 use super::plan::{Choice, Scene, TEMPORAL};
-use super::score::Score;
-use super::sheet;
-use crate::demo::markdown;
-use crate::demo::metric::Reference;
-use crate::demo::output::Output;
-use crate::demo::renderer::Sampler;
+use crate::measure::markdown;
+use crate::measure::metric::Reference;
+use crate::measure::output::Output;
+use crate::measure::renderer::Sampler;
+use crate::measure::score::Score;
+use crate::measure::spectrum_sheet as sheet;
 use anyhow::Result;
 use image::Rgb32FImage;
 
@@ -80,7 +80,7 @@ pub(crate) fn run(measurement: &Measurement, scene: &Scene, reference: &Referenc
     let rows = [sheet::Row { name: "1 sample per pixel".to_owned(), cells: cells.collect() }];
     let columns: Vec<String> = all.iter().map(|one| one.label.clone()).collect();
     let title = format!("{}: moving average of {} frames, new frames weigh {ALPHA}", scene.name, 2 * FRAMES);
-    output.write_picture("tiles-animation.png", &sheet::draw(&title, &columns, &rows, scene, reference))?;
+    output.write_picture("tiles-animation.png", &sheet::draw(&title, &columns, &rows, scene.crop, reference))?;
     output.write_text("tiles-animation.csv", &markdown::csv(&COLUMNS, all.iter().map(row)))?;
     Ok(markdown::table(&HEADINGS, &[0], all.iter().map(row)))
 }

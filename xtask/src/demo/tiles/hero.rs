@@ -1,11 +1,11 @@
 //! One picture of it all, small enough for a page: parts of the first scene's images, each above its errors.
 
-use super::filter::SIGMA;
 use super::measure::{Measured, baseline, find, ratios};
-use super::part::Part;
 use super::plan::{BASELINE, Choice, ESTIMATORS, Plan};
-use crate::demo::metric::Reference;
-use crate::demo::text;
+use crate::measure::filter::SIGMA;
+use crate::measure::metric::Reference;
+use crate::measure::part::Part;
+use crate::measure::text;
 use image::imageops::replace;
 use image::{Rgb, RgbImage};
 

@@ -1,10 +1,10 @@
 //! Rendering one scene with every sampler.
 
 use super::plan::{BASELINE, Choice, ESTIMATORS, Plan, Scene, Tiles};
-use super::score::Score;
-use crate::demo::metric::{Reference, median};
-use crate::demo::renderer::{Job, Sampler, Timing};
-use crate::demo::runs::{Runs, SEED};
+use crate::measure::metric::{Reference, median};
+use crate::measure::renderer::{Job, Sampler, Timing};
+use crate::measure::runs::{Runs, SEED};
+use crate::measure::score::Score;
 use anyhow::{Context, Result, bail};
 use image::Rgb32FImage;
 
@@ -47,7 +47,8 @@ impl Measurement<'_> {
         estimators: &[&str],
     ) -> Result<Vec<Timing>> {
         let (order, work) = (scene.order, self.plan.work(scene, spp, estimators.len()));
-        self.runs.render(&Job { scene: scene.name, spp, order, seed: SEED, frame, sampler, estimators, work })
+        let (scene, seed) = (scene.name, SEED);
+        self.runs.render(&Job { scene, spp, order, seed, seeds: 1, frame, sampler, estimators, options: &[], work })
     }
 
     pub(crate) fn reference(&self, scene: &Scene) -> Result<Reference> {

@@ -1,22 +1,18 @@
 //! The path tracer with random samples, Owen-scrambled Sobol points and noisefloor's tiles.
 
 mod animation;
-mod filter;
 mod hero;
 mod measure;
-mod part;
 mod plan;
-mod score;
-mod sheet;
-mod spectrum;
 mod table;
 
 use super::Options;
-use super::metric::Reference;
-use super::output::Output;
-use super::progress;
-use super::renderer::{Renderer, threads};
-use super::runs::Runs;
+use crate::measure::metric::Reference;
+use crate::measure::output::Output;
+use crate::measure::progress;
+use crate::measure::renderer::{Renderer, threads};
+use crate::measure::runs::Runs;
+use crate::measure::spectrum_sheet as sheet;
 use anyhow::Result;
 use measure::{Measured, Measurement, baseline, find, ratios};
 use plan::{BASELINE, Choice, ESTIMATORS, Plan, SCENES, Scene, Tiles};
@@ -99,7 +95,7 @@ fn write_sheet(output: &Output, plan: &Plan, scene: &Scene, all: &[Measured], re
     let names: Vec<String> =
         columns.iter().map(|(choice, estimator)| format!("{}, {estimator}", choice.label())).collect();
     let title = format!("{}: integral over {}; polynomials of order {}", scene.name, scene.domain, scene.order);
-    let picture = sheet::draw(&title, &names, &rows, scene, reference);
+    let picture = sheet::draw(&title, &names, &rows, scene.crop, reference);
     output.write_picture(&format!("tiles-{}.png", scene.name), &picture)
 }
 
@@ -133,8 +129,8 @@ fn report(plan: &Plan, [summary, shared, samplers, animation]: &[String; 4]) -> 
         threads = threads(),
         frames = frames.join(", "),
         orders = orders.join(", "),
-        sigma = filter::SIGMA,
-        limit = score::LIMIT,
+        sigma = crate::measure::filter::SIGMA,
+        limit = crate::measure::score::LIMIT,
         scene = SCENES[0].name,
         alpha = animation::ALPHA,
         from = animation::FRAMES,

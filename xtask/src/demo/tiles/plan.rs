@@ -1,6 +1,6 @@
 //! What is rendered: scenes, samplers, sizes.
 
-use crate::demo::renderer::Sampler;
+use crate::measure::renderer::Sampler;
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeMap;
 use std::path::Path;

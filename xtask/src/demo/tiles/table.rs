@@ -2,7 +2,7 @@
 
 use super::measure::{Measured, baseline, find, ratios};
 use super::plan::{Choice, ESTIMATORS, Scene};
-use crate::demo::markdown;
+use crate::measure::markdown;
 
 const HEADINGS: [&str; 13] = [
     "scene",

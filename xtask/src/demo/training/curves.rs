@@ -1,6 +1,6 @@
 //! Rows of CSV as lines of a plot: the mean over the seeds, and its 95 % confidence interval.
 
-use crate::demo::plot::Series;
+use crate::measure::plot::Series;
 use anyhow::{Context, Result, bail};
 
 /// A table as a trainer wrote it.

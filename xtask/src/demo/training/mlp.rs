@@ -4,8 +4,8 @@ use super::Training;
 use super::curves::Rows;
 use super::data;
 use super::program::Program;
-use crate::demo::plot::{Axis, Plot, Series};
-use crate::demo::progress;
+use crate::measure::plot::{Axis, Plot, Series};
+use crate::measure::progress;
 use anyhow::{Context, Result};
 use indicatif::ProgressBar;
 use std::fs;
@@ -163,7 +163,7 @@ fn variance_table(plan: &Plan, rows: &Rows) -> Result<String> {
     }
     let headings = epochs.map(|epoch| format!("epoch {epoch}"));
     let [a, b, c, d, e] = headings.each_ref().map(String::as_str);
-    Ok(crate::demo::markdown::table(&["variance / uniform's", a, b, c, d, e], &[0], cells))
+    Ok(crate::measure::markdown::table(&["variance / uniform's", a, b, c, d, e], &[0], cells))
 }
 
 fn report(plan: &Plan, summary: &str, variance: &str) -> String {

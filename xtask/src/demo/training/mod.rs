@@ -8,8 +8,8 @@ mod polynomial;
 mod program;
 
 use super::Options;
-use super::output::Output;
 use crate::library;
+use crate::measure::output::Output;
 use anyhow::Result;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;

@@ -3,8 +3,8 @@
 use super::Training;
 use super::curves::Rows;
 use super::program::Program;
-use crate::demo::plot::{Axis, Plot, Series};
-use crate::demo::{progress, text};
+use crate::measure::plot::{Axis, Plot, Series};
+use crate::measure::{progress, text};
 use crate::paths;
 use anyhow::{Context, Result, bail};
 use image::imageops::{self, FilterType};

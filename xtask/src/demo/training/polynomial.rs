@@ -3,8 +3,8 @@
 use super::Training;
 use super::curves::Rows;
 use super::program::Program;
-use crate::demo::plot::{Axis, Plot, Series};
-use crate::demo::progress;
+use crate::measure::plot::{Axis, Plot, Series};
+use crate::measure::progress;
 use anyhow::Result;
 
 /// Writes training-polynomial*.csv, .md and .svg; returns the tables.

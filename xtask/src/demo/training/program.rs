@@ -1,12 +1,12 @@
 //! Compiling and running a trainer of `examples_c`.
 
-use super::super::INTERRUPTED;
+use crate::measure::interrupt;
 use crate::{examples, paths, run};
 use anyhow::{Context, Result, bail};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::thread;
 
 /// What a run wrote.
@@ -58,9 +58,7 @@ impl Program {
         }
         let summary = reader.join().ok().context("a thread was lost")?.context("cannot read the trainer's errors")?;
         let status = child.wait().context("the trainer was lost")?;
-        if interrupted.load(Ordering::Relaxed) {
-            bail!(INTERRUPTED);
-        }
+        interrupt::check(interrupted)?;
         if !status.success() {
             bail!("{} {} failed, {status}\n{}", self.path.display(), arguments.join(" "), summary.trim());
         }

@@ -6,23 +6,28 @@ pub(crate) fn table<const N: usize>(
     words: &[usize],
     rows: impl IntoIterator<Item = [String; N]>,
 ) -> String {
-    let rows: Vec<_> = rows.into_iter().collect();
-    let widths: [usize; N] = std::array::from_fn(|column| {
-        rows.iter().map(|cells| cells[column].len()).chain([headings[column].len()]).max().unwrap_or(0)
-    });
-    let line = |cells: &[String; N]| {
-        let padded = cells.iter().zip(widths).enumerate().map(|(column, (cell, width))| {
+    lines(headings, words, rows.into_iter().map(Vec::from).collect())
+}
+
+/// As [`table`], for any number of columns; a row that is too short ends early.
+pub(crate) fn lines(headings: &[&str], words: &[usize], rows: Vec<Vec<String>>) -> String {
+    let length = |cell: &str| cell.chars().count();
+    let width = |(column, heading): (usize, &&str)| {
+        rows.iter().filter_map(|cells| cells.get(column)).map(|cell| length(cell)).fold(length(heading), usize::max)
+    };
+    let widths: Vec<usize> = headings.iter().enumerate().map(width).collect();
+    let line = |cells: &[String]| {
+        let padded = cells.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {
             if words.contains(&column) { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
         });
         format!("| {} |\n", padded.collect::<Vec<_>>().join(" | "))
     };
-    let mut text = line(&headings.map(str::to_owned));
-    let rule = widths
-        .iter()
-        .enumerate()
-        .map(|(column, &width)| if words.contains(&column) { "-".repeat(width) } else { "-".repeat(width - 1) + ":" });
+    let mut text = line(&headings.iter().map(|&heading| heading.to_owned()).collect::<Vec<_>>());
+    let rule = widths.iter().enumerate().map(|(column, &width)| {
+        if words.contains(&column) { "-".repeat(width) } else { "-".repeat(width.max(2) - 1) + ":" }
+    });
     text += &format!("| {} |\n", rule.collect::<Vec<_>>().join(" | "));
-    text.extend(rows.iter().map(line));
+    text.extend(rows.iter().map(|cells| line(cells)));
     text
 }
 

@@ -27,7 +27,11 @@ impl Output {
     }
 
     pub(crate) fn write_text(&self, name: &str, text: &str) -> Result<()> {
-        fs::write(self.pending.path().join(name), text).with_context(|| format!("cannot write {name}"))
+        self.write_bytes(name, text.as_bytes())
+    }
+
+    pub(crate) fn write_bytes(&self, name: &str, bytes: &[u8]) -> Result<()> {
+        fs::write(self.pending.path().join(name), bytes).with_context(|| format!("cannot write {name}"))
     }
 
     pub(crate) fn write_picture(&self, name: &str, picture: &RgbImage) -> Result<()> {

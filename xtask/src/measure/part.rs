@@ -2,8 +2,8 @@
 
 use super::score::signed_errors;
 use super::spectrum::Spectra;
-use crate::demo::image::{exposure, tone_map};
-use crate::demo::metric::Reference;
+use crate::measure::image::{exposure, tone_map};
+use crate::measure::metric::Reference;
 use image::imageops::{FilterType, crop_imm, resize};
 use image::{Luma, Rgb, Rgb32FImage, RgbImage};
 

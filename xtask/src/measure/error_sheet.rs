@@ -1,8 +1,8 @@
 //! The comparison picture: every estimator's image beside the others', its error map beneath it.
 
-use crate::demo::image::{exposure, tone_map};
-use crate::demo::metric::Reference;
-use crate::demo::text;
+use crate::measure::image::{exposure, tone_map};
+use crate::measure::metric::Reference;
+use crate::measure::text;
 use colorous::INFERNO;
 use image::imageops::{FilterType, replace, resize};
 use image::{Rgb, Rgb32FImage, RgbImage};

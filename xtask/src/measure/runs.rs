@@ -49,7 +49,9 @@ impl<'a> Runs<'a> {
     pub(crate) fn reference(&self, scene: &str, spp: u32, work: u64) -> Result<Reference> {
         self.say(format!("{scene}: reference"));
         let half = |seed| {
-            let job = Job { scene, spp, order: 0, seed, frame: 0, sampler: Sampler::Random, estimators: &[], work };
+            let sampler = Sampler::Random;
+            let job =
+                Job { scene, spp, order: 0, seed, seeds: 1, frame: 0, sampler, estimators: &[], options: &[], work };
             self.render(&job)?;
             self.image(scene, "reference")
         };

@@ -77,7 +77,7 @@ fn frequency(i: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::demo::tiles::filter::gaussian;
+    use crate::measure::filter::gaussian;
 
     fn white(count: usize) -> Vec<f64> {
         let mut state = 1_u64;

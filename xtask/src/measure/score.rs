@@ -2,7 +2,7 @@
 
 use super::filter::gaussian;
 use super::spectrum::Spectra;
-use crate::demo::metric::Reference;
+use crate::measure::metric::Reference;
 use image::Rgb32FImage;
 
 /// An image's errors; or, by [`Score::mean`], those of several.

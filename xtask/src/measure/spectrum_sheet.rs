@@ -1,10 +1,9 @@
 //! The comparison picture: a part of every sampler's image, its errors beneath it, and their spectra (figure 5.20).
 
 use super::part::Part;
-use super::plan::Scene;
 use super::spectrum::WINDOW;
-use crate::demo::metric::Reference;
-use crate::demo::text;
+use crate::measure::metric::Reference;
+use crate::measure::text;
 use image::imageops::replace;
 use image::{Rgb, Rgb32FImage, RgbImage};
 
@@ -23,13 +22,13 @@ pub(crate) struct Row<'a> {
     pub(crate) cells: Vec<Option<Cell<'a>>>,
 }
 
-/// `columns`: their names.
-pub(crate) fn draw(title: &str, columns: &[String], rows: &[Row], scene: &Scene, reference: &Reference) -> RgbImage {
+/// `columns`: their names. `crop`: the corner of the part that is shown, in images.
+pub(crate) fn draw(title: &str, columns: &[String], rows: &[Row], crop: [f64; 2], reference: &Reference) -> RgbImage {
     // Half an image, of whole spectra.
     let size = reference.image.width().min(reference.image.height());
     let side = (size / 2 / WINDOW as u32).max(1) * WINDOW as u32;
     let zoom = (256 / side).max(1);
-    let part = Part::new(scene.crop, [side; 2], zoom, reference);
+    let part = Part::new(crop, [side; 2], zoom, reference);
     let side = side * zoom;
     let row_height = 3 * (side + GAP / 2) + 2 * text::LINE;
     let top = GAP + 2 * text::LINE;

@@ -1,5 +1,6 @@
-//! Compiling and running the path tracer.
+//! Compiling and running the path tracer, or another program that has its command line.
 
+use super::interrupt::{self, Interrupted};
 use crate::{library, paths, run};
 use anyhow::{Context, Result, bail};
 use indicatif::ProgressBar;
@@ -7,19 +8,19 @@ use serde::Deserialize;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The compiled path tracer.
+/// The compiled program.
 pub(crate) struct Renderer {
     program: PathBuf,
-    interrupted: Arc<AtomicBool>,
+    interrupted: Interrupted,
 }
 
-/// One line of the path tracer's output: how long one estimator took, in seconds summed over the threads.
+/// One line of the program's output: how long one estimator took, in seconds summed over the threads.
 #[derive(Deserialize, Clone)]
 pub(crate) struct Timing {
     pub(crate) estimator: String,
+    #[serde(default)]
+    pub(crate) seed: u64,
     pub(crate) total_seconds: f64,
     /// Making the sample points.
     pub(crate) drawing_ns_per_sample: f64,
@@ -28,17 +29,22 @@ pub(crate) struct Timing {
     pub(crate) estimating_ns_per_sample: f64,
 }
 
-/// One run of the path tracer.
+/// One run of the program.
+#[derive(Clone, Copy)]
 pub(crate) struct Job<'a> {
     pub(crate) scene: &'a str,
     pub(crate) spp: u32,
     /// Total degree of the fits.
     pub(crate) order: u32,
     pub(crate) seed: u64,
+    /// Renderings with as many consecutive seeds, in one process.
+    pub(crate) seeds: u32,
     pub(crate) frame: u32,
     pub(crate) sampler: Sampler<'a>,
     /// Empty: a reference.
     pub(crate) estimators: &'a [&'a str],
+    /// Further words of the command line.
+    pub(crate) options: &'a [&'a str],
     /// What it adds to the progress bar.
     pub(crate) work: u64,
 }
@@ -50,6 +56,8 @@ pub(crate) enum Sampler<'a> {
     Sobol,
     /// A built-in tile's name, or a file.
     Tile(&'a str),
+    /// A file of points that another program made.
+    Table(&'a Path),
 }
 
 /// As many threads as there are cores.
@@ -59,18 +67,28 @@ pub(crate) fn threads() -> u32 {
 
 impl Renderer {
     /// Builds the library and the program that links it. Once `interrupted` is set, nothing is rendered any more.
-    pub(crate) fn build(interrupted: Arc<AtomicBool>) -> Result<Self> {
+    pub(crate) fn build(interrupted: Interrupted) -> Result<Self> {
         let archive = library::build()?;
         let program = paths::output().join("pathtracer");
         let mut compiler = run::compiler("CXX", "c++");
         compiler.args(["-O2", "-std=c++17", "-Wall", "-Wextra", "-Iinclude", "examples_c/pathtracer.cpp"]);
         run::check(compiler.arg(&archive).args(["-pthread", "-o"]).arg(&program))?;
-        Ok(Self { program, interrupted })
+        Ok(Self::new(program, interrupted))
+    }
+
+    /// Runs a program that is there already.
+    pub(crate) fn new(program: PathBuf, interrupted: Interrupted) -> Self {
+        Self { program, interrupted }
+    }
+
+    /// What `--help` prints.
+    pub(crate) fn help(&self) -> Result<String> {
+        run::read(run::command(&self.program).arg("--help"))
     }
 
     /// The names of the tiles that the library carries.
     pub(crate) fn tiles(&self) -> Result<Vec<String>> {
-        let help = run::read(run::command(&self.program).arg("--help"))?;
+        let help = self.help()?;
         let line = help.lines().find_map(|line| line.strip_prefix("tiles:")).unwrap_or_default();
         Ok(line.split_whitespace().map(str::to_owned).collect())
     }
@@ -86,7 +104,12 @@ impl Renderer {
             Sampler::Random => command.args(["--sampler", "random"]),
             Sampler::Sobol => command.args(["--sampler", "sobol"]),
             Sampler::Tile(tile) => command.args(["--sampler", "tile", "--tile", tile]),
+            Sampler::Table(file) => command.args(["--sampler", "table", "--table"]).arg(file),
         };
+        if job.seeds > 1 {
+            command.args(["--seeds", &job.seeds.to_string()]);
+        }
+        command.args(job.options);
         command.args(["--threads", &threads().to_string(), "--output"]).arg(prefix);
         if job.estimators.is_empty() {
             command.arg("--reference");
@@ -119,9 +142,7 @@ impl Renderer {
             stderr.read_to_string(&mut message).context("cannot read the path tracer's errors")?;
         }
         let status = child.wait().context("the path tracer was lost")?;
-        if self.interrupted.load(Ordering::Relaxed) {
-            bail!(super::INTERRUPTED);
-        }
+        interrupt::check(&self.interrupted)?;
         if !status.success() {
             bail!("rendering `{}` failed, {status}\n{}", job.scene, message.trim());
         }

@@ -1,0 +1,79 @@
+//! The chapter of the Embree harness.
+
+use super::Report;
+use super::chapter::Chapter;
+use super::measurement::Measurement;
+use super::tables::targets::Targets;
+use super::tables::{SECTIONS, Section};
+use crate::measure::interrupt;
+use crate::measure::progress;
+use crate::measure::renderer::{Renderer, threads};
+use anyhow::Result;
+
+/// Units of the progress bar in a second.
+const SECOND: u64 = 1000;
+
+pub(super) fn write(report: &Report) -> Result<()> {
+    println!("building the library and the Embree harness");
+    let program = match &report.program {
+        Some(program) => program.clone(),
+        None => anyhow::bail!("no program"),
+    };
+    let renderer = Renderer::new(program, report.interrupted.clone());
+    let bar = progress::bar(SECTIONS.iter().map(|(seconds, _)| seconds * SECOND).sum())?;
+    let measurement = Measurement::new(report.plan, &renderer, &bar)?;
+    let (mut body, mut targets) = (Chapter::default(), Targets::default());
+    let mut start = 0;
+    for (seconds, section) in SECTIONS {
+        let end = start + seconds * SECOND;
+        measurement.begin_section(start, end);
+        let (chapter, targets) = (&mut body, &mut targets);
+        section(&mut Section {
+            measurement: &measurement,
+            chapter,
+            targets,
+            output: report.output,
+            large: report.large,
+        })?;
+        interrupt::check(&report.interrupted)?;
+        start = end;
+    }
+    bar.finish_and_clear();
+    let mut chapter = Chapter::new("Control variates and tiles in an Embree path tracer");
+    introduce(report, &mut chapter);
+    targets.write(&mut chapter);
+    chapter.append(body);
+    report.output.write_text("embree.md", chapter.markdown())?;
+    report.output.write_text("embree.json", &format!("{:#}\n", chapter.json()))
+}
+
+fn introduce(report: &Report, chapter: &mut Chapter) {
+    let plan = report.plan;
+    let threads = chapter.setting("threads", threads());
+    let seeds = chapter.setting("seeds", plan.seeds);
+    let size = chapter.setting("pixels on a side, estimators", plan.size);
+    let tile_size = chapter.setting("pixels on a side, samplers", plan.tile_size);
+    let confidence = chapter.setting("confidence, percent", 95);
+    chapter.paragraph(&format!(
+        "Made by `cargo xtask report`; machine-readable in `embree.json`. Scenes after those of C. Salaün's thesis (\"Toward \
+         Improving Monte Carlo Estimator for Rendering and Machine Learning\"), chapters 4 and 5, of other meshes: figures \
+         can be held side by side in what they compare and how, not in their absolute values. Images of {size} x {size} \
+         pixels where estimators are compared and {tile_size} x {tile_size} where samplers are; {threads} threads."
+    ));
+    chapter.list(&[
+        format!(
+            "A figure is the median over {seeds} seeds, and in brackets its {confidence} % confidence interval (bootstrap). Ratios are \
+             taken seed by seed: both of a pair saw the same samples, or, for samplers, the same seed."
+        ),
+        "relMSE: mean over the pixels of (I - R)^2 / (R^2 + eps), luminance (Rec. 709), eps a hundredth of the squared mean of R. \
+         The reference consists of two independent halves A and B, R = (A + B) / 2, from shifted lattices; (I - A)(I - B) stands \
+         for (I - R)^2, so that the reference's own noise adds nothing."
+            .to_owned(),
+        "MC: the plain mean of random samples. Default: `NF_CV_ROBUST`, for each colour channel. Least squares: the thesis's \
+         estimator, for each channel. O1, O2, O3: total degree of the polynomials."
+            .to_owned(),
+        "Same time: relMSE over that of the plain mean of as many samples as it makes in the estimator's total time; its error \
+         falls as one over the number of samples."
+            .to_owned(),
+    ]);
+}

@@ -1,0 +1,112 @@
+//! A measured figure: its value, its confidence interval and its unit, as text and as JSON.
+
+use super::statistics::Estimate;
+use serde::Serialize;
+
+/// What a figure counts, and how it is written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Unit {
+    /// One error, time or variance over another.
+    Ratio,
+    RelMse,
+    /// As the thesis prints it.
+    RelMseE3,
+    Percent,
+    Nanoseconds,
+    Microseconds,
+    Count,
+    /// Standard deviations.
+    Sigmas,
+}
+
+impl Unit {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Ratio => "ratio",
+            Self::RelMse => "relMSE",
+            Self::RelMseE3 => "1e-3 relMSE",
+            Self::Percent => "percent",
+            Self::Nanoseconds => "nanoseconds per sample",
+            Self::Microseconds => "microseconds per pixel",
+            Self::Count => "count",
+            Self::Sigmas => "standard deviations",
+        }
+    }
+
+    pub(crate) fn text(self, value: f64) -> String {
+        match self {
+            _ if !value.is_finite() => "-".to_owned(),
+            Self::Ratio if value.abs() < 10.0 => format!("{value:.3}"),
+            Self::RelMse => format!("{value:.2e}"),
+            Self::RelMseE3 => significant(value, 3),
+            Self::Percent if value.abs() < 10.0 => format!("{value:.2}"),
+            Self::Sigmas => format!("{value:.2}"),
+            Self::Nanoseconds | Self::Count if value.abs() >= 10.0 || self == Self::Count => format!("{value:.0}"),
+            Self::Ratio | Self::Percent | Self::Nanoseconds | Self::Count => format!("{value:.1}"),
+            Self::Microseconds => significant(value, 3),
+        }
+    }
+}
+
+/// Rounded to so many digits, without an exponent.
+fn significant(value: f64, digits: i32) -> String {
+    let before = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    format!("{value:.*}", (digits - 1 - before).max(0) as usize)
+}
+
+/// What the report quotes.
+#[derive(Clone, Serialize)]
+pub(crate) struct Figure {
+    /// As it is written, with its interval.
+    pub(crate) text: String,
+    pub(crate) value: Option<f64>,
+    /// Ends of the 95 % confidence interval.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) interval: Option<[f64; 2]>,
+    pub(crate) unit: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) seeds: Option<usize>,
+}
+
+impl Figure {
+    /// With its confidence interval, if there were several seeds.
+    pub(crate) fn new(estimate: Estimate, unit: Unit) -> Self {
+        let Estimate { value, low, high, seeds } = estimate;
+        let mut figure = Self::exact(value, unit);
+        figure.seeds = Some(seeds);
+        if seeds > 1 && value.is_finite() && low.is_finite() && high.is_finite() {
+            figure.interval = Some([low, high]);
+            figure.text = format!("{} [{}, {}]", figure.text, unit.text(low), unit.text(high));
+        }
+        figure
+    }
+
+    /// The value alone is written; its interval is in the JSON.
+    pub(crate) fn brief(estimate: Estimate, unit: Unit) -> Self {
+        Self { text: unit.text(estimate.value), ..Self::new(estimate, unit) }
+    }
+
+    /// Without an interval: a count, or the largest of several figures.
+    pub(crate) fn exact(value: f64, unit: Unit) -> Self {
+        let value_or_none = Some(value).filter(|value| value.is_finite());
+        Self { text: unit.text(value), value: value_or_none, interval: None, unit: unit.name(), seeds: None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_as_text() {
+        let estimate = Estimate { value: 0.4, low: 0.38, high: 0.4149, seeds: 8 };
+        assert_eq!(Figure::new(estimate, Unit::Ratio).text, "0.400 [0.380, 0.415]");
+        assert_eq!(Figure::brief(estimate, Unit::Ratio).text, "0.400");
+        assert_eq!(Figure::exact(12.34, Unit::Percent).text, "12.3");
+        assert_eq!(Figure::exact(0.001_234, Unit::RelMse).text, "1.23e-3");
+        assert_eq!(Unit::RelMseE3.text(12.345), "12.3");
+        assert_eq!(Unit::RelMseE3.text(0.012_345), "0.0123");
+        assert_eq!(Unit::Nanoseconds.text(123.4), "123");
+        assert_eq!(Figure::exact(f64::NAN, Unit::Ratio).text, "-");
+    }
+}

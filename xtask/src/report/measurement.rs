@@ -1,0 +1,233 @@
+//! Rendering with several seeds, and what the images say.
+
+use super::plan::Plan;
+use super::scenes;
+use super::statistics::Estimate;
+use crate::measure::image::read_pfm;
+use crate::measure::metric::{Reference, median};
+use crate::measure::renderer::{Job, Renderer, Sampler, Timing};
+use crate::measure::score::Score;
+use anyhow::{Context, Result};
+use image::Rgb32FImage;
+use indicatif::ProgressBar;
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::rc::Rc;
+use tempfile::TempDir;
+
+/// The plain mean: every ratio is to it.
+pub(crate) const BASELINE: &str = "mc";
+/// noisefloor's default.
+pub(crate) const DEFAULT: &str = "robust";
+/// The thesis's estimator, for each channel.
+pub(crate) const LEAST_SQUARES: &str = "least_squares";
+/// Fits shared by neighbouring pixels.
+pub(crate) const SHARED: &str = "shared";
+
+const SEED: u64 = 1;
+/// Beyond those of any measurement.
+const REFERENCE_SEEDS: [u64; 2] = [1_000_001, 1_000_002];
+
+/// What is integrated, pixel by pixel.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct View {
+    pub(crate) scene: &'static str,
+    /// Pixels on a side.
+    pub(crate) size: u32,
+    pub(crate) frame: u32,
+    /// Words of the command line that change what is integrated.
+    pub(crate) options: &'static [&'static str],
+}
+
+impl View {
+    pub(crate) fn new(scene: &'static str, size: u32) -> Self {
+        Self { scene, size, frame: 0, options: &[] }
+    }
+}
+
+/// Renderings that differ in their seeds alone.
+#[derive(Clone, Copy)]
+pub(crate) struct Experiment<'a> {
+    pub(crate) view: View,
+    pub(crate) spp: u32,
+    pub(crate) order: u32,
+    pub(crate) sampler: Sampler<'a>,
+    pub(crate) estimators: &'a [&'a str],
+    pub(crate) seeds: u32,
+    /// Words of the command line that change how it is estimated.
+    pub(crate) options: &'a [&'a str],
+}
+
+/// What one estimator made.
+pub(crate) struct Renderings {
+    pub(crate) estimator: String,
+    /// One for each seed.
+    pub(crate) images: Vec<Rgb32FImage>,
+    pub(crate) timings: Vec<Timing>,
+}
+
+/// What an experiment made; all estimators saw the same samples.
+pub(crate) struct Outcome {
+    pub(crate) reference: Rc<Reference>,
+    pub(crate) renderings: Vec<Renderings>,
+}
+
+/// A reference that was rendered, and the files of its halves.
+struct Known {
+    reference: Rc<Reference>,
+    halves: [PathBuf; 2],
+}
+
+/// Renders, and remembers references.
+pub(crate) struct Measurement<'a> {
+    pub(crate) plan: Plan,
+    pub(crate) renderer: &'a Renderer,
+    pub(crate) bar: &'a ProgressBar,
+    scratch: TempDir,
+    references: RefCell<BTreeMap<View, Known>>,
+    /// Where the bar will be at the end of the section.
+    section_end: Cell<u64>,
+}
+
+impl<'a> Measurement<'a> {
+    pub(crate) fn new(plan: Plan, renderer: &'a Renderer, bar: &'a ProgressBar) -> Result<Self> {
+        let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
+        Ok(Self { plan, renderer, bar, scratch, references: RefCell::default(), section_end: Cell::new(0) })
+    }
+
+    /// What follows advances the bar from `start` to `end` at most.
+    pub(crate) fn begin_section(&self, start: u64, end: u64) {
+        self.bar.set_position(start);
+        self.section_end.set(end);
+    }
+
+    /// Where files that outlive one rendering go.
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.scratch.path().join(name)
+    }
+
+    pub(crate) fn reference(&self, view: View) -> Result<Rc<Reference>> {
+        if let Some(known) = self.references.borrow().get(&view) {
+            return Ok(known.reference.clone());
+        }
+        self.bar.set_message(format!("{}: reference", view.scene));
+        let spp = (scenes::find(view.scene).reference_spp / self.plan.reference_divisor).max(16);
+        let index = self.references.borrow().len();
+        let half = |seed| -> Result<PathBuf> {
+            let prefix = self.path(&format!("half-{index}-{seed}"));
+            let job = self.job(&Experiment::new(view, spp, &[]), seed, 1);
+            self.renderer.render(&Job { options: view.options, ..job }, view.size, &prefix, self.bar)?;
+            Ok(prefix.with_extension("reference.pfm"))
+        };
+        let [a, b] = REFERENCE_SEEDS;
+        let halves = [half(a)?, half(b)?];
+        let reference = Rc::new(Reference::new(&read_pfm(&halves[0])?, &read_pfm(&halves[1])?));
+        self.references.borrow_mut().insert(view, Known { reference: reference.clone(), halves });
+        Ok(reference)
+    }
+
+    fn job<'b>(&self, experiment: &Experiment<'b>, seed: u64, seeds: u32) -> Job<'b> {
+        let Experiment { view, spp, order, sampler, estimators, .. } = *experiment;
+        let samples = f64::from(view.size).powi(2) * f64::from(spp) * f64::from(seeds);
+        let work = samples * (scenes::find(view.scene).cost + 150.0 * estimators.len() as f64) * 1e-6;
+        let work = (work as u64).min(self.section_end.get().saturating_sub(self.bar.position()));
+        let (scene, frame) = (view.scene, view.frame);
+        Job { scene, spp, order, seed, seeds, frame, sampler, estimators, options: &[], work }
+    }
+
+    /// Renders every seed.
+    pub(crate) fn run(&self, experiment: &Experiment) -> Result<Outcome> {
+        let reference = self.reference(experiment.view)?;
+        Ok(Outcome { reference, renderings: self.render(experiment)? })
+    }
+
+    /// As [`Self::run`], without a reference.
+    pub(crate) fn render(&self, experiment: &Experiment) -> Result<Vec<Renderings>> {
+        let Experiment { view, spp, seeds, estimators, .. } = *experiment;
+        self.bar.set_message(format!("{}: {spp} samples per pixel", view.scene));
+        let options = [view.options, experiment.options].concat();
+        let prefix = self.path("picture");
+        let job = Job { options: &options, ..self.job(experiment, SEED, seeds) };
+        let timings = self.renderer.render(&job, view.size, &prefix, self.bar)?;
+        let name = |estimator: &str, seed: u64| match seeds {
+            1 => format!("{estimator}.pfm"),
+            _ => format!("{estimator}.{seed}.pfm"),
+        };
+        let renderings = estimators.iter().map(|&estimator| {
+            let files = (SEED..SEED + u64::from(seeds)).map(|seed| prefix.with_extension(name(estimator, seed)));
+            Ok(Renderings {
+                estimator: estimator.to_owned(),
+                images: files.map(|file| read_pfm(&file)).collect::<Result<_>>()?,
+                timings: timings.iter().filter(|timing| timing.estimator == estimator).cloned().collect(),
+            })
+        });
+        renderings.collect()
+    }
+
+    /// The mean over as many seeds, and the mean of (I - A)(I - B) pixel by pixel, of each estimator.
+    pub(crate) fn statistics(&self, experiment: &Experiment) -> Result<Vec<[Rgb32FImage; 2]>> {
+        let Experiment { view, seeds, estimators, .. } = *experiment;
+        self.reference(view)?;
+        let references = self.references.borrow();
+        let known = references.get(&view).context("the reference was lost")?;
+        let files = known.halves.each_ref().map(|file| file.display().to_string()).join(",");
+        let options = [view.options, experiment.options, &["--statistics", &files]].concat();
+        let prefix = self.path("statistics");
+        self.bar.set_message(format!("{}: {seeds} seeds", view.scene));
+        let job = Job { options: &options, ..self.job(experiment, SEED, seeds) };
+        self.renderer.render(&job, view.size, &prefix, self.bar)?;
+        let read = |estimator: &&str, what: &str| read_pfm(&prefix.with_extension(format!("{estimator}.{what}.pfm")));
+        estimators.iter().map(|estimator| Ok([read(estimator, "mean")?, read(estimator, "mse")?])).collect()
+    }
+}
+
+impl<'a> Experiment<'a> {
+    /// Order 2, random samples, one seed.
+    pub(crate) fn new(view: View, spp: u32, estimators: &'a [&'a str]) -> Self {
+        Self { view, spp, order: 2, sampler: Sampler::Random, estimators, seeds: 1, options: &[] }
+    }
+}
+
+impl Outcome {
+    pub(crate) fn of(&self, estimator: &str) -> Result<&Renderings> {
+        let found = self.renderings.iter().find(|renderings| renderings.estimator == estimator);
+        found.with_context(|| format!("`{estimator}` was not rendered"))
+    }
+
+    /// relMSE of each seed.
+    pub(crate) fn errors(&self, estimator: &str) -> Result<Vec<f64>> {
+        Ok(self.of(estimator)?.images.iter().map(|image| self.reference.rel_mse(image)).collect())
+    }
+
+    /// Raw and filtered errors of each seed, highlights limited.
+    pub(crate) fn scores(&self, estimator: &str) -> Result<Vec<Score>> {
+        Ok(self.of(estimator)?.images.iter().map(|image| Score::new(image, &self.reference)).collect())
+    }
+
+    /// relMSE over the plain mean's, of the same samples.
+    pub(crate) fn ratio(&self, estimator: &str) -> Result<Estimate> {
+        Ok(Estimate::ratio(&self.errors(estimator)?, &self.errors(BASELINE)?))
+    }
+
+    /// Total time over the plain mean's: the median over the seeds.
+    pub(crate) fn time_ratio(&self, estimator: &str) -> Result<f64> {
+        let (own, plain) = (self.of(estimator)?, self.of(BASELINE)?);
+        let pairs = own.timings.iter().zip(&plain.timings);
+        Ok(median(pairs.map(|(own, plain)| own.total_seconds / plain.total_seconds)))
+    }
+
+    /// relMSE over that of the plain mean of as many samples as it makes in the same time: its error falls as 1 / samples.
+    pub(crate) fn equal_time(&self, estimator: &str) -> Result<Estimate> {
+        let time = self.time_ratio(estimator)?;
+        let Estimate { value, low, high, seeds } = self.ratio(estimator)?;
+        Ok(Estimate { value: value * time, low: low * time, high: high * time, seeds })
+    }
+}
+
+impl Renderings {
+    /// The median over the seeds.
+    pub(crate) fn nanoseconds(&self, of: impl Fn(&Timing) -> f64) -> Estimate {
+        Estimate::median(&self.timings.iter().map(of).collect::<Vec<_>>())
+    }
+}

@@ -1,0 +1,66 @@
+//! How much is measured: sizes, seeds, samples.
+
+/// Sizes that decide how long the report takes, and how narrow its intervals are.
+#[derive(Clone, Copy)]
+pub(crate) struct Plan {
+    /// Renderings of everything that is compared, with as many seeds: at least eight for a report.
+    pub(crate) seeds: u32,
+    /// Pixels on a side where estimators are compared.
+    pub(crate) size: u32,
+    /// Pixels on a side where samplers are: filtered errors and spectra need an image, tiles repeat after 128 pixels.
+    pub(crate) tile_size: u32,
+    /// Pixels on a side where many samples, many dimensions or many seeds are the point.
+    pub(crate) small: u32,
+    /// Divides the samples per pixel of references.
+    pub(crate) reference_divisor: u32,
+    /// Samples per pixel of the comparison of estimators.
+    pub(crate) spp: &'static [u32],
+    /// Samples per pixel where polynomials have 100 terms and more, or the thesis has as many.
+    pub(crate) many: u32,
+    /// Seeds of the statistics of single pixels.
+    pub(crate) pixel_seeds: u32,
+    /// Frames of the test of biases.
+    pub(crate) frames: u32,
+    /// Last frames of the animations: figures 5.23 and 5.24.
+    pub(crate) animation: [u32; 2],
+}
+
+impl Plan {
+    pub(crate) fn new(quick: bool, full: bool) -> Self {
+        let normal = Self {
+            seeds: 8,
+            size: 64,
+            tile_size: 128,
+            small: 32,
+            reference_divisor: 1,
+            spp: &[16, 64, 256],
+            many: 256,
+            pixel_seeds: 256,
+            frames: 1000,
+            animation: [16, 10],
+        };
+        if quick {
+            return Self {
+                seeds: 2,
+                size: 16,
+                tile_size: 32,
+                small: 12,
+                reference_divisor: 16,
+                spp: &[16],
+                many: 64,
+                pixel_seeds: 16,
+                frames: 32,
+                animation: [4, 3],
+            };
+        }
+        if full {
+            return Self { seeds: 16, size: 128, tile_size: 256, small: 64, pixel_seeds: 1024, frames: 4000, ..normal };
+        }
+        normal
+    }
+
+    /// The samples per pixel at which pictures and tables with one number of samples are made: 64, or what there is.
+    pub(crate) fn middle(&self) -> u32 {
+        self.spp[self.spp.len() / 2]
+    }
+}
