@@ -40,14 +40,14 @@ inline std::unique_ptr<demo::Estimator> make_estimator(const Settings &settings,
     if (name == "accumulator") { // what a renderer does that keeps no samples
         nf_cv_config config;
         nf_cv_config_default(&config);
-        config.dims = dims;
+        config.dims = config.stride = dims;
         config.order = order;
         config.channels = 3;
         config.stratified = stratified(settings);
         return std::make_unique<demo::Streaming>(config);
     }
     demo::EstimatorSetup setup{};
-    setup.dims = dims;
+    setup.dims = setup.regressed = dims;
     setup.order = order;
     setup.lights = 1;
     setup.side = side;
