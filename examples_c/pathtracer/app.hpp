@@ -4,42 +4,64 @@
 #include "program.hpp"
 #include "render.hpp"
 #include "scene_integrand.hpp"
+#include "statistics.hpp"
 
 namespace demo {
 
-// Renders any integrand: the command line with its own `main`. `options.scene` only names it.
-inline void render(const Options &options, const Integrand &integrand)
+// One line of JSON for each estimator.
+inline void print(const Options &options, const Integrand &integrand, const Renderer &renderer, const std::vector<std::string> &names, uint64_t seed)
 {
-    if (nf_abi_version() != NF_ABI_VERSION)
-        throw std::runtime_error("noisefloor.h and the linked library are of different versions");
-    const uint32_t dimensions = dims(integrand.domains());
-    SamplerSetup setup{integrand.domains(), dimensions, options.spp, options.frame, options.seed};
-    std::unique_ptr<Sampler> sampler;
-    if (options.reference)
-        sampler = std::make_unique<LatticeSampler>(setup);
-    else
-        sampler = make_sampler(options.sampler, options.tile, setup);
-    Renderer renderer(integrand, *sampler, options);
-    renderer.run();
-
-    Outputs outputs;
-    for (size_t e = 0; e < renderer.names().size(); ++e)
-        outputs.add(options.output + "." + (options.reference ? "reference" : renderer.names()[e]) + ".pfm", renderer.images()[e]);
-    outputs.commit();
-
     const Times &times = renderer.times();
     double samples = static_cast<double>(options.width) * options.height * options.spp;
     double sampling = times.drawing + times.tracing;
     auto each = [&](double seconds) { return seconds / samples * 1e9; };
-    for (size_t e = 0; e < renderer.names().size(); ++e)
+    for (size_t e = 0; e < names.size(); ++e)
         std::printf("{\"scene\":\"%s\",\"sampler\":\"%s\",\"estimator\":\"%s\",\"spp\":%u,\"dims\":%u,\"order\":%u,"
-                    "\"threads\":%u,\"width\":%u,\"height\":%u,\"seed\":%llu,\"frame\":%u,\"camera_rays\":\"%s\",\"total_seconds\":%.6f,\"drawing_ns_per_sample\":%.2f,"
+                    "\"threads\":%u,\"width\":%u,\"height\":%u,\"seed\":%llu,\"frame\":%u,\"camera_rays_per\":\"%s\","
+                    "\"total_seconds\":%.6f,\"drawing_ns_per_sample\":%.2f,"
                     "\"tracing_ns_per_sample\":%.2f,\"sampling_ns_per_sample\":%.2f,\"estimating_ns_per_sample\":%.2f}\n",
-                    options.scene.c_str(), options.reference ? "lattice" : options.sampler.c_str(),
-                    options.reference ? "reference" : renderer.names()[e].c_str(), options.spp, dimensions, options.order,
-                    options.threads, options.width, options.height, static_cast<unsigned long long>(options.seed), options.frame,
-                    integrand.camera_ray_per_sample() ? "sample" : "pixel", sampling + times.estimating[e], each(times.drawing),
-                    each(times.tracing), each(sampling), each(times.estimating[e]));
+                    options.scene.c_str(), options.reference ? "lattice" : options.sampler.c_str(), names[e].c_str(), options.spp,
+                    dims(integrand.domains()), options.order, options.threads, options.width, options.height,
+                    static_cast<unsigned long long>(seed), options.frame, integrand.camera_ray_per_sample() ? "sample" : "pixel",
+                    sampling + times.estimating[e], each(times.drawing), each(times.tracing), each(sampling), each(times.estimating[e]));
+    std::fflush(stdout);
+}
+
+// Renders any integrand with every seed: what is left of a program with an integrand of its own. `options.scene` only names it.
+inline void render(const Options &options, const Integrand &integrand)
+{
+    if (nf_abi_version() != NF_ABI_VERSION)
+        throw std::runtime_error("noisefloor.h and the linked library are of different versions");
+    const std::vector<std::string> names = options.reference ? std::vector<std::string>{"reference"} : options.estimators;
+    std::unique_ptr<Halves> halves;
+    if (!options.statistics.empty())
+        halves = std::make_unique<Halves>(options.statistics[0], options.statistics[1], options.width, options.height);
+    std::vector<Statistics> statistics(halves ? names.size() : 0, Statistics(options.width, options.height));
+    Outputs outputs;
+    for (uint32_t i = 0; i < options.seeds; ++i) {
+        const uint64_t seed = options.seed + i;
+        SamplerSetup setup{integrand.domains(), dims(integrand.domains()), options.spp, options.frame, seed};
+        std::unique_ptr<Sampler> sampler;
+        if (options.reference)
+            sampler = std::make_unique<LatticeSampler>(setup);
+        else
+            sampler = make_sampler(options.sampler, options.tile, setup);
+        Renderer renderer(integrand, *sampler, options);
+        renderer.run(double(i) / options.seeds, double(i + 1) / options.seeds);
+        for (size_t e = 0; e < names.size(); ++e) {
+            const std::string number = options.seeds > 1 ? "." + std::to_string(seed) : "";
+            if (halves)
+                statistics[e].add(renderer.images()[e], *halves);
+            else
+                outputs.add(options.output + "." + names[e] + number + ".pfm", renderer.images()[e]);
+        }
+        print(options, integrand, renderer, names, seed);
+    }
+    for (size_t e = 0; e < statistics.size(); ++e) {
+        outputs.add(options.output + "." + names[e] + ".mean.pfm", statistics[e].mean());
+        outputs.add(options.output + "." + names[e] + ".mse.pfm", statistics[e].squared_error());
+    }
+    outputs.commit();
 }
 
 inline void render(const Options &options, const Program &program)

@@ -37,20 +37,21 @@ struct Estimator {
 // What looks at one pixel at a time.
 class PixelEstimator : public Estimator {
 public:
-    explicit PixelEstimator(size_t dims) : dims_(dims) {}
+    // `stride`: numbers of the sample vector.
+    explicit PixelEstimator(size_t stride) : stride_(stride) {}
 
     void estimate(const Samples &s, float *means) final
     {
         for (size_t p = 0; p < s.pixels(); ++p)
-            pixel(s.u + p * s.n * dims_, s.f + p * s.n * 3, s.n, means + p * 3);
+            pixel(s.u + p * s.n * stride_, s.f + p * s.n * 3, s.n, means + p * 3);
     }
 
 protected:
-    // u[n * dims], f[n * 3] -> mean[3]
+    // u[n * stride], f[n * 3] -> mean[3]
     virtual void pixel(const float *u, const float *f, size_t n, float *mean) = 0;
 
 private:
-    size_t dims_;
+    size_t stride_;
 };
 
 class PlainMean final : public PixelEstimator {
@@ -75,7 +76,7 @@ inline std::vector<uint64_t> memory(size_t bytes) { return std::vector<uint64_t>
 class Regression final : public PixelEstimator {
 public:
     Regression(const nf_cv_config &config, size_t n)
-        : PixelEstimator(config.dims), config_(config), workspace_(memory(nf_cv_workspace_size(&config, n)))
+        : PixelEstimator(config.stride), config_(config), workspace_(memory(nf_cv_workspace_size(&config, n)))
     {
     }
 
@@ -96,7 +97,7 @@ private:
 class Streaming final : public PixelEstimator {
 public:
     explicit Streaming(const nf_cv_config &config)
-        : PixelEstimator(config.dims), config_(config), state_(memory(nf_cv_accumulator_size(&config))),
+        : PixelEstimator(config.stride), config_(config), state_(memory(nf_cv_accumulator_size(&config))),
           workspace_(memory(nf_cv_accumulator_workspace_size(&config)))
     {
     }
@@ -108,7 +109,7 @@ protected:
         nf_cv_accumulator *accumulator = nullptr;
         check(nf_cv_accumulator_init(state_.data(), 8 * state_.size(), &config_, &accumulator), "nf_cv_accumulator_init");
         for (size_t i = 0; i < n; i += pass)
-            check(nf_cv_accumulator_add(accumulator, u + i * config_.dims, f + i * 3, std::min(pass, n - i)), "nf_cv_accumulator_add");
+            check(nf_cv_accumulator_add(accumulator, u + i * config_.stride, f + i * 3, std::min(pass, n - i)), "nf_cv_accumulator_add");
         nf_estimate result;
         check(nf_cv_accumulator_estimate(accumulator, workspace_.data(), 8 * workspace_.size(), &result), "nf_cv_accumulator_estimate");
         std::copy(result.mean, result.mean + 3, mean);
@@ -157,7 +158,16 @@ struct EstimatorName {
     const char *name;
     uint32_t id;
     const char *description;
+    uint32_t color = NF_COLOR_PER_CHANNEL;
 };
+
+struct Basis {
+    const char *name;
+    uint32_t id;
+};
+
+inline const Basis basis_names[] = {
+    {"legendre", NF_BASIS_LEGENDRE}, {"step", NF_BASIS_STEP}, {"sine", NF_BASIS_SINE}, {"gaussian", NF_BASIS_GAUSSIAN}};
 
 inline const EstimatorName estimator_names[] = {
     {"mc", 0, "the plain mean"},
@@ -168,11 +178,15 @@ inline const EstimatorName estimator_names[] = {
     {"gradient_descent", NF_CV_GRADIENT_DESCENT, "least squares by gradient descent"},
     {"incremental", NF_CV_INCREMENTAL, "each sample against a fit to those before it; streamed, 8 samples at a time"},
     {"shared", NF_CV_ROBUST, "each pixel against fits to its neighbours; suits every sampler"},
+    {"luminance", NF_CV_LEAST_SQUARES, "a fit to the luminance of all samples, which scales the plain mean", NF_COLOR_LUMINANCE_RATIO},
+    {"robust_luminance", NF_CV_ROBUST, "the same with the default estimator", NF_COLOR_LUMINANCE_RATIO},
     {"slices", NF_CV_ROBUST, "robust, told which light was picked; for scenes that pick one"},
 };
 
 struct EstimatorSetup {
-    uint32_t dims, order, lights;
+    uint32_t dims;      // of the sample vector
+    uint32_t regressed; // of them, from the first; at most 16
+    uint32_t order, basis, lights;
     uint32_t choice; // numbers of u up to the first that picks a light; 0 if none does
     uint32_t side;   // of the rectangles that pixels come in, at most
     size_t samples;  // of a pixel
@@ -189,7 +203,10 @@ inline std::unique_ptr<Estimator> make_estimator(const std::string &name, const 
             return std::make_unique<PlainMean>(setup.dims);
         nf_cv_config config;
         nf_cv_config_default(&config);
-        config.dims = setup.dims;
+        config.dims = setup.regressed;
+        config.stride = setup.dims;
+        config.basis = setup.basis;
+        config.color = known.color;
         config.order = setup.order;
         config.channels = 3;
         config.estimator = known.id;
@@ -201,11 +218,11 @@ inline std::unique_ptr<Estimator> make_estimator(const std::string &name, const 
         if ((shared || name == "slices") && setup.choice > 0) {
             // Which light was picked is known, and explains most. Of long paths only what comes before is regressed.
             config.dims = setup.choice;
-            config.stride = setup.dims;
             config.slices = setup.lights;
         }
         if (nf_cv_workspace_size(&config, setup.samples) == 0)
-            throw std::runtime_error("noisefloor refuses estimator " + name + " with dims " + std::to_string(setup.dims) + ", order " + std::to_string(setup.order));
+            throw std::runtime_error("noisefloor refuses estimator " + name + " with dims " + std::to_string(config.dims) + ", order " +
+                                     std::to_string(setup.order) + " (terms are limited to 136, dims to 16; --regressed and --order set them)");
         if (shared)
             return std::make_unique<Shared>(config, setup.side, setup.samples);
         if (name == "incremental")

@@ -4,6 +4,7 @@
 #include "vector.hpp"
 #include <cstdint>
 #include <cstdio>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -17,6 +18,34 @@ struct Image {
 
     Image(uint32_t w, uint32_t h) : width(w), height(h), rgb(size_t{3} * w * h) {}
 };
+
+inline bool little_endian()
+{
+    const uint16_t one = 1;
+    return *reinterpret_cast<const unsigned char *>(&one) == 1;
+}
+
+// Throws unless the file is a PFM of three channels in this machine's byte order.
+inline Image read_pfm(const std::string &path)
+{
+    std::unique_ptr<FILE, int (*)(FILE *)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+    if (!file)
+        throw std::runtime_error("cannot read " + path);
+    uint32_t width = 0, height = 0;
+    float scale = 0;
+    if (std::fscanf(file.get(), "PF %u %u %f", &width, &height, &scale) != 3 || std::fgetc(file.get()) == EOF)
+        throw std::runtime_error(path + " is no PFM image of three channels");
+    if ((scale < 0) != little_endian())
+        throw std::runtime_error(path + " was written on a machine of the other byte order");
+    if (width == 0 || height == 0 || width > 1 << 16 || height > 1 << 16)
+        throw std::runtime_error(path + " has " + std::to_string(width) + " x " + std::to_string(height) + " pixels, which is no sensible size");
+    Image image(width, height);
+    size_t row = size_t{3} * width;
+    for (uint32_t y = height; y-- > 0;)
+        if (std::fread(image.rgb.data() + y * row, sizeof(float), row, file.get()) != row)
+            throw std::runtime_error(path + " ends early");
+    return image;
+}
 
 // Files appear under their names when all of them are complete, or not at all.
 class Outputs {
@@ -37,9 +66,8 @@ public:
         if (!file)
             throw std::runtime_error("cannot create " + temporary);
         files_.emplace_back(temporary, path);
-        const uint16_t one = 1;
-        bool little = *reinterpret_cast<const unsigned char *>(&one) == 1; // the sign of the scale tells the byte order
-        bool good = std::fprintf(file, "PF\n%u %u\n%s\n", image.width, image.height, little ? "-1.0" : "1.0") > 0;
+        // The sign of the scale tells the byte order.
+        bool good = std::fprintf(file, "PF\n%u %u\n%s\n", image.width, image.height, little_endian() ? "-1.0" : "1.0") > 0;
         size_t row = size_t{3} * image.width;
         for (uint32_t y = image.height; y-- > 0;)
             good = std::fwrite(image.rgb.data() + y * row, sizeof(float), row, file) == row && good;

@@ -15,21 +15,42 @@ struct Options {
     std::string scene; // empty: the first
     uint32_t width = 128, height = 128, spp = 64, order = 2, threads = 1;
     uint64_t seed = 1;
+    uint32_t seeds = 1; // consecutive ones, from `seed`
     std::vector<std::string> estimators{"mc", "robust"};
     std::string sampler = "random", tile; // tile: a name or a file; empty: by the samples
     uint32_t frame = 0;
     Filter filter = Filter::center;
     std::string output = "pathtracer";
     bool reference = false;
+    std::vector<std::string> statistics; // two halves of a reference; empty: images are written
+    Basis basis = basis_names[0];
+    uint32_t regressed = 0; // numbers of the sample vector, from its start; 0: all, or as many as noisefloor regresses
 };
+
+// The words between commas.
+inline std::vector<std::string> split(const std::string &text)
+{
+    std::vector<std::string> words;
+    for (size_t begin = 0; begin <= text.size();) {
+        size_t comma = std::min(text.find(',', begin), text.size());
+        words.push_back(text.substr(begin, comma - begin));
+        begin = comma + 1;
+    }
+    return words;
+}
 
 inline void print_usage(FILE *to, const Program &program)
 {
     std::fprintf(to, "usage: %s [--scene NAME] [--width N] [--height N] [--spp N] [--estimators A,B,...] [--order N]\n"
-               "                  [--sampler NAME] [--tile NAME|FILE.nft] [--frame N] [--seed N] [--threads N]\n"
-               "                  [--filter NAME] [--output PREFIX] [--reference]\n\n"
+               "                  [--basis NAME] [--regressed N] [--sampler NAME] [--tile NAME|FILE.nft] [--filter NAME]\n"
+               "                  [--frame N] [--seed N] [--seeds N] [--statistics A.pfm,B.pfm] [--threads N] [--output PREFIX]\n"
+               "                  [--reference]\n\n"
                "Renders PREFIX.ESTIMATOR.pfm with each estimator from the same samples and prints one line of JSON for each.\n"
-               "--reference renders PREFIX.reference.pfm instead: the plain mean over a shifted lattice.\n\nsamplers:",
+               "--reference renders PREFIX.reference.pfm instead: the plain mean over a shifted lattice.\n"
+               "--seeds renders PREFIX.ESTIMATOR.SEED.pfm with each of so many seeds.\n"
+               "--statistics writes PREFIX.ESTIMATOR.mean.pfm and PREFIX.ESTIMATOR.mse.pfm over all seeds instead: the mean image, and\n"
+               "the mean squared error of each pixel and channel, (I - A)(I - B) for two independent halves of a reference.\n"
+               "--regressed: how many of the sample vector's numbers the estimators regress, from its start.\n\nsamplers:",
                program.name.c_str());
     for (const char *name : sampler_names)
         std::fprintf(to, " %s", name);
@@ -40,6 +61,9 @@ inline void print_usage(FILE *to, const Program &program)
     std::fputs("\nfilters:", to);
     for (const FilterName &filter : filter_names)
         std::fprintf(to, " %s", filter.name);
+    std::fputs("\nbases:", to);
+    for (const Basis &basis : basis_names)
+        std::fprintf(to, " %s", basis.name);
     std::fputs("\nscenes:\n", to);
     for (const SceneEntry &scene : program.scenes)
         std::fprintf(to, "  %-17s %s\n", scene.name.c_str(), scene.description.c_str());
@@ -63,6 +87,14 @@ inline Filter parse_filter(const std::string &text)
         if (text == known.name)
             return known.filter;
     throw std::runtime_error("there is no filter `" + text + "`; --help lists them");
+}
+
+inline Basis parse_basis(const std::string &text)
+{
+    for (const Basis &known : basis_names)
+        if (text == known.name)
+            return known;
+    throw std::runtime_error("there is no basis `" + text + "`; --help lists them");
 }
 
 // Throws on a wrong command line; returns false if only help was asked for.
@@ -108,13 +140,18 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
         else if (name == "--output")
             options.output = value;
         else if (name == "--estimators") {
-            options.estimators.clear();
-            for (size_t begin = 0; begin <= value.size();) {
-                size_t comma = std::min(value.find(',', begin), value.size());
-                options.estimators.push_back(value.substr(begin, comma - begin));
-                begin = comma + 1;
-            }
-        } else
+            options.estimators = split(value);
+        } else if (name == "--statistics") {
+            options.statistics = split(value);
+            if (options.statistics.size() != 2)
+                throw std::runtime_error("--statistics takes the two halves of a reference, A.pfm,B.pfm, not `" + value + "`");
+        } else if (name == "--seeds")
+            options.seeds = number(1, 1 << 20);
+        else if (name == "--basis")
+            options.basis = parse_basis(value);
+        else if (name == "--regressed")
+            options.regressed = number(1, 16);
+        else
             throw std::runtime_error("unknown option `" + name + "`; --help lists them");
     }
     return true;

@@ -39,9 +39,12 @@ public:
         times_.estimating.resize(names_.size());
     }
 
-    // Prints "progress X" lines, X in [0, 1]. Throws the first error of any thread.
-    void run()
+    // Prints "progress X" lines, X from `from` to `to`. Throws the first error of any thread.
+    void run(double from = 0, double to = 1)
     {
+        from_ = from;
+        to_ = to;
+        percent_ = static_cast<int>(100 * from);
         std::vector<std::thread> threads;
         for (uint32_t i = 0; i < options_.threads; ++i)
             threads.emplace_back([this] { work(); });
@@ -61,7 +64,8 @@ private:
 
     std::vector<std::unique_ptr<Estimator>> make_estimators() const
     {
-        EstimatorSetup setup{dims_, options_.order, integrand_.lights(), choice(integrand_.domains()), side_,
+        EstimatorSetup setup{dims_, options_.regressed ? std::min(options_.regressed, dims_) : std::min(dims_, 16u), options_.order,
+                             options_.basis.id, integrand_.lights(), choice(integrand_.domains()), side_,
                              options_.spp, options_.sampler != "random"};
         std::vector<std::unique_ptr<Estimator>> estimators;
         for (const std::string &name : names_)
@@ -151,11 +155,14 @@ private:
     void report(size_t pixels)
     {
         std::lock_guard<std::mutex> lock(mutex_);
-        const size_t all = size_t{options_.width} * options_.height, before = 100 * finished_ / all;
         finished_ += pixels;
-        if (100 * finished_ / all == before)
+        const double all = static_cast<double>(options_.width) * options_.height;
+        const double progress = from_ + (to_ - from_) * static_cast<double>(finished_) / all;
+        const int percent = static_cast<int>(100 * progress);
+        if (percent == percent_)
             return;
-        std::printf("progress %.4f\n", static_cast<double>(finished_) / static_cast<double>(all));
+        percent_ = percent;
+        std::printf("progress %.4f\n", progress);
         std::fflush(stdout);
     }
 
@@ -166,6 +173,8 @@ private:
     std::vector<std::string> names_;
     std::vector<Image> images_;
     Times times_;
+    double from_ = 0, to_ = 1; // of the progress
+    int percent_ = 0;          // of it, printed last
     uint32_t side_ = 1; // of a bucket, in pixels
     std::atomic<uint64_t> next_{0}; // bucket
     std::mutex mutex_; // guards what follows, times_ and standard output

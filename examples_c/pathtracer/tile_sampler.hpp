@@ -109,6 +109,7 @@ class TileSampler final : public Sampler {
 public:
     TileSampler(const std::string &tile, const SamplerSetup &setup)
         : setup_(setup), tile_(tile.empty() ? default_tile(setup.samples) : tile),
+          scramble_(static_cast<uint32_t>(setup.seed - 1)), // 0, which changes nothing, for the seed that is the default
           groups_(group(setup.domains, std::min(tile_.view().dims, 4u)))
     {
     }
@@ -117,6 +118,7 @@ public:
     {
         for (uint32_t i = 0; i < setup_.samples; ++i) {
             nf_sampler sampler = nf_sampler_pixel(&tile_.view(), x, y, setup_.frame, i);
+            sampler = nf_sampler_scramble(sampler, scramble_);
             for (const Group &g : groups_) {
                 // A tree of domains: the bounce, and in it the decision. Keys are all that tells them apart: nothing is counted,
                 // and a path that takes another turn does not disturb what the others draw.
@@ -130,6 +132,7 @@ public:
 private:
     SamplerSetup setup_;
     LoadedTile tile_;
+    uint32_t scramble_;
     std::vector<Group> groups_; // what one draw makes: domains that fit into the tile's dimensions are optimised together
 };
 

@@ -7,6 +7,7 @@ mod fit;
 mod header;
 mod library;
 mod measure;
+mod path_tracer;
 mod paths;
 mod report;
 mod run;

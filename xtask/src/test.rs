@@ -1,6 +1,6 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
-use crate::{c_tests, examples, fit, header, library, run, tools, train_mlp};
+use crate::{c_tests, examples, fit, header, library, path_tracer, run, tools, train_mlp};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -78,7 +78,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("examples_c/shared.c", || examples::integrate(&archive()?, "shared"));
     steps.run("examples_c/shards.c: four processes", || examples::shards(&archive()?));
     steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
-        examples::path_tracer(&archive()?)
+        path_tracer::check(&archive()?)
     });
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));
