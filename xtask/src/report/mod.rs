@@ -1,15 +1,15 @@
 //! `cargo xtask report`: errors, times and overheads on the scenes of the thesis's figures, as tables, plots and pictures
 //! that can be held beside them, and as JSON.
 
-mod chapter;
+pub(crate) mod chapter;
 mod check;
 mod embree;
-mod figure;
+pub(crate) mod figure;
 mod measurement;
-mod pictures;
+pub(crate) mod pictures;
 mod plan;
 mod scenes;
-mod statistics;
+pub(crate) mod statistics;
 mod tables;
 
 use crate::measure::interrupt::{self, Interrupted};
