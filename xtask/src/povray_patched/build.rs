@@ -77,7 +77,7 @@ fn configure(source: &Path) -> Result<()> {
     configure.current_dir(source).args(["--quiet", "--prefix=/usr", "--sysconfdir=/etc"]);
     configure.args(["--disable-optimiz", "--disable-strip", "--with-boost-thread=boost_thread"]);
     configure.arg("COMPILED_BY=noisefloor, with changes, not for distribution <nobody@localhost>");
-    configure.arg(format!("CXXFLAGS={cxx} -O3")).arg(format!("LDFLAGS={link}"));
+    configure.arg(format!("CXXFLAGS={cxx} -O3 -g0")).arg(format!("LDFLAGS={link}"));
     quiet(configure.arg(format!("CPPFLAGS={cpp} -I{}", ours().display()))).context(
         "POV-Ray's configure failed; config.log in target/povray/source says why, and removing that folder starts anew",
     )
