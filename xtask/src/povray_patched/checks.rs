@@ -22,13 +22,16 @@ pub(crate) struct Checks {
     pub(crate) frames: u32,
     /// Largest difference of their mean from the area light's picture, in units of 1/65535.
     pub(crate) difference: f64,
+    /// Largest difference of a channel's mean in a picture with radiosity, in percent.
+    pub(crate) radiosity: f64,
 }
 
 pub(crate) fn run(renderer: &Renderer) -> Result<Checks> {
     let unchanged = off_is_stock(renderer)?;
     let difference = points_make_the_light(renderer)?;
     threads_and_means(renderer)?;
-    Ok(Checks { unchanged, frames: CELLS, difference })
+    let radiosity = radiosity_is_as_bright(renderer)?;
+    Ok(Checks { unchanged, frames: CELLS, difference, radiosity })
 }
 
 /// With noisefloor off, the patched program makes Debian's pictures: with antialiasing, both of its kinds, focal blur, area
@@ -109,6 +112,25 @@ fn threads_and_means(renderer: &Renderer) -> Result<()> {
     }
     println!("   threads: 1 and 4 make the same pictures");
     Ok(())
+}
+
+/// Radiosity from noisefloor's directions is as bright as from POV-Ray's, though no pixel is the same.
+fn radiosity_is_as_bright(renderer: &Renderer) -> Result<f64> {
+    renderer.provide("radiosity.pov", example(UNCHANGED)?.as_bytes())?;
+    let stock = renderer.stock_sized("radiosity.pov", TINY, &["+WT1"])?.image;
+    let settings = sampling(16, &[("PIXEL", "center"), ("LIGHT", "shadow")]);
+    let ours = renderer.patched_sized("radiosity.pov", TINY, &["+WT1"], &settings)?.image;
+    let mean =
+        |image: &Rgb32FImage, channel: usize| image.pixels().map(|pixel| f64::from(pixel.0[channel])).sum::<f64>();
+    let difference = |channel| 100.0 * (mean(&ours, channel) / mean(&stock, channel) - 1.0).abs();
+    let worst = (0..3).map(difference).fold(0.0, f64::max);
+    // Both interpolate between a few hundred points, each where its own cache happens to have them.
+    let allowed = 2.0;
+    if worst.is_nan() || worst >= allowed || ours == stock {
+        bail!("{UNCHANGED}: the mean of a channel is {worst:.2} % off stock POV-Ray's, more than {allowed} %");
+    }
+    println!("   radiosity: each channel as bright as stock POV-Ray's, within {worst:.2} %");
+    Ok(worst)
 }
 
 /// NOISEFLOOR=samples, so many of them, and more.

@@ -54,6 +54,7 @@ fn introduction(chapter: &mut Chapter, options: &Options, checks: &Checks) {
     let unchanged = chapter.quote("pictures unchanged", Figure::exact(checks.unchanged as f64, Unit::Count));
     let frames = chapter.quote("point lights", Figure::exact(f64::from(checks.frames), Unit::Count));
     let difference = chapter.quote("difference from point lights", Figure::exact(checks.difference, Unit::Sigmas));
+    let radiosity = chapter.quote("brightness with radiosity", Figure::exact(checks.radiosity, Unit::Percent));
     let unit = chapter.setting("largest value of a channel", 65535);
     let count = chapter.setting("examples", super::checks::EXAMPLES as u64);
     chapter.list(&[
@@ -63,6 +64,9 @@ fn introduction(chapter: &mut Chapter, options: &Options, checks: &Checks) {
              light at each cell: the largest difference was {difference} of {unit}, which rounding explains."
         ),
         "Pictures do not depend on the number of threads.".to_owned(),
+        format!(
+            "With radiosity, its directions drawn from a tile, the mean of each channel is stock POV-Ray's within {radiosity} %."
+        ),
     ]);
     chapter.paragraph(
         "`stock`: POV-Ray as it is, with exactly that many samples: `blur_samples` with no early end, or a full, jittered grid. \
