@@ -1,6 +1,8 @@
 // The program around the renderer. Other scenes, or another intersector, need only another `main`; see pathtracer.cpp.
 #pragma once
 
+#include "accumulate.hpp"
+#include "mis_integrand.hpp"
 #include "program.hpp"
 #include "render.hpp"
 #include "scene_integrand.hpp"
@@ -9,10 +11,11 @@
 namespace demo {
 
 // One line of JSON for each estimator.
-inline void print(const Options &options, const Integrand &integrand, const Renderer &renderer, const std::vector<std::string> &names, uint64_t seed)
+inline void print(const Options &options, const Integrand &integrand, uint32_t samples_per_vector, const Rendering &renderer, const std::vector<std::string> &names, uint64_t seed)
 {
     const Times &times = renderer.times();
-    double samples = static_cast<double>(options.width) * options.height * options.spp;
+    const uint32_t spp = options.spp * samples_per_vector;
+    double samples = static_cast<double>(options.width) * options.height * spp;
     double sampling = times.drawing + times.tracing;
     auto each = [&](double seconds) { return seconds / samples * 1e9; };
     for (size_t e = 0; e < names.size(); ++e)
@@ -20,7 +23,7 @@ inline void print(const Options &options, const Integrand &integrand, const Rend
                     "\"threads\":%u,\"width\":%u,\"height\":%u,\"seed\":%llu,\"frame\":%u,\"camera_rays_per\":\"%s\","
                     "\"total_seconds\":%.6f,\"drawing_ns_per_sample\":%.2f,"
                     "\"tracing_ns_per_sample\":%.2f,\"sampling_ns_per_sample\":%.2f,\"estimating_ns_per_sample\":%.2f}\n",
-                    options.scene.c_str(), options.reference ? "lattice" : options.sampler.c_str(), names[e].c_str(), options.spp,
+                    options.scene.c_str(), options.reference ? "lattice" : options.sampler.c_str(), names[e].c_str(), spp,
                     dims(integrand.domains()), options.order, options.threads, options.width, options.height,
                     static_cast<unsigned long long>(seed), options.frame, integrand.camera_ray_per_sample() ? "sample" : "pixel",
                     sampling + times.estimating[e], each(times.drawing), each(times.tracing), each(sampling), each(times.estimating[e]));
@@ -28,7 +31,7 @@ inline void print(const Options &options, const Integrand &integrand, const Rend
 }
 
 // Renders any integrand with every seed: what is left of a program with an integrand of its own. `options.scene` only names it.
-inline void render(const Options &options, const Integrand &integrand)
+inline void render(const Options &options, const Integrand &integrand, uint32_t samples_per_vector = 1)
 {
     if (nf_abi_version() != NF_ABI_VERSION)
         throw std::runtime_error("noisefloor.h and the linked library are of different versions");
@@ -45,17 +48,21 @@ inline void render(const Options &options, const Integrand &integrand)
         if (options.reference)
             sampler = std::make_unique<LatticeSampler>(setup);
         else
-            sampler = make_sampler(options.sampler, options.tile, setup);
-        Renderer renderer(integrand, *sampler, options);
-        renderer.run(double(i) / options.seeds, double(i + 1) / options.seeds);
+            sampler = make_sampler(options.sampler, options.tile, options.table, setup);
+        std::unique_ptr<Rendering> renderer;
+        if (options.accumulate)
+            renderer = std::make_unique<AccumulatingRenderer>(integrand, *sampler, options);
+        else
+            renderer = std::make_unique<Renderer>(integrand, *sampler, options);
+        renderer->run(double(i) / options.seeds, double(i + 1) / options.seeds);
         for (size_t e = 0; e < names.size(); ++e) {
             const std::string number = options.seeds > 1 ? "." + std::to_string(seed) : "";
             if (halves)
-                statistics[e].add(renderer.images()[e], *halves);
+                statistics[e].add(renderer->images()[e], *halves);
             else
-                outputs.add(options.output + "." + names[e] + number + ".pfm", renderer.images()[e]);
+                outputs.add(options.output + "." + names[e] + number + ".pfm", renderer->images()[e]);
         }
-        print(options, integrand, renderer, names, seed);
+        print(options, integrand, samples_per_vector, *renderer, names, seed);
     }
     for (size_t e = 0; e < statistics.size(); ++e) {
         outputs.add(options.output + "." + names[e] + ".mean.pfm", statistics[e].mean());
@@ -71,9 +78,17 @@ inline void render(const Options &options, const Program &program)
         throw std::runtime_error("there is no scene `" + options.scene + "`; --help lists them");
     Scene scene;
     entry->build(options.frame, static_cast<float>(options.width) / static_cast<float>(options.height), scene);
+    if (options.bounces > 0)
+        scene.layout.bounces = options.bounces;
     std::unique_ptr<Intersector> intersector = program.make_intersector(scene.geometry);
-    SceneIntegrand integrand(scene, *intersector, options.width, options.height, options.filter);
-    render(options, integrand);
+    if (options.mis) {
+        // A sample vector is two samples.
+        Options pairs = options;
+        pairs.spp /= 2;
+        render(pairs, MisIntegrand(scene, *intersector, options.width, options.height, options.filter), 2);
+        return;
+    }
+    render(options, SceneIntegrand(scene, *intersector, options.width, options.height, options.filter));
 }
 
 inline int run(int argc, char **argv, const Program &program)

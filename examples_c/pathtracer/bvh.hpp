@@ -139,7 +139,8 @@ private:
         Vector inverse{1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z};
         uint32_t stack[64];
         int top = 0;
-        stack[top++] = 0;
+        if (!order_.empty()) // else the root is no leaf, and has no children
+            stack[top++] = 0;
         bool found = false;
         while (top > 0) {
             const Node &node = nodes_[stack[--top]];

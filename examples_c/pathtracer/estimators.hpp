@@ -193,43 +193,59 @@ struct EstimatorSetup {
     bool stratified;
 };
 
+// Throws if the name is unknown.
+inline const EstimatorName &find_estimator(const std::string &name)
+{
+    for (const EstimatorName &known : estimator_names)
+        if (name == known.name)
+            return known;
+    throw std::runtime_error("there is no estimator `" + name + "`; --help lists them");
+}
+
+inline nf_cv_config configure(const EstimatorName &known, const EstimatorSetup &setup)
+{
+    const std::string name = known.name;
+    nf_cv_config config;
+    nf_cv_config_default(&config);
+    config.dims = setup.regressed;
+    config.stride = setup.dims;
+    config.basis = setup.basis;
+    config.color = known.color;
+    config.order = name == "mc" ? 0 : setup.order;
+    config.channels = 3;
+    config.estimator = known.id;
+    // The robust estimator is then the plain mean: a pixel's few samples do not tell what their stratification gains.
+    config.stratified = setup.stratified;
+    if (name == "slices" && setup.choice == 0)
+        throw std::runtime_error("`slices` needs a scene that picks one of several lights");
+    if ((name == "shared" || name == "slices") && setup.choice > 0) {
+        // Which light was picked is known, and explains most. Of long paths only what comes before is regressed.
+        config.dims = setup.choice;
+        config.slices = setup.lights;
+    }
+    return config;
+}
+
+// What went wrong with a configuration that noisefloor refuses.
+inline std::string refusal(const std::string &name, const nf_cv_config &config)
+{
+    return "noisefloor refuses estimator " + name + " with dims " + std::to_string(config.dims) + ", order " + std::to_string(config.order) +
+           " (terms are limited to 136, dims to 16; --regressed and --order set them)";
+}
+
 // Throws if the name is unknown or the configuration is refused.
 inline std::unique_ptr<Estimator> make_estimator(const std::string &name, const EstimatorSetup &setup)
 {
-    for (const EstimatorName &known : estimator_names) {
-        if (name != known.name)
-            continue;
-        if (name == "mc")
-            return std::make_unique<PlainMean>(setup.dims);
-        nf_cv_config config;
-        nf_cv_config_default(&config);
-        config.dims = setup.regressed;
-        config.stride = setup.dims;
-        config.basis = setup.basis;
-        config.color = known.color;
-        config.order = setup.order;
-        config.channels = 3;
-        config.estimator = known.id;
-        // The robust estimator is then the plain mean: a pixel's few samples do not tell what their stratification gains.
-        config.stratified = setup.stratified;
-        bool shared = name == "shared";
-        if (name == "slices" && setup.choice == 0)
-            throw std::runtime_error("`slices` needs a scene that picks one of several lights");
-        if ((shared || name == "slices") && setup.choice > 0) {
-            // Which light was picked is known, and explains most. Of long paths only what comes before is regressed.
-            config.dims = setup.choice;
-            config.slices = setup.lights;
-        }
-        if (nf_cv_workspace_size(&config, setup.samples) == 0)
-            throw std::runtime_error("noisefloor refuses estimator " + name + " with dims " + std::to_string(config.dims) + ", order " +
-                                     std::to_string(setup.order) + " (terms are limited to 136, dims to 16; --regressed and --order set them)");
-        if (shared)
-            return std::make_unique<Shared>(config, setup.side, setup.samples);
-        if (name == "incremental")
-            return std::make_unique<Streaming>(config);
-        return std::make_unique<Regression>(config, setup.samples);
-    }
-    throw std::runtime_error("there is no estimator `" + name + "`");
+    const nf_cv_config config = configure(find_estimator(name), setup);
+    if (name == "mc")
+        return std::make_unique<PlainMean>(setup.dims);
+    if (nf_cv_workspace_size(&config, setup.samples) == 0)
+        throw std::runtime_error(refusal(name, config));
+    if (name == "shared")
+        return std::make_unique<Shared>(config, setup.side, setup.samples);
+    if (name == "incremental")
+        return std::make_unique<Streaming>(config);
+    return std::make_unique<Regression>(config, setup.samples);
 }
 
 } // namespace demo

@@ -26,7 +26,9 @@ struct Integrand {
     // Whether each sample traces a camera ray of its own. If not, one ray serves all samples of a pixel that are evaluated
     // together, and the number of the surface comes with it; else that number costs a ray.
     virtual bool camera_ray_per_sample() const = 0;
-    // The values of n samples of pixel (x, y): u[n * dims] -> f[n * 3]. n may be 0, if only the surface is asked for.
+    // How many numbers a sample's value has: red, green and blue, unless estimators of another kind take more.
+    virtual uint32_t values() const { return 3; }
+    // The values of n samples of pixel (x, y): u[n * dims] -> f[n * values()]. n may be 0, if only the surface is asked for.
     // *surface, unless null: a number for what the pixel shows. It does not depend on u.
     virtual void evaluate(uint32_t x, uint32_t y, size_t n, const float *u, float *f, uint32_t *surface) const = 0;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "estimators.hpp"
+#include "mis_estimators.hpp"
 #include "filter.hpp"
 #include "program.hpp"
 #include "tile_sampler.hpp"
@@ -17,11 +18,14 @@ struct Options {
     uint64_t seed = 1;
     uint32_t seeds = 1; // consecutive ones, from `seed`
     std::vector<std::string> estimators{"mc", "robust"};
-    std::string sampler = "random", tile; // tile: a name or a file; empty: by the samples
+    std::string sampler = "random", tile, table; // tile: a name or a file; empty: by the samples
     uint32_t frame = 0;
     Filter filter = Filter::center;
     std::string output = "pathtracer";
     bool reference = false;
+    uint32_t bounces = 0; // of the paths; 0: as the scene has them
+    bool mis = false; // the estimators are those of mis_estimators.hpp
+    uint32_t accumulate = 0; // samples of a pass over the image; 0: pixel by pixel
     std::vector<std::string> statistics; // two halves of a reference; empty: images are written
     Basis basis = basis_names[0];
     uint32_t regressed = 0; // numbers of the sample vector, from its start; 0: all, or as many as noisefloor regresses
@@ -42,14 +46,18 @@ inline std::vector<std::string> split(const std::string &text)
 inline void print_usage(FILE *to, const Program &program)
 {
     std::fprintf(to, "usage: %s [--scene NAME] [--width N] [--height N] [--spp N] [--estimators A,B,...] [--order N]\n"
-               "                  [--basis NAME] [--regressed N] [--sampler NAME] [--tile NAME|FILE.nft] [--filter NAME]\n"
+               "                  [--basis NAME] [--regressed N] [--sampler NAME] [--tile NAME|FILE.nft] [--table FILE] [--filter NAME]\n"
                "                  [--frame N] [--seed N] [--seeds N] [--statistics A.pfm,B.pfm] [--threads N] [--output PREFIX]\n"
-               "                  [--reference]\n\n"
+               "                  [--accumulate N] [--bounces N] [--mis] [--reference]\n\n"
                "Renders PREFIX.ESTIMATOR.pfm with each estimator from the same samples and prints one line of JSON for each.\n"
                "--reference renders PREFIX.reference.pfm instead: the plain mean over a shifted lattice.\n"
                "--seeds renders PREFIX.ESTIMATOR.SEED.pfm with each of so many seeds.\n"
                "--statistics writes PREFIX.ESTIMATOR.mean.pfm and PREFIX.ESTIMATOR.mse.pfm over all seeds instead: the mean image, and\n"
                "the mean squared error of each pixel and channel, (I - A)(I - B) for two independent halves of a reference.\n"
+               "--accumulate: threads render passes of N samples (a multiple of 4) over the image into accumulators of their own.\n"
+               "--bounces: how many reflections paths have, instead of as many as the scene says.\n"
+               "--mis: direct light by two techniques, a half of the samples each: light sampling and direction sampling.\n"
+               "--table: points for the sampler of that name, made elsewhere; their format is in pathtracer/table_sampler.hpp.\n"
                "--regressed: how many of the sample vector's numbers the estimators regress, from its start.\n\nsamplers:",
                program.name.c_str());
     for (const char *name : sampler_names)
@@ -70,6 +78,9 @@ inline void print_usage(FILE *to, const Program &program)
     std::fputs("estimators:\n", to);
     for (const EstimatorName &estimator : estimator_names)
         std::fprintf(to, "  %-17s %s\n", estimator.name, estimator.description);
+    std::fputs("estimators with --mis:\n", to);
+    for (const MisEstimatorName &estimator : mis_estimator_names)
+        std::fprintf(to, "  %-22s %s\n", estimator.name, estimator.description);
 }
 
 inline uint64_t parse_number(const std::string &option, const std::string &text, uint64_t low, uint64_t high)
@@ -103,12 +114,17 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
     options.threads = std::max(1u, std::thread::hardware_concurrency());
     if (!program.scenes.empty())
         options.scene = program.scenes[0].name;
+    bool named = false;
     for (int i = 1; i < argc; ++i) {
         std::string name = argv[i];
         if (name == "--help" || name == "-h")
             return false;
         if (name == "--reference") {
             options.reference = true;
+            continue;
+        }
+        if (name == "--mis") {
+            options.mis = true;
             continue;
         }
         if (i + 1 == argc)
@@ -133,6 +149,8 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
             options.sampler = value;
         else if (name == "--tile")
             options.tile = value;
+        else if (name == "--table")
+            options.table = value;
         else if (name == "--frame")
             options.frame = number(0, 1 << 20);
         else if (name == "--filter")
@@ -141,19 +159,36 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
             options.output = value;
         else if (name == "--estimators") {
             options.estimators = split(value);
+            named = true;
         } else if (name == "--statistics") {
             options.statistics = split(value);
             if (options.statistics.size() != 2)
                 throw std::runtime_error("--statistics takes the two halves of a reference, A.pfm,B.pfm, not `" + value + "`");
         } else if (name == "--seeds")
             options.seeds = number(1, 1 << 20);
+        else if (name == "--accumulate")
+            options.accumulate = number(1, 1 << 20);
         else if (name == "--basis")
             options.basis = parse_basis(value);
+        else if (name == "--bounces")
+            options.bounces = number(1, 16);
         else if (name == "--regressed")
             options.regressed = number(1, 16);
         else
             throw std::runtime_error("unknown option `" + name + "`; --help lists them");
     }
+    if (options.mis && !named) {
+        options.estimators.clear();
+        for (const MisEstimatorName &estimator : mis_estimator_names)
+            options.estimators.push_back(estimator.name);
+    }
+    if (options.mis && (options.accumulate || options.reference || options.spp % 2))
+        throw std::runtime_error("--mis takes an even --spp, and neither --accumulate nor --reference");
+    if (options.accumulate && options.reference)
+        throw std::runtime_error("--reference does without --accumulate");
+    // Sample i of an accumulator is in its fold i mod 4, whichever thread adds it.
+    if (options.accumulate % 4)
+        throw std::runtime_error("--accumulate takes a multiple of 4, not " + std::to_string(options.accumulate));
     return true;
 }
 

@@ -3,15 +3,23 @@
 
 #include "integrand.hpp"
 #include "sobol.hpp"
+#include <algorithm>
+#include <stdexcept>
 #include <vector>
 
 namespace demo {
 
-// All points of a pixel at once. Threads share one sampler: it holds nothing that changes.
+// Threads share one sampler: it holds nothing that changes.
 struct Sampler {
     virtual ~Sampler() = default;
+    // All points of a pixel at once.
     // u: a row of the integrand's dims numbers in [0, 1) for each sample of pixel (x, y).
     virtual void points(uint32_t x, uint32_t y, float *u) const = 0;
+    // `count` of them from number `first` on, for passes over the image: the same numbers. Not every sampler can.
+    virtual void range(uint32_t, uint32_t, uint32_t, uint32_t, float *) const
+    {
+        throw std::runtime_error("this sampler makes all samples of a pixel at once, and none for passes over the image");
+    }
 };
 
 // What is to be sampled, and what else the points depend on.
@@ -42,14 +50,18 @@ inline std::vector<Group> group(const std::vector<Domain> &domains, uint32_t lim
 }
 
 // What one function makes from a pixel's key.
-template <void (*make_points)(uint64_t key, size_t n, uint32_t dims, float *u)>
+template <void (*make_points)(uint64_t key, size_t first, size_t n, uint32_t dims, float *u)>
 class KeyedSampler final : public Sampler {
 public:
     explicit KeyedSampler(const SamplerSetup &setup) : setup_(setup) {}
 
     void points(uint32_t x, uint32_t y, float *u) const override
     {
-        make_points(pixel_key(setup_.seed, setup_.frame, x, y), setup_.samples, setup_.dims, u);
+        range(x, y, 0, setup_.samples, u);
+    }
+    void range(uint32_t x, uint32_t y, uint32_t first, uint32_t count, float *u) const override
+    {
+        make_points(pixel_key(setup_.seed, setup_.frame, x, y), first, count, setup_.dims, u);
     }
 
 private:
@@ -69,15 +81,16 @@ public:
             ++levels_;
     }
 
-    void points(uint32_t x, uint32_t y, float *u) const override
+    void points(uint32_t x, uint32_t y, float *u) const override { range(x, y, 0, setup_.samples, u); }
+    void range(uint32_t x, uint32_t y, uint32_t first, uint32_t count, float *u) const override
     {
         uint64_t key = pixel_key(setup_.seed, setup_.frame, x, y);
         for (const Group &g : groups_) {
             Tree order(key += golden), trees[sobol_dims];
             for (uint32_t d = 0; d < g.dims; ++d)
                 trees[d] = Tree(key += golden);
-            for (uint32_t i = 0; i < setup_.samples; ++i) {
-                uint32_t index = shuffle(i, levels_, order);
+            for (uint32_t i = 0; i < count; ++i) {
+                uint32_t index = shuffle(first + i, levels_, order);
                 for (uint32_t d = 0; d < g.dims; ++d)
                     u[size_t{i} * setup_.dims + d] = unit(scramble(sobol_.digits(index, d), levels_, trees[d]));
             }

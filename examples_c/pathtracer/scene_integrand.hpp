@@ -8,11 +8,17 @@
 
 namespace demo {
 
-class SceneIntegrand final : public Integrand {
+class SceneIntegrand : public Integrand {
 public:
     // Scene and intersector must outlive it. Throws if the scene's layout does not suit its lights.
     SceneIntegrand(const Scene &scene, const Intersector &intersector, uint32_t width, uint32_t height, Filter filter = Filter::center)
-        : scene_(scene), layout_(scene.layout), intersector_(intersector), environment_(scene.environment()), width_(static_cast<float>(width)),
+        : SceneIntegrand(scene, intersector, width, height, filter, scene.layout)
+    {
+    }
+
+protected:
+    SceneIntegrand(const Scene &scene, const Intersector &intersector, uint32_t width, uint32_t height, Filter filter, const Layout &layout)
+        : scene_(scene), layout_(layout), intersector_(intersector), environment_(scene.environment()), width_(static_cast<float>(width)),
           height_(static_cast<float>(height)), filter_(filter)
     {
         layout_.footprint = filter != Filter::center;
@@ -23,6 +29,8 @@ public:
         choices_ = static_cast<float>(scene.lights.size());
     }
 
+public:
+
     std::vector<Domain> domains() const override { return layout_.domains(); }
     uint32_t lights() const override { return layout_.choice ? static_cast<uint32_t>(scene_.lights.size()) : 1; }
     bool camera_ray_per_sample() const override { return head_ > 0; }
@@ -32,9 +40,7 @@ public:
         float column = static_cast<float>(x) + 0.5f, row = static_cast<float>(y) + 0.5f;
         View view;
         if (surface || (n > 0 && head_ == 0))
-            view = look(scene_.camera.ray(column / width_, row / height_, 0.5f));
-        if (surface)
-            *surface = number(view);
+            view = center(x, y, surface);
         for (size_t i = 0; i < n; ++i, u += dims_, f += 3) {
             if (head_ > 0)
                 view = look(camera_ray(column, row, u));
@@ -45,7 +51,7 @@ public:
         }
     }
 
-private:
+protected:
     // Rays start and end this far from surfaces, in units of the scene: more than rounding, less than a visible gap.
     static constexpr float epsilon = 1e-4f;
     // Boundaries of glass that direct light is followed through.
@@ -58,6 +64,18 @@ private:
         bool found = false;
         Color throughput{1, 1, 1}; // of the glass before it
     };
+
+    // What the ray through the pixel's centre and the lens' sees, amid the exposure.
+    View center(uint32_t x, uint32_t y, uint32_t *surface) const
+    {
+        View view = look(scene_.camera.ray((static_cast<float>(x) + 0.5f) / width_, (static_cast<float>(y) + 0.5f) / height_, 0.5f));
+        if (surface)
+            *surface = number(view);
+        return view;
+    }
+
+    const Scene &scene() const { return scene_; }
+    const Intersector &intersector() const { return intersector_; }
 
     // The ray of a sample, from the numbers before the first vertex's.
     Ray camera_ray(float column, float row, const float *u) const
@@ -266,6 +284,7 @@ private:
         return true;
     }
 
+private:
     const Scene &scene_;
     Layout layout_;
     const Intersector &intersector_;

@@ -3,6 +3,7 @@
 
 #include "noisefloor.h"
 #include "samplers.hpp"
+#include "table_sampler.hpp"
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
@@ -114,9 +115,10 @@ public:
     {
     }
 
-    void points(uint32_t x, uint32_t y, float *u) const override
+    void points(uint32_t x, uint32_t y, float *u) const override { range(x, y, 0, setup_.samples, u); }
+    void range(uint32_t x, uint32_t y, uint32_t first, uint32_t count, float *u) const override
     {
-        for (uint32_t i = 0; i < setup_.samples; ++i) {
+        for (uint32_t i = first; i < first + count; ++i) {
             nf_sampler sampler = nf_sampler_pixel(&tile_.view(), x, y, setup_.frame, i);
             sampler = nf_sampler_scramble(sampler, scramble_);
             for (const Group &g : groups_) {
@@ -136,10 +138,10 @@ private:
     std::vector<Group> groups_; // what one draw makes: domains that fit into the tile's dimensions are optimised together
 };
 
-inline const char *const sampler_names[] = {"random", "sobol", "tile"};
+inline const char *const sampler_names[] = {"random", "sobol", "tile", "table"};
 
 // Throws if there is no sampler, or no tile, of that name.
-inline std::unique_ptr<Sampler> make_sampler(const std::string &name, const std::string &tile, const SamplerSetup &setup)
+inline std::unique_ptr<Sampler> make_sampler(const std::string &name, const std::string &tile, const std::string &table, const SamplerSetup &setup)
 {
     if (name == "random")
         return std::make_unique<RandomSampler>(setup);
@@ -147,6 +149,8 @@ inline std::unique_ptr<Sampler> make_sampler(const std::string &name, const std:
         return std::make_unique<SobolSampler>(setup);
     if (name == "tile")
         return std::make_unique<TileSampler>(tile, setup);
+    if (name == "table")
+        return std::make_unique<TableSampler>(table, setup);
     throw std::runtime_error("there is no sampler `" + name + "`; --help lists them");
 }
 

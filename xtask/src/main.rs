@@ -2,6 +2,7 @@
 
 mod c_tests;
 mod demo;
+mod embree;
 mod examples;
 mod fit;
 mod header;
@@ -42,6 +43,8 @@ enum Command {
     Header,
     /// Build target/noisefloor/libnoisefloor.a, the archive that C and C++ programs link
     Library,
+    /// Build target/noisefloor/embree_harness, the path tracer on Embree with the thesis's scenes
+    Embree,
     /// Make the tiles in core/tiles with fsot, or check that they are what it makes
     Tiles(tiles::Options),
 }
@@ -54,6 +57,7 @@ fn main() -> ExitCode {
         Command::Test(options) => test::run(&options),
         Command::Header => header::write(),
         Command::Tiles(options) => tiles::run(&options),
+        Command::Embree => embree::build().map(|path| println!("{}", path.display())),
         Command::Library => library::build().map(|path| println!("{}", path.display())),
     };
     match result {

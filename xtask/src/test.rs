@@ -1,6 +1,8 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
-use crate::{c_tests, examples, fit, header, library, path_tracer, povray_patched, run, tools, train_mlp};
+use crate::{
+    c_tests, embree, examples, fit, header, library, path_tracer, povray_patched, report, run, tools, train_mlp,
+};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -79,6 +81,16 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("examples_c/shards.c: four processes", || examples::shards(&archive()?));
     steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
         path_tracer::check(&archive()?)
+    });
+    steps.run("parts of examples_c/pathtracer: lights, surfaces, the image plane, paths, MIS", || {
+        path_tracer::parts(&archive()?)
+    });
+    steps.run("tests/embree: Embree meets the same surfaces as the path tracer's own tree", || {
+        embree::agreement(&archive()?)
+    });
+    steps.run("tests/embree: every scene, three samplers, 32 x 32 pixels", || embree::scenes(&archive()?));
+    steps.run("cargo xtask report --quick: every number of the text is in the JSON", || {
+        embree::report(report::check_quick)
     });
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));

@@ -10,6 +10,9 @@ use image::{Rgb, Rgb32FImage};
 /// the reference's own error would be added to every estimator's, and would flatter the worse ones.
 pub(crate) struct Reference {
     pub(crate) image: Rgb32FImage,
+    /// The two halves.
+    pub(crate) images: [Rgb32FImage; 2],
+    /// Their luminance.
     halves: [Vec<f64>; 2],
     /// R^2 + epsilon of each pixel; epsilon = 0.01 times the squared mean luminance of the image.
     denominators: Vec<f64>,
@@ -26,14 +29,19 @@ impl Reference {
         let epsilon = 0.01 * mean * mean;
         let denominators = values.iter().map(|value| value * value + epsilon).collect();
         let halves = [a, b].map(|half| half.pixels().map(luminance).collect());
-        Self { image, halves, denominators }
+        Self { image, images: [a.clone(), b.clone()], halves, denominators }
     }
 
     /// The mean over all pixels of (I - A)(I - B) / (R^2 + epsilon).
     pub(crate) fn rel_mse(&self, image: &Rgb32FImage) -> f64 {
+        self.terms(image).iter().sum::<f64>() / self.denominators.len().max(1) as f64
+    }
+
+    /// (I - A)(I - B) / (R^2 + epsilon) of each pixel, row after row.
+    pub(crate) fn terms(&self, image: &Rgb32FImage) -> Vec<f64> {
         let [a, b] = &self.halves;
-        let terms = image.pixels().map(luminance).zip(a.iter().zip(b)).zip(&self.denominators);
-        terms.map(|((i, (a, b)), d)| (i - a) * (i - b) / d).sum::<f64>() / self.denominators.len().max(1) as f64
+        let values = image.pixels().map(luminance).zip(a.iter().zip(b)).zip(&self.denominators);
+        values.map(|((i, (a, b)), d)| (i - a) * (i - b) / d).collect()
     }
 
     /// (I - A) / sqrt(R^2 + epsilon) and the same with B, row after row: the mean of their product is the relMSE.

@@ -12,6 +12,7 @@ pub(crate) mod plot;
 pub(crate) mod progress;
 pub(crate) mod renderer;
 pub(crate) mod runs;
+pub(crate) mod samplers;
 pub(crate) mod score;
 pub(crate) mod spectrum;
 pub(crate) mod spectrum_sheet;

@@ -19,8 +19,9 @@ pub(crate) struct Renderer {
 #[derive(Deserialize, Clone)]
 pub(crate) struct Timing {
     pub(crate) estimator: String,
+    /// Numbers of a sample.
     #[serde(default)]
-    pub(crate) seed: u64,
+    pub(crate) dims: u32,
     pub(crate) total_seconds: f64,
     /// Making the sample points.
     pub(crate) drawing_ns_per_sample: f64,

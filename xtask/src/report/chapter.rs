@@ -129,8 +129,8 @@ impl Chapter {
     }
 
     /// Records a number that was chosen, not measured, and returns it.
-    pub(crate) fn setting<T: Into<Value> + Copy>(&mut self, name: impl Into<String>, value: T) -> T {
-        self.settings.insert(name.into(), value.into());
+    pub(crate) fn setting<T: Into<Value> + Clone>(&mut self, name: impl Into<String>, value: T) -> T {
+        self.settings.insert(name.into(), value.clone().into());
         value
     }
 

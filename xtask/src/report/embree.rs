@@ -17,7 +17,7 @@ pub(super) fn write(report: &Report) -> Result<()> {
     println!("building the library and the Embree harness");
     let program = match &report.program {
         Some(program) => program.clone(),
-        None => anyhow::bail!("no program"),
+        None => crate::embree::build()?,
     };
     let renderer = Renderer::new(program, report.interrupted.clone());
     let bar = progress::bar(SECTIONS.iter().map(|(seconds, _)| seconds * SECOND).sum())?;
@@ -41,8 +41,9 @@ pub(super) fn write(report: &Report) -> Result<()> {
     bar.finish_and_clear();
     let mut chapter = Chapter::new("Control variates and tiles in an Embree path tracer");
     introduce(report, &mut chapter);
-    targets.write(&mut chapter);
+    targets.write_summary(&mut chapter);
     chapter.append(body);
+    targets.write_all(&mut chapter);
     report.output.write_text("embree.md", chapter.markdown())?;
     report.output.write_text("embree.json", &format!("{:#}\n", chapter.json()))
 }

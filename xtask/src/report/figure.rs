@@ -8,12 +8,10 @@ use serde::Serialize;
 pub(crate) enum Unit {
     /// One error, time or variance over another.
     Ratio,
-    RelMse,
     /// As the thesis prints it.
     RelMseE3,
     Percent,
     Nanoseconds,
-    Microseconds,
     Count,
     /// Standard deviations.
     Sigmas,
@@ -23,11 +21,9 @@ impl Unit {
     fn name(self) -> &'static str {
         match self {
             Self::Ratio => "ratio",
-            Self::RelMse => "relMSE",
             Self::RelMseE3 => "1e-3 relMSE",
             Self::Percent => "percent",
             Self::Nanoseconds => "nanoseconds per sample",
-            Self::Microseconds => "microseconds per pixel",
             Self::Count => "count",
             Self::Sigmas => "standard deviations",
         }
@@ -37,13 +33,11 @@ impl Unit {
         match self {
             _ if !value.is_finite() => "-".to_owned(),
             Self::Ratio if value.abs() < 10.0 => format!("{value:.3}"),
-            Self::RelMse => format!("{value:.2e}"),
             Self::RelMseE3 => significant(value, 3),
             Self::Percent if value.abs() < 10.0 => format!("{value:.2}"),
             Self::Sigmas => format!("{value:.2}"),
             Self::Nanoseconds | Self::Count if value.abs() >= 10.0 || self == Self::Count => format!("{value:.0}"),
             Self::Ratio | Self::Percent | Self::Nanoseconds | Self::Count => format!("{value:.1}"),
-            Self::Microseconds => significant(value, 3),
         }
     }
 }
@@ -103,7 +97,6 @@ mod tests {
         assert_eq!(Figure::new(estimate, Unit::Ratio).text, "0.400 [0.380, 0.415]");
         assert_eq!(Figure::brief(estimate, Unit::Ratio).text, "0.400");
         assert_eq!(Figure::exact(12.34, Unit::Percent).text, "12.3");
-        assert_eq!(Figure::exact(0.001_234, Unit::RelMse).text, "1.23e-3");
         assert_eq!(Unit::RelMseE3.text(12.345), "12.3");
         assert_eq!(Unit::RelMseE3.text(0.012_345), "0.0123");
         assert_eq!(Unit::Nanoseconds.text(123.4), "123");

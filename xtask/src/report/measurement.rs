@@ -36,13 +36,15 @@ pub(crate) struct View {
     /// Pixels on a side.
     pub(crate) size: u32,
     pub(crate) frame: u32,
+    /// Samples of the reference, over what the scene's references have.
+    pub(crate) precision: u32,
     /// Words of the command line that change what is integrated.
     pub(crate) options: &'static [&'static str],
 }
 
 impl View {
     pub(crate) fn new(scene: &'static str, size: u32) -> Self {
-        Self { scene, size, frame: 0, options: &[] }
+        Self { scene, size, frame: 0, precision: 1, options: &[] }
     }
 }
 
@@ -112,7 +114,7 @@ impl<'a> Measurement<'a> {
             return Ok(known.reference.clone());
         }
         self.bar.set_message(format!("{}: reference", view.scene));
-        let spp = (scenes::find(view.scene).reference_spp / self.plan.reference_divisor).max(16);
+        let spp = (view.precision * scenes::find(view.scene).reference_spp / self.plan.reference_divisor).max(16);
         let index = self.references.borrow().len();
         let half = |seed| -> Result<PathBuf> {
             let prefix = self.path(&format!("half-{index}-{seed}"));
@@ -165,8 +167,8 @@ impl<'a> Measurement<'a> {
         renderings.collect()
     }
 
-    /// The mean over as many seeds, and the mean of (I - A)(I - B) pixel by pixel, of each estimator.
-    pub(crate) fn statistics(&self, experiment: &Experiment) -> Result<Vec<[Rgb32FImage; 2]>> {
+    /// The mean over as many seeds, from `first` on, and the mean of (I - A)(I - B) pixel by pixel, of each estimator.
+    pub(crate) fn statistics(&self, experiment: &Experiment, first: u32) -> Result<Vec<[Rgb32FImage; 2]>> {
         let Experiment { view, seeds, estimators, .. } = *experiment;
         self.reference(view)?;
         let references = self.references.borrow();
@@ -175,7 +177,7 @@ impl<'a> Measurement<'a> {
         let options = [view.options, experiment.options, &["--statistics", &files]].concat();
         let prefix = self.path("statistics");
         self.bar.set_message(format!("{}: {seeds} seeds", view.scene));
-        let job = Job { options: &options, ..self.job(experiment, SEED, seeds) };
+        let job = Job { options: &options, ..self.job(experiment, SEED + u64::from(first), seeds) };
         self.renderer.render(&job, view.size, &prefix, self.bar)?;
         let read = |estimator: &&str, what: &str| read_pfm(&prefix.with_extension(format!("{estimator}.{what}.pfm")));
         estimators.iter().map(|estimator| Ok([read(estimator, "mean")?, read(estimator, "mse")?])).collect()

@@ -15,13 +15,11 @@ mod tables;
 use crate::measure::interrupt::{self, Interrupted};
 use crate::measure::output::Output;
 use crate::paths;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use plan::Plan;
 use std::path::PathBuf;
 use std::time::Instant;
-
-pub(crate) use check::numbers_are_recorded;
 
 #[derive(Args)]
 pub(crate) struct Options {
@@ -91,5 +89,26 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         large.display(),
         start.elapsed().as_secs_f64()
     );
+    Ok(())
+}
+
+/// Pictures of the report are smaller, so that they can be committed.
+const LARGEST_PICTURE: u64 = 600_000;
+
+/// A quick report, and whether all that its text quotes and shows is there.
+pub(crate) fn check_quick() -> Result<()> {
+    let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
+    let folder = scratch.path().join("report");
+    run(&Options { quick: true, full: false, only: Some(Part::Embree), out: Some(folder.clone()), program: None })?;
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).with_context(|| format!("there is no {name}"));
+    let text = read("embree.md")?;
+    check::numbers_are_recorded(&text, &read("embree.json")?)?;
+    let pictures = text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(name, _)| name);
+    for name in pictures {
+        let bytes = std::fs::metadata(folder.join(name)).with_context(|| format!("there is no {name}"))?.len();
+        if bytes == 0 || bytes > LARGEST_PICTURE {
+            bail!("{name} has {bytes} bytes");
+        }
+    }
     Ok(())
 }

@@ -23,6 +23,8 @@ pub(crate) struct Plan {
     pub(crate) frames: u32,
     /// Last frames of the animations: figures 5.23 and 5.24.
     pub(crate) animation: [u32; 2],
+    /// The first of several scenes and settings instead of all.
+    few: bool,
 }
 
 impl Plan {
@@ -38,6 +40,7 @@ impl Plan {
             pixel_seeds: 256,
             frames: 1000,
             animation: [16, 10],
+            few: false,
         };
         if quick {
             return Self {
@@ -48,15 +51,21 @@ impl Plan {
                 reference_divisor: 16,
                 spp: &[16],
                 many: 64,
-                pixel_seeds: 16,
+                pixel_seeds: 8,
                 frames: 32,
-                animation: [4, 3],
+                animation: [3, 2],
+                few: true,
             };
         }
         if full {
             return Self { seeds: 16, size: 128, tile_size: 256, small: 64, pixel_seeds: 1024, frames: 4000, ..normal };
         }
         normal
+    }
+
+    /// Those of `all` that are measured.
+    pub(crate) fn some<'a, T>(&self, all: &'a [T]) -> &'a [T] {
+        if self.few { &all[..all.len().min(1)] } else { all }
     }
 
     /// The samples per pixel at which pictures and tables with one number of samples are made: 64, or what there is.

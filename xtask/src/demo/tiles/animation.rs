@@ -1,11 +1,12 @@
 //! An animation that is averaged over time, as displays of games do and eyes (section 5.8, figure 5.23).
 
 use super::measure::Measurement;
-use super::plan::{Choice, Scene, TEMPORAL};
+use super::plan::{Scene, TEMPORAL};
 use crate::measure::markdown;
 use crate::measure::metric::Reference;
 use crate::measure::output::Output;
 use crate::measure::renderer::Sampler;
+use crate::measure::samplers::Choice;
 use crate::measure::score::Score;
 use crate::measure::spectrum_sheet as sheet;
 use anyhow::Result;

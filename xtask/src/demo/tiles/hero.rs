@@ -1,10 +1,11 @@
 //! One picture of it all, small enough for a page: parts of the first scene's images, each above its errors.
 
 use super::measure::{Measured, baseline, find, ratios};
-use super::plan::{BASELINE, Choice, ESTIMATORS, Plan};
+use super::plan::{BASELINE, ESTIMATORS, Plan};
 use crate::measure::filter::SIGMA;
 use crate::measure::metric::Reference;
 use crate::measure::part::Part;
+use crate::measure::samplers::Choice;
 use crate::measure::text;
 use image::imageops::replace;
 use image::{Rgb, RgbImage};

@@ -1,9 +1,10 @@
 //! Rendering one scene with every sampler.
 
-use super::plan::{BASELINE, Choice, ESTIMATORS, Plan, Scene, Tiles};
+use super::plan::{BASELINE, ESTIMATORS, Plan, Scene};
 use crate::measure::metric::{Reference, median};
 use crate::measure::renderer::{Job, Sampler, Timing};
 use crate::measure::runs::{Runs, SEED};
+use crate::measure::samplers::{Choice, Tiles};
 use crate::measure::score::Score;
 use anyhow::{Context, Result, bail};
 use image::Rgb32FImage;

@@ -12,10 +12,11 @@ use crate::measure::output::Output;
 use crate::measure::progress;
 use crate::measure::renderer::{Renderer, threads};
 use crate::measure::runs::Runs;
+use crate::measure::samplers::{Choice, Tiles};
 use crate::measure::spectrum_sheet as sheet;
 use anyhow::Result;
 use measure::{Measured, Measurement, baseline, find, ratios};
-use plan::{BASELINE, Choice, ESTIMATORS, Plan, SCENES, Scene, Tiles};
+use plan::{BASELINE, ESTIMATORS, Plan, SCENES, Scene};
 
 /// Writes pictures, tiles.md, tiles.csv and tiles-animation.csv; returns the tables.
 pub(crate) fn run(options: &Options, renderer: &Renderer, output: &Output) -> Result<String> {

@@ -1,8 +1,9 @@
 //! The table of samplers.
 
 use super::measure::{Measured, baseline, find, ratios};
-use super::plan::{Choice, ESTIMATORS, Scene};
+use super::plan::{ESTIMATORS, Scene};
 use crate::measure::markdown;
+use crate::measure::samplers::Choice;
 
 const HEADINGS: [&str; 13] = [
     "scene",

@@ -26,7 +26,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     let plan = section.measurement.plan;
     section.chapter.section("Direct light", "figures 4.4 and 4.5");
     let (mut overview, mut ratios, mut drawings) = (Vec::new(), Vec::new(), Vec::new());
-    for scene in SCENES {
+    for &scene in plan.some(&SCENES) {
         let all = measure(section, scene)?;
         for one in &all {
             if one.spp == plan.middle() {
@@ -52,7 +52,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     for (file, title) in drawings {
         section.chapter.picture(&file, &title);
     }
-    for scene in SCENES {
+    for &scene in plan.some(&SCENES) {
         section
             .chapter
             .picture(&format!("direct-{scene}.png"), &format!("{scene}: images and errors of each estimator"));

@@ -1,7 +1,22 @@
 //! The sections of the Embree chapter: one file for each comparison, in the layout of the thesis's figure.
 
+mod animation;
+mod bases;
+mod comparison;
 mod direct;
+mod environment;
+mod indirect;
+mod lights;
+mod luminance;
+mod mis;
+mod never_worse;
+mod overhead;
+mod public;
+mod reconstruction;
+mod samplers;
+mod solvers;
 pub(crate) mod targets;
+mod unbiased;
 
 use super::chapter::Chapter;
 use super::measurement::Measurement;
@@ -22,4 +37,19 @@ pub(crate) struct Section<'a> {
 type Entry = (u64, fn(&mut Section) -> Result<()>);
 
 /// In the order of the thesis.
-pub(crate) const SECTIONS: &[Entry] = &[(40, direct::write)];
+pub(crate) const SECTIONS: &[Entry] = &[
+    (40, direct::write),
+    (30, indirect::write),
+    (10, mis::write),
+    (15, environment::write),
+    (15, bases::write),
+    (30, lights::write),
+    (20, solvers::write),
+    (15, luminance::write),
+    (90, samplers::write),
+    (15, reconstruction::write),
+    (30, animation::write),
+    (15, overhead::write),
+    (50, never_worse::write),
+    (15, unbiased::write),
+];

@@ -1,0 +1,36 @@
+// Puts meshes into a scene.
+#pragma once
+
+#include "mesh.hpp"
+#include "pathtracer/builder.hpp"
+
+namespace harness {
+
+using demo::Color;
+using demo::Scene;
+
+class Stage : public demo::Builder {
+public:
+    explicit Stage(Scene &scene) : Builder(scene), scene_(scene) {}
+
+    void put(const Mesh &mesh, uint32_t material, const Transform &place = {}, Vector motion = {})
+    {
+        Mesh placed = place * mesh;
+        for (const Facet &f : placed.facets)
+            scene_.geometry.triangles.push_back(
+                {{f.corner[0], f.corner[1], f.corner[2]}, {f.normal[0], f.normal[1], f.normal[2]}, material, -1, motion});
+    }
+
+    // One light of all the mesh's triangles.
+    void lamp(const Mesh &mesh, Color radiance, const Transform &place = {})
+    {
+        size_t first = triangles();
+        put(mesh, material({}), place);
+        shine(first, radiance);
+    }
+
+private:
+    Scene &scene_;
+};
+
+} // namespace harness

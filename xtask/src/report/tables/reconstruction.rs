@@ -1,0 +1,63 @@
+//! Reconstruction with a box and with a Gaussian: figure 5.22.
+
+use super::Section;
+use super::samplers::Errors;
+use crate::measure::renderer::Sampler;
+use crate::measure::samplers::{Choice, Tiles};
+use crate::report::chapter::row;
+use crate::report::figure::{Figure, Unit};
+use crate::report::measurement::{BASELINE, Experiment, View};
+use crate::report::statistics::Estimate;
+use anyhow::Result;
+
+const SCENES: [&str; 2] = ["dining", "microcity"];
+const SPP: [u32; 2] = [1, 4];
+const FILTERS: [(&str, &[&str]); 2] = [("box", &["--filter", "box"]), ("Gaussian", &["--filter", "gaussian"])];
+
+pub(super) fn write(section: &mut Section) -> Result<()> {
+    section.chapter.section("Box and Gaussian reconstruction", "figure 5.22");
+    let plan = section.measurement.plan;
+    let deviation = section.chapter.setting("Gaussian reconstruction's standard deviation, pixels", 0.5);
+    section.chapter.paragraph(&format!(
+        "Each pixel integrates over its footprint too, two more dims: uniform in the pixel, or by a Gaussian of standard deviation \
+         {deviation} pixels. Every pixel has its own samples (none are splatted), so the optimal tile is the same for both. Errors over random \
+         samples', unfiltered and filtered."
+    ));
+    let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
+    let mut rows = Vec::new();
+    for &scene in plan.some(&SCENES) {
+        for &(filter, options) in plan.some(&FILTERS) {
+            let view = View { options, ..View::new(scene, plan.tile_size) };
+            for &spp in plan.some(&SPP) {
+                let run = |sampler: Sampler| -> Result<Errors> {
+                    let experiment =
+                        Experiment { sampler, seeds: plan.seeds, ..Experiment::new(view, spp, &[BASELINE]) };
+                    Ok(Errors::new(&section.measurement.run(&experiment)?.scores(BASELINE)?))
+                };
+                let random = run(Sampler::Random)?;
+                let mut cells = row![scene, filter, spp];
+                for choice in [Choice::Sobol, Choice::Tile(2), Choice::Tile(4)] {
+                    let errors = choice.sampler(spp, &tiles).map(run).transpose()?;
+                    for of in [|errors: &Errors| errors.raw.clone(), |errors: &Errors| errors.filtered.clone()] {
+                        let ratio = errors.as_ref().map(|errors| Estimate::ratio(&of(errors), &of(&random)));
+                        cells.push(ratio.map(|ratio| Figure::new(ratio, Unit::Ratio)).into());
+                    }
+                }
+                rows.push(cells);
+            }
+        }
+    }
+    let columns = [
+        "scene",
+        "reconstruction",
+        "samples",
+        "Owen-Sobol: raw",
+        "filtered",
+        "tile 2D: raw",
+        "filtered",
+        "tile 4D: raw",
+        "filtered",
+    ];
+    section.chapter.table("reconstruction", &columns, 2, rows);
+    Ok(())
+}

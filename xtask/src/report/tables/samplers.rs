@@ -1,0 +1,246 @@
+//! Samplers: figures 5.19, 5.20 and 5.22, and fits shared by neighbouring pixels.
+
+use super::Section;
+use super::public::Public;
+use crate::measure::renderer::Sampler;
+use crate::measure::samplers::{Choice, Tiles};
+use crate::measure::score::Score;
+use crate::measure::spectrum_sheet::{self, Cell as Panel, Row};
+use crate::report::chapter::{Cell, row};
+use crate::report::figure::{Figure, Unit};
+use crate::report::measurement::{BASELINE, Experiment, Outcome, SHARED, View};
+use crate::report::pictures::write_small;
+use crate::report::scenes;
+use crate::report::statistics::Estimate;
+use anyhow::Result;
+use std::path::Path;
+
+const SCENES: [&str; 7] = ["dining", "dragon", "chopper", "microcity", "killeroos", "bathroom", "lens"];
+const SPP: [u32; 3] = [1, 4, 16];
+/// The library's samplers and what they are compared with first.
+const OWN: [Choice; 4] = [Choice::Random, Choice::Sobol, Choice::Tile(2), Choice::Tile(4)];
+const RANDOM: usize = 0;
+const SOBOL: usize = 1;
+const TILE: usize = 2;
+/// Scenes whose pictures are shown, and at how many samples: figures 5.19 and 5.20.
+const SHOWN: [(&str, u32); 3] = [("dining", 1), ("microcity", 4), ("lens", 1)];
+
+/// One sampler's errors, a number for each seed.
+pub(super) struct Errors {
+    pub(super) raw: Vec<f64>,
+    pub(super) filtered: Vec<f64>,
+}
+
+impl Errors {
+    pub(super) fn new(scores: &[Score]) -> Self {
+        let all = |of: fn(&Score) -> f64| scores.iter().map(of).collect();
+        Self { raw: all(|score| score.raw), filtered: all(|score| score.filtered) }
+    }
+}
+
+/// One scene at one number of samples.
+struct Measured {
+    scene: &'static str,
+    spp: u32,
+    /// In the order of the columns; None: there is no such sampler.
+    samplers: Vec<Option<Outcome>>,
+    alone: Vec<Option<Errors>>,
+    shared: Vec<Option<Errors>>,
+}
+
+pub(super) fn write(section: &mut Section) -> Result<()> {
+    section.chapter.section("Samplers", "figures 5.19 and 5.20");
+    let plan = section.measurement.plan;
+    let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
+    let public = Public::build(section.measurement)?;
+    let mut all = Vec::new();
+    for &scene in plan.some(&SCENES) {
+        for &spp in plan.some(&SPP) {
+            let one = measure(section, &tiles, &public, scene, spp)?;
+            if SHOWN.contains(&(scene, spp)) {
+                write_sheet(section, &public, &one)?;
+            }
+            all.push(Measured { samplers: Vec::new(), ..one });
+        }
+    }
+    explain(section, &public);
+    let names: Vec<String> = OWN.iter().skip(1).map(|choice| choice.label()).chain(public.labels()).collect();
+    let heading = ["scene", "samples", "random, relMSE x 1000"];
+    let columns: Vec<&str> = heading.into_iter().chain(names.iter().map(String::as_str)).collect();
+    section.chapter.paragraph("Unfiltered: the random samples' relMSE, and the others' over it.");
+    let raw = all.iter().map(|one| error_row(one, |errors| &errors.raw)).collect();
+    section.chapter.table("samplers, raw", &columns, 1, raw);
+    section.chapter.paragraph("Filtered as the eye does, the same:");
+    let filtered = all.iter().map(|one| error_row(one, |errors| &errors.filtered)).collect();
+    section.chapter.table("samplers, filtered", &columns, 1, filtered);
+    for (scene, _) in SHOWN.iter().filter(|(scene, _)| plan.some(&SCENES).contains(scene)) {
+        let description = format!("{scene}: images, errors and their spectra in squares, by sampler");
+        section.chapter.picture(&format!("samplers-{scene}.png"), &description);
+    }
+    write_shared(section, &all);
+    aim(section, &all);
+    Ok(())
+}
+
+fn measure(section: &Section, tiles: &Tiles, public: &Public, scene: &'static str, spp: u32) -> Result<Measured> {
+    let view = View::new(scene, section.measurement.plan.tile_size);
+    let run = |sampler: Sampler| {
+        let seeds = section.measurement.plan.seeds;
+        section.measurement.run(&Experiment { sampler, seeds, ..Experiment::new(view, spp, &[BASELINE, SHARED]) })
+    };
+    let mut samplers = Vec::new();
+    for choice in OWN {
+        // The tile of four dimensions is for scenes that have them.
+        let fits = choice != Choice::Tile(4) || scenes::find(scene).dims >= 3;
+        let sampler = choice.sampler(spp, tiles).filter(|_| fits);
+        samplers.push(sampler.map(run).transpose()?);
+    }
+    for file in public.files(spp, scenes::find(scene).dims)? {
+        samplers.push(Some(run(Sampler::Table(Path::new(&file)))?));
+    }
+    let errors = |estimator: &str| -> Result<Vec<Option<Errors>>> {
+        let each = samplers.iter().map(|outcome| -> Result<Option<Errors>> {
+            outcome.as_ref().map(|outcome| Ok(Errors::new(&outcome.scores(estimator)?))).transpose()
+        });
+        each.collect()
+    };
+    let (alone, shared) = (errors(BASELINE)?, errors(SHARED)?);
+    Ok(Measured { scene, spp, samplers, alone, shared })
+}
+
+fn explain(section: &mut Section, public: &Public) {
+    let limit = section.chapter.setting("relative errors are limited to", crate::measure::score::LIMIT);
+    let sigma = section.chapter.setting("filter's standard deviation, pixels", crate::measure::filter::SIGMA);
+    section.chapter.paragraph(&format!(
+        "Plain means. Filtered: errors are filtered by a Gaussian of standard deviation {sigma} pixels, then squared. Relative errors beyond \
+         {limit} count as {limit}: one highlight in a dark pixel would otherwise decide. Seeds shift tiles and tables over the image. {}",
+        public.description()
+    ));
+}
+
+fn error_row(one: &Measured, of: fn(&Errors) -> &Vec<f64>) -> Vec<Cell> {
+    let random = one.alone[RANDOM].as_ref().map(of);
+    let plain = random.map(|errors| {
+        let errors: Vec<f64> = errors.iter().map(|error| 1e3 * error).collect();
+        Figure::new(Estimate::median(&errors), Unit::RelMseE3)
+    });
+    let mut cells = row![one.scene, one.spp, plain];
+    for errors in &one.alone[1..] {
+        let ratio = errors.as_ref().zip(random).map(|(errors, random)| Estimate::ratio(of(errors), random));
+        cells.push(ratio.map(|ratio| Figure::new(ratio, Unit::Ratio)).into());
+    }
+    cells
+}
+
+/// Shared fits over the same sampler's plain mean.
+fn write_shared(section: &mut Section, all: &[Measured]) {
+    section.chapter.section("Shared fits", "section 4.3.6, multi-pixel regression");
+    section.chapter.paragraph(
+        "Errors of `nf_cv_image_estimate()`, order 2, over those of the plain mean of the same samples. \
+         Told which number picks a light; pixels that show the same surface share fits.",
+    );
+    let mut rows = Vec::new();
+    for one in all {
+        let mut cells = row![one.scene, one.spp];
+        for index in [RANDOM, SOBOL, TILE] {
+            let pair = one.shared[index].as_ref().zip(one.alone[index].as_ref());
+            for of in [|errors: &Errors| errors.raw.clone(), |errors: &Errors| errors.filtered.clone()] {
+                let ratio = pair.map(|(shared, alone)| Estimate::ratio(&of(shared), &of(alone)));
+                cells.push(ratio.map(|ratio| Figure::new(ratio, Unit::Ratio)).into());
+            }
+        }
+        rows.push(cells);
+    }
+    let columns =
+        ["scene", "samples", "random: raw", "filtered", "Owen-Sobol: raw", "filtered", "tile: raw", "filtered"];
+    section.chapter.table("shared fits", &columns, 1, rows);
+}
+
+fn aim(section: &mut Section, all: &[Measured]) {
+    let targets = &mut *section.targets;
+    targets.reason(
+        "tile over Owen-Sobol, filtered",
+        "A tile is optimised for integrands that neighbours share: fine texture, edges and shadow borders that differ from pixel to \
+         pixel leave white noise, and a scene of several domains (motion, choice of a light, lens) draws each from another place of the tile.",
+    );
+    targets.reason(
+        "tile over Owen-Sobol, raw",
+        "The tile weighs the image's error against the pixel's own; at 16 samples Owen-scrambled Sobol points gain more within a pixel, most of all over \
+         several domains, which a tile of two dims stratifies each by itself.",
+    );
+    targets.reason(
+        "shared fits over the tile alone",
+        "Polynomials explain what varies smoothly with the sample: a visible edge of an occluder, a high-frequency environment or a thin highlight \
+         stays; at 4 samples and more the tile has already removed what is smooth.",
+    );
+    let ratio = |own: &Option<Errors>, other: &Option<Errors>, of: fn(&Errors) -> &Vec<f64>| {
+        own.as_ref().zip(other.as_ref()).map(|(own, other)| Estimate::ratio(of(own), of(other)))
+    };
+    for one in all {
+        let (scene, spp) = (one.scene, one.spp);
+        let (tile, sobol) = (&one.alone[TILE], &one.alone[SOBOL]);
+        if spp <= 4 {
+            if let Some(estimate) = ratio(tile, sobol, |errors| &errors.filtered) {
+                let statement = format!("tile over Owen-Sobol, filtered, {spp} spp, direct light");
+                targets.at_most(&statement, scene, estimate, Unit::Ratio, 0.5);
+            }
+            // The best of the public samplers in this scene.
+            let best = one.alone[OWN.len()..].iter().flatten().map(|errors| Estimate::median(&errors.filtered).value);
+            let best = best.fold(f64::INFINITY, f64::min);
+            if let Some(public) = one.alone[OWN.len()..]
+                .iter()
+                .find(|errors| errors.as_ref().is_some_and(|errors| Estimate::median(&errors.filtered).value == best))
+                && let Some(estimate) = ratio(tile, public, |errors| &errors.filtered)
+            {
+                let statement = format!("tile over the best public sampler, filtered, {spp} spp, direct light");
+                targets.at_most(&statement, scene, estimate, Unit::Ratio, 1.0);
+            }
+            if let Some(estimate) = ratio(&one.shared[TILE], tile, |errors| &errors.raw) {
+                let statement = format!("shared fits over the tile alone, raw, {spp} spp, direct light");
+                targets.at_most(&statement, scene, estimate, Unit::Ratio, 0.5);
+            }
+        }
+        if spp >= 4
+            && let Some(estimate) = ratio(tile, sobol, |errors| &errors.raw)
+        {
+            let statement = format!("tile over Owen-Sobol, raw, {spp} spp");
+            targets.at_most(&statement, scene, estimate, Unit::Ratio, 1.03);
+        }
+        if let Some(estimate) = ratio(&one.shared[TILE], tile, |errors| &errors.raw) {
+            targets.at_most(
+                &format!("shared fits over the tile alone, raw, {spp} spp"),
+                scene,
+                estimate,
+                Unit::Ratio,
+                1.01,
+            );
+        }
+    }
+}
+
+/// Figures 5.19 and 5.20.
+fn write_sheet(section: &Section, public: &Public, one: &Measured) -> Result<()> {
+    let mut names = Vec::new();
+    let mut cells = Vec::new();
+    let labels: Vec<String> = OWN.iter().map(|choice| choice.label()).chain(public.labels()).collect();
+    let Some(random) = &one.samplers[RANDOM] else { return Ok(()) };
+    let reference = &random.reference;
+    for (index, (outcome, label)) in one.samplers.iter().zip(labels).enumerate() {
+        let Some(outcome) = outcome else { continue };
+        let estimators: &[&str] = if index == TILE { &[BASELINE, SHARED] } else { &[BASELINE] };
+        for estimator in estimators {
+            let image = &outcome.of(estimator)?.images[0];
+            let score = Score::new(image, reference);
+            names.push(if *estimator == SHARED { format!("{label}, shared fits") } else { label.clone() });
+            let caption = format!("raw {:.1e} filtered {:.1e}", score.raw, score.filtered);
+            let name =
+                format!("{}-{}spp-{}", one.scene, one.spp, names[names.len() - 1].replace([' ', ',', '(', ')'], "-"));
+            section.large.write_image(&name, image, reference)?;
+            cells.push(Some(Panel { image, caption }));
+        }
+    }
+    let rows = [Row { name: format!("{} samples per pixel", one.spp), cells }];
+    let title = format!("{}: the image, its errors, their spectra", one.scene);
+    let picture = spectrum_sheet::draw(&title, &names, &rows, [0.25, 0.35], reference);
+    write_small(section.output, &format!("samplers-{}.png", one.scene), &picture)
+}
