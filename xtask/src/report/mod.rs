@@ -2,7 +2,7 @@
 //! that can be held beside them, and as JSON.
 
 pub(crate) mod chapter;
-mod check;
+pub(crate) mod check;
 mod embree;
 pub(crate) mod figure;
 mod measurement;
