@@ -45,7 +45,7 @@ inline std::unique_ptr<demo::Sampler> make_sampler(const Settings &settings, uin
     setup.seed = settings.sampler == "tile" ? 1 : demo::mix(demo::golden * (first + 1));
     if (settings.sampler == "grid")
         return std::make_unique<GridSampler>(setup);
-    return demo::make_sampler(settings.sampler, settings.tile, setup);
+    return demo::make_sampler(settings.sampler, settings.tile, "", setup);
 }
 
 // Points of one pixel in two-dimensional domains, made when they are asked for: how many light rays a path will need is not

@@ -22,6 +22,7 @@ pub(crate) fn write(output: &Output, options: &Options, checks: &Checks, measure
         chapter.paragraph(&format!("{}.", scene.description));
         table(&mut chapter, options, measured, index);
     }
+    outcome(&mut chapter, options, measured);
     models(&mut chapter, measured);
     chapter.section("Pictures", "");
     let spp = options.spp[0];
@@ -119,12 +120,65 @@ fn line(spp: u32, name: &'static str, series: &Series, random: &Series, method: 
     row![spp, name, error(raw), ratio(raw), error(filtered), ratio(filtered), seconds]
 }
 
+/// What the tables say together: the range of one method's relMSE over another's, at the same samples.
+fn outcome(chapter: &mut Chapter, options: &Options, measured: &Measured) {
+    chapter.section("What the tables say", "");
+    let mut range = |ours: &str, theirs: &str| -> String {
+        let index = |name: &str| METHODS.iter().position(|method| method.name == name);
+        let ratio = |scene: usize, spp: u32| -> Option<f64> {
+            let raw = |name| -> Option<Vec<f64>> {
+                let series = measured.find(scene, index(name)?, spp)?;
+                Some(series.scores.iter().map(|score| score.raw).collect())
+            };
+            Some(Estimate::median(&raw(ours)?).value / Estimate::median(&raw(theirs)?).value)
+        };
+        let pairs = (0..SCENES.len()).flat_map(|scene| options.spp.iter().map(move |&spp| (scene, spp)));
+        let ratios: Vec<f64> = pairs.filter_map(|(scene, spp)| ratio(scene, spp)).collect();
+        let mut quote = |end: &str, value: f64| {
+            chapter.quote(format!("{ours} / {theirs}, {end}"), Figure::exact(value, Unit::Ratio))
+        };
+        let low = quote("least", ratios.iter().copied().fold(f64::INFINITY, f64::min));
+        let high = quote("most", ratios.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+        format!("{low} to {high}")
+    };
+    let points = [
+        format!(
+            "Tiles have {} of stock POV-Ray's relMSE, Sobol points {}.",
+            range("tile", "stock"),
+            range("sobol", "stock")
+        ),
+        format!(
+            "Tiles have {} of the Sobol points' relMSE: beyond a tile's own samples it is continued as a sequence, and the Sobol \
+             points stratify four numbers together, the tiles two. In pixels as coarse as these, neighbours probably integrate functions \
+             too different for a blue error to filter away.",
+            range("tile", "sobol")
+        ),
+        format!(
+            "An accumulator per pixel leaves {} of independent samples' relMSE.",
+            range("random, accumulator", "random")
+        ),
+        format!(
+            "What `nf_recommend` says for pixels that may share their fits leaves {} of it: {} of what the accumulators leave. Where it \
+             is worse, it shares fits between pixels of a penumbra, each of which is a discontinuity elsewhere; probably so because in pictures this small \
+             the windows of fits are large beside the shadows' edges.",
+            range("random, estimate", "random"),
+            range("random, estimate", "random, accumulator")
+        ),
+        format!("On tiles it changes next to nothing: {} of the tiles' relMSE.", range("tile, estimate", "tile")),
+    ];
+    chapter.list(&points);
+    chapter.paragraph(
+        "CPU seconds are tracing alone, on a machine that was busy with other work: they tell orders of magnitude. A patched sample traces \
+         the ray from the eye anew, so that an area light costs more than in stock POV-Ray, which traces that ray once.",
+    );
+}
+
 fn models(chapter: &mut Chapter, measured: &Measured) {
     chapter.section("Two models of an area light", "");
     chapter.paragraph(
         "Stock POV-Ray averages the shadow over an area light's points and shades from its centre; above, the patched program did \
          the same, so that all had one reference. Its default is to shade from the point that casts the shadow, as a light of that \
-         shape would. How far the two pictures are apart, both converged:",
+         shape would; a spotlight's cone then starts at that point, too. How far the two pictures are apart, both converged:",
     );
     let rows = measured.models.iter().map(|model| {
         row![
