@@ -21,10 +21,11 @@ const TEMPORAL: &str = "128_1SPP_2D_TEMPORAL";
 const ALPHA: f64 = 0.2;
 /// The figures' samples per pixel.
 const SPP: [u32; 2] = [1, 4];
+/// Weights of so many frames, the newest first.
+type Kernel = fn(usize) -> Vec<f64>;
 /// Kernels and their names.
-const KERNELS: [(&str, fn(usize) -> Vec<f64>); 2] = [("moving average", average), ("eye", eye)];
+const KERNELS: [(&str, Kernel); 2] = [("moving average", average), ("eye", eye)];
 
-/// Weights of the newest frame, the one before it and so on.
 fn average(frames: usize) -> Vec<f64> {
     normalized((0..frames).map(|age| ALPHA * (1.0 - ALPHA).powi(age as i32)).collect())
 }
