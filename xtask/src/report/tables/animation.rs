@@ -4,7 +4,7 @@ use super::Section;
 use crate::measure::metric::Reference;
 use crate::measure::renderer::Sampler;
 use crate::measure::samplers::{Choice, Tiles};
-use crate::measure::score::Score;
+use crate::measure::score;
 use crate::measure::spectrum_sheet::{self, Cell as Panel, Row};
 use crate::report::chapter::row;
 use crate::report::figure::{Figure, Unit};
@@ -162,7 +162,7 @@ fn measure(section: &Section, references: &[std::rc::Rc<Reference>], sampler: Sa
         let each = (0..seeds as usize).map(|seed| {
             let sequence: Vec<&Rgb32FImage> = frames.iter().map(|images| &images[seed]).collect();
             let seen = filtered(&sequence, &weights);
-            let error = Score::new(&seen, &reference).filtered;
+            let [_, error] = score::errors(&seen, &reference);
             if seed == 0 {
                 image = Some(seen);
             }
