@@ -11,7 +11,8 @@ namespace demo {
 class AccumulatorImage {
 public:
     AccumulatorImage(const std::string &name, const nf_cv_config &config, size_t pixels)
-        : words_((nf_cv_accumulator_size(&config) + 7) / 8), memory_(words_ * pixels), workspace_(memory(nf_cv_accumulator_workspace_size(&config)))
+        : words_((nf_cv_accumulator_size(&config) + 7) / 8), memory_(words_ * pixels),
+          workspace_(memory(nf_cv_accumulator_workspace_size(&config)))
     {
         if (words_ == 0)
             throw std::runtime_error(refusal(name, config) + ", or it cannot be streamed");

@@ -11,7 +11,8 @@
 namespace demo {
 
 // One line of JSON for each estimator.
-inline void print(const Options &options, const Integrand &integrand, uint32_t samples_per_vector, const Rendering &renderer, const std::vector<std::string> &names, uint64_t seed)
+inline void print(const Options &options, const Integrand &integrand, uint32_t samples_per_vector, const Rendering &renderer,
+                  const std::vector<std::string> &names, uint64_t seed)
 {
     const Times &times = renderer.times();
     const uint32_t spp = options.spp * samples_per_vector;

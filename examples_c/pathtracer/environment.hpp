@@ -21,8 +21,8 @@ public:
         : width_(width), height_(height), pixels_(std::move(pixels)), columns_(size_t{width} * height), rows_(height)
     {
         if (width == 0 || height == 0 || pixels_.size() != size_t{width} * height)
-            throw std::runtime_error("an environment map of " + std::to_string(width) + " x " + std::to_string(height) + " pixels cannot have " +
-                                     std::to_string(pixels_.size()));
+            throw std::runtime_error("an environment map of " + std::to_string(width) + " x " + std::to_string(height) +
+                                     " pixels cannot have " + std::to_string(pixels_.size()));
         double total = 0;
         for (uint32_t y = 0; y < height; ++y) {
             double row = 0;
@@ -59,7 +59,8 @@ public:
     Vector sample(float u, float v, float &pdf) const
     {
         uint32_t y = pick(rows_.data(), height_, v), x = pick(&columns_[size_t{y} * width_], width_, u);
-        float longitude = (static_cast<float>(x) + u) / static_cast<float>(width_), latitude = (static_cast<float>(y) + v) / static_cast<float>(height_);
+        float longitude = (static_cast<float>(x) + u) / static_cast<float>(width_);
+        float latitude = (static_cast<float>(y) + v) / static_cast<float>(height_);
         pdf = density(x, y, latitude);
         float sine = std::sin(pi * latitude), azimuth = 2 * pi * longitude;
         return {sine * std::sin(azimuth), std::cos(pi * latitude), sine * std::cos(azimuth)};
@@ -94,9 +95,11 @@ private:
     float density(uint32_t x, uint32_t y, float latitude) const
     {
         const float *row = &columns_[size_t{y} * width_];
-        float share = (row[x] - (x ? row[x - 1] : 0)) / row[width_ - 1] * (rows_[y] - (y ? rows_[y - 1] : 0)) / rows_[height_ - 1];
-        float sine = std::sin(pi * latitude);
-        return row[width_ - 1] > 0 && sine > 0 ? share * static_cast<float>(width_) * static_cast<float>(height_) / (2 * pi * pi * sine) : 0.0f;
+        float sum = row[width_ - 1], sine = std::sin(pi * latitude);
+        if (!(sum > 0 && sine > 0))
+            return 0;
+        float share = (row[x] - (x ? row[x - 1] : 0)) / sum * (rows_[y] - (y ? rows_[y - 1] : 0)) / rows_[height_ - 1];
+        return share * static_cast<float>(width_) * static_cast<float>(height_) / (2 * pi * pi * sine);
     }
 
     // Which entry of a running sum u in [0, 1) falls into; u becomes its place within that, in [0, 1).

@@ -229,8 +229,8 @@ inline nf_cv_config configure(const EstimatorName &known, const EstimatorSetup &
 // What went wrong with a configuration that noisefloor refuses.
 inline std::string refusal(const std::string &name, const nf_cv_config &config)
 {
-    return "noisefloor refuses estimator " + name + " with dims " + std::to_string(config.dims) + ", order " + std::to_string(config.order) +
-           " (terms are limited to 136, dims to 16; --regressed and --order set them)";
+    return "noisefloor refuses estimator " + name + " with dims " + std::to_string(config.dims) + ", order " +
+           std::to_string(config.order) + " (terms are limited to 136, dims to 16; --regressed and --order set them)";
 }
 
 // Throws if the name is unknown or the configuration is refused.

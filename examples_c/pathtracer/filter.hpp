@@ -20,7 +20,7 @@ struct FilterName {
 
 inline const FilterName filter_names[] = {{"center", Filter::center}, {"box", Filter::box}, {"gaussian", Filter::gaussian}};
 
-// The inverse of std::erf for |x| <= .9975, to 4e-6 (M. Giles, "Approximating the erfinv function", 2010; single precision, central branch).
+// The inverse of std::erf (M. Giles, "Approximating the erfinv function", 2010), for |x| < .9975: to about 1e-5 in erf.
 inline float inverse_erf(float x)
 {
     float w = -std::log((1 - x) * (1 + x)) - 2.5f, p = 2.81022636e-08f;

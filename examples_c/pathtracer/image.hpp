@@ -38,7 +38,7 @@ inline Image read_pfm(const std::string &path)
     if ((scale < 0) != little_endian())
         throw std::runtime_error(path + " was written on a machine of the other byte order");
     if (width == 0 || height == 0 || width > 1 << 16 || height > 1 << 16)
-        throw std::runtime_error(path + " has " + std::to_string(width) + " x " + std::to_string(height) + " pixels, which is no sensible size");
+        throw std::runtime_error(path + " has " + std::to_string(width) + " x " + std::to_string(height) + " pixels: not 1 to 65536 each way");
     Image image(width, height);
     size_t row = size_t{3} * width;
     for (uint32_t y = height; y-- > 0;)

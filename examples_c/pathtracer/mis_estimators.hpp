@@ -37,7 +37,8 @@ inline const MisEstimatorName mis_estimator_names[] = {
 class MisEstimator final : public Estimator {
 public:
     MisEstimator(const MisEstimatorName &kind, const nf_cv_config &config, size_t pairs)
-        : kind_(kind), config_(config), pairs_(pairs), weighted_(3 * pairs), workspace_(memory(nf_cv_workspace_size(&config, pairs))), omis_(memory(nf_omis_size(2, 3)))
+        : kind_(kind), config_(config), pairs_(pairs), weighted_(3 * pairs), workspace_(memory(nf_cv_workspace_size(&config, pairs))),
+          omis_(memory(nf_omis_size(2, 3)))
     {
     }
 

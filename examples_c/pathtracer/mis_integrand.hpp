@@ -6,9 +6,10 @@
 
 namespace demo {
 
-// How often a light's sampling draws a direction, whatever stands before the light and whichever side of it shines: per solid angle, and
-// 1 integrated over all directions, which optimal weights rely on.
-inline float drawing_density(Vector origin, Vector edge1, Vector edge2, Vector normal, bool triangle, float area, Vector from, Vector direction)
+// How often a light's sampling draws a direction, whatever stands before the light and whichever side of it shines: per solid
+// angle, and 1 integrated over all directions, which optimal weights rely on.
+inline float drawing_density(Vector origin, Vector edge1, Vector edge2, Vector normal, bool triangle, float area, Vector from,
+                             Vector direction)
 {
     float cosine = dot(normal, direction), distance = dot(origin - from, normal) / cosine;
     if (!(distance > 0))
@@ -24,7 +25,8 @@ inline float drawing_density(const Light &light, Vector from, Vector direction)
     switch (light.kind) {
     case Light::parallelogram:
     case Light::triangle:
-        return drawing_density(light.origin, light.edge1, light.edge2, light.normal, light.kind == Light::triangle, light.area, from, direction);
+        return drawing_density(light.origin, light.edge1, light.edge2, light.normal, light.kind == Light::triangle, light.area, from,
+                               direction);
     case Light::mesh: {
         float sum = 0;
         for (const LightTriangle &t : light.triangles)

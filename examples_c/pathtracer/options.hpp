@@ -88,7 +88,8 @@ inline uint64_t parse_number(const std::string &option, const std::string &text,
     bool digits = !text.empty() && text.size() < 20 && text.find_first_not_of("0123456789") == std::string::npos;
     uint64_t value = digits ? std::strtoull(text.c_str(), nullptr, 10) : 0;
     if (!digits || value < low || value > high)
-        throw std::runtime_error(option + " takes a number from " + std::to_string(low) + " to " + std::to_string(high) + ", not `" + text + "`");
+        throw std::runtime_error(option + " takes a number from " + std::to_string(low) + " to " + std::to_string(high) + ", not `" +
+                                 text + "`");
     return value;
 }
 

@@ -12,17 +12,26 @@ namespace demo {
 // `side`: of the rectangles that pixels come in, at most.
 inline EstimatorSetup estimator_setup(const Integrand &integrand, const Options &options, uint32_t side)
 {
-    const uint32_t all = dims(integrand.domains()), regressed = options.regressed ? options.regressed : 16;
-    return {all,  std::min(regressed, all), options.order, options.basis.id, integrand.lights(), choice(integrand.domains()),
-            side, options.spp,              options.sampler != "random"};
+    const std::vector<Domain> domains = integrand.domains();
+    EstimatorSetup setup = {};
+    setup.dims = dims(domains);
+    setup.regressed = std::min(options.regressed ? options.regressed : 16, setup.dims);
+    setup.order = options.order;
+    setup.basis = options.basis.id;
+    setup.lights = integrand.lights();
+    setup.choice = choice(domains);
+    setup.side = side;
+    setup.samples = options.spp;
+    setup.stratified = options.sampler != "random";
+    return setup;
 }
 
 class Renderer final : public Rendering {
 public:
     // All three must outlive it.
     Renderer(const Integrand &integrand, const Sampler &sampler, const Options &options)
-        : Rendering(options.reference ? std::vector<std::string>{"mc"} : options.estimators, options), integrand_(integrand), sampler_(sampler),
-          dims_(dims(integrand.domains()))
+        : Rendering(options.reference ? std::vector<std::string>{"mc"} : options.estimators, options), integrand_(integrand),
+          sampler_(sampler), dims_(dims(integrand.domains()))
     {
         // As many samples as stay in the cache between sampling and estimating; pixels that share fits need neighbours.
         bool shared = std::find(names_.begin(), names_.end(), "shared") != names_.end();
@@ -83,9 +92,11 @@ private:
 
         // The number of a pixel's surface comes with its samples, or costs a ray: that is the estimator's who asks for it.
         start = stop;
-        bool free_surface = !integrand_.camera_ray_per_sample();
-        for (size_t p = 0; p < pixels; ++p)
-            integrand_.evaluate(column(p), row(p), n, &u[p * n * dims_], &f[p * n * integrand_.values()], free_surface ? &buffers.surface[p] : nullptr);
+        const bool free_surface = !integrand_.camera_ray_per_sample();
+        for (size_t p = 0; p < pixels; ++p) {
+            uint32_t *surface = free_surface ? &buffers.surface[p] : nullptr;
+            integrand_.evaluate(column(p), row(p), n, &u[p * n * dims_], &f[p * n * integrand_.values()], surface);
+        }
         stop = Clock::now();
         times.tracing += seconds(start, stop);
 

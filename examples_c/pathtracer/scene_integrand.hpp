@@ -2,9 +2,8 @@
 #pragma once
 
 #include "filter.hpp"
-#include "random.hpp"
+#include "hashed_stream.hpp"
 #include "scene.hpp"
-#include <cstring>
 
 namespace demo {
 
@@ -17,15 +16,18 @@ public:
     }
 
 protected:
-    SceneIntegrand(const Scene &scene, const Intersector &intersector, uint32_t width, uint32_t height, Filter filter, const Layout &layout)
-        : scene_(scene), layout_(layout), intersector_(intersector), environment_(scene.environment()), width_(static_cast<float>(width)),
+    SceneIntegrand(const Scene &scene, const Intersector &intersector, uint32_t width, uint32_t height, Filter filter,
+                   const Layout &layout)
+        : scene_(scene), layout_(layout), intersector_(intersector), environment_(scene.environment()),
+          width_(static_cast<float>(width)),
           height_(static_cast<float>(height)), filter_(filter)
     {
         layout_.footprint = filter != Filter::center;
         head_ = layout_.head();
         dims_ = dims(domains());
         if (scene.lights.empty() || (scene.lights.size() > 1 && !layout_.choice))
-            throw std::runtime_error("the scene has " + std::to_string(scene.lights.size()) + " lights: it needs one, or a choice among several");
+            throw std::runtime_error("the scene has " + std::to_string(scene.lights.size()) +
+                                     " lights: it needs one, or a layout with a choice among several");
         choices_ = static_cast<float>(scene.lights.size());
     }
 
@@ -184,7 +186,7 @@ protected:
     {
         Ray ray = view.ray;
         Hit hit = view.hit;
-        Stream further(u, dims_);
+        HashedStream further(u, dims_);
         float drawn[5];
         Color sum = emitted(ray, hit), throughput{1, 1, 1};
         const uint32_t step = layout_.dims_per_bounce();
@@ -240,42 +242,8 @@ protected:
         return pdf > 0 ? pdf / (pdf + light_pdf(light, ray.origin, ray.direction, distance, normal)) : 1.0f;
     }
 
-    // Numbers beyond the sample vector: a hash of it, which is uniform wherever the vector is.
-    class Stream {
-    public:
-        Stream(const float *u, uint32_t count) : u_(u), count_(count) {}
-
-        float next()
-        {
-            if (count_ > 0)
-                start();
-            return unit(static_cast<uint32_t>(mix(key_ += golden) >> 32));
-        }
-        const float *draw(float *to, uint32_t count)
-        {
-            for (uint32_t i = 0; i < count; ++i)
-                to[i] = next();
-            return to;
-        }
-
-    private:
-        void start()
-        {
-            for (uint32_t i = 0; i < count_; ++i) {
-                uint32_t bits;
-                std::memcpy(&bits, u_ + i, sizeof bits);
-                key_ = mix((key_ + golden) ^ bits);
-            }
-            count_ = 0;
-        }
-
-        const float *u_;
-        uint32_t count_; // 0 once the key is made: most paths end before
-        uint64_t key_ = 0;
-    };
-
     // Russian roulette (Arvo and Kirk 1990).
-    static bool survives(Stream &numbers, Color &throughput)
+    static bool survives(HashedStream &numbers, Color &throughput)
     {
         float probability = std::min(largest(throughput), 0.95f);
         if (!(numbers.next() < probability))

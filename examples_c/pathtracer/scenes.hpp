@@ -1,4 +1,4 @@
-// The scenes that come with the path tracer, all in one box: x in [-1, 1], y (up) in [0, 2], z in [-1, 1], open towards the camera.
+// The scenes that come with the path tracer, all in one box: x in [-1, 1], y (up) in [0, 2], z in [-1, 1], open to the camera.
 #pragma once
 
 #include "builder.hpp"
@@ -7,7 +7,8 @@ namespace demo {
 
 inline void walls(Builder &builder)
 {
-    uint32_t white = builder.material({.73f, .71f, .68f}), red = builder.material({.63f, .09f, .07f}), green = builder.material({.14f, .45f, .11f});
+    uint32_t white = builder.material({.73f, .71f, .68f}), red = builder.material({.63f, .09f, .07f});
+    uint32_t green = builder.material({.14f, .45f, .11f});
     uint32_t floor = builder.material({.6f, .58f, .55f}, {.15f, .15f, .15f}, 30);
     builder.parallelogram({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, floor);
     builder.parallelogram({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, white);

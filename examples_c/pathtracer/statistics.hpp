@@ -20,8 +20,8 @@ private:
     static void check(const Image &image, const std::string &path, uint32_t width, uint32_t height)
     {
         if (image.width != width || image.height != height)
-            throw std::runtime_error(path + " has " + std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels, the image " +
-                                     std::to_string(width) + " x " + std::to_string(height));
+            throw std::runtime_error(path + " has " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                                     " pixels, the image " + std::to_string(width) + " x " + std::to_string(height));
     }
 };
 

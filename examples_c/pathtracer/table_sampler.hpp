@@ -29,8 +29,9 @@ struct PointTable {
         const uint32_t most = 1 << 14;
         if (width - 1 >= most || height - 1 >= most || samples - 1 >= most || dims - 1 >= 64 ||
             uint64_t{width} * height * samples * dims > uint64_t{1} << 28)
-            throw std::runtime_error(path + " says that it holds " + std::to_string(width) + " x " + std::to_string(height) + " pixels of " +
-                                     std::to_string(samples) + " samples in " + std::to_string(dims) + " dimensions: one of these is out of range");
+            throw std::runtime_error(path + " says that it holds " + std::to_string(width) + " x " + std::to_string(height) +
+                                     " pixels of " + std::to_string(samples) + " samples in " + std::to_string(dims) +
+                                     " dimensions: one of these, or their product, is out of range");
         values.resize(size_t{width} * height * samples * dims);
         for (float &value : values) {
             unsigned char bytes[4];
@@ -50,13 +51,16 @@ struct PointTable {
 // not fit into its dimensions, which also add a hashed number to all values, modulo 1: two places of one table need not be independent.
 class TableSampler final : public Sampler {
 public:
-    TableSampler(const std::string &path, const SamplerSetup &setup) : setup_(setup), table_(path), groups_(group(setup.domains, table_.dims))
+    TableSampler(const std::string &path, const SamplerSetup &setup)
+        : setup_(setup), table_(path), groups_(group(setup.domains, table_.dims))
     {
         if (setup.samples > table_.samples)
-            throw std::runtime_error(path + " has " + std::to_string(table_.samples) + " samples per pixel; --spp asks for " + std::to_string(setup.samples));
+            throw std::runtime_error(path + " has " + std::to_string(table_.samples) + " samples per pixel; --spp asks for " +
+                                     std::to_string(setup.samples));
         for (const Group &g : groups_)
             if (g.dims > table_.dims)
-                throw std::runtime_error(path + " has " + std::to_string(table_.dims) + " dimensions; a decision of this scene takes " + std::to_string(g.dims));
+                throw std::runtime_error(path + " has " + std::to_string(table_.dims) + " dimensions; a decision of this scene takes " +
+                                         std::to_string(g.dims));
     }
 
     void points(uint32_t x, uint32_t y, float *u) const override { range(x, y, 0, setup_.samples, u); }

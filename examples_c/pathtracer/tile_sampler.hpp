@@ -141,7 +141,8 @@ private:
 inline const char *const sampler_names[] = {"random", "sobol", "tile", "table"};
 
 // Throws if there is no sampler, or no tile, of that name.
-inline std::unique_ptr<Sampler> make_sampler(const std::string &name, const std::string &tile, const std::string &table, const SamplerSetup &setup)
+inline std::unique_ptr<Sampler> make_sampler(const std::string &name, const std::string &tile, const std::string &table,
+                                             const SamplerSetup &setup)
 {
     if (name == "random")
         return std::make_unique<RandomSampler>(setup);

@@ -16,7 +16,8 @@ using namespace harness;
 void put(demo::Geometry &geometry, const Mesh &mesh, uint32_t material, Vector motion)
 {
     for (const Facet &f : mesh.facets)
-        geometry.triangles.push_back({{f.corner[0], f.corner[1], f.corner[2]}, {f.normal[0], f.normal[1], f.normal[2]}, material, -1, motion});
+        geometry.triangles.push_back(
+            {{f.corner[0], f.corner[1], f.corner[2]}, {f.normal[0], f.normal[1], f.normal[2]}, material, -1, motion});
 }
 
 demo::Geometry jumble(Numbers &numbers)
@@ -80,9 +81,10 @@ void compare_scene(const demo::SceneEntry &entry)
     for (const demo::Ray &ray : rays)
         comparison.add(own, embree, ray, numbers(0, 2));
     comparison.check(entry.name);
-    std::printf("{\"scene\":\"%s\",\"dims\":%u,\"triangles\":%zu,\"spheres\":%zu,\"lights\":%zu,\"embree_mrays\":%.2f,\"own_mrays\":%.2f}\n", entry.name.c_str(),
-                demo::dims(scene.layout.domains()), scene.geometry.triangles.size(), scene.geometry.spheres.size(), scene.lights.size(), speed(embree, rays),
-                speed(own, rays));
+    std::printf("{\"scene\":\"%s\",\"dims\":%u,\"triangles\":%zu,\"spheres\":%zu,\"lights\":%zu,\"embree_mrays\":%.2f,\"own_"
+                "mrays\":%.2f}\n",
+                entry.name.c_str(), demo::dims(scene.layout.domains()), scene.geometry.triangles.size(),
+                scene.geometry.spheres.size(), scene.lights.size(), speed(embree, rays), speed(own, rays));
     if (entry.name == "microcity" && scene.geometry.triangles.size() < 100000)
         throw std::runtime_error("microcity has fewer than 100,000 triangles");
 }

@@ -14,7 +14,10 @@ using demo::Vector;
 // A stream of uniform numbers.
 struct Numbers {
     uint64_t counter;
-    float operator()(float low, float high) { return low + (high - low) * demo::unit(static_cast<uint32_t>(demo::mix(counter += demo::golden))); }
+    float operator()(float low, float high)
+    {
+        return low + (high - low) * demo::unit(static_cast<uint32_t>(demo::mix(counter += demo::golden)));
+    }
     Vector vector(float low, float high)
     {
         float x = (*this)(low, high), y = (*this)(low, high);
@@ -51,9 +54,11 @@ struct Comparison {
     {
         const size_t graze = rays / 5000;
         if (other_surface > graze || other_distance > graze || other_normal > graze || other_shadow > graze)
-            throw std::runtime_error(what + ": Embree and the path tracer's own tree differ in more than " + std::to_string(graze) + " of " + std::to_string(rays) +
-                                     " rays: " + std::to_string(other_surface) + " meet another surface, " + std::to_string(other_distance) + " at another distance, " +
-                                     std::to_string(other_normal) + " with another normal; " + std::to_string(other_shadow) + " are shadowed differently");
+            throw std::runtime_error(what + ": Embree and the path tracer's own tree differ in more than " + std::to_string(graze) +
+                                     " of " + std::to_string(rays) + " rays: " + std::to_string(other_surface) +
+                                     " meet another surface, " + std::to_string(other_distance) + " at another distance, " +
+                                     std::to_string(other_normal) + " with another normal; " + std::to_string(other_shadow) +
+                                     " are shadowed differently");
     }
 };
 

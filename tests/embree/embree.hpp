@@ -29,11 +29,13 @@ public:
     explicit EmbreeIntersector(const demo::Geometry &geometry) : geometry_(geometry), device_(rtcNewDevice(nullptr))
     {
         if (!device_)
-            throw std::runtime_error("Embree cannot start (error " + std::to_string(rtcGetDeviceError(nullptr)) + "); does the processor have SSE2?");
+            throw std::runtime_error("Embree cannot start (error " + std::to_string(rtcGetDeviceError(nullptr)) +
+                                     "); does the processor have SSE2?");
         // Rays have grown with minor versions: a library of another one writes past them.
         const auto version = rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_VERSION);
         if (version / 100 != RTC_VERSION / 100)
-            throw std::runtime_error("this was compiled with Embree " RTC_VERSION_STRING ", but runs with version " + std::to_string(version) +
+            throw std::runtime_error("this was compiled with Embree " RTC_VERSION_STRING ", but runs with version " +
+                                     std::to_string(version) +
                                      " (of the form 30000 for 3.0.0): install headers and library of the same release");
         scene_.reset(rtcNewScene(device_.get()));
         // Without it, rays may slip through the edges between triangles.

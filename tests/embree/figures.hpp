@@ -14,7 +14,9 @@ struct Duck {
 inline Duck duck()
 {
     Body body(.16f);
-    body.egg({0, .27f, 0}, {.46f, .27f, .33f}).egg({-.36f, .4f, 0}, {.2f, .13f, .17f}, -35).limb({.2f, .42f, 0}, .2f, {.24f, .72f, 0}, .24f);
+    body.egg({0, .27f, 0}, {.46f, .27f, .33f})
+        .egg({-.36f, .4f, 0}, {.2f, .13f, .17f}, -35)
+        .limb({.2f, .42f, 0}, .2f, {.24f, .72f, 0}, .24f);
     body.egg({.24f, .74f, 0}, {.27f, .26f, .26f});
     body.egg({-.08f, .36f, .31f}, {.25f, .15f, .06f}, -12).mirrored(1);
     Body beak(.06f);
@@ -37,15 +39,26 @@ inline Mesh leaper()
     Body body(.07f);
     body.limbs({{{-.16f, .42f, 0}, .15f}, {{-.02f, .56f, 0}, .135f}, {{.1f, .68f, 0}, .1f}, {{.17f, .8f, 0}, .065f}});
     body.limbs({{{.17f, .8f, 0}, .065f}, {{.22f, .88f, 0}, .085f}, {{.36f, .85f, 0}, .05f}, {{.42f, .835f, 0}, .032f}});
-    body.limbs({{{-.16f, .4f, 0}, .13f}, {{-.34f, .24f, 0}, .075f}, {{-.55f, .12f, 0}, .05f}, {{-.8f, .06f, 0}, .032f}, {{-1, .09f, 0}, .012f}});
-    body.limbs({{{-.14f, .38f, .1f}, .12f}, {{.04f, .27f, .14f}, .07f}, {{-.15f, .1f, .15f}, .04f}, {{.06f, .03f, .16f}, .035f}, {{.16f, .025f, .17f}, .02f}});
+    body.limbs({{{-.16f, .4f, 0}, .13f},
+                {{-.34f, .24f, 0}, .075f},
+                {{-.55f, .12f, 0}, .05f},
+                {{-.8f, .06f, 0}, .032f},
+                {{-1, .09f, 0}, .012f}});
+    body.limbs({{{-.14f, .38f, .1f}, .12f},
+                {{.04f, .27f, .14f}, .07f},
+                {{-.15f, .1f, .15f}, .04f},
+                {{.06f, .03f, .16f}, .035f},
+                {{.16f, .025f, .17f}, .02f}});
     body.mirrored(4);
-    body.limbs({{{.08f, .62f, .09f}, .045f}, {{.14f, .5f, .15f}, .03f}, {{.26f, .5f, .13f}, .022f}, {{.3f, .46f, .12f}, .014f}}).mirrored(3);
+    body.limbs({{{.08f, .62f, .09f}, .045f}, {{.14f, .5f, .15f}, .03f}, {{.26f, .5f, .13f}, .022f}, {{.3f, .46f, .12f}, .014f}})
+        .mirrored(3);
     body.limbs({{{.17f, .94f, .05f}, .03f}, {{.1f, 1.03f, .1f}, .024f}, {{.06f, 1.1f, .12f}, .006f}}).mirrored(2);
     Body fins(.01f);
     fins.limb({-.06f, .68f, 0}, .035f, {-.17f, .78f, 0}, .005f).limb({-.2f, .55f, 0}, .03f, {-.31f, .63f, 0}, .005f);
     auto field = [&](Vector center, float radius) {
-        return [flesh = body.near(center, radius), fin = fins.near(center, radius)](Vector p) { return blend(flesh(p), fin(p), .04f); };
+        return [flesh = body.near(center, radius), fin = fins.near(center, radius)](Vector p) {
+            return blend(flesh(p), fin(p), .04f);
+        };
     };
     return sculpt(field, {-1.1f, -.05f, -.3f}, {.6f, 1.2f, .3f}, .011f);
 }
@@ -84,7 +97,8 @@ inline Mesh dragon()
     }
     for (float t : {.42f, .72f}) // two pairs of legs
         for (float s : {-1.0f, 1.0f}) {
-            Vector hip = spine(t), forward = demo::normalize(spine(t + .02f) - spine(t - .02f)), out = s * demo::normalize(cross(forward, up));
+            Vector hip = spine(t), forward = demo::normalize(spine(t + .02f) - spine(t - .02f)),
+                   out = s * demo::normalize(cross(forward, up));
             Vector knee = hip + .14f * out + .04f * up + .02f * forward, foot{knee.x + .08f * out.x, .03f, knee.z + .08f * out.z};
             body.limbs({{hip, .06f}, {knee, .045f}, {foot, .03f}});
             for (float toe : {-.05f, 0.0f, .05f})

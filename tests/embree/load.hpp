@@ -21,10 +21,12 @@ inline Mesh load(const std::string &path)
     Assimp::Importer importer;
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 60);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const aiScene *file = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals |
-                                                      aiProcess_PreTransformVertices | aiProcess_FindDegenerates | aiProcess_SortByPType);
+    const aiScene *file =
+        importer.ReadFile(path, aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals |
+                                    aiProcess_PreTransformVertices | aiProcess_FindDegenerates | aiProcess_SortByPType);
     if (!file)
-        throw std::runtime_error("cannot load the mesh " + path + ": " + importer.GetErrorString());
+        throw std::runtime_error("cannot load the mesh " + path + ": " + importer.GetErrorString() +
+                                 " $NOISEFLOOR_MESHES may name the folder, which is tests/embree/meshes of the sources.");
     Mesh mesh;
     for (unsigned m = 0; m < file->mNumMeshes; ++m) {
         const aiMesh &part = *file->mMeshes[m];

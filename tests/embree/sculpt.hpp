@@ -144,8 +144,10 @@ inline Mesh sculpt(const LocalField &local, Vector low, Vector high, float cell)
             }
     auto gradient = [&](const Field &field, Vector p) {
         const float h = 0.5f * cell;
-        return Vector{field(p + Vector{h, 0, 0}) - field(p - Vector{h, 0, 0}), field(p + Vector{0, h, 0}) - field(p - Vector{0, h, 0}),
-                      field(p + Vector{0, 0, h}) - field(p - Vector{0, 0, h})} / (2 * h);
+        return Vector{field(p + Vector{h, 0, 0}) - field(p - Vector{h, 0, 0}),
+                      field(p + Vector{0, h, 0}) - field(p - Vector{0, h, 0}),
+                      field(p + Vector{0, 0, h}) - field(p - Vector{0, 0, h})} /
+               (2 * h);
     };
     std::vector<uint32_t> index(value.size(), ~0u);
     std::vector<Vector> points, normals;

@@ -40,14 +40,18 @@ inline std::vector<Profile> rounded(const std::vector<Profile> &points, int step
             auto at = [t](float p, float q, float r, float s) {
                 return q + 0.5f * t * (r - p + t * (2 * p - 5 * q + 4 * r - s + t * (3 * (q - r) + s - p)));
             };
-            result.push_back({std::max(0.0f, at(a.radius, b.radius, c.radius, d.radius)), at(a.height, b.height, c.height, d.height)});
+            result.push_back(
+                {std::max(0.0f, at(a.radius, b.radius, c.radius, d.radius)), at(a.height, b.height, c.height, d.height)});
         }
     }
     result.push_back(points.back());
     return result;
 }
 
-inline Mesh cylinder(float radius, float height, int sides = 48) { return lathe({{0, 0}, {radius, 0}, {radius, height}, {0, height}}, sides); }
+inline Mesh cylinder(float radius, float height, int sides = 48)
+{
+    return lathe({{0, 0}, {radius, 0}, {radius, height}, {0, height}}, sides);
+}
 
 inline Mesh ball(Vector radii, int sides = 48)
 {

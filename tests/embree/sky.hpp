@@ -30,7 +30,10 @@ inline std::shared_ptr<const demo::Environment> map(uint32_t width, uint32_t hei
 }
 
 // A lobe of light around a unit direction, 1 in its middle; the larger `sharpness`, the smaller.
-inline float glow(Vector direction, Vector around, float sharpness) { return std::exp(sharpness * (dot(direction, demo::normalize(around)) - 1)); }
+inline float glow(Vector direction, Vector around, float sharpness)
+{
+    return std::exp(sharpness * (dot(direction, demo::normalize(around)) - 1));
+}
 
 // Evening: blue above, warm at the horizon, a glow where the sun is, large and soft unless it is sharpened, and another colour opposite.
 inline std::shared_ptr<const demo::Environment> smooth_sky(Vector sun, float sharpness = 9, float strength = 1)
@@ -52,7 +55,8 @@ inline std::shared_ptr<const demo::Environment> town_sky(Vector sun)
         float longitude = std::atan2(d.x, d.z), elevation = std::asin(std::min(1.0f, std::max(-1.0f, d.y)));
         Color sky = mix({.34f, .26f, .3f}, {.06f, .1f, .24f}, smoothstep(0, .8f, d.y));
         auto hash = [](int a, int b, int c) {
-            uint64_t key = demo::mix(static_cast<uint64_t>(a + 4096) << 40 ^ static_cast<uint64_t>(b + 4096) << 20 ^ static_cast<uint64_t>(c + 64));
+            uint64_t key = demo::mix(static_cast<uint64_t>(a + 4096) << 40 ^ static_cast<uint64_t>(b + 4096) << 20 ^
+                                     static_cast<uint64_t>(c + 64));
             return demo::unit(static_cast<uint32_t>(key));
         };
         // Houses, each with its own height; windows on a grid, every third lit.

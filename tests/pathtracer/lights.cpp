@@ -82,10 +82,12 @@ void environment_density()
     double sum = 0;
     constexpr int rows = 18 * 40, columns = 37 * 40;
     for (int y = 0; y < rows; ++y) {
-        double theta = 3.14159265358979 * (y + 0.5) / rows, area = 2 * 3.14159265358979 * 3.14159265358979 / rows / columns * std::sin(theta);
+        constexpr double pi = 3.14159265358979;
+        double theta = pi * (y + 0.5) / rows, area = 2 * pi * pi / rows / columns * std::sin(theta);
         for (int x = 0; x < columns; ++x) {
-            double phi = 2 * 3.14159265358979 * (x + 0.5) / columns;
-            Vector d{static_cast<float>(std::sin(theta) * std::sin(phi)), static_cast<float>(std::cos(theta)), static_cast<float>(std::sin(theta) * std::cos(phi))};
+            double phi = 2 * pi * (x + 0.5) / columns;
+            Vector d{static_cast<float>(std::sin(theta) * std::sin(phi)), static_cast<float>(std::cos(theta)),
+                     static_cast<float>(std::sin(theta) * std::cos(phi))};
             sum += area * sky->pdf(d);
             if (luminance(sky->radiance(d)) > 0)
                 expect(sky->pdf(d) > 0, "environment: light where nothing is sampled");

@@ -14,7 +14,8 @@ void densities(const LitScene &lit)
     const Vector from{.1f, .1f, .2f};
     for (int i = 0; i < 1500000; ++i)
         integral.add(4 * pi * drawing_density(lit.scene.lights[0], from, direction(random)));
-    expect_mean((std::string(lit.name) + ": integral of the density of what is drawn").c_str(), integral, 1, lit.scene.environment() ? 0.2 : 0.05);
+    const std::string what = std::string(lit.name) + ": integral of the density of what is drawn";
+    expect_mean(what.c_str(), integral, 1, lit.scene.environment() ? 0.2 : 0.05);
     for (int i = 0; i < 1000; ++i) {
         float u = random(), v = random();
         LightSample sample = sample_light(lit.scene.lights[0], from, u, v);

@@ -21,7 +21,9 @@ inline Vector direction(Random &random)
 inline void cube(Builder &builder, Vector low, float size, uint32_t material, bool inwards = false)
 {
     Vector x{size, 0, 0}, y{0, size, 0}, z{0, 0, size};
-    auto face = [&](Vector corner, Vector a, Vector b) { inwards ? builder.parallelogram(corner, b, a, material) : builder.parallelogram(corner, a, b, material); };
+    auto face = [&](Vector corner, Vector a, Vector b) {
+        builder.parallelogram(corner, inwards ? b : a, inwards ? a : b, material);
+    };
     face(low, y, x);
     face(low, x, z);
     face(low, z, y);

@@ -24,7 +24,16 @@ inline void tile_wall(Stage &stage, Vector corner, Vector edge1, Vector edge2, f
 
 inline Mesh tub()
 {
-    std::vector<Profile> profile = rounded({{0, .1f}, {.28f, .1f}, {.36f, .2f}, {.41f, .5f}, {.45f, .56f}, {.43f, .58f}, {.38f, .52f}, {.33f, .25f}, {.25f, .17f}, {0, .16f}});
+    std::vector<Profile> profile = rounded({{0, .1f},
+                                            {.28f, .1f},
+                                            {.36f, .2f},
+                                            {.41f, .5f},
+                                            {.45f, .56f},
+                                            {.43f, .58f},
+                                            {.38f, .52f},
+                                            {.33f, .25f},
+                                            {.25f, .17f},
+                                            {0, .16f}});
     Mesh mesh = scale({1.9f, 1, 1}) * lathe(profile, 96, 60);
     for (float x : {-.45f, .45f})
         for (float z : {-.2f, .2f})
@@ -32,7 +41,11 @@ inline Mesh tub()
     return mesh;
 }
 
-inline Mesh basin() { return lathe(rounded({{0, 0}, {.12f, 0}, {.2f, .07f}, {.24f, .14f}, {.225f, .15f}, {.18f, .08f}, {.08f, .03f}, {0, .025f}}), 64, 60); }
+inline Mesh basin()
+{
+    return lathe(rounded({{0, 0}, {.12f, 0}, {.2f, .07f}, {.24f, .14f}, {.225f, .15f}, {.18f, .08f}, {.08f, .03f}, {0, .025f}}), 64,
+                 60);
+}
 
 inline Mesh toilet()
 {
@@ -47,9 +60,11 @@ inline Mesh toilet()
 inline Mesh faucet()
 {
     Mesh mesh = cylinder(.022f, .1f, 24);
-    mesh.add(tube([](float t) { return Vector{0, .1f + .1f * std::sin(demo::pi * t), .07f * (1 - std::cos(demo::pi * t))}; }, [](float) { return .012f; }, 24));
+    mesh.add(tube([](float t) { return Vector{0, .1f + .1f * std::sin(demo::pi * t), .07f * (1 - std::cos(demo::pi * t))}; },
+                  [](float) { return .012f; }, 24));
     for (float x : {-.09f, .09f})
-        mesh.add(move({x, 0, 0}) * lathe(rounded({{0, 0}, {.02f, 0}, {.014f, .03f}, {.03f, .05f}, {.025f, .07f}, {0, .075f}}), 24, 60));
+        mesh.add(move({x, 0, 0}) *
+                 lathe(rounded({{0, 0}, {.02f, 0}, {.014f, .03f}, {.03f, .05f}, {.025f, .07f}, {0, .075f}}), 24, 60));
     return mesh;
 }
 
@@ -58,10 +73,13 @@ inline void make_bathroom(uint32_t, float aspect, Scene &scene)
     Stage stage(scene);
     scene.layout.choice = true;
     scene.camera.look({1.3f, 1.5f, 2.6f}, {-.2f, .84f, -.6f}, 44, aspect);
-    const uint32_t white = stage.material({.78f, .8f, .8f}, {.08f, .08f, .08f}, 40), blue = stage.material({.2f, .4f, .5f}, {.1f, .1f, .1f}, 40);
+    const uint32_t white = stage.material({.78f, .8f, .8f}, {.08f, .08f, .08f}, 40),
+                   blue = stage.material({.2f, .4f, .5f}, {.1f, .1f, .1f}, 40);
     const uint32_t pale = stage.material({.62f, .72f, .74f}, {.1f, .1f, .1f}, 40), plaster = stage.material({.72f, .68f, .6f});
-    const uint32_t dark = stage.material({.16f, .17f, .19f}, {.12f, .12f, .12f}, 40), chrome = stage.material({.12f, .12f, .13f}, {.7f, .7f, .7f}, 60);
-    const uint32_t porcelain = stage.material({.8f, .8f, .78f}, {.12f, .12f, .12f}, 60), oak = stage.material({.45f, .28f, .14f}, {.08f, .08f, .08f}, 25);
+    const uint32_t dark = stage.material({.16f, .17f, .19f}, {.12f, .12f, .12f}, 40),
+                   chrome = stage.material({.12f, .12f, .13f}, {.7f, .7f, .7f}, 60);
+    const uint32_t porcelain = stage.material({.8f, .8f, .78f}, {.12f, .12f, .12f}, 60),
+                   oak = stage.material({.45f, .28f, .14f}, {.08f, .08f, .08f}, 25);
     // The room: x in [-1.7, 1.7], z from -1.5; tiles up to a border.
     tile_wall(stage, {-1.7f, 0, -1.5f}, {3.4f, 0, 0}, {0, 1.36f, 0}, .17f, {white, pale});
     tile_wall(stage, {-1.7f, 1.36f, -1.5f}, {3.4f, 0, 0}, {0, .17f, 0}, .17f, {blue});
@@ -75,7 +93,8 @@ inline void make_bathroom(uint32_t, float aspect, Scene &scene)
     stage.put(faucet(), chrome, move({-1.12f, .57f, -.83f}));
     stage.put(box({.5f, .03f, .34f}, .01f), oak, move({-1.12f, .585f, .25f}));
     stage.sphere({-1.2f, .66f, .22f}, .045f, stage.material({.75f, .6f, .25f}));
-    stage.put(lathe(rounded({{0, 0}, {.03f, 0}, {.03f, .1f}, {.012f, .13f}, {.012f, .16f}, {0, .16f}}), 32, 50), blue, move({-.98f, .615f, .3f}));
+    stage.put(lathe(rounded({{0, 0}, {.03f, 0}, {.03f, .1f}, {.012f, .13f}, {.012f, .16f}, {0, .16f}}), 32, 50), blue,
+              move({-.98f, .615f, .3f}));
     // Cabinet, basin, mirror and shelf.
     stage.put(box({1.15f, .66f, .46f}, .02f), oak, move({.1f, .12f, -1.24f}));
     for (float x : {-.17f, .37f}) {
@@ -88,7 +107,8 @@ inline void make_bathroom(uint32_t, float aspect, Scene &scene)
     stage.put(box({.96f, .8f, .03f}, .012f), oak, move({.1f, 1.22f, -1.49f}));
     stage.put(box({.88f, .72f, .02f}), stage.material({.16f, .2f, .22f}, {.6f, .6f, .6f}, 30), move({.1f, 1.26f, -1.475f}));
     stage.put(box({.07f, .17f, .07f}, .02f), pale, move({.56f, .82f, -1.3f}));
-    stage.put(lathe(rounded({{0, 0}, {.035f, 0}, {.04f, .07f}, {.036f, .1f}, {.033f, .1f}, {.034f, .03f}, {0, .02f}}), 32, 60), blue, move({-.36f, .82f, -1.25f}));
+    stage.put(lathe(rounded({{0, 0}, {.035f, 0}, {.04f, .07f}, {.036f, .1f}, {.033f, .1f}, {.034f, .03f}, {0, .02f}}), 32, 60),
+              blue, move({-.36f, .82f, -1.25f}));
     stage.put(rod({-.36f, .84f, -1.25f}, {-.31f, 1.01f, -1.26f}, .006f), stage.material({.7f, .2f, .15f}), {});
     // Toilet, mat, and a towel on its rail.
     stage.put(toilet(), porcelain, move({1.12f, .015f, -1.15f}));
@@ -106,7 +126,11 @@ inline void make_bathroom(uint32_t, float aspect, Scene &scene)
     stage.put(box({.5f, .025f, .2f}, .01f), oak, move({1.12f, 1.4f, -1.4f}));
     stage.lamp(rectangle({.9f, 1.398f, -1.32f}, {0, 0, -.12f}, {.44f, 0, 0}), {7, 5.2f, 3.4f});
     for (float x : {.98f, 1.12f, 1.26f})
-        stage.put(lathe(rounded({{0, 0}, {.04f, 0}, {.045f, .1f}, {.018f, .16f}, {.022f, .2f}, {0, .2f}}), 32, 50), x > 1.2f ? blue : x > 1.1f ? dark : pale, move({x, 1.425f, -1.4f}));
+        stage.put(lathe(rounded({{0, 0}, {.04f, 0}, {.045f, .1f}, {.018f, .16f}, {.022f, .2f}, {0, .2f}}), 32, 50),
+                  x > 1.2f   ? blue
+                  : x > 1.1f ? dark
+                             : pale,
+                  move({x, 1.425f, -1.4f}));
 }
 
 } // namespace harness

@@ -31,22 +31,29 @@ inline Helicopter helicopter()
     Body tail(.03f);
     tail.limb({-1.72f, .84f, 0}, .04f, {-2, 1.22f, 0}, .022f).limb({-1.78f, .86f, 0}, .03f, {-1.93f, .64f, 0}, .016f);
     tail.limb({-1.5f, .82f, -.34f}, .018f, {-1.5f, .82f, .34f}, .018f);
-    h.hull = sculpt([&](Vector center, float radius) {
-        return [a = hull.near(center, radius), b = tail.near(center, radius)](Vector p) { return blend(a(p), b(p), .06f); };
-    }, {-2.2f, .1f, -.5f}, {1, 1.4f, .5f}, .022f);
+    h.hull = sculpt(
+        [&](Vector center, float radius) {
+            return [a = hull.near(center, radius), b = tail.near(center, radius)](Vector p) { return blend(a(p), b(p), .06f); };
+        },
+        {-2.2f, .1f, -.5f}, {1, 1.4f, .5f}, .022f);
     Body dome(.05f);
     dome.egg({.36f, .68f, 0}, {.46f, .26f, .27f}, -14);
     h.glass = sculpt(dome, {-.3f, .2f, -.5f}, {1.1f, 1.2f, .5f}, .022f);
     // Skids, and what carries them.
     for (float side : {-1.0f, 1.0f}) {
         const float z = .36f * side;
-        h.metal.add(tube([=](float t) { return Vector{-.7f + 1.5f * t, .03f + .16f * std::pow(t, 8.0f), z}; }, [](float) { return .028f; }, 40));
+        h.metal.add(tube([=](float t) { return Vector{-.7f + 1.5f * t, .03f + .16f * std::pow(t, 8.0f), z}; },
+                         [](float) { return .028f; }, 40));
         for (float x : {-.35f, .35f})
-            h.metal.add(tube([=](float t) { return Vector{x, .42f - .39f * t * t, z * (.45f + .55f * std::sin(demo::pi / 2 * t))}; }, [](float) { return .022f; }, 16));
+            h.metal.add(
+                tube([=](float t) { return Vector{x, .42f - .39f * t * t, z * (.45f + .55f * std::sin(demo::pi / 2 * t))}; },
+                     [](float) { return .022f; }, 16));
         // Turbines and pods at both sides.
-        h.metal.add(move({-.5f, .86f, .17f * side}) * turn({0, 0, 1}, 90) * lathe({{.05f, 0}, {.075f, 0}, {.085f, .3f}, {.06f, .32f}, {.05f, .05f}, {0, .05f}}, 32, 40));
+        h.metal.add(move({-.5f, .86f, .17f * side}) * turn({0, 0, 1}, 90) *
+                    lathe({{.05f, 0}, {.075f, 0}, {.085f, .3f}, {.06f, .32f}, {.05f, .05f}, {0, .05f}}, 32, 40));
         h.metal.add(rod({-.1f, .56f, .2f * side}, {-.1f, .52f, .5f * side}, .03f));
-        h.marks.add(move({.22f, .5f, .5f * side}) * turn({0, 0, 1}, 90) * lathe(rounded({{0, 0}, {.04f, .03f}, {.07f, .15f}, {.07f, .5f}, {.04f, .6f}, {0, .6f}}), 32, 60));
+        h.marks.add(move({.22f, .5f, .5f * side}) * turn({0, 0, 1}, 90) *
+                    lathe(rounded({{0, 0}, {.04f, .03f}, {.07f, .15f}, {.07f, .5f}, {.04f, .6f}, {0, .6f}}), 32, 60));
     }
     h.metal.add(rod({-.12f, .95f, 0}, {-.12f, 1.14f, 0}, .05f, 24));
     h.metal.add(move({-.12f, 1.16f, 0}) * rotor(4, 1.45f, .13f));
@@ -63,12 +70,14 @@ inline void make_chopper(uint32_t, float aspect, Scene &scene)
     Stage stage(scene);
     scene.camera.look({2.1f, 2.05f, 3.6f}, {-.52f, .58f, -.1f}, 38, aspect);
     // The pad: concrete slabs, and a ring.
-    const uint32_t slab[2] = {stage.material({.42f, .41f, .39f}), stage.material({.38f, .375f, .36f})}, paint = stage.material({.75f, .68f, .3f});
+    const uint32_t slab[2] = {stage.material({.42f, .41f, .39f}), stage.material({.38f, .375f, .36f})},
+                   paint = stage.material({.75f, .68f, .3f});
     stage.put(lathe({{0, -.04f}, {40, -.04f}, {40, -.03f}, {0, -.03f}}, 64), stage.material({.3f, .3f, .29f}));
     const Mesh tile = box({.985f, .03f, .985f}, .008f, 2);
     for (int i = -4; i < 4; ++i)
         for (int j = -4; j < 4; ++j)
-            stage.put(tile, slab[(i * 3 + j * 5 + 32) % 2], move({static_cast<float>(i) + .5f, -.03f, static_cast<float>(j) + .5f}));
+            stage.put(tile, slab[(i * 3 + j * 5 + 32) % 2],
+                      move({static_cast<float>(i) + .5f, -.03f, static_cast<float>(j) + .5f}));
     stage.put(lathe({{1.45f, 0}, {1.6f, 0}, {1.6f, .003f}, {1.45f, .003f}}, 96), paint);
     const Helicopter h = helicopter();
     const Transform place = turn_up(12);

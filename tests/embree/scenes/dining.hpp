@@ -20,19 +20,44 @@ inline Mesh chair()
 
 inline Mesh plate(float radius)
 {
-    std::vector<Profile> profile = rounded({{0, 0}, {.55f, 0}, {.7f, .04f}, {1, .12f}, {.99f, .15f}, {.68f, .07f}, {.5f, .04f}, {0, .035f}});
+    std::vector<Profile> profile =
+        rounded({{0, 0}, {.55f, 0}, {.7f, .04f}, {1, .12f}, {.99f, .15f}, {.68f, .07f}, {.5f, .04f}, {0, .035f}});
     return scale(radius) * lathe(profile, 64, 60);
 }
 
 inline Mesh goblet()
 {
-    return lathe(rounded({{0, 0}, {.036f, 0}, {.037f, .004f}, {.012f, .012f}, {.006f, .03f}, {.006f, .085f}, {.02f, .1f}, {.04f, .13f}, {.042f, .16f}, {.035f, .2f}, {.033f, .2f},
-                          {.04f, .16f}, {.036f, .13f}, {.015f, .108f}, {0, .105f}}), 48, 60);
+    return lathe(rounded({{0, 0},
+                          {.036f, 0},
+                          {.037f, .004f},
+                          {.012f, .012f},
+                          {.006f, .03f},
+                          {.006f, .085f},
+                          {.02f, .1f},
+                          {.04f, .13f},
+                          {.042f, .16f},
+                          {.035f, .2f},
+                          {.033f, .2f},
+                          {.04f, .16f},
+                          {.036f, .13f},
+                          {.015f, .108f},
+                          {0, .105f}}),
+                 48, 60);
 }
 
 inline Mesh vase()
 {
-    return lathe(rounded({{0, 0}, {.05f, 0}, {.09f, .08f}, {.1f, .15f}, {.06f, .25f}, {.035f, .3f}, {.05f, .34f}, {.045f, .34f}, {.03f, .3f}, {0, .25f}}), 64, 60);
+    return lathe(rounded({{0, 0},
+                          {.05f, 0},
+                          {.09f, .08f},
+                          {.1f, .15f},
+                          {.06f, .25f},
+                          {.035f, .3f},
+                          {.05f, .34f},
+                          {.045f, .34f},
+                          {.03f, .3f},
+                          {0, .25f}}),
+                 64, 60);
 }
 
 // Knife and fork lie beside a plate at the origin, whose guest sits at +z.
@@ -48,8 +73,10 @@ inline Mesh cutlery()
 
 inline void lay_table(Stage &stage, float top)
 {
-    const uint32_t china = stage.material({.78f, .78f, .76f}, {.1f, .1f, .1f}, 40), rim = stage.material({.2f, .3f, .5f}, {.1f, .1f, .1f}, 40);
-    const uint32_t silver = stage.material({.25f, .25f, .25f}, {.5f, .5f, .5f}, 40), crystal = stage.material({.35f, .4f, .42f}, {.3f, .3f, .3f}, 50);
+    const uint32_t china = stage.material({.78f, .78f, .76f}, {.1f, .1f, .1f}, 40),
+                   rim = stage.material({.2f, .3f, .5f}, {.1f, .1f, .1f}, 40);
+    const uint32_t silver = stage.material({.25f, .25f, .25f}, {.5f, .5f, .5f}, 40),
+                   crystal = stage.material({.35f, .4f, .42f}, {.3f, .3f, .3f}, 50);
     const Mesh small = plate(.085f), large = plate(.135f), glass = goblet(), tools = cutlery();
     auto cover = [&](Vector at, float degrees) {
         Transform place = move({at.x, top, at.z}) * turn_up(degrees);
@@ -66,9 +93,11 @@ inline void lay_table(Stage &stage, float top)
     stage.put(shipped("teapot.ply"), china, move({-.2f, top, 0}) * turn_up(25) * scale(.15f));
     stage.put(vase(), stage.material({.1f, .3f, .35f}, {.25f, .25f, .25f}, 40), move({.17f, top, .02f}));
     const uint32_t bowl = stage.material({.55f, .35f, .15f}, {.1f, .1f, .1f}, 30);
-    stage.put(lathe(rounded({{0, .01f}, {.05f, 0}, {.1f, .03f}, {.13f, .09f}, {.122f, .09f}, {.09f, .04f}, {0, .02f}}), 64, 60), bowl, move({-.62f, top, .02f}));
+    stage.put(lathe(rounded({{0, .01f}, {.05f, 0}, {.1f, .03f}, {.13f, .09f}, {.122f, .09f}, {.09f, .04f}, {0, .02f}}), 64, 60),
+              bowl, move({-.62f, top, .02f}));
     const Color fruit[3] = {{.7f, .12f, .06f}, {.75f, .42f, .05f}, {.45f, .6f, .1f}};
-    const Vector heap[6] = {{.05f, .075f, 0}, {-.03f, .075f, .045f}, {-.03f, .075f, -.045f}, {0, .13f, 0}, {.06f, .1f, .055f}, {-.075f, .09f, 0}};
+    const Vector heap[6] = {{.05f, .075f, 0}, {-.03f, .075f, .045f}, {-.03f, .075f, -.045f},
+                            {0, .13f, 0},     {.06f, .1f, .055f},    {-.075f, .09f, 0}};
     for (int i = 0; i < 6; ++i)
         stage.sphere(heap[i] + Vector{-.62f, top, .02f}, .036f, stage.material(fruit[i % 3], {.15f, .15f, .15f}, 40));
 }
@@ -77,13 +106,15 @@ inline void make_dining(uint32_t, float aspect, Scene &scene)
 {
     Stage stage(scene);
     scene.camera.look({1.1f, 1.8f, 1.75f}, {-.06f, .66f, -.06f}, 42, aspect);
-    const uint32_t wall = stage.material({.5f, .55f, .5f}), panel = stage.material({.7f, .68f, .62f}), wood = stage.material({.36f, .2f, .1f}, {.1f, .1f, .1f}, 30);
+    const uint32_t wall = stage.material({.5f, .55f, .5f}), panel = stage.material({.7f, .68f, .62f}),
+                   wood = stage.material({.36f, .2f, .1f}, {.1f, .1f, .1f}, 30);
     stage.parallelogram({-2.2f, 0, -1.6f}, {6, 0, 0}, {0, 3, 0}, wall);
     stage.parallelogram({-2.2f, 0, 4}, {0, 0, -5.6f}, {0, 3, 0}, wall);
     const Color plank[3] = {{.42f, .29f, .18f}, {.38f, .25f, .15f}, {.45f, .32f, .2f}};
     for (int i = 0; i < 40; ++i) {
         float z = -1.6f + .14f * static_cast<float>(i);
-        stage.parallelogram({-2.2f, 0, z + .137f}, {6, 0, 0}, {0, 0, -.134f}, stage.material(plank[(i * 7) % 3], {.08f, .08f, .08f}, 20));
+        stage.parallelogram({-2.2f, 0, z + .137f}, {6, 0, 0}, {0, 0, -.134f},
+                            stage.material(plank[(i * 7) % 3], {.08f, .08f, .08f}, 20));
     }
     stage.parallelogram({-2.2f, -.004f, 4}, {6, 0, 0}, {0, 0, -5.6f}, stage.material({.1f, .07f, .05f}));
     // Panelling, and pictures.

@@ -22,7 +22,8 @@ inline void make_duck(uint32_t, float aspect, Scene &scene)
     stage.put(box({.8f, .05f, .6f}, .015f), stage.material({.45f, .3f, .18f}, {.1f, .1f, .1f}, 30), move({0, .98f, -.55f}));
 
     const Duck bird = duck();
-    const uint32_t beak = stage.material({.75f, .28f, .05f}, {.15f, .15f, .15f}, 30), black = stage.material({.03f, .03f, .03f}, {.4f, .4f, .4f}, 60);
+    const uint32_t beak = stage.material({.75f, .28f, .05f}, {.15f, .15f, .15f}, 30),
+                   black = stage.material({.03f, .03f, .03f}, {.4f, .4f, .4f}, 60);
     auto place = [&](Transform where, Color color) {
         stage.put(bird.body, stage.material(color, {.12f, .12f, .12f}, 30), where);
         stage.put(bird.beak, beak, where);

@@ -32,7 +32,8 @@ inline void make_killeroos(uint32_t, float aspect, Scene &scene)
     scene.camera.look({.25f, 1.25f, 4.4f}, {.02f, .62f, 0}, 33, aspect);
     stage.put(backdrop(8, 6, 1.2f, 5, 1.4f), stage.material({.62f, .57f, .5f}));
     const Mesh beast = leaper();
-    const uint32_t hide = stage.material({.42f, .25f, .13f}, {.12f, .11f, .1f}, 25), steel = stage.material({.16f, .28f, .42f}, {.2f, .22f, .25f}, 40);
+    const uint32_t hide = stage.material({.42f, .25f, .13f}, {.12f, .11f, .1f}, 25),
+                   steel = stage.material({.16f, .28f, .42f}, {.2f, .22f, .25f}, 40);
     stage.put(beast, hide, move({-.72f, 0, .15f}) * turn_up(-28));
     stage.put(beast, steel, move({.62f, .22f, -.1f}) * turn_up(208) * turn({0, 0, 1}, 9), {-.07f, .06f, .02f});
     stage.put(beast, stage.material({.5f, .46f, .36f}), move({.15f, 0, -1.25f}) * turn_up(-70) * scale(.8f));

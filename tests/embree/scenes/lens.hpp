@@ -9,7 +9,17 @@ namespace harness {
 // A turned foot and stem up to `neck`, which most pieces share; squares are one unit wide.
 inline std::vector<Profile> stem(float neck)
 {
-    return rounded({{0, 0}, {.36f, 0}, {.37f, .08f}, {.3f, .13f}, {.31f, .19f}, {.2f, .28f}, {.13f, .5f * neck}, {.11f, .85f * neck}, {.21f, .92f * neck}, {.21f, .96f * neck}, {.1f, neck}});
+    return rounded({{0, 0},
+                    {.36f, 0},
+                    {.37f, .08f},
+                    {.3f, .13f},
+                    {.31f, .19f},
+                    {.2f, .28f},
+                    {.13f, .5f * neck},
+                    {.11f, .85f * neck},
+                    {.21f, .92f * neck},
+                    {.21f, .96f * neck},
+                    {.1f, neck}});
 }
 
 inline Mesh turned(float neck, const std::vector<Profile> &head)
@@ -29,7 +39,8 @@ inline Mesh bishop()
 inline Mesh rook()
 {
     std::vector<Profile> profile = stem(.8f);
-    for (Profile p : std::vector<Profile>{{.19f, .84f}, {.19f, 1}, {.27f, 1.04f}, {.27f, 1.12f}, {.18f, 1.12f}, {.18f, 1.05f}, {0, 1.05f}})
+    for (Profile p :
+         std::vector<Profile>{{.19f, .84f}, {.19f, 1}, {.27f, 1.04f}, {.27f, 1.12f}, {.18f, 1.12f}, {.18f, 1.05f}, {0, 1.05f}})
         profile.push_back(p);
     Mesh mesh = lathe(profile, 56, 40);
     for (int i = 0; i < 6; ++i)
@@ -60,8 +71,10 @@ inline void make_lens(uint32_t, float aspect, Scene &scene)
     scene.camera.look(eye, {.3f, .45f, 0}, 36, aspect);
     scene.camera.aperture = .17f;
     scene.camera.focus = demo::dot(sharp - eye, scene.camera.forward);
-    const uint32_t light = stage.material({.72f, .62f, .46f}, {.08f, .08f, .08f}, 16), dark = stage.material({.22f, .12f, .075f}, {.08f, .08f, .08f}, 16);
-    const uint32_t ivory = stage.material({.74f, .68f, .55f}, {.1f, .1f, .1f}, 16), ebony = stage.material({.09f, .06f, .055f}, {.16f, .15f, .14f}, 12);
+    const uint32_t light = stage.material({.72f, .62f, .46f}, {.08f, .08f, .08f}, 16),
+                   dark = stage.material({.22f, .12f, .075f}, {.08f, .08f, .08f}, 16);
+    const uint32_t ivory = stage.material({.74f, .68f, .55f}, {.1f, .1f, .1f}, 16),
+                   ebony = stage.material({.09f, .06f, .055f}, {.16f, .15f, .14f}, 12);
     stage.put(lathe({{0, -.5f}, {40, -.5f}, {40, -.49f}, {0, -.49f}}, 64), stage.material({.3f, .36f, .3f}));
     stage.put(box({8.8f, .3f, 8.8f}, .08f), stage.material({.3f, .16f, .08f}, {.1f, .1f, .1f}, 16), move({0, -.32f, 0}));
     const Mesh square = box({.985f, .1f, .985f}, .012f, 2);
@@ -71,7 +84,9 @@ inline void make_lens(uint32_t, float aspect, Scene &scene)
     // The position after a few moves; files along x, ranks along -z.
     const Mesh small = pawn(), runner = bishop(), tower = rook(), lady = queen(), ruler = king();
     auto put = [&](const Mesh &mesh, int file, int rank, uint32_t material) {
-        stage.put(mesh, material, move({static_cast<float>(file) - 3.5f, 0, 3.5f - static_cast<float>(rank)}) * turn_up(static_cast<float>(17 * file + 31 * rank)));
+        stage.put(mesh, material,
+                  move({static_cast<float>(file) - 3.5f, 0, 3.5f - static_cast<float>(rank)}) *
+                      turn_up(static_cast<float>(17 * file + 31 * rank)));
     };
     for (int file : {0, 1, 5, 6, 7})
         put(small, file, 1, ivory);

@@ -10,7 +10,8 @@ class City {
 public:
     explicit City(Stage &stage) : stage_(stage)
     {
-        const Color paints[7] = {{.68f, .5f, .3f}, {.58f, .24f, .15f}, {.66f, .62f, .55f}, {.25f, .36f, .5f}, {.74f, .56f, .2f}, {.5f, .3f, .2f}, {.35f, .52f, .45f}};
+        const Color paints[7] = {{.68f, .5f, .3f},  {.58f, .24f, .15f}, {.66f, .62f, .55f}, {.25f, .36f, .5f},
+                                 {.74f, .56f, .2f}, {.5f, .3f, .2f},    {.35f, .52f, .45f}};
         for (Color paint : paints)
             walls_.push_back(stage.material(paint));
         const Color cars[5] = {{.6f, .08f, .06f}, {.1f, .2f, .5f}, {.75f, .75f, .72f}, {.08f, .08f, .09f}, {.75f, .55f, .08f}};
@@ -25,7 +26,10 @@ public:
 
     float number() { return demo::unit(static_cast<uint32_t>(demo::mix(counter_ += demo::golden))); }
     float number(float low, float high) { return low + (high - low) * number(); }
-    template <class T> const T &one(const std::vector<T> &of) { return of[static_cast<size_t>(number() * static_cast<float>(of.size()))]; }
+    template <class T> const T &one(const std::vector<T> &of)
+    {
+        return of[static_cast<size_t>(number() * static_cast<float>(of.size()))];
+    }
 
     // A house on [x, x + width] x [z, z + depth], with panes in frames on every floor.
     void house(float x, float z, float width, float depth, float height)
@@ -45,7 +49,8 @@ public:
             if (number() < .4f)
                 stage_.put(cylinder(number(.03f, .06f), number(.06f, .16f), 16), trim_, move(at));
             else
-                stage_.put(box({number(.06f, .16f), number(.04f, .12f), number(.06f, .14f)}), number() < .5f ? roof_ : wall, move(at));
+                stage_.put(box({number(.06f, .16f), number(.04f, .12f), number(.06f, .14f)}), number() < .5f ? roof_ : wall,
+                           move(at));
         }
     }
 
@@ -99,7 +104,8 @@ inline void make_microcity(uint32_t, float aspect, Scene &scene)
     scene.camera.look({6.4f, 5.2f, 8.2f}, {.1f, .1f, .1f}, 30, aspect);
     stage.put(lathe({{0, -.06f}, {60, -.06f}, {60, -.05f}, {0, -.05f}}, 64), stage.material({.3f, .34f, .3f}));
     stage.put(box({9.6f, .05f, 9.6f}), stage.material({.17f, .17f, .18f}), move({0, -.05f, 0}));
-    const uint32_t pavement = stage.material({.48f, .47f, .45f}), grass = stage.material({.22f, .38f, .14f}), line = stage.material({.75f, .75f, .7f});
+    const uint32_t pavement = stage.material({.48f, .47f, .45f}), grass = stage.material({.22f, .38f, .14f}),
+                   line = stage.material({.75f, .75f, .7f});
     const float block = 1.55f, street = .36f, pitch = block + street;
     for (int i = -2; i <= 2; ++i)
         for (int j = -2; j <= 2; ++j) {
@@ -118,7 +124,17 @@ inline void make_microcity(uint32_t, float aspect, Scene &scene)
             if (park) {
                 for (int k = 0; k < 26; ++k)
                     city.tree(center + Vector{city.number(-.68f, .68f), .02f, city.number(-.68f, .68f)}, city.number(.16f, .32f));
-                stage.put(lathe(rounded({{0, 0}, {.2f, 0}, {.2f, .05f}, {.17f, .05f}, {.16f, .03f}, {.04f, .03f}, {.03f, .14f}, {.09f, .16f}, {0, .17f}}), 48, 50), pavement, move(center + Vector{0, .02f, 0}));
+                stage.put(lathe(rounded({{0, 0},
+                                         {.2f, 0},
+                                         {.2f, .05f},
+                                         {.17f, .05f},
+                                         {.16f, .03f},
+                                         {.04f, .03f},
+                                         {.03f, .14f},
+                                         {.09f, .16f},
+                                         {0, .17f}}),
+                                48, 50),
+                          pavement, move(center + Vector{0, .02f, 0}));
                 continue;
             }
             for (float k = -.6f; k < .7f; k += .4f)
@@ -128,8 +144,9 @@ inline void make_microcity(uint32_t, float aspect, Scene &scene)
             const float width = .5f * block - .1f;
             for (int a = 0; a < 2; ++a)
                 for (int b = 0; b < 2; ++b)
-                    city.house(center.x - .5f * block + .07f + static_cast<float>(a) * (width + .06f), center.z - .5f * block + .06f + static_cast<float>(b) * (width + .02f),
-                               width - city.number(0, .12f), width - city.number(0, .12f), tall * city.number(.55f, 1.35f));
+                    city.house(center.x - .5f * block + .07f + static_cast<float>(a) * (width + .06f),
+                               center.z - .5f * block + .06f + static_cast<float>(b) * (width + .02f), width - city.number(0, .12f),
+                               width - city.number(0, .12f), tall * city.number(.55f, 1.35f));
         }
     stage.environment(smooth_sky({-.75f, .55f, .65f}, 60, 2));
 }

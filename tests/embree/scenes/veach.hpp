@@ -20,7 +20,8 @@ inline void make_veach(uint32_t, float aspect, Scene &scene)
         // So that it mirrors the lights' middle into the camera.
         Vector normal = demo::normalize(scene.camera.eye - at[i]) + demo::normalize(middle - at[i]);
         float tilt = std::atan2(normal.z, normal.y) * 180 / demo::pi;
-        stage.put(box({2.7f, .03f, .5f}, .01f), stage.material({.05f, .06f, .07f}, {.5f, .5f, .5f}, sharpness[i]), move(at[i]) * turn({1, 0, 0}, tilt));
+        stage.put(box({2.7f, .03f, .5f}, .01f), stage.material({.05f, .06f, .07f}, {.5f, .5f, .5f}, sharpness[i]),
+                  move(at[i]) * turn({1, 0, 0}, tilt));
     }
     Mesh lights;
     const float radius[4] = {.04f, .12f, .22f, .34f}, x[4] = {-1.2f, -.55f, .2f, 1.08f};
