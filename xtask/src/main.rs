@@ -11,6 +11,7 @@ mod measure;
 mod path_tracer;
 mod paths;
 mod povray;
+mod povray_patched;
 mod report;
 mod run;
 mod test;
@@ -33,6 +34,8 @@ struct Arguments {
 enum Command {
     /// Render with every estimator: pictures and a table in target/demo
     Demo(demo::Options),
+    /// Build POV-Ray with our patch, check it, and compare it with POV-Ray as it is
+    Povray(povray_patched::Options),
     /// Measure errors and times in the renderer harnesses, and write docs/report
     Report(report::Options),
     /// Run every test; installs what it needs when it may
@@ -50,6 +53,7 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Demo(options) => demo::run(&options),
+        Command::Povray(options) => povray_patched::run(&options),
         Command::Report(options) => report::run(&options),
         Command::Test(options) => test::run(&options),
         Command::Header => header::write(),

@@ -1,6 +1,8 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
-use crate::{c_tests, embree, examples, fit, header, library, path_tracer, povray, report, run, tools, train_mlp};
+use crate::{
+    c_tests, embree, examples, fit, header, library, path_tracer, povray, povray_patched, report, run, tools, train_mlp,
+};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -96,6 +98,10 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));
     steps.run("examples_c/fit_image.cpp: short runs", || fit::photograph(&archive()?));
+    steps.run(
+        "POV-Ray's patch: well formed, its licence stated, and our side of it compiles",
+        povray_patched::check_patch,
+    );
     steps.run("README.md opens with examples_c/integrate.c", examples::readme);
     steps.finish(start)
 }

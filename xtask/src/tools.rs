@@ -68,7 +68,7 @@ pub(crate) fn packages(wanted: &[Package]) -> Result<Option<String>> {
 }
 
 /// Debian's package manager is there and this user may use it.
-fn can_install() -> bool {
+pub(crate) fn can_install() -> bool {
     Path::new("/etc/debian_version").exists() && is_root()
 }
 

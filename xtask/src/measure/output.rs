@@ -20,7 +20,7 @@ impl Output {
             // Beside the folder, because files are renamed only within one file system.
             let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
             fs::create_dir_all(parent)?;
-            Ok(tempfile::Builder::new().prefix(".noisefloor-demo-").tempdir_in(parent)?)
+            Ok(tempfile::Builder::new().prefix(".noisefloor-").tempdir_in(parent)?)
         };
         let pending = create().with_context(|| format!("cannot write beside {}", folder.display()))?;
         Ok(Self { folder: folder.to_owned(), pending })

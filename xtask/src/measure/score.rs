@@ -18,21 +18,24 @@ pub(crate) struct Score {
 
 impl Score {
     pub(crate) fn new(image: &Rgb32FImage, reference: &Reference) -> Self {
-        let width = image.width() as usize;
-        let [a, b] = limited_errors(image, reference);
-        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / a.len().max(1) as f64;
-        Self {
-            raw: product(&a, &b),
-            // As for the relMSE, two halves of the reference keep its own noise out.
-            filtered: product(&gaussian(&a, width), &gaussian(&b, width)),
-            low: Spectra::new(&average(&a, &b), width).low(),
-        }
+        let [raw, filtered] = errors(image, reference);
+        let low = Spectra::new(&signed_errors(image, reference), image.width() as usize).low();
+        Self { raw, filtered, low }
     }
 
     pub(crate) fn mean(scores: &[Self]) -> Self {
         let mean = |of: fn(&Self) -> f64| scores.iter().map(of).sum::<f64>() / scores.len().max(1) as f64;
         Self { raw: mean(|score| score.raw), filtered: mean(|score| score.filtered), low: mean(|score| score.low) }
     }
+}
+
+/// [`Score::raw`] and [`Score::filtered`] alone: spectra take longer.
+pub(crate) fn errors(image: &Rgb32FImage, reference: &Reference) -> [f64; 2] {
+    let [a, b] = limited_errors(image, reference);
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / a.len().max(1) as f64;
+    let width = image.width() as usize;
+    // As for the relMSE, two halves of the reference keep its own noise out.
+    [product(&a, &b), product(&gaussian(&a, width), &gaussian(&b, width))]
 }
 
 /// Relative errors beyond it count as this. One rare highlight in a dark pixel, a hundred times too bright, would otherwise

@@ -6,7 +6,7 @@ use super::statistics::Estimate;
 use crate::measure::image::read_pfm;
 use crate::measure::metric::{Reference, median};
 use crate::measure::renderer::{Job, Renderer, Sampler, Timing};
-use crate::measure::score::Score;
+use crate::measure::score;
 use anyhow::{Context, Result};
 use image::Rgb32FImage;
 use indicatif::ProgressBar;
@@ -114,7 +114,9 @@ impl<'a> Measurement<'a> {
             return Ok(known.reference.clone());
         }
         self.bar.set_message(format!("{}: reference", view.scene));
-        let spp = (view.precision * scenes::find(view.scene).reference_spp / self.plan.reference_divisor).max(16);
+        // Many pixels, few samples: the reference's error matters less.
+        let divisor = self.plan.reference_divisor * if view.size >= self.plan.tile_size { 4 } else { 1 };
+        let spp = (view.precision * scenes::find(view.scene).reference_spp / divisor).max(16);
         let index = self.references.borrow().len();
         let half = |seed| -> Result<PathBuf> {
             let prefix = self.path(&format!("half-{index}-{seed}"));
@@ -203,8 +205,8 @@ impl Outcome {
     }
 
     /// Raw and filtered errors of each seed, highlights limited.
-    pub(crate) fn scores(&self, estimator: &str) -> Result<Vec<Score>> {
-        Ok(self.of(estimator)?.images.iter().map(|image| Score::new(image, &self.reference)).collect())
+    pub(crate) fn seen(&self, estimator: &str) -> Result<Vec<[f64; 2]>> {
+        Ok(self.of(estimator)?.images.iter().map(|image| score::errors(image, &self.reference)).collect())
     }
 
     /// relMSE over the plain mean's, of the same samples.

@@ -1,12 +1,12 @@
 //! `cargo xtask report`: errors, times and overheads on the scenes of the thesis's figures, as tables, plots and pictures
 //! that can be held beside them, and as JSON.
 
-mod chapter;
-mod check;
+pub(crate) mod chapter;
+pub(crate) mod check;
 mod embree;
-mod figure;
+pub(crate) mod figure;
 mod measurement;
-mod pictures;
+pub(crate) mod pictures;
 mod plan;
 mod povray;
 mod scenes;

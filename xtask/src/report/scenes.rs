@@ -18,21 +18,21 @@ const fn scene(name: &'static str, dims: u32, one_light: bool, reference_spp: u3
 }
 
 pub(crate) const SCENES: &[Scene] = &[
-    scene("killeroos", 3, false, 2048, 500.0),
-    scene("bathroom", 3, false, 2048, 500.0),
+    scene("killeroos", 3, false, 1024, 500.0),
+    scene("bathroom", 3, false, 1024, 500.0),
     scene("dining", 2, true, 1024, 400.0),
     scene("duck", 15, false, 2048, 2500.0),
-    scene("dragon", 2, true, 2048, 400.0),
-    scene("chopper", 2, true, 2048, 400.0),
-    scene("lens", 4, false, 2048, 600.0),
+    scene("dragon", 2, true, 1024, 400.0),
+    scene("chopper", 2, true, 1024, 400.0),
+    scene("lens", 4, false, 1024, 600.0),
     scene("plane_1", 2, true, 1024, 300.0),
     scene("plane_4", 3, false, 1024, 300.0),
-    scene("plane_16", 3, false, 2048, 300.0),
-    scene("plane_64", 3, false, 2048, 300.0),
+    scene("plane_16", 3, false, 1024, 300.0),
+    scene("plane_64", 3, false, 1024, 300.0),
     scene("microcity", 2, true, 1024, 500.0),
     scene("animation", 2, true, 512, 400.0),
     scene("glass", 12, false, 2048, 1500.0),
-    scene("veach", 2, false, 2048, 500.0),
+    scene("veach", 2, false, 1024, 500.0),
 ];
 
 pub(crate) fn find(name: &str) -> &'static Scene {

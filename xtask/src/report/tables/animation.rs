@@ -4,7 +4,7 @@ use super::Section;
 use crate::measure::metric::Reference;
 use crate::measure::renderer::Sampler;
 use crate::measure::samplers::{Choice, Tiles};
-use crate::measure::score::Score;
+use crate::measure::score;
 use crate::measure::spectrum_sheet::{self, Cell as Panel, Row};
 use crate::report::chapter::row;
 use crate::report::figure::{Figure, Unit};
@@ -21,12 +21,11 @@ const TEMPORAL: &str = "128_1SPP_2D_TEMPORAL";
 const ALPHA: f64 = 0.2;
 /// The figures' samples per pixel.
 const SPP: [u32; 2] = [1, 4];
-/// The weights of so many frames.
+/// Weights of so many frames, the newest first.
 type Kernel = fn(usize) -> Vec<f64>;
 /// Kernels and their names.
 const KERNELS: [(&str, Kernel); 2] = [("moving average", average), ("eye", eye)];
 
-/// Weights of the newest frame, the one before it and so on.
 fn average(frames: usize) -> Vec<f64> {
     normalized((0..frames).map(|age| ALPHA * (1.0 - ALPHA).powi(age as i32)).collect())
 }
@@ -163,7 +162,7 @@ fn measure(section: &Section, references: &[std::rc::Rc<Reference>], sampler: Sa
         let each = (0..seeds as usize).map(|seed| {
             let sequence: Vec<&Rgb32FImage> = frames.iter().map(|images| &images[seed]).collect();
             let seen = filtered(&sequence, &weights);
-            let error = Score::new(&seen, &reference).filtered;
+            let [_, error] = score::errors(&seen, &reference);
             if seed == 0 {
                 image = Some(seen);
             }

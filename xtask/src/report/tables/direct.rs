@@ -26,6 +26,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     let plan = section.measurement.plan;
     section.chapter.section("Direct light", "figures 4.4 and 4.5");
     let (mut overview, mut ratios, mut drawings) = (Vec::new(), Vec::new(), Vec::new());
+    let mut counts = Counts::default();
     for &scene in plan.some(&SCENES) {
         let all = measure(section, scene)?;
         for one in &all {
@@ -34,6 +35,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
                 write_sheet(section, scene, one)?;
             }
             ratios.extend(ratio_rows(scene, one)?);
+            counts.add(one)?;
         }
         drawings.push(draw(section, scene, &all)?);
     }
@@ -49,6 +51,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     let columns =
         ["scene", "samples", "estimator", "O1 same samples", "O2", "O3", "O1 same time", "O2 time", "O3 time"];
     section.chapter.table("direct ratios", &columns, 3, ratios);
+    conclude(section, counts);
     for (file, title) in drawings {
         section.chapter.picture(&file, &title);
     }
@@ -58,6 +61,50 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
             .picture(&format!("direct-{scene}.png"), &format!("{scene}: images and errors of each estimator"));
     }
     Ok(())
+}
+
+/// In how many cells of the table of ratios it pays.
+#[derive(Default)]
+struct Counts {
+    cells: u32,
+    default_same_samples: u32,
+    default_same_time: u32,
+    least_squares_same_samples: u32,
+    least_squares_same_time: u32,
+}
+
+impl Counts {
+    fn add(&mut self, one: &Measured) -> Result<()> {
+        let better = |ratio: Estimate| u32::from(ratio.value < 1.0);
+        for outcome in &one.orders {
+            self.cells += 1;
+            self.default_same_samples += better(outcome.ratio(DEFAULT)?);
+            self.default_same_time += better(outcome.equal_time(DEFAULT)?);
+            self.least_squares_same_samples += better(outcome.ratio(LEAST_SQUARES)?);
+            self.least_squares_same_time += better(outcome.equal_time(LEAST_SQUARES)?);
+        }
+        Ok(())
+    }
+}
+
+/// What the table says, in a sentence.
+fn conclude(section: &mut Section, counts: Counts) {
+    let mut quote = |name: &str, count: u32| section.chapter.quote(name, Figure::exact(f64::from(count), Unit::Count));
+    let cells = quote("direct light: cells of orders, samples and scenes", counts.cells);
+    let same_samples = quote("direct light: default better, same samples", counts.default_same_samples);
+    let same_time = quote("direct light: default better, same time", counts.default_same_time);
+    let plain_samples = quote("direct light: least squares better, same samples", counts.least_squares_same_samples);
+    let plain_time = quote("direct light: least squares better, same time", counts.least_squares_same_time);
+    let limit = if counts.default_same_time < counts.cells {
+        " Where it does not, the fit costs more than the samples that it saves: these scenes' samples are cheap, and orders above the first pay from \
+         more samples on."
+    } else {
+        ""
+    };
+    section.chapter.paragraph(&format!(
+        "Of {cells} cells, the default is below MC in {same_samples} with the same samples and in {same_time} in the same time, least squares in \
+         {plain_samples} and {plain_time}.{limit}"
+    ));
 }
 
 fn measure(section: &Section, scene: &'static str) -> Result<Vec<Measured>> {

@@ -13,25 +13,20 @@ use anyhow::Result;
 const SCENE: &str = "duck";
 const ESTIMATORS: [&str; 3] = [BASELINE, DEFAULT, LEAST_SQUARES];
 
-/// Path lengths, as the program is told them. All have the scene's 15 numbers' first ones.
-const LENGTHS: [(&str, &[&str]); 3] =
-    [("1", &["--bounces", "1"]), ("2", &["--bounces", "2"]), ("3", &["--bounces", "3"])];
+/// Shorter paths than the scene's, as the program is told.
+const SHORTER: [&[&str]; 2] = [&["--bounces", "1"], &["--bounces", "2"]];
 
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Global illumination", "figures 4.7 and 4.8");
     let plan = section.measurement.plan;
     let spp = section.chapter.setting("samples per pixel, 15 dims", plan.many);
-    let size = section.chapter.setting("pixels on a side, many samples", plan.small);
+    let size = section.chapter.setting("pixels on a side of duck", view(section).size);
     let dims = section.chapter.setting("dims of duck", 15);
     section.chapter.paragraph(&format!(
         "`duck`, three bounces: {dims} dims, {spp} samples per pixel, {size} x {size} pixels. The upper part is lit directly, \
          the lower part only indirectly."
     ));
-    let view = View::new(SCENE, plan.small);
-    let run = |order| {
-        section.measurement.run(&seeds(section, Experiment { order, ..Experiment::new(view, spp, &ESTIMATORS) }))
-    };
-    let orders = [run(1)?, run(2)?];
+    let orders = orders(section, view(section))?;
     let mut rows = vec![row![
         "MC",
         "-",
@@ -55,7 +50,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.setting("relMSE is shown times", 1000);
     section.chapter.table("indirect", &columns, 2, rows);
     write_sheet(section, &orders)?;
-    write_lengths(section)
+    write_lengths(section, &orders)
 }
 
 /// Ratios in the upper and in the lower half of the image.
@@ -95,32 +90,46 @@ fn write_sheet(section: &mut Section, orders: &[Outcome; 2]) -> Result<()> {
 }
 
 /// Figure 4.8.
-fn write_lengths(section: &mut Section) -> Result<()> {
+fn write_lengths(section: &mut Section, longest: &[Outcome; 2]) -> Result<()> {
     let plan = section.measurement.plan;
     section.chapter.paragraph(
         "Paths of one, two and three bounces (figure 4.8), order 2 and 1, ratios to MC of the same samples:",
     );
     let mut rows = Vec::new();
-    for &(length, options) in plan.some(&LENGTHS) {
-        let view = View { options, ..View::new(SCENE, plan.small) };
-        let mut cells = row![length];
-        for order in [1, 2] {
-            let experiment = Experiment { order, ..Experiment::new(view, plan.many, &ESTIMATORS) };
-            let outcome = section.measurement.run(&seeds(section, experiment))?;
-            if order == 1 {
-                let dims = outcome.of(BASELINE)?.timings.first().map_or(0, |timing| timing.dims);
-                cells.extend(row![dims, thousandfold(&outcome, BASELINE)?]);
-            }
-            for estimator in [DEFAULT, LEAST_SQUARES] {
-                cells.push(Figure::new(outcome.ratio(estimator)?, Unit::Ratio).into());
-            }
-        }
-        rows.push(cells);
+    for (options, bounces) in plan.some(&SHORTER).iter().zip(1_u32..) {
+        let view = View { options, ..view(section) };
+        rows.push(length_row(bounces, &orders(section, view)?)?);
     }
+    rows.push(length_row(3, longest)?);
     let columns =
         ["bounces", "dims", "MC, relMSE x 1000", "O1 default", "O1 least squares", "O2 default", "O2 least squares"];
     section.chapter.setting("an order", 1);
     section.chapter.setting("another order", 2);
     section.chapter.table("path lengths", &columns, 1, rows);
     Ok(())
+}
+
+fn length_row(bounces: u32, orders: &[Outcome; 2]) -> Result<Vec<Cell>> {
+    let dims = orders[0].of(BASELINE)?.timings.first().map_or(0, |timing| timing.dims);
+    let mut cells = row![bounces, dims, thousandfold(&orders[0], BASELINE)?];
+    for outcome in orders {
+        for estimator in [DEFAULT, LEAST_SQUARES] {
+            cells.push(Figure::new(outcome.ratio(estimator)?, Unit::Ratio).into());
+        }
+    }
+    Ok(cells)
+}
+
+/// Smaller than others: order 2 has 136 terms here.
+fn view(section: &Section) -> View {
+    View::new(SCENE, section.measurement.plan.small * 3 / 4)
+}
+
+/// With polynomials of order 1 and 2.
+fn orders(section: &Section, view: View) -> Result<[Outcome; 2]> {
+    let spp = section.measurement.plan.many;
+    let run = |order| {
+        section.measurement.run(&seeds(section, Experiment { order, ..Experiment::new(view, spp, &ESTIMATORS) }))
+    };
+    Ok([run(1)?, run(2)?])
 }

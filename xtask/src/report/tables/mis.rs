@@ -10,7 +10,7 @@ use crate::report::pictures::write_small;
 use crate::report::statistics::Estimate;
 use anyhow::Result;
 
-const SCENES: [&str; 3] = ["veach", "chopper", "killeroos"];
+const SCENES: [&str; 3] = ["veach", "chopper", "dining"];
 const BALANCE: &str = "balance";
 /// As the program names them, and the columns (a) to (d) of the figure.
 const ESTIMATORS: [(&str, &str); 4] = [

@@ -32,7 +32,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
                 let run = |sampler: Sampler| -> Result<Errors> {
                     let experiment =
                         Experiment { sampler, seeds: plan.seeds, ..Experiment::new(view, spp, &[BASELINE]) };
-                    Ok(Errors::new(&section.measurement.run(&experiment)?.scores(BASELINE)?))
+                    Errors::new(&section.measurement.run(&experiment)?, BASELINE)
                 };
                 let random = run(Sampler::Random)?;
                 let mut cells = row![scene, filter, spp];

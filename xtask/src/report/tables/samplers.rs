@@ -4,7 +4,7 @@ use super::Section;
 use super::public::Public;
 use crate::measure::renderer::Sampler;
 use crate::measure::samplers::{Choice, Tiles};
-use crate::measure::score::Score;
+use crate::measure::score;
 use crate::measure::spectrum_sheet::{self, Cell as Panel, Row};
 use crate::report::chapter::{Cell, row};
 use crate::report::figure::{Figure, Unit};
@@ -32,9 +32,9 @@ pub(super) struct Errors {
 }
 
 impl Errors {
-    pub(super) fn new(scores: &[Score]) -> Self {
-        let all = |of: fn(&Score) -> f64| scores.iter().map(of).collect();
-        Self { raw: all(|score| score.raw), filtered: all(|score| score.filtered) }
+    pub(super) fn new(outcome: &Outcome, estimator: &str) -> Result<Self> {
+        let (raw, filtered) = outcome.seen(estimator)?.into_iter().map(|[raw, filtered]| (raw, filtered)).unzip();
+        Ok(Self { raw, filtered })
     }
 }
 
@@ -84,23 +84,24 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
 
 fn measure(section: &Section, tiles: &Tiles, public: &Public, scene: &'static str, spp: u32) -> Result<Measured> {
     let view = View::new(scene, section.measurement.plan.tile_size);
-    let run = |sampler: Sampler| {
+    let run = |sampler: Sampler, estimators: &[&str]| {
         let seeds = section.measurement.plan.seeds;
-        section.measurement.run(&Experiment { sampler, seeds, ..Experiment::new(view, spp, &[BASELINE, SHARED]) })
+        section.measurement.run(&Experiment { sampler, seeds, ..Experiment::new(view, spp, estimators) })
     };
     let mut samplers = Vec::new();
     for choice in OWN {
         // The tile of four dimensions is for scenes that have them.
         let fits = choice != Choice::Tile(4) || scenes::find(scene).dims >= 3;
         let sampler = choice.sampler(spp, tiles).filter(|_| fits);
-        samplers.push(sampler.map(run).transpose()?);
+        samplers.push(sampler.map(|sampler| run(sampler, &[BASELINE, SHARED])).transpose()?);
     }
     for file in public.files(spp, scenes::find(scene).dims)? {
-        samplers.push(Some(run(Sampler::Table(Path::new(&file)))?));
+        samplers.push(Some(run(Sampler::Table(Path::new(&file)), &[BASELINE])?));
     }
     let errors = |estimator: &str| -> Result<Vec<Option<Errors>>> {
         let each = samplers.iter().map(|outcome| -> Result<Option<Errors>> {
-            outcome.as_ref().map(|outcome| Ok(Errors::new(&outcome.scores(estimator)?))).transpose()
+            let rendered = outcome.as_ref().filter(|outcome| outcome.of(estimator).is_ok());
+            rendered.map(|outcome| Errors::new(outcome, estimator)).transpose()
         });
         each.collect()
     };
@@ -230,9 +231,9 @@ fn write_sheet(section: &Section, public: &Public, one: &Measured) -> Result<()>
         let estimators: &[&str] = if index == TILE { &[BASELINE, SHARED] } else { &[BASELINE] };
         for estimator in estimators {
             let image = &outcome.of(estimator)?.images[0];
-            let score = Score::new(image, reference);
+            let [raw, filtered] = score::errors(image, reference);
             names.push(if *estimator == SHARED { format!("{label}, shared fits") } else { label.clone() });
-            let caption = format!("raw {:.1e} filtered {:.1e}", score.raw, score.filtered);
+            let caption = format!("raw {raw:.1e} filtered {filtered:.1e}");
             let name =
                 format!("{}-{}spp-{}", one.scene, one.spp, names[names.len() - 1].replace([' ', ',', '(', ')'], "-"));
             section.large.write_image(&name, image, reference)?;

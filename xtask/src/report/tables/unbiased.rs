@@ -52,7 +52,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
             for (label, sampler) in samplers {
                 let Some(sampler) = sampler else { continue };
                 // The reference's error must be small beside that of the mean of so many frames.
-                let view = View { precision: 16, ..View::new(scene, size) };
+                let view = View { precision: 8, ..View::new(scene, size) };
                 let estimators = [BASELINE, SHARED];
                 let experiment = Experiment { sampler, seeds: plan.frames, ..Experiment::new(view, spp, &estimators) };
                 let statistics = section.measurement.statistics(&experiment, 0)?;
