@@ -706,13 +706,16 @@ nf_sampler nf_sampler_domain(nf_sampler sampler,
 //
 // It is the tile at another place, with all values of a dimension shifted, modulo 1, by a hash of seed and domain. Over random
 // seeds every value is uniform, so an estimate is unbiased, as far as a hash of 32 bits is random (the tile's own values are
-// fixed, and an estimate from them is what it is). Children of a scrambled sampler are scrambled.
+// fixed, and an estimate from them is what it is). The shift costs quality: where good images are wanted, and not exact
+// unbiasedness, take another frame instead. Children of a scrambled sampler are scrambled.
 nf_sampler nf_sampler_scramble(nf_sampler sampler,
                                uint32_t seed);
 
 // Writes the first `dims` coordinates, 1..4, of the sampler's point to u[dims]: each in [0, 1), a multiple of 2^-24.
 //
-// Up to tile->dims they are optimised together, and more come from other places of the tile; fewer are the first of those.
+// Up to tile->dims they are optimised together, and more come from other places of the tile; fewer are the first of those. If
+// the tile has at least two dims and spp, and is not progressive, further numbers of its samples are stratified by themselves
+// and with the first two: draw a choice, or a time, after the two numbers that it goes with.
 // Writes nothing if dims is out of range or u is NULL.
 void nf_sampler_draw(nf_sampler sampler,
                      uint32_t dims,

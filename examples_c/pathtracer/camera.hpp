@@ -5,17 +5,6 @@
 
 namespace demo {
 
-// (u, v) in [0, 1)^2 to the unit disc (Shirley and Chiu 1997).
-inline void concentric_disc(float u, float v, float &x, float &y)
-{
-    float a = 2 * u - 1, b = 2 * v - 1;
-    bool wide = std::abs(a) > std::abs(b);
-    float radius = wide ? a : b;
-    float angle = wide ? pi / 4 * (b / a) : b != 0 ? pi / 2 - pi / 4 * (a / b) : 0.0f;
-    x = radius * std::cos(angle);
-    y = radius * std::sin(angle);
-}
-
 struct Camera {
     Vector eye, forward, right, up; // right and up span the image plane at distance 1
     float aperture = 0;             // radius of the lens; 0: a pinhole

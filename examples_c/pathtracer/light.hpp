@@ -131,9 +131,12 @@ inline LightSample sample_sphere(const Light &light, Vector from, float u, float
         return {};
     float limit = cone_cosine(light, to_center);
     float angle = cone_angle(limit, light, to_center);
-    float cosine = 1 - u * angle / (2 * pi);
-    float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine)), azimuth = 2 * pi * v;
-    Vector direction = Frame(normalize(to_center)).world({sine * std::cos(azimuth), sine * std::sin(azimuth), cosine});
+    float x, y;
+    concentric_disc(u, v, x, y);
+    // A disc and a cap have the same area where squared radii are in proportion to 1 - cosine.
+    float part = std::min(1.0f, x * x + y * y), height = part * angle / (2 * pi), cosine = 1 - height;
+    float sine = std::sqrt(height * (1 + cosine)), scale = part > 0 ? sine / std::sqrt(part) : 0.0f;
+    Vector direction = Frame(normalize(to_center)).world({scale * x, scale * y, cosine});
     float inside = std::max(0.0f, light.radius * light.radius - squared * sine * sine);
     return {direction, std::sqrt(squared) * cosine - std::sqrt(inside), 1 / angle, light.radiance};
 }

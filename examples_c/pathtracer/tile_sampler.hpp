@@ -4,6 +4,7 @@
 #include "noisefloor.h"
 #include "samplers.hpp"
 #include "table_sampler.hpp"
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
@@ -110,22 +111,26 @@ class TileSampler final : public Sampler {
 public:
     TileSampler(const std::string &tile, const SamplerSetup &setup)
         : setup_(setup), tile_(tile.empty() ? default_tile(setup.samples) : tile),
-          scramble_(static_cast<uint32_t>(setup.seed - 1)), // 0, which changes nothing, for the seed that is the default
-          groups_(group(setup.domains, std::min(tile_.view().dims, 4u)))
+          // A tile of two dimensions has a third that is stratified with them, which suits a choice or a time.
+          groups_(group(setup.domains, std::min(std::max(tile_.view().dims, 3u), 4u)))
     {
+        // Another seed is the tile at another place: as good as the first, which a scrambled tile is not. Frames stay in their order.
+        frame_ = setup.frame + static_cast<uint32_t>(setup.seed - 1) * 4096 * tile_.view().frames;
     }
 
     void points(uint32_t x, uint32_t y, float *u) const override { range(x, y, 0, setup_.samples, u); }
     void range(uint32_t x, uint32_t y, uint32_t first, uint32_t count, float *u) const override
     {
         for (uint32_t i = first; i < first + count; ++i) {
-            nf_sampler sampler = nf_sampler_pixel(&tile_.view(), x, y, setup_.frame, i);
-            sampler = nf_sampler_scramble(sampler, scramble_);
+            nf_sampler sampler = nf_sampler_pixel(&tile_.view(), x, y, frame_, i);
             for (const Group &g : groups_) {
                 // A tree of domains: the bounce, and in it the decision. Keys are all that tells them apart: nothing is counted,
                 // and a path that takes another turn does not disturb what the others draw.
                 nf_sampler bounce = nf_sampler_domain(sampler, g.first.bounce);
                 nf_sampler_draw(nf_sampler_domain(bounce, g.first.kind), g.dims, u);
+                // The two numbers that belong together are drawn first, wherever they go.
+                if (g.dims == 3 && g.first.dims == 1)
+                    std::rotate(u, u + 2, u + 3);
                 u += g.dims;
             }
         }
@@ -134,7 +139,7 @@ public:
 private:
     SamplerSetup setup_;
     LoadedTile tile_;
-    uint32_t scramble_;
+    uint32_t frame_;
     std::vector<Group> groups_; // what one draw makes: domains that fit into the tile's dimensions are optimised together
 };
 

@@ -1,8 +1,9 @@
 //! What a sampler draws: the tile's values where it promises them, the same bits in any order, and never a 1.
 
 use noisefloor::Error;
-use noisefloor::tile::{Sampler, Shape, Tile, fill, fill_len};
+use noisefloor::tile::{Builtin, Sampler, Shape, Tile, fill, fill_len};
 use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::statistics::chi_square;
 use noisefloor_tests::tile::{file, noise, ordered};
 use std::collections::HashSet;
 
@@ -198,6 +199,56 @@ fn further_dimensions_are_others() {
         let u = Sampler::pixel(&tile, pixel, 3, 0, 0).draw::<4>().map(f32::to_bits);
         assert_eq!(HashSet::from(u).len(), 4);
     }
+}
+
+/// Of a shipped tile: in every pixel and domain each further number has one sample in each stratum, and over the pixels each sample
+/// is in each stratum equally often (chi-square with 15 degrees of freedom; the 32 limits of 4.5 together fail one time in 9,000).
+#[test]
+fn further_dimensions_are_stratified() {
+    let tile = Builtin::Size128Spp16Dims2.tile().unwrap();
+    for domain in [None, Some(3)] {
+        for dim in [2, 3] {
+            let mut counts = [[0_u32; 16]; 16];
+            for (x, y) in (0..128).flat_map(|y| (0..128).map(move |x| (x, y))) {
+                let mut seen = 0_u32;
+                for index in 0..16 {
+                    let sampler = Sampler::pixel(&tile, x, y, 0, index);
+                    let sampler = domain.map_or(sampler, |key| sampler.domain(key));
+                    let stratum = (sampler.draw::<4>()[dim] * 16.0) as usize;
+                    seen |= 1 << stratum;
+                    counts[index as usize][stratum] += 1;
+                }
+                assert_eq!(seen, 0xffff, "pixel ({x}, {y})");
+            }
+            for counts in &counts[..8] {
+                let (_, z) = chi_square(&counts.map(f64::from), &[1024.0; 16]);
+                assert!(z < 4.5, "{counts:?}: z = {z}");
+            }
+        }
+    }
+}
+
+/// In three dimensions, every box of volume 1/16 whose sides are powers of two has one sample of a pixel, as far as the tile's own two
+/// numbers have: a pixel's samples by their ranks.
+#[test]
+fn a_third_dimension_makes_a_net() {
+    let tile = Builtin::Size128Spp16Dims2.tile().unwrap();
+    let ranks = |values: [f32; 16]| values.map(|value| values.iter().filter(|&&other| other < value).count());
+    let mut evenness = [0_u32; 2];
+    for (x, y) in (0..16).flat_map(|y| (0..16).map(move |x| (x, y))) {
+        let samples: [[f32; 3]; 16] =
+            std::array::from_fn(|i| Sampler::pixel(&tile, x, y, 0, i as u32).domain(1).draw());
+        let first = ranks(samples.map(|u| u[0]));
+        // Halves of the first number: eight each, and in each of them one sample in each eighth of the third.
+        for side in 0..2 {
+            let mut seen = 0_u32;
+            for i in (0..16).filter(|&i| first[i] / 8 == side) {
+                seen |= 1 << (samples[i][2] * 8.0) as u32;
+            }
+            evenness[usize::from(seen == 0xff)] += 1;
+        }
+    }
+    assert_eq!(evenness, [0, 512]);
 }
 
 #[test]

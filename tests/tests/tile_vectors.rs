@@ -17,10 +17,11 @@ const HEAD: &str = "\
 # The first `keys` of the three keys are followed, one below the other; before the last, or at the root, the sampler is scrambled.
 ";
 
-const FILES: [(&str, Shape); 3] = [
+const FILES: [(&str, Shape); 4] = [
     ("plain.nft", Shape { size: 8, spp: 4, dims: 3, frames: 1, bits: 16, progressive: false }),
     ("progressive.nft", Shape { size: 4, spp: 8, dims: 2, frames: 3, bits: 8, progressive: true }),
     ("single.nft", Shape { size: 16, spp: 1, dims: 1, frames: 1, bits: 16, progressive: false }),
+    ("further.nft", Shape { size: 4, spp: 16, dims: 2, frames: 2, bits: 8, progressive: false }),
 ];
 
 /// A file of tests/vectors, first rewritten if that is asked for.

@@ -79,8 +79,9 @@ impl<'a> Sampler<'a> {
     /// An independent version for each seed but 0; seed 0 changes nothing.
     ///
     /// It is the tile at another place, with all values of each dimension shifted, modulo 1, by a hash of seed and domain.
-    /// Over random seeds every value is uniform, so estimates are unbiased, as far as a hash of 32 bits is random; the blue
-    /// distribution of the error over the image suffers little. Children of a scrambled sampler are scrambled.
+    /// Over random seeds every value is uniform, so estimates are unbiased, as far as a hash of 32 bits is random. The shift costs
+    /// quality: where good images are wanted, and not exact unbiasedness, take another frame instead. Children of a scrambled sampler are
+    /// scrambled.
     #[inline]
     #[must_use]
     pub const fn scramble(self, seed: u32) -> Sampler<'a> {
