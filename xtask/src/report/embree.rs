@@ -66,7 +66,7 @@ fn introduce(report: &Report, chapter: &mut Chapter) {
             "A figure is the median over {seeds} seeds, and in brackets its {confidence} % confidence interval (bootstrap). Ratios are \
              taken seed by seed: both of a pair saw the same samples, or, for samplers, the same seed."
         ),
-        "relMSE: mean over the pixels of (I - R)^2 / (R^2 + eps), luminance (Rec. 709), eps a hundredth of the squared mean of R. \
+        "relMSE: mean over the pixels of (I - R)^2 / (R^2 + eps), luminance (Y of linear sRGB), eps a hundredth of the squared mean of R. \
          The reference consists of two independent halves A and B, R = (A + B) / 2, from shifted lattices; (I - A)(I - B) stands \
          for (I - R)^2, so that the reference's own noise adds nothing."
             .to_owned(),

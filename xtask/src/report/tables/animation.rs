@@ -73,8 +73,8 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
          per second. The shifted tile is optimised over the image alone and shifted anew in every frame. {size} x {size} pixels."
     ));
     section.targets.reason(
-        "temporal tile",
-        "The temporal tile has one sample per pixel and frame and was optimised for the moving average: at 4 samples the further ones come from a sequence \
+        ["temporal tile", "4 spp"],
+        "The temporal tile has one sample per pixel and frame and was optimised for the moving average: further samples come from a sequence \
          that is not part of it.",
     );
     let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;

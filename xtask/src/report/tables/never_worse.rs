@@ -19,12 +19,12 @@ const SIGNIFICANCE: f64 = 0.01;
 
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.targets.reason(
-        "default over MC, one light",
-        "What remains is the visibility of the light, a step that polynomials of order 2 follow roughly: where penumbras fill the image, or the \
+        ["default over MC, one light", ""],
+        "What remains is the visibility of the light, a step that polynomials follow roughly: where penumbras fill the image, or the \
          environment varies faster than that, the gain is small.",
     );
     section.targets.reason(
-        "share of pixels beyond",
+        ["share of pixels beyond", ""],
         "Pixels whose few bright samples carry the integral: leave-one-out errors do not see what was not sampled.",
     );
     write_images(section)?;

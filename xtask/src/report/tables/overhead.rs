@@ -21,7 +21,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
          {order}, three channels. With a camera ray for each sample the pixel's footprint is two more dims, which are regressed too."
     ));
     section.targets.reason(
-        "overhead",
+        ["overhead", ""],
         "Time of a fit does not depend on the scene, that of a sample does: a direct-light sample of these scenes costs less than a production renderer's.",
     );
     let mut rows = Vec::new();

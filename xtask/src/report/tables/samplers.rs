@@ -160,19 +160,19 @@ fn write_shared(section: &mut Section, all: &[Measured]) {
 fn aim(section: &mut Section, all: &[Measured]) {
     let targets = &mut *section.targets;
     targets.reason(
-        "tile over Owen-Sobol, filtered",
+        ["tile over Owen-Sobol, filtered", ""],
         "A tile is optimised for integrands that neighbours share: fine texture, edges and shadow borders that differ from pixel to \
          pixel leave white noise, and a scene of several domains (motion, choice of a light, lens) draws each from another place of the tile.",
     );
     targets.reason(
-        "tile over Owen-Sobol, raw",
-        "The tile weighs the image's error against the pixel's own; at 16 samples Owen-scrambled Sobol points gain more within a pixel, most of all over \
+        ["tile over Owen-Sobol, raw", ""],
+        "The tile weighs the image's error against the pixel's own; with more samples Owen-scrambled Sobol points gain more within a pixel, most of all over \
          several domains, which a tile of two dims stratifies each by itself.",
     );
     targets.reason(
-        "shared fits over the tile alone",
+        ["shared fits over the tile alone", ""],
         "Polynomials explain what varies smoothly with the sample: a visible edge of an occluder, a high-frequency environment or a thin highlight \
-         stays; at 4 samples and more the tile has already removed what is smooth.",
+         stays; with several samples the tile has already removed what is smooth.",
     );
     let ratio = |own: &Option<Errors>, other: &Option<Errors>, of: fn(&Errors) -> &Vec<f64>| {
         own.as_ref().zip(other.as_ref()).map(|(own, other)| Estimate::ratio(of(own), of(other)))

@@ -19,8 +19,8 @@ struct Target {
 #[derive(Default)]
 pub(crate) struct Targets {
     all: Vec<Target>,
-    /// What is known of why a statement's bound is missed: the statement's beginning, and the reason.
-    reasons: Vec<(&'static str, &'static str)>,
+    /// The likely reason why a statement's bound is missed: the statement's beginning and end, and the reason.
+    reasons: Vec<([&'static str; 2], &'static str)>,
 }
 
 impl Target {
@@ -54,8 +54,8 @@ impl Targets {
         self.all.push(Target { statement, scene, estimate, unit, bound, strict: true });
     }
 
-    /// Said where a target that begins like this is missed.
-    pub(crate) fn reason(&mut self, statement: &'static str, reason: &'static str) {
+    /// Said where a target that begins and ends like this is missed.
+    pub(crate) fn reason(&mut self, statement: [&'static str; 2], reason: &'static str) {
         self.reasons.push((statement, reason));
     }
 
@@ -114,12 +114,15 @@ impl Targets {
             let scenes = scenes.collect::<Vec<_>>().join(", ");
             let statement = &group[0].statement;
             chapter.setting(format!("statement: {statement}"), statement.as_str());
-            let reason = self.reasons.iter().find(|(beginning, _)| statement.starts_with(beginning));
-            let reason = reason.map_or(String::new(), |(_, reason)| format!(". {reason}"));
+            let reason = self
+                .reasons
+                .iter()
+                .find(|([beginning, end], _)| statement.starts_with(beginning) && statement.ends_with(end));
+            let reason = reason.map_or(String::new(), |(_, reason)| format!(". Likely: {reason}"));
             points.push(format!("{statement}: {scenes}{reason}"));
         }
         if !points.is_empty() {
-            chapter.paragraph("Missed, with the figure and what is known of the reason:");
+            chapter.paragraph("Missed, with the figure, and the likely reason where there is one:");
             chapter.list(&points);
         }
     }
@@ -159,13 +162,13 @@ mod tests {
         targets.at_most("error", "garden", exact(0.7), Unit::Ratio, 0.5);
         targets.below("strictly", "garden", exact(0.45), Unit::Ratio, 0.5);
         targets.at_most("time", "garden", exact(0.45), Unit::Ratio, 0.5);
-        targets.reason("err", "Leaves.");
+        targets.reason(["err", "or"], "Leaves.");
         let mut chapter = Chapter::new("Title");
         targets.write_summary(&mut chapter);
         targets.write_all(&mut chapter);
         let text = chapter.markdown();
         assert!(text.contains("Kept in every scene: 1 of 3."), "{text}");
-        assert!(text.contains("- error: garden 0.700. Leaves."), "{text}");
+        assert!(text.contains("- error: garden 0.700. Likely: Leaves."), "{text}");
         assert!(text.contains("reached, the interval goes beyond") && text.contains("NOT REACHED"), "{text}");
         assert_eq!(text.matches("kitchen").count(), 1, "only in the table of all scenes");
     }
