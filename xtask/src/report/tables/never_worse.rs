@@ -95,7 +95,8 @@ struct Shares {
 fn write_pixels(section: &mut Section) -> Result<()> {
     section.chapter.section("The default against plain Monte Carlo, pixel by pixel", "");
     let plan = section.measurement.plan;
-    let (spp, size) = (section.chapter.setting("samples per pixel of the pixels' ratios", 16), plan.small);
+    let spp = section.chapter.setting("samples per pixel of the pixels' ratios", 16);
+    let size = section.chapter.setting("pixels on a side of the pixels' ratios", plan.small);
     let seeds = section.chapter.setting("seeds of the pixels' ratios", plan.pixel_seeds);
     let limit = section.chapter.setting("a pixel's ratio that is too much", TOO_MUCH);
     let percent = section.chapter.setting("significance of a pixel's test, percent", 100.0 * SIGNIFICANCE);

@@ -34,7 +34,8 @@ struct Scores {
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Are shared fits unbiased?", "");
     let plan = section.measurement.plan;
-    let (frames, size) = (section.chapter.setting("frames of the test of biases", plan.frames), plan.small);
+    let frames = section.chapter.setting("frames of the test of biases", plan.frames);
+    let size = section.chapter.setting("pixels on a side of the test of biases", plan.small);
     let percent = section.chapter.setting("significance of the test of biases, percent", 100.0 * SIGNIFICANCE);
     let lit = section.chapter.setting("frames with light, at least", LIT.min(plan.frames / 4));
     section.chapter.paragraph(&format!(
