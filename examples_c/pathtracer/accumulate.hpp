@@ -53,8 +53,8 @@ public:
     {
         EstimatorSetup setup = estimator_setup(integrand, options, 1);
         for (const std::string &name : names_) {
-            if (name == "shared")
-                throw std::runtime_error("`shared` needs the samples of neighbouring pixels, which --accumulate does not keep");
+            if (shares(name))
+                throw std::runtime_error("`" + name + "` needs the samples of neighbouring pixels, which --accumulate does not keep");
             configs_.push_back(configure(find_estimator(name), setup));
         }
     }

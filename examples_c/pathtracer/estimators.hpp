@@ -178,6 +178,7 @@ inline const EstimatorName estimator_names[] = {
     {"gradient_descent", NF_CV_GRADIENT_DESCENT, "least squares by gradient descent"},
     {"incremental", NF_CV_INCREMENTAL, "each sample against a fit to those before it; streamed, 8 samples at a time"},
     {"shared", NF_CV_ROBUST, "each pixel against fits to its neighbours; suits every sampler"},
+    {"shared_k_fold", NF_CV_K_FOLD, "the same, unbiased: halves of the neighbours choose fits for each other"},
     {"luminance", NF_CV_LEAST_SQUARES, "a fit to the luminance of all samples, which scales the plain mean", NF_COLOR_LUMINANCE_RATIO},
     {"robust_luminance", NF_CV_ROBUST, "the same with the default estimator", NF_COLOR_LUMINANCE_RATIO},
     {"slices", NF_CV_ROBUST, "robust, told which light was picked; for scenes that pick one"},
@@ -192,6 +193,9 @@ struct EstimatorSetup {
     size_t samples;  // of a pixel
     bool stratified;
 };
+
+// Whether it needs the samples of neighbouring pixels.
+inline bool shares(const std::string &name) { return name == "shared" || name == "shared_k_fold"; }
 
 // Throws if the name is unknown.
 inline const EstimatorName &find_estimator(const std::string &name)
@@ -218,7 +222,7 @@ inline nf_cv_config configure(const EstimatorName &known, const EstimatorSetup &
     config.stratified = setup.stratified;
     if (name == "slices" && setup.choice == 0)
         throw std::runtime_error("`slices` needs a scene that picks one of several lights");
-    if ((name == "shared" || name == "slices") && setup.choice > 0) {
+    if ((shares(name) || name == "slices") && setup.choice > 0) {
         // Which light was picked is known, and explains most. Of long paths only what comes before is regressed.
         config.dims = setup.choice;
         config.slices = setup.lights;
@@ -241,7 +245,7 @@ inline std::unique_ptr<Estimator> make_estimator(const std::string &name, const 
         return std::make_unique<PlainMean>(setup.dims);
     if (nf_cv_workspace_size(&config, setup.samples) == 0)
         throw std::runtime_error(refusal(name, config));
-    if (name == "shared")
+    if (shares(name))
         return std::make_unique<Shared>(config, setup.side, setup.samples);
     if (name == "incremental")
         return std::make_unique<Streaming>(config);

@@ -34,7 +34,7 @@ public:
           sampler_(sampler), dims_(dims(integrand.domains()))
     {
         // As many samples as stay in the cache between sampling and estimating; pixels that share fits need neighbours.
-        bool shared = std::find(names_.begin(), names_.end(), "shared") != names_.end();
+        bool shared = std::any_of(names_.begin(), names_.end(), shares);
         const size_t most = shared ? 1 << 19 : 1 << 12;
         side_ = shared ? 64 : 8;
         while (side_ > (shared ? 8u : 1u) && size_t{side_} * side_ * options.spp > most)

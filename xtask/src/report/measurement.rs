@@ -24,6 +24,8 @@ pub(crate) const DEFAULT: &str = "robust";
 pub(crate) const LEAST_SQUARES: &str = "least_squares";
 /// Fits shared by neighbouring pixels.
 pub(crate) const SHARED: &str = "shared";
+/// The same, exactly unbiased where pixels are independent.
+pub(crate) const SHARED_UNBIASED: &str = "shared_k_fold";
 
 const SEED: u64 = 1;
 /// Beyond those of any measurement.
