@@ -44,7 +44,7 @@ inline void render(const Options &options, const Integrand &integrand, uint32_t 
     Outputs outputs;
     for (uint32_t i = 0; i < options.seeds; ++i) {
         const uint64_t seed = options.seed + i;
-        SamplerSetup setup{integrand.domains(), dims(integrand.domains()), options.spp, options.frame, seed};
+        SamplerSetup setup{integrand.domains(), dims(integrand.domains()), options.spp, options.frame, seed, options.scramble};
         std::unique_ptr<Sampler> sampler;
         if (options.reference)
             sampler = std::make_unique<LatticeSampler>(setup);

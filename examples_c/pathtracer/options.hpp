@@ -22,7 +22,7 @@ struct Options {
     uint32_t frame = 0;
     Filter filter = Filter::center;
     std::string output = "pathtracer";
-    bool reference = false;
+    bool reference = false, scramble = false;
     uint32_t bounces = 0; // of the paths; 0: as the scene has them
     bool mis = false; // the estimators are those of mis_estimators.hpp
     uint32_t accumulate = 0; // samples of a pass over the image; 0: pixel by pixel
@@ -48,7 +48,8 @@ inline void print_usage(FILE *to, const Program &program)
     std::fprintf(to, "usage: %s [--scene NAME] [--width N] [--height N] [--spp N] [--estimators A,B,...] [--order N]\n"
                "                  [--basis NAME] [--regressed N] [--sampler NAME] [--tile NAME|FILE.nft] [--table FILE] [--filter NAME]\n"
                "                  [--frame N] [--seed N] [--seeds N] [--statistics A.pfm,B.pfm] [--threads N] [--output PREFIX]\n"
-               "                  [--accumulate N] [--bounces N] [--mis] [--reference]\n\n"
+               "                  [--accumulate N] [--bounces N] [--mis] [--reference]\n"
+               "                  [--scramble]\n\n"
                "Renders PREFIX.ESTIMATOR.pfm with each estimator from the same samples and prints one line of JSON for each.\n"
                "--reference renders PREFIX.reference.pfm instead: the plain mean over a shifted lattice.\n"
                "--seeds renders PREFIX.ESTIMATOR.SEED.pfm with each of so many seeds.\n"
@@ -57,6 +58,7 @@ inline void print_usage(FILE *to, const Program &program)
                "--accumulate: threads render passes of N samples (a multiple of 4) over the image into accumulators of their own.\n"
                "--bounces: how many reflections paths have, instead of as many as the scene says.\n"
                "--mis: direct light by two techniques, a half of the samples each: light sampling and direction sampling.\n"
+               "--scramble: tiles are shifted by the seed instead of placed by it: exactly unbiased, and not as good.\n"
                "--table: points for the sampler of that name, made elsewhere; their format is in pathtracer/table_sampler.hpp.\n"
                "--regressed: how many of the sample vector's numbers the estimators regress, from its start.\n\nsamplers:",
                program.name.c_str());
@@ -120,6 +122,10 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
         std::string name = argv[i];
         if (name == "--help" || name == "-h")
             return false;
+        if (name == "--scramble") {
+            options.scramble = true;
+            continue;
+        }
         if (name == "--reference") {
             options.reference = true;
             continue;

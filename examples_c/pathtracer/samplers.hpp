@@ -29,6 +29,7 @@ struct SamplerSetup {
     uint32_t samples; // per pixel
     uint32_t frame;
     uint64_t seed;
+    bool scramble = false; // tiles: values shifted by the seed, which makes them exactly unbiased and costs quality
 };
 
 // Neighbouring domains that are sampled as one: they have at most `limit` dimensions together, or are a single domain.

@@ -110,12 +110,15 @@ inline std::string default_tile(uint32_t samples)
 class TileSampler final : public Sampler {
 public:
     TileSampler(const std::string &tile, const SamplerSetup &setup)
-        : setup_(setup), tile_(tile.empty() ? default_tile(setup.samples) : tile),
+        : setup_(setup), frame_(setup.frame), tile_(tile.empty() ? default_tile(setup.samples) : tile),
           // A tile of two dimensions has a third that is stratified with them, which suits a choice or a time.
           groups_(group(setup.domains, std::min(std::max(tile_.view().dims, 3u), 4u)))
     {
         // Another seed is the tile at another place: as good as the first, which a scrambled tile is not. Frames stay in their order.
-        frame_ = setup.frame + static_cast<uint32_t>(setup.seed - 1) * 4096 * tile_.view().frames;
+        if (setup.scramble)
+            scramble_ = static_cast<uint32_t>(mix(setup.seed)) | 1;
+        else
+            frame_ += static_cast<uint32_t>(setup.seed - 1) * 4096 * tile_.view().frames;
     }
 
     void points(uint32_t x, uint32_t y, float *u) const override { range(x, y, 0, setup_.samples, u); }
@@ -123,6 +126,7 @@ public:
     {
         for (uint32_t i = first; i < first + count; ++i) {
             nf_sampler sampler = nf_sampler_pixel(&tile_.view(), x, y, frame_, i);
+            sampler = nf_sampler_scramble(sampler, scramble_);
             for (const Group &g : groups_) {
                 // A tree of domains: the bounce, and in it the decision. Keys are all that tells them apart: nothing is counted,
                 // and a path that takes another turn does not disturb what the others draw.
@@ -138,8 +142,8 @@ public:
 
 private:
     SamplerSetup setup_;
+    uint32_t frame_, scramble_ = 0;
     LoadedTile tile_;
-    uint32_t frame_;
     std::vector<Group> groups_; // what one draw makes: domains that fit into the tile's dimensions are optimised together
 };
 

@@ -74,8 +74,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     ));
     section.targets.reason(
         ["temporal tile", "4 spp"],
-        "The temporal tile has one sample per pixel and frame and was optimised for the moving average: further samples come from a sequence \
-         that is not part of it.",
+        "The temporal tile has one sample per pixel and frame: further samples come from a sequence that is not part of it.",
     );
     let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
     let mut rows = Vec::new();

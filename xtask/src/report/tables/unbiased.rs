@@ -47,19 +47,26 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
          dependence between pixels does no harm; a two-sided test). The plain mean of the same samples, unbiased by construction, shows how the test itself behaves. \
          Pixels that hardly any frame lights do not count, as z is then far from normal: the plain mean's n mean^2 / variance, about the number of frames \
          with light, must be {lit} at least. The reference's own error is part of the standard deviation. Shared fits choose how much to correct from the samples that \
-         they correct, which leaves a bias that a thousand frames can show; K-fold, where halves of the neighbours choose for each other, has none."
+         they correct, which leaves a bias that a thousand frames can show; K-fold, where halves of the neighbours choose for each other, has none where pixels are independent. A scrambled tile's are not."
     ));
     let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
     let mut rows = Vec::new();
     for &scene in plan.some(&SCENES) {
         for &spp in plan.some(&SPP) {
-            let samplers = [("random", Some(Sampler::Random)), ("tile", Choice::Tile(2).sampler(spp, &tiles))];
+            let samplers =
+                [("random", Some(Sampler::Random)), ("tile, scrambled", Choice::Tile(2).sampler(spp, &tiles))];
             for (label, sampler) in samplers {
                 let Some(sampler) = sampler else { continue };
                 // The reference's error must be small beside that of the mean of so many frames.
                 let view = View { precision: 8, ..View::new(scene, size) };
                 let estimators = [BASELINE, SHARED, SHARED_UNBIASED];
-                let experiment = Experiment { sampler, seeds: plan.frames, ..Experiment::new(view, spp, &estimators) };
+                // A tile at other places keeps its own small error, which a thousand frames can show.
+                let experiment = Experiment {
+                    sampler,
+                    seeds: plan.frames,
+                    options: &["--scramble"],
+                    ..Experiment::new(view, spp, &estimators)
+                };
                 let statistics = section.measurement.statistics(&experiment, 0)?;
                 let reference = section.measurement.reference(view)?;
                 let lit = lit_pixels(&statistics[0], &reference.images, plan.frames);
