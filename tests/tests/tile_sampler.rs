@@ -228,8 +228,7 @@ fn further_dimensions_are_stratified() {
     }
 }
 
-/// In three dimensions, every box of volume 1/16 whose sides are powers of two has one sample of a pixel, as far as the tile's own two
-/// numbers have: a pixel's samples by their ranks.
+/// By ranks among a pixel's samples, halves of the first number by eighths of the third have one each.
 #[test]
 fn a_third_dimension_makes_a_net() {
     let tile = Builtin::Size128Spp16Dims2.tile().unwrap();

@@ -78,8 +78,9 @@ pub extern "C" fn nf_sampler_scramble(sampler: nf_sampler, seed: u32) -> nf_samp
 /// Writes the first `dims` coordinates, 1..4, of the sampler's point to u[dims]: each in [0, 1), a multiple of 2^-24.
 ///
 /// Up to tile->dims they are optimised together, and more come from other places of the tile; fewer are the first of those. If
-/// the tile has at least two dims and spp, and is not progressive, further numbers of its samples are stratified by themselves
-/// and with the first two: draw a choice, or a time, after the two numbers that it goes with.
+/// the tile has at least two dims and spp, and is not progressive, each further number of its samples is stratified, and the
+/// third of a tile of two dims with those two: draw a choice, or a time, after the two numbers that it goes with. Two further
+/// numbers that belong together are better drawn from a domain of their own.
 /// Writes nothing if dims is out of range or u is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_sampler_draw(sampler: nf_sampler, dims: u32, u: *mut f32) {

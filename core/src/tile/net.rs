@@ -3,14 +3,14 @@
 //! A tile's samples come in an order that tells where they are: bit 0 of the index says in which half of the pixel's points one is by
 //! the first coordinate, bits 0 and 1 together, added, in which half of those by the second, bits 2 and 3 the same of quarters, and so on, all
 //! exclusive-or a constant of the pixel's. A further coordinate's stratum, one of spp, is a linear function of those bits over the field of
-//! two elements, so chosen that the points are a digital net (Niederreiter 1992, chapter 4): each box of volume 1 / spp with sides that are
-//! powers of two has one point.
+//! two elements, so chosen that the *ranks* of the points are a digital net (Niederreiter 1992, chapter 4), as far as the order
+//! knows them: halves for 2 to 8 samples, quarters for 16. The points themselves are near it.
 
 use super::hash::permute;
 
 /// For 2, 4, 8, 16 samples: for the first and the second further dimension, which bits of the index add up to the bits of the
-/// stratum, from the most significant. With the first, every elementary interval in three dimensions has its point; with the second,
-/// every one in two of the four. None exists for the second below 8 samples.
+/// stratum, from the most significant. With the first, every elementary interval of ranks in three dimensions has its point; with the second,
+/// every one in two of the four, though some three are then aliased. None exists for the second below 8 samples.
 static ROWS: [[[u32; 4]; 2]; 5] = [
     [[0; 4]; 2],
     [[1, 0, 0, 0], [0; 4]],

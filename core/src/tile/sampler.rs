@@ -102,7 +102,8 @@ impl<'a> Sampler<'a> {
     /// The first N coordinates, 1 to 4, of this domain's point; each in [0, 1), a multiple of 2^-24.
     ///
     /// Up to the tile's dims they are optimised together; further ones come from other places of the tile. If it has at least two
-    /// dimensions and samples, and is not progressive, further coordinates of its samples are stratified by themselves and with the first two.
+    /// dimensions and samples, and is not progressive, each further coordinate of its samples is stratified, and the third of a tile of two
+    /// dimensions with those two, as far as the samples are in the order in which `fsot` writes them.
     #[inline(always)]
     pub fn draw<const N: usize>(&self) -> [f32; N] {
         let mut u = [0.0; N];

@@ -1,16 +1,13 @@
 //! The order of a pixel's samples, which says where they are.
 //!
 //! Bit 0 of a sample's number tells the half of the pixel's samples by the first coordinate, bits 0 and 1 added, modulo 2, the half of
-//! those by the second, bits 2 and 3 the same of quarters, and so on; all bits are exclusive-or a constant of the pixel's, random over
-//! the pixels. So every prefix of 2^k samples has one in each of 2^k cells (two are on a diagonal), the samples of one number are spread over
+//! those by the second, bits 2 and 3 the same of quarters, and so on; all bits are exclusive-or a constant of the pixel's, a hash of
+//! its samples. So every prefix of 2^k samples has one in each of 2^k cells (two are on a diagonal), the samples of one number are spread over
 //! all cells, and what `noisefloor` draws beyond a tile's dimensions is stratified together with them. A tile that is not progressive is as
 //! good in any order.
 
 use super::TileSamples;
 use crate::random::stream;
-
-/// Keeps the constants apart from the optimiser's random numbers.
-const ORDER_STREAM: u64 = 0x6f72_6465_7273;
 
 /// What is compared: as many bits as the finest files hold, so that a file's samples are in order whatever was rounded.
 fn key(coordinate: f32) -> u16 {
@@ -27,11 +24,16 @@ impl TileSamples {
         }
         let mut numbers: Vec<usize> = Vec::with_capacity(spp);
         let mut pixel = Vec::with_capacity(spp * dims);
-        for (place, samples) in self.coordinates.chunks_exact_mut(spp * dims).enumerate() {
+        for samples in self.coordinates.chunks_exact_mut(spp * dims) {
             numbers.clear();
             numbers.extend(0..spp);
             split(&mut numbers, 0, |sample, axis| key(samples[sample * dims + axis]));
-            let constant = stream(ORDER_STREAM, place as u64, 0).next_u64() as usize & (spp - 1);
+            // Of the samples and not of the place: other tiles have others, so that two can be used together.
+            let hash = numbers.iter().fold(0, |hash, &number| {
+                let point = u64::from(key(samples[number * dims])) << 16 | u64::from(key(samples[number * dims + 1]));
+                stream(hash, point, 0).next_u64()
+            });
+            let constant = hash as usize & (spp - 1);
             pixel.clear();
             for index in 0..spp {
                 let number = numbers[cell(index ^ constant, spp.trailing_zeros())];
@@ -91,30 +93,32 @@ mod tests {
         }
     }
 
-    /// Bit 0 decides the side of the first median, and the sum of bits 0 and 1 that of the second; which is which, the pixel's constant.
+    /// In each pixel the numbers, exclusive-or one constant, are those that halving by each coordinate in turn gives; all constants occur.
     #[test]
     fn numbers_tell_the_cell() {
-        let samples = random(8, 16, 2).ordered();
-        let mut first_is_low = 0;
-        for place in 0..64 {
+        let samples = random(16, 16, 2).ordered();
+        let mut constants = [0; 16];
+        for place in 0..256 {
             let points = points(&samples, place);
-            let half = |bit: usize, of: &[usize]| -> Vec<f32> {
-                of.iter().filter(|&&i| i & 1 == bit).map(|&i| points[i][0]).collect()
-            };
-            let all: Vec<usize> = (0..16).collect();
-            let [even, odd] = [half(0, &all), half(1, &all)];
-            let below = |a: &[f32], b: &[f32]| a.iter().all(|x| b.iter().all(|y| x <= y));
-            assert!(below(&even, &odd) || below(&odd, &even));
-            first_is_low += usize::from(below(&even, &odd));
-            for side in 0..2 {
-                let [low, high] = [0, 1].map(|bit| -> Vec<f32> {
-                    all.iter().filter(|&&i| i & 1 == side && (i ^ i >> 1) & 1 == bit).map(|&i| points[i][1]).collect()
-                });
-                assert!(below(&low, &high) || below(&high, &low));
+            // Bits, by definition: each split sorts those that agree so far.
+            let mut cells = vec![0_usize; 16];
+            for level in 0..4 {
+                for path in 0..1 << level {
+                    let mut group: Vec<usize> = (0..16).filter(|&i| cells[i] & ((1 << level) - 1) == path).collect();
+                    group.sort_by(|&a, &b| key(points[a][level % 2]).cmp(&key(points[b][level % 2])));
+                    for &i in &group[group.len() / 2..] {
+                        cells[i] |= 1 << level;
+                    }
+                }
             }
+            // The second of each pair of bits says whether both sides differ.
+            let number = |cell: usize| cell ^ ((cell & 0b0101) << 1);
+            let constant = number(cells[0]);
+            assert!((0..16).all(|i| number(cells[i]) ^ i == constant), "{cells:?}");
+            constants[constant] += 1;
         }
-        // 64 fair coins: 12 or fewer heads, or 52 or more, have chance 5e-7.
-        assert!((13..52).contains(&first_is_low), "{first_is_low}");
+        // 256 draws of 16 equally likely ones: below 2 or above 38 has chance 1e-4 for all together.
+        assert!(constants.iter().all(|count| (2..=38).contains(count)), "{constants:?}");
     }
 
     #[test]

@@ -18,7 +18,7 @@ const fn scene(name: &'static str, dims: u32, one_light: bool, reference_spp: u3
 }
 
 pub(crate) const SCENES: &[Scene] = &[
-    scene("killeroos", 3, false, 1024, 500.0),
+    scene("killeroos", 3, true, 1024, 500.0),
     scene("bathroom", 3, false, 1024, 500.0),
     scene("dining", 2, true, 1024, 400.0),
     scene("duck", 15, false, 2048, 2500.0),

@@ -11,15 +11,10 @@ pub(super) fn write(chapter: &mut Chapter, all: &[Measured]) -> Result<()> {
         let found = all.iter().find(|one| one.scene.name == scene);
         Ok(&found.with_context(|| format!("`{scene}` was not measured"))?.all)
     };
-    let (area, lights) = (ways("area")?, ways("lights")?);
+    let area = ways("area")?;
     let (k_fold, mean) = (find(area, 64, Points::Sobol, "k_fold")?, find(area, 64, Points::Sobol, "mc")?);
     let folds = Estimate::ratio(&k_fold.rel_mse, &mean.rel_mse);
     let folds = chapter.quote("k_fold over mean, area, Sobol, 64 spp", Figure::new(folds, Unit::Ratio));
-    let (tile, sobol) = (find(lights, 16, Points::Tile, "mc")?, find(lights, 16, Points::Sobol, "mc")?);
-    let raw = Estimate::ratio(&tile.rel_mse, &sobol.rel_mse);
-    let raw = chapter.quote("tile over Sobol, lights, 16 spp", Figure::new(raw, Unit::Ratio));
-    let seen = Estimate::ratio(&tile.filtered, &sobol.filtered);
-    let seen = chapter.quote("filtered error of tile over Sobol, lights, 16 spp", Figure::new(seen, Unit::Ratio));
     let (shared, alone) = (find(area, 4, Points::Tile, "shared")?, find(area, 4, Points::Tile, "mc")?);
     let shared = Estimate::ratio(&shared.rel_mse, &alone.rel_mse);
     let shared = chapter.quote("shared over tile alone, area, 4 spp", Figure::new(shared, Unit::Ratio));
@@ -32,10 +27,6 @@ pub(super) fn write(chapter: &mut Chapter, all: &[Measured]) -> Result<()> {
             "`k_fold` on Sobol points: {folds} of their mean's relMSE (`area`, 64 spp). A sample's fold is its number modulo the number of \
              folds; in Sobol's order these folds are strips of the first coordinate, into which the fits to the other folds extrapolate. The \
              same points in bit-reversed order, where folds are stratified, do not show it. On stratified samples, take the mean."
-        ),
-        format!(
-            "Tiles where a light is picked: {raw} of Sobol's relMSE, {seen} filtered (`lights`, 16 spp). A tile of two dimensions stratifies the place \
-             on the light and the choice of the light apart; Sobol points stratify all three together."
         ),
         format!(
             "Shared fits in `area`: {shared} of the tile alone (4 spp). The worst {worst_percent} % of one picture's pixels, at edges of shadows and \

@@ -42,7 +42,9 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
                     cells.push(Figure::new(part, Unit::Percent).into());
                     if rays == "sample" && *estimator != SHARED && spp == plan.middle() {
                         let label = if *estimator == DEFAULT { "default" } else { "least squares" };
-                        let statement = format!("overhead of the {label}, order {order}, {spp} spp, percent");
+                        let statement = format!(
+                            "overhead of the {label}, order {order}, {spp} spp, a camera ray per sample, percent"
+                        );
                         section.targets.at_most(&statement, scene, part, Unit::Percent, 10.0);
                     }
                 }

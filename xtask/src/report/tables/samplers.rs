@@ -162,13 +162,9 @@ fn aim(section: &mut Section, all: &[Measured]) {
     targets.reason(
         ["tile over Owen-Sobol, filtered", ""],
         "A tile is optimised for integrands that neighbours share: fine texture, edges and shadow borders that differ from pixel to \
-         pixel leave white noise, and a scene of several domains (motion, choice of a light, lens) draws each from another place of the tile.",
+         pixel leave white noise; of a decision's three numbers only two are optimised.",
     );
-    targets.reason(
-        ["tile over Owen-Sobol, raw", ""],
-        "The tile weighs the image's error against the pixel's own; with more samples Owen-scrambled Sobol points gain more within a pixel, most of all over \
-         several domains, which a tile of two dims stratifies each by itself.",
-    );
+    targets.reason(["tile over Owen-Sobol, raw", ""], "The tile weighs the image's error against the pixel's own.");
     targets.reason(
         ["shared fits over the tile alone", ""],
         "Polynomials explain what varies smoothly with the sample: a visible edge of an occluder, a high-frequency environment or a thin highlight \

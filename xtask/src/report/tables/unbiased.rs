@@ -47,7 +47,8 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
          dependence between pixels does no harm; a two-sided test). The plain mean of the same samples, unbiased by construction, shows how the test itself behaves. \
          Pixels that hardly any frame lights do not count, as z is then far from normal: the plain mean's n mean^2 / variance, about the number of frames \
          with light, must be {lit} at least. The reference's own error is part of the standard deviation. Shared fits choose how much to correct from the samples that \
-         they correct, which leaves a bias that a thousand frames can show; K-fold, where halves of the neighbours choose for each other, has none where pixels are independent. A scrambled tile's are not."
+         they correct, which leaves a bias that a thousand frames can show; K-fold, where halves of the neighbours choose for each other, has none where pixels are independent. A scrambled tile's are not. A bias spread over many pixels shows in the mean of z^2 before it shows \
+         in the largest."
     ));
     let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
     let mut rows = Vec::new();
