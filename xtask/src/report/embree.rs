@@ -68,13 +68,14 @@ fn introduce(report: &Report, chapter: &mut Chapter) {
         ),
         "relMSE: mean over the pixels of (I - R)^2 / (R^2 + eps), luminance (Y of linear sRGB), eps a hundredth of the squared mean of R. \
          The reference consists of two independent halves A and B, R = (A + B) / 2, from shifted lattices; (I - A)(I - B) stands \
-         for (I - R)^2, so that the reference's own noise adds nothing."
+         for (I - R)^2, so that the reference's own noise adds nothing on average. Sections on samplers, shared fits, reconstruction and animation, and \
+         their targets, limit relative errors to five: one highlight in a dark pixel would otherwise decide."
             .to_owned(),
         "MC: the plain mean of random samples. Default: `NF_CV_ROBUST`, for each colour channel. Least squares: the thesis's \
          estimator, for each channel. O1, O2, O3: total degree of the polynomials."
             .to_owned(),
         "Same time: relMSE over that of the plain mean of as many samples as it makes in the estimator's total time; its error \
-         falls as one over the number of samples."
+         falls as one over the number of samples. Its interval is that of the error; times are one measurement."
             .to_owned(),
     ]);
 }
