@@ -51,6 +51,7 @@ public:
     AccumulatingRenderer(const Integrand &integrand, const Sampler &sampler, const Options &options)
         : Rendering(options.estimators, options), integrand_(integrand), sampler_(sampler), dims_(dims(integrand.domains()))
     {
+        pass_ = std::min(options.accumulate, (options.spp + 3) / 4 * 4);
         EstimatorSetup setup = estimator_setup(integrand, options, 1);
         for (const std::string &name : names_) {
             if (shares(name))
@@ -68,11 +69,11 @@ private:
         for (size_t e = 0; e < names_.size(); ++e)
             images.emplace_back(names_[e], configs_[e], pixels);
         // Samples of one row of pixels.
-        std::vector<float> u(size_t{options_.width} * options_.accumulate * dims_), f(size_t{options_.width} * options_.accumulate * 3);
-        const uint32_t passes = (options_.spp + options_.accumulate - 1) / options_.accumulate;
+        std::vector<float> u(size_t{options_.width} * pass_ * dims_), f(size_t{options_.width} * pass_ * 3);
+        const uint32_t passes = (options_.spp + pass_ - 1) / pass_;
         bool any = false;
         for (uint64_t pass; (pass = next_++) < passes; any = true) {
-            uint32_t first = static_cast<uint32_t>(pass) * options_.accumulate, count = std::min(options_.accumulate, options_.spp - first);
+            uint32_t first = static_cast<uint32_t>(pass) * pass_, count = std::min(pass_, options_.spp - first);
             for (uint32_t y = 0; y < options_.height; ++y) {
                 row(y, first, count, u.data(), f.data(), images, times);
                 report(options_.width, pixels * passes);
@@ -131,6 +132,7 @@ private:
     const Integrand &integrand_;
     const Sampler &sampler_;
     const uint32_t dims_; // of the sample vector
+    uint32_t pass_ = 0;   // samples of one
     std::vector<nf_cv_config> configs_;
     std::atomic<uint64_t> next_{0}; // pass
     // Guarded by mutex_:

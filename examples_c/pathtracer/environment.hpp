@@ -26,12 +26,18 @@ public:
         double total = 0;
         for (uint32_t y = 0; y < height; ++y) {
             double row = 0;
-            for (uint32_t x = 0; x < width; ++x)
+            for (uint32_t x = 0; x < width; ++x) {
+                const Color &color = pixels_[size_t{y} * width + x];
+                for (int c = 0; c < 3; ++c)
+                    if (!(color[c] >= 0 && std::isfinite(color[c])))
+                        throw std::runtime_error("an environment map must be finite and not negative: pixel (" + std::to_string(x) + ", " +
+                                                 std::to_string(y) + ") has " + std::to_string(color[c]));
                 columns_[size_t{y} * width + x] = static_cast<float>(row += weight(x, y));
+            }
             rows_[y] = static_cast<float>(total += row);
         }
         if (!(total > 0) || !std::isfinite(total))
-            throw std::runtime_error("an environment map must shine, and be finite and not negative everywhere");
+            throw std::runtime_error("an environment map must shine, with a finite sum");
     }
 
     // Interpolated between the centres of the map's pixels.
@@ -88,7 +94,7 @@ private:
     {
         u = std::atan2(direction.x, direction.z) / (2 * pi);
         u = std::min(u < 0 ? u + 1 : u, 0x1.fffffep-1f);
-        v = std::acos(std::min(std::max(direction.y, -1.0f), 1.0f)) / pi;
+        v = std::min(std::atan2(std::hypot(direction.x, direction.z), direction.y) / pi, 1.0f);
     }
 
     // Of the pixel, divided by what the map does to areas at that latitude.

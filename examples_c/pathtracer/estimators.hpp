@@ -61,12 +61,12 @@ public:
 protected:
     void pixel(const float *, const float *f, size_t n, float *mean) override
     {
-        float sum[3] = {0, 0, 0};
+        double sum[3] = {0, 0, 0}; // references have millions of samples
         for (size_t i = 0; i < n; ++i)
             for (int c = 0; c < 3; ++c)
                 sum[c] += f[3 * i + static_cast<size_t>(c)];
         for (int c = 0; c < 3; ++c)
-            mean[c] = sum[c] / static_cast<float>(n);
+            mean[c] = static_cast<float>(sum[c] / static_cast<double>(n));
     }
 };
 

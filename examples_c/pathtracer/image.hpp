@@ -2,8 +2,10 @@
 #pragma once
 
 #include "vector.hpp"
+#include <cerrno>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -77,11 +79,15 @@ public:
 
     void commit()
     {
-        while (!files_.empty()) {
-            if (std::rename(files_.back().first.c_str(), files_.back().second.c_str()) != 0)
-                throw std::runtime_error("cannot create " + files_.back().second);
-            files_.pop_back();
+        for (size_t done = 0; done < files_.size(); ++done) {
+            if (std::rename(files_[done].first.c_str(), files_[done].second.c_str()) == 0)
+                continue;
+            const std::string why = std::strerror(errno);
+            for (size_t i = 0; i < done; ++i)
+                std::remove(files_[i].second.c_str());
+            throw std::runtime_error("cannot create " + files_[done].second + ": " + why);
         }
+        files_.clear();
     }
 
 private:

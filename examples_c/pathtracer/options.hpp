@@ -111,6 +111,14 @@ inline Basis parse_basis(const std::string &text)
     throw std::runtime_error("there is no basis `" + text + "`; --help lists them");
 }
 
+inline std::vector<std::string> distinct(const std::vector<std::string> &names)
+{
+    for (size_t i = 0; i < names.size(); ++i)
+        if (std::count(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) > 0)
+            throw std::runtime_error("--estimators names `" + names[i] + "` twice");
+    return names;
+}
+
 // Throws on a wrong command line; returns false if only help was asked for.
 inline bool parse(int argc, char **argv, const Program &program, Options &options)
 {
@@ -165,7 +173,7 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
         else if (name == "--output")
             options.output = value;
         else if (name == "--estimators") {
-            options.estimators = split(value);
+            options.estimators = distinct(split(value));
             named = true;
         } else if (name == "--statistics") {
             options.statistics = split(value);

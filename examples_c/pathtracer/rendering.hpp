@@ -28,8 +28,12 @@ public:
         to_ = to;
         percent_ = static_cast<int>(100 * from);
         std::vector<std::thread> threads;
-        for (uint32_t i = 0; i < options_.threads; ++i)
-            threads.emplace_back([this, i] { guard(i); });
+        try {
+            for (uint32_t i = 0; i < options_.threads; ++i)
+                threads.emplace_back([this, i] { guard(i); });
+        } catch (...) {
+            fail();
+        }
         for (std::thread &thread : threads)
             thread.join();
         if (error_)
@@ -90,10 +94,16 @@ private:
                 times_.estimating[e] += times.estimating[e];
         } catch (const Stopped &) {
         } catch (...) {
-            std::lock_guard<std::mutex> lock(mutex_);
-            if (!error_)
-                error_ = std::current_exception();
+            fail();
         }
+    }
+
+    // Keeps the exception that is being handled, if it is the first.
+    void fail()
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        if (!error_)
+            error_ = std::current_exception();
     }
 
     Times times_;

@@ -4,6 +4,7 @@
 #include "filter.hpp"
 #include "hashed_stream.hpp"
 #include "scene.hpp"
+#include <algorithm>
 
 namespace demo {
 
@@ -28,6 +29,9 @@ protected:
         if (scene.lights.empty() || (scene.lights.size() > 1 && !layout_.choice))
             throw std::runtime_error("the scene has " + std::to_string(scene.lights.size()) +
                                      " lights: it needs one, or a layout with a choice among several");
+        auto surrounds = [](const Light &light) { return light.kind == Light::environment; };
+        if (std::count_if(scene.lights.begin(), scene.lights.end(), surrounds) > 1)
+            throw std::runtime_error("the scene has several environments: rays that leave it would see the first alone");
         choices_ = static_cast<float>(scene.lights.size());
     }
 

@@ -71,6 +71,8 @@ public:
 
     bool occluded(const demo::Ray &ray, float distance) const override
     {
+        if (!(distance > 0))
+            return false; // Embree would report a hit by a negative end, too
         RTCRay query = embree_ray(ray, distance);
 #if RTC_VERSION_MAJOR >= 4
         rtcOccluded1(scene_.get(), &query);

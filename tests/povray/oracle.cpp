@@ -31,26 +31,6 @@ inline std::vector<char *> take(int argc, char **argv, Model &model)
     return rest;
 }
 
-// For tiles, seeds number frames: each is the tile at another place. A tile's own seeds also shift its values, modulo 1, across the
-// border of the unit cube in which they were stratified; measured here, that doubles the error.
-inline void render_frames(demo::Options options, const demo::Integrand &integrand)
-{
-    demo::Outputs outputs;
-    for (uint32_t i = 0; i < options.seeds; ++i) {
-        const uint64_t seed = options.seed + i;
-        options.frame = static_cast<uint32_t>(seed);
-        demo::SamplerSetup setup{integrand.domains(), dims(integrand.domains()), options.spp, options.frame, 1};
-        auto sampler = demo::make_sampler(options.sampler, options.tile, options.table, setup);
-        demo::Renderer renderer(integrand, *sampler, options);
-        renderer.run(double(i) / options.seeds, double(i + 1) / options.seeds);
-        const std::string number = options.seeds > 1 ? "." + std::to_string(seed) : "";
-        for (size_t e = 0; e < options.estimators.size(); ++e)
-            outputs.add(options.output + "." + options.estimators[e] + number + ".pfm", renderer.images()[e]);
-        demo::print(options, integrand, 1, renderer, options.estimators, seed);
-    }
-    outputs.commit();
-}
-
 inline void run(int argc, char **argv)
 {
     Model model = Model::cells;
@@ -77,10 +57,7 @@ inline void run(int argc, char **argv)
         outputs.commit();
         return;
     }
-    if (options.sampler == "tile" && !options.accumulate && options.statistics.empty())
-        render_frames(options, integrand);
-    else
-        demo::render(options, integrand);
+    demo::render(options, integrand);
 }
 
 } // namespace povray

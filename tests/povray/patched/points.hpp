@@ -41,7 +41,7 @@ inline std::unique_ptr<demo::Sampler> make_sampler(const Settings &settings, uin
     setup.dims = 2 * count;
     setup.samples = samples;
     setup.frame = settings.seed;
-    // Tiles know domains and frames, the others one seed. Tiles take theirs as a shift of their values, which they do not need.
+    // Tiles know domains and frames, the others one seed.
     setup.seed = settings.sampler == "tile" ? 1 : demo::mix(demo::golden * (first + 1));
     if (settings.sampler == "grid")
         return std::make_unique<GridSampler>(setup);
