@@ -39,6 +39,6 @@ static void check_line(const char *line, int number)
 
 int main(void)
 {
-    CHECK(each_vector("tests/vectors/tile.txt", check_line) == 300);
+    CHECK(each_vector("tests/vectors/tile.txt", check_line) == 400);
     return report("tile_vectors");
 }

@@ -180,7 +180,8 @@ fn point<const N: usize>(tile: &Tile<'_>, state: &State) -> [u32; N] {
             [a, b, c, d]
         }
         2 if N > 2 && netted => {
-            let ([a, b], [c, d]) = (group(tile, state), further(tile, state));
+            let [a, b] = group(tile, state);
+            let [c, d] = if N > 3 { further(tile, state) } else { [further::<1>(tile, state)[0], 0] };
             [a, b, c, d]
         }
         2 if N > 2 => {
@@ -188,7 +189,7 @@ fn point<const N: usize>(tile: &Tile<'_>, state: &State) -> [u32; N] {
             [a, b, c, d]
         }
         3 if N > 3 && netted => {
-            let ([a, b, c], [d, _]) = (group(tile, state), further(tile, state));
+            let ([a, b, c], [d]) = (group(tile, state), further(tile, state));
             [a, b, c, d]
         }
         3 if N > 3 => {
@@ -284,21 +285,23 @@ fn sample_of(shape: Shape, domain: u32, index: u32, random: u32) -> u32 {
     if progressive { permute_octave(index, random) } else { permute(index, spp.trailing_zeros(), random) }
 }
 
-/// The two coordinates after those of the tile, whose samples are in the order that [`net`] needs.
+/// The M coordinates, 1 or 2, after those of the tile, whose samples are in the order that [`net`] needs.
 ///
 /// Each is in a stratum of its own, of spp, and where in it comes from another place of the tile: from another sample of it for each
 /// stratum, so that the sum over the pixel is as even as the tile's.
 #[inline(never)]
-fn further(tile: &Tile<'_>, state: &State) -> [u32; 2] {
+fn further<const M: usize>(tile: &Tile<'_>, state: &State) -> [u32; M] {
     let Shape { size, spp, .. } = tile.shape();
     let (x, y) = place(state, size);
     let sample = sample_of(tile.shape(), state.domain, state.index, hash_of(state.domain, x, y, state.frame));
     let bits = spp.trailing_zeros();
-    let mut fixed = [0, 1].map(|number| {
+    let mut number = 0;
+    let mut fixed = [(); M].map(|()| {
         let more = State { domain: child(state.domain ^ DIMENSIONS, number + 1), ..*state };
         let (x, y) = place(&more, size);
         let random = hash_of(more.domain, x, y, more.frame);
         let stratum = net::stratum(sample, bits, number, random);
+        number += 1;
         let within = (stratum ^ random >> 8) & spp.wrapping_sub(1);
         let [within] = tile.fixed(tile.place(u32::from(more.frame), y, x, within)).unwrap_or([0]);
         stratum << ((32 - bits) & 31) | within >> (bits & 31)
