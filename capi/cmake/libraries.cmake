@@ -8,7 +8,7 @@ set(object "${CMAKE_CURRENT_BINARY_DIR}/noisefloor.o")
 set(profile CARGO_PROFILE_RELEASE_PANIC=abort CARGO_PROFILE_RELEASE_LTO=fat CARGO_PROFILE_RELEASE_CODEGEN_UNITS=1)
 add_custom_command(
     OUTPUT "${object}"
-    COMMAND "${CMAKE_COMMAND}" -E env ${profile} -- "${NOISEFLOOR_CARGO}" build --quiet --release --locked --lib
+    COMMAND "${CMAKE_COMMAND}" -E env --unset=MAKEFLAGS ${profile} -- "${NOISEFLOOR_CARGO}" build --quiet --release --locked --lib
         --manifest-path "${CMAKE_CURRENT_SOURCE_DIR}/Cargo.toml" --target-dir "${NOISEFLOOR_CARGO_TARGET_DIR}"
     COMMAND "${CMAKE_COMMAND}" -E env "LD=${CMAKE_LINKER}" "NM=${CMAKE_NM}" "OBJCOPY=${CMAKE_OBJCOPY}" --
         sh "${CMAKE_CURRENT_SOURCE_DIR}/cmake/one_object.sh" "${archive}" "${object}"
