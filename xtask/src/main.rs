@@ -14,6 +14,7 @@ mod path_tracer;
 mod paths;
 mod povray;
 mod povray_patched;
+mod release;
 mod report;
 mod run;
 mod test;
@@ -46,6 +47,8 @@ enum Command {
     Header,
     /// Rewrite capi/abi.txt, the list of what the C ABI promises
     Abi(abi::Options),
+    /// Rewrite THIRD_PARTY.md, the list of other people's packages and their licences
+    Licences,
     /// Install headers, libraries, CMake package and pkg-config file
     Install(install::Options),
     /// Build target/noisefloor/libnoisefloor.a, the archive that C and C++ programs link
@@ -64,6 +67,7 @@ fn main() -> ExitCode {
         Command::Test(options) => test::run(&options),
         Command::Header => header::write(),
         Command::Abi(options) => abi::write(&options),
+        Command::Licences => release::licences::write(),
         Command::Install(options) => install::run(&options),
         Command::Tiles(options) => tiles::run(&options),
         Command::Embree => embree::build().map(|path| println!("{}", path.display())),

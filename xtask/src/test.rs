@@ -1,8 +1,8 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
 use crate::{
-    abi, c_tests, embree, examples, fit, header, install, library, path_tracer, povray, povray_patched, report, run,
-    tools, train_mlp,
+    abi, c_tests, embree, examples, fit, header, install, library, path_tracer, povray, povray_patched, release,
+    report, run, tools, train_mlp,
 };
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -106,6 +106,12 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         "POV-Ray's patch: well formed, its licence stated, and our side of it compiles",
         povray_patched::check_patch,
     );
+    steps.run(
+        "cargo package: every published package is complete and below the registry's limit",
+        release::package::check,
+    );
+    steps.run("THIRD_PARTY.md: the licences of all dependencies, each allowed", release::licences::check);
+    steps.run("versions: Rust's and the project's, as the texts say", release::versions::check);
     steps.run("README.md opens with examples_c/integrate.c", examples::readme);
     steps.finish(start)
 }

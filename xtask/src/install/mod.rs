@@ -36,7 +36,7 @@ fn configure(build: &Path, prefix: &Path, libdir: Option<&Path>) -> Result<()> {
     let define = |name: &str, value: &Path| format!("-D{name}={}", value.display());
     let cargo = run::cargo();
     let mut cmake = run::command("cmake");
-    cmake.args(["-S", "capi", "--log-level=WARNING", "-DCMAKE_BUILD_TYPE=Release", "-UCMAKE_INSTALL_LIBDIR", "-B"]);
+    cmake.args(["-S", "capi", "-DCMAKE_BUILD_TYPE=Release", "-UCMAKE_INSTALL_LIBDIR", "-B"]);
     cmake.arg(build);
     cmake.arg(define("CMAKE_INSTALL_PREFIX", prefix));
     cmake.arg(define("NOISEFLOOR_CARGO", Path::new(cargo.get_program())));
@@ -44,12 +44,12 @@ fn configure(build: &Path, prefix: &Path, libdir: Option<&Path>) -> Result<()> {
     if let Some(libdir) = libdir {
         cmake.arg(define("CMAKE_INSTALL_LIBDIR", libdir));
     }
-    run::check(&mut cmake)
+    run::read(&mut cmake).map(|_| ())
 }
 
 /// The libraries, both at once.
 fn compile(build: &Path) -> Result<()> {
-    run::check(run::command("cmake").arg("--build").arg(build).args(["--parallel", "2"]))
+    run::read(run::command("cmake").arg("--build").arg(build).args(["--parallel", "2"])).map(|_| ())
 }
 
 /// The programs among these that cannot be started.
