@@ -11,13 +11,10 @@ namespace harness {
 
 using demo::Vector;
 
-// A stream of uniform numbers.
-struct Numbers {
-    uint64_t counter;
-    float operator()(float low, float high)
-    {
-        return low + (high - low) * demo::unit(static_cast<uint32_t>(demo::mix(counter += demo::golden)));
-    }
+// A stream of uniform numbers, and of vectors of them.
+struct Numbers : demo::SplitMix {
+    using SplitMix::SplitMix;
+
     Vector vector(float low, float high)
     {
         float x = (*this)(low, high), y = (*this)(low, high);
