@@ -29,7 +29,7 @@ struct Comparison {
     // `closest` and `occluded` up to `distance` of one ray.
     void add(const demo::Intersector &own, const demo::Intersector &other, const demo::Ray &ray, float distance)
     {
-        demo::Hit a, b;
+        demo::Hit a = {}, b = {};
         ++rays;
         bool found = own.closest(ray, a);
         if (found != other.closest(ray, b) || (found && (a.material != b.material || a.light != b.light))) {
