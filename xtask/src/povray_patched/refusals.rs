@@ -8,8 +8,11 @@ use anyhow::{Context, Result, bail};
 use std::path::Path;
 use std::process::Command;
 
-/// Settings that are refused, by the rest of their names, and words of what is said of them.
-const REFUSED: [(&[(&str, &str)], &[&str]); 8] = [
+/// By the rest of their names, and their values.
+type Settings = &'static [(&'static str, &'static str)];
+
+/// Settings that are refused, and words of what is said of them.
+const REFUSED: [(Settings, &[&str]); 8] = [
     (&[("_ORDER", "7"), ("_ESTIMATOR", "robust")], &["dims 4, order 7", "NOISEFLOOR_ORDER"]),
     (&[("_ORDER", "7"), ("_ESTIMATOR", "accumulator")], &["dims 4, order 7", "NOISEFLOOR_ORDER"]),
     (&[("_ORDER", "8")], &["NOISEFLOOR_ORDER=8", "0 to 7"]),
@@ -39,7 +42,7 @@ pub(super) fn check(archive: &Path) -> Result<()> {
     Ok(())
 }
 
-fn settings(program: &Path, settings: &[(&str, &str)]) -> Command {
+fn settings(program: &Path, settings: Settings) -> Command {
     let mut command = run::command(program);
     command.env("NOISEFLOOR", "estimate");
     command.envs(settings.iter().map(|(name, value)| (format!("NOISEFLOOR{name}"), value)));
