@@ -10,12 +10,10 @@ namespace demo {
 // An accumulator for each pixel, side by side. It may be added to by one thread at a time.
 class AccumulatorImage {
 public:
-    AccumulatorImage(const std::string &name, const nf_cv_config &config, size_t pixels)
+    AccumulatorImage(const nf_cv_config &config, size_t pixels)
         : words_((nf_cv_accumulator_size(&config) + 7) / 8), memory_(words_ * pixels),
           workspace_(memory(nf_cv_accumulator_workspace_size(&config)))
     {
-        if (words_ == 0)
-            throw std::runtime_error(refusal(name, config) + ", or it cannot be streamed");
         for (size_t p = 0; p < pixels; ++p) {
             nf_cv_accumulator *accumulator = nullptr;
             check(nf_cv_accumulator_init(&memory_[p * words_], 8 * words_, &config, &accumulator), "nf_cv_accumulator_init");
@@ -47,7 +45,7 @@ private:
 
 class AccumulatingRenderer final : public Rendering {
 public:
-    // All three must outlive it. options.accumulate samples make a pass.
+    // All three must outlive it. options.accumulate samples make a pass. Throws if an estimator cannot do so.
     AccumulatingRenderer(const Integrand &integrand, const Sampler &sampler, const Options &options)
         : Rendering(options.estimators, options), integrand_(integrand), sampler_(sampler), dims_(dims(integrand.domains()))
     {
@@ -57,6 +55,8 @@ public:
             if (shares(name))
                 throw std::runtime_error("`" + name + "` needs the samples of neighbouring pixels, which --accumulate does not keep");
             configs_.push_back(configure(find_estimator(name), setup));
+            if (nf_cv_accumulator_size(&configs_.back()) == 0)
+                throw std::runtime_error(refusal(name, configs_.back(), setup) + ", or it cannot be streamed, as --accumulate does");
         }
     }
 
@@ -67,7 +67,7 @@ private:
         const size_t pixels = size_t{options_.width} * options_.height;
         std::vector<AccumulatorImage> images;
         for (size_t e = 0; e < names_.size(); ++e)
-            images.emplace_back(names_[e], configs_[e], pixels);
+            images.emplace_back(configs_[e], pixels);
         // Samples of one row of pixels.
         std::vector<float> u(size_t{options_.width} * pass_ * dims_), f(size_t{options_.width} * pass_ * 3);
         const uint32_t passes = (options_.spp + pass_ - 1) / pass_;

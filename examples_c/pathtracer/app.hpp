@@ -10,6 +10,23 @@
 
 namespace demo {
 
+// As a string of JSON, with its quotes.
+inline std::string json(const std::string &text)
+{
+    const char *const digits = "0123456789abcdef";
+    std::string quoted = "\"";
+    for (char c : text) {
+        if (c >= 0 && c < 0x20) {
+            quoted += {'\\', 'u', '0', '0', digits[c / 16], digits[c % 16]};
+            continue;
+        }
+        if (c == '"' || c == '\\')
+            quoted += '\\';
+        quoted += c;
+    }
+    return quoted + '"';
+}
+
 // One line of JSON for each estimator.
 inline void print(const Options &options, const Integrand &integrand, uint32_t samples_per_vector, const Rendering &renderer,
                   const std::vector<std::string> &names, uint64_t seed)
@@ -20,11 +37,11 @@ inline void print(const Options &options, const Integrand &integrand, uint32_t s
     double sampling = times.drawing + times.tracing;
     auto each = [&](double seconds) { return seconds / samples * 1e9; };
     for (size_t e = 0; e < names.size(); ++e)
-        std::printf("{\"scene\":\"%s\",\"sampler\":\"%s\",\"estimator\":\"%s\",\"spp\":%u,\"dims\":%u,\"order\":%u,"
+        std::printf("{\"scene\":%s,\"sampler\":\"%s\",\"estimator\":\"%s\",\"spp\":%u,\"dims\":%u,\"order\":%u,"
                     "\"threads\":%u,\"width\":%u,\"height\":%u,\"seed\":%llu,\"frame\":%u,\"camera_rays_per\":\"%s\","
                     "\"total_seconds\":%.6f,\"drawing_ns_per_sample\":%.2f,"
                     "\"tracing_ns_per_sample\":%.2f,\"sampling_ns_per_sample\":%.2f,\"estimating_ns_per_sample\":%.2f}\n",
-                    options.scene.c_str(), options.reference ? "lattice" : options.sampler.c_str(), names[e].c_str(), spp,
+                    json(options.scene).c_str(), options.reference ? "lattice" : options.sampler.c_str(), names[e].c_str(), spp,
                     dims(integrand.domains()), options.order, options.threads, options.width, options.height,
                     static_cast<unsigned long long>(seed), options.frame, integrand.camera_ray_per_sample() ? "sample" : "pixel",
                     sampling + times.estimating[e], each(times.drawing), each(times.tracing), each(sampling), each(times.estimating[e]));
@@ -41,15 +58,18 @@ inline void render(const Options &options, const Integrand &integrand, uint32_t 
     if (!options.statistics.empty())
         halves = std::make_unique<Halves>(options.statistics[0], options.statistics[1], options.width, options.height);
     std::vector<Statistics> statistics(halves ? names.size() : 0, Statistics(options.width, options.height));
+    std::unique_ptr<SamplerFactory> samplers;
+    if (!options.reference)
+        samplers = std::make_unique<SamplerFactory>(options.sampler, options.tile, options.table);
     Outputs outputs;
     for (uint32_t i = 0; i < options.seeds; ++i) {
         const uint64_t seed = options.seed + i;
         SamplerSetup setup{integrand.domains(), dims(integrand.domains()), options.spp, options.frame, seed, options.scramble};
         std::unique_ptr<Sampler> sampler;
-        if (options.reference)
-            sampler = std::make_unique<LatticeSampler>(setup);
+        if (samplers)
+            sampler = samplers->make(setup);
         else
-            sampler = make_sampler(options.sampler, options.tile, options.table, setup);
+            sampler = std::make_unique<LatticeSampler>(setup);
         std::unique_ptr<Rendering> renderer;
         if (options.accumulate)
             renderer = std::make_unique<AccumulatingRenderer>(integrand, *sampler, options);

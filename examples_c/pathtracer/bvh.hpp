@@ -28,7 +28,11 @@ public:
         traverse(ray, best, false);
         if (best.distance == std::numeric_limits<float>::infinity())
             return false;
-        describe(ray, best, hit);
+        hit.distance = best.distance;
+        if (best.primitive < geometry_.triangles.size())
+            describe(geometry_.triangles[best.primitive], best.b1, best.b2, hit);
+        else
+            describe(geometry_.spheres[best.primitive - geometry_.triangles.size()], ray, hit);
         return true;
     }
 
@@ -168,14 +172,17 @@ private:
         return found;
     }
 
-    // Where the ray enters the box; infinity if it misses it.
+    // Where the ray enters the box; infinity if it misses it. A ray that runs in a face's plane makes 0 * infinity there, which is not
+    // a number: std::max and std::min then keep their first argument, so that such a face decides nothing.
     static float enter(const Box &box, Vector origin, Vector inverse)
     {
-        Vector a = (box.low - origin) * inverse, b = (box.high - origin) * inverse;
-        Vector low = minimum(a, b), high = maximum(a, b);
-        float near = std::max(std::max(low.x, low.y), std::max(low.z, 0.0f));
-        float far = std::min(std::min(high.x, high.y), high.z);
-        return near <= far * 1.00001f ? near : std::numeric_limits<float>::infinity();
+        float near = 0, far = Box::infinity;
+        for (int axis = 0; axis < 3; ++axis) {
+            const bool backwards = std::signbit(inverse[axis]);
+            near = std::max(near, ((backwards ? box.high : box.low)[axis] - origin[axis]) * inverse[axis]);
+            far = std::min(far, ((backwards ? box.low : box.high)[axis] - origin[axis]) * inverse[axis]);
+        }
+        return near <= far * 1.00001f ? near : Box::infinity;
     }
 
     // Möller and Trumbore 1997.
@@ -214,24 +221,6 @@ private:
             return false;
         best = {distance, primitive, 0, 0};
         return true;
-    }
-
-    void describe(const Ray &ray, const Candidate &best, Hit &hit) const
-    {
-        hit.distance = best.distance;
-        if (best.primitive < geometry_.triangles.size()) {
-            const Triangle &t = geometry_.triangles[best.primitive];
-            hit.geometric = normalize(cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]));
-            hit.shading = normalize((1 - best.b1 - best.b2) * t.normal[0] + best.b1 * t.normal[1] + best.b2 * t.normal[2]);
-            hit.material = t.material;
-            hit.light = t.light;
-        } else {
-            const Sphere &s = geometry_.spheres[best.primitive - geometry_.triangles.size()];
-            Vector point = ray.origin + best.distance * ray.direction;
-            hit.geometric = hit.shading = (point - (s.center + ray.time * s.motion)) / s.radius;
-            hit.material = s.material;
-            hit.light = s.light;
-        }
     }
 
     const Geometry &geometry_;

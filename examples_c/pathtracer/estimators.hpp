@@ -192,6 +192,7 @@ struct EstimatorSetup {
     uint32_t side;   // of the rectangles that pixels come in, at most
     size_t samples;  // of a pixel
     bool stratified;
+    const char *settings = "--regressed and --order set them"; // what a refusal says of dims and order
 };
 
 // Whether it needs the samples of neighbouring pixels.
@@ -231,10 +232,10 @@ inline nf_cv_config configure(const EstimatorName &known, const EstimatorSetup &
 }
 
 // What went wrong with a configuration that noisefloor refuses.
-inline std::string refusal(const std::string &name, const nf_cv_config &config)
+inline std::string refusal(const std::string &name, const nf_cv_config &config, const EstimatorSetup &setup)
 {
     return "noisefloor refuses estimator " + name + " with dims " + std::to_string(config.dims) + ", order " +
-           std::to_string(config.order) + " (terms are limited to 136, dims to 16; --regressed and --order set them)";
+           std::to_string(config.order) + " (terms are limited to 136, dims to 16; " + setup.settings + ")";
 }
 
 // Throws if the name is unknown or the configuration is refused.
@@ -244,7 +245,7 @@ inline std::unique_ptr<Estimator> make_estimator(const std::string &name, const 
     if (name == "mc")
         return std::make_unique<PlainMean>(setup.dims);
     if (nf_cv_workspace_size(&config, setup.samples) == 0)
-        throw std::runtime_error(refusal(name, config));
+        throw std::runtime_error(refusal(name, config, setup));
     if (shares(name))
         return std::make_unique<Shared>(config, setup.side, setup.samples);
     if (name == "incremental")

@@ -15,7 +15,7 @@ public:
     {
         if (count_ > 0)
             start();
-        return unit(static_cast<uint32_t>(mix(key_ += golden) >> 32));
+        return unit(static_cast<uint32_t>(stream_.bits() >> 32));
     }
     const float *draw(float *to, uint32_t count)
     {
@@ -27,17 +27,19 @@ public:
 private:
     void start()
     {
+        uint64_t key = 0;
         for (uint32_t i = 0; i < count_; ++i) {
             uint32_t bits;
             std::memcpy(&bits, u_ + i, sizeof bits);
-            key_ = mix((key_ + golden) ^ bits);
+            key = mix((key + golden) ^ bits);
         }
+        stream_ = SplitMix(key);
         count_ = 0;
     }
 
     const float *u_;
-    uint32_t count_; // 0 once the key is made: most paths end before
-    uint64_t key_ = 0;
+    uint32_t count_; // 0 once the stream is made: most paths end before
+    SplitMix stream_{0};
 };
 
 } // namespace demo

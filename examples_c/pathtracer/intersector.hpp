@@ -44,6 +44,25 @@ struct Hit {
     int32_t light;
 };
 
+// What a triangle's point shows; b1 and b2 are its barycentric coordinates of the second and the third corner.
+inline void describe(const Triangle &t, float b1, float b2, Hit &hit)
+{
+    hit.geometric = normalize(cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]));
+    hit.shading = normalize((1 - b1 - b2) * t.normal[0] + b1 * t.normal[1] + b2 * t.normal[2]);
+    hit.material = t.material;
+    hit.light = t.light;
+}
+
+// What the point of a sphere shows that the ray meets at hit.distance. Not divided by the radius: the distance is rounded, and beside a
+// small sphere far away much so.
+inline void describe(const Sphere &s, const Ray &ray, Hit &hit)
+{
+    Vector point = ray.origin + hit.distance * ray.direction;
+    hit.geometric = hit.shading = normalize(point - (s.center + ray.time * s.motion));
+    hit.material = s.material;
+    hit.light = s.light;
+}
+
 struct Intersector {
     virtual ~Intersector() = default;
     // The nearest surface; false if there is none, and `hit` is then undefined.

@@ -125,7 +125,7 @@ inline std::unique_ptr<Estimator> make_mis_estimator(const std::string &name, co
         config.channels = 3;
         config.stratified = setup.stratified;
         if (nf_cv_workspace_size(&config, setup.samples) == 0)
-            throw std::runtime_error(refusal(name, config));
+            throw std::runtime_error(refusal(name, config, setup));
         return std::make_unique<MisEstimator>(known, config, setup.samples);
     }
     throw std::runtime_error("there is no estimator `" + name + "` for --mis; --help lists them");

@@ -199,6 +199,9 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
     }
     if (options.mis && (options.accumulate || options.reference || options.spp % 2))
         throw std::runtime_error("--mis takes an even --spp, and neither --accumulate nor --reference");
+    if (options.mis && (options.bounces || options.regressed))
+        throw std::runtime_error(std::string(options.bounces ? "--bounces" : "--regressed") +
+                                 " is not for --mis: that is direct light, and regresses the two numbers of each technique");
     if (options.accumulate && options.reference)
         throw std::runtime_error("--reference does without --accumulate");
     // Sample i of an accumulator is in its fold i mod 4, whichever thread adds it.

@@ -21,13 +21,27 @@ inline uint64_t mix(uint64_t z)
 
 constexpr uint64_t golden = 0x9e3779b97f4a7c15u;
 
+// 24 bits, so that every value is exact and below 1.
+inline float unit(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+
+// The generator in its usual form: a stream of independent, uniform numbers.
+class SplitMix {
+public:
+    explicit SplitMix(uint64_t seed) : state_(seed) {}
+
+    uint64_t bits() { return mix(state_ += golden); }
+    // In [0, 1), or between two numbers.
+    float operator()() { return unit(static_cast<uint32_t>(bits())); }
+    float operator()(float low, float high) { return low + (high - low) * (*this)(); }
+
+private:
+    uint64_t state_;
+};
+
 inline uint64_t pixel_key(uint64_t seed, uint32_t frame, uint32_t x, uint32_t y)
 {
     return mix(mix(seed + golden + (uint64_t{frame} << 40)) ^ (uint64_t{y} << 32 | x));
 }
-
-// 24 bits, so that every value is exact and below 1.
-inline float unit(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
 // n independent, uniform points from number `first` on; row after row.
 inline void random_points(uint64_t key, size_t first, size_t n, uint32_t dims, float *u)

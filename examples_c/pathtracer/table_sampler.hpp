@@ -11,11 +11,12 @@ namespace demo {
 
 // A file: the line "noisefloor-points WIDTH HEIGHT SAMPLES DIMS", then numbers in [0, 1) as little-endian floats, [y][x][sample][dim].
 struct PointTable {
+    std::string path;
     uint32_t width = 0, height = 0, samples = 0, dims = 0;
     std::vector<float> values;
 
     // Throws if the file is anything else.
-    explicit PointTable(const std::string &path)
+    explicit PointTable(const std::string &file_path) : path(file_path)
     {
         if (path.empty())
             throw std::runtime_error("the sampler `table` needs --table FILE");
@@ -51,16 +52,16 @@ struct PointTable {
 // not fit into its dimensions, which also add a hashed number to all values, modulo 1: two places of one table need not be independent.
 class TableSampler final : public Sampler {
 public:
-    TableSampler(const std::string &path, const SamplerSetup &setup)
-        : setup_(setup), table_(path), groups_(group(setup.domains, table_.dims))
+    TableSampler(std::shared_ptr<const PointTable> table, const SamplerSetup &setup)
+        : setup_(setup), table_(std::move(table)), groups_(group(setup.domains, table_->dims))
     {
-        if (setup.samples > table_.samples)
-            throw std::runtime_error(path + " has " + std::to_string(table_.samples) + " samples per pixel; --spp asks for " +
+        if (setup.samples > table_->samples)
+            throw std::runtime_error(table_->path + " has " + std::to_string(table_->samples) + " samples per pixel; --spp asks for " +
                                      std::to_string(setup.samples));
         for (const Group &g : groups_)
-            if (g.dims > table_.dims)
-                throw std::runtime_error(path + " has " + std::to_string(table_.dims) + " dimensions; a decision of this scene takes " +
-                                         std::to_string(g.dims));
+            if (g.dims > table_->dims)
+                throw std::runtime_error(table_->path + " has " + std::to_string(table_->dims) +
+                                         " dimensions; a decision of this scene takes " + std::to_string(g.dims));
     }
 
     void points(uint32_t x, uint32_t y, float *u) const override { range(x, y, 0, setup_.samples, u); }
@@ -69,12 +70,12 @@ public:
         for (size_t g = 0; g < groups_.size(); ++g) {
             bool as_it_is = g == 0 && setup_.seed == 1 && setup_.frame == 0;
             uint64_t key = as_it_is ? 0 : mix(mix(setup_.seed * golden + setup_.frame) + g), place = as_it_is ? 0 : mix(key + golden);
-            size_t column = (x + (place & 0xffffff)) % table_.width, row = (y + (place >> 40)) % table_.height;
-            const float *from = &table_.values[((row * table_.width + column) * table_.samples + first) * table_.dims];
+            size_t column = (x + (place & 0xffffff)) % table_->width, row = (y + (place >> 40)) % table_->height;
+            const float *from = &table_->values[((row * table_->width + column) * table_->samples + first) * table_->dims];
             for (uint32_t d = 0; d < groups_[g].dims; ++d, ++u, ++from) {
                 float shift = g == 0 ? 0 : unit(static_cast<uint32_t>(mix(key + (d + 2) * golden) >> 32));
                 for (uint32_t i = 0; i < count; ++i) {
-                    float value = from[size_t{i} * table_.dims] + shift;
+                    float value = from[size_t{i} * table_->dims] + shift;
                     u[size_t{i} * setup_.dims] = std::min(value < 1 ? value : value - 1, 0x1.fffffep-1f);
                 }
             }
@@ -83,7 +84,7 @@ public:
 
 private:
     SamplerSetup setup_;
-    PointTable table_;
+    std::shared_ptr<const PointTable> table_;
     std::vector<Group> groups_;
 };
 

@@ -38,6 +38,16 @@ inline bool has_tile(const TileName &tile)
     return nf_tile_builtin(tile.id, &view) == NF_OK;
 }
 
+// Those that the linked library carries.
+inline std::string tile_list()
+{
+    std::string list;
+    for (const TileName &tile : tile_names)
+        if (has_tile(tile))
+            list += (list.empty() ? "" : ", ") + std::string(tile.name);
+    return list;
+}
+
 // A tile of the library, or one from a file, whose bytes must then outlive the view.
 class LoadedTile {
 public:
@@ -49,7 +59,7 @@ public:
                 continue;
             nf_status status = nf_tile_builtin(known.id, &view_);
             if (status == NF_ERR_UNSUPPORTED)
-                throw std::runtime_error("the library was built without the tile " + name + "; --help lists those that it carries");
+                throw std::runtime_error("the library was built without the tile " + name + "; it carries " + tile_list());
             check(status, name);
             return;
         }
@@ -66,7 +76,7 @@ private:
     {
         FILE *file = std::fopen(path.c_str(), "rb");
         if (!file)
-            throw std::runtime_error("there is no tile `" + path + "`, and no file that can be read; --help lists the tiles");
+            throw std::runtime_error("there is no tile `" + path + "`, and no such file that can be read; tiles are " + tile_list());
         char buffer[4096];
         for (size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;)
             bytes_.insert(bytes_.end(), buffer, buffer + n);
@@ -103,29 +113,29 @@ inline std::string default_tile(uint32_t samples)
         }
     }
     if (!best)
-        throw std::runtime_error("the library carries no tile of two dimensions; --tile FILE names another");
+        throw std::runtime_error("the library carries no tile of two dimensions; name another, from a file");
     return best->name;
 }
 
 class TileSampler final : public Sampler {
 public:
-    TileSampler(const std::string &tile, const SamplerSetup &setup)
-        : setup_(setup), frame_(setup.frame), tile_(tile.empty() ? default_tile(setup.samples) : tile),
+    TileSampler(std::shared_ptr<const LoadedTile> tile, const SamplerSetup &setup)
+        : setup_(setup), frame_(setup.frame), tile_(std::move(tile)),
           // A tile of two dimensions has a third that is stratified with them, which suits a choice or a time.
-          groups_(group(setup.domains, std::min(std::max(tile_.view().dims, 3u), 4u)))
+          groups_(group(setup.domains, std::min(std::max(tile_->view().dims, 3u), 4u)))
     {
         // Another seed is the tile at another place: as good as the first, which a scrambled tile is not. Frames stay in their order.
         if (setup.scramble)
             scramble_ = static_cast<uint32_t>(mix(setup.seed)) | 1;
         else
-            frame_ += static_cast<uint32_t>(setup.seed - 1) * 4096 * tile_.view().frames;
+            frame_ += static_cast<uint32_t>(setup.seed - 1) * 4096 * tile_->view().frames;
     }
 
     void points(uint32_t x, uint32_t y, float *u) const override { range(x, y, 0, setup_.samples, u); }
     void range(uint32_t x, uint32_t y, uint32_t first, uint32_t count, float *u) const override
     {
         for (uint32_t i = first; i < first + count; ++i) {
-            nf_sampler sampler = nf_sampler_pixel(&tile_.view(), x, y, frame_, i);
+            nf_sampler sampler = nf_sampler_pixel(&tile_->view(), x, y, frame_, i);
             sampler = nf_sampler_scramble(sampler, scramble_);
             for (const Group &g : groups_) {
                 // A tree of domains: the bounce, and in it the decision. Keys are all that tells them apart: nothing is counted,
@@ -143,25 +153,42 @@ public:
 private:
     SamplerSetup setup_;
     uint32_t frame_, scramble_ = 0;
-    LoadedTile tile_;
+    std::shared_ptr<const LoadedTile> tile_;
     std::vector<Group> groups_; // what one draw makes: domains that fit into the tile's dimensions are optimised together
 };
 
 inline const char *const sampler_names[] = {"random", "sobol", "tile", "table"};
 
-// Throws if there is no sampler, or no tile, of that name.
-inline std::unique_ptr<Sampler> make_sampler(const std::string &name, const std::string &tile, const std::string &table,
-                                             const SamplerSetup &setup)
-{
-    if (name == "random")
-        return std::make_unique<RandomSampler>(setup);
-    if (name == "sobol")
-        return std::make_unique<SobolSampler>(setup);
-    if (name == "tile")
-        return std::make_unique<TileSampler>(tile, setup);
-    if (name == "table")
-        return std::make_unique<TableSampler>(table, setup);
-    throw std::runtime_error("there is no sampler `" + name + "`; --help lists them");
-}
+// Makes samplers of one kind: for each seed, for each domain. A file is read once, however many there are.
+class SamplerFactory {
+public:
+    // `tile`: empty for one by the samples. Throws if there is no such sampler, or no such tile or table for it.
+    SamplerFactory(const std::string &name, const std::string &tile, const std::string &table) : name_(name)
+    {
+        if (std::find(std::begin(sampler_names), std::end(sampler_names), name) == std::end(sampler_names))
+            throw std::runtime_error("there is no sampler `" + name + "`; --help lists them");
+        if (name == "tile" && !tile.empty())
+            tile_ = std::make_shared<const LoadedTile>(tile);
+        if (name == "table")
+            table_ = std::make_shared<const PointTable>(table);
+    }
+
+    // Throws if the points that there are do not suffice.
+    std::unique_ptr<Sampler> make(const SamplerSetup &setup) const
+    {
+        if (name_ == "random")
+            return std::make_unique<RandomSampler>(setup);
+        if (name_ == "sobol")
+            return std::make_unique<SobolSampler>(setup);
+        if (table_)
+            return std::make_unique<TableSampler>(table_, setup);
+        return std::make_unique<TileSampler>(tile_ ? tile_ : std::make_shared<const LoadedTile>(default_tile(setup.samples)), setup);
+    }
+
+private:
+    std::string name_;
+    std::shared_ptr<const LoadedTile> tile_;
+    std::shared_ptr<const PointTable> table_;
+};
 
 } // namespace demo

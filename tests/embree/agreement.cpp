@@ -13,19 +13,12 @@ namespace {
 
 using namespace harness;
 
-void put(demo::Geometry &geometry, const Mesh &mesh, uint32_t material, Vector motion)
-{
-    for (const Facet &f : mesh.facets)
-        geometry.triangles.push_back(
-            {{f.corner[0], f.corner[1], f.corner[2]}, {f.normal[0], f.normal[1], f.normal[2]}, material, -1, motion});
-}
-
 demo::Geometry jumble(Numbers &numbers)
 {
     demo::Geometry geometry;
-    put(geometry, shipped("bunny.ply"), 0, {});
-    put(geometry, move({1.2f, 0, 0}) * shipped("teapot.ply"), 1, {.3f, .1f, -.2f});
-    put(geometry, move({0, -1.5f, 0}) * box({3, 1, 3}, .2f), 2, {});
+    add(geometry, shipped("bunny.ply"), 0);
+    add(geometry, move({1.2f, 0, 0}) * shipped("teapot.ply"), 1, {.3f, .1f, -.2f});
+    add(geometry, move({0, -1.5f, 0}) * box({3, 1, 3}, .2f), 2);
     for (uint32_t i = 0; i < 2000; ++i) {
         demo::Triangle t{{}, {}, 3 + i, static_cast<int32_t>(i % 5) - 1, i % 2 ? numbers.vector(-.2f, .2f) : Vector{}};
         Vector center = numbers.vector(-2, 2);

@@ -11,13 +11,10 @@ namespace harness {
 
 using demo::Vector;
 
-// A stream of uniform numbers.
-struct Numbers {
-    uint64_t counter;
-    float operator()(float low, float high)
-    {
-        return low + (high - low) * demo::unit(static_cast<uint32_t>(demo::mix(counter += demo::golden)));
-    }
+// A stream of uniform numbers, and of vectors of them.
+struct Numbers : demo::SplitMix {
+    using SplitMix::SplitMix;
+
     Vector vector(float low, float high)
     {
         float x = (*this)(low, high), y = (*this)(low, high);
@@ -32,7 +29,7 @@ struct Comparison {
     // `closest` and `occluded` up to `distance` of one ray.
     void add(const demo::Intersector &own, const demo::Intersector &other, const demo::Ray &ray, float distance)
     {
-        demo::Hit a, b;
+        demo::Hit a = {}, b = {};
         ++rays;
         bool found = own.closest(ray, a);
         if (found != other.closest(ray, b) || (found && (a.material != b.material || a.light != b.light))) {

@@ -63,9 +63,14 @@ public:
         rtcInitIntersectContext(&context);
         rtcIntersect1(scene_.get(), &context, &query);
 #endif
-        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+        const RTCHit &found = query.hit;
+        if (found.geomID == RTC_INVALID_GEOMETRY_ID)
             return false;
-        describe(ray, query, hit);
+        hit.distance = query.ray.tfar;
+        if (found.geomID < triangles_.size())
+            describe(geometry_.triangles[triangles_[found.geomID][found.primID]], found.u, found.v, hit);
+        else
+            describe(geometry_.spheres[found.primID], ray, hit);
         return true;
     }
 
@@ -172,25 +177,6 @@ private:
                 *ball++ = {sphere.center + static_cast<float>(step) * sphere.motion, sphere.radius};
         }
         attach(geometry);
-    }
-
-    void describe(const demo::Ray &ray, const RTCRayHit &query, demo::Hit &hit) const
-    {
-        const RTCHit &found = query.hit;
-        hit.distance = query.ray.tfar;
-        if (found.geomID < triangles_.size()) {
-            const demo::Triangle &t = geometry_.triangles[triangles_[found.geomID][found.primID]];
-            hit.geometric = demo::normalize(demo::cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]));
-            hit.shading = demo::normalize((1 - found.u - found.v) * t.normal[0] + found.u * t.normal[1] + found.v * t.normal[2]);
-            hit.material = t.material;
-            hit.light = t.light;
-        } else {
-            const demo::Sphere &s = geometry_.spheres[found.primID];
-            demo::Vector point = ray.origin + hit.distance * ray.direction;
-            hit.geometric = hit.shading = demo::normalize(point - (s.center + ray.time * s.motion));
-            hit.material = s.material;
-            hit.light = s.light;
-        }
     }
 
     const demo::Geometry &geometry_;

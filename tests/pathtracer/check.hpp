@@ -70,14 +70,18 @@ template <typename Mean> void expect_mean(const char *what, const Mean &a, doubl
     expect_same(what, a.mean(), a.error(), expected, 0, resolution);
 }
 
-// Independent uniform numbers.
-class Random {
-public:
-    explicit Random(uint64_t seed) : state_(demo::mix(seed)) {}
-    float operator()() { return demo::unit(static_cast<uint32_t>(demo::mix(state_ += demo::golden) >> 32)); }
+// `resolution`: here absolute.
+inline void expect_zero(const char *what, const Mean &mean, double resolution)
+{
+    std::printf("   %-72s %.5f  0  +- %.5f\n", what, mean.mean(), mean.error());
+    expect(std::abs(mean.mean()) <= 5 * mean.error(), what);
+    expect(5 * mean.error() <= resolution, "too noisy to tell");
+}
 
-private:
-    uint64_t state_;
+// Independent uniform numbers.
+struct Random : demo::SplitMix {
+    // Seeds that follow each other are streams far apart.
+    explicit Random(uint64_t seed) : SplitMix(demo::mix(seed)) {}
 };
 
 inline int finish()

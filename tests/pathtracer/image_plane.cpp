@@ -22,26 +22,36 @@ void footprints()
 
 void lens()
 {
-    // Rays through all of the lens meet in the plane that is sharp, and the lens is covered evenly.
+    // Rays through all of the lens meet in the plane that is sharp, and the lens is covered evenly: its moments up to the second are those
+    // of the disc.
     Camera camera;
     camera.look({0, 0, 5}, {0, 0, 0}, 40, 1);
     camera.aperture = 0.3f;
     camera.focus = 4;
     Random random(9);
-    Mean radius, side;
+    Mean x, y, xx, yy, xy;
     Ray center = camera.ray(.3f, .7f, 0);
     Vector sharp = center.origin + (4 / -center.direction.z) * center.direction;
-    for (int i = 0; i < 100000; ++i) {
+    for (int i = 0; i < 1000000; ++i) {
         float u = random(), v = random();
         Ray ray = camera.ray(.3f, .7f, 0.25f, u, v);
         Vector from = ray.origin - camera.eye, at = ray.origin + (4 / -ray.direction.z) * ray.direction;
-        radius.add(dot(from, from) / (0.3 * 0.3));
-        side.add(from.x > 0);
+        // In units of the aperture, in the plane of the lens.
+        const double a = from.x / 0.3, b = from.y / 0.3;
+        x.add(a);
+        y.add(b);
+        xx.add(a * a);
+        yy.add(b * b);
+        xy.add(a * b);
+        expect_near(from.z, 0, 1e-6, "the plane of the lens");
         expect_near(length(at - sharp), 0, 1e-4, "focus");
         expect_near(ray.time, 0.25, 0, "the time of a ray through the lens");
     }
-    expect_mean("lens: mean squared radius", radius, 0.5);
-    expect_mean("lens: right half", side, 0.5);
+    expect_zero("lens: mean, across", x, 0.005);
+    expect_zero("lens: mean, upwards", y, 0.005);
+    expect_mean("lens: mean square, across", xx, 0.25, 0.01);
+    expect_mean("lens: mean square, upwards", yy, 0.25, 0.01);
+    expect_zero("lens: mean product", xy, 0.005);
 }
 
 // Moving triangles at a time are still ones that stand where they then are.

@@ -16,14 +16,30 @@ void densities(const LitScene &lit)
         integral.add(4 * pi * drawing_density(lit.scene.lights[0], from, direction(random)));
     const std::string what = std::string(lit.name) + ": integral of the density of what is drawn";
     expect_mean(what.c_str(), integral, 1, lit.scene.environment() ? 0.2 : 0.05);
-    for (int i = 0; i < 1000; ++i) {
+    const Light &light = lit.scene.lights[0];
+    if (light.kind == Light::environment)
+        return;
+    constexpr int drawn = 100000;
+    int outside = 0, seen = 0;
+    for (int i = 0; i < drawn; ++i) {
         float u = random(), v = random();
-        LightSample sample = sample_light(lit.scene.lights[0], from, u, v);
-        // A mesh has a back, which adds to the density of the front. Rounding decides at the rims.
-        float density = drawing_density(lit.scene.lights[0], from, sample.direction);
-        if (sample.pdf > 0 && lit.scene.lights[0].kind != Light::environment)
-            expect(density > sample.pdf * 0.99f || density == 0, "a direction is drawn more often than is said");
+        LightSample sample = sample_light(light, from, u, v);
+        float density = drawing_density(light, from, sample.direction);
+        if (sample.pdf == 0) // a back of the mesh
+            continue;
+        ++seen;
+        // At a rim rounding decides whether a direction belongs to the light.
+        if (density == 0) {
+            ++outside;
+            continue;
+        }
+        expect(density > sample.pdf * 0.99f, "a direction is drawn more often than is said");
+        // A mesh has a back, which adds to the density of the front.
+        expect(light.kind == Light::mesh || density < sample.pdf * 1.01f, "a direction is drawn more seldom than is said");
     }
+    std::printf("   %-72s %d of %d\n", (std::string(lit.name) + ": drawn, but of density 0").c_str(), outside, seen);
+    expect(outside <= seen / 10000, "directions that are drawn have density 0");
+    expect(seen > drawn / 5, "too few directions towards the light are drawn");
 }
 
 // A floor with gloss, a ball that hides a part of the light.

@@ -80,6 +80,8 @@ pub(crate) fn check(archive: &Path) -> Result<Outcome> {
         &["--mis", "--spp", "7"],
         &["--mis", "--scene", "lens"],
         &["--mis", "--estimators", "robust"],
+        &["--mis", "--bounces", "2"],
+        &["--mis", "--regressed", "2"],
         &["--regressed", "17"],
         &["--statistics", "README.md"],
         &["--statistics", "README.md,README.md"],
@@ -97,7 +99,7 @@ pub(crate) fn check(archive: &Path) -> Result<Outcome> {
 
 /// The programs of `tests/pathtracer`: the path tracer's parts, one by one.
 pub(crate) fn parts(archive: &Path) -> Result<Outcome> {
-    for name in ["lights", "surfaces", "image_plane", "paths", "mis"] {
+    for name in ["intersection", "lights", "surfaces", "image_plane", "paths", "mis", "program"] {
         println!("   {name}");
         let program = output(&format!("pathtracer_{name}"))?;
         let mut compiler = run::compiler("CXX", "c++");

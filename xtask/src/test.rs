@@ -86,9 +86,10 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
         path_tracer::check(&archive()?)
     });
-    steps.run("parts of examples_c/pathtracer: lights, surfaces, the image plane, paths, MIS", || {
-        path_tracer::parts(&archive()?)
-    });
+    steps.run(
+        "parts of examples_c/pathtracer: intersections, lights, surfaces, the image plane, paths, MIS, the program",
+        || path_tracer::parts(&archive()?),
+    );
     steps.run("tests/embree: Embree meets the same surfaces as the path tracer's own tree", || {
         embree::agreement(&archive()?)
     });
@@ -102,10 +103,9 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));
     steps.run("examples_c/fit_image.cpp: short runs", || fit::photograph(&archive()?));
-    steps.run(
-        "POV-Ray's patch: well formed, its licence stated, and our side of it compiles",
-        povray_patched::check_patch,
-    );
+    steps.run("POV-Ray's patch: well formed, its licence stated, and our side of it compiles", || {
+        povray_patched::check_patch(&archive()?)
+    });
     steps.run(
         "cargo package: every published package is complete and below the registry's limit",
         release::package::check,

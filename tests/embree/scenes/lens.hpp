@@ -83,28 +83,19 @@ inline void make_lens(uint32_t, float aspect, Scene &scene)
             stage.put(square, (i + j) % 2 ? dark : light, move({static_cast<float>(i) - 3.5f, -.1f, static_cast<float>(j) - 3.5f}));
     // The position after a few moves; files along x, ranks along -z.
     const Mesh small = pawn(), runner = bishop(), tower = rook(), lady = queen(), ruler = king();
-    auto put = [&](const Mesh &mesh, int file, int rank, uint32_t material) {
-        stage.put(mesh, material,
-                  move({static_cast<float>(file) - 3.5f, 0, 3.5f - static_cast<float>(rank)}) *
-                      turn_up(static_cast<float>(17 * file + 31 * rank)));
-    };
-    for (int file : {0, 1, 5, 6, 7})
-        put(small, file, 1, ivory);
-    for (int file : {0, 2, 5, 6, 7})
-        put(small, file, 6, ebony);
-    put(small, 4, 3, ivory);
-    put(small, 3, 2, ivory);
-    put(small, 4, 4, ebony);
-    put(small, 1, 5, ebony);
-    put(runner, 2, 3, ivory);
-    put(runner, 5, 4, ebony);
-    put(lady, 3, 5, ebony);
-    put(ruler, 4, 7, ebony);
-    put(tower, 0, 7, ebony);
-    put(tower, 7, 7, ebony);
-    put(ruler, 5, 2, ivory);
-    put(tower, 7, 0, ivory);
-    put(tower, 2, 5, ivory);
+    const struct {
+        const Mesh &mesh;
+        int file, rank;
+        uint32_t material;
+    } men[] = {{small, 0, 1, ivory},  {small, 1, 1, ivory},  {small, 5, 1, ivory},  {small, 6, 1, ivory},  {small, 7, 1, ivory},
+               {small, 0, 6, ebony},  {small, 2, 6, ebony},  {small, 5, 6, ebony},  {small, 6, 6, ebony},  {small, 7, 6, ebony},
+               {small, 4, 3, ivory},  {small, 3, 2, ivory},  {small, 4, 4, ebony},  {small, 1, 5, ebony},  {runner, 2, 3, ivory},
+               {runner, 5, 4, ebony}, {lady, 3, 5, ebony},   {ruler, 4, 7, ebony},  {tower, 0, 7, ebony},  {tower, 7, 7, ebony},
+               {ruler, 5, 2, ivory},  {tower, 7, 0, ivory},  {tower, 2, 5, ivory}};
+    for (const auto &man : men) // each turned a little differently
+        stage.put(man.mesh, man.material,
+                  move({static_cast<float>(man.file) - 3.5f, 0, 3.5f - static_cast<float>(man.rank)}) *
+                      turn_up(static_cast<float>(17 * man.file + 31 * man.rank)));
     stage.environment(smooth_sky({.75f, .6f, .15f}));
 }
 

@@ -24,8 +24,8 @@ public:
         bark_ = stage.material({.25f, .17f, .1f});
     }
 
-    float number() { return demo::unit(static_cast<uint32_t>(demo::mix(counter_ += demo::golden))); }
-    float number(float low, float high) { return low + (high - low) * number(); }
+    float number() { return stream_(); }
+    float number(float low, float high) { return stream_(low, high); }
     template <class T> const T &one(const std::vector<T> &of)
     {
         return of[static_cast<size_t>(number() * static_cast<float>(of.size()))];
@@ -92,7 +92,7 @@ private:
     }
 
     Stage &stage_;
-    uint64_t counter_ = 11;
+    demo::SplitMix stream_{11};
     std::vector<uint32_t> walls_, paints_;
     uint32_t glass_, trim_, roof_, leaf_, bark_;
 };

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "context.hpp"
-#include "estimators.hpp"
+#include "estimator.hpp"
 #include <utility>
 
 namespace noisefloor_povray {
@@ -19,42 +19,6 @@ struct Layout {
 
 // Library limit: nf_cv_config.dims.
 constexpr uint32_t most_decisions = 8;
-
-inline bool stratified(const Settings &settings) { return settings.sampler != "random"; }
-
-// By a name of estimators.hpp, or `accumulator`, or `recommended`: what nf_recommend() says.
-inline std::unique_ptr<demo::Estimator> make_estimator(const Settings &settings, uint32_t dims, uint32_t side, uint32_t samples)
-{
-    std::string name = settings.estimator;
-    uint32_t order = settings.order;
-    if (name == "recommended" || order == 0) {
-        nf_recommendation advice;
-        uint32_t sampling = stratified(settings) ? NF_SAMPLING_STRATIFIED : NF_SAMPLING_INDEPENDENT;
-        demo::check(nf_recommend(dims, samples, sampling, side > 1, &advice), "nf_recommend");
-        static const char *const methods[] = {"mc", "robust", "shared"}; // NF_METHOD_*
-        if (name == "recommended")
-            name = methods[advice.method];
-        if (order == 0)
-            order = advice.config.order > 0 ? advice.config.order : 2;
-    }
-    if (name == "accumulator") { // what a renderer does that keeps no samples
-        nf_cv_config config;
-        nf_cv_config_default(&config);
-        config.dims = config.stride = dims;
-        config.order = order;
-        config.channels = 3;
-        config.stratified = stratified(settings);
-        return std::make_unique<demo::Streaming>(config);
-    }
-    demo::EstimatorSetup setup{};
-    setup.dims = setup.regressed = dims;
-    setup.order = order;
-    setup.lights = 1;
-    setup.side = side;
-    setup.samples = samples;
-    setup.stratified = stratified(settings);
-    return demo::make_estimator(name, setup);
-}
 
 // One per thread, used for block after block.
 class Block {

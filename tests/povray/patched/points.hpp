@@ -2,7 +2,7 @@
 #pragma once
 
 #include "settings.hpp"
-#include "tile_sampler.hpp"
+#include "vector.hpp"
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -45,7 +45,7 @@ inline std::unique_ptr<demo::Sampler> make_sampler(const Settings &settings, uin
     setup.seed = settings.sampler == "tile" ? 1 : demo::mix(demo::golden * (first + 1));
     if (settings.sampler == "grid")
         return std::make_unique<GridSampler>(setup);
-    return demo::make_sampler(settings.sampler, settings.tile, "", setup);
+    return settings.samplers->make(setup);
 }
 
 // Points of one pixel in two-dimensional domains, made when they are asked for: how many light rays a path will need is not
@@ -87,20 +87,13 @@ private:
     std::vector<Part> parts_;
 };
 
-// Shirley and Chiu (1997): the square onto the unit disc, without tearing it.
+// As the path tracer does, in POV-Ray's type.
 inline void concentric_disc(const float u[2], double disc[2])
 {
-    double a = 2.0 * static_cast<double>(u[0]) - 1.0, b = 2.0 * static_cast<double>(u[1]) - 1.0;
-    constexpr double quarter = 0.78539816339744830962;
-    double radius = a, angle = 0;
-    if (std::abs(a) > std::abs(b))
-        angle = quarter * b / a;
-    else if (b != 0.0) {
-        radius = b;
-        angle = 2.0 * quarter - quarter * a / b;
-    }
-    disc[0] = radius * std::cos(angle);
-    disc[1] = radius * std::sin(angle);
+    float x, y;
+    demo::concentric_disc(u[0], u[1], x, y);
+    disc[0] = static_cast<double>(x);
+    disc[1] = static_cast<double>(y);
 }
 
 } // namespace noisefloor_povray

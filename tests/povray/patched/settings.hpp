@@ -1,6 +1,7 @@
 // What the environment asks for. POV-Ray's options and scene files stay POV-Ray's own.
 #pragma once
 
+#include "tile_sampler.hpp"
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -19,6 +20,7 @@ struct Settings {
     std::string sampler = "tile", tile, estimator = "recommended";
     uint32_t order = 0; // 0: the recommended one
     uint32_t seed = 0;
+    std::shared_ptr<const demo::SamplerFactory> samplers; // none if off, and for `grid`
     bool box = true;         // samples anywhere in the pixel; else at its centre
     bool moves_lights = true; // see nfp_moves_lights
 
@@ -28,7 +30,7 @@ struct Settings {
         Settings s;
         s.mode = static_cast<Mode>(choose("NOISEFLOOR", {"off", "samples", "estimate"}));
         s.samples = number("NOISEFLOOR_SPP", s.samples, 1, 65536);
-        s.sampler = text("NOISEFLOOR_SAMPLER", s.sampler);
+        s.sampler = sampler_names[choose("NOISEFLOOR_SAMPLER", sampler_names)];
         s.tile = text("NOISEFLOOR_TILE", s.tile);
         s.estimator = text("NOISEFLOOR_ESTIMATOR", s.estimator);
         s.order = number("NOISEFLOOR_ORDER", s.order, 0, 7);
@@ -36,10 +38,13 @@ struct Settings {
         s.box = choose("NOISEFLOOR_PIXEL", {"box", "center"}) == 0;
         s.moves_lights = choose("NOISEFLOOR_LIGHT", {"whole", "shadow"}) == 0;
         refuse_others();
+        if (s.mode != Mode::off && s.sampler != "grid")
+            s.samplers = std::make_shared<const demo::SamplerFactory>(s.sampler, s.tile, "");
         return s;
     }
 
 private:
+    static constexpr const char *sampler_names[] = {"tile", "sobol", "random", "grid"};
     static constexpr const char *names[] = {"NOISEFLOOR",           "NOISEFLOOR_SPP",   "NOISEFLOOR_SAMPLER", "NOISEFLOOR_TILE", "NOISEFLOOR_ESTIMATOR",
                                             "NOISEFLOOR_ORDER", "NOISEFLOOR_SEED",    "NOISEFLOOR_PIXEL", "NOISEFLOOR_LIGHT"};
 

@@ -1,11 +1,12 @@
 //! Rendering an animation with many POV-Rays at once.
 
 use super::scenes::Scene;
+use super::startup;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 
 /// POV-Ray sleeps most of the time between two small frames: many processes share a core well.
 const PROCESSES: u32 = 32;
@@ -51,23 +52,47 @@ pub(crate) fn render(scene: &Scene, cells: &[u32], count: usize, size: u32, out:
             command.arg(format!("Declare=Cells_{axis}={}", cells.get(axis).unwrap_or(&1)));
         }
         command.arg(format!("+O{}", out.join("frame").display()));
-        let messages = File::create(&log).with_context(|| format!("cannot create {}", log.display()))?;
-        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(messages);
-        running.0.push((command.spawn().context("cannot start povray")?, log));
+        command.stdin(Stdio::null()).stdout(Stdio::null());
+        running.0.push(Process { child: start(&mut command, &log)?, command, log });
     }
     running.wait(scene)
 }
 
-/// Processes and what they say; they end with this.
-struct Running(Vec<(Child, PathBuf)>);
+/// What it says goes to `log`, anew.
+fn start(command: &mut Command, log: &Path) -> Result<Child> {
+    let messages = File::create(log).with_context(|| format!("cannot create {}", log.display()))?;
+    command.stderr(messages).spawn().context("cannot start povray")
+}
+
+struct Process {
+    child: Child,
+    command: Command,
+    log: PathBuf,
+}
+
+impl Process {
+    /// Waits for it, which is running; it may have to be started again.
+    fn finish(&mut self, scene: &Scene) -> Result<(ExitStatus, String)> {
+        let mut running = true;
+        startup::retry(scene.name, || {
+            if !std::mem::take(&mut running) {
+                self.child = start(&mut self.command, &self.log)?;
+            }
+            let status = self.child.wait().context("povray was lost")?;
+            let text = fs::read(&self.log).map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+            Ok((status, text.unwrap_or_default()))
+        })
+    }
+}
+
+/// They end with this.
+struct Running(Vec<Process>);
 
 impl Running {
     fn wait(&mut self, scene: &Scene) -> Result<()> {
-        for (child, log) in &mut self.0 {
-            let status = child.wait().context("povray was lost")?;
+        for process in &mut self.0 {
+            let (status, text) = process.finish(scene)?;
             if !status.success() {
-                let text =
-                    fs::read(&*log).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default();
                 // What went wrong stands before "Fatal error"; the credits and settings before that are long.
                 let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
                 bail!(
@@ -83,10 +108,10 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        for (child, _) in &mut self.0 {
+        for process in &mut self.0 {
             // Neither does anything to a process that has been waited for.
-            let _ = child.kill();
-            let _ = child.wait();
+            let _ = process.child.kill();
+            let _ = process.child.wait();
         }
     }
 }

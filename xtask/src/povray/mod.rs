@@ -7,6 +7,7 @@ pub(crate) mod oracle;
 mod ppm;
 pub(crate) mod scenes;
 mod stack;
+pub(crate) mod startup;
 pub(crate) mod test;
 
 use crate::tools::Package;

@@ -6,6 +6,7 @@ mod build;
 mod checks;
 mod measure;
 mod patch;
+mod refusals;
 mod render;
 mod report;
 mod scenes;

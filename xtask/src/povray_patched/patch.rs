@@ -1,6 +1,6 @@
 //! The patch: what it must say of itself, and putting it on.
 
-use super::ours;
+use super::{ours, refusals};
 use crate::run;
 use crate::test::Outcome;
 use anyhow::{Context, Result, bail};
@@ -39,8 +39,8 @@ fn patch(source: &Path, file: &Path, options: &[&str]) -> Result<()> {
 }
 
 /// Whether the patch is well formed, says its licence, and has a notice beside it that says the same; and whether our side
-/// of it compiles. POV-Ray itself is not needed.
-pub(crate) fn check() -> Result<Outcome> {
+/// of it compiles, and refuses what it should. POV-Ray itself is not needed.
+pub(crate) fn check(archive: &Path) -> Result<Outcome> {
     let text = fs::read_to_string(path()).with_context(|| format!("cannot read {}", path().display()))?;
     let files = well_formed(&text)?;
     if !text.contains("SPDX-License-Identifier: AGPL-3.0-or-later\n") {
@@ -52,7 +52,7 @@ pub(crate) fn check() -> Result<Outcome> {
             bail!("README.md beside the patch does not say `{claim}`");
         }
     }
-    super::build::bridge()?;
+    refusals::check(archive)?;
     println!("   {} files of POV-Ray are changed", files.len());
     Ok(Outcome::Passed)
 }

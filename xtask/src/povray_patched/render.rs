@@ -1,6 +1,7 @@
 //! Running POV-Ray, stock or patched, and reading its pictures.
 
 use crate::measure::interrupt::{self, Interrupted};
+use crate::povray::startup;
 use crate::run;
 use anyhow::{Context, Result, bail};
 use image::Rgb32FImage;
@@ -17,6 +18,15 @@ pub(crate) struct Programs {
 
 /// Environment of a patched run: NOISEFLOOR settings by the rest of their names.
 pub(crate) type Settings<'a> = Vec<(&'a str, String)>;
+
+/// What POV-Ray is run with. `options` come last and override.
+struct Call<'a> {
+    program: &'a Path,
+    scene: &'a str,
+    size: [u32; 2],
+    options: &'a [&'a str],
+    settings: &'a [(&'a str, String)],
+}
 
 /// Renders in a folder of its own: POV-Ray's default rules let it read and write there.
 pub(crate) struct Renderer<'a> {
@@ -53,15 +63,15 @@ impl<'a> Renderer<'a> {
 
     /// POV-Ray as Debian built it.
     pub(crate) fn stock(&self, scene: &str, options: &[&str]) -> Result<Picture> {
-        self.run(&self.programs.stock, scene, [self.width, self.height], options, &[])
+        self.stock_sized(scene, [self.width, self.height], options)
     }
 
     pub(crate) fn stock_sized(&self, scene: &str, size: [u32; 2], options: &[&str]) -> Result<Picture> {
-        self.run(&self.programs.stock, scene, size, options, &[])
+        self.run(&Call { program: &self.programs.stock, scene, size, options, settings: &[] })
     }
 
     pub(crate) fn patched(&self, scene: &str, settings: &Settings) -> Result<Picture> {
-        self.run(&self.programs.patched, scene, [self.width, self.height], &[], settings)
+        self.patched_sized(scene, [self.width, self.height], &[], settings)
     }
 
     pub(crate) fn patched_sized(
@@ -71,22 +81,15 @@ impl<'a> Renderer<'a> {
         options: &[&str],
         settings: &Settings,
     ) -> Result<Picture> {
-        self.run(&self.programs.patched, scene, size, options, settings)
+        self.run(&Call { program: &self.programs.patched, scene, size, options, settings })
     }
 
-    /// `options` come last and override.
-    fn run(
-        &self,
-        program: &Path,
-        scene: &str,
-        [width, height]: [u32; 2],
-        options: &[&str],
-        settings: &[(&str, String)],
-    ) -> Result<Picture> {
-        let text = self.call(program, scene, [width, height], options, settings)?;
+    fn run(&self, call: &Call) -> Result<Picture> {
+        let text = self.call(call)?;
         let image = self.read("picture.png")?;
+        let [width, height] = call.size;
         if image.dimensions() != (width, height) {
-            bail!("{scene} became a picture of {:?} pixels instead of {width} x {height}", image.dimensions());
+            bail!("{} became a picture of {:?} pixels instead of {width} x {height}", call.scene, image.dimensions());
         }
         Ok(Picture { image, cpu_seconds: cpu_seconds(&text).unwrap_or(f64::NAN) })
     }
@@ -95,7 +98,7 @@ impl<'a> Renderer<'a> {
     pub(crate) fn stock_mean(&self, scene: &str, size: [u32; 2], frames: u32) -> Result<Rgb32FImage> {
         let last = (frames - 1).to_string();
         let options = ["+KFI0", &format!("+KFF{last}")];
-        self.call(&self.programs.stock, scene, size, &options, &[])?;
+        self.call(&Call { program: &self.programs.stock, scene, size, options: &options, settings: &[] })?;
         let mut sum = vec![0.0_f64; (size[0] * size[1] * 3) as usize];
         for frame in 0..frames {
             let image = self.read(&format!("picture{frame:0>width$}.png", width = last.len()))?;
@@ -110,14 +113,7 @@ impl<'a> Renderer<'a> {
         Ok(image::open(&path).with_context(|| format!("POV-Ray wrote no {name}"))?.to_rgb32f())
     }
 
-    fn call(
-        &self,
-        program: &Path,
-        scene: &str,
-        [width, height]: [u32; 2],
-        options: &[&str],
-        settings: &[(&str, String)],
-    ) -> Result<String> {
+    fn call(&self, &Call { program, scene, size: [width, height], options, settings }: &Call) -> Result<String> {
         let mut command = run::command(program);
         command.current_dir(self.scratch.path()).stdin(Stdio::null());
         // 16 bits, linear, no window, no antialiasing of its own.
@@ -130,15 +126,17 @@ impl<'a> Renderer<'a> {
             let name = if name.is_empty() { "NOISEFLOOR".to_owned() } else { format!("NOISEFLOOR_{name}") };
             command.env(name, value);
         }
-        let output = command
-            .output()
-            .with_context(|| format!("cannot start {}: Debian's package is `povray`", program.display()))?;
-        interrupt::check(self.interrupted)?;
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
-        if !output.status.success() {
+        let (status, text) = startup::retry(scene, || {
+            let output = command
+                .output()
+                .with_context(|| format!("cannot start {}: Debian's package is `povray`", program.display()))?;
+            interrupt::check(self.interrupted)?;
+            Ok((output.status, String::from_utf8_lossy(&output.stderr).into_owned()))
+        })?;
+        if !status.success() {
             let tail: Vec<&str> = text.lines().rev().take(12).collect();
             let tail: Vec<&str> = tail.into_iter().rev().collect();
-            bail!("{} failed on {scene} ({}):\n{}", program.display(), output.status, tail.join("\n"));
+            bail!("{} failed on {scene} ({status}):\n{}", program.display(), tail.join("\n"));
         }
         Ok(text)
     }
