@@ -33,14 +33,14 @@ impl Plan {
     pub(crate) fn new(quick: bool, full: bool) -> Self {
         let normal = Self {
             seeds: 8,
-            size: 64,
+            size: 56,
             tile_size: 128,
             small: 32,
             reference_divisor: 1,
             spp: &[16, 64, 256],
             many: 256,
             pixel_seeds: 256,
-            frames: 1008,
+            frames: 504,
             animation: [16, 10],
             name: "default",
             few: false,
@@ -68,8 +68,9 @@ impl Plan {
                 size: 128,
                 tile_size: 256,
                 small: 64,
+                many: 512,
                 pixel_seeds: 1024,
-                frames: 4000,
+                frames: 4004,
                 ..normal
             };
         }
@@ -79,6 +80,11 @@ impl Plan {
     /// As the index calls it.
     pub(crate) fn name(&self) -> &'static str {
         self.name
+    }
+
+    /// Time matters less than what is measured.
+    pub(crate) fn is_full(&self) -> bool {
+        self.name == "full"
     }
 
     /// Those of `all` that are measured.

@@ -40,7 +40,8 @@ pub(super) fn write(report: &Report) -> Result<()> {
     report.compiled();
     let (size, cells): (u32, fn(&Scene) -> &'static [u32]) = match report.plan.size {
         ..SMALL => (SMALL, |scene| scene.small),
-        size => (size.min(LARGEST), |scene| scene.full),
+        size if report.plan.is_full() => (size.min(LARGEST), |scene| scene.full),
+        size => (size.min(LARGEST), |scene| scene.report),
     };
     let sizes = Sizes { size, seeds: report.plan.seeds, cells };
     let mut chapter = Chapter::new("Control variates and tiles on what POV-Ray computes");

@@ -121,10 +121,17 @@ fn measure(section: &Section, tiles: &Tiles, public: &Public, scene: &'static st
         // The tile of four dimensions is for scenes that have them.
         let fits = choice != Choice::Tile(4) || dims >= 3;
         let sampler = choice.sampler(spp, tiles).filter(|_| fits);
-        samplers.push(sampler.map(|sampler| run(sampler, &[BASELINE, SHARED])).transpose()?);
+        // Shared fits are shown on the first three.
+        let estimators: &[&str] = if choice == Choice::Tile(4) { &[BASELINE] } else { &[BASELINE, SHARED] };
+        samplers.push(sampler.map(|sampler| run(sampler, estimators)).transpose()?);
     }
-    for file in public.files(spp, dims)? {
-        samplers.push(Some(run(Sampler::Table(Path::new(&file)), &[BASELINE])?));
+    // Beyond four samples what a tile is compared with is Sobol's sequence; `--full` has the public samplers there too.
+    if spp <= 4 || section.measurement.plan.is_full() {
+        for file in public.files(spp, dims)? {
+            samplers.push(Some(run(Sampler::Table(Path::new(&file)), &[BASELINE])?));
+        }
+    } else {
+        samplers.extend(public.labels().map(|_| None));
     }
     let errors = |estimator: &str| -> Result<Vec<Option<Errors>>> {
         let each = samplers.iter().map(|outcome| -> Result<Option<Errors>> {

@@ -69,7 +69,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     let mut rows = Vec::new();
     for Test { scene, spp, label, sampler } in tests {
         // The reference's error must be small beside that of the mean of so many frames.
-        let view = View { precision: 8, ..View::new(scene, plan.small) };
+        let view = View { precision: 8, ..View::new(scene, size(section)) };
         let estimators = [BASELINE, SHARED, SHARED_UNBIASED];
         // A tile at other places keeps its own small error, which a thousand frames can show.
         let experiment = Experiment {
@@ -136,6 +136,11 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     Ok(())
 }
 
+/// Many frames of few pixels.
+fn size(section: &Section) -> u32 {
+    section.measurement.plan.small * 3 / 4
+}
+
 fn tests<'a>(scene: &'static str, spps: &[u32], tiles: &'a Tiles) -> Vec<Test<'a>> {
     let of = |&spp: &u32| {
         let samplers = [("random", Some(Sampler::Random)), ("tile, scrambled", Choice::Tile(2).sampler(spp, tiles))];
@@ -147,7 +152,7 @@ fn tests<'a>(scene: &'static str, spps: &[u32], tiles: &'a Tiles) -> Vec<Test<'a
 fn explain(section: &mut Section) {
     let plan = section.measurement.plan;
     let frames = section.chapter.setting("frames of the test of biases", plan.frames / BATCHES * BATCHES);
-    let size = section.chapter.setting("pixels on a side of the test of biases", plan.small);
+    let size = section.chapter.setting("pixels on a side of the test of biases", size(section));
     let percent = section.chapter.setting("significance of the test of biases, percent", 100.0 * SIGNIFICANCE);
     let lit = section.chapter.setting("frames with light, at least", LIT.min(plan.frames / 4));
     let batches = section.chapter.setting("batches of the test of biases", BATCHES);
