@@ -30,8 +30,9 @@ pub(crate) struct Scene {
     pub(crate) name: &'static str,
     pub(crate) shows: &'static str,
     pub(crate) axes: &'static [Decision],
-    /// Cells along each axis for the report, and for the tests.
+    /// Cells along each axis for `--full`, for the report, and for the tests.
     pub(crate) full: &'static [u32],
+    pub(crate) report: &'static [u32],
     pub(crate) small: &'static [u32],
 }
 
@@ -63,6 +64,7 @@ pub(crate) const SCENES: [Scene; 5] = [
         shows: "chessmen under a window; the light (2 dims)",
         axes: &[Light, Light],
         full: &[32, 32],
+        report: &[24, 24],
         small: &[16, 16],
     },
     Scene {
@@ -70,6 +72,7 @@ pub(crate) const SCENES: [Scene; 5] = [
         shows: "marbles through a wide lens; the lens (2 dims)",
         axes: &[Lens, Lens],
         full: &[32, 32],
+        report: &[24, 24],
         small: &[16, 16],
     },
     Scene {
@@ -77,6 +80,7 @@ pub(crate) const SCENES: [Scene; 5] = [
         shows: "fruit through a lens, under a panel; the lens and the light (4 dims)",
         axes: &[Lens, Lens, Light, Light],
         full: &[8, 8, 8, 8],
+        report: &[6, 6, 6, 6],
         small: &[4, 4, 4, 4],
     },
     Scene {
@@ -84,6 +88,7 @@ pub(crate) const SCENES: [Scene; 5] = [
         shows: "a hall with eight panels; the light and which (3 dims)",
         axes: &[Light, Light, Choice],
         full: &[16, 16, 8],
+        report: &[12, 12, 8],
         small: &[6, 6, 8],
     },
     Scene {
@@ -91,6 +96,7 @@ pub(crate) const SCENES: [Scene; 5] = [
         shows: "a windmill and a ball; time and the light (3 dims)",
         axes: &[Time, Light, Light],
         full: &[16, 16, 16],
+        report: &[12, 12, 12],
         small: &[6, 6, 6],
     },
 ];
@@ -105,6 +111,7 @@ mod tests {
             // stack.inc knows four.
             assert!(scene.axes.len() <= 4);
             assert_eq!(scene.axes.len(), scene.full.len());
+            assert_eq!(scene.axes.len(), scene.report.len());
             assert_eq!(scene.axes.len(), scene.small.len());
         }
     }

@@ -1,10 +1,12 @@
 //! The chapter of the Embree harness.
 
 use super::Report;
-use super::chapter::Chapter;
+use super::chapter::{Chapter, row};
+use super::clock::Clock;
+use super::figure::{Figure, Unit};
 use super::measurement::Measurement;
-use super::tables::targets::Targets;
 use super::tables::{SECTIONS, Section};
+use super::targets::Targets;
 use crate::measure::interrupt;
 use crate::measure::progress;
 use crate::measure::renderer::{Renderer, threads};
@@ -14,18 +16,19 @@ use anyhow::Result;
 const SECOND: u64 = 1000;
 
 pub(super) fn write(report: &Report) -> Result<()> {
-    println!("building the library and the Embree harness");
     let program = match &report.program {
         Some(program) => program.clone(),
         None => crate::embree::build()?,
     };
+    report.compiled();
     let renderer = Renderer::new(program, report.interrupted.clone());
     let bar = progress::bar(SECTIONS.iter().map(|(seconds, _)| seconds * SECOND).sum())?;
     let measurement = Measurement::new(report.plan, &renderer, &bar)?;
     let (mut body, mut targets) = (Chapter::default(), Targets::default());
-    let mut start = 0;
+    let (mut start, mut times) = (0, Vec::new());
     for (seconds, section) in SECTIONS {
         let end = start + seconds * SECOND;
+        let (clock, before) = (Clock::start(), body.sections().len());
         measurement.begin_section(start, end);
         let (chapter, targets) = (&mut body, &mut targets);
         section(&mut Section {
@@ -36,6 +39,13 @@ pub(super) fn write(report: &Report) -> Result<()> {
             large: report.large,
         })?;
         interrupt::check(&report.interrupted)?;
+        let name = body.sections().get(before).cloned().unwrap_or_default();
+        let text = |seconds: Option<f64>| seconds.map_or("unknown".to_owned(), |seconds| format!("{seconds:.0}"));
+        let [wall, processor] = [text(Some(clock.seconds())), text(clock.processor_seconds())];
+        // Where there is no terminal, and so no bar, this alone tells how far it is.
+        bar.suspend(|| println!("   {name}: {wall} s, {processor} CPU seconds"));
+        let whole = |seconds: f64| Figure::exact(seconds, Unit::Count);
+        times.push(row![name, whole(clock.seconds()), clock.processor_seconds().map(whole)]);
         start = end;
     }
     bar.finish_and_clear();
@@ -44,8 +54,12 @@ pub(super) fn write(report: &Report) -> Result<()> {
     targets.write_summary(&mut chapter);
     chapter.append(body);
     targets.write_all(&mut chapter);
-    report.output.write_text("embree.md", chapter.markdown())?;
-    report.output.write_text("embree.json", &format!("{:#}\n", chapter.json()))
+    chapter.section("Where the time went", "");
+    chapter.paragraph(
+        "A section's references, and experiments that later sections show too, are counted where they are made.",
+    );
+    chapter.table("time", &["from section", "seconds", "CPU seconds"], 1, times);
+    report.write(&chapter)
 }
 
 fn introduce(report: &Report, chapter: &mut Chapter) {
@@ -75,7 +89,7 @@ fn introduce(report: &Report, chapter: &mut Chapter) {
          estimator, for each channel. O1, O2, O3: total degree of the polynomials."
             .to_owned(),
         "Same time: relMSE over that of the plain mean of as many samples as it makes in the estimator's total time; its error \
-         falls as one over the number of samples. Its interval is that of the error; times are one measurement."
+         falls as one over the number of samples. Error and time are taken seed by seed, so that the interval has the noise of both."
             .to_owned(),
     ]);
 }

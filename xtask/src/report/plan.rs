@@ -23,6 +23,8 @@ pub(crate) struct Plan {
     pub(crate) frames: u32,
     /// Last frames of the animations: figures 5.23 and 5.24.
     pub(crate) animation: [u32; 2],
+    /// What it is called in the index.
+    name: &'static str,
     /// The first of several scenes and settings instead of all.
     few: bool,
 }
@@ -31,19 +33,21 @@ impl Plan {
     pub(crate) fn new(quick: bool, full: bool) -> Self {
         let normal = Self {
             seeds: 8,
-            size: 64,
+            size: 56,
             tile_size: 128,
             small: 32,
             reference_divisor: 1,
             spp: &[16, 64, 256],
             many: 256,
             pixel_seeds: 256,
-            frames: 1000,
+            frames: 504,
             animation: [16, 10],
+            name: "default",
             few: false,
         };
         if quick {
             return Self {
+                name: "quick",
                 seeds: 2,
                 size: 16,
                 tile_size: 32,
@@ -52,15 +56,35 @@ impl Plan {
                 spp: &[16],
                 many: 64,
                 pixel_seeds: 8,
-                frames: 32,
+                frames: 36,
                 animation: [3, 2],
                 few: true,
             };
         }
         if full {
-            return Self { seeds: 16, size: 128, tile_size: 256, small: 64, pixel_seeds: 1024, frames: 4000, ..normal };
+            return Self {
+                name: "full",
+                seeds: 16,
+                size: 128,
+                tile_size: 256,
+                small: 64,
+                many: 512,
+                pixel_seeds: 1024,
+                frames: 4004,
+                ..normal
+            };
         }
         normal
+    }
+
+    /// As the index calls it.
+    pub(crate) fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Time matters less than what is measured.
+    pub(crate) fn is_full(&self) -> bool {
+        self.name == "full"
     }
 
     /// Those of `all` that are measured.

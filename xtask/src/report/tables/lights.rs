@@ -16,7 +16,7 @@ const SLICES: &str = "slices";
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Many lights", "figure 4.15");
     let plan = section.measurement.plan;
-    let spp = section.chapter.setting("samples per pixel of many lights", 4 * plan.many);
+    let spp = section.chapter.setting("samples per pixel of many lights", 2 * plan.many);
     let size = section.chapter.setting("pixels on a side of many lights", plan.small * 3 / 4);
     section.chapter.paragraph(&format!(
         "1 to 64 lights over a plane, one picked at random, {spp} samples per pixel, {size} x {size} pixels: ratios to MC of the same samples. \

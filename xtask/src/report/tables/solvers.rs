@@ -30,7 +30,7 @@ fn write_descent(section: &mut Section) -> Result<()> {
     let mut rows = Vec::new();
     for &spp in plan.some(&[32, plan.many]) {
         for &order in plan.some(&[2, 5, 7]) {
-            let view = View::new(SCENE, plan.small * 3 / 4);
+            let view = View::new(SCENE, plan.small / 2);
             let estimators = [BASELINE, LEAST_SQUARES, DESCENT, DEFAULT];
             let experiment = Experiment { order, ..Experiment::new(view, spp, &estimators) };
             let outcome = section.measurement.run(&seeds(section, experiment))?;
