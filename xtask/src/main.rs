@@ -12,6 +12,7 @@ mod path_tracer;
 mod paths;
 mod povray;
 mod povray_patched;
+mod python;
 mod report;
 mod run;
 mod test;
