@@ -96,6 +96,9 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("cargo xtask report --quick: every number of the text is in the JSON", || {
         embree::report(report::check_quick)
     });
+    steps.run("examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces", || {
+        examples::renderers(&archive()?)
+    });
     steps.run("examples_c/python: ctypes declarations, tests and a training loop", || python::run(&archive()?));
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));
