@@ -9,7 +9,7 @@ using namespace mitsuba;
 
 // At which count of dimensions the emitter's two numbers come: behind film 0 and 1, and wavelengths 2.
 constexpr uint32_t emitter_dimension = 3;
-constexpr Point2u film_size{96, 96};
+constexpr Point2u film_size{64, 64};
 constexpr uint32_t pixels = film_size.x * film_size.y;
 
 std::vector<Float> plain_means(Sampler &sampler)
@@ -88,7 +88,7 @@ void run()
     room::check(nf_tile_builtin(NF_TILE_128_16SPP_2D, &tile), "the tile of 16 samples");
     room::check(nf_tile_builtin(NF_TILE_128_1SPP_2D, &continued), "the tile of 1 sample");
 
-    TileSampler many(&continued, 512, film_size);
+    TileSampler many(&continued, 256, film_size);
     const std::vector<Float> reference = plain_means(many);
     const auto report = [&](const char *name, const std::vector<Float> &image) {
         std::printf("%-16s %.5f\n", name, room::root_mean_squared_error(image, reference));

@@ -47,13 +47,13 @@ std::vector<Float> shared_fits(const Film &film, const TileSampler &sampler)
 
 void run()
 {
-    const Point2i resolution{96, 96};
+    const Point2i resolution{64, 64};
     const int spp = 4;
     nf_tile tile, continued;
     room::check(nf_tile_builtin(NF_TILE_128_4SPP_2D, &tile), "the tile of 4 samples");
     room::check(nf_tile_builtin(NF_TILE_128_1SPP_2D, &continued), "the tile of 1 sample");
 
-    const std::vector<Float> reference = room::means(Render(resolution, TileSampler(&continued, 512)).Values(), 512);
+    const std::vector<Float> reference = room::means(Render(resolution, TileSampler(&continued, 256)).Values(), 256);
     const auto report = [&](const char *name, const std::vector<Float> &image) {
         std::printf("%-12s %.5f\n", name, room::root_mean_squared_error(image, reference));
     };

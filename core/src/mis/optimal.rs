@@ -25,6 +25,11 @@ pub const DEFAULT_RIDGE: f32 = 0.03;
 pub const RIDGE_RANGE: core::ops::RangeInclusive<f32> = 1e-8..=1e8;
 
 /// How [`OptimalMis::solve`] turns its sums into an estimate.
+///
+/// ```
+/// use noisefloor::mis::Solver;
+/// assert_eq!(Solver::default(), Solver::Ridge(0.03));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Solver {
     /// alpha = (A + L)^-1 b, with L = ridge tr(N A) / J N^-1, N the diagonal matrix of the counts (equal counts: ridge

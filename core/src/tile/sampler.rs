@@ -6,6 +6,17 @@ use super::sequence;
 use super::view::{Shape, Tile, unit};
 
 /// A sample's place, without its tile. Any value of the fields is valid; [`Sampler`] says what they mean.
+///
+/// ```
+/// use noisefloor::tile::{Sampler, Shape, State, Tile};
+///
+/// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+/// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+/// let tile = Tile::new(shape, &payload)?;
+/// let state = Sampler::pixel(&tile, 1, 0, 0, 0).domain(7).state();
+/// assert_eq!(State::pixel(&tile, 1, 0, 0, 0).domain(7), state);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct State {
     /// The domain: 0 is the root, others are hashes of the keys that led there.
@@ -27,6 +38,19 @@ pub struct State {
 /// A sampler stands for a point of a cube with as many dimensions as are asked for, by domain: each decision of a path has
 /// its own, [`domain`](Sampler::domain) with a key of its own. A domain's numbers depend on nothing but tile, pixel, frame,
 /// index and the keys, so samples can be had in any order and on any thread.
+///
+/// ```
+/// use noisefloor::tile::{Sampler, Shape, Tile};
+///
+/// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+/// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+/// let tile = Tile::new(shape, &payload)?;
+/// let sampler = Sampler::pixel(&tile, 1, 0, 0, 0);
+/// assert_eq!(sampler.draw::<2>(), [128.5 / 256.0, 192.5 / 256.0]);
+/// let [a, b, c] = sampler.domain(7).draw(); // another decision, as many numbers as it needs
+/// assert!([a, b, c].iter().all(|u| (0.0..1.0).contains(u)));
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sampler<'a> {
     tile: &'a Tile<'a>,

@@ -6,6 +6,13 @@ use crate::Error;
 use crate::rng::Rng;
 
 /// What the others must know of one process's table: 16 bytes that all processes exchange before a draw.
+///
+/// ```
+/// use noisefloor::minibatch::table::Shard;
+/// let all = Shard::sum([Shard { importance: 3.0, items: 10 }, Shard { importance: 1.0, items: 20 }])?;
+/// assert_eq!(all, Shard { importance: 4.0, items: 30 });
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shard {
     /// The sum of its importances.
@@ -60,6 +67,17 @@ impl Shard {
 ///
 /// Errors: as for [`Shard::sum`]; [`Error::Range`] for different lengths or a fraction outside 0..=1; [`Error::NotFinite`];
 /// [`Error::NoSamples`] if every importance and the fraction are 0.
+///
+/// ```
+/// use noisefloor::minibatch::table::{Shard, allocate};
+/// use noisefloor::rng::Rng;
+///
+/// let shards = [Shard { importance: 3.0, items: 10 }, Shard { importance: 1.0, items: 10 }];
+/// let mut counts = [0; 2];
+/// allocate(shards.into_iter(), 0.0, &mut Rng::seed(1), 8, &mut counts)?;
+/// assert_eq!(counts, [6, 2]);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 pub fn allocate(
     shards: impl Iterator<Item = Shard> + Clone,
     uniform_fraction: f32,
