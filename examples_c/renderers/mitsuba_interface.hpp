@@ -62,11 +62,11 @@ inline Float sample(const room::Hit &hit, Sampler &sampler)
     return room::direct_light(hit, lamp, scaled - static_cast<Float>(lamp), u.y);
 }
 
-// SamplingIntegrator::render_sample: film, (aperture, time: not in this scene,) wavelengths, then the integrator's.
+// SamplingIntegrator::render_sample: the film's two numbers, (aperture, time, wavelengths: not in this scene and variant,) then
+// the integrator's.
 inline Float render_sample(Sampler &sampler, Point2u pos, Point2u film_size)
 {
     const Point2f offset = sampler.next_2d();
-    sampler.next_1d();
     return sample(room::camera_ray((static_cast<Float>(pos.x) + offset.x) / static_cast<Float>(film_size.x),
                                    (static_cast<Float>(pos.y) + offset.y) / static_cast<Float>(film_size.y)),
                   sampler);

@@ -7,8 +7,8 @@ namespace {
 
 using namespace mitsuba;
 
-// At which count of dimensions the emitter's two numbers come: behind film 0 and 1, and wavelengths 2.
-constexpr uint32_t emitter_dimension = 3;
+// At which count of dimensions the emitter's two numbers come: behind the film's, 0 and 1.
+constexpr uint32_t emitter_dimension = 2;
 constexpr Point2u film_size{64, 64};
 constexpr uint32_t pixels = film_size.x * film_size.y;
 
@@ -72,7 +72,7 @@ void check_wavefront(TileSampler &sampler)
     for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
         sampler.seed(pixel, 1);
         for (uint32_t j = 0; j < sampler.sample_count(); ++j, sampler.advance()) {
-            sampler.next_2d(true), sampler.next_1d(true);
+            sampler.next_2d(true);
             const Point2f u = sampler.next_2d(true);
             const size_t at = 2 * (size_t{pixel} * sampler.sample_count() + j);
             if (u.x != all[at] || u.y != all[at + 1])

@@ -7,6 +7,7 @@ mod examples;
 mod fit;
 mod header;
 mod library;
+mod links;
 mod measure;
 mod path_tracer;
 mod paths;

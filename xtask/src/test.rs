@@ -1,8 +1,8 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
 use crate::{
-    c_tests, embree, examples, fit, header, library, path_tracer, povray, povray_patched, python, report, run, tools,
-    train_mlp,
+    c_tests, embree, examples, fit, header, library, links, path_tracer, povray, povray_patched, python, report, run,
+    tools, train_mlp,
 };
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -107,6 +107,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         "POV-Ray's patch: well formed, its licence stated, and our side of it compiles",
         povray_patched::check_patch,
     );
+    steps.run("links between documents lead somewhere", links::check);
     steps.run("README.md opens with examples_c/integrate.c", examples::readme);
     steps.finish(start)
 }
