@@ -189,6 +189,11 @@ impl Config {
     ///
     /// # Errors
     /// [`Error::Range`] if a field is out of range, [`Error::Unsupported`] for options that exclude each other.
+    ///
+    /// ```
+    /// use noisefloor::control_variate::Config;
+    /// assert_eq!(Config::new(2, 3, 1).terms(), Ok(10));
+    /// ```
     pub fn terms(&self) -> Result<usize, Error> {
         Ok(1 + self.controls + self.checked_shape()?.columns())
     }

@@ -90,6 +90,11 @@ impl<'a> Tile<'a> {
     /// # Errors
     /// [`Error::Foreign`] for what is no tile, [`Error::Version`] for one of a newer format, [`Error::Length`] for
     /// missing or trailing bytes, [`Error::Corrupt`] for a damaged one.
+    ///
+    /// ```
+    /// use noisefloor::{Error, tile::Tile};
+    /// assert_eq!(Tile::from_bytes(b"no tile"), Err(Error::Foreign));
+    /// ```
     pub fn from_bytes(bytes: &'a [u8]) -> Result<Tile<'a>, Error> {
         let (header, payload) = Header::decode(bytes)?;
         Ok(Tile { shape: header.shape(), payload })

@@ -54,6 +54,11 @@ impl Image<'_> {
     }
 
     /// Pixels in no order.
+    ///
+    /// ```
+    /// use noisefloor::control_variate::Image;
+    /// assert!(Image::unordered(100).unordered);
+    /// ```
     #[inline]
     pub const fn unordered(pixels: usize) -> Self {
         Self { unordered: true, ..Self::new(pixels, 1) }
