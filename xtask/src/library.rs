@@ -10,8 +10,7 @@ const ALLOWED_UNDEFINED: [&str; 4] = ["memcpy", "memmove", "memset", "memcmp"];
 
 /// Builds the archive and returns its path.
 ///
-/// Cargo's own archive also exports compiler-builtins (`fmodf`, `cbrt`, ...), which then shadow the C library's. So its
-/// objects are linked into one, unused sections dropped, and every symbol but the API made local.
+/// capi/cmake/one_object.sh, which the CMake build uses too, says why cargo's own archive is not the one.
 pub(crate) fn build() -> Result<PathBuf> {
     run::check(run::cargo().args(["build", "--quiet", "--release", "--package", "noisefloor-capi"]))?;
     let raw = paths::target().join("release/libnoisefloor.a");
@@ -19,17 +18,7 @@ pub(crate) fn build() -> Result<PathBuf> {
     fs::create_dir_all(&output).with_context(|| format!("cannot create {}", output.display()))?;
     let object = output.join("noisefloor.o");
     let archive = output.join("libnoisefloor.a");
-    let mut link = run::command("ld");
-    link.args(["-r", "--gc-sections", "-o"]).arg(&object);
-    for symbol in api_symbols(&raw)? {
-        link.args(["-u", &symbol]);
-    }
-    run::check(link.arg(&raw))?;
-    run::check(
-        run::command("objcopy")
-            .args(["--wildcard", "--keep-global-symbol=nf_*", "--strip-debug", "-R", ".eh_frame", "-R", ".llvmbc"])
-            .arg(&object),
-    )?;
+    run::check(run::command("sh").arg("capi/cmake/one_object.sh").arg(&raw).arg(&object))?;
     // `ar` adds to an archive that exists, and another program may be linking the one in place.
     let new = output.join("libnoisefloor.a.new");
     match fs::remove_file(&new) {
@@ -64,13 +53,8 @@ pub(crate) fn check(archive: &Path) -> Result<()> {
     Ok(())
 }
 
-fn api_symbols(archive: &Path) -> Result<Vec<String>> {
-    let symbols = names(archive, &["--defined-only", "--extern-only"])?;
-    Ok(symbols.into_iter().map(|(_, name)| name).filter(|name| name.starts_with("nf_")).collect())
-}
-
 /// (kind, name) of every symbol, with nm's one-letter kinds.
-fn names(archive: &Path, options: &[&str]) -> Result<Vec<(String, String)>> {
+pub(crate) fn names(archive: &Path, options: &[&str]) -> Result<Vec<(String, String)>> {
     // Debian's nm loads LLVM's plugin, which then says "no symbols".
     let text = run::read(run::command("nm").arg("--plugin=/none").args(options).arg(archive))?;
     let row = |line: &str| {

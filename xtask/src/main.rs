@@ -1,11 +1,13 @@
 //! `cargo xtask`: everything the project does beyond `cargo build`.
 
+mod abi;
 mod c_tests;
 mod demo;
 mod embree;
 mod examples;
 mod fit;
 mod header;
+mod install;
 mod library;
 mod links;
 mod measure;
@@ -14,6 +16,7 @@ mod paths;
 mod povray;
 mod povray_patched;
 mod python;
+mod release;
 mod report;
 mod run;
 mod test;
@@ -44,6 +47,12 @@ enum Command {
     Test(test::Options),
     /// Regenerate include/noisefloor.h
     Header,
+    /// Rewrite capi/abi.txt, the list of what the C ABI promises
+    Abi(abi::Options),
+    /// Rewrite THIRD_PARTY.md, the list of other people's packages and their licences
+    Licences,
+    /// Install headers, libraries, CMake package and pkg-config file
+    Install(install::Options),
     /// Build target/noisefloor/libnoisefloor.a, the archive that C and C++ programs link
     Library,
     /// Build target/noisefloor/embree_harness, the path tracer on Embree with the thesis's scenes
@@ -59,6 +68,9 @@ fn main() -> ExitCode {
         Command::Report(options) => report::run(&options),
         Command::Test(options) => test::run(&options),
         Command::Header => header::write(),
+        Command::Abi(options) => abi::write(&options),
+        Command::Licences => release::licences::write(),
+        Command::Install(options) => install::run(&options),
         Command::Tiles(options) => tiles::run(&options),
         Command::Embree => embree::build().map(|path| println!("{}", path.display())),
         Command::Library => library::build().map(|path| println!("{}", path.display())),

@@ -1,8 +1,8 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
 use crate::{
-    c_tests, embree, examples, fit, header, library, links, path_tracer, povray, povray_patched, python, report, run,
-    tools, train_mlp,
+    abi, c_tests, embree, examples, fit, header, install, library, links, path_tracer, povray, povray_patched, python,
+    release, report, run, tools, train_mlp,
 };
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -39,6 +39,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         header::check_committed()?;
         Ok(Outcome::Passed)
     });
+    steps.run("capi/abi.txt: functions, layouts and constants of the C ABI are as promised", abi::check);
     steps.run("headers alone: C99, C11, C++11, C++17, C++20, every warning an error", || {
         header::check_compiles()?;
         Ok(Outcome::Passed)
@@ -77,6 +78,8 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps
         .run("C tests as C++17, including noisefloor.hpp", || c_tests::run(c_tests::Language::Cpp17, &[], &archive()?));
     steps.run("C++ wrapper, with and without exceptions", || c_tests::wrapper(&archive()?));
+    steps.run("installed: CMake and pkg-config projects, C and C++, shared and static", install::test::projects);
+    steps.run("installed: examples_c as a project of its own", install::test::examples);
     steps.run("examples_c/integrate.c", || examples::integrate(&archive()?, "integrate"));
     steps.run("examples_c/shared.c", || examples::integrate(&archive()?, "shared"));
     steps.run("examples_c/shards.c: four processes", || examples::shards(&archive()?));
@@ -108,6 +111,12 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         povray_patched::check_patch,
     );
     steps.run("links between documents lead somewhere", links::check);
+    steps.run(
+        "cargo package: every published package is complete and below the registry's limit",
+        release::package::check,
+    );
+    steps.run("THIRD_PARTY.md: the licences of all dependencies, each allowed", release::licences::check);
+    steps.run("versions: Rust's and the project's, as the texts say", release::versions::check);
     steps.run("README.md opens with examples_c/integrate.c", examples::readme);
     steps.finish(start)
 }

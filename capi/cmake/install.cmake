@@ -1,0 +1,40 @@
+# What goes where under the prefix. Nothing installed names the prefix, so it may be moved.
+include(CMakePackageConfigHelpers)
+foreach(folder IN ITEMS LIBDIR INCLUDEDIR)
+    if(IS_ABSOLUTE "${CMAKE_INSTALL_${folder}}")
+        message(FATAL_ERROR "noisefloor: CMAKE_INSTALL_${folder} is ${CMAKE_INSTALL_${folder}}: it must be relative to the prefix")
+    endif()
+endforeach()
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/noisefloor")
+set(pkgconfig_dir "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+
+# They are links in the repository, which install() would copy as such.
+foreach(header IN ITEMS noisefloor.h noisefloor.hpp)
+    file(REAL_PATH "include/${header}" header)
+    install(FILES "${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+endforeach()
+# One file of targets for each kind, so that a distribution can leave one out of a package.
+if(NOISEFLOOR_STATIC)
+    install(TARGETS noisefloor_static EXPORT noisefloor_static)
+    install(EXPORT noisefloor_static NAMESPACE noisefloor:: FILE noisefloorStatic.cmake DESTINATION "${package_dir}")
+endif()
+if(NOISEFLOOR_SHARED)
+    install(TARGETS noisefloor EXPORT noisefloor_shared)
+    install(EXPORT noisefloor_shared NAMESPACE noisefloor:: FILE noisefloorShared.cmake DESTINATION "${package_dir}")
+endif()
+
+configure_package_config_file(cmake/noisefloorConfig.cmake.in noisefloorConfig.cmake INSTALL_DESTINATION "${package_dir}")
+# 0.x: a minor version may break what an earlier one promised.
+if(PROJECT_VERSION_MAJOR EQUAL 0)
+    set(compatibility SameMinorVersion)
+else()
+    set(compatibility SameMajorVersion)
+endif()
+write_basic_package_version_file(noisefloorConfigVersion.cmake COMPATIBILITY ${compatibility})
+install(FILES "${CMAKE_CURRENT_BINARY_DIR}/noisefloorConfig.cmake" "${CMAKE_CURRENT_BINARY_DIR}/noisefloorConfigVersion.cmake"
+    DESTINATION "${package_dir}")
+
+file(RELATIVE_PATH prefix_from_pc "/prefix/${pkgconfig_dir}" "/prefix")
+string(REGEX REPLACE "/$" "" prefix_from_pc "${prefix_from_pc}")
+configure_file(cmake/noisefloor.pc.in noisefloor.pc @ONLY)
+install(FILES "${CMAKE_CURRENT_BINARY_DIR}/noisefloor.pc" DESTINATION "${pkgconfig_dir}")

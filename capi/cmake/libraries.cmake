@@ -1,0 +1,43 @@
+# The one object, and the targets noisefloor::noisefloor and noisefloor::noisefloor_static made of it.
+
+# cargo knows better than CMake what to compile again, but not what to link again.
+file(GLOB_RECURSE sources CONFIGURE_DEPENDS src/*.rs ../core/src/*.rs ../core/tiles/*.nft)
+set(archive "${NOISEFLOOR_CARGO_TARGET_DIR}/release/libnoisefloor.a")
+set(object "${CMAKE_CURRENT_BINARY_DIR}/noisefloor.o")
+# The profile is the workspace's; where the package stands alone nothing else says it.
+set(profile CARGO_PROFILE_RELEASE_PANIC=abort CARGO_PROFILE_RELEASE_LTO=fat CARGO_PROFILE_RELEASE_CODEGEN_UNITS=1)
+add_custom_command(
+    OUTPUT "${object}"
+    COMMAND "${CMAKE_COMMAND}" -E env --unset=MAKEFLAGS ${profile} -- "${NOISEFLOOR_CARGO}" build --quiet --release --locked --lib
+        --manifest-path "${CMAKE_CURRENT_SOURCE_DIR}/Cargo.toml" --target-dir "${NOISEFLOOR_CARGO_TARGET_DIR}"
+    COMMAND "${CMAKE_COMMAND}" -E env "LD=${CMAKE_LINKER}" "NM=${CMAKE_NM}" "OBJCOPY=${CMAKE_OBJCOPY}" --
+        sh "${CMAKE_CURRENT_SOURCE_DIR}/cmake/one_object.sh" "${archive}" "${object}"
+    DEPENDS ${sources} cmake/one_object.sh Cargo.toml
+    COMMENT "Compiling noisefloor with cargo"
+    VERBATIM)
+# Both libraries are made of it: without a target of its own, a parallel make would make it twice.
+add_custom_target(noisefloor_object DEPENDS "${object}")
+set_source_files_properties("${object}" PROPERTIES EXTERNAL_OBJECT TRUE GENERATED TRUE)
+
+function(noisefloor_library name kind)
+    add_library(${name} ${kind} "${object}")
+    add_library(noisefloor::${name} ALIAS ${name})
+    add_dependencies(${name} noisefloor_object)
+    set_target_properties(${name} PROPERTIES LINKER_LANGUAGE C OUTPUT_NAME noisefloor)
+    target_include_directories(${name} INTERFACE
+        "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
+endfunction()
+
+if(NOISEFLOOR_STATIC)
+    noisefloor_library(noisefloor_static STATIC)
+endif()
+if(NOISEFLOOR_SHARED)
+    noisefloor_library(noisefloor SHARED)
+    configure_file(cmake/noisefloor.map.in noisefloor.map @ONLY)
+    set_target_properties(noisefloor PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${NOISEFLOOR_ABI_VERSION}
+        LINK_DEPENDS "${CMAKE_CURRENT_BINARY_DIR}/noisefloor.map")
+    target_link_options(noisefloor PRIVATE "LINKER:--version-script=${CMAKE_CURRENT_BINARY_DIR}/noisefloor.map" LINKER:--no-undefined)
+else()
+    # Who links noisefloor::noisefloor gets what there is.
+    add_library(noisefloor::noisefloor ALIAS noisefloor_static)
+endif()

@@ -1,0 +1,167 @@
+//! What the generated header declares. Its form is cbindgen's, so a few splits read it.
+
+use crate::paths;
+use anyhow::{Context, Result, bail};
+use std::fs;
+
+/// The end of the declarations: what follows only asserts.
+const ASSERTS: &str = "/* Layouts:";
+
+pub(crate) struct Header {
+    functions: Vec<Function>,
+    pub(super) structs: Vec<Struct>,
+    constants: Vec<(String, String)>,
+    /// Everything from [`ASSERTS`] on.
+    asserts: String,
+}
+
+struct Function {
+    name: String,
+    /// Result, name and types of parameters; their names bind nobody.
+    prototype: String,
+}
+
+pub(super) struct Struct {
+    pub(super) name: String,
+    /// Type with the array's length, and name.
+    pub(super) fields: Vec<(String, String)>,
+}
+
+impl Header {
+    /// Reads include/noisefloor.h.
+    pub(crate) fn committed() -> Result<Self> {
+        let path = paths::header();
+        let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        Self::parse(&text)
+    }
+
+    fn parse(text: &str) -> Result<Self> {
+        let (text, asserts) = text.split_once(ASSERTS).with_context(|| format!("the header has no `{ASSERTS}`"))?;
+        let (mut functions, mut structs, mut constants) = (Vec::new(), Vec::new(), Vec::new());
+        let mut statement = String::new();
+        // Of the comments only the one at the top has lines that could be taken for code; those of the others begin with an
+        // asterisk, which no declaration does.
+        let (_, text) = text.split_once("*/").context("the header does not begin with a comment")?;
+        for line in text.lines().map(str::trim) {
+            if let Some((name, value)) = line.strip_prefix("#define NF_").and_then(|rest| rest.split_once(' ')) {
+                constants.push((format!("NF_{name}"), number(value)?));
+            } else if !line.is_empty() && !["//", "/*", "*", "#"].iter().any(|start| line.starts_with(start)) {
+                statement = format!("{statement} {line}").trim().to_owned();
+                let open = statement.matches('{').count() > statement.matches('}').count();
+                if statement.ends_with('{') && statement.starts_with("extern") {
+                    statement.clear();
+                } else if statement.ends_with(';') && !open {
+                    declaration(&statement, &mut functions, &mut structs)?;
+                    statement.clear();
+                }
+            }
+        }
+        Ok(Self { functions, structs, constants, asserts: asserts.to_owned() })
+    }
+
+    /// NF_ABI_VERSION.
+    pub(crate) fn version(&self) -> Result<&str> {
+        let version = self.constants.iter().find(|(name, _)| name == "NF_ABI_VERSION");
+        version.map(|(_, value)| value.as_str()).context("the header has no NF_ABI_VERSION")
+    }
+
+    pub(crate) fn functions(&self) -> impl Iterator<Item = &str> {
+        self.functions.iter().map(|function| function.name.as_str())
+    }
+
+    /// The list's lines of functions and constants, in the header's order.
+    pub(super) fn lines(&self) -> Vec<String> {
+        let functions = self.functions.iter().map(|function| format!("function {}", function.prototype));
+        let constants = self.constants.iter().filter(|(name, _)| name != "NF_ABI_VERSION");
+        functions.chain(constants.map(|(name, value)| format!("constant {name} {value}"))).collect()
+    }
+
+    /// Fails unless the header asserts every struct's size.
+    pub(super) fn check_asserts(&self) -> Result<()> {
+        for Struct { name, .. } in &self.structs {
+            if !self.asserts.contains(&format!("sizeof({name}) == ")) {
+                bail!("the header asserts nothing of sizeof({name}): add a line to capi/cbindgen.toml");
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A constant's value: a number, perhaps in parentheses.
+fn number(text: &str) -> Result<String> {
+    let value = text.trim_start_matches('(').trim_end_matches(')').to_owned();
+    if value.trim_end_matches('f').parse::<f64>().is_err() {
+        bail!("the header has a constant whose value is no number: {text}");
+    }
+    Ok(value)
+}
+
+/// Sorts one declaration, up to its semicolon, into functions and structs.
+fn declaration(text: &str, functions: &mut Vec<Function>, structs: &mut Vec<Struct>) -> Result<()> {
+    let text = text.trim_end_matches(';');
+    if let Some(rest) = text.strip_prefix("typedef ") {
+        // Without braces it is a number's other name, or an opaque type: prototypes say all that is promised of them.
+        if let Some((_, rest)) = rest.split_once('{') {
+            let (fields, name) = rest.rsplit_once('}').with_context(|| format!("a struct without end: {text}"))?;
+            let fields = fields.split(';').map(str::trim).filter(|field| !field.is_empty());
+            let fields = fields.map(field).collect::<Result<_>>()?;
+            structs.push(Struct { name: name.trim().to_owned(), fields });
+        }
+        return Ok(());
+    }
+    let (before, parameters) =
+        text.split_once('(').with_context(|| format!("neither a type nor a function: {text}"))?;
+    let name = before.rsplit([' ', '*']).next().unwrap_or_default();
+    if !name.starts_with("nf_") {
+        bail!("the header declares `{name}`, which does not begin with nf_");
+    }
+    let parameters: Vec<_> = parameters.trim_end_matches(')').split(',').map(|one| without_name(one.trim())).collect();
+    let prototype = format!("{before}({})", parameters.join(", "));
+    functions.push(Function { name: name.to_owned(), prototype });
+    Ok(())
+}
+
+/// `float mean[4]` is of type `float[4]`.
+fn field(text: &str) -> Result<(String, String)> {
+    let (text, array) = text.split_at(text.find('[').unwrap_or(text.len()));
+    let place = text.rfind([' ', '*']).with_context(|| format!("a field without a type: {text}"))? + 1;
+    let (kind, name) = text.split_at(place);
+    Ok((format!("{}{array}", kind.trim()), name.to_owned()))
+}
+
+/// The type of a parameter.
+fn without_name(parameter: &str) -> &str {
+    match parameter.rfind([' ', '*']) {
+        Some(place) => parameter[..=place].trim(),
+        None => parameter,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "/* Top.\n */\n#ifndef H\nextern \"C\" {\n// Of nf_x(int).\n#define NF_ABI_VERSION 3\n#define NF_E (-2)\n\
+        typedef int32_t nf_status;\ntypedef struct nf_o nf_o;\ntypedef struct nf_s {\n    // A.\n    float mean[4];\n    \
+        const void *p;\n} nf_s;\nconst char *nf_m(nf_status status);\nnf_s nf_f(const float *u,\n          size_t n);\n\
+        uint32_t nf_v(void);\n/* Layouts: */\nA(sizeof(nf_s) == 24)\n";
+
+    #[test]
+    fn functions_constants_and_structs_are_read() {
+        let header = Header::parse(TEXT).unwrap();
+        assert_eq!(header.version().unwrap(), "3");
+        assert_eq!(header.functions().collect::<Vec<_>>(), ["nf_m", "nf_f", "nf_v"]);
+        let lines = [
+            "function const char *nf_m(nf_status)",
+            "function nf_s nf_f(const float *, size_t)",
+            "function uint32_t nf_v(void)",
+            "constant NF_E -2",
+        ];
+        assert_eq!(header.lines(), lines);
+        assert_eq!(header.structs.len(), 1);
+        let fields = [("float[4]", "mean"), ("const void *", "p")].map(|(a, b)| (a.to_owned(), b.to_owned()));
+        assert_eq!(header.structs[0].fields, fields);
+        header.check_asserts().unwrap();
+        assert!(Header::parse(&TEXT.replace("A(sizeof", "A(alignof")).unwrap().check_asserts().is_err());
+    }
+}
