@@ -30,7 +30,12 @@
 extern "C" {
 #endif
 
-/* Version and status */
+/* -------------------------------------------------------------------------------------------------------------------
+ * Version and status
+ *
+ *   nf_abi_version     The ABI version the library was built with
+ *   nf_status_message  A static, NUL-terminated sentence for a status
+ * ------------------------------------------------------------------------------------------------------------------- */
 
 // The version of this header. `nf_abi_version()` returns the library's.
 #define NF_ABI_VERSION 1
@@ -73,7 +78,31 @@ typedef int32_t nf_status;
 // A static, NUL-terminated sentence for a status; never NULL, also for values that are no status.
 const char *nf_status_message(nf_status status);
 
-/* Control variates: samples of one integral, or of a pixel, made into an estimate of lower error */
+/* -------------------------------------------------------------------------------------------------------------------
+ * Control variates: samples of one integral, or of a pixel, made into an estimate of lower error
+ * Guides, in docs/: control_variates.md
+ *
+ *   nf_cv_config_default                 Sets a configuration to the robust estimator over 2 coordinates, order 2
+ *   nf_cv_terms                          The number of terms of a regression, constant included
+ *   nf_cv_workspace_size                 Bytes of workspace that nf_cv_estimate() and its variants need for n samples
+ *   nf_cv_estimate                       Estimates an integral from n samples
+ *   nf_cv_estimate_with_controls         As nf_cv_estimate(), with `controls` functions h of known integral (4.18)
+ *   nf_cv_gradient_descent               As nf_cv_estimate() with NF_CV_GRADIENT_DESCENT, which `estimator` must be
+ *   nf_cv_image_workspace_size           Bytes of workspace that nf_cv_image_estimate() needs for n samples in each
+ *                                        pixel
+ *   nf_cv_image_estimate                 As nf_cv_block_estimate() for every pixel of an image
+ *   nf_cv_block_workspace_size           Bytes of workspace that nf_cv_block_estimate() needs
+ *   nf_cv_block_estimate                 Estimates `pixels` integrals that are alike, from n samples of each
+ *   nf_cv_accumulator_size               Bytes that an accumulator needs
+ *   nf_cv_accumulator_init               Makes an empty accumulator in `memory`
+ *   nf_cv_accumulator_add                Adds n samples, laid out as for nf_cv_estimate()
+ *   nf_cv_accumulator_add_with_controls  As nf_cv_accumulator_add(), with the control functions of
+ *                                        nf_cv_estimate_with_controls()
+ *   nf_cv_accumulator_merge              Adds all samples of `other`, which stays as it is
+ *   nf_cv_accumulator_workspace_size     Bytes of workspace that nf_cv_accumulator_estimate() needs
+ *   nf_cv_accumulator_estimate           The estimate from all samples so far
+ *   nf_cv_accumulator_reset              Forgets all samples
+ * ------------------------------------------------------------------------------------------------------------------- */
 
 // Estimator: a soft mixture of the plain mean and ridge fits, weighted by their leave-one-out errors (streaming:
 // held-out errors). The default; never noticeably worse than the mean. Slightly biased at low sample counts.
@@ -360,7 +389,13 @@ nf_status nf_cv_accumulator_estimate(const nf_cv_accumulator *accumulator,
 // Forgets all samples.
 nf_status nf_cv_accumulator_reset(nf_cv_accumulator *accumulator);
 
-/* Guidance: which estimator and which tile to use */
+/* -------------------------------------------------------------------------------------------------------------------
+ * Guidance: which estimator and which tile to use
+ * Guides, in docs/: choosing.md
+ *
+ *   nf_recommend  Which estimator, of which order, and which of the library's tiles to use for samples of `dims`
+ *                 coordinates and `spp` of them per pixel, both at least 1
+ * ------------------------------------------------------------------------------------------------------------------- */
 
 // Sampling: a pixel's samples are independent of each other.
 #define NF_SAMPLING_INDEPENDENT 0
@@ -406,7 +441,17 @@ nf_status nf_recommend(uint32_t dims,
                        uint32_t can_share,
                        nf_recommendation *out);
 
-/* Multiple importance sampling: the weight of one technique at one point */
+/* -------------------------------------------------------------------------------------------------------------------
+ * Multiple importance sampling: the weight of one technique at one point
+ * Guides, in docs/: mis.md
+ *
+ *   nf_mis_balance               The balance heuristic (2.12)
+ *   nf_mis_power                 The power heuristic
+ *   nf_mis_cutoff                The cutoff heuristic
+ *   nf_mis_maximum               The maximum heuristic
+ *   nf_mis_optimal               The optimal weight (2.15) of Kondapaneni et al. (2019)
+ *   nf_mis_optimal_contribution  What one sample of technique j adds to the estimate (2.10) with optimal weights
+ * ------------------------------------------------------------------------------------------------------------------- */
 
 // The most techniques that multiple importance sampling combines.
 #define NF_MIS_MAX_TECHNIQUES 16
@@ -499,7 +544,20 @@ nf_status nf_mis_optimal_contribution(const float *pdf,
                                       float value,
                                       float *contribution);
 
-/* Optimal multiple importance sampling: weights of least variance, found from the samples */
+/* -------------------------------------------------------------------------------------------------------------------
+ * Optimal multiple importance sampling: weights of least variance, found from the samples
+ * Guides, in docs/: mis.md
+ *
+ *   nf_omis_size        The bytes of memory an nf_omis needs
+ *   nf_omis_init        Makes an empty nf_omis in `memory`, `*out` being its handle (the same address)
+ *   nf_omis_add         Adds one sample, drawn by `technique`
+ *   nf_omis_solve       Estimates the integrals from all samples so far
+ *   nf_omis_alpha       The coefficients of the weights (2.15), for nf_mis_optimal and nf_mis_optimal_contribution
+ *   nf_omis_next_batch  Ends a batch
+ *   nf_omis_decay       Multiplies all sums by beta in 0..1, so that older samples count for less
+ *   nf_omis_reset       Forgets every sample and NF_OMIS_PROGRESSIVE's alpha
+ *   nf_omis_merge       Adds the samples of `other`, of another thread or pass, to `omis`
+ * ------------------------------------------------------------------------------------------------------------------- */
 
 // nf_omis solver: alpha = (A + ridge)^-1 b, which shrinks to the balance heuristic where the samples say little. The
 // default. Consistent, not unbiased: alpha comes from the samples it is applied to.
@@ -601,7 +659,19 @@ nf_status nf_omis_reset(nf_omis *omis);
 nf_status nf_omis_merge(nf_omis *omis,
                         const nf_omis *other);
 
-/* Tiles and samplers: sample points whose error is spread over the image where it shows least */
+/* -------------------------------------------------------------------------------------------------------------------
+ * Tiles and samplers: sample points whose error is spread over the image where it shows least
+ * Guides, in docs/: tiles.md, renderer.md
+ *
+ *   nf_tile_builtin      One of the tiles that come with the library
+ *   nf_tile_from_bytes   The tile of an .nft file's bytes, all of them checked
+ *   nf_sampler_pixel     Sample `index` of pixel (x, y) in `frame`, any values of each
+ *   nf_sampler_domain    The child domain of a key, any value
+ *   nf_sampler_scramble  An independent version of the sampler for each seed but 0
+ *   nf_sampler_draw      Writes the first `dims` coordinates, 1..4, of the sampler's point to u[dims]
+ *   nf_sampler_fill_len  How many numbers nf_sampler_fill writes
+ *   nf_sampler_fill      Draws for many pixels and samples at once, for renderers that work on whole images
+ * ------------------------------------------------------------------------------------------------------------------- */
 
 // nf_tile_builtin: 128 x 128 pixels, 1 sample, 2 dims.
 #define NF_TILE_128_1SPP_2D 1
@@ -748,7 +818,13 @@ nf_status nf_sampler_fill(const nf_sampler *samplers,
                           float *u,
                           size_t len);
 
-/* Random numbers */
+/* -------------------------------------------------------------------------------------------------------------------
+ * Random numbers
+ *
+ *   nf_rng_seed     Starts a generator
+ *   nf_rng_next     The next 32 random bits
+ *   nf_rng_uniform  The next number uniform in [0, 1), a multiple of 2^-24
+ * ------------------------------------------------------------------------------------------------------------------- */
 
 // A PCG32 random number generator (O'Neill 2014), for minibatches, examples and tests: the same numbers on every target.
 //
@@ -772,7 +848,46 @@ uint32_t nf_rng_next(nf_rng *rng);
 // The next number uniform in [0, 1), a multiple of 2^-24; 0 if `rng` is NULL.
 float nf_rng_uniform(nf_rng *rng);
 
-/* Minibatches: items drawn in proportion to their importance, and gradients of the mean loss from them */
+/* -------------------------------------------------------------------------------------------------------------------
+ * Minibatches: items drawn in proportion to their importance, and gradients of the mean loss from them
+ * Guides, in docs/: minibatch.md, minibatch_gradients.md
+ *
+ *   nf_table_size                     The bytes of memory a table of so many items needs
+ *   nf_table_init                     Makes a table of `items` items in `memory`
+ *   nf_table_draw                     Draws `batch` items with replacement, independently
+ *   nf_table_draw_stratified          As nf_table_draw, from `batch` equal parts of the line of probabilities
+ *   nf_table_draw_distinct            Draws `batch` different items, without replacement
+ *   nf_table_update                   Sets the importance of visited items, one after the other
+ *   nf_table_set_uniform_fraction     Sets the uniform fraction d, 0..1
+ *   nf_table_add_epsilon              Adds epsilon, at least 0, to every importance
+ *   nf_table_append                   Adds `count` items behind the last
+ *   nf_table_probability              The probability p_i of drawing an item
+ *   nf_table_probabilities            The probabilities of count items
+ *   nf_table_importance               The importance q_i of an item
+ *   nf_table_total                    The sum of all importances
+ *   nf_table_saved_size               The bytes that nf_table_save writes
+ *   nf_table_save                     Writes the table, the same bytes on every target
+ *   nf_table_saved_items              The number of items in what nf_table_save wrote
+ *   nf_table_load                     A table as it was when nf_table_save wrote it, in memory as for nf_table_init
+ *   nf_table_shard                    What the other processes must know of this table
+ *   nf_shards_allocate                How many of a batch's items each process draws
+ *   nf_table_draw_shard               As nf_table_draw, for this process's part of a batch over all shards
+ *   nf_shuffle                        The element at `position` of a random permutation of 0..items-1
+ *   nf_importance_cross_entropy       || softmax(logits) - onehot(label) ||, the norm of the cross-entropy loss's
+ *                                     derivative by the logits (6.10)
+ *   nf_importance_cross_entropy_loss  The cross-entropy loss -ln softmax(logits)[label] itself, at least 0
+ *   nf_importance_squared_error       || 2 (output - target) ||, the norm of the derivative of the loss sum (output -
+ *                                     target)^2 by the outputs
+ *   nf_importance_gradient            The L2 norm of any derivative of the loss by the outputs
+ *   nf_cross_entropy_gradient         The derivative of the cross-entropy loss by the logits
+ *   nf_importance_nodes               Importances of one item for several tables
+ *   nf_omis_weights                   The optimal MIS gradient of a minibatch as one weight per drawn item (6.2)
+ *   nf_gradient_size                  The bytes of memory an nf_gradient needs
+ *   nf_gradient_init                  Makes an nf_gradient that has seen no batch in `memory`
+ *   nf_gradient_estimate              Adds a batch of drawn items, and estimates the gradient of the mean loss from
+ *                                     it and, with momentum, those before
+ *   nf_gradient_reset                 Forgets every batch
+ * ------------------------------------------------------------------------------------------------------------------- */
 
 // The importances of the items of a data set, from which minibatches are drawn (Algorithm 3).
 //

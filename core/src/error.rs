@@ -3,6 +3,13 @@
 use core::fmt;
 
 /// Why a call was refused. A refused call leaves its outputs and its object as they were.
+///
+/// ```
+/// use noisefloor::Error;
+///
+/// let error: Box<dyn std::error::Error> = Error::Range.into();
+/// assert!(error.to_string().contains("outside its documented range"));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Error {
@@ -30,6 +37,10 @@ pub enum Error {
 
 impl Error {
     /// A static sentence that says what was wrong.
+    ///
+    /// ```
+    /// assert_eq!(noisefloor::Error::NotFinite.message(), "an input value is NaN or infinite");
+    /// ```
     pub const fn message(self) -> &'static str {
         match self {
             Error::Range => "an argument is outside its documented range: the function's description lists what can be",

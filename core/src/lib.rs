@@ -16,6 +16,7 @@
 //! Machine Learning", 2025.
 //!
 //! ```
+//! # #[cfg(feature = "control-variate")] {
 //! use noisefloor::control_variate::{Config, Samples, estimate};
 //! use noisefloor::rng::Rng;
 //!
@@ -31,6 +32,7 @@
 //! let estimate = estimate(&config, Samples::new(&u, &f), &mut workspace)?;
 //! let exact = (1.0 - (-1.0f32).exp()).powi(2);
 //! assert!((estimate.mean[0] - exact).abs() < 0.005);
+//! # }
 //! # Ok::<(), noisefloor::Error>(())
 //! ```
 

@@ -39,6 +39,16 @@ pub enum Method {
 }
 
 /// What [`recommend`] says.
+///
+/// ```
+/// use noisefloor::control_variate::Image;
+/// use noisefloor::recommend::{Sampling, recommend};
+///
+/// let best = recommend(2, 4, Sampling::Stratified, true)?;
+/// let image = Image { stride: best.image_stride, ..Image::new(640, 480) };
+/// assert!(best.error < 0.1 && image.stride == 8);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recommendation {
     /// How to make estimates of the samples.
@@ -73,6 +83,13 @@ pub struct Recommendation {
 ///
 /// # Errors
 /// [`Error::Range`] if `dims` or `samples_per_pixel` is 0.
+///
+/// ```
+/// use noisefloor::recommend::{Method, Sampling, recommend};
+/// assert_eq!(recommend(2, 64, Sampling::Independent, false)?.method, Method::PerPixel);
+/// assert_eq!(recommend(2, 64, Sampling::Stratified, false)?.method, Method::PlainMean);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 pub fn recommend(
     dims: usize,
     samples_per_pixel: usize,

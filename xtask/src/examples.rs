@@ -1,6 +1,6 @@
 //! The programs of `examples_c`, compiled as their reader would, and run; and the README that shows one of them.
 
-use crate::c_tests::output;
+use crate::c_tests::{SANITIZERS, has_sanitizers, output};
 use crate::test::Outcome;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
@@ -34,6 +34,42 @@ pub(crate) fn integrate(archive: &Path, name: &str) -> Result<Outcome> {
     let (mean, ours) = (error("mean")?.abs(), error("noisefloor")?.abs());
     if ours >= mean {
         bail!("the estimate's error {ours} is not below the mean's, {mean}");
+    }
+    Ok(Outcome::Passed)
+}
+
+/// examples_c/renderers: each program prints pairs of errors of which the second must be the smaller.
+pub(crate) fn renderers(archive: &Path) -> Result<Outcome> {
+    let strict = [&STRICT[..], &["-Wconversion", "-Wshadow"]].concat();
+    for (name, pairs) in [
+        ("pbrt_sampler", [("independent", "tile"), ("tile", "noisefloor")]),
+        ("mitsuba_sampler", [("independent", "tile"), ("mean", "noisefloor")]),
+    ] {
+        let program = output(name)?;
+        compile(&format!("renderers/{name}.cpp"), &strict, archive, &program)?;
+        let text = run::read(&mut run::command(&program))?;
+        print!("{text}");
+        let error = |name: &str| -> Result<f64> {
+            let line = text.lines().find_map(|line| line.strip_prefix(name));
+            let value = line.and_then(|rest| rest.trim().parse().ok());
+            value.with_context(|| format!("the example printed no error of `{name}`"))
+        };
+        for (larger, smaller) in pairs {
+            let (larger_error, smaller_error) = (error(larger)?, error(smaller)?);
+            if smaller_error >= larger_error {
+                bail!(
+                    "{name}: the error of `{smaller}`, {smaller_error}, is not below that of `{larger}`, {larger_error}"
+                );
+            }
+        }
+    }
+    if has_sanitizers()? {
+        println!("   under the sanitizers");
+        for name in ["pbrt_sampler", "mitsuba_sampler"] {
+            let program = output(&format!("{name}_sanitized"))?;
+            compile(&format!("renderers/{name}.cpp"), &[&STRICT[..], &SANITIZERS].concat(), archive, &program)?;
+            run::read(&mut run::command(&program))?;
+        }
     }
     Ok(Outcome::Passed)
 }

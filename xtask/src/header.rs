@@ -1,5 +1,7 @@
 //! The generated C header: cbindgen reads `capi/`, this file arranges what it finds by service.
 
+mod banner;
+
 use crate::{paths, run};
 use anyhow::{Context, Result, anyhow, bail};
 use std::fs;
@@ -8,6 +10,8 @@ use std::path::Path;
 /// A chapter of the header and how its items' names begin, in the order in which they are printed.
 struct Chapter {
     title: &'static str,
+    /// Where the mathematics stands, in docs/, and when to use what.
+    guides: &'static str,
     /// `|` separates those that share a place.
     prefixes: &'static [&'static str],
 }
@@ -16,10 +20,12 @@ struct Chapter {
 const CHAPTERS: [Chapter; 8] = [
     Chapter {
         title: "Version and status",
+        guides: "",
         prefixes: &["NF_ABI_VERSION", "nf_abi_version", "nf_status", "NF_OK|NF_ERR_", "nf_status_message"],
     },
     Chapter {
         title: "Control variates: samples of one integral, or of a pixel, made into an estimate of lower error",
+        guides: "control_variates.md",
         prefixes: &[
             "NF_CV_",
             "NF_BASIS_",
@@ -41,18 +47,22 @@ const CHAPTERS: [Chapter; 8] = [
     },
     Chapter {
         title: "Guidance: which estimator and which tile to use",
+        guides: "choosing.md",
         prefixes: &["NF_SAMPLING_", "NF_METHOD_", "nf_recommendation", "nf_recommend"],
     },
     Chapter {
         title: "Multiple importance sampling: the weight of one technique at one point",
+        guides: "mis.md",
         prefixes: &["NF_MIS_", "nf_mis_"],
     },
     Chapter {
         title: "Optimal multiple importance sampling: weights of least variance, found from the samples",
+        guides: "mis.md",
         prefixes: &["NF_OMIS_", "nf_omis", "nf_omis_"],
     },
     Chapter {
         title: "Tiles and samplers: sample points whose error is spread over the image where it shows least",
+        guides: "tiles.md, renderer.md",
         prefixes: &[
             "NF_TILE_",
             "nf_tile",
@@ -65,9 +75,10 @@ const CHAPTERS: [Chapter; 8] = [
             "nf_sampler_fill",
         ],
     },
-    Chapter { title: "Random numbers", prefixes: &["nf_rng", "nf_rng_"] },
+    Chapter { title: "Random numbers", guides: "", prefixes: &["nf_rng", "nf_rng_"] },
     Chapter {
         title: "Minibatches: items drawn in proportion to their importance, and gradients of the mean loss from them",
+        guides: "minibatch.md, minibatch_gradients.md",
         prefixes: &[
             "nf_table",
             "nf_table_",
@@ -145,9 +156,10 @@ fn generate() -> Result<String> {
     let mut text = format!("{}\n\n#ifndef NOISEFLOOR_H\n#define NOISEFLOOR_H\n\n{includes}\n", conventions.trim());
     text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n";
     for (index, chapter) in CHAPTERS.iter().enumerate() {
-        text += &format!("\n/* {} */\n", chapter.title);
         let mut sorted: Vec<_> = items.iter().filter(|item| item.chapter == index).collect();
         sorted.sort_by_key(|item| item.place);
+        let functions = sorted.iter().filter_map(|item| item.summary.as_ref());
+        text += &banner::banner(chapter.title, chapter.guides, functions);
         let mut place = usize::MAX;
         for item in sorted {
             // Constants of one place stand together.
@@ -164,6 +176,8 @@ fn generate() -> Result<String> {
 
 /// One declaration with its documentation.
 struct Item {
+    /// A function's name and the first sentence of its description.
+    summary: Option<(String, String)>,
     text: String,
     chapter: usize,
     place: usize,
@@ -197,7 +211,10 @@ impl Item {
                 shorter = before.saturating_sub(after);
             }
         }
-        Ok(Self { text, chapter, place })
+        let is_function = code.first().is_some_and(|line| line.contains('(') && !line.starts_with("#define"));
+        let comments: Vec<_> = block.lines().filter(|line| line.trim_start().starts_with("//")).collect();
+        let summary = is_function.then(|| (name.to_owned(), banner::first_sentence(&comments)));
+        Ok(Self { summary, text, chapter, place })
     }
 
     fn is_constant(&self) -> bool {

@@ -1,8 +1,8 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
 use crate::{
-    abi, c_tests, embree, examples, fit, header, install, library, path_tracer, povray, povray_patched, release,
-    report, run, tools, train_mlp,
+    abi, c_tests, embree, examples, fit, header, install, library, links, path_tracer, povray, povray_patched, python,
+    release, report, run, tools, train_mlp,
 };
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -100,12 +100,17 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("cargo xtask report --quick: every number of the text is in the JSON", || {
         embree::report(|| report::check_quick("embree"))
     });
+    steps.run("examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces", || {
+        examples::renderers(&archive()?)
+    });
+    steps.run("examples_c/python: ctypes declarations, tests and a training loop", || python::run(&archive()?));
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));
     steps.run("examples_c/fit_image.cpp: short runs", || fit::photograph(&archive()?));
     steps.run("POV-Ray's patch: well formed, its licence stated, and our side of it compiles", || {
         povray_patched::check_patch(&archive()?)
     });
+    steps.run("links between documents lead somewhere", links::check);
     steps.run(
         "cargo package: every published package is complete and below the registry's limit",
         release::package::check,

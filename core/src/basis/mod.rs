@@ -35,6 +35,12 @@ pub const MAX_ORDER: usize = 7;
 pub const MAX_TERMS: usize = 136;
 
 /// Which one-dimensional functions a basis is made of.
+///
+/// ```
+/// use noisefloor::{basis::Family, control_variate::Config};
+/// let config = Config { basis: Family::Step, ..Config::new(2, 2, 1) };
+/// assert_eq!(config.terms(), Ok(6));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Family {
     /// Orthonormal shifted Legendre polynomials.
@@ -49,6 +55,12 @@ pub enum Family {
 }
 
 /// A set of centred functions of unit variance on `[0, 1]^dims`.
+///
+/// ```
+/// use noisefloor::basis::{Basis, Family};
+/// assert_eq!(Basis::new(Family::Legendre, 2, 3, 0)?.columns(), 9); // ten terms less the constant
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Basis {
     family: Family,

@@ -72,6 +72,19 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
     ///
     /// # Errors
     /// [`Error::Mismatch`] if the configurations differ.
+    ///
+    /// ```
+    /// use noisefloor::control_variate::{Accumulator, Config, Samples};
+    ///
+    /// let config = Config::new(1, 1, 1);
+    /// let new = || Accumulator::<f64, _>::new(&config, vec![0.0; Accumulator::<f64, Vec<f64>>::len(&config)?]);
+    /// let mut all = new()?;
+    /// let mut pass = new()?; // of another thread, say
+    /// pass.add(Samples::new(&[0.1, 0.3], &[1.1, 1.3]))?;
+    /// all.merge(&pass)?;
+    /// assert_eq!(all.samples(), 2);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn merge<T: AsRef<[R]>>(&mut self, other: &Accumulator<R, T>) -> Result<(), Error> {
         self.state.merge(self.sums.as_mut(), &other.state, other.sums.as_ref())
     }
@@ -83,6 +96,18 @@ impl<R: Real, S: AsRef<[R]>> Accumulator<R, S> {
     /// # Errors
     /// [`Error::NoSamples`] if there are none, [`Error::Memory`] if `workspace` is shorter than
     /// [`Accumulator::workspace_len`] says.
+    ///
+    /// ```
+    /// use noisefloor::control_variate::{Accumulator, Config, Samples};
+    ///
+    /// let config = Config::new(1, 1, 1);
+    /// let new = || Accumulator::<f64, _>::new(&config, vec![0.0; Accumulator::<f64, Vec<f64>>::len(&config)?]);
+    /// let mut all = new()?;
+    /// all.add(Samples::new(&[0.1, 0.3], &[1.1, 1.3]))?;
+    /// let mut workspace = vec![0.0; Accumulator::<f64, Vec<f64>>::workspace_len(&config)?];
+    /// assert_eq!(all.estimate(&mut workspace)?.samples, 2);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn estimate(&self, workspace: &mut [R]) -> Result<Estimate, Error> {
         self.state.estimate(self.sums.as_ref(), workspace)
     }

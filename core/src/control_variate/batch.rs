@@ -21,6 +21,13 @@ const MAX_DUAL: usize = 4096;
 /// # Errors
 /// [`Error::Range`] or [`Error::Unsupported`] for a configuration that cannot be, [`Error::Memory`] if no memory could
 /// be large enough.
+///
+/// ```
+/// use noisefloor::control_variate::{Config, workspace_len};
+/// let mut workspace = vec![0.0_f64; workspace_len::<f64>(&Config::new(2, 2, 1), 64)?];
+/// # assert!(workspace.len() > 64);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[inline]
 pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error> {
     let mut plan = Plan::new(config, config.checked_shape()?.columns(), n)?;
@@ -88,6 +95,17 @@ impl Plan {
 /// - [`Error::NoSamples`]: no samples, or none left.
 /// - [`Error::Memory`]: `workspace` is shorter than [`workspace_len`] says.
 /// - [`Error::Unsupported`]: options that exclude each other.
+///
+/// ```
+/// use noisefloor::control_variate::{Config, Estimator, Samples, estimate};
+///
+/// // A polynomial of the fit's order is integrated exactly.
+/// let config = Config { estimator: Estimator::LeastSquares, ..Config::new(1, 1, 1) };
+/// let samples = Samples::new(&[0.1, 0.3, 0.9], &[1.1, 1.3, 1.9]);
+/// let estimate = estimate(&config, samples, &mut [0.0_f64; 64])?;
+/// assert!((estimate.mean[0] - 1.5).abs() < 1e-4);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[inline(always)]
 pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
     if config.estimator == Estimator::Incremental {

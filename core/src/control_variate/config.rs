@@ -4,6 +4,13 @@ use crate::basis::{Family, MAX_TERMS, Shape};
 use crate::error::Error;
 
 /// How samples become an estimate (chapter 4).
+///
+/// ```
+/// use noisefloor::control_variate::{Config, Estimator};
+/// assert_eq!(Config::new(2, 2, 1).estimator, Estimator::Robust);
+/// let unbiased = Config { estimator: Estimator::KFold, ..Config::new(2, 2, 1) };
+/// # assert!(unbiased.terms().is_ok());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Estimator {
     /// A soft mixture of the plain mean and two ridge fits, weighted by their leave-one-out errors: the default.
@@ -23,6 +30,12 @@ pub enum Estimator {
 }
 
 /// How a least-squares system is solved.
+///
+/// ```
+/// use noisefloor::control_variate::{Config, Estimator, Solver};
+/// let config = Config { estimator: Estimator::LeastSquares, solver: Solver::SquareRoot, ..Config::new(2, 2, 1) };
+/// # assert!(config.terms().is_ok());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Solver {
     /// The dual where there are fewer samples than terms, normal equations otherwise.
@@ -69,6 +82,12 @@ pub enum Optimizer {
 }
 
 /// The strength of the ridge penalty.
+///
+/// ```
+/// use noisefloor::control_variate::{Config, Estimator, Ridge};
+/// let config = Config { estimator: Estimator::LeaveOneOut, ridge: Ridge::Fixed(0.02), ..Config::new(2, 2, 1) };
+/// # assert!(config.terms().is_ok());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Ridge {
     /// The estimator's documented default.
@@ -81,6 +100,14 @@ pub enum Ridge {
 }
 
 /// How to estimate. `Config::new(dims, order, channels)` gives the defaults.
+///
+/// ```
+/// use noisefloor::control_variate::Config;
+///
+/// // RGB; a point on a light, and behind it the number that picks one of six lights.
+/// let config = Config { slices: 6, ..Config::new(3, 2, 3) };
+/// assert_eq!(config.terms(), Ok(42)); // the constant, 5 shared, and for each light an indicator and 5 of its own
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
     /// Coordinates of a sample that are regressed, 1 to 16.
@@ -162,6 +189,11 @@ impl Config {
     ///
     /// # Errors
     /// [`Error::Range`] if a field is out of range, [`Error::Unsupported`] for options that exclude each other.
+    ///
+    /// ```
+    /// use noisefloor::control_variate::Config;
+    /// assert_eq!(Config::new(2, 3, 1).terms(), Ok(10));
+    /// ```
     pub fn terms(&self) -> Result<usize, Error> {
         Ok(1 + self.controls + self.checked_shape()?.columns())
     }
@@ -207,6 +239,13 @@ impl Config {
 }
 
 /// An estimate of an integral over primary sample space.
+///
+/// ```
+/// use noisefloor::control_variate::{Config, Samples, estimate};
+/// let estimate = estimate(&Config::new(1, 0, 1), Samples::new(&[0.2, 0.6], &[1.0, 3.0]), &mut [0.0_f64; 16])?;
+/// assert_eq!((estimate.mean[0], estimate.std_error[0], estimate.samples), (2.0, 1.0, 2));
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The integral, for each channel; unused channels are zero.

@@ -58,6 +58,17 @@ pub(crate) trait Objective<R> {
 /// # Errors
 /// As for [`estimate`](super::estimate), and [`Error::NotFinite`] for a start that is not finite. The coefficients are
 /// written only on success.
+///
+/// ```
+/// use noisefloor::control_variate::{Config, Estimator, Samples, gradient_descent};
+///
+/// let config = Config { estimator: Estimator::GradientDescent, iterations: 200, ..Config::new(1, 1, 1) };
+/// let samples = Samples::new(&[0.1, 0.3, 0.9], &[1.1, 1.3, 1.9]);
+/// let mut slope = [0.0];
+/// gradient_descent(&config, samples, &mut slope, &mut [0.0_f64; 64])?; // the next frame starts from `slope`
+/// assert!((slope[0] - (1.0_f32 / 12.0).sqrt()).abs() < 0.01);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[inline(never)]
 pub fn estimate_from<R: Real>(
     config: &Config,

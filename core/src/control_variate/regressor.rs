@@ -162,6 +162,18 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     ///
     /// # Errors
     /// [`Error::Mismatch`] if the bases differ.
+    ///
+    /// ```
+    /// use noisefloor::{basis::Family, control_variate::Regressor};
+    ///
+    /// let mut regressor = Regressor::<1, 2, 1>::new(Family::Legendre, 1)?; // 1 and u
+    /// let mut other = regressor.clone();
+    /// regressor.add(&[0.1], &[1.1])?;
+    /// other.add(&[0.9], &[1.9])?;
+    /// regressor.merge(&other)?;
+    /// assert_eq!(regressor.samples(), 2);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn merge(&mut self, other: &Self) -> Result<(), Error> {
         if !self.basis.is_same(&other.basis) {
             return Err(Error::Mismatch);

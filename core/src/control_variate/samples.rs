@@ -12,6 +12,15 @@ use super::config::{Color, NonFinite};
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// `n` samples in caller arrays.
+///
+/// ```
+/// use noisefloor::control_variate::Samples;
+///
+/// // Three samples of two coordinates and one value, and a function of known integral at each (`Config::controls` is 1).
+/// let (u, f) = ([0.1, 0.2, 0.5, 0.6, 0.8, 0.1], [1.0, 2.0, 4.0]);
+/// let samples = Samples { controls: &[0.1, 0.5, 0.8], control_integrals: &[0.5], ..Samples::new(&u, &f) };
+/// # assert_eq!(samples.f.len(), 3);
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Samples<'a> {
     /// Positions in [0, 1], `n` rows of `Config::stride` numbers (`Config::dims` if that is 0); the last row may end

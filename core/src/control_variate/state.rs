@@ -20,6 +20,18 @@ const NARROW_CAPACITY: u64 = 1 << 22;
 
 /// All of an [`Accumulator`](super::Accumulator) but its buffer, for those who store the two apart. Every method takes
 /// the buffer, of [`State::len`] numbers, as the last call left it, and returns [`Error::Memory`] if it is shorter.
+///
+/// ```
+/// use noisefloor::control_variate::{Config, Samples, State};
+///
+/// let mut state = State::<f64>::new(&Config::new(1, 1, 1))?;
+/// let mut sums = vec![0.0; state.len()]; // anywhere, such as one buffer for all pixels
+/// state.reset(&mut sums)?;
+/// state.add(&mut sums, Samples::new(&[0.1, 0.3], &[1.1, 1.3]))?;
+/// let estimate = state.estimate(&sums, &mut vec![0.0; state.workspace_len()])?;
+/// assert_eq!(estimate.samples, 2);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct State<R> {
     pub(super) config: Config,

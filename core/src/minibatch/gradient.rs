@@ -19,6 +19,10 @@ const SUMS: usize = MAX_TECHNIQUES + 1;
 
 /// The f32 that [`Gradient`] needs: J + 1 per parameter. 0 if `techniques` is not in 1..=16, `parameters` is 0, or no
 /// memory could hold them.
+///
+/// ```
+/// assert_eq!(noisefloor::minibatch::gradient_len(4, 1000), 5000);
+/// ```
 pub const fn gradient_len(techniques: usize, parameters: usize) -> usize {
     if techniques == 0 || techniques > MAX_TECHNIQUES {
         return 0;

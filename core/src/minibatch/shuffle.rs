@@ -7,6 +7,12 @@
 ///
 /// A Feistel network over the next power of two, walked until it arrives in `0..items` (J. Black and P. Rogaway,
 /// "Ciphers with Arbitrary Finite Domains", 2002): two networks on average. Not for cryptography.
+///
+/// ```
+/// let mut order: Vec<u32> = (0..10).map(|k| noisefloor::minibatch::shuffle(1, 10, k)).collect();
+/// order.sort();
+/// assert_eq!(order, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]);
+/// ```
 pub fn shuffle(seed: u64, items: u32, position: u32) -> u32 {
     let Some(start) = position.checked_rem(items) else { return 0 };
     // At least two bits, so that both halves have one.

@@ -23,6 +23,12 @@ pub const DEFAULT_BETA: f32 = 2.0;
 /// Arguments and errors are the same for every heuristic: `pdf` holds each technique's density at the point (infinity
 /// is a delta distribution), `counts` its number of samples; [`Error::Range`] for slices that are not of one length in
 /// 1..=16, a technique that does not exist or a negative density, [`Error::NotFinite`] for a NaN.
+///
+/// ```
+/// // The point is three times as dense under the second technique; one sample of each.
+/// assert_eq!(noisefloor::mis::balance(&[1.0, 3.0], &[1, 1], 1)?, 0.75);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 pub fn balance(pdf: &[f32], counts: &[u32], technique: usize) -> Result<f32, Error> {
     let shares = Shares::new(pdf, counts, technique)?;
     Ok(shares.weight(|share| share))
@@ -33,6 +39,11 @@ pub fn balance(pdf: &[f32], counts: &[u32], technique: usize) -> Result<f32, Err
 /// `beta` is positive and finite ([`Error::Range`], [`Error::NotFinite`]): 1 is the balance heuristic, and the limit at
 /// infinity the maximum heuristic. (2.13) prints the exponent outside the sum of its denominator; those weights would
 /// not sum to one, and these are Veach's. Other arguments and errors as for [`balance`].
+///
+/// ```
+/// assert_eq!(noisefloor::mis::power(&[1.0, 3.0], &[1, 1], 1, 2.0)?, 0.9);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 pub fn power(pdf: &[f32], counts: &[u32], technique: usize, beta: f32) -> Result<f32, Error> {
     if !beta.is_finite() {
         return Err(Error::NotFinite);
@@ -57,6 +68,11 @@ pub fn power(pdf: &[f32], counts: &[u32], technique: usize, beta: f32) -> Result
 /// density, so it changes with the scale of the scene, and where no technique reaches it the weights are 0/0; without
 /// counts the weights ignore how often each technique was used. This is Veach's form, which always keeps the best
 /// technique. Other arguments and errors as for [`balance`].
+///
+/// ```
+/// assert_eq!(noisefloor::mis::cutoff(&[1.0, 3.0], &[1, 1], 0, 0.5)?, 0.0);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 pub fn cutoff(pdf: &[f32], counts: &[u32], technique: usize, epsilon: f32) -> Result<f32, Error> {
     if !epsilon.is_finite() {
         return Err(Error::NotFinite);
@@ -72,6 +88,11 @@ pub fn cutoff(pdf: &[f32], counts: &[u32], technique: usize, epsilon: f32) -> Re
 /// The maximum heuristic: 1 for the technique with the largest `n_k p_k`, the first of them if several tie; else 0.
 ///
 /// Arguments and errors as for [`balance`].
+///
+/// ```
+/// assert_eq!(noisefloor::mis::maximum(&[1.0, 3.0], &[1, 1], 1)?, 1.0);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 pub fn maximum(pdf: &[f32], counts: &[u32], technique: usize) -> Result<f32, Error> {
     let shares = Shares::new(pdf, counts, technique)?;
     let best = shares.all().position(|share| share == 1.0);

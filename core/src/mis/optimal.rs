@@ -25,6 +25,11 @@ pub const DEFAULT_RIDGE: f32 = 0.03;
 pub const RIDGE_RANGE: core::ops::RangeInclusive<f32> = 1e-8..=1e8;
 
 /// How [`OptimalMis::solve`] turns its sums into an estimate.
+///
+/// ```
+/// use noisefloor::mis::Solver;
+/// assert_eq!(Solver::default(), Solver::Ridge(0.03));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Solver {
     /// alpha = (A + L)^-1 b, with L = ridge tr(N A) / J N^-1, N the diagonal matrix of the counts (equal counts: ridge
@@ -136,6 +141,18 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     ///
     /// Errors: [`Error::Range`] for a wrong length or a ridge outside [`RIDGE_RANGE`]; [`Error::NotFinite`] for a ridge
     /// that is NaN or infinite; [`Error::NoSamples`].
+    ///
+    /// ```
+    /// use noisefloor::mis::{self, OptimalMis, Solver};
+    ///
+    /// let mut omis = OptimalMis::new([0.0; mis::len(2, 1)], &[1, 1], 1)?;
+    /// omis.add(0, &[1.0, 0.5], &[3.0])?; // f = 3 p_0
+    /// omis.add(1, &[1.0, 1.5], &[3.0])?;
+    /// let mut estimate = [0.0];
+    /// omis.solve(Solver::Plain, &mut estimate)?;
+    /// assert!((estimate[0] - 3.0).abs() < 1e-5); // exact, where f is a combination of the densities
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn solve(&self, solver: Solver, estimate: &mut [f32]) -> Result<(), Error> {
         if estimate.len() != self.integrals {
             return Err(Error::Range);
@@ -163,6 +180,18 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     ///
     /// Used on samples other than the ones it came from, it gives unbiased estimates. [`Solver::Progressive`] stands for
     /// the alpha that the current batch uses, [`Solver::Balance`] for zeros. Errors as for [`OptimalMis::solve`].
+    ///
+    /// ```
+    /// use noisefloor::mis::{self, OptimalMis, Solver};
+    ///
+    /// let mut omis = OptimalMis::new([0.0; mis::len(2, 1)], &[1, 1], 1)?;
+    /// omis.add(0, &[1.0, 0.5], &[3.0])?; // f = 3 p_0
+    /// omis.add(1, &[1.0, 1.5], &[3.0])?;
+    /// let mut alpha = [0.0; 2];
+    /// omis.alpha(Solver::Plain, &mut alpha)?;
+    /// assert!((alpha[0] - 3.0).abs() < 1e-5 && alpha[1].abs() < 1e-5);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn alpha(&self, solver: Solver, alpha: &mut [f32]) -> Result<(), Error> {
         if self.integrals.checked_mul(self.techniques) != Some(alpha.len()) {
             return Err(Error::Range);
@@ -273,6 +302,21 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     ///
     /// Errors, which change nothing: [`Error::Unsupported`] for [`Solver::Progressive`]; others as for
     /// [`OptimalMis::solve`].
+    ///
+    /// ```
+    /// use noisefloor::mis::{self, OptimalMis, Solver};
+    ///
+    /// let mut omis = OptimalMis::new([0.0; mis::len(2, 1)], &[1, 1], 1)?;
+    /// omis.add(0, &[1.0, 0.5], &[3.0])?; // f = 3 p_0
+    /// omis.add(1, &[1.0, 1.5], &[3.0])?;
+    /// omis.next_batch(Solver::default())?; // its alpha serves the samples that follow
+    /// omis.add(0, &[1.0, 0.7], &[3.0])?;
+    /// omis.add(1, &[1.0, 1.2], &[3.0])?;
+    /// let mut estimate = [0.0];
+    /// omis.solve(Solver::Progressive, &mut estimate)?;
+    /// # assert!((estimate[0] - 3.0).abs() < 1.0);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn next_batch(&mut self, solver: Solver) -> Result<(), Error> {
         if solver == Solver::Progressive {
             return Err(Error::Unsupported);
@@ -295,6 +339,16 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     ///
     /// With beta = 0 nothing is left but the progressive estimator's alpha. Errors: [`Error::NotFinite`] for NaN or
     /// infinity, [`Error::Range`] outside 0..=1.
+    ///
+    /// ```
+    /// use noisefloor::mis::{self, OptimalMis, Solver};
+    ///
+    /// let mut omis = OptimalMis::new([0.0; mis::len(2, 1)], &[1, 1], 1)?;
+    /// omis.add(0, &[1.0, 0.5], &[3.0])?; // f = 3 p_0
+    /// omis.add(1, &[1.0, 1.5], &[3.0])?;
+    /// omis.decay(0.5)?; // what was added counts half as much as what follows
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn decay(&mut self, beta: f32) -> Result<(), Error> {
         if !beta.is_finite() {
             return Err(Error::NotFinite);
@@ -317,6 +371,20 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// Adds the samples of `other`, of another thread or pass. The progressive estimator's alpha stays this one's.
     ///
     /// Errors: [`Error::Mismatch`] unless both have the same counts and number of integrals.
+    ///
+    /// ```
+    /// use noisefloor::mis::{self, OptimalMis, Solver};
+    ///
+    /// let mut omis = OptimalMis::new([0.0; mis::len(2, 1)], &[1, 1], 1)?;
+    /// let mut other = omis.clone(); // another thread's
+    /// other.add(0, &[1.0, 0.5], &[3.0])?;
+    /// omis.add(1, &[1.0, 1.5], &[3.0])?;
+    /// omis.merge(&other)?;
+    /// let mut estimate = [0.0];
+    /// omis.solve(Solver::Balance, &mut estimate)?;
+    /// # assert!(estimate[0] > 0.0);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn merge<N: AsRef<[f64]>>(&mut self, other: &OptimalMis<N>) -> Result<(), Error> {
         let techniques = self.techniques;
         if techniques != other.techniques || !same(&self.counts, &other.counts) || self.integrals != other.integrals {

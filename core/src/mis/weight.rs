@@ -17,6 +17,12 @@ use crate::Error;
 ///
 /// Errors: [`Error::Range`] for arguments outside these ranges or a weight beyond the range of `f32` (f much too small);
 /// [`Error::NotFinite`] for NaN or infinity among them.
+///
+/// ```
+/// // With alpha = 0 the balance heuristic.
+/// assert_eq!(noisefloor::mis::optimal(&[1.0, 3.0], &[1, 1], 1, &[0.0, 0.0], 2.0)?, 0.75);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 pub fn optimal(pdf: &[f32], counts: &[u32], technique: usize, alpha: &[f32], value: f32) -> Result<f32, Error> {
     let point = Point::new(pdf, counts, technique, alpha, value)?;
     if value == 0.0 {
@@ -41,6 +47,13 @@ pub fn optimal(pdf: &[f32], counts: &[u32], technique: usize, alpha: &[f32], val
 ///
 /// Arguments and errors as for [`optimal`], except that `value` may be 0 and that the technique's own density must be
 /// positive, as it is for the technique that drew the point ([`Error::Range`]).
+///
+/// ```
+/// // f is exactly 2 p_0: the samples of technique 0 add 2, those of technique 1 nothing.
+/// let add = |technique| noisefloor::mis::optimal_contribution(&[1.0, 3.0], &[1, 1], technique, &[2.0, 0.0], 2.0);
+/// assert_eq!((add(0)?, add(1)?), (2.0, 0.0));
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 pub fn optimal_contribution(
     pdf: &[f32],
     counts: &[u32],

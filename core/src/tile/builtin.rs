@@ -5,6 +5,15 @@ use super::view::Tile;
 use crate::Error;
 
 /// A tile that comes with the library. The numbers never change; `docs/tiles.md` says what each is good for.
+///
+/// ```
+/// use noisefloor::tile::Builtin;
+///
+/// assert_eq!(Builtin::from_id(2), Some(Builtin::Size128Spp4Dims2));
+/// if let Ok(tile) = Builtin::Size128Spp4Dims2.tile() { // if its feature is on
+///     assert_eq!(tile.shape().spp, 4);
+/// }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Builtin {

@@ -16,6 +16,18 @@ pub const MAGIC: [u8; 8] = *b"\x8eNFT\r\n\x1a\n";
 const PROGRESSIVE: u32 = 1;
 
 /// What a tile's file says about it.
+///
+/// ```
+/// use noisefloor::tile::{Header, Shape, Tile};
+///
+/// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+/// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+/// let mut file = Header::new(shape, 1, "perceptual")?.encode(&payload)?.to_vec();
+/// file.extend(payload);
+/// assert_eq!(Tile::from_bytes(&file)?.shape(), shape);
+/// assert_eq!(Header::decode(&file)?.0.kernel(), "perceptual");
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {
     shape: Shape,
@@ -164,6 +176,11 @@ impl Header {
 
 /// The stored integer of `bits` (8 or 16) whose value, `(v + 1/2) / 2^bits`, is nearest to u in [0, 1); u outside, or NaN, is
 /// clamped.
+///
+/// ```
+/// use noisefloor::tile::quantize;
+/// assert_eq!((quantize(0.0, 8), quantize(0.5, 8), quantize(1.0, 8)), (0, 128, 255));
+/// ```
 pub fn quantize(u: f32, bits: u32) -> u16 {
     let levels = 1_u32 << (bits & 31).min(16);
     // The conversion saturates, and rounds down what is positive.

@@ -6,6 +6,17 @@ use super::sequence;
 use super::view::{Shape, Tile, unit};
 
 /// A sample's place, without its tile. Any value of the fields is valid; [`Sampler`] says what they mean.
+///
+/// ```
+/// use noisefloor::tile::{Sampler, Shape, State, Tile};
+///
+/// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+/// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+/// let tile = Tile::new(shape, &payload)?;
+/// let state = Sampler::pixel(&tile, 1, 0, 0, 0).domain(7).state();
+/// assert_eq!(State::pixel(&tile, 1, 0, 0, 0).domain(7), state);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct State {
     /// The domain: 0 is the root, others are hashes of the keys that led there.
@@ -27,6 +38,19 @@ pub struct State {
 /// A sampler stands for a point of a cube with as many dimensions as are asked for, by domain: each decision of a path has
 /// its own, [`domain`](Sampler::domain) with a key of its own. A domain's numbers depend on nothing but tile, pixel, frame,
 /// index and the keys, so samples can be had in any order and on any thread.
+///
+/// ```
+/// use noisefloor::tile::{Sampler, Shape, Tile};
+///
+/// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+/// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+/// let tile = Tile::new(shape, &payload)?;
+/// let sampler = Sampler::pixel(&tile, 1, 0, 0, 0);
+/// assert_eq!(sampler.draw::<2>(), [128.5 / 256.0, 192.5 / 256.0]);
+/// let [a, b, c] = sampler.domain(7).draw(); // another decision, as many numbers as it needs
+/// assert!([a, b, c].iter().all(|u| (0.0..1.0).contains(u)));
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sampler<'a> {
     tile: &'a Tile<'a>,
@@ -70,6 +94,18 @@ impl<'a> Sampler<'a> {
 
     /// The child domain of a key. Children of different keys are unrelated to each other and to their parent; keys mean
     /// something only among children of one parent.
+    ///
+    /// ```
+    /// use noisefloor::tile::{Sampler, Shape, Tile};
+    ///
+    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+    /// let tile = Tile::new(shape, &payload)?;
+    /// let pixel = Sampler::pixel(&tile, 1, 0, 0, 0);
+    /// assert_ne!(pixel.domain(1), pixel.domain(2));
+    /// assert_ne!(pixel.domain(1).domain(2), pixel.domain(2).domain(1)); // a tree, not a set
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline]
     #[must_use]
     pub const fn domain(self, key: u32) -> Sampler<'a> {
@@ -82,6 +118,18 @@ impl<'a> Sampler<'a> {
     /// Over random seeds every value is uniform, so estimates are unbiased, as far as a hash of 32 bits is random. The shift costs
     /// quality: where good images are wanted, and not exact unbiasedness, take another frame instead. Children of a scrambled sampler are
     /// scrambled.
+    ///
+    /// ```
+    /// use noisefloor::tile::{Sampler, Shape, Tile};
+    ///
+    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+    /// let tile = Tile::new(shape, &payload)?;
+    /// let pixel = Sampler::pixel(&tile, 1, 0, 0, 0);
+    /// assert_eq!(pixel.scramble(0), pixel);
+    /// assert_ne!(pixel.scramble(1).draw::<2>(), pixel.scramble(2).draw::<2>());
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline]
     #[must_use]
     pub const fn scramble(self, seed: u32) -> Sampler<'a> {
@@ -89,6 +137,16 @@ impl<'a> Sampler<'a> {
     }
 
     /// The same domain of the pixel `x` columns to the right and `y` rows down, and of the sample `index` further.
+    ///
+    /// ```
+    /// use noisefloor::tile::{Sampler, Shape, Tile};
+    ///
+    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+    /// let tile = Tile::new(shape, &payload)?;
+    /// assert_eq!(Sampler::pixel(&tile, 0, 0, 0, 0).moved(1, 1, 0), Sampler::pixel(&tile, 1, 1, 0, 0));
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline]
     #[must_use]
     pub const fn moved(self, x: u32, y: u32, index: u32) -> Sampler<'a> {
@@ -113,6 +171,18 @@ impl<'a> Sampler<'a> {
     /// [`draw`](Sampler::draw), if that needs nothing but to look up stored values: for indices below the tile's spp in
     /// unscrambled samplers, of the root or of any domain of a tile of 1 spp, with no more dimensions than the tile has.
     /// Otherwise returns false and writes nothing.
+    ///
+    /// ```
+    /// use noisefloor::tile::{Sampler, Shape, Tile};
+    ///
+    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+    /// let tile = Tile::new(shape, &payload)?;
+    /// let mut u = [0.0; 2];
+    /// assert!(Sampler::pixel(&tile, 1, 0, 0, 0).draw_stored(&mut u)); // the root, in the tile's own samples
+    /// assert!(!Sampler::pixel(&tile, 1, 0, 0, 1).draw_stored(&mut u)); // continued by a sequence
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline(always)]
     pub fn draw_stored<const N: usize>(&self, u: &mut [f32; N]) -> bool {
         const { assert!(0 < N && N <= 4, "a domain has 1 to 4 dimensions") };
@@ -126,6 +196,18 @@ impl<'a> Sampler<'a> {
     }
 
     /// As [`draw`](Sampler::draw), as many coordinates as `u` has room for, at most 4; more stay as they are.
+    ///
+    /// ```
+    /// use noisefloor::tile::{Sampler, Shape, Tile};
+    ///
+    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+    /// let tile = Tile::new(shape, &payload)?;
+    /// let (sampler, mut u) = (Sampler::pixel(&tile, 1, 0, 0, 0), [0.0; 2]);
+    /// sampler.draw_into(&mut u);
+    /// assert_eq!(u, sampler.draw());
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline]
     pub fn draw_into(&self, u: &mut [f32]) {
         match u {

@@ -13,6 +13,13 @@ pub const MAX_DIMS: u32 = 8;
 pub const MAX_FRAMES: u32 = 256;
 
 /// How many values a tile has, and how they are stored.
+///
+/// ```
+/// use noisefloor::tile::Shape;
+/// let shape = Shape { size: 128, spp: 4, dims: 2, frames: 1, bits: 16, progressive: false };
+/// assert!(shape.is_valid());
+/// assert_eq!(shape.payload_bytes(), 128 * 128 * 4 * 2 * 2);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
     /// Pixels on a side: a power of two, 1 to [`MAX_SIZE`].
@@ -60,6 +67,17 @@ impl Shape {
 }
 
 /// A view of a tile: it owns nothing, and is as cheap to copy as a slice.
+///
+/// ```
+/// use noisefloor::tile::{Shape, Tile};
+///
+/// // 2 x 2 pixels, one sample of two coordinates in each.
+/// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+/// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+/// let tile = Tile::new(shape, &payload)?;
+/// assert_eq!(tile.value(0, 0, 1, 0, 0), Some(128.5 / 256.0));
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tile<'a> {
     shape: Shape,
@@ -72,6 +90,11 @@ impl<'a> Tile<'a> {
     /// # Errors
     /// [`Error::Foreign`] for what is no tile, [`Error::Version`] for one of a newer format, [`Error::Length`] for
     /// missing or trailing bytes, [`Error::Corrupt`] for a damaged one.
+    ///
+    /// ```
+    /// use noisefloor::{Error, tile::Tile};
+    /// assert_eq!(Tile::from_bytes(b"no tile"), Err(Error::Foreign));
+    /// ```
     pub fn from_bytes(bytes: &'a [u8]) -> Result<Tile<'a>, Error> {
         let (header, payload) = Header::decode(bytes)?;
         Ok(Tile { shape: header.shape(), payload })

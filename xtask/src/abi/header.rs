@@ -39,12 +39,13 @@ impl Header {
         let (text, asserts) = text.split_once(ASSERTS).with_context(|| format!("the header has no `{ASSERTS}`"))?;
         let (mut functions, mut structs, mut constants) = (Vec::new(), Vec::new(), Vec::new());
         let mut statement = String::new();
-        // The comment at the top is the only one of several lines.
+        // Of the comments only the one at the top has lines that could be taken for code; those of the others begin with an
+        // asterisk, which no declaration does.
         let (_, text) = text.split_once("*/").context("the header does not begin with a comment")?;
         for line in text.lines().map(str::trim) {
             if let Some((name, value)) = line.strip_prefix("#define NF_").and_then(|rest| rest.split_once(' ')) {
                 constants.push((format!("NF_{name}"), number(value)?));
-            } else if !line.is_empty() && !line.starts_with("//") && !line.starts_with("/*") && !line.starts_with('#') {
+            } else if !line.is_empty() && !["//", "/*", "*", "#"].iter().any(|start| line.starts_with(start)) {
                 statement = format!("{statement} {line}").trim().to_owned();
                 let open = statement.matches('{').count() > statement.matches('}').count();
                 if statement.ends_with('{') && statement.starts_with("extern") {

@@ -7,6 +7,15 @@ use crate::error::Error;
 /// The pixels of an image, or of a part of one, and what is known of them. `Image::new(width, height)` knows nothing.
 ///
 /// Pixel (x, y) of frame t has the number (t height + y) width + x.
+///
+/// ```
+/// use noisefloor::control_variate::Image;
+///
+/// // Two materials, side by side; windows of 16 x 16 pixels, each half over the last.
+/// let surfaces: Vec<u32> = (0..64 * 64).map(|pixel| u32::from(pixel % 64 < 20)).collect();
+/// let image = Image { surfaces: &surfaces, window: 16, ..Image::new(64, 64) };
+/// # assert_eq!(image.width, 64);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Image<'a> {
     /// Pixels in a row.
@@ -45,6 +54,11 @@ impl Image<'_> {
     }
 
     /// Pixels in no order.
+    ///
+    /// ```
+    /// use noisefloor::control_variate::Image;
+    /// assert!(Image::unordered(100).unordered);
+    /// ```
     #[inline]
     pub const fn unordered(pixels: usize) -> Self {
         Self { unordered: true, ..Self::new(pixels, 1) }

@@ -44,6 +44,12 @@ use members::{Area, Members};
 ///
 /// # Errors
 /// As for [`estimate_block`].
+///
+/// ```
+/// use noisefloor::control_variate::{Config, block_workspace_len};
+/// assert!(block_workspace_len::<f64>(&Config::new(2, 2, 1), 64, 1)? > 64);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 pub fn block_workspace_len<R: Real>(config: &Config, pixels: usize, n: usize) -> Result<usize, Error> {
     // More pixels than 32 bits count need more memory than there is.
     u32::try_from(pixels).map_err(|_| Error::Memory)?;
@@ -54,6 +60,12 @@ pub fn block_workspace_len<R: Real>(config: &Config, pixels: usize, n: usize) ->
 ///
 /// # Errors
 /// As for [`estimate_image`]; [`Error::Memory`] if no memory could be large enough.
+///
+/// ```
+/// use noisefloor::control_variate::{Config, Image, image_workspace_len};
+/// assert!(image_workspace_len::<f64>(&Config::new(2, 2, 1), &Image::new(8, 8), 1)? > 64);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 pub fn image_workspace_len<R: Real>(config: &Config, image: &Image<'_>, n: usize) -> Result<usize, Error> {
     check_supported(config)?;
     let (shape, windows, pixels) = (config.checked_shape()?, image.windows()?, image.pixels()?);
@@ -73,6 +85,19 @@ fn check_supported(config: &Config) -> Result<(), Error> {
 ///
 /// # Errors
 /// As for [`estimate_image`].
+///
+/// ```
+/// use noisefloor::control_variate::{Config, Samples, block_workspace_len, estimate_block};
+///
+/// // 32 pixels, one sample of f = u in each: the others' samples say how f varies.
+/// let u: [f32; 32] = core::array::from_fn(|pixel| ((pixel * 13) % 32) as f32 / 32.0);
+/// let config = Config::new(1, 1, 1);
+/// let mut workspace = vec![0.0; block_workspace_len::<f64>(&config, 32, 1)?];
+/// estimate_block(&config, Samples::new(&u, &u), 32, &mut workspace, |pixel, estimate| {
+///     assert!((estimate.mean[0] - 0.5).abs() < 0.05, "pixel {pixel}");
+/// })?;
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[inline(always)]
 pub fn estimate_block<R: Real>(
     config: &Config,
@@ -95,6 +120,20 @@ pub fn estimate_block<R: Real>(
 /// estimators other than the robust, leave-one-out and K-fold ones; [`Error::Range`] also for an image without pixels, for
 /// windows that [`Image`] does not allow, for negative factors and for arrays of the wrong length;
 /// [`Error::NotFinite`] for factors that are not finite.
+///
+/// ```
+/// use noisefloor::control_variate::{Config, Image, Samples, estimate_image, image_workspace_len};
+///
+/// // 8 x 8 pixels, one sample of f = u + x in each.
+/// let u: [f32; 64] = core::array::from_fn(|pixel| ((pixel * 29) % 64) as f32 / 64.0);
+/// let f: [f32; 64] = core::array::from_fn(|pixel| u[pixel] + (pixel % 8) as f32);
+/// let (config, image) = (Config::new(1, 1, 1), Image::new(8, 8));
+/// let mut workspace = vec![0.0; image_workspace_len::<f64>(&config, &image, 1)?];
+/// let mut pixels = [0.0; 64];
+/// estimate_image(&config, &image, Samples::new(&u, &f), &mut workspace, |pixel, estimate| pixels[pixel] = estimate.mean[0])?;
+/// assert!((pixels[10] - 2.5).abs() < 0.05);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[inline(always)]
 pub fn estimate_image<R: Real>(
     config: &Config,

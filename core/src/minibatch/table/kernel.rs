@@ -4,6 +4,11 @@ use super::block::{self, ARITY, Block};
 use super::tree::{self, Node};
 
 /// The inner operations of a table, which every implementation must do to the bit as [`Portable`] does.
+///
+/// ```
+/// use noisefloor::minibatch::table::{Kernel, Portable};
+/// assert_eq!(Portable::total(&[0.5; 16]), 8.0);
+/// ```
 pub trait Kernel {
     /// The sum of a block: of its columns from the first row to the last, and then of the columns from the first to the last.
     /// An importance that is not above 0 counts as 0.

@@ -15,6 +15,10 @@ const VERSION: u32 = 1;
 const CHECKSUM: usize = 28;
 
 /// How many bytes a table of so many items takes; 0 if no memory has them.
+///
+/// ```
+/// assert_eq!(noisefloor::minibatch::table::saved_len(1000), 4032);
+/// ```
 pub const fn saved_len(items: u32) -> usize {
     let len = HEADER_BYTES as u64 + items as u64 * size_of::<f32>() as u64;
     if len <= isize::MAX as u64 { len as usize } else { 0 }
@@ -24,6 +28,17 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// Writes the table to exactly [`saved_len`] bytes. A table loaded from them draws the same items from the same generator.
     ///
     /// Errors: [`Error::Length`] for another number of bytes.
+    ///
+    /// ```
+    /// use noisefloor::minibatch::{Table, table};
+    ///
+    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+    /// let mut bytes = [0; table::saved_len(4)];
+    /// table.save(&mut bytes)?;
+    /// let (importance, sums) = ([0.0; table::importance_len(4)], [0; table::sums_len(4)]);
+    /// assert_eq!(Table::load(importance, sums, &bytes)?.importance(3), 4.0);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn save(&self, bytes: &mut [u8]) -> Result<(), Error> {
         let items = self.state.items;
         if bytes.len() != saved_len(items) {
@@ -50,6 +65,11 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
 /// The number of items in a saved table, to make memory for it. Only the header is looked at.
 ///
 /// Errors: [`Error::Length`] for less than a header, [`Error::Foreign`] for other bytes, [`Error::Version`].
+///
+/// ```
+/// use noisefloor::{Error, minibatch::table};
+/// assert_eq!(table::saved_items(b"something else, of 32 bytes and."), Err(Error::Foreign));
+/// ```
 pub fn saved_items(bytes: &[u8]) -> Result<u32, Error> {
     let mut reader = Reader(bytes);
     let magic: [u8; 8] = reader.take().ok_or(Error::Length)?;
@@ -81,6 +101,11 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
 }
 
 /// The number of items in a saved table that [`Table::load`] would accept. Errors: as there, but for memory.
+///
+/// ```
+/// use noisefloor::{Error, minibatch::table};
+/// assert_eq!(table::check_saved(b"nf_table"), Err(Error::Length));
+/// ```
 pub fn check_saved(bytes: &[u8]) -> Result<u32, Error> {
     Ok(check(bytes)?.items)
 }

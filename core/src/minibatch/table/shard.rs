@@ -6,6 +6,13 @@ use crate::Error;
 use crate::rng::Rng;
 
 /// What the others must know of one process's table: 16 bytes that all processes exchange before a draw.
+///
+/// ```
+/// use noisefloor::minibatch::table::Shard;
+/// let all = Shard::sum([Shard { importance: 3.0, items: 10 }, Shard { importance: 1.0, items: 20 }])?;
+/// assert_eq!(all, Shard { importance: 4.0, items: 30 });
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shard {
     /// The sum of its importances.
@@ -60,6 +67,17 @@ impl Shard {
 ///
 /// Errors: as for [`Shard::sum`]; [`Error::Range`] for different lengths or a fraction outside 0..=1; [`Error::NotFinite`];
 /// [`Error::NoSamples`] if every importance and the fraction are 0.
+///
+/// ```
+/// use noisefloor::minibatch::table::{Shard, allocate};
+/// use noisefloor::rng::Rng;
+///
+/// let shards = [Shard { importance: 3.0, items: 10 }, Shard { importance: 1.0, items: 10 }];
+/// let mut counts = [0; 2];
+/// allocate(shards.into_iter(), 0.0, &mut Rng::seed(1), 8, &mut counts)?;
+/// assert_eq!(counts, [6, 2]);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 pub fn allocate(
     shards: impl Iterator<Item = Shard> + Clone,
     uniform_fraction: f32,
@@ -112,6 +130,20 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// Errors: [`Error::Range`] for another number of weights, or if `all` is less than this table alone;
     /// [`Error::NotFinite`]; [`Error::NoSamples`] if nothing can be drawn from any,
     /// or from this table and `index` is not empty. Where `all` dwarfs this table a weight may be infinite.
+    ///
+    /// ```
+    /// use noisefloor::minibatch::{Table, table};
+    /// use noisefloor::rng::Rng;
+    ///
+    /// let part = |importance: &[f32]| Table::new([0.0; table::importance_len(2)], [0; table::sums_len(2)], 2, Some(importance));
+    /// let (mine, other) = (part(&[3.0, 1.0])?, part(&[4.0, 8.0])?);
+    /// let all = table::Shard::sum([mine.shard(), other.shard()])?;
+    /// let (mut index, mut weight) = ([0; 4], [0.0; 4]);
+    /// mine.draw_shard(&all, &mut Rng::seed(1), &mut index, Some(&mut weight))?;
+    /// // Of 4 items in all: (1 - .2) * 3 / 16 + .2 / 4 is item 0's probability.
+    /// assert!(index.iter().zip(weight).all(|(&i, w)| i != 0 || (w - 1.0 / (4.0 * 0.2)).abs() < 1e-5));
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline(always)]
     pub fn draw_shard(
         &self,
