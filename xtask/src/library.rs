@@ -14,19 +14,24 @@ const ALLOWED_UNDEFINED: [&str; 4] = ["memcpy", "memmove", "memset", "memcmp"];
 /// objects are linked into one, unused sections dropped, and every symbol but the API made local.
 pub(crate) fn build() -> Result<PathBuf> {
     run::check(run::cargo().args(["build", "--quiet", "--release", "--package", "noisefloor-capi"]))?;
-    let raw = paths::target().join("release/libnoisefloor.a");
-    let output = paths::output();
-    fs::create_dir_all(&output).with_context(|| format!("cannot create {}", output.display()))?;
+    one_object(&paths::target().join("release/libnoisefloor.a"), &paths::output(), "")
+}
+
+/// Makes cargo's archive `raw` into one of a single object, in the folder `output`. The binutils' names begin with `prefix`:
+/// nothing, or a target.
+pub(crate) fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<PathBuf> {
+    let tool = |name: &str| run::command(format!("{prefix}{name}"));
+    fs::create_dir_all(output).with_context(|| format!("cannot create {}", output.display()))?;
     let object = output.join("noisefloor.o");
     let archive = output.join("libnoisefloor.a");
-    let mut link = run::command("ld");
+    let mut link = tool("ld");
     link.args(["-r", "--gc-sections", "-o"]).arg(&object);
-    for symbol in api_symbols(&raw)? {
+    for symbol in api_symbols(raw)? {
         link.args(["-u", &symbol]);
     }
-    run::check(link.arg(&raw))?;
+    run::check(link.arg(raw))?;
     run::check(
-        run::command("objcopy")
+        tool("objcopy")
             .args(["--wildcard", "--keep-global-symbol=nf_*", "--strip-debug", "-R", ".eh_frame", "-R", ".llvmbc"])
             .arg(&object),
     )?;
@@ -38,7 +43,7 @@ pub(crate) fn build() -> Result<PathBuf> {
         }
         _ => {}
     }
-    run::check(run::command("ar").arg("rcs").arg(&new).arg(&object))?;
+    run::check(tool("ar").arg("rcs").arg(&new).arg(&object))?;
     fs::rename(&new, &archive).with_context(|| format!("cannot replace {}", archive.display()))?;
     Ok(archive)
 }
@@ -64,7 +69,8 @@ pub(crate) fn check(archive: &Path) -> Result<()> {
     Ok(())
 }
 
-fn api_symbols(archive: &Path) -> Result<Vec<String>> {
+/// The names of the C functions in an archive of any target.
+pub(crate) fn api_symbols(archive: &Path) -> Result<Vec<String>> {
     let symbols = names(archive, &["--defined-only", "--extern-only"])?;
     Ok(symbols.into_iter().map(|(_, name)| name).filter(|name| name.starts_with("nf_")).collect())
 }

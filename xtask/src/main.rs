@@ -14,6 +14,7 @@ mod povray;
 mod povray_patched;
 mod report;
 mod run;
+mod targets;
 mod test;
 mod tiles;
 mod tools;
@@ -46,6 +47,8 @@ enum Command {
     Library,
     /// Build target/noisefloor/embree_harness, the path tracer on Embree with the thesis's scenes
     Embree,
+    /// Build for other targets, run the C tests and a bare-metal program there under QEMU, and write docs/report/sizes.md
+    Targets(targets::Options),
     /// Make the tiles in core/tiles with fsot, or check that they are what it makes
     Tiles(tiles::Options),
 }
@@ -57,6 +60,7 @@ fn main() -> ExitCode {
         Command::Report(options) => report::run(&options),
         Command::Test(options) => test::run(&options),
         Command::Header => header::write(),
+        Command::Targets(options) => targets::run(&options),
         Command::Tiles(options) => tiles::run(&options),
         Command::Embree => embree::build().map(|path| println!("{}", path.display())),
         Command::Library => library::build().map(|path| println!("{}", path.display())),
