@@ -27,7 +27,9 @@ pub(crate) fn write(all: &[Findings]) -> Result<()> {
     let table = |size: fn(&super::Size) -> u64| -> Vec<Vec<Cell>> {
         let row = |at: usize| {
             let name = all.first().map_or("", |first| first.sizes[at].service);
-            std::iter::once(Cell::from(name)).chain(all.iter().map(|findings| bytes(size(&findings.sizes[at])))).collect()
+            std::iter::once(Cell::from(name))
+                .chain(all.iter().map(|findings| bytes(size(&findings.sizes[at]))))
+                .collect()
         };
         (0..services).map(row).collect()
     };

@@ -7,10 +7,10 @@ mod chapter;
 mod platform;
 mod sizes;
 
+use crate::tools::Package;
 use crate::{c_tests, library, paths, run, tools};
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use crate::tools::Package;
 use platform::{PLATFORMS, Platform};
 use sizes::Size;
 use std::path::Path;
@@ -72,16 +72,32 @@ fn one(platform: &'static Platform) -> Result<Findings> {
 
 /// Compiles and runs every C test; they read the same pinned vectors as on this machine.
 fn emulated(binutils: &str, emulator: &str, archive: &Path) -> Result<()> {
-    let sources = c_tests::sources()?;
+    let mut sources = c_tests::sources()?;
+    if binutils.starts_with("s390x") && !multiplies(binutils, emulator)? {
+        println!(
+            "   NOT RUN: importance.c. This {emulator} multiplies single precision into double wrongly (MDEBR; mended in QEMU 8.1)"
+        );
+        sources.retain(|source| !source.ends_with("importance.c"));
+    }
     c_tests::each(&sources, |source| {
         let program = c_tests::output(&format!("{binutils}c_test"))?;
         let mut compiler = run::command(format!("{binutils}gcc"));
-        // Fused multiply-adds of the tests' own arithmetic would make other expected values.
-        compiler.args(["-std=c99", "-static", "-ffp-contract=off", "-Iinclude", "-Itests/c"]).args(c_tests::STRICT);
+        // The tests' own arithmetic, from which they know what to expect, must be in float and not fused. Of s390x, C99 makes it
+        // double.
+        compiler.args(["-std=c99", "-static", "-ffp-contract=off", "-fexcess-precision=fast"]);
+        compiler.args(["-Iinclude", "-Itests/c"]).args(c_tests::STRICT);
         run::check(compiler.arg(source).arg(archive).args(["-lm", "-o"]).arg(&program))?;
         let mut test: Command = run::command(emulator);
         run::check(test.arg(&program))
     })?;
     println!("   {} C tests passed under {emulator}", sources.len());
     Ok(())
+}
+
+/// Whether the emulator has the instruction that importances are squared with.
+fn multiplies(binutils: &str, emulator: &str) -> Result<bool> {
+    let program = c_tests::output("mdebr")?;
+    let mut compiler = run::command(format!("{binutils}gcc"));
+    run::check(compiler.args(["-O1", "-static", "-march=z10", "xtask/src/targets/mdebr.c", "-o"]).arg(&program))?;
+    Ok(run::command(emulator).arg(program).status().context("the emulator does not start")?.success())
 }
