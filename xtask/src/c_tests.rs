@@ -15,22 +15,12 @@ pub(crate) enum Language {
     Cpp17,
 }
 
-const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O1"];
+pub(crate) const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O1"];
 pub(crate) const SANITIZERS: [&str; 3] = ["-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=undefined"];
 
 /// Compiles and runs every `tests/c/*.c`, with more compiler options.
 pub(crate) fn run(language: Language, options: &[&str], archive: &Path) -> Result<Outcome> {
-    let mut sources = Vec::new();
-    for entry in fs::read_dir(paths::root().join("tests/c")).context("cannot read tests/c")? {
-        let path = entry.context("cannot read tests/c")?.path();
-        if path.extension().is_some_and(|extension| extension == "c") {
-            sources.push(path);
-        }
-    }
-    if sources.is_empty() {
-        bail!("tests/c holds no test");
-    }
-    sources.sort();
+    let sources = sources()?;
     check_coverage(&sources)?;
     each(&sources, |source| {
         let mut compiler = match language {
@@ -49,6 +39,22 @@ pub(crate) fn run(language: Language, options: &[&str], archive: &Path) -> Resul
         run::check(&mut run::command(program))
     })?;
     Ok(Outcome::Passed)
+}
+
+/// The test programs, in order.
+pub(crate) fn sources() -> Result<Vec<PathBuf>> {
+    let mut sources = Vec::new();
+    for entry in fs::read_dir(paths::root().join("tests/c")).context("cannot read tests/c")? {
+        let path = entry.context("cannot read tests/c")?.path();
+        if path.extension().is_some_and(|extension| extension == "c") {
+            sources.push(path);
+        }
+    }
+    if sources.is_empty() {
+        bail!("tests/c holds no test");
+    }
+    sources.sort();
+    Ok(sources)
 }
 
 /// Fails unless every function of the header is called somewhere.
@@ -116,7 +122,7 @@ pub(crate) fn output(name: &str) -> Result<PathBuf> {
 }
 
 /// All of them, even if some fail; the error names those.
-fn each(sources: &[PathBuf], mut action: impl FnMut(&Path) -> Result<()>) -> Result<()> {
+pub(crate) fn each(sources: &[PathBuf], mut action: impl FnMut(&Path) -> Result<()>) -> Result<()> {
     let mut failures = Vec::new();
     for source in sources {
         if let Err(error) = action(source) {

@@ -13,21 +13,24 @@ const ALLOWED_UNDEFINED: [&str; 4] = ["memcpy", "memmove", "memset", "memcmp"];
 /// capi/cmake/one_object.sh, which the CMake build uses too, says why cargo's own archive is not the one.
 pub(crate) fn build() -> Result<PathBuf> {
     run::check(run::cargo().args(["build", "--quiet", "--release", "--package", "noisefloor-capi"]))?;
-    let raw = paths::target().join("release/libnoisefloor.a");
-    let output = paths::output();
-    fs::create_dir_all(&output).with_context(|| format!("cannot create {}", output.display()))?;
-    let object = output.join("noisefloor.o");
+    one_object(&paths::target().join("release/libnoisefloor.a"), &paths::output(), "")
+}
+
+/// Makes cargo's archive `raw` into one of a single object, in the folder `output`. The binutils' names begin with `prefix`:
+/// nothing, or a target.
+pub(crate) fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<PathBuf> {
+    let tool = |name: &str| format!("{prefix}{name}");
+    fs::create_dir_all(output).with_context(|| format!("cannot create {}", output.display()))?;
+    // Complete or not at all, also while another program links the one in place or makes it too.
+    let scratch = tempfile::tempdir_in(output).with_context(|| format!("cannot write in {}", output.display()))?;
+    let (object, new) = (scratch.path().join("noisefloor.o"), scratch.path().join("libnoisefloor.a"));
+    run::check(
+        run::command("sh")
+            .args(["capi/cmake/one_object.sh".as_ref(), raw, &object])
+            .envs(["ld", "nm", "objcopy"].map(|name| (name.to_uppercase(), tool(name)))),
+    )?;
+    run::check(run::command(tool("ar")).arg("rcs").arg(&new).arg(&object))?;
     let archive = output.join("libnoisefloor.a");
-    run::check(run::command("sh").arg("capi/cmake/one_object.sh").arg(&raw).arg(&object))?;
-    // `ar` adds to an archive that exists, and another program may be linking the one in place.
-    let new = output.join("libnoisefloor.a.new");
-    match fs::remove_file(&new) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            return Err(error).with_context(|| format!("cannot replace {}", new.display()));
-        }
-        _ => {}
-    }
-    run::check(run::command("ar").arg("rcs").arg(&new).arg(&object))?;
     fs::rename(&new, &archive).with_context(|| format!("cannot replace {}", archive.display()))?;
     Ok(archive)
 }
@@ -51,6 +54,12 @@ pub(crate) fn check(archive: &Path) -> Result<()> {
         bail!("no nf_abi_version in {}: the symbol check looked at the wrong file", archive.display());
     }
     Ok(())
+}
+
+/// The names of the C functions in an archive of any target.
+pub(crate) fn api_symbols(archive: &Path) -> Result<Vec<String>> {
+    let symbols = names(archive, &["--defined-only", "--extern-only"])?;
+    Ok(symbols.into_iter().map(|(_, name)| name).filter(|name| name.starts_with("nf_")).collect())
 }
 
 /// (kind, name) of every symbol, with nm's one-letter kinds.

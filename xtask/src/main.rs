@@ -19,6 +19,7 @@ mod python;
 mod release;
 mod report;
 mod run;
+mod targets;
 mod test;
 mod tiles;
 mod tools;
@@ -57,6 +58,8 @@ enum Command {
     Library,
     /// Build target/noisefloor/embree_harness, the path tracer on Embree with the thesis's scenes
     Embree,
+    /// Build for other targets, run the C tests and a bare-metal program there under QEMU, and write docs/report/sizes.md
+    Targets(targets::Options),
     /// Make the tiles in core/tiles with fsot, or check that they are what it makes
     Tiles(tiles::Options),
 }
@@ -71,6 +74,7 @@ fn main() -> ExitCode {
         Command::Abi(options) => abi::write(&options),
         Command::Licences => release::licences::write(),
         Command::Install(options) => install::run(&options),
+        Command::Targets(options) => targets::run(&options),
         Command::Tiles(options) => tiles::run(&options),
         Command::Embree => embree::build().map(|path| println!("{}", path.display())),
         Command::Library => library::build().map(|path| println!("{}", path.display())),

@@ -41,6 +41,7 @@ pub(crate) fn ensure() -> Result<()> {
 }
 
 /// A Debian package, and a file that it brings: if that is there, the package or an equal of it is installed.
+#[derive(Clone, Copy)]
 pub(crate) struct Package {
     pub(crate) name: &'static str,
     pub(crate) file: &'static str,

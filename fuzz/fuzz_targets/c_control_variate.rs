@@ -1,0 +1,227 @@
+//! Every control-variate function of the C library: any configuration, samples and addresses give an error, and outputs as they
+//! were, or finite numbers.
+#![no_main]
+
+mod support;
+
+use arbitrary::{Result, Unstructured};
+use libfuzzer_sys::fuzz_target;
+use noisefloor_c::*;
+use std::ptr::{null, null_mut};
+use support::{Array, Source};
+
+/// Bytes beyond which no workspace is allocated.
+const MOST: usize = 1 << 21;
+/// An output that was not written.
+const UNTOUCHED: nf_estimate = nf_estimate { mean: [-7.0; 4], std_error: [-7.0; 4], samples: 7, gain: -7.0 };
+
+fn config(source: &mut Source<'_>) -> Result<nf_cv_config> {
+    let iterations = source.small(40)?;
+    Ok(nf_cv_config {
+        dims: source.small(5)?,
+        order: source.small(4)?,
+        channels: source.small(4)?,
+        estimator: source.small(6)?,
+        basis: source.small(4)?,
+        stratified: u32::from(source.rarely(8)?),
+        slices: source.small(4)?.saturating_sub(2),
+        controls: source.small(6)?.saturating_sub(3),
+        stride: source.small(12)?.saturating_sub(6),
+        solver: source.small(4)?,
+        precision: source.small(1)?,
+        nonfinite: source.small(1)?,
+        color: u32::from(source.rarely(8)?),
+        folds: source.small(5)?,
+        // Many steps are no other code, only slow.
+        iterations: if iterations > 1 << 20 { iterations } else { iterations % 41 },
+        optimizer: source.small(3)?,
+        ridge: source.number()?,
+        learning_rate: source.number()?,
+        momentum: source.number()?,
+    })
+}
+
+fn is_sound(estimate: &nf_estimate) -> bool {
+    estimate.mean.iter().all(|mean| mean.is_finite())
+        && estimate.std_error.iter().all(|&error| error >= 0.0)
+        && !estimate.gain.is_nan()
+}
+
+/// A call succeeded with a sound estimate, or changed nothing.
+fn check(status: nf_status, out: &nf_estimate) {
+    match status {
+        NF_OK => assert!(is_sound(out), "{:?} {:?} {}", out.mean, out.std_error, out.gain),
+        _ => {
+            assert!(out.mean == UNTOUCHED.mean && out.std_error == UNTOUCHED.std_error && out.samples == 7, "{status}")
+        }
+    }
+}
+
+struct Samples {
+    n: usize,
+    u: Array<f32>,
+    f: Array<f32>,
+    h: Array<f32>,
+    integrals: Array<f32>,
+}
+
+/// As many numbers as a valid configuration reads; none for one that must be refused.
+fn samples(source: &mut Source<'_>, config: &nf_cv_config, n: usize) -> Result<Samples> {
+    // SAFETY: a reference is a valid pointer.
+    let valid = unsafe { nf_cv_terms(config) } > 0;
+    let len = |width: u32| if valid { n * width as usize } else { 0 };
+    let stride = if config.stride == 0 { config.dims } else { config.stride };
+    let used =
+        len(stride).saturating_sub(if valid && n > 0 { (stride.saturating_sub(config.dims)) as usize } else { 0 });
+    // A stride below dims is refused, one of gigabytes means little.
+    let used = if used > 1 << 16 { 0 } else { used };
+    Ok(Samples {
+        n: if used == 0 { 0 } else { n },
+        u: source.array(used, Source::unit)?,
+        f: source.array(len(config.channels), Source::number)?,
+        h: source.array(len(config.controls), Source::number)?,
+        integrals: source.array(len(config.controls).min(config.controls as usize), Source::number)?,
+    })
+}
+
+fn batch(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
+    let count = usize::from(source.any::<u8>()? % 33);
+    let Samples { n, u, f, h, integrals } = samples(source, config, count)?;
+    // SAFETY: arrays have the lengths that the header asks for; wrong addresses are NULL or misaligned, which are refused.
+    unsafe {
+        let bytes = nf_cv_workspace_size(config, n);
+        if bytes > MOST {
+            return Ok(());
+        }
+        let mut workspace = source.memory(bytes)?;
+        let (memory, size) = (workspace.pointer_mut().cast(), workspace.bytes());
+        let mut out = UNTOUCHED;
+        check(nf_cv_estimate(config, u.pointer(), f.pointer(), n, memory, size, &mut out), &out);
+        assert!(nf_cv_estimate(config, u.pointer(), f.pointer(), n, memory, size, null_mut()) < 0);
+        let mut out = UNTOUCHED;
+        let (h, integrals) = (h.pointer(), integrals.pointer());
+        let status =
+            nf_cv_estimate_with_controls(config, u.pointer(), f.pointer(), h, integrals, n, memory, size, &mut out);
+        check(status, &out);
+        let rows = if config.color == NF_COLOR_LUMINANCE_RATIO { 1 } else { config.channels };
+        let terms = nf_cv_terms(config).saturating_sub(1);
+        let mut start = source.array((terms * rows.min(4)) as usize, Source::number)?;
+        let before = start.values.clone();
+        let mut out = UNTOUCHED;
+        let start_pointer = start.pointer_mut();
+        let status = nf_cv_gradient_descent(config, u.pointer(), f.pointer(), n, start_pointer, memory, size, &mut out);
+        check(status, &out);
+        let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        assert!(status == NF_OK || bits(&before) == bits(&start.values));
+        assert!(status != NF_OK || start.values.iter().all(|value| value.is_finite()));
+    }
+    Ok(())
+}
+
+fn shared(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
+    let (width, height, frames) = (source.small(4)?, source.small(3)?, source.small(2)?);
+    let pixels = [width, height, frames.max(1)].iter().try_fold(1_u32, |a, &b| a.checked_mul(b)).unwrap_or(0) as usize;
+    let n = usize::from(source.any::<u8>()? % 4);
+    if pixels > 64 {
+        return Ok(());
+    }
+    let Samples { n: all, u, f, .. } = samples(source, config, n * pixels)?;
+    let n = if all == 0 { 0 } else { n };
+    let surfaces = source.array(pixels, |source| source.small(2))?;
+    let channels = if config.channels > 4 { 0 } else { config.channels as usize };
+    let factors = source.array(pixels * channels, |source| source.number().map(f32::abs))?;
+    let image = nf_cv_image {
+        width,
+        height,
+        frames,
+        window: source.small(5)?,
+        stride: source.small(5)?,
+        unordered: u32::from(source.rarely(4)?),
+        surfaces: if source.any()? { surfaces.pointer() } else { null() },
+        factors: if source.any()? { factors.pointer() } else { null() },
+    };
+    // SAFETY: as in `batch`.
+    unsafe {
+        for is_image in [true, false] {
+            let bytes = if is_image {
+                nf_cv_image_workspace_size(config, &image, n)
+            } else {
+                nf_cv_block_workspace_size(config, pixels, n)
+            };
+            if bytes > MOST {
+                continue;
+            }
+            let mut workspace = source.memory(bytes)?;
+            let (memory, size) = (workspace.pointer_mut().cast(), workspace.bytes());
+            let mut out = vec![UNTOUCHED; pixels];
+            let (u, f, to) = (u.pointer(), f.pointer(), out.as_mut_ptr());
+            let status = if is_image {
+                nf_cv_image_estimate(config, &image, u, f, n, memory, size, to)
+            } else {
+                nf_cv_block_estimate(config, u, f, pixels, n, memory, size, to)
+            };
+            out.iter().for_each(|out| check(status, out));
+        }
+    }
+    Ok(())
+}
+
+fn streaming(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
+    // SAFETY: as in `batch`; an accumulator lives in memory that outlives it.
+    unsafe {
+        let bytes = nf_cv_accumulator_size(config);
+        let work = nf_cv_accumulator_workspace_size(config);
+        if bytes > MOST || work > MOST {
+            return Ok(());
+        }
+        let mut memory = [source.memory(bytes)?, source.memory(bytes)?];
+        let mut workspace = source.memory(work)?;
+        let mut objects = [null_mut(); 2];
+        for (memory, object) in memory.iter_mut().zip(&mut objects) {
+            let status = nf_cv_accumulator_init(memory.pointer_mut().cast(), memory.bytes(), config, object);
+            assert_eq!(status == NF_OK, !object.is_null());
+        }
+        for _ in 0..source.any::<u8>()? % 8 {
+            let [first, second] = objects;
+            let count = usize::from(source.any::<u8>()? % 12);
+            let Samples { n, u, f, h, integrals } = samples(source, config, count)?;
+            match source.any::<u8>()? % 6 {
+                0 => _ = nf_cv_accumulator_add(first, u.pointer(), f.pointer(), n),
+                1 => _ = nf_cv_accumulator_add(second, u.pointer(), f.pointer(), n),
+                2 => {
+                    let (h, integrals) = (h.pointer(), integrals.pointer());
+                    nf_cv_accumulator_add_with_controls(first, u.pointer(), f.pointer(), h, integrals, n);
+                }
+                3 => _ = nf_cv_accumulator_merge(first, second),
+                4 => assert!(nf_cv_accumulator_merge(first, first) < 0),
+                _ => _ = nf_cv_accumulator_reset(second),
+            }
+            for object in objects {
+                let mut out = UNTOUCHED;
+                let (memory, size) = (workspace.pointer_mut().cast(), workspace.bytes());
+                check(nf_cv_accumulator_estimate(object, memory, size, &mut out), &out);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn run(bytes: &[u8]) -> Result<()> {
+    let mut source = Source(Unstructured::new(bytes));
+    let config = config(&mut source)?;
+    match source.any::<u8>()? % 3 {
+        0 => batch(&mut source, &config),
+        1 => shared(&mut source, &config),
+        _ => streaming(&mut source, &config),
+    }
+}
+
+fuzz_target!(|bytes: &[u8]| {
+    // SAFETY: NULL is allowed.
+    unsafe {
+        nf_cv_config_default(null_mut());
+        assert_eq!(nf_cv_terms(null()), 0);
+    }
+    // Bytes that ran out are no input.
+    run(bytes).ok();
+});

@@ -1,0 +1,108 @@
+//! The C library's tiles, samplers, generator, recommendations and messages: any bytes, numbers and addresses.
+#![no_main]
+
+mod support;
+
+use arbitrary::{Result, Unstructured};
+use libfuzzer_sys::fuzz_target;
+use noisefloor::tile::{Header, Shape};
+use noisefloor_c::*;
+use std::ffi::CStr;
+use std::mem::MaybeUninit;
+use std::ptr::{null, null_mut};
+use support::Source;
+
+/// A built-in tile, the bytes as they are, or under a header that fits them.
+fn tile(source: &mut Source<'_>, bytes: &mut Vec<u8>) -> Result<Option<nf_tile>> {
+    let mut tile = MaybeUninit::uninit();
+    // SAFETY: `bytes` has `len` bytes and outlives the tile; wrong addresses are NULL.
+    let status = unsafe {
+        if source.any()? {
+            nf_tile_builtin(source.small(12)?, tile.as_mut_ptr())
+        } else {
+            let shape = Shape {
+                size: 1 << (source.any::<u8>()? % 4),
+                spp: 1 << (source.any::<u8>()? % 3),
+                dims: 1 + u32::from(source.any::<u8>()? % 4),
+                frames: 1 + u32::from(source.any::<u8>()? % 2),
+                bits: if source.any()? { 16 } else { 8 },
+                progressive: source.any()?,
+            };
+            *bytes = source.0.peek_bytes(source.0.len()).unwrap_or_default().to_vec();
+            if let Some(payload) = bytes.get(..shape.payload_bytes() as usize)
+                && let Ok(head) = Header::new(shape, 1, "fuzz").and_then(|header| header.encode(payload))
+            {
+                *bytes = [&head[..], payload].concat();
+            }
+            nf_tile_from_bytes(bytes.as_ptr().cast(), bytes.len(), tile.as_mut_ptr())
+        }
+    };
+    // SAFETY: written on success.
+    Ok((status == NF_OK).then(|| unsafe { tile.assume_init() }))
+}
+
+fn draw(source: &mut Source<'_>, tile: Option<&nf_tile>) -> Result<()> {
+    let view = tile.map_or(null(), |tile| &raw const *tile);
+    let [x, y, frame, index, key, seed] = [0; 6].map(|_| source.any::<u32>().unwrap_or(1));
+    // SAFETY: the tile lives on; arrays have the lengths that the header asks for.
+    unsafe {
+        let root = nf_sampler_pixel(view, x, y, frame, index);
+        let child = nf_sampler_domain(nf_sampler_scramble(root, seed), key);
+        for sampler in [root, child] {
+            let mut all = [-1.0; 4];
+            nf_sampler_draw(sampler, 4, all.as_mut_ptr());
+            assert!(all.iter().all(|u| (0.0..1.0).contains(u)), "{all:?}");
+            for dims in [0, 1, 2, 3, 5, seed] {
+                let mut u = [-1.0; 4];
+                nf_sampler_draw(sampler, if dims == 4 { 0 } else { dims }, u.as_mut_ptr());
+                let drawn = if dims <= 4 && dims != 4 { dims as usize } else { 0 };
+                assert!(u[..drawn] == all[..drawn] && u[drawn..].iter().all(|&u| u == -1.0), "{dims}: {u:?}");
+            }
+            nf_sampler_draw(sampler, 2, null_mut());
+        }
+        let dims = source.array(2, |source| source.small(5))?;
+        let (width, height, samples) = (source.small(5)?, source.small(5)?, source.small(3)?);
+        let samplers = [root, child];
+        let len = nf_sampler_fill_len(dims.pointer(), 2, width, height, samples);
+        if len < 1 << 12 {
+            let room = if source.rarely(16)? { len / 2 } else { len };
+            let mut u = source.array(room, |_| Ok(-1.0_f32))?;
+            let count = u.values.len();
+            let to = u.pointer_mut();
+            let status = nf_sampler_fill(samplers.as_ptr(), dims.pointer(), 2, width, height, samples, to, count);
+            let is_written = |u: &f32| (0.0..1.0).contains(u) == (status == NF_OK);
+            assert!(count > len || u.values.iter().all(is_written), "{status}");
+        }
+    }
+    Ok(())
+}
+
+fn run(bytes: &[u8]) -> Result<()> {
+    let mut source = Source(Unstructured::new(bytes));
+    let mut memory = Vec::new();
+    let tile = tile(&mut source, &mut memory)?;
+    draw(&mut source, tile.as_ref())?;
+    let mut rng = nf_rng { state: source.any()?, increment: source.any()? };
+    // SAFETY: references are valid pointers, and messages are static strings.
+    unsafe {
+        assert!((0.0..1.0).contains(&nf_rng_uniform(&mut rng)));
+        nf_rng_seed(&mut rng, u64::from(nf_rng_next(&mut rng)));
+        assert_eq!(nf_rng_next(null_mut()), 0);
+        let mut advice = MaybeUninit::uninit();
+        let [dims, spp, sampling, can_share] =
+            [source.small(20)?, source.small(64)?, source.small(2)?, source.small(2)?];
+        if nf_recommend(dims, spp, sampling, can_share, advice.as_mut_ptr()) == NF_OK {
+            let advice = advice.assume_init();
+            assert!(advice.error > 0.0 && advice.filtered_error > 0.0);
+            assert!(nf_cv_terms(&advice.config) > 0, "a configuration that the library refuses");
+        }
+        let message = CStr::from_ptr(nf_status_message(source.any()?));
+        assert!(!message.is_empty() && nf_abi_version() == 1);
+    }
+    Ok(())
+}
+
+fuzz_target!(|bytes: &[u8]| {
+    // Bytes that ran out are no input.
+    run(bytes).ok();
+});

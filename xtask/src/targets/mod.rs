@@ -1,0 +1,103 @@
+//! `cargo xtask targets`: the library on other processors, with and without an operating system, run under QEMU; and its size
+//! there.
+
+mod bare_metal;
+mod build;
+mod chapter;
+mod platform;
+mod sizes;
+
+use crate::tools::Package;
+use crate::{c_tests, library, paths, run, tools};
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use platform::{PLATFORMS, Platform};
+use sizes::Size;
+use std::path::Path;
+use std::process::Command;
+
+#[derive(Args)]
+pub(crate) struct Options {
+    /// Only this target; can be given several times. docs/report/sizes.md is written when all are built
+    #[arg(long = "target", value_name = "TRIPLE")]
+    targets: Vec<String>,
+}
+
+/// What was found out about one target.
+struct Findings {
+    platform: &'static Platform,
+    sizes: Vec<Size>,
+    /// Bytes of stack of each call of the bare-metal program, where it ran.
+    stacks: Vec<(String, u32)>,
+}
+
+pub(crate) fn run(options: &Options) -> Result<()> {
+    if let Some(unknown) = options.targets.iter().find(|name| PLATFORMS.iter().all(|known| known.triple != **name)) {
+        let known: Vec<_> = PLATFORMS.iter().map(|known| known.triple).collect();
+        bail!("`{unknown}` is none of the targets that this knows: {}", known.join(", "));
+    }
+    let is_wanted = |platform: &&Platform| {
+        options.targets.is_empty() || options.targets.iter().any(|wanted| wanted == platform.triple)
+    };
+    let wanted: Vec<&'static Platform> = PLATFORMS.iter().filter(is_wanted).collect();
+    let packages: Vec<Package> =
+        platform::COMPILER.iter().chain(wanted.iter().flat_map(|platform| platform.packages)).copied().collect();
+    if let Some(missing) = tools::packages(&packages)? {
+        bail!("{missing}");
+    }
+    let mut all = Vec::new();
+    for platform in wanted {
+        println!("== {}", platform.triple);
+        all.push(one(platform).with_context(|| format!("target {}", platform.triple))?);
+    }
+    if options.targets.is_empty() { chapter::write(&all) } else { Ok(()) }
+}
+
+/// Builds, runs what can be run, and measures.
+fn one(platform: &'static Platform) -> Result<Findings> {
+    let raw = build::archive(platform.triple)?;
+    let mut stacks = Vec::new();
+    if let Some(binutils) = platform.binutils {
+        let archive = library::one_object(&raw, &paths::output().join(platform.triple), binutils)?;
+        library::check(&archive)?;
+        println!("   no panic, no undefined symbol but mem*, only nf_* visible");
+        match platform.emulator {
+            Some(emulator) if platform.is_bare_metal => stacks = bare_metal::run(binutils, emulator, &archive)?,
+            Some(emulator) => emulated(binutils, emulator, &archive)?,
+            None => {}
+        }
+    }
+    Ok(Findings { platform, sizes: sizes::measure(platform, &raw)?, stacks })
+}
+
+/// Compiles and runs every C test; they read the same pinned vectors as on this machine.
+fn emulated(binutils: &str, emulator: &str, archive: &Path) -> Result<()> {
+    let mut sources = c_tests::sources()?;
+    if binutils.starts_with("s390x") && !multiplies(binutils, emulator)? {
+        println!(
+            "   NOT RUN: importance.c. This {emulator} multiplies single precision into double wrongly (MDEBR; mended in QEMU 8.1)"
+        );
+        sources.retain(|source| !source.ends_with("importance.c"));
+    }
+    c_tests::each(&sources, |source| {
+        let program = c_tests::output(&format!("{binutils}c_test"))?;
+        let mut compiler = run::command(format!("{binutils}gcc"));
+        // The tests' own arithmetic, from which they know what to expect, must be in float and not fused. Of s390x, C99 makes it
+        // double.
+        compiler.args(["-std=c99", "-static", "-ffp-contract=off", "-fexcess-precision=fast"]);
+        compiler.args(["-Iinclude", "-Itests/c"]).args(c_tests::STRICT);
+        run::check(compiler.arg(source).arg(archive).args(["-lm", "-o"]).arg(&program))?;
+        let mut test: Command = run::command(emulator);
+        run::check(test.arg(&program))
+    })?;
+    println!("   {} C tests passed under {emulator}", sources.len());
+    Ok(())
+}
+
+/// Whether the emulator has the instruction that importances are squared with.
+fn multiplies(binutils: &str, emulator: &str) -> Result<bool> {
+    let program = c_tests::output("mdebr")?;
+    let mut compiler = run::command(format!("{binutils}gcc"));
+    run::check(compiler.args(["-O1", "-static", "-march=z10", "xtask/src/targets/mdebr.c", "-o"]).arg(&program))?;
+    Ok(run::command(emulator).arg(program).status().context("the emulator does not start")?.success())
+}

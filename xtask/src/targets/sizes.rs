@@ -1,0 +1,114 @@
+//! What each service adds to a program that links nothing else: the archive linked for the service's functions alone, unused
+//! sections dropped.
+
+use super::platform::Platform;
+use crate::{c_tests, library, run};
+use anyhow::{Context, Result, bail};
+use object::{Object, ObjectSection, SectionKind};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A service and how the names of its functions begin; `except` takes some away.
+struct Service {
+    name: &'static str,
+    functions: &'static [&'static str],
+    except: &'static [&'static str],
+}
+
+const SERVICES: [Service; 11] = [
+    Service {
+        name: "control variates: one pixel",
+        functions: &["nf_cv_"],
+        except: &["nf_cv_image", "nf_cv_block", "nf_cv_accumulator"],
+    },
+    Service { name: "control variates: shared fits", functions: &["nf_cv_image", "nf_cv_block"], except: &[] },
+    Service { name: "control variates: streaming", functions: &["nf_cv_accumulator"], except: &[] },
+    Service { name: "recommendations", functions: &["nf_recommend"], except: &[] },
+    Service { name: "MIS heuristics", functions: &["nf_mis_"], except: &[] },
+    Service { name: "optimal MIS", functions: &["nf_omis_"], except: &["nf_omis_weights"] },
+    Service {
+        name: "tiles and samplers, without built-in tiles",
+        functions: &["nf_tile_", "nf_sampler_"],
+        except: &["nf_tile_builtin"],
+    },
+    Service { name: "random numbers", functions: &["nf_rng_"], except: &[] },
+    Service { name: "minibatches: tables", functions: &["nf_table_", "nf_shard", "nf_shuffle"], except: &[] },
+    Service {
+        name: "minibatches: importances",
+        functions: &["nf_importance_", "nf_cross_entropy_gradient"],
+        except: &[],
+    },
+    Service { name: "minibatches: gradients", functions: &["nf_gradient_", "nf_omis_weights"], except: &[] },
+];
+
+/// Bytes.
+pub(crate) struct Size {
+    pub(crate) service: &'static str,
+    pub(crate) text: u64,
+    pub(crate) rodata: u64,
+    /// Variables, initialised or not.
+    pub(crate) data: u64,
+}
+
+/// For WebAssembly `text` is the whole module.
+pub(crate) fn measure(platform: &Platform, archive: &Path) -> Result<Vec<Size>> {
+    let linker = linker()?;
+    let all = library::api_symbols(archive)?;
+    let begins = |symbol: &str, with: &[&str]| with.iter().any(|prefix| symbol.starts_with(prefix));
+    let mut sizes = Vec::new();
+    for service in &SERVICES {
+        let wanted = |symbol: &&String| begins(symbol, service.functions) && !begins(symbol, service.except);
+        let functions: Vec<_> = all.iter().filter(wanted).collect();
+        if functions.is_empty() {
+            bail!("no function of \"{}\" in {}", service.name, archive.display());
+        }
+        let output = c_tests::output("sizes")?;
+        let mut link = run::command(&linker);
+        let is_wasm = platform.triple.starts_with("wasm32");
+        match is_wasm {
+            true => link.args(["-flavor", "wasm", "--no-entry", "--gc-sections", "--strip-all"]),
+            false => link.args(["-flavor", "gnu", "--gc-sections", "--unresolved-symbols=ignore-all", "--entry=0"]),
+        };
+        for function in functions {
+            link.arg(format!("{}={function}", if is_wasm { "--export" } else { "--undefined" }));
+        }
+        run::check(link.arg(archive).arg("-o").arg(&output))?;
+        let bytes = fs::read(&output).with_context(|| format!("cannot read {}", output.display()))?;
+        sizes.push(if is_wasm {
+            Size { service: service.name, text: bytes.len() as u64, rodata: 0, data: 0 }
+        } else {
+            sections(service.name, &bytes)?
+        });
+    }
+    Ok(sizes)
+}
+
+/// Sums of the sections that a program would load.
+fn sections(service: &'static str, bytes: &[u8]) -> Result<Size> {
+    let file = object::File::parse(bytes).context("the linker wrote no program")?;
+    let mut size = Size { service, text: 0, rodata: 0, data: 0 };
+    for section in file.sections() {
+        match section.kind() {
+            SectionKind::Text => size.text += section.size(),
+            SectionKind::ReadOnlyData | SectionKind::ReadOnlyString | SectionKind::ReadOnlyDataWithRel
+                if section.name() != Ok(".eh_frame") =>
+            {
+                size.rodata += section.size();
+            }
+            SectionKind::Data | SectionKind::UninitializedData => size.data += section.size(),
+            _ => {}
+        }
+    }
+    Ok(size)
+}
+
+/// LLVM's linker, which knows every target and comes with Rust.
+fn linker() -> Result<PathBuf> {
+    let compiler = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let root = run::read(run::command(compiler).args(["--print", "target-libdir"]))?;
+    let linker = Path::new(root.trim()).with_file_name("bin/rust-lld");
+    if !linker.exists() {
+        bail!("no {}: rustup's Rust brings it", linker.display());
+    }
+    Ok(linker)
+}
