@@ -149,7 +149,7 @@ fn folder(name: &str) -> Result<PathBuf> {
     let folder = paths::output().join("test").join(name);
     match fs::remove_dir_all(&folder) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            return Err(error).with_context(|| format!("cannot remove {}", folder.display()));
+            Err(error).with_context(|| format!("cannot remove {}", folder.display()))
         }
         _ => Ok(folder),
     }
