@@ -122,7 +122,7 @@ fn length_row(bounces: u32, orders: &[Outcome; 2]) -> Result<Vec<Cell>> {
 
 /// Smaller than others: order 2 has 136 terms here.
 fn view(section: &Section) -> View {
-    View::new(SCENE, section.measurement.plan.small * 3 / 4)
+    View::new(SCENE, section.measurement.plan.small * 5 / 8)
 }
 
 /// With polynomials of order 1 and 2.
