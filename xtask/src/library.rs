@@ -39,6 +39,13 @@ pub(crate) fn build() -> Result<PathBuf> {
         _ => {}
     }
     run::check(run::command("ar").arg("rcs").arg(&new).arg(&object))?;
+    // What links the library is not built anew where nothing has changed.
+    let modified = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).ok();
+    let is_newer = modified(&archive).is_some_and(|built| modified(&raw).is_some_and(|raw| raw <= built));
+    if is_newer && fs::read(&archive).ok() == fs::read(&new).ok() {
+        fs::remove_file(&new).with_context(|| format!("cannot remove {}", new.display()))?;
+        return Ok(archive);
+    }
     fs::rename(&new, &archive).with_context(|| format!("cannot replace {}", archive.display()))?;
     Ok(archive)
 }

@@ -68,12 +68,7 @@ fn figures() -> Vec<Figure> {
             settings: bases.map(basis).into(),
             counts: 3..=10,
         },
-        Figure {
-            name: "4.16",
-            functions: vec![named("four lights")],
-            settings: direct_and_descent,
-            counts: 4..=10,
-        },
+        Figure { name: "4.16", functions: vec![named("four lights")], settings: direct_and_descent, counts: 4..=10 },
         Figure {
             name: "4.17",
             functions: ["four lights", "exp 2D"].map(named).into(),
@@ -91,7 +86,8 @@ pub(crate) fn rows(effort: Effort, mut step: impl FnMut(&str)) -> Vec<Row> {
             let deviation = function.deviation();
             for n in figure.counts.clone().map(|power| 1 << power) {
                 let results = measure(function, &figure.settings, n, 100 + seed as u64, effort);
-                let row = |result| Row { figure: figure.name, panel: function.name.clone(), x: n, n, deviation, result };
+                let row =
+                    |result| Row { figure: figure.name, panel: function.name.clone(), x: n, n, deviation, result };
                 rows.extend(results.into_iter().map(row));
                 step(figure.name);
             }

@@ -17,6 +17,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use noisefloor_bench::{Door, c_abi};
 use race::Effort;
 use std::path::PathBuf;
+use std::time::Instant;
 
 /// Measures error and time of every setting and writes tables.
 #[derive(Parser)]
@@ -40,9 +41,7 @@ impl Options {
         let factor = if self.full { 8 } else { 1 };
         match self.quick {
             true => Effort { budget: budget / 100.0, repetitions: [8, 16] },
-            false => {
-                Effort { budget: budget * factor as f64, repetitions: repetitions.map(|bound| bound * factor) }
-            }
+            false => Effort { budget: budget * factor as f64, repetitions: repetitions.map(|bound| bound * factor) },
         }
     }
 }
@@ -55,7 +54,8 @@ fn main() -> Result<()> {
     let total = functions.len() * counts.len() + convergence::steps();
     let bar = ProgressBar::new(total as u64)
         .with_style(ProgressStyle::with_template("{elapsed_precise} {wide_bar} {pos}/{len} {msg}")?);
-    let effort = options.effort(3e6, [24, 512]);
+    let effort = options.effort(8e5, [16, 512]);
+    let start = Instant::now();
     let mut cells = Vec::new();
     for (seed, (set, function)) in functions.iter().enumerate() {
         for &n in counts {
@@ -64,13 +64,16 @@ fn main() -> Result<()> {
             bar.inc(1);
         }
     }
-    let effort = options.effort(2e7, [32, 2048]);
+    let grid = start.elapsed().as_secs_f64();
+    let effort = options.effort(1e7, [24, 1024]);
     let points = convergence::rows(effort, |figure| {
         bar.set_message(format!("figure {figure}"));
         bar.inc(1);
     });
     bar.finish_and_clear();
     table::write(&options.output, &cells, &points, &fits::rows())?;
+    let all = start.elapsed().as_secs_f64();
+    println!("{} settings {grid:.0} s, {} points of plots {:.0} s", cells.len(), points.len(), all - grid);
     println!("tables: {}", options.output.display());
     Ok(())
 }

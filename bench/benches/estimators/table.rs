@@ -66,7 +66,8 @@ fn curves(rows: &[fits::Row]) -> String {
     let mut out = format!("function,samples,x,value,mean,{orders}\n");
     for row in rows {
         let fits = row.fits.map(|fit| format!("{fit:.4}")).join(",");
-        let _ = writeln!(out, "{},{},{:.4},{:.4},{:.4},{fits}", row.function, fits::SAMPLES, row.x, row.value, row.mean);
+        let _ =
+            writeln!(out, "{},{},{:.4},{:.4},{:.4},{fits}", row.function, fits::SAMPLES, row.x, row.value, row.mean);
     }
     out
 }

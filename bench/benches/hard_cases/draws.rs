@@ -116,18 +116,10 @@ fn values() -> Vec<Case> {
         let value = move |u: &[f32], _: &mut SplitMix64| offset + factor * smooth(u);
         independent("values", &name, [2, 3], &COUNTS, offset + factor * exact, value)
     };
-    let mut cases: Vec<Case> = [
-        (1e-42, 0.0),
-        (1e-30, 0.0),
-        (1e30, 0.0),
-        (3e38, 0.0),
-        (1.0, 1e4),
-        (1.0, 1e8),
-        (1.0, 1e12),
-        (1e-6, 1.0),
-    ]
-    .map(|(factor, offset)| scaled(factor, offset))
-    .into();
+    let mut cases: Vec<Case> =
+        [(1e-42, 0.0), (1e-30, 0.0), (1e30, 0.0), (3e38, 0.0), (1.0, 1e4), (1.0, 1e8), (1.0, 1e12), (1e-6, 1.0)]
+            .map(|(factor, offset)| scaled(factor, offset))
+            .into();
     let magnitudes = (1e20 - 1e-20) / (40.0 * 10.0_f64.ln());
     cases.push(independent("values", "1e-20 to 1e20", [2, 3], &COUNTS, magnitudes, |u, _| {
         10.0_f64.powf(40.0 * f64::from(u[0]) - 20.0)

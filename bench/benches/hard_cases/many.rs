@@ -29,7 +29,8 @@ pub(crate) fn measure(tables: &mut Tables, samples: usize, repetitions: usize) {
                 narrow.iter_mut().for_each(|stream| stream.add(&u, &f));
             }
             let expected = offset + exact;
-            plain.push(sum / samples as f64 - expected);
+            // An `f32`, as estimates are.
+            plain.push(f64::from((sum / samples as f64) as f32) - expected);
             naive.push(f64::from(narrow_sum) / samples as f64 - expected);
             let [a, b] = wide.each_mut().map(Stream::estimate);
             let [c, d] = narrow.each_mut().map(Stream::estimate);

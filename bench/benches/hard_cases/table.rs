@@ -91,7 +91,8 @@ impl Tables {
         let mut out = "group;case;outcome;error;plain;plain_error\n".to_owned();
         for OutcomeRow { group, case, outcome, error, plain } in &self.outcomes {
             let error = error.map_or(String::new(), |error| format!("{error:.3e}"));
-            let (plain, plain_error) = plain.map_or(("", String::new()), |(name, error)| (name, format!("{error:.3e}")));
+            let (plain, plain_error) =
+                plain.map_or(("", String::new()), |(name, error)| (name, format!("{error:.3e}")));
             let _ = writeln!(out, "{group};{case};{outcome};{error};{plain};{plain_error}");
         }
         out
