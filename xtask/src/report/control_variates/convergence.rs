@@ -198,7 +198,7 @@ const FIGURES: [Figure4; 6] = [
     Figure4 {
         number: "4.17",
         heading: "Incremental estimates",
-        text: "Order 2. Each sample is corrected by the fit to those before it: any prefix is an unbiased estimate, and the error is somewhat above that of a fit to all samples.",
+        text: "Order 2. Each sample is corrected by the fit to those before it: any prefix is an unbiased estimate, and the error is above that of a fit to all samples: little where a fit explains little, several times where it explains nearly all.",
         lines: &[
             MC,
             line(DESCENT, 2, "gradient descent", 1),
