@@ -101,7 +101,7 @@ impl Summary {
         let mean = |of: &dyn Fn(&Cell) -> f64| (cells.iter().map(|cell| of(cell).ln()).sum::<f64>() / count).exp();
         let value = mean(&|cell| cell.ratio.value.max(LEAST));
         let spread = |cell: &&Cell| ((cell.ratio.high - cell.ratio.value) / cell.ratio.value.max(LEAST)).powi(2);
-        let half = value * cells.iter().map(|cell| spread(cell)).sum::<f64>().sqrt() / count;
+        let half = value * cells.iter().map(spread).sum::<f64>().sqrt() / count;
         Some(Self {
             setting: setting.clone(),
             ratio: Estimate { value, low: value - half, high: value + half, seeds: cells.len() },
