@@ -3,6 +3,7 @@
 //! A renderer links `libnoisefloor.a`, so its figures are the ones that count. Where the archive had not been built,
 //! nothing here can be called and [`STATE`] says "missing".
 
+use noisefloor::basis::Family;
 use noisefloor::control_variate::Estimator;
 
 /// "up to date", "older than the sources" or "missing".
@@ -46,6 +47,16 @@ pub fn estimator(estimator: Estimator) -> u32 {
         Estimator::KFold => 3,
         Estimator::GradientDescent => 4,
         Estimator::Incremental => 5,
+    }
+}
+
+/// The `NF_BASIS_*` value of a basis.
+pub fn basis(family: Family) -> u32 {
+    match family {
+        Family::Legendre => 0,
+        Family::Step => 1,
+        Family::Sine => 2,
+        Family::Gaussian => 3,
     }
 }
 

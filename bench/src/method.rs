@@ -1,6 +1,7 @@
 //! An estimator with its configuration, ready to be timed through either door.
 
 use crate::c_abi;
+use noisefloor::basis::Family;
 use noisefloor::control_variate::{self as cv, Accumulator, Config, Estimator, Samples};
 use noisefloor::real::Real;
 
@@ -41,10 +42,22 @@ pub struct Method {
     pub narrow: bool,
     /// Whether samples are added one at a time to an accumulator.
     pub streaming: bool,
+    /// The functions that are combined.
+    pub basis: Family,
+    /// Alternatives that the last coordinate picks from; 0 if it is a number.
+    pub slices: usize,
 }
 
 const fn method(name: &'static str, estimator: Estimator) -> Method {
-    Method { name, estimator: Some(estimator), folds: 0, narrow: false, streaming: false }
+    Method {
+        name,
+        estimator: Some(estimator),
+        folds: 0,
+        narrow: false,
+        streaming: false,
+        basis: Family::Legendre,
+        slices: 0,
+    }
 }
 
 /// The plain mean, through the same functions: total degree 0.
@@ -53,17 +66,25 @@ pub const MEAN: Method = Method { estimator: None, ..method("mean", Estimator::R
 pub const ROBUST: Method = method("robust", Estimator::Robust);
 /// Least squares on its own samples.
 pub const LEAST_SQUARES: Method = method("least squares", Estimator::LeastSquares);
+/// One ridge fit, each sample corrected by the fit to all others.
+pub const LEAVE_ONE_OUT: Method = method("leave-one-out", Estimator::LeaveOneOut);
+/// Each of four folds corrected by a robust fit to the others.
+pub const K_FOLD: Method = method("4-fold", Estimator::KFold);
+/// The fit by gradient descent.
+pub const GRADIENT_DESCENT: Method = method("gradient descent", Estimator::GradientDescent);
+/// Each sample corrected by a fit to those before it.
+pub const INCREMENTAL: Method = method("incremental", Estimator::Incremental);
 
 /// Every estimator, the plain mean first and the default second, least squares third.
 pub const METHODS: [Method; 12] = [
     MEAN,
     ROBUST,
     LEAST_SQUARES,
-    method("leave-one-out", Estimator::LeaveOneOut),
-    method("4-fold", Estimator::KFold),
+    LEAVE_ONE_OUT,
+    K_FOLD,
     Method { folds: 2, ..method("2-fold", Estimator::KFold) },
-    method("gradient descent", Estimator::GradientDescent),
-    method("incremental", Estimator::Incremental),
+    GRADIENT_DESCENT,
+    INCREMENTAL,
     Method { streaming: true, ..method("robust streaming", Estimator::Robust) },
     Method { streaming: true, ..method("least squares streaming", Estimator::LeastSquares) },
     Method { narrow: true, ..method("robust f32", Estimator::Robust) },
@@ -80,6 +101,8 @@ impl Method {
         let mut config = Config::new(dims, self.order(order), 1);
         config.estimator = self.estimator.unwrap_or_default();
         config.folds = self.folds;
+        config.basis = self.basis;
+        config.slices = self.slices;
         config
     }
 
@@ -91,6 +114,8 @@ impl Method {
             channels: 1,
             estimator: c_abi::estimator(self.estimator.unwrap_or_default()),
             precision: self.narrow.into(),
+            basis: c_abi::basis(self.basis),
+            slices: self.slices as u32,
             folds: self.folds as u32,
             ..c_abi::Config::default()
         }

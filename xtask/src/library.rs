@@ -29,8 +29,14 @@ pub(crate) fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<Path
             .args(["capi/cmake/one_object.sh".as_ref(), raw, &object])
             .envs(["ld", "nm", "objcopy"].map(|name| (name.to_uppercase(), tool(name)))),
     )?;
-    run::check(run::command(tool("ar")).arg("rcs").arg(&new).arg(&object))?;
+    run::check(run::command(tool("ar")).arg("rcsD").arg(&new).arg(&object))?;
     let archive = output.join("libnoisefloor.a");
+    // What links the library is not built anew where nothing has changed.
+    let modified = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).ok();
+    let is_newer = modified(&archive).is_some_and(|built| modified(raw).is_some_and(|raw| raw <= built));
+    if is_newer && fs::read(&archive).ok() == fs::read(&new).ok() {
+        return Ok(archive);
+    }
     fs::rename(&new, &archive).with_context(|| format!("cannot replace {}", archive.display()))?;
     Ok(archive)
 }

@@ -104,6 +104,10 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         examples::renderers(&archive()?)
     });
     steps.run("examples_c/python: ctypes declarations, tests and a training loop", || python::run(&archive()?));
+    steps.run("cargo xtask report --quick: estimators and hard cases", || {
+        ["control_variates", "hard_cases"].into_iter().try_for_each(report::check_quick)?;
+        Ok(Outcome::Passed)
+    });
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));
     steps.run("examples_c/fit_image.cpp: short runs", || fit::photograph(&archive()?));

@@ -84,17 +84,25 @@ impl Cell {
 }
 
 /// How many repetitions.
-pub(crate) struct Effort {
-    factor: usize,
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Extent {
+    /// Whether everything works, not the figures.
+    Quick,
+    Normal,
+    Full,
 }
 
-impl Effort {
-    pub(crate) fn new(full: bool) -> Self {
-        Self { factor: if full { 8 } else { 1 } }
+impl Extent {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Quick => "quick",
+            Self::Normal => "normal",
+            Self::Full => "full",
+        }
     }
 
     /// (chunks, repetitions in a chunk) of the mean and the robust estimator; every fourth chunk for all others.
-    fn chunks(&self, dims: usize, n: usize) -> (usize, usize) {
+    fn chunks(self, dims: usize, n: usize) -> (usize, usize) {
         let (repetitions, size) = match (dims, n) {
             (..=5, ..=16) => (8192, 32),
             (..=5, 17..=32) => (2048, 32),
@@ -103,7 +111,12 @@ impl Effort {
             (_, ..=64) => (512, 8),
             _ => (256, 8),
         };
-        (repetitions / size * self.factor, size)
+        let chunks = match self {
+            Self::Quick => (repetitions / size / 64).max(2),
+            Self::Normal => repetitions / size,
+            Self::Full => repetitions / size * 8,
+        };
+        (chunks, size)
     }
 }
 
@@ -132,7 +145,7 @@ pub(crate) fn measure(
     seed: u64,
     degree: usize,
     n: usize,
-    effort: &Effort,
+    extent: Extent,
 ) {
     let dims = integrand.dims;
     let order = (1..=degree).rev().find(|&order| terms(dims, order) <= MAX_TERMS).unwrap_or(1);
@@ -152,7 +165,7 @@ pub(crate) fn measure(
             ns: vec![],
         })
         .collect();
-    let (chunks, size) = effort.chunks(dims, n);
+    let (chunks, size) = extent.chunks(dims, n);
     let mut u = vec![0.0_f32; size * n * dims];
     let mut f = vec![0.0_f32; size * n];
     let mut rng = SplitMix64::new(mix(seed << 16 | n as u64));

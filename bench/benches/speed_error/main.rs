@@ -11,7 +11,7 @@ mod report;
 mod speed;
 
 use anyhow::Result;
-use cells::{Cell, Effort, Set};
+use cells::{Cell, Extent, Set};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use noisefloor_bench::{Door, c_abi};
@@ -21,10 +21,13 @@ use std::path::PathBuf;
 /// Measures error against speed and writes a report.
 #[derive(Parser)]
 struct Options {
-    /// Eight times the repetitions.
+    /// Few repetitions: whether everything works, not the figures.
     #[arg(long)]
+    quick: bool,
+    /// Eight times the repetitions.
+    #[arg(long, conflicts_with = "quick")]
     full: bool,
-    /// Where report.md, cells.csv and speed.csv go.
+    /// Where report.md, must_reach.csv, cells.csv and speed.csv go.
     #[arg(long, default_value_os_t = noisefloor_bench::output("bench-report"))]
     output: PathBuf,
     /// What cargo adds.
@@ -34,7 +37,7 @@ struct Options {
 
 /// All that a run measures.
 pub(crate) struct Run {
-    pub(crate) full: bool,
+    pub(crate) extent: Extent,
     pub(crate) door: Door,
     pub(crate) machine: machine::Machine,
     pub(crate) cells: Vec<Cell>,
@@ -50,7 +53,11 @@ fn main() -> Result<()> {
         println!("the figures are the Rust API's: for those of what ships, run `cargo xtask library` first");
     }
     let mut machine = machine::Machine::now();
-    let effort = Effort::new(options.full);
+    let extent = match (options.quick, options.full) {
+        (true, _) => Extent::Quick,
+        (false, true) => Extent::Full,
+        (false, false) => Extent::Normal,
+    };
     let sets = [
         (Set::Nine, integrands::nine()),
         (Set::HeldOut, integrands::held_out()),
@@ -66,24 +73,24 @@ fn main() -> Result<()> {
     for (dims, order) in speed::SIZES {
         for n in speed::COUNTS {
             bar.set_message(format!("speed, {dims}D, n = {n}"));
-            speeds.extend(speed::estimates(door, dims, order, n, options.full));
+            speeds.extend(speed::estimates(door, dims, order, n, extent));
             bar.inc(1);
         }
     }
-    let solves = speed::solves(options.full);
+    let solves = speed::solves(extent);
     let mut cells = Vec::new();
     for (index, (set, integrand)) in integrands.iter().enumerate() {
         for degree in cells::DEGREES {
             for n in cells::COUNTS {
                 bar.set_message(format!("{}, order {degree}, n = {n}", integrand.name));
-                cells::measure(&mut cells, door, *set, integrand, index as u64, degree, n, &effort);
+                cells::measure(&mut cells, door, *set, integrand, index as u64, degree, n, extent);
                 bar.inc(1);
             }
         }
     }
     bar.finish_and_clear();
     machine.finish();
-    let run = Run { full: options.full, door, machine, cells, speeds, solves };
+    let run = Run { extent, door, machine, cells, speeds, solves };
     report::write(&run, &options.output)?;
     print!("{}", must_reach::table(&run));
     println!("\nreport: {}", options.output.join("report.md").display());

@@ -50,53 +50,78 @@ pub(crate) fn pace(run: &Run) -> f64 {
     geometric_mean_of(&QUOTED.map(|(dims, n, quoted)| find(run, dims, n, PEERS[0].0, "peer") / quoted))
 }
 
+/// What was to be reached, and what was measured.
+pub(crate) struct Target {
+    target: String,
+    value: f64,
+    /// Half of the 95 % interval; none for times.
+    half_width: Option<f64>,
+    unit: &'static str,
+    /// Where it was measured, or what else took how long.
+    note: String,
+    bound: f64,
+    verdict: &'static str,
+}
+
 /// The table in Markdown.
 pub(crate) fn table(run: &Run) -> String {
     let mut out = "| target | measured | bound | |\n|---|---|---|---|\n".to_owned();
-    let mut line = |target: &str, measured: &str, bound: f64, verdict: &str| {
-        let _ = writeln!(out, "| {target} | {measured} | {bound} | {verdict} |");
+    for Target { target, value, half_width, unit, note, bound, verdict } in targets(run) {
+        let value = match half_width {
+            Some(half_width) => format!("{value:.3} ± {half_width:.3}"),
+            None => format!("{value:.1} {unit}"),
+        };
+        let note = if note.is_empty() { note } else { format!(" ({note})") };
+        let _ = writeln!(out, "| {target} | {value}{note} | {bound} | {verdict} |");
+    }
+    out
+}
+
+/// The same as comma-separated values.
+pub(crate) fn csv(run: &Run) -> String {
+    let mut out = "target;value;half_width;unit;note;bound;verdict\n".to_owned();
+    for Target { target, value, half_width, unit, note, bound, verdict } in targets(run) {
+        let half_width = half_width.map_or(String::new(), |half_width| format!("{half_width:.5}"));
+        let _ = writeln!(out, "{target};{value:.5};{half_width};{unit};{note};{bound};{verdict}");
+    }
+    out
+}
+
+fn targets(run: &Run) -> Vec<Target> {
+    let mut all = Vec::new();
+    let mut ratios = |target: String, ratio: Ratio, note: String, bound: f64| {
+        let (value, half_width) = (ratio.value, Some(ratio.half_width));
+        all.push(Target { target, value, half_width, unit: "ratio", note, bound, verdict: verdict(ratio, bound) });
     };
     let robust: Vec<&Cell> = run.cells.iter().filter(|cell| cell.method == ROBUST.name).collect();
     for degree in crate::cells::DEGREES {
         for set in Set::ALL {
-            let Some(cell) = worst(robust.iter().copied().filter(|cell| cell.degree == degree && cell.set == set))
-            else {
-                continue;
-            };
+            let of_set = robust.iter().copied().filter(|cell| cell.degree == degree && cell.set == set);
+            let Some(cell) = worst(of_set) else { continue };
             let target = format!("robust, order {degree}: worst RMSE ratio to the mean, {}", set.name());
-            let measured =
-                format!("{:.3} ± {:.3} ({}, n = {})", cell.ratio.value, cell.ratio.half_width, cell.integrand, cell.n);
-            line(&target, &measured, WORST, verdict(cell.ratio, WORST));
+            ratios(target, cell.ratio, format!("{}, n = {}", cell.integrand, cell.n), WORST);
         }
     }
     for (n, bound) in MEANS {
         let nine = robust.iter().copied().filter(|cell| cell.degree == 3 && cell.set == Set::Nine && cell.n == n);
-        let mean = geometric_mean(nine);
-        let measured = format!("{:.3} ± {:.3}", mean.value, mean.half_width);
-        line(
-            &format!("robust, order 3: geometric mean over the nine, n = {n}"),
-            &measured,
-            bound,
-            verdict(mean, bound),
-        );
+        let target = format!("robust, order 3: geometric mean over the nine, n = {n}");
+        ratios(target, geometric_mean(nine), String::new(), bound);
     }
+    let mut times = |target: String, value: f64, note: String, bound: f64| {
+        let verdict = time_verdict(value, bound);
+        all.push(Target { target, value, half_width: None, unit: "ns", note, bound, verdict });
+    };
     for (name, share) in SHARES {
         for (dims, n, quoted) in QUOTED {
-            let (ns, peer) =
-                (find(run, dims, n, name, run.door.name()), PEERS.map(|(name, _)| find(run, dims, n, name, "peer")));
-            let measured = format!("{ns:.1} ns ({:.2} of QR, {:.2} of Cholesky)", ns / peer[0], ns / peer[1]);
+            let ns = find(run, dims, n, name, run.door.name());
+            let peer = PEERS.map(|(name, _)| ns / find(run, dims, n, name, "peer"));
+            let note = format!("{:.2} of QR, {:.2} of Cholesky", peer[0], peer[1]);
             let target = format!("{name}, {dims}D order 2, n = {n}: per sample, {share} of {quoted} ns");
-            line(&target, &measured, share * quoted, time_verdict(ns, share * quoted));
+            times(target, ns, note, share * quoted);
         }
     }
-    let solve = run.solves.iter().find(|speed| speed.name == SOLVE).map_or(f64::NAN, |speed| speed.ns);
-    let peers = PEERS.map(|(name, _)| run.solves.iter().find(|speed| speed.name == name).map_or(f64::NAN, |s| s.ns));
-    let measured = format!("{solve:.0} ns (QR {:.0}, Cholesky {:.0})", peers[0], peers[1]);
-    line(
-        "solution of 6 unknowns, all of `Regressor::estimate`",
-        &measured,
-        SOLVE_BOUND,
-        time_verdict(solve, SOLVE_BOUND),
-    );
-    out
+    let solve = |name: &str| run.solves.iter().find(|speed| speed.name == name).map_or(f64::NAN, |speed| speed.ns);
+    let note = format!("QR {:.0}, Cholesky {:.0}", solve(PEERS[0].0), solve(PEERS[1].0));
+    times("solution of 6 unknowns, all of `Regressor::estimate`".to_owned(), solve(SOLVE), note, SOLVE_BOUND);
+    all
 }

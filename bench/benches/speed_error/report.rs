@@ -27,12 +27,20 @@ fn mean_of(ratios: impl Iterator<Item = Ratio>) -> Ratio {
     Ratio { value, half_width: value * spread.sqrt() / ratios.len() as f64 }
 }
 
-/// Writes report.md, cells.csv and speed.csv.
+/// Writes report.md, must_reach.csv (columns divided by semicolons), cells.csv and speed.csv.
 pub(crate) fn write(run: &Run, folder: &Path) -> Result<()> {
     fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
-    for (name, text) in [("report.md", markdown(run)?), ("cells.csv", cells(run)?), ("speed.csv", speeds(run)?)] {
-        let path = folder.join(name);
-        fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
+    let files = [
+        ("report.md", markdown(run)?),
+        ("must_reach.csv", must_reach::csv(run)),
+        ("cells.csv", cells(run)?),
+        ("speed.csv", speeds(run)?),
+    ];
+    for (name, text) in files {
+        let (path, new) = (folder.join(name), folder.join(format!("{name}.new")));
+        fs::write(&new, text)
+            .and_then(|()| fs::rename(&new, &path))
+            .with_context(|| format!("cannot write {}", path.display()))?;
     }
     Ok(())
 }
@@ -51,7 +59,7 @@ fn markdown(run: &Run) -> Result<String> {
         machine.threads,
         machine.load()
     )?;
-    writeln!(out, "- {} mode, {:.0} s", if run.full { "full" } else { "quick" }, machine.elapsed.as_secs_f64())?;
+    writeln!(out, "- {} mode, {:.0} s", run.extent.name(), machine.elapsed.as_secs_f64())?;
     writeln!(out, "- through the {}; libnoisefloor.a was {}", run.door.name(), c_abi::STATE)?;
     writeln!(out, "- ratios are RMSE over the plain mean's on the same samples, ± half of the 95 % interval")?;
     writeln!(

@@ -1,5 +1,6 @@
 //! Times of single estimates, interleaved: every contestant once per round, medians over the rounds.
 
+use crate::cells::Extent;
 use crate::peer::{self, Peer, Solver};
 use nalgebra::{DMatrix, DVector};
 use noisefloor::basis::Family;
@@ -57,10 +58,16 @@ fn speed((name, door, mut times): (String, &'static str, Vec<f64>), dims: usize,
 }
 
 /// All methods through the shipped door, the main ones through the Rust API too, and the peers.
-pub(crate) fn estimates(door: Door, dims: usize, order: usize, n: usize, full: bool) -> Vec<Speed> {
+pub(crate) fn estimates(door: Door, dims: usize, order: usize, n: usize, extent: Extent) -> Vec<Speed> {
     let large = dims > 3;
     let sets = if large { 512 / n } else { 4096 / n };
-    let rounds = if large { 7 } else { 41 } * if full { 4 } else { 1 };
+    let rounds = match extent {
+        Extent::Quick => 3,
+        Extent::Normal if large => 7,
+        Extent::Normal => 41,
+        Extent::Full if large => 28,
+        Extent::Full => 164,
+    };
     let mut rng = SplitMix64::new(n as u64);
     let pool: Vec<(Vec<f32>, Vec<f32>)> = (0..sets)
         .map(|_| {
@@ -99,7 +106,7 @@ pub(crate) const SOLVE: &str = "Regressor::estimate";
 ///
 /// The library's is the whole of `Regressor::estimate`: ridge, L D L', solution, standard error, and an `Estimate` made
 /// of it. The peers' is their decomposition and solution alone, matrices copied and allocated.
-pub(crate) fn solves(full: bool) -> Vec<Speed> {
+pub(crate) fn solves(extent: Extent) -> Vec<Speed> {
     const CALLS: usize = 500;
     let mut regressor = Regressor::<2, 6, 1>::new(Family::Legendre, 2).expect("6 terms");
     let mut rng = SplitMix64::new(6);
@@ -121,6 +128,6 @@ pub(crate) fn solves(full: bool) -> Vec<Speed> {
         let call = move || drop(black_box(peer::solve(black_box(&matrix).clone(), black_box(&rhs), solver)));
         contestants.push((name.to_owned(), "peer", repeat(Box::new(call))));
     }
-    let rounds = if full { 401 } else { 101 };
+    let rounds = if extent == Extent::Full { 401 } else { 101 };
     race(contestants, rounds, CALLS).into_iter().map(|times| speed(times, 2, 2, 64)).collect()
 }

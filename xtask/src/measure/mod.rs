@@ -7,6 +7,7 @@ pub(crate) mod interrupt;
 pub(crate) mod markdown;
 pub(crate) mod metric;
 pub(crate) mod output;
+pub(crate) mod panels;
 pub(crate) mod part;
 pub(crate) mod plot;
 pub(crate) mod progress;

@@ -39,9 +39,9 @@ const SIZE: (u32, u32) = (900, 560);
 /// Pixels to the right of the axes, for the labels, and between two labels.
 const LABELS: u32 = 210;
 const LABEL_HEIGHT: f64 = 17.0;
-const FONT: &str = "sans-serif";
+pub(super) const FONT: &str = "sans-serif";
 /// Told apart by colour-blind readers too (Okabe and Ito 2008), the yellow darkened.
-const COLOURS: [RGBColor; 8] = [
+pub(super) const COLOURS: [RGBColor; 8] = [
     RGBColor(40, 40, 40),
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -146,25 +146,25 @@ fn spread(wanted: &[f64]) -> Vec<f64> {
 }
 
 /// A logarithmic axis says so.
-fn description(axis: &Axis) -> String {
+pub(super) fn description(axis: &Axis) -> String {
     let scale = if axis.logarithmic { " (logarithmic)" } else { "" };
     format!("{}{scale}", axis.label)
 }
 
-fn shows(axis: &Axis, value: f64) -> bool {
+pub(super) fn shows(axis: &Axis, value: f64) -> bool {
     value.is_finite() && (!axis.logarithmic || value > 0.0)
 }
 
 /// An axis' mapping to pixels, its ticks and their text.
 #[derive(Clone)]
-struct Scale {
+pub(super) struct Scale {
     low: f64,
     high: f64,
     logarithmic: bool,
 }
 
 impl Scale {
-    fn new(axis: &Axis, values: impl Iterator<Item = f64>) -> Self {
+    pub(super) fn new(axis: &Axis, values: impl Iterator<Item = f64>) -> Self {
         let (mut low, mut high) = axis.range.unwrap_or_else(|| {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
         });
@@ -182,7 +182,7 @@ impl Scale {
         Self { low, high, logarithmic }
     }
 
-    fn clamp(&self, value: f64) -> f64 {
+    pub(super) fn clamp(&self, value: f64) -> f64 {
         value.clamp(self.low, self.high)
     }
 

@@ -15,6 +15,8 @@ pub(crate) enum Unit {
     Count,
     /// Standard deviations.
     Sigmas,
+    /// Of any size, in the integrand's unit or relative, with an exponent.
+    Error,
 }
 
 impl Unit {
@@ -26,6 +28,7 @@ impl Unit {
             Self::Nanoseconds => "nanoseconds per sample",
             Self::Count => "count",
             Self::Sigmas => "standard deviations",
+            Self::Error => "error",
         }
     }
 
@@ -36,6 +39,8 @@ impl Unit {
             Self::RelMseE3 => significant(value, 3),
             Self::Percent if value.abs() < 10.0 => format!("{value:.2}"),
             Self::Sigmas => format!("{value:.2}"),
+            Self::Error if value == 0.0 => "0".to_owned(),
+            Self::Error => format!("{value:.2e}"),
             Self::Nanoseconds | Self::Count if value.abs() >= 10.0 || self == Self::Count => format!("{value:.0}"),
             Self::Ratio | Self::Percent | Self::Nanoseconds | Self::Count => format!("{value:.1}"),
         }

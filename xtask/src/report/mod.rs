@@ -1,11 +1,14 @@
 //! `cargo xtask report`: errors, times and overheads, as tables, plots and pictures, and as JSON. One chapter for each
 //! program that measures; an index of all of them.
 
+mod bench;
 pub(crate) mod chapter;
 pub(crate) mod check;
 mod clock;
+mod control_variates;
 mod embree;
 pub(crate) mod figure;
+mod hard_cases;
 mod index;
 mod machine;
 mod measurement;
@@ -49,6 +52,13 @@ const fn entry(name: &'static str, seconds: u64, description: &'static str, writ
 
 /// In the order of the index.
 const CHAPTERS: &[Entry] = &[
+    entry(
+        "control_variates",
+        140,
+        "Every estimator, basis and order: error against time, convergence, f32 against f64",
+        control_variates::write,
+    ),
+    entry("hard_cases", 10, "Few, degenerate and extreme samples, and what is refused", hard_cases::write),
     entry(
         "embree",
         280,
