@@ -106,8 +106,8 @@ fn runs(options: &Options) -> Vec<Run> {
 fn main() -> Result<()> {
     let options = Options::parse();
     fs::create_dir_all(&options.output).with_context(|| format!("cannot create {}", options.output.display()))?;
-    let mut out = "study,sampler,classes,points,steps,seed,threads,seconds,part,of_points,w2,bound,discrepancy,neighbour,\
-                   half_planes,gaussians\n"
+    let mut out = "study,sampler,classes,points,steps,seed,threads,seconds,part,of_points,w2,bound,discrepancy,discrepancy_relative,neighbour,\
+                   half_planes,gaussians,half_planes_relative,gaussians_relative\n"
         .to_owned();
     let runs = runs(&options);
     for run in &runs {
@@ -221,7 +221,8 @@ fn figures(points: &Points, part: &str, out: &mut String) -> Result<()> {
         distance += of / slices as f64;
         bound += least / slices as f64;
     }
-    let star = discrepancy(points).map_or(f64::NAN, |of| of.l2_star);
+    // Relative: over what as many random points have on average.
+    let [star, relative] = discrepancy(points).map_or([f64::NAN; 2], |of| [of.l2_star, of.relative]);
     // Of a million points it would take as long as making them.
     let near = if points.len() > 65_536 { None } else { neighbours(points) };
     let near = near.map_or(f64::NAN, |of| of.mean);
@@ -230,11 +231,13 @@ fn figures(points: &Points, part: &str, out: &mut String) -> Result<()> {
     let of = errors.first().context("no integration errors")?;
     writeln!(
         out,
-        "{part},{count},{:.5e},{:.5e},{star:.5e},{near:.5e},{:.5e},{:.5e}",
+        "{part},{count},{:.5e},{:.5e},{star:.5e},{relative:.5e},{near:.5e},{:.5e},{:.5e},{:.5e},{:.5e}",
         distance.sqrt(),
         bound.sqrt(),
         of.half_spaces,
-        of.gaussians
+        of.gaussians,
+        of.half_spaces_relative.sqrt(),
+        of.gaussians_relative.sqrt()
     )?;
     Ok(())
 }

@@ -64,11 +64,12 @@ fn excess(a: &Cell, b: &Cell, times: f64) -> [f64; 3] {
     [middle.exp(), (middle - spread).exp(), (middle + spread).exp()]
 }
 
-/// A recommended kind of samples, or one that stands for it: a tile of 1 sample, continued, is a Sobol sequence.
-fn source(stratified: bool, dims: usize, n: usize) -> Source {
+/// The recommended kind of samples, or one that stands for it, on which estimators are measured: a tile of 1 sample, continued, is a
+/// Sobol sequence.
+fn source(says: &Recommendation, stratified: bool, dims: usize, n: usize) -> Source {
     match (stratified, n) {
         (false, _) => Source::Independent,
-        (true, ..4) if Source::Tile4.is_main(dims, n) => Source::Tile4,
+        (true, ..64) if says.tile_dims == 4 && Source::Tile4.is_main(dims, n) => Source::Tile4,
         (true, ..64) => Source::Tile,
         (true, _) => Source::Sobol,
     }
@@ -86,9 +87,10 @@ pub(crate) fn all(cells: &[Cell]) -> Result<Vec<Decision>> {
         for stratified in [false, true] {
             for share in [false, true] {
                 let sampling = if stratified { Sampling::Stratified } else { Sampling::Independent };
-                let of: Vec<&Cell> =
-                    here.iter().copied().filter(|cell| cell.source == source(stratified, dims, n)).collect();
-                all.extend(estimator(cells, &of, &says(sampling, share)?, stratified, share));
+                let says = says(sampling, share)?;
+                let source = source(&says, stratified, dims, n);
+                let of: Vec<&Cell> = here.iter().copied().filter(|cell| cell.source == source).collect();
+                all.extend(estimator(cells, &of, &says, stratified, share));
             }
         }
     }

@@ -39,7 +39,7 @@ fn introduce(sets: &Sets, chapter: &mut Chapter) -> Result<()> {
         "Classes: equal shares of the points are colours, and every combination of colours is to be uniform: two colours have three \
          classes, three have seven, four have fifteen."
             .to_owned(),
-        "Errors: root mean squares over random half-planes and Gaussian bumps, over those of as many random points, whose mean is known. W2: the \
+        "Errors: root mean squares over random half-planes and Gaussian bumps, over what as many random points have on average, which is known exactly. W2: the \
          sliced Wasserstein distance to the uniform square, with its lower bound for as many points. Nearest neighbour: the mean distance over that \
          of a hexagonal lattice. Definitions: [metrics.md](../metrics.md). Fewer slices and integrands measure large sets."
             .to_owned(),
