@@ -116,7 +116,8 @@ fn main() -> Result<()> {
             optimised(run, seed, &mut out)?;
         }
     }
-    let mut sizes: Vec<(usize, u64)> = runs.iter().map(|run| (run.points, if run.points > 65_536 { 1 } else { 4 })).collect();
+    let mut sizes: Vec<(usize, u64)> =
+        runs.iter().map(|run| (run.points, if run.points > 65_536 { 1 } else { 4 })).collect();
     sizes.sort_unstable();
     sizes.dedup();
     for (points, seeds) in sizes {

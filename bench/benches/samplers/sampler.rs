@@ -89,26 +89,17 @@ impl Sampler {
         for (place, u) in u.chunks_exact_mut(dims).enumerate() {
             let (pixel, index) = ((place / spp) as u32, (place % spp) as u32);
             let (x, y) = (pixel % SIDE as u32, pixel / SIDE as u32);
-            match (self, &tile) {
-                (Self::Tile | Self::Progressive, Some(tile)) => of_tile(tile, x, y, index, seed, u),
-                (Self::Sobol, _) => {
-                    let values = sobol(x, y, index, seed);
-                    u.copy_from_slice(&values[..dims]);
-                }
-                (Self::Heitz, _) => {
-                    u.iter_mut().zip(0..).for_each(|(u, dim)| *u = heitz(x, y, spp as u32, index, dim))
-                }
-                (Self::OpenQmcSobol, _) => {
-                    u.copy_from_slice(&SobolBnSampler::new(x as i32, y as i32, seed as i32, index as i32).draw_sample_f32::<4>()[..dims]);
-                }
-                (Self::OpenQmcPmj, _) => {
-                    u.copy_from_slice(&PmjBnSampler::new(x as i32, y as i32, seed as i32, index as i32).draw_sample_f32::<4>()[..dims]);
-                }
-                (Self::OpenQmcLattice, _) => {
-                    u.copy_from_slice(&LatticeBnSampler::new(x as i32, y as i32, seed as i32, index as i32).draw_sample_f32::<4>()[..dims]);
-                }
-                _ => u.iter_mut().for_each(|u| *u = rng.uniform_f32()),
-            }
+            let (column, row, frame, i) = (x as i32, y as i32, seed as i32, index as i32);
+            let four: [f32; 4] = match (self, &tile) {
+                (_, Some(tile)) => of_tile(tile, x, y, index, seed, dims),
+                (Self::Sobol, _) => sobol(x, y, index, seed),
+                (Self::Heitz, _) => [0, 1, 2, 3].map(|dim| heitz(x, y, spp as u32, index, dim)),
+                (Self::OpenQmcSobol, _) => SobolBnSampler::new(column, row, frame, i).draw_sample_f32(),
+                (Self::OpenQmcPmj, _) => PmjBnSampler::new(column, row, frame, i).draw_sample_f32(),
+                (Self::OpenQmcLattice, _) => LatticeBnSampler::new(column, row, frame, i).draw_sample_f32(),
+                _ => [(); 4].map(|()| rng.uniform_f32()),
+            };
+            u.copy_from_slice(&four[..dims]);
             // One crate's rounding reaches 1.
             u.iter_mut().for_each(|u| *u = u.min(1.0_f32.next_down()));
         }
@@ -116,18 +107,21 @@ impl Sampler {
     }
 }
 
-/// Seed 0 is the tile as it is, others are domains: the tile at other places.
-fn of_tile(tile: &Tile<'_>, x: u32, y: u32, index: u32, seed: u32, u: &mut [f32]) {
+/// The first `wanted` of four numbers. Seed 0 is the tile as it is, others are domains: the tile at other places.
+fn of_tile(tile: &Tile<'_>, x: u32, y: u32, index: u32, seed: u32, wanted: usize) -> [f32; 4] {
     let root = Draw::pixel(tile, x, y, 0, index);
     let root = if seed == 0 { root } else { root.domain(seed) };
     let dims = tile.shape().dims as usize;
-    if dims >= u.len() {
-        return root.draw_into(u);
+    let mut u = [0.0; 4];
+    if dims >= wanted {
+        root.draw_into(&mut u[..wanted]);
+    } else {
+        // More numbers than the tile has: a domain for each group, of keys that are no seeds.
+        for (u, key) in u.chunks_mut(dims).zip(1000..) {
+            root.domain(key).draw_into(u);
+        }
     }
-    // More numbers than the tile has: a domain for each group.
-    for (group, u) in u.chunks_mut(dims).enumerate() {
-        root.domain(1000 + group as u32).draw_into(u);
-    }
+    u
 }
 
 /// Four numbers, with a seed for each pixel.

@@ -90,9 +90,9 @@ fn boxed<const N: usize>(sampler: Sampler, spp: usize) -> Result<Box<dyn FnMut()
         (Sampler::Heitz, _) => {
             Box::new(move || time(|x, y| (0..N as u32).map(|dim| heitz(x, y, last + 1, last, dim)).sum()))
         }
-        (Sampler::OpenQmcSobol, _) => Box::new(move || {
-            time(|x, y| sum(SobolBnSampler::new(x as i32, y as i32, 0, index).draw_sample_f32::<N>()))
-        }),
+        (Sampler::OpenQmcSobol, _) => {
+            Box::new(move || time(|x, y| sum(SobolBnSampler::new(x as i32, y as i32, 0, index).draw_sample_f32::<N>())))
+        }
         (Sampler::OpenQmcPmj, _) => {
             Box::new(move || time(|x, y| sum(PmjBnSampler::new(x as i32, y as i32, 0, index).draw_sample_f32::<N>())))
         }

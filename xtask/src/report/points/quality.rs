@@ -52,7 +52,10 @@ pub(super) fn write(output: &Output, sets: &Sets, chapter: &mut Chapter) -> Resu
                 cell("neighbour")?,
             ]);
         }
-        series.push(Series { name: name.to_owned(), points, ..Series::default() });
+        // One size is no line.
+        if points.len() > 1 {
+            series.push(Series { name: name.to_owned(), points, ..Series::default() });
+        }
     }
     chapter.setting("exponent of the discrepancy's norm", 2);
     let columns =

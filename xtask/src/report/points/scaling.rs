@@ -50,8 +50,15 @@ pub(super) fn write(output: &Output, sets: &Sets, chapter: &mut Chapter) -> Resu
         }
         series.push(Series { name: format!("{classes} classes"), points, ..Series::default() });
     }
-    let columns =
-        ["classes", "points", "steps", "seconds", "microseconds per point", "nearest neighbour", "colour: nearest neighbour"];
+    let columns = [
+        "classes",
+        "points",
+        "steps",
+        "seconds",
+        "microseconds per point",
+        "nearest neighbour",
+        "colour: nearest neighbour",
+    ];
     chapter.table("scaling", &columns, 0, rows);
     output.write_text("points-seconds.svg", &plot(&series)?)?;
     chapter.picture("points-seconds.svg", "seconds against points, by classes");
@@ -60,9 +67,9 @@ pub(super) fn write(output: &Output, sets: &Sets, chapter: &mut Chapter) -> Resu
          fit (Student's, of its residuals). What is above 1 comes from small sets, whose steps grow; what is below from fixed costs.",
     );
     chapter.setting("linear", 1);
-    let rows = fits.into_iter().map(|(classes, slope, sizes)| {
-        row![classes, sizes.to_string(), Figure::new(slope, Unit::Ratio)]
-    });
+    let rows = fits
+        .into_iter()
+        .map(|(classes, slope, sizes)| row![classes, sizes.to_string(), Figure::new(slope, Unit::Ratio)]);
     chapter.table("exponents", &["classes", "sizes", "exponent"], 0, rows.collect());
     Ok(())
 }

@@ -27,7 +27,8 @@ pub(super) fn write(table: &Csv, chapter: &mut Chapter, targets: &mut Targets) -
     for dims in table.distinct("dims")? {
         chapter.paragraph(&format!("{dims} numbers:"));
         let headings: Vec<String> = counts.iter().map(|spp| format!("{spp} spp")).collect();
-        let columns: Vec<&str> = ["sampler", "through"].into_iter().chain(headings.iter().map(String::as_str)).collect();
+        let columns: Vec<&str> =
+            ["sampler", "through"].into_iter().chain(headings.iter().map(String::as_str)).collect();
         let mut rows = Vec::new();
         for sampler in table.distinct("sampler")? {
             for door in ["Rust", "C ABI"] {

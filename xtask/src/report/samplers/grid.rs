@@ -24,7 +24,8 @@ struct Of {
 
 pub(super) fn write(output: &Output, table: &Csv, chapter: &mut Chapter) -> Result<()> {
     introduce(table, chapter)?;
-    let mut csv = "dims,n,samples,estimator,raw,raw_low,raw_high,filtered,filtered_low,filtered_high,worst,ns\n".to_owned();
+    let mut csv =
+        "dims,n,samples,estimator,raw,raw_low,raw_high,filtered,filtered_low,filtered_high,worst,ns\n".to_owned();
     for dims in table.distinct("dims")? {
         chapter.section(&format!("Samplers and estimators, {dims} dims"), "");
         let file = format!("samplers-grid-{dims}d.svg");
@@ -192,7 +193,8 @@ fn of(table: &Csv, dims: &str, n: &str, source: &str, wanted: &Method) -> Result
     let numbers = |column: &str| rows.iter().map(|row| row.number(column)).collect::<Result<Vec<f64>>>();
     let (raw, filtered, channels) = (numbers("raw")?, numbers("filtered")?, 3);
     // Of few pixels: first the mean of what is alike, then the logarithm.
-    let alike = |all: &[f64]| all.chunks(channels).map(|of| of.iter().sum::<f64>() / of.len() as f64).collect::<Vec<_>>();
+    let alike =
+        |all: &[f64]| all.chunks(channels).map(|of| of.iter().sum::<f64>() / of.len() as f64).collect::<Vec<_>>();
     let ones = vec![1.0; rows.len()];
     Ok(Some(Of {
         raw: Estimate::mean_ratio(&raw, &ones),
