@@ -125,13 +125,7 @@ fn samples(cells: &[Cell], here: &[&Cell], says: &Recommendation) -> Option<Deci
 }
 
 /// Of the estimators that are safe, that with the least error times time.
-fn estimator(
-    cells: &[Cell],
-    here: &[&Cell],
-    says: &Recommendation,
-    stratified: bool,
-    share: bool,
-) -> Option<Decision> {
+fn estimator(cells: &[Cell], here: &[&Cell], says: &Recommendation, stratified: bool, share: bool) -> Option<Decision> {
     let kind = match (says.method, says.image_stride) {
         (Recommended::PlainMean, _) => Kind::Mean,
         (Recommended::PerPixel, _) => Kind::PerPixel,
@@ -143,10 +137,8 @@ fn estimator(
         Kind::PerPixel => !stratified,
         Kind::Blocks | Kind::Windows => share,
     });
-    let all: Vec<(&Cell, Summary)> = possible
-        .filter(|cell| cell.method.regressed == cell.dims)
-        .map(|cell| (cell, summary(cell, cells)))
-        .collect();
+    let all: Vec<(&Cell, Summary)> =
+        possible.filter(|cell| cell.method.regressed == cell.dims).map(|cell| (cell, summary(cell, cells))).collect();
     let time = |cell: &Cell, s: &Summary| COST * cell.dims as f64 + s.ns;
     let worth = |(cell, s): &(&Cell, Summary)| error(s) * time(cell, s);
     let safe = |(cell, s): &&(&Cell, Summary)| cell.method.kind == Kind::Mean || s.worst < TOLERANCE;
@@ -174,7 +166,8 @@ pub(crate) fn markdown(all: &[Decision]) -> Result<String> {
         .to_owned();
     for decision in all {
         let Decision { dims, n, samples, neighbours, recommended, best, excess: [excess, low, high] } = decision;
-        let text = |of: &Choice| format!("{}: {}, {} ({})", of.name, figure(of.raw), figure(of.filtered), figure(of.worst));
+        let text =
+            |of: &Choice| format!("{}: {}, {} ({})", of.name, figure(of.raw), figure(of.filtered), figure(of.worst));
         let other = if best.name == recommended.name { "the same".to_owned() } else { text(best) };
         writeln!(
             out,
@@ -187,9 +180,10 @@ pub(crate) fn markdown(all: &[Decision]) -> Result<String> {
 }
 
 pub(crate) fn csv(all: &[Decision]) -> Result<String> {
-    let mut out = "dims,n,samples,neighbours,recommended,raw,filtered,worst,best,best_raw,best_filtered,best_worst,excess,\
+    let mut out =
+        "dims,n,samples,neighbours,recommended,raw,filtered,worst,best,best_raw,best_filtered,best_worst,excess,\
                    excess_low,excess_high\n"
-        .to_owned();
+            .to_owned();
     for decision in all {
         let Decision { dims, n, samples, neighbours, recommended, best, excess: [excess, low, high] } = decision;
         write!(out, "{dims},{n},{samples},{neighbours}")?;

@@ -106,6 +106,7 @@ fn introduce(table: &Csv, chapter: &mut Chapter) -> Result<()> {
          dims of 16 samples are two domains of a tile of two dims.",
         "progressive tile: the first samples of `NF_TILE_128_16SPP_2D_PROGRESSIVE`, continued beyond 16.",
     ]);
+    chapter.setting("year of the tables", 2019);
     chapter.setting("samples from which a tile of one is continued", 64);
     chapter.setting("samples of the progressive tile", 16);
     Ok(())
