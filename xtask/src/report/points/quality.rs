@@ -67,7 +67,7 @@ pub(super) fn write(output: &Output, sets: &Sets, chapter: &mut Chapter) -> Resu
     Ok(())
 }
 
-/// What is better than a sequence that costs nothing, and what is not.
+/// Whether it is better than a sequence that costs nothing.
 fn compare(sets: &Sets, chapter: &mut Chapter) -> Result<()> {
     let sizes = sets.distinct(&[("study", "standard")], "points")?;
     let Some(points) = sizes.last() else { return Ok(()) };
@@ -80,8 +80,8 @@ fn compare(sets: &Sets, chapter: &mut Chapter) -> Result<()> {
     let (half_planes, gaussians) = (over("half-planes", "half_planes")?, over("Gaussians", "gaussians")?);
     let discrepancy = over("L2 star discrepancy", "discrepancy")?;
     let text = format!(
-        "Standard quality over Owen-scrambled Sobol points, {points} of each: {half_planes} of the error of half-planes, {gaussians} of that of \
-         Gaussian bumps, but {discrepancy} of the star discrepancy: boxes along the axes are what the sequence is made for."
+        "Standard quality over Owen-scrambled Sobol points, {points} of each: {half_planes} times the error of half-planes, {gaussians} times that of \
+         Gaussian bumps, {discrepancy} times the star discrepancy."
     );
     chapter.paragraph(&text);
     Ok(())
