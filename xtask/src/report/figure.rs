@@ -12,7 +12,10 @@ pub(crate) enum Unit {
     RelMseE3,
     Percent,
     Nanoseconds,
+    Seconds,
     Count,
+    /// Of any size: three digits.
+    Number,
     /// Standard deviations.
     Sigmas,
     /// Of any size, in the integrand's unit or relative, with an exponent.
@@ -26,7 +29,9 @@ impl Unit {
             Self::RelMseE3 => "1e-3 relMSE",
             Self::Percent => "percent",
             Self::Nanoseconds => "nanoseconds per sample",
+            Self::Seconds => "seconds",
             Self::Count => "count",
+            Self::Number => "number",
             Self::Sigmas => "standard deviations",
             Self::Error => "error",
         }
@@ -36,7 +41,7 @@ impl Unit {
         match self {
             _ if !value.is_finite() => "-".to_owned(),
             Self::Ratio if value.abs() < 10.0 => format!("{value:.3}"),
-            Self::RelMseE3 => significant(value, 3),
+            Self::RelMseE3 | Self::Number | Self::Seconds => significant(value, 3),
             Self::Percent if value.abs() < 10.0 => format!("{value:.2}"),
             Self::Sigmas => format!("{value:.2}"),
             Self::Error if value == 0.0 => "0".to_owned(),
