@@ -93,7 +93,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         povray::test::run(&archive()?)
     });
     steps.run("cargo xtask report --quick: every number of the text is in the JSON", || {
-        embree::report(report::check_quick)
+        embree::report(|| report::check_quick("embree"))
     });
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));

@@ -1,6 +1,7 @@
 //! A chapter of the report: what is written as Markdown, and the same figures as JSON.
 
 use super::figure::Figure;
+use super::targets::Judged;
 use crate::measure::markdown;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -79,6 +80,7 @@ pub(crate) struct Chapter {
     tables: Vec<Table>,
     quoted: BTreeMap<String, Figure>,
     settings: BTreeMap<String, Value>,
+    targets: Vec<Judged>,
 }
 
 impl Chapter {
@@ -99,6 +101,7 @@ impl Chapter {
         self.tables.append(&mut other.tables);
         self.quoted.append(&mut other.quoted);
         self.settings.append(&mut other.settings);
+        self.targets.append(&mut other.targets);
     }
 
     /// A heading; `source` names the figures of the thesis that the section stands beside.
@@ -147,12 +150,19 @@ impl Chapter {
         self.text += &format!("\n![{description}]({file})\n");
     }
 
+    /// What the index is told.
+    pub(crate) fn hand_over(&mut self, mut targets: Vec<Judged>) {
+        self.targets.append(&mut targets);
+    }
+
     pub(crate) fn markdown(&self) -> &str {
         &self.text
     }
 
     pub(crate) fn json(&self) -> Value {
         json!({
+            "title": self.sections.first(),
+            "targets": self.targets,
             "sections": self.sections,
             "settings": self.settings,
             "quoted": self.quoted,

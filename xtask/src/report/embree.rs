@@ -3,8 +3,8 @@
 use super::Report;
 use super::chapter::Chapter;
 use super::measurement::Measurement;
-use super::tables::targets::Targets;
 use super::tables::{SECTIONS, Section};
+use super::targets::Targets;
 use crate::measure::interrupt;
 use crate::measure::progress;
 use crate::measure::renderer::{Renderer, threads};
@@ -14,11 +14,11 @@ use anyhow::Result;
 const SECOND: u64 = 1000;
 
 pub(super) fn write(report: &Report) -> Result<()> {
-    println!("building the library and the Embree harness");
     let program = match &report.program {
         Some(program) => program.clone(),
         None => crate::embree::build()?,
     };
+    report.compiled();
     let renderer = Renderer::new(program, report.interrupted.clone());
     let bar = progress::bar(SECTIONS.iter().map(|(seconds, _)| seconds * SECOND).sum())?;
     let measurement = Measurement::new(report.plan, &renderer, &bar)?;
@@ -44,8 +44,7 @@ pub(super) fn write(report: &Report) -> Result<()> {
     targets.write_summary(&mut chapter);
     chapter.append(body);
     targets.write_all(&mut chapter);
-    report.output.write_text("embree.md", chapter.markdown())?;
-    report.output.write_text("embree.json", &format!("{:#}\n", chapter.json()))
+    report.write(&chapter)
 }
 
 fn introduce(report: &Report, chapter: &mut Chapter) {

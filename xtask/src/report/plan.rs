@@ -23,6 +23,8 @@ pub(crate) struct Plan {
     pub(crate) frames: u32,
     /// Last frames of the animations: figures 5.23 and 5.24.
     pub(crate) animation: [u32; 2],
+    /// What it is called in the index.
+    name: &'static str,
     /// The first of several scenes and settings instead of all.
     few: bool,
 }
@@ -40,6 +42,7 @@ impl Plan {
             pixel_seeds: 256,
             frames: 1000,
             animation: [16, 10],
+            name: "default",
             few: false,
         };
         if quick {
@@ -54,13 +57,28 @@ impl Plan {
                 pixel_seeds: 8,
                 frames: 32,
                 animation: [3, 2],
+                name: "quick",
                 few: true,
             };
         }
         if full {
-            return Self { seeds: 16, size: 128, tile_size: 256, small: 64, pixel_seeds: 1024, frames: 4000, ..normal };
+            return Self {
+                name: "full",
+                seeds: 16,
+                size: 128,
+                tile_size: 256,
+                small: 64,
+                pixel_seeds: 1024,
+                frames: 4000,
+                ..normal
+            };
         }
         normal
+    }
+
+    /// As the index calls it.
+    pub(crate) fn name(&self) -> &'static str {
+        self.name
     }
 
     /// Those of `all` that are measured.

@@ -8,13 +8,12 @@ mod tables;
 
 use super::Report;
 use super::chapter::{Chapter, row};
-use super::tables::targets::Targets;
+use super::targets::Targets;
 use crate::measure::interrupt;
 use crate::measure::progress;
 use crate::povray::oracle::{Model, Oracle};
 use crate::povray::scenes::{SCENES, Scene};
 use crate::povray::{PACKAGES, version};
-use crate::report::check::numbers_are_recorded;
 use crate::{library, tools};
 use anyhow::{Result, bail};
 use measure::{Measured, Measurement, SPP};
@@ -37,8 +36,8 @@ pub(super) fn write(report: &Report) -> Result<()> {
     if let Some(missing) = tools::packages(&PACKAGES)? {
         bail!("the chapter needs POV-Ray. {missing}");
     }
-    println!("building the library and the oracle, rendering stacks of pictures");
     let oracle = Oracle::build(&library::build()?, report.interrupted.clone())?;
+    report.compiled();
     let (size, cells): (u32, fn(&Scene) -> &'static [u32]) = match report.plan.size {
         ..SMALL => (SMALL, |scene| scene.small),
         size => (size.min(LARGEST), |scene| scene.full),
@@ -71,10 +70,7 @@ pub(super) fn write(report: &Report) -> Result<()> {
     chapter.picture("povray.png", "each scene by the plain mean, by control variates and by tiles, and its exact mean");
     chapter.append(body);
     targets.write_all(&mut chapter);
-    let (text, json) = (chapter.markdown(), format!("{:#}\n", chapter.json()));
-    numbers_are_recorded(text, &json)?;
-    report.output.write_text("povray.md", text)?;
-    report.output.write_text("povray.json", &json)
+    report.write(&chapter)
 }
 
 fn introduce(sizes: &Sizes, chapter: &mut Chapter) -> Result<()> {

@@ -15,11 +15,11 @@ mod public;
 mod reconstruction;
 mod samplers;
 mod solvers;
-pub(crate) mod targets;
 mod unbiased;
 
 use super::chapter::Chapter;
 use super::measurement::Measurement;
+pub(crate) use super::targets;
 use crate::measure::output::Output;
 use anyhow::Result;
 use targets::Targets;

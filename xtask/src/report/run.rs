@@ -1,0 +1,155 @@
+//! Writing chapters one after the other. Each is complete, with the index, before the next begins.
+
+use super::clock::Clock;
+use super::index::{self, Facts};
+use super::machine::{self, Machine};
+use super::plan::Plan;
+use super::{CHAPTERS, Entry, Options, Report, check};
+use crate::measure::interrupt::{self, Interrupted};
+use crate::measure::output::{self, Output};
+use crate::measure::progress;
+use crate::paths;
+use anyhow::{Context, Result, bail};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// Where a run writes.
+struct Folders {
+    /// Markdown, JSON, plots, small pictures.
+    small: PathBuf,
+    /// EXR and full pictures.
+    large: PathBuf,
+}
+
+impl Folders {
+    fn new(options: &Options) -> Result<Self> {
+        let folder = |given: Option<PathBuf>, default: PathBuf| -> Result<PathBuf> {
+            let folder = given.unwrap_or(default);
+            std::path::absolute(&folder).with_context(|| format!("{} is no folder", folder.display()))
+        };
+        // Beside the folder that was asked for, because it does not exist before all is done.
+        let beside = options.out.as_ref().map(|out| out.with_extension("pictures"));
+        Ok(Self {
+            small: folder(options.out.clone(), paths::root().join("docs/report"))?,
+            large: folder(beside, paths::target().join("report"))?,
+        })
+    }
+}
+
+pub(crate) fn run(options: &Options) -> Result<()> {
+    let start = Instant::now();
+    let folders = Folders::new(options)?;
+    let interrupted = interrupt::catch()?;
+    let wanted: Vec<&Entry> = CHAPTERS
+        .iter()
+        .filter(|entry| options.only.is_empty() || options.only.iter().any(|o| o == entry.name))
+        .collect();
+    let machine = Machine::read();
+    let bar = progress::bar(wanted.iter().map(|entry| entry.seconds).sum())?;
+    let (mut written, mut failed) = (Vec::new(), Vec::new());
+    for (number, entry) in (1..).zip(&wanted) {
+        bar.set_message(format!("chapter {number} of {}: {}", wanted.len(), entry.name));
+        match write(entry, options, &folders, &machine, &interrupted) {
+            Ok(()) => written.push(entry.name),
+            Err(_) if interrupted.load(Ordering::Relaxed) => {
+                bar.finish_and_clear();
+                bail!(
+                    "interrupted in chapter {}; {} before",
+                    entry.name,
+                    say(&written, "written", "nothing was written")
+                );
+            }
+            // The others do not depend on it.
+            Err(error) => failed.push(format!("{}: {error:#}", entry.name)),
+        }
+        bar.inc(entry.seconds);
+    }
+    bar.finish_and_clear();
+    let seconds = start.elapsed().as_secs_f64();
+    if !failed.is_empty() {
+        bail!(
+            "{}; failed, and left as they were:\n{}",
+            say(&written, "written", "no chapter was written"),
+            failed.join("\n")
+        );
+    }
+    println!(
+        "report: {}; large pictures: {} ({seconds:.0} s, compiling included)",
+        folders.small.display(),
+        folders.large.display()
+    );
+    Ok(())
+}
+
+fn say(names: &[&str], done: &str, nothing: &str) -> String {
+    if names.is_empty() { nothing.to_owned() } else { format!("{done}: {}", names.join(", ")) }
+}
+
+/// One chapter and the index, both or neither.
+fn write(
+    entry: &Entry,
+    options: &Options,
+    folders: &Folders,
+    machine: &Machine,
+    interrupted: &Interrupted,
+) -> Result<()> {
+    let (output, large) = (Output::new(&folders.small)?, Output::new(&folders.large)?);
+    let (date, load) = (machine::date(), machine::load());
+    let report = Report {
+        name: entry.name,
+        plan: Plan::new(options.quick, options.full),
+        program: options.program.clone(),
+        interrupted: interrupted.clone(),
+        output: &output,
+        large: &large,
+        clock: Clock::start(),
+    };
+    (entry.write)(&report)?;
+    interrupt::check(interrupted)?;
+    let facts = Facts {
+        name: entry.name.to_owned(),
+        description: entry.description.to_owned(),
+        sizes: report.plan.name().to_owned(),
+        seconds: report.clock.seconds(),
+        processor_seconds: report.clock.processor_seconds(),
+        date,
+        load,
+        machine: machine.clone(),
+    };
+    let [text, json] = ["md", "json"].map(|end| format!("{}.{end}", entry.name));
+    let completed = facts.add_to(&output.read_text(&json)?).with_context(|| format!("{json} is damaged"))?;
+    check::numbers_are_recorded(&output.read_text(&text)?, &completed).with_context(|| text.clone())?;
+    output.write_text(&json, &completed)?;
+    output.write_text("README.md", &index::write(&folders.small, entry.name, &completed)?)?;
+    output::commit_together([output, large])
+}
+
+/// Pictures of the report are smaller, so that they can be committed.
+const LARGEST_PICTURE: u64 = 600_000;
+
+/// A quick chapter, and whether all that its text quotes and shows is there.
+pub(crate) fn check_quick(chapter: &str) -> Result<()> {
+    let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
+    let folder = scratch.path().join("report");
+    let only = vec![chapter.to_owned()];
+    run(&Options { quick: true, full: false, only, out: Some(folder.clone()), program: None })?;
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).with_context(|| format!("there is no {name}"));
+    let text = read(&format!("{chapter}.md"))?;
+    check::numbers_are_recorded(&text, &read(&format!("{chapter}.json"))?)?;
+    if !read("README.md")?.contains(&format!("]({chapter}.md)")) {
+        bail!("the index does not link {chapter}.md");
+    }
+    pictures_are_there(&text, &folder)
+}
+
+fn pictures_are_there(text: &str, folder: &Path) -> Result<()> {
+    let pictures = text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(name, _)| name);
+    for name in pictures {
+        let bytes = std::fs::metadata(folder.join(name)).with_context(|| format!("there is no {name}"))?.len();
+        if bytes == 0 || bytes > LARGEST_PICTURE {
+            bail!("{name} has {bytes} bytes; at most {LARGEST_PICTURE} are meant to be committed");
+        }
+    }
+    Ok(())
+}
