@@ -43,7 +43,8 @@ pub(crate) fn count(program: &Path) -> Result<Counts> {
     let list = run::read(run::command("valgrind").args(["--quiet", "--tool=none"]).arg(program))?;
     let mut lines = list.lines();
     let vector_units = lines.next().and_then(|line| line.strip_prefix("vector units,"));
-    let vector_units = vector_units.context("bench/instructions.c did not say which vector units there are")?.to_owned();
+    let vector_units =
+        vector_units.context("bench/instructions.c did not say which vector units there are")?.to_owned();
     let counts: Vec<Count> = lines.map(|line| count_case(program, line)).collect::<Result<_>>()?;
     if counts.is_empty() {
         bail!("bench/instructions.c has no cases");
@@ -73,7 +74,11 @@ fn count_case(program: &Path, line: &str) -> Result<Count> {
     if collected == 0.0 {
         bail!("case `{name}`: valgrind counted nothing; does the program still have its function `measured`?");
     }
-    Ok(Count { name: name.to_owned(), unit: unit.to_owned(), instructions: collected / number(repeat)? / number(parts)? })
+    Ok(Count {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        instructions: collected / number(repeat)? / number(parts)?,
+    })
 }
 
 /// Fails where a function takes more instructions than the committed report says. With another compiler they are only told.
@@ -119,10 +124,8 @@ fn changes(committed: &Value, now: &Counts) -> Result<Vec<String>> {
         let change = 100.0 * (instructions / before - 1.0);
         if change.abs() > TOLERANCE {
             let word = if change > 0.0 { WORSE } else { "less than the report's" };
-            sentences.push(format!(
-                "`{name}`: {instructions:.1} instructions, {:.1} % {word} {before:.1}",
-                change.abs()
-            ));
+            sentences
+                .push(format!("`{name}`: {instructions:.1} instructions, {:.1} % {word} {before:.1}", change.abs()));
         }
     }
     Ok(sentences)

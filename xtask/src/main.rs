@@ -6,6 +6,7 @@ mod embree;
 mod examples;
 mod fit;
 mod header;
+mod instructions;
 mod library;
 mod measure;
 mod path_tracer;

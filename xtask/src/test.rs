@@ -1,7 +1,8 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
 use crate::{
-    c_tests, embree, examples, fit, header, library, path_tracer, povray, povray_patched, report, run, tools, train_mlp,
+    c_tests, embree, examples, fit, header, instructions, library, path_tracer, povray, povray_patched, report, run,
+    tools, train_mlp,
 };
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -95,6 +96,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("cargo xtask report --quick: every number of the text is in the JSON", || {
         embree::report(|| report::check_quick("embree"))
     });
+    steps.run("instruction counts: none above the committed report's by 3 %", || instructions::check(&archive()?));
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));
     steps.run("examples_c/fit_image.cpp: short runs", || fit::photograph(&archive()?));

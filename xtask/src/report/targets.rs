@@ -99,7 +99,6 @@ impl Targets {
     }
 
     /// The figure shall be `bound` at least.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for chapters of speeds and gains"))]
     pub(crate) fn at_least(&mut self, statement: &str, scene: &str, estimate: Estimate, unit: Unit, bound: f64) {
         self.push(statement, scene, estimate, unit, (Side::AtLeast, bound));
     }

@@ -3,9 +3,9 @@
 use super::summary::Summary;
 use super::{Context, Written};
 use crate::demo::training::curves::Rows;
+use crate::demo::training::data;
 use crate::demo::training::mlp::{self, MODES, Plan};
 use crate::demo::training::program::Program;
-use crate::demo::training::data;
 use crate::report::chapter::Chapter;
 use crate::report::figure::Unit;
 use crate::report::measured::read;
@@ -61,7 +61,8 @@ impl Trainer {
     ) -> Result<()> {
         let (seeds, epochs, modes) = (plan.seeds.to_string(), plan.epochs.to_string(), MODES.join(","));
         let folder = text(&plan.data)?;
-        let arguments = ["--data", folder, "--modes", &modes, "--seeds", &seeds, "--epochs", &epochs, "--rate", plan.rate];
+        let arguments =
+            ["--data", folder, "--modes", &modes, "--seeds", &seeds, "--epochs", &epochs, "--rate", plan.rate];
         let Written { csv, summary } = context.run(&self.program, name, &arguments)?;
         let summary = Summary::parse(&summary)?;
         chapter.section(&format!("Test error, {}", plan.name), "figures 6.4 and 6.11");

@@ -26,7 +26,8 @@ pub(super) fn write(context: &Context, chapter: &mut Chapter) -> Result<()> {
     let file = "gradients-photograph.svg";
     context.report.output.write_text(file, &photograph::loss_plot(&losses.csv, &strata.csv, "step", "steps")?)?;
     chapter.picture(file, "peak signal-to-noise ratio against steps");
-    chapter.paragraph("Mean squared errors of the gradient's estimate over those of uniform draws, at the same states:");
+    chapter
+        .paragraph("Mean squared errors of the gradient's estimate over those of uniform draws, at the same states:");
     Summary::parse(&errors.summary)?.write(chapter, "photograph variance", 2);
     chapter.paragraph("The same, one draw in each stratum:");
     Summary::parse(&strata_errors.summary)?.write(chapter, "photograph variance strata", 2);

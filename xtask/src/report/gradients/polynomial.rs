@@ -10,22 +10,21 @@ use crate::report::statistics::Estimate;
 use crate::report::targets::Targets;
 use anyhow::Result;
 
-pub(super) fn write(
-    context: &Context,
-    program: &Program,
-    chapter: &mut Chapter,
-    targets: &mut Targets,
-) -> Result<()> {
-    let (seeds, steps, batches) = if context.sizes() == "quick" { ("2", "1000", "100") } else { ("40", "3000", "2000") };
+pub(super) fn write(context: &Context, program: &Program, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
+    let (seeds, steps, batches) =
+        if context.sizes() == "quick" { ("2", "1000", "100") } else { ("40", "3000", "2000") };
     let small = ["--seeds", seeds, "--steps", steps, "--batches", batches];
     let trained = context.run(program, "polynomial", &[&small[..], &["--beta", "0.7"]].concat())?;
     let errors = context.run(program, "polynomial variance", &[&small[..], &["--variance"]].concat())?;
 
     chapter.section("A polynomial of order 6", "figure 6.10");
-    for (name, value) in [("problems", seeds), ("steps", steps), ("batches", batches), ("batch", "32"), ("rate", ".003")] {
+    for (name, value) in
+        [("problems", seeds), ("steps", steps), ("batches", batches), ("batch", "32"), ("rate", ".003")]
+    {
         chapter.setting(format!("polynomial: {name}"), value);
     }
-    let (order, range, beta) = (chapter.setting("polynomial: order", 6), chapter.setting("polynomial: x up to", 2), 0.7);
+    let (order, range, beta) =
+        (chapter.setting("polynomial: order", 6), chapter.setting("polynomial: x up to", 2), 0.7);
     chapter.setting("polynomial: beta", beta);
     chapter.setting("polynomial: tables", "2 4");
     chapter.paragraph(&format!(
@@ -50,7 +49,13 @@ pub(super) fn write(
     let exact = |value: f64| Estimate { value, low: value, high: value, seeds: 1 };
     let place = format!("{seeds} problems, step {steps}");
     if let Some((ratio, _)) = losses.number(&["omis4"], "over exact") {
-        targets.at_most("Polynomial: loss at the end over the exact gradient's, omis4", &place, exact(ratio), Unit::Ratio, 2.0);
+        targets.at_most(
+            "Polynomial: loss at the end over the exact gradient's, omis4",
+            &place,
+            exact(ratio),
+            Unit::Ratio,
+            2.0,
+        );
     }
     for power in 0..=6 {
         let column = format!("x^{power}");

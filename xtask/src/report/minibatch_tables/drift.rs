@@ -8,7 +8,7 @@ use crate::report::targets::Targets;
 use anyhow::Result;
 
 /// Bytes per item, and the time of a pass over all items.
-pub(super) fn memory(csv: &str, chapter: &mut Chapter) -> Result<()> {
+pub(super) fn memory(csv: &str, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
     chapter.section("Memory", "");
     let rows = Rows::parse(csv)?;
     let (items, bytes) = (rows.numbers("items")?, rows.numbers("bytes")?);
@@ -17,11 +17,16 @@ pub(super) fn memory(csv: &str, chapter: &mut Chapter) -> Result<()> {
     let mut cells: Vec<Vec<Cell>> = Vec::new();
     for (((items, bytes), method), epsilon) in items.into_iter().zip(bytes).zip(methods).zip(epsilon) {
         let epsilon = epsilon.parse().ok().map(|value: f64| Figure::exact(value, Unit::PerItem));
+        if method == "nf_table" {
+            let (value, place) = (bytes / items, format!("{items} items"));
+            let estimate = Estimate { value, low: value, high: value, seeds: 1 };
+            targets.at_most("Bytes per item", &place, estimate, Unit::BytesPerItem, 5.0);
+        }
         cells.push(row![items as u32, method, Figure::exact(bytes / items, Unit::BytesPerItem), epsilon]);
     }
     chapter.paragraph(
-        "`nf_table_size` of the table's own; of the alias table what it holds and the weights from which the next one is made. The last \
-         column is the time, per item of the table, to add a constant to all importances.",
+        "`nf_table`: what `nf_table_size` asks for. The alias table: what it holds, and the weights from which the next one is made. The last column is \
+         the time, per item of the table, to add a constant to all importances.",
     );
     chapter.table("memory", &["items", "method", "bytes per item", "ns per item to add epsilon"], 2, cells);
     Ok(())
@@ -61,7 +66,13 @@ pub(super) fn write(csv: &str, chapter: &mut Chapter, targets: &mut Targets) -> 
         ]);
         if method == "nf_table" {
             let estimate = |value: f64| Estimate { value, low: value, high: value, seeds: 1 };
-            targets.at_most("Drift: numbers changed by updates", "all updates", estimate(changed[index]), Unit::Count, 0.0);
+            targets.at_most(
+                "Drift: numbers changed by updates",
+                "all updates",
+                estimate(changed[index]),
+                Unit::Count,
+                0.0,
+            );
             let wrong = risen[index] + lost[index];
             targets.at_most("Drift: items risen or lost", "all updates", estimate(wrong), Unit::Count, 0.0);
         }
