@@ -13,6 +13,8 @@ mod path_tracer;
 mod paths;
 mod povray;
 mod povray_patched;
+#[cfg(test)]
+mod quotes;
 mod report;
 mod run;
 mod test;
