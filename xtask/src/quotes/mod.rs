@@ -5,8 +5,9 @@
 //! ```
 //!
 //! is about all figures up to the next such line or the next heading. A source is a chapter of docs/report, one of its tables
-//! (CHAPTER/TABLE) or the figures that its text quotes (CHAPTER/quoted); `tiles` or one of core/tiles/*.toml; or `none (why)`, of
-//! numbers that nothing here has measured: settings, constants, what others have published. A figure is a number with decimals or
+//! (CHAPTER/TABLE), the figures that its text quotes (CHAPTER/quoted) or its settings (CHAPTER/settings); `tiles` or one of
+//! core/tiles/*.toml; `test NAME`, a file of tests/tests that measures and prints them: that it exists is all that is checked; or
+//! `none (why)`, of numbers that nothing here has measured: settings, constants, what others have published. A figure is a number with decimals or
 //! before a unit of time or `%`, outside of code and formulas. It must be one of its sources', rounded to the decimals
 //! that the document gives; a table's interval counts with its ends and with half of its width.
 
@@ -43,7 +44,7 @@ fn every_figure_of_the_documents_was_measured() {
         wrong.extend(found.wrong.iter().map(|message| format!("{name}:{message}")));
         let allowed = WITHOUT_SOURCE.iter().find(|(file, _)| *file == name).map_or(0, |(_, count)| *count);
         if found.without_source.len() != allowed {
-            let list = found.without_source.join("\n    ");
+            let list = found.without_source.join(", ");
             wrong.push(format!(
                 "{name}: {} figures without a source, {allowed} are known: say where they come from, <!-- figures: ... -->\n    {list}",
                 found.without_source.len()
@@ -73,6 +74,10 @@ fn a_wrong_figure_is_found() {
     assert!(wrong("<!-- figures: embree -->\n1.23 and 0.43\n").is_empty());
     assert!(wrong("<!-- figures: tiles/A -->\n.043 / .0022\n").is_empty());
     assert_eq!(wrong("<!-- figures: tiles/A -->\n.044\n").len(), 1);
+    assert!(wrong("<!-- figures: embree/settings -->\n64 ms\n").is_empty());
+    assert_eq!(wrong("<!-- figures: embree/settings -->\n63 ms\n").len(), 1);
+    assert!(wrong("<!-- figures: test cv_never_worse -->\n.044\n").is_empty());
+    assert_eq!(wrong("<!-- figures: test cv_nonsense -->\n.044\n").len(), 1, "a test that is not there");
     assert_eq!(wrong("<!-- figures: none -->\n.044\n").len(), 1, "none must say why");
     assert!(wrong("<!-- figures: none (settings) -->\n.044\n").is_empty());
     // A heading ends what a line says.

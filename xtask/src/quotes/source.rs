@@ -16,6 +16,7 @@ impl Sources {
             let json: Value = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{stem}.json: {error}"));
             sources.add(&stem, &json);
             sources.add(&format!("{stem}/quoted"), &json["quoted"]);
+            sources.add(&format!("{stem}/settings"), &json["settings"]);
             for table in json["tables"].as_array().map_or(&[][..], Vec::as_slice) {
                 if let Some(name) = table["name"].as_str() {
                     // Several tables of a name are one source.

@@ -1,6 +1,7 @@
 //! The figures of a document, and whether its sources have them.
 
 use super::source::Sources;
+use crate::paths;
 
 /// A number as it is written.
 pub(super) struct Number {
@@ -20,6 +21,8 @@ pub(super) struct Found {
     pub(super) without_source: Vec<String>,
 }
 
+/// Stands for sources whose numbers are not compared.
+const UNCHECKED: &str = "none";
 const START: &str = "<!-- figures:";
 const UNITS: [&str; 8] = ["ns", "us", "µs", "ms", "s", "seconds", "minutes", "%"];
 /// The number behind such a word is the name of something.
@@ -57,18 +60,17 @@ pub(super) fn check(document: &str, sources: &Sources) -> Found {
             match parse(names, sources) {
                 Ok(names) => named = Some(names),
                 Err(message) => {
-                    named = None;
                     found.wrong.push(format!("{line}: {message}"));
                     // What follows is not told a second time.
-                    named.get_or_insert_default().push("none".to_owned());
+                    named = Some(vec![UNCHECKED.to_owned()]);
                 }
             }
             continue;
         }
         for number in figures(text) {
             match &named {
-                None => found.without_source.push(format!("line {line}: {}", number.text)),
-                Some(names) if names.iter().any(|name| name == "none") => {}
+                None => found.without_source.push(format!("{line}: {}", number.text)),
+                Some(names) if names.iter().any(|name| name == UNCHECKED) => {}
                 Some(names) => {
                     found.wrong.extend(search(&number, names, sources).map(|message| format!("{line}: {message}")))
                 }
@@ -88,6 +90,10 @@ fn parse(names: &str, sources: &Sources) -> Result<Vec<String>, String> {
         } else {
             Err("`none` must say why: none (settings)".to_owned())
         };
+    }
+    if let Some(test) = names.strip_prefix("test ") {
+        let path = paths::root().join("tests/tests").join(format!("{}.rs", test.trim()));
+        return if path.exists() { Ok(vec![UNCHECKED.to_owned()]) } else { Err(format!("there is no test `{test}`")) };
     }
     // A table's name may have a comma: sources are separated by semicolons too.
     let names: Vec<String> = names.split(';').map(|name| name.trim().to_owned()).collect();
@@ -161,7 +167,10 @@ pub(super) fn numbers(text: &str) -> Vec<Number> {
             exponent = bytes[first..i].iter().collect::<String>().parse().unwrap_or(0);
         }
         let before = if start == 0 { ' ' } else { bytes[start - 1] };
-        let named = before.is_alphanumeric() || before == '_' || at(i).is_alphabetic() && !has_unit(&bytes, i);
+        // "Apache-2.0" is a name too.
+        let hyphened = before == '-' && start >= 2 && bytes[start - 2].is_alphabetic();
+        let followed = at(i).is_alphabetic() && !has_unit(&bytes, i);
+        let named = before.is_alphanumeric() || before == '_' || hyphened || followed;
         let Ok(value) = mantissa.parse::<f64>() else { continue };
         if named || points > 1 || is_reference(&bytes[..start]) {
             continue;
@@ -198,7 +207,7 @@ fn is_reference(before: &[char]) -> bool {
 fn figures_of_a_line() {
     let texts = |line: &str| figures(line).into_iter().map(|number| number.text).collect::<Vec<_>>();
     assert_eq!(texts("from .43 to 1,234.5, 12 ns, 5 % of 7 in 128x128"), [".43", "1,234.5", "12", "5"]);
-    assert_eq!(texts("figures 4.3, 4.5 and 4.6; (6.11); `0.5`; [a](b-0.5.svg); POV-Ray 3.7.0.10"), [""; 0]);
+    assert_eq!(texts("figures 4.3, 4.5 and 4.6; (6.11); `0.5`; [a](b-0.5.svg); POV-Ray 3.7.0.10, Apache-2.0"), [""; 0]);
     assert_eq!(texts("-.33 ± .08 | 2.3e-4"), [".33", ".08", "2.3e-4"]);
     assert_eq!(numbers("2.3e-4")[0].decimals, 5);
     assert_eq!(numbers("at 60,000 items")[0].value, 60_000.0);
