@@ -18,6 +18,10 @@ pub(crate) trait Method {
     fn bytes(&self) -> usize;
     fn draw(&mut self, index: &mut [u32; BATCH], weight: &mut [f32; BATCH]);
     fn update(&mut self, index: &[u32; BATCH], importance: &[f32; BATCH]);
+    /// An update takes milliseconds.
+    fn updates_slowly(&self) -> bool {
+        false
+    }
     /// False: it cannot but be made anew.
     fn add_epsilon(&mut self) -> bool {
         false
@@ -127,6 +131,9 @@ impl Method for Alias {
     }
     fn draw(&mut self, index: &mut [u32; BATCH], _: &mut [f32; BATCH]) {
         index.iter_mut().for_each(|index| *index = self.0.sample(&mut self.2) as u32);
+    }
+    fn updates_slowly(&self) -> bool {
+        self.1.len() > 1000
     }
     fn update(&mut self, index: &[u32; BATCH], importance: &[f32; BATCH]) {
         for (&index, &importance) in index.iter().zip(importance) {

@@ -62,7 +62,7 @@ fn introduce(chapter: &mut Chapter) {
             .to_owned(),
         "Table in Rust: the same, without `unsafe` and so without vector instructions.".to_owned(),
         "WeightedTreeIndex: the tree of `rand_distr`, f32. Alias table rebuilt: `rand_distr`'s `WeightedAliasIndex`, which cannot be \
-         updated: it is made anew once a step, and that time is divided by the step's updates."
+         updated: it is made anew once a step, and that time, of the processor, is divided by the step's updates."
             .to_owned(),
         format!("Warm: steps follow each other at once. Cold: {megabytes} MB are read before the draws, and again before the updates."),
     ]);
