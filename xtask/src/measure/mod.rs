@@ -11,6 +11,7 @@ pub(crate) mod part;
 pub(crate) mod plot;
 pub(crate) mod progress;
 pub(crate) mod renderer;
+mod running;
 pub(crate) mod runs;
 pub(crate) mod samplers;
 pub(crate) mod score;

@@ -1,13 +1,12 @@
 //! Compiling and running the path tracer, or another program that has its command line.
 
 use super::interrupt::{self, Interrupted};
+use super::running::Running;
 use crate::{library, paths, run};
 use anyhow::{Context, Result, bail};
 use indicatif::ProgressBar;
 use serde::Deserialize;
-use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
 
 /// The compiled program.
 pub(crate) struct Renderer {
@@ -117,32 +116,19 @@ impl Renderer {
         } else {
             command.args(["--estimators", &job.estimators.join(",")]);
         }
-        let mut child = command
-            .stdin(Stdio::null())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .with_context(|| format!("cannot start {}", self.program.display()))?;
-
+        let mut child = Running::start(command).with_context(|| format!("cannot start {}", self.program.display()))?;
         let start = bar.position();
         let mut timings = Vec::new();
-        if let Some(stdout) = child.stdout.take() {
-            for line in BufReader::new(stdout).lines() {
-                let line = line.context("cannot read the path tracer's output")?;
-                if let Some(part) = line.strip_prefix("progress ") {
-                    let part: f64 = part.parse().with_context(|| format!("the path tracer said `{line}`"))?;
-                    bar.set_position(start + (part * job.work as f64) as u64);
-                } else {
-                    timings
-                        .push(serde_json::from_str(&line).with_context(|| format!("the path tracer said `{line}`"))?);
-                }
+        child.read_lines(|line| {
+            if let Some(part) = line.strip_prefix("progress ") {
+                let part: f64 = part.parse().with_context(|| format!("the path tracer said `{line}`"))?;
+                bar.set_position(start + (part * job.work as f64) as u64);
+            } else {
+                timings.push(serde_json::from_str(line).with_context(|| format!("the path tracer said `{line}`"))?);
             }
-        }
-        let mut message = String::new();
-        if let Some(mut stderr) = child.stderr.take() {
-            stderr.read_to_string(&mut message).context("cannot read the path tracer's errors")?;
-        }
-        let status = child.wait().context("the path tracer was lost")?;
+            Ok(())
+        })?;
+        let (status, message) = child.finish()?;
         interrupt::check(&self.interrupted)?;
         if !status.success() {
             bail!("rendering `{}` failed, {status}\n{}", job.scene, message.trim());

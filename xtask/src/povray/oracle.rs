@@ -87,7 +87,8 @@ impl Oracle {
     /// The scene's stack, rendered if need be.
     pub(crate) fn view(&self, scene: &Scene, cells: &[u32], size: u32) -> Result<View> {
         let path = stack::get(scene, cells, size)?;
-        let prefix = self.scratch.path().join("exact");
+        let folder = tempfile::tempdir_in(self.scratch.path()).context("cannot create a temporary folder")?;
+        let prefix = folder.path().join("exact");
         self.renderer.render(&job(path_text(&path)?, &[]), size, &prefix, &ProgressBar::hidden())?;
         let exact = read_pfm(&prefix.with_extension("reference.pfm"))?;
         Ok(View { path, size, reference: Reference::new(&exact, &exact) })
@@ -98,7 +99,9 @@ impl Oracle {
         let options = ["--model", request.model.name()];
         let Request { spp, order, sampler, estimators, seeds, .. } = *request;
         let job = Job { spp, order, seeds, sampler, estimators, work: 1, ..job(path_text(&view.path)?, &options) };
-        let prefix = self.scratch.path().join("picture");
+        // Each run in a folder of its own: no file of another can be taken for one of this.
+        let folder = tempfile::tempdir_in(self.scratch.path()).context("cannot create a temporary folder")?;
+        let prefix = folder.path().join("picture");
         let timings = self.renderer.render(&job, view.size, &prefix, bar)?;
         let one = |name: &str| -> Result<Renderings> {
             let file = |seed: u32| match seeds {

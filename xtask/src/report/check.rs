@@ -1,26 +1,115 @@
-//! Is every number of a chapter's text in its JSON?
+//! Is what a chapter's text says in its JSON?
 
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// Fails with the first number of the Markdown that the JSON does not hold. Numbers of figures and chapters of the thesis,
-/// and those in links and code, are no measurements.
+/// Fails with the first thing that the Markdown says and the JSON does not. Tables must be the JSON's, cell by cell and in
+/// order; headings its sections; numbers of any other line must be quoted figures or settings, in the sense of
+/// [`super::chapter::Chapter`]. Numbers of figures and chapters of the thesis, and those in links and code, are no
+/// measurements. The text of every figure must be its value, rounded.
 pub(crate) fn numbers_are_recorded(markdown: &str, json: &str) -> Result<()> {
     let json: Value = serde_json::from_str(json).context("the report's JSON is damaged")?;
-    let mut known = BTreeSet::new();
-    collect(&json, &mut known);
-    let mut found = 0;
-    for line in markdown.lines() {
-        for number in numbers(&without_references(line)) {
-            found += 1;
-            if !known.contains(&number) {
-                bail!("the text quotes {number}, which is not in the JSON: {line}");
+    figures_are_their_values(&json)?;
+    let list = |name: &str| json[name].as_array().map_or(&[][..], Vec::as_slice);
+    let (mut known, mut found) = (BTreeSet::new(), 0);
+    collect(&json["settings"], &mut known);
+    collect(&texts(&json["quoted"]), &mut known);
+    let mut tables = list("tables").iter();
+    let mut lines = markdown.lines().peekable();
+    while let Some(line) = lines.next() {
+        if line.starts_with('|') {
+            let mut rows = vec![cells(line)];
+            while let Some(row) = lines.next_if(|line| line.starts_with('|')) {
+                rows.push(cells(row));
+            }
+            let table = tables.next().with_context(|| format!("no table of the JSON is this: {line}"))?;
+            found += table_is_recorded(&rows, table)?;
+        } else if let Some(heading) = line.strip_prefix('#') {
+            let heading = heading.trim_start_matches('#').trim();
+            if !list("sections").iter().any(|section| section == heading) {
+                bail!("the JSON has no section `{heading}`");
+            }
+        } else {
+            for number in numbers(&without_references(line)) {
+                found += 1;
+                if !known.contains(&number) {
+                    bail!("the text says {number}, which is neither a quoted figure nor a setting of the JSON: {line}");
+                }
             }
         }
     }
+    if let Some(table) = tables.next() {
+        bail!("the JSON's table {} is not in the text", table["name"]);
+    }
     if found == 0 {
-        bail!("the text quotes no number at all");
+        bail!("the text has no number at all");
+    }
+    Ok(())
+}
+
+/// A line of a table.
+fn cells(line: &str) -> Vec<&str> {
+    line.trim().trim_matches('|').split(" | ").map(str::trim).collect()
+}
+
+/// Counts the numbers; the second row is the rule below the headings.
+fn table_is_recorded(rows: &[Vec<&str>], table: &Value) -> Result<usize> {
+    let text = |cell: &Value| match cell {
+        Value::Null => "-".to_owned(),
+        Value::String(text) => text.clone(),
+        other => other["text"].as_str().unwrap_or_default().to_owned(),
+    };
+    let row = |row: &Value| -> Vec<String> {
+        row.as_array().map_or(&[][..], Vec::as_slice).iter().map(|cell| text(cell).trim().to_owned()).collect()
+    };
+    let name = &table["name"];
+    let recorded: Vec<Vec<String>> = [row(&table["columns"])]
+        .into_iter()
+        .chain(table["rows"].as_array().map_or(&[][..], Vec::as_slice).iter().map(row))
+        .collect();
+    let written: Vec<&Vec<&str>> = rows.iter().take(1).chain(rows.iter().skip(2)).collect();
+    if written.len() != recorded.len() {
+        bail!("table {name} has {} lines, in the JSON {}", written.len(), recorded.len());
+    }
+    for (written, recorded) in written.iter().zip(&recorded) {
+        if *written != recorded {
+            bail!("a line of table {name} is {written:?}, in the JSON {recorded:?}");
+        }
+    }
+    Ok(recorded.iter().flatten().map(|cell| numbers(cell).len()).sum())
+}
+
+/// What figures show, without their values.
+fn texts(quoted: &Value) -> Value {
+    let figures = quoted.as_object().into_iter().flat_map(|figures| figures.values());
+    Value::Array(figures.map(|figure| figure["text"].clone()).collect())
+}
+
+/// Wherever a figure is.
+fn figures_are_their_values(json: &Value) -> Result<()> {
+    match json {
+        Value::Array(values) => values.iter().try_for_each(figures_are_their_values),
+        Value::Object(object) => {
+            if let (Some(text), Some(value)) =
+                (json.get("text").and_then(Value::as_str), json.get("value").and_then(Value::as_f64))
+            {
+                figure_is_its_value(text, value)?;
+            }
+            object.values().try_for_each(figures_are_their_values)
+        }
+        _ => Ok(()),
+    }
+}
+
+fn figure_is_its_value(text: &str, value: f64) -> Result<()> {
+    let number = numbers(text).into_iter().next().with_context(|| format!("the figure `{text}` is no number"))?;
+    let shown: f64 = number.parse().with_context(|| format!("the figure `{text}` is no number"))?;
+    let (mantissa, exponent) = number.split_once('e').unwrap_or((&number, "0"));
+    let digits = mantissa.split_once('.').map_or(0, |(_, digits)| digits.len() as i32);
+    let last = 10.0_f64.powi(exponent.parse::<i32>().unwrap_or(0) - digits);
+    if (shown - value.abs()).abs() > 0.500_001 * last {
+        bail!("the figure `{text}` is written for the value {value}");
     }
     Ok(())
 }
@@ -123,13 +212,47 @@ mod tests {
         assert_eq!(numbers(&without_references("figure 4.4 has 3 rows")), ["3"]);
     }
 
+    fn check(markdown: &str) -> Result<()> {
+        let json = r#"{
+            "settings": {"spp": 64},
+            "quoted": {"worst": {"text": "0.250 [0.2, 0.3]", "value": 0.2500001, "interval": [0.2, 0.3123]}},
+            "sections": ["Title 9"],
+            "tables": [{"name": "t", "columns": ["scene", "O1"], "rows": [["a", {"text": "7.5", "value": 7.5}], ["b", null]]}]
+        }"#;
+        numbers_are_recorded(markdown, json)
+    }
+
+    const TABLE: &str = "| scene | O1 |\n| - | -: |\n| a     | 7.5 |\n| b     |   - |\n";
+
     #[test]
     fn a_number_that_is_not_recorded_is_found() {
-        let json =
-            r#"{"settings": {"spp": 64}, "tables": [{"rows": [[{"text": "0.250 [0.2, 0.3]", "value": 0.2500001}]]}]}"#;
-        assert!(numbers_are_recorded("At 64 samples: 0.250 (figure 4.4).", json).is_ok());
-        assert!(numbers_are_recorded("At 64 samples: 0.251.", json).is_err());
-        assert!(numbers_are_recorded("No number.", json).is_err());
+        assert!(check(&format!("# Title 9\nAt 64 samples: 0.250 (figure 4.4).\n{TABLE}")).is_ok());
+        // Neither a number of a table, nor the end of an interval that is not written, nor a section's may be quoted as another.
+        for text in ["At 64 samples: 0.251.", "7.5 samples.", "0.3123", "9 samples"] {
+            let error = check(&format!("{text}\n{TABLE}")).expect_err(text);
+            assert!(error.to_string().contains("neither a quoted figure nor a setting"), "{error}");
+        }
+        assert!(check(&format!("## Other\n64\n{TABLE}")).is_err(), "a section that is not recorded");
+        assert!(numbers_are_recorded("No number.", r#"{"tables": []}"#).is_err());
         assert!(numbers_are_recorded("At 64 samples.", "{").is_err());
+    }
+
+    #[test]
+    fn tables_are_compared_cell_by_cell() {
+        assert!(check(&TABLE.replace("7.5", "64")).is_err(), "a number of another place");
+        assert!(check(&TABLE.replace("a ", "b ")).is_err(), "rows in another order");
+        assert!(check("64").is_err(), "the table is not in the text");
+        assert!(check(&format!("{TABLE}\n{TABLE}")).is_err(), "a table more than recorded");
+        assert!(check(TABLE.trim_end().rsplit_once('\n').expect("lines").0).is_err(), "a row less");
+    }
+
+    #[test]
+    fn a_figure_is_its_value_rounded() {
+        for (text, value) in [("0.250 [0.2, 0.3]", 0.2504), ("-3.1", -3.14), ("1.30e-3", 0.001_299), ("12", 12.4)] {
+            assert!(figure_is_its_value(text, value).is_ok(), "{text}");
+        }
+        for (text, value) in [("0.250", 0.2506), ("12", 12.6), ("word", 1.0), ("1.30e-3", 0.001_31)] {
+            assert!(figure_is_its_value(text, value).is_err(), "{text}");
+        }
     }
 }

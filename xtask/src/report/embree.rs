@@ -74,7 +74,7 @@ fn introduce(report: &Report, chapter: &mut Chapter) {
          estimator, for each channel. O1, O2, O3: total degree of the polynomials."
             .to_owned(),
         "Same time: relMSE over that of the plain mean of as many samples as it makes in the estimator's total time; its error \
-         falls as one over the number of samples. Its interval is that of the error; times are one measurement."
+         falls as one over the number of samples. Error and time are taken seed by seed, so that the interval has the noise of both."
             .to_owned(),
     ]);
 }

@@ -4,7 +4,7 @@ use super::plan::Plan;
 use super::scenes;
 use super::statistics::Estimate;
 use crate::measure::image::read_pfm;
-use crate::measure::metric::{Reference, median};
+use crate::measure::metric::Reference;
 use crate::measure::renderer::{Job, Renderer, Sampler, Timing};
 use crate::measure::score;
 use anyhow::{Context, Result};
@@ -72,9 +72,29 @@ pub(crate) struct Renderings {
 }
 
 /// What an experiment made; all estimators saw the same samples.
+#[derive(Clone)]
 pub(crate) struct Outcome {
     pub(crate) reference: Rc<Reference>,
-    pub(crate) renderings: Vec<Renderings>,
+    pub(crate) renderings: Rc<[Renderings]>,
+}
+
+/// Tells experiments of random samples apart.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Key {
+    view: View,
+    spp: u32,
+    order: u32,
+    seeds: u32,
+    options: Vec<String>,
+}
+
+impl Key {
+    /// None where the samples are not random: few sections share those, and their images are large.
+    fn of(experiment: &Experiment) -> Option<Self> {
+        let Experiment { view, spp, order, seeds, options, .. } = *experiment;
+        let options = options.iter().map(|&word| word.to_owned()).collect();
+        matches!(experiment.sampler, Sampler::Random).then_some(Self { view, spp, order, seeds, options })
+    }
 }
 
 /// A reference that was rendered, and the files of its halves.
@@ -90,6 +110,10 @@ pub(crate) struct Measurement<'a> {
     pub(crate) bar: &'a ProgressBar,
     scratch: TempDir,
     references: RefCell<BTreeMap<View, Known>>,
+    /// Experiments of random samples: several sections show the same ones.
+    outcomes: RefCell<BTreeMap<Key, Outcome>>,
+    /// Runs of the program so far.
+    runs: Cell<u32>,
     /// Where the bar will be at the end of the section.
     section_end: Cell<u64>,
 }
@@ -97,7 +121,9 @@ pub(crate) struct Measurement<'a> {
 impl<'a> Measurement<'a> {
     pub(crate) fn new(plan: Plan, renderer: &'a Renderer, bar: &'a ProgressBar) -> Result<Self> {
         let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
-        Ok(Self { plan, renderer, bar, scratch, references: RefCell::default(), section_end: Cell::new(0) })
+        let (references, outcomes) = (RefCell::default(), RefCell::default());
+        let (runs, section_end) = (Cell::new(0), Cell::new(0));
+        Ok(Self { plan, renderer, bar, scratch, references, outcomes, runs, section_end })
     }
 
     /// What follows advances the bar from `start` to `end` at most.
@@ -111,6 +137,14 @@ impl<'a> Measurement<'a> {
         self.scratch.path().join(name)
     }
 
+    /// A new folder for the files of one run: none of another run can be taken for one of this.
+    fn run_folder(&self) -> Result<TempDir> {
+        self.runs.set(self.runs.get() + 1);
+        let folder =
+            tempfile::Builder::new().prefix(&format!("run-{}-", self.runs.get())).tempdir_in(self.scratch.path());
+        folder.context("cannot create a temporary folder")
+    }
+
     pub(crate) fn reference(&self, view: View) -> Result<Rc<Reference>> {
         if let Some(known) = self.references.borrow().get(&view) {
             return Ok(known.reference.clone());
@@ -118,11 +152,11 @@ impl<'a> Measurement<'a> {
         self.bar.set_message(format!("{}: reference", view.scene));
         // Many pixels, few samples: the reference's error matters less.
         let divisor = self.plan.reference_divisor * if view.size >= self.plan.tile_size { 4 } else { 1 };
-        let spp = (view.precision * scenes::find(view.scene).reference_spp / divisor).max(16);
+        let spp = (view.precision * scenes::find(view.scene)?.reference_spp / divisor).max(16);
         let index = self.references.borrow().len();
         let half = |seed| -> Result<PathBuf> {
             let prefix = self.path(&format!("half-{index}-{seed}"));
-            let job = self.job(&Experiment::new(view, spp, &[]), seed, 1);
+            let job = self.job(&Experiment::new(view, spp, &[]), seed, 1)?;
             self.renderer.render(&Job { options: view.options, ..job }, view.size, &prefix, self.bar)?;
             Ok(prefix.with_extension("reference.pfm"))
         };
@@ -133,19 +167,29 @@ impl<'a> Measurement<'a> {
         Ok(reference)
     }
 
-    fn job<'b>(&self, experiment: &Experiment<'b>, seed: u64, seeds: u32) -> Job<'b> {
+    fn job<'b>(&self, experiment: &Experiment<'b>, seed: u64, seeds: u32) -> Result<Job<'b>> {
         let Experiment { view, spp, order, sampler, estimators, .. } = *experiment;
         let samples = f64::from(view.size).powi(2) * f64::from(spp) * f64::from(seeds);
-        let work = samples * (scenes::find(view.scene).cost + 150.0 * estimators.len() as f64) * 1e-6;
+        let work = samples * (scenes::find(view.scene)?.cost + 150.0 * estimators.len() as f64) * 1e-6;
         let work = (work as u64).min(self.section_end.get().saturating_sub(self.bar.position()));
         let (scene, frame) = (view.scene, view.frame);
-        Job { scene, spp, order, seed, seeds, frame, sampler, estimators, options: &[], work }
+        Ok(Job { scene, spp, order, seed, seeds, frame, sampler, estimators, options: &[], work })
     }
 
-    /// Renders every seed.
+    /// Renders every seed; or takes what was rendered before with the same samples, and with these estimators and perhaps more.
     pub(crate) fn run(&self, experiment: &Experiment) -> Result<Outcome> {
+        let key = Key::of(experiment);
+        if let Some(known) = key.as_ref().and_then(|key| self.outcomes.borrow().get(key).cloned())
+            && experiment.estimators.iter().all(|estimator| known.of(estimator).is_ok())
+        {
+            return Ok(known);
+        }
         let reference = self.reference(experiment.view)?;
-        Ok(Outcome { reference, renderings: self.render(experiment)? })
+        let outcome = Outcome { reference, renderings: self.render(experiment)?.into() };
+        if let Some(key) = key {
+            self.outcomes.borrow_mut().insert(key, outcome.clone());
+        }
+        Ok(outcome)
     }
 
     /// As [`Self::run`], without a reference.
@@ -153,8 +197,9 @@ impl<'a> Measurement<'a> {
         let Experiment { view, spp, seeds, estimators, .. } = *experiment;
         self.bar.set_message(format!("{}: {spp} samples per pixel", view.scene));
         let options = [view.options, experiment.options].concat();
-        let prefix = self.path("picture");
-        let job = Job { options: &options, ..self.job(experiment, SEED, seeds) };
+        let folder = self.run_folder()?;
+        let prefix = folder.path().join("picture");
+        let job = Job { options: &options, ..self.job(experiment, SEED, seeds)? };
         let timings = self.renderer.render(&job, view.size, &prefix, self.bar)?;
         let name = |estimator: &str, seed: u64| match seeds {
             1 => format!("{estimator}.pfm"),
@@ -179,9 +224,10 @@ impl<'a> Measurement<'a> {
         let known = references.get(&view).context("the reference was lost")?;
         let files = known.halves.each_ref().map(|file| file.display().to_string()).join(",");
         let options = [view.options, experiment.options, &["--statistics", &files]].concat();
-        let prefix = self.path("statistics");
+        let folder = self.run_folder()?;
+        let prefix = folder.path().join("statistics");
         self.bar.set_message(format!("{}: {seeds} seeds", view.scene));
-        let job = Job { options: &options, ..self.job(experiment, SEED + u64::from(first), seeds) };
+        let job = Job { options: &options, ..self.job(experiment, SEED + u64::from(first), seeds)? };
         self.renderer.render(&job, view.size, &prefix, self.bar)?;
         let read = |estimator: &&str, what: &str| read_pfm(&prefix.with_extension(format!("{estimator}.{what}.pfm")));
         estimators.iter().map(|estimator| Ok([read(estimator, "mean")?, read(estimator, "mse")?])).collect()
@@ -216,18 +262,18 @@ impl Outcome {
         Ok(Estimate::ratio(&self.errors(estimator)?, &self.errors(BASELINE)?))
     }
 
-    /// Total time over the plain mean's: the median over the seeds.
-    pub(crate) fn time_ratio(&self, estimator: &str) -> Result<f64> {
+    /// Total time over the plain mean's, seed by seed.
+    fn time_ratios(&self, estimator: &str) -> Result<Vec<f64>> {
         let (own, plain) = (self.of(estimator)?, self.of(BASELINE)?);
         let pairs = own.timings.iter().zip(&plain.timings);
-        Ok(median(pairs.map(|(own, plain)| own.total_seconds / plain.total_seconds)))
+        Ok(pairs.map(|(own, plain)| own.total_seconds / plain.total_seconds).collect())
     }
 
     /// relMSE over that of the plain mean of as many samples as it makes in the same time: its error falls as 1 / samples.
+    /// Error and time are of the same seed, so that the interval has the noise of both.
     pub(crate) fn equal_time(&self, estimator: &str) -> Result<Estimate> {
-        let time = self.time_ratio(estimator)?;
-        let Estimate { value, low, high, seeds } = self.ratio(estimator)?;
-        Ok(Estimate { value: value * time, low: low * time, high: high * time, seeds })
+        let pairs = self.errors(estimator)?.into_iter().zip(self.errors(BASELINE)?).zip(self.time_ratios(estimator)?);
+        Ok(Estimate::median(&pairs.map(|((own, plain), time)| own / plain * time).collect::<Vec<_>>()))
     }
 }
 

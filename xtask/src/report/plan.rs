@@ -47,6 +47,7 @@ impl Plan {
         };
         if quick {
             return Self {
+                name: "quick",
                 seeds: 2,
                 size: 16,
                 tile_size: 32,
@@ -55,9 +56,8 @@ impl Plan {
                 spp: &[16],
                 many: 64,
                 pixel_seeds: 8,
-                frames: 32,
+                frames: 36,
                 animation: [3, 2],
-                name: "quick",
                 few: true,
             };
         }

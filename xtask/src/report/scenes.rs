@@ -1,5 +1,7 @@
 //! The scenes: what the report knows of them beyond what the program says.
 
+use anyhow::{Context, Result};
+
 /// One scene of the program.
 pub(crate) struct Scene {
     pub(crate) name: &'static str,
@@ -35,6 +37,7 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("veach", 2, false, 1024, 500.0),
 ];
 
-pub(crate) fn find(name: &str) -> &'static Scene {
-    SCENES.iter().find(|scene| scene.name == name).unwrap_or(&SCENES[0])
+pub(crate) fn find(name: &str) -> Result<&'static Scene> {
+    let found = SCENES.iter().find(|scene| scene.name == name);
+    found.with_context(|| format!("the report knows no scene `{name}`: it is missing in xtask/src/report/scenes.rs"))
 }

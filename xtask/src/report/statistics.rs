@@ -22,7 +22,7 @@ impl Estimate {
         if values.len() < 2 {
             return Self { value, low: value, high: value, seeds: values.len() };
         }
-        let mut random = Random(0x6e6f_6973_6566_6c6f);
+        let mut random = Random::new(0x6e6f_6973_6566_6c6f);
         let mut medians: Vec<f64> =
             (0..RESAMPLES).map(|_| median((0..values.len()).map(|_| values[random.below(values.len())]))).collect();
         medians.sort_by(f64::total_cmp);
@@ -37,11 +37,15 @@ impl Estimate {
 }
 
 /// SplitMix64 (G. Steele, D. Lea, C. Flood 2014).
-struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
     /// Of 0 to `count` - 1; the bias of a count that is no power of two is below 1e-15.
-    fn below(&mut self, count: usize) -> usize {
+    pub(crate) fn below(&mut self, count: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.0;
         bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -106,7 +110,7 @@ mod tests {
     #[test]
     fn about_95_in_100_intervals_hold_the_truth() {
         // Medians of 9 uniform numbers: 1/2 is the truth. A bootstrap of so few is a little too narrow or too wide.
-        let mut random = Random(7);
+        let mut random = Random::new(7);
         let mut uniform = || random.below(1 << 30) as f64 / f64::from(1 << 30);
         let held = (0..200).filter(|_| {
             let values: Vec<f64> = (0..9).map(|_| uniform()).collect();

@@ -2,6 +2,7 @@
 
 use super::ORDER;
 use crate::measure::interrupt;
+use crate::measure::metric::{Reference, median};
 use crate::measure::renderer::Sampler;
 use crate::povray::bias::{self, Bias, moments};
 use crate::povray::oracle::{Model, Oracle, Request};
@@ -9,16 +10,17 @@ use crate::povray::scenes::SCENES;
 use crate::report::Report;
 use crate::report::chapter::{Chapter, row};
 use crate::report::figure::{Figure, Unit};
+use crate::report::pixels::{BATCHES, Batch, Shares, TOO_MUCH};
 use crate::report::statistics::Estimate;
 use crate::report::tables::targets::Targets;
 use anyhow::Result;
+use image::Rgb32FImage;
 use indicatif::ProgressBar;
 
 /// Pixels on a side, and samples of each.
 const SIZE: u32 = 32;
 const SPP: u32 = 16;
-/// A pixel is served badly if its error is so many times the plain mean's; at most so many percent of the pixels may be.
-const BAD: f64 = 1.2;
+/// At most so many percent of the pixels may be beyond [`TOO_MUCH`].
 const BAD_PERCENT: f64 = 1.0;
 /// Chance that an unbiased estimator exceeds the limit somewhere in the table.
 const SIGNIFICANCE: f64 = 0.01;
@@ -33,7 +35,7 @@ pub(super) fn write(report: &Report, oracle: &Oracle, chapter: &mut Chapter, tar
         let (model, sampler) = (Model::Cells, Sampler::Random);
         let request = Request { model, spp: SPP, order: ORDER, sampler, estimators: &names, seeds };
         let renderings = oracle.render(&view, &request, &ProgressBar::hidden())?;
-        let plain = moments(&renderings[0].images, &view.reference);
+        let plain_images = renderings[0].images.clone();
         for (name, one) in names.iter().zip(renderings) {
             let Bias { deviations, .. } = bias::largest(&one.images, &view.reference);
             let own = moments(&one.images, &view.reference);
@@ -44,12 +46,9 @@ pub(super) fn write(report: &Report, oracle: &Oracle, chapter: &mut Chapter, tar
                 Figure::exact(own.bias_over_error(), Unit::Ratio)
             ]);
             if *name == "robust" {
-                let ratios: Vec<f64> = own.squares.iter().zip(&plain.squares).map(|(own, plain)| own / plain).collect();
-                // A pixel that no sample changes has no error either way.
-                let ratios: Vec<f64> = ratios.into_iter().filter(|ratio| ratio.is_finite()).collect();
-                let bad = 100.0 * ratios.iter().filter(|&&ratio| ratio > BAD).count() as f64 / own.squares.len() as f64;
-                let worst = ratios.iter().copied().fold(0.0, f64::max);
-                let estimate = Estimate { value: bad, low: bad, high: bad, seeds: 1 };
+                let shares = Shares::new(&batches(&plain_images, &one.images, &view.reference));
+                let [low, high] = shares.interval();
+                let estimate = Estimate { value: shares.raw, low, high, seeds: seeds as usize };
                 targets.at_most(
                     "percent of pixels where the default's error is beyond 1.2 of the plain mean's, 16 spp",
                     scene.name,
@@ -59,9 +58,10 @@ pub(super) fn write(report: &Report, oracle: &Oracle, chapter: &mut Chapter, tar
                 );
                 pixels.push(row![
                     scene.name,
-                    Figure::exact(bad, Unit::Percent),
-                    Figure::exact(worst, Unit::Ratio),
-                    Figure::new(Estimate::median(&ratios), Unit::Ratio)
+                    Figure::exact(shares.pixels as f64, Unit::Count),
+                    Figure::new(estimate, Unit::Percent),
+                    Figure::exact(shares.largest(), Unit::Ratio),
+                    Figure::exact(median(shares.ratios), Unit::Ratio)
                 ]);
             }
         }
@@ -73,7 +73,9 @@ pub(super) fn write(report: &Report, oracle: &Oracle, chapter: &mut Chapter, tar
     let spp = chapter.setting("samples per pixel, biases", SPP);
     let tests = chapter.setting("tests of an estimator", bias::TESTS as u32);
     let percent = chapter.setting("significance, percent", 100.0 * SIGNIFICANCE);
-    let bad = chapter.setting("a badly served pixel's ratio", BAD);
+    let bad = chapter.setting("a badly served pixel's ratio", TOO_MUCH);
+    let confidence = chapter.setting("confidence, percent", 95);
+    let batches = chapter.setting("batches of seeds", BATCHES);
     chapter.section("Bias, and single pixels", "");
     chapter.paragraph(&format!(
         "{seeds} seeds of {size} x {size} pixels, grids of the tests, {spp} random samples. Deviation: of the mean picture from the exact one, in \
@@ -85,8 +87,15 @@ pub(super) fn write(report: &Report, oracle: &Oracle, chapter: &mut Chapter, tar
     chapter.table("biases", &["scene", "estimator", "deviation", "bias over error"], 2, biases);
     chapter.paragraph(&format!(
         "The default pixel by pixel: mean squared error over the plain mean's, of the same samples; how many percent of the pixels are beyond \
-         {bad}, the worst pixel, and the median pixel."
+         {bad}, with its {confidence} % interval (bootstrap over {batches} batches of seeds), the worst pixel, and the median pixel. Pixels where neither has an error do not          count; those where only the plain mean has none count as beyond."
     ));
-    chapter.table("pixels", &["scene", "percent beyond", "worst", "median"], 1, pixels);
+    chapter.table("pixels", &["scene", "pixels", "percent beyond", "worst", "median"], 1, pixels);
     Ok(())
+}
+
+/// Mean squared errors of both, in batches of consecutive seeds.
+fn batches(plain: &[Rgb32FImage], own: &[Rgb32FImage], reference: &Reference) -> Vec<Batch> {
+    let size = (plain.len() / BATCHES as usize).max(1);
+    let pairs = plain.chunks(size).zip(own.chunks(size));
+    pairs.map(|(plain, own)| [plain, own].map(|images| moments(images, reference).squares)).collect()
 }

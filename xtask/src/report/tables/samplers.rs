@@ -84,6 +84,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
 
 fn measure(section: &Section, tiles: &Tiles, public: &Public, scene: &'static str, spp: u32) -> Result<Measured> {
     let view = View::new(scene, section.measurement.plan.tile_size);
+    let dims = scenes::find(scene)?.dims;
     let run = |sampler: Sampler, estimators: &[&str]| {
         let seeds = section.measurement.plan.seeds;
         section.measurement.run(&Experiment { sampler, seeds, ..Experiment::new(view, spp, estimators) })
@@ -91,11 +92,11 @@ fn measure(section: &Section, tiles: &Tiles, public: &Public, scene: &'static st
     let mut samplers = Vec::new();
     for choice in OWN {
         // The tile of four dimensions is for scenes that have them.
-        let fits = choice != Choice::Tile(4) || scenes::find(scene).dims >= 3;
+        let fits = choice != Choice::Tile(4) || dims >= 3;
         let sampler = choice.sampler(spp, tiles).filter(|_| fits);
         samplers.push(sampler.map(|sampler| run(sampler, &[BASELINE, SHARED])).transpose()?);
     }
-    for file in public.files(spp, scenes::find(scene).dims)? {
+    for file in public.files(spp, dims)? {
         samplers.push(Some(run(Sampler::Table(Path::new(&file)), &[BASELINE])?));
     }
     let errors = |estimator: &str| -> Result<Vec<Option<Errors>>> {
