@@ -68,10 +68,13 @@ pub(super) fn write(report: &Report) -> Result<()> {
     classify.write(&context, &mut body, &mut targets)?;
     polynomial::write(&context, &polynomial, &mut body, &mut targets)?;
     if context.sizes() == "full" {
-        photograph::write(&context, &mut body)?;
+        photograph::write(&context, &mut body, &mut targets)?;
     }
     context.bar.finish_and_clear();
     introduce(&mut chapter);
+    if let Some(note) = context.measured.note() {
+        chapter.paragraph(&note);
+    }
     targets.write_summary(&mut chapter);
     chapter.append(body);
     report.write(&chapter)
