@@ -74,6 +74,20 @@ mod linked {
             u[0] + u[1]
         }
 
+        /// The sum of four numbers of the pixel's own domain.
+        #[inline]
+        pub fn root4(&self, x: u32, y: u32, index: u32) -> f32 {
+            let mut u = [0.0; 4];
+            // SAFETY: the tile lives, and there is room for four numbers.
+            unsafe { nf_sampler_draw(nf_sampler_pixel(self, x, y, 0, index), 4, u.as_mut_ptr()) };
+            (u[0] + u[1]) + (u[2] + u[3])
+        }
+
+        /// Numbers of a sample.
+        pub fn dims(&self) -> u32 {
+            self.dims
+        }
+
         /// The sum of two numbers of a child domain.
         #[inline]
         pub fn child(&self, x: u32, y: u32, index: u32, key: u32) -> f32 {
@@ -109,6 +123,14 @@ mod missing {
         }
 
         pub fn root(&self, _: u32, _: u32, _: u32) -> f32 {
+            match *self {}
+        }
+
+        pub fn root4(&self, _: u32, _: u32, _: u32) -> f32 {
+            match *self {}
+        }
+
+        pub fn dims(&self) -> u32 {
             match *self {}
         }
 

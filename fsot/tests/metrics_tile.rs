@@ -3,7 +3,7 @@
 use crate::metrics_common::{assert_mean, assert_near, random};
 use fsot::metrics::integrands::{Family, Integrand};
 use fsot::metrics::tile::{Energies, FILTERS, FamilyEnergies, TileOptions, TileReport, TileView, integrands};
-use fsot::metrics::{error_spectrum, measure_tile};
+use fsot::metrics::{error_spectrum, measure_energies, measure_tile};
 use fsot::points::Points;
 
 const FAMILIES: [Family; 2] = [Family::HalfSpace, Family::Gaussian];
@@ -251,4 +251,19 @@ fn what_is_no_tile_is_refused() {
     for alpha in [0.0, -1.0, 1.1, f64::NAN] {
         assert!(measure_tile(&view, &TileOptions { integrands: 2, alphas: vec![alpha] }).is_err());
     }
+}
+
+/// All samples' energies alone are those of the report; another first number is another draw of integrands, of the same expectation.
+#[test]
+fn energies_of_numbered_integrands() {
+    let tile = Tile::random(16, 4, 2, 2, 5);
+    let view = TileView::new(16, 4, 2, 2, tile.points.coordinates()).unwrap();
+    let whole = tile.measure(32, &[]).prefixes.last().unwrap().energies;
+    assert_eq!(measure_energies(&view, 0, 32).unwrap(), whole);
+    let other = measure_energies(&view, 1 << 32, 32).unwrap();
+    assert_ne!(other, whole);
+    for (a, b) in [(other.half_spaces, whole.half_spaces), (other.gaussians, whole.gaussians)] {
+        assert!((a.raw / b.raw - 1.0).abs() < 0.2, "{} {}", a.raw, b.raw);
+    }
+    assert!(measure_energies(&view, 0, 0).is_err());
 }

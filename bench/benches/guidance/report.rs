@@ -7,16 +7,16 @@ use noisefloor_tests::statistics::{geometric_mean, median};
 use std::fmt::Write;
 
 /// The figures of a cell.
-struct Summary {
-    raw: f64,
+pub(crate) struct Summary {
+    pub(crate) raw: f64,
     /// The largest ratio to the plain mean of the same samples; the plain mean's own is to that of independent samples.
-    worst: f64,
-    filtered: f64,
+    pub(crate) worst: f64,
+    pub(crate) filtered: f64,
     worst_filtered: f64,
-    ns: f64,
+    pub(crate) ns: f64,
 }
 
-fn summary(cell: &Cell, cells: &[Cell]) -> Summary {
+pub(crate) fn summary(cell: &Cell, cells: &[Cell]) -> Summary {
     let same = |other: &&Cell| {
         (other.dims, other.n, other.source, other.method.kind) == (cell.dims, cell.n, cell.source, Kind::Mean)
     };
@@ -26,9 +26,9 @@ fn summary(cell: &Cell, cells: &[Cell]) -> Summary {
         let own = |index: usize| mean.map_or(1.0, |mean| of(&mean.errors[index]));
         cell.errors.iter().enumerate().map(|(index, errors)| of(errors) / own(index)).fold(0.0, f64::max)
     };
-    // The same work whatever the samples: on a busy machine the least is nearest to what it takes.
+    // The same work whatever the samples and integrands: on a busy machine the least is nearest to what it takes.
     let same = |other: &&Cell| (other.dims, other.n, other.method) == (cell.dims, cell.n, cell.method);
-    let times = cells.iter().filter(same);
+    let times = cells.iter().filter(same).flat_map(|other| other.ns.iter().copied());
     // A filtered image has few independent pixels, and a logarithm of few is too small: first the mean of what is alike.
     let filtered: Vec<f64> = cell
         .errors
@@ -40,12 +40,12 @@ fn summary(cell: &Cell, cells: &[Cell]) -> Summary {
         worst: worst(|errors| errors.raw),
         filtered: geometric_mean(&filtered),
         worst_filtered: worst(|errors| errors.filtered),
-        ns: times.map(|other| median(&other.ns)).fold(f64::INFINITY, f64::min),
+        ns: times.fold(f64::INFINITY, f64::min),
     }
 }
 
 /// Three significant digits without a leading zero.
-fn figure(value: f64) -> String {
+pub(crate) fn figure(value: f64) -> String {
     let text = match value {
         9.95.. => format!("{value:.0}"),
         0.995.. => format!("{value:.1}"),
@@ -71,7 +71,6 @@ pub(crate) fn markdown(cells: &[Cell]) -> Result<String> {
         rows(cells, dims, &mut out, |s| format!("{}, {} ({})", figure(s.raw), figure(s.filtered), figure(s.worst)))?;
         writeln!(out)?;
     }
-    decisions(cells, &mut out)?;
     writeln!(out, "### Nanoseconds per sample\n")?;
     for dims in measured(cells) {
         writeln!(out, "| {dims} dims | |{}", COUNTS.map(|n| format!(" n = {n} |")).concat())?;
@@ -98,66 +97,6 @@ fn rows(cells: &[Cell], dims: usize, out: &mut String, text: impl Fn(&Summary) -
         let here: Vec<&Cell> = cells.iter().filter(|cell| cell.source == source && cell.dims == dims).collect();
         line(source.name(), &here, cells, dims, out, &text)?;
     }
-    Ok(())
-}
-
-/// Nanoseconds that a sample is taken to cost for each of its dims.
-const COST: f64 = 1000.0;
-/// How much worse than the plain mean of the same samples an estimator may be for any integrand.
-const TOLERANCE: f64 = 1.05;
-
-/// The geometric mean of raw and filtered error.
-fn error(s: &Summary) -> f64 {
-    (s.raw * s.filtered).sqrt()
-}
-
-/// What is best: of the kinds of stratified samples by the plain mean's error, of estimators by error times time.
-fn decisions(cells: &[Cell], out: &mut String) -> Result<()> {
-    let at = |dims: usize, n: usize| cells.iter().filter(move |cell| (cell.dims, cell.n) == (dims, n));
-    let header = COUNTS.map(|n| format!(" n = {n} |")).concat();
-    writeln!(out, "### Best\n\n| dims | samples | neighbours |{header}\n|---|---|---|{}", "---|".repeat(COUNTS.len()))?;
-    for dims in measured(cells) {
-        let best = |n: usize| {
-            let means = at(dims, n).filter(|cell| cell.method.kind == Kind::Mean && cell.source != Source::Independent);
-            let means = means.map(|cell| (cell.source, error(&summary(cell, cells))));
-            means
-                .min_by(|a, b| a.1.total_cmp(&b.1))
-                .map_or(" – |".to_owned(), |(source, _)| format!(" {} |", source.name()))
-        };
-        writeln!(out, "| {dims} | stratified | |{}", COUNTS.map(best).concat())?;
-        for stratified in [false, true] {
-            for shared in [false, true] {
-                let best = |n: usize| {
-                    // A recommended kind, or one that stands for it: a tile of 1 sample, continued, is a Sobol sequence.
-                    let source = match (stratified, n) {
-                        (false, _) => Source::Independent,
-                        (true, ..4) if Source::Tile4.is_main(dims, n) => Source::Tile4,
-                        (true, ..64) => Source::Tile,
-                        (true, _) => Source::Sobol,
-                    };
-                    let here = at(dims, n).filter(|cell| cell.source == source).filter(|cell| match cell.method.kind {
-                        Kind::Mean => true,
-                        Kind::PerPixel => !stratified,
-                        Kind::Blocks | Kind::Windows => shared,
-                    });
-                    let worth = |cell: &Cell| {
-                        let s = summary(cell, cells);
-                        let safe = cell.method.kind == Kind::Mean || s.worst < TOLERANCE;
-                        (safe && cell.method.regressed == dims).then(|| error(&s) * (COST * dims as f64 + s.ns))
-                    };
-                    let all = here.filter_map(|cell| Some((cell, worth(cell)?)));
-                    all.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(" – |".to_owned(), |(cell, _)| {
-                        let s = summary(cell, cells);
-                        format!(" {}: {}, {} |", cell.method.name(dims), figure(s.raw), figure(s.filtered))
-                    })
-                };
-                let names =
-                    [["independent", "stratified"][usize::from(stratified)], ["–", "shared"][usize::from(shared)]];
-                writeln!(out, "| {dims} | {} | {} |{}", names[0], names[1], COUNTS.map(best).concat())?;
-            }
-        }
-    }
-    writeln!(out)?;
     Ok(())
 }
 
@@ -197,7 +136,7 @@ pub(crate) fn csv(cells: &[Cell]) -> Result<String> {
     for cell in cells {
         let s = summary(cell, cells);
         for errors in &cell.errors {
-            let (source, method) = (cell.source.name().replace(',', ""), cell.method);
+            let (source, method) = (cell.source.name().replace(',', ";"), cell.method);
             write!(out, "{},{},{source},{:?},{},{},", cell.dims, cell.n, method.kind, method.regressed, method.order)?;
             write!(
                 out,

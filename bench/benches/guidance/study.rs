@@ -7,6 +7,7 @@ use noisefloor::control_variate::{
     Config, Estimate, Image, Samples, estimate, estimate_image, image_workspace_len, workspace_len,
 };
 use noisefloor_tests::random::{SplitMix64, mix};
+use rayon::prelude::*;
 use std::fs;
 use std::time::Instant;
 
@@ -17,6 +18,16 @@ pub(crate) const CHANNELS: usize = 3;
 /// The filter's standard deviation, and where it is cut.
 const DEVIATION: f64 = 2.1;
 const RADIUS: usize = 5;
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Extent {
+    /// Two kinds of integrands: whether everything works.
+    Quick,
+    Default,
+    /// Four times the integrands, and the cells that take longest.
+    Full,
+}
 
 /// How samples become an estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,10 +68,14 @@ impl Method {
         if dims > 4 {
             methods.push(Self { kind: Kind::Windows, order: 2, regressed: 4 });
         }
-        // Most of the time would go there.
-        let large = |method: &Self| method.order == 2 && method.regressed > 8 && n >= 64 && method.kind != Kind::Blocks;
-        methods.retain(|method| full || !large(method));
-        methods.retain(|method| Config::new(method.regressed, method.order, CHANNELS).terms().is_ok());
+        let terms = |method: &Self| Config::new(method.regressed, method.order, CHANNELS).terms();
+        // Most of the time would go there: overlapping windows, or each pixel on its own, with many functions.
+        let large = |method: &Self| match method.kind {
+            Kind::Windows => terms(method).is_ok_and(|terms| terms > 30),
+            Kind::PerPixel => terms(method).is_ok_and(|terms| terms > 100) && n >= 64,
+            _ => false,
+        };
+        methods.retain(|method| terms(method).is_ok() && (full || !large(method)));
         methods
     }
 
@@ -164,37 +179,52 @@ impl Clock {
     }
 }
 
+/// What one image gives: for each method its errors, and the times.
+type Measured = Vec<(Vec<Errors>, f64)>;
+
 /// Adds the cells of all kinds of samples.
-pub(crate) fn measure(cells: &mut Vec<Cell>, dims: usize, n: usize, full: bool) -> Result<()> {
-    let (side, repetitions) = (side(dims, n), if full { 4 } else { 1 });
+pub(crate) fn measure(cells: &mut Vec<Cell>, dims: usize, n: usize, extent: Extent) -> Result<()> {
+    let (side, repetitions) = (side(dims, n), if extent == Extent::Full { 4 } else { 1 });
+    let kinds = Family::ALL.into_iter().flat_map(|family| Variant::ALL.map(|variant| (family, variant)));
+    let kinds: Vec<_> = kinds.take(if extent == Extent::Quick { 2 } else { usize::MAX }).collect();
+    let images: Vec<_> =
+        (0..repetitions).flat_map(|repetition| kinds.iter().map(move |&kind| (repetition, kind))).collect();
     for source in Source::ALL.into_iter().filter(|source| source.applies(dims, n)) {
-        let methods = Method::all(source, dims, n, full);
-        let new = |&method: &Method| Cell { dims, n, source, method, errors: vec![], ns: vec![], draw_ns: vec![] };
-        let mut here: Vec<Cell> = methods.iter().map(new).collect();
-        for repetition in 0..repetitions {
-            for (family, variant) in Family::ALL.into_iter().flat_map(|f| Variant::ALL.map(|v| (f, v))) {
-                // The same integrands whatever the samples and their number.
-                let seed = mix((repetition * 8 + family as usize * 2 + variant as usize) as u64 ^ (dims as u64) << 32);
-                let mut rng = SplitMix64::new(seed);
-                let scenes = [(); CHANNELS].map(|()| Scene::new(family, variant, dims, &mut rng));
-                let start = Clock::now();
-                let u = source.points(dims, n, side, mix(seed ^ (n as u64) << 16 ^ source as u64))?;
-                let total = (side * side * n) as f64;
-                let draw_ns = start.ns() / total;
-                let f = values(&scenes, &u, dims, n, side);
-                let truth = scenes.each_ref().map(|scene| scene.moments(side));
-                for cell in &mut here {
-                    let (estimates, ns) = cell.method.estimates(Samples::new(&u, &f), dims, side, n)?;
-                    cell.ns.push(ns / total);
-                    cell.draw_ns.push(draw_ns);
-                    for (estimates, truth) in estimates.iter().zip(&truth) {
-                        let [raw, filtered] = score(estimates, truth, side, n);
-                        cell.errors.push(Errors { family, variant, raw, filtered });
-                    }
-                }
-            }
+        let methods = Method::all(source, dims, n, extent == Extent::Full);
+        let one = |&(repetition, (family, variant)): &(usize, (Family, Variant))| -> Result<(Measured, f64)> {
+            // The same integrands whatever the samples and their number.
+            let seed = mix((repetition * 8 + family as usize * 2 + variant as usize) as u64 ^ (dims as u64) << 32);
+            let mut rng = SplitMix64::new(seed);
+            let scenes = [(); CHANNELS].map(|()| Scene::new(family, variant, dims, &mut rng));
+            let start = Clock::now();
+            let u = source.points(dims, n, side, mix(seed ^ (n as u64) << 16 ^ source as u64))?;
+            let total = (side * side * n) as f64;
+            let draw_ns = start.ns() / total;
+            let f = values(&scenes, &u, dims, n, side);
+            let truth = scenes.each_ref().map(|scene| scene.moments(side));
+            let measured = methods.iter().map(|method| {
+                let (estimates, ns) = method.estimates(Samples::new(&u, &f), dims, side, n)?;
+                let errors = estimates.iter().zip(&truth).map(|(estimates, truth)| {
+                    let [raw, filtered] = score(estimates, truth, side, n);
+                    Errors { family, variant, raw, filtered }
+                });
+                Ok((errors.collect(), ns / total))
+            });
+            Ok((measured.collect::<Result<_>>()?, draw_ns))
+        };
+        let measured: Vec<(Measured, f64)> = images.par_iter().map(one).collect::<Result<_>>()?;
+        for (index, &method) in methods.iter().enumerate() {
+            let of = || measured.iter().map(|(methods, _)| &methods[index]);
+            cells.push(Cell {
+                dims,
+                n,
+                source,
+                method,
+                errors: of().flat_map(|(errors, _)| errors.iter().copied()).collect(),
+                ns: of().map(|&(_, ns)| ns).collect(),
+                draw_ns: measured.iter().map(|&(_, ns)| ns).collect(),
+            });
         }
-        cells.append(&mut here);
     }
     Ok(())
 }

@@ -160,16 +160,30 @@ pub fn measure_tile(tile: &TileView, options: &TileOptions) -> Result<TileReport
     if let Some(alpha) = options.alphas.iter().find(|&&a| !(a > 0.0 && a <= 1.0)) {
         return Err(Error::input(format!("a moving average of alpha {alpha}: it must be above 0 and at most 1")));
     }
-    let mut whole = energies(tile, &(0..tile.dims).collect::<Vec<_>>(), options);
+    let prefixes = tile.prefixes();
+    let mut whole = energies(tile, &(0..tile.dims).collect::<Vec<_>>(), &prefixes, 0, options);
     let pairs = (0..tile.dims).flat_map(|b| (0..b).map(move |a| [a, b]));
     let marginal = |axes: [usize; 2]| {
         let alone = TileOptions { integrands: options.integrands, alphas: Vec::new() };
-        MarginalEnergies { axes, prefixes: energies(tile, &axes, &alone).prefixes }
+        MarginalEnergies { axes, prefixes: energies(tile, &axes, &prefixes, 0, &alone).prefixes }
     };
     if tile.dims > 2 {
         whole.marginals = pairs.map(marginal).collect();
     }
     Ok(whole)
+}
+
+/// Energies of all samples and all dimensions on `count` integrands of each family (an odd number is rounded up), from number `first` on:
+/// other numbers are other integrands, so that several draws say how much of a figure is theirs. [`measure_tile`] begins with 0.
+///
+/// Errors: no integrand.
+pub fn measure_energies(tile: &TileView, first: u64, count: usize) -> Result<FamilyEnergies> {
+    let options = TileOptions { integrands: count, alphas: Vec::new() };
+    let axes: Vec<usize> = (0..tile.dims).collect();
+    match energies(tile, &axes, &[tile.spp], first, &options).prefixes.last() {
+        Some(all) if count > 0 => Ok(all.energies),
+        _ => Err(Error::input("0 integrands: give at least 1")),
+    }
 }
 
 /// The spectrum of the tile's error with all samples, averaged over integrands of both families and over frames and relative to white
@@ -181,7 +195,7 @@ pub fn error_spectrum(tile: &TileView, integrands: usize) -> Result<Spectrum> {
     let axes: Vec<usize> = (0..tile.dims).collect();
     let transform = Transform::new(tile.size);
     let pairs: Vec<[Integrand; 2]> =
-        [Family::HalfSpace, Family::Gaussian].iter().flat_map(|&f| pairs_of(f, &axes, integrands)).collect();
+        [Family::HalfSpace, Family::Gaussian].iter().flat_map(|&f| pairs_of(f, &axes, 0, integrands)).collect();
     let pixels = tile.size * tile.size;
     let part = |part: usize| {
         let mut power = vec![0.0; pixels];
@@ -213,13 +227,17 @@ pub fn error_spectrum(tile: &TileView, integrands: usize) -> Result<Spectrum> {
 /// The integrands that tiles of `dims` dimensions are measured with. Normals of half-spaces have no component below .001 (.03 in more
 /// than two dimensions).
 pub fn integrands(family: Family, dims: usize, count: usize) -> Vec<Integrand> {
+    numbered(family, dims, 0, count)
+}
+
+fn numbered(family: Family, dims: usize, first: u64, count: usize) -> Vec<Integrand> {
     let smallest = if dims > 2 { 0.03 } else { 1e-3 };
-    (0..count as u64).map(|i| Integrand::random(family, dims, smallest, SEED, i)).collect()
+    (first..first + count as u64).map(|i| Integrand::random(family, dims, smallest, SEED, i)).collect()
 }
 
 /// Two integrands share one complex transform. An odd number is rounded up.
-fn pairs_of(family: Family, axes: &[usize], count: usize) -> Vec<[Integrand; 2]> {
-    let all = integrands(family, axes.len(), count.next_multiple_of(2));
+fn pairs_of(family: Family, axes: &[usize], first: u64, count: usize) -> Vec<[Integrand; 2]> {
+    let all = numbered(family, axes.len(), first, count.next_multiple_of(2));
     all.chunks_exact(2).map(|pair| [pair[0].clone(), pair[1].clone()]).collect()
 }
 
@@ -268,8 +286,7 @@ struct Parts {
     times: Vec<Sums>,
 }
 
-fn energies(tile: &TileView, axes: &[usize], options: &TileOptions) -> TileReport {
-    let prefixes = tile.prefixes();
+fn energies(tile: &TileView, axes: &[usize], prefixes: &[usize], first: u64, options: &TileOptions) -> TileReport {
     let transform = Transform::new(tile.size);
     let filters: Vec<Plane> = FILTERS.iter().map(|&deviation| transform.gaussian(deviation)).collect();
     let filters: Vec<Vec<f64>> = filters.iter().map(|k| k.iter().map(|z| z.norm_sqr()).collect()).collect();
@@ -289,7 +306,7 @@ fn energies(tile: &TileView, axes: &[usize], options: &TileOptions) -> TileRepor
     };
     let add = |sums: &mut Sums, more: Sums| sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
     let families = [Family::HalfSpace, Family::Gaussian].map(|family| {
-        let pairs = pairs_of(family, axes, options.integrands);
+        let pairs = pairs_of(family, axes, first, options.integrands);
         let variance: f64 = pairs.iter().flatten().map(|i| i.variance).sum();
         let part = |part: usize| {
             let mut sums = Parts {
@@ -298,7 +315,7 @@ fn energies(tile: &TileView, axes: &[usize], options: &TileOptions) -> TileRepor
                 times: vec![[0.0; 4]; if temporal { tile.frames } else { 0 }],
             };
             for pair in pairs.iter().skip(part).step_by(PARTS) {
-                let mut images = errors(tile, axes, pair, &prefixes);
+                let mut images = errors(tile, axes, pair, prefixes);
                 for (frame, images) in images.chunks_mut(prefixes.len()).enumerate() {
                     let mut whole = [0.0; 4];
                     for (image, sums) in images.iter_mut().zip(&mut sums.prefixes) {

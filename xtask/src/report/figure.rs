@@ -21,7 +21,10 @@ pub(crate) enum Unit {
     Instructions,
     /// A number of any size.
     Scientific,
+    Seconds,
     Count,
+    /// Of any size: three digits.
+    Number,
     /// Standard deviations.
     Sigmas,
 }
@@ -38,7 +41,9 @@ impl Unit {
             Self::BytesPerItem => "bytes per item",
             Self::Instructions => "instructions",
             Self::Scientific => "number",
+            Self::Seconds => "seconds",
             Self::Count => "count",
+            Self::Number => "number",
             Self::Sigmas => "standard deviations",
         }
     }
@@ -47,7 +52,7 @@ impl Unit {
         match self {
             _ if !value.is_finite() => "-".to_owned(),
             Self::Ratio if value.abs() < 10.0 => format!("{value:.3}"),
-            Self::RelMseE3 => significant(value, 3),
+            Self::RelMseE3 | Self::Number | Self::Seconds => significant(value, 3),
             Self::Percent if value.abs() < 10.0 => format!("{value:.2}"),
             Self::Sigmas | Self::BytesPerItem => format!("{value:.2}"),
             Self::PerItem => format!("{value:.3}"),

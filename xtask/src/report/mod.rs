@@ -16,8 +16,11 @@ mod minibatch_tables;
 pub(crate) mod pictures;
 pub(crate) mod pixels;
 mod plan;
+mod points;
 mod povray;
+mod program;
 mod run;
+mod samplers;
 mod scenes;
 mod sign_flips;
 pub(crate) mod statistics;
@@ -67,6 +70,13 @@ const CHAPTERS: &[Entry] = &[
         "Estimators and samplers in a path tracer on Embree, scenes after the thesis's",
         embree::write,
     ),
+    entry(
+        "samplers",
+        120,
+        "Samplers beside each other, with and without estimators; what is recommended",
+        samplers::write,
+    ),
+    entry("points", 60, "Seconds against quality of point sets, 256 to a million points", points::write),
     entry("povray", 120, "The same on integrands that unmodified POV-Ray renders", povray::write),
 ];
 

@@ -81,6 +81,15 @@ impl Plan {
         self.name
     }
 
+    /// The same for a measurement program.
+    pub(crate) fn option(&self) -> Option<&'static str> {
+        match self.name {
+            "quick" => Some("--quick"),
+            "full" => Some("--full"),
+            _ => None,
+        }
+    }
+
     /// Those of `all` that are measured.
     pub(crate) fn some<'a, T>(&self, all: &'a [T]) -> &'a [T] {
         if self.few { &all[..all.len().min(1)] } else { all }

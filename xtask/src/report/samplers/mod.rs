@@ -1,0 +1,45 @@
+//! The chapter of samplers, and of samplers with estimators.
+
+mod decisions;
+mod draws;
+mod errors;
+mod grid;
+mod sheet;
+
+use super::Report;
+use super::chapter::Chapter;
+use super::program::{self, Csv};
+use super::targets::Targets;
+use crate::library;
+use anyhow::Result;
+
+pub(super) fn write(report: &Report) -> Result<()> {
+    println!("building the library and the programs that measure samplers");
+    library::build()?;
+    let [samplers, guidance] = [program::build("samplers")?, program::build("guidance")?];
+    report.compiled();
+    let samplers = program::measure(report, &samplers)?;
+    let guidance = program::measure(report, &guidance)?;
+    let read = |folder: &tempfile::TempDir, name: &str| Csv::read(&folder.path().join(name));
+    let (energies, times) = (read(&samplers, "energies.csv")?, read(&samplers, "draws.csv")?);
+    let (cells, decisions) = (read(&guidance, "cells.csv")?, read(&guidance, "decisions.csv")?);
+
+    let mut targets = Targets::default();
+    let mut chapter = Chapter::new("Samplers, alone and with estimators");
+    introduce(&mut chapter);
+    errors::write(report.output, &energies, &mut chapter, &mut targets)?;
+    draws::write(&times, &mut chapter, &mut targets)?;
+    sheet::write(report.output, samplers.path(), &mut chapter)?;
+    decisions::write(&decisions, &mut chapter)?;
+    grid::write(report.output, &cells, &mut chapter)?;
+    targets.write_summary(&mut chapter);
+    report.write(&chapter)
+}
+
+fn introduce(chapter: &mut Chapter) {
+    chapter.paragraph(
+        "Made by `cargo xtask report --only samplers`; machine-readable in `samplers.json` and `samplers-grid.csv`. First the samplers \
+         alone, the same integrand in every pixel: what a tile is made for. Then samplers with estimators, on integrands that change from \
+         pixel to pixel, and what `recommend()` makes of it.",
+    );
+}
