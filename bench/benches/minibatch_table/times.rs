@@ -3,7 +3,6 @@
 use crate::BATCH;
 use crate::methods::Method;
 use noisefloor::rng::Rng;
-use std::fs;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -83,10 +82,18 @@ impl Clock {
     }
 }
 
-/// Of this thread; Linux alone says. Asking takes some microseconds.
+/// Of this thread. Asking takes a fraction of a microsecond.
+#[cfg(unix)]
 fn processor_time() -> Option<Duration> {
-    let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    text.split_whitespace().next()?.parse().ok().map(Duration::from_nanos)
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: the one pointer is to a value of the type that the function writes.
+    let status = unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
+    (status == 0).then(|| Duration::new(time.tv_sec as u64, time.tv_nsec as u32))
+}
+
+#[cfg(not(unix))]
+fn processor_time() -> Option<Duration> {
+    None
 }
 
 /// One step.

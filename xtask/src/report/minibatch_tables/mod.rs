@@ -18,7 +18,8 @@ pub(super) fn write(report: &Report) -> Result<()> {
     let sizes = report.plan.name();
     let measured = Measured::new("tables", sizes, report.reuse)?;
     let path = |name: &str| measured.folder().join(name);
-    if !(report.reuse && path("drift.csv").exists()) {
+    let reused = report.reuse && path("drift.csv").exists();
+    if !reused {
         // The benches compile to more with the library.
         library::build()?;
         let mut measure = run::command(measured::bench("minibatch_table")?);
@@ -34,6 +35,11 @@ pub(super) fn write(report: &Report) -> Result<()> {
 
     let mut chapter = Chapter::new("Tables of importances");
     introduce(&mut chapter);
+    if reused {
+        chapter.paragraph(
+            "Written anew from what an earlier run measured: the time of this run does not hold that of measuring.",
+        );
+    }
     let (mut body, mut targets) = (Chapter::default(), Targets::default());
     times.write(&mut body, &mut targets, report.output)?;
     drift::memory(&items, &mut body, &mut targets)?;
