@@ -150,6 +150,11 @@ impl Chapter {
         self.text += &format!("\n![{description}]({file})\n");
     }
 
+    /// Headings so far.
+    pub(crate) fn sections(&self) -> &[String] {
+        &self.sections
+    }
+
     /// What the index is told.
     pub(crate) fn hand_over(&mut self, mut targets: Vec<Judged>) {
         self.targets.append(&mut targets);

@@ -12,7 +12,7 @@ pub(crate) fn numbers_are_recorded(markdown: &str, json: &str) -> Result<()> {
     let json: Value = serde_json::from_str(json).context("the report's JSON is damaged")?;
     figures_are_their_values(&json)?;
     let list = |name: &str| json[name].as_array().map_or(&[][..], Vec::as_slice);
-    let (mut known, mut found) = (BTreeSet::new(), 0);
+    let (mut known, mut found, mut unknown) = (BTreeSet::new(), 0, Vec::new());
     collect(&json["settings"], &mut known);
     collect(&texts(&json["quoted"]), &mut known);
     let mut tables = list("tables").iter();
@@ -31,13 +31,21 @@ pub(crate) fn numbers_are_recorded(markdown: &str, json: &str) -> Result<()> {
                 bail!("the JSON has no section `{heading}`");
             }
         } else {
-            for number in numbers(&without_references(line)) {
+            // A whole paragraph: a reference may be broken between its lines.
+            let mut text = line.to_owned();
+            while let Some(more) = lines.next_if(|line| !line.is_empty() && !line.starts_with(['|', '#'])) {
+                text += &format!(" {}", more.trim());
+            }
+            for number in numbers(&without_references(&text)) {
                 found += 1;
                 if !known.contains(&number) {
-                    bail!("the text says {number}, which is neither a quoted figure nor a setting of the JSON: {line}");
+                    unknown.push(format!("{number} in: {text}"));
                 }
             }
         }
+    }
+    if !unknown.is_empty() {
+        bail!("the text says what is neither a quoted figure nor a setting of the JSON: {}", unknown.join("\n"));
     }
     if let Some(table) = tables.next() {
         bail!("the JSON's table {} is not in the text", table["name"]);
@@ -119,6 +127,8 @@ fn collect(value: &Value, known: &mut BTreeSet<String>) {
     match value {
         Value::Number(number) => {
             known.insert(number.to_string());
+            // A text has 5 where JSON has 5.0.
+            known.extend(number.as_f64().map(|number| number.to_string()));
         }
         Value::String(text) => known.extend(numbers(text)),
         Value::Array(values) => values.iter().for_each(|value| collect(value, known)),
@@ -127,7 +137,8 @@ fn collect(value: &Value, known: &mut BTreeSet<String>) {
     }
 }
 
-/// Drops what is in backquotes and in parentheses of links, and the numbers behind the words figure and chapter.
+/// Drops what is in backquotes and in parentheses of links, and the numbers behind the words figure and chapter, and years
+/// behind authors' names.
 fn without_references(line: &str) -> String {
     let outside_code: String = line.split('`').step_by(2).collect::<Vec<_>>().join(" ");
     let mut rest = outside_code.as_str();
@@ -138,7 +149,7 @@ fn without_references(line: &str) -> String {
     }
     text += rest;
     let mut kept = String::new();
-    let mut reference = false;
+    let (mut reference, mut before) = (false, "");
     for word in text.split_whitespace() {
         let is_number = word.trim_start_matches('(').starts_with(|c: char| c.is_ascii_digit());
         reference = if is_number || word == "and" || word == "to" {
@@ -146,10 +157,14 @@ fn without_references(line: &str) -> String {
         } else {
             matches!(
                 word.trim_start_matches('(').to_lowercase().as_str(),
-                "figure" | "figures" | "chapter" | "section" | "equation"
+                "figure" | "figures" | "chapter" | "chapters" | "section" | "sections" | "equation" | "equations"
             )
         };
-        if !(reference && is_number) {
+        let year =
+            word.trim_end_matches([',', '.', ':', ';', ')']).parse().is_ok_and(|year| (1900..2100).contains(&year));
+        let cited = year && (before == "al." || before.starts_with(|c: char| c.is_uppercase()));
+        before = word;
+        if !(cited || reference && is_number) {
             kept += word;
             kept.push(' ');
         }
@@ -210,6 +225,25 @@ mod tests {
         );
         assert!(numbers(&without_references("(figures 4.4 and 4.5), chapter 5: `n = 3` [x](a1.svg 7)")).is_empty());
         assert_eq!(numbers(&without_references("figure 4.4 has 3 rows")), ["3"]);
+        assert_eq!(
+            numbers(&without_references("Heitz 2019: Kim et al. 2004, the 2000 samples, MC 2500")),
+            ["2000", "2500"]
+        );
+    }
+
+    #[test]
+    fn chapters_that_are_committed_are_recorded() {
+        let folder = crate::paths::root().join("docs/report");
+        for entry in std::fs::read_dir(&folder).expect("the report is committed") {
+            let path = entry.expect("readable").path();
+            if path.extension().is_some_and(|end| end == "json") {
+                let [json, text] = ["json", "md"]
+                    .map(|end| std::fs::read_to_string(path.with_extension(end)).expect("both are committed"));
+                if let Err(error) = numbers_are_recorded(&text, &json) {
+                    panic!("{}: {error:#}", path.display());
+                }
+            }
+        }
     }
 
     fn check(markdown: &str) -> Result<()> {
@@ -248,7 +282,7 @@ mod tests {
 
     #[test]
     fn a_figure_is_its_value_rounded() {
-        for (text, value) in [("0.250 [0.2, 0.3]", 0.2504), ("-3.1", -3.14), ("1.30e-3", 0.001_299), ("12", 12.4)] {
+        for (text, value) in [("0.250 [0.2, 0.3]", 0.2504), ("-2.1", -2.14), ("1.30e-3", 0.001_299), ("12", 12.4)] {
             assert!(figure_is_its_value(text, value).is_ok(), "{text}");
         }
         for (text, value) in [("0.250", 0.2506), ("12", 12.6), ("word", 1.0), ("1.30e-3", 0.001_31)] {

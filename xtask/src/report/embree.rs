@@ -1,7 +1,9 @@
 //! The chapter of the Embree harness.
 
 use super::Report;
-use super::chapter::Chapter;
+use super::chapter::{Chapter, row};
+use super::clock::Clock;
+use super::figure::{Figure, Unit};
 use super::measurement::Measurement;
 use super::tables::{SECTIONS, Section};
 use super::targets::Targets;
@@ -23,9 +25,10 @@ pub(super) fn write(report: &Report) -> Result<()> {
     let bar = progress::bar(SECTIONS.iter().map(|(seconds, _)| seconds * SECOND).sum())?;
     let measurement = Measurement::new(report.plan, &renderer, &bar)?;
     let (mut body, mut targets) = (Chapter::default(), Targets::default());
-    let mut start = 0;
+    let (mut start, mut times) = (0, Vec::new());
     for (seconds, section) in SECTIONS {
         let end = start + seconds * SECOND;
+        let (clock, before) = (Clock::start(), body.sections().len());
         measurement.begin_section(start, end);
         let (chapter, targets) = (&mut body, &mut targets);
         section(&mut Section {
@@ -36,6 +39,13 @@ pub(super) fn write(report: &Report) -> Result<()> {
             large: report.large,
         })?;
         interrupt::check(&report.interrupted)?;
+        let name = body.sections().get(before).cloned().unwrap_or_default();
+        let text = |seconds: Option<f64>| seconds.map_or("unknown".to_owned(), |seconds| format!("{seconds:.0}"));
+        let [wall, processor] = [text(Some(clock.seconds())), text(clock.processor_seconds())];
+        // Where there is no terminal, and so no bar, this alone tells how far it is.
+        bar.suspend(|| println!("   {name}: {wall} s, {processor} CPU seconds"));
+        let whole = |seconds: f64| Figure::exact(seconds, Unit::Count);
+        times.push(row![name, whole(clock.seconds()), clock.processor_seconds().map(whole)]);
         start = end;
     }
     bar.finish_and_clear();
@@ -44,6 +54,11 @@ pub(super) fn write(report: &Report) -> Result<()> {
     targets.write_summary(&mut chapter);
     chapter.append(body);
     targets.write_all(&mut chapter);
+    chapter.section("Where the time went", "");
+    chapter.paragraph(
+        "A section's references, and experiments that later sections show too, are counted where they are made.",
+    );
+    chapter.table("time", &["from section", "seconds", "CPU seconds"], 1, times);
     report.write(&chapter)
 }
 

@@ -40,7 +40,7 @@ impl Plan {
             spp: &[16, 64, 256],
             many: 256,
             pixel_seeds: 256,
-            frames: 1000,
+            frames: 1008,
             animation: [16, 10],
             name: "default",
             few: false,
