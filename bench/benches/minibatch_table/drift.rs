@@ -32,7 +32,8 @@ pub(crate) fn measure(updates: u64) -> [Drift; 2] {
     ours.set_uniform_fraction(0.0).expect("a fraction");
     let mut theirs = tree(&q);
     for _ in 0..updates.div_ceil(BATCH as u64) {
-        let index: [u32; BATCH] = std::array::from_fn(|_| (u64::from(rng.next_u32()) * u64::from(ITEMS) >> 32) as u32);
+        let index: [u32; BATCH] =
+            std::array::from_fn(|_| ((u64::from(rng.next_u32()) * u64::from(ITEMS)) >> 32) as u32);
         let value: [f32; BATCH] = std::array::from_fn(|_| importance(&mut rng));
         for (&item, &value) in index.iter().zip(&value) {
             q[item as usize] = value;

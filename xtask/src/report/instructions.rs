@@ -17,12 +17,12 @@ pub(super) fn write(report: &Report) -> Result<()> {
     let mut chapter = Chapter::new("Instructions of the hottest functions");
     let compiler = chapter.setting("compiler", counted.compiler.as_str()).to_owned();
     let vector_units = chapter.setting("vector units", counted.vector_units.as_str()).to_owned();
-    chapter.paragraph(&format!(
+    chapter.paragraph(
         "Made by `cargo xtask report`; machine-readable in `instructions.json`; the program is `bench/instructions.c`. Instructions of the C \
          functions as valgrind's callgrind counts them: the same in every run, so that a change of the code shows on a busy machine where \
          times do not. `cargo xtask test` counts again and fails where a function takes 3 % more, if the compiler is the same. \
-         Counts are no times: an instruction that waits for memory counts as one."
-    ));
+         Counts are no times: an instruction that waits for memory counts as one.",
+    );
     chapter.setting("tolerance, percent", 3);
     chapter.paragraph(&format!(
         "Compiled by {compiler}. Vector units that the library found under valgrind, which knows none wider than AVX2: {vector_units}."

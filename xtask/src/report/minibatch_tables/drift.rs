@@ -44,14 +44,13 @@ pub(super) fn write(csv: &str, chapter: &mut Chapter, targets: &mut Targets) -> 
         let updates = chapter.quote("drift: updates", count(updates));
         let one = chapter.setting("drift: one item in so many is set to 0", 8);
         chapter.paragraph(&format!(
-            "{updates} updates of random ones of {items} items, one in {one} of them to 0, without a uniform mixture. Changed: numbers that are not \
+            "{updates} updates of random ones of {items} items, one in {one} of them to nothing, without a uniform mixture. Changed: numbers that are not \
              those of a table newly made of the same importances: of `nf_table` the sums that it keeps, of the tree the weights that it gives \
-             back. Risen: items of importance 0 that can be drawn. Lost: others that cannot. The error is that of an item's probability, relative, \
+             back. Risen: items of no importance that can be drawn. Lost: others that cannot. The error is that of an item's probability, relative, \
              the largest, against the importances in f64."
         ));
     }
-    let [changed, compared, risen, lost, error] =
-        ["changed", "compared", "risen", "lost", "error"].map(|name| number(name));
+    let [changed, compared, risen, lost, error] = ["changed", "compared", "risen", "lost", "error"].map(number);
     let (changed, compared, risen, lost, error) = (changed?, compared?, risen?, lost?, error?);
     let mut cells: Vec<Vec<Cell>> = Vec::new();
     for (index, method) in rows.all("method")?.into_iter().enumerate() {
