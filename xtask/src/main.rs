@@ -8,6 +8,7 @@ mod examples;
 mod fit;
 mod header;
 mod install;
+mod instructions;
 mod library;
 mod links;
 mod measure;
@@ -16,6 +17,8 @@ mod paths;
 mod povray;
 mod povray_patched;
 mod python;
+#[cfg(test)]
+mod quotes;
 mod release;
 mod report;
 mod run;

@@ -1,8 +1,8 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
 use crate::{
-    abi, c_tests, embree, examples, fit, header, install, library, links, path_tracer, povray, povray_patched, python,
-    release, report, run, tools, train_mlp,
+    abi, c_tests, embree, examples, fit, header, install, instructions, library, links, path_tracer, povray,
+    povray_patched, python, release, report, run, tools, train_mlp,
 };
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -108,6 +108,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         ["control_variates", "hard_cases"].into_iter().try_for_each(report::check_quick)?;
         Ok(Outcome::Passed)
     });
+    steps.run("instruction counts: none above the committed report's by 3 %", || instructions::check(&archive()?));
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));
     steps.run("examples_c/fit_image.cpp: short runs", || fit::photograph(&archive()?));

@@ -3,7 +3,7 @@
 
 mod estimators;
 mod tiles;
-mod training;
+pub(crate) mod training;
 
 use crate::measure::interrupt;
 use crate::measure::output::Output;

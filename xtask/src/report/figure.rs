@@ -12,6 +12,15 @@ pub(crate) enum Unit {
     RelMseE3,
     Percent,
     Nanoseconds,
+    /// Of a step of training.
+    Microseconds,
+    /// Nanoseconds, of a pass over all items.
+    PerItem,
+    BytesPerItem,
+    /// Of the processor.
+    Instructions,
+    /// A number of any size.
+    Scientific,
     Seconds,
     Count,
     /// Of any size: three digits.
@@ -29,6 +38,11 @@ impl Unit {
             Self::RelMseE3 => "1e-3 relMSE",
             Self::Percent => "percent",
             Self::Nanoseconds => "nanoseconds per sample",
+            Self::Microseconds => "microseconds per step",
+            Self::PerItem => "nanoseconds per item",
+            Self::BytesPerItem => "bytes per item",
+            Self::Instructions => "instructions",
+            Self::Scientific => "number",
             Self::Seconds => "seconds",
             Self::Count => "count",
             Self::Number => "number",
@@ -43,9 +57,15 @@ impl Unit {
             Self::Ratio if value.abs() < 10.0 => format!("{value:.3}"),
             Self::RelMseE3 | Self::Number | Self::Seconds => significant(value, 3),
             Self::Percent if value.abs() < 10.0 => format!("{value:.2}"),
-            Self::Sigmas => format!("{value:.2}"),
+            Self::Sigmas | Self::BytesPerItem => format!("{value:.2}"),
+            Self::PerItem => format!("{value:.3}"),
+            Self::Microseconds => significant(value, 3),
+            Self::Instructions if value.abs() < 1000.0 => significant(value, 4),
+            Self::Instructions => format!("{value:.0}"),
             Self::Error if value == 0.0 => "0".to_owned(),
             Self::Error => format!("{value:.2e}"),
+            Self::Scientific if value == 0.0 => "0".to_owned(),
+            Self::Scientific => format!("{value:.1e}"),
             Self::Nanoseconds | Self::Count if value.abs() >= 10.0 || self == Self::Count => format!("{value:.0}"),
             Self::Ratio | Self::Percent | Self::Nanoseconds | Self::Count => format!("{value:.1}"),
         }

@@ -8,10 +8,14 @@ mod clock;
 mod control_variates;
 mod embree;
 pub(crate) mod figure;
+mod gradients;
 mod hard_cases;
 mod index;
+mod instructions;
 mod machine;
+mod measured;
 mod measurement;
+mod minibatch_tables;
 pub(crate) mod pictures;
 pub(crate) mod pixels;
 mod plan;
@@ -55,6 +59,14 @@ const fn entry(name: &'static str, seconds: u64, description: &'static str, writ
 
 /// In the order of the index.
 const CHAPTERS: &[Entry] = &[
+    entry("tables", 50, "Time, memory and drift of importance tables, beside public peers", minibatch_tables::write),
+    entry(
+        "gradients",
+        80,
+        "Variance of minibatches' gradients, and test error at equal steps and equal time",
+        gradients::write,
+    ),
+    entry("instructions", 15, "What callgrind counts: the same on a busy machine", instructions::write),
     entry(
         "control_variates",
         140,
@@ -92,6 +104,9 @@ pub(crate) struct Options {
     /// Where everything goes [default: docs/report, and the large pictures target/report]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Write texts anew from what was measured before (target/report/measured), where a chapter keeps it
+    #[arg(long)]
+    reuse: bool,
     /// A program with the Embree harness's command line, instead of the one that is built
     #[arg(long, value_name = "FILE", hide = true)]
     program: Option<PathBuf>,
@@ -114,6 +129,8 @@ pub(crate) struct Report<'a> {
     /// EXR and full pictures.
     pub(crate) large: &'a Output,
     clock: Clock,
+    /// What was measured before may be taken as it is.
+    pub(crate) reuse: bool,
 }
 
 impl Report<'_> {

@@ -104,6 +104,7 @@ fn write(
         output: &output,
         large: &large,
         clock: Clock::start(),
+        reuse: options.reuse,
     };
     (entry.write)(&report)?;
     interrupt::check(interrupted)?;
@@ -133,7 +134,7 @@ pub(crate) fn check_quick(chapter: &str) -> Result<()> {
     let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
     let folder = scratch.path().join("report");
     let only = vec![chapter.to_owned()];
-    run(&Options { quick: true, full: false, only, out: Some(folder.clone()), program: None })?;
+    run(&Options { quick: true, full: false, only, out: Some(folder.clone()), program: None, reuse: false })?;
     let read = |name: &str| std::fs::read_to_string(folder.join(name)).with_context(|| format!("there is no {name}"));
     let text = read(&format!("{chapter}.md"))?;
     check::numbers_are_recorded(&text, &read(&format!("{chapter}.json"))?)?;

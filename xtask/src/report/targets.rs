@@ -173,6 +173,7 @@ impl Targets {
             let scenes = missed.iter().map(|target| {
                 let figure = Figure::brief(target.estimate, target.unit);
                 let name = format!("{}: {}", target.statement, target.scene);
+                chapter.setting(format!("place: {}", target.scene), target.scene.as_str());
                 format!("{} {}", target.scene, chapter.quote(name, figure))
             });
             let scenes = scenes.collect::<Vec<_>>().join(", ");

@@ -4,13 +4,13 @@ use crate::measure::plot::Series;
 use anyhow::{Context, Result, bail};
 
 /// A table as a trainer wrote it.
-pub(super) struct Rows<'a> {
+pub(crate) struct Rows<'a> {
     columns: Vec<&'a str>,
     rows: Vec<Vec<&'a str>>,
 }
 
 impl<'a> Rows<'a> {
-    pub(super) fn parse(csv: &'a str) -> Result<Self> {
+    pub(crate) fn parse(csv: &'a str) -> Result<Self> {
         let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
         let columns = lines.next().context("the table is empty")?;
         let rows: Vec<_> = lines.collect();
@@ -26,14 +26,20 @@ impl<'a> Rows<'a> {
     }
 
     /// Those whose `column` holds `value`.
-    pub(super) fn only(&self, column: &str, value: &str) -> Result<Self> {
+    pub(crate) fn only(&self, column: &str, value: &str) -> Result<Self> {
         let index = self.column(column)?;
         let rows = self.rows.iter().filter(|row| row.get(index) == Some(&value)).cloned().collect();
         Ok(Self { columns: self.columns.clone(), rows })
     }
 
+    /// A column, row by row.
+    pub(crate) fn all(&self, name: &str) -> Result<Vec<&'a str>> {
+        let index = self.column(name)?;
+        Ok(self.rows.iter().filter_map(|row| row.get(index).copied()).collect())
+    }
+
     /// The different words of a column, in the order in which they come.
-    pub(super) fn words(&self, column: &str) -> Result<Vec<&'a str>> {
+    pub(crate) fn words(&self, column: &str) -> Result<Vec<&'a str>> {
         let index = self.column(column)?;
         let mut words = Vec::new();
         for word in self.rows.iter().filter_map(|row| row.get(index)) {
@@ -44,14 +50,14 @@ impl<'a> Rows<'a> {
         Ok(words)
     }
 
-    pub(super) fn numbers(&self, column: &str) -> Result<Vec<f64>> {
+    pub(crate) fn numbers(&self, column: &str) -> Result<Vec<f64>> {
         let index = self.column(column)?;
         let parse = |word: &&str| word.parse().with_context(|| format!("`{word}` is no number"));
         self.rows.iter().filter_map(|row| row.get(index)).map(parse).collect()
     }
 
     /// One line: at each different word of `key`, in order, the means of `x` and of `y` times `factor`.
-    pub(super) fn line(&self, name: &str, key: &str, x: &str, (y, factor): (&str, f64)) -> Result<Series> {
+    pub(crate) fn line(&self, name: &str, key: &str, x: &str, (y, factor): (&str, f64)) -> Result<Series> {
         let mut series = Series { name: name.to_owned(), ..Series::default() };
         for word in self.words(key)? {
             let group = self.only(key, word)?;

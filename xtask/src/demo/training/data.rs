@@ -18,7 +18,7 @@ const FILES: [(&str, &str); 4] = [
 ];
 
 /// The folder with MNIST's four files; they are fetched if they are not there yet.
-pub(super) fn mnist() -> Result<PathBuf> {
+pub(crate) fn mnist() -> Result<PathBuf> {
     let data = paths::target().join("data");
     let folder = data.join("mnist");
     if verify(&folder).is_ok() {

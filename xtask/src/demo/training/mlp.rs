@@ -11,17 +11,17 @@ use indicatif::ProgressBar;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const MODES: [&str; 5] = ["uniform", "importance", "adaptive", "balance", "omis"];
+pub(crate) const MODES: [&str; 5] = ["uniform", "importance", "adaptive", "balance", "omis"];
 
 /// What is trained, and for how long.
-struct Plan {
-    name: &'static str,
-    data: PathBuf,
-    seeds: u32,
-    epochs: u32,
+pub(crate) struct Plan {
+    pub(crate) name: &'static str,
+    pub(crate) data: PathBuf,
+    pub(crate) seeds: u32,
+    pub(crate) epochs: u32,
     /// Adam's learning rate. MNIST: of .0003, .0005 and .001 the one that suits uniform sampling best.
-    rate: &'static str,
-    variance_epochs: u32,
+    pub(crate) rate: &'static str,
+    pub(crate) variance_epochs: u32,
 }
 
 impl Plan {
@@ -101,7 +101,7 @@ fn read(path: &Path) -> Result<String> {
     fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))
 }
 
-fn error_plot(plan: &Plan, rows: &Rows, column: &str, label: &str) -> Result<String> {
+pub(crate) fn error_plot(plan: &Plan, rows: &Rows, column: &str, label: &str) -> Result<String> {
     let line = |mode: &&str| rows.only("mode", mode)?.line(mode, "epoch", column, ("test_error", 100.0));
     let mut series: Vec<Series> = MODES.iter().map(line).collect::<Result<_>>()?;
     for line in &mut series {
@@ -130,7 +130,7 @@ const METHODS: [(&str, &str, &str, usize); 11] = [
     ("omis_stale", "0.2", "omis, as kept, delta .2", 0),
 ];
 
-fn variance_plot(plan: &Plan, rows: &Rows) -> Result<String> {
+pub(crate) fn variance_plot(plan: &Plan, rows: &Rows) -> Result<String> {
     let line = |&(method, fraction, name, colour): &(&str, &str, &str, usize)| -> Result<Series> {
         let rows = rows.only("method", method)?.only("uniform_fraction", fraction)?;
         let mut series = rows.line(name, "epoch", "epoch", ("ratio", 1.0))?;
@@ -147,7 +147,7 @@ fn variance_plot(plan: &Plan, rows: &Rows) -> Result<String> {
 }
 
 /// The ratios at a few of the epochs, as Markdown.
-fn variance_table(plan: &Plan, rows: &Rows) -> Result<String> {
+pub(crate) fn variance_table(plan: &Plan, rows: &Rows) -> Result<String> {
     let last = plan.variance_epochs;
     let epochs = [0, 1, 2, last / 2, last];
     let mut cells = Vec::new();

@@ -1,11 +1,11 @@
 //! Trainers that draw their minibatches from noisefloor: each makes CSV, a table and plots.
 
-mod curves;
-mod data;
-mod mlp;
-mod photograph;
-mod polynomial;
-mod program;
+pub(crate) mod curves;
+pub(crate) mod data;
+pub(crate) mod mlp;
+pub(crate) mod photograph;
+pub(crate) mod polynomial;
+pub(crate) mod program;
 
 use super::Options;
 use crate::library;

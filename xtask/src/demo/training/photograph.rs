@@ -65,7 +65,7 @@ pub(super) fn run(training: &Training) -> Result<String> {
     Ok(format!("fit_image\n\n{tables}"))
 }
 
-fn loss_plot(csv: &str, strata: &str, column: &str, label: &str) -> Result<String> {
+pub(crate) fn loss_plot(csv: &str, strata: &str, column: &str, label: &str) -> Result<String> {
     let mut series = Vec::new();
     for (csv, name, dashed) in [(csv, "", false), (strata, ", strata", true)] {
         let rows = Rows::parse(csv)?;

@@ -63,7 +63,7 @@ fn loss_plot(csv: &str) -> Result<String> {
 }
 
 /// The same over the loss that the exact gradient has at the same step.
-fn ratio_plot(csv: &str) -> Result<String> {
+pub(crate) fn ratio_plot(csv: &str) -> Result<String> {
     let mut series = losses(csv)?;
     let exact: Vec<_> = series.first().map(|exact| exact.points.clone()).unwrap_or_default();
     for (point, exact) in series.iter_mut().flat_map(|series| series.points.iter_mut().zip(&exact)) {
@@ -75,7 +75,7 @@ fn ratio_plot(csv: &str) -> Result<String> {
 }
 
 /// At the last state.
-fn error_plot(csv: &str) -> Result<String> {
+pub(crate) fn error_plot(csv: &str) -> Result<String> {
     let rows = Rows::parse(csv)?;
     let last = rows.words("step")?.pop().unwrap_or_default();
     let rows = rows.only("step", last)?;

@@ -10,22 +10,22 @@ use std::sync::atomic::AtomicBool;
 use std::thread;
 
 /// What a run wrote.
-pub(super) struct Written {
+pub(crate) struct Written {
     /// Standard output: CSV.
-    pub(super) csv: String,
+    pub(crate) csv: String,
     /// Standard error: a summary, as Markdown.
-    pub(super) summary: String,
+    pub(crate) summary: String,
 }
 
 /// A compiled trainer.
-pub(super) struct Program {
+pub(crate) struct Program {
     path: PathBuf,
 }
 
 impl Program {
     /// Compiles `examples_c/SOURCE` against the library, for this machine: what is measured is time. Without errno the
     /// compiler vectorises square roots.
-    pub(super) fn compile(source: &str, archive: &Path) -> Result<Self> {
+    pub(crate) fn compile(source: &str, archive: &Path) -> Result<Self> {
         let name = Path::new(source).file_stem().with_context(|| format!("{source} has no name"))?;
         let path = paths::output().join(name);
         let options = ["-O3", "-march=native", "-fno-math-errno", "-Wall", "-Wextra", "-Iinclude"];
@@ -34,7 +34,7 @@ impl Program {
     }
 
     /// Runs to the end. `line` sees each line of standard output as it comes, for progress.
-    pub(super) fn run(
+    pub(crate) fn run(
         &self,
         arguments: &[&str],
         interrupted: &AtomicBool,

@@ -1,0 +1,239 @@
+/* Calls the library's hottest functions, so that callgrind can count their instructions: a number that no other program on the
+ * machine changes. `cargo xtask report --only instructions` compiles, runs and tabulates it.
+ *
+ *     ./instructions                                             the cases: name, repetitions, what a repetition does so often
+ *     valgrind --tool=callgrind --toggle-collect=measured ./instructions NAME
+ *
+ * Inputs are always the same. Each case runs once before it is counted: caches of answers are full then. */
+#include "noisefloor.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ITEMS 60000
+#define BATCH 64
+#define TECHNIQUES 8
+#define PARAMETERS 1000
+#define SIDE 16 /* of the image */
+#define SPP 4
+#define SAMPLES (SIDE * SIDE * SPP)
+#define FILL 32 /* side of the filled part of an image */
+
+static nf_rng rng;
+static float u[2 * SAMPLES], f[SAMPLES], weight[BATCH], importance[BATCH], out[2 * FILL * FILL];
+static uint32_t item[BATCH], technique[BATCH];
+static float pdf[BATCH * TECHNIQUES], gradient[BATCH * PARAMETERS], mean[PARAMETERS];
+static nf_estimate estimates[SIDE * SIDE];
+static nf_table table;
+static nf_tile tile;
+static nf_cv_config config;
+static nf_cv_image image;
+static nf_cv_accumulator *accumulator;
+static nf_gradient *state;
+static void *workspace;
+static size_t bytes;
+
+static void check(nf_status status, const char *what)
+{
+    if (status == NF_OK)
+        return;
+    fprintf(stderr, "instructions: %s: %s\n", what, nf_status_message(status));
+    exit(EXIT_FAILURE);
+}
+
+static void *allocate(size_t size, const char *what)
+{
+    void *memory = size > 0 ? calloc(1, size) : NULL;
+    if (memory == NULL) {
+        fprintf(stderr, "instructions: %s: no memory, or a size of 0\n", what);
+        exit(EXIT_FAILURE);
+    }
+    return memory;
+}
+
+/* ---- what is prepared, and what is counted ---- */
+
+static void configure(uint32_t estimator)
+{
+    nf_cv_config_default(&config);
+    config.estimator = estimator;
+}
+
+static void prepare_estimate(uint32_t estimator, size_t n)
+{
+    configure(estimator);
+    bytes = nf_cv_workspace_size(&config, n);
+    workspace = allocate(bytes, "nf_cv_workspace_size");
+}
+
+static void prepare_robust_16(void) { prepare_estimate(NF_CV_ROBUST, 16); }
+static void prepare_robust_64(void) { prepare_estimate(NF_CV_ROBUST, 64); }
+static void prepare_least_squares(void) { prepare_estimate(NF_CV_LEAST_SQUARES, 64); }
+static void call_16(void) { check(nf_cv_estimate(&config, u, f, 16, workspace, bytes, estimates), "nf_cv_estimate"); }
+static void call_64(void) { check(nf_cv_estimate(&config, u, f, 64, workspace, bytes, estimates), "nf_cv_estimate"); }
+
+static void prepare_accumulator(void)
+{
+    configure(NF_CV_ROBUST);
+    size_t size = nf_cv_accumulator_size(&config);
+    check(nf_cv_accumulator_init(allocate(size, "accumulator"), size, &config, &accumulator), "nf_cv_accumulator_init");
+}
+
+static void call_accumulator(void)
+{
+    for (int i = 0; i < 64; ++i)
+        check(nf_cv_accumulator_add(accumulator, u + 2 * i, f + i, 1), "nf_cv_accumulator_add");
+}
+
+static void prepare_image(void)
+{
+    configure(NF_CV_ROBUST);
+    image.width = SIDE, image.height = SIDE;
+    bytes = nf_cv_image_workspace_size(&config, &image, SPP);
+    workspace = allocate(bytes, "nf_cv_image_workspace_size");
+}
+
+static void call_image(void)
+{
+    check(nf_cv_image_estimate(&config, &image, u, f, SPP, workspace, bytes, estimates), "nf_cv_image_estimate");
+}
+
+static void prepare_tile(void) { check(nf_tile_builtin(NF_TILE_128_4SPP_2D, &tile), "nf_tile_builtin"); }
+
+static void call_draw(void)
+{
+    for (uint32_t i = 0; i < 64; ++i)
+        nf_sampler_draw(nf_sampler_pixel(&tile, i, 3 * i, 0, i % 4), 2, out);
+}
+
+static void call_domain(void)
+{
+    for (uint32_t i = 0; i < 64; ++i)
+        nf_sampler_draw(nf_sampler_domain(nf_sampler_pixel(&tile, i, 3 * i, 0, i % 4), 7), 2, out);
+}
+
+static void call_fill(void)
+{
+    nf_sampler pixel = nf_sampler_pixel(&tile, 0, 0, 0, 0);
+    uint32_t dims = 2;
+    check(nf_sampler_fill(&pixel, &dims, 1, FILL, FILL, 1, out, 2 * FILL * FILL), "nf_sampler_fill");
+}
+
+static void prepare_table(void)
+{
+    float *all = allocate(ITEMS * sizeof *all, "importances");
+    for (uint32_t i = 0; i < ITEMS; ++i)
+        all[i] = 0.1f + nf_rng_uniform(&rng);
+    size_t size = nf_table_size(ITEMS);
+    check(nf_table_init(&table, allocate(size, "table"), size, ITEMS, all), "nf_table_init");
+    free(all);
+}
+
+static void call_table_draw(void) { check(nf_table_draw(&table, &rng, BATCH, item, weight), "nf_table_draw"); }
+static void call_table_update(void) { check(nf_table_update(&table, item, importance, BATCH, 0.3f), "nf_table_update"); }
+
+static void call_balance(void)
+{
+    uint32_t counts[TECHNIQUES] = {8, 8, 8, 8, 8, 8, 8, 8};
+    for (uint32_t i = 0; i < BATCH; ++i)
+        check(nf_mis_balance(pdf + i * TECHNIQUES, counts, TECHNIQUES, technique[i], weight + i), "nf_mis_balance");
+}
+
+static void call_omis(void)
+{
+    check(nf_omis_weights(NF_OMIS_RIDGE, 0.0f, TECHNIQUES, ITEMS, pdf, technique, BATCH, weight), "nf_omis_weights");
+}
+
+static void prepare_gradient(void)
+{
+    size_t size = nf_gradient_size(TECHNIQUES, PARAMETERS);
+    check(nf_gradient_init(allocate(size, "gradient"), size, TECHNIQUES, PARAMETERS, &state), "nf_gradient_init");
+}
+
+static void call_gradient(void)
+{
+    check(nf_gradient_estimate(state, NF_OMIS_RIDGE, 0.0f, 0.0f, ITEMS, pdf, technique, gradient, BATCH, mean),
+          "nf_gradient_estimate");
+}
+
+static void nothing(void) {}
+
+/* ---- the cases ---- */
+
+static const struct {
+    const char *name;
+    void (*prepare)(void);
+    void (*call)(void);
+    uint32_t repeat; /* calls that are counted */
+    uint32_t parts;  /* of what `unit` names, in each */
+    const char *unit;
+} cases[] = {
+    {"nf_cv_estimate robust 16", prepare_robust_16, call_16, 100, 16, "sample"},
+    {"nf_cv_estimate robust 64", prepare_robust_64, call_64, 100, 64, "sample"},
+    {"nf_cv_estimate least squares 64", prepare_least_squares, call_64, 100, 64, "sample"},
+    {"nf_cv_accumulator_add", prepare_accumulator, call_accumulator, 20, 64, "sample"},
+    {"nf_cv_image_estimate", prepare_image, call_image, 1, SAMPLES, "sample"},
+    {"nf_sampler_draw", prepare_tile, call_draw, 100, 64, "draw"},
+    {"nf_sampler_draw domain", prepare_tile, call_domain, 100, 64, "draw"},
+    {"nf_sampler_fill", prepare_tile, call_fill, 10, FILL * FILL, "draw"},
+    {"nf_table_draw", prepare_table, call_table_draw, 100, BATCH, "draw"},
+    {"nf_table_update", prepare_table, call_table_update, 100, BATCH, "update"},
+    {"nf_mis_balance", nothing, call_balance, 100, BATCH, "weight"},
+    {"nf_omis_weights", nothing, call_omis, 20, BATCH, "weight"},
+    {"nf_gradient_estimate", prepare_gradient, call_gradient, 4, PARAMETERS, "parameter"},
+};
+#define CASES (sizeof cases / sizeof *cases)
+
+/* What callgrind counts: it is told this name. Through a pointer that the compiler does not know, so that nothing is inlined. */
+void measured(void (*volatile call)(void), uint32_t repeat);
+#if defined(__GNUC__)
+__attribute__((noinline))
+#endif
+void measured(void (*volatile call)(void), uint32_t repeat)
+{
+    for (uint32_t i = 0; i < repeat; ++i)
+        call();
+}
+
+/* Samples of a smooth function; densities and gradients without a pattern. */
+static void fill_inputs(void)
+{
+    nf_rng_seed(&rng, 1);
+    for (size_t i = 0; i < 2 * SAMPLES; ++i)
+        u[i] = nf_rng_uniform(&rng);
+    for (size_t i = 0; i < SAMPLES; ++i)
+        f[i] = 1.0f + u[2 * i] * (2.0f - u[2 * i + 1]) + 0.1f * nf_rng_uniform(&rng);
+    for (uint32_t i = 0; i < BATCH; ++i) {
+        technique[i] = i % TECHNIQUES;
+        item[i] = (uint32_t)(nf_rng_uniform(&rng) * ITEMS);
+        importance[i] = nf_rng_uniform(&rng);
+    }
+    for (size_t i = 0; i < BATCH * TECHNIQUES; ++i)
+        pdf[i] = (0.1f + nf_rng_uniform(&rng)) / ITEMS;
+    for (size_t i = 0; i < BATCH * PARAMETERS; ++i)
+        gradient[i] = nf_rng_uniform(&rng) - 0.5f;
+}
+
+int main(int count, char **words)
+{
+    if (count < 2) {
+#if defined(__GNUC__) && (defined(__x86_64__) || defined(__i386__))
+        printf("vector units,%s\n", __builtin_cpu_supports("avx2") ? "AVX2" : "none");
+#else
+        printf("vector units,none\n");
+#endif
+        for (size_t k = 0; k < CASES; ++k)
+            printf("%s,%u,%u,%s\n", cases[k].name, cases[k].repeat, cases[k].parts, cases[k].unit);
+        return EXIT_SUCCESS;
+    }
+    for (size_t k = 0; k < CASES; ++k)
+        if (strcmp(words[1], cases[k].name) == 0) {
+            fill_inputs();
+            cases[k].prepare();
+            cases[k].call();
+            measured(cases[k].call, cases[k].repeat);
+            return EXIT_SUCCESS;
+        }
+    fprintf(stderr, "instructions: there is no case `%s`; without arguments it names them\n", words[1]);
+    return EXIT_FAILURE;
+}
