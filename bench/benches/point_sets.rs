@@ -183,7 +183,7 @@ fn combinations(colours: usize) -> Vec<Class> {
             value: f32::from(u8::from(set >> colour & 1 == 1)),
         };
         let function = ClassFunction::Staircase((0..colours).map(step).collect());
-        Class { function, target: Arc::clone(&target), weight: 1.0, name: format!("{set:b}").into() }
+        Class { function, target: Arc::clone(&target), weight: 1.0, name: format!("{set:b}") }
     };
     (1..1 << colours).map(class).collect()
 }
@@ -203,8 +203,8 @@ fn sobol(points: usize, seed: u64) -> Result<Points> {
 /// Slices of the distance, and integrands of each family: fewer of large sets.
 fn effort(points: usize) -> (usize, usize) {
     match points {
-        ..=16_384 => (256, 512),
-        ..=65_536 => (64, 256),
+        0..=16_384 => (256, 512),
+        16_385..=65_536 => (64, 256),
         _ => (24, 64),
     }
 }

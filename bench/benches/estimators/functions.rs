@@ -4,12 +4,14 @@ use noisefloor_tests::integrands::Integrand;
 use noisefloor_tests::random::SplitMix64;
 use std::f64::consts::TAU;
 
+type Evaluate = Box<dyn Fn(&[f64]) -> f64>;
+
 /// A function on the unit cube.
 pub(crate) struct Function {
     pub(crate) name: String,
     pub(crate) dims: usize,
     pub(crate) integral: f64,
-    evaluate: Box<dyn Fn(&[f64]) -> f64>,
+    evaluate: Evaluate,
 }
 
 impl From<Integrand> for Function {

@@ -12,8 +12,8 @@ const BATCHES: u32 = 8;
 /// Integrands of each family in a batch: fewer where samples are many, since evaluating them is what takes time.
 fn integrands(spp: usize, share: f64) -> usize {
     let all = match spp {
-        ..=4 => 64.0,
-        ..=16 => 32.0,
+        0..=4 => 64.0,
+        5..=16 => 32.0,
         _ => 16.0,
     };
     ((all * share) as usize).max(2)

@@ -138,9 +138,9 @@ pub(crate) fn sobol(x: u32, y: u32, index: u32, seed: u32) -> [f32; 4] {
 pub(crate) fn heitz(x: u32, y: u32, samples: u32, index: u32, dim: u32) -> f32 {
     use blue_noise_sampler::{spp1, spp4, spp16, spp64};
     let (sobol, ranking, scrambling) = match samples {
-        ..=1 => (spp1::SOBOL, spp1::RANKING_TILE, spp1::SCRAMBLING_TILE),
-        ..=4 => (spp4::SOBOL, spp4::RANKING_TILE, spp4::SCRAMBLING_TILE),
-        ..=16 => (spp16::SOBOL, spp16::RANKING_TILE, spp16::SCRAMBLING_TILE),
+        0..=1 => (spp1::SOBOL, spp1::RANKING_TILE, spp1::SCRAMBLING_TILE),
+        2..=4 => (spp4::SOBOL, spp4::RANKING_TILE, spp4::SCRAMBLING_TILE),
+        5..=16 => (spp16::SOBOL, spp16::RANKING_TILE, spp16::SCRAMBLING_TILE),
         _ => (spp64::SOBOL, spp64::RANKING_TILE, spp64::SCRAMBLING_TILE),
     };
     let (dim, pixel) = (dim as usize, ((x & 127) + (y & 127) * 128) as usize);

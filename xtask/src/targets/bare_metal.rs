@@ -15,7 +15,7 @@ const BOARD: [&str; 6] = ["-M", "mps2-an386", "-nographic", "-monitor", "none", 
 const STACK: &str = " stack ";
 
 /// Fails unless every line is this machine's; returns the stack of each call.
-pub(crate) fn run(binutils: &str, emulator: &str, archive: &Path) -> Result<Vec<(String, u32)>> {
+pub(crate) fn run(binutils: &str, emulator: &str, archive: &Path) -> Result<Stacks> {
     let image = c_tests::output("bare_metal.elf")?;
     let mut compiler = run::command(format!("{binutils}gcc"));
     compiler.args(CORTEX_M4F).args(ALONE).arg("-T").arg(format!("{FOLDER}/mps2_an386.ld"));
@@ -43,8 +43,11 @@ fn compile(compiler: &mut std::process::Command, platform: &str, archive: &Path,
     run::check(compiler.arg(archive).arg("-o").arg(program))
 }
 
+/// Bytes of stack of each call, by its name.
+pub(crate) type Stacks = Vec<(String, u32)>;
+
 /// The lines without the stack; and the stack of each.
-fn split(text: &str) -> Result<(Vec<&str>, Vec<(String, u32)>)> {
+fn split(text: &str) -> Result<(Vec<&str>, Stacks)> {
     let (mut lines, mut stacks) = (Vec::new(), Vec::new());
     for line in text.lines() {
         let (result, stack) = line.split_once(STACK).map_or((line, None), |(result, stack)| (result, Some(stack)));

@@ -28,7 +28,7 @@ struct Findings {
     platform: &'static Platform,
     sizes: Vec<Size>,
     /// Bytes of stack of each call of the bare-metal program, where it ran.
-    stacks: Vec<(String, u32)>,
+    stacks: bare_metal::Stacks,
 }
 
 pub(crate) fn run(options: &Options) -> Result<()> {
