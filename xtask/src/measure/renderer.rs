@@ -1,9 +1,9 @@
 //! Compiling and running the path tracer, or another program that has its command line.
 
 use super::interrupt::{self, Interrupted};
-use super::running::Running;
+use super::running;
 use crate::{library, paths, run};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use indicatif::ProgressBar;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -116,10 +116,9 @@ impl Renderer {
         } else {
             command.args(["--estimators", &job.estimators.join(",")]);
         }
-        let mut child = Running::start(command).with_context(|| format!("cannot start {}", self.program.display()))?;
         let start = bar.position();
         let mut timings = Vec::new();
-        child.read_lines(|line| {
+        let rendered = running::run(command, &self.interrupted, |line| {
             if let Some(part) = line.strip_prefix("progress ") {
                 let part: f64 = part.parse().with_context(|| format!("the path tracer said `{line}`"))?;
                 bar.set_position(start + (part * job.work as f64) as u64);
@@ -127,12 +126,9 @@ impl Renderer {
                 timings.push(serde_json::from_str(line).with_context(|| format!("the path tracer said `{line}`"))?);
             }
             Ok(())
-        })?;
-        let (status, message) = child.finish()?;
+        });
         interrupt::check(&self.interrupted)?;
-        if !status.success() {
-            bail!("rendering `{}` failed, {status}\n{}", job.scene, message.trim());
-        }
+        rendered.with_context(|| format!("rendering `{}` failed", job.scene))?;
         bar.set_position(start + job.work);
         Ok(timings)
     }

@@ -1,11 +1,12 @@
 //! The chapter of the numerical hard cases: what each gives, beside the plain mean.
 
 use super::Report;
-use super::bench::{self, Row, Table};
 use super::chapter::{Cell, Chapter, row};
 use super::figure::{Figure, Unit};
+use super::program;
 use super::statistics::Estimate;
 use super::targets::Targets;
+use crate::measure::table::{Row, Table};
 use anyhow::Result;
 
 /// What the error of the default may be over the plain one's.
@@ -56,10 +57,9 @@ struct Case<'a> {
 }
 
 pub(super) fn write(report: &Report) -> Result<()> {
-    let [program] = bench::build(["hard_cases"])?;
-    report.compiled();
+    let [program] = report.build()?;
     let folder = tempfile::tempdir()?;
-    bench::measure(report, &program, folder.path())?;
+    program::measure(report, &program, folder.path())?;
     let errors = Table::read(&folder.path().join("errors.csv"), ';')?;
     let outcomes = Table::read(&folder.path().join("outcomes.csv"), ';')?;
     let cases = cases(&errors)?;
@@ -94,7 +94,7 @@ fn introduce(chapter: &mut Chapter) {
 fn cases(errors: &Table) -> Result<Vec<Case<'_>>> {
     let mut cases: Vec<Case> = Vec::new();
     for row in errors.rows() {
-        let (group, name, samples) = (row.word("group")?, row.word("case")?, row.count("n")?);
+        let (group, name, samples) = (row.word("group")?, row.word("case")?, row.number("n")?);
         match cases.last_mut() {
             Some(case) if (case.group, case.name.as_str(), case.samples) == (group, name, samples) => {
                 case.rows.push(row);
@@ -113,8 +113,13 @@ impl Case<'_> {
     fn ratio(&self, estimator: &str) -> Result<Option<Estimate>> {
         let Some(row) = self.row(estimator) else { return Ok(None) };
         let Some(value) = row.optional("ratio")? else { return Ok(None) };
-        let half = row.number("half_width")?;
-        Ok(Some(Estimate { value, low: (value - half).max(0.0), high: value + half, seeds: row.count("repetitions")? }))
+        let half: f64 = row.number("half_width")?;
+        Ok(Some(Estimate {
+            value,
+            low: (value - half).max(0.0),
+            high: value + half,
+            seeds: row.number("repetitions")?,
+        }))
     }
 
     fn place(&self) -> String {
@@ -178,7 +183,8 @@ fn write_group(chapter: &mut Chapter, (group, title, text): (&'static str, &str,
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     for case in &here {
         let first = case.rows[0];
-        let count = |heading: &str| first.count(heading).map(|count| Figure::exact(count as f64, Unit::Count));
+        let count =
+            |heading: &str| first.number::<usize>(heading).map(|count| Figure::exact(count as f64, Unit::Count));
         let plain = Figure::exact(first.number("plain_rmse")?, Unit::Error);
         let mut cells = row![case.name.clone(), count("n")?, count("terms")?, plain];
         for estimator in &estimators {

@@ -1,6 +1,6 @@
 //! What measurement programs write: kept in target/report/measured, so that a text can be written anew without measuring again.
 
-use crate::{paths, run};
+use crate::paths;
 use anyhow::{Context, Result};
 use std::cell::RefCell;
 use std::fs;
@@ -65,17 +65,4 @@ impl Measured {
 
 pub(crate) fn read(path: &Path) -> Result<String> {
     fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))
-}
-
-/// Builds a bench target of noisefloor-bench and returns its program. The library must have been built before: the target links it.
-pub(crate) fn bench(name: &str) -> Result<PathBuf> {
-    let mut build = run::cargo();
-    build.args(["build", "--quiet", "--release", "--package", "noisefloor-bench", "--bench", name]);
-    let messages = run::read(build.arg("--message-format=json"))?;
-    let program = messages.lines().find_map(|line| {
-        let message: serde_json::Value = serde_json::from_str(line).ok()?;
-        let wanted = message["target"]["name"] == name;
-        message["executable"].as_str().filter(|_| wanted).map(PathBuf::from)
-    });
-    program.with_context(|| format!("cargo built no program `{name}`"))
 }

@@ -1,7 +1,6 @@
 //! `cargo xtask report`: errors, times and overheads, as tables, plots and pictures, and as JSON. One chapter for each
 //! program that measures; an index of all of them.
 
-mod bench;
 pub(crate) mod chapter;
 pub(crate) mod check;
 mod clock;
@@ -32,7 +31,7 @@ pub(crate) mod targets;
 
 use crate::measure::interrupt::Interrupted;
 use crate::measure::output::Output;
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use chapter::Chapter;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
@@ -50,16 +49,25 @@ struct Entry {
     seconds: u64,
     /// A line for the index and for `--help`.
     description: &'static str,
+    /// Bench targets of noisefloor-bench that it runs.
+    programs: &'static [&'static str],
     write: fn(&Report) -> Result<()>,
 }
 
 const fn entry(name: &'static str, seconds: u64, description: &'static str, write: fn(&Report) -> Result<()>) -> Entry {
-    Entry { name, seconds, description, write }
+    Entry { name, seconds, description, programs: &[], write }
+}
+
+impl Entry {
+    const fn runs(self, programs: &'static [&'static str]) -> Self {
+        Self { programs, ..self }
+    }
 }
 
 /// In the order of the index.
 const CHAPTERS: &[Entry] = &[
-    entry("tables", 50, "Time, memory and drift of importance tables, beside public peers", minibatch_tables::write),
+    entry("tables", 50, "Time, memory and drift of importance tables, beside public peers", minibatch_tables::write)
+        .runs(&["minibatch_table"]),
     entry(
         "gradients",
         80,
@@ -72,8 +80,10 @@ const CHAPTERS: &[Entry] = &[
         140,
         "Every estimator, basis and order: error against time, convergence, f32 against f64",
         control_variates::write,
-    ),
-    entry("hard_cases", 10, "Few, degenerate and extreme samples, and what is refused", hard_cases::write),
+    )
+    .runs(&["speed_error", "estimators"]),
+    entry("hard_cases", 10, "Few, degenerate and extreme samples, and what is refused", hard_cases::write)
+        .runs(&["hard_cases"]),
     entry(
         "embree",
         280,
@@ -85,8 +95,10 @@ const CHAPTERS: &[Entry] = &[
         120,
         "Samplers beside each other, with and without estimators; what is recommended",
         samplers::write,
-    ),
-    entry("points", 60, "Seconds against quality of point sets, 256 to a million points", points::write),
+    )
+    .runs(&["samplers", "guidance"]),
+    entry("points", 60, "Seconds against quality of point sets, 256 to a million points", points::write)
+        .runs(&["point_sets"]),
     entry("povray", 120, "The same on integrands that unmodified POV-Ray renders", povray::write),
 ];
 
@@ -121,6 +133,8 @@ fn names() -> PossibleValuesParser {
 pub(crate) struct Report<'a> {
     /// The chapter that is written, as files name it.
     name: &'static str,
+    /// Bench targets that it runs.
+    programs: &'static [&'static str],
     pub(crate) plan: Plan,
     pub(crate) program: Option<PathBuf>,
     pub(crate) interrupted: Interrupted,
@@ -134,6 +148,13 @@ pub(crate) struct Report<'a> {
 }
 
 impl Report<'_> {
+    /// Compiles the programs that the chapter runs, in the order of its list.
+    fn build<const N: usize>(&self) -> Result<[PathBuf; N]> {
+        let programs = program::build(self.programs)?;
+        self.compiled();
+        programs.try_into().map_err(|programs| anyhow!("{N} programs are run, not {programs:?}"))
+    }
+
     /// To be called once everything is compiled: a chapter's time is counted from here.
     pub(crate) fn compiled(&self) {
         self.clock.restart();

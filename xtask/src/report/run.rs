@@ -4,7 +4,7 @@ use super::clock::Clock;
 use super::index::{self, Facts};
 use super::machine::{self, Machine};
 use super::plan::Plan;
-use super::{CHAPTERS, Entry, Options, Report, check};
+use super::{CHAPTERS, Entry, Options, Report, check, program};
 use crate::measure::interrupt::{self, Interrupted};
 use crate::measure::output::{self, Output};
 use crate::measure::progress;
@@ -46,6 +46,12 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         .filter(|entry| options.only.is_empty() || options.only.iter().any(|o| o == entry.name))
         .collect();
     let machine = Machine::read();
+    let programs: Vec<&str> = wanted.iter().flat_map(|entry| entry.programs).copied().collect();
+    if wanted.len() > 1 && !programs.is_empty() && !options.reuse {
+        println!("building the programs that measure: {}", programs.join(", "));
+        // Side by side, for all chapters. What does not compile is said again by the chapter that needs it.
+        _ = program::build(&programs);
+    }
     let bar = progress::bar(wanted.iter().map(|entry| entry.seconds).sum())?;
     let (mut written, mut failed) = (Vec::new(), Vec::new());
     for (number, entry) in (1..).zip(&wanted) {
@@ -98,6 +104,7 @@ fn write(
     let (date, load) = (machine::date(), machine::load());
     let report = Report {
         name: entry.name,
+        programs: entry.programs,
         plan: Plan::new(options.quick, options.full),
         program: options.program.clone(),
         interrupted: interrupted.clone(),
@@ -129,19 +136,24 @@ fn write(
 /// Pictures of the report are smaller, so that they can be committed.
 const LARGEST_PICTURE: u64 = 600_000;
 
-/// A quick chapter, and whether all that its text quotes and shows is there.
-pub(crate) fn check_quick(chapter: &str) -> Result<()> {
+/// Quick chapters, and whether all that their texts quote and show is there.
+pub(crate) fn check_quick(chapters: &[&str]) -> Result<()> {
     let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
     let folder = scratch.path().join("report");
-    let only = vec![chapter.to_owned()];
+    let only = chapters.iter().map(|&chapter| chapter.to_owned()).collect();
     run(&Options { quick: true, full: false, only, out: Some(folder.clone()), program: None, reuse: false })?;
     let read = |name: &str| std::fs::read_to_string(folder.join(name)).with_context(|| format!("there is no {name}"));
-    let text = read(&format!("{chapter}.md"))?;
-    check::numbers_are_recorded(&text, &read(&format!("{chapter}.json"))?)?;
-    if !read("README.md")?.contains(&format!("]({chapter}.md)")) {
-        bail!("the index does not link {chapter}.md");
+    let index = read("README.md")?;
+    for chapter in chapters {
+        let text = read(&format!("{chapter}.md"))?;
+        check::numbers_are_recorded(&text, &read(&format!("{chapter}.json"))?)
+            .with_context(|| format!("{chapter}.md"))?;
+        if !index.contains(&format!("]({chapter}.md)")) {
+            bail!("the index does not link {chapter}.md");
+        }
+        pictures_are_there(&text, &folder)?;
     }
-    pictures_are_there(&text, &folder)
+    Ok(())
 }
 
 fn pictures_are_there(text: &str, folder: &Path) -> Result<()> {

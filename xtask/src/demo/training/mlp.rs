@@ -1,11 +1,11 @@
 //! train_mlp.c: test error against steps and time, and the variance of the gradient (figures 6.2, 6.4 and 6.11).
 
 use super::Training;
-use super::curves::Rows;
 use super::data;
 use super::program::Program;
 use crate::measure::plot::{Axis, Plot, Series};
 use crate::measure::progress;
+use crate::measure::table::Table;
 use anyhow::{Context, Result};
 use indicatif::ProgressBar;
 use std::fs;
@@ -70,10 +70,10 @@ pub(super) fn run(training: &Training) -> Result<String> {
     let output = training.output;
     output.write_text("training-mlp.csv", &written.csv)?;
     output.write_text("training-mlp-variance.csv", &variance)?;
-    let rows = Rows::parse(&written.csv)?;
+    let rows = Table::parse(&written.csv, "the trainer's table", ',')?;
     output.write_text("training-mlp-steps.svg", &error_plot(&plan, &rows, "step", "steps")?)?;
     output.write_text("training-mlp-time.svg", &error_plot(&plan, &rows, "seconds", "seconds of training")?)?;
-    let rows = Rows::parse(&variance)?;
+    let rows = Table::parse(&variance, "the trainer's table", ',')?;
     output.write_text("training-mlp-variance.svg", &variance_plot(&plan, &rows)?)?;
     let variance = variance_table(&plan, &rows)?;
     let table = format!("{}\n{}", written.summary, variance);
@@ -101,7 +101,7 @@ fn read(path: &Path) -> Result<String> {
     fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))
 }
 
-pub(crate) fn error_plot(plan: &Plan, rows: &Rows, column: &str, label: &str) -> Result<String> {
+pub(crate) fn error_plot(plan: &Plan, rows: &Table, column: &str, label: &str) -> Result<String> {
     let line = |mode: &&str| rows.only("mode", mode)?.line(mode, "epoch", column, ("test_error", 100.0));
     let mut series: Vec<Series> = MODES.iter().map(line).collect::<Result<_>>()?;
     for line in &mut series {
@@ -130,7 +130,7 @@ const METHODS: [(&str, &str, &str, usize); 11] = [
     ("omis_stale", "0.2", "omis, as kept, delta .2", 0),
 ];
 
-pub(crate) fn variance_plot(plan: &Plan, rows: &Rows) -> Result<String> {
+pub(crate) fn variance_plot(plan: &Plan, rows: &Table) -> Result<String> {
     let line = |&(method, fraction, name, colour): &(&str, &str, &str, usize)| -> Result<Series> {
         let rows = rows.only("method", method)?.only("uniform_fraction", fraction)?;
         let mut series = rows.line(name, "epoch", "epoch", ("ratio", 1.0))?;
@@ -147,7 +147,7 @@ pub(crate) fn variance_plot(plan: &Plan, rows: &Rows) -> Result<String> {
 }
 
 /// The ratios at a few of the epochs, as Markdown.
-pub(crate) fn variance_table(plan: &Plan, rows: &Rows) -> Result<String> {
+pub(crate) fn variance_table(plan: &Plan, rows: &Table) -> Result<String> {
     let last = plan.variance_epochs;
     let epochs = [0, 1, 2, last / 2, last];
     let mut cells = Vec::new();

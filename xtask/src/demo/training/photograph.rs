@@ -1,9 +1,9 @@
 //! fit_image.cpp: a photograph learned by a network (figure 6.13): losses, errors of the gradient, and pictures.
 
 use super::Training;
-use super::curves::Rows;
 use super::program::Program;
 use crate::measure::plot::{Axis, Plot, Series};
+use crate::measure::table::Table;
 use crate::measure::{progress, text};
 use crate::paths;
 use anyhow::{Context, Result, bail};
@@ -68,8 +68,8 @@ pub(super) fn run(training: &Training) -> Result<String> {
 pub(crate) fn loss_plot(csv: &str, strata: &str, column: &str, label: &str) -> Result<String> {
     let mut series = Vec::new();
     for (csv, name, dashed) in [(csv, "", false), (strata, ", strata", true)] {
-        let rows = Rows::parse(csv)?;
-        for method in rows.words("method")? {
+        let rows = Table::parse(csv, "the trainer's table", ',')?;
+        for method in rows.distinct("method")? {
             let mut line =
                 rows.only("method", method)?.line(&format!("{method}{name}"), "step", column, ("psnr", 1.0))?;
             line.band.clear(); // The seeds' networks differ more than the methods do.

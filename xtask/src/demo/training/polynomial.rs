@@ -1,10 +1,10 @@
 //! fit_polynomial.c: loss against steps, and errors of the gradient by coefficient (figure 6.10).
 
 use super::Training;
-use super::curves::Rows;
 use super::program::Program;
 use crate::measure::plot::{Axis, Plot, Series};
 use crate::measure::progress;
+use crate::measure::table::Table;
 use anyhow::Result;
 
 /// Writes training-polynomial*.csv, .md and .svg; returns the tables.
@@ -50,9 +50,9 @@ fn coloured(mut series: Series) -> Series {
 
 /// The means over the seeds: single problems differ a hundredfold, their order does not.
 fn losses(csv: &str) -> Result<Vec<Series>> {
-    let rows = Rows::parse(csv)?.only("seed", "mean")?;
+    let rows = Table::parse(csv, "the trainer's table", ',')?.only("seed", "mean")?;
     let line = |method: &str| rows.only("method", method)?.line(method, "step", "step", ("loss", 1.0)).map(coloured);
-    rows.words("method")?.into_iter().map(line).collect()
+    rows.distinct("method")?.into_iter().map(line).collect()
 }
 
 fn loss_plot(csv: &str) -> Result<String> {
@@ -76,14 +76,14 @@ pub(crate) fn ratio_plot(csv: &str) -> Result<String> {
 
 /// At the last state.
 pub(crate) fn error_plot(csv: &str) -> Result<String> {
-    let rows = Rows::parse(csv)?;
-    let last = rows.words("step")?.pop().unwrap_or_default();
+    let rows = Table::parse(csv, "the trainer's table", ',')?;
+    let last = rows.distinct("step")?.pop().unwrap_or_default();
     let rows = rows.only("step", last)?;
     let line = |method: &str| -> Result<Series> {
         let rows = rows.only("method", method)?;
         Ok(coloured(rows.line(method, "coefficient", "coefficient", ("error", 1.0))?))
     };
-    let series: Vec<Series> = rows.words("method")?.into_iter().map(line).collect::<Result<_>>()?;
+    let series: Vec<Series> = rows.distinct("method")?.into_iter().map(line).collect::<Result<_>>()?;
     let title = format!("Error of the gradient's estimate, step {last}");
     let x = Axis { label: "power whose coefficient it is", logarithmic: false, range: None };
     let y = Axis { label: "mean squared error / uniform's", logarithmic: true, range: None };

@@ -1,13 +1,10 @@
 //! Compiling and running a trainer of `examples_c`.
 
-use crate::measure::interrupt;
+use crate::measure::running;
 use crate::{examples, paths, run};
-use anyhow::{Context, Result, bail};
-use std::io::{BufRead, BufReader, Read};
+use anyhow::{Context, Result};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 use std::sync::atomic::AtomicBool;
-use std::thread;
 
 /// What a run wrote.
 pub(crate) struct Written {
@@ -40,28 +37,15 @@ impl Program {
         interrupted: &AtomicBool,
         mut line: impl FnMut(&str),
     ) -> Result<Written> {
-        let mut command: Command = run::command(&self.path);
-        command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = command.spawn().with_context(|| format!("cannot start {}", self.path.display()))?;
-        let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
-        // Beside the other stream: a full pipe would stop the trainer.
-        let reader = thread::spawn(move || {
-            let mut text = String::new();
-            stderr.map_or(Ok(0), |mut stderr| stderr.read_to_string(&mut text)).map(|_| text)
-        });
+        let mut command = run::command(&self.path);
+        command.args(arguments);
         let mut csv = String::new();
-        for text in stdout.into_iter().flat_map(|stdout| BufReader::new(stdout).lines()) {
-            let text = text.with_context(|| format!("cannot read what {} says", self.path.display()))?;
-            line(&text);
-            csv += &text;
+        let summary = running::run(command, interrupted, |text| {
+            line(text);
+            csv += text;
             csv.push('\n');
-        }
-        let summary = reader.join().ok().context("a thread was lost")?.context("cannot read the trainer's errors")?;
-        let status = child.wait().context("the trainer was lost")?;
-        interrupt::check(interrupted)?;
-        if !status.success() {
-            bail!("{} {} failed, {status}\n{}", self.path.display(), arguments.join(" "), summary.trim());
-        }
+            Ok(())
+        })?;
         Ok(Written { csv, summary })
     }
 }

@@ -1,6 +1,6 @@
 //! The grid: every estimator, basis, order, integrand and sample count.
 
-use crate::report::bench::{Row, Table};
+use crate::measure::table::{Row, Table};
 use crate::report::statistics::Estimate;
 use anyhow::Result;
 use std::fmt::Write;
@@ -24,7 +24,7 @@ pub(super) const BASES: [&str; 4] = ["legendre", "step", "sine", "gaussian"];
 impl Setting {
     pub(super) fn read(row: Row) -> Result<Self> {
         let (estimator, basis) = (row.word("estimator")?.to_owned(), row.word("basis")?.to_owned());
-        Ok(Self { estimator, basis, order: row.count("order")? })
+        Ok(Self { estimator, basis, order: row.number("order")? })
     }
 
     pub(super) fn name(&self) -> String {
@@ -58,8 +58,8 @@ impl Cell {
     fn new(row: Row) -> Result<Self> {
         Ok(Self {
             integrand: row.word("integrand")?.to_owned(),
-            dims: row.count("dims")?,
-            n: row.count("n")?,
+            dims: row.number("dims")?,
+            n: row.number("n")?,
             setting: Setting::read(row)?,
             ratio: ratio(row)?,
             ns: row.number("ns")?,
@@ -76,8 +76,8 @@ impl Cell {
 
 /// The ratio of a row that has one, with its interval.
 pub(super) fn ratio(row: Row) -> Result<Estimate> {
-    let (value, half) = (row.number("ratio")?, row.number("half_width")?);
-    Ok(Estimate { value, low: (value - half).max(0.0), high: value + half, seeds: row.count("repetitions")? })
+    let (value, half): (f64, f64) = (row.number("ratio")?, row.number("half_width")?);
+    Ok(Estimate { value, low: (value - half).max(0.0), high: value + half, seeds: row.number("repetitions")? })
 }
 
 /// A setting over several integrands.
@@ -129,7 +129,7 @@ impl Cells {
         let mut counts: Vec<usize> = all.iter().map(|cell| cell.n).collect();
         counts.sort_unstable();
         counts.dedup();
-        let order = |row: Row| Ok([row.count("dims")?, row.count("n")?, row.count("order")?]);
+        let order = |row: Row| Ok([row.number::<usize>("dims")?, row.number("n")?, row.number("order")?]);
         Ok(Self { all, counts, recommended: recommended.rows().map(order).collect::<Result<_>>()? })
     }
 

@@ -3,8 +3,8 @@
 use super::cells::{DEFAULT, MEAN, ratio};
 use crate::measure::panels::{Key, Panel, Panels};
 use crate::measure::plot::{Axis, Series};
+use crate::measure::table::{Row, Table};
 use crate::report::Report;
-use crate::report::bench::{Row, Table};
 use crate::report::chapter::{self, Chapter, row};
 use crate::report::figure::{Figure, Unit};
 use crate::report::statistics::Estimate;
@@ -36,14 +36,14 @@ impl Points {
             Ok(Point {
                 figure: row.word("figure")?.to_owned(),
                 panel: row.word("panel")?.to_owned(),
-                x: row.count("x")?,
-                n: row.count("n")?,
+                x: row.number("x")?,
+                n: row.number("n")?,
                 estimator: row.word("estimator")?.to_owned(),
                 basis: row.word("basis")?.to_owned(),
-                slices: row.count("slices")?,
-                order: row.count("order")?,
+                slices: row.number("slices")?,
+                order: row.number("order")?,
                 ratio: ratio(row)?,
-                error: row.number("rmse")? / row.number("deviation")?,
+                error: row.number::<f64>("rmse")? / row.number::<f64>("deviation")?,
                 ns: row.number("ns")?,
             })
         };

@@ -2,8 +2,8 @@
 
 use crate::measure::panels::{Key, Panel, Panels};
 use crate::measure::plot::{Axis, Series};
+use crate::measure::table::Table;
 use crate::report::Report;
-use crate::report::bench::Table;
 use crate::report::chapter::Chapter;
 use anyhow::Result;
 
@@ -19,7 +19,7 @@ pub(super) fn write(report: &Report, chapter: &mut Chapter, table: &Table) -> Re
             functions.push(name);
         }
     }
-    let samples = table.rows().next().map_or(Ok(0), |row| row.count("samples"))?;
+    let samples = table.rows().next().map_or(Ok(0), |row| row.number("samples"))?;
     let samples = chapter.setting("samples of the fits that are shown", samples);
     let colour = |index: usize| index + 1;
     let mut panels = Vec::new();

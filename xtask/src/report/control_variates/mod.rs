@@ -10,12 +10,11 @@ mod precision;
 mod targets;
 
 use super::Report;
-use super::bench::{self, Table};
 use super::chapter::Chapter;
+use super::program;
 use super::targets::Targets;
-use crate::library;
-use crate::measure::interrupt;
 use crate::measure::progress;
+use crate::measure::table::Table;
 use anyhow::Result;
 use cells::Cells;
 
@@ -23,15 +22,11 @@ use cells::Cells;
 const SECONDS: [u64; 2] = [60, 80];
 
 pub(super) fn write(report: &Report) -> Result<()> {
-    // The programs link the C library, whose figures are those of what ships.
-    library::build()?;
-    let programs = bench::build(["speed_error", "estimators"])?;
-    report.compiled();
+    let programs: [_; 2] = report.build()?;
     let folder = tempfile::tempdir()?;
     let bar = progress::bar(SECONDS.iter().sum())?;
     for (program, seconds) in programs.iter().zip(SECONDS) {
-        bench::measure(report, program, folder.path())?;
-        interrupt::check(&report.interrupted)?;
+        program::measure(report, program, folder.path())?;
         bar.inc(seconds);
     }
     bar.finish_and_clear();

@@ -1,6 +1,6 @@
 //! What `f32` accumulation costs in error and saves in time.
 
-use crate::report::bench::{Row, Table};
+use crate::measure::table::{Row, Table};
 use crate::report::chapter::{Chapter, row};
 use crate::report::figure::{Figure, Unit};
 use anyhow::Result;
@@ -30,15 +30,15 @@ pub(super) fn write(chapter: &mut Chapter, table: &Table) -> Result<()> {
             let mut times = Vec::new();
             for (narrow, wide) in narrow.iter().zip(&wide) {
                 let place = format!("{}, n = {}", narrow.word("integrand")?, narrow.word("n")?);
-                let ratio = narrow.number("rmse_to_f64")?;
+                let ratio: f64 = narrow.number("rmse_to_f64")?;
                 if ratio.is_finite() && ratio > 0.0 {
                     ratios.push((ratio, place.clone()));
                 }
-                let difference = narrow.number("difference_from_f64")?;
+                let difference: f64 = narrow.number("difference_from_f64")?;
                 if difference > largest.0 {
                     largest = (difference, place);
                 }
-                times.push(narrow.number("ns_per_sample")? / wide.number("ns_per_sample")?);
+                times.push(narrow.number::<f64>("ns_per_sample")? / wide.number::<f64>("ns_per_sample")?);
             }
             let mean = |values: &mut dyn Iterator<Item = f64>, count: usize| {
                 (values.map(f64::ln).sum::<f64>() / count as f64).exp()

@@ -1,6 +1,6 @@
 //! What was to be reached: DESIGN's bounds, as the benchmark `speed_error` judges them.
 
-use crate::report::bench::Table;
+use crate::measure::table::Table;
 use crate::report::figure::Unit;
 use crate::report::statistics::Estimate;
 use crate::report::targets::Targets;

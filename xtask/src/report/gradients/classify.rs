@@ -2,10 +2,10 @@
 
 use super::summary::Summary;
 use super::{Context, Written};
-use crate::demo::training::curves::Rows;
 use crate::demo::training::data;
 use crate::demo::training::mlp::{self, MODES, Plan};
 use crate::demo::training::program::Program;
+use crate::measure::table::Table;
 use crate::report::chapter::Chapter;
 use crate::report::figure::Unit;
 use crate::report::measured::read;
@@ -76,7 +76,7 @@ impl Trainer {
             plan.rate
         ));
         summary.write(chapter, name, 2);
-        let rows = Rows::parse(&csv)?;
+        let rows = Table::parse(&csv, name, ',')?;
         let output = context.report.output;
         for (file, column, label) in [(steps, "step", "steps"), (time, "seconds", "seconds of training")] {
             let file = format!("gradients-{file}");
@@ -118,7 +118,7 @@ impl Trainer {
             read(&path)
         })?;
         context.bar.inc(1);
-        let rows = Rows::parse(&csv)?;
+        let rows = Table::parse(&csv, name, ',')?;
         chapter.section(&format!("Variance of the gradient, {}", plan.name), "figure 6.2");
         chapter.paragraph(
             "One network, trained uniformly; at each epoch the variance of the gradient's estimate over that of uniform draws, at the same states. Fresh \

@@ -1,6 +1,6 @@
 //! Memory, and what many updates leave behind.
 
-use crate::demo::training::curves::Rows;
+use crate::measure::table::Table;
 use crate::report::chapter::{Cell, Chapter, row};
 use crate::report::figure::{Figure, Unit};
 use crate::report::statistics::Estimate;
@@ -8,12 +8,11 @@ use crate::report::targets::Targets;
 use anyhow::Result;
 
 /// Bytes per item, and the time of a pass over all items.
-pub(super) fn memory(csv: &str, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
+pub(super) fn memory(rows: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
     chapter.section("Memory", "");
-    let rows = Rows::parse(csv)?;
     let (items, bytes) = (rows.numbers("items")?, rows.numbers("bytes")?);
-    let methods = rows.all("method")?;
-    let epsilon = rows.all("epsilon")?;
+    let methods = rows.words("method")?;
+    let epsilon = rows.words("epsilon")?;
     let mut cells: Vec<Vec<Cell>> = Vec::new();
     for (((items, bytes), method), epsilon) in items.into_iter().zip(bytes).zip(methods).zip(epsilon) {
         let epsilon = epsilon.parse().ok().map(|value: f64| Figure::exact(value, Unit::PerItem));
@@ -33,9 +32,8 @@ pub(super) fn memory(csv: &str, chapter: &mut Chapter, targets: &mut Targets) ->
 }
 
 /// After many updates: against a new table, and against the importances in f64.
-pub(super) fn write(csv: &str, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
+pub(super) fn write(rows: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
     chapter.section("Drift", "");
-    let rows = Rows::parse(csv)?;
     let number = |name: &str| rows.numbers(name);
     let (items, updates) = (number("items")?, number("updates")?);
     let count = |value: f64| Figure::exact(value, Unit::Count);
@@ -53,7 +51,7 @@ pub(super) fn write(csv: &str, chapter: &mut Chapter, targets: &mut Targets) -> 
     let [changed, compared, risen, lost, error] = ["changed", "compared", "risen", "lost", "error"].map(number);
     let (changed, compared, risen, lost, error) = (changed?, compared?, risen?, lost?, error?);
     let mut cells: Vec<Vec<Cell>> = Vec::new();
-    for (index, method) in rows.all("method")?.into_iter().enumerate() {
+    for (index, method) in rows.words("method")?.into_iter().enumerate() {
         let error = Figure::exact(error[index], Unit::Scientific);
         cells.push(row![
             method,

@@ -5,9 +5,10 @@ mod times;
 
 use super::Report;
 use super::chapter::Chapter;
-use super::measured::{self, Measured, read};
+use super::measured::Measured;
+use super::program;
 use super::targets::Targets;
-use crate::{library, run};
+use crate::measure::table::Table;
 use anyhow::Result;
 use times::Times;
 
@@ -15,23 +16,15 @@ use times::Times;
 const BATCH: u32 = 64;
 
 pub(super) fn write(report: &Report) -> Result<()> {
-    let sizes = report.plan.name();
-    let measured = Measured::new("tables", sizes, report.reuse)?;
+    let measured = Measured::new("tables", report.plan.name(), report.reuse)?;
     let path = |name: &str| measured.folder().join(name);
     let reused = report.reuse && path("drift.csv").exists();
     if !reused {
-        // The benches compile to more with the library.
-        library::build()?;
-        let mut measure = run::command(measured::bench("minibatch_table")?);
-        report.compiled();
-        if sizes != "default" {
-            measure.arg(format!("--{sizes}"));
-        }
-        // Its output is for people; what is needed here is in the files.
-        run::read(measure.arg("--output").arg(measured.folder()))?;
+        let [program] = report.build()?;
+        program::measure(report, &program, measured.folder())?;
     }
-    let (times, items, drift) = (read(&path("times.csv"))?, read(&path("items.csv"))?, read(&path("drift.csv"))?);
-    let times = Times::parse(&times)?;
+    let read = |name: &str| Table::read(&path(name), ',');
+    let (times, items, drift) = (Times::new(&read("times.csv")?)?, read("items.csv")?, read("drift.csv")?);
 
     let mut chapter = Chapter::new("Tables of importances");
     introduce(&mut chapter);

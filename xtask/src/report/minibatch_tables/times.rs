@@ -1,9 +1,9 @@
 //! Nanoseconds against the number of items.
 
 use super::BATCH;
-use crate::demo::training::curves::Rows;
 use crate::measure::output::Output;
 use crate::measure::plot::{Axis, Plot, Series};
+use crate::measure::table::Table;
 use crate::report::chapter::{Cell, Chapter, row};
 use crate::report::figure::{Figure, Unit};
 use crate::report::statistics::Estimate;
@@ -45,13 +45,12 @@ impl Row {
 pub(super) struct Times(Vec<Row>);
 
 impl Times {
-    pub(super) fn parse(csv: &str) -> Result<Self> {
-        let all = Rows::parse(csv)?;
+    pub(super) fn new(all: &Table) -> Result<Self> {
         let mut rows = Vec::new();
-        for items in all.words("items")? {
+        for items in all.distinct("items")? {
             for cache in CACHES {
                 let some = all.only("items", items)?.only("cache", cache)?;
-                for method in some.words("method")? {
+                for method in some.distinct("method")? {
                     let own = some.only("method", method)?;
                     rows.push(Row {
                         items: items.parse().with_context(|| format!("`{items}` is no number of items"))?,

@@ -5,17 +5,17 @@ mod scaling;
 
 use super::Report;
 use super::chapter::Chapter;
-use super::program::{self, Csv, Row};
+use super::program;
 use super::statistics::Estimate;
 use super::targets::Targets;
+use crate::measure::table::{Row, Table};
 use anyhow::Result;
 
 pub(super) fn write(report: &Report) -> Result<()> {
-    println!("building the program that makes point sets");
-    let program = program::build("point_sets")?;
-    report.compiled();
-    let folder = program::measure(report, &program)?;
-    let sets = Sets(Csv::read(&folder.path().join("points.csv"))?);
+    let [program] = report.build()?;
+    let folder = tempfile::tempdir()?;
+    program::measure(report, &program, folder.path())?;
+    let sets = Sets(Table::read(&folder.path().join("points.csv"), ',')?);
     let mut chapter = Chapter::new("Point sets: seconds against quality");
     let mut targets = Targets::default();
     introduce(&sets, &mut chapter)?;
@@ -49,7 +49,7 @@ fn introduce(sets: &Sets, chapter: &mut Chapter) -> Result<()> {
 }
 
 /// What was measured.
-struct Sets(Csv);
+struct Sets(Table);
 
 impl Sets {
     fn rows<'a>(&'a self, wanted: &'a [(&'a str, &'a str)]) -> impl Iterator<Item = Row<'a>> {
@@ -66,7 +66,7 @@ impl Sets {
     fn distinct(&self, wanted: &[(&str, &str)], column: &str) -> Result<Vec<String>> {
         let mut all: Vec<String> = Vec::new();
         for row in self.rows(wanted) {
-            let text = row.text(column)?;
+            let text = row.word(column)?;
             if !all.iter().any(|seen| seen == text) {
                 all.push(text.to_owned());
             }

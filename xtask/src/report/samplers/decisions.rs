@@ -1,8 +1,8 @@
 //! What `recommend()` says, and whether this run agrees.
 
+use crate::measure::table::{Row, Table};
 use crate::report::chapter::{Cell, Chapter, row};
 use crate::report::figure::{Figure, Unit};
-use crate::report::program::{Csv, Row};
 use anyhow::Result;
 
 /// Two digits are what the figures hold.
@@ -11,7 +11,7 @@ pub(super) fn two_digits(value: f64) -> String {
     format!("{value:.*}", (1 - before).max(0) as usize)
 }
 
-pub(super) fn write(table: &Csv, chapter: &mut Chapter) -> Result<()> {
+pub(super) fn write(table: &Table, chapter: &mut Chapter) -> Result<()> {
     chapter.section("What is recommended", "");
     chapter.paragraph(
         "What `recommend()` (in C `nf_recommend()`) says for so many dims and samples, stratified or independent, each pixel alone or with its \
@@ -26,9 +26,9 @@ pub(super) fn write(table: &Csv, chapter: &mut Chapter) -> Result<()> {
     let mut rows = Vec::new();
     for dims in table.distinct("dims")? {
         for (samples, neighbours) in table.kinds()? {
-            let mut cells: Vec<Cell> = row![dims.as_str(), samples.as_str(), neighbours.as_str()];
+            let mut cells: Vec<Cell> = row![dims, samples.as_str(), neighbours.as_str()];
             for n in &counts {
-                let wanted = [("dims", dims.as_str()), ("samples", &samples), ("neighbours", &neighbours), ("n", n)];
+                let wanted = [("dims", dims), ("samples", &samples), ("neighbours", &neighbours), ("n", n)];
                 cells.push(match table.rows().find(|row| row.has(&wanted)) {
                     Some(row) if neighbours.is_empty() => name(row, "recommended")?.into(),
                     Some(row) => choice(row, "recommended", ["raw", "filtered"])?.into(),
@@ -43,7 +43,7 @@ pub(super) fn write(table: &Csv, chapter: &mut Chapter) -> Result<()> {
 }
 
 /// Where something else was better by more than its noise.
-fn other(table: &Csv, chapter: &mut Chapter) -> Result<()> {
+fn other(table: &Table, chapter: &mut Chapter) -> Result<()> {
     let mut rows = Vec::new();
     let mut count = 0;
     for row in table.rows() {
@@ -56,10 +56,10 @@ fn other(table: &Csv, chapter: &mut Chapter) -> Result<()> {
         excess.text = format!("{} [{}, {}]", excess.text, Unit::Ratio.text(interval[0]), Unit::Ratio.text(interval[1]));
         excess.interval = Some(interval);
         rows.push(row![
-            row.text("dims")?,
-            row.text("n")?,
-            row.text("samples")?,
-            row.text("neighbours")?,
+            row.word("dims")?,
+            row.word("n")?,
+            row.word("samples")?,
+            row.word("neighbours")?,
             choice(row, "recommended", ["raw", "filtered"])?,
             choice(row, "best", ["best_raw", "best_filtered"])?,
             excess
@@ -82,12 +82,12 @@ fn other(table: &Csv, chapter: &mut Chapter) -> Result<()> {
     Ok(())
 }
 
-impl Csv {
+impl Table {
     /// Kinds of samples and neighbours, in the order of the table's first place.
     fn kinds(&self) -> Result<Vec<(String, String)>> {
         let mut all: Vec<(String, String)> = Vec::new();
         for row in self.rows() {
-            let kind = (row.text("samples")?.to_owned(), row.text("neighbours")?.to_owned());
+            let kind = (row.word("samples")?.to_owned(), row.word("neighbours")?.to_owned());
             if !all.contains(&kind) {
                 all.push(kind);
             }
@@ -97,7 +97,7 @@ impl Csv {
 }
 
 fn name(row: Row<'_>, column: &str) -> Result<String> {
-    Ok(row.text(column)?.replace(';', ","))
+    Ok(row.word(column)?.replace(';', ","))
 }
 
 fn choice(row: Row<'_>, column: &str, errors: [&str; 2]) -> Result<String> {

@@ -1,8 +1,8 @@
 //! What a draw costs.
 
+use crate::measure::table::Table;
 use crate::report::chapter::{Cell, Chapter, row};
 use crate::report::figure::{Figure, Unit};
-use crate::report::program::Csv;
 use crate::report::statistics::Estimate;
 use crate::report::targets::Targets;
 use anyhow::Result;
@@ -10,7 +10,7 @@ use anyhow::Result;
 /// The public sampler that the library's draws are to be as fast as.
 const PEER: &str = "OpenQMC lattice-bn";
 
-pub(super) fn write(table: &Csv, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
+pub(super) fn write(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
     chapter.section("Nanoseconds of a draw", "");
     let rounds = chapter.setting("rounds", table.distinct("round")?.len());
     chapter.paragraph(&format!(
@@ -32,7 +32,7 @@ pub(super) fn write(table: &Csv, chapter: &mut Chapter, targets: &mut Targets) -
         let mut rows = Vec::new();
         for sampler in table.distinct("sampler")? {
             for door in ["Rust", "C ABI"] {
-                let mut cells: Vec<Cell> = row![sampler.as_str(), door];
+                let mut cells: Vec<Cell> = row![sampler, door];
                 for spp in &counts {
                     let all = times(&dims, spp, &sampler, door)?;
                     cells.push(match all.is_empty() {
@@ -49,7 +49,7 @@ pub(super) fn write(table: &Csv, chapter: &mut Chapter, targets: &mut Targets) -
         for (door, sampler) in
             ["Rust", "C ABI"].into_iter().flat_map(|door| ["tile", "progressive tile"].map(|of| (door, of)))
         {
-            for spp in counts.iter().filter(|spp| spp.as_str() != "64") {
+            for spp in counts.iter().filter(|spp| **spp != "64") {
                 let (own, peer) = (times(&dims, spp, sampler, door)?, times(&dims, spp, PEER, "Rust")?);
                 if own.is_empty() || peer.is_empty() {
                     continue;

@@ -2,9 +2,9 @@
 
 use crate::measure::output::Output;
 use crate::measure::plot::{Axis, Plot, Series};
+use crate::measure::table::Table;
 use crate::report::chapter::{Cell, Chapter, row};
 use crate::report::figure::{Figure, Unit};
-use crate::report::program::Csv;
 use crate::report::statistics::Estimate;
 use crate::report::targets::Targets;
 use anyhow::{Context, Result};
@@ -41,7 +41,7 @@ const WANTED: &[(&str, &str, &str, &str, usize, f64)] = &[
 ];
 
 /// What is measured of one sampler.
-struct Energies<'a>(&'a Csv);
+struct Energies<'a>(&'a Table);
 
 impl Energies<'_> {
     /// One value for each batch; empty where the sampler does not exist.
@@ -51,7 +51,7 @@ impl Energies<'_> {
     }
 }
 
-pub(super) fn write(output: &Output, table: &Csv, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
+pub(super) fn write(output: &Output, table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
     let energies = Energies(table);
     introduce(table, chapter)?;
     for dims in table.distinct("dims")? {
@@ -82,7 +82,7 @@ pub(super) fn write(output: &Output, table: &Csv, chapter: &mut Chapter, targets
     Ok(())
 }
 
-fn introduce(table: &Csv, chapter: &mut Chapter) -> Result<()> {
+fn introduce(table: &Table, chapter: &mut Chapter) -> Result<()> {
     chapter.section("How samplers alone are measured", "");
     let batches = chapter.setting("batches", table.distinct("batch")?.len());
     let row = table.rows().next().context("no energies were measured")?;
@@ -112,14 +112,14 @@ fn introduce(table: &Csv, chapter: &mut Chapter) -> Result<()> {
     Ok(())
 }
 
-fn errors(energies: &Energies, table: &Csv, dims: &str, kernel: &str, chapter: &mut Chapter) -> Result<()> {
+fn errors(energies: &Energies, table: &Table, dims: &str, kernel: &str, chapter: &mut Chapter) -> Result<()> {
     let counts = table.distinct("spp")?;
     let headings: Vec<String> =
         FAMILIES.iter().flat_map(|family| counts.iter().map(move |spp| format!("{family}, {spp} spp"))).collect();
     let columns: Vec<&str> = ["sampler"].into_iter().chain(headings.iter().map(String::as_str)).collect();
     let mut rows = Vec::new();
     for sampler in table.distinct("sampler")? {
-        let mut cells: Vec<Cell> = row![sampler.as_str()];
+        let mut cells: Vec<Cell> = row![sampler];
         for (family, spp) in FAMILIES.iter().flat_map(|family| counts.iter().map(move |spp| (family, spp))) {
             let values = energies.batches(dims, spp, &sampler, kernel, family)?;
             cells.push(match values.is_empty() {
@@ -136,7 +136,7 @@ fn errors(energies: &Energies, table: &Csv, dims: &str, kernel: &str, chapter: &
 }
 
 /// The filtered error of half-planes: over white noise of as many samples, divided by them.
-fn plot(energies: &Energies, table: &Csv, dims: &str) -> Result<String> {
+fn plot(energies: &Energies, table: &Table, dims: &str) -> Result<String> {
     let mut series = Vec::new();
     for (index, sampler) in table.distinct("sampler")?.into_iter().enumerate() {
         let (mut points, mut band) = (Vec::new(), Vec::new());
@@ -150,7 +150,7 @@ fn plot(energies: &Energies, table: &Csv, dims: &str) -> Result<String> {
             band.push((count, of.low / count, of.high / count));
         }
         if !points.is_empty() {
-            series.push(Series { name: sampler, points, band, colour: Some(index), ..Series::default() });
+            series.push(Series { name: sampler.to_owned(), points, band, colour: Some(index), ..Series::default() });
         }
     }
     let title = format!("Half-planes of {dims} dims, filtered by a Gaussian of 2.1 pixels");

@@ -3,8 +3,8 @@
 use super::decisions::two_digits;
 use crate::measure::output::Output;
 use crate::measure::plot::{Axis, Plot, Series};
+use crate::measure::table::{Row, Table};
 use crate::report::chapter::{Cell, Chapter, row};
-use crate::report::program::{Csv, Row};
 use crate::report::statistics::Estimate;
 use anyhow::Result;
 use std::fmt::Write;
@@ -22,7 +22,7 @@ struct Of {
     draw_ns: f64,
 }
 
-pub(super) fn write(output: &Output, table: &Csv, chapter: &mut Chapter) -> Result<()> {
+pub(super) fn write(output: &Output, table: &Table, chapter: &mut Chapter) -> Result<()> {
     introduce(table, chapter)?;
     let mut csv =
         "dims,n,samples,estimator,raw,raw_low,raw_high,filtered,filtered_low,filtered_high,worst,ns\n".to_owned();
@@ -88,7 +88,7 @@ pub(super) fn write(output: &Output, table: &Csv, chapter: &mut Chapter) -> Resu
     output.write_text("samplers-grid.csv", &csv)
 }
 
-fn introduce(table: &Csv, chapter: &mut Chapter) -> Result<()> {
+fn introduce(table: &Table, chapter: &mut Chapter) -> Result<()> {
     chapter.section("Samplers with estimators", "");
     let first = table.distinct("dims")?.into_iter().next().unwrap_or_default();
     let mean = ("Mean".to_owned(), first.parse()?, 0);
@@ -130,11 +130,11 @@ fn introduce(table: &Csv, chapter: &mut Chapter) -> Result<()> {
 }
 
 fn method(row: Row<'_>) -> Result<Method> {
-    Ok((row.text("estimator")?.to_owned(), row.number("regressed")?, row.number("order")?))
+    Ok((row.word("estimator")?.to_owned(), row.number("regressed")?, row.number("order")?))
 }
 
 /// All estimators of a kind of samples, at any number of them: the plain mean first.
-fn methods(table: &Csv, dims: &str, source: &str) -> Result<Vec<Method>> {
+fn methods(table: &Table, dims: &str, source: &str) -> Result<Vec<Method>> {
     let mut all = Vec::new();
     for row in table.rows().filter(|row| row.has(&[("dims", dims), ("samples", source)])) {
         let method = method(row)?;
@@ -178,7 +178,7 @@ fn is_drawn(source: &str, (kind, regressed, order): &Method, dims: &str) -> bool
 }
 
 /// None where it was not measured.
-fn of(table: &Csv, dims: &str, n: &str, source: &str, wanted: &Method) -> Result<Option<Of>> {
+fn of(table: &Table, dims: &str, n: &str, source: &str, wanted: &Method) -> Result<Option<Of>> {
     let (kind, regressed, order) = (wanted.0.as_str(), wanted.1.to_string(), wanted.2.to_string());
     let wanted = [
         ("dims", dims),

@@ -8,28 +8,27 @@ mod sheet;
 
 use super::Report;
 use super::chapter::Chapter;
-use super::program::{self, Csv};
+use super::program;
 use super::targets::Targets;
-use crate::library;
+use crate::measure::table::Table;
 use anyhow::Result;
 
 pub(super) fn write(report: &Report) -> Result<()> {
-    println!("building the library and the programs that measure samplers");
-    library::build()?;
-    let [samplers, guidance] = [program::build("samplers")?, program::build("guidance")?];
-    report.compiled();
-    let samplers = program::measure(report, &samplers)?;
-    let guidance = program::measure(report, &guidance)?;
-    let read = |folder: &tempfile::TempDir, name: &str| Csv::read(&folder.path().join(name));
-    let (energies, times) = (read(&samplers, "energies.csv")?, read(&samplers, "draws.csv")?);
-    let (cells, decisions) = (read(&guidance, "cells.csv")?, read(&guidance, "decisions.csv")?);
+    let programs: [_; 2] = report.build()?;
+    let folder = tempfile::tempdir()?;
+    for program in &programs {
+        program::measure(report, program, folder.path())?;
+    }
+    let read = |name: &str| Table::read(&folder.path().join(name), ',');
+    let (energies, times) = (read("energies.csv")?, read("draws.csv")?);
+    let (cells, decisions) = (read("cells.csv")?, read("decisions.csv")?);
 
     let mut targets = Targets::default();
     let mut chapter = Chapter::new("Samplers, alone and with estimators");
     introduce(&mut chapter);
     errors::write(report.output, &energies, &mut chapter, &mut targets)?;
     draws::write(&times, &mut chapter, &mut targets)?;
-    sheet::write(report.output, samplers.path(), &mut chapter)?;
+    sheet::write(report.output, folder.path(), &mut chapter)?;
     decisions::write(&decisions, &mut chapter)?;
     grid::write(report.output, &cells, &mut chapter)?;
     targets.write_summary(&mut chapter);

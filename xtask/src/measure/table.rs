@@ -1,0 +1,138 @@
+//! Tables that programs write: a line of headings, then rows of as many cells.
+
+use anyhow::{Context, Result, bail};
+use std::path::Path;
+use std::str::FromStr;
+
+pub(crate) struct Table {
+    /// For errors: where it is from.
+    name: String,
+    headings: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+/// One of its rows.
+#[derive(Clone, Copy)]
+pub(crate) struct Row<'a> {
+    table: &'a Table,
+    cells: &'a [String],
+}
+
+impl Table {
+    /// Of a file whose cells are divided by `separator` and hold none.
+    pub(crate) fn read(path: &Path, separator: char) -> Result<Self> {
+        let name = path.display().to_string();
+        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
+        Self::parse(&text, &name, separator)
+    }
+
+    /// As [`Table::read`], of what was read already.
+    pub(crate) fn parse(text: &str, name: &str, separator: char) -> Result<Self> {
+        let cells = |line: &str| line.split(separator).map(str::to_owned).collect::<Vec<_>>();
+        let mut lines = text.lines().map(cells);
+        let headings = lines.next().with_context(|| format!("{name} is empty"))?;
+        let rows: Vec<_> = lines.collect();
+        if let Some((line, row)) = (2..).zip(&rows).find(|(_, row)| row.len() != headings.len()) {
+            bail!("{name}, line {line}: {} cells under {} headings: {row:?}", row.len(), headings.len());
+        }
+        Ok(Self { name: name.to_owned(), headings, rows })
+    }
+
+    pub(crate) fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+        self.rows.iter().map(|cells| Row { table: self, cells })
+    }
+
+    /// The rows whose cell under a heading is this.
+    pub(crate) fn only(&self, heading: &str, word: &str) -> Result<Self> {
+        let column = self.column(heading)?;
+        let rows = self.rows.iter().filter(|row| row[column] == word).cloned().collect();
+        Ok(Self { name: self.name.clone(), headings: self.headings.clone(), rows })
+    }
+
+    /// A column, row by row.
+    pub(crate) fn words(&self, heading: &str) -> Result<Vec<&str>> {
+        let column = self.column(heading)?;
+        Ok(self.rows.iter().map(|row| row[column].as_str()).collect())
+    }
+
+    /// The same as numbers.
+    pub(crate) fn numbers(&self, heading: &str) -> Result<Vec<f64>> {
+        self.column(heading)?;
+        self.rows().map(|row| row.number(heading)).collect()
+    }
+
+    /// The different cells of a column, in the order in which they come.
+    pub(crate) fn distinct(&self, heading: &str) -> Result<Vec<&str>> {
+        let mut words = Vec::new();
+        for word in self.words(heading)? {
+            if !words.contains(&word) {
+                words.push(word);
+            }
+        }
+        Ok(words)
+    }
+
+    fn column(&self, heading: &str) -> Result<usize> {
+        let column = self.headings.iter().position(|name| name == heading);
+        column.with_context(|| format!("{} has no column `{heading}`", self.name))
+    }
+}
+
+impl<'a> Row<'a> {
+    /// The cell under a heading.
+    pub(crate) fn word(&self, heading: &str) -> Result<&'a str> {
+        Ok(&self.cells[self.table.column(heading)?])
+    }
+
+    pub(crate) fn number<T: FromStr>(&self, heading: &str) -> Result<T> {
+        let word = self.word(heading)?;
+        let number = word.parse().ok();
+        number.with_context(|| format!("{}: `{word}` in column `{heading}` is no number", self.table.name))
+    }
+
+    /// None for an empty cell.
+    pub(crate) fn optional(&self, heading: &str) -> Result<Option<f64>> {
+        if self.word(heading)?.is_empty() { Ok(None) } else { self.number(heading).map(Some) }
+    }
+
+    /// Whether the cells under these headings are these.
+    pub(crate) fn has(&self, wanted: &[(&str, &str)]) -> bool {
+        wanted.iter().all(|(heading, value)| self.word(heading).is_ok_and(|word| word == *value))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_found_by_their_headings() -> Result<()> {
+        let table = Table::parse("name;n;x\na, b;1;2.5e-1\nc;2;\na, b;4;3\n", "t.csv", ';')?;
+        assert_eq!(table.distinct("name")?, ["a, b", "c"]);
+        let some = table.only("name", "a, b")?;
+        assert_eq!((some.words("n")?, some.numbers("x")?), (vec!["1", "4"], vec![0.25, 3.0]));
+        let rows: Vec<_> = table.rows().collect();
+        assert_eq!(
+            (rows[0].number::<u32>("n")?, rows[0].optional("x")?, rows[1].optional("x")?),
+            (1, Some(0.25), None)
+        );
+        let error = rows[0].number::<u32>("x").expect_err("no whole number");
+        assert!(error.to_string().contains("t.csv: `2.5e-1` in column `x`"), "{error}");
+        Ok(())
+    }
+
+    #[test]
+    fn damage_is_said() {
+        let error =
+            |text: &str| Table::parse(text, "t.csv", ',').err().map_or(String::new(), |error| error.to_string());
+        assert!(error("a,b\n1,2\n1\n").contains("t.csv, line 3: 1 cells under 2 headings"));
+        assert!(error("").contains("empty"));
+        let table = Table::parse("a,b\n", "t.csv", ',').expect("no row is a table too");
+        assert!(
+            table.distinct("c").is_err()
+                && table.only("c", "").is_err()
+                && table.words("c").is_err()
+                && table.numbers("c").is_err()
+        );
+    }
+}
