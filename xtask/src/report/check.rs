@@ -144,7 +144,8 @@ fn without_references(line: &str) -> String {
     let mut rest = outside_code.as_str();
     let mut text = String::new();
     while let Some((before, link)) = rest.split_once("](") {
-        text += before;
+        // A picture's description is no text.
+        text += before.rsplit_once("![").map_or(before, |(before, _)| before);
         rest = link.split_once(')').map_or("", |(_, after)| after);
     }
     text += rest;
