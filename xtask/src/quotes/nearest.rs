@@ -39,6 +39,15 @@ pub(super) fn of<'a>(value: f64, line: &str, all: impl Iterator<Item = &'a Measu
     text
 }
 
+/// Whether the line is a table's row and the number stands in a row of the same name, as far as the first word tells.
+pub(super) fn is_in_row(measured: &Measured, line: &str) -> bool {
+    let Some(row) = line.strip_prefix('|') else { return false };
+    let Some(name) = row.split(|c: char| !c.is_alphanumeric()).find(|word| !word.is_empty()) else { return false };
+    // Of a number it cannot be told what it counts.
+    let (label, _) = measured.place.split_once(':').unwrap_or_default();
+    name.starts_with(char::is_alphabetic) && words(label).contains(&name.to_lowercase())
+}
+
 /// Four digits, so that one may round to fewer.
 fn significant(value: f64) -> String {
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
@@ -56,5 +65,6 @@ fn the_row_that_the_line_names_is_told() {
         [measured(0.44, "bathroom: direct"), measured(0.434_44, "dining: direct"), measured(9.0, "dining: indirect")];
     assert_eq!(of(0.45, "| dining | .45 |", all.iter()), "0.44 (bathroom: direct); 0.4344 (dining: direct)");
     assert_eq!(of(0.45, "", [measured(1.0, "")].iter()), "1");
+    assert_eq!(all.map(|measured| is_in_row(&measured, "| Dining (2) | .44 |")), [false, true, true]);
     assert_eq!(of(0.45, "", [].iter()), "");
 }

@@ -113,7 +113,9 @@ fn parse(names: &str, sources: &Sources) -> Result<Vec<String>, String> {
 fn search(number: &Number, line: &str, names: &[String], sources: &Sources) -> Option<String> {
     let all = || names.iter().filter_map(|name| sources.numbers(name)).flatten();
     let half = 0.5 * 10f64.powi(-number.decimals);
-    if all().any(|measured| (measured.value.abs() - number.value).abs() <= half * (1.0 + 1e-6)) {
+    let mut same_row = all().filter(|measured| nearest::is_in_row(measured, line)).peekable();
+    let candidates: Vec<_> = if same_row.peek().is_some() { same_row.collect() } else { all().collect() };
+    if candidates.iter().any(|measured| (measured.value.abs() - number.value).abs() <= half * (1.0 + 1e-6)) {
         return None;
     }
     let wrong = format!("{} is not in {}", number.text, names.join("; "));
