@@ -85,7 +85,7 @@ fn two_colors() {
     assert!(low < 0.014 && report.spectra[0].summary.low <= 0.014, "{low}, {:?}", report.spectra);
 }
 
-/// What docs/fsot_points.md says of long runs. Half a minute of one core; the next one, two minutes:
+/// The long runs that docs/fsot_points.md names. Half a minute of one core; the next one, two minutes:
 /// `cargo test --profile fsot -p noisefloor-fsot --test fsot points_quality:: -- --ignored`.
 #[test]
 #[ignore = "slow: cargo test --profile fsot -p noisefloor-fsot --test fsot points_quality:: -- --ignored"]

@@ -4,9 +4,16 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
+use std::rc::Rc;
+
+/// A measured number, and where it stands: the names of its row and its column. Empty for what is in no table.
+pub(super) struct Measured {
+    pub(super) value: f64,
+    pub(super) place: Rc<str>,
+}
 
 /// Numbers by the name of their source: `embree`, `embree/direct`, `tiles`, `tiles/128_4SPP_2D`.
-pub(super) struct Sources(BTreeMap<String, Vec<f64>>);
+pub(super) struct Sources(BTreeMap<String, Vec<Measured>>);
 
 impl Sources {
     /// `report`: a folder of JSON files; `tiles`: one of TOML files.
@@ -14,31 +21,49 @@ impl Sources {
         let mut sources = Self(BTreeMap::new());
         for (stem, text) in files(report, "json") {
             let json: Value = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{stem}.json: {error}"));
-            sources.add(&stem, &json);
-            sources.add(&format!("{stem}/quoted"), &json["quoted"]);
-            sources.add(&format!("{stem}/settings"), &json["settings"]);
+            sources.add(&format!("{stem}/quoted"), &json["quoted"], "");
+            sources.add(&format!("{stem}/settings"), &json["settings"], "");
             for table in json["tables"].as_array().map_or(&[][..], Vec::as_slice) {
                 if let Some(name) = table["name"].as_str() {
                     // Several tables of a name are one source.
-                    sources.add(&format!("{stem}/{name}"), &table["rows"]);
+                    sources.add_table(&format!("{stem}/{name}"), table);
+                    sources.add_table(&stem, table);
                 }
             }
+            // Last: what is in a table has been told with its row.
+            sources.add(&stem, &json, "");
         }
         for (stem, text) in files(tiles, "toml") {
-            let numbers = super::text::numbers(&text).into_iter().map(|number| number.value);
-            let numbers: Vec<f64> = numbers.collect();
-            sources.0.entry("tiles".to_owned()).or_default().extend(&numbers);
-            sources.0.entry(format!("tiles/{stem}")).or_default().extend(numbers);
+            // Line by line, as a line's name tells its numbers apart.
+            for line in text.lines() {
+                let (key, _) = line.split_once(" = ").unwrap_or_default();
+                let line = Value::String(line.to_owned());
+                sources.add("tiles", &line, &format!("{stem} {key}"));
+                sources.add(&format!("tiles/{stem}"), &line, key);
+            }
         }
         sources
     }
 
-    fn add(&mut self, name: &str, json: &Value) {
-        collect(json, self.0.entry(name.to_owned()).or_default());
+    fn add(&mut self, name: &str, json: &Value, place: &str) {
+        collect(json, &Rc::from(place), self.0.entry(name.to_owned()).or_default());
+    }
+
+    fn add_table(&mut self, name: &str, table: &Value) {
+        let array = |key: &str| table[key].as_array().map_or(&[][..], Vec::as_slice);
+        // A table without rows is a source too.
+        self.0.entry(name.to_owned()).or_default();
+        for row in array("rows").iter().filter_map(Value::as_array) {
+            let label = row.iter().filter_map(Value::as_str).collect::<Vec<_>>().join(", ");
+            for (cell, i) in row.iter().zip(0..) {
+                let column = array("columns").get(i).and_then(Value::as_str).unwrap_or_default();
+                self.add(name, cell, &format!("{label}: {column}"));
+            }
+        }
     }
 
     /// None: there is no such source.
-    pub(super) fn numbers(&self, name: &str) -> Option<&[f64]> {
+    pub(super) fn numbers(&self, name: &str) -> Option<&[Measured]> {
         self.0.get(name).map(Vec::as_slice)
     }
 }
@@ -56,16 +81,18 @@ fn files(folder: &Path, extension: &str) -> Vec<(String, String)> {
 }
 
 /// The numbers of values and of texts, and half the width of intervals.
-fn collect(json: &Value, numbers: &mut Vec<f64>) {
+fn collect(json: &Value, place: &Rc<str>, found: &mut Vec<Measured>) {
+    let mut push = |value: f64| found.push(Measured { value, place: Rc::clone(place) });
     match json {
-        Value::Number(number) => numbers.extend(number.as_f64()),
-        Value::String(text) => numbers.extend(super::text::numbers(text).into_iter().map(|number| number.value)),
-        Value::Array(values) => values.iter().for_each(|value| collect(value, numbers)),
+        Value::Number(number) => number.as_f64().into_iter().for_each(push),
+        Value::String(text) => super::text::numbers(text).into_iter().for_each(|number| push(number.value)),
+        Value::Array(values) => values.iter().for_each(|value| collect(value, place, found)),
         Value::Object(fields) => {
             if let Some([low, high]) = fields.get("interval").and_then(Value::as_array).map(Vec::as_slice) {
-                numbers.extend(low.as_f64().zip(high.as_f64()).map(|(low, high)| (high - low) / 2.0));
+                let half = low.as_f64().zip(high.as_f64()).map(|(low, high)| (high - low) / 2.0);
+                half.into_iter().for_each(push);
             }
-            fields.values().for_each(|value| collect(value, numbers));
+            fields.values().for_each(|value| collect(value, place, found));
         }
         Value::Null | Value::Bool(_) => {}
     }

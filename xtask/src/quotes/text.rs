@@ -1,5 +1,6 @@
 //! The figures of a document, and whether its sources have them.
 
+use super::nearest;
 use super::source::Sources;
 use crate::paths;
 
@@ -71,9 +72,9 @@ pub(super) fn check(document: &str, sources: &Sources) -> Found {
             match &named {
                 None => found.without_source.push(format!("{line}: {}", number.text)),
                 Some(names) if names.iter().any(|name| name == UNCHECKED) => {}
-                Some(names) => {
-                    found.wrong.extend(search(&number, names, sources).map(|message| format!("{line}: {message}")))
-                }
+                Some(names) => found
+                    .wrong
+                    .extend(search(&number, text, names, sources).map(|message| format!("{line}: {message}"))),
             }
         }
     }
@@ -108,17 +109,22 @@ fn parse(names: &str, sources: &Sources) -> Result<Vec<String>, String> {
     }
 }
 
-/// None: one of the sources has the number. Otherwise what is wrong.
-fn search(number: &Number, names: &[String], sources: &Sources) -> Option<String> {
-    let distance = |value: &f64| (value.abs() - number.value).abs();
-    let all = names.iter().filter_map(|name| sources.numbers(name)).flatten();
-    let nearest = all.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+/// None: one of the sources has the number. Otherwise what is wrong, and what may stand there instead.
+fn search(number: &Number, line: &str, names: &[String], sources: &Sources) -> Option<String> {
+    let all = || names.iter().filter_map(|name| sources.numbers(name)).flatten();
     let half = 0.5 * 10f64.powi(-number.decimals);
-    match nearest {
-        Some(nearest) if distance(nearest) <= half * (1.0 + 1e-6) => None,
-        Some(nearest) => Some(format!("{} is not in {}; nearest is {nearest}", number.text, names.join("; "))),
-        None => Some(format!("{} is not in {}, which has no numbers", number.text, names.join("; "))),
+    let mut same_row = all().filter(|measured| nearest::is_in_row(measured, line)).peekable();
+    let candidates: Vec<_> = if same_row.peek().is_some() { same_row.collect() } else { all().collect() };
+    if candidates.iter().any(|measured| (measured.value.abs() - number.value).abs() <= half * (1.0 + 1e-6)) {
+        return None;
     }
+    let wrong = format!("{} is not in {}", number.text, names.join("; "));
+    let nearest = nearest::of(number.value, line, all());
+    Some(if nearest.is_empty() {
+        format!("{wrong}, which has no numbers")
+    } else {
+        format!("{wrong}; nearest: {nearest}")
+    })
 }
 
 /// The numbers of a line that look measured.
