@@ -105,7 +105,7 @@ fn a_quarter_of_a_million_points() {
     let points = optimize(Problem { seed: 1, ..Problem::new(262_144, 2) }).unwrap();
     let nn = fsot::metrics::neighbours::neighbours(&points).unwrap().mean;
     println!("nearest neighbour {nn}");
-    assert!(nn >= 0.86, "{nn}");
+    assert!(nn >= 0.85, "{nn}");
 }
 
 #[test]

@@ -40,6 +40,17 @@ impl Filter {
         self.members
     }
 
+    /// Where runs of equal values begin and end: the points next to each other that it tells apart are there.
+    pub(crate) fn ends(&self) -> impl Iterator<Item = u32> {
+        self.runs.iter().flat_map(|(run, _)| [run.start, run.end])
+    }
+
+    /// The value at a point, 0 if it is none of the class's.
+    pub(crate) fn value(&self, number: u32) -> f32 {
+        let run = self.runs.partition_point(|(run, _)| run.end <= number);
+        self.runs.get(run).filter(|(run, _)| run.contains(&number)).map_or(0.0, |(_, value)| *value)
+    }
+
     /// How many different values it has above 0, but at most `most`.
     pub(crate) fn values(&self, most: usize) -> usize {
         let mut values: Vec<f32> = Vec::new();

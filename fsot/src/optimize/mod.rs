@@ -1,7 +1,9 @@
 //! The optimiser: stochastic descent on the sliced multi-class barycenter (5.4).
 
 mod check;
+mod cut;
 mod direction;
+mod group;
 mod initial;
 mod optimizer;
 mod rank;

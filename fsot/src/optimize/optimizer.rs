@@ -1,8 +1,10 @@
 //! The optimisation of a point set, step by step.
 
 use super::direction::direction;
+use super::group::{self, Group};
 use super::schedule::{MOST_OBJECTIVES, SLICES, Schedule, objectives};
 use super::slice::{Bins, Offset, Slice, Workspace, advance, transport};
+use super::window::window_count;
 use super::{Domain, Problem, check};
 use crate::class::{Filter, normalised};
 use crate::error::Result;
@@ -23,6 +25,8 @@ pub struct Optimizer {
     pub(super) filters: Vec<Filter>,
     /// Of the classes, without the empty ones; empty if no class has points.
     pub(super) weights: Vec<f64>,
+    /// How windows share the points; empty without windows.
+    pub(super) groups: Vec<Group>,
     schedule: Schedule,
     pub(super) iteration: u64,
     pub(super) coordinates: Vec<f32>,
@@ -56,10 +60,12 @@ impl Optimizer {
         let weights = problem.classes.iter().zip(&filters).map(|(class, filter)| (class.weight, filter.members() == 0));
         let weights = normalised(weights).unwrap_or_default();
         let schedule = Schedule::new(&problem, objectives(filters.iter().map(|filter| filter.values(MOST_OBJECTIVES))));
+        let windows = if schedule.has_windows() { window_count(points, problem.dims) } else { 0 };
+        let groups = if windows == 0 { Vec::new() } else { group::groups(&filters, points, windows) };
         let coordinates = super::initial::coordinates(&problem);
         let offsets = vec![Vec::new(); SLICES];
         let workspaces = Mutex::default();
-        Ok(Optimizer { problem, filters, weights, schedule, iteration: 0, coordinates, offsets, workspaces })
+        Ok(Optimizer { problem, filters, weights, groups, schedule, iteration: 0, coordinates, offsets, workspaces })
     }
 
     /// The points as they are now.

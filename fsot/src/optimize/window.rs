@@ -1,6 +1,7 @@
 //! Windows: large uniform sets are optimised in boxes of about a thousand points, which costs less per point and moves them farther.
 
 use super::Domain;
+use super::cut::{Piece, cut};
 use super::direction::direction;
 use super::optimizer::Optimizer;
 use super::schedule::{SLICES, WINDOW, WINDOW_ITERATIONS};
@@ -8,76 +9,10 @@ use super::slice::{Bins, Offset, Slice, Workspace, advance, transport};
 use crate::points::BELOW_ONE;
 use crate::random::stream;
 use crate::target::{MEAN_COMPONENT, uniform_bins};
-use noisefloor::rng::Rng;
 use rayon::prelude::*;
 
 /// The stream that places the windows; those of slices are below.
 const PLACES: u64 = u64::MAX;
-
-/// How an axis is cut.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cuts {
-    /// Windows along the axis, at least 2.
-    count: usize,
-    /// The first cut, in units of a window: in [1/2, 3/2) if bounded. On a torus, how far points are moved before they are cut at whole windows.
-    offset: f32,
-    domain: Domain,
-}
-
-impl Cuts {
-    pub(super) fn new(count: usize, domain: Domain, rng: &mut Rng) -> Cuts {
-        let offset = rng.uniform_f32() + if domain == Domain::Bounded { 0.5 } else { 0.0 };
-        Cuts { count, offset, domain }
-    }
-
-    /// The window of a coordinate in [0, 1), and the coordinate relative to its lower end.
-    pub(super) fn place(&self, x: f32) -> (usize, f32) {
-        let last = self.count - 1;
-        let mut u = x * self.count as f32;
-        let window = match self.domain {
-            Domain::Bounded => {
-                if u < self.offset {
-                    0
-                } else {
-                    ((u - self.offset) as usize + 1).min(last)
-                }
-            }
-            Domain::Toroidal => {
-                u += self.offset;
-                u = if u >= self.count as f32 { u - self.count as f32 } else { u };
-                (u as usize).min(last)
-            }
-        };
-        let (start, length) = self.extent(window);
-        (window, (u / self.count as f32 - start).clamp(0.0, length))
-    }
-
-    /// Lower end (before moving, on a torus) and length of a window.
-    pub(super) fn extent(&self, window: usize) -> (f32, f32) {
-        let count = self.count as f32;
-        match self.domain {
-            Domain::Toroidal => (window as f32 / count, 1.0 / count),
-            Domain::Bounded => {
-                let cut = |k: usize| (k as f32 - 1.0 + self.offset) / count;
-                let start = if window == 0 { 0.0 } else { cut(window) };
-                let end = if window + 1 == self.count { 1.0 } else { cut(window + 1) };
-                (start, end - start)
-            }
-        }
-    }
-
-    /// The coordinate of a place in a window.
-    pub(super) fn coordinate(&self, window: usize, local: f32) -> f32 {
-        let x = self.extent(window).0 + local;
-        match self.domain {
-            Domain::Bounded => x.clamp(0.0, BELOW_ONE),
-            Domain::Toroidal => {
-                let x = x - self.offset / self.count as f32;
-                (if x < 0.0 { x + 1.0 } else { x }).clamp(0.0, BELOW_ONE)
-            }
-        }
-    }
-}
 
 /// How many windows each axis has for a number of points; fewer than 2: none.
 pub(super) fn windows_per_axis(points: usize, dims: usize) -> usize {
@@ -89,13 +24,20 @@ pub(super) fn windows_per_axis(points: usize, dims: usize) -> usize {
     }
 }
 
+/// How many windows a set is cut into.
+pub(super) fn window_count(points: usize, dims: usize) -> usize {
+    windows_per_axis(points, dims).max(2).pow(dims as u32)
+}
+
 /// A window and its points.
-struct Window<'a, const D: usize> {
+struct Window<const D: usize> {
     number: usize,
+    start: [f32; D],
     lengths: [f32; D],
     /// The numbers of its points in the set, ascending.
-    numbers: &'a [u32],
-    coordinates: &'a mut [f32],
+    numbers: Vec<u32>,
+    /// Relative to its start.
+    coordinates: Vec<f32>,
 }
 
 /// What a thread needs for a window.
@@ -108,77 +50,62 @@ pub(super) struct WindowWorkspace {
 impl Optimizer {
     /// Cuts the domain at random places and optimises each window alone, as a box with uniform targets.
     pub(super) fn step_in_windows<const D: usize>(&mut self, step: f32) -> f64 {
-        let points = self.problem.points;
         let mut rng = stream(self.problem.seed, self.iteration, PLACES);
-        let per_axis = windows_per_axis(points, D).max(2);
-        let cuts: [Cuts; D] = std::array::from_fn(|_| Cuts::new(per_axis, self.problem.domain, &mut rng));
-        let count = per_axis.pow(D as u32);
+        let per_axis = windows_per_axis(self.problem.points, D).max(2);
+        // A torus is turned at random, then cut at fixed places.
+        let turn: [f32; D] = match self.problem.domain {
+            Domain::Bounded => [0.0; D],
+            Domain::Toroidal => std::array::from_fn(|_| rng.uniform_f32()),
+        };
+        let (all, _) = self.coordinates.as_chunks_mut::<D>();
+        let turned = |point: &[f32; D]| {
+            std::array::from_fn(|k| {
+                let x = point[k] + turn[k];
+                if x >= 1.0 { x - 1.0 } else { x }
+            })
+        };
+        let places: Vec<[f32; D]> = all.par_iter().with_min_len(4096).map(turned).collect();
+        let windows = cut(&places, &self.groups, per_axis, self.problem.domain, &mut rng);
 
-        // Points in the order of windows, and by number inside.
-        let mut home = vec![0u32; points];
-        let mut local = vec![0.0f32; points * D];
-        let (all, _) = self.coordinates.as_chunks::<D>();
-        let (local_points, _) = local.as_chunks_mut::<D>();
-        home.par_iter_mut().zip(local_points).zip(all).with_min_len(4096).for_each(|((home, local), point)| {
-            let mut window = 0;
-            for k in 0..D {
-                let (place, x) = cuts[k].place(point[k]);
-                window = window * per_axis + place;
-                local[k] = x;
-            }
-            *home = window as u32;
-        });
-        let mut starts = vec![0usize; count + 1];
-        home.iter().for_each(|&window| starts[window as usize + 1] += 1);
-        for window in 0..count {
-            starts[window + 1] += starts[window];
-        }
-        let mut next = starts.clone();
-        let mut numbers = vec![0u32; points];
-        let mut coordinates = vec![0.0f32; points * D];
-        for (i, &window) in home.iter().enumerate() {
-            let place = next[window as usize];
-            next[window as usize] += 1;
-            numbers[place] = i as u32;
-            coordinates[place * D..(place + 1) * D].copy_from_slice(&local[i * D..(i + 1) * D]);
-        }
-
-        let mut windows = Vec::with_capacity(count);
-        let mut rest = &mut coordinates[..];
-        for number in 0..count {
-            let (begin, end) = (starts[number], starts[number + 1]);
-            let (mine, others) = rest.split_at_mut((end - begin) * D);
-            rest = others;
-            let places = place_of::<D>(number, per_axis);
-            let lengths: [f32; D] = std::array::from_fn(|k| cuts[k].extent(places[k]).1);
-            windows.push(Window { number, lengths, numbers: &numbers[begin..end], coordinates: mine });
-        }
-        let energies: Vec<f64> = windows
+        let this = &*self;
+        let done: Vec<(Window<D>, f64)> = windows
             .into_par_iter()
-            .map_init(WindowWorkspace::default, |workspace, window| self.optimize_window(window, step, workspace))
+            .enumerate()
+            .map_init(WindowWorkspace::default, |workspace, (number, Piece { start, lengths, members })| {
+                let mut numbers = members.concat();
+                numbers.sort_unstable();
+                let place = |&i: &u32| (0..D).map(move |k| (i, k));
+                let coordinates =
+                    numbers.iter().flat_map(place).map(|(i, k)| places[i as usize][k] - start[k]).collect();
+                let mut window = Window { number, start, lengths, numbers, coordinates };
+                let energy = this.optimize_window(&mut window, step, workspace);
+                (window, energy)
+            })
             .collect();
 
-        for (number, range) in starts.windows(2).enumerate() {
-            let places = place_of::<D>(number, per_axis);
-            for at in range[0]..range[1] {
-                let point = &mut self.coordinates[numbers[at] as usize * D..][..D];
-                for (k, x) in point.iter_mut().enumerate() {
-                    *x = cuts[k].coordinate(places[k], coordinates[at * D + k]);
+        let (all, _) = self.coordinates.as_chunks_mut::<D>();
+        for (window, _) in &done {
+            let (local, _) = window.coordinates.as_chunks::<D>();
+            for (&i, local) in window.numbers.iter().zip(local) {
+                for k in 0..D {
+                    let x = window.start[k] + local[k] - turn[k];
+                    all[i as usize][k] = (if x < 0.0 && turn[k] > 0.0 { x + 1.0 } else { x }).clamp(0.0, BELOW_ONE);
                 }
             }
         }
         self.iteration += 1;
-        energies.iter().sum::<f64>() / points as f64
+        done.iter().map(|(_, energy)| energy).sum::<f64>() / self.problem.points as f64
     }
 
     /// A few iterations in a window. Returns the sum over its points of the mean squared distance before them.
     fn optimize_window<const D: usize>(
         &self,
-        window: Window<'_, D>,
+        window: &mut Window<D>,
         step: f32,
         workspace: &mut WindowWorkspace,
     ) -> f64 {
-        let Window { number, lengths, numbers, coordinates } = window;
+        let Window { number, lengths, numbers, coordinates, .. } = window;
+        let (number, lengths) = (*number, *lengths);
         let WindowWorkspace { transport: memory, offsets } = workspace;
         offsets.resize_with(SLICES, Vec::new);
         offsets
@@ -186,6 +113,13 @@ impl Optimizer {
             .filter(|offsets| offsets.len() < numbers.len())
             .for_each(|o| o.resize(numbers.len(), [0.0; 2]));
         let mut slices: Vec<Slice<D>> = (0..SLICES).map(|_| Slice::new()).collect();
+        // Points may begin outside, by a little; none goes farther.
+        let mut bounds: [[f32; 2]; D] = lengths.map(|length| [0.0, length]);
+        for point in coordinates.as_chunks::<D>().0 {
+            for ([low, high], x) in bounds.iter_mut().zip(point) {
+                (*low, *high) = (low.min(*x), high.max(*x));
+            }
+        }
         let mut first_energy = 0.0;
         let range = lengths.iter().sum::<f32>() * MEAN_COMPONENT[D];
         for iteration in 0..WINDOW_ITERATIONS {
@@ -208,43 +142,8 @@ impl Optimizer {
             }
             let moved: Vec<(&Slice<D>, &[Offset])> =
                 slices.iter().zip(offsets.iter().map(|offsets| &offsets[..])).collect();
-            advance(&moved, 0, step, coordinates, |x, k| x.clamp(0.0, lengths[k]));
+            advance(&moved, 0, step, coordinates, |x, k| x.clamp(bounds[k][0], bounds[k][1]));
         }
         first_energy / SLICES as f64 * numbers.len() as f64
-    }
-}
-
-/// The window's place along every axis.
-fn place_of<const D: usize>(mut number: usize, per_axis: usize) -> [usize; D] {
-    let mut places = [0; D];
-    for place in places.iter_mut().rev() {
-        *place = number % per_axis;
-        number /= per_axis;
-    }
-    places
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn a_point_comes_back_from_its_window(x in 0.0f32..1.0, count in 2usize..60, torus in any::<bool>(), seed in any::<u64>()) {
-            let domain = if torus { Domain::Toroidal } else { Domain::Bounded };
-            let cuts = Cuts::new(count, domain, &mut stream(seed, 0, 0));
-            let (window, local) = cuts.place(x);
-            let (start, length) = cuts.extent(window);
-            prop_assert!(window < count && (0.0..=length).contains(&local) && (0.0..1.0).contains(&start));
-            let back = cuts.coordinate(window, local);
-            let apart = (back - x).abs();
-            prop_assert!(apart.min(1.0 - apart) < 1e-6, "{x} became {back}");
-            prop_assert!((0.0..1.0).contains(&back));
-            // The windows cover the axis, none of them much smaller than the others.
-            let total: f32 = (0..count).map(|k| cuts.extent(k).1).sum();
-            prop_assert!((total - 1.0).abs() < 1e-5);
-            prop_assert!((0..count).all(|k| cuts.extent(k).1 * count as f32 > 0.499));
-        }
     }
 }
