@@ -26,6 +26,7 @@ const WITHOUT_SOURCE: &[(&str, usize)] = &[
     ("docs/fsot_points.md", 178),
     ("docs/fsot_tiles.md", 159),
     ("docs/metrics.md", 110),
+    ("docs/shared_fits.md", 7),
     ("docs/stippling.md", 38),
     ("docs/tiles.md", 35),
 ];
