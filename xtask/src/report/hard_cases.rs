@@ -78,6 +78,7 @@ pub(super) fn write(report: &Report) -> Result<()> {
 
 fn introduce(chapter: &mut Chapter) {
     let confidence = chapter.setting("confidence, percent", 95);
+    chapter.setting("order, where the text says one", 3);
     chapter.paragraph(
         "Measured by `cargo bench --package noisefloor-bench --bench hard_cases`, through the Rust API, whose errors have names; the C functions \
          return the same as statuses. Repetitions have fixed seeds: the same build gives the same figures.",
