@@ -13,6 +13,9 @@ use anyhow::Result;
 const BOUND: f64 = 1.05;
 const DEFAULT: &str = "default";
 
+/// Pixels on a side of the blocks that share fits, as the text of the group says.
+const BLOCK: u32 = 8;
+
 /// Groups of cases of many repetitions: as the program names them, the section's title, and what it says.
 const GROUPS: [(&str, &str, &str); 8] = [
     ("few samples", "Few samples", "exp(-x - y), order 3: fewer samples than terms, as many, one more."),
@@ -181,6 +184,9 @@ fn write_group(chapter: &mut Chapter, (group, title, text): (&'static str, &str,
     let Some(first) = here.first() else { return Ok(()) };
     let estimators = first.rows.iter().map(|row| row.word("estimator")).collect::<Result<Vec<_>>>()?;
     chapter.section(title, "");
+    if group == "shared fits" {
+        chapter.setting("pixels on a side of a block", BLOCK);
+    }
     chapter.paragraph(text);
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     for case in &here {

@@ -80,6 +80,7 @@ fn compare(sets: &Sets, chapter: &mut Chapter) -> Result<()> {
     };
     let (half_planes, gaussians) = (over("half-planes", "half_planes")?, over("Gaussians", "gaussians")?);
     let discrepancy = over("L2 star discrepancy", "discrepancy")?;
+    let points = chapter.setting("points of sets of standard quality", points.parse::<u64>()?);
     let text = format!(
         "Standard quality over Owen-scrambled Sobol points, {points} of each: {half_planes} times the error of half-planes, {gaussians} times that of \
          Gaussian bumps, {discrepancy} times the star discrepancy."

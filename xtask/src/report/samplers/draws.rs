@@ -34,7 +34,7 @@ pub(super) fn write(table: &Table, chapter: &mut Chapter, targets: &mut Targets)
             for door in ["Rust", "C ABI"] {
                 let mut cells: Vec<Cell> = row![sampler, door];
                 for spp in &counts {
-                    let all = times(&dims, spp, &sampler, door)?;
+                    let all = times(dims, spp, sampler, door)?;
                     cells.push(match all.is_empty() {
                         true => Cell::Missing,
                         false => Figure::new(Estimate::median(&all), Unit::Nanoseconds).into(),
@@ -50,7 +50,7 @@ pub(super) fn write(table: &Table, chapter: &mut Chapter, targets: &mut Targets)
             ["Rust", "C ABI"].into_iter().flat_map(|door| ["tile", "progressive tile"].map(|of| (door, of)))
         {
             for spp in counts.iter().filter(|spp| **spp != "64") {
-                let (own, peer) = (times(&dims, spp, sampler, door)?, times(&dims, spp, PEER, "Rust")?);
+                let (own, peer) = (times(dims, spp, sampler, door)?, times(dims, spp, PEER, "Rust")?);
                 if own.is_empty() || peer.is_empty() {
                     continue;
                 }

@@ -64,10 +64,10 @@ pub(super) fn write(output: &Output, table: &Table, chapter: &mut Chapter, targe
         }
         for (kernel, title) in KERNELS {
             chapter.paragraph(&format!("{title}:"));
-            errors(&energies, table, &dims, kernel, chapter)?;
+            errors(&energies, table, dims, kernel, chapter)?;
         }
         let file = format!("samplers-{dims}d.svg");
-        output.write_text(&file, &plot(&energies, table, &dims)?)?;
+        output.write_text(&file, &plot(&energies, table, dims)?)?;
         chapter.picture(&file, &format!("filtered error against samples per pixel, {dims} dims"));
     }
     for &(dims, spp, sampler, kernel, family, bound) in WANTED {
@@ -121,7 +121,7 @@ fn errors(energies: &Energies, table: &Table, dims: &str, kernel: &str, chapter:
     for sampler in table.distinct("sampler")? {
         let mut cells: Vec<Cell> = row![sampler];
         for (family, spp) in FAMILIES.iter().flat_map(|family| counts.iter().map(move |spp| (family, spp))) {
-            let values = energies.batches(dims, spp, &sampler, kernel, family)?;
+            let values = energies.batches(dims, spp, sampler, kernel, family)?;
             cells.push(match values.is_empty() {
                 true => Cell::Missing,
                 false => Figure::brief(Estimate::mean(&values), Unit::Number).into(),
@@ -141,7 +141,7 @@ fn plot(energies: &Energies, table: &Table, dims: &str) -> Result<String> {
     for (index, sampler) in table.distinct("sampler")?.into_iter().enumerate() {
         let (mut points, mut band) = (Vec::new(), Vec::new());
         for spp in table.distinct("spp")? {
-            let values = energies.batches(dims, &spp, &sampler, "g2", FAMILIES[0])?;
+            let values = energies.batches(dims, spp, sampler, "g2", FAMILIES[0])?;
             if values.is_empty() {
                 continue;
             }

@@ -32,13 +32,13 @@ pub(super) fn write(output: &Output, table: &Table, chapter: &mut Chapter) -> Re
         let (mut rows, mut times, mut series) = (Vec::new(), Vec::new(), Vec::new());
         let counts = table.distinct("n")?;
         for (colour, source) in table.distinct("samples")?.into_iter().enumerate() {
-            for method in methods(table, &dims, &source)? {
-                let name = name(&method, &dims);
+            for method in methods(table, dims, source)? {
+                let name = name(&method, dims);
                 let mut cells: Vec<Cell> = row![source.replace(';', ","), name.as_str()];
                 let mut time: Vec<Cell> = row!["estimate", name.as_str()];
                 let mut points = Vec::new();
                 for n in &counts {
-                    let Some(of) = of(table, &dims, n, &source, &method)? else {
+                    let Some(of) = of(table, dims, n, source, &method)? else {
                         cells.push(Cell::Missing);
                         time.push(Cell::Missing);
                         continue;
@@ -54,7 +54,7 @@ pub(super) fn write(output: &Output, table: &Table, chapter: &mut Chapter) -> Re
                     }
                     writeln!(csv, ",{:.3},{:.1}", of.worst, of.ns)?;
                 }
-                if is_drawn(&source, &method, &dims) {
+                if is_drawn(source, &method, dims) {
                     let name = format!("{source}, {}", short(&method));
                     let (colour, dashed) = (Some(colour), method.0 != "Mean");
                     // Estimators of the same samples share the colour; shared fits have none of the plain mean's line.
@@ -69,7 +69,7 @@ pub(super) fn write(output: &Output, table: &Table, chapter: &mut Chapter) -> Re
             let mut time: Vec<Cell> = row!["drawing", source.replace(';', ",")];
             for n in &counts {
                 let mean = ("Mean".to_owned(), dims.parse()?, 0);
-                time.push(of(table, &dims, n, &source, &mean)?.map(|of| two_digits(of.draw_ns)).into());
+                time.push(of(table, dims, n, source, &mean)?.map(|of| two_digits(of.draw_ns)).into());
             }
             if time[2..].iter().any(|cell| matches!(cell, Cell::Word(_))) {
                 times.push(time);
@@ -82,7 +82,7 @@ pub(super) fn write(output: &Output, table: &Table, chapter: &mut Chapter) -> Re
         chapter.table("grid", &columns(["samples", "estimator"]), 2, rows);
         chapter.paragraph("Nanoseconds per sample:");
         chapter.table("times", &columns(["of", ""]), 2, times);
-        output.write_text(&file, &plot(&dims, &series)?)?;
+        output.write_text(&file, &plot(dims, &series)?)?;
         chapter.picture(&file, &format!("raw error against samples per pixel, by samples and estimator, {dims} dims"));
     }
     output.write_text("samplers-grid.csv", &csv)
@@ -92,7 +92,7 @@ fn introduce(table: &Table, chapter: &mut Chapter) -> Result<()> {
     chapter.section("Samplers with estimators", "");
     let first = table.distinct("dims")?.into_iter().next().unwrap_or_default();
     let mean = ("Mean".to_owned(), first.parse()?, 0);
-    let integrands = of(table, &first, "1", "independent", &mean)?.map_or(0, |of| of.raw.seeds);
+    let integrands = of(table, first, "1", "independent", &mean)?.map_or(0, |of| of.raw.seeds);
     let integrands = chapter.setting("integrands of a cell", integrands);
     chapter.setting("standard deviation of the filter, pixels", 2.1);
     chapter.setting("pixels in a stripe", 24);
