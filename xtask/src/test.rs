@@ -76,6 +76,9 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         c_tests::sanitized(c_tests::Language::C99, &archive()?)
     });
     steps.run("C tests under valgrind: no wrong address, no undefined value, no leak", || valgrind::run(&archive()?));
+    steps.run("threads under valgrind: an accumulator each is no race, a shared one is", || {
+        valgrind::threads(&archive()?)
+    });
     steps
         .run("C tests as C++17, including noisefloor.hpp", || c_tests::run(c_tests::Language::Cpp17, &[], &archive()?));
     steps.run("C++ wrapper, with and without exceptions", || c_tests::wrapper(&archive()?));

@@ -1,11 +1,11 @@
-//! The C tests under valgrind's memcheck, which also sees what the library, compiled without sanitizers, does.
+//! The C tests under valgrind's memcheck, and threads under its detectors of races: valgrind also sees what the library, compiled without sanitizers, does.
 
 use crate::test::Outcome;
 use crate::tools::{self, Package};
 use crate::{c_tests, run};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::process::{Command, Output};
 
 const PACKAGES: [Package; 1] = [Package { name: "valgrind", file: "/usr/bin/valgrind" }];
 /// What valgrind exits with for its own findings, whatever the program's status.
@@ -43,6 +43,32 @@ pub(crate) fn run(archive: &Path) -> Result<Outcome> {
             _ => bail!("{}: {} under valgrind\n{}", name, output.status, said.trim()),
         }
     })?;
+    Ok(Outcome::Passed)
+}
+
+/// The header's rules for threads under the detectors of data races, which must find what breaks them.
+pub(crate) fn threads(archive: &Path) -> Result<Outcome> {
+    if let Some(missing) = tools::packages(&PACKAGES)? {
+        return Ok(Outcome::NotRun(missing));
+    }
+    let program = c_tests::output("threads_test")?;
+    let mut compiler = run::compiler("CXX", "c++");
+    compiler.arg("-std=c++17").args(c_tests::STRICT).args(["-g", "-pthread", "-Iinclude"]);
+    run::check(compiler.arg("tests/valgrind/threads.cpp").arg(archive).arg("-o").arg(&program))?;
+    for tool in ["helgrind", "drd"] {
+        let output = valgrind(tool).arg(&program).output().context("cannot start valgrind")?;
+        if !output.status.success() {
+            bail!(
+                "{tool}, an accumulator for each thread: {}\n{}",
+                output.status,
+                String::from_utf8_lossy(&output.stderr)
+            );
+        }
+        let output = valgrind(tool).arg(&program).arg("race").output().context("cannot start valgrind")?;
+        if output.status.code() != Some(FOUND) {
+            bail!("{tool} did not find that threads share an accumulator ({})", output.status);
+        }
+    }
     Ok(Outcome::Passed)
 }
 
@@ -92,9 +118,13 @@ fn compile(source: &Path, archive: Option<&Path>) -> Result<PathBuf> {
 }
 
 fn memcheck(program: &Path) -> Result<Output> {
-    let mut valgrind = run::command("valgrind");
-    valgrind.args(["--quiet", "--leak-check=full"]).arg(format!("--error-exitcode={FOUND}"));
-    valgrind.arg(program).output().context("cannot start valgrind")
+    valgrind("memcheck").arg("--leak-check=full").arg(program).output().context("cannot start valgrind")
+}
+
+fn valgrind(tool: &str) -> Command {
+    let mut command = run::command("valgrind");
+    command.arg("--quiet").arg(format!("--tool={tool}")).arg(format!("--error-exitcode={FOUND}"));
+    command
 }
 
 #[cfg(test)]
