@@ -6,6 +6,7 @@ mod demo;
 mod embree;
 mod examples;
 mod fit;
+mod fuzz;
 mod header;
 mod install;
 mod instructions;
@@ -28,6 +29,7 @@ mod tiles;
 mod tools;
 mod train_mlp;
 mod trainer;
+mod valgrind;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -49,6 +51,8 @@ enum Command {
     Report(report::Options),
     /// Run every test; installs what it needs when it may
     Test(test::Options),
+    /// Run the fuzz targets for a while; inputs that crash go to fuzz/regressions
+    Fuzz(fuzz::Options),
     /// Regenerate include/noisefloor.h
     Header,
     /// Rewrite capi/abi.txt, the list of what the C ABI promises
@@ -73,6 +77,7 @@ fn main() -> ExitCode {
         Command::Povray(options) => povray_patched::run(&options),
         Command::Report(options) => report::run(&options),
         Command::Test(options) => test::run(&options),
+        Command::Fuzz(options) => fuzz::run(&options),
         Command::Header => header::write(),
         Command::Abi(options) => abi::write(&options),
         Command::Licences => release::licences::write(),

@@ -2,7 +2,7 @@
 
 use crate::{
     abi, c_tests, embree, examples, fit, header, install, instructions, library, links, path_tracer, povray,
-    povray_patched, python, release, report, run, tools, train_mlp,
+    povray_patched, python, release, report, run, tools, train_mlp, valgrind,
 };
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -74,6 +74,10 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("C tests as C99", || c_tests::run(c_tests::Language::C99, &[], &archive()?));
     steps.run("C tests under the address and undefined-behaviour sanitizers", || {
         c_tests::sanitized(c_tests::Language::C99, &archive()?)
+    });
+    steps.run("C tests under valgrind: no wrong address, no undefined value, no leak", || valgrind::run(&archive()?));
+    steps.run("threads under valgrind: an accumulator each is no race, a shared one is", || {
+        valgrind::threads(&archive()?)
     });
     steps
         .run("C tests as C++17, including noisefloor.hpp", || c_tests::run(c_tests::Language::Cpp17, &[], &archive()?));

@@ -1,0 +1,148 @@
+//! `cargo xtask fuzz`: every target of fuzz/ for a while, first on what once crashed it.
+
+use crate::{paths, run};
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// Longer inputs are slower, and reach nothing more.
+const MAX_BYTES: u32 = 8192;
+/// The targets that the fuzz package builds with this feature alone.
+const FSOT: (&str, &str) = ("fsot_files", "fsot");
+
+#[derive(Args)]
+pub(crate) struct Options {
+    /// How long each target runs
+    #[arg(long, default_value_t = 60)]
+    seconds: u64,
+    /// Only this target; fsot_files, which takes minutes to compile, runs only if asked for
+    #[arg(long)]
+    target: Option<String>,
+}
+
+pub(crate) fn run(options: &Options) -> Result<()> {
+    if options.seconds == 0 {
+        bail!("--seconds 0 is for ever; at least 1");
+    }
+    let targets = targets(options.target.as_deref())?;
+    build(options.target.as_deref())?;
+    let mut crashed = Vec::new();
+    for target in &targets {
+        match fuzz(target, options.seconds) {
+            Ok(executions) => println!("{target:20} {executions:>12} executions"),
+            Err(error) => {
+                println!("{target:20} {error:#}");
+                crashed.push(target.as_str());
+            }
+        }
+    }
+    if crashed.is_empty() {
+        Ok(())
+    } else {
+        bail!("{} of {} targets failed: {}", crashed.len(), targets.len(), crashed.join(", "))
+    }
+}
+
+/// Those that run: one that was asked for, or all that build quickly.
+fn targets(wanted: Option<&str>) -> Result<Vec<String>> {
+    let mut list = cargo_fuzz();
+    list.arg("list").stderr(Stdio::null());
+    let output = list.output().ok().filter(|output| output.status.success());
+    let Some(output) = output else {
+        bail!("cargo-fuzz is not there: `cargo install --locked cargo-fuzz`");
+    };
+    let all: Vec<String> = String::from_utf8_lossy(&output.stdout).lines().map(str::to_owned).collect();
+    match wanted {
+        None => Ok(all.into_iter().filter(|name| name != FSOT.0).collect()),
+        Some(name) if all.iter().any(|target| target == name) => Ok(vec![name.to_owned()]),
+        Some(name) => bail!("there is no fuzz target `{name}`; there are {}", all.join(", ")),
+    }
+}
+
+fn cargo_fuzz() -> Command {
+    let mut command = run::cargo();
+    // A stable compiler refuses the flags of the instrumentation otherwise.
+    command.arg("fuzz").env("RUSTC_BOOTSTRAP", "1");
+    command
+}
+
+/// Instrumented, without the address sanitizer.
+fn build(target: Option<&str>) -> Result<()> {
+    let mut build = cargo_fuzz();
+    build.args(["build", "-s", "none"]);
+    if target == Some(FSOT.0) {
+        build.args(["--features", FSOT.1]);
+    }
+    run::check(build.args(target))
+}
+
+/// Runs one target on its regressions and then on new inputs; how many it executed, or what crashed it.
+fn fuzz(target: &str, seconds: u64) -> Result<u64> {
+    let folder = paths::root().join("fuzz");
+    let program = folder.join("target").join(host()?).join("release").join(target);
+    let regressions = folder.join("regressions").join(target);
+    let corpus = folder.join("corpus").join(target);
+    let seeds = folder.join("seeds").join(target);
+    for path in [&regressions, &corpus] {
+        fs::create_dir_all(path).with_context(|| format!("cannot create {}", path.display()))?;
+    }
+    let known = files(&regressions)?;
+    if !known.is_empty() {
+        let output = run::command(&program).args(known).output().context("cannot start the fuzz target")?;
+        judge(&output, "an input that crashed it before crashes it again")?;
+    }
+    let mut command = run::command(&program);
+    command.arg(format!("-max_total_time={seconds}")).arg(format!("-max_len={MAX_BYTES}"));
+    command.args(["-print_final_stats=1", "-timeout=25"]);
+    // Files are named after what they hold, and the prefix is a folder only with the slash.
+    command.arg(format!("-artifact_prefix={}/", regressions.display())).arg(corpus);
+    command.args(seeds.is_dir().then_some(seeds));
+    let output = command.output().context("cannot start the fuzz target")?;
+    judge(&output, "crashed")?;
+    // Empty unless something crashed; then it stays, to be committed.
+    fs::remove_dir(&regressions).ok();
+    executions(&String::from_utf8_lossy(&output.stderr)).context("the fuzz target did not say how many inputs it ran")
+}
+
+fn files(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
+    let mut files = entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>()?;
+    files.sort();
+    Ok(files)
+}
+
+fn judge(output: &Output, what: &str) -> Result<()> {
+    if output.status.success() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&output.stderr);
+    let wanted = ["panicked at", "ERROR:", "Test unit written", "assertion", "Running:"];
+    let lines: Vec<&str> = said.lines().filter(|line| wanted.iter().any(|word| line.contains(word))).collect();
+    bail!("{what} ({}):\n    {}", output.status, lines.join("\n    "))
+}
+
+/// What libFuzzer says at its end.
+fn executions(said: &str) -> Option<u64> {
+    said.lines().find_map(|line| line.strip_prefix("stat::number_of_executed_units:")?.trim().parse().ok())
+}
+
+/// The triple that cargo-fuzz builds for.
+fn host() -> Result<String> {
+    let version = run::read(run::command("rustc").arg("-vV"))?;
+    version.lines().find_map(|line| line.strip_prefix("host: ")).map(str::to_owned).context("rustc -vV names no host")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::executions;
+
+    #[test]
+    fn the_count_is_read() {
+        let said =
+            "Done 12 runs in 1 second(s)\nstat::number_of_executed_units: 1234\nstat::average_exec_per_sec:     617\n";
+        assert_eq!(executions(said), Some(1234));
+        assert_eq!(executions("Done"), None);
+    }
+}
