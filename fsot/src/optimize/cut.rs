@@ -118,9 +118,8 @@ mod tests {
                 prop_assert!((first - window.members[0].len() as f32).abs() < 4.0, "{first} {}", window.members[0].len());
                 // The others are where they are.
                 for &i in &window.members[2] {
-                    for k in 0..2 {
-                        let x = places[i as usize][k] - window.start[k];
-                        prop_assert!((-1e-6..=window.lengths[k] + 1e-6).contains(&x));
+                    for ((at, start), length) in places[i as usize].iter().zip(window.start).zip(window.lengths) {
+                        prop_assert!((-1e-6..=length + 1e-6).contains(&(at - start)));
                     }
                 }
                 area += mine;

@@ -79,7 +79,6 @@ pub(super) fn write(report: &Report) -> Result<()> {
 fn introduce(chapter: &mut Chapter) {
     let confidence = chapter.setting("confidence, percent", 95);
     chapter.setting("total degree of the fits", 3);
-    chapter.setting("pixels on a block's side", 8);
     chapter.paragraph(
         "Measured by `cargo bench --package noisefloor-bench --bench hard_cases`, through the Rust API, whose errors have names; the C functions \
          return the same as statuses. Repetitions have fixed seeds: the same build gives the same figures.",

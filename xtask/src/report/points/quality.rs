@@ -71,7 +71,6 @@ pub(super) fn write(output: &Output, sets: &Sets, chapter: &mut Chapter) -> Resu
 fn compare(sets: &Sets, chapter: &mut Chapter) -> Result<()> {
     let sizes = sets.distinct(&[("study", "standard")], "points")?;
     let Some(points) = sizes.last() else { return Ok(()) };
-    chapter.setting("points of the comparison with Owen-Sobol", points.as_str());
     let mut over = |what: &str, column: &str| -> Result<String> {
         let own = sets.mean(&[("study", "standard"), ("points", points)], column)?;
         let sobol = sets.mean(&[("sampler", "Owen-Sobol"), ("points", points)], column)?;
