@@ -2,17 +2,25 @@
 
 # cargo knows better than CMake what to compile again, but not what to link again.
 file(GLOB_RECURSE sources CONFIGURE_DEPENDS src/*.rs ../core/src/*.rs ../core/tiles/*.nft)
+# What else decides what cargo makes; outside the workspace some of it is not there.
+set(settings)
+foreach(file Cargo.toml ../Cargo.toml ../Cargo.lock ../core/Cargo.toml)
+    if(EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
+        list(APPEND settings "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
+    endif()
+endforeach()
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${settings} include/noisefloor.h)
 set(archive "${NOISEFLOOR_CARGO_TARGET_DIR}/release/libnoisefloor.a")
 set(object "${CMAKE_CURRENT_BINARY_DIR}/noisefloor.o")
 # The profile is the workspace's; where the package stands alone nothing else says it.
 set(profile CARGO_PROFILE_RELEASE_PANIC=abort CARGO_PROFILE_RELEASE_LTO=fat CARGO_PROFILE_RELEASE_CODEGEN_UNITS=1)
 add_custom_command(
     OUTPUT "${object}"
-    COMMAND "${CMAKE_COMMAND}" -E env --unset=MAKEFLAGS ${profile} -- "${NOISEFLOOR_CARGO}" build --quiet --release --locked --lib
+    COMMAND "${CMAKE_COMMAND}" -E env --unset=MAKEFLAGS --unset=CARGO_BUILD_TARGET ${profile} "${NOISEFLOOR_CARGO}" build --quiet --release --locked --lib
         --manifest-path "${CMAKE_CURRENT_SOURCE_DIR}/Cargo.toml" --target-dir "${NOISEFLOOR_CARGO_TARGET_DIR}"
-    COMMAND "${CMAKE_COMMAND}" -E env "LD=${CMAKE_LINKER}" "NM=${CMAKE_NM}" "OBJCOPY=${CMAKE_OBJCOPY}" --
+    COMMAND "${CMAKE_COMMAND}" -E env "LD=${CMAKE_LINKER}" "NM=${CMAKE_NM}" "OBJCOPY=${CMAKE_OBJCOPY}"
         sh "${CMAKE_CURRENT_SOURCE_DIR}/cmake/one_object.sh" "${archive}" "${object}"
-    DEPENDS ${sources} cmake/one_object.sh Cargo.toml
+    DEPENDS ${sources} cmake/one_object.sh ${settings}
     COMMENT "Compiling noisefloor with cargo"
     VERBATIM)
 # Both libraries are made of it: without a target of its own, a parallel make would make it twice.

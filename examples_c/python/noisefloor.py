@@ -85,14 +85,16 @@ def declare(library):
 
 def load(path=None):
     """The shared library: `path`, or $NOISEFLOOR_LIBRARY, or what the system's linker finds."""
-    path = path or os.environ.get("NOISEFLOOR_LIBRARY") or "libnoisefloor.so"
+    path = path or os.environ.get("NOISEFLOOR_LIBRARY") or f"libnoisefloor.so.{ABI_VERSION}"
     try:
         library = ctypes.CDLL(path)
     except OSError as error:
         raise OSError(f"cannot load {path}: {error}. Set NOISEFLOOR_LIBRARY to noisefloor's shared library") from None
-    declare(library)
+    # First: a library of another version may lack functions.
+    library.nf_abi_version.restype = ctypes.c_uint32
     if library.nf_abi_version() != ABI_VERSION:
         raise OSError(f"{path} has ABI version {library.nf_abi_version()}; this file is written for {ABI_VERSION}")
+    declare(library)
     return library
 
 

@@ -71,6 +71,8 @@ public:
             describe(geometry_.triangles[triangles_[found.geomID][found.primID]], found.u, found.v, hit);
         else
             describe(geometry_.spheres[found.primID], ray, hit);
+        // Embree's own, so that agreement with the other tree says something of both.
+        hit.geometric = demo::normalize({found.Ng_x, found.Ng_y, found.Ng_z});
         return true;
     }
 

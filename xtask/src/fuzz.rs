@@ -5,7 +5,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 
 /// Longer inputs are slower, and reach nothing more.
 const MAX_BYTES: u32 = 8192;
@@ -48,11 +48,14 @@ pub(crate) fn run(options: &Options) -> Result<()> {
 /// Those that run: one that was asked for, or all that build quickly.
 fn targets(wanted: Option<&str>) -> Result<Vec<String>> {
     let mut list = cargo_fuzz();
-    list.arg("list").stderr(Stdio::null());
-    let output = list.output().ok().filter(|output| output.status.success());
-    let Some(output) = output else {
-        bail!("cargo-fuzz is not there: `cargo install --locked cargo-fuzz`");
-    };
+    let output = list.arg("list").output().context("cannot start cargo")?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr);
+        bail!(
+            "`cargo fuzz list` failed; if cargo-fuzz is not there, `cargo install --locked cargo-fuzz`: {}",
+            said.trim()
+        );
+    }
     let all: Vec<String> = String::from_utf8_lossy(&output.stdout).lines().map(str::to_owned).collect();
     match wanted {
         None => Ok(all.into_iter().filter(|name| name != FSOT.0).collect()),
@@ -90,7 +93,8 @@ fn fuzz(target: &str, seconds: u64) -> Result<u64> {
     }
     let known = files(&regressions)?;
     if !known.is_empty() {
-        let output = run::command(&program).args(known).output().context("cannot start the fuzz target")?;
+        let output =
+            run::command(&program).arg("-timeout=25").args(known).output().context("cannot start the fuzz target")?;
         judge(&output, "an input that crashed it before crashes it again")?;
     }
     let mut command = run::command(&program);
@@ -103,7 +107,11 @@ fn fuzz(target: &str, seconds: u64) -> Result<u64> {
     judge(&output, "crashed")?;
     // Empty unless something crashed; then it stays, to be committed.
     fs::remove_dir(&regressions).ok();
-    executions(&String::from_utf8_lossy(&output.stderr)).context("the fuzz target did not say how many inputs it ran")
+    let count = executions(&String::from_utf8_lossy(&output.stderr));
+    match count.context("the fuzz target did not say how many inputs it ran")? {
+        0 => bail!("the fuzz target `{target}` ran no input in {seconds} s"),
+        count => Ok(count),
+    }
 }
 
 fn files(folder: &Path) -> Result<Vec<PathBuf>> {

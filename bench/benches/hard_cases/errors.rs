@@ -127,12 +127,16 @@ pub(crate) fn shared(tables: &mut Tables, repetitions: usize) {
                 let drawn: Vec<[f64; 2]> = u.chunks(2).enumerate().map(|(i, u)| value(i / n, u, &mut rng)).collect();
                 let f: Vec<f32> = drawn.iter().map(|[value, _]| *value as f32).collect();
                 let estimates = block(&config, PIXELS, Samples::new(&u, &f)).expect("valid samples");
+                // Pixels that share a fit err together: one value for each block.
+                let (mut own, mut shared) = (vec![], vec![]);
                 let pixels = estimates.iter().zip(f.chunks(n)).zip(drawn.chunks(n)).enumerate();
                 for (_, ((estimate, f), drawn)) in pixels.filter(|(pixel, _)| counts_bright || *pixel != BRIGHT) {
                     let [_, expected] = drawn[0];
-                    plain.push(f.iter().map(|&f| f64::from(f)).sum::<f64>() / n as f64 - expected);
-                    errors.push(f64::from(estimate.mean[0]) - expected);
+                    own.push(f.iter().map(|&f| f64::from(f)).sum::<f64>() / n as f64 - expected);
+                    shared.push(f64::from(estimate.mean[0]) - expected);
                 }
+                plain.push(root_mean_square(&own));
+                errors.push(root_mean_square(&shared));
             }
             tables.error(ErrorRow {
                 group: "shared fits",

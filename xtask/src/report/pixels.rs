@@ -1,6 +1,6 @@
 //! One estimator against another, pixel by pixel: how many pixels are served worse, and how sure that is.
 
-use super::statistics::{Random, normal_quantile};
+use super::statistics::{Random, normal_quantile, student};
 
 /// Ratios of mean squared errors beyond it are too many.
 pub(crate) const TOO_MUCH: f64 = 1.2;
@@ -19,6 +19,8 @@ pub(crate) type Batch = [Vec<f64>; 2];
 pub(crate) struct Shares {
     /// With noise.
     pub(crate) pixels: usize,
+    /// Batches of seeds.
+    pub(crate) batches: f64,
     /// As measured; noise throws some pixels beyond.
     pub(crate) raw: f64,
     /// The standard error of `raw`: the bootstrap's, over batches of seeds.
@@ -55,6 +57,7 @@ impl Shares {
         let resampled: Vec<f64> = resampled.collect();
         Self {
             pixels: noisy.len(),
+            batches: batches.len() as f64,
             raw: share(&|pixel| ratio(&all, pixel) > TOO_MUCH),
             error: deviation(&resampled),
             twice: share(&|pixel| ratio(first, pixel) > TOO_MUCH && ratio(second, pixel) > TOO_MUCH),
@@ -67,10 +70,12 @@ impl Shares {
         self.ratios.iter().copied().fold(0.0, f64::max)
     }
 
-    /// 95 % about `raw`, by the normal distribution: the percentile bootstrap would count the noise that throws pixels beyond
+    /// 95 % about `raw`, by Student's distribution: the percentile bootstrap would count the noise that throws pixels beyond
     /// a second time.
     pub(crate) fn interval(&self) -> [f64; 2] {
-        let half = normal_quantile(0.025) * self.error;
+        // Resampling n values spreads less than they do, by (n - 1) / n, and their spread is itself an estimate.
+        let n = self.batches;
+        let half = student(n - 1.0) * (n / (n - 1.0)).sqrt() * self.error;
         [(self.raw - half).max(0.0), (self.raw + half).min(100.0)]
     }
 }

@@ -39,7 +39,12 @@ pub(crate) fn write(all: &[Findings]) -> Result<()> {
     chapter.paragraph("Bytes of .rodata, which is part of the above; of WebAssembly it is not known apart.");
     chapter.table("constants", &headings, 1, table(|size| size.rodata));
     chapter.section("Variables", "");
-    chapter.paragraph("Bytes of .data and .bss: on these targets the library keeps none.");
+    let stateless = all.iter().flat_map(|findings| &findings.sizes).all(|size| size.data == 0);
+    chapter.paragraph(if stateless {
+        "Bytes of .data and .bss: on these targets the library keeps none."
+    } else {
+        "Bytes of .data and .bss."
+    });
     chapter.table("variables", &headings, 1, table(|size| size.data));
     chapter.section("Stack", "");
     chapter.paragraph(
