@@ -372,6 +372,17 @@ fn luminance_ratio() {
     }
 }
 
+/// The error that one sample leaves unknown is so in a channel of value 0, too.
+#[test]
+fn luminance_ratio_of_one_sample() {
+    let config = Config { channels: 3, color: Color::LuminanceRatio, ..config(2, 2, Estimator::Robust) };
+    for colour in [[2.0, 1.0, 0.0], [0.0; 3]] {
+        let estimate = batch::<f64>(&config, &[0.25, 0.5], &colour).unwrap();
+        assert_eq!(estimate.mean[..3], colour);
+        assert_eq!(estimate.std_error[..3], [f32::INFINITY; 3], "{colour:?}");
+    }
+}
+
 /// Skipping leaves the estimate of the others, to rounding, wherever the bad samples are.
 #[test]
 fn skipped_samples_were_never_there() {

@@ -84,7 +84,12 @@ pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estim
         let ratio = if luminance == 0.0 { 1.0 } else { regressed / luminance };
         for ((mean, error), colour) in mean.iter_mut().zip(&mut error).zip(colour) {
             *mean = ratio * colour;
-            *error = if luminance == 0.0 { 0.0 } else { libm::fabs(deviation * colour / luminance) };
+            // One sample's error is unknown in every channel, also where its colour is 0.
+            if deviation.is_finite() {
+                *error = if luminance == 0.0 { 0.0 } else { libm::fabs(deviation * colour / luminance) };
+            } else {
+                *error = f64::INFINITY;
+            }
         }
     }
     Estimate {
