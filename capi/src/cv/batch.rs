@@ -5,7 +5,7 @@ use crate::convert;
 use crate::dispatch;
 use crate::status::*;
 use noisefloor_core::Error;
-use noisefloor_core::control_variate::{self as cv, Config, Estimate, Samples};
+use noisefloor_core::control_variate::{self as cv, Config, Samples};
 
 /// Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL, out
 /// of range or unsupported, or a size no memory has.
