@@ -72,7 +72,7 @@ impl Source {
             })?,
             Self::Tile4 if n < 4 => built_in(Builtin::Size128Spp1Dims4)?,
             Self::Tile4 => built_in(Builtin::Size128Spp4Dims4)?,
-            Self::TileSobol if dims <= 2 => built_in(Builtin::Size128Spp1Dims2)?,
+            Self::TileSobol if dims == 2 => built_in(Builtin::Size128Spp1Dims2)?,
             Self::TileSobol => built_in(Builtin::Size128Spp1Dims4)?,
         };
         let spp = tile.shape().spp;
