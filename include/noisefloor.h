@@ -422,11 +422,11 @@ typedef struct nf_recommendation {
     uint32_t tile_dims;
     // What to expect: mean squared error over that of the plain mean of independent samples. Of stratified samples
     // measured on the tile named above, except: for 5 to 8 dims and 1 to 3 samples, on that of 2 dims; from 64 samples on,
-    // with Sobol points scrambled in each pixel (on the tile of 1 sample, continued, only the plain mean was measured, at .84
+    // with Sobol points scrambled in each pixel (on the tile of 1 sample, continued, only the plain mean was measured, at .77
     // to 1.1 times this error).
     float error;
     // The same of the image filtered by a Gaussian of 2.1 pixels, with the same exceptions; the plain mean of the tile of 1 sample,
-    // continued, has .92 to 1.4 times the error of Sobol points scrambled in each pixel that is given here.
+    // continued, has .81 to 1.4 times the error of Sobol points scrambled in each pixel that is given here.
     float filtered_error;
     // How to estimate. `channels` is 1: set your own. `stride` is all dims.
     nf_cv_config config;
@@ -617,11 +617,15 @@ nf_status nf_omis_add(nf_omis *omis,
 // more samples may be added.
 //
 // solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN, NF_OMIS_PROGRESSIVE or NF_OMIS_BALANCE; each says whether it is unbiased.
-// ridge: for NF_OMIS_RIDGE, relative to A's mean diagonal: 1e-8..1e8, or 0 for the default .03; otherwise ignored.
+// ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for the default 2; otherwise
+// ignored. With the densities' counts N and n samples it adds L = ridge (tr(N A) - 1) / n N^-1 to A.
 // estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite float.
 //
 // NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.
-nf_status nf_omis_solve(const nf_omis *omis, uint32_t solver, float ridge, float *estimate);
+nf_status nf_omis_solve(const nf_omis *omis,
+                        uint32_t solver,
+                        float ridge,
+                        float *estimate);
 
 // The coefficients of the weights (2.15), for nf_mis_optimal and nf_mis_optimal_contribution:
 // alpha[p * techniques + j] of integral p and technique j.
@@ -1159,7 +1163,7 @@ nf_status nf_importance_nodes(const float *gradient,
 // solver: NF_OMIS_RIDGE, the default: shrinks to the balance heuristic where the batch says little. NF_OMIS_PLAIN:
 // exact where a gradient is a linear combination of the probabilities; heavy-tailed with similar techniques or small
 // batches. Both are consistent, not unbiased, and their weights may be negative. NF_OMIS_BALANCE: unbiased, positive.
-// ridge: for NF_OMIS_RIDGE, 1e-8..1e8, or 0 for the default .03; otherwise ignored.
+// ridge: for NF_OMIS_RIDGE, as for nf_omis_solve: 1e-8..1e8, or 0 for the default 2; otherwise ignored.
 // techniques: J in 1..NF_MIS_MAX_TECHNIQUES. items: N, the size of the data set, at least 1.
 // pdf[batch * techniques]: at s * techniques + j the probability with which technique j draws the item of sample s;
 // each technique's sum to 1 over the items. Finite, at least 0 and at most 1, positive for the technique that drew it. Those of

@@ -9,6 +9,7 @@ use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Samp
 use noisefloor_core::minibatch::table::Shard;
 use noisefloor_core::minibatch::{Batch, Gradient};
 use noisefloor_core::mis::Solver;
+use noisefloor_core::real::Real;
 use noisefloor_core::rng::Rng;
 
 use crate::table::{Reader, Writer};
@@ -25,17 +26,17 @@ macro_rules! by_processor {
     }};
 }
 
-/// [`cv::estimate`] in double precision.
-pub(crate) fn estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f64]) -> Result<Estimate, Error> {
+/// [`cv::estimate`] in the precision of the workspace.
+pub(crate) fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
     by_processor!(estimate(config, samples, workspace), cv::estimate(config, samples, workspace))
 }
 
-/// [`cv::estimate_image`] in double precision.
-pub(crate) fn estimate_image(
+/// [`cv::estimate_image`] in the precision of the workspace.
+pub(crate) fn estimate_image<R: Real>(
     config: &Config,
     image: &Image<'_>,
     samples: Samples<'_>,
-    workspace: &mut [f64],
+    workspace: &mut [R],
     out: impl FnMut(usize, Estimate),
 ) -> Result<(), Error> {
     by_processor!(
@@ -130,16 +131,20 @@ mod x86 {
     static AVX2: AtomicU8 = AtomicU8::new(UNKNOWN);
 
     #[target_feature(enable = "avx2")]
-    pub(super) fn estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f64]) -> Result<Estimate, Error> {
+    pub(super) fn estimate<R: Real>(
+        config: &Config,
+        samples: Samples<'_>,
+        workspace: &mut [R],
+    ) -> Result<Estimate, Error> {
         cv::estimate(config, samples, workspace)
     }
 
     #[target_feature(enable = "avx2")]
-    pub(super) fn estimate_image(
+    pub(super) fn estimate_image<R: Real>(
         config: &Config,
         image: &Image<'_>,
         samples: Samples<'_>,
-        workspace: &mut [f64],
+        workspace: &mut [R],
         out: impl FnMut(usize, Estimate),
     ) -> Result<(), Error> {
         cv::estimate_image(config, image, samples, workspace, out)

@@ -115,7 +115,8 @@ pub unsafe extern "C" fn nf_omis_add(
 /// more samples may be added.
 ///
 /// solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN, NF_OMIS_PROGRESSIVE or NF_OMIS_BALANCE; each says whether it is unbiased.
-/// ridge: for NF_OMIS_RIDGE, relative to A's mean diagonal: 1e-8..1e8, or 0 for the default .03; otherwise ignored.
+/// ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for the default 2; otherwise
+/// ignored. With the densities' counts N and n samples it adds L = ridge (tr(N A) - 1) / n N^-1 to A.
 /// estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite float.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.
@@ -211,7 +212,7 @@ pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis
 /// solver: NF_OMIS_RIDGE, the default: shrinks to the balance heuristic where the batch says little. NF_OMIS_PLAIN:
 /// exact where a gradient is a linear combination of the probabilities; heavy-tailed with similar techniques or small
 /// batches. Both are consistent, not unbiased, and their weights may be negative. NF_OMIS_BALANCE: unbiased, positive.
-/// ridge: for NF_OMIS_RIDGE, 1e-8..1e8, or 0 for the default .03; otherwise ignored.
+/// ridge: for NF_OMIS_RIDGE, as for nf_omis_solve: 1e-8..1e8, or 0 for the default 2; otherwise ignored.
 /// techniques: J in 1..NF_MIS_MAX_TECHNIQUES. items: N, the size of the data set, at least 1.
 /// pdf[batch * techniques]: at s * techniques + j the probability with which technique j draws the item of sample s;
 /// each technique's sum to 1 over the items. Finite, at least 0 and at most 1, positive for the technique that drew it. Those of

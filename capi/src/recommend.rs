@@ -33,11 +33,11 @@ pub struct nf_recommendation {
     pub tile_dims: u32,
     /// What to expect: mean squared error over that of the plain mean of independent samples. Of stratified samples
     /// measured on the tile named above, except: for 5 to 8 dims and 1 to 3 samples, on that of 2 dims; from 64 samples on,
-    /// with Sobol points scrambled in each pixel (on the tile of 1 sample, continued, only the plain mean was measured, at .84
+    /// with Sobol points scrambled in each pixel (on the tile of 1 sample, continued, only the plain mean was measured, at .77
     /// to 1.1 times this error).
     pub error: f32,
     /// The same of the image filtered by a Gaussian of 2.1 pixels, with the same exceptions; the plain mean of the tile of 1 sample,
-    /// continued, has .92 to 1.4 times the error of Sobol points scrambled in each pixel that is given here.
+    /// continued, has .81 to 1.4 times the error of Sobol points scrambled in each pixel that is given here.
     pub filtered_error: f32,
     /// How to estimate. `channels` is 1: set your own. `stride` is all dims.
     pub config: nf_cv_config,

@@ -56,13 +56,13 @@ static void normal_use(void)
     CHECK(fabsf(alpha[0] - 3.0f) < 1e-3f && fabsf(alpha[1] - 2.0f) < 1e-3f);
     CHECK_STATUS(nf_omis_alpha(omis, NF_OMIS_BALANCE, 0.0f, alpha), NF_OK);
     CHECK(alpha[0] == 0.0f && alpha[3] == 0.0f);
-    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.03f, estimate), NF_OK);
+    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 2.0f, estimate), NF_OK);
     CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0f, again), NF_OK);
     CHECK(memcmp(estimate, again, sizeof estimate) == 0);
 
-    /* Fading keeps a ratio of sums. */
+    /* Fading keeps a ratio of sums; with half of the samples the same ridge counts twice. */
     CHECK_STATUS(nf_omis_decay(omis, 0.5f), NF_OK);
-    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0f, again), NF_OK);
+    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 1.0f, again), NF_OK);
     CHECK(fabsf(estimate[0] - again[0]) < 1e-5f && fabsf(estimate[1] - again[1]) < 1e-6f);
 
     /* Merging: the samples of both. */

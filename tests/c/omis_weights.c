@@ -55,7 +55,7 @@ static void normal_use(void)
     CHECK(fabs(balance - (3.0 + (ITEMS + 1) / 2.0)) < 0.07);
 
     CHECK_STATUS(nf_omis_weights(NF_OMIS_RIDGE, 0.0f, 2, ITEMS, pdf, technique, BATCH, weight), NF_OK);
-    CHECK_STATUS(nf_omis_weights(NF_OMIS_RIDGE, 0.03f, 2, ITEMS, pdf, technique, BATCH, again), NF_OK);
+    CHECK_STATUS(nf_omis_weights(NF_OMIS_RIDGE, 2.0f, 2, ITEMS, pdf, technique, BATCH, again), NF_OK);
     CHECK(memcmp(weight, again, sizeof weight) == 0);
     CHECK_STATUS(nf_omis_weights(NF_OMIS_RIDGE, 1e8f, 2, ITEMS, pdf, technique, BATCH, weight), NF_OK);
     CHECK_STATUS(nf_omis_weights(NF_OMIS_BALANCE, not_a_number(), 2, ITEMS, pdf, technique, BATCH, again), NF_OK);

@@ -84,7 +84,8 @@ fn oracle(drawn: &Drawn, ridge: Option<f64>) -> Vec<f64> {
     let scale = ratios.len() as f64 / f64::from(drawn.items);
     if let Some(ridge) = ridge {
         let trace: f64 = (0..n).map(|j| counts[j] * a[j][j]).sum();
-        (0..n).for_each(|j| a[j][j] += ridge * trace / n as f64 / counts[j]);
+        let diagonal = (ridge * (trace - 1.0) / ratios.len() as f64).max(1e-8 * trace);
+        (0..n).for_each(|j| a[j][j] += diagonal / counts[j]);
         let c = solve(a, q.iter().map(|q| q - 1.0).collect());
         let v = |(sum, r): &(f64, Vec<f64>)| (1.0 - c.iter().zip(r).map(|(c, r)| c * r).sum::<f64>()) / sum;
         ratios.iter().map(|sample| scale * v(sample)).collect()
@@ -114,7 +115,7 @@ fn weights_are_their_formulas() {
         let problem = random_problem(seed as u64, techniques, 50, 1);
         for _ in 0..20 {
             let drawn = problem.draw(&batch[..techniques], &mut rng);
-            for ridge in [1e-4, 0.03, 10.0] {
+            for ridge in [1e-3, 3.0, 100.0] {
                 let expected = oracle(&drawn, Some(f64::from(ridge)));
                 assert_close(&wide(&drawn.weights(Solver::Ridge(ridge))), &expected, 1e-6);
             }
@@ -288,7 +289,10 @@ fn momentum_is_the_oracle() {
 
             let mut matrix = a.clone();
             let trace: f64 = (0..3).map(|j| n[j] / weight * a[j][j]).sum();
-            (0..3).for_each(|j| matrix[j][j] += f64::from(DEFAULT_RIDGE) * trace / 3.0 / (n[j] / weight));
+            let samples: f64 = n.iter().sum();
+            let common: f64 = (0..9).map(|i| n[i / 3] * a[i / 3][i % 3] * n[i % 3]).sum::<f64>() / samples / weight;
+            let ridge = f64::from(DEFAULT_RIDGE) * (trace - common) / samples;
+            (0..3).for_each(|j| matrix[j][j] += ridge / (n[j] / weight));
             let c = solve(matrix, q.iter().map(|q| q - weight).collect());
             let value = |p: usize| (balance[p] - (0..3).map(|j| c[j] * b[j][p]).sum::<f64>()) / weight;
             let expected: Vec<f64> = (0..parameters).map(value).collect();

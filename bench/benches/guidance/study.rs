@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use std::fs;
 use std::time::Instant;
 
-pub(crate) const DIMS: [usize; 4] = [2, 4, 8, 15];
+pub(crate) const DIMS: [usize; 6] = [1, 2, 4, 5, 8, 15];
 pub(crate) const COUNTS: [usize; 5] = [1, 4, 16, 64, 256];
 /// Integrands that are estimated together, as a renderer's colours are.
 pub(crate) const CHANNELS: usize = 3;
@@ -61,9 +61,10 @@ impl Method {
             if kind == Kind::PerPixel && n == 1 {
                 continue;
             }
-            for order in 1..=3 {
-                methods.push(Self { kind, order, regressed: dims });
-            }
+            // Samples whose strata a pixel's own fit spoils do not need higher orders.
+            let highest = if kind == Kind::PerPixel && source != Source::Independent { 3 } else { 7 };
+            let orders = [1, 2, 3, 5, 7].into_iter().filter(|&order| order <= highest);
+            methods.extend(orders.map(|order| Self { kind, order, regressed: dims }));
         }
         if dims > 4 {
             methods.push(Self { kind: Kind::Windows, order: 2, regressed: 4 });
@@ -75,7 +76,10 @@ impl Method {
             Kind::PerPixel => terms(method).is_ok_and(|terms| terms > 100) && n >= 64,
             _ => false,
         };
-        methods.retain(|method| terms(method).is_ok() && (full || !large(method)));
+        // Orders above 3 where they have few functions: more cost more than they bring.
+        let few = |method: &Self| if method.kind == Kind::PerPixel { 21 } else { 8 };
+        let high = |method: &Self| method.order > 3 && terms(method).is_ok_and(|terms| terms > few(method));
+        methods.retain(|method| terms(method).is_ok() && !high(method) && (full || !large(method)));
         methods
     }
 

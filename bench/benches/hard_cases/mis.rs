@@ -49,6 +49,7 @@ pub(crate) fn measure(tables: &mut Tables, repetitions: usize) {
     let cases = [
         Case { name: "two techniques", techniques: linear(&[0.0, -0.9]), rounds: 16, scale: 1.0 },
         Case { name: "identical techniques", techniques: linear(&[0.5, 0.5]), rounds: 16, scale: 1.0 },
+        Case { name: "densities 1e-1 apart", techniques: linear(&[0.0, 1e-1]), rounds: 16, scale: 1.0 },
         Case { name: "densities 1e-3 apart", techniques: linear(&[0.0, 1e-3]), rounds: 16, scale: 1.0 },
         Case { name: "densities 1e-6 apart", techniques: linear(&[0.0, 1e-6]), rounds: 16, scale: 1.0 },
         Case { name: "16 techniques of rank 2, one sample each", techniques: linear(&many), rounds: 1, scale: 1.0 },

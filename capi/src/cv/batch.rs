@@ -5,7 +5,7 @@ use crate::convert;
 use crate::dispatch;
 use crate::status::*;
 use noisefloor_core::Error;
-use noisefloor_core::control_variate::{self as cv, Config, Estimate, Samples};
+use noisefloor_core::control_variate::{self as cv, Config, Samples};
 
 /// Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL, out
 /// of range or unsupported, or a size no memory has.
@@ -67,7 +67,7 @@ pub unsafe extern "C" fn nf_cv_estimate_with_controls(
             // SAFETY: the caller's workspace, `bytes` long.
             let workspace =
                 unsafe { convert::workspace::<f32>(workspace, bytes, len(cv::workspace_len::<f32>(&core, n))?)? };
-            narrow_estimate(&core, samples, workspace)
+            dispatch::estimate(&core, samples, workspace)
         } else {
             // SAFETY: the caller's workspace, `bytes` long.
             let workspace =
@@ -120,12 +120,6 @@ pub unsafe extern "C" fn nf_cv_gradient_descent(
         *out = c_estimate(&estimate.map_err(status_of)?);
         Ok(())
     })())
-}
-
-/// Single precision is for targets without wide vectors: one version will do.
-#[inline(never)]
-fn narrow_estimate(config: &Config, samples: Samples<'_>, workspace: &mut [f32]) -> Result<Estimate, Error> {
-    cv::estimate(config, samples, workspace)
 }
 
 /// # Safety

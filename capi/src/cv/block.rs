@@ -197,7 +197,7 @@ unsafe fn estimate(
         let needed = len(cv::image_workspace_len::<f32>(config, image, n))?;
         // SAFETY: the caller's promise, see above.
         let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
-        cv::estimate_image(config, image, samples, workspace, write).map_err(status_of)
+        dispatch::estimate_image(config, image, samples, workspace, write).map_err(status_of)
     } else {
         let needed = len(cv::image_workspace_len::<f64>(config, image, n))?;
         // SAFETY: as above.

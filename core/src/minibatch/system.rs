@@ -96,9 +96,9 @@ impl System {
             return Err(Error::Unsupported);
         }
         let n = self.techniques;
-        let used = self.counts.iter().filter(|&&count| count > 0.0).count();
+        let samples = self.weight * self.counts.iter().sum::<f64>();
         let scale = self.counts.map(libm::sqrt);
-        Ok(match solver.factor(|| linear::scaled(&self.cells, 1.0, &scale, n), n, used) {
+        Ok(match solver.factor(|| linear::scaled(&self.cells, 1.0, &scale, n), &scale, n, samples) {
             Some(factor) => factor.solve_scaled(&scale, &self.error, 1.0),
             None => Vector::default(),
         })

@@ -112,6 +112,13 @@ pub(crate) fn scaled(cells: &[f64], divisor: f64, scale: &Vector, n: usize) -> M
     matrix
 }
 
+/// v' M v, for v the direction of `scale`: the part of the trace of [`scaled`]'s matrix, about 1, that belongs to what all
+/// densities have in common. The counts' weighted sum of the densities over S is 1 at every sample.
+pub(crate) fn along(matrix: &Matrix, scale: &Vector, n: usize) -> f64 {
+    let sum: f64 = matrix.iter().zip(scale).take(n).map(|(row, entry)| entry * dot(row, scale, n)).sum();
+    sum / dot(scale, scale, n)
+}
+
 /// The dot product of the first `n` entries.
 fn dot(a: &Vector, b: &Vector, n: usize) -> f64 {
     a.iter().zip(b).take(n).map(|(a, b)| a * b).sum()

@@ -17,23 +17,29 @@ use super::memory::{self, RecordMut, Sums};
 use super::{MAX_TECHNIQUES, len};
 use crate::Error;
 
-/// The relative ridge of [`Solver::default`]: less loses to the balance heuristic where a few samples must tell apart
+/// The ridge of [`Solver::default`], in samples: less loses to the balance heuristic where a few samples must tell apart
 /// densities that bring little, more gives away gain where they bring much.
-pub const DEFAULT_RIDGE: f32 = 0.03;
+pub const DEFAULT_RIDGE: f32 = 2.0;
 
-/// The relative ridges that [`Solver::Ridge`] accepts.
+/// The ridges that [`Solver::Ridge`] accepts.
 pub const RIDGE_RANGE: core::ops::RangeInclusive<f32> = 1e-8..=1e8;
+
+/// The least ridge, as a part of the trace: densities are `f32`, and what they differ by is divided by its size. Where
+/// they are less than about a part in 10,000 apart their rounding would be most of it.
+const LEAST_RIDGE: f64 = 1e-8;
 
 /// How [`OptimalMis::solve`] turns its sums into an estimate.
 ///
 /// ```
 /// use noisefloor::mis::Solver;
-/// assert_eq!(Solver::default(), Solver::Ridge(0.03));
+/// assert_eq!(Solver::default(), Solver::Ridge(2.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Solver {
-    /// alpha = (A + L)^-1 b, with L = ridge tr(N A) / J N^-1, N the diagonal matrix of the counts (equal counts: ridge
-    /// tr(A) / J on the diagonal). A larger ridge shrinks the estimate towards the balance heuristic's. Consistent, not
+    /// alpha = (A + L)^-1 b, with L = ridge (tr(N A) - 1) / n N^-1, N the diagonal matrix of the counts and n the number of
+    /// samples. tr(N A) - 1 is how much the densities differ, so that the ridge counts for as much whether they differ
+    /// much or little: for as many samples more, which know nothing of f. A larger ridge shrinks the estimate towards the
+    /// balance heuristic's, more samples towards the plain solve's. L is at least 1e-8 tr(N A) N^-1. Consistent, not
     /// unbiased: alpha comes from the samples it is applied to.
     Ridge(f32),
     /// alpha = A^-1 b, the pseudo-inverse (of N^1/2 A N^1/2) where A is singular: the limit of a vanishing ridge. The
@@ -63,16 +69,25 @@ impl Solver {
         }
     }
 
-    /// The factorised `matrix` of [`linear::scaled`], for a solver that needs it. The ridge is relative to its mean
-    /// diagonal over `used` techniques: those of the `n` whose rows are not 0.
-    pub(crate) fn factor(self, matrix: impl FnOnce() -> Matrix, n: usize, used: usize) -> Option<Factor> {
+    /// The factorised `matrix` of [`linear::scaled`] with `scale`, for a solver that needs it. It was estimated from so
+    /// many `samples`.
+    pub(crate) fn factor(
+        self,
+        matrix: impl FnOnce() -> Matrix,
+        scale: &Vector,
+        n: usize,
+        samples: f64,
+    ) -> Option<Factor> {
         match self {
             Solver::Balance | Solver::Progressive => None,
             Solver::Plain => Some(Factor::spectral(matrix(), n)),
             Solver::Ridge(ridge) => {
                 let mut matrix = matrix();
                 let trace: f64 = matrix.iter().enumerate().map(|(i, row)| row[i]).sum();
-                let diagonal = f64::from(ridge) * trace / used as f64;
+                let differences = trace - linear::along(&matrix, scale, n);
+                // Samples that have decayed to next to nothing leave a ridge that is large, and finite.
+                let diagonal = f64::from(ridge) * differences / samples.max(LEAST_RIDGE);
+                let diagonal = diagonal.max(LEAST_RIDGE * trace);
                 matrix.iter_mut().enumerate().for_each(|(i, row)| row[i] += diagonal);
                 Some(Factor::cholesky(matrix, n))
             }
@@ -220,7 +235,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         solver.check()?;
         let (sums, rounds) = self.sums()?;
         let (n, scale) = (self.techniques, root_counts(&self.counts));
-        Ok(solver.factor(|| linear::scaled(sums.matrix, rounds, &scale, n), n, n))
+        Ok(solver.factor(|| linear::scaled(sums.matrix, rounds, &scale, n), &scale, n, *sums.samples))
     }
 
     fn sum_counts(&self) -> f64 {
