@@ -66,7 +66,7 @@ impl Sources {
                 let (key, value) = line.split_once(" = ").unwrap_or_default();
                 let value = Value::String(value.to_owned());
                 sources.add(&format!("tiles/{stem}"), &value, key, "");
-                sources.add(TILES, &value, &format!("NF_TILE_{stem}"), key);
+                sources.add(TILES, &value, &format!("{stem} NF_TILE_{stem}"), key);
             }
         }
         sources
@@ -108,7 +108,7 @@ impl Sources {
 
 /// A text that says what was measured, `0.891; 1.010`, and is no name, no count and no bound.
 fn is_measured(text: &str) -> bool {
-    text.starts_with(|c: char| c.is_ascii_digit() || "-.".contains(c))
+    text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
         && number::numbers(text).iter().any(|number| number.decimals > 0)
 }
 
@@ -129,7 +129,11 @@ fn collect(json: &Value, place: &Rc<Place>, found: &mut Vec<Measured>) {
     let mut push = |kind, value| found.push(Measured { value, kind, place: Rc::clone(place) });
     match json {
         Value::Number(number) => number.as_f64().into_iter().for_each(|value| push(Kind::Value, value)),
-        Value::String(text) => number::numbers(text).iter().for_each(|number| push(Kind::Value, number.value)),
+        Value::String(text) => {
+            for number in number::numbers(text) {
+                push(if number.is_half_width { Kind::HalfWidth } else { Kind::Value }, number.value);
+            }
+        }
         Value::Array(values) => values.iter().for_each(|value| collect(value, place, found)),
         Value::Object(fields) => {
             fields.get("value").and_then(Value::as_f64).into_iter().for_each(|value| push(Kind::Value, value));

@@ -12,7 +12,8 @@ fn folder() -> TempDir {
         {"name": "direct", "columns": ["scene", "spp", "ratio"], "rows": [
             ["dining", "16", {"text": "0.434 [0.400, 0.460]", "value": 0.4343, "interval": [0.40, 0.46], "seeds": 77}],
             ["dragon", "64", {"text": "-0.712 [-0.800, -0.600]", "value": -0.712, "interval": [-0.8, -0.6]}]]},
-        {"name": "indirect", "columns": ["scene", "bound", "ratio"], "rows": [["duck", "at most 0.8", "0.921"]]}]}"#;
+        {"name": "indirect", "columns": ["scene", "bound", "ratio"], "rows": [["duck", "at most 0.8", "0.921"],
+            ["lens", "at most 0.8", "+0.315 +- 0.04"]]}]}"#;
     let many: Vec<String> =
         (0..200).map(|i| format!(r#"["row {i}", {{"value": {}}}]"#, 0.3 + 0.001 * f64::from(i))).collect();
     let many = format!(r#"{{"tables": [{{"name": "all", "columns": ["", "x"], "rows": [{}]}}]}}"#, many.join(","));
@@ -92,6 +93,8 @@ fn intervals_are_of_the_figure_before_them() {
     assert!(error("embree/direct", ".43 ± .1").contains("no interval's of the figure before it"));
     error("embree/direct", ".43 [-.8, .46]");
     error("embree/direct", "± .03");
+    accepted("embree/indirect", "+.315 ± .04");
+    error("embree/indirect", ".04");
 }
 
 #[test]
@@ -108,7 +111,7 @@ fn rows_are_of_the_same_name() {
     accepted("embree/direct", "| dining (2) | .43 |\n| dragon | -.71 |\n| | -.71 |\n| other | .43 |");
     error("embree/direct", "| dragon | .43 |");
     error("embree/direct", "| dining | .43 |\n| | -.71 |");
-    accepted("many/all", "| row 50 | .35 |");
+    accepted("many/all", "| 50, row | .35 |");
 }
 
 #[test]
