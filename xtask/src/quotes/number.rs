@@ -143,7 +143,10 @@ fn is_reference(before: &[char]) -> bool {
 fn figures_of_a_line() {
     let texts = |line: &str| figures(line).into_iter().map(|number| number.text).collect::<Vec<_>>();
     assert_eq!(texts("from .43 to 1,234.5, 12 ns, 5 % of 7 in 128x128"), [".43", "1,234.5", "12", "5"]);
-    assert_eq!(texts("figures 4.3, 4.5 and 4.6; (6.11); `0.5`; [a](b-0.5.svg); POV-Ray 3.7.0.10, Apache-2.0, delta .2"), [""; 0]);
+    assert_eq!(
+        texts("figures 4.3, 4.5 and 4.6; (6.11); `0.5`; [a](b-0.5.svg); POV-Ray 3.7.0.10, Apache-2.0, delta .2"),
+        [""; 0]
+    );
     assert_eq!(texts("-.33 ± .08 | 2.3e-4"), ["-.33", ".08", "2.3e-4"]);
     assert_eq!(texts("20 to 40 %, 359 and 4,520 times, 3 of 4"), ["20", "40", "359", "4,520"]);
     assert_eq!(numbers("2.3e-4")[0].decimals, 5);
