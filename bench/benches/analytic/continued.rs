@@ -10,8 +10,9 @@ use std::fmt::Write;
 /// Root mean square errors over the integrand's standard deviation, after multiples of the tile's samples.
 pub(crate) fn table(size: Size) -> Result<String> {
     let mut rng = SplitMix64::new(41);
-    let kinds = kinds(size.of(48), &mut rng);
-    let mut text = "spp;tile;integrands;samples;times;error\n".to_owned();
+    let count = size.of(48);
+    let kinds = kinds(count, &mut rng);
+    let mut text = "spp;tile;integrands;count;samples;times;error\n".to_owned();
     for (name, bytes) in &tiles() {
         let tile = Tile::from_bytes(bytes).map_err(|error| anyhow!("the tile {name}: {error}"))?;
         let spp = tile.shape().spp;
@@ -21,7 +22,7 @@ pub(crate) fn table(size: Size) -> Result<String> {
                 [("random", random), ("Owen-scrambled Sobol", owen), ("tile, continued", tile), ("its domain", domain)];
             for (samples, errors) in rows {
                 for (times, error) in TIMES.iter().zip(errors) {
-                    let _ = writeln!(text, "{spp};{name};{};{samples};{times};{error}", kind.name);
+                    let _ = writeln!(text, "{spp};{name};{};{count};{samples};{times};{error}", kind.name);
                 }
             }
         }

@@ -25,19 +25,24 @@ pub(crate) fn tiles(size: Size) -> String {
     let rows: Vec<String> = settings
         .into_par_iter()
         .map(|(motion, spp)| {
-            let all = scores(spp, motion, METHODS.map(|(_, method)| method), size.of(quadruples(spp)));
+            let quadruples = size.of(quadruples(spp));
+            let all = scores(spp, motion, METHODS.map(|(_, method)| method), quadruples);
             let moving = if motion == Motion::None { "the same everywhere" } else { "moving and scaling" };
             METHODS.iter().zip(all).fold(String::new(), |mut text, ((method, _), [planes, bumps])| {
                 let _ = writeln!(
                     text,
-                    "{spp};{moving};{method};{};{};{};{}",
-                    planes.raw, bumps.raw, planes.blurred, bumps.blurred
+                    "{spp};{moving};{method};{};{};{};{};{}",
+                    4 * quadruples,
+                    planes.raw,
+                    bumps.raw,
+                    planes.blurred,
+                    bumps.blurred
                 );
                 text
             })
         })
         .collect();
-    format!("samples;integrands;method;half_planes;bumps;half_planes_blurred;bumps_blurred\n{}", rows.concat())
+    format!("samples;integrands;method;count;half_planes;bumps;half_planes_blurred;bumps_blurred\n{}", rows.concat())
 }
 
 /// RMSE ratios to the mean in scenes that fits should leave alone.

@@ -24,8 +24,9 @@ pub(super) fn tiles(chapter: &mut Chapter, targets: &mut Targets, table: &Table)
     chapter.section("Shared fits on a tile's samples", "");
     let deviation = chapter.setting("the filter's standard deviation, pixels", 2.1);
     let pixels = chapter.setting("pixels over which integrands move and scale", 32);
-    let [few, many] = [("half-planes, and bumps", 24), ("the same at 16 samples", 12)]
-        .map(|(name, count)| chapter.setting(name, count));
+    let count = |samples: &str| find(table, &[("samples", samples)])?.number::<u32>("count");
+    let few = chapter.setting("half-planes, and bumps", count("1")?);
+    let many = chapter.setting("the same at 16 samples", count("16")?);
     let most = chapter.setting("samples of the tiles with fewer integrands", 16);
     chapter.paragraph(&format!(
         "Mean squared errors relative to independent samples without a fit: of {few} half-planes and {few} Gaussian bumps ({many} each at {most} samples), on the \
