@@ -1,10 +1,16 @@
-//! What the tests share: the oracle, the integrands, the statistics.
+//! What the tests share: the oracle, the integrands, the statistics, and what the report measures too.
 
+pub mod continued;
+pub mod gradients;
 pub mod integrands;
 pub mod legendre;
+pub mod minibatch;
 pub mod oracle;
 pub mod planar;
 pub mod random;
 pub mod shared;
+pub mod shared_bias;
+pub mod shared_hard;
+pub mod shared_tiles;
 pub mod statistics;
 pub mod tile;

@@ -10,123 +10,11 @@ use noisefloor::control_variate::{Config, Image, Samples, estimate, workspace_le
 use noisefloor::tile::{Builtin, Sampler};
 use noisefloor_tests::planar::Planar;
 use noisefloor_tests::random::SplitMix64;
-use noisefloor_tests::shared::{block, image};
-use noisefloor_tests::statistics::{Ratio, rmse_ratio};
+use noisefloor_tests::shared::image;
+use noisefloor_tests::shared_hard::{COUNTS, PIXELS, SCENES, SIDE, Scene, as_block, as_image, errors, measure, ratio};
 
 const LIMIT: f64 = 1.03;
-/// Samples of a pixel.
-const COUNTS: [usize; 5] = [1, 2, 4, 8, 16];
-const SIDE: usize = 12;
-const PIXELS: usize = SIDE * SIDE;
-
-/// Samples of an image and what they estimate.
-struct Scene {
-    u: Vec<f32>,
-    f: Vec<f32>,
-    truth: Vec<f64>,
-}
-
-impl Scene {
-    /// Independent points, and a pixel's value at each.
-    fn new(
-        n: usize,
-        pixels: usize,
-        rng: &mut SplitMix64,
-        mut pixel: impl FnMut(usize, [f64; 2], &mut SplitMix64) -> f64,
-    ) -> Self {
-        let u = points(pixels * n, 2, rng);
-        let f = (0..pixels * n).map(|i| pixel(i / n, [f64::from(u[2 * i]), f64::from(u[2 * i + 1])], rng) as f32);
-        let f = f.collect();
-        Self { u, f, truth: vec![0.0; pixels] }
-    }
-
-    fn with_truth(mut self, truth: impl Fn(usize) -> f64) -> Self {
-        self.truth = (0..self.truth.len()).map(truth).collect();
-        self
-    }
-}
-
-fn checker(pixel: usize) -> f64 {
-    f64::from(u8::from((pixel % SIDE + pixel / SIDE).is_multiple_of(2)))
-}
-
-fn bright(pixel: usize) -> bool {
-    // A slanted border through most windows.
-    3 * (pixel % SIDE) + 2 * (pixel / SIDE) > 27
-}
-
-type Make = fn(usize, &mut SplitMix64) -> Scene;
-
-const SCENES: [(&str, Make); 12] = [
-    ("noise", |n, rng| Scene::new(n, PIXELS, rng, |_, _, rng| rng.normal())),
-    ("skewed noise", |n, rng| {
-        Scene::new(n, PIXELS, rng, |_, _, rng| (1.5 * rng.normal()).exp()).with_truth(|_| (1.5_f64 * 1.5 / 2.0).exp())
-    }),
-    ("rare noise", |n, rng| {
-        Scene::new(n, PIXELS, rng, |_, _, rng| f64::from(u8::from(rng.uniform() < 0.02))).with_truth(|_| 0.02)
-    }),
-    ("noise under a border", |n, rng| {
-        Scene::new(n, PIXELS, rng, |pixel, _, rng| rng.normal() + if bright(pixel) { 10.0 } else { 0.0 })
-            .with_truth(|pixel| if bright(pixel) { 10.0 } else { 0.0 })
-    }),
-    ("two surfaces", |n, rng| {
-        // Opposite slopes, of which a common fit can explain nothing.
-        Scene::new(n, PIXELS, rng, |pixel, u, _| if bright(pixel) { 4.0 * u[0] } else { 5.0 - u[0] })
-            .with_truth(|pixel| if bright(pixel) { 2.0 } else { 4.5 })
-    }),
-    ("checkerboard", |n, rng| {
-        Scene::new(n, PIXELS, rng, |pixel, _, rng| 5.0 * checker(pixel) + rng.normal())
-            .with_truth(|pixel| 5.0 * checker(pixel))
-    }),
-    ("checkerboard of slopes", |n, rng| {
-        Scene::new(n, PIXELS, rng, |pixel, u, _| if checker(pixel) > 0.0 { u[0] } else { 1.0 - u[0] })
-            .with_truth(|_| 0.5)
-    }),
-    ("an integrand for each pixel", |n, rng| {
-        let each: Vec<Planar> = (0..PIXELS).map(|_| Planar::half_plane(rng)).collect();
-        let truth: Vec<f64> = each.iter().map(|planar| planar.integral()[0]).collect();
-        Scene::new(n, PIXELS, rng, |pixel, u, _| each[pixel].at(u)).with_truth(|pixel| truth[pixel])
-    }),
-    ("thin strips", |n, rng| {
-        let at = 0.05 + 0.9 * rng.uniform();
-        Scene::new(n, PIXELS, rng, |_, u, _| f64::from(u8::from((u[1] - at).abs() < 0.005))).with_truth(|_| 0.01)
-    }),
-    ("high frequency", |n, rng| {
-        Scene::new(n, PIXELS, rng, |_, u, _| (core::f64::consts::TAU * (9.0 * u[0] + 4.0 * u[1])).sin())
-    }),
-    ("one point", |n, rng| {
-        let mut scene = Scene::new(n, PIXELS, rng, |_, _, rng| rng.normal());
-        scene.u.fill(0.3);
-        scene
-    }),
-    ("one point in each pixel", |n, rng| {
-        let mut scene = Scene::new(n, PIXELS, rng, |_, _, rng| rng.normal());
-        for own in scene.u.chunks_mut(2 * n) {
-            let first = [own[0], own[1]];
-            own.chunks_mut(2).for_each(|u| u.copy_from_slice(&first));
-        }
-        scene
-    }),
-];
-
-/// An image's root mean square errors: of the estimates, of the means.
-fn errors(scene: &Scene, estimates: &[f32]) -> [f64; 2] {
-    let n = scene.f.len() / scene.truth.len();
-    let mut squares = [0.0; 2];
-    for ((own, estimate), truth) in scene.f.chunks(n).zip(estimates).zip(&scene.truth) {
-        let mean = wide(own).iter().sum::<f64>() / n as f64;
-        squares[0] += (f64::from(*estimate) - truth).powi(2);
-        squares[1] += (mean - truth).powi(2);
-    }
-    squares.map(|square| (square / scene.truth.len() as f64).sqrt())
-}
-
-fn ratio(errors: &[[f64; 2]]) -> Ratio {
-    let at = |index: usize| errors.iter().map(|pair| pair[index]).collect::<Vec<f64>>();
-    rmse_ratio(&at(0), &at(1))
-}
-
-/// All scenes, by `call`: as many images as have so many samples of each pixel together, half as many at 1 sample.
+/// All scenes, by `call`.
 fn never_worse(
     what: &str,
     counts: &[usize],
@@ -137,16 +25,7 @@ fn never_worse(
     let mut worst = (0.0, String::new());
     for &n in counts {
         for (name, make) in SCENES {
-            let mut rng = SplitMix64::new(seed + n as u64);
-            let images = samples / n.max(2);
-            let config = Config::new(2, 3, 1);
-            let all: Vec<[f64; 2]> = (0..images)
-                .map(|_| {
-                    let scene = make(n, &mut rng);
-                    errors(&scene, &call(&config, Samples::new(&scene.u, &scene.f)))
-                })
-                .collect();
-            let ratio = ratio(&all);
+            let (_, ratio) = measure(make, n, samples, seed, &call);
             let line = format!("{what}, {name}, {n} samples: {:.4} +- {:.4}", ratio.value, ratio.half_width);
             println!("{line}");
             if ratio.upper() > worst.0 {
@@ -160,16 +39,12 @@ fn never_worse(
 
 #[test]
 fn images() {
-    never_worse("image", &COUNTS, 160, 100, |config, samples| {
-        image(config, &Image::new(SIDE, SIDE), samples).unwrap().iter().map(|estimate| estimate.mean[0]).collect()
-    });
+    never_worse("image", &COUNTS, 160, 100, as_image);
 }
 
 #[test]
 fn blocks() {
-    never_worse("block", &COUNTS, 160, 200, |config, samples| {
-        block(config, PIXELS, samples).unwrap().iter().map(|estimate| estimate.mean[0]).collect()
-    });
+    never_worse("block", &COUNTS, 160, 200, as_block);
 }
 
 /// Surfaces of 2 to 12 pixels anywhere in the image, in one window, and in windows that have only some of them: at most

@@ -6,12 +6,13 @@
 
 mod cv_support;
 
-use cv_support::{points, wide};
+use cv_support::points;
 use noisefloor::control_variate::{Config, Estimator, Image, Ridge, Samples};
-use noisefloor::tile::{Builtin, Sampler};
+use noisefloor::tile::Builtin;
 use noisefloor_tests::planar::Planar;
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::image;
+use noisefloor_tests::shared_bias::{bias, independent, of_tile};
 use noisefloor_tests::statistics::Moments;
 
 const Z_LIMIT: f64 = 4.75;
@@ -149,55 +150,13 @@ fn the_tests_are_sharp() {
     assert!(z.into_iter().fold(0.0, f64::max) > 6.0);
 }
 
-/// Bias relative to the RMSE over integrands: its root mean square and its largest, without what chance adds to it.
-#[derive(Debug)]
-struct Bias {
-    typical: f64,
-    largest: f64,
-    /// What chance alone would show.
-    chance: f64,
-}
-
-/// Half-planes and bumps, the same in every pixel of a single window, whose samples `draw` puts out.
-fn bias(
-    config: &Config,
-    side: usize,
-    n: usize,
-    repetitions: usize,
-    draw: impl Fn(&mut SplitMix64) -> Vec<f32>,
-) -> Bias {
-    let mut rng = SplitMix64::new(30);
-    let of = Image { window: side, stride: side, ..Image::new(side, side) };
-    let (mut squares, mut largest, mut chance) = (Moments::default(), 0.0_f64, Moments::default());
-    for index in 0..24 {
-        let planar = if index % 2 == 0 { Planar::half_plane(&mut rng) } else { Planar::bump(&mut rng) };
-        let truth = planar.integral()[0];
-        let (mut means, mut all) = (Moments::default(), Moments::default());
-        for _ in 0..repetitions {
-            let u = draw(&mut rng);
-            assert_eq!(u.len(), 2 * n * side * side);
-            let f: Vec<f32> = wide(&u).chunks(2).map(|u| planar.at([u[0], u[1]]) as f32).collect();
-            let estimates = image(config, &of, Samples::new(&u, &f)).unwrap();
-            let errors: Moments = estimates.iter().map(|estimate| f64::from(estimate.mean[0]) - truth).collect();
-            means.add(errors.mean());
-            estimates.iter().for_each(|estimate| all.add((f64::from(estimate.mean[0]) - truth).powi(2)));
-        }
-        let noise = means.standard_error().powi(2) / all.mean();
-        let square = means.mean().powi(2) / all.mean() - noise;
-        squares.add(square);
-        chance.add(noise);
-        largest = largest.max(square);
-    }
-    Bias { typical: squares.mean().max(0.0).sqrt(), largest: largest.sqrt(), chance: chance.mean().sqrt() }
-}
-
 /// The robust mixture, one independent sample: a bias of .024 of the RMSE in windows of 4 x 4 pixels (largest of 24
 /// integrands .078), .009 (.028) in windows of 8, .002 (.008) in windows of 16, where chance alone would show .004.
 #[test]
 fn robust_on_independent_samples() {
     let mut typical = vec![];
     for (side, repetitions) in [(4, 3000), (8, 800), (16, 200)] {
-        let bias = bias(&Config::new(2, 3, 1), side, 1, repetitions, |rng| points(side * side, 2, rng));
+        let bias = bias(&Config::new(2, 3, 1), side, 1, repetitions, independent(side * side));
         println!("robust, independent, window {side}: {bias:?}");
         typical.push(bias.typical);
         assert!(bias.largest < 0.1 && bias.chance < 0.01, "{side}: {bias:?}");
@@ -206,22 +165,14 @@ fn robust_on_independent_samples() {
 }
 
 /// Samples of the built-in tiles, a random part of it with all values shifted at random, which leaves each uniform but not
-/// independent: not exactly unbiased for any estimator, but the bias is at most .01 of the RMSE. One sample: robust .005
-/// (largest of 24 integrands .017), leave-one-out .008 (.022), two halves .005 (.018). Four samples: .003 (.009) or less.
+/// independent: not exactly unbiased for any estimator. Measured at one sample: robust .004 (largest of 24 integrands .012), leave-one-out
+/// .008 (.016), two halves .005 (.016); at four .003 (.011) or less.
 #[test]
 fn on_the_built_in_tiles() {
     for (builtin, n) in [(Builtin::Size128Spp1Dims2, 1), (Builtin::Size128Spp4Dims2, 4)] {
-        let tile = builtin.tile().unwrap();
-        let draw = |rng: &mut SplitMix64| {
-            let (seed, at) = (rng.next_u64() as u32 | 1, rng.next_u64());
-            let root = |pixel: u32| {
-                Sampler::pixel(&tile, at as u32 + pixel % 8, (at >> 32) as u32 + pixel / 8, 0, 0).scramble(seed)
-            };
-            (0..64).flat_map(|pixel| (0..n as u32).flat_map(move |i| root(pixel).moved(0, 0, i).draw::<2>())).collect()
-        };
         for estimator in [Estimator::Robust, Estimator::LeaveOneOut, Estimator::KFold] {
             let config = Config { estimator, ..Config::new(2, 3, 1) };
-            let bias = bias(&config, 8, n, 600 / n, draw);
+            let bias = bias(&config, 8, n, 600 / n, of_tile(builtin));
             println!("{estimator:?}, tile of {n} samples: {bias:?}");
             assert!(bias.typical < 0.02 && bias.largest < 0.05, "{estimator:?} {n}: {bias:?}");
         }

@@ -1,12 +1,10 @@
 //! Optimal MIS gradients: their algebra, their limits and their errors. Statistics are in minibatch_statistics.rs.
 
-mod minibatch_support;
-
-use minibatch_support::{Drawn, Problem};
 use noisefloor::Error;
 use noisefloor::minibatch::{Batch, Gradient, gradient_len, weights};
 use noisefloor::mis::{DEFAULT_RIDGE, Solver};
 use noisefloor::rng::Rng;
+use noisefloor_tests::minibatch::{Drawn, Problem};
 use proptest::prelude::*;
 
 const RIDGE: Solver = Solver::Ridge(DEFAULT_RIDGE);

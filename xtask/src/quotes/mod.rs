@@ -1,21 +1,23 @@
 //! Do the documents quote what was measured? README.md and docs/*.md say where their figures come from:
 //!
 //! ```text
-//! <!-- figures: embree/direct, tiles/128_4SPP_2D -->
+//! <!-- figures: embree/direct @ dining; embree/quoted; tiles/128_4SPP_2D -->
 //! ```
 //!
-//! is about all figures up to the next such line or the next heading. A source is a chapter of docs/report, one of its tables
-//! (CHAPTER/TABLE), the figures that its text quotes (CHAPTER/quoted) or its settings (CHAPTER/settings); `tiles` or one of
-//! core/tiles/*.toml; `test NAME`, a file of tests/tests that measures and prints them: that it exists is all that is checked; or
-//! `none (why)`, of numbers that nothing here has measured: settings, constants, what others have published. A figure is a number with decimals or
-//! before a unit of time or `%`, outside of code and formulas. It must be one of its sources', rounded to the decimals
-//! that the document gives; a table's interval counts with its ends and with half of its width. The rows of the document's tables
-//! are compared with the sources' rows of the same name (by its first word), if there are such.
+//! is about all figures up to the next such line or the next heading. docs/quoting.md says how to write it; these are the rules.
 //!
-//! After a new report, `cargo test --profile xtask -p xtask quotes` prints each figure that is no longer right, with its document
-//! and line, its sources, and what is nearest there: first by value, then in the rows and columns that the line names.
+//! - A figure is a number with decimals or with a unit (of time, `%`, `times`, `instructions`), outside of code, links and formulas.
+//! - A source is a table of a chapter of docs/report (CHAPTER/TABLE), the figures that the chapter's text quotes (CHAPTER/quoted), its settings
+//!   (CHAPTER/settings), or one of core/tiles/*.toml (tiles/NAME; `tiles` where the rows of a table
+//!   name the tiles). `@` narrows it to the cells whose row and column have all these words. A chapter alone is none.
+//! - The figure must be a cell's value, sign included, rounded to the figure's digits. In a table's row only the source's rows count that share the most words with
+//!   it. Behind `±` stands half of the interval of the same cell, in brackets its ends.
+//! - If more than a third of the figures beside it would pass as well, the figure is not accepted: the source must be narrowed.
+//! - A source that no figure comes from is an error; so is `none (why)`, for numbers that nothing here has measured, without such a number.
 
+mod compare;
 mod nearest;
+mod number;
 mod source;
 mod text;
 
@@ -42,54 +44,13 @@ fn every_figure_of_the_documents_was_measured() {
         let name = path.strip_prefix(paths::root()).expect("below the root").display().to_string();
         let document = fs::read_to_string(&path).expect("a document");
         let found = text::check(&document, &sources);
-        wrong.extend(found.wrong.iter().map(|message| format!("{name}:{message}")));
-        if !found.without_source.is_empty() {
-            let list = found.without_source.join(", ");
-            wrong.push(format!(
-                "{name}: {} figures without a source: say where they come from, <!-- figures: ... -->\n    {list}",
-                found.without_source.len()
-            ));
-        }
+        wrong.extend(found.wrong.iter().map(|(line, message)| format!("{name}:{line}: {message}")));
+        wrong.extend(found.without_source.iter().map(|(line, figure)| {
+            format!("{name}:{line}: {figure} has no source: write <!-- figures: ... --> before it")
+        }));
     }
-    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+    assert!(wrong.is_empty(), "\n{}\n{} figures; docs/quoting.md says how to quote", wrong.join("\n"), wrong.len());
 }
 
-#[test]
-fn a_wrong_figure_is_found() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let json = r#"{"settings": {"spp": 64}, "quoted": {"worst": {"value": 1.234}}, "tables": [
-        {"name": "direct", "rows": [["dining", {"text": "0.434 [0.40, 0.46]", "value": 0.4343, "interval": [0.40, 0.46]}]]}]}"#;
-    fs::write(folder.path().join("embree.json"), json).expect("a file");
-    fs::write(folder.path().join("A.toml"), "spp = 4\nfiltered = [0.04299, 0.002204]\n").expect("a file");
-    let sources = Sources::new(folder.path(), folder.path());
-    let wrong = |document: &str| text::check(document, &sources).wrong;
-    let right = "# T\n\n<!-- figures: embree/direct -->\nThe error is .43 ± .03, or 43.\n";
-    assert_eq!(wrong(right), Vec::<String>::new());
-    assert_eq!(wrong(&right.replace(".43", ".44")).len(), 1, "a wrong figure");
-    assert_eq!(wrong(&right.replace(".43", ".433")).len(), 1, "more decimals than are right");
-    assert_eq!(wrong(&right.replace("direct", "indirect")).len(), 1, "a table that is not there");
-    assert_eq!(wrong(&right.replace("embree/", "povray/")).len(), 1, "a chapter that is not there");
-    assert_eq!(wrong("<!-- figures: embree/direct -->\n1.23\n").len(), 1, "a figure of another part");
-    assert!(wrong("<!-- figures: embree/quoted -->\n1.23\n").is_empty());
-    assert!(wrong("<!-- figures: embree -->\n1.23 and 0.43\n").is_empty());
-    assert!(wrong("<!-- figures: tiles/A -->\n.043 / .0022\n").is_empty());
-    assert_eq!(wrong("<!-- figures: tiles/A -->\n.044\n").len(), 1);
-    assert!(wrong("<!-- figures: embree/settings -->\n64 ms\n").is_empty());
-    assert_eq!(wrong("<!-- figures: embree/settings -->\n63 ms\n").len(), 1);
-    assert!(wrong("<!-- figures: test cv_never_worse -->\n.044\n").is_empty());
-    assert_eq!(wrong("<!-- figures: test cv_nonsense -->\n.044\n").len(), 1, "a test that is not there");
-    assert_eq!(wrong("<!-- figures: none -->\n.044\n").len(), 1, "none must say why");
-    assert!(wrong("<!-- figures: none (settings) -->\n.044\n").is_empty());
-    // A row's figure is of that row.
-    assert!(wrong("<!-- figures: embree/direct -->\n| dining (2) | .43 |\n").is_empty());
-    let rows = r#"{"tables": [{"name": "t", "columns": ["", "x"], "rows": [["a b", 1.5], ["c", 2.5]]}]}"#;
-    fs::write(folder.path().join("rows.json"), rows).expect("a file");
-    let sources = Sources::new(folder.path(), folder.path());
-    let wrong = |document: &str| text::check(document, &sources).wrong;
-    assert!(wrong("<!-- figures: rows/t -->\n| a | 1.5 |\n| d | 2.5 |\n").is_empty());
-    let message = wrong("<!-- figures: rows/t -->\n| a | 2.5 |\n");
-    assert_eq!(message, ["2: 2.5 is not in rows/t; nearest: 2.5 (c: x); 1.5 (a b: x)"]);
-    // A heading ends what a line says.
-    let found = text::check(&format!("{right}\n## Next\n\n.43\n"), &sources);
-    assert_eq!((found.wrong.len(), found.without_source.len()), (0, 1));
-}
+#[cfg(test)]
+mod tests;

@@ -1,52 +1,80 @@
 //! The measured numbers, by where they were measured.
 
+use super::number;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::fs;
 use std::path::Path;
 use std::rc::Rc;
 
-/// A measured number, and where it stands: the names of its row and its column. Empty for what is in no table.
-pub(super) struct Measured {
-    pub(super) value: f64,
-    pub(super) place: Rc<str>,
+/// What a number says of its cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    Value,
+    /// An end of its interval.
+    Bound,
+    /// Half of its interval's width.
+    HalfWidth,
 }
 
-/// Numbers by the name of their source: `embree`, `embree/direct`, `tiles`, `tiles/128_4SPP_2D`.
+/// Where a number stands: the names of its row (what is quoted or set, a tile) and of its column.
+#[derive(Debug, Default, PartialEq, Eq, Hash)]
+pub(super) struct Place {
+    pub(super) row: String,
+    pub(super) column: String,
+}
+
+/// A measured number.
+#[derive(Clone, Debug)]
+pub(super) struct Measured {
+    pub(super) value: f64,
+    pub(super) kind: Kind,
+    /// The same for what one cell holds.
+    pub(super) place: Rc<Place>,
+}
+
+/// All tiles: the row of a figure must name which.
+pub(super) const TILES: &str = "tiles";
+
+/// Numbers by the name of their source: `embree/direct`, `embree/quoted`, `tiles/128_4SPP_2D`.
+#[derive(Default)]
 pub(super) struct Sources(BTreeMap<String, Vec<Measured>>);
 
 impl Sources {
     /// `report`: a folder of JSON files; `tiles`: one of TOML files.
     pub(super) fn new(report: &Path, tiles: &Path) -> Self {
-        let mut sources = Self(BTreeMap::new());
+        let mut sources = Self::default();
         for (stem, text) in files(report, "json") {
             let json: Value = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{stem}.json: {error}"));
-            sources.add(&format!("{stem}/quoted"), &json["quoted"], "");
-            sources.add(&format!("{stem}/settings"), &json["settings"], "");
+            for part in ["quoted", "settings"] {
+                let name = format!("{stem}/{part}");
+                sources.0.entry(name.clone()).or_default();
+                for (key, value) in json[part].as_object().into_iter().flatten() {
+                    sources.add(&name, value, key, "");
+                }
+            }
             for table in json["tables"].as_array().map_or(&[][..], Vec::as_slice) {
                 if let Some(name) = table["name"].as_str() {
                     // Several tables of a name are one source.
                     sources.add_table(&format!("{stem}/{name}"), table);
-                    sources.add_table(&stem, table);
                 }
             }
-            // Last: what is in a table has been told with its row.
-            sources.add(&stem, &json, "");
         }
         for (stem, text) in files(tiles, "toml") {
             // Line by line, as a line's name tells its numbers apart.
             for line in text.lines() {
-                let (key, _) = line.split_once(" = ").unwrap_or_default();
-                let line = Value::String(line.to_owned());
-                sources.add("tiles", &line, &format!("{stem} {key}"));
-                sources.add(&format!("tiles/{stem}"), &line, key);
+                let (key, value) = line.split_once(" = ").unwrap_or_default();
+                let value = Value::String(value.to_owned());
+                sources.add(&format!("tiles/{stem}"), &value, key, "");
+                sources.add(TILES, &value, &format!("{stem} NF_TILE_{stem}"), key);
             }
         }
         sources
     }
 
-    fn add(&mut self, name: &str, json: &Value, place: &str) {
-        collect(json, &Rc::from(place), self.0.entry(name.to_owned()).or_default());
+    fn add(&mut self, name: &str, json: &Value, row: &str, column: &str) {
+        let place = Rc::new(Place { row: row.to_owned(), column: column.to_owned() });
+        collect(json, &place, self.0.entry(name.to_owned()).or_default());
     }
 
     fn add_table(&mut self, name: &str, table: &Value) {
@@ -54,10 +82,14 @@ impl Sources {
         // A table without rows is a source too.
         self.0.entry(name.to_owned()).or_default();
         for row in array("rows").iter().filter_map(Value::as_array) {
-            let label = row.iter().filter_map(Value::as_str).collect::<Vec<_>>().join(", ");
+            let is_label = |cell: &&str| !is_measured(cell);
+            let label: Vec<&str> = row.iter().filter_map(Value::as_str).filter(is_label).collect();
             for (cell, i) in row.iter().zip(0..) {
+                if cell.as_str().is_some_and(|text| !is_measured(text)) {
+                    continue;
+                }
                 let column = array("columns").get(i).and_then(Value::as_str).unwrap_or_default();
-                self.add(name, cell, &format!("{label}: {column}"));
+                self.add(name, cell, &label.join(", "), column);
             }
         }
     }
@@ -66,6 +98,18 @@ impl Sources {
     pub(super) fn numbers(&self, name: &str) -> Option<&[Measured]> {
         self.0.get(name).map(Vec::as_slice)
     }
+
+    /// What a name that is no source may have meant.
+    pub(super) fn like(&self, name: &str) -> Vec<&str> {
+        let (chapter, _) = name.split_once('/').unwrap_or((name, ""));
+        self.0.keys().map(String::as_str).filter(|known| known.split('/').next() == Some(chapter)).collect()
+    }
+}
+
+/// A text that says what was measured, `0.891; 1.010`, and is no name, no count and no bound.
+fn is_measured(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+        && number::numbers(text).iter().any(|number| number.decimals > 0)
 }
 
 fn files(folder: &Path, extension: &str) -> Vec<(String, String)> {
@@ -80,20 +124,34 @@ fn files(folder: &Path, extension: &str) -> Vec<(String, String)> {
         .collect()
 }
 
-/// The numbers of values and of texts, and half the width of intervals.
-fn collect(json: &Value, place: &Rc<str>, found: &mut Vec<Measured>) {
-    let mut push = |value: f64| found.push(Measured { value, place: Rc::clone(place) });
+/// The numbers of values and of texts; of a figure its value and its interval, not how it is written or from how many seeds it is.
+fn collect(json: &Value, place: &Rc<Place>, found: &mut Vec<Measured>) {
+    let mut push = |kind, value| found.push(Measured { value, kind, place: Rc::clone(place) });
     match json {
-        Value::Number(number) => number.as_f64().into_iter().for_each(push),
-        Value::String(text) => super::text::numbers(text).into_iter().for_each(|number| push(number.value)),
+        Value::Number(number) => number.as_f64().into_iter().for_each(|value| push(Kind::Value, value)),
+        Value::String(text) => {
+            for number in number::numbers(text) {
+                push(if number.is_half_width { Kind::HalfWidth } else { Kind::Value }, number.value);
+            }
+        }
         Value::Array(values) => values.iter().for_each(|value| collect(value, place, found)),
         Value::Object(fields) => {
-            if let Some([low, high]) = fields.get("interval").and_then(Value::as_array).map(Vec::as_slice) {
-                let half = low.as_f64().zip(high.as_f64()).map(|(low, high)| (high - low) / 2.0);
-                half.into_iter().for_each(push);
+            fields.get("value").and_then(Value::as_f64).into_iter().for_each(|value| push(Kind::Value, value));
+            let interval = fields.get("interval").and_then(Value::as_array).map(Vec::as_slice);
+            if let Some([Some(low), Some(high)]) = interval.map(|ends| [0, 1].map(|end| ends.get(end)?.as_f64())) {
+                push(Kind::Bound, low);
+                push(Kind::Bound, high);
+                push(Kind::HalfWidth, (high - low) / 2.0);
             }
-            fields.values().for_each(|value| collect(value, place, found));
         }
         Value::Null | Value::Bool(_) => {}
     }
+}
+
+/// Words and numbers of a name, in no order.
+pub(super) fn words(text: &str) -> HashSet<String> {
+    text.split(|c: char| !c.is_alphanumeric() && !"._".contains(c))
+        .map(|word| word.trim_matches('.').to_lowercase())
+        .filter(|word| !word.is_empty())
+        .collect()
 }

@@ -1,6 +1,7 @@
 //! `cargo xtask report`: errors, times and overheads, as tables, plots and pictures, and as JSON. One chapter for each
 //! program that measures; an index of all of them.
 
+mod analytic;
 pub(crate) mod chapter;
 pub(crate) mod check;
 mod clock;
@@ -84,6 +85,13 @@ const CHAPTERS: &[Entry] = &[
     .runs(&["speed_error", "estimators"]),
     entry("hard_cases", 10, "Few, degenerate and extreme samples, and what is refused", hard_cases::write)
         .runs(&["hard_cases"]),
+    entry(
+        "analytic",
+        30,
+        "Shared fits, tiles beyond their samples and optimal MIS where exact results are known",
+        analytic::write,
+    )
+    .runs(&["analytic"]),
     entry(
         "embree",
         280,

@@ -1,5 +1,4 @@
 //! What the minibatch tests share: a discrete data set with several importance distributions, and minibatches of it.
-#![allow(dead_code)] // each test file uses its part
 
 use noisefloor::minibatch::{Batch, weights};
 use noisefloor::mis::Solver;
