@@ -108,9 +108,8 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         examples::renderers(&archive()?)
     });
     steps.run("examples_c/python: ctypes declarations, tests and a training loop", || python::run(&archive()?));
-    // Without the chapter `samplers`, whose two programs take longest to compile and to run.
-    steps.run("cargo xtask report --quick: tables, gradients, estimators, hard cases, point sets", || {
-        report::check_quick(&["tables", "gradients", "control_variates", "hard_cases", "points"])?;
+    steps.run("cargo xtask report --quick: tables, gradients, estimators, hard cases, samplers, point sets", || {
+        report::check_quick(&["tables", "gradients", "control_variates", "hard_cases", "samplers", "points"])?;
         Ok(Outcome::Passed)
     });
     steps.run("instruction counts: none above the committed report's by 3 %", || instructions::check(&archive()?));

@@ -37,6 +37,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clock::Clock;
 use plan::Plan;
+use std::cell::Cell;
 use std::path::PathBuf;
 
 pub(crate) use run::{check_quick, run};
@@ -107,16 +108,17 @@ pub(crate) struct Options {
     /// Tiny images and few seeds, for tests: whether everything works, not the figures
     #[arg(long)]
     quick: bool,
-    /// Larger images and more seeds: narrower intervals, about ten times as long
+    /// Larger images, finer grids and more seeds: narrower intervals, and more than ten times as long
     #[arg(long, conflicts_with = "quick")]
     full: bool,
-    /// These chapters instead of all; the index keeps the others
+    /// These chapters instead of all, separated by commas; the others stay as they are, in the index too
     #[arg(long, value_name = "CHAPTER", value_delimiter = ',', value_parser = names())]
     only: Vec<String>,
-    /// Where everything goes [default: docs/report, and the large pictures target/report]
+    /// Where everything goes, the large pictures to DIR.pictures [default: docs/report, and target/report]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write texts anew from what was measured before (target/report/measured), where a chapter keeps it
+    /// Write texts anew from what a run of the same size measured before (target/report/measured); tables and gradients keep it,
+    /// other chapters are measured
     #[arg(long)]
     reuse: bool,
     /// A program with the Embree harness's command line, instead of the one that is built
@@ -145,6 +147,8 @@ pub(crate) struct Report<'a> {
     clock: Clock,
     /// What was measured before may be taken as it is.
     pub(crate) reuse: bool,
+    /// The chapter took some of it.
+    reused: Cell<bool>,
 }
 
 impl Report<'_> {

@@ -11,7 +11,7 @@ mod luminance;
 mod mis;
 mod never_worse;
 mod overhead;
-mod public;
+pub(super) mod public;
 mod reconstruction;
 mod samplers;
 mod solvers;
