@@ -78,3 +78,27 @@ pub(crate) fn draw(title: &str, names: &[String], rows: &[Row], crop: [f64; 2], 
     }
     picture
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_samplers_are_broken_into_lines_of_a_pages_width() {
+        let image = Rgb32FImage::from_fn(128, 128, |x, y| Rgb([(1 + (x * 7 + y * 13) % 5) as f32; 3]));
+        let reference = Reference::new(&image, &image);
+        let names: Vec<String> = (0..9).map(|number| format!("sampler {number}")).collect();
+        let cell = |number: usize| (number != 5).then(|| Cell { image: &image, caption: format!("caption {number}") });
+        let rows = [Row { name: text::samples_per_pixel(1), cells: (0..names.len()).map(cell).collect() }];
+        let picture = draw("title", &names, &rows, [0.25, 0.25], &reference);
+        assert!(picture.width() <= 1200, "{}", picture.width());
+        // Three lines of four places: ten of them are used, the sixth is that of the sampler which does not exist.
+        let [across, down] = [picture.width() / 4, (picture.height() - GAP) / 3];
+        let is_used = |index: u32| {
+            let [x, y] = [index % 4 * across + across / 2, GAP + index / 4 * down + down / 6];
+            picture.get_pixel(x, y) != &BACKGROUND
+        };
+        let used: Vec<u32> = (0..12).filter(|&index| is_used(index)).collect();
+        assert_eq!(used, [0, 1, 2, 3, 4, 6, 7, 8, 9]);
+    }
+}

@@ -1,12 +1,11 @@
 //! Rendering with several seeds, and what the images say.
 
+pub(crate) use super::outcome::{Outcome, Renderings};
 use super::plan::Plan;
 use super::scenes;
-use super::statistics::Estimate;
 use crate::measure::image::read_pfm;
 use crate::measure::metric::Reference;
 use crate::measure::renderer::{Job, Renderer, Sampler, Timing, threads};
-use crate::measure::score;
 use crate::measure::side_by_side;
 use anyhow::{Context, Result};
 use image::Rgb32FImage;
@@ -62,21 +61,6 @@ pub(crate) struct Experiment<'a> {
     pub(crate) seeds: u32,
     /// Words of the command line that change how it is estimated.
     pub(crate) options: &'a [&'a str],
-}
-
-/// What one estimator made.
-pub(crate) struct Renderings {
-    pub(crate) estimator: String,
-    /// One for each seed.
-    pub(crate) images: Vec<Rgb32FImage>,
-    pub(crate) timings: Vec<Timing>,
-}
-
-/// What an experiment made; all estimators saw the same samples.
-#[derive(Clone)]
-pub(crate) struct Outcome {
-    pub(crate) reference: Rc<Reference>,
-    pub(crate) renderings: Rc<[Renderings]>,
 }
 
 /// Tells experiments of random samples apart.
@@ -187,7 +171,8 @@ impl<'a> Measurement<'a> {
         Ok(self.keep(experiment, Outcome { reference, renderings: self.render(experiment)?.into() }))
     }
 
-    /// As [`Self::run`] of each that there is, of one size, side by side: for sections that compare no times.
+    /// As [`Self::run`] of each that there is, of one size, no two with the same samples, side by side: for sections that compare
+    /// no times.
     pub(crate) fn run_all(&self, experiments: &[Option<Experiment>]) -> Result<Vec<Option<Outcome>>> {
         let is_new = |experiment: &&Experiment| self.known(experiment).is_none();
         let new: Vec<Experiment> = experiments.iter().flatten().filter(is_new).copied().collect();
@@ -309,48 +294,5 @@ impl<'a> Experiment<'a> {
     /// Order 2, random samples, one seed.
     pub(crate) fn new(view: View, spp: u32, estimators: &'a [&'a str]) -> Self {
         Self { view, spp, order: 2, sampler: Sampler::Random, estimators, seeds: 1, options: &[] }
-    }
-}
-
-impl Outcome {
-    pub(crate) fn of(&self, estimator: &str) -> Result<&Renderings> {
-        let found = self.renderings.iter().find(|renderings| renderings.estimator == estimator);
-        found.with_context(|| format!("`{estimator}` was not rendered"))
-    }
-
-    /// relMSE of each seed.
-    pub(crate) fn errors(&self, estimator: &str) -> Result<Vec<f64>> {
-        Ok(self.of(estimator)?.images.iter().map(|image| self.reference.rel_mse(image)).collect())
-    }
-
-    /// Raw and filtered errors of each seed, highlights limited.
-    pub(crate) fn seen(&self, estimator: &str) -> Result<Vec<[f64; 2]>> {
-        Ok(self.of(estimator)?.images.iter().map(|image| score::errors(image, &self.reference)).collect())
-    }
-
-    /// relMSE over the plain mean's, of the same samples.
-    pub(crate) fn ratio(&self, estimator: &str) -> Result<Estimate> {
-        Ok(Estimate::ratio(&self.errors(estimator)?, &self.errors(BASELINE)?))
-    }
-
-    /// Total time over the plain mean's, seed by seed.
-    fn time_ratios(&self, estimator: &str) -> Result<Vec<f64>> {
-        let (own, plain) = (self.of(estimator)?, self.of(BASELINE)?);
-        let pairs = own.timings.iter().zip(&plain.timings);
-        Ok(pairs.map(|(own, plain)| own.total_seconds / plain.total_seconds).collect())
-    }
-
-    /// relMSE over that of the plain mean of as many samples as it makes in the same time: its error falls as 1 / samples.
-    /// Error and time are of the same seed, so that the interval has the noise of both.
-    pub(crate) fn equal_time(&self, estimator: &str) -> Result<Estimate> {
-        let pairs = self.errors(estimator)?.into_iter().zip(self.errors(BASELINE)?).zip(self.time_ratios(estimator)?);
-        Ok(Estimate::median(&pairs.map(|((own, plain), time)| own / plain * time).collect::<Vec<_>>()))
-    }
-}
-
-impl Renderings {
-    /// The median over the seeds.
-    pub(crate) fn nanoseconds(&self, of: impl Fn(&Timing) -> f64) -> Estimate {
-        Estimate::median(&self.timings.iter().map(of).collect::<Vec<_>>())
     }
 }

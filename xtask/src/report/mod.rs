@@ -15,6 +15,7 @@ mod machine;
 mod measured;
 mod measurement;
 mod minibatch_tables;
+mod outcome;
 pub(crate) mod pictures;
 pub(crate) mod pixels;
 mod plan;
@@ -67,7 +68,7 @@ impl Entry {
 
 /// In the order of the index.
 const CHAPTERS: &[Entry] = &[
-    entry("tables", 50, "Time, memory and drift of importance tables, beside public peers", minibatch_tables::write)
+    entry("tables", 16, "Time, memory and drift of importance tables, beside public peers", minibatch_tables::write)
         .runs(&["minibatch_table"]),
     entry(
         "gradients",
@@ -75,32 +76,32 @@ const CHAPTERS: &[Entry] = &[
         "Variance of minibatches' gradients, and test error at equal steps and equal time",
         gradients::write,
     ),
-    entry("instructions", 15, "What callgrind counts: the same on a busy machine", instructions::write),
+    entry("instructions", 3, "What callgrind counts: the same on a busy machine", instructions::write),
     entry(
         "control_variates",
-        140,
+        122,
         "Every estimator, basis and order: error against time, convergence, f32 against f64",
         control_variates::write,
     )
     .runs(&["speed_error", "estimators"]),
-    entry("hard_cases", 10, "Few, degenerate and extreme samples, and what is refused", hard_cases::write)
+    entry("hard_cases", 8, "Few, degenerate and extreme samples, and what is refused", hard_cases::write)
         .runs(&["hard_cases"]),
     entry(
         "embree",
-        280,
+        275,
         "Estimators and samplers in a path tracer on Embree, scenes after the thesis's",
         embree::write,
     ),
     entry(
         "samplers",
-        120,
+        92,
         "Samplers beside each other, with and without estimators; what is recommended",
         samplers::write,
     )
     .runs(&["samplers", "guidance"]),
-    entry("points", 60, "Seconds against quality of point sets, 256 to a million points", points::write)
+    entry("points", 52, "Seconds against quality of point sets, 256 to a million points", points::write)
         .runs(&["point_sets"]),
-    entry("povray", 120, "The same on integrands that unmodified POV-Ray renders", povray::write),
+    entry("povray", 140, "The same on integrands that unmodified POV-Ray renders", povray::write),
 ];
 
 #[derive(Args)]
