@@ -109,7 +109,7 @@ pub(crate) struct Options {
     /// Tiny images and few seeds, for tests: whether everything works, not the figures
     #[arg(long)]
     quick: bool,
-    /// Larger images, finer grids and more seeds: narrower intervals, and more than ten times as long
+    /// Larger images, finer grids and more seeds: narrower intervals, and much longer
     #[arg(long, conflicts_with = "quick")]
     full: bool,
     /// These chapters instead of all, separated by commas; the others stay as they are, in the index too
