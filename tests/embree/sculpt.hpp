@@ -157,6 +157,13 @@ inline Mesh sculpt(const LocalField &local, Vector low, Vector high, float cell)
                 const Field &field = field_of(i, j, k);
                 if (!field)
                     continue;
+                // Most cells are on one side.
+                const bool inside = value[at(i, j, k)] < 0;
+                bool crossed = false;
+                for (size_t corner = 1; corner < 8 && !crossed; ++corner)
+                    crossed = (value[at(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2))] < 0) != inside;
+                if (!crossed)
+                    continue;
                 Vector sum;
                 int crossings = 0;
                 for (size_t edge = 0; edge < 12; ++edge) {
@@ -191,6 +198,9 @@ inline Mesh sculpt(const LocalField &local, Vector low, Vector high, float cell)
         for (size_t j = 1; j + 1 < size[1]; ++j)
             for (size_t i = 1; i + 1 < size[0]; ++i)
                 for (size_t axis = 0; axis < 3; ++axis) {
+                    // Cells without a point have no surface around them.
+                    if (index[at(i, j, k)] == ~0u)
+                        break;
                     size_t next[3] = {i, j, k};
                     ++next[axis];
                     bool inside = value[at(i, j, k)] < 0;

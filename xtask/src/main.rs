@@ -47,7 +47,7 @@ enum Command {
     Demo(demo::Options),
     /// Build POV-Ray with our patch, check it, and compare it with POV-Ray as it is
     Povray(povray_patched::Options),
-    /// Measure errors and times in the renderer harnesses, and write docs/report
+    /// Measure errors and times of everything, and write docs/report: chapters with their tables, plots and pictures
     Report(report::Options),
     /// Run every test; installs what it needs when it may
     Test(test::Options),

@@ -16,6 +16,7 @@ pub(crate) mod running;
 pub(crate) mod runs;
 pub(crate) mod samplers;
 pub(crate) mod score;
+pub(crate) mod side_by_side;
 pub(crate) mod spectrum;
 pub(crate) mod spectrum_sheet;
 pub(crate) mod table;

@@ -93,8 +93,20 @@ impl Renderer {
         Ok(line.split_whitespace().map(str::to_owned).collect())
     }
 
-    /// Renders `size` x `size` pixels to `PREFIX.ESTIMATOR.pfm`.
+    /// Renders `size` x `size` pixels to `PREFIX.ESTIMATOR.pfm`, with as many threads as there are cores.
     pub(crate) fn render(&self, job: &Job, size: u32, prefix: &Path, bar: &ProgressBar) -> Result<Vec<Timing>> {
+        self.render_with(threads(), job, size, prefix, bar)
+    }
+
+    /// The same with so many threads; the picture does not depend on them.
+    pub(crate) fn render_with(
+        &self,
+        threads: u32,
+        job: &Job,
+        size: u32,
+        prefix: &Path,
+        bar: &ProgressBar,
+    ) -> Result<Vec<Timing>> {
         let mut command = run::command(&self.program);
         let size = size.to_string();
         command.args(["--scene", job.scene, "--width", &size, "--height", &size]);
@@ -110,7 +122,7 @@ impl Renderer {
             command.args(["--seeds", &job.seeds.to_string()]);
         }
         command.args(job.options);
-        command.args(["--threads", &threads().to_string(), "--output"]).arg(prefix);
+        command.args(["--threads", &threads.to_string(), "--output"]).arg(prefix);
         if job.estimators.is_empty() {
             command.arg("--reference");
         } else {

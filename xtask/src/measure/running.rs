@@ -32,13 +32,15 @@ pub(crate) fn run(
             Err(RecvTimeoutError::Disconnected) => break,
         }
     }
-    // It may have closed its output before its end.
+    // It may have closed its output before its end; mostly just before.
+    let mut pause = Duration::from_millis(1);
     let status = loop {
         interrupt::check(interrupted)?;
         match running.child.try_wait().context("the program was lost")? {
             Some(status) => break status,
-            None => std::thread::sleep(PATIENCE),
+            None => std::thread::sleep(pause),
         }
+        pause = PATIENCE.min(2 * pause);
     };
     let errors = running.errors()?;
     interrupt::check(interrupted)?;

@@ -4,7 +4,8 @@ use super::{scenes::Scene, stack};
 use crate::measure::image::read_pfm;
 use crate::measure::interrupt::Interrupted;
 use crate::measure::metric::Reference;
-use crate::measure::renderer::{Job, Renderer, Sampler, Timing};
+use crate::measure::renderer::{Job, Renderer, Sampler, Timing, threads};
+use crate::measure::side_by_side;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use image::Rgb32FImage;
@@ -15,6 +16,9 @@ use tempfile::TempDir;
 
 /// Warnings are errors: the program is a test's.
 const STRICT: [&str; 7] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O2", "-std=c++17", "-Iinclude"];
+
+/// Runs of the program side by side, at most: each holds the stack.
+const RUNS: u32 = 4;
 
 /// The compiled program, and where its pictures go.
 pub(crate) struct Oracle {
@@ -95,20 +99,29 @@ impl Oracle {
     }
 
     /// In the order of the request's estimators.
-    pub(crate) fn render(&self, view: &View, request: &Request, bar: &ProgressBar) -> Result<Vec<Renderings>> {
+    pub(crate) fn render(&self, view: &View, request: &Request) -> Result<Vec<Renderings>> {
         let options = ["--model", request.model.name()];
         let Request { spp, order, sampler, estimators, seeds, .. } = *request;
-        let job = Job { spp, order, seeds, sampler, estimators, work: 1, ..job(path_text(&view.path)?, &options) };
+        let job = Job { spp, order, sampler, estimators, ..job(path_text(&view.path)?, &options) };
         // Each run in a folder of its own: no file of another can be taken for one of this.
         let folder = tempfile::tempdir_in(self.scratch.path()).context("cannot create a temporary folder")?;
-        let prefix = folder.path().join("picture");
-        let timings = self.renderer.render(&job, view.size, &prefix, bar)?;
+        // Shared fits make one bucket of so small an image, which one core renders: seeds keep the others busy.
+        let parts = threads().min(RUNS).min(seeds).max(1);
+        let runs: Vec<_> = (0..parts)
+            .map(|part| [seeds * part / parts, seeds * (part + 1) / parts])
+            .map(|[from, to]| Job { seed: 1 + u64::from(from), seeds: to - from, ..job })
+            .map(|job| (job, folder.path().join(format!("picture-{}", job.seed))))
+            .collect();
+        let timings = side_by_side::render(&self.renderer, &runs, view.size, RUNS, &ProgressBar::hidden())?.concat();
+        let file = |name: &str, prefix: &Path, seed: u64, seeds: u32| match seeds {
+            1 => prefix.with_extension(format!("{name}.pfm")),
+            _ => prefix.with_extension(format!("{name}.{seed}.pfm")),
+        };
         let one = |name: &str| -> Result<Renderings> {
-            let file = |seed: u32| match seeds {
-                1 => format!("{name}.pfm"),
-                _ => format!("{name}.{seed}.pfm"),
-            };
-            let images = (1..=seeds).map(|seed| read_pfm(&prefix.with_extension(file(seed)))).collect::<Result<_>>()?;
+            let files = runs.iter().flat_map(|(job, prefix)| {
+                (job.seed..job.seed + u64::from(job.seeds)).map(move |seed| file(name, prefix, seed, job.seeds))
+            });
+            let images = files.map(|file| read_pfm(&file)).collect::<Result<_>>()?;
             let timings = timings.iter().filter(|timing| timing.estimator == name).cloned().collect();
             Ok(Renderings { images, timings })
         };

@@ -64,7 +64,7 @@ pub(crate) const SCENES: [Scene; 5] = [
         shows: "chessmen under a window; the light (2 dims)",
         axes: &[Light, Light],
         full: &[32, 32],
-        report: &[24, 24],
+        report: &[20, 20],
         small: &[16, 16],
     },
     Scene {
@@ -72,7 +72,7 @@ pub(crate) const SCENES: [Scene; 5] = [
         shows: "marbles through a wide lens; the lens (2 dims)",
         axes: &[Lens, Lens],
         full: &[32, 32],
-        report: &[24, 24],
+        report: &[20, 20],
         small: &[16, 16],
     },
     Scene {
@@ -80,7 +80,7 @@ pub(crate) const SCENES: [Scene; 5] = [
         shows: "fruit through a lens, under a panel; the lens and the light (4 dims)",
         axes: &[Lens, Lens, Light, Light],
         full: &[8, 8, 8, 8],
-        report: &[6, 6, 6, 6],
+        report: &[5, 5, 5, 5],
         small: &[4, 4, 4, 4],
     },
     Scene {
@@ -88,7 +88,7 @@ pub(crate) const SCENES: [Scene; 5] = [
         shows: "a hall with eight panels; the light and which (3 dims)",
         axes: &[Light, Light, Choice],
         full: &[16, 16, 8],
-        report: &[12, 12, 8],
+        report: &[10, 10, 8],
         small: &[6, 6, 8],
     },
     Scene {
@@ -96,7 +96,7 @@ pub(crate) const SCENES: [Scene; 5] = [
         shows: "a windmill and a ball; time and the light (3 dims)",
         axes: &[Time, Light, Light],
         full: &[16, 16, 16],
-        report: &[12, 12, 12],
+        report: &[10, 10, 10],
         small: &[6, 6, 6],
     },
 ];

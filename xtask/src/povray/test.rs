@@ -10,7 +10,6 @@ use crate::report::statistics::Estimate;
 use crate::test::Outcome;
 use crate::{paths, tools};
 use anyhow::{Context, Result, bail};
-use indicatif::ProgressBar;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -96,7 +95,7 @@ fn unbiased(oracle: &Oracle, scene: &Scene, view: &View) -> Result<()> {
     };
     let mut cases = Vec::new();
     for (model, names) in [(Model::Cells, &UNBIASED[..]), (Model::Linear, &["mc"])] {
-        let renderings = oracle.render(view, &request(model, names), &ProgressBar::hidden())?;
+        let renderings = oracle.render(view, &request(model, names))?;
         cases.extend(names.iter().zip(renderings).map(|(name, one)| (*name, model, one)));
     }
     // The chance is shared by everything that is tested.
@@ -120,7 +119,7 @@ fn everything(oracle: &Oracle, scene: &Scene, view: &View) -> Result<()> {
     {
         for model in [Model::Cells, Model::Linear] {
             let request = Request { model, spp: 8, order: ORDER, sampler, estimators: &names, seeds: 1 };
-            let renderings = oracle.render(view, &request, &ProgressBar::hidden())?;
+            let renderings = oracle.render(view, &request)?;
             for (name, one) in names.iter().zip(renderings) {
                 // Least squares follows noise if it has fewer samples than terms.
                 let limit = if ["least_squares", "gradient_descent", "luminance"].contains(name) { 0.5 } else { 0.05 };
@@ -144,7 +143,7 @@ fn default_is_no_worse(oracle: &Oracle, scene: &Scene, view: &View) -> Result<()
         let estimators = &["mc", "robust"];
         let (model, sampler) = (Model::Cells, Sampler::Random);
         let request = Request { model, spp, order: ORDER, sampler, estimators, seeds: SEEDS };
-        let renderings = oracle.render(view, &request, &ProgressBar::hidden())?;
+        let renderings = oracle.render(view, &request)?;
         let errors: Vec<Vec<f64>> = renderings
             .iter()
             .map(|one| one.images.iter().map(|image| view.reference.rel_mse(image)).collect())
@@ -168,7 +167,7 @@ fn tile_is_blue(oracle: &Oracle, scene: &Scene, view: &View) -> Result<()> {
         let filtered = |sampler| -> Result<Vec<f64>> {
             let request =
                 Request { model: Model::Cells, spp, order: ORDER, sampler, estimators: &["mc"], seeds: TILE_SEEDS };
-            let renderings = oracle.render(view, &request, &ProgressBar::hidden())?;
+            let renderings = oracle.render(view, &request)?;
             let images = renderings.iter().flat_map(|one| &one.images);
             Ok(images.map(|image| Score::new(image, &view.reference).filtered).collect())
         };

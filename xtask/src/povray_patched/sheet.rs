@@ -1,4 +1,5 @@
-//! The contact sheet: for each scene a picture as a whole, and a part of it as every method makes it, with its errors.
+//! The contact sheet: for each scene a picture as a whole, and a part of it as every method makes it, with its errors. Each row is
+//! named.
 
 use super::measure::{METHODS, Measured};
 use super::scenes::SCENES;
@@ -17,18 +18,20 @@ const SHOWN: [&str; 5] = ["stock", "random", "tile", "random, estimate", "tile, 
 
 pub(crate) fn draw(measured: &Measured, spp: u32) -> RgbImage {
     let cell = SIDE * ZOOM;
-    let row_height = 2 * (cell + GAP / 2) + 2 * text::LINE + GAP;
+    let row_height = 2 * (cell + GAP / 2) + 3 * text::LINE + 2 * GAP;
     let columns = SHOWN.len() as u32 + 1;
     let top = GAP + text::LINE;
     let size = [GAP + (cell + GAP) * columns, top + row_height * SCENES.len() as u32];
     let mut picture = RgbImage::from_pixel(size[0], size[1], BACKGROUND);
     let left = |column: u32| GAP + (cell + GAP) * column;
     let title = format!(
-        "POV-Ray's examples, {spp} samples per pixel; below each part its errors; numbers are relMSE, filtered"
+        "POV-Ray's examples, {}: part of the picture, below it its errors, relMSE and filtered relMSE",
+        text::samples_per_pixel(spp)
     );
     text::draw(&mut picture, GAP, GAP / 2, &title);
     for (index, scene) in SCENES.iter().enumerate() {
-        let y = top + row_height * index as u32;
+        let y = top + row_height * index as u32 + text::LINE;
+        text::draw(&mut picture, GAP, y - text::LINE, &format!("{}: {}", scene.name, scene.description));
         let reference = &measured.references[index];
         let part = Part::new(scene.crop, [SIDE, SIDE], ZOOM, reference);
         let mut scale = None;
@@ -42,7 +45,7 @@ pub(crate) fn draw(measured: &Measured, spp: u32) -> RgbImage {
             let below = y + text::LINE + cell + GAP / 2;
             replace(&mut picture, &part.errors(&series.image, scale), x.into(), below.into());
             let score = &series.scores[0];
-            let caption = format!("{:.1e} {:.1e}", score.raw, score.filtered);
+            let caption = format!("raw {:.1e} filtered {:.1e}", score.raw, score.filtered);
             text::draw(&mut picture, x, below + cell, &caption);
         }
         let x = left(SHOWN.len() as u32);
@@ -53,7 +56,40 @@ pub(crate) fn draw(measured: &Measured, spp: u32) -> RgbImage {
         let height = whole.height() * width / whole.width().max(1);
         let whole = image::imageops::resize(&whole, width, height, image::imageops::FilterType::Triangle);
         replace(&mut picture, &whole, x.into(), (y + text::LINE + cell + GAP / 2).into());
-        text::draw(&mut picture, x, y + text::LINE + cell + GAP + height, scene.name);
+        text::draw(&mut picture, x, y + text::LINE + cell + GAP + height, "the whole picture");
     }
     picture
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::metric::Reference;
+    use crate::measure::score::Score;
+    use crate::povray_patched::measure::Series;
+    use image::Rgb32FImage;
+
+    #[test]
+    fn every_row_is_named() {
+        let image = Rgb32FImage::from_fn(160, 120, |x, y| Rgb([x as f32 / 160.0, y as f32 / 120.0, 0.5]));
+        let references = SCENES.iter().map(|_| Reference::new(&image, &image)).collect();
+        let one = |scene, method| Series {
+            scene,
+            method,
+            spp: 16,
+            scores: vec![Score { raw: 1.1e-3, filtered: 3.1e-5, low: 1.0 }],
+            cpu_seconds: vec![1.0],
+            image: image.clone(),
+        };
+        let pairs = (0..SCENES.len()).flat_map(|scene| (0..METHODS.len()).map(move |method| (scene, method)));
+        let series = pairs.map(|(scene, method)| one(scene, method)).collect();
+        let picture = draw(&Measured { references, series, models: Vec::new() }, 16);
+        let row = (picture.height() - GAP - text::LINE) / SCENES.len() as u32;
+        for index in 0..SCENES.len() as u32 {
+            let top = GAP + text::LINE + index * row;
+            let is_named =
+                (top..top + text::LINE).any(|y| (0..picture.width()).any(|x| picture.get_pixel(x, y).0[0] > 200));
+            assert!(is_named, "row {index} has no name");
+        }
+    }
 }

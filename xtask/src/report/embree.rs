@@ -20,6 +20,7 @@ pub(super) fn write(report: &Report) -> Result<()> {
         Some(program) => program.clone(),
         None => crate::embree::build()?,
     };
+    super::tables::public::build()?;
     report.compiled();
     let renderer = Renderer::new(program, report.interrupted.clone());
     let bar = progress::bar(SECTIONS.iter().map(|(seconds, _)| seconds * SECOND).sum())?;

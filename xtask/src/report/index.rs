@@ -19,13 +19,16 @@ pub(super) struct Facts {
     pub(super) description: String,
     /// `quick`, `default` or `full`.
     pub(super) sizes: String,
-    /// Without compiling.
-    pub(super) seconds: f64,
+    /// Without compiling. None: the run that measured left no record.
+    pub(super) seconds: Option<f64>,
     pub(super) processor_seconds: Option<f64>,
     pub(super) date: String,
     /// The one-minute load average at its start.
     pub(super) load: String,
     pub(super) machine: Machine,
+    /// The date on which the text was written from what an earlier run had measured, the run that the other facts are of.
+    #[serde(default)]
+    pub(super) kept: Option<String>,
 }
 
 impl Facts {
@@ -62,6 +65,7 @@ pub(super) fn write(folder: &Path, name: &str, json: &str) -> Result<String> {
     let mut chapter = Chapter::new("Measurements");
     introduce(&mut chapter);
     chapters(&mut chapter, &all);
+    beside(&mut chapter, folder);
     machines(&mut chapter, &all);
     targets(&mut chapter, &all);
     check::numbers_are_recorded(chapter.markdown(), &chapter.json().to_string()).context("the index")?;
@@ -71,8 +75,8 @@ pub(super) fn write(folder: &Path, name: &str, json: &str) -> Result<String> {
 fn introduce(chapter: &mut Chapter) {
     chapter.paragraph(
         "Made by `cargo xtask report`; do not edit. Each chapter says what was measured and how, and has its figures in a JSON file of the same \
-         name. `cargo xtask report --only CHAPTER` measures one anew and keeps the others; `--full` measures more, `--quick` only tries \
-         whether everything works.",
+         name. `cargo xtask report --only CHAPTER` measures one anew and leaves the others as they are; `--full` measures more, `--quick` \
+         only tries whether everything works.",
     );
 }
 
@@ -84,19 +88,52 @@ fn chapters(chapter: &mut Chapter, all: &[Summary]) {
         row![
             format!("[{}]({}.md)", one.title, run.name),
             run.description.clone(),
-            run.sizes.clone(),
+            sizes(run),
             run.date.clone(),
             run.load.clone(),
-            seconds(run.seconds),
+            run.seconds.map(seconds),
             run.processor_seconds.map(seconds)
         ]
     });
-    let columns = ["chapter", "what it measures", "sizes", "date", "load at start", "seconds", "CPU seconds"];
+    let columns = ["chapter", "what it measures", "run", "measured", "load at start", "seconds", "CPU seconds"];
     chapter.table("chapters", &columns, 4, rows.collect());
     chapter.paragraph(
         "Seconds are without compiling; CPU seconds are of all threads. Load: processes that wanted to run, on average over the minute before; beyond a \
          few tenths other work shared the machine, and seconds say little while CPU seconds still hold.",
     );
+    if all.iter().any(|one| one.run.kept.is_some()) {
+        chapter.paragraph(
+            "Kept: the text was written on the date in brackets from what an earlier run had measured (`--reuse`). Date, load and seconds are \
+             those of the run that measured.",
+        );
+    }
+}
+
+/// How large the run was, and whether it measured at all.
+fn sizes(run: &Facts) -> String {
+    let sizes = if run.sizes == "default" { run.sizes.clone() } else { format!("`--{}`", run.sizes) };
+    match &run.kept {
+        Some(date) => format!("{sizes}, kept ({date})"),
+        None => sizes,
+    }
+}
+
+/// What other commands write into the same folder: its file, what it is, the command.
+const BESIDE: [(&str, &str, &str); 2] = [
+    ("povray_patched.md", "POV-Ray with our patch beside POV-Ray as it is", "povray --report"),
+    ("sizes.md", "Bytes of code and memory on several targets", "targets"),
+];
+
+/// Links to those that are there.
+fn beside(chapter: &mut Chapter, folder: &Path) {
+    let there = BESIDE.iter().filter(|(file, ..)| folder.join(file).exists());
+    let links: Vec<String> = there
+        .map(|(file, what, command)| format!("[{what}]({file}), written by `cargo xtask {command}`, when asked for."))
+        .collect();
+    if !links.is_empty() {
+        chapter.paragraph("Beside the chapters, and not measured with them:");
+        chapter.list(&links);
+    }
 }
 
 fn machines(chapter: &mut Chapter, all: &[Summary]) {
@@ -179,11 +216,12 @@ mod tests {
             name: name.to_owned(),
             description: "Words".to_owned(),
             sizes: "quick".to_owned(),
-            seconds: 12.4,
+            seconds: Some(12.4),
             processor_seconds: Some(20.2),
             date: "2000-01-01".to_owned(),
             load: "0.31".to_owned(),
             machine,
+            kept: (name == "povray").then(|| "2000-01-02".to_owned()),
         };
         facts.add_to(&chapter.json().to_string()).expect("an object")
     }
@@ -197,6 +235,14 @@ mod tests {
         assert!(text.contains("1 of 2 targets are reached everywhere"), "{text}");
         assert!(text.contains("NOT REACHED") && text.contains("| Processor 9"), "{text}");
         assert_eq!(text.matches("Processor 9").count(), 1, "one machine is described once");
+        assert!(
+            text.contains("| `--quick`, kept (2000-01-02) | 2000-01-01 |"),
+            "what was not measured anew says so: {text}"
+        );
+        assert!(!text.contains("povray_patched.md"), "what is not there is not linked");
+        fs::write(folder.path().join("povray_patched.md"), "").expect("writable");
+        let text = write(folder.path(), "embree", &json("embree", "First", 0.4)).expect("an index");
+        assert!(text.contains("(povray_patched.md)"), "{text}");
         // A chapter from before the index is no reason to fail.
         fs::write(folder.path().join("povray.json"), "{\"tables\": []}").expect("writable");
         assert!(write(folder.path(), "embree", &json("embree", "First", 0.4)).is_ok());

@@ -1,10 +1,48 @@
 //! What measurement programs write: kept in target/report/measured, so that a text can be written anew without measuring again.
 
+use super::index::Facts;
 use crate::paths;
 use anyhow::{Context, Result};
 use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+fn folder(chapter: &str, sizes: &str) -> PathBuf {
+    paths::target().join("report/measured").join(format!("{chapter}-{sizes}"))
+}
+
+/// How what is kept came about: beside it.
+const RUN: &str = "run.json";
+
+/// Records the run that has measured all of a chapter, if the chapter keeps anything.
+pub(super) fn keep_run(facts: &Facts) -> Result<()> {
+    keep_run_in(&folder(&facts.name, &facts.sizes), facts)
+}
+
+/// The facts of the run that measured what this one took from it. Without a record of it they are not known.
+pub(super) fn earlier_run(facts: Facts) -> Result<Facts> {
+    earlier_run_in(&folder(&facts.name, &facts.sizes), facts)
+}
+
+fn keep_run_in(folder: &Path, facts: &Facts) -> Result<()> {
+    if !folder.exists() {
+        return Ok(());
+    }
+    let path = folder.join(RUN);
+    fs::write(&path, serde_json::to_string_pretty(facts)?).with_context(|| format!("cannot write {}", path.display()))
+}
+
+fn earlier_run_in(folder: &Path, facts: Facts) -> Result<Facts> {
+    let path = folder.join(RUN);
+    let kept = Some(facts.date.clone());
+    if !path.exists() {
+        let unknown = || "unknown".to_owned();
+        return Ok(Facts { seconds: None, processor_seconds: None, date: unknown(), load: unknown(), kept, ..facts });
+    }
+    let earlier: Facts =
+        serde_json::from_str(&read(&path)?).with_context(|| format!("{} is damaged; remove it", path.display()))?;
+    Ok(Facts { kept, ..earlier })
+}
 
 /// The folder of one chapter's measurements.
 pub(crate) struct Measured {
@@ -17,7 +55,7 @@ pub(crate) struct Measured {
 impl Measured {
     /// `reuse`: where an earlier run has left a file, it is taken as it is.
     pub(crate) fn new(chapter: &str, sizes: &str, reuse: bool) -> Result<Self> {
-        let folder = paths::target().join("report/measured").join(format!("{chapter}-{sizes}"));
+        let folder = folder(chapter, sizes);
         fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
         Ok(Self { folder, reuse, reused: RefCell::default() })
     }
@@ -52,7 +90,7 @@ impl Measured {
         let reused = self.reused.borrow();
         (!reused.is_empty()).then(|| {
             format!(
-                "Taken from an earlier run of the same programs, which this run's time does not hold: {}.",
+                "Taken from an earlier run of the same programs, whose date, load and time the index has: {}.",
                 reused.join(", ")
             )
         })
@@ -65,4 +103,43 @@ impl Measured {
 
 pub(crate) fn read(path: &Path) -> Result<String> {
     fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::machine::Machine;
+    use super::*;
+
+    fn facts(date: &str, seconds: f64) -> Facts {
+        let machine = Machine {
+            processor: "one".to_owned(),
+            cores: 2,
+            clock: "steady".to_owned(),
+            kernel: "linux".to_owned(),
+            compilers: ["r", "c", "x"].map(str::to_owned),
+        };
+        let word = |word: &str| word.to_owned();
+        let (name, description, sizes, load) = (word("tables"), word("Words"), word("full"), word("0.10"));
+        let (seconds, processor_seconds, date) = (Some(seconds), Some(seconds), word(date));
+        Facts { name, description, sizes, seconds, processor_seconds, date, load, machine, kept: None }
+    }
+
+    #[test]
+    fn what_is_kept_has_the_time_of_the_run_that_measured() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let unknown = earlier_run_in(folder.path(), facts("2000-02-01", 1.0)).expect("no record is no failure");
+        assert!(
+            unknown.seconds.is_none() && unknown.date == "unknown" && unknown.kept.as_deref() == Some("2000-02-01")
+        );
+        keep_run_in(folder.path(), &facts("2000-01-01", 600.0)).expect("writable");
+        let known = earlier_run_in(folder.path(), facts("2000-02-01", 1.0)).expect("a record");
+        assert_eq!(
+            (known.seconds, known.date.as_str(), known.kept.as_deref()),
+            (Some(600.0), "2000-01-01", Some("2000-02-01"))
+        );
+        // A chapter that keeps nothing has no folder, and gets none.
+        let none = folder.path().join("none");
+        keep_run_in(&none, &facts("2000-01-01", 1.0)).expect("nothing to do");
+        assert!(!none.exists());
+    }
 }

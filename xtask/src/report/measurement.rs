@@ -1,18 +1,18 @@
 //! Rendering with several seeds, and what the images say.
 
+pub(crate) use super::outcome::{Outcome, Renderings};
 use super::plan::Plan;
 use super::scenes;
-use super::statistics::Estimate;
 use crate::measure::image::read_pfm;
 use crate::measure::metric::Reference;
-use crate::measure::renderer::{Job, Renderer, Sampler, Timing};
-use crate::measure::score;
+use crate::measure::renderer::{Job, Renderer, Sampler, Timing, threads};
+use crate::measure::side_by_side;
 use anyhow::{Context, Result};
 use image::Rgb32FImage;
 use indicatif::ProgressBar;
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use tempfile::TempDir;
 
@@ -61,21 +61,6 @@ pub(crate) struct Experiment<'a> {
     pub(crate) seeds: u32,
     /// Words of the command line that change how it is estimated.
     pub(crate) options: &'a [&'a str],
-}
-
-/// What one estimator made.
-pub(crate) struct Renderings {
-    pub(crate) estimator: String,
-    /// One for each seed.
-    pub(crate) images: Vec<Rgb32FImage>,
-    pub(crate) timings: Vec<Timing>,
-}
-
-/// What an experiment made; all estimators saw the same samples.
-#[derive(Clone)]
-pub(crate) struct Outcome {
-    pub(crate) reference: Rc<Reference>,
-    pub(crate) renderings: Rc<[Renderings]>,
 }
 
 /// Tells experiments of random samples apart.
@@ -154,14 +139,15 @@ impl<'a> Measurement<'a> {
         let divisor = self.plan.reference_divisor * if view.size >= self.plan.tile_size { 4 } else { 1 };
         let spp = (view.precision * scenes::find(view.scene)?.reference_spp / divisor).max(16);
         let index = self.references.borrow().len();
-        let half = |seed| -> Result<PathBuf> {
-            let prefix = self.path(&format!("half-{index}-{seed}"));
-            let job = self.job(&Experiment::new(view, spp, &[]), seed, 1)?;
-            self.renderer.render(&Job { options: view.options, ..job }, view.size, &prefix, self.bar)?;
-            Ok(prefix.with_extension("reference.pfm"))
-        };
-        let [a, b] = REFERENCE_SEEDS;
-        let halves = [half(a)?, half(b)?];
+        let experiment = Experiment::new(view, spp, &[]);
+        let prefixes = REFERENCE_SEEDS.map(|seed| self.path(&format!("half-{index}-{seed}")));
+        let mut runs = Vec::new();
+        for (seed, prefix) in REFERENCE_SEEDS.into_iter().zip(&prefixes) {
+            let job = self.job(&experiment, seed, 1)?;
+            runs.push((Job { options: view.options, ..job }, prefix.clone()));
+        }
+        self.side_by_side(runs, view.size)?;
+        let halves = prefixes.map(|prefix| prefix.with_extension("reference.pfm"));
         let reference = Rc::new(Reference::new(&read_pfm(&halves[0])?, &read_pfm(&halves[1])?));
         self.references.borrow_mut().insert(view, Known { reference: reference.clone(), halves });
         Ok(reference)
@@ -178,29 +164,90 @@ impl<'a> Measurement<'a> {
 
     /// Renders every seed; or takes what was rendered before with the same samples, and with these estimators and perhaps more.
     pub(crate) fn run(&self, experiment: &Experiment) -> Result<Outcome> {
-        let key = Key::of(experiment);
-        if let Some(known) = key.as_ref().and_then(|key| self.outcomes.borrow().get(key).cloned())
-            && experiment.estimators.iter().all(|estimator| known.of(estimator).is_ok())
-        {
+        if let Some(known) = self.known(experiment) {
             return Ok(known);
         }
         let reference = self.reference(experiment.view)?;
-        let outcome = Outcome { reference, renderings: self.render(experiment)?.into() };
-        if let Some(key) = key {
+        Ok(self.keep(experiment, Outcome { reference, renderings: self.render(experiment)?.into() }))
+    }
+
+    /// As [`Self::run`] of each that there is, of one size, no two with the same samples, side by side: for sections that compare
+    /// no times.
+    pub(crate) fn run_all(&self, experiments: &[Option<Experiment>]) -> Result<Vec<Option<Outcome>>> {
+        let is_new = |experiment: &&Experiment| self.known(experiment).is_none();
+        let new: Vec<Experiment> = experiments.iter().flatten().filter(is_new).copied().collect();
+        let mut renderings = self.render_all(&new)?.into_iter();
+        let mut outcome = |experiment: &Experiment| -> Result<Outcome> {
+            if let Some(known) = self.known(experiment) {
+                return Ok(known);
+            }
+            let renderings = renderings.next().context("a rendering was lost")?.into();
+            Ok(self.keep(experiment, Outcome { reference: self.reference(experiment.view)?, renderings }))
+        };
+        experiments.iter().map(|experiment| experiment.as_ref().map(&mut outcome).transpose()).collect()
+    }
+
+    /// What was rendered before, if all estimators were.
+    fn known(&self, experiment: &Experiment) -> Option<Outcome> {
+        let known = self.outcomes.borrow().get(&Key::of(experiment)?)?.clone();
+        experiment.estimators.iter().all(|estimator| known.of(estimator).is_ok()).then_some(known)
+    }
+
+    fn keep(&self, experiment: &Experiment, outcome: Outcome) -> Outcome {
+        if let Some(key) = Key::of(experiment) {
             self.outcomes.borrow_mut().insert(key, outcome.clone());
         }
-        Ok(outcome)
+        outcome
     }
 
     /// As [`Self::run`], without a reference.
     pub(crate) fn render(&self, experiment: &Experiment) -> Result<Vec<Renderings>> {
-        let Experiment { view, spp, seeds, estimators, .. } = *experiment;
-        self.bar.set_message(format!("{}: {spp} samples per pixel", view.scene));
+        let Experiment { view, seeds, .. } = *experiment;
+        self.say_what(experiment);
         let options = [view.options, experiment.options].concat();
         let folder = self.run_folder()?;
         let prefix = folder.path().join("picture");
         let job = Job { options: &options, ..self.job(experiment, SEED, seeds)? };
         let timings = self.renderer.render(&job, view.size, &prefix, self.bar)?;
+        Self::read(experiment, &prefix, &timings)
+    }
+
+    /// As [`Self::render`] of each, of one size, side by side.
+    pub(crate) fn render_all(&self, experiments: &[Experiment]) -> Result<Vec<Vec<Renderings>>> {
+        let Some(first) = experiments.first() else { return Ok(Vec::new()) };
+        self.say_what(first);
+        let options: Vec<Vec<&str>> =
+            experiments.iter().map(|experiment| [experiment.view.options, experiment.options].concat()).collect();
+        let folder = self.run_folder()?;
+        let prefixes: Vec<PathBuf> =
+            (0..experiments.len()).map(|number| folder.path().join(format!("picture-{number}"))).collect();
+        let mut runs = Vec::new();
+        for ((experiment, options), prefix) in experiments.iter().zip(&options).zip(&prefixes) {
+            let job = self.job(experiment, SEED, experiment.seeds)?;
+            runs.push((Job { options, ..job }, prefix.clone()));
+        }
+        let timings = self.side_by_side(runs, first.view.size)?;
+        let all = experiments.iter().zip(&prefixes).zip(&timings);
+        all.map(|((experiment, prefix), timings)| Self::read(experiment, prefix, timings)).collect()
+    }
+
+    fn say_what(&self, Experiment { view, spp, .. }: &Experiment) {
+        self.bar.set_message(format!("{}: {spp} spp", view.scene));
+    }
+
+    /// Together they advance the bar to the section's end at most.
+    fn side_by_side(&self, mut runs: Vec<side_by_side::Run>, size: u32) -> Result<Vec<Vec<Timing>>> {
+        let mut left = self.section_end.get().saturating_sub(self.bar.position());
+        for (job, _) in &mut runs {
+            job.work = job.work.min(left);
+            left -= job.work;
+        }
+        side_by_side::render(self.renderer, &runs, size, threads(), self.bar)
+    }
+
+    /// What a run has left.
+    fn read(experiment: &Experiment, prefix: &Path, timings: &[Timing]) -> Result<Vec<Renderings>> {
+        let Experiment { seeds, estimators, .. } = *experiment;
         let name = |estimator: &str, seed: u64| match seeds {
             1 => format!("{estimator}.pfm"),
             _ => format!("{estimator}.{seed}.pfm"),
@@ -216,8 +263,9 @@ impl<'a> Measurement<'a> {
         renderings.collect()
     }
 
-    /// The mean over as many seeds, from `first` on, and the mean of (I - A)(I - B) pixel by pixel, of each estimator.
-    pub(crate) fn statistics(&self, experiment: &Experiment, first: u32) -> Result<Vec<[Rgb32FImage; 2]>> {
+    /// In batches of as many seeds, side by side: for each batch and estimator the mean, and the mean of (I - A)(I - B) pixel by
+    /// pixel.
+    pub(crate) fn statistics(&self, experiment: &Experiment, batches: u32) -> Result<Vec<Vec<[Rgb32FImage; 2]>>> {
         let Experiment { view, seeds, estimators, .. } = *experiment;
         self.reference(view)?;
         let references = self.references.borrow();
@@ -225,12 +273,20 @@ impl<'a> Measurement<'a> {
         let files = known.halves.each_ref().map(|file| file.display().to_string()).join(",");
         let options = [view.options, experiment.options, &["--statistics", &files]].concat();
         let folder = self.run_folder()?;
-        let prefix = folder.path().join("statistics");
-        self.bar.set_message(format!("{}: {seeds} seeds", view.scene));
-        let job = Job { options: &options, ..self.job(experiment, SEED + u64::from(first), seeds)? };
-        self.renderer.render(&job, view.size, &prefix, self.bar)?;
-        let read = |estimator: &&str, what: &str| read_pfm(&prefix.with_extension(format!("{estimator}.{what}.pfm")));
-        estimators.iter().map(|estimator| Ok([read(estimator, "mean")?, read(estimator, "mse")?])).collect()
+        self.bar.set_message(format!("{}: {} seeds", view.scene, batches * seeds));
+        let mut runs = Vec::new();
+        for batch in 0..batches {
+            let job = self.job(experiment, SEED + u64::from(batch * seeds), seeds)?;
+            runs.push((Job { options: &options, ..job }, folder.path().join(format!("statistics-{batch}"))));
+        }
+        let prefixes: Vec<PathBuf> = runs.iter().map(|(_, prefix)| prefix.clone()).collect();
+        self.side_by_side(runs, view.size)?;
+        let one = |prefix: PathBuf| -> Result<Vec<[Rgb32FImage; 2]>> {
+            let read =
+                |estimator: &str, what: &str| read_pfm(&prefix.with_extension(format!("{estimator}.{what}.pfm")));
+            estimators.iter().map(|estimator| Ok([read(estimator, "mean")?, read(estimator, "mse")?])).collect()
+        };
+        prefixes.into_iter().map(one).collect()
     }
 }
 
@@ -238,48 +294,5 @@ impl<'a> Experiment<'a> {
     /// Order 2, random samples, one seed.
     pub(crate) fn new(view: View, spp: u32, estimators: &'a [&'a str]) -> Self {
         Self { view, spp, order: 2, sampler: Sampler::Random, estimators, seeds: 1, options: &[] }
-    }
-}
-
-impl Outcome {
-    pub(crate) fn of(&self, estimator: &str) -> Result<&Renderings> {
-        let found = self.renderings.iter().find(|renderings| renderings.estimator == estimator);
-        found.with_context(|| format!("`{estimator}` was not rendered"))
-    }
-
-    /// relMSE of each seed.
-    pub(crate) fn errors(&self, estimator: &str) -> Result<Vec<f64>> {
-        Ok(self.of(estimator)?.images.iter().map(|image| self.reference.rel_mse(image)).collect())
-    }
-
-    /// Raw and filtered errors of each seed, highlights limited.
-    pub(crate) fn seen(&self, estimator: &str) -> Result<Vec<[f64; 2]>> {
-        Ok(self.of(estimator)?.images.iter().map(|image| score::errors(image, &self.reference)).collect())
-    }
-
-    /// relMSE over the plain mean's, of the same samples.
-    pub(crate) fn ratio(&self, estimator: &str) -> Result<Estimate> {
-        Ok(Estimate::ratio(&self.errors(estimator)?, &self.errors(BASELINE)?))
-    }
-
-    /// Total time over the plain mean's, seed by seed.
-    fn time_ratios(&self, estimator: &str) -> Result<Vec<f64>> {
-        let (own, plain) = (self.of(estimator)?, self.of(BASELINE)?);
-        let pairs = own.timings.iter().zip(&plain.timings);
-        Ok(pairs.map(|(own, plain)| own.total_seconds / plain.total_seconds).collect())
-    }
-
-    /// relMSE over that of the plain mean of as many samples as it makes in the same time: its error falls as 1 / samples.
-    /// Error and time are of the same seed, so that the interval has the noise of both.
-    pub(crate) fn equal_time(&self, estimator: &str) -> Result<Estimate> {
-        let pairs = self.errors(estimator)?.into_iter().zip(self.errors(BASELINE)?).zip(self.time_ratios(estimator)?);
-        Ok(Estimate::median(&pairs.map(|((own, plain), time)| own / plain * time).collect::<Vec<_>>()))
-    }
-}
-
-impl Renderings {
-    /// The median over the seeds.
-    pub(crate) fn nanoseconds(&self, of: impl Fn(&Timing) -> f64) -> Estimate {
-        Estimate::median(&self.timings.iter().map(of).collect::<Vec<_>>())
     }
 }

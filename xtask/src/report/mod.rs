@@ -16,6 +16,7 @@ mod machine;
 mod measured;
 mod measurement;
 mod minibatch_tables;
+mod outcome;
 pub(crate) mod pictures;
 pub(crate) mod pixels;
 mod plan;
@@ -38,6 +39,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clock::Clock;
 use plan::Plan;
+use std::cell::Cell;
 use std::path::PathBuf;
 
 pub(crate) use run::{check_quick, run};
@@ -67,7 +69,7 @@ impl Entry {
 
 /// In the order of the index.
 const CHAPTERS: &[Entry] = &[
-    entry("tables", 50, "Time, memory and drift of importance tables, beside public peers", minibatch_tables::write)
+    entry("tables", 16, "Time, memory and drift of importance tables, beside public peers", minibatch_tables::write)
         .runs(&["minibatch_table"]),
     entry(
         "gradients",
@@ -75,15 +77,15 @@ const CHAPTERS: &[Entry] = &[
         "Variance of minibatches' gradients, and test error at equal steps and equal time",
         gradients::write,
     ),
-    entry("instructions", 15, "What callgrind counts: the same on a busy machine", instructions::write),
+    entry("instructions", 3, "What callgrind counts: the same on a busy machine", instructions::write),
     entry(
         "control_variates",
-        140,
+        122,
         "Every estimator, basis and order: error against time, convergence, f32 against f64",
         control_variates::write,
     )
     .runs(&["speed_error", "estimators"]),
-    entry("hard_cases", 10, "Few, degenerate and extreme samples, and what is refused", hard_cases::write)
+    entry("hard_cases", 8, "Few, degenerate and extreme samples, and what is refused", hard_cases::write)
         .runs(&["hard_cases"]),
     entry(
         "analytic",
@@ -94,20 +96,20 @@ const CHAPTERS: &[Entry] = &[
     .runs(&["analytic"]),
     entry(
         "embree",
-        280,
+        275,
         "Estimators and samplers in a path tracer on Embree, scenes after the thesis's",
         embree::write,
     ),
     entry(
         "samplers",
-        120,
+        92,
         "Samplers beside each other, with and without estimators; what is recommended",
         samplers::write,
     )
     .runs(&["samplers", "guidance"]),
-    entry("points", 60, "Seconds against quality of point sets, 256 to a million points", points::write)
+    entry("points", 52, "Seconds against quality of point sets, 256 to a million points", points::write)
         .runs(&["point_sets"]),
-    entry("povray", 120, "The same on integrands that unmodified POV-Ray renders", povray::write),
+    entry("povray", 140, "The same on integrands that unmodified POV-Ray renders", povray::write),
 ];
 
 #[derive(Args)]
@@ -115,16 +117,17 @@ pub(crate) struct Options {
     /// Tiny images and few seeds, for tests: whether everything works, not the figures
     #[arg(long)]
     quick: bool,
-    /// Larger images and more seeds: narrower intervals, about ten times as long
+    /// Larger images, finer grids and more seeds: narrower intervals, and much longer
     #[arg(long, conflicts_with = "quick")]
     full: bool,
-    /// These chapters instead of all; the index keeps the others
+    /// These chapters instead of all, separated by commas; the others stay as they are, in the index too
     #[arg(long, value_name = "CHAPTER", value_delimiter = ',', value_parser = names())]
     only: Vec<String>,
-    /// Where everything goes [default: docs/report, and the large pictures target/report]
+    /// Where everything goes, the large pictures to DIR.pictures [default: docs/report, and target/report]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write texts anew from what was measured before (target/report/measured), where a chapter keeps it
+    /// Write texts anew from what a run of the same size measured before (target/report/measured); tables and gradients keep it,
+    /// other chapters are measured
     #[arg(long)]
     reuse: bool,
     /// A program with the Embree harness's command line, instead of the one that is built
@@ -153,6 +156,8 @@ pub(crate) struct Report<'a> {
     clock: Clock,
     /// What was measured before may be taken as it is.
     pub(crate) reuse: bool,
+    /// The chapter took some of it.
+    reused: Cell<bool>,
 }
 
 impl Report<'_> {

@@ -3,6 +3,7 @@
 use super::clock::Clock;
 use super::index::{self, Facts};
 use super::machine::{self, Machine};
+use super::measured;
 use super::plan::Plan;
 use super::{CHAPTERS, Entry, Options, Report, check, program};
 use crate::measure::interrupt::{self, Interrupted};
@@ -10,6 +11,7 @@ use crate::measure::output::{self, Output};
 use crate::measure::progress;
 use crate::paths;
 use anyhow::{Context, Result, bail};
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -112,6 +114,7 @@ fn write(
         large: &large,
         clock: Clock::start(),
         reuse: options.reuse,
+        reused: Cell::new(false),
     };
     (entry.write)(&report)?;
     interrupt::check(interrupted)?;
@@ -119,18 +122,21 @@ fn write(
         name: entry.name.to_owned(),
         description: entry.description.to_owned(),
         sizes: report.plan.name().to_owned(),
-        seconds: report.clock.seconds(),
+        seconds: Some(report.clock.seconds()),
         processor_seconds: report.clock.processor_seconds(),
         date,
         load,
         machine: machine.clone(),
+        kept: None,
     };
+    let facts = if report.reused.get() { measured::earlier_run(facts)? } else { facts };
     let [text, json] = ["md", "json"].map(|end| format!("{}.{end}", entry.name));
     let completed = facts.add_to(&output.read_text(&json)?).with_context(|| format!("{json} is damaged"))?;
     check::numbers_are_recorded(&output.read_text(&text)?, &completed).with_context(|| text.clone())?;
     output.write_text(&json, &completed)?;
     output.write_text("README.md", &index::write(&folders.small, entry.name, &completed)?)?;
-    output::commit_together([output, large])
+    output::commit_together([output, large])?;
+    if facts.kept.is_none() { measured::keep_run(&facts) } else { Ok(()) }
 }
 
 /// Pictures of the report are smaller, so that they can be committed.

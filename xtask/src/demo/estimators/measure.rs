@@ -5,6 +5,7 @@ use super::table::Row;
 use crate::measure::metric::{Reference, median};
 use crate::measure::renderer::{Job, Sampler, Timing};
 use crate::measure::runs::{Runs, SEED};
+use crate::measure::text;
 use anyhow::{Context, Result};
 use image::Rgb32FImage;
 use std::collections::BTreeMap;
@@ -40,7 +41,7 @@ impl Measurement<'_> {
         let reference = self.runs.reference(scene.name, spp, self.plan.work(scene, spp, 0))?;
         let mut measured = Measured { reference, images: Vec::new(), rows: Vec::new() };
         for spp in self.plan.spp {
-            self.runs.say(format!("{}: {spp} samples per pixel", scene.name));
+            self.runs.say(format!("{}: {}", scene.name, text::samples_per_pixel(spp)));
             self.estimators(scene, spp, &mut measured)?;
         }
         Ok(measured)

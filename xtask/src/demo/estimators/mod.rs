@@ -10,6 +10,7 @@ use crate::measure::output::Output;
 use crate::measure::progress;
 use crate::measure::renderer::{Renderer, threads};
 use crate::measure::runs::Runs;
+use crate::measure::text;
 use anyhow::Result;
 use indicatif::ProgressBar;
 use measure::{Measured, Measurement};
@@ -68,7 +69,7 @@ fn write_scene(output: &Output, plan: &Plan, scene: &Scene, measured: &Measured)
         let caption = format!("relMSE {:.2e} ({:.2}x)", row.rel_mse, row.ratio);
         columns[index % count].cells.push((image.clone(), caption));
     }
-    let rows = plan.spp.map(|spp| format!("left: {spp} samples per pixel"));
+    let rows = plan.spp.map(|spp| format!("left: {}", text::samples_per_pixel(spp)));
     let title = format!("{}: integral over {}; polynomials of order {}", scene.name, scene.domain, scene.order);
     output.write_picture(&format!("{}-comparison.png", scene.name), &sheet::draw(&title, &rows, &columns, reference))
 }

@@ -6,6 +6,7 @@ use crate::measure::renderer::{Job, Sampler, Timing};
 use crate::measure::runs::{Runs, SEED};
 use crate::measure::samplers::{Choice, Tiles};
 use crate::measure::score::Score;
+use crate::measure::text;
 use anyhow::{Context, Result, bail};
 use image::Rgb32FImage;
 
@@ -67,7 +68,7 @@ impl Measurement<'_> {
     pub(crate) fn scene(&self, scene: &Scene, reference: &Reference) -> Result<Vec<Measured>> {
         let mut all = Vec::new();
         for spp in self.plan.spp {
-            self.runs.say(format!("{}: {spp} samples per pixel", scene.name));
+            self.runs.say(format!("{}: {}", scene.name, text::samples_per_pixel(spp)));
             let choices: Vec<_> = scene
                 .samplers
                 .iter()

@@ -14,6 +14,7 @@ use crate::measure::renderer::{Renderer, threads};
 use crate::measure::runs::Runs;
 use crate::measure::samplers::{Choice, Tiles};
 use crate::measure::spectrum_sheet as sheet;
+use crate::measure::text;
 use anyhow::Result;
 use measure::{Measured, Measurement, baseline, find, ratios};
 use plan::{BASELINE, ESTIMATORS, Plan, SCENES, Scene};
@@ -87,10 +88,7 @@ fn write_sheet(output: &Output, plan: &Plan, scene: &Scene, all: &[Measured], re
                 let [raw, filtered] = ratios(one, baseline(all, one));
                 Some(sheet::Cell { image: &one.image, caption: format!("raw {raw:.3}x filtered {filtered:.3}x") })
             };
-            sheet::Row {
-                name: format!("{spp} sample{} per pixel", if spp == 1 { "" } else { "s" }),
-                cells: columns.iter().map(cell).collect(),
-            }
+            sheet::Row { name: text::samples_per_pixel(spp), cells: columns.iter().map(cell).collect() }
         })
         .collect();
     let names: Vec<String> =

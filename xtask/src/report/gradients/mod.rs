@@ -73,6 +73,7 @@ pub(super) fn write(report: &Report) -> Result<()> {
     context.bar.finish_and_clear();
     introduce(&mut chapter);
     if let Some(note) = context.measured.note() {
+        report.reused.set(true);
         chapter.paragraph(&note);
     }
     targets.write_summary(&mut chapter);

@@ -29,9 +29,8 @@ pub(super) fn write(report: &Report) -> Result<()> {
     let mut chapter = Chapter::new("Tables of importances");
     introduce(&mut chapter);
     if reused {
-        chapter.paragraph(
-            "Written anew from what an earlier run measured: the time of this run does not hold that of measuring.",
-        );
+        report.reused.set(true);
+        chapter.paragraph("Written anew from what an earlier run measured, whose date, load and time the index has.");
     }
     let (mut body, mut targets) = (Chapter::default(), Targets::default());
     times.write(&mut body, &mut targets, report.output)?;

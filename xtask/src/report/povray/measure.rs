@@ -3,7 +3,7 @@
 use super::ORDER;
 use crate::measure::metric::Reference;
 use crate::measure::renderer::Sampler;
-use crate::measure::score::Score;
+use crate::measure::score;
 use crate::povray::oracle::{Model, Oracle, Request, View};
 use crate::povray::scenes::Scene;
 use anyhow::{Context, Result};
@@ -112,7 +112,7 @@ impl Measurement<'_> {
     fn ways(&self, model: Model, spp: u32, points: Points, estimators: &[&'static str]) -> Result<Vec<Way>> {
         let sampler = points.sampler(spp);
         let request = Request { model, spp, order: ORDER, sampler, estimators, seeds: self.seeds };
-        let renderings = self.oracle.render(self.view, &request, &ProgressBar::hidden())?;
+        let renderings = self.oracle.render(self.view, &request)?;
         self.bar.inc(u64::from(self.seeds) * u64::from(spp));
         let reference = &self.view.reference;
         let ways = estimators.iter().zip(renderings).map(|(&estimator, one)| {
@@ -121,7 +121,7 @@ impl Measurement<'_> {
                 points,
                 estimator,
                 rel_mse: one.images.iter().map(|image| reference.rel_mse(image)).collect(),
-                filtered: one.images.iter().map(|image| Score::new(image, reference).filtered).collect(),
+                filtered: one.images.iter().map(|image| score::errors(image, reference)[1]).collect(),
                 nanoseconds: one.timings.iter().map(|timing| timing.estimating_ns_per_sample).collect(),
                 image: one.images.into_iter().next().context("no seed was rendered")?,
             })

@@ -22,6 +22,8 @@ use measure::{Measured, Measurement, SPP};
 const ORDER: u32 = 2;
 /// Pixels on a side of the pictures that the tests render, which serve for a quick look too.
 const SMALL: u32 = 32;
+/// And of those of a default report.
+const MIDDLE: u32 = 48;
 /// Pixels on a side at most: stacks of larger pictures take gigabytes.
 const LARGEST: u32 = 128;
 
@@ -41,7 +43,7 @@ pub(super) fn write(report: &Report) -> Result<()> {
     let (size, cells): (u32, fn(&Scene) -> &'static [u32]) = match report.plan.size {
         ..SMALL => (SMALL, |scene| scene.small),
         size if report.plan.is_full() => (size.min(LARGEST), |scene| scene.full),
-        size => (size.min(LARGEST), |scene| scene.report),
+        _ => (MIDDLE, |scene| scene.report),
     };
     let sizes = Sizes { size, seeds: report.plan.seeds, cells };
     let mut chapter = Chapter::new("Control variates and tiles on what POV-Ray computes");

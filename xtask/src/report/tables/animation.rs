@@ -6,6 +6,7 @@ use crate::measure::renderer::Sampler;
 use crate::measure::samplers::{Choice, Tiles};
 use crate::measure::score;
 use crate::measure::spectrum_sheet::{self, Cell as Panel, Row};
+use crate::measure::text;
 use crate::report::chapter::row;
 use crate::report::figure::{Figure, Unit};
 use crate::report::measurement::{BASELINE, Experiment, View};
@@ -113,15 +114,13 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
                 }
             }
         }
-        if let Some(reference) = references.last() {
-            write_sheet(section, reference, &all, spp)?;
-        }
+        write_sheet(section, &seen(&references, &eye(references.len())), &all, spp)?;
     }
     let columns = ["samples", "frame", "filter", "sampler", "relMSE x 1000", "over random"];
     section.chapter.table("animation", &columns, 4, rows);
     for &spp in plan.some(&SPP) {
         let description =
-            format!("The last frame filtered along time, {spp} samples per pixel: image, errors, spectra");
+            format!("The last frame filtered along time, {}: image, errors, spectra", text::samples_per_pixel(spp));
         section.chapter.setting(format!("samples per pixel of the animation, {spp}"), spp);
         section.chapter.picture(&format!("animation-{spp}spp.png"), &description);
     }
@@ -146,13 +145,11 @@ struct Measured {
 
 fn measure(section: &Section, references: &[std::rc::Rc<Reference>], sampler: Sampler, spp: u32) -> Result<Measured> {
     let seeds = section.measurement.plan.seeds;
-    let mut frames = Vec::new();
-    for frame in 0..references.len() as u32 {
-        let estimators = [BASELINE];
-        let experiment = Experiment { sampler, seeds, ..Experiment::new(view(section, frame), spp, &estimators) };
-        frames.extend(section.measurement.render(&experiment)?.into_iter().map(|renderings| renderings.images));
-    }
-    let count = references.len();
+    let experiment = |frame| Experiment { sampler, seeds, ..Experiment::new(view(section, frame), spp, &[BASELINE]) };
+    let experiments: Vec<Experiment> = (0..references.len() as u32).map(experiment).collect();
+    let frames =
+        section.measurement.render_all(&experiments)?.into_iter().flatten().map(|renderings| renderings.images);
+    let (frames, count): (Vec<_>, _) = (frames.collect(), references.len());
     let mut errors = Vec::new();
     let mut image = None;
     for (_, kernel) in KERNELS {
@@ -181,14 +178,15 @@ fn seen(references: &[std::rc::Rc<Reference>], weights: &[f64]) -> Reference {
     Reference::new(&a, &b)
 }
 
-fn write_sheet(section: &Section, last: &Reference, all: &[(&str, Measured)], spp: u32) -> Result<()> {
+/// `reference`: as the eye sees it, as the images are; the last frame alone would show what moves as an error of all samplers.
+fn write_sheet(section: &Section, reference: &Reference, all: &[(&str, Measured)], spp: u32) -> Result<()> {
     let names: Vec<String> = all.iter().map(|(label, _)| (*label).to_owned()).collect();
     let cells = all.iter().map(|(_, measured)| {
         let error = measured.errors[1].first().copied().unwrap_or(f64::NAN);
         Some(Panel { image: &measured.image, caption: format!("filtered {error:.2e}") })
     });
-    let rows = [Row { name: format!("{spp} samples per pixel"), cells: cells.collect() }];
-    let picture = spectrum_sheet::draw("The last frame as the eye sees it", &names, &rows, [0.25, 0.25], last);
+    let rows = [Row { name: text::samples_per_pixel(spp), cells: cells.collect() }];
+    let picture = spectrum_sheet::draw("The last frame as the eye sees it", &names, &rows, [0.25, 0.25], reference);
     write_small(section.output, &format!("animation-{spp}spp.png"), &picture)
 }
 

@@ -3,6 +3,7 @@
 use super::Section;
 use crate::measure::error_sheet::{self, Column};
 use crate::measure::plot::{Axis, Plot, Series};
+use crate::measure::text;
 use crate::report::chapter::{Cell, row};
 use crate::report::figure::{Figure, Unit};
 use crate::report::measurement::{BASELINE, DEFAULT, Experiment, LEAST_SQUARES, Outcome, View};
@@ -203,7 +204,7 @@ fn write_sheet(section: &Section, scene: &str, one: &Measured) -> Result<()> {
     }
     add("least squares, O2".to_owned(), &one.orders[1], LEAST_SQUARES)?;
     section.large.write_image(&format!("{scene}-reference"), &reference.image, reference)?;
-    let rows = [format!("left: {} samples per pixel", one.spp)];
+    let rows = [format!("left: {}", text::samples_per_pixel(one.spp))];
     let title = format!("{scene}: the same samples");
     let picture = error_sheet::draw(&title, &rows, &columns, reference);
     write_small(section.output, &format!("direct-{scene}.png"), &picture)

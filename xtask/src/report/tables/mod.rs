@@ -11,7 +11,7 @@ mod luminance;
 mod mis;
 mod never_worse;
 mod overhead;
-mod public;
+pub(super) mod public;
 mod reconstruction;
 mod samplers;
 mod solvers;
@@ -39,17 +39,17 @@ type Entry = (u64, fn(&mut Section) -> Result<()>);
 /// In the order of the thesis.
 pub(crate) const SECTIONS: &[Entry] = &[
     (22, direct::write),
-    (16, indirect::write),
-    (7, mis::write),
-    (8, environment::write),
-    (8, bases::write),
+    (9, indirect::write),
+    (14, mis::write),
+    (6, environment::write),
+    (9, bases::write),
     (16, lights::write),
-    (9, solvers::write),
+    (12, solvers::write),
     (4, luminance::write),
-    (90, samplers::write),
-    (12, reconstruction::write),
-    (20, animation::write),
-    (15, overhead::write),
-    (33, never_worse::write),
-    (28, unbiased::write),
+    (74, samplers::write),
+    (15, reconstruction::write),
+    (17, animation::write),
+    (20, overhead::write),
+    (34, never_worse::write),
+    (23, unbiased::write),
 ];

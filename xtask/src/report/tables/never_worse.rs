@@ -97,7 +97,8 @@ fn write_pixels(section: &mut Section) -> Result<()> {
         "Mean squared error of each pixel over {seeds} seeds, {spp} samples per pixel, {size} x {size} pixels; the share of pixels where \
          the default's is more than {limit} times MC's. Measured ratios are noisy, so three figures: pixels beyond it as measured (too many), pixels beyond it \
          in both halves of the seeds, and pixels where a one-sided test over {BATCHES} batches of seeds says so at a level of {percent} % each (too few). \
-         The first has a {confidence} % interval, from the bootstrap over the batches. A pixel without noise, where neither has an error, does not count;          where only the plain mean has none, the pixel counts as beyond."
+         The first has a {confidence} % interval, from the bootstrap over the batches. A pixel without noise, where neither has an error, does not count; \
+         where only the plain mean has none, the pixel counts as beyond."
     ));
     section.chapter.setting("batches of seeds", BATCHES);
     let mut rows = Vec::new();
@@ -132,8 +133,8 @@ fn shares(section: &Section, scene: &Scene, spp: u32) -> Result<Shares> {
         ..Experiment::new(View::new(scene.name, pixels_size(section)), spp, &estimators)
     };
     let mut errors = Vec::new();
-    for batch in 0..batches {
-        let [plain, own] = &section.measurement.statistics(&experiment, batch * experiment.seeds)?[..] else {
+    for batch in section.measurement.statistics(&experiment, batches)? {
+        let [plain, own] = &batch[..] else {
             bail!("statistics of other estimators than were asked for");
         };
         errors.push([sums(&plain[1]), sums(&own[1])]);

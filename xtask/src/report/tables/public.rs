@@ -19,13 +19,16 @@ pub(super) struct Public {
     folder: PathBuf,
 }
 
+/// Compiles the program: before time counts.
+pub(crate) fn build() -> Result<()> {
+    let mut cargo = run::cargo();
+    cargo.args(["build", "--quiet", "--profile", "xtask", "--package", "noisefloor-bench", "--example", "points"]);
+    run::check(&mut cargo)
+}
+
 impl Public {
-    pub(super) fn build(measurement: &Measurement) -> Result<Self> {
-        measurement.bar.set_message("building the public samplers");
-        let mut cargo = run::cargo();
-        cargo.args(["build", "--quiet", "--profile", "xtask", "--package", "noisefloor-bench", "--example", "points"]);
-        run::check(&mut cargo)?;
-        Ok(Self { program: paths::target().join("xtask/examples/points"), folder: measurement.path("points") })
+    pub(super) fn new(measurement: &Measurement) -> Self {
+        Self { program: paths::target().join("xtask/examples/points"), folder: measurement.path("points") }
     }
 
     pub(super) fn labels(&self) -> impl Iterator<Item = String> + use<> {

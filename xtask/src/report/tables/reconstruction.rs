@@ -2,16 +2,17 @@
 
 use super::Section;
 use super::samplers::Errors;
-use crate::measure::renderer::Sampler;
 use crate::measure::samplers::{Choice, Tiles};
 use crate::report::chapter::row;
 use crate::report::figure::{Figure, Unit};
-use crate::report::measurement::{BASELINE, Experiment, View};
+use crate::report::measurement::{BASELINE, Experiment, Outcome, View};
 use crate::report::statistics::Estimate;
-use anyhow::Result;
+use anyhow::{Result, bail};
 
 const SCENES: [&str; 2] = ["dining", "microcity"];
 const SPP: [u32; 2] = [1, 4];
+/// What the others are compared with first.
+const SAMPLERS: [Choice; 4] = [Choice::Random, Choice::Sobol, Choice::Tile(2), Choice::Tile(4)];
 const FILTERS: [(&str, &[&str]); 2] = [("box", &["--filter", "box"]), ("Gaussian", &["--filter", "gaussian"])];
 
 pub(super) fn write(section: &mut Section) -> Result<()> {
@@ -29,17 +30,19 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
         for &(filter, options) in plan.some(&FILTERS) {
             let view = View { options, ..View::new(scene, plan.tile_size) };
             for &spp in plan.some(&SPP) {
-                let run = |sampler: Sampler| -> Result<Errors> {
-                    let experiment =
-                        Experiment { sampler, seeds: plan.seeds, ..Experiment::new(view, spp, &[BASELINE]) };
-                    Errors::new(&section.measurement.run(&experiment)?, BASELINE)
+                let experiment =
+                    |sampler| Experiment { sampler, seeds: plan.seeds, ..Experiment::new(view, spp, &[BASELINE]) };
+                let experiments = SAMPLERS.map(|choice| choice.sampler(spp, &tiles).map(experiment));
+                let outcomes = section.measurement.run_all(&experiments)?;
+                let errors = |outcome: &Option<Outcome>| {
+                    outcome.as_ref().map(|outcome| Errors::new(outcome, BASELINE)).transpose()
                 };
-                let random = run(Sampler::Random)?;
+                let each = outcomes.iter().map(errors).collect::<Result<Vec<_>>>()?;
+                let [Some(random), others @ ..] = &each[..] else { bail!("random samples were not rendered") };
                 let mut cells = row![scene, filter, spp];
-                for choice in [Choice::Sobol, Choice::Tile(2), Choice::Tile(4)] {
-                    let errors = choice.sampler(spp, &tiles).map(run).transpose()?;
+                for errors in others {
                     for of in [|errors: &Errors| errors.raw.clone(), |errors: &Errors| errors.filtered.clone()] {
-                        let ratio = errors.as_ref().map(|errors| Estimate::ratio(&of(errors), &of(&random)));
+                        let ratio = errors.as_ref().map(|errors| Estimate::ratio(&of(errors), &of(random)));
                         cells.push(ratio.map(|ratio| Figure::new(ratio, Unit::Ratio)).into());
                     }
                 }

@@ -6,6 +6,7 @@ use crate::measure::renderer::Sampler;
 use crate::measure::samplers::{Choice, Tiles};
 use crate::measure::score;
 use crate::measure::spectrum_sheet::{self, Cell as Panel, Row};
+use crate::measure::text;
 use crate::report::chapter::{Cell, row};
 use crate::report::figure::{Figure, Unit};
 use crate::report::measurement::{BASELINE, Experiment, Outcome, SHARED, View};
@@ -78,7 +79,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Samplers", "figures 5.19 and 5.20");
     let plan = section.measurement.plan;
     let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
-    let public = Public::build(section.measurement)?;
+    let public = Public::new(section.measurement);
     let mut all = Vec::new();
     for &scene in plan.some(&SCENES) {
         for &spp in plan.some(&SPP) {
@@ -112,27 +113,24 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
 fn measure(section: &Section, tiles: &Tiles, public: &Public, scene: &'static str, spp: u32) -> Result<Measured> {
     let view = View::new(scene, section.measurement.plan.tile_size);
     let dims = scenes::find(scene)?.dims;
-    let run = |sampler: Sampler, estimators: &[&str]| {
-        let seeds = section.measurement.plan.seeds;
-        section.measurement.run(&Experiment { sampler, seeds, ..Experiment::new(view, spp, estimators) })
-    };
-    let mut samplers = Vec::new();
+    let seeds = section.measurement.plan.seeds;
+    // Beyond four samples what a tile is compared with is Sobol's sequence; `--full` has the public samplers there too.
+    let compared = spp <= 4 || section.measurement.plan.is_full();
+    let files = if compared { public.files(spp, dims)? } else { Vec::new() };
+    let mut wanted: Vec<Option<Experiment>> = Vec::new();
     for choice in OWN {
         // The tile of four dimensions is for scenes that have them.
         let fits = choice != Choice::Tile(4) || dims >= 3;
         let sampler = choice.sampler(spp, tiles).filter(|_| fits);
         // Shared fits are shown on the first three.
         let estimators: &[&str] = if choice == Choice::Tile(4) { &[BASELINE] } else { &[BASELINE, SHARED] };
-        samplers.push(sampler.map(|sampler| run(sampler, estimators)).transpose()?);
+        wanted.push(sampler.map(|sampler| Experiment { sampler, seeds, ..Experiment::new(view, spp, estimators) }));
     }
-    // Beyond four samples what a tile is compared with is Sobol's sequence; `--full` has the public samplers there too.
-    if spp <= 4 || section.measurement.plan.is_full() {
-        for file in public.files(spp, dims)? {
-            samplers.push(Some(run(Sampler::Table(Path::new(&file)), &[BASELINE])?));
-        }
-    } else {
-        samplers.extend(public.labels().map(|_| None));
+    for (index, _) in public.labels().enumerate() {
+        let sampler = files.get(index).map(|file| Sampler::Table(Path::new(file)));
+        wanted.push(sampler.map(|sampler| Experiment { sampler, seeds, ..Experiment::new(view, spp, &[BASELINE]) }));
     }
+    let samplers = section.measurement.run_all(&wanted)?;
     let errors = |estimator: &str| -> Result<Vec<Option<Errors>>> {
         let each = samplers.iter().map(|outcome| -> Result<Option<Errors>> {
             let rendered = outcome.as_ref().filter(|outcome| outcome.of(estimator).is_ok());
@@ -291,8 +289,8 @@ fn write_sheet(section: &Section, public: &Public, one: &Measured) -> Result<()>
             cells.push(Some(Panel { image, caption }));
         }
     }
-    let rows = [Row { name: format!("{} samples per pixel", one.spp), cells }];
     let title = format!("{}: the image, its errors, their spectra", one.scene);
+    let rows = [Row { name: text::samples_per_pixel(one.spp), cells }];
     let picture = spectrum_sheet::draw(&title, &names, &rows, [0.25, 0.35], reference);
     write_small(section.output, &format!("samplers-{}.png", one.scene), &picture)
 }

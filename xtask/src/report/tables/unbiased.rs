@@ -78,8 +78,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
             options: &["--scramble"],
             ..Experiment::new(view, spp, &estimators)
         };
-        let batches = (0..BATCHES).map(|batch| section.measurement.statistics(&experiment, batch * experiment.seeds));
-        let batches = batches.collect::<Result<Vec<_>>>()?;
+        let batches = section.measurement.statistics(&experiment, BATCHES)?;
         let halves = section.measurement.reference(view)?.images.each_ref().map(values);
         let frames = |estimator: usize| {
             let one: Vec<[Rgb32FImage; 2]> = batches.iter().map(|batch| batch[estimator].clone()).collect();
