@@ -1258,6 +1258,7 @@ nf_status nf_gradient_reset(nf_gradient *state);
 #define NF_ASSERT_LAYOUT(condition) extern char nf_assert_layout[(condition) ? 1 : -1]
 #define NF_ASSERT_ALIGNED_AS(a, b) NF_ASSERT_LAYOUT(sizeof(a) % sizeof(b) == 0)
 #endif
+NF_ASSERT_LAYOUT(sizeof(nf_status) == 4);
 NF_ASSERT_LAYOUT(sizeof(nf_cv_config) == 76 && offsetof(nf_cv_config, ridge) == 64);
 NF_ASSERT_ALIGNED_AS(nf_cv_config, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_estimate) == 40 && offsetof(nf_estimate, samples) == 32);

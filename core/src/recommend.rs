@@ -19,6 +19,13 @@ use crate::control_variate::Config;
 use crate::error::Error;
 
 /// What a pixel's samples are.
+///
+/// ```
+/// use noisefloor::recommend::{Sampling, recommend};
+/// let [independent, stratified] = [Sampling::Independent, Sampling::Stratified].map(|sampling| recommend(2, 16, sampling, true));
+/// assert!(stratified?.filtered_error < independent?.filtered_error);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Sampling {
     /// Independent of each other.
@@ -28,6 +35,13 @@ pub enum Sampling {
 }
 
 /// How samples become estimates.
+///
+/// ```
+/// use noisefloor::recommend::{Method, Sampling, recommend};
+/// assert_eq!(recommend(2, 4, Sampling::Stratified, false)?.method, Method::PlainMean);
+/// assert_eq!(recommend(2, 4, Sampling::Stratified, true)?.method, Method::Shared);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Method {
     /// The mean of the values.

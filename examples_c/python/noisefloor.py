@@ -104,10 +104,43 @@ def check(library, status):
         raise ValueError("noisefloor: " + library.nf_status_message(status).decode())
 
 
+# What NumPy and PyTorch call the elements of the library's arrays.
+ELEMENTS = {ctypes.c_float: "float32", ctypes.c_uint32: "uint32"}
+
+
 def pointer(array, element=ctypes.c_float):
-    """A pointer to the first element of a contiguous NumPy array or PyTorch tensor of the CPU, not copied."""
-    address = array.data_ptr() if hasattr(array, "data_ptr") else array.ctypes.data
-    return ctypes.cast(address, ctypes.POINTER(element))
+    """A pointer to the first element of a contiguous NumPy array or PyTorch tensor of the CPU, not copied.
+
+    It keeps the array alive, and has its number of elements as `length`. Anything else is refused, with what to do.
+    """
+    tensor = hasattr(array, "data_ptr")
+    if not tensor and not hasattr(array, "__array_interface__"):
+        raise TypeError(
+            f"pointer() takes a NumPy array or a PyTorch tensor, not {type(array).__name__}: "
+            f"numpy.asarray(values, dtype=numpy.{ELEMENTS[element]}), or ({element.__name__} * n)(*values) without pointer()"
+        )
+    kind = "tensor" if tensor else "array"
+    if tensor and array.device.type != "cpu":
+        raise ValueError(f"the tensor is on {array.device}; noisefloor reads the CPU's memory: pass tensor.cpu()")
+    name = str(array.dtype).replace("torch.", "")
+    if name != ELEMENTS[element]:
+        # A NumPy dtype of the other byte order prints as ">f4".
+        convert = f"tensor.to(torch.{ELEMENTS[element]})" if tensor else f"array.astype(numpy.{ELEMENTS[element]})"
+        raise TypeError(f"the {kind} holds {name}; noisefloor reads {ELEMENTS[element]}: pass {convert}")
+    if not (array.is_contiguous() if tensor else array.flags.c_contiguous and array.flags.aligned):
+        copy = "tensor.contiguous()" if tensor else "numpy.array(array)"
+        shape = tuple(array.shape)
+        raise ValueError(f"the {kind} of shape {shape} is not contiguous, or not aligned, in memory: pass {copy}")
+    result = ctypes.cast(array.data_ptr() if tensor else array.ctypes.data, ctypes.POINTER(element))
+    result.array, result.length = array, array.numel() if tensor else array.size
+    return result
+
+
+def check_length(name, array, items):
+    """Raises if a ctypes array or a `pointer` has fewer elements than the library would read."""
+    length = array.length if hasattr(array, "length") else len(array)
+    if length < items:
+        raise ValueError(f"{name} has {length} elements for {items} items: pass one for each")
 
 
 class Table:
@@ -119,6 +152,8 @@ class Table:
         self.memory = (ctypes.c_uint64 * ((library.nf_table_size(items) + 7) // 8))()
         library.nf_rng_seed(self.rng, seed)
         bytes_ = ctypes.sizeof(self.memory)
+        if importance is not None:
+            check_length("importance", importance, items)
         check(library, library.nf_table_init(self.table, self.memory, bytes_, items, importance))
 
     def draw(self, batch):
@@ -129,6 +164,7 @@ class Table:
 
     def update(self, index, importance, momentum=0.3):
         """The new importances of items that were visited: ctypes arrays, `importance` or a `pointer`."""
+        check_length("importance", importance, len(index))
         check(self.library, self.library.nf_table_update(self.table, index, importance, len(index), momentum))
 
     def probability(self, item):

@@ -1,8 +1,10 @@
 """Tests of noisefloor.py and of the training loop: `python3 test_noisefloor.py`, with NOISEFLOOR_LIBRARY set."""
 
 import ctypes
+import gc
 import importlib.util
 import unittest
+import weakref
 
 import digits
 import noisefloor
@@ -49,29 +51,88 @@ class TableTest(unittest.TestCase):
         with self.assertRaisesRegex(OSError, "NOISEFLOOR_LIBRARY"):
             noisefloor.load("/nowhere/libnoisefloor.so")
 
-    def test_pointers_reach_the_memory_of_arrays(self):
-        class Tensor:
-            """What PyTorch's tensors have."""
 
-            def __init__(self, *values):
-                self.values = (ctypes.c_float * len(values))(*values)
+class Device(str):
+    @property
+    def type(self):
+        return self.split(":")[0]
 
-            def data_ptr(self):
-                return ctypes.addressof(self.values)
 
-        importance = Tensor(5, 6, 7)
+class Tensor:
+    """What `pointer` asks of PyTorch's tensors."""
+
+    def __init__(self, *values, dtype="torch.float32", device="cpu", contiguous=True):
+        self.values = (ctypes.c_float * len(values))(*values)
+        self.shape, self.dtype, self.contiguous = (len(values),), dtype, contiguous
+        self.device = Device(device)
+
+    def data_ptr(self):
+        return ctypes.addressof(self.values)
+
+    def is_contiguous(self):
+        return self.contiguous
+
+    def numel(self):
+        return len(self.values)
+
+
+class PointerTest(unittest.TestCase):
+    def check_reached(self, importance):
         table = noisefloor.Table(LIBRARY, 3, 1)
-        table.update((ctypes.c_uint32 * 3)(0, 1, 2), noisefloor.pointer(importance), 0.0)
+        table.update((ctypes.c_uint32 * 3)(0, 1, 2), importance, 0.0)
         self.assertAlmostEqual(table.probability(2), 0.8 * 7 / 18 + 0.2 / 3, places=6)
+
+    def check_refused(self, error, said, array, element=ctypes.c_float):
+        with self.assertRaisesRegex(error, said):
+            noisefloor.pointer(array, element)
+
+    def test_tensors_are_reached(self):
+        self.check_reached(noisefloor.pointer(Tensor(5, 6, 7)))
+
+    def test_other_tensors_are_refused(self):
+        self.check_refused(TypeError, r"holds float64; .*float32: pass tensor\.to", Tensor(1, dtype="torch.float64"))
+        self.check_refused(TypeError, "holds float32; .*uint32", Tensor(1), ctypes.c_uint32)
+        self.check_refused(ValueError, r"on cuda:0; .*pass tensor\.cpu", Tensor(1, device="cuda:0"))
+        self.check_refused(ValueError, r"shape \(2,\) is not contiguous.*pass tensor\.contig", Tensor(1, 2, contiguous=False))
+
+    def test_what_is_no_array_is_refused(self):
+        for value in ([1.0, 2.0], (ctypes.c_float * 2)(), 3.0, None):
+            self.check_refused(TypeError, f"not {type(value).__name__}: numpy.asarray", value)
+
+    def test_arrays_stay_alive(self):
+        tensor = Tensor(5, 6, 7)
+        alive = weakref.ref(tensor)
+        importance = noisefloor.pointer(tensor)
+        del tensor
+        gc.collect()
+        self.assertIsNotNone(alive())
+        self.check_reached(importance)
+        del importance
+        gc.collect()
+        self.assertIsNone(alive())
+
+    def test_short_arrays_are_refused(self):
+        table = noisefloor.Table(LIBRARY, 3, 1)
+        for short in (noisefloor.pointer(Tensor(5, 6)), (ctypes.c_float * 2)(5, 6)):
+            with self.assertRaisesRegex(ValueError, "importance has 2 elements for 3 items"):
+                table.update((ctypes.c_uint32 * 3)(0, 1, 2), short)
+            with self.assertRaisesRegex(ValueError, "importance has 2 elements for 3 items"):
+                noisefloor.Table(LIBRARY, 3, 1, short)
 
     @unittest.skipUnless(installed("numpy"), "NumPy is not installed")
-    def test_pointers_reach_numpy(self):
+    def test_numpy(self):
         import numpy
 
-        importance = numpy.array([5, 6, 7], numpy.float32)
-        table = noisefloor.Table(LIBRARY, 3, 1)
-        table.update((ctypes.c_uint32 * 3)(0, 1, 2), noisefloor.pointer(importance), 0.0)
-        self.assertAlmostEqual(table.probability(2), 0.8 * 7 / 18 + 0.2 / 3, places=6)
+        values = numpy.array([5, 6, 7], numpy.float32)
+        self.check_reached(noisefloor.pointer(values))
+        self.check_refused(TypeError, r"holds float64; .*float32: pass array\.astype", values.astype(numpy.float64))
+        self.check_refused(TypeError, "holds >f4; .*float32", values.astype(">f4"))
+        for view in (values[::2], values[::-1], numpy.ones((2, 3), numpy.float32).T):
+            self.check_refused(ValueError, r"not contiguous.*pass numpy\.array", view)
+        odd = numpy.frombuffer(bytes(9), numpy.float32, 2, 1)
+        self.check_refused(ValueError, "not aligned", odd)
+        # A temporary that nothing else holds.
+        self.check_reached(noisefloor.pointer(values + 0))
 
 
 class TrainingTest(unittest.TestCase):

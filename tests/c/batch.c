@@ -232,7 +232,7 @@ static void errors(estimate_function call, uint32_t estimator, uint32_t precisio
     for (i = 0; i < N; i += N - 1) {
         saved = f[i];
         f[i] = not_a_number();
-        CHECK_REFUSED(call(&config, u, f, N, work.start, bytes, &out), NF_ERR_NOT_FINITE, out);
+        CHECK_NAN_REFUSED(call(&config, u, f, N, work.start, bytes, &out), out);
         f[i] = -infinity_f();
         CHECK_REFUSED(call(&config, u, f, N, work.start, bytes, &out), NF_ERR_NOT_FINITE, out);
         config.nonfinite = NF_NONFINITE_SKIP;

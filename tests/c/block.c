@@ -102,7 +102,7 @@ static void errors(void)
     /* The last sample of the last pixel: nothing of the first pixels may have been written by then. */
     saved = f[PIXELS * N - 1];
     f[PIXELS * N - 1] = not_a_number();
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, bytes, out), NF_ERR_NOT_FINITE, out);
+    CHECK_NAN_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, bytes, out), out);
     f[PIXELS * N - 1] = saved;
     saved = u[PIXELS * N * 2 - 1];
     u[PIXELS * N * 2 - 1] = 1.5f;

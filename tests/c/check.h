@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int nf_checks, nf_failures;
+static int nf_checks, nf_failures, nf_left_out;
 
 static inline void check_at(int condition, const char *text, const char *file, int line)
 {
@@ -44,9 +44,22 @@ static inline void check_status_at(nf_status actual, nf_status expected, const c
         check_at(is_poisoned(&(out), sizeof(out)), "outputs untouched: " #call, __FILE__, __LINE__); \
     } while (0)
 
+/* The same with NF_ERR_NOT_FINITE, for a NaN that the library finds by comparing vectors. Where NAN_TAKEN_FOR_FINITE is defined,
+ * because what emulates the processor gets that comparison wrong, these checks and no others are left out. */
+#ifdef NAN_TAKEN_FOR_FINITE
+#define CHECK_NAN_STATUS(call) ((void)++nf_left_out)
+#define CHECK_NAN_REFUSED(call, out) ((void)++nf_left_out)
+#else
+#define CHECK_NAN_STATUS(call) CHECK_STATUS(call, NF_ERR_NOT_FINITE)
+#define CHECK_NAN_REFUSED(call, out) CHECK_REFUSED(call, NF_ERR_NOT_FINITE, out)
+#endif
+
 static inline int report(const char *theme)
 {
-    printf("%-12s %d checks, %d failed\n", theme, nf_checks, nf_failures);
+    printf("%-12s %d checks, %d failed", theme, nf_checks, nf_failures);
+    if (nf_left_out > 0)
+        printf(", %d with NaN left out", nf_left_out);
+    printf("\n");
     return nf_failures == 0 ? 0 : 1;
 }
 

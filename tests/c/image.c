@@ -281,7 +281,7 @@ static void errors(void)
     /* Samples: the last of the last pixel. */
     saved = f[PIXELS * N - 1];
     f[PIXELS * N - 1] = not_a_number();
-    REFUSED(NF_ERR_NOT_FINITE);
+    CHECK_NAN_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), out);
     f[PIXELS * N - 1] = saved;
     saved = u[PIXELS * N * 2 - 1];
     u[PIXELS * N * 2 - 1] = 1.5f;

@@ -224,7 +224,7 @@ static void errors(void)
     CHECK_STATUS(nf_table_update(&table, index, value, 4, 0.0f), NF_ERR_RANGE);
     CHECK_STATUS(nf_table_append(&table, value, 4), NF_ERR_RANGE);
     value[3] = nan;
-    CHECK_STATUS(nf_table_update(&table, index, value, 4, 0.0f), NF_ERR_NOT_FINITE);
+    CHECK_NAN_STATUS(nf_table_update(&table, index, value, 4, 0.0f));
     CHECK_STATUS(nf_table_append(&table, value, 4), NF_ERR_NOT_FINITE);
     value[3] = infinite;
     CHECK_STATUS(nf_table_update(&table, index, value, 4, 0.0f), NF_ERR_NOT_FINITE);

@@ -136,8 +136,8 @@ fn executions(said: &str) -> Option<u64> {
     said.lines().find_map(|line| line.strip_prefix("stat::number_of_executed_units:")?.trim().parse().ok())
 }
 
-/// The triple that cargo-fuzz builds for.
-fn host() -> Result<String> {
+/// The triple that cargo and cargo-fuzz build for.
+pub(crate) fn host() -> Result<String> {
     let version = run::read(run::command("rustc").arg("-vV"))?;
     version.lines().find_map(|line| line.strip_prefix("host: ")).map(str::to_owned).context("rustc -vV names no host")
 }

@@ -25,6 +25,7 @@ mod report;
 mod run;
 mod targets;
 mod test;
+mod threads;
 mod tiles;
 mod tools;
 mod train_mlp;

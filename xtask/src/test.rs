@@ -2,7 +2,7 @@
 
 use crate::{
     abi, c_tests, embree, examples, fit, header, install, instructions, library, links, path_tracer, povray,
-    povray_patched, python, release, report, run, tools, train_mlp, valgrind,
+    povray_patched, python, release, report, run, threads, tools, train_mlp, valgrind,
 };
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -79,6 +79,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("threads under valgrind: an accumulator each is no race, a shared one is", || {
         valgrind::threads(&archive()?)
     });
+    steps.run("threads under ThreadSanitizer: the rules kept, each of them broken, and a renderer", threads::run);
     steps
         .run("C tests as C++17, including noisefloor.hpp", || c_tests::run(c_tests::Language::Cpp17, &[], &archive()?));
     steps.run("C++ wrapper, with and without exceptions", || c_tests::wrapper(&archive()?));

@@ -50,6 +50,16 @@ pub enum Solver {
 }
 
 /// What happens to a sample whose value or position is NaN or infinite.
+///
+/// ```
+/// use noisefloor::control_variate::{Config, NonFinite, Samples, estimate, workspace_len};
+///
+/// let config = Config { non_finite: NonFinite::Skip, ..Config::new(1, 1, 1) };
+/// let mut workspace = vec![0.0; workspace_len::<f64>(&config, 2)?];
+/// let samples = Samples::new(&[0.2, 0.6], &[1.0, f32::INFINITY]);
+/// assert_eq!(estimate(&config, samples, &mut workspace)?.samples, 1);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum NonFinite {
     /// The call fails with [`Error::NotFinite`].
@@ -60,6 +70,12 @@ pub enum NonFinite {
 }
 
 /// How the channels of a vector integrand are treated.
+///
+/// ```
+/// use noisefloor::control_variate::{Color, Config};
+/// let config = Config { color: Color::LuminanceRatio, ..Config::new(2, 2, 3) };
+/// # assert!(config.terms().is_ok());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Color {
     /// One factorisation, one right-hand side for each channel; each channel is as unbiased as the estimator.
@@ -70,6 +86,12 @@ pub enum Color {
 }
 
 /// The step rule of [`Estimator::GradientDescent`].
+///
+/// ```
+/// use noisefloor::control_variate::{Config, Estimator, Optimizer};
+/// let config = Config { estimator: Estimator::GradientDescent, optimizer: Optimizer::Adam, ..Config::new(2, 2, 1) };
+/// # assert!(config.terms().is_ok());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Optimizer {
     /// Heavy-ball momentum.
@@ -161,6 +183,12 @@ impl Config {
     pub const MAX_CHANNELS: usize = 4;
 
     /// The default estimator over `dims` coordinates, of total degree `order`, for `channels` values.
+    ///
+    /// ```
+    /// use noisefloor::control_variate::{Config, Estimator};
+    /// let config = Config::new(3, 2, 1);
+    /// assert_eq!((config.estimator, config.terms()), (Estimator::Robust, Ok(10)));
+    /// ```
     #[inline]
     pub const fn new(dims: usize, order: usize, channels: usize) -> Self {
         Self {

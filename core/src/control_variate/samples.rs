@@ -36,6 +36,12 @@ pub struct Samples<'a> {
 
 impl<'a> Samples<'a> {
     /// Samples without control functions.
+    ///
+    /// ```
+    /// use noisefloor::control_variate::Samples;
+    /// let samples = Samples::new(&[0.1, 0.7, 0.5, 0.2], &[1.0, 3.0]); // two samples of two coordinates
+    /// assert!(samples.controls.is_empty());
+    /// ```
     #[inline]
     pub const fn new(u: &'a [f32], f: &'a [f32]) -> Self {
         Self { u, f, controls: &[], control_integrals: &[] }

@@ -42,6 +42,11 @@ pub struct System {
 
 impl System {
     /// No batches yet. A number of techniques outside 1..=16 fits no batch.
+    ///
+    /// ```
+    /// use noisefloor::minibatch::{Gradient, System, gradient_len};
+    /// assert!(Gradient::resume([0.0; gradient_len(2, 1)], System::new(2), 1).is_ok());
+    /// ```
     pub const fn new(techniques: usize) -> System {
         System {
             techniques,

@@ -126,6 +126,16 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     /// Takes up the sums that `memory` already holds, made earlier with the same `counts` and `integrals`.
     ///
     /// Errors: as for [`OptimalMis::new`].
+    ///
+    /// ```
+    /// use noisefloor::mis::{self, OptimalMis};
+    ///
+    /// let mut sums = [0.0; mis::len(2, 1)];
+    /// OptimalMis::new(&mut sums[..], &[1, 1], 1)?.add(0, &[1.0, 0.5], &[3.0])?;
+    /// let mut omis = OptimalMis::resume(&mut sums[..], &[1, 1], 1)?; // the sample is in the sums
+    /// omis.add(1, &[1.0, 1.5], &[4.0])?;
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn resume(memory: M, counts: &[u32], integrals: usize) -> Result<Self, Error> {
         let needed = len(counts.len(), integrals);
         if needed == 0 || counts.contains(&0) {
@@ -140,11 +150,23 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     }
 
     /// The number of techniques J.
+    ///
+    /// ```
+    /// use noisefloor::mis::{self, OptimalMis};
+    /// assert_eq!(OptimalMis::new([0.0; mis::len(2, 3)], &[1, 4], 3)?.techniques(), 2);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn techniques(&self) -> usize {
         self.techniques
     }
 
     /// The number of integrals P.
+    ///
+    /// ```
+    /// use noisefloor::mis::{self, OptimalMis};
+    /// assert_eq!(OptimalMis::new([0.0; mis::len(2, 3)], &[1, 4], 3)?.integrals(), 3);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn integrals(&self) -> usize {
         self.integrals
     }
@@ -255,6 +277,12 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     ///
     /// Errors: [`Error::Range`] unless there are 1..=16 counts, all at least 1, and at least one integral;
     /// [`Error::Memory`] for less than [`len`]`(counts.len(), integrals)` elements of memory.
+    ///
+    /// ```
+    /// use noisefloor::mis::{self, OptimalMis};
+    /// assert!(OptimalMis::new([0.0; mis::len(2, 3)], &[1, 4], 3).is_ok());
+    /// assert!(OptimalMis::new([0.0; mis::len(2, 3)], &[1, 0], 3).is_err()); // a technique that draws nothing
+    /// ```
     pub fn new(memory: M, counts: &[u32], integrals: usize) -> Result<Self, Error> {
         let mut omis = OptimalMis::resume(memory, counts, integrals)?;
         omis.reset();
@@ -262,6 +290,16 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     }
 
     /// Forgets every sample, and the progressive estimator's alpha.
+    ///
+    /// ```
+    /// use noisefloor::mis::{self, OptimalMis};
+    /// let mut omis = OptimalMis::new([0.0; mis::len(1, 1)], &[1], 1)?;
+    /// let empty = omis.clone();
+    /// omis.add(0, &[1.0], &[3.0])?;
+    /// omis.reset();
+    /// assert_eq!(omis, empty);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn reset(&mut self) {
         self.memory.as_mut().fill(0.0);
     }
@@ -272,6 +310,14 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// Errors, which leave the sums as they were: [`Error::Range`] for wrong lengths, a technique that does not exist, a
     /// negative density, or a density of 0 for the technique that drew the sample; [`Error::NotFinite`] for NaN or
     /// infinity among the densities (combine delta distributions outside) or values.
+    ///
+    /// ```
+    /// use noisefloor::mis::{self, OptimalMis};
+    /// let mut omis = OptimalMis::new([0.0; mis::len(2, 1)], &[1, 1], 1)?;
+    /// omis.add(0, &[1.0, 0.5], &[0.0])?; // f = 0 says something about the densities too
+    /// assert!(omis.add(1, &[1.0, 0.0], &[3.0]).is_err()); // drawn with a density of 0
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn add(&mut self, technique: usize, pdf: &[f32], value: &[f32]) -> Result<(), Error> {
         let techniques = self.techniques;
         if pdf.len() != techniques || value.len() != self.integrals {

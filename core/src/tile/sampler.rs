@@ -69,24 +69,66 @@ impl<'a> Sampler<'a> {
     ///
     /// Frames 0 to `frames - 1` are the tile's (a tile that is not temporal has one). Each later run of them is the tile at
     /// another place, unrelated to it.
+    ///
+    /// ```
+    /// use noisefloor::tile::{Sampler, Shape, Tile};
+    ///
+    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+    /// let tile = Tile::new(shape, &payload)?;
+    /// assert_eq!(Sampler::pixel(&tile, 3, 2, 0, 0), Sampler::pixel(&tile, 1, 0, 0, 0)); // modulo 2 pixels
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline]
     pub const fn pixel(tile: &'a Tile<'a>, x: u32, y: u32, frame: u32, index: u32) -> Sampler<'a> {
         Sampler { tile, state: State::pixel(tile, x, y, frame, index) }
     }
 
     /// The sampler of a state that was kept: [`Sampler::state`].
+    ///
+    /// ```
+    /// use noisefloor::tile::{Sampler, Shape, Tile};
+    ///
+    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+    /// let tile = Tile::new(shape, &payload)?;
+    /// let sampler = Sampler::pixel(&tile, 1, 0, 0, 0).domain(7);
+    /// assert_eq!(Sampler::resume(&tile, sampler.state()), sampler);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline]
     pub const fn resume(tile: &'a Tile<'a>, state: State) -> Sampler<'a> {
         Sampler { tile, state }
     }
 
     /// What remains when the tile is known.
+    ///
+    /// ```
+    /// use noisefloor::tile::{Sampler, Shape, Tile};
+    ///
+    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+    /// let tile = Tile::new(shape, &payload)?;
+    /// let state = Sampler::pixel(&tile, 3, 2, 0, 5).state();
+    /// assert_eq!((state.x, state.y, state.index), (1, 0, 5));
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline]
     pub const fn state(&self) -> State {
         self.state
     }
 
     /// The tile it draws from.
+    ///
+    /// ```
+    /// use noisefloor::tile::{Sampler, Shape, Tile};
+    ///
+    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+    /// let tile = Tile::new(shape, &payload)?;
+    /// assert_eq!(Sampler::pixel(&tile, 1, 0, 0, 0).tile().shape(), shape);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline]
     pub const fn tile(&self) -> &'a Tile<'a> {
         self.tile
@@ -162,6 +204,17 @@ impl<'a> Sampler<'a> {
     /// Up to the tile's dims they are optimised together; further ones come from other places of the tile. If it has at least two
     /// dimensions and samples, and is not progressive, each further coordinate of its samples is stratified, and the third of a tile of two
     /// dimensions with those two, as far as the samples are in the order in which `fsot` writes them.
+    ///
+    /// ```
+    /// use noisefloor::tile::{Sampler, Shape, Tile};
+    ///
+    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+    /// let tile = Tile::new(shape, &payload)?;
+    /// let [x, y] = Sampler::pixel(&tile, 1, 1, 0, 0).draw();
+    /// assert_eq!([x, y], [192.5 / 256.0, 128.5 / 256.0]);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline(always)]
     pub fn draw<const N: usize>(&self) -> [f32; N] {
         let mut u = [0.0; N];
@@ -222,6 +275,16 @@ impl<'a> Sampler<'a> {
 
 impl State {
     /// [`Sampler::pixel`].
+    ///
+    /// ```
+    /// use noisefloor::tile::{Sampler, Shape, State, Tile};
+    ///
+    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+    /// let tile = Tile::new(shape, &payload)?;
+    /// assert_eq!(State::pixel(&tile, 1, 0, 0, 0), Sampler::pixel(&tile, 1, 0, 0, 0).state());
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline(always)]
     pub const fn pixel(tile: &Tile<'_>, x: u32, y: u32, frame: u32, index: u32) -> State {
         let shape = tile.shape();
@@ -232,6 +295,16 @@ impl State {
     }
 
     /// [`Sampler::domain`].
+    ///
+    /// ```
+    /// use noisefloor::tile::{Sampler, Shape, State, Tile};
+    ///
+    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+    /// let tile = Tile::new(shape, &payload)?;
+    /// assert_eq!(State::default().domain(7), Sampler::pixel(&tile, 0, 0, 0, 0).domain(7).state());
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline(always)]
     #[must_use]
     pub const fn domain(self, key: u32) -> State {
@@ -239,6 +312,16 @@ impl State {
     }
 
     /// [`Sampler::scramble`].
+    ///
+    /// ```
+    /// use noisefloor::tile::{Sampler, Shape, State, Tile};
+    ///
+    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
+    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
+    /// let tile = Tile::new(shape, &payload)?;
+    /// assert_eq!(State::default().scramble(7), Sampler::pixel(&tile, 0, 0, 0, 0).scramble(7).state());
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline(always)]
     #[must_use]
     pub const fn scramble(self, seed: u32) -> State {

@@ -7,9 +7,13 @@ use std::fs;
 /// The end of the declarations: what follows only asserts.
 const ASSERTS: &str = "/* Layouts:";
 
+#[derive(Default)]
 pub(crate) struct Header {
     functions: Vec<Function>,
     pub(super) structs: Vec<Struct>,
+    /// Name, and the number that it is.
+    pub(super) typedefs: Vec<(String, String)>,
+    opaque: Vec<String>,
     constants: Vec<(String, String)>,
     /// Everything from [`ASSERTS`] on.
     asserts: String,
@@ -37,26 +41,26 @@ impl Header {
 
     fn parse(text: &str) -> Result<Self> {
         let (text, asserts) = text.split_once(ASSERTS).with_context(|| format!("the header has no `{ASSERTS}`"))?;
-        let (mut functions, mut structs, mut constants) = (Vec::new(), Vec::new(), Vec::new());
+        let mut header = Self { asserts: asserts.to_owned(), ..Self::default() };
         let mut statement = String::new();
         // Of the comments only the one at the top has lines that could be taken for code; those of the others begin with an
         // asterisk, which no declaration does.
         let (_, text) = text.split_once("*/").context("the header does not begin with a comment")?;
         for line in text.lines().map(str::trim) {
             if let Some((name, value)) = line.strip_prefix("#define NF_").and_then(|rest| rest.split_once(' ')) {
-                constants.push((format!("NF_{name}"), number(value)?));
+                header.constants.push((format!("NF_{name}"), number(value)?));
             } else if !line.is_empty() && !["//", "/*", "*", "#"].iter().any(|start| line.starts_with(start)) {
                 statement = format!("{statement} {line}").trim().to_owned();
                 let open = statement.matches('{').count() > statement.matches('}').count();
                 if statement.ends_with('{') && statement.starts_with("extern") {
                     statement.clear();
                 } else if statement.ends_with(';') && !open {
-                    declaration(&statement, &mut functions, &mut structs)?;
+                    header.declare(&statement)?;
                     statement.clear();
                 }
             }
         }
-        Ok(Self { functions, structs, constants, asserts: asserts.to_owned() })
+        Ok(header)
     }
 
     /// NF_ABI_VERSION.
@@ -69,16 +73,56 @@ impl Header {
         self.functions.iter().map(|function| function.name.as_str())
     }
 
-    /// The list's lines of functions and constants, in the header's order.
+    /// Keeps one declaration, up to its semicolon.
+    fn declare(&mut self, text: &str) -> Result<()> {
+        let text = text.trim_end_matches(';');
+        if let Some(rest) = text.strip_prefix("typedef ") {
+            return self.declare_type(rest);
+        }
+        let (before, parameters) =
+            text.split_once('(').with_context(|| format!("neither a type nor a function: {text}"))?;
+        let name = before.rsplit([' ', '*']).next().unwrap_or_default();
+        if !name.starts_with("nf_") {
+            bail!("the header declares `{name}`, which does not begin with nf_");
+        }
+        let parameters: Vec<_> =
+            parameters.trim_end_matches(')').split(',').map(|one| without_name(one.trim())).collect();
+        let prototype = format!("{before}({})", parameters.join(", "));
+        self.functions.push(Function { name: name.to_owned(), prototype });
+        Ok(())
+    }
+
+    /// Keeps a struct with its fields, an opaque one, or a number's other name.
+    fn declare_type(&mut self, text: &str) -> Result<()> {
+        if text.starts_with("enum ") {
+            bail!("the header has an enum, whose width the compiler chooses: make it a number and constants: {text}");
+        }
+        if let Some((_, rest)) = text.split_once('{') {
+            let (fields, name) = rest.rsplit_once('}').with_context(|| format!("a struct without end: {text}"))?;
+            let fields = fields.split(';').map(str::trim).filter(|field| !field.is_empty());
+            let fields = fields.map(field).collect::<Result<_>>()?;
+            self.structs.push(Struct { name: name.trim().to_owned(), fields });
+        } else if let Some(rest) = text.strip_prefix("struct ") {
+            self.opaque.push(rest.split(' ').next_back().unwrap_or_default().to_owned());
+        } else {
+            let (kind, name) = text.rsplit_once(' ').with_context(|| format!("a type without a name: {text}"))?;
+            self.typedefs.push((name.to_owned(), kind.to_owned()));
+        }
+        Ok(())
+    }
+
+    /// The list's lines of functions, constants and opaque types, in the header's order.
     pub(super) fn lines(&self) -> Vec<String> {
         let functions = self.functions.iter().map(|function| format!("function {}", function.prototype));
         let constants = self.constants.iter().filter(|(name, _)| name != "NF_ABI_VERSION");
-        functions.chain(constants.map(|(name, value)| format!("constant {name} {value}"))).collect()
+        let constants = constants.map(|(name, value)| format!("constant {name} {value}"));
+        functions.chain(constants).chain(self.opaque.iter().map(|name| format!("opaque {name}"))).collect()
     }
 
-    /// Fails unless the header asserts every struct's size.
+    /// Fails unless the header asserts the size of every struct and of every other name of a number.
     pub(super) fn check_asserts(&self) -> Result<()> {
-        for Struct { name, .. } in &self.structs {
+        let structs = self.structs.iter().map(|one| &one.name);
+        for name in structs.chain(self.typedefs.iter().map(|(name, _)| name)) {
             if !self.asserts.contains(&format!("sizeof({name}) == ")) {
                 bail!("the header asserts nothing of sizeof({name}): add a line to capi/cbindgen.toml");
             }
@@ -94,31 +138,6 @@ fn number(text: &str) -> Result<String> {
         bail!("the header has a constant whose value is no number: {text}");
     }
     Ok(value)
-}
-
-/// Sorts one declaration, up to its semicolon, into functions and structs.
-fn declaration(text: &str, functions: &mut Vec<Function>, structs: &mut Vec<Struct>) -> Result<()> {
-    let text = text.trim_end_matches(';');
-    if let Some(rest) = text.strip_prefix("typedef ") {
-        // Without braces it is a number's other name, or an opaque type: prototypes say all that is promised of them.
-        if let Some((_, rest)) = rest.split_once('{') {
-            let (fields, name) = rest.rsplit_once('}').with_context(|| format!("a struct without end: {text}"))?;
-            let fields = fields.split(';').map(str::trim).filter(|field| !field.is_empty());
-            let fields = fields.map(field).collect::<Result<_>>()?;
-            structs.push(Struct { name: name.trim().to_owned(), fields });
-        }
-        return Ok(());
-    }
-    let (before, parameters) =
-        text.split_once('(').with_context(|| format!("neither a type nor a function: {text}"))?;
-    let name = before.rsplit([' ', '*']).next().unwrap_or_default();
-    if !name.starts_with("nf_") {
-        bail!("the header declares `{name}`, which does not begin with nf_");
-    }
-    let parameters: Vec<_> = parameters.trim_end_matches(')').split(',').map(|one| without_name(one.trim())).collect();
-    let prototype = format!("{before}({})", parameters.join(", "));
-    functions.push(Function { name: name.to_owned(), prototype });
-    Ok(())
 }
 
 /// `float mean[4]` is of type `float[4]`.
@@ -144,7 +163,7 @@ mod tests {
     const TEXT: &str = "/* Top.\n */\n#ifndef H\nextern \"C\" {\n// Of nf_x(int).\n#define NF_ABI_VERSION 3\n#define NF_E (-2)\n\
         typedef int32_t nf_status;\ntypedef struct nf_o nf_o;\ntypedef struct nf_s {\n    // A.\n    float mean[4];\n    \
         const void *p;\n} nf_s;\nconst char *nf_m(nf_status status);\nnf_s nf_f(const float *u,\n          size_t n);\n\
-        uint32_t nf_v(void);\n/* Layouts: */\nA(sizeof(nf_s) == 24)\n";
+        uint32_t nf_v(void);\n/* Layouts: */\nA(sizeof(nf_s) == 24)\nA(sizeof(nf_status) == 4)\n";
 
     #[test]
     fn functions_constants_and_structs_are_read() {
@@ -156,12 +175,18 @@ mod tests {
             "function nf_s nf_f(const float *, size_t)",
             "function uint32_t nf_v(void)",
             "constant NF_E -2",
+            "opaque nf_o",
         ];
         assert_eq!(header.lines(), lines);
+        assert_eq!(header.typedefs, [("nf_status".to_owned(), "int32_t".to_owned())]);
         assert_eq!(header.structs.len(), 1);
         let fields = [("float[4]", "mean"), ("const void *", "p")].map(|(a, b)| (a.to_owned(), b.to_owned()));
         assert_eq!(header.structs[0].fields, fields);
         header.check_asserts().unwrap();
-        assert!(Header::parse(&TEXT.replace("A(sizeof", "A(alignof")).unwrap().check_asserts().is_err());
+        for name in ["nf_s", "nf_status"] {
+            let text = TEXT.replace(&format!("A(sizeof({name})"), "A(alignof(x)");
+            assert!(Header::parse(&text).unwrap().check_asserts().is_err());
+        }
+        assert!(Header::parse(&TEXT.replace("struct nf_o nf_o", "enum nf_o { A } nf_o")).is_err());
     }
 }

@@ -6,9 +6,15 @@ use crate::run;
 use anyhow::{Context, Result};
 use std::fs;
 
-/// The list's lines of structs and their fields.
+/// The list's lines of numbers' other names, and of structs and their fields.
 pub(super) fn measure(header: &Header) -> Result<Vec<String>> {
     let mut program = String::from("#include \"noisefloor.h\"\n#include <stdio.h>\nint main(void) {\n");
+    for (name, kind) in &header.typedefs {
+        program += &format!(
+            "printf(\"typedef {name}: size %zu, alignment %zu, %s, {kind}\\n\", sizeof({name}), (size_t)_Alignof({name}), \
+             ({name})-1 < 0 ? \"signed\" : \"unsigned\");\n"
+        );
+    }
     for one in &header.structs {
         let name = &one.name;
         program += &format!(

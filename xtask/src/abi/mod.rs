@@ -1,4 +1,4 @@
-//! capi/abi.txt: every function, struct layout and constant of the C ABI, so that no change of them goes unseen.
+//! capi/abi.txt: every function, type, layout and constant of the C ABI, so that no change of them goes unseen.
 
 mod header;
 mod layout;

@@ -127,6 +127,19 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     }
 
     /// [`Table::draw`] by another [`Kernel`]: the same bits.
+    ///
+    /// ```
+    /// use noisefloor::minibatch::table::Portable;
+    /// use noisefloor::minibatch::{Table, table};
+    /// use noisefloor::rng::Rng;
+    ///
+    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+    /// let (mut index, mut again) = ([0; 8], [0; 8]);
+    /// table.draw(&mut Rng::seed(1), &mut index, None)?;
+    /// table.draw_by::<Portable>(&mut Rng::seed(1), &mut again, None)?;
+    /// assert_eq!(index, again);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline(always)]
     pub fn draw_by<K: Kernel>(
         &self,
@@ -178,6 +191,19 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     }
 
     /// [`Table::draw_stratified`] by another [`Kernel`]: the same bits.
+    ///
+    /// ```
+    /// use noisefloor::minibatch::table::Portable;
+    /// use noisefloor::minibatch::{Table, table};
+    /// use noisefloor::rng::Rng;
+    ///
+    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+    /// let (mut index, mut again) = ([0; 8], [0; 8]);
+    /// table.draw_stratified(&mut Rng::seed(1), &mut index, None)?;
+    /// table.draw_stratified_by::<Portable>(&mut Rng::seed(1), &mut again, None)?;
+    /// assert_eq!(index, again);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline(always)]
     pub fn draw_stratified_by<K: Kernel>(
         &self,

@@ -32,6 +32,19 @@ pub trait Kernel {
 }
 
 /// Plain Rust.
+///
+/// ```
+/// use noisefloor::minibatch::table::Portable;
+/// use noisefloor::minibatch::{Table, table};
+/// use noisefloor::rng::Rng;
+///
+/// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+/// let (mut index, mut again) = ([0; 8], [0; 8]);
+/// table.draw(&mut Rng::seed(1), &mut index, None)?;
+/// table.draw_by::<Portable>(&mut Rng::seed(1), &mut again, None)?; // what `draw` does
+/// assert_eq!(index, again);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Portable;
 

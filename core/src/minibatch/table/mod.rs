@@ -141,16 +141,40 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     }
 
     /// What is needed to take up the memory again.
+    ///
+    /// ```
+    /// use noisefloor::minibatch::{Table, table};
+    ///
+    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+    /// assert_eq!(table.state().items, 4);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn state(&self) -> State {
         self.state
     }
 
     /// The number of items N.
+    ///
+    /// ```
+    /// use noisefloor::minibatch::{Table, table};
+    ///
+    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+    /// assert_eq!(table.items(), 4);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn items(&self) -> u32 {
         self.state.items
     }
 
     /// How many items there is room for.
+    ///
+    /// ```
+    /// use noisefloor::minibatch::{Table, table};
+    ///
+    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+    /// assert_eq!(table.capacity(), 16); // a block
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn capacity(&self) -> u32 {
         u32::try_from(self.blocks * ARITY).unwrap_or(u32::MAX)
     }

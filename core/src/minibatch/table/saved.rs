@@ -87,6 +87,17 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     ///
     /// Errors, before which no memory is touched: [`Error::Foreign`] for other bytes, [`Error::Version`],
     /// [`Error::Length`], [`Error::Corrupt`] if they are damaged; [`Error::Memory`].
+    ///
+    /// ```
+    /// use noisefloor::minibatch::{Table, table};
+    ///
+    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+    /// let mut bytes = vec![0; table::saved_len(table.items())];
+    /// table.save(&mut bytes)?;
+    /// let loaded = Table::load([0.0; table::importance_len(4)], [0; table::sums_len(4)], &bytes)?;
+    /// assert_eq!(loaded.importance(3), 4.0);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn load(importance: I, sums: S, bytes: &[u8]) -> Result<Self, Error> {
         let mut table = Table::resume(importance, sums, check(bytes)?)?;
         let memory = table.importance.as_mut();

@@ -26,6 +26,13 @@ impl Shard {
     ///
     /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative sum or 2^53 items or more; [`Error::NoSamples`] if there is no
     /// item.
+    ///
+    /// ```
+    /// use noisefloor::Error;
+    /// use noisefloor::minibatch::table::Shard;
+    /// assert_eq!(Shard::sum([Shard { importance: -1.0, items: 10 }]), Err(Error::Range));
+    /// assert_eq!(Shard::sum([]), Err(Error::NoSamples));
+    /// ```
     pub fn sum(shards: impl IntoIterator<Item = Shard>) -> Result<Shard, Error> {
         let mut all = Shard::default();
         for shard in shards {
@@ -117,6 +124,14 @@ pub fn allocate(
 
 impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// What other processes must know of this table.
+    ///
+    /// ```
+    /// use noisefloor::minibatch::{Table, table};
+    ///
+    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+    /// assert_eq!(table.shard(), table::Shard { importance: 10.0, items: 4 });
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     pub fn shard(&self) -> Shard {
         Shard { importance: self.total(), items: u64::from(self.state.items) }
     }
@@ -156,6 +171,19 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     }
 
     /// [`Table::draw_shard`] by another [`Kernel`]: the same bits.
+    ///
+    /// ```
+    /// use noisefloor::minibatch::table::Portable;
+    /// use noisefloor::minibatch::{Table, table};
+    /// use noisefloor::rng::Rng;
+    ///
+    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+    /// let (all, mut index, mut again) = (table.shard(), [0; 8], [0; 8]);
+    /// table.draw_shard(&all, &mut Rng::seed(1), &mut index, None)?;
+    /// table.draw_shard_by::<Portable>(&all, &mut Rng::seed(1), &mut again, None)?;
+    /// assert_eq!(index, again);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline(always)]
     pub fn draw_shard_by<K: Kernel>(
         &self,

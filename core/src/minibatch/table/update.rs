@@ -39,6 +39,16 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     }
 
     /// [`Table::update`] by another [`Kernel`]: the same bits.
+    ///
+    /// ```
+    /// use noisefloor::minibatch::table::Portable;
+    /// use noisefloor::minibatch::{Table, table};
+    ///
+    /// let mut table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+    /// table.update_by::<Portable>(&[0], &[5.0], 0.0)?;
+    /// assert_eq!(table.importance(0), 5.0);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline(always)]
     pub fn update_by<K: Kernel>(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
         check_importances(importance)?;
@@ -125,6 +135,16 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     }
 
     /// [`Table::add_epsilon`] by another [`Kernel`]: the same bits.
+    ///
+    /// ```
+    /// use noisefloor::minibatch::table::Portable;
+    /// use noisefloor::minibatch::{Table, table};
+    ///
+    /// let mut table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+    /// table.add_epsilon_by::<Portable>(0.5)?;
+    /// assert_eq!(table.importance(0), 1.5);
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
     #[inline(always)]
     pub fn add_epsilon_by<K: Kernel>(&mut self, epsilon: f32) -> Result<(), Error> {
         check_importances(&[epsilon])?;
