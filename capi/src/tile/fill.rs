@@ -53,17 +53,19 @@ pub unsafe extern "C" fn nf_sampler_fill(
             return Err(NF_ERR_MEMORY);
         }
         // SAFETY: the caller passes room for `len` numbers, which are no fewer.
-        let mut rest = unsafe { convert::slice_mut(u, needed) }?;
-        for (y, x, sample) in places(width, height, samples) {
-            for (sampler, &dims) in samplers.iter().zip(dims) {
-                let Some((u, more)) = core::mem::take(&mut rest).split_at_mut_checked(dims as usize) else {
-                    return Ok(());
-                };
-                rest = more;
-                // SAFETY: the caller passes samplers whose tiles, checked by nf_sampler_pixel, are NULL or live.
-                match unsafe { core_view(sampler.tile) } {
-                    Some(tile) => Sampler::resume(&tile, state(sampler)).moved(x, y, sample).draw_into(u),
-                    None => u.fill(0.0),
+        let u = unsafe { convert::slice_mut(u, needed) }?;
+        // The compiler does not know that none of these is zero.
+        let row = needed.checked_div(height as usize).unwrap_or(needed).max(1);
+        let pixel = row.checked_div(width as usize).unwrap_or(row).max(1);
+        let sample = pixel.checked_div(samples as usize).unwrap_or(pixel);
+        for (row, y) in u.chunks_exact_mut(row).zip(0..) {
+            for (pixel, x) in row.chunks_exact_mut(pixel).zip(0..) {
+                let mut from = 0_usize;
+                for (sampler, &dims) in samplers.iter().zip(dims) {
+                    let Some(u) = pixel.get_mut(from..) else { return Ok(()) };
+                    // SAFETY: the caller passes samplers whose tiles, checked by nf_sampler_pixel, are NULL or live.
+                    unsafe { samples_of(sampler, x, y, dims as usize, sample, u) };
+                    from = from.saturating_add(dims as usize);
                 }
             }
         }
@@ -71,8 +73,17 @@ pub unsafe extern "C" fn nf_sampler_fill(
     })())
 }
 
-fn places(width: u32, height: u32, samples: u32) -> impl Iterator<Item = (u32, u32, u32)> {
-    (0..height).flat_map(move |y| (0..width).flat_map(move |x| (0..samples).map(move |sample| (y, x, sample))))
+/// One domain of one pixel: `dims` numbers of each sample, every `stride`.
+///
+/// # Safety
+/// The sampler's tile must be NULL or live.
+#[inline(always)]
+unsafe fn samples_of(sampler: &nf_sampler, x: u32, y: u32, dims: usize, stride: usize, u: &mut [f32]) {
+    // SAFETY: passed on to the caller.
+    match unsafe { core_view(sampler.tile) } {
+        Some(tile) => Sampler::resume(&tile, state(sampler)).moved(x, y, 0).draw_samples(dims, stride, u),
+        None => u.chunks_mut(stride.max(1)).filter_map(|u| u.get_mut(..dims)).for_each(|u| u.fill(0.0)),
+    }
 }
 
 fn len(dims: &[u32], width: u32, height: u32, samples: u32) -> Option<usize> {

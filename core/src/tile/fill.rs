@@ -56,15 +56,19 @@ pub fn fill(
     if len == 0 {
         return Ok(());
     }
-    let mut rest = u.get_mut(..len).ok_or(Error::Memory)?;
-    for y in 0..height {
-        for x in 0..width {
-            for sample in 0..samples {
-                for &(sampler, dims) in domains {
-                    let Some((u, more)) = core::mem::take(&mut rest).split_at_mut_checked(dims) else { return Ok(()) };
-                    rest = more;
-                    sampler.moved(x as u32, y as u32, sample as u32).draw_into(u);
+    let u = u.get_mut(..len).ok_or(Error::Memory)?;
+    // The compiler does not know that none of these is zero.
+    let row = len.checked_div(height).unwrap_or(len).max(1);
+    let pixel = row.checked_div(width).unwrap_or(row).max(1);
+    let sample = pixel.checked_div(samples).unwrap_or(pixel);
+    for (row, y) in u.chunks_exact_mut(row).zip(0_u32..) {
+        for (pixel, x) in row.chunks_exact_mut(pixel).zip(0_u32..) {
+            let mut from = 0_usize;
+            for &(sampler, dims) in domains {
+                if let Some(u) = pixel.get_mut(from..) {
+                    sampler.moved(x, y, 0).draw_samples(dims, sample, u);
                 }
+                from = from.saturating_add(dims);
             }
         }
     }

@@ -29,18 +29,53 @@ pub(super) const fn child(domain: u32, key: u32) -> u32 {
 pub(super) fn permute(index: u32, bits: u32, random: u32) -> u32 {
     let mask = (1_u32 << (bits & 15)) - 1;
     let scale = (((random >> 16) * mask) >> 16) + 1;
-    // x^bits = POLYNOMIAL(x): irreducible.
-    let polynomial = POLYNOMIALS.get(bits as usize).copied().unwrap_or(0);
-    let (mut product, mut power) = (0, scale);
-    for bit in 0..bits {
-        product ^= power & (index >> (bit & 7) & 1).wrapping_neg();
-        power = (power << 1) ^ (polynomial & (power >> ((bits - 1) & 7) & 1).wrapping_neg());
-    }
+    // A look-up where tiles have few samples, as most have.
+    let small = PRODUCTS.get(bits as usize).and_then(|of| of.get((scale << 4 | index) as usize));
+    let product = small.map_or_else(|| product_by_bits(scale, index, bits), |&product| u32::from(product));
     (product ^ random) & mask
+}
+
+/// [`product`], of fields without a table: apart, so that callers stay small.
+#[inline(never)]
+fn product_by_bits(a: u32, b: u32, bits: u32) -> u32 {
+    product(a, b, bits)
+}
+
+/// The product in the field of 2^bits elements.
+#[inline(always)]
+const fn product(a: u32, b: u32, bits: u32) -> u32 {
+    // x^bits = POLYNOMIAL(x): irreducible.
+    let polynomial = POLYNOMIALS[if bits < 8 { bits } else { 8 } as usize];
+    let (mut product, mut power, mut bit) = (0, a, 0);
+    while bit < bits {
+        product ^= power & (b >> (bit & 7) & 1).wrapping_neg();
+        power = (power << 1) ^ (polynomial & (power >> (bits.wrapping_sub(1) & 7) & 1).wrapping_neg());
+        bit += 1;
+    }
+    product
 }
 
 /// An irreducible polynomial over the field of two elements for each degree, x^degree included.
 static POLYNOMIALS: [u32; 9] = [0, 0b11, 0b111, 0b1011, 0b1_0011, 0b10_0101, 0b100_0011, 0b1000_0011, 0b1_0001_1011];
+
+/// All products in the fields of 1, 2, 4, 8 and 16 elements: of a and b at 16 a + b.
+static PRODUCTS: [[u8; 256]; 5] = {
+    let mut products = [[0; 256]; 5];
+    let mut bits = 1;
+    while bits < 5 {
+        let (elements, mut a) = (1 << bits, 0);
+        while a < elements {
+            let mut b = 0;
+            while b < elements {
+                products[bits as usize][(a << 4 | b) as usize] = product(a, b, bits) as u8;
+                b += 1;
+            }
+            a += 1;
+        }
+        bits += 1;
+    }
+    products
+};
 
 /// As [`permute`], within each octave `[2^k, 2^(k + 1))`: the first 1, 2, 4, ... samples remain those.
 #[inline(always)]
