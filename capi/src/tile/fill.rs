@@ -53,20 +53,16 @@ pub unsafe extern "C" fn nf_sampler_fill(
             return Err(NF_ERR_MEMORY);
         }
         // SAFETY: the caller passes room for `len` numbers, which are no fewer.
-        let u = unsafe { convert::slice_mut(u, needed) }?;
-        // The compiler does not know that none of these is zero.
-        let row = needed.checked_div(height as usize).unwrap_or(needed).max(1);
-        let pixel = row.checked_div(width as usize).unwrap_or(row).max(1);
-        let sample = pixel.checked_div(samples as usize).unwrap_or(pixel);
-        for (row, y) in u.chunks_exact_mut(row).zip(0..) {
-            for (pixel, x) in row.chunks_exact_mut(pixel).zip(0..) {
-                let mut from = 0_usize;
-                for (sampler, &dims) in samplers.iter().zip(dims) {
-                    let Some(u) = pixel.get_mut(from..) else { return Ok(()) };
-                    // SAFETY: the caller passes samplers whose tiles, checked by nf_sampler_pixel, are NULL or live.
-                    unsafe { samples_of(sampler, x, y, dims as usize, sample, u) };
-                    from = from.saturating_add(dims as usize);
-                }
+        let mut rest = unsafe { convert::slice_mut(u, needed) }?;
+        let sample = dims.iter().fold(0_usize, |sum, &dims| sum.wrapping_add(dims as usize));
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            let split = core::mem::take(&mut rest).split_at_mut_checked(sample.wrapping_mul(samples as usize));
+            let Some((mut pixel, more)) = split else { return Ok(()) };
+            rest = more;
+            for (sampler, &dims) in samplers.iter().zip(dims) {
+                // SAFETY: the caller passes samplers whose tiles, checked by nf_sampler_pixel, are NULL or live.
+                unsafe { samples_of(sampler, x, y, dims as usize, sample, pixel) };
+                pixel = pixel.get_mut(dims as usize..).unwrap_or_default();
             }
         }
         Ok(())

@@ -56,19 +56,16 @@ pub fn fill(
     if len == 0 {
         return Ok(());
     }
-    let u = u.get_mut(..len).ok_or(Error::Memory)?;
-    // The compiler does not know that none of these is zero.
-    let row = len.checked_div(height).unwrap_or(len).max(1);
-    let pixel = row.checked_div(width).unwrap_or(row).max(1);
-    let sample = pixel.checked_div(samples).unwrap_or(pixel);
-    for (row, y) in u.chunks_exact_mut(row).zip(0_u32..) {
-        for (pixel, x) in row.chunks_exact_mut(pixel).zip(0_u32..) {
-            let mut from = 0_usize;
+    let mut rest = u.get_mut(..len).ok_or(Error::Memory)?;
+    let sample = domains.iter().fold(0_usize, |sum, &(_, dims)| sum.wrapping_add(dims));
+    for y in 0..height {
+        for x in 0..width {
+            let split = core::mem::take(&mut rest).split_at_mut_checked(sample.wrapping_mul(samples));
+            let Some((mut pixel, more)) = split else { return Ok(()) };
+            rest = more;
             for &(sampler, dims) in domains {
-                if let Some(u) = pixel.get_mut(from..) {
-                    sampler.moved(x, y, 0).draw_samples(dims, sample, u);
-                }
-                from = from.saturating_add(dims);
+                sampler.moved(x as u32, y as u32, 0).draw_samples(dims, sample, pixel);
+                pixel = pixel.get_mut(dims..).unwrap_or_default();
             }
         }
     }

@@ -21,18 +21,30 @@ pub(super) const fn child(domain: u32, key: u32) -> u32 {
     h + (h == 0) as u32
 }
 
-/// Where sample `index` of `2^bits` goes, bits at most 8: `a * index + b` in the field of 2^bits elements, for random
+/// Where sample `index` of `samples` goes, a power of two up to 256: `a * index + b` in the field of as many elements, for random
 /// b and a != 0. Of all affine bijections each is equally likely (to 2^-16), so that any two samples go to any two places with
 /// the same probability: what it takes for sums of products of two sampled domains to have the mean and the
 /// variance of random pairing.
 #[inline(always)]
-pub(super) fn permute(index: u32, bits: u32, random: u32) -> u32 {
-    let mask = (1_u32 << (bits & 15)) - 1;
-    let scale = (((random >> 16) * mask) >> 16) + 1;
-    // A look-up where tiles have few samples, as most have.
-    let small = PRODUCTS.get(bits as usize).and_then(|of| of.get((scale << 4 | index) as usize));
-    let product = small.map_or_else(|| product_by_bits(scale, index, bits), |&product| u32::from(product));
-    (product ^ random) & mask
+pub(super) fn permute(index: u32, samples: u32, random: u32) -> u32 {
+    permute_few(index, samples, random).unwrap_or_else(|| {
+        let (mask, scale) = mask_and_scale(samples, random);
+        (product_by_bits(scale, index, samples.trailing_zeros()) ^ random) & mask
+    })
+}
+
+/// [`permute`] by a look-up, for at most 16 samples.
+#[inline(always)]
+pub(super) fn permute_few(index: u32, samples: u32, random: u32) -> Option<u32> {
+    let (mask, scale) = mask_and_scale(samples, random);
+    let product = PRODUCTS.get(samples.trailing_zeros() as usize)?.get((scale << 4 | index) as usize)?;
+    Some((u32::from(*product) ^ random) & mask)
+}
+
+#[inline(always)]
+const fn mask_and_scale(samples: u32, random: u32) -> (u32, u32) {
+    let mask = samples.wrapping_sub(1) & 255;
+    (mask, ((random >> 16).wrapping_mul(mask) >> 16).wrapping_add(1))
 }
 
 /// [`product`], of fields without a table: apart, so that callers stay small.
@@ -80,14 +92,21 @@ static PRODUCTS: [[u8; 256]; 5] = {
 /// As [`permute`], within each octave `[2^k, 2^(k + 1))`: the first 1, 2, 4, ... samples remain those.
 #[inline(always)]
 pub(super) fn permute_octave(index: u32, random: u32) -> u32 {
-    match index.checked_ilog2() {
-        // Octaves are permuted independently.
-        Some(bits) => {
-            let first = 1 << (bits & 7);
-            first | permute(index ^ first, bits, mix(random.wrapping_add(GOLDEN.wrapping_mul(bits))))
-        }
-        None => index,
-    }
+    octave(index, random).map_or(index, |(first, random)| first | permute(index ^ first, first, random))
+}
+
+/// [`permute_octave`] by a look-up, for indices below 32.
+#[inline(always)]
+pub(super) fn permute_octave_few(index: u32, random: u32) -> Option<u32> {
+    let Some((first, random)) = octave(index, random) else { return Some(index) };
+    Some(first | permute_few(index ^ first, first, random)?)
+}
+
+/// The first index of an octave, which is as many as the octave has, and its random bits: octaves are permuted independently.
+#[inline(always)]
+fn octave(index: u32, random: u32) -> Option<(u32, u32)> {
+    let bits = index.checked_ilog2()?;
+    Some((1 << (bits & 7), mix(random.wrapping_add(GOLDEN.wrapping_mul(bits)))))
 }
 
 #[cfg(test)]
@@ -105,7 +124,7 @@ mod tests {
                 let high = ((u64::from(a) << 16) + (1 << 15)) / u64::from(n - 1);
                 for b in 0..n {
                     let random = (high as u32) << 16 | b;
-                    let (first, second) = (permute(0, bits, random), permute(n - 1, bits, random));
+                    let (first, second) = (permute(0, n, random), permute(n - 1, n, random));
                     assert!(first < n && second < n && first != second);
                     seen[(first * n + second) as usize] += 1;
                 }

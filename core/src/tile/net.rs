@@ -23,7 +23,7 @@ static ROWS: [[[u32; 4]; 2]; 5] = [
 #[inline(always)]
 pub(super) fn stratum(index: u32, bits: u32, number: u32, random: u32) -> u32 {
     if number > 0 && bits < 3 {
-        return permute(index, bits, random);
+        return permute(index, 1 << (bits & 3), random);
     }
     let top = if bits < 4 { bits } else { 4 };
     let leading = LEADING.get((number << 3 | top) as usize).map_or(0, |of| u32::from(of[index as usize & 15]));

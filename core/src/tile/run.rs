@@ -8,7 +8,7 @@ use super::view::unit;
 impl Sampler<'_> {
     /// Draws `dims` coordinates, 1 to 4, of this sample and of those that follow it: sample k's to `u[k * stride..]`, for as many
     /// samples as `u` has room for. The same bits as [`draw`](Sampler::draw) of each, at less cost: hashes are computed once.
-    /// Draws nothing for other `dims`, or if `stride` is less.
+    /// Draws nothing for other `dims`; a stride of less than `dims` is `dims`.
     ///
     /// ```
     /// use noisefloor::tile::{Sampler, Shape, Tile};
@@ -21,8 +21,15 @@ impl Sampler<'_> {
     /// assert_eq!(u[3][..2], sampler.moved(0, 0, 3).draw::<2>());
     /// # Ok::<(), noisefloor::Error>(())
     /// ```
+    #[inline(always)]
     pub fn draw_samples(&self, dims: usize, stride: usize, u: &mut [f32]) {
         match dims {
+            // One sample has nothing to share.
+            1..=4 if u.len() <= stride => {
+                if let Some(u) = u.get_mut(..dims) {
+                    self.draw_into(u);
+                }
+            }
             1 => self.run::<1>(stride, u),
             2 => self.run::<2>(stride, u),
             3 => self.run::<3>(stride, u),
@@ -31,27 +38,35 @@ impl Sampler<'_> {
         }
     }
 
-    #[inline]
+    #[inline(never)]
     fn run<const N: usize>(&self, stride: usize, u: &mut [f32]) {
-        let (tile, state, shape) = (self.tile(), self.state(), self.tile().shape());
-        let at = |k: usize| State { index: state.index.wrapping_add(k as u32), ..state };
-        let mut samples = u.chunks_mut(stride.max(1)).filter_map(<[f32]>::first_chunk_mut::<N>).zip(0_usize..);
-        let own = if state.scrambled == 0 { shape.spp.saturating_sub(state.index) as usize } else { 0 };
+        let (tile, shape) = (self.tile(), self.tile().shape());
+        let State { domain, index, scrambled, .. } = self.state();
+        let own = if scrambled == 0 { shape.spp.saturating_sub(index) } else { 0 };
+        let (stride, mut rest, mut k) = (stride.max(N), u, 0_u32);
         if N <= shape.dims as usize {
-            let site = Site::new(tile, &state);
-            for (u, k) in samples.by_ref().take(own) {
-                if !tile.values(site.at(shape, site.sample(shape, state.domain, at(k).index)), u) {
+            let site = Site::new(tile, &self.state());
+            while k < own
+                && let Some((u, _)) = rest.split_first_chunk_mut::<N>()
+            {
+                let sample = site.sample(shape, domain, index.wrapping_add(k));
+                if !tile.values(site.at(shape, sample), u) {
                     *u = [0.0; N];
                 }
+                (rest, k) = (rest.get_mut(stride..).unwrap_or_default(), k.wrapping_add(1));
             }
         } else if netted(shape, N) {
-            let net = Net::new::<N>(tile, &state);
-            for (u, k) in samples.by_ref().take(own) {
-                *u = net.point(tile, &at(k)).map(unit);
+            let net = Net::new::<N>(tile, &self.state());
+            while k < own
+                && let Some((u, _)) = rest.split_first_chunk_mut::<N>()
+            {
+                *u = net.point(tile, &self.moved(0, 0, k).state()).map(unit);
+                (rest, k) = (rest.get_mut(stride..).unwrap_or_default(), k.wrapping_add(1));
             }
         }
-        for (u, k) in samples {
-            *u = Sampler::resume(tile, at(k)).draw();
+        while let Some((u, _)) = rest.split_first_chunk_mut::<N>() {
+            *u = self.moved(0, 0, k).draw();
+            (rest, k) = (rest.get_mut(stride..).unwrap_or_default(), k.wrapping_add(1));
         }
     }
 }

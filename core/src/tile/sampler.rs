@@ -167,8 +167,9 @@ impl<'a> Sampler<'a> {
         if self.draw_stored(&mut u) { u } else { point(self.tile, &self.state).map(unit) }
     }
 
-    /// [`draw`](Sampler::draw), if what it draws are stored values: for indices below the tile's spp in unscrambled samplers,
-    /// with no more dimensions than the tile has. Otherwise returns false and writes nothing.
+    /// [`draw`](Sampler::draw), if that needs little but to look up stored values: for indices below the tile's spp, at most 16,
+    /// in unscrambled samplers, with no more dimensions than the tile has. Otherwise returns false and writes nothing; the
+    /// root's are stored at any spp.
     ///
     /// ```
     /// use noisefloor::tile::{Sampler, Shape, Tile};
@@ -189,7 +190,8 @@ impl<'a> Sampler<'a> {
             return false;
         }
         let site = Site::new(self.tile, state);
-        self.tile.values(site.at(shape, site.sample(shape, state.domain, state.index)), u)
+        let Some(sample) = site.looked_up(shape, state.domain, state.index) else { return false };
+        self.tile.values(site.at(shape, sample), u)
     }
 
     /// As [`draw`](Sampler::draw), as many coordinates as `u` has room for, at most 4; more stay as they are.

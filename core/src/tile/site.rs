@@ -1,6 +1,6 @@
 //! Where a domain finds a pixel in the tile: what all samples of the pixel share.
 
-use super::hash::{mix, permute, permute_octave};
+use super::hash::{mix, permute, permute_few, permute_octave, permute_octave_few};
 use super::net;
 use super::sampler::State;
 use super::view::{Shape, Tile};
@@ -40,7 +40,17 @@ impl Site {
             return index;
         }
         // Samples of two domains must not meet in the same order in every pixel.
-        if progressive { permute_octave(index, self.random) } else { permute(index, spp.trailing_zeros(), self.random) }
+        if progressive { permute_octave(index, self.random) } else { permute(index, spp, self.random) }
+    }
+
+    /// The same where it takes a look-up at most, for an index below spp.
+    #[inline(always)]
+    pub(super) fn looked_up(self, shape: Shape, domain: u32, index: u32) -> Option<u32> {
+        let Shape { spp, progressive, .. } = shape;
+        if domain == 0 || spp == 1 {
+            return Some(index);
+        }
+        if progressive { permute_octave_few(index, self.random) } else { permute_few(index, spp, self.random) }
     }
 
     /// Coordinate `number`, 0 or 1, after those of the tile, for the tile's sample that has those: this is the site of `number`.
