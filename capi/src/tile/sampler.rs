@@ -124,10 +124,9 @@ unsafe fn draw<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
 #[inline(always)]
 unsafe fn stored<const N: usize>(sampler: &nf_sampler, u: *mut f32) -> bool {
     // SAFETY: passed on to the caller.
-    let (Some(tile), Ok(u)) = (unsafe { (core_view(sampler.tile), convert::reference_mut(u.cast::<[f32; N]>())) })
-    else {
-        return false;
-    };
+    let Some(tile) = (unsafe { core_view(sampler.tile) }) else { return false };
+    // SAFETY: passed on to the caller.
+    let Ok(u) = (unsafe { convert::reference_mut(u.cast::<[f32; N]>()) }) else { return false };
     let sampler = Sampler::resume(&tile, state(sampler));
     if N < 4 {
         return sampler.draw_stored(u);
