@@ -100,6 +100,37 @@ mod linked {
             u[0] + u[1]
         }
 
+        /// The sum of four numbers, two of each of two child domains.
+        #[inline]
+        pub fn children(&self, x: u32, y: u32, index: u32) -> f32 {
+            let mut u = [0.0; 4];
+            let (first, second) = u.split_at_mut(2);
+            // SAFETY: as above.
+            unsafe {
+                let pixel = nf_sampler_pixel(self, x, y, 0, index);
+                nf_sampler_draw(nf_sampler_domain(pixel, 0), 2, first.as_mut_ptr());
+                nf_sampler_draw(nf_sampler_domain(pixel, 1), 2, second.as_mut_ptr());
+            }
+            (u[0] + u[1]) + (u[2] + u[3])
+        }
+
+        /// The samples of a pixel in one call, and the sum of the last two numbers: `dims` numbers of the root, or two of each of two child domains.
+        #[inline]
+        pub fn samples(&self, x: u32, y: u32, samples: u32, dims: u32, u: &mut [f32]) -> f32 {
+            // SAFETY: as above; the length is that of `u`.
+            let status = unsafe {
+                let pixel = nf_sampler_pixel(self, x, y, 0, 0);
+                if dims <= self.dims {
+                    nf_sampler_fill(&pixel, &dims, 1, 1, 1, samples, u.as_mut_ptr(), u.len())
+                } else {
+                    let both = [nf_sampler_domain(pixel, 0), nf_sampler_domain(pixel, 1)];
+                    nf_sampler_fill(both.as_ptr(), [2, 2].as_ptr(), 2, 1, 1, samples, u.as_mut_ptr(), u.len())
+                }
+            };
+            assert_eq!(status, 0);
+            u.last_chunk().map_or(0.0, |[a, b]: &[f32; 2]| a + b)
+        }
+
         /// Two numbers for each pixel and sample.
         pub fn fill(&self, width: u32, height: u32, samples: u32, u: &mut [f32]) {
             // SAFETY: the tile lives; the length is that of `u`.
@@ -135,6 +166,14 @@ mod missing {
         }
 
         pub fn child(&self, _: u32, _: u32, _: u32, _: u32) -> f32 {
+            match *self {}
+        }
+
+        pub fn children(&self, _: u32, _: u32, _: u32) -> f32 {
+            match *self {}
+        }
+
+        pub fn samples(&self, _: u32, _: u32, _: u32, _: u32, _: &mut [f32]) -> f32 {
             match *self {}
         }
 

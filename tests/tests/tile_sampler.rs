@@ -190,6 +190,51 @@ fn fill_gives_the_same_bits() {
     assert_eq!(fill(&[], 5, 5, 5, &mut []), Ok(()));
 }
 
+/// Samples that share their hashes are the samples drawn one by one: of each kind of tile, from any first index, to beyond the tile's.
+#[test]
+fn samples_of_a_pixel_give_the_same_bits() {
+    for (spp, dims, bits, progressive) in [
+        (1, 2, 8, false),
+        (4, 2, 16, false),
+        (16, 2, 16, false),
+        (16, 3, 8, false),
+        (64, 2, 8, false),
+        (8, 2, 16, true),
+        (32, 1, 8, true),
+    ] {
+        let bytes = noise(Shape { size: 4, spp, dims, frames: 2, bits, progressive }, 9);
+        let tile = Tile::from_bytes(&bytes).unwrap();
+        for first in [0, spp - 1, spp, u32::MAX - 3] {
+            let root = Sampler::pixel(&tile, 7, 2, 1, first);
+            for sampler in [
+                root,
+                root.domain(5),
+                root.domain(5).domain(6),
+                root.scramble(3),
+                Sampler::pixel(&tile, 3, 3, 9, first),
+            ] {
+                for (dims, stride) in [(1, 1), (2, 5), (3, 3), (4, 6)] {
+                    let mut u = vec![-1.0; (spp as usize + 9) * stride];
+                    sampler.draw_samples(dims, stride, &mut u);
+                    for (k, u) in u.chunks(stride).enumerate() {
+                        assert_eq!(
+                            u[..dims],
+                            sampler.moved(0, 0, k as u32).draw::<4>()[..dims],
+                            "{spp} spp, {first}, sample {k}"
+                        );
+                        assert!(u[dims..].iter().all(|&u| u == -1.0));
+                    }
+                }
+            }
+        }
+        let mut u = [-1.0; 9];
+        for dims in [0, 5, usize::MAX] {
+            Sampler::pixel(&tile, 0, 0, 0, 0).draw_samples(dims, 5, &mut u);
+        }
+        assert_eq!(u, [-1.0; 9]);
+    }
+}
+
 /// Beyond the tile's dims come other places of the tile, not repetitions.
 #[test]
 fn further_dimensions_are_others() {

@@ -50,7 +50,10 @@ pub(crate) fn csv(counts: &[usize], rounds: usize) -> Result<String> {
     for (dims, &spp) in DIMS.into_iter().flat_map(|dims| counts.iter().map(move |spp| (dims, spp))) {
         for sampler in Sampler::ALL.into_iter().filter(|sampler| sampler.applies(dims)) {
             all.push(rust(sampler, dims, spp)?);
-            all.extend(c_abi::LINKED.then(|| c(sampler, dims, spp)).transpose()?.flatten());
+            if c_abi::LINKED {
+                all.extend(c(sampler, dims, spp)?);
+                all.extend(c_by_pixel(sampler, dims, spp)?);
+            }
         }
     }
     let mut out = "sampler,door,dims,spp,round,ns\n".to_owned();
@@ -124,7 +127,15 @@ fn c(sampler: Sampler, dims: usize, spp: usize) -> Result<Option<Timed>> {
     let time: Box<dyn FnMut() -> f64> = match dims {
         2 => Box::new(move || time(|x, y| tile.root(x, y, last))),
         _ if tile.dims() >= 4 => Box::new(move || time(|x, y| tile.root4(x, y, last))),
-        _ => Box::new(move || time(|x, y| tile.child(x, y, last, 0) + tile.child(x, y, last, 1))),
+        _ => Box::new(move || time(|x, y| tile.children(x, y, last))),
     };
     Ok(Some(Timed { name: sampler.name(), door: "C ABI", dims, spp, time }))
+}
+
+/// The same, all samples of a pixel in a call; the time of one.
+fn c_by_pixel(sampler: Sampler, dims: usize, spp: usize) -> Result<Option<Timed>> {
+    let Some(bytes) = sampler.builtin(dims, spp)?.and_then(Builtin::bytes) else { return Ok(None) };
+    let (tile, mut u) = (c_tile::Tile::new(bytes), vec![0.0; dims * spp]);
+    let draw = move || time(|x, y| tile.samples(x, y, spp as u32, dims as u32, &mut u)) / spp as f64;
+    Ok(Some(Timed { name: sampler.name(), door: "C ABI, by pixel", dims, spp, time: Box::new(draw) }))
 }

@@ -54,25 +54,32 @@ pub unsafe extern "C" fn nf_sampler_fill(
         }
         // SAFETY: the caller passes room for `len` numbers, which are no fewer.
         let mut rest = unsafe { convert::slice_mut(u, needed) }?;
-        for (y, x, sample) in places(width, height, samples) {
+        let sample = dims.iter().fold(0_usize, |sum, &dims| sum.wrapping_add(dims as usize));
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            let split = core::mem::take(&mut rest).split_at_mut_checked(sample.wrapping_mul(samples as usize));
+            let Some((mut pixel, more)) = split else { return Ok(()) };
+            rest = more;
             for (sampler, &dims) in samplers.iter().zip(dims) {
-                let Some((u, more)) = core::mem::take(&mut rest).split_at_mut_checked(dims as usize) else {
-                    return Ok(());
-                };
-                rest = more;
                 // SAFETY: the caller passes samplers whose tiles, checked by nf_sampler_pixel, are NULL or live.
-                match unsafe { core_view(sampler.tile) } {
-                    Some(tile) => Sampler::resume(&tile, state(sampler)).moved(x, y, sample).draw_into(u),
-                    None => u.fill(0.0),
-                }
+                unsafe { samples_of(sampler, x, y, dims as usize, sample, pixel) };
+                pixel = pixel.get_mut(dims as usize..).unwrap_or_default();
             }
         }
         Ok(())
     })())
 }
 
-fn places(width: u32, height: u32, samples: u32) -> impl Iterator<Item = (u32, u32, u32)> {
-    (0..height).flat_map(move |y| (0..width).flat_map(move |x| (0..samples).map(move |sample| (y, x, sample))))
+/// One domain of one pixel: `dims` numbers of each sample, every `stride`.
+///
+/// # Safety
+/// The sampler's tile must be NULL or live.
+#[inline(always)]
+unsafe fn samples_of(sampler: &nf_sampler, x: u32, y: u32, dims: usize, stride: usize, u: &mut [f32]) {
+    // SAFETY: passed on to the caller.
+    match unsafe { core_view(sampler.tile) } {
+        Some(tile) => Sampler::resume(&tile, state(sampler)).moved(x, y, 0).draw_samples(dims, stride, u),
+        None => u.chunks_mut(stride.max(1)).filter_map(|u| u.get_mut(..dims)).for_each(|u| u.fill(0.0)),
+    }
 }
 
 fn len(dims: &[u32], width: u32, height: u32, samples: u32) -> Option<usize> {

@@ -84,57 +84,84 @@ pub extern "C" fn nf_sampler_scramble(sampler: nf_sampler, seed: u32) -> nf_samp
 /// Writes nothing if dims is out of range or u is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_sampler_draw(sampler: nf_sampler, dims: u32, u: *mut f32) {
-    // What is drawn most often, and fast: two stored values of the root's first frame. Apart from all else, so that it needs few registers.
-    // SAFETY: the caller passes a sampler whose tile, checked by nf_sampler_pixel, is NULL or lives, and room for two numbers.
+    // SAFETY: passed on to the caller.
     unsafe {
-        if dims == 2
-            && (sampler.domain, sampler.frame, sampler.scrambled) == (0, 0, 0)
-            && let Some(tile) = core_view(sampler.tile)
-            && let root = (State { domain: 0, frame: 0, scrambled: 0, ..state(&sampler) })
-            && let Ok(u) = convert::reference_mut(u.cast::<[f32; 2]>())
-            && Sampler::resume(&tile, root).draw_stored(u)
-        {
+        // What is drawn most often, and fast: two stored values of the root's first frame. Apart from all else, so that it needs few registers.
+        if dims == 2 {
+            let root = (sampler.domain, sampler.frame, sampler.scrambled) == (0, 0, 0);
+            if !root || !stored::<2>(&nf_sampler { domain: 0, frame: 0, scrambled: 0, ..sampler }, u) {
+                draw::<2>(&sampler, u);
+            }
             return;
         }
-    }
-    // SAFETY: passed on to the caller.
-    unsafe { draw(&sampler, dims, u) };
-}
-
-/// nf_sampler_draw.
-///
-/// # Safety
-/// `u` must be NULL or have room for `dims` numbers; the sampler's tile must be NULL or live.
-#[inline(never)]
-unsafe fn draw(sampler: &nf_sampler, dims: u32, u: *mut f32) {
-    // SAFETY: passed on to the caller.
-    unsafe {
         match dims {
-            1 => write::<1>(sampler, u),
-            2 => write::<2>(sampler, u),
-            3 => write::<3>(sampler, u),
-            4 => write::<4>(sampler, u),
+            1 => draw::<1>(&sampler, u),
+            3 => draw::<3>(&sampler, u),
+            4 => draw::<4>(&sampler, u),
             _ => {}
         }
     }
 }
 
+/// nf_sampler_draw of N numbers.
+///
 /// # Safety
-/// As for [`draw`], of N numbers.
+/// As for [`stored`].
+#[inline(never)]
+unsafe fn draw<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
+    // SAFETY: passed on to the caller.
+    unsafe {
+        if !stored::<N>(sampler, u) {
+            computed::<N>(sampler, u);
+        }
+    }
+}
+
+/// Draws if that needs little but to look up; otherwise returns false.
+///
+/// # Safety
+/// `u` must be NULL or have room for N numbers; the sampler's tile must be NULL or live.
 #[inline(always)]
-unsafe fn write<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
+unsafe fn stored<const N: usize>(sampler: &nf_sampler, u: *mut f32) -> bool {
+    // SAFETY: passed on to the caller.
+    let Some(tile) = (unsafe { core_view(sampler.tile) }) else { return false };
+    // SAFETY: passed on to the caller.
+    let Ok(u) = (unsafe { convert::reference_mut(u.cast::<[f32; N]>()) }) else { return false };
+    let sampler = Sampler::resume(&tile, state(sampler));
+    if N < 4 {
+        return sampler.draw_stored(u);
+    }
+    let mut drawn = [0.0; N];
+    sampler.draw_stored(&mut drawn) && put(u, drawn)
+}
+
+/// Writes four numbers at once: a caller that reads them as one vector would have to wait for four writes to reach the cache.
+#[inline(always)]
+fn put<const N: usize>(u: &mut [f32; N], drawn: [f32; N]) -> bool {
+    match drawn[..] {
+        #[cfg(target_arch = "x86_64")]
+        [a, b, c, d] => {
+            use core::arch::x86_64::{_mm_set_ps, _mm_storeu_ps};
+            // SAFETY: every x86-64 has SSE. N is 4, and no alignment is needed.
+            unsafe { _mm_storeu_ps(u.as_mut_ptr(), _mm_set_ps(d, c, b, a)) }
+        }
+        _ => *u = drawn,
+    }
+    true
+}
+
+/// nf_sampler_draw of all others: apart, so that those need few registers.
+///
+/// # Safety
+/// As for [`stored`].
+#[inline(never)]
+unsafe fn computed<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
     // SAFETY: passed on to the caller.
     let Ok(u) = (unsafe { convert::reference_mut(u.cast::<[f32; N]>()) }) else { return };
     // SAFETY: passed on to the caller.
-    match unsafe { core_view(sampler.tile) } {
-        Some(tile) => {
-            let sampler = Sampler::resume(&tile, state(sampler));
-            // The same numbers either way; `draw` alone would bring them here by way of memory.
-            if !sampler.draw_stored(u) {
-                *u = sampler.draw();
-            }
-        }
-        None => *u = [0.0; N],
+    *u = match unsafe { core_view(sampler.tile) } {
+        Some(tile) => Sampler::resume(&tile, state(sampler)).draw(),
+        None => [0.0; N],
     }
 }
 

@@ -57,14 +57,15 @@ pub fn fill(
         return Ok(());
     }
     let mut rest = u.get_mut(..len).ok_or(Error::Memory)?;
+    let sample = domains.iter().fold(0_usize, |sum, &(_, dims)| sum.wrapping_add(dims));
     for y in 0..height {
         for x in 0..width {
-            for sample in 0..samples {
-                for &(sampler, dims) in domains {
-                    let Some((u, more)) = core::mem::take(&mut rest).split_at_mut_checked(dims) else { return Ok(()) };
-                    rest = more;
-                    sampler.moved(x as u32, y as u32, sample as u32).draw_into(u);
-                }
+            let split = core::mem::take(&mut rest).split_at_mut_checked(sample.wrapping_mul(samples));
+            let Some((mut pixel, more)) = split else { return Ok(()) };
+            rest = more;
+            for &(sampler, dims) in domains {
+                sampler.moved(x as u32, y as u32, 0).draw_samples(dims, sample, pixel);
+                pixel = pixel.get_mut(dims..).unwrap_or_default();
             }
         }
     }

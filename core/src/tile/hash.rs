@@ -21,38 +21,92 @@ pub(super) const fn child(domain: u32, key: u32) -> u32 {
     h + (h == 0) as u32
 }
 
-/// Where sample `index` of `2^bits` goes, bits at most 8: `a * index + b` in the field of 2^bits elements, for random
+/// Where sample `index` of `samples` goes, a power of two up to 256: `a * index + b` in the field of as many elements, for random
 /// b and a != 0. Of all affine bijections each is equally likely (to 2^-16), so that any two samples go to any two places with
 /// the same probability: what it takes for sums of products of two sampled domains to have the mean and the
 /// variance of random pairing.
 #[inline(always)]
-pub(super) fn permute(index: u32, bits: u32, random: u32) -> u32 {
-    let mask = (1_u32 << (bits & 15)) - 1;
-    let scale = (((random >> 16) * mask) >> 16) + 1;
+pub(super) fn permute(index: u32, samples: u32, random: u32) -> u32 {
+    permute_few(index, samples, random).unwrap_or_else(|| {
+        let (mask, scale) = mask_and_scale(samples, random);
+        (product_by_bits(scale, index, samples.trailing_zeros()) ^ random) & mask
+    })
+}
+
+/// [`permute`] by a look-up, for at most 16 samples.
+#[inline(always)]
+pub(super) fn permute_few(index: u32, samples: u32, random: u32) -> Option<u32> {
+    let (mask, scale) = mask_and_scale(samples, random);
+    let product = PRODUCTS.get(samples.trailing_zeros() as usize)?.get((scale << 4 | index) as usize)?;
+    Some((u32::from(*product) ^ random) & mask)
+}
+
+#[inline(always)]
+const fn mask_and_scale(samples: u32, random: u32) -> (u32, u32) {
+    let mask = samples.wrapping_sub(1) & 255;
+    (mask, ((random >> 16).wrapping_mul(mask) >> 16).wrapping_add(1))
+}
+
+/// [`product`], of fields without a table: apart, so that callers stay small.
+#[inline(never)]
+fn product_by_bits(a: u32, b: u32, bits: u32) -> u32 {
+    product(a, b, bits)
+}
+
+/// The product in the field of 2^bits elements.
+#[inline(always)]
+const fn product(a: u32, b: u32, bits: u32) -> u32 {
     // x^bits = POLYNOMIAL(x): irreducible.
-    let polynomial = POLYNOMIALS.get(bits as usize).copied().unwrap_or(0);
-    let (mut product, mut power) = (0, scale);
-    for bit in 0..bits {
-        product ^= power & (index >> (bit & 7) & 1).wrapping_neg();
-        power = (power << 1) ^ (polynomial & (power >> ((bits - 1) & 7) & 1).wrapping_neg());
+    let polynomial = POLYNOMIALS[if bits < 8 { bits } else { 8 } as usize];
+    let (mut product, mut power, mut bit) = (0, a, 0);
+    while bit < bits {
+        product ^= power & (b >> (bit & 7) & 1).wrapping_neg();
+        power = (power << 1) ^ (polynomial & (power >> (bits.wrapping_sub(1) & 7) & 1).wrapping_neg());
+        bit += 1;
     }
-    (product ^ random) & mask
+    product
 }
 
 /// An irreducible polynomial over the field of two elements for each degree, x^degree included.
 static POLYNOMIALS: [u32; 9] = [0, 0b11, 0b111, 0b1011, 0b1_0011, 0b10_0101, 0b100_0011, 0b1000_0011, 0b1_0001_1011];
 
+/// All products in the fields of 1, 2, 4, 8 and 16 elements: of a and b at 16 a + b.
+static PRODUCTS: [[u8; 256]; 5] = {
+    let mut products = [[0; 256]; 5];
+    let mut bits = 1;
+    while bits < 5 {
+        let (elements, mut a) = (1 << bits, 0);
+        while a < elements {
+            let mut b = 0;
+            while b < elements {
+                products[bits as usize][(a << 4 | b) as usize] = product(a, b, bits) as u8;
+                b += 1;
+            }
+            a += 1;
+        }
+        bits += 1;
+    }
+    products
+};
+
 /// As [`permute`], within each octave `[2^k, 2^(k + 1))`: the first 1, 2, 4, ... samples remain those.
 #[inline(always)]
 pub(super) fn permute_octave(index: u32, random: u32) -> u32 {
-    match index.checked_ilog2() {
-        // Octaves are permuted independently.
-        Some(bits) => {
-            let first = 1 << (bits & 7);
-            first | permute(index ^ first, bits, mix(random.wrapping_add(GOLDEN.wrapping_mul(bits))))
-        }
-        None => index,
-    }
+    octave(index, random).map_or(index, |(first, random)| first | permute(index ^ first, first, random))
+}
+
+/// [`permute_octave`] by a look-up, for indices below 32.
+#[inline(always)]
+pub(super) fn permute_octave_few(index: u32, random: u32) -> Option<u32> {
+    let Some((first, random)) = octave(index, random) else { return Some(index) };
+    Some(first | permute_few(index ^ first, first, random)?)
+}
+
+/// The first index of an octave, which is as many as the octave has, and its random bits: octaves are permuted independently.
+#[inline(always)]
+fn octave(index: u32, random: u32) -> Option<(u32, u32)> {
+    let bits = index.checked_ilog2()?;
+    Some((1 << (bits & 7), mix(random.wrapping_add(GOLDEN.wrapping_mul(bits)))))
 }
 
 #[cfg(test)]
@@ -70,7 +124,7 @@ mod tests {
                 let high = ((u64::from(a) << 16) + (1 << 15)) / u64::from(n - 1);
                 for b in 0..n {
                     let random = (high as u32) << 16 | b;
-                    let (first, second) = (permute(0, bits, random), permute(n - 1, bits, random));
+                    let (first, second) = (permute(0, n, random), permute(n - 1, n, random));
                     assert!(first < n && second < n && first != second);
                     seen[(first * n + second) as usize] += 1;
                 }

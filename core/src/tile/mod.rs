@@ -31,8 +31,11 @@ mod fill;
 mod format;
 mod hash;
 mod net;
+mod point;
+mod run;
 mod sampler;
 mod sequence;
+mod site;
 mod view;
 
 pub use builtin::Builtin;

@@ -23,15 +23,38 @@ static ROWS: [[[u32; 4]; 2]; 5] = [
 #[inline(always)]
 pub(super) fn stratum(index: u32, bits: u32, number: u32, random: u32) -> u32 {
     if number > 0 && bits < 3 {
-        return permute(index, bits, random);
+        return permute(index, 1 << (bits & 3), random);
     }
     let top = if bits < 4 { bits } else { 4 };
-    let rows = ROWS.get(top as usize).and_then(|both| both.get(number as usize)).copied().unwrap_or_default();
-    let leading = rows.iter().take(top as usize).fold(0, |sum, row| sum << 1 | (index & row).count_ones() & 1);
+    let leading = LEADING.get((number << 3 | top) as usize).map_or(0, |of| u32::from(of[index as usize & 15]));
     let rest = bits.saturating_sub(top);
     let mask = (1_u32 << (bits & 15)) - 1;
     ((leading << (rest & 15) | index >> (top & 7)) ^ random) & mask
 }
+
+/// What ROWS makes of the last four bits of the index: of 2^k samples and a further dimension at 8 times the dimension + k.
+static LEADING: [[u8; 16]; 13] = {
+    let mut leading = [[0; 16]; 13];
+    let mut number = 0;
+    while number < 2 {
+        let mut bits = 0;
+        while bits < 5 {
+            let mut index = 0;
+            while index < 16 {
+                let (mut sum, mut row) = (0, 0);
+                while row < bits {
+                    sum = sum << 1 | (index & ROWS[bits][number][row]).count_ones() as u8 & 1;
+                    row += 1;
+                }
+                leading[number << 3 | bits][index as usize] = sum;
+                index += 1;
+            }
+            bits += 1;
+        }
+        number += 1;
+    }
+    leading
+};
 
 #[cfg(test)]
 mod tests {

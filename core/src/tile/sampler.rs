@@ -1,9 +1,9 @@
 //! The sampler: one sample of one pixel, and the domains below it.
 
-use super::hash::{child, mix, permute, permute_octave};
-use super::net;
-use super::sequence;
-use super::view::{Shape, Tile, unit};
+use super::hash::child;
+use super::point::point;
+use super::site::Site;
+use super::view::{Tile, unit};
 
 /// A sample's place, without its tile. Any value of the fields is valid; [`Sampler`] says what they mean.
 ///
@@ -57,10 +57,9 @@ pub struct Sampler<'a> {
     state: State,
 }
 
-/// Keeps domains of frames, scrambles and further dimensions apart from those of keys.
+/// Keeps domains of frames and scrambles apart from those of keys.
 const FRAMES: u32 = 0x6672_616d;
 const SCRAMBLE: u32 = 0x7363_7261;
-const DIMENSIONS: u32 = 0x6469_6d73;
 
 impl<'a> Sampler<'a> {
     /// Sample `index` of pixel (x, y), any values: pixels repeat with the tile's size.
@@ -221,9 +220,9 @@ impl<'a> Sampler<'a> {
         if self.draw_stored(&mut u) { u } else { point(self.tile, &self.state).map(unit) }
     }
 
-    /// [`draw`](Sampler::draw), if that needs nothing but to look up stored values: for indices below the tile's spp in
-    /// unscrambled samplers, of the root or of any domain of a tile of 1 spp, with no more dimensions than the tile has.
-    /// Otherwise returns false and writes nothing.
+    /// [`draw`](Sampler::draw), if that needs little but to look up stored values: for indices below the tile's spp, at most 16,
+    /// in unscrambled samplers, with no more dimensions than the tile has. Otherwise returns false and writes nothing; the
+    /// root's are stored at any spp.
     ///
     /// ```
     /// use noisefloor::tile::{Sampler, Shape, Tile};
@@ -239,13 +238,13 @@ impl<'a> Sampler<'a> {
     #[inline(always)]
     pub fn draw_stored<const N: usize>(&self, u: &mut [f32; N]) -> bool {
         const { assert!(0 < N && N <= 4, "a domain has 1 to 4 dimensions") };
-        let (Shape { size, spp, dims, .. }, state) = (self.tile.shape(), &self.state);
-        let ordered = state.domain == 0 || spp == 1;
-        if N > dims as usize || state.index >= spp || !ordered || state.scrambled != 0 {
+        let (shape, state) = (self.tile.shape(), &self.state);
+        if N > shape.dims as usize || state.index >= shape.spp || state.scrambled != 0 {
             return false;
         }
-        let (x, y) = place(state, size);
-        self.tile.values(self.tile.place(u32::from(state.frame), y, x, state.index), u)
+        let site = Site::new(self.tile, state);
+        let Some(sample) = site.looked_up(shape, state.domain, state.index) else { return false };
+        self.tile.values(site.at(shape, sample), u)
     }
 
     /// As [`draw`](Sampler::draw), as many coordinates as `u` has room for, at most 4; more stay as they are.
@@ -330,172 +329,4 @@ impl State {
         }
         State { domain: child(self.domain ^ SCRAMBLE, seed), scrambled: 1, ..self }
     }
-}
-
-/// The coordinates in 32-bit fixed point: of as many domains as it takes, each with the tile's dims.
-#[inline]
-fn point<const N: usize>(tile: &Tile<'_>, state: &State) -> [u32; N] {
-    let more = |number| State { domain: child(state.domain ^ DIMENSIONS, number), ..*state };
-    let Shape { spp, dims, progressive, .. } = tile.shape();
-    let netted = spp > 1 && !progressive;
-    let all = match dims {
-        1 => {
-            let one = |number| if number < N as u32 { group(tile, &more(number)) } else { [0] };
-            let ([a], [b], [c], [d]) = (group(tile, state), one(1), one(2), one(3));
-            [a, b, c, d]
-        }
-        2 if N > 2 && netted => {
-            let [a, b] = group(tile, state);
-            let [c, d] = if N > 3 { further(tile, state) } else { [further::<1>(tile, state)[0], 0] };
-            [a, b, c, d]
-        }
-        2 if N > 2 => {
-            let ([a, b], [c, d]) = (group(tile, state), group(tile, &more(1)));
-            [a, b, c, d]
-        }
-        3 if N > 3 && netted => {
-            let ([a, b, c], [d]) = (group(tile, state), further(tile, state));
-            [a, b, c, d]
-        }
-        3 if N > 3 => {
-            let ([a, b, c], [d]) = (group(tile, state), group(tile, &more(1)));
-            [a, b, c, d]
-        }
-        _ => return group(tile, state),
-    };
-    all.first_chunk().copied().unwrap_or([0; N])
-}
-
-/// At most as many coordinates as the tile has dimensions.
-#[inline(always)]
-fn group<const N: usize>(tile: &Tile<'_>, state: &State) -> [u32; N] {
-    let State { domain, index, x, y, .. } = *state;
-    let rest = Rest::pack(tile.shape(), state);
-    group_of(tile.payload(), rest, domain, index, u32::from(x) | u32::from(y) << 16)
-}
-
-/// Where a group is, but for domain, index and pixel: 4 bits each of log2 of size and spp, and of dims; 8 of the frame; whether
-/// scrambled, progressive, of 16 bits.
-///
-/// With it all arguments of [`group_of`] travel in registers. Structs just written, field by field, would be read in larger
-/// pieces, which takes as long as the rest of the work.
-#[derive(Clone, Copy)]
-struct Rest(u32);
-
-impl Rest {
-    #[inline(always)]
-    fn pack(shape: Shape, state: &State) -> Rest {
-        let Shape { size, spp, dims, bits, progressive, .. } = shape;
-        let numbers = (size.trailing_zeros() & 15) | (spp.trailing_zeros() & 15) << 4 | (dims & 15) << 8;
-        let (scrambled, wide) = (state.scrambled != 0, bits == 16);
-        let flags = u32::from(scrambled) << 20 | u32::from(progressive) << 21 | u32::from(wide) << 22;
-        Rest(numbers | (u32::from(state.frame) & 255) << 12 | flags)
-    }
-
-    #[inline(always)]
-    fn shape(self) -> Shape {
-        let power = |shift: u32| 1 << (self.0 >> shift & 15);
-        let bits = if self.flag(22) { 16 } else { 8 };
-        Shape { size: power(0), spp: power(4), dims: self.0 >> 8 & 15, frames: 1, bits, progressive: self.flag(21) }
-    }
-
-    #[inline(always)]
-    fn frame(self) -> u16 {
-        (self.0 >> 12 & 255) as u16
-    }
-
-    #[inline(always)]
-    fn flag(self, bit: u32) -> bool {
-        self.0 >> bit & 1 != 0
-    }
-}
-
-/// [`group`].
-#[inline(never)]
-fn group_of<const N: usize>(payload: &[u8], rest: Rest, domain: u32, index: u32, xy: u32) -> [u32; N] {
-    let tile = Tile::resume(rest.shape(), payload);
-    let Shape { size, spp, .. } = tile.shape();
-    let (frame, scrambled) = (rest.frame(), rest.flag(20));
-    let (x, y) = place(&State { domain, x: xy as u16, y: (xy >> 16) as u16, ..State::default() }, size);
-    let continued = index >= spp;
-    let sample = sample_of(tile.shape(), domain, index, hash_of(domain, x, y, frame));
-    let mut fixed = tile.fixed(tile.place(u32::from(frame), y, x, sample)).unwrap_or([0; N]);
-    if scrambled {
-        fixed.iter_mut().zip(1..).for_each(|(u, dim)| *u = u.wrapping_add(rotation(domain, dim)));
-    }
-    if continued {
-        sequence::shift(domain, index, &mut fixed);
-    }
-    fixed
-}
-
-/// Random bits of a domain at a place of the tile.
-#[inline(always)]
-fn hash_of(domain: u32, x: u32, y: u32, frame: u16) -> u32 {
-    let pixel = x | y << 10 | u32::from(frame) << 20;
-    mix(domain ^ pixel.wrapping_mul(0x9e37_79b1))
-}
-
-/// Which of the tile's samples of a pixel stands for `index`.
-#[inline(always)]
-fn sample_of(shape: Shape, domain: u32, index: u32, random: u32) -> u32 {
-    let Shape { spp, progressive, .. } = shape;
-    if index >= spp {
-        return 0;
-    }
-    if domain == 0 || spp == 1 {
-        return index;
-    }
-    // Samples of two domains must not meet in the same order in every pixel.
-    if progressive { permute_octave(index, random) } else { permute(index, spp.trailing_zeros(), random) }
-}
-
-/// The M coordinates, 1 or 2, after those of the tile, whose samples are in the order that [`net`] needs.
-///
-/// Each is in a stratum of its own, of spp, and where in it comes from another place of the tile: from another sample of it for each
-/// stratum, so that the sum over the pixel is as even as the tile's.
-#[inline(never)]
-fn further<const M: usize>(tile: &Tile<'_>, state: &State) -> [u32; M] {
-    let Shape { size, spp, .. } = tile.shape();
-    let (x, y) = place(state, size);
-    let sample = sample_of(tile.shape(), state.domain, state.index, hash_of(state.domain, x, y, state.frame));
-    let bits = spp.trailing_zeros();
-    let mut number = 0;
-    let mut fixed = [(); M].map(|()| {
-        let more = State { domain: child(state.domain ^ DIMENSIONS, number + 1), ..*state };
-        let (x, y) = place(&more, size);
-        let random = hash_of(more.domain, x, y, more.frame);
-        let stratum = net::stratum(sample, bits, number, random);
-        number += 1;
-        let within = (stratum ^ random >> 8) & spp.wrapping_sub(1);
-        let [within] = tile.fixed(tile.place(u32::from(more.frame), y, x, within)).unwrap_or([0]);
-        stratum << ((32 - bits) & 31) | within >> (bits & 31)
-    });
-    let domain = child(state.domain ^ DIMENSIONS, 1);
-    if state.scrambled != 0 {
-        fixed.iter_mut().zip(1..).for_each(|(u, dim)| *u = u.wrapping_add(rotation(domain, dim)));
-    }
-    if state.index >= spp {
-        sequence::shift(domain, state.index, &mut fixed);
-    }
-    fixed
-}
-
-/// Where in the tile a domain finds the pixel: a shift and one of the eight symmetries of the square; for the root neither.
-#[inline(always)]
-fn place(state: &State, size: u32) -> (u32, u32) {
-    let mask = size.wrapping_sub(1);
-    let flip = |coordinate: u16, bit: u32| u32::from(coordinate) ^ (mask & (state.domain >> bit & 1).wrapping_neg());
-    if state.domain == 0 {
-        return (u32::from(state.x), u32::from(state.y));
-    }
-    let (x, y) = (flip(state.x, 20), flip(state.y, 21));
-    let (x, y) = if state.domain >> 22 & 1 == 0 { (x, y) } else { (y, x) };
-    (x.wrapping_add(state.domain) & mask, y.wrapping_add(state.domain >> 10) & mask)
-}
-
-/// How far a scrambled domain's values are shifted; a bijection of the domain, so over all of them each shift occurs once.
-#[inline(always)]
-const fn rotation(domain: u32, dim: u32) -> u32 {
-    mix(domain.wrapping_add(dim.wrapping_mul(super::hash::GOLDEN)))
 }

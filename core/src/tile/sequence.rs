@@ -9,7 +9,7 @@ use super::view::MAX_DIMS;
 /// in an order shuffled within each octave of indices, Owen-scrambled, and shifted so that its first point is the origin.
 /// With the pixel's first sample at index 0, any aligned run of 2^k indices is a digital net.
 #[inline(always)]
-pub(super) fn shift<const N: usize>(domain: u32, index: u32, fixed: &mut [u32; N]) {
+pub(super) fn shift(domain: u32, index: u32, fixed: &mut [u32]) {
     let index = shuffle(index, mix(domain ^ SHUFFLE));
     for ((u, directions), dim) in fixed.iter_mut().zip(&DIRECTIONS).zip(1_u32..) {
         let seed = mix(domain ^ VALUES ^ dim.wrapping_mul(GOLDEN));

@@ -36,14 +36,20 @@ pub(super) fn write(report: &Report) -> Result<()> {
     let (order, batch) = (chapter.setting("order", 2), chapter.setting("batch", 64));
     let (width, spp) = (chapter.setting("width of the image", 16), chapter.setting("samples per pixel", 4));
     chapter.setting("parameters", parameters);
+    let sixteen = chapter.setting("samples per pixel of the larger tile", 16);
     chapter.list(&[
         format!(
             "`nf_cv_estimate`: {dims} dimensions, order {order}, one channel; the number is that of samples. `nf_cv_accumulator_add`: a sample a \
              call. `nf_cv_image_estimate`: {width} x {width} pixels of {spp} samples, overlapping windows."
         ),
         format!(
-            "`nf_sampler_draw`: a pixel's sampler and {dims} numbers of a tile; `domain`: of a child domain. `nf_sampler_fill`: the same for a part of \
-             an image in one call."
+            "`nf_sampler_draw`: a pixel's sampler and {dims} numbers of a tile of as many dims and {spp} samples per pixel; `domain`: of a child \
+             domain. `4 of 4 dims`, `4 of 2 dims`: four numbers of the pixel's own domain, of tiles of 4 and {sixteen} samples. `two domains`: {dims} \
+             numbers of each of two child domains, {sixteen} samples per pixel."
+        ),
+        format!(
+            "`nf_sampler_fill`: {dims} numbers of one sample of each pixel of a part of an image in one call; `two domains`: {dims} of each of two, \
+             all {sixteen} samples of each pixel, which share their hashes."
         ),
         format!("`nf_table_draw`, `nf_table_update`: batches of {batch} from {items} items, weights included."),
         format!(

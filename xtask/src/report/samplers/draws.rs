@@ -9,6 +9,8 @@ use anyhow::Result;
 
 /// The public sampler that the library's draws are to be as fast as.
 const PEER: &str = "OpenQMC lattice-bn";
+/// What draws go through.
+const DOORS: [&str; 3] = ["Rust", "C ABI", "C ABI, by pixel"];
 
 pub(super) fn write(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
     chapter.section("Nanoseconds of a draw", "");
@@ -16,8 +18,9 @@ pub(super) fn write(table: &Table, chapter: &mut Chapter, targets: &mut Targets)
     chapter.paragraph(&format!(
         "One draw is constructing the sampler of a pixel and its last sample, and drawing all numbers of it; pixels row by row, coordinates \
          opaque to the compiler. Median of {rounds} rounds, in which the samplers take turns. Rust: compiled into the program for any x86-64; \
-         C ABI: calls into the archive that ships. Beyond a tile's own samples a draw computes a scrambled sequence. What is random \
-         is a running generator, without pixel and index."
+         C ABI: calls into the archive that ships; by pixel: one call of `nf_sampler_fill` for all samples of a pixel, divided by their \
+         number. Beyond a tile's own samples a draw computes a scrambled sequence. What is random is a running generator, without pixel \
+         and index."
     ));
     let counts = table.distinct("spp")?;
     let times = |dims: &str, spp: &str, sampler: &str, door: &str| -> Result<Vec<f64>> {
@@ -31,7 +34,7 @@ pub(super) fn write(table: &Table, chapter: &mut Chapter, targets: &mut Targets)
             ["sampler", "through"].into_iter().chain(headings.iter().map(String::as_str)).collect();
         let mut rows = Vec::new();
         for sampler in table.distinct("sampler")? {
-            for door in ["Rust", "C ABI"] {
+            for door in DOORS {
                 let mut cells: Vec<Cell> = row![sampler, door];
                 for spp in &counts {
                     let all = times(dims, spp, sampler, door)?;
@@ -46,9 +49,7 @@ pub(super) fn write(table: &Table, chapter: &mut Chapter, targets: &mut Targets)
             }
         }
         chapter.table("draws", &columns, 2, rows);
-        for (door, sampler) in
-            ["Rust", "C ABI"].into_iter().flat_map(|door| ["tile", "progressive tile"].map(|of| (door, of)))
-        {
+        for (door, sampler) in DOORS.into_iter().flat_map(|door| ["tile", "progressive tile"].map(|of| (door, of))) {
             for spp in counts.iter().filter(|spp| **spp != "64") {
                 let (own, peer) = (times(dims, spp, sampler, door)?, times(dims, spp, PEER, "Rust")?);
                 if own.is_empty() || peer.is_empty() {
