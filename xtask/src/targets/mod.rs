@@ -4,8 +4,10 @@
 mod bare_metal;
 mod build;
 mod chapter;
+mod consumer;
 mod platform;
 mod sizes;
+mod wasm;
 
 use crate::tools::Package;
 use crate::{c_tests, library, paths, run, tools};
@@ -27,8 +29,12 @@ pub(crate) struct Options {
 struct Findings {
     platform: &'static Platform,
     sizes: Vec<Size>,
-    /// Bytes of stack of each call of the bare-metal program, where it ran.
-    stacks: bare_metal::Stacks,
+    /// What examples_c/bare_metal told.
+    program: bare_metal::Told,
+    /// What ran, in words.
+    ran: String,
+    /// The emulator's name and version.
+    emulator: String,
 }
 
 pub(crate) fn run(options: &Options) -> Result<()> {
@@ -47,32 +53,52 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     }
     let mut all = Vec::new();
     for platform in wanted {
-        println!("== {}", platform.triple);
-        all.push(one(platform).with_context(|| format!("target {}", platform.triple))?);
+        println!("== {}", platform.id());
+        all.push(one(platform).with_context(|| format!("target {}", platform.id()))?);
     }
     if options.targets.is_empty() { chapter::write(&all) } else { Ok(()) }
 }
 
 /// Builds, runs what can be run, and measures.
 fn one(platform: &'static Platform) -> Result<Findings> {
-    let raw = build::archive(platform.triple)?;
-    let mut stacks = Vec::new();
-    if let Some(binutils) = platform.binutils {
-        let archive = library::one_object(&raw, &paths::output().join(platform.triple), binutils)?;
-        library::check(&archive)?;
-        println!("   no panic, no undefined symbol but mem*, only nf_* visible");
-        match platform.emulator {
-            Some(emulator) if platform.is_bare_metal => stacks = bare_metal::run(binutils, emulator, &archive)?,
-            Some(emulator) => emulated(binutils, emulator, &archive)?,
-            None => {}
-        }
+    let raw = build::archive(platform)?;
+    let sizes = sizes::measure(platform, &raw)?;
+    let Some(binutils) = platform.binutils else {
+        let module = c_tests::output("services.wasm")?;
+        sizes::link(platform, &raw, &bare_metal::WASM_EXPORTS, &module)?;
+        let program = bare_metal::wasm(platform, platform.emulator, &module)?;
+        return findings(platform, sizes, program, "the example".to_owned());
+    };
+    let archive = library::one_object(&raw, &paths::output().join(platform.id()), binutils)?;
+    library::check(&archive)?;
+    println!("   no panic, no undefined symbol but mem*, only nf_* visible");
+    if platform.is_bare_metal {
+        let program = bare_metal::alone(platform, binutils, platform.emulator, &archive)?;
+        return findings(platform, sizes, program, "the example, on a board with nothing else".to_owned());
     }
-    Ok(Findings { platform, sizes: sizes::measure(platform, &raw)?, stacks })
+    let ran = c_tests_there(binutils, platform.emulator, &archive)?;
+    let program = bare_metal::hosted(platform, binutils, platform.emulator, &archive)?;
+    let ran = if consumer::run(platform)? {
+        format!("{ran}; the example; CMake projects")
+    } else {
+        format!("{ran}; the example")
+    };
+    findings(platform, sizes, program, ran)
+}
+
+fn findings(platform: &'static Platform, sizes: Vec<Size>, program: bare_metal::Told, ran: String) -> Result<Findings> {
+    let version = run::read(run::command(platform.emulator).arg("--version"))?;
+    // QEMU says much more in parentheses and further lines.
+    let version = version.lines().next().unwrap_or_default().split(" (").next().unwrap_or_default().to_owned();
+    let emulator =
+        if platform.is_wasm() { format!("node {version}") } else { format!("{}: {version}", platform.emulator) };
+    Ok(Findings { platform, sizes, program, ran, emulator })
 }
 
 /// Compiles and runs every C test; they read the same pinned vectors as on this machine.
-fn emulated(binutils: &str, emulator: &str, archive: &Path) -> Result<()> {
+fn c_tests_there(binutils: &str, emulator: &str, archive: &Path) -> Result<String> {
     let mut sources = c_tests::sources()?;
+    let all = sources.len();
     if binutils.starts_with("s390x") && !multiplies(binutils, emulator)? {
         println!(
             "   NOT RUN: importance.c. This {emulator} multiplies single precision into double wrongly (MDEBR; mended in QEMU 8.1)"
@@ -91,7 +117,7 @@ fn emulated(binutils: &str, emulator: &str, archive: &Path) -> Result<()> {
         run::check(test.arg(&program))
     })?;
     println!("   {} C tests passed under {emulator}", sources.len());
-    Ok(())
+    Ok(format!("{} of {all} C tests", sources.len()))
 }
 
 /// Whether the emulator has the instruction that importances are squared with.
