@@ -16,7 +16,8 @@ void board_semihosting(uint32_t operation, const void *argument)
 /* What stands first in memory: the stack, where exceptions lead, and the rest in C. */
 __asm__(".section .vectors, \"ax\"\n"
         ".global reset\n"
+        ".option push\n.option arch, +zicsr\n"
         "reset:\n\tla sp, stack_top\n\tla t0, exception\n\tcsrw mtvec, t0\n\tj board_reset\n"
-        ".balign 4\n"
+        ".option pop\n.balign 4\n"
         "exception:\n\tj board_fault\n"
         ".previous\n");

@@ -22,8 +22,9 @@ const structure = () => allocate(STRUCT_BYTES);
 const workspace = allocate(WORKSPACE_BYTES), u = allocate(8 * SAMPLES), f = allocate(4 * SAMPLES);
 let failures = 0;
 
-// The stack grows down to where the variables end.
-const stackEnd = Math.ceil(nf.__data_end.value / 4), stackStart = nf.__stack_pointer.value / 4;
+// The stack grows down, to the memory's beginning or, as older linkers have it, to where the variables end.
+const stackStart = nf.__stack_pointer.value / 4, dataEnd = Math.ceil(nf.__data_end.value / 4);
+const stackEnd = dataEnd < stackStart ? dataEnd : 0;
 const paint = () => words.fill(PAINT, stackEnd, stackStart);
 function stackUsed() {
     let word = stackEnd;

@@ -68,6 +68,7 @@ fn services(chapter: &mut Chapter, all: &[Findings]) {
          that calls `nf_cv_estimate` has all of them.",
     );
     chapter.table("text", &headings, 1, table(|size| size.text));
+    families(chapter, all);
     chapter.section("Constants", "");
     chapter.paragraph(
         "Bytes of .rodata; of WebAssembly of the data section. The built-in tiles are not counted: a program that loads one \
@@ -82,6 +83,23 @@ fn services(chapter: &mut Chapter, all: &[Findings]) {
         chapter.paragraph("Bytes of .data and .bss.");
         chapter.table("variables", &headings, 1, table(|size| size.data));
     }
+}
+
+fn families(chapter: &mut Chapter, all: &[Findings]) {
+    chapter.section("Of which families of estimators take", "");
+    chapter.paragraph(
+        "Bytes of instructions of a program that calls `nf_cv_estimate` alone, by the modules that its functions are named \
+         after; a function that was compiled into another counts there.",
+    );
+    let known: Vec<&Findings> = all.iter().filter(|findings| !findings.families.is_empty()).collect();
+    let names: Vec<&str> = known.iter().map(|findings| findings.platform.name).collect();
+    let headings: Vec<&str> = [&["family"], &names[..]].concat();
+    let parts = known.first().map_or(0, |first| first.families.len());
+    let row = |at: usize| {
+        let name = known.first().map_or("", |first| first.families[at].0);
+        std::iter::once(Cell::from(name)).chain(known.iter().map(|findings| bytes(findings.families[at].1))).collect()
+    };
+    chapter.table("families", &headings, 1, (0..parts).map(row).collect());
 }
 
 fn example(chapter: &mut Chapter, all: &[Findings]) {

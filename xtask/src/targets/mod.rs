@@ -5,6 +5,7 @@ mod bare_metal;
 mod build;
 mod chapter;
 mod consumer;
+mod families;
 mod platform;
 mod sizes;
 mod wasm;
@@ -29,6 +30,8 @@ pub(crate) struct Options {
 struct Findings {
     platform: &'static Platform,
     sizes: Vec<Size>,
+    /// Of a program that calls nf_cv_estimate.
+    families: families::Parts,
     /// What examples_c/bare_metal told.
     program: bare_metal::Told,
     /// What ran, in words.
@@ -62,37 +65,37 @@ pub(crate) fn run(options: &Options) -> Result<()> {
 /// Builds, runs what can be run, and measures.
 fn one(platform: &'static Platform) -> Result<Findings> {
     let raw = build::archive(platform)?;
-    let sizes = sizes::measure(platform, &raw)?;
+    let (sizes, families) = (sizes::measure(platform, &raw)?, families::measure(platform, &raw)?);
+    let (program, ran) = there(platform, &raw)?;
+    let version = run::read(run::command(platform.emulator).arg("--version"))?;
+    // QEMU says much more in parentheses and further lines.
+    let version = version.lines().next().unwrap_or_default().split(" (").next().unwrap_or_default();
+    let emulator = format!("`{}`: {version}", platform.emulator);
+    println!("   ran on {emulator}");
+    Ok(Findings { platform, sizes, families, program, ran, emulator })
+}
+
+/// Runs what can be run there, and says what that was.
+fn there(platform: &Platform, raw: &Path) -> Result<(bare_metal::Told, String)> {
     let Some(binutils) = platform.binutils else {
         let module = c_tests::output("services.wasm")?;
-        sizes::link(platform, &raw, &bare_metal::WASM_EXPORTS, &module)?;
-        let program = bare_metal::wasm(platform, platform.emulator, &module)?;
-        return findings(platform, sizes, program, "the example".to_owned());
+        sizes::link(platform, raw, &bare_metal::WASM_EXPORTS, &module)?;
+        return Ok((bare_metal::wasm(platform, platform.emulator, &module)?, "the example".to_owned()));
     };
-    let archive = library::one_object(&raw, &paths::output().join(platform.id()), binutils)?;
+    let archive = library::one_object(raw, &paths::output().join(platform.id()), binutils)?;
     library::check(&archive)?;
     println!("   no panic, no undefined symbol but mem*, only nf_* visible");
     if platform.is_bare_metal {
-        let program = bare_metal::alone(platform, binutils, platform.emulator, &archive)?;
-        return findings(platform, sizes, program, "the example, on a board with nothing else".to_owned());
+        let told = bare_metal::alone(platform, binutils, platform.emulator, &archive)?;
+        return Ok((told, "the example, without an operating system".to_owned()));
     }
-    let ran = c_tests_there(binutils, platform.emulator, &archive)?;
-    let program = bare_metal::hosted(platform, binutils, platform.emulator, &archive)?;
-    let ran = if consumer::run(platform)? {
-        format!("{ran}; the example; CMake projects")
-    } else {
-        format!("{ran}; the example")
-    };
-    findings(platform, sizes, program, ran)
-}
-
-fn findings(platform: &'static Platform, sizes: Vec<Size>, program: bare_metal::Told, ran: String) -> Result<Findings> {
-    let version = run::read(run::command(platform.emulator).arg("--version"))?;
-    // QEMU says much more in parentheses and further lines.
-    let version = version.lines().next().unwrap_or_default().split(" (").next().unwrap_or_default().to_owned();
-    let emulator =
-        if platform.is_wasm() { format!("node {version}") } else { format!("{}: {version}", platform.emulator) };
-    Ok(Findings { platform, sizes, program, ran, emulator })
+    let mut ran = c_tests_there(binutils, platform.emulator, &archive)?;
+    let told = bare_metal::hosted(platform, binutils, platform.emulator, &archive)?;
+    ran += ", the example";
+    if consumer::run(platform)? {
+        ran += ", a CMake project";
+    }
+    Ok((told, ran))
 }
 
 /// Compiles and runs every C test; they read the same pinned vectors as on this machine.
