@@ -30,7 +30,7 @@ if(CMAKE_CROSSCOMPILING)
     noisefloor_rust_target(rust_target)
 endif()
 if(CMAKE_SYSTEM_NAME STREQUAL Generic)
-    # Without an operating system memory is scarce: a third of the code, or less.
+    # Without an operating system memory is scarce: for size it is less than half of the code.
     set(opt_level s)
 endif()
 set(NOISEFLOOR_RUST_TARGET "${rust_target}" CACHE STRING "What cargo compiles for (a name that `rustc --print target-list` has); empty: this machine")
