@@ -66,12 +66,6 @@ pub(crate) fn check(archive: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The names of the C functions in an archive of any target.
-pub(crate) fn api_symbols(archive: &Path) -> Result<Vec<String>> {
-    let symbols = names(archive, &["--defined-only", "--extern-only"])?;
-    Ok(symbols.into_iter().map(|(_, name)| name).filter(|name| name.starts_with("nf_")).collect())
-}
-
 /// (kind, name) of every symbol, with nm's one-letter kinds.
 pub(crate) fn names(archive: &Path, options: &[&str]) -> Result<Vec<(String, String)>> {
     // Debian's nm loads LLVM's plugin, which then says "no symbols".

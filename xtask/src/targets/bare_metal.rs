@@ -17,6 +17,20 @@ const HOST: [&str; 3] = ["services.c", "stack.c", "host.c"];
 /// Between what was computed, which is the same everywhere, and the stack that it took.
 const STACK: &str = " stack ";
 
+/// What the program prints is QEMU's standard output; without a device for it, it would be the standard error.
+const DEVICES: [&str; 10] = [
+    "-display",
+    "none",
+    "-serial",
+    "none",
+    "-monitor",
+    "none",
+    "-chardev",
+    "stdio,id=out",
+    "-semihosting-config",
+    "enable=on,target=native,chardev=out",
+];
+
 /// An emulated board: how it is compiled for, and how it is started.
 struct Board {
     compiler: &'static [&'static str],
@@ -59,8 +73,8 @@ pub(crate) fn alone(platform: &Platform, binutils: &str, emulator: &str, archive
     compile(platform, &mut compiler, &sources, archive, &["-lgcc"], &image)?;
     // A program that hangs is ended.
     let mut machine = run::command("timeout");
-    machine.args(["60", emulator]).args(board.machine).args(["-nographic", "-monitor", "none", "-semihosting-config"]);
-    let told = compare(platform, machine.args(["enable=on,target=native", "-kernel"]).arg(&image))?;
+    machine.args(["60", emulator]).args(board.machine).args(DEVICES);
+    let told = compare(platform, machine.arg("-kernel").arg(&image))?;
     Ok(Told { image: Some(sizes::program(&image)?), ..told })
 }
 

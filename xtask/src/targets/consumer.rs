@@ -3,6 +3,7 @@
 use super::build;
 use super::platform::Platform;
 use crate::install::subproject::Subproject;
+use crate::paths;
 use anyhow::Result;
 
 /// Whether there is a toolchain file for the target.
@@ -11,7 +12,9 @@ pub(crate) fn run(platform: &Platform) -> Result<bool> {
         return Ok(false);
     }
     let mut project = Subproject::new("cross-compiled project", &build::folder(platform), build::CARGO.as_ref())?;
-    project.option("CMAKE_TOOLCHAIN_FILE", "tests/package/aarch64.cmake");
+    // CMake takes a relative path for one in the build folder.
+    let toolchain = paths::root().join("tests/package/aarch64.cmake");
+    project.option("CMAKE_TOOLCHAIN_FILE", &toolchain.display().to_string());
     project.option("NOISEFLOOR_CARGO_OPTIONS", &build::BUILD_CORE.join(";"));
     project.run(|command| {
         build::environment(command);
