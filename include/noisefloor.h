@@ -157,7 +157,7 @@ const char *nf_status_message(nf_status status);
 // A NaN or infinite sample is left out and not counted; biased unless such samples would have been average ones.
 #define NF_NONFINITE_SKIP 1
 
-// Precision: double. The default.
+// Precision: double. The default; NF_ERR_UNSUPPORTED where the library was built for float alone.
 #define NF_PRECISION_F64 0
 // Precision: float, for targets without double hardware.
 #define NF_PRECISION_F32 1

@@ -1,4 +1,4 @@
-/* What services.c needs from where it runs: board.c has it for a Cortex-M4F, host.c for a computer. */
+/* What services.c needs from where it runs: board.c has it for microcontrollers, host.c for a computer. */
 #ifndef PLATFORM_H
 #define PLATFORM_H
 
@@ -9,7 +9,7 @@ void platform_print(const char *text);
 /* Fills the free part of the stack with a pattern, so that platform_stack_used() can tell how deep a call went. */
 void platform_stack_paint(void);
 
-/* Bytes of stack that were written below the caller's own since the last painting; 0 where that cannot be told. */
+/* Bytes of stack that were written below the caller's own since the last painting. */
 uint32_t platform_stack_used(void);
 
 /* Calls every service, prints what each returned, and returns 0 if all succeeded. */

@@ -147,7 +147,9 @@ int services(void)
 {
     tile();
     control_variate("nf_cv_estimate_f32", NF_PRECISION_F32);
+#ifndef FLOAT_ALONE /* what the library was built for */
     control_variate("nf_cv_estimate_f64", NF_PRECISION_F64);
+#endif
     streaming();
     mis();
     minibatch();

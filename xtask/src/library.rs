@@ -8,6 +8,9 @@ use std::path::{Path, PathBuf};
 /// What a C library always provides, and compilers call without being asked.
 const ALLOWED_UNDEFINED: [&str; 4] = ["memcpy", "memmove", "memset", "memcmp"];
 
+/// Debian's tools for RISC-V are named after 64 bits, and link for them unless told otherwise.
+const RISC_V_32: (&str, &str) = ("LDEMULATION", "elf32lriscv");
+
 /// Builds the archive and returns its path.
 ///
 /// capi/cmake/one_object.sh, which the CMake build uses too, says why cargo's own archive is not the one.
@@ -27,7 +30,8 @@ pub(crate) fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<Path
     run::check(
         run::command("sh")
             .args(["capi/cmake/one_object.sh".as_ref(), raw, &object])
-            .envs(["ld", "nm", "objcopy"].map(|name| (name.to_uppercase(), tool(name)))),
+            .envs(["ld", "nm", "objcopy"].map(|name| (name.to_uppercase(), tool(name))))
+            .envs(prefix.starts_with("riscv64").then_some(RISC_V_32)),
     )?;
     run::check(run::command(tool("ar")).arg("rcsD").arg(&new).arg(&object))?;
     let archive = output.join("libnoisefloor.a");
@@ -60,12 +64,6 @@ pub(crate) fn check(archive: &Path) -> Result<()> {
         bail!("no nf_abi_version in {}: the symbol check looked at the wrong file", archive.display());
     }
     Ok(())
-}
-
-/// The names of the C functions in an archive of any target.
-pub(crate) fn api_symbols(archive: &Path) -> Result<Vec<String>> {
-    let symbols = names(archive, &["--defined-only", "--extern-only"])?;
-    Ok(symbols.into_iter().map(|(_, name)| name).filter(|name| name.starts_with("nf_")).collect())
 }
 
 /// (kind, name) of every symbol, with nm's one-letter kinds.

@@ -83,7 +83,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps
         .run("C tests as C++17, including noisefloor.hpp", || c_tests::run(c_tests::Language::Cpp17, &[], &archive()?));
     steps.run("C++ wrapper, with and without exceptions", || c_tests::wrapper(&archive()?));
-    steps.run("installed: CMake and pkg-config projects, C and C++, shared and static", install::test::projects);
+    steps.run("installed: CMake and pkg-config projects, C and C++, shared and static, either alone, and as a part of a project", install::test::projects);
     steps.run("installed: examples_c as a project of its own", install::test::examples);
     steps.run("examples_c/integrate.c", || examples::integrate(&archive()?, "integrate"));
     steps.run("examples_c/shared.c", || examples::integrate(&archive()?, "shared"));

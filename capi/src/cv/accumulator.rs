@@ -21,6 +21,9 @@ enum AnyState {
     Single(State<f32>),
 }
 
+/// Whether accumulators in double precision are part of the library: if not, nothing must make the compiler think so.
+const HAS_DOUBLE: bool = cfg!(feature = "double");
+
 /// "nf_cvac1" as bytes; the last is the layout's version.
 const MAGIC: u64 = u64::from_le_bytes(*b"nf_cvac1");
 
@@ -201,12 +204,14 @@ enum OpenedShared<'a> {
 /// # Safety
 /// A non-NULL, aligned pointer must be to memory that nf_cv_accumulator_init() or something else wrote at least a
 /// header's bytes to, and that nobody else uses.
+#[inline(always)]
 unsafe fn open<'a>(accumulator: *mut nf_cv_accumulator) -> Result<Opened<'a>, nf_status> {
     // SAFETY: the caller's promise; the magic number tells an accumulator from other bytes before the rest is looked at.
     unsafe {
         check(accumulator)?;
         let sums = accumulator.cast::<u8>().add(HEADER);
         Ok(match &mut (*accumulator).state {
+            AnyState::Double(_) if !HAS_DOUBLE => return Err(NF_ERR_STATE),
             AnyState::Double(state) => {
                 let sums = convert::slice_mut(sums.cast(), state.len())?;
                 Opened::Double(state, sums)
@@ -221,12 +226,14 @@ unsafe fn open<'a>(accumulator: *mut nf_cv_accumulator) -> Result<Opened<'a>, nf
 
 /// # Safety
 /// As for [`open`], but others may read the object.
+#[inline(always)]
 unsafe fn open_shared<'a>(accumulator: *const nf_cv_accumulator) -> Result<OpenedShared<'a>, nf_status> {
     // SAFETY: as in `open`.
     unsafe {
         check(accumulator)?;
         let sums = accumulator.cast::<u8>().add(HEADER);
         Ok(match &(*accumulator).state {
+            AnyState::Double(_) if !HAS_DOUBLE => return Err(NF_ERR_STATE),
             AnyState::Double(state) => OpenedShared::Double(state, convert::slice(sums.cast(), state.len())?),
             AnyState::Single(state) => OpenedShared::Single(state, convert::slice(sums.cast(), state.len())?),
         })

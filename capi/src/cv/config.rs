@@ -38,7 +38,7 @@ pub const NF_SOLVER_SQUARE_ROOT: u32 = 2;
 /// Solver: the n x n system of at most 4096 samples. Not for streaming.
 pub const NF_SOLVER_DUAL: u32 = 3;
 
-/// Precision: double. The default.
+/// Precision: double. The default; NF_ERR_UNSUPPORTED where the library was built for float alone.
 pub const NF_PRECISION_F64: u32 = 0;
 /// Precision: float, for targets without double hardware.
 pub const NF_PRECISION_F32: u32 = 1;
@@ -210,8 +210,15 @@ pub(super) fn core_config(config: &nf_cv_config) -> Result<Config, nf_status> {
 }
 
 /// Whether the configuration asks for float instead of double.
+#[inline(always)]
 pub(super) fn is_narrow(config: &nf_cv_config) -> Result<bool, nf_status> {
-    pick(config.precision, &[false, true])
+    // Written so that, without double precision, the compiler sees that the answer is always yes.
+    match config.precision {
+        NF_PRECISION_F32 => Ok(true),
+        NF_PRECISION_F64 if cfg!(feature = "double") => Ok(false),
+        NF_PRECISION_F64 => Err(NF_ERR_UNSUPPORTED),
+        _ => Err(NF_ERR_RANGE),
+    }
 }
 
 fn pick<T: Copy>(value: u32, choices: &[T]) -> Result<T, nf_status> {

@@ -170,7 +170,8 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
         let sums = system.techniques() + 1;
         let memory = self.memory.as_mut();
         let mut samples = batch.samples();
-        for (group, rows) in gradient.chunks(parameters.max(1).saturating_mul(GROUP)).enumerate() {
+        // Code for size, too, must see that this is not 0, which would panic.
+        for (group, rows) in gradient.chunks(parameters.saturating_mul(GROUP).max(1)).enumerate() {
             let coefficients = Coefficients::new(samples.by_ref().take(GROUP), part / batch.items());
             // The old averages fade once.
             let keep = if group == 0 { keep as f32 } else { 1.0 };

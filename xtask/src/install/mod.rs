@@ -1,5 +1,7 @@
 //! `cargo xtask install`: what capi/CMakeLists.txt describes, with cargo's target folder shared.
 
+mod one_kind;
+pub(crate) mod subproject;
 pub(crate) mod test;
 
 use crate::{paths, run};
@@ -26,13 +28,13 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let prefix = std::path::absolute(&options.prefix)
         .with_context(|| format!("cannot install into {}", options.prefix.display()))?;
     let build = paths::output().join("install");
-    configure(&build, &prefix, options.libdir.as_deref())?;
+    configure(&build, &prefix, options.libdir.as_deref(), &[])?;
     compile(&build)?;
     run::check(run::command("cmake").arg("--install").arg(&build))
 }
 
 /// Names the places; a former choice of the library folder does not stay.
-fn configure(build: &Path, prefix: &Path, libdir: Option<&Path>) -> Result<()> {
+fn configure(build: &Path, prefix: &Path, libdir: Option<&Path>, options: &[&str]) -> Result<()> {
     let define = |name: &str, value: &Path| format!("-D{name}={}", value.display());
     let cargo = run::cargo();
     let mut cmake = run::command("cmake");
@@ -44,7 +46,7 @@ fn configure(build: &Path, prefix: &Path, libdir: Option<&Path>) -> Result<()> {
     if let Some(libdir) = libdir {
         cmake.arg(define("CMAKE_INSTALL_LIBDIR", libdir));
     }
-    run::read(&mut cmake).map(|_| ())
+    run::read(cmake.args(options)).map(|_| ())
 }
 
 /// The libraries, both at once.

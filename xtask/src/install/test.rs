@@ -1,6 +1,6 @@
 //! Projects outside the tree that use an installed noisefloor: by CMake and by pkg-config, in C and C++, shared and static.
 
-use super::{compile, configure};
+use super::{compile, configure, one_kind, subproject};
 use crate::test::Outcome;
 use crate::{abi, library, paths, run, tools};
 use anyhow::{Context, Result, bail};
@@ -22,7 +22,7 @@ pub(crate) fn projects() -> Result<Outcome> {
     exported(&lib.join("libnoisefloor.so"))?;
 
     let build = folder("a package build")?;
-    cmake_project("tests/package", &build, &prefix)?;
+    cmake_project("tests/package", &build, &prefix, &[])?;
     for program in ["c_shared", "c_static", "cpp_shared", "cpp_static"] {
         linked_as_named(&build.join(program))?;
     }
@@ -47,6 +47,8 @@ pub(crate) fn projects() -> Result<Outcome> {
         }
     }
     staged()?;
+    one_kind::each()?;
+    subproject::both()?;
     Ok(Outcome::Passed)
 }
 
@@ -56,7 +58,7 @@ pub(crate) fn examples() -> Result<Outcome> {
         return Ok(Outcome::NotRun(missing));
     }
     let build = folder("an examples build")?;
-    cmake_project("examples_c", &build, &moved_prefix()?)?;
+    cmake_project("examples_c", &build, &moved_prefix()?, &[])?;
     Ok(Outcome::Passed)
 }
 
@@ -65,7 +67,7 @@ fn moved_prefix() -> Result<PathBuf> {
     let made = folder("made here")?;
     let moved = folder("moved here")?;
     let build = paths::output().join("test/install build");
-    configure(&build, &made, Some(Path::new("lib")))?;
+    configure(&build, &made, Some(Path::new("lib")), &[])?;
     compile(&build)?;
     run::read(run::command("cmake").arg("--install").arg(&build))?;
     fs::rename(&made, &moved).with_context(|| format!("cannot move {}", made.display()))?;
@@ -100,7 +102,7 @@ fn exported(shared: &Path) -> Result<()> {
 }
 
 /// What is called static does not need the shared library, what is called shared does.
-fn linked_as_named(program: &Path) -> Result<()> {
+pub(super) fn linked_as_named(program: &Path) -> Result<()> {
     let shared = dynamic_section(program)?.contains("Shared library: [libnoisefloor.so.");
     if shared != program.to_string_lossy().ends_with("_shared") {
         bail!("{} is linked with the {} library", program.display(), if shared { "shared" } else { "static" });
@@ -116,7 +118,7 @@ fn dynamic_section(file: &Path) -> Result<String> {
 fn staged() -> Result<()> {
     let (build, staged) = (paths::output().join("test/install build"), folder("a staged install")?);
     let libdir = Path::new("lib/x86_64-linux-gnu");
-    configure(&build, Path::new("/usr"), Some(libdir))?;
+    configure(&build, Path::new("/usr"), Some(libdir), &[])?;
     run::read(run::command("cmake").arg("--install").arg(&build).env("DESTDIR", &staged))?;
     let lib = staged.join("usr").join(libdir);
     let mut query = run::command("pkg-config");
@@ -135,17 +137,17 @@ fn staged() -> Result<()> {
 }
 
 /// Configures a project against the prefix, builds it and runs its tests.
-fn cmake_project(source: &str, build: &Path, prefix: &Path) -> Result<()> {
+pub(super) fn cmake_project(source: &str, build: &Path, prefix: &Path, options: &[&str]) -> Result<()> {
     let mut configure = run::command("cmake");
     configure.args(["-S", source, "-B"]).arg(build).arg(format!("-DCMAKE_PREFIX_PATH={}", prefix.display()));
-    run::read(&mut configure)?;
+    run::read(configure.args(options))?;
     run::read(run::command("cmake").arg("--build").arg(build).args(["--parallel", "2"]))?;
     let mut test = run::command("ctest");
     run::check(test.arg("--test-dir").arg(build).args(["--output-on-failure", "--no-tests=error"]))
 }
 
 /// A folder of the tests that does not exist yet.
-fn folder(name: &str) -> Result<PathBuf> {
+pub(super) fn folder(name: &str) -> Result<PathBuf> {
     let folder = paths::output().join("test").join(name);
     match fs::remove_dir_all(&folder) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => {

@@ -132,6 +132,10 @@ mod tests {
         for bad in ["GPL-3.0-only", "MIT AND GPL-3.0-only", "MPL-2.0"] {
             assert!(!allows(bad, &ALLOWED).unwrap(), "{bad}");
         }
+        let package = |licence: &str| Packages::from([(("name".to_owned(), "1.2.3".to_owned()), licence.to_owned())]);
+        assert!(allowed(&package("MIT"), &ALLOWED).is_ok());
+        let refusal = allowed(&package("GPL-3.0-only"), &ALLOWED).unwrap_err().to_string();
+        assert!(refusal.contains("name 1.2.3: GPL-3.0-only"), "{refusal}");
         assert!(allows("", &ALLOWED).is_err());
         assert!(allows("none of your business", &ALLOWED).is_err());
     }

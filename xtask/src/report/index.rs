@@ -64,6 +64,10 @@ pub(super) fn write(folder: &Path, name: &str, json: &str) -> Result<String> {
     }
     let mut chapter = Chapter::new("Measurements");
     introduce(&mut chapter);
+    // Written by another command.
+    if folder.join("sizes.md").exists() {
+        chapter.paragraph("[Code size and stack on other targets](sizes.md) is made by `cargo xtask targets`.");
+    }
     chapters(&mut chapter, &all);
     beside(&mut chapter, folder);
     machines(&mut chapter, &all);

@@ -2,7 +2,8 @@
 //! sections dropped.
 
 use super::platform::Platform;
-use crate::{c_tests, library, run};
+use super::wasm;
+use crate::{abi, c_tests, run};
 use anyhow::{Context, Result, bail};
 use object::{Object, ObjectSection, SectionKind};
 use std::fs;
@@ -50,37 +51,53 @@ pub(crate) struct Size {
     pub(crate) data: u64,
 }
 
-/// For WebAssembly `text` is the whole module.
+/// Of each service, linked alone.
 pub(crate) fn measure(platform: &Platform, archive: &Path) -> Result<Vec<Size>> {
-    let linker = linker()?;
-    let all = library::api_symbols(archive)?;
+    // As the header has them: GNU nm cannot read WebAssembly.
+    let header = abi::Header::committed()?;
+    let all: Vec<String> = header.functions().map(|name| name.to_string()).collect();
     let begins = |symbol: &str, with: &[&str]| with.iter().any(|prefix| symbol.starts_with(prefix));
     let mut sizes = Vec::new();
     for service in &SERVICES {
         let wanted = |symbol: &&String| begins(symbol, service.functions) && !begins(symbol, service.except);
-        let functions: Vec<_> = all.iter().filter(wanted).collect();
+        let functions: Vec<_> = all.iter().filter(wanted).map(String::as_str).collect();
         if functions.is_empty() {
             bail!("no function of \"{}\" in {}", service.name, archive.display());
         }
         let output = c_tests::output("sizes")?;
-        let mut link = run::command(&linker);
-        let is_wasm = platform.triple.starts_with("wasm32");
-        match is_wasm {
-            true => link.args(["-flavor", "wasm", "--no-entry", "--gc-sections", "--strip-all"]),
-            false => link.args(["-flavor", "gnu", "--gc-sections", "--unresolved-symbols=ignore-all", "--entry=0"]),
-        };
-        for function in functions {
-            link.arg(format!("{}={function}", if is_wasm { "--export" } else { "--undefined" }));
-        }
-        run::check(link.arg(archive).arg("-o").arg(&output))?;
+        link(platform, archive, &functions, &output)?;
         let bytes = fs::read(&output).with_context(|| format!("cannot read {}", output.display()))?;
-        sizes.push(if is_wasm {
-            Size { service: service.name, text: bytes.len() as u64, rodata: 0, data: 0 }
+        sizes.push(if platform.is_wasm() {
+            wasm::size(service.name, &bytes)?
         } else {
             sections(service.name, &bytes)?
         });
     }
     Ok(sizes)
+}
+
+/// Links the archive for these functions alone.
+pub(crate) fn link(platform: &Platform, archive: &Path, functions: &[&str], output: &Path) -> Result<()> {
+    let mut link = run::command(linker()?);
+    let option = if platform.is_wasm() {
+        link.args(["-flavor", "wasm", "--no-entry", "--gc-sections", "--strip-all"]);
+        "--export"
+    } else {
+        link.args(["-flavor", "gnu", "--gc-sections", "--unresolved-symbols=ignore-all", "--entry=0"]);
+        "--undefined"
+    };
+    for function in functions {
+        link.arg(format!("{option}={function}"));
+    }
+    run::check(link.arg(archive).arg("-o").arg(output))
+}
+
+/// Bytes of a program's memory of code: its own, the library's and its constants, which its linker script puts into .text.
+pub(crate) fn program(path: &Path) -> Result<u64> {
+    let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let file = object::File::parse(&*bytes).with_context(|| format!("{} is no program", path.display()))?;
+    let text = file.section_by_name(".text").with_context(|| format!("{} has no .text", path.display()))?;
+    Ok(text.size())
 }
 
 /// Sums of the sections that a program would load.

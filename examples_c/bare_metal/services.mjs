@@ -1,0 +1,116 @@
+// services.c's calls from JavaScript: node services.mjs MODULE.wasm TILE.nft. Prints the same lines; the stack is the part of it
+// that lies in the module's memory, as what WebAssembly keeps of it elsewhere cannot be seen.
+import { readFileSync } from "node:fs";
+
+const SAMPLES = 64, ITEMS = 100, BATCH = 8, WORKSPACE_BYTES = 32768;
+const PRECISION_F64 = 0, PRECISION_F32 = 1, OMIS_RIDGE = 0;
+const PAINT = 0xc0dec0de, STRUCT_BYTES = 256, PRECISION_OFFSET = 40, STD_ERROR_OFFSET = 16;
+
+const [, , module, tileFile] = process.argv;
+const { instance } = await WebAssembly.instantiate(readFileSync(module));
+const nf = instance.exports;
+nf.memory.grow(4);
+const words = new Uint32Array(nf.memory.buffer), floats = new Float32Array(nf.memory.buffer);
+
+let free = nf.__heap_base.value;
+function allocate(bytes) {
+    const at = free = Math.ceil(free / 16) * 16;
+    free += bytes;
+    return at;
+}
+const structure = () => allocate(STRUCT_BYTES);
+const workspace = allocate(WORKSPACE_BYTES), u = allocate(8 * SAMPLES), f = allocate(4 * SAMPLES);
+let failures = 0;
+
+// The stack grows down, to the memory's beginning or, as older linkers have it, to where the variables end.
+const stackStart = nf.__stack_pointer.value / 4, dataEnd = Math.ceil(nf.__data_end.value / 4);
+const stackEnd = dataEnd < stackStart ? dataEnd : 0;
+const paint = () => words.fill(PAINT, stackEnd, stackStart);
+function stackUsed() {
+    let word = stackEnd;
+    while (word < stackStart && words[word] === PAINT) ++word;
+    return 4 * (stackStart - word);
+}
+
+function line(name, status, first, second) {
+    const stack = stackUsed(), hex = (bits) => bits.toString(16).padStart(8, "0");
+    console.log(`${name} ${hex(first)} ${hex(second)}` + (stack ? ` stack ${stack}` : "") + (status ? ` FAILED: ${status}` : ""));
+    if (status) ++failures;
+}
+
+function tile() {
+    const bytes = readFileSync(tileFile), file = allocate(bytes.length), tile = structure();
+    new Uint8Array(nf.memory.buffer).set(bytes, file);
+    paint();
+    const status = nf.nf_tile_from_bytes(file, bytes.length, tile);
+    line("nf_tile_from_bytes", status, words[tile / 4 + 2], words[tile / 4 + 3]);
+    if (status) return;
+    const pixel = structure(), domain = structure();
+    paint();
+    for (let i = 0; i < SAMPLES; ++i) {
+        nf.nf_sampler_pixel(pixel, tile, 3, 5, 0, i);
+        nf.nf_sampler_domain(domain, pixel, 7);
+        nf.nf_sampler_draw(domain, 2, u + 8 * i);
+    }
+    line("nf_sampler_draw", 0, words[u / 4], words[u / 4 + 2 * SAMPLES - 1]);
+    const round = Math.fround;
+    for (let i = 0; i < SAMPLES; ++i) {
+        const x = floats[u / 4 + 2 * i], y = floats[u / 4 + 2 * i + 1];
+        floats[f / 4 + i] = round(round(x * x) + round(2 * y));
+    }
+}
+
+function controlVariate(name, precision) {
+    const config = structure(), estimate = structure();
+    nf.nf_cv_config_default(config);
+    words[(config + PRECISION_OFFSET) / 4] = precision;
+    paint();
+    const status = nf.nf_cv_estimate(config, u, f, SAMPLES, workspace, WORKSPACE_BYTES, estimate);
+    line(name, status, words[estimate / 4], words[(estimate + STD_ERROR_OFFSET) / 4]);
+}
+
+function streaming() {
+    const config = structure(), estimate = structure(), accumulator = structure(), half = WORKSPACE_BYTES / 2;
+    nf.nf_cv_config_default(config);
+    words[(config + PRECISION_OFFSET) / 4] = PRECISION_F32;
+    paint();
+    const status = nf.nf_cv_accumulator_init(workspace, half, config, accumulator)
+        || nf.nf_cv_accumulator_add(words[accumulator / 4], u, f, SAMPLES)
+        || nf.nf_cv_accumulator_estimate(words[accumulator / 4], workspace + half, half, estimate);
+    line("nf_cv_accumulator", status, words[estimate / 4], words[(estimate + STD_ERROR_OFFSET) / 4]);
+}
+
+function mis() {
+    const pdf = structure(), counts = structure(), value = structure(), result = structure(), omis = structure();
+    floats.set([0.5, 2, 1], pdf / 4);
+    words.set([2, 1, 4], counts / 4);
+    floats[value / 4] = 3;
+    paint();
+    let status = nf.nf_mis_balance(pdf, counts, 3, 1, result);
+    line("nf_mis_balance", status, words[result / 4], 0);
+    paint();
+    status = nf.nf_omis_init(workspace, WORKSPACE_BYTES, 3, 1, counts, omis);
+    for (let j = 0; j < 3 && !status; ++j) status = nf.nf_omis_add(words[omis / 4], j, pdf, value);
+    status ||= nf.nf_omis_solve(words[omis / 4], OMIS_RIDGE, 0, result);
+    line("nf_omis", status, words[result / 4], 0);
+}
+
+function minibatch() {
+    const rng = structure(), table = structure(), importance = allocate(4 * ITEMS), weight = structure(), index = structure();
+    nf.nf_rng_seed(rng, 1n);
+    for (let i = 0; i < ITEMS; ++i) floats[importance / 4 + i] = nf.nf_rng_uniform(rng);
+    paint();
+    const status = nf.nf_table_init(table, workspace, WORKSPACE_BYTES, ITEMS, importance)
+        || nf.nf_table_draw(table, rng, BATCH, index, weight)
+        || nf.nf_table_update(table, index, importance, BATCH, Math.fround(0.3));
+    line("nf_table", status, words[index / 4 + BATCH - 1], words[weight / 4 + BATCH - 1]);
+}
+
+tile();
+controlVariate("nf_cv_estimate_f32", PRECISION_F32);
+controlVariate("nf_cv_estimate_f64", PRECISION_F64);
+streaming();
+mis();
+minibatch();
+console.log(failures ? "failed" : "done");
+process.exitCode = failures ? 1 : 0;
