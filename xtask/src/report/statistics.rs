@@ -52,15 +52,20 @@ impl Estimate {
     }
 }
 
-/// What Student's t exceeds with 2.5 %: a table for few degrees of freedom, then the normal quantile's expansion (Abramowitz and
-/// Stegun 26.7.5); both good to .0005.
+/// What Student's t exceeds with 2.5 %: a table for few degrees of freedom, then the expansion; both good to .0005.
 pub(crate) fn student(freedom: f64) -> f64 {
     const FEW: [f64; 15] =
         [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131];
     if let Some(&exact) = FEW.get((freedom - 1.0).max(0.0) as usize) {
         return exact;
     }
-    let x = 1.959_963_985_f64;
+    student_quantile(1.959_963_985, freedom)
+}
+
+/// Student's quantile from the `normal` one of the same tail (Abramowitz and Stegun 26.7.5). At 1 %: 2.995 for 7 degrees of freedom,
+/// whose quantile is 2.998; 4.45 for 3, whose quantile is 4.54.
+pub(crate) fn student_quantile(normal: f64, freedom: f64) -> f64 {
+    let x = normal;
     let (x3, x5, x7) = (x.powi(3), x.powi(5), x.powi(7));
     let terms = [
         (x3 + x) / 4.0,
