@@ -91,12 +91,12 @@ pub(crate) struct Figure {
 }
 
 impl Figure {
-    /// With its confidence interval, if there were several seeds.
+    /// With its confidence interval, if there were enough seeds for one.
     pub(crate) fn new(estimate: Estimate, unit: Unit) -> Self {
         let Estimate { value, low, high, seeds } = estimate;
         let mut figure = Self::exact(value, unit);
         figure.seeds = Some(seeds);
-        if seeds > 1 && value.is_finite() && low.is_finite() && high.is_finite() {
+        if estimate.has_interval() {
             figure.interval = Some([low, high]);
             figure.text = format!("{} [{}, {}]", figure.text, unit.text(low), unit.text(high));
         }
