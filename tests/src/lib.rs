@@ -8,3 +8,15 @@ pub mod random;
 pub mod shared;
 pub mod statistics;
 pub mod tile;
+
+use noisefloor::control_variate::Estimator;
+
+/// Every estimator.
+pub const ESTIMATORS: [Estimator; 6] = [
+    Estimator::Robust,
+    Estimator::LeastSquares,
+    Estimator::LeaveOneOut,
+    Estimator::KFold,
+    Estimator::GradientDescent,
+    Estimator::Incremental,
+];
