@@ -193,7 +193,8 @@ static void measure_variance(const options *given, const dataset *train, const d
     for (uint32_t i = 0; i < train->items; ++i)
         every[i] = i;
 
-    fprintf(file, "epoch,method,uniform_fraction,batch,ratio,std_error\n");
+    /* batches: drawn; 0 where the ratio is exact. */
+    fprintf(file, "epoch,method,uniform_fraction,batch,ratio,std_error,batches\n");
     printf("epoch,test_loss,test_error\n");
     for (uint32_t epoch = 0; epoch <= o->epochs; ++epoch) {
         for (uint32_t position = 0; epoch > 0 && position < train->items; position += o->batch) {
@@ -213,16 +214,16 @@ static void measure_variance(const options *given, const dataset *train, const d
 
         scan_items(&all, &r.net, train, &large, o->techniques);
         double uniform = exact_variance(&all, NULL), error;
-        fprintf(file, "%u,uniform,1,%d,1,0\n", epoch, EXACT_BATCH);
+        fprintf(file, "%u,uniform,1,%d,1,0,0\n", epoch, EXACT_BATCH);
         for (int k = 0; k < RATINGS; ++k)
             for (int m = 0; m < 2; ++m) {
                 float delta = m == 0 ? 0.0f : given->delta;
                 double ratio = fresh_variance(&all, all.rating[k], delta, probability) / uniform;
-                fprintf(file, "%u,%s,%g,%d,%.5g,0\n", epoch, rating_name[k], delta, EXACT_BATCH, ratio);
+                fprintf(file, "%u,%s,%g,%d,%.5g,0,0\n", epoch, rating_name[k], delta, EXACT_BATCH, ratio);
             }
-        fprintf(file, "%u,importance_stale,0,%d,%.5g,0\n", epoch, EXACT_BATCH,
+        fprintf(file, "%u,importance_stale,0,%d,%.5g,0,0\n", epoch, EXACT_BATCH,
                 table_variance(&all, &stale[STALE_PURE].table[0], every, probability) / uniform);
-        fprintf(file, "%u,importance_stale,%g,%d,%.5g,0\n", epoch, given->delta, EXACT_BATCH,
+        fprintf(file, "%u,importance_stale,%g,%d,%.5g,0,0\n", epoch, given->delta, EXACT_BATCH,
                 table_variance(&all, &stale[STALE_MIXED].table[0], every, probability) / uniform);
 
         sampler_refresh(&fresh, &all);
@@ -233,8 +234,8 @@ static void measure_variance(const options *given, const dataset *train, const d
         static const char *const name[] = {"importance_drawn", "balance", "omis", "balance_stale", "omis_stale"};
         for (size_t k = 0; k < sizeof name / sizeof *name; ++k) {
             double ratio = drawn_error(*drawn[k], &all, &r.net, train, &space, &error) * DRAWN_BATCH / uniform;
-            fprintf(file, "%u,%s,%g,%d,%.5g,%.3g\n", epoch, name[k], given->delta, DRAWN_BATCH, ratio,
-                    error * DRAWN_BATCH / uniform);
+            fprintf(file, "%u,%s,%g,%d,%.5g,%.3g,%d\n", epoch, name[k], given->delta, DRAWN_BATCH, ratio,
+                    error * DRAWN_BATCH / uniform, DRAWN_BATCHES);
         }
         fflush(file);
     }

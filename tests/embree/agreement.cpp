@@ -5,6 +5,7 @@
 #include "load.hpp"
 #include "scenes.hpp"
 #include "shapes.hpp"
+#include "../pathtracer/normals.hpp"
 
 #include "pathtracer/bvh.hpp"
 #include <cstdio>
@@ -51,6 +52,17 @@ void compare_jumble()
         throw std::runtime_error("random rays: too few of them hit anything");
 }
 
+// Agreement alone would not see an error that both share.
+void compare_normals()
+{
+    const demo::Geometry geometry = test::jumble_of_normals();
+    const test::Normals normals = test::normals_of_jumble(geometry, EmbreeIntersector(geometry));
+    if (normals.triangles < 2000 || normals.spheres < 2000)
+        throw std::runtime_error("normals: too few rays hit anything");
+    if (!(normals.worst <= 1e-3))
+        throw std::runtime_error("Embree's normals differ from the surfaces' by " + std::to_string(normals.worst));
+}
+
 void compare_scene(const demo::SceneEntry &entry)
 {
     demo::Scene scene;
@@ -88,6 +100,7 @@ int main()
 {
     try {
         compare_jumble();
+        compare_normals();
         for (const demo::SceneEntry &entry : scenes())
             compare_scene(entry);
         return 0;

@@ -1,4 +1,5 @@
 // The path tracer's own tree of boxes: rays that run in the boxes' faces, and normals.
+#include "normals.hpp"
 #include "scenes.hpp"
 
 using namespace test;
@@ -47,7 +48,7 @@ void face_planes()
 }
 
 // Small spheres, far away: the distance is rounded to more than a ten thousandth of the radius.
-void normals()
+void normals_of_small_spheres()
 {
     Geometry geometry;
     const float radius = 1e-3f;
@@ -56,17 +57,29 @@ void normals()
     const Bvh bvh(geometry);
     Random random(4);
     double worst = 0;
-    int hits = 0;
+    Normals normals;
     for (int i = 0; i < 20000; ++i) {
         const Ray ray{{}, normalize(center + 0.9f * radius * direction(random)), 0};
         Hit hit;
         if (!bvh.closest(ray, hit))
             continue;
-        ++hits;
-        worst = std::max(worst, std::abs(double(length(hit.shading)) - 1));
+        worst = std::max({worst, std::abs(double(length(hit.shading)) - 1), std::abs(double(length(hit.geometric)) - 1)});
+        normals.add(bvh, geometry, ray);
     }
-    expect(hits > 10000, "normals: too few rays hit anything");
+    expect(normals.spheres > 10000, "normals: too few rays hit anything");
     expect_near(worst, 0, 1e-6, "the length of a small sphere's normal");
+    // A unit in the last place of the distance, 1e-6, is a thousandth of the radius; more where the ray is flat.
+    expect_near(normals.worst, 0, 1e-2, "the direction of a small sphere's normal");
+}
+
+void normals()
+{
+    const Geometry geometry = jumble_of_normals();
+    const Normals normals = normals_of_jumble(geometry, Bvh(geometry));
+    std::printf("   %-72s %.1e\n", "normals of triangles and spheres, moving, from both sides: largest error", normals.worst);
+    expect(normals.behind > 1000 && normals.triangles - normals.behind > 1000, "normals: too few rays meet triangles");
+    expect(normals.inside > 1000 && normals.spheres - normals.inside > 1000, "normals: too few rays meet spheres");
+    expect_near(normals.worst, 0, 1e-3, "normals of triangles and spheres");
 }
 
 } // namespace
@@ -74,6 +87,7 @@ void normals()
 int main()
 {
     face_planes();
+    normals_of_small_spheres();
     normals();
     return finish();
 }

@@ -14,3 +14,15 @@ pub mod shared_hard;
 pub mod shared_tiles;
 pub mod statistics;
 pub mod tile;
+
+use noisefloor::control_variate::Estimator;
+
+/// Every estimator.
+pub const ESTIMATORS: [Estimator; 6] = [
+    Estimator::Robust,
+    Estimator::LeastSquares,
+    Estimator::LeaveOneOut,
+    Estimator::KFold,
+    Estimator::GradientDescent,
+    Estimator::Incremental,
+];

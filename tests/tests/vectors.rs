@@ -9,17 +9,10 @@ use noisefloor::control_variate::{
 };
 use noisefloor::real::Real;
 use noisefloor::rng::Rng;
+use noisefloor_tests::ESTIMATORS;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-const ESTIMATORS: [Estimator; 6] = [
-    Estimator::Robust,
-    Estimator::LeastSquares,
-    Estimator::LeaveOneOut,
-    Estimator::KFold,
-    Estimator::GradientDescent,
-    Estimator::Incremental,
-];
 const FAMILIES: [Family; 4] = [Family::Legendre, Family::Step, Family::Sine, Family::Gaussian];
 const SOLVERS: [Solver; 4] = [Solver::Auto, Solver::NormalEquations, Solver::SquareRoot, Solver::Dual];
 

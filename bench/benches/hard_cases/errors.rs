@@ -66,11 +66,11 @@ fn row(case: &Case, n: usize, repetitions: usize, seed: u64) -> ErrorRow {
     }
 }
 
-/// None if some estimates failed, or the plain mean is exact.
+/// None if some estimates failed; infinite if the plain mean alone is exact.
 pub(crate) fn ratio(errors: &[f64], plain: &[f64]) -> Option<Ratio> {
     // Squares of the largest values would leave the range of `f64` in no case, those of the smallest ones do no harm.
-    let usable = errors.len() == plain.len();
-    usable.then(|| rmse_ratio(errors, plain)).filter(|ratio| ratio.value.is_finite())
+    let usable = errors.len() == plain.len() && errors.iter().chain(plain).all(|error| error.is_finite());
+    usable.then(|| rmse_ratio(errors, plain))
 }
 
 pub(crate) fn root_mean_square(values: &[f64]) -> f64 {

@@ -5,17 +5,10 @@ use glam::Vec2;
 use noisefloor::control_variate::{self as cv, Config, Estimate, Estimator, NonFinite, Optimizer, Samples};
 use noisefloor::tile::{Builtin, Tile};
 use noisefloor::{Error, mis, warp};
+use noisefloor_tests::ESTIMATORS;
 use noisefloor_tests::random::SplitMix64;
 
 const GROUP: &str = "control variates";
-const ESTIMATORS: [Estimator; 6] = [
-    Estimator::Robust,
-    Estimator::LeastSquares,
-    Estimator::LeaveOneOut,
-    Estimator::KFold,
-    Estimator::GradientDescent,
-    Estimator::Incremental,
-];
 
 fn estimate(config: &Config, u: &[f32], f: &[f32]) -> Result<Estimate, Error> {
     let mut workspace = vec![0.0_f64; cv::workspace_len::<f64>(config, f.len())?];

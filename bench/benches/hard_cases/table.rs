@@ -18,7 +18,7 @@ pub(crate) struct ErrorRow {
     pub(crate) failed: usize,
     /// The plain estimator's root mean square error.
     pub(crate) plain_rmse: f64,
-    /// RMSE over the plain estimator's, in the order of the group's columns; None where there is no such estimate.
+    /// RMSE over the plain estimator's, in the order of the group's columns; None where some estimates failed.
     pub(crate) ratios: Vec<(&'static str, Option<Ratio>)>,
 }
 

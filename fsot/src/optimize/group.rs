@@ -14,36 +14,32 @@ pub(super) struct Group {
     pub(super) ranked: bool,
 }
 
-/// Groups of all points: those that no class tells apart are one, if large enough; small ones are together, as in a ramp, where every point
-/// has values of its own. Points of no class are never moved, and apart from the others.
+/// Groups of all points: those that no class tells apart are one, if large enough, which at most about a hundred are; small ones are together,
+/// as in a ramp, where every point has values of its own. Points of no class are never moved, and apart from the others.
 pub(super) fn groups(filters: &[Filter], points: usize, windows: usize) -> Vec<Group> {
     let least = PER_WINDOW * windows;
     // Two points next to each other by number are told apart where a run of some class begins or ends.
     let mut begins: Vec<u32> = filters.iter().flat_map(Filter::ends).chain([0, points as u32]).collect();
     begins.sort_unstable();
     begins.dedup();
-    let mut kinds: Vec<(Vec<u32>, Vec<u32>)> = Vec::new();
-    let (mut small, mut free) = (Vec::new(), Vec::new());
-    for run in begins.windows(2).map(|pair| pair[0]..pair[1]) {
-        let values: Vec<u32> = filters.iter().map(|filter| filter.value(run.start).to_bits()).collect();
-        if values.iter().all(|&bits| bits == 0) {
-            free.extend(run);
-        } else if let Some((_, members)) = kinds.iter_mut().find(|(of, _)| *of == values) {
-            members.extend(run);
-        } else if kinds.len() < MOST {
-            kinds.push((values, run.collect()));
-        } else {
-            small.extend(run);
-        }
-    }
+    let values: Vec<u32> = begins.iter().flat_map(|&at| filters.iter().map(move |f| f.value(at).to_bits())).collect();
+    let of = |run: usize| &values[run * filters.len()..(run + 1) * filters.len()];
+    let mut runs: Vec<usize> = (0..begins.len() - 1).collect();
+    runs.sort_unstable_by_key(|&run| (of(run), run));
     let mut groups = Vec::new();
-    for (_, members) in kinds {
-        if members.len() < least {
+    let (mut small, mut free) = (Vec::new(), Vec::new());
+    for kind in runs.chunk_by(|&a, &b| of(a) == of(b)) {
+        let members: Vec<u32> = kind.iter().flat_map(|&run| begins[run]..begins[run + 1]).collect();
+        if of(kind[0]).iter().all(|&bits| bits == 0) {
+            free = members;
+        } else if members.len() < least {
             small.extend(members);
         } else {
             groups.push(Group { members, ranked: true });
         }
     }
+    // By their first points, not by their values.
+    groups.sort_unstable_by_key(|group| group.members[0]);
     small.sort_unstable();
     let ranked = small.len() >= least;
     groups.push(Group { members: small, ranked });
@@ -51,9 +47,6 @@ pub(super) fn groups(filters: &[Filter], points: usize, windows: usize) -> Vec<G
     groups.retain(|group| !group.members.is_empty());
     groups
 }
-
-/// More kinds of points than these are not told apart.
-const MOST: usize = 64;
 
 #[cfg(test)]
 mod tests {
@@ -79,5 +72,17 @@ mod tests {
         let mut some = progressive(2, 1, 9000);
         some[0].function = ClassFunction::Box { from: 0.5, to: 1.0 };
         assert_eq!(of(&some, 9000), [(4500, true), (4500, false)]);
+    }
+
+    #[test]
+    fn a_large_kind_behind_many_small_ones_keeps_its_own() {
+        // 100 colors of 10 points, then two of 4,000.
+        let ends: Vec<f32> = (0..=100u16).map(|k| f32::from(k) / 900.0).chain([5.0 / 9.0, 1.0]).collect();
+        let color = |pair: &[f32]| Class {
+            function: ClassFunction::Box { from: pair[0], to: pair[1] },
+            ..three_colors(2).swap_remove(0)
+        };
+        let colors: Vec<Class> = ends.windows(2).map(color).collect();
+        assert_eq!(of(&colors, 9000), [(4000, true), (4000, true), (1000, true)]);
     }
 }

@@ -152,8 +152,8 @@ impl Optimizer {
 }
 
 /// What keeps a coordinate in the domain.
-fn settle(domain: Domain) -> impl Fn(f32, usize) -> f32 + Copy + Send + Sync {
-    move |x, _| match domain {
+fn settle(domain: Domain) -> impl Fn(f32, f32, usize) -> f32 + Copy + Send + Sync {
+    move |_, x, _| match domain {
         Domain::Bounded => x.clamp(0.0, BELOW_ONE),
         Domain::Toroidal => {
             let x = x - x.floor();

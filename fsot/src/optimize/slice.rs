@@ -152,12 +152,13 @@ fn project<const D: usize>(
 
 /// Moves the points `first..first + coordinates.len() / D`, whose coordinates are given, by the offsets that slices left for them:
 /// by the weighted mean of the offsets, times D because each shows one direction of D only, times `step`.
+/// `settle(from, to, axis)` says where a coordinate goes that would go from one place to the other.
 pub(crate) fn advance<const D: usize>(
     slices: &[(&Slice<D>, &[Offset])],
     first: usize,
     step: f32,
     coordinates: &mut [f32],
-    settle: impl Fn(f32, usize) -> f32,
+    settle: impl Fn(f32, f32, usize) -> f32,
 ) {
     const BLOCK: usize = 256;
     for (block, coordinates) in coordinates.chunks_mut(BLOCK * D).enumerate() {
@@ -185,7 +186,7 @@ pub(crate) fn advance<const D: usize>(
             let factor = step * D as f32 / (weights[i] + (D - 1) as f32);
             if weights[i] > 0.0 {
                 for (k, x) in point.iter_mut().enumerate() {
-                    *x = settle(*x + factor * sums[k][i], k);
+                    *x = settle(*x, *x + factor * sums[k][i], k);
                 }
             }
         }

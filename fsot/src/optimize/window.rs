@@ -113,13 +113,6 @@ impl Optimizer {
             .filter(|offsets| offsets.len() < numbers.len())
             .for_each(|o| o.resize(numbers.len(), [0.0; 2]));
         let mut slices: Vec<Slice<D>> = (0..SLICES).map(|_| Slice::new()).collect();
-        // Points may begin outside, by a little; none goes farther.
-        let mut bounds: [[f32; 2]; D] = lengths.map(|length| [0.0, length]);
-        for point in coordinates.as_chunks::<D>().0 {
-            for ([low, high], x) in bounds.iter_mut().zip(point) {
-                (*low, *high) = (low.min(*x), high.max(*x));
-            }
-        }
         let mut first_energy = 0.0;
         let range = lengths.iter().sum::<f32>() * MEAN_COMPONENT[D];
         for iteration in 0..WINDOW_ITERATIONS {
@@ -142,7 +135,9 @@ impl Optimizer {
             }
             let moved: Vec<(&Slice<D>, &[Offset])> =
                 slices.iter().zip(offsets.iter().map(|offsets| &offsets[..])).collect();
-            advance(&moved, 0, step, coordinates, |x, k| x.clamp(bounds[k][0], bounds[k][1]));
+            // Points may begin outside, by a little; none goes farther out.
+            let settle = |from: f32, to: f32, k: usize| to.clamp(from.min(0.0), from.max(lengths[k]));
+            advance(&moved, 0, step, coordinates, settle);
         }
         first_energy / SLICES as f64 * numbers.len() as f64
     }

@@ -12,14 +12,7 @@ use noisefloor_tests::legendre;
 use noisefloor_tests::oracle::Design;
 use noisefloor_tests::random::SplitMix64;
 
-pub const ESTIMATORS: [Estimator; 6] = [
-    Estimator::Robust,
-    Estimator::LeastSquares,
-    Estimator::LeaveOneOut,
-    Estimator::KFold,
-    Estimator::GradientDescent,
-    Estimator::Incremental,
-];
+pub use noisefloor_tests::ESTIMATORS;
 
 pub const FAMILIES: [Family; 4] = [Family::Legendre, Family::Step, Family::Sine, Family::Gaussian];
 

@@ -53,7 +53,8 @@ impl Unit {
 
     pub(crate) fn text(self, value: f64) -> String {
         match self {
-            _ if !value.is_finite() => "-".to_owned(),
+            _ if value.is_nan() => "-".to_owned(),
+            _ if value.is_infinite() => "infinite".to_owned(),
             Self::Ratio if value.abs() < 10.0 => format!("{value:.3}"),
             Self::RelMseE3 | Self::Number | Self::Seconds | Self::Microseconds => significant(value, 3),
             Self::Percent if value.abs() < 10.0 => format!("{value:.2}"),
@@ -91,12 +92,12 @@ pub(crate) struct Figure {
 }
 
 impl Figure {
-    /// With its confidence interval, if there were several seeds.
+    /// With its confidence interval, if there were enough seeds for one.
     pub(crate) fn new(estimate: Estimate, unit: Unit) -> Self {
         let Estimate { value, low, high, seeds } = estimate;
         let mut figure = Self::exact(value, unit);
         figure.seeds = Some(seeds);
-        if seeds > 1 && value.is_finite() && low.is_finite() && high.is_finite() {
+        if estimate.has_interval() {
             figure.interval = Some([low, high]);
             figure.text = format!("{} [{}, {}]", figure.text, unit.text(low), unit.text(high));
         }
@@ -129,5 +130,6 @@ mod tests {
         assert_eq!(Unit::RelMseE3.text(0.012_345), "0.0123");
         assert_eq!(Unit::Nanoseconds.text(123.4), "123");
         assert_eq!(Figure::exact(f64::NAN, Unit::Ratio).text, "-");
+        assert_eq!(Figure::exact(f64::INFINITY, Unit::Ratio).text, "infinite");
     }
 }

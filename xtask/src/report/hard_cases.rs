@@ -87,7 +87,8 @@ fn introduce(chapter: &mut Chapter) {
     chapter.list(&[
         format!(
             "MC: the root mean square error of the plain mean, in the integrand's own unit. Ratios: an estimator's RMSE over it, on the same samples, in brackets \
-             the {confidence} % interval; below one is better than MC. A ratio of zero is an exact result, to the rounding of an f32."
+             the {confidence} % interval; below one is better than MC. A ratio of zero is an exact result, to the rounding of an f32; \
+             where MC alone is exact it is infinite."
         ),
         "default: the robust mixture in f64; in f32, on targets without f64; least squares: one fit on its own samples, the published estimator, which promises nothing \
          here; 4-fold: the exactly unbiased one."
@@ -127,6 +128,13 @@ impl Case<'_> {
         }))
     }
 
+    /// The default's ratio. Without one, because calls failed, no bound is kept: it counts as infinite.
+    fn judged(&self) -> Result<Estimate> {
+        let seeds = self.rows[0].number("repetitions")?;
+        let none = Estimate { value: f64::INFINITY, low: f64::INFINITY, high: f64::INFINITY, seeds };
+        Ok(self.ratio(DEFAULT)?.unwrap_or(none))
+    }
+
     fn place(&self) -> String {
         format!("{}, n = {}", self.name, self.samples)
     }
@@ -146,9 +154,7 @@ fn targets(chapter: &mut Chapter, cases: &[Case]) -> Result<()> {
             "shared fits" => "shared fits over the mean where there is nothing to share: RMSE",
             _ => "default over the mean, every hard case: RMSE",
         };
-        if let Some(ratio) = case.ratio(DEFAULT)? {
-            targets.at_most(statement, &case.place(), ratio, Unit::Ratio, BOUND);
-        }
+        targets.at_most(statement, &case.place(), case.judged()?, Unit::Ratio, BOUND);
         let failed = case.rows[0].number("failed")?;
         let failed = Estimate { value: failed, low: failed, high: failed, seeds: 1 };
         targets.at_most("calls that failed", &case.place(), failed, Unit::Count, 0.0);
@@ -251,4 +257,35 @@ fn write_outcomes(chapter: &mut Chapter, outcomes: &Table) -> Result<()> {
     let columns = ["service", "case", "outcome", "error", "plainly", "its error"];
     chapter.table("single calls", &columns, 3, rows);
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEADINGS: &str = "group;case;n;terms;repetitions;failed;plain_rmse;estimator;ratio;half_width\n";
+
+    fn summary(rows: &str) -> serde_json::Value {
+        let table = Table::parse(&format!("{HEADINGS}{rows}"), "errors", ';').expect("a table");
+        let mut chapter = Chapter::new("Title");
+        targets(&mut chapter, &cases(&table).expect("cases")).expect("targets");
+        let json = chapter.json();
+        json["targets"][0].clone()
+    }
+
+    #[test]
+    fn a_case_without_a_finite_ratio_is_not_reached() {
+        let good = "values;good;8;6;32;0;1e0;default;9e-1;1e-2\n";
+        let counts = |json: &serde_json::Value| (json["reached"].as_u64(), json["of"].as_u64());
+        assert_eq!(counts(&summary(good)), (Some(1), Some(1)));
+        let exact = summary(&format!("{good}values;plain is exact;8;6;32;0;0e0;default;inf;0e0\n"));
+        assert_eq!(counts(&exact), (Some(1), Some(2)));
+        assert_eq!(
+            (exact["place"].as_str(), exact["verdict"].as_str()),
+            (Some("plain is exact, n = 8"), Some("NOT REACHED"))
+        );
+        assert_eq!(exact["measured"], "infinite");
+        let failed = summary(&format!("{good}values;fails;8;6;32;3;1e0;default;;\n"));
+        assert_eq!(counts(&failed), (Some(1), Some(2)));
+    }
 }

@@ -13,6 +13,10 @@ use std::path::{Path, PathBuf};
 
 pub(crate) const MODES: [&str; 5] = ["uniform", "importance", "adaptive", "balance", "omis"];
 
+/// Items of a minibatch, and sizes of the hidden layers: [`Plan::arguments`] gives them to the trainer, reports quote them.
+pub(crate) const BATCH: u32 = 64;
+pub(crate) const HIDDEN: [u32; 2] = [128, 64];
+
 /// What is trained, and for how long.
 pub(crate) struct Plan {
     pub(crate) name: &'static str,
@@ -25,6 +29,25 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
+    /// The trainer's command line, but for what it writes.
+    fn arguments(&self, epochs: u32, more: &[&str]) -> Result<Vec<String>> {
+        let (epochs, batch, [first, second]) = (epochs.to_string(), BATCH.to_string(), HIDDEN);
+        let hidden = format!("{first},{second}");
+        let network = ["--data", text(&self.data)?, "--epochs", &epochs, "--rate", self.rate];
+        let words = [&network[..], &["--batch", &batch, "--hidden", &hidden], more].concat();
+        Ok(words.into_iter().map(str::to_owned).collect())
+    }
+
+    /// All modes, all seeds.
+    pub(crate) fn runs(&self) -> Result<Vec<String>> {
+        self.arguments(self.epochs, &["--modes", &MODES.join(","), "--seeds", &self.seeds.to_string()])
+    }
+
+    /// The variance of the gradient, as a table in `file`.
+    pub(crate) fn variance(&self, file: &Path) -> Result<Vec<String>> {
+        self.arguments(self.variance_epochs, &["--variance", text(file)?])
+    }
+
     fn new(quick: bool) -> Self {
         let mnist = if quick { None } else { Some(data::mnist()) };
         match mnist {
@@ -57,14 +80,10 @@ pub(super) fn run(training: &Training) -> Result<String> {
     let bar = progress::bar(rows + 10 * variance_rows)?;
 
     bar.set_message(format!("{}: {} runs", plan.name, plan.seeds * MODES.len() as u32));
-    let folder = plan.data.to_str().with_context(|| format!("{} is not Unicode", plan.data.display()))?;
-    let (seeds, epochs) = (plan.seeds.to_string(), plan.epochs.to_string());
-    let modes = MODES.join(",");
-    let arguments = ["--data", folder, "--modes", &modes, "--seeds", &seeds, "--epochs", &epochs, "--rate", plan.rate];
-    let written = program.run(&arguments, training.interrupted, |_| bar.inc(1))?;
+    let written = program.run(&plan.runs()?, training.interrupted, |_| bar.inc(1))?;
 
     bar.set_message(format!("{}: variance", plan.name));
-    let variance = measure_variance(training, &program, &plan, folder, &bar)?;
+    let variance = measure_variance(training, &program, &plan, &bar)?;
     bar.finish_and_clear();
 
     let output = training.output;
@@ -77,24 +96,19 @@ pub(super) fn run(training: &Training) -> Result<String> {
     output.write_text("training-mlp-variance.svg", &variance_plot(&plan, &rows)?)?;
     let variance = variance_table(&plan, &rows)?;
     let table = format!("{}\n{}", written.summary, variance);
-    output.write_text("training-mlp.md", &report(&plan, &written.summary, &variance))?;
+    output.write_text("training-mlp.md", &report(&plan, &written.summary, &variance, drawn(&rows)?))?;
     Ok(table)
 }
 
-fn measure_variance(
-    training: &Training,
-    program: &Program,
-    plan: &Plan,
-    data: &str,
-    bar: &ProgressBar,
-) -> Result<String> {
+fn measure_variance(training: &Training, program: &Program, plan: &Plan, bar: &ProgressBar) -> Result<String> {
     let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
     let path = scratch.path().join("variance.csv");
-    let file = path.to_str().with_context(|| format!("{} is not Unicode", path.display()))?;
-    let epochs = plan.variance_epochs.to_string();
-    let arguments = ["--data", data, "--epochs", &epochs, "--rate", plan.rate, "--variance", file];
-    program.run(&arguments, training.interrupted, |_| bar.inc(10))?;
+    program.run(&plan.variance(&path)?, training.interrupted, |_| bar.inc(10))?;
     read(&path)
+}
+
+fn text(path: &Path) -> Result<&str> {
+    path.to_str().with_context(|| format!("{} is not Unicode", path.display()))
 }
 
 fn read(path: &Path) -> Result<String> {
@@ -146,6 +160,13 @@ pub(crate) fn variance_plot(plan: &Plan, rows: &Table) -> Result<String> {
     Plot { title: &title, x, y, series: &series }.svg()
 }
 
+/// How many batches the trainer drew to measure what has no exact ratio, and of how many items each.
+pub(crate) fn drawn(rows: &Table) -> Result<[u32; 2]> {
+    let row = rows.only("method", "omis")?;
+    let row = row.rows().next().context("the trainer's table has no row of omis")?;
+    Ok([row.number("batches")?, row.number("batch")?])
+}
+
 /// The ratios at a few of the epochs, as Markdown.
 pub(crate) fn variance_table(plan: &Plan, rows: &Table) -> Result<String> {
     let last = plan.variance_epochs;
@@ -166,17 +187,17 @@ pub(crate) fn variance_table(plan: &Plan, rows: &Table) -> Result<String> {
     Ok(crate::measure::markdown::table(&["variance / uniform's", a, b, c, d, e], &[0], cells))
 }
 
-fn report(plan: &Plan, summary: &str, variance: &str) -> String {
+fn report(plan: &Plan, summary: &str, variance: &str, [batches, draws]: [u32; 2]) -> String {
     format!(
         "# Minibatches drawn by importance: {name}\n\n\
-         Made by examples_c/train_mlp.c: {seeds} seeds, {epochs} epochs, batches of 64, Adam with rate {rate}, one thread.\n\n{summary}\n\
+         Made by examples_c/train_mlp.c: {seeds} seeds, {epochs} epochs, batches of {BATCH}, Adam with rate {rate}, one thread.\n\n{summary}\n\
          - Intervals: 95 %, Student's t over the seeds. Differences are taken seed by seed: the modes of a seed begin with the\n  \
            same network and the same first epoch.\n\
          - Time: processor time of training alone. Modes take turns, an epoch at a time.\n\n\
          ## Variance of the gradient estimate\n\nAt the same states of one network that is trained uniformly (figure 6.2).\n\n{variance}\n\
          - delta .2: a fifth of the draws uniform; where no delta is named it is 0. As kept: importances from when an item was\n  \
            last drawn, momentum .3; the others are fresh.\n\
-         - balance, omis: mean squared distance to the exact gradient, bias included, over 200 batches of 64 draws. The others\n  \
+         - balance, omis: mean squared distance to the exact gradient, bias included, over {batches} batches of {draws} draws. The others\n  \
            are exact.\n",
         name = plan.name,
         seeds = plan.seeds,

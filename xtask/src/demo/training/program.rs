@@ -3,6 +3,7 @@
 use crate::measure::running;
 use crate::{examples, paths, run};
 use anyhow::{Context, Result};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
@@ -33,7 +34,7 @@ impl Program {
     /// Runs to the end. `line` sees each line of standard output as it comes, for progress.
     pub(crate) fn run(
         &self,
-        arguments: &[&str],
+        arguments: &[impl AsRef<OsStr>],
         interrupted: &AtomicBool,
         mut line: impl FnMut(&str),
     ) -> Result<Written> {

@@ -3,7 +3,7 @@
 use super::summary::Summary;
 use super::{Context, Written};
 use crate::demo::training::data;
-use crate::demo::training::mlp::{self, MODES, Plan};
+use crate::demo::training::mlp::{self, BATCH, HIDDEN, Plan};
 use crate::demo::training::program::Program;
 use crate::measure::table::Table;
 use crate::report::chapter::Chapter;
@@ -12,7 +12,7 @@ use crate::report::measured::read;
 use crate::report::statistics::Estimate;
 use crate::report::targets::Targets;
 use anyhow::{Context as _, Result};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// In every form of the report: small, and with many seeds.
 const DIGITS: &str = "examples_c/data/digits";
@@ -59,20 +59,17 @@ impl Trainer {
         chapter: &mut Chapter,
         targets: &mut Targets,
     ) -> Result<()> {
-        let (seeds, epochs, modes) = (plan.seeds.to_string(), plan.epochs.to_string(), MODES.join(","));
-        let folder = text(&plan.data)?;
-        let arguments =
-            ["--data", folder, "--modes", &modes, "--seeds", &seeds, "--epochs", &epochs, "--rate", plan.rate];
-        let Written { csv, summary } = context.run(&self.program, name, &arguments)?;
+        let (seeds, epochs, [first, second]) = (plan.seeds.to_string(), plan.epochs.to_string(), HIDDEN);
+        let Written { csv, summary } = context.run(&self.program, name, &plan.runs()?)?;
         let summary = Summary::parse(&summary)?;
         chapter.section(&format!("Test error, {}", plan.name), "figures 6.4 and 6.11");
         chapter.setting(format!("{name}: rate"), plan.rate);
-        chapter.setting(format!("{name}: batch"), 64);
-        chapter.setting(format!("{name}: hidden"), "128-64");
+        let batch = chapter.setting(format!("{name}: batch"), BATCH);
+        let hidden = chapter.setting(format!("{name}: hidden"), format!("{first}-{second}"));
         chapter.setting(format!("{name}: epochs"), plan.epochs);
         chapter.setting(format!("{name}: seeds"), plan.seeds);
         chapter.paragraph(&format!(
-            "A multilayer perceptron with hidden layers of 128-64, batches of 64, Adam at a constant rate of {}, {seeds} seeds, {epochs} epochs.",
+            "A multilayer perceptron with hidden layers of {hidden}, batches of {batch}, Adam at a constant rate of {}, {seeds} seeds, {epochs} epochs.",
             plan.rate
         ));
         summary.write(chapter, name, 2);
@@ -112,21 +109,20 @@ impl Trainer {
         let csv = context.measured.text(&format!("{name}.csv"), || {
             let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
             let path = scratch.path().join("variance.csv");
-            let arguments =
-                ["--data", text(&plan.data)?, "--epochs", &epochs, "--rate", plan.rate, "--variance", text(&path)?];
-            self.program.run(&arguments, &context.report.interrupted, |_| ())?;
+            self.program.run(&plan.variance(&path)?, &context.report.interrupted, |_| ())?;
             read(&path)
         })?;
         context.bar.inc(1);
         let rows = Table::parse(&csv, name, ',')?;
         chapter.section(&format!("Variance of the gradient, {}", plan.name), "figure 6.2");
-        chapter.paragraph(
+        let [batches, draws] = mlp::drawn(&rows)?;
+        let batches = chapter.setting(format!("{name}: batches"), batches);
+        let draws = chapter.setting(format!("{name}: draws of a batch"), draws);
+        chapter.paragraph(&format!(
             "One network, trained uniformly; at each epoch the variance of the gradient's estimate over that of uniform draws, at the same states. Fresh \
              unless said otherwise: importances of the network as it is. As kept: those that a table has after such a training. Ratios of one table are \
-             exact; those of balance and omis are mean squared distances to the exact gradient, bias included, over 200 batches of 64 draws.",
-        );
-        chapter.setting(format!("{name}: batches"), 200);
-        chapter.setting(format!("{name}: draws of a batch"), 64);
+             exact; those of balance and omis are mean squared distances to the exact gradient, bias included, over {batches} batches of {draws} draws."
+        ));
         let summary = Summary::parse(&mlp::variance_table(plan, &rows)?)?;
         summary.write(chapter, name, 1);
         let file = format!("gradients-{picture}");
@@ -140,8 +136,4 @@ impl Trainer {
         }
         Ok(())
     }
-}
-
-fn text(path: &Path) -> Result<&str> {
-    path.to_str().with_context(|| format!("{} is not Unicode", path.display()))
 }

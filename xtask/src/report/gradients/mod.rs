@@ -14,6 +14,7 @@ use crate::library;
 use crate::measure::progress;
 use anyhow::Result;
 use indicatif::ProgressBar;
+use std::ffi::OsStr;
 use std::path::PathBuf;
 
 /// What the parts need.
@@ -37,7 +38,7 @@ impl Context<'_> {
     }
 
     /// Runs a trainer, or takes what an earlier run has left under `name`.
-    fn run(&self, program: &Program, name: &str, arguments: &[&str]) -> Result<Written> {
+    fn run(&self, program: &Program, name: &str, arguments: &[impl AsRef<OsStr>]) -> Result<Written> {
         self.bar.set_message(format!("gradients: {name}"));
         let mut csv = None;
         let summary = self.measured.text(&format!("{name}.md"), || {

@@ -33,6 +33,11 @@ fn pixels_size(section: &Section) -> u32 {
     section.measurement.plan.small * 3 / 4
 }
 
+/// Of the seeds of pixels' ratios.
+fn batches(section: &Section) -> u32 {
+    BATCHES.min(section.measurement.plan.pixel_seeds / 2)
+}
+
 fn order(scene: &Scene) -> u32 {
     // 136 terms are more than there are samples.
     if scene.dims > 8 { 1 } else { 2 }
@@ -92,15 +97,15 @@ fn write_pixels(section: &mut Section) -> Result<()> {
     let seeds = section.chapter.setting("seeds of the pixels' ratios", plan.pixel_seeds);
     let limit = section.chapter.setting("a pixel's ratio that is too much", TOO_MUCH);
     let confidence = section.chapter.setting("confidence, percent", 95);
+    let batches = section.chapter.setting("batches of seeds", batches(section));
     let percent = section.chapter.setting("significance of a pixel's test, percent", 100.0 * SIGNIFICANCE);
     section.chapter.paragraph(&format!(
         "Mean squared error of each pixel over {seeds} seeds, {spp} samples per pixel, {size} x {size} pixels; the share of pixels where \
          the default's is more than {limit} times MC's. Measured ratios are noisy, so three figures: pixels beyond it as measured (too many), pixels beyond it \
-         in both halves of the seeds, and pixels where a one-sided test over {BATCHES} batches of seeds says so at a level of {percent} % each (too few). \
+         in both halves of the seeds, and pixels where a one-sided test over {batches} batches of seeds says so at a level of {percent} % each (too few). \
          The first has a {confidence} % interval, from the bootstrap over the batches. A pixel without noise, where neither has an error, does not count; \
          where only the plain mean has none, the pixel counts as beyond."
     ));
-    section.chapter.setting("batches of seeds", BATCHES);
     let mut rows = Vec::new();
     for scene in plan.some(SCENES) {
         let shares = shares(section, scene, spp)?;
@@ -124,8 +129,7 @@ fn write_pixels(section: &mut Section) -> Result<()> {
 }
 
 fn shares(section: &Section, scene: &Scene, spp: u32) -> Result<Shares> {
-    let plan = section.measurement.plan;
-    let batches = BATCHES.min(plan.pixel_seeds / 2);
+    let (plan, batches) = (section.measurement.plan, batches(section));
     let estimators = [BASELINE, DEFAULT];
     let experiment = Experiment {
         order: order(scene),

@@ -162,7 +162,8 @@ fn explain(section: &mut Section) {
          share fits, so what chance allows that mean is found by flipping the signs of the deviations of {batches} batches of frames in every way, which keeps the \
          dependence between pixels (a randomisation test). The plain mean of the same samples, unbiased by construction, shows how the tests behave. \
          Pixels that hardly any frame lights do not count, as z is then far from normal: the plain mean's n mean^2 / variance, about the number of frames \
-         with light, must be {lit} at least. The reference's own error is part of the standard deviation. Shared fits choose how much to correct from the samples that \
+         with light, must be {lit} at least. The reference's own error, which all batches share, is part of the \
+         standard deviation, and of what chance allows. Shared fits choose how much to correct from the samples that \
          they correct, which leaves a bias that many frames can show; K-fold, where halves of the neighbours choose for each other, has none where pixels are \
          independent. A scrambled tile's are not."
     ));
