@@ -25,18 +25,31 @@ const DOUBT: f64 = 0.5;
 #[derive(Clone, Copy)]
 pub(super) struct Limits([[f64; 2]; Config::MAX_CHANNELS]);
 
-/// The highest values, in falling order.
+/// The highest values.
 struct Highest {
+    /// In falling order.
     values: [f64; MOST + 1],
+    /// The index of the last that is wanted.
+    last: usize,
 }
 
 impl Highest {
-    fn new() -> Self {
-        Self { values: [f64::NEG_INFINITY; MOST + 1] }
+    fn new(last: usize) -> Self {
+        Self { values: [f64::NEG_INFINITY; MOST + 1], last }
     }
 
+    /// The lowest of them.
+    fn least(&self) -> f64 {
+        self.values.get(self.last).copied().unwrap_or(f64::INFINITY)
+    }
+
+    #[inline(always)]
     fn add(&mut self, mut value: f64) {
-        for place in &mut self.values {
+        // Most are not among them.
+        if value <= self.least() {
+            return;
+        }
+        for place in self.values.iter_mut().take(self.last + 1) {
             if value > *place {
                 core::mem::swap(place, &mut value);
             }
@@ -58,14 +71,13 @@ impl Problem<'_> {
             if get(plain, channel).to_f64() < DOUBT {
                 continue;
             }
-            let (mut highest, mut lowest) = (Highest::new(), Highest::new());
+            let (mut highest, mut lowest) = (Highest::new(aside), Highest::new(aside));
             for index in 0..members.len {
                 let [low, high] = self.range(members.pixel(index), channel);
                 highest.add(high);
                 lowest.add(-low);
             }
-            let usual = |highest: &Highest| highest.values.get(aside).copied().unwrap_or(f64::INFINITY);
-            let (low, high) = (-usual(&lowest), usual(&highest));
+            let (low, high) = (-lowest.least(), highest.least());
             let far = FAR * (high - low);
             *limits = [low - far, high + far];
             any |= -lowest.values[0] < limits[0] || highest.values[0] > limits[1];

@@ -61,8 +61,14 @@ impl Problem<'_> {
                     }
                 }
             }
+            if setting.leaves_out {
+                for (total, own) in total.iter_mut().zip(own.iter()) {
+                    *total += lanes::sum(&only_used(own, used));
+                }
+                continue;
+            }
             for (total, own) in total.iter_mut().zip(own.iter()) {
-                *total += lanes::sum(&if setting.leaves_out { only_used(own, used) } else { *own });
+                *total += lanes::sum(own);
             }
         }
         let training = (members.len - 1) * self.n;
@@ -72,8 +78,12 @@ impl Problem<'_> {
         let outputs = rows_mut(estimates, setting.estimates(channels));
         for ((own, used), out) in rows(own, all).zip(setting.places()).zip(outputs) {
             for ((out, &total), own) in system.iter_mut().zip(total.iter()).zip(own) {
-                let own = if setting.leaves_out { only_used(own, used) } else { *own };
                 *out = own.map(|own| total - own);
+            }
+            if setting.leaves_out {
+                for ((out, &total), own) in system.iter_mut().zip(total.iter()).zip(own) {
+                    *out = only_used(own, used).map(|own| total - own);
+                }
             }
             let (gram, rhs) = system.split_at_mut_checked(squares).unwrap_or((&mut [], &mut []));
             let (own_gram, own_rhs) = own.split_at_checked(squares).unwrap_or((&[], &[]));
