@@ -30,10 +30,26 @@ struct Rule {
     crossed: bool,
     /// Whether spreads are about the linear trend, or about the mean.
     trend: bool,
+    /// How far from the others' range a value is, in units of that range, that its pixel is in no fit.
+    far: f64,
+    /// How far the mean must be trusted for that.
+    doubt: f64,
+    /// One of so many pixels may be out of the others' range at either end.
+    share: usize,
 }
 
-const RULE: Rule =
-    Rule { sharpness: 1.0 / 6.0, prior: 8.0, caution: 14.0, ridge: 0.003, hat: true, crossed: true, trend: true };
+const RULE: Rule = Rule {
+    sharpness: 1.0 / 6.0,
+    prior: 8.0,
+    caution: 14.0,
+    ridge: 0.003,
+    hat: true,
+    crossed: true,
+    trend: true,
+    far: 8.0,
+    doubt: 0.5,
+    share: 16,
+};
 
 /// A pixel within a window.
 #[derive(Clone)]
@@ -44,6 +60,7 @@ struct Member {
 }
 
 /// Estimates of one channel.
+#[derive(Clone)]
 struct Fits {
     /// The plain means of all members, then each candidate's estimates.
     estimates: Vec<Vec<f64>>,
@@ -70,7 +87,11 @@ struct Case {
     f: Vec<f32>,
     surfaces: Vec<u32>,
     factors: Vec<f32>,
+    bright: Vec<usize>,
 }
+
+/// The lowest and the highest value of each channel that are not too far.
+type Limits = [[f64; 2]; 2];
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
@@ -94,7 +115,7 @@ impl Case {
             let second = f64::from(u8::from(u[0] + 0.5 * u[1] < 0.6 + 0.02 * x - 0.01 * y)) + 0.2 * rng.uniform();
             f.extend([first as f32, 2.0 * second as f32]);
         }
-        Self { config, width, height, unordered, n, u, f, surfaces: vec![], factors: vec![] }
+        Self { config, width, height, unordered, n, u, f, surfaces: vec![], factors: vec![], bright: vec![] }
     }
 
     fn pixels(&self) -> usize {
@@ -103,6 +124,21 @@ impl Case {
 
     fn with_surfaces(mut self, count: usize, rng: &mut SplitMix64) -> Self {
         self.surfaces = (0..self.pixels()).map(|_| 3 + rng.below(count) as u32).collect();
+        self
+    }
+
+    /// The first of these pixels is bright in both channels, the others in one, and one of them by a single sample.
+    fn with_bright(mut self, pixels: &[usize]) -> Self {
+        for (index, &pixel) in pixels.iter().enumerate() {
+            for sample in 0..if index == 1 { 1 } else { self.n } {
+                let f = &mut self.f[2 * (pixel * self.n + sample)..][..2];
+                f[0] *= 300.0;
+                if index == 0 {
+                    f[1] = -200.0;
+                }
+            }
+        }
+        self.bright = pixels.to_vec();
         self
     }
 
@@ -167,18 +203,54 @@ impl Case {
         if axes == 0 { 0 } else { [up_to(2), up_to(1)].into_iter().find(fits).unwrap_or(0) }
     }
 
-    /// Every candidate's estimates from the other members' samples.
-    fn fits(&self, rule: &Rule, group: &[Member], moving: usize, degrees: &[usize], channel: usize) -> Fits {
+    /// A pixel's values of a channel, as fits see them.
+    fn quotients(&self, pixel: usize, channel: usize) -> Vec<f64> {
+        self.values(pixel, channel).iter().map(|value| value / self.factor(pixel, channel)).collect()
+    }
+
+    /// What values are not too far from the others, of channels whose mean is trusted; None if all are near.
+    fn limits(&self, rule: &Rule, group: &[Member], weights: &[Vec<f64>; 2]) -> Option<Limits> {
+        let mut limits = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
+        if group.len() < 8 {
+            return None;
+        }
+        let aside = group.len().div_ceil(rule.share);
+        for (channel, limits) in limits.iter_mut().enumerate().filter(|&(channel, _)| weights[channel][0] >= rule.doubt)
+        {
+            let each = group.iter().map(|member| self.quotients(member.pixel, channel));
+            let mut lowest: Vec<f64> = each.clone().map(|own| own.into_iter().fold(f64::INFINITY, f64::min)).collect();
+            let mut highest: Vec<f64> = each.map(|own| own.into_iter().fold(f64::NEG_INFINITY, f64::max)).collect();
+            lowest.sort_unstable_by(f64::total_cmp);
+            highest.sort_unstable_by(|a, b| b.total_cmp(a));
+            let (low, high) = (lowest[aside], highest[aside]);
+            *limits = [low - rule.far * (high - low), high + rule.far * (high - low)];
+        }
+        group.iter().any(|member| self.is_far(member.pixel, Some(&limits))).then_some(limits)
+    }
+
+    fn is_far(&self, pixel: usize, limits: Option<&Limits>) -> bool {
+        limits.is_some_and(|limits| {
+            let is_far = |channel: usize, value: f64| value < limits[channel][0] || value > limits[channel][1];
+            (0..2).any(|channel| self.quotients(pixel, channel).into_iter().any(|value| is_far(channel, value)))
+        })
+    }
+
+    /// Every candidate's estimates from the other members' samples, without those beyond the limits.
+    fn fits(
+        &self,
+        rule: &Rule,
+        group: &[Member],
+        (moving, degrees): (usize, &[usize]),
+        channel: usize,
+        limits: Option<&Limits>,
+    ) -> Fits {
+        let far: Vec<bool> = group.iter().map(|member| self.is_far(member.pixel, limits)).collect();
         let (n, axes) = (self.n, group[0].at.len());
         let basis = design(&self.config, &wide(&self.u));
         let scaled = |at: &[f64]| at.iter().map(|at| 3.0_f64.sqrt() * at).collect::<Vec<f64>>();
         let (mut rows, mut values, mut estimates) = (vec![], vec![], vec![vec![]]);
         for member in group {
-            let own: Vec<f64> = self
-                .values(member.pixel, channel)
-                .iter()
-                .map(|value| value / self.factor(member.pixel, channel))
-                .collect();
+            let own = self.quotients(member.pixel, channel);
             estimates[0].push(own.iter().sum::<f64>() / n as f64);
             values.extend(own);
             for functions in &basis.rows[member.pixel * n..(member.pixel + 1) * n] {
@@ -198,9 +270,12 @@ impl Case {
             let rows = rows.iter().map(|row: &Vec<f64>| row[..end].to_vec()).collect();
             let whole = Design { rows, weights: weights[..end].to_vec() };
             let each = (0..group.len()).map(|left_out| {
-                let others: Vec<usize> = (0..values.len()).filter(|sample| sample / n != left_out).collect();
+                let is_used = |sample: &usize| sample / n != left_out && !far[sample / n];
+                let others: Vec<usize> = (0..values.len()).filter(is_used).collect();
                 let f: Vec<f64> = others.iter().map(|&sample| values[sample]).collect();
-                let mut fit = Regression::fit(&whole.select(&others), &f, rule.ridge * others.len() as f64);
+                // The same for all pixels, whichever are far.
+                let count = (group.len() - 1) * n;
+                let mut fit = Regression::fit(&whole.select(&others), &f, rule.ridge * count as f64);
                 // The constant and the places follow the signal and correct nothing.
                 fit.slopes[..axes].fill(0.0);
                 let own = left_out * n..(left_out + 1) * n;
@@ -209,20 +284,24 @@ impl Case {
             let each = each.collect();
             estimates.push(each);
         }
+        let only_near = |values: &[f64]| {
+            let near = values.iter().zip(&far).filter(|&(_, far)| !far);
+            near.map(|(&value, _)| value).collect::<Vec<f64>>()
+        };
         // An orthonormal basis of the linear functions of the place.
         let mut trend: Vec<Vec<f64>> = vec![];
         for axis in 0..=if rule.trend { axes } else { 0 } {
             let along: Vec<f64> =
                 group.iter().map(|member| if axis == 0 { 1.0 } else { member.at[axis - 1] }).collect();
-            let rest = trend.iter().fold(along, |rest, unit| without(rest, unit));
+            let rest = trend.iter().fold(only_near(&along), |rest, unit| without(rest, unit));
             let length = dot(&rest, &rest).sqrt();
             if length > 1e-9 {
                 trend.push(rest.iter().map(|value| value / length).collect());
             }
         }
-        let freedom = (group.len() - trend.len()) as f64;
+        let freedom = (only_near(&estimates[0]).len() - trend.len()) as f64;
         let spread = |estimates: &Vec<f64>| {
-            let rest = trend.iter().fold(estimates.clone(), |rest, unit| without(rest, unit));
+            let rest = trend.iter().fold(only_near(estimates), |rest, unit| without(rest, unit));
             if freedom > 0.0 { dot(&rest, &rest) } else { 0.0 }
         };
         let spreads = estimates.iter().map(spread).collect();
@@ -247,25 +326,33 @@ impl Case {
                     continue;
                 }
                 let moving = self.moving(&group, &degrees);
+                let fits = |group: &[Member], limits: Option<&Limits>| {
+                    [0, 1].map(|channel| self.fits(rule, group, (moving, &degrees), channel, limits))
+                };
+                let all = fits(&group, None);
+                // For each half: how far fits to all are trusted, how far those that correct, and these.
+                let choices = [0, 1].map(|turn| {
+                    let judges = if rule.crossed { 1 - turn } else { turn };
+                    let half: Vec<Member> = group.iter().skip(judges).step_by(2).cloned().collect();
+                    let judges = if halves { &half } else { &group };
+                    let chosen = |limits: Option<&Limits>| fits(judges, limits).map(|fits| weights(rule, &fits));
+                    let first = chosen(None);
+                    match self.limits(rule, judges, &first) {
+                        Some(limits) => (first, chosen(Some(&limits)), fits(&group, Some(&limits))),
+                        None => (first.clone(), first, all.clone()),
+                    }
+                });
                 for channel in 0..2 {
-                    let fits = self.fits(rule, &group, moving, &degrees, channel);
-                    let choices = [0, 1].map(|turn| {
-                        if !halves {
-                            return weights(rule, &fits);
-                        }
-                        let judges = if rule.crossed { 1 - turn } else { turn };
-                        let half: Vec<Member> = group.iter().skip(judges).step_by(2).cloned().collect();
-                        weights(rule, &self.fits(rule, &half, moving, &degrees, channel))
-                    });
                     for (index, member) in group.iter().enumerate() {
-                        let weights = &choices[index % 2];
-                        let mixed = dot(weights, &fits.spreads);
-                        let ratio = if fits.spreads[0] > 0.0 { mixed / fits.spreads[0] } else { 1.0 };
+                        let (first, weights, fits) = &choices[index % 2];
+                        let (weights, fits, all) = (&weights[channel], &fits[channel], &all[channel]);
+                        let mixed = dot(&first[channel], &all.spreads);
+                        let ratio = if all.spreads[0] > 0.0 { mixed / all.spreads[0] } else { 1.0 };
                         let near: f64 = member.at.iter().map(|at| 1.0 - at.abs()).product();
                         let near = if rule.hat { near } else { 1.0 };
                         let estimate: f64 = weights.iter().zip(&fits.estimates).map(|(w, each)| w * each[index]).sum();
                         let factor = self.factor(member.pixel, channel);
-                        let error = if self.n > 1 { ratio.sqrt() } else { (mixed / fits.freedom).sqrt() * factor };
+                        let error = if self.n > 1 { ratio.sqrt() } else { (mixed / all.freedom).sqrt() * factor };
                         let sums = &mut sums[member.pixel];
                         sums.means[channel] += near * (estimate - fits.estimates[0][index]) * factor;
                         sums.std_errors[channel] += near * error;
@@ -311,17 +398,20 @@ impl Case {
     /// The largest differences of the means, relative to the largest value, of gain, and of standard errors.
     fn errors(&self, rule: &Rule) -> [[f64; 3]; 2] {
         let expected = self.expected(rule);
-        let scale = largest(&self.f);
+        let pixels = self.f.chunks(2 * self.n).enumerate();
+        let usual =
+            pixels.filter(|(pixel, _)| !self.bright.contains(pixel)).map(|(_, f)| largest(f)).fold(0.0, f64::max);
         self.estimates().map(|estimates| {
             let mut errors = [0.0_f64; 3];
-            for (estimate, expected) in estimates.iter().zip(&expected) {
+            for ((estimate, expected), own) in estimates.iter().zip(&expected).zip(self.f.chunks(2 * self.n)) {
+                let scale = usual.max(largest(own));
                 errors[1] = errors[1].max((f64::from(estimate.gain) - expected.gain).abs());
                 for channel in 0..2 {
                     let error = (f64::from(estimate.mean[channel]) - expected.means[channel]).abs();
                     errors[0] = errors[0].max(error / scale);
                     let pair = [f64::from(estimate.std_error[channel]), expected.std_errors[channel]];
                     if pair[0] != pair[1] {
-                        errors[2] = errors[2].max((pair[0] - pair[1]).abs() / scale);
+                        errors[2] = errors[2].max((pair[0] - pair[1]).abs() / scale.max(pair[1]));
                     }
                 }
             }
@@ -388,6 +478,20 @@ fn images_with_surfaces_and_factors() {
     }
 }
 
+/// Bright pixels, which are in no fit where the mean is trusted: the windows of an image have some or none of them.
+#[test]
+fn bright_pixels() {
+    let mut rng = SplitMix64::new(5);
+    for estimator in CHOOSING {
+        for n in [1, 2, 8] {
+            Case::new(estimator, [11, 9], false, n, &mut rng).with_bright(&[40, 46, 90]).check("bright pixels");
+            Case::new(estimator, [36, 1], true, n, &mut rng).with_bright(&[0, 9]).check("bright pixels of a block");
+            let case = Case::new(estimator, [9, 9], false, n, &mut rng).with_bright(&[30, 47]);
+            case.with_surfaces(2, &mut rng).with_factors(&mut rng).check("bright pixels, surfaces, factors");
+        }
+    }
+}
+
 /// Pixels in no order: few, where caution decides, more, and surfaces among them.
 #[test]
 fn blocks() {
@@ -411,7 +515,12 @@ fn the_oracle_is_sharp() {
     let mut rng = SplitMix64::new(4);
     let image = Case::new(Estimator::KFold, [11, 9], false, 1, &mut rng);
     let block = Case::new(Estimator::Robust, [6, 1], true, 8, &mut rng).with_planes();
+    let bright = Case::new(Estimator::Robust, [11, 9], false, 1, &mut rng).with_bright(&[40, 46, 90]);
+    let largest = Case::new(Estimator::Robust, [36, 1], true, 2, &mut rng).with_bright(&[0, 9, 20]);
     for (case, rule) in [
+        (&bright, Rule { far: 1e3, ..RULE }),
+        (&bright, Rule { doubt: 1.0, ..RULE }),
+        (&largest, Rule { share: 32, ..RULE }),
         (&image, Rule { sharpness: 1.0 / 6.1, ..RULE }),
         (&image, Rule { prior: 8.1, ..RULE }),
         (&image, Rule { ridge: 0.0031, ..RULE }),

@@ -88,8 +88,8 @@ fn pixels_that_share_nothing_keep_their_mean() {
     }
 }
 
-/// One very large sample among values of a bump: its pixel keeps it, and the image is no worse. Its neighbours pay: their fits
-/// have seen it, and are still trusted by a ninth. Their RMSE is .0008 of what the firefly adds to its own pixel.
+/// One very large sample among values of a bump: its pixel keeps it, the image is no worse, and its neighbours, whose fits do
+/// without it, are better than their mean.
 #[test]
 fn fireflies() {
     for n in [1, 4, 16] {
@@ -122,7 +122,7 @@ fn fireflies() {
                 "{n} samples, firefly {size:e}: {whole:.4}; other pixels {rest:.3} of the mean, {share:.5} of the firefly"
             );
             assert!(whole < LIMIT, "{n} {size}: {whole}");
-            assert!(rest < LIMIT || share < 0.003, "{n} {size}: {rest} {share}");
+            assert!(rest < 0.8, "{n} {size}: {rest} {share}");
         }
     }
 }

@@ -109,11 +109,14 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         examples::renderers(&archive()?)
     });
     steps.run("examples_c/python: ctypes declarations, tests and a training loop", || python::run(&archive()?));
-    steps.run("cargo xtask report --quick: tables, gradients, estimators, known integrands, samplers, point sets", || {
-        let parts = ["tables", "gradients", "control_variates", "hard_cases", "analytic", "samplers", "points"];
-        report::check_quick(&parts)?;
-        Ok(Outcome::Passed)
-    });
+    steps.run(
+        "cargo xtask report --quick: tables, gradients, estimators, known integrands, samplers, point sets",
+        || {
+            let parts = ["tables", "gradients", "control_variates", "hard_cases", "analytic", "samplers", "points"];
+            report::check_quick(&parts)?;
+            Ok(Outcome::Passed)
+        },
+    );
     steps.run("instruction counts: none above the committed report's by 3 %", || instructions::check(&archive()?));
     steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
     steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));

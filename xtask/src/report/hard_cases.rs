@@ -150,7 +150,6 @@ fn targets(chapter: &mut Chapter, cases: &[Case]) -> Result<()> {
     for case in cases {
         let statement = match case.group {
             "optimal weights" => "optimal MIS weights, default, over the balance heuristic: RMSE",
-            "shared fits" if case.name.starts_with("the same") => continue,
             "shared fits" => "shared fits over the mean where there is nothing to share: RMSE",
             _ => "default over the mean, every hard case: RMSE",
         };
@@ -222,8 +221,8 @@ fn write_group(chapter: &mut Chapter, (group, title, text): (&'static str, &str,
             said.push(chapter.quote(name, Figure::exact(ratio.value, Unit::Ratio)));
         }
         chapter.paragraph(&format!(
-            "The neighbours pay for the bright pixel, whose values their fits have seen and still trust a little: their error is {} times that of their own means. It is \
-             small beside the bright pixel's own error, as the rows before show, but it is no gain. Where such pixels are expected, give the image's surfaces or factors.",
+            "The bright pixel's neighbours alone: their error is {} times that of their own means. Where the mean is trusted most, pixels so far from all others are left \
+             out of the fits. Highlights of more than a few pixels of a window are not: give them surfaces or factors of their own (docs/shared_fits.md).",
             said.join(" and ")
         ));
     }

@@ -3,6 +3,7 @@
 use super::super::config::Config;
 use super::super::per_channel::{PerChannel, get, set};
 use super::super::trust;
+use super::fit::only_used;
 use super::terms::{MAX_AXES, MAX_FITS};
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::{ldlt, packed_len, row_mut};
@@ -25,7 +26,7 @@ pub(super) struct Spreads<R> {
 pub(super) type Weights<R> = [PerChannel<R>; MAX_FITS + 1];
 
 impl<R: Real> Spreads<R> {
-    /// Panel after panel of eight pixels: `places` has the groups of lanes of [`Members::places`](super::members::Members::places), `fixed` of them, and
+    /// Panel after panel of eight pixels, `pixels` in all: `places` has the groups of lanes of [`Members::places`](super::members::Members::places), `fixed` of them, and
     /// `estimates` the plain means of all channels, then each fit's.
     #[inline(always)]
     pub(super) fn new(
@@ -35,6 +36,7 @@ impl<R: Real> Spreads<R> {
         estimates: &[Lanes<R>],
         fits: usize,
         channels: usize,
+        leaves_out: bool,
     ) -> Self {
         const FIXED: usize = 1 + MAX_AXES;
         let mut trend = [R::ZERO; packed_len(FIXED)];
@@ -47,6 +49,11 @@ impl<R: Real> Spreads<R> {
         }
         ldlt::factor(&mut trend, fixed);
         let rank = (0..fixed).filter(|&j| ldlt::inverse_pivot(&trend, j) > R::ZERO).count();
+        // Those of pixels that are left out tell nothing.
+        let read = |row: &[Lanes<R>], index: usize, places: &[Lanes<R>]| {
+            let estimate = row.get(index).copied().unwrap_or([R::ZERO; LANES]);
+            if leaves_out { only_used(&estimate, places) } else { estimate }
+        };
         let freedom = R::from_usize(pixels.saturating_sub(rank));
         let mut sums = [PerChannel::default(); MAX_FITS + 1];
         for (fit, sums) in sums.iter_mut().enumerate().take(fits + 1) {
@@ -54,7 +61,7 @@ impl<R: Real> Spreads<R> {
                 let mut square = [R::ZERO; LANES];
                 let mut products = [[R::ZERO; LANES]; FIXED];
                 for (places, row) in rows(places, fixed).zip(rows(estimates, (fits + 1) * channels)) {
-                    let estimate = row.get(fit * channels + channel).copied().unwrap_or([R::ZERO; LANES]);
+                    let estimate = read(row, fit * channels + channel, places);
                     lanes::add_product(&mut square, &estimate, &estimate);
                     for (product, place) in products.iter_mut().zip(places) {
                         lanes::add_product(product, &estimate, place);
@@ -69,7 +76,7 @@ impl<R: Real> Spreads<R> {
                 // The difference of the sums of squares would lose the digits that matter beside a strong trend.
                 let mut left = [R::ZERO; LANES];
                 for (places, row) in rows(places, fixed).zip(rows(estimates, (fits + 1) * channels)) {
-                    let mut rest = row.get(fit * channels + channel).copied().unwrap_or([R::ZERO; LANES]);
+                    let mut rest = read(row, fit * channels + channel, places);
                     for (place, &slope) in places.iter().zip(explained.iter()) {
                         lanes::subtract_scaled(&mut rest, slope, place);
                     }

@@ -1,7 +1,7 @@
 //! A factorisation for each pixel, eight side by side.
 
 use super::super::config::Config;
-use super::fit::{Problem, Setting};
+use super::fit::{Problem, Setting, only_used};
 use super::members::Members;
 use crate::arena::Arena;
 use crate::error::Error;
@@ -34,7 +34,13 @@ impl Problem<'_> {
         for value in total.iter_mut() {
             *value = R::ZERO;
         }
-        for (index, (own, places)) in rows_mut(own, all).zip(setting.places()).enumerate() {
+        for (index, (own, used)) in rows_mut(own, all).zip(setting.places()).enumerate() {
+            let whole;
+            let mut places = used;
+            if setting.leaves_out {
+                whole = members.places(index * LANES);
+                places = whole.get(..terms.fixed()).unwrap_or(&[]);
+            }
             for value in own.iter_mut() {
                 *value = [R::ZERO; LANES];
             }
@@ -55,6 +61,12 @@ impl Problem<'_> {
                     }
                 }
             }
+            if setting.leaves_out {
+                for (total, own) in total.iter_mut().zip(own.iter()) {
+                    *total += lanes::sum(&only_used(own, used));
+                }
+                continue;
+            }
             for (total, own) in total.iter_mut().zip(own.iter()) {
                 *total += lanes::sum(own);
             }
@@ -63,9 +75,15 @@ impl Problem<'_> {
         self.add_ridge(terms, training, total.get_mut(..squares).unwrap_or(&mut []), penalties);
         let inverse = R::ONE / R::from_usize(self.n);
         let fixed = terms.fixed();
-        for (own, out) in rows(own, all).zip(rows_mut(estimates, setting.estimates(channels))) {
+        let outputs = rows_mut(estimates, setting.estimates(channels));
+        for ((own, used), out) in rows(own, all).zip(setting.places()).zip(outputs) {
             for ((out, &total), own) in system.iter_mut().zip(total.iter()).zip(own) {
                 *out = own.map(|own| total - own);
+            }
+            if setting.leaves_out {
+                for ((out, &total), own) in system.iter_mut().zip(total.iter()).zip(own) {
+                    *out = only_used(own, used).map(|own| total - own);
+                }
             }
             let (gram, rhs) = system.split_at_mut_checked(squares).unwrap_or((&mut [], &mut []));
             let (own_gram, own_rhs) = own.split_at_checked(squares).unwrap_or((&[], &[]));
@@ -83,6 +101,10 @@ impl Problem<'_> {
                 ldlt::forward_each(gram, 0, rhs);
                 let sum = own.first().copied().unwrap_or([R::ZERO; LANES]);
                 *corrected = sum.map(|sum| sum * inverse);
+                if setting.leaves_out {
+                    // Their values may be out of a narrow type's range; only what they are corrected by counts.
+                    *corrected = only_used(corrected, used);
+                }
             }
             let mut out = rows_mut(out, channels);
             for (out, mean) in out.next().unwrap_or(&mut []).iter_mut().zip(&corrected) {

@@ -5,6 +5,7 @@ use super::super::design::Units;
 use super::super::per_channel::get;
 use super::super::ridge;
 use super::super::samples::Reader;
+use super::bright::Limits;
 use super::choice::{Spreads, Weights, last_only};
 use super::members::Members;
 use super::terms::Terms;
@@ -58,12 +59,21 @@ pub(super) struct Panel {
     used: usize,
 }
 
+/// Zero where a panel's places are: in unused lanes, and for pixels that are left out.
+#[inline(always)]
+pub(super) fn only_used<R: Real>(value: &Lanes<R>, places: &[Lanes<R>]) -> Lanes<R> {
+    let ones = places.first().copied().unwrap_or([R::ZERO; LANES]);
+    lanes::zip(value, &ones, |value, one| if one > R::ZERO { value } else { R::ZERO })
+}
+
 /// What the fits of a group have in common.
 pub(super) struct Setting<'s, R> {
     pub(super) terms: &'s Terms,
     pub(super) units: [Units<R>; Config::MAX_CHANNELS],
-    /// Panel after panel the lanes of [`Members::places`].
+    /// Panel after panel the lanes of [`Members::places`], zero for pixels that are left out of all fits.
     places: &'s [Lanes<R>],
+    /// Whether there are such pixels.
+    pub(super) leaves_out: bool,
 }
 
 impl<R> Setting<'_, R> {
@@ -128,12 +138,14 @@ impl<'a> Problem<'a> {
         sizes.into_iter().try_fold(0, |largest, size| Some(size?.max(largest)))
     }
 
-    /// Fits to all members but one, for each of them, of which there are at least two.
+    /// Fits to all members but one, for each of them, of which there are at least two. Members beyond `limits` are in no fit, and
+    /// so corrected by one to all others: what corrects a pixel does not depend on whether it is beyond them.
     #[inline(always)]
     pub(super) fn fit<'b, R: Real>(
         &self,
         members: &Members<'_>,
         terms: &Terms,
+        limits: Option<&Limits>,
         arena: &mut Arena<'b, R>,
     ) -> Result<Group<'b, R>, Error> {
         let channels = self.config.channels;
@@ -145,7 +157,16 @@ impl<'a> Problem<'a> {
                 *out = place;
             }
         }
-        let setting = Setting { terms, units: self.units(members), places };
+        let mut used = members.len;
+        if let Some(limits) = limits {
+            for index in (0..members.len).filter(|&index| !self.is_within(limits, members.pixel(index))) {
+                used -= 1;
+                for place in places.iter_mut().skip(index / LANES * fixed).take(fixed) {
+                    place[index % LANES] = R::ZERO;
+                }
+            }
+        }
+        let setting = Setting { terms, units: self.units(members, limits), places, leaves_out: limits.is_some() };
         let estimates = arena.take_lanes(panels * setting.estimates(channels))?;
         if self.n == 1 {
             // A copy of its own: loops over one sample vanish.
@@ -155,7 +176,7 @@ impl<'a> Problem<'a> {
         } else {
             self.by_factor_each(members, &setting, estimates, arena)?;
         }
-        let spreads = Spreads::new(members.len, places, fixed, estimates, terms.ends.len(), channels);
+        let spreads = Spreads::new(used, places, fixed, estimates, terms.ends.len(), channels, setting.leaves_out);
         Ok(Group { units: setting.units, estimates, channels, spreads })
     }
 
@@ -174,12 +195,16 @@ impl<'a> Problem<'a> {
 
     /// As for one pixel's samples: the zero at the first value and, for a narrow type, the unit near the largest.
     #[inline(always)]
-    fn units<R: Real>(&self, members: &Members<'_>) -> [Units<R>; Config::MAX_CHANNELS] {
+    fn units<R: Real>(&self, members: &Members<'_>, limits: Option<&Limits>) -> [Units<R>; Config::MAX_CHANNELS] {
+        let is_used = |pixel: usize| limits.is_none_or(|limits| self.is_within(limits, pixel));
         let mut units = [Units::default(); Config::MAX_CHANNELS];
         if R::NARROW {
             let mut largest = [0.0f64; Config::MAX_CHANNELS];
             for index in 0..members.len * self.n {
                 let pixel = members.pixel(index.checked_div(self.n).unwrap_or(0));
+                if !is_used(pixel) {
+                    continue;
+                }
                 let sample = self.reader.get(pixel * self.n + index.checked_rem(self.n).unwrap_or(0));
                 for (channel, largest) in largest.iter_mut().enumerate().take(self.config.channels) {
                     let value = get(&self.reader.values::<f64>(&sample), channel) / self.factor(pixel, channel);
@@ -190,7 +215,8 @@ impl<'a> Problem<'a> {
                 unit.exponent = Real::exponent(largest).clamp(-126, 126);
             }
         }
-        let pixel = members.pixel(0);
+        let mut pixels = (0..members.len).map(|index| members.pixel(index));
+        let pixel = pixels.find(|&pixel| is_used(pixel)).unwrap_or(0);
         let first = self.reader.values::<f64>(&self.reader.get(pixel * self.n));
         for (channel, (unit, value)) in units.iter_mut().zip(first).enumerate().take(self.config.channels) {
             unit.offset = R::from_f64(libm::scalbn(value / self.factor(pixel, channel), -unit.exponent));
@@ -208,7 +234,8 @@ impl<'a> Problem<'a> {
         Panel { pixels, used }
     }
 
-    /// Writes sample `sample` of a panel's pixels: their columns, and their values in `units`. Zero in unused lanes.
+    /// Writes sample `sample` of a panel's pixels: their columns, and their values in `units`. Zero in unused lanes, and where
+    /// `places` are zero as well.
     #[inline(always)]
     pub(super) fn load<R: Real>(
         &self,
@@ -223,6 +250,11 @@ impl<'a> Problem<'a> {
         let mut h = [[R::ZERO; LANES]; Config::MAX_CONTROLS];
         self.gather(setting, panel, sample, (&mut x, &mut h), values);
         self.expand(setting, panel, places, &x, &h, columns);
+        if setting.leaves_out {
+            for value in values.iter_mut() {
+                *value = only_used(value, places);
+            }
+        }
     }
 
     /// Reads sample `sample` of a panel's pixels. Zero in unused lanes.
@@ -285,11 +317,9 @@ impl<'a> Problem<'a> {
         }
         let (functions, products) = rest.split_at_mut_checked(terms.functions).unwrap_or((&mut [], &mut []));
         self.reader.columns(self.basis, x, h, functions);
-        if panel.used < LANES {
+        if panel.used < LANES || setting.leaves_out {
             for column in functions.iter_mut() {
-                for value in column.iter_mut().skip(panel.used) {
-                    *value = R::ZERO;
-                }
+                *column = only_used(column, places);
             }
         }
         let (first, count) = terms.moving;

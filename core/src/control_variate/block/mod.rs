@@ -13,12 +13,17 @@
 //! - [`Estimator::KFold`]: the same with two halves of the pixels, each weighted by what the other half's fits to itself
 //!   say. Exactly unbiased, at twice the time.
 //!
+//! The last two leave bright pixels out of fits that explain little (`bright`). What is left out for a pixel depends on its
+//! own samples in the robust estimator alone.
+//!
 //! "Exactly" is for pixels whose samples are independent of each other. A tile's are not; how little that does is
 //! measured in the tests.
 
+mod bright;
 mod choice;
 mod factor_each;
 mod fit;
+mod group;
 mod image;
 mod members;
 mod one_factor;
@@ -34,9 +39,8 @@ use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::LANES;
 use crate::real::Real;
-use crate::rows::{rows, rows_mut};
-use choice::Weights;
-use fit::{Group, Problem};
+use crate::rows::rows;
+use fit::Problem;
 use heapless::Vec;
 use members::{Area, Members};
 
@@ -227,84 +231,9 @@ impl<R: Real> Call<'_, '_, R> {
             }
         }
     }
-
-    /// Fits a group and adds its pixels' corrections, times their weight.
-    #[inline(always)]
-    fn group(&mut self, members: &Members<'_>) -> Result<(), Error> {
-        let terms = self.problem.terms(members);
-        if members.len < 2 || terms.ends.is_empty() {
-            return Ok(());
-        }
-        let has_halves = self.problem.config.estimator == Estimator::KFold && !self.problem.is_single_fit();
-        let [even, odd] = [0, 1].map(|first| members.half(first));
-        if has_halves && odd.len < 2 {
-            return Ok(());
-        }
-        // Even members take what the odd ones chose. One loop, as each call of `fit` is a copy of it.
-        let mut weights = [Weights::default(); 2];
-        let passes = if has_halves { [Some(odd), Some(even), Some(*members)] } else { [None, None, Some(*members)] };
-        for (pass, members) in passes.iter().enumerate() {
-            let Some(members) = members else { continue };
-            let group = self.problem.fit(members, &terms, &mut self.arena.scratch())?;
-            if let Some(weights) = weights.get_mut(pass) {
-                *weights = self.problem.weights(&group);
-                continue;
-            }
-            if !has_halves {
-                weights = [self.problem.weights(&group); 2];
-            }
-            let used = if has_halves { weights.as_slice() } else { &weights[..1] };
-            self.problem.add(members, &group, used, self.sums);
-        }
-        Ok(())
-    }
 }
 
 impl Problem<'_> {
-    /// Adds a group's corrections to its pixels' sums.
-    #[inline(always)]
-    fn add<R: Real>(&self, members: &Members<'_>, group: &Group<'_, R>, choices: &[Weights<R>], sums: &mut [R]) {
-        let channels = self.config.channels;
-        let width = sums_len(channels);
-        // Without freedom there is no spread to tell the error from.
-        let has_error = !self.error_is_the_blocks() || group.spreads.freedom > R::ZERO;
-        for (turn, weights) in choices.iter().enumerate() {
-            let mut gain = R::ZERO;
-            let mut units = [1.0f64; Config::MAX_CHANNELS];
-            let mut errors = [0.0f64; Config::MAX_CHANNELS];
-            let outputs = units.iter_mut().zip(&mut errors).zip(&group.units).enumerate();
-            for (channel, ((unit, error), units)) in outputs.take(channels) {
-                *unit = libm::scalbn(1.0, units.exponent);
-                let ratio = group.spreads.gain(weights, channel);
-                gain += ratio;
-                if !self.error_is_the_blocks() {
-                    *error = ratio.sqrt().to_f64();
-                } else if has_error {
-                    *error = group.spreads.variance(weights, channel).sqrt().to_f64() * *unit;
-                }
-            }
-            gain = gain / R::from_usize(channels);
-            for index in (turn..members.len).step_by(choices.len()) {
-                let pixel = members.pixel(index);
-                let Some(sums) = sums.get_mut(pixel * width..(pixel + 1) * width) else { continue };
-                let near = members.area.nearness::<R>(members.local(index));
-                let (common, each) = sums.split_at_mut_checked(COMMON).unwrap_or((&mut [], &mut []));
-                for (sum, value) in common.iter_mut().zip([R::ONE, if has_error { R::ONE } else { R::ZERO }, gain]) {
-                    *sum += near * value;
-                }
-                let per_channel = rows_mut(each, 2).zip(units).zip(errors).enumerate();
-                for (channel, ((each, unit), error)) in per_channel {
-                    let factor = if self.factors.is_empty() { 1.0 } else { self.factor(pixel, channel) };
-                    let correction = group.correction(index, weights, channel).to_f64() * unit * factor;
-                    let error = if self.error_is_the_blocks() { error * factor } else { error };
-                    for (sum, value) in each.iter_mut().zip([correction, error]) {
-                        *sum += near * R::from_f64(value);
-                    }
-                }
-            }
-        }
-    }
-
     /// Whether the standard error is that of the block's estimates, instead of the pixel's plain mean times the root of
     /// the gain: one sample has none, and stratified samples a smaller one than they seem to.
     fn error_is_the_blocks(&self) -> bool {

@@ -2,7 +2,7 @@
 
 use super::super::config::Config;
 use super::super::design::Design;
-use super::fit::{Problem, Setting};
+use super::fit::{Problem, Setting, only_used};
 use super::members::Members;
 use super::terms::MAX_AXES;
 use crate::arena::Arena;
@@ -79,10 +79,23 @@ impl Problem<'_> {
         let smallest = R::from_f64(SINGULAR) * R::EPSILON;
         let inverse_n = R::ONE / R::from_usize(n);
         let panels = rows(design.panels, n * width).zip(rows(design.values, n * channels)).zip(setting.places());
-        for (((columns, values), places), out) in panels.zip(rows_mut(estimates, setting.estimates(channels))) {
-            for (z, columns) in rows_mut(z, width).zip(rows(columns, width)) {
+        let panels = panels.zip(rows_mut(estimates, setting.estimates(channels))).enumerate();
+        for (index, (((columns, values), used), out)) in panels {
+            let whole;
+            let mut places = used;
+            let panel = self.panel(members, index * LANES);
+            if setting.leaves_out {
+                whole = members.places(index * LANES);
+                places = whole.get(..fixed).unwrap_or(&[]);
+            }
+            for (sample, (z, columns)) in rows_mut(z, width).zip(rows(columns, width)).enumerate() {
                 for (z, column) in z.iter_mut().zip(columns) {
                     *z = *column;
+                }
+                if setting.leaves_out {
+                    // Pixels that are in no fit were not in the columns.
+                    let mut values = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
+                    self.load(setting, &panel, sample, places, z, values.get_mut(..channels).unwrap_or(&mut []));
                 }
                 ldlt::forward_lanes(gram, z);
             }
@@ -151,6 +164,11 @@ impl Problem<'_> {
                             lanes::zip(value.unwrap_or(&[R::ZERO; LANES]), fitted, |value, fitted| value - fitted);
                     }
                     ldlt::solve_each(system, residuals);
+                    if setting.leaves_out {
+                        for residual in residuals.iter_mut() {
+                            *residual = only_used(residual, used);
+                        }
+                    }
                     for (t, residual) in residuals.iter().enumerate() {
                         let mut reach = [R::ZERO; LANES];
                         for s in 0..n {

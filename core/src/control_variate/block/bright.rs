@@ -1,0 +1,107 @@
+//! Pixels whose values lie far from those of all others: fireflies, small highlights.
+//!
+//! A fit has seen them, and even a fit that is hardly trusted then moves the other pixels by more than their own error. So where
+//! the mean is trusted most, such pixels are left out of the fits to others.
+
+use super::super::config::Config;
+use super::super::per_channel::get;
+use super::choice::Weights;
+use super::fit::Problem;
+use super::members::Members;
+use crate::real::Real;
+
+/// One of so many pixels may be set aside at each end, rounded up.
+const SHARE: usize = 16;
+/// No more are.
+const MOST: usize = 16;
+/// Fewer pixels do not say what is usual.
+const FEWEST: usize = 8;
+/// How far from the others a value is, in units of their range, that its pixel is left out.
+const FAR: f64 = 8.0;
+/// The least trust in the mean: where fits are better, rare bright values are what they explain.
+const DOUBT: f64 = 0.5;
+
+/// What values of each channel are not too far from the others, from lowest to highest.
+#[derive(Clone, Copy)]
+pub(super) struct Limits([[f64; 2]; Config::MAX_CHANNELS]);
+
+/// The highest values.
+struct Highest {
+    /// In falling order.
+    values: [f64; MOST + 1],
+    /// The index of the last that is wanted.
+    last: usize,
+}
+
+impl Highest {
+    fn new(last: usize) -> Self {
+        Self { values: [f64::NEG_INFINITY; MOST + 1], last }
+    }
+
+    /// The lowest of them.
+    fn least(&self) -> f64 {
+        self.values.get(self.last).copied().unwrap_or(f64::INFINITY)
+    }
+
+    #[inline(always)]
+    fn add(&mut self, mut value: f64) {
+        // Most are not among them.
+        if value <= self.least() {
+            return;
+        }
+        for place in self.values.iter_mut().take(self.last + 1) {
+            if value > *place {
+                core::mem::swap(place, &mut value);
+            }
+        }
+    }
+}
+
+impl Problem<'_> {
+    /// How far values may be from the others, if any is too far. Only channels are judged whose mean is trusted.
+    pub(super) fn limits<R: Real>(&self, members: &Members<'_>, weights: &Weights<R>) -> Option<Limits> {
+        let mut limits = Limits([[f64::NEG_INFINITY, f64::INFINITY]; Config::MAX_CHANNELS]);
+        if members.len < FEWEST || self.is_single_fit() {
+            return None;
+        }
+        let aside = members.len.div_ceil(SHARE).min(MOST);
+        let mut any = false;
+        let [plain, ..] = weights;
+        for (channel, limits) in limits.0.iter_mut().enumerate().take(self.config.channels) {
+            if get(plain, channel).to_f64() < DOUBT {
+                continue;
+            }
+            let (mut highest, mut lowest) = (Highest::new(aside), Highest::new(aside));
+            for index in 0..members.len {
+                let [low, high] = self.range(members.pixel(index), channel);
+                highest.add(high);
+                lowest.add(-low);
+            }
+            let (low, high) = (-lowest.least(), highest.least());
+            let far = FAR * (high - low);
+            *limits = [low - far, high + far];
+            any |= -lowest.values[0] < limits[0] || highest.values[0] > limits[1];
+        }
+        any.then_some(limits)
+    }
+
+    /// Whether all values of a pixel are within the limits.
+    pub(super) fn is_within(&self, limits: &Limits, pixel: usize) -> bool {
+        let mut all = limits.0.iter().enumerate().take(self.config.channels);
+        all.all(|(channel, &[lowest, highest])| {
+            let [low, high] = self.range(pixel, channel);
+            lowest <= low && high <= highest
+        })
+    }
+
+    /// A pixel's lowest and highest value, as fits see them.
+    fn range(&self, pixel: usize, channel: usize) -> [f64; 2] {
+        let factor = self.factor(pixel, channel);
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        for sample in 0..self.n {
+            let value = self.reader.value(pixel * self.n + sample, channel) / factor;
+            range = [range[0].min(value), range[1].max(value)];
+        }
+        range
+    }
+}
