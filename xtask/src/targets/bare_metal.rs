@@ -53,11 +53,13 @@ const RISC_V: Board = Board {
     machine: &["-M", "virt", "-bios", "none"],
 };
 
+/// Bytes of stack of each call, by its name.
+type Stacks = Vec<(String, u32)>;
+
 /// What the program told of a target.
 #[derive(Default)]
 pub(crate) struct Told {
-    /// Bytes of stack of each call, by its name.
-    pub(crate) stacks: Vec<(String, u32)>,
+    pub(crate) stacks: Stacks,
     /// Bytes of the whole program, where it stands alone.
     pub(crate) image: Option<u64>,
 }
@@ -152,7 +154,7 @@ fn compare(platform: &Platform, other: &mut Command) -> Result<Told> {
 }
 
 /// The lines without the stack; and the stack of each.
-fn split(text: &str) -> Result<(Vec<&str>, Vec<(String, u32)>)> {
+fn split(text: &str) -> Result<(Vec<&str>, Stacks)> {
     let (mut lines, mut stacks) = (Vec::new(), Vec::new());
     for line in text.lines() {
         let (result, stack) = line.split_once(STACK).map_or((line, None), |(result, stack)| (result, Some(stack)));
