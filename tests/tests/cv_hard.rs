@@ -13,6 +13,7 @@ use noisefloor::control_variate::{
     estimate_block,
 };
 use noisefloor::real::Real;
+use noisefloor_tests::ESTIMATORS;
 use noisefloor_tests::oracle::{Regression, RobustRule};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::block_as;

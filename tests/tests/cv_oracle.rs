@@ -10,6 +10,7 @@ use noisefloor::basis::Family;
 use noisefloor::control_variate::{
     self, Color, Config, Estimate, Estimator, NonFinite, Optimizer, Regressor, Ridge, Samples, Solver,
 };
+use noisefloor_tests::ESTIMATORS;
 use noisefloor_tests::oracle::{self, Regression, RobustRule};
 use noisefloor_tests::random::SplitMix64;
 

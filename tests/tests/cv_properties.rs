@@ -10,6 +10,7 @@ use noisefloor::control_variate::{
     block_workspace_len, estimate_block, workspace_len,
 };
 use noisefloor::real::Real;
+use noisefloor_tests::ESTIMATORS;
 use noisefloor_tests::oracle::Regression;
 use noisefloor_tests::random::SplitMix64;
 use proptest::prelude::*;

@@ -10,6 +10,7 @@ use noisefloor::control_variate::{
     Accumulator, Config, Estimate, Estimator, NonFinite, Ridge, Samples, Solver, block_workspace_len, estimate,
     estimate_block, workspace_len,
 };
+use noisefloor_tests::ESTIMATORS;
 use noisefloor_tests::integrands::{self, Integrand};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::statistics::Moments;

@@ -9,6 +9,7 @@ use mis_support::Sample;
 use noisefloor::control_variate::{Config, Estimate, Estimator, Image, Ridge, Samples};
 use noisefloor::mis::{self, DEFAULT_RIDGE, OptimalMis, Solver};
 use noisefloor::recommend::{Recommendation, Sampling, recommend};
+use noisefloor_tests::ESTIMATORS;
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::{block, image};
 use proptest::prelude::*;

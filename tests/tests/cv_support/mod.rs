@@ -12,8 +12,6 @@ use noisefloor_tests::legendre;
 use noisefloor_tests::oracle::Design;
 use noisefloor_tests::random::SplitMix64;
 
-pub use noisefloor_tests::ESTIMATORS;
-
 pub const FAMILIES: [Family; 4] = [Family::Legendre, Family::Step, Family::Sine, Family::Gaussian];
 
 /// The batch estimators' workspace for `n` samples, full of NaN.
