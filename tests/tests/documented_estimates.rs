@@ -65,7 +65,7 @@ proptest! {
     #[test]
     fn recommendations_are_rounded(dims in 1..=15_usize, samples in prop_oneof![1..20_usize, 1..70_usize, 1..3000_usize], stratified in any::<bool>(), can_share in any::<bool>()) {
         let sampling = if stratified { Sampling::Stratified } else { Sampling::Independent };
-        let measured = [2, 4, 8, 15].into_iter().find(|&measured| measured >= dims).unwrap();
+        let measured = [1, 2, 4, 5, 8, 15].into_iter().find(|&measured| measured >= dims).unwrap();
         let fewer = [256, 64, 16, 4, 1].into_iter().find(|&fewer| fewer <= samples).unwrap();
         let (here, there) = (recommend(dims, samples, sampling, can_share).unwrap(), recommend(measured, fewer, sampling, can_share).unwrap());
         prop_assert_eq!(here.config.dims, dims);
