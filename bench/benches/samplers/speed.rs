@@ -137,5 +137,5 @@ fn c_by_pixel(sampler: Sampler, dims: usize, spp: usize) -> Result<Option<Timed>
     let Some(bytes) = sampler.builtin(dims, spp)?.and_then(Builtin::bytes) else { return Ok(None) };
     let (tile, mut u) = (c_tile::Tile::new(bytes), vec![0.0; dims * spp]);
     let draw = move || time(|x, y| tile.samples(x, y, spp as u32, dims as u32, &mut u)) / spp as f64;
-    Ok(Some(Timed { name: sampler.name(), door: "C ABI, by pixel", dims, spp, time: Box::new(draw) }))
+    Ok(Some(Timed { name: sampler.name(), door: "C ABI by pixel", dims, spp, time: Box::new(draw) }))
 }

@@ -47,7 +47,7 @@ const GROUPS: [(&str, &str, &str); 8] = [
         "optimal weights",
         "Optimal MIS weights",
         "exp(-2 x), techniques that the weights can hardly tell apart; the plain counterpart is the balance heuristic of the same samples. The \
-         default has a ridge, which is as many samples that know nothing, and takes differences of less than a part in 10,000 for rounding; the \
+         default has a ridge, which is as many samples that know nothing, and takes differences of less than a ten-thousandth part for rounding; the \
          plain solve has none.",
     ),
 ];

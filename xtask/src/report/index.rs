@@ -64,10 +64,6 @@ pub(super) fn write(folder: &Path, name: &str, json: &str) -> Result<String> {
     }
     let mut chapter = Chapter::new("Measurements");
     introduce(&mut chapter);
-    // Written by another command.
-    if folder.join("sizes.md").exists() {
-        chapter.paragraph("[Code size and stack on other targets](sizes.md) is made by `cargo xtask targets`.");
-    }
     chapters(&mut chapter, &all);
     beside(&mut chapter, folder);
     machines(&mut chapter, &all);
@@ -125,7 +121,7 @@ fn sizes(run: &Facts) -> String {
 /// What other commands write into the same folder: its file, what it is, the command.
 const BESIDE: [(&str, &str, &str); 2] = [
     ("povray_patched.md", "POV-Ray with our patch beside POV-Ray as it is", "povray --report"),
-    ("sizes.md", "Bytes of code and memory on several targets", "targets"),
+    ("sizes.md", "Code size and stack on other targets", "targets"),
 ];
 
 /// Links to those that are there.

@@ -8,7 +8,9 @@ use crate::measure::progress;
 use crate::measure::table::Table;
 use anyhow::{Context, Result};
 use indicatif::ProgressBar;
+use std::collections::BTreeSet;
 use std::fs;
+use std::iter;
 use std::path::{Path, PathBuf};
 
 pub(crate) const MODES: [&str; 5] = ["uniform", "importance", "adaptive", "balance", "omis"];
@@ -170,7 +172,7 @@ pub(crate) fn drawn(rows: &Table) -> Result<[u32; 2]> {
 /// The ratios at a few of the epochs, as Markdown.
 pub(crate) fn variance_table(plan: &Plan, rows: &Table) -> Result<String> {
     let last = plan.variance_epochs;
-    let epochs = [0, 1, 2, last / 2, last];
+    let epochs = BTreeSet::from([0, 1, 2, last / 2, last]);
     let mut cells = Vec::new();
     for (method, fraction, name, _) in &METHODS[1..] {
         let rows = rows.only("method", method)?.only("uniform_fraction", fraction)?;
@@ -179,12 +181,11 @@ pub(crate) fn variance_table(plan: &Plan, rows: &Table) -> Result<String> {
             let found = at.iter().zip(&ratios).find(|(at, _)| **at == f64::from(epoch));
             found.map_or("-".to_owned(), |(_, ratio)| format!("{ratio:.3}"))
         };
-        let [a, b, c, d, e] = epochs.map(ratio);
-        cells.push([(*name).to_owned(), a, b, c, d, e]);
+        cells.push(iter::once((*name).to_owned()).chain(epochs.iter().copied().map(ratio)).collect());
     }
-    let headings = epochs.map(|epoch| format!("epoch {epoch}"));
-    let [a, b, c, d, e] = headings.each_ref().map(String::as_str);
-    Ok(crate::measure::markdown::table(&["variance / uniform's", a, b, c, d, e], &[0], cells))
+    let headings: Vec<String> = epochs.iter().map(|epoch| format!("epoch {epoch}")).collect();
+    let headings: Vec<&str> = iter::once("variance / uniform's").chain(headings.iter().map(String::as_str)).collect();
+    Ok(crate::measure::markdown::lines(&headings, &[0], cells))
 }
 
 fn report(plan: &Plan, summary: &str, variance: &str, [batches, draws]: [u32; 2]) -> String {

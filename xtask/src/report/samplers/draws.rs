@@ -10,7 +10,7 @@ use anyhow::Result;
 /// The public sampler that the library's draws are to be as fast as.
 const PEER: &str = "OpenQMC lattice-bn";
 /// What draws go through.
-const DOORS: [&str; 3] = ["Rust", "C ABI", "C ABI, by pixel"];
+const DOORS: [&str; 3] = ["Rust", "C ABI", "C ABI by pixel"];
 
 pub(super) fn write(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
     chapter.section("Nanoseconds of a draw", "");
