@@ -18,7 +18,7 @@
  *    dims, order and channels are optional), an unknown value is NF_ERR_RANGE.
  *  - NF_ERR_RANGE does not say which argument it means: a function's comment lists those that it can mean, with their
  *    ranges there or where they are declared. Of a configuration and samples, it was the configuration if
- *    nf_cv_workspace_size() is 0.
+ *    nf_cv_workspace_size() is 0 for one sample.
  *  - References such as (4.22) are to C. Salaun, "Toward Improving Monte Carlo Estimator for Rendering and
  *    Machine Learning", 2025.
  */
@@ -330,7 +330,8 @@ size_t nf_cv_block_workspace_size(const nf_cv_config *config, size_t pixels, siz
 // their estimates across the pixels, whatever stratification the samples have; unbiased as the block grows.
 // NF_CV_K_FOLD lets two halves of the pixels choose for each other, NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both
 // exactly unbiased, if the pixels' samples are independent. NF_CV_K_FOLD leaves groups of 2 or 3 pixels at their mean; one
-// fit to 2 to 12 pixels can be a fifth worse than the mean.
+// fit to 2 to 12 pixels can be a fifth worse than the mean. Where fits explain little, NF_CV_ROBUST and NF_CV_K_FOLD leave
+// pixels far brighter or darker than all others out of the fits to others.
 //
 // With one sample, or `stratified`, std_error is the spread of the pixels' estimates about their linear trend: an upper
 // bound where the signal varies otherwise.
@@ -621,7 +622,8 @@ nf_status nf_omis_add(nf_omis *omis,
 //
 // solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN, NF_OMIS_PROGRESSIVE or NF_OMIS_BALANCE; each says whether it is unbiased.
 // ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for the default 2; otherwise
-// ignored. With the densities' counts N and n samples it adds L = ridge (tr(N A) - 1) / n N^-1 to A.
+// ignored. With the densities' counts N and n samples it adds L = ridge (tr(N A) - 1) / n N^-1 to A, at
+// least 1e-8 tr(N A) N^-1.
 // estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite float.
 //
 // NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.

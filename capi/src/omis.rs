@@ -116,7 +116,8 @@ pub unsafe extern "C" fn nf_omis_add(
 ///
 /// solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN, NF_OMIS_PROGRESSIVE or NF_OMIS_BALANCE; each says whether it is unbiased.
 /// ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for the default 2; otherwise
-/// ignored. With the densities' counts N and n samples it adds L = ridge (tr(N A) - 1) / n N^-1 to A.
+/// ignored. With the densities' counts N and n samples it adds L = ridge (tr(N A) - 1) / n N^-1 to A, at
+/// least 1e-8 tr(N A) N^-1.
 /// estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite float.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.

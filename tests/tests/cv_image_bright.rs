@@ -6,7 +6,7 @@
 mod cv_support;
 
 use cv_support::points;
-use noisefloor::control_variate::{Config, Image, Samples};
+use noisefloor::control_variate::{Config, Estimator, Image, Samples};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::image;
 use noisefloor_tests::statistics::{Ratio, rmse_ratio};
@@ -16,6 +16,7 @@ const COUNTS: [usize; 3] = [1, 4, 16];
 
 /// `value` is a pixel's at a point, and its integral.
 fn ratio(
+    estimator: Estimator,
     of: &Image<'_>,
     n: usize,
     images: usize,
@@ -28,7 +29,7 @@ fn ratio(
         let u = points(of.width * of.height * n, 2, &mut rng);
         let drawn = u.chunks(2).enumerate().map(|(i, u)| value(i / n, [f64::from(u[0]), f64::from(u[1])]));
         let (f, truth): (Vec<f32>, Vec<f64>) = drawn.map(|[value, truth]| (value as f32, truth)).unzip();
-        let estimates = image(&Config::new(2, 3, 1), of, Samples::new(&u, &f)).unwrap();
+        let estimates = image(&Config { estimator, ..Config::new(2, 3, 1) }, of, Samples::new(&u, &f)).unwrap();
         let mut squares = [0.0; 2];
         for (pixel, own) in f.chunks(n).enumerate().filter(|&(pixel, _)| counts(pixel)) {
             let mean = own.iter().map(|&f| f64::from(f)).sum::<f64>() / n as f64;
@@ -57,8 +58,25 @@ fn one_bright_pixel() {
                     let light = if pixel == 27 { light } else { 1.0 };
                     [light * u[0], light * 0.5]
                 };
-                let ratio = ratio(&of, n, 100, value, |pixel| pixel != 27);
+                let ratio = ratio(Estimator::Robust, &of, n, 100, value, |pixel| pixel != 27);
                 check(&format!("{what}, {n} samples, light {light:e}"), ratio, 0.9);
+            }
+        }
+    }
+}
+
+/// Halves of the pixels judge for each other: the bright pixel in the half that is corrected, and in the one that judges.
+#[test]
+fn one_bright_pixel_of_two_halves() {
+    for n in COUNTS {
+        for light in [1e3, 1e6] {
+            for bright in [26, 27] {
+                let value = |pixel: usize, u: [f64; 2]| {
+                    let light = if pixel == bright { light } else { 1.0 };
+                    [light * u[0], light * 0.5]
+                };
+                let ratio = ratio(Estimator::KFold, &Image::unordered(64), n, 100, value, |pixel| pixel != bright);
+                check(&format!("K-fold, {n} samples, light {light:e} of pixel {bright}"), ratio, 0.9);
             }
         }
     }
@@ -89,7 +107,7 @@ fn highlights() {
             let light = if is_in_highlight(pixel, side) { 1e3 } else { 1.0 };
             [light * u[0], light * 0.5]
         };
-        let ratio = ratio(&of, n, 60, value, |pixel| !is_in_highlight(pixel, side));
+        let ratio = ratio(Estimator::Robust, &of, n, 60, value, |pixel| !is_in_highlight(pixel, side));
         check(&format!("{side} x {side}, {n} samples, surfaces {has_surface}"), ratio, limit);
     }
 }
@@ -101,7 +119,7 @@ fn rare_bright_samples() {
     for (part, limits) in [(0.01, [0.99, 0.985]), (0.02, [0.96, 0.93]), (0.05, [0.79, 0.72]), (0.1, [0.57, 0.53])] {
         for (n, limit) in [1, 4].into_iter().zip(limits) {
             let value = |_: usize, u: [f64; 2]| [f64::from(u8::from(u[0] < part)), part];
-            let ratio = ratio(&Image::new(16, 16), n, 100, value, |_| true);
+            let ratio = ratio(Estimator::Robust, &Image::new(16, 16), n, 100, value, |_| true);
             check(&format!("part {part}, {n} samples"), ratio, limit);
         }
     }

@@ -209,23 +209,26 @@ impl Case {
     }
 
     /// What values are not too far from the others, of channels whose mean is trusted; None if all are near.
-    fn limits(&self, rule: &Rule, group: &[Member], weights: &[Vec<f64>; 2]) -> Option<Limits> {
+    fn limits(&self, rule: &Rule, group: &[Member], all: &[Member], weights: &[Vec<f64>; 2]) -> Option<Limits> {
         let mut limits = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
         if group.len() < 8 {
             return None;
         }
         let aside = group.len().div_ceil(rule.share);
-        for (channel, limits) in limits.iter_mut().enumerate().filter(|&(channel, _)| weights[channel][0] >= rule.doubt)
-        {
+        for (channel, limits) in limits.iter_mut().enumerate() {
             let each = group.iter().map(|member| self.quotients(member.pixel, channel));
             let mut lowest: Vec<f64> = each.clone().map(|own| own.into_iter().fold(f64::INFINITY, f64::min)).collect();
             let mut highest: Vec<f64> = each.map(|own| own.into_iter().fold(f64::NEG_INFINITY, f64::max)).collect();
             lowest.sort_unstable_by(f64::total_cmp);
             highest.sort_unstable_by(|a, b| b.total_cmp(a));
             let (low, high) = (lowest[aside], highest[aside]);
-            *limits = [low - rule.far * (high - low), high + rule.far * (high - low)];
+            let near = [low - rule.far * (high - low), high + rule.far * (high - low)];
+            // Where fits are trusted they explain what a judge itself has.
+            if weights[channel][0] >= rule.doubt || (lowest[0] >= near[0] && highest[0] <= near[1]) {
+                *limits = near;
+            }
         }
-        group.iter().any(|member| self.is_far(member.pixel, Some(&limits))).then_some(limits)
+        all.iter().any(|member| self.is_far(member.pixel, Some(&limits))).then_some(limits)
     }
 
     fn is_far(&self, pixel: usize, limits: Option<&Limits>) -> bool {
@@ -337,7 +340,7 @@ impl Case {
                     let judges = if halves { &half } else { &group };
                     let chosen = |limits: Option<&Limits>| fits(judges, limits).map(|fits| weights(rule, &fits));
                     let first = chosen(None);
-                    match self.limits(rule, judges, &first) {
+                    match self.limits(rule, judges, &group, &first) {
                         Some(limits) => (first, chosen(Some(&limits)), fits(&group, Some(&limits))),
                         None => (first.clone(), first, all.clone()),
                     }

@@ -52,7 +52,8 @@ pub unsafe extern "C" fn nf_cv_block_workspace_size(config: *const nf_cv_config,
 /// their estimates across the pixels, whatever stratification the samples have; unbiased as the block grows.
 /// NF_CV_K_FOLD lets two halves of the pixels choose for each other, NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both
 /// exactly unbiased, if the pixels' samples are independent. NF_CV_K_FOLD leaves groups of 2 or 3 pixels at their mean; one
-/// fit to 2 to 12 pixels can be a fifth worse than the mean.
+/// fit to 2 to 12 pixels can be a fifth worse than the mean. Where fits explain little, NF_CV_ROBUST and NF_CV_K_FOLD leave
+/// pixels far brighter or darker than all others out of the fits to others.
 ///
 /// With one sample, or `stratified`, std_error is the spread of the pixels' estimates about their linear trend: an upper
 /// bound where the signal varies otherwise.

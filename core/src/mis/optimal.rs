@@ -28,6 +28,9 @@ pub const RIDGE_RANGE: core::ops::RangeInclusive<f32> = 1e-8..=1e8;
 /// they are less than about a part in 10,000 apart their rounding would be most of it.
 const LEAST_RIDGE: f64 = 1e-8;
 
+/// Samples that have decayed to fewer count as so many, which leaves a ridge that is large, and finite.
+const LEAST_SAMPLES: f64 = 1e-8;
+
 /// How [`OptimalMis::solve`] turns its sums into an estimate.
 ///
 /// ```
@@ -85,8 +88,7 @@ impl Solver {
                 let mut matrix = matrix();
                 let trace: f64 = matrix.iter().enumerate().map(|(i, row)| row[i]).sum();
                 let differences = trace - linear::along(&matrix, scale, n);
-                // Samples that have decayed to next to nothing leave a ridge that is large, and finite.
-                let diagonal = f64::from(ridge) * differences / samples.max(LEAST_RIDGE);
+                let diagonal = f64::from(ridge) * differences / samples.max(LEAST_SAMPLES);
                 let diagonal = diagonal.max(LEAST_RIDGE * trace);
                 matrix.iter_mut().enumerate().for_each(|(i, row)| row[i] += diagonal);
                 Some(Factor::cholesky(matrix, n))

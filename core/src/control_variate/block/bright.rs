@@ -58,31 +58,36 @@ impl Highest {
 }
 
 impl Problem<'_> {
-    /// How far values may be from the others, if any is too far. Only channels are judged whose mean is trusted.
-    pub(super) fn limits<R: Real>(&self, members: &Members<'_>, weights: &Weights<R>) -> Option<Limits> {
+    /// How far values of `members` may be from those of `judges`, if any is too far. Where a judge itself is too far and fits are
+    /// trusted, they explain it, and keep such values.
+    pub(super) fn limits<R: Real>(
+        &self,
+        judges: &Members<'_>,
+        members: &Members<'_>,
+        weights: &Weights<R>,
+    ) -> Option<Limits> {
         let mut limits = Limits([[f64::NEG_INFINITY, f64::INFINITY]; Config::MAX_CHANNELS]);
-        if members.len < FEWEST || self.is_single_fit() {
+        if judges.len < FEWEST || self.is_single_fit() {
             return None;
         }
-        let aside = members.len.div_ceil(SHARE).min(MOST);
-        let mut any = false;
+        let aside = judges.len.div_ceil(SHARE).min(MOST);
         let [plain, ..] = weights;
         for (channel, limits) in limits.0.iter_mut().enumerate().take(self.config.channels) {
-            if get(plain, channel).to_f64() < DOUBT {
-                continue;
-            }
             let (mut highest, mut lowest) = (Highest::new(aside), Highest::new(aside));
-            for index in 0..members.len {
-                let [low, high] = self.range(members.pixel(index), channel);
+            for index in 0..judges.len {
+                let [low, high] = self.range(judges.pixel(index), channel);
                 highest.add(high);
                 lowest.add(-low);
             }
             let (low, high) = (-lowest.least(), highest.least());
             let far = FAR * (high - low);
-            *limits = [low - far, high + far];
-            any |= -lowest.values[0] < limits[0] || highest.values[0] > limits[1];
+            let near = [low - far, high + far];
+            let is_far = -lowest.values[0] < near[0] || highest.values[0] > near[1];
+            if !is_far || get(plain, channel).to_f64() >= DOUBT {
+                *limits = near;
+            }
         }
-        any.then_some(limits)
+        (0..members.len).any(|index| !self.is_within(&limits, members.pixel(index))).then_some(limits)
     }
 
     /// Whether all values of a pixel are within the limits.

@@ -200,15 +200,12 @@ impl<'a> Problem<'a> {
         let mut units = [Units::default(); Config::MAX_CHANNELS];
         if R::NARROW {
             let mut largest = [0.0f64; Config::MAX_CHANNELS];
-            for index in 0..members.len * self.n {
-                let pixel = members.pixel(index.checked_div(self.n).unwrap_or(0));
-                if !is_used(pixel) {
-                    continue;
-                }
-                let sample = self.reader.get(pixel * self.n + index.checked_rem(self.n).unwrap_or(0));
-                for (channel, largest) in largest.iter_mut().enumerate().take(self.config.channels) {
-                    let value = get(&self.reader.values::<f64>(&sample), channel) / self.factor(pixel, channel);
-                    *largest = largest.max(Real::abs(value));
+            for pixel in (0..members.len).map(|index| members.pixel(index)).filter(|&pixel| is_used(pixel)) {
+                for sample in pixel * self.n..(pixel + 1) * self.n {
+                    let values = self.reader.values::<f64>(&self.reader.get(sample));
+                    for (channel, largest) in largest.iter_mut().enumerate().take(self.config.channels) {
+                        *largest = largest.max(Real::abs(get(&values, channel) / self.factor(pixel, channel)));
+                    }
                 }
             }
             for (unit, largest) in units.iter_mut().zip(largest) {

@@ -96,7 +96,7 @@ impl<R: Real> Call<'_, '_, R> {
                 choice.weights = problem.weights(&group);
                 if !pass.leaves_out {
                     choice.first = choice.weights;
-                    choice.limits = problem.limits(sharing, &choice.weights);
+                    choice.limits = problem.limits(sharing, members, &choice.weights);
                 }
             }
             if !pass.corrects {
