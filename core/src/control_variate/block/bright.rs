@@ -72,7 +72,13 @@ impl Problem<'_> {
         }
         let aside = judges.len.div_ceil(SHARE).min(MOST);
         let [plain, ..] = weights;
+        let mut any = false;
+        let is_halved = judges.len < members.len;
         for (channel, limits) in limits.0.iter_mut().enumerate().take(self.config.channels) {
+            let is_doubted = get(plain, channel).to_f64() < DOUBT;
+            if is_doubted && !is_halved {
+                continue;
+            }
             let (mut highest, mut lowest) = (Highest::new(aside), Highest::new(aside));
             for index in 0..judges.len {
                 let [low, high] = self.range(judges.pixel(index), channel);
@@ -83,9 +89,13 @@ impl Problem<'_> {
             let far = FAR * (high - low);
             let near = [low - far, high + far];
             let is_far = -lowest.values[0] < near[0] || highest.values[0] > near[1];
-            if !is_far || get(plain, channel).to_f64() >= DOUBT {
+            if !is_far || !is_doubted {
                 *limits = near;
             }
+            any |= is_far || is_halved;
+        }
+        if !any {
+            return None;
         }
         (0..members.len).any(|index| !self.is_within(&limits, members.pixel(index))).then_some(limits)
     }
