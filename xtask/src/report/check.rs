@@ -238,7 +238,8 @@ mod tests {
         for entry in std::fs::read_dir(&folder).expect("the report is committed") {
             let path = entry.expect("readable").path();
             // Sentences of sizes.md say how programs were built, in versions, options and bits.
-            if path.extension().is_some_and(|end| end == "json") && path.file_stem().is_some_and(|name| name != "sizes") {
+            if path.extension().is_some_and(|end| end == "json") && path.file_stem().is_some_and(|name| name != "sizes")
+            {
                 let [json, text] = ["json", "md"]
                     .map(|end| std::fs::read_to_string(path.with_extension(end)).expect("both are committed"));
                 if let Err(error) = numbers_are_recorded(&text, &json) {
