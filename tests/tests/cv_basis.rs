@@ -1,8 +1,6 @@
 //! The functions that are regressed: their values, their integrals, their products, their number.
 
-mod cv_support;
-
-use cv_support::*;
+use crate::cv_support::*;
 use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::Config;

@@ -1,8 +1,6 @@
 //! One fit shared by the pixels of a block (4.3.6).
 
-mod cv_support;
-
-use cv_support::*;
+use crate::cv_support::*;
 use noisefloor::Error;
 use noisefloor::control_variate::{
     Config, Estimate, Estimator, NonFinite, Ridge, Samples, block_workspace_len, estimate_block,

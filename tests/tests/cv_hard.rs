@@ -3,9 +3,7 @@
 //! Each is compared with the oracle or with its exact outcome. Tolerances are relative to the largest |f|: 4e-7 for what is
 //! well conditioned, else as stated where it is used.
 
-mod cv_support;
-
-use cv_support::*;
+use crate::cv_support::*;
 use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{

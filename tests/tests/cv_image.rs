@@ -1,8 +1,6 @@
 //! Shared fits over the pixels of an image: what the arguments mean, errors, exactness, scale, determinism.
 
-mod cv_support;
-
-use cv_support::{is_sound, largest, points, smooth, wide};
+use crate::cv_support::{is_sound, largest, points, smooth, wide};
 use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{

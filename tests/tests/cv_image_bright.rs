@@ -3,9 +3,7 @@
 //!
 //! RMSE relative to the plain mean's, over all pixels but the bright ones. The upper end of the 95 % interval is asserted.
 
-mod cv_support;
-
-use cv_support::points;
+use crate::cv_support::points;
 use noisefloor::control_variate::{Config, Estimator, Image, Samples};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::image;

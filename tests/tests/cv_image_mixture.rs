@@ -1,9 +1,7 @@
 //! Shared fits that choose, robust and by two halves, against their definition: every candidate a fit of its own, solved
 //! for each pixel that is left out, every window by itself.
 
-mod cv_support;
-
-use cv_support::{design, largest, points, smooth, wide};
+use crate::cv_support::{design, largest, points, smooth, wide};
 use noisefloor::control_variate::{Config, Estimate, Estimator, Image, Samples};
 use noisefloor_tests::legendre;
 use noisefloor_tests::oracle::{Design, Regression};

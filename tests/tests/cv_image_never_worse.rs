@@ -3,9 +3,7 @@
 //! What is asserted is the upper end of the 95 % interval of the RMSE ratio to the mean, over images that are independent of
 //! each other; pixels of one image are not. Seeds are fixed, and no one chose the rule looking at them.
 
-mod cv_support;
-
-use cv_support::{points, values, wide};
+use crate::cv_support::{points, values, wide};
 use noisefloor::control_variate::{Config, Image, Samples, estimate, workspace_len};
 use noisefloor::tile::{Builtin, Sampler};
 use noisefloor_tests::planar::Planar;
@@ -77,7 +75,7 @@ fn pixels_that_share_nothing_keep_their_mean() {
             let surfaces: Vec<u32> = (0..side * side).map(|pixel| pixel as u32).collect();
             let alone = Image { surfaces: &surfaces, ..Image::new(side, side) };
             let u = points(side * side * n, 2, &mut rng);
-            let f = values(&u, 2, cv_support::smooth);
+            let f = values(&u, 2, crate::cv_support::smooth);
             let estimates = image(&Config::new(2, 3, 1), &alone, Samples::new(&u, &f)).unwrap();
             for (estimate, own) in estimates.iter().zip(f.chunks(n)) {
                 let mean = wide(own).iter().sum::<f64>() / n as f64;

@@ -1,8 +1,6 @@
 //! Shared fits of an image against their definition: pixel by pixel the ridge fit to the other pixels' samples.
 
-mod cv_support;
-
-use cv_support::{design, points, smooth, wide};
+use crate::cv_support::{design, points, smooth, wide};
 use noisefloor::control_variate::{Config, Estimate, Estimator, Image, Ridge, Samples};
 use noisefloor_tests::oracle::{Design, Regression};
 use noisefloor_tests::random::SplitMix64;

@@ -4,9 +4,7 @@
 //! difference between left and right half, and five pixels are tested: 7 deviates, 504 in all, so that the chance that any
 //! failed by chance was 1e-3 when the seeds were chosen. Eight times as many samples found nothing either.
 
-mod cv_support;
-
-use cv_support::points;
+use crate::cv_support::points;
 use noisefloor::control_variate::{Config, Estimator, Image, Ridge, Samples};
 use noisefloor::tile::Builtin;
 use noisefloor_tests::planar::Planar;

@@ -4,9 +4,7 @@
 //! interval of a ratio is the 95 % one of `statistics::rmse_ratio`; what is asserted is its upper end. Among the 75 ratios of
 //! a set a few intervals miss their ratio, but no ratio's true value is near enough to 1.03 for that to decide.
 
-mod cv_support;
-
-use cv_support::*;
+use crate::cv_support::*;
 use noisefloor::control_variate::{Accumulator, Config, Estimator, Samples, estimate, workspace_len};
 use noisefloor_tests::integrands::{self, Integrand};
 use noisefloor_tests::random::{SplitMix64, mix};

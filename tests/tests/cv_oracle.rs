@@ -3,9 +3,7 @@
 //! Estimates are `f32`. Unless a test says otherwise an `f64` path must agree within 4e-7 of the largest |f| (an estimate's
 //! own rounding is 6e-8 of itself), an `f32` path within 1e-4 of it.
 
-mod cv_support;
-
-use cv_support::*;
+use crate::cv_support::*;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{
     self, Color, Config, Estimate, Estimator, NonFinite, Optimizer, Regressor, Ridge, Samples, Solver,

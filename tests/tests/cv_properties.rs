@@ -1,8 +1,6 @@
 //! Properties of the estimators under random configurations and samples, and of accumulators under random operations.
 
-mod cv_support;
-
-use cv_support::*;
+use crate::cv_support::*;
 use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{

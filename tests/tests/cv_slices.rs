@@ -3,9 +3,7 @@
 //! Many lights as in figure 4.15: random intensities, each falling off with the distance to its own nearest point, every
 //! fourth half hidden. The first two coordinates are a point on the light, the third picks one of the lights.
 
-mod cv_support;
-
-use cv_support::*;
+use crate::cv_support::*;
 use noisefloor::control_variate::{Config, Estimator, Samples, estimate, workspace_len};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::statistics::{Ratio, rmse_ratio};

@@ -3,9 +3,7 @@
 //! Seeds are fixed. A z-test here is two-sided at |z| < 4.75, probability 2e-6; with fewer than 50 of them, the chance that any
 //! fails by chance was below 1e-4 when the seed was chosen. Settings are such that least squares fails the same test by far.
 
-mod cv_support;
-
-use cv_support::*;
+use crate::cv_support::*;
 use noisefloor::control_variate::{
     Accumulator, Config, Estimate, Estimator, NonFinite, Ridge, Samples, Solver, block_workspace_len, estimate,
     estimate_block, workspace_len,

@@ -1,8 +1,7 @@
 //! What docs/minibatch.md and docs/tiles.md say in words of any table, shard, shuffle and tile, held against random ones. What needs a
 //! slow model or statistics is in the other tests of tables and tiles.
 
-mod table_support;
-
+use crate::table_support::{saved, table};
 use noisefloor::minibatch::shuffle;
 use noisefloor::minibatch::table::{Shard, allocate};
 use noisefloor::rng::Rng;
@@ -11,7 +10,6 @@ use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::tile::noise;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use table_support::{saved, table};
 
 fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig { cases, rng_seed: RngSeed::Fixed(3), failure_persistence: None, ..ProptestConfig::default() }
@@ -80,7 +78,7 @@ proptest! {
         let (order, new): (Vec<u32>, Vec<f32>) = order.iter().zip(&new).rev().map(|(&item, &q)| (item, q)).unzip();
         backward.update(&order, &new, momentum).unwrap();
         prop_assert!(saved(&forward) == saved(&backward));
-        let draw = |table: &table_support::Owned| {
+        let draw = |table: &crate::table_support::Owned| {
             let (mut index, mut weight) = ([0; 40], [0.0; 40]);
             table.draw(&mut Rng::seed(seed), &mut index, Some(&mut weight)).unwrap();
             (index, weight)

@@ -1,11 +1,8 @@
 //! What docs/mis.md, docs/choosing.md, docs/control_variates.md and docs/shared_fits.md say in words of any samples, held against random
 //! ones. What needs a slow model or statistics is in the other tests of those services.
 
-mod cv_support;
-mod mis_support;
-
-use cv_support::*;
-use mis_support::Sample;
+use crate::cv_support::*;
+use crate::mis_support::Sample;
 use noisefloor::control_variate::{Config, Estimate, Estimator, Image, Ridge, Samples};
 use noisefloor::mis::{self, DEFAULT_RIDGE, OptimalMis, Solver};
 use noisefloor::recommend::{Recommendation, Sampling, recommend};

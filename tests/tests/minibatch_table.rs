@@ -1,7 +1,6 @@
 //! Minibatch tables: what they hold, refuse and need; sums that do not drift; saved bytes.
 
-mod table_support;
-
+use crate::table_support::{Borrowed, lognormal, memory, reloaded, saved, table};
 use noisefloor::Error;
 use noisefloor::minibatch::Table;
 use noisefloor::minibatch::table::{
@@ -9,7 +8,6 @@ use noisefloor::minibatch::table::{
 };
 use noisefloor::rng::Rng;
 use noisefloor_tests::random::SplitMix64;
-use table_support::{Borrowed, lognormal, memory, reloaded, saved, table};
 
 #[test]
 fn memory_per_item() {

@@ -3,11 +3,9 @@
 //! Seeds are fixed. Each chi-square test has 1e7 draws, with few items 1e6, and is at significance 1e-4; stratified draws, which vary less, are
 //! tested for too much only.
 
-mod table_support;
-
+use crate::table_support::{families, ideal, table};
 use noisefloor::rng::Rng;
 use noisefloor_tests::statistics::chi_square;
-use table_support::{families, ideal, table};
 
 const DRAWS: usize = 10_000_000;
 const BATCH: usize = 1000;

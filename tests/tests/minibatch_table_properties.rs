@@ -1,13 +1,11 @@
 //! Tables under random operations, against the obvious: a list of importances.
 
-mod table_support;
-
+use crate::table_support::{Borrowed, ideal, memory, reloaded, saved};
 use noisefloor::Error;
 use noisefloor::minibatch::Table;
 use noisefloor::rng::Rng;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use table_support::{Borrowed, ideal, memory, reloaded, saved};
 
 #[derive(Clone, Debug)]
 enum Operation {

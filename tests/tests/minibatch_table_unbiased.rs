@@ -2,13 +2,11 @@
 //!
 //! Seeds are fixed. Each z-test is at significance 1e-5.
 
-mod table_support;
-
+use crate::table_support::{Owned, Z_LIMIT, lognormal, table};
 use noisefloor::minibatch::table::{Shard, allocate};
 use noisefloor::rng::Rng;
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::statistics::Moments;
-use table_support::{Owned, Z_LIMIT, lognormal, table};
 
 /// Values about as large as the importances, but for noise; and their mean.
 fn values(importance: &[f32], seed: u64) -> (Vec<f64>, f64) {

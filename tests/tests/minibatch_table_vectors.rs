@@ -1,16 +1,14 @@
 //! Pinned batches, to the bit: `tests/vectors/table.txt`, which a C test reads too and draws with the vector unit's code.
 //!
 //! A change of any figure is a change of every training run: rewrite the file with
-//! `NOISEFLOOR_WRITE_VECTORS=1 cargo test -p noisefloor-tests --test minibatch_table_vectors`, and say why in CHANGELOG.md.
+//! `NOISEFLOOR_WRITE_VECTORS=1 cargo test -p noisefloor-tests --test noisefloor minibatch_table_vectors::`, and say why in CHANGELOG.md.
 
-mod table_support;
-
+use crate::table_support::{Owned, memory, saved};
 use noisefloor::rng::Rng;
 use noisefloor_tests::random::SplitMix64;
 use std::fmt::Write;
 use std::fs;
 use std::path::PathBuf;
-use table_support::{Owned, memory, saved};
 
 const HEAD: &str = "\
 # Batches drawn from tables of importances, to the bit. Written by tests/tests/minibatch_table_vectors.rs; read by it and by

@@ -1,8 +1,6 @@
 //! The balance, power, cutoff and maximum heuristics (2.12-2.14).
 
-mod mis_support;
-
-use mis_support::{Moments, Z_LIMIT, problems};
+use crate::mis_support::{Moments, Z_LIMIT, problems};
 use noisefloor::Error;
 use noisefloor::mis::{DEFAULT_BETA, balance, cutoff, maximum, power};
 use noisefloor::rng::Rng;
@@ -172,7 +170,7 @@ fn estimates_are_unbiased() {
             let mut rng = Rng::seed(100 + seed as u64);
             let mut moments = Moments::default();
             for _ in 0..40_000 {
-                let term = |s: &mis_support::Sample| {
+                let term = |s: &crate::mis_support::Sample| {
                     let j = s.technique;
                     let weight = f64::from(heuristic(&s.pdf, &problem.counts, j).unwrap());
                     weight * f64::from(s.value) / (f64::from(problem.counts[j]) * f64::from(s.pdf[j]))

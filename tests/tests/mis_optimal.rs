@@ -1,8 +1,6 @@
 //! The accumulator of optimal MIS (2.15): its algebra, its limits and its errors. Statistics are in mis_statistics.rs.
 
-mod mis_support;
-
-use mis_support::{Problem, Sample, Technique, problems, solve};
+use crate::mis_support::{Problem, Sample, Technique, problems, solve};
 use noisefloor::Error;
 use noisefloor::mis::{self, DEFAULT_RIDGE, OptimalMis, RIDGE_RANGE, Solver, optimal_contribution};
 use noisefloor::rng::Rng;

@@ -2,9 +2,7 @@
 //!
 //! Seeds are fixed. Each z-test is at significance 1e-5.
 
-mod mis_support;
-
-use mis_support::{Moments, Problem, Z_LIMIT, problems};
+use crate::mis_support::{Moments, Problem, Z_LIMIT, problems};
 use noisefloor::mis::{self, OptimalMis, Solver, optimal_contribution};
 use noisefloor::rng::Rng;
 

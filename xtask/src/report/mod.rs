@@ -163,7 +163,7 @@ pub(crate) struct Report<'a> {
 impl Report<'_> {
     /// Compiles the programs that the chapter runs, in the order of its list.
     fn build<const N: usize>(&self) -> Result<[PathBuf; N]> {
-        let programs = program::build(self.programs)?;
+        let programs = program::build(self.programs, &self.plan)?;
         self.compiled();
         programs.try_into().map_err(|programs| anyhow!("{N} programs are run, not {programs:?}"))
     }

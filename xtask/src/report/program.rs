@@ -1,6 +1,7 @@
 //! Measurement programs of the package noisefloor-bench: building them, running them.
 
 use super::Report;
+use super::plan::Plan;
 use crate::measure::running;
 use crate::{library, run};
 use anyhow::{Context, Result};
@@ -8,13 +9,13 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-/// Compiles bench targets as `cargo bench` does, all in one call so that they compile side by side, and returns the programs,
-/// in the order of the names.
-pub(super) fn build(names: &[&str]) -> Result<Vec<PathBuf>> {
+/// Compiles bench targets, all in one call so that they compile side by side, and returns the programs, in the order of the
+/// names.
+pub(super) fn build(names: &[&str], plan: &Plan) -> Result<Vec<PathBuf>> {
     // The programs link it, so that what ships is what is measured.
     library::build()?;
     let mut cargo = run::cargo();
-    cargo.args(["build", "--quiet", "--profile", "bench", "--package", "noisefloor-bench"]);
+    cargo.args(["build", "--quiet", "--profile", plan.profile(), "--package", "noisefloor-bench"]);
     names.iter().for_each(|name| _ = cargo.args(["--bench", name]));
     let messages = run::read(cargo.args(["--message-format", "json-render-diagnostics"]).stderr(Stdio::inherit()))?;
     let artifacts: Vec<Value> = messages.lines().filter_map(|line| serde_json::from_str(line).ok()).collect();

@@ -52,7 +52,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     if wanted.len() > 1 && !programs.is_empty() && !options.reuse {
         println!("building the programs that measure: {}", programs.join(", "));
         // Side by side, for all chapters. What does not compile is said again by the chapter that needs it.
-        _ = program::build(&programs);
+        _ = program::build(&programs, &Plan::new(options.quick, options.full));
     }
     let bar = progress::bar(wanted.iter().map(|entry| entry.seconds).sum())?;
     let (mut written, mut failed) = (Vec::new(), Vec::new());

@@ -1,5 +1,4 @@
 //! What the MIS tests share: one-dimensional techniques and integrands with known integrals, and z-tests.
-#![allow(dead_code)] // each test file uses its part
 
 use noisefloor::rng::Rng;
 

@@ -2,8 +2,6 @@
 //!
 //! Workspaces are handed over full of NaN: an estimator that relied on their content would show it.
 
-#![allow(dead_code, reason = "each test file uses a part")]
-
 use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{self, Accumulator, Config, Estimate, Estimator, Optimizer, Samples};

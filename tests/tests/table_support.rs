@@ -1,5 +1,4 @@
 //! What the tests of minibatch tables share.
-#![allow(dead_code)]
 
 use noisefloor::Error;
 use noisefloor::minibatch::Table;

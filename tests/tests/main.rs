@@ -1,0 +1,48 @@
+//! The tests of the library as one program: linking each file on its own took longer than running it.
+//! `cargo test -p noisefloor-tests --test noisefloor cv_hard::` runs those of one file. A new file needs a line here.
+//! `mis_c.rs`, which takes in parts of the C door's crate, stands alone.
+
+mod cv_basis;
+mod cv_block;
+mod cv_hard;
+mod cv_image;
+mod cv_image_bright;
+mod cv_image_mixture;
+mod cv_image_never_worse;
+mod cv_image_oracle;
+mod cv_image_tiles;
+mod cv_image_unbiased;
+mod cv_large;
+mod cv_never_worse;
+mod cv_oracle;
+mod cv_properties;
+mod cv_slices;
+mod cv_support;
+mod cv_unbiased;
+mod documented_draws;
+mod documented_estimates;
+mod minibatch_importance;
+mod minibatch_omis;
+mod minibatch_shuffle;
+mod minibatch_statistics;
+mod minibatch_table;
+mod minibatch_table_draws;
+mod minibatch_table_properties;
+mod minibatch_table_unbiased;
+mod minibatch_table_vectors;
+mod mis_control_variate;
+mod mis_heuristics;
+mod mis_optimal;
+mod mis_statistics;
+mod mis_support;
+mod mis_weight;
+mod rng;
+mod table_support;
+mod tile_continued;
+mod tile_format;
+mod tile_further_dimensions;
+mod tile_sampler;
+mod tile_statistics;
+mod tile_vectors;
+mod vectors;
+mod warp;
