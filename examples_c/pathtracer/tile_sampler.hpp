@@ -29,6 +29,7 @@ inline const TileName tile_names[] = {
     {"128_1SPP_2D_TEMPORAL", NF_TILE_128_1SPP_2D_TEMPORAL},
     {"64_1SPP_2D", NF_TILE_64_1SPP_2D},
     {"64_4SPP_2D", NF_TILE_64_4SPP_2D},
+    {"64_4SPP_2D_TEMPORAL", NF_TILE_64_4SPP_2D_TEMPORAL},
 };
 
 // False if the linked library was built without it.

@@ -36,7 +36,8 @@ static void built_in(void)
                {NF_TILE_128_4SPP_2D_GAUSSIAN, 128, 4, 2, 1, 0},
                {NF_TILE_128_1SPP_2D_TEMPORAL, 128, 1, 2, 16, 0},
                {NF_TILE_64_1SPP_2D, 64, 1, 2, 1, 0},
-               {NF_TILE_64_4SPP_2D, 64, 4, 2, 1, 0}};
+               {NF_TILE_64_4SPP_2D, 64, 4, 2, 1, 0},
+               {NF_TILE_64_4SPP_2D_TEMPORAL, 64, 4, 2, 16, 0}};
     nf_tile tile;
     size_t i, present = 0;
     for (i = 0; i < sizeof all / sizeof *all; ++i) {

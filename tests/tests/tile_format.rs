@@ -171,7 +171,7 @@ fn built_in_tiles() {
         assert_eq!(frames > 1, tile.name().ends_with("_TEMPORAL"));
     }
     assert!(present > 0);
-    assert_eq!((Builtin::from_id(0), Builtin::from_id(12), Builtin::from_id(u32::MAX)), (None, None, None));
+    assert_eq!((Builtin::from_id(0), Builtin::from_id(13), Builtin::from_id(u32::MAX)), (None, None, None));
 }
 
 fn shapes() -> impl Strategy<Value = Shape> {

@@ -27,6 +27,8 @@ pub const NF_TILE_128_1SPP_2D_TEMPORAL: u32 = 9;
 pub const NF_TILE_64_1SPP_2D: u32 = 10;
 /// nf_tile_builtin: 64 x 64 pixels, 4 samples, 2 dims.
 pub const NF_TILE_64_4SPP_2D: u32 = 11;
+/// nf_tile_builtin: 64 x 64 pixels, 4 samples, 2 dims, 16 frames.
+pub const NF_TILE_64_4SPP_2D_TEMPORAL: u32 = 12;
 
 const _: () = {
     assert!(NF_TILE_128_1SPP_2D == Builtin::Size128Spp1Dims2 as u32);
@@ -40,6 +42,7 @@ const _: () = {
     assert!(NF_TILE_128_1SPP_2D_TEMPORAL == Builtin::Size128Spp1Dims2Temporal as u32);
     assert!(NF_TILE_64_1SPP_2D == Builtin::Size64Spp1Dims2 as u32);
     assert!(NF_TILE_64_4SPP_2D == Builtin::Size64Spp4Dims2 as u32);
+    assert!(NF_TILE_64_4SPP_2D_TEMPORAL == Builtin::Size64Spp4Dims2Temporal as u32);
 };
 
 /// A view of a tile: sample points for a square of pixels that repeats over the image (chapter 5; docs/tiles.md).

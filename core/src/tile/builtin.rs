@@ -39,11 +39,13 @@ pub enum Builtin {
     Size64Spp1Dims2 = 10,
     /// 64 x 64 pixels, 4 samples, 2 dims.
     Size64Spp4Dims2 = 11,
+    /// 64 x 64 pixels, 4 samples, 2 dims, 16 frames.
+    Size64Spp4Dims2Temporal = 12,
 }
 
 impl Builtin {
     /// Every one, compiled in or not.
-    pub const ALL: [Builtin; 11] = [
+    pub const ALL: [Builtin; 12] = [
         Builtin::Size128Spp1Dims2,
         Builtin::Size128Spp4Dims2,
         Builtin::Size128Spp16Dims2,
@@ -55,6 +57,7 @@ impl Builtin {
         Builtin::Size128Spp1Dims2Temporal,
         Builtin::Size64Spp1Dims2,
         Builtin::Size64Spp4Dims2,
+        Builtin::Size64Spp4Dims2Temporal,
     ];
 
     /// The tile of a number, `None` for a number of no tile.
@@ -86,6 +89,7 @@ impl Builtin {
             Builtin::Size128Spp1Dims2Temporal => "128_1SPP_2D_TEMPORAL",
             Builtin::Size64Spp1Dims2 => "64_1SPP_2D",
             Builtin::Size64Spp4Dims2 => "64_4SPP_2D",
+            Builtin::Size64Spp4Dims2Temporal => "64_4SPP_2D_TEMPORAL",
         }
     }
 
@@ -121,6 +125,8 @@ impl Builtin {
             Builtin::Size64Spp1Dims2 => Some(include_bytes!("../../tiles/64_1SPP_2D.nft")),
             #[cfg(feature = "tile-64-4spp-2d")]
             Builtin::Size64Spp4Dims2 => Some(include_bytes!("../../tiles/64_4SPP_2D.nft")),
+            #[cfg(feature = "tile-64-4spp-2d-temporal")]
+            Builtin::Size64Spp4Dims2Temporal => Some(include_bytes!("../../tiles/64_4SPP_2D_TEMPORAL.nft")),
             // Not reached where all are compiled in.
             #[allow(unreachable_patterns)]
             _ => None,

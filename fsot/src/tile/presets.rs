@@ -5,7 +5,7 @@ use super::problem::{ClassShare, Projections, TileProblem};
 use super::temporal::TemporalKernel;
 
 /// The names of all shipped tiles: `<size>_<spp>SPP_<dims>D[_VARIANT]`.
-pub const NAMES: [&str; 11] = [
+pub const NAMES: [&str; 12] = [
     "128_1SPP_2D",
     "128_4SPP_2D",
     "128_16SPP_2D",
@@ -17,6 +17,7 @@ pub const NAMES: [&str; 11] = [
     "128_1SPP_2D_TEMPORAL",
     "64_1SPP_2D",
     "64_4SPP_2D",
+    "64_4SPP_2D_TEMPORAL",
 ];
 
 /// What a shipped tile is made from; None if no tile has this name.
@@ -30,9 +31,11 @@ pub fn preset(name: &str) -> Option<TileProblem> {
         "128_4SPP_4D" => space(128, 4, 0.12),
         "128_1SPP_2D_GAUSSIAN" => gaussian(plane(128, 1, 2048), 0.0),
         "128_4SPP_2D_GAUSSIAN" => gaussian(plane(128, 4, 4096), 0.3),
-        "128_1SPP_2D_TEMPORAL" => temporal(plane(128, 1, 1024)),
+        "128_1SPP_2D_TEMPORAL" => temporal(plane(128, 1, 1024), 0.5, ClassShare { share: 0.1, weight: 1.0 }),
         "64_1SPP_2D" => plane(64, 1, 2048),
         "64_4SPP_2D" => plane(64, 4, 8192),
+        // The pixel's own integral counts more over frames, as it does within them from a few samples on.
+        "64_4SPP_2D_TEMPORAL" => temporal(plane(64, 4, 2048), 0.65, ClassShare { share: 0.15, weight: 2.5 }),
         _ => return None,
     };
     Some(problem)
@@ -64,13 +67,7 @@ fn gaussian(problem: TileProblem, share: f32) -> TileProblem {
 }
 
 /// For temporal anti-aliasing: the error is small in every frame, and in what the moving average makes of a pixel and
-/// of the image.
-fn temporal(problem: TileProblem) -> TileProblem {
-    TileProblem {
-        frames: 16,
-        temporal: Some(TemporalKernel::Ema(0.2)),
-        frame_share: 0.5,
-        box_class: ClassShare { share: 0.1, weight: 1.0 },
-        ..problem
-    }
+/// of the image; `frame_share` of the slices look at one frame.
+fn temporal(problem: TileProblem, frame_share: f32, box_class: ClassShare) -> TileProblem {
+    TileProblem { frames: 16, temporal: Some(TemporalKernel::Ema(0.2)), frame_share, box_class, ..problem }
 }

@@ -16,12 +16,10 @@ use anyhow::Result;
 use image::Rgb32FImage;
 
 const SCENE: &str = "animation";
-/// A tile optimised over frames too.
-const TEMPORAL: &str = "128_1SPP_2D_TEMPORAL";
-/// Weight of the newest frame in the exponential moving average: what the temporal tile was optimised for.
+/// Weight of the newest frame in the exponential moving average: what the temporal tiles were optimised for.
 const ALPHA: f64 = 0.2;
-/// The figures' samples per pixel.
-const SPP: [u32; 2] = [1, 4];
+/// The figures' samples per pixel, and the tile of as many that was optimised over frames too.
+const TEMPORAL: [(u32, &str); 2] = [(1, "128_1SPP_2D_TEMPORAL"), (4, "64_4SPP_2D_TEMPORAL")];
 /// Weights of so many frames, the newest first.
 type Kernel = fn(usize) -> Vec<f64>;
 /// Kernels and their names.
@@ -75,17 +73,17 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     ));
     section.targets.reason(
         ["temporal tile", "4 spp"],
-        "The temporal tile has one sample per pixel and frame: further samples come from a sequence that is not part of it.",
+        "The temporal tiles were optimised for the moving average, not for the eye.",
     );
     let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
     let mut rows = Vec::new();
-    for (&spp, last) in plan.some(&SPP).iter().zip(plan.animation) {
+    for (&(spp, temporal), last) in plan.some(&TEMPORAL).iter().zip(plan.animation) {
         let references = references(section, last)?;
         let samplers = [
             ("random", Some(Sampler::Random)),
             ("Owen-Sobol", Some(Sampler::Sobol)),
             ("shifted tile", Choice::Tile(2).sampler(spp, &tiles)),
-            ("temporal tile", tiles.find(TEMPORAL).map(Sampler::Tile)),
+            ("temporal tile", tiles.find(temporal).map(Sampler::Tile)),
         ];
         let mut all = Vec::new();
         for (label, sampler) in samplers {
@@ -118,7 +116,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     }
     let columns = ["samples", "frame", "filter", "sampler", "relMSE x 1000", "over random"];
     section.chapter.table("animation", &columns, 4, rows);
-    for &spp in plan.some(&SPP) {
+    for &(spp, _) in plan.some(&TEMPORAL) {
         let description =
             format!("The last frame filtered along time, {}: image, errors, spectra", text::samples_per_pixel(spp));
         section.chapter.setting(format!("samples per pixel of the animation, {spp}"), spp);
