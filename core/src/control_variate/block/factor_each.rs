@@ -81,6 +81,7 @@ impl Problem<'_> {
                 *out = own.map(|own| total - own);
             }
             if setting.leaves_out {
+                // Once more: told apart above, the usual case would take longer.
                 for ((out, &total), own) in system.iter_mut().zip(total.iter()).zip(own) {
                     *out = only_used(own, used).map(|own| total - own);
                 }
