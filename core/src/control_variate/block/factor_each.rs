@@ -1,8 +1,9 @@
 //! A factorisation for each pixel, eight side by side.
 
 use super::super::config::Config;
-use super::fit::{Problem, Setting, only_used};
+use super::fit::{Problem, Setting};
 use super::members::Members;
+use super::panel::only_used;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
