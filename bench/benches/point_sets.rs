@@ -132,11 +132,7 @@ fn main() -> Result<()> {
             }
         }
     }
-    let path = options.output.join("points.csv");
-    let new = path.with_extension("new");
-    fs::write(&new, out)
-        .and_then(|()| fs::rename(&new, &path))
-        .with_context(|| format!("cannot write {}", path.display()))?;
+    noisefloor_bench::write(&options.output.join("points.csv"), out)?;
     println!("in {}", options.output.display());
     Ok(())
 }
