@@ -137,7 +137,8 @@ impl<'a> Measurement<'a> {
         self.bar.set_message(format!("{}: reference", view.scene));
         // Many pixels, few samples: the reference's error matters less.
         let divisor = self.plan.reference_divisor * if view.size >= self.plan.tile_size { 4 } else { 1 };
-        let spp = (view.precision * scenes::find(view.scene)?.reference_spp / divisor).max(16);
+        let factor = view.precision * self.plan.reference_factor;
+        let spp = (factor * scenes::find(view.scene)?.reference_spp / divisor).max(16);
         let index = self.references.borrow().len();
         let experiment = Experiment::new(view, spp, &[]);
         let prefixes = REFERENCE_SEEDS.map(|seed| self.path(&format!("half-{index}-{seed}")));
