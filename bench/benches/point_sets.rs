@@ -45,6 +45,16 @@ const MILLION: usize = 1 << 20;
 /// Steps of a million points where the time is short: draft quality has 80.
 const FEW_STEPS: u64 = 24;
 
+/// How often random and Sobol points are measured: from so many on one set is like another, and measuring takes seconds.
+fn peer_seeds(points: usize, full: bool) -> u64 {
+    match points {
+        ..=16_384 => 4,
+        16_385..=65_536 if full => 4,
+        16_385..=65_536 => 2,
+        _ => 1,
+    }
+}
+
 /// One set to make.
 #[derive(Clone, Copy)]
 struct Run {
@@ -117,7 +127,7 @@ fn main() -> Result<()> {
         }
     }
     let mut sizes: Vec<(usize, u64)> =
-        runs.iter().map(|run| (run.points, if run.points > 65_536 { 1 } else { 4 })).collect();
+        runs.iter().map(|run| (run.points, peer_seeds(run.points, options.full))).collect();
     sizes.sort_unstable();
     sizes.dedup();
     for (points, seeds) in sizes {
@@ -132,11 +142,7 @@ fn main() -> Result<()> {
             }
         }
     }
-    let path = options.output.join("points.csv");
-    let new = path.with_extension("new");
-    fs::write(&new, out)
-        .and_then(|()| fs::rename(&new, &path))
-        .with_context(|| format!("cannot write {}", path.display()))?;
+    noisefloor_bench::write(&options.output.join("points.csv"), out)?;
     println!("in {}", options.output.display());
     Ok(())
 }

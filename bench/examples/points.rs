@@ -6,7 +6,6 @@
 
 use anyhow::{Context, Result, bail};
 use openqmc::{LatticeBnSampler, PmjBnSampler, SobolBnSampler};
-use std::fs;
 use std::path::Path;
 
 /// Pixels on a side: the tables' own period is 128 (Heitz) or 64 (OpenQMC, whose pixels differ beyond).
@@ -50,15 +49,7 @@ fn main() -> Result<()> {
             }
         }
     }
-    write(Path::new(file), &bytes)
-}
-
-/// Complete, or not at all.
-fn write(file: &Path, bytes: &[u8]) -> Result<()> {
-    let new = file.with_extension("new");
-    fs::write(&new, bytes)
-        .and_then(|()| fs::rename(&new, file))
-        .with_context(|| format!("cannot write {}", file.display()))
+    noisefloor_bench::write(Path::new(file), &bytes)
 }
 
 /// E. Heitz et al. 2019, with the tables that were optimised for so many samples or, of those, the next more.

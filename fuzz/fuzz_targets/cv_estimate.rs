@@ -10,6 +10,7 @@ use noisefloor::control_variate::{
     block_workspace_len, estimate_block, workspace_len,
 };
 use noisefloor::real::Real;
+use noisefloor_tests::ESTIMATORS;
 
 /// Workspaces beyond this many numbers are not allocated.
 const MOST: usize = 1 << 18;
@@ -48,14 +49,7 @@ impl<'a> Arbitrary<'a> for Input {
             dims: small(bytes, 16)?,
             order: small(bytes, 7)?,
             channels: small(bytes, 4)?,
-            estimator: *bytes.choose(&[
-                Estimator::Robust,
-                Estimator::LeastSquares,
-                Estimator::LeaveOneOut,
-                Estimator::KFold,
-                Estimator::GradientDescent,
-                Estimator::Incremental,
-            ])?,
+            estimator: *bytes.choose(&ESTIMATORS)?,
             basis: *bytes.choose(&[Family::Legendre, Family::Step, Family::Sine, Family::Gaussian])?,
             stratified: u8::arbitrary(bytes)? < 16,
             slices: small(bytes, 8)?.saturating_sub(3),

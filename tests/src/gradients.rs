@@ -126,17 +126,22 @@ impl Regression {
         self.points.iter().flat_map(gradient).collect()
     }
 
-    /// Tables of what [`importance::nodes`] makes of each point's gradient by the coefficients.
+    /// Tables from each point's gradient by the coefficients.
     pub fn problem(&self, split: Split, techniques: usize, uniform: f64) -> Problem {
         let gradients = self.gradients();
-        let mut tables = vec![Vec::new(); techniques];
-        for gradient in gradients.chunks(7) {
-            let mut q = vec![0.0; techniques];
-            importance::nodes(gradient, split, &mut q).unwrap();
-            tables.iter_mut().zip(q).for_each(|(table, q)| table.push(f64::from(q)));
-        }
-        Problem::new(&tables, uniform, gradients, 7)
+        Problem::new(&tables(&gradients, 7, split, techniques), uniform, gradients, 7)
     }
+}
+
+/// Importances `[J][N]`: what [`importance::nodes`] makes of each item's `width` derivatives.
+fn tables(derivatives: &[f32], width: usize, split: Split, techniques: usize) -> Vec<Vec<f64>> {
+    let mut tables = vec![Vec::new(); techniques];
+    for item in derivatives.chunks(width) {
+        let mut q = vec![0.0; techniques];
+        importance::nodes(item, split, &mut q).unwrap();
+        tables.iter_mut().zip(q).for_each(|(table, q)| table.push(f64::from(q)));
+    }
+    tables
 }
 
 /// The derivatives by the 5 output nodes, and by the 30 weights, of 1,000 items after some steps of gradient descent.
@@ -183,15 +188,8 @@ impl Classifier {
     /// After some steps of gradient descent.
     pub fn new(steps: usize) -> Classifier {
         let (classes, gradients) = classifier(5, steps);
-        let problem = |split, techniques| {
-            let mut tables = vec![Vec::new(); techniques];
-            for nodes in classes.chunks(5) {
-                let mut q = vec![0.0; techniques];
-                importance::nodes(nodes, split, &mut q).unwrap();
-                tables.iter_mut().zip(q).for_each(|(table, q)| table.push(f64::from(q)));
-            }
-            Problem::new(&tables, 0.2, gradients.clone(), 30)
-        };
+        let problem =
+            |split, techniques| Problem::new(&tables(&classes, 5, split, techniques), 0.2, gradients.clone(), 30);
         Classifier {
             uniform: Problem::new(&[vec![1.0; 1000]], 0.0, gradients.clone(), 30),
             one: problem(Split::Norm, 1),

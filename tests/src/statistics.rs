@@ -93,7 +93,7 @@ pub fn rmse_ratio(a: &[f64], b: &[f64]) -> Ratio {
 }
 
 /// What Student's t of so many degrees of freedom exceeds with 2.5 %: exact for 1 and 2, else Abramowitz and Stegun 26.7.5, to four terms,
-/// which is .03 too small for 3 and good to .002 from 5 on.
+/// which is .004 too small for 3 and good to .001 from 4 on.
 pub fn student(freedom: f64) -> f64 {
     if freedom <= 2.0 {
         return if freedom < 1.5 { 12.7062 } else { 4.3027 };

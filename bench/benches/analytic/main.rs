@@ -7,10 +7,9 @@ mod continued;
 mod gradients;
 mod shared;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Parser;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Measures on known integrands and gradients, and writes tables.
 #[derive(Parser)]
@@ -64,17 +63,9 @@ fn main() -> Result<()> {
         ("classifier", gradients::classifier(size)),
         ("gradient_bias", gradients::bias(size)),
     ];
-    fs::create_dir_all(&options.output).with_context(|| format!("cannot create {}", options.output.display()))?;
     for (name, text) in &tables {
-        write(&options.output.join(format!("{name}.csv")), text)?;
+        noisefloor_bench::write(&options.output.join(format!("{name}.csv")), text)?;
     }
     println!("{} tables: {}", tables.len(), options.output.display());
     Ok(())
-}
-
-/// Whole or not at all.
-fn write(path: &Path, text: &str) -> Result<()> {
-    let new = path.with_extension("new");
-    fs::write(&new, text).with_context(|| format!("cannot write {}", new.display()))?;
-    fs::rename(&new, path).with_context(|| format!("cannot write {}", path.display()))
 }

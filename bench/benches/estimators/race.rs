@@ -1,7 +1,7 @@
 //! Settings on the same samples, in turns: errors over the plain mean's and times.
 
 use crate::functions::Function;
-use noisefloor_bench::method::MEAN;
+use noisefloor_bench::method::{INCREMENTAL, K_FOLD, MEAN};
 use noisefloor_bench::{Door, Method, Prepared};
 use noisefloor_tests::random::{SplitMix64, mix};
 use noisefloor_tests::statistics::{Ratio, median, rmse_ratio};
@@ -53,13 +53,22 @@ pub(crate) struct Effort {
     pub(crate) budget: f64,
     /// Bounds of the repetitions.
     pub(crate) repetitions: [usize; 2],
+    /// Whether estimators that take several times as long have fewer repetitions.
+    pub(crate) by_estimator: bool,
 }
 
 impl Effort {
-    fn chunks(self, n: usize, terms: usize) -> usize {
+    fn chunks(self, n: usize, terms: usize, method: &Method) -> usize {
         let (n, terms) = (n as f64, terms as f64);
         let rank = terms.min(n);
-        let cost = n * (20.0 + 2.0 * terms + 0.12 * rank * terms);
+        // Of what least squares takes.
+        let times = match method.name {
+            _ if !self.by_estimator => 1.0,
+            name if name == INCREMENTAL.name => 6.0,
+            name if name == K_FOLD.name => 2.5,
+            _ => 1.0,
+        };
+        let cost = times * n * (20.0 + 2.0 * terms + 0.12 * rank * terms);
         let [low, high] = self.repetitions;
         ((self.budget / cost) as usize).clamp(low, high).div_ceil(CHUNK)
     }
@@ -84,7 +93,14 @@ pub(crate) fn measure(function: &Function, settings: &[Setting], n: usize, seed:
         .filter_map(|&setting| {
             let terms = setting.terms(dims)?;
             let prepared = setting.method.prepare(door, dims, setting.order, n);
-            Some(Track { setting, terms, chunks: effort.chunks(n, terms), prepared, errors: vec![], ns: vec![] })
+            Some(Track {
+                setting,
+                terms,
+                chunks: effort.chunks(n, terms, &setting.method),
+                prepared,
+                errors: vec![],
+                ns: vec![],
+            })
         })
         .collect();
     let chunks = tracks.iter().map(|track| track.chunks).max().unwrap_or(0);

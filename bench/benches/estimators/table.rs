@@ -2,10 +2,8 @@
 
 use crate::race::Result;
 use crate::{convergence, fits, grid};
-use anyhow::Context;
 use noisefloor::recommend::{Method, Sampling, recommend};
 use std::fmt::Write;
-use std::fs;
 use std::path::Path;
 
 /// Writes all files, each whole or not at all.
@@ -15,7 +13,6 @@ pub(crate) fn write(
     points: &[convergence::Row],
     fits: &[fits::Row],
 ) -> anyhow::Result<()> {
-    fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
     let files = [
         ("grid.csv", grid(cells)),
         ("convergence.csv", convergence(points)),
@@ -23,10 +20,7 @@ pub(crate) fn write(
         ("recommended.csv", recommended()),
     ];
     for (name, text) in files {
-        let (path, new) = (folder.join(name), folder.join(format!("{name}.new")));
-        fs::write(&new, text)
-            .and_then(|()| fs::rename(&new, &path))
-            .with_context(|| format!("cannot write {}", path.display()))?;
+        noisefloor_bench::write(&folder.join(name), text)?;
     }
     Ok(())
 }

@@ -70,11 +70,10 @@ impl Method {
             methods.push(Self { kind: Kind::Windows, order: 2, regressed: 4 });
         }
         let terms = |method: &Self| Config::new(method.regressed, method.order, CHANNELS).terms();
-        // Most of the time would go there: overlapping windows, or each pixel on its own, with many functions.
+        // Most of the time would go there: overlapping windows, where many samples gain nothing by them, and many functions.
         let large = |method: &Self| match method.kind {
-            Kind::Windows => terms(method).is_ok_and(|terms| terms > 30),
-            Kind::PerPixel => terms(method).is_ok_and(|terms| terms > 100) && n >= 64,
-            _ => false,
+            Kind::Windows => n >= 64 || terms(method).is_ok_and(|terms| terms > 30),
+            _ => terms(method).is_ok_and(|terms| terms > 100) && n >= 64,
         };
         // Orders above 3 where they have few functions: more cost more than they bring.
         let few = |method: &Self| if method.kind == Kind::PerPixel { 21 } else { 8 };
@@ -183,50 +182,116 @@ impl Clock {
     }
 }
 
-/// What one image gives: for each method its errors, and the times.
-type Measured = Vec<(Vec<Errors>, f64)>;
+/// An image: which repetition, and of what.
+type Subject = (usize, (Family, Variant));
 
-/// Adds the cells of all kinds of samples.
+/// One number of dims and of samples.
+#[derive(Clone, Copy)]
+struct Place {
+    dims: usize,
+    n: usize,
+    /// Pixels in a row.
+    side: usize,
+}
+
+impl Place {
+    fn samples(self) -> usize {
+        self.side * self.side * self.n
+    }
+
+    /// The integrands of an image, the same whatever the samples and their number, and a seed for its samples.
+    fn scenes(self, (repetition, (family, variant)): Subject) -> ([Scene; CHANNELS], u64) {
+        let seed = mix((repetition * 8 + family as usize * 2 + variant as usize) as u64 ^ (self.dims as u64) << 32);
+        let mut rng = SplitMix64::new(seed);
+        ([(); CHANNELS].map(|()| Scene::new(family, variant, self.dims, &mut rng)), seed)
+    }
+
+    fn points(self, source: Source, seed: u64) -> Result<Vec<f32>> {
+        source.points(self.dims, self.n, self.side, mix(seed ^ (self.n as u64) << 16 ^ source as u64))
+    }
+
+    /// The errors of each method on one image.
+    fn errors(self, source: Source, methods: &[Method], subject: Subject) -> Result<Vec<Vec<Errors>>> {
+        let Self { dims, n, side } = self;
+        let ((_, (family, variant)), (scenes, seed)) = (subject, self.scenes(subject));
+        let u = self.points(source, seed)?;
+        let f = values(&scenes, &u, dims, n, side);
+        let truth = scenes.each_ref().map(|scene| scene.moments(side));
+        let errors = methods.iter().map(|method| {
+            let (estimates, _) = method.estimates(Samples::new(&u, &f), dims, side, n)?;
+            let errors = estimates.iter().zip(&truth).map(|(estimates, truth)| {
+                let [raw, filtered] = score(estimates, truth, side, n);
+                Errors { family, variant, raw, filtered }
+            });
+            Ok(errors.collect())
+        });
+        errors.collect()
+    }
+
+    /// Nanoseconds per sample of each method, round by round: on one image, since the work is the same whatever is integrated.
+    fn times(self, methods: &[Method], subject: Subject) -> Result<Vec<Vec<f64>>> {
+        let (scenes, seed) = self.scenes(subject);
+        let u = self.points(Source::Independent, seed)?;
+        let f = values(&scenes, &u, self.dims, self.n, self.side);
+        let mut all = vec![Vec::new(); methods.len()];
+        for _ in 0..ROUNDS {
+            for (method, times) in methods.iter().zip(&mut all) {
+                let (_, ns) = method.estimates(Samples::new(&u, &f), self.dims, self.side, self.n)?;
+                times.push(ns / self.samples() as f64);
+            }
+        }
+        Ok(all)
+    }
+
+    /// Nanoseconds of a draw, round by round.
+    fn draw_times(self, source: Source, seed: u64) -> Result<Vec<f64>> {
+        let time = |_| {
+            let start = Clock::now();
+            self.points(source, seed)?;
+            Ok(start.ns() / self.samples() as f64)
+        };
+        (0..ROUNDS).map(time).collect()
+    }
+}
+
+/// How often everything is timed.
+const ROUNDS: usize = 3;
+
+/// Adds the cells of all kinds of samples. Errors come from all threads, image by image, and are the same on any number of them; times
+/// are taken after that, when nothing else runs.
 pub(crate) fn measure(cells: &mut Vec<Cell>, dims: usize, n: usize, extent: Extent) -> Result<()> {
-    let (side, repetitions) = (side(dims, n), if extent == Extent::Full { 4 } else { 1 });
+    let (full, place) = (extent == Extent::Full, Place { dims, n, side: side(dims, n) });
     let kinds = Family::ALL.into_iter().flat_map(|family| Variant::ALL.map(|variant| (family, variant)));
     let kinds: Vec<_> = kinds.take(if extent == Extent::Quick { 2 } else { usize::MAX }).collect();
-    let images: Vec<_> =
-        (0..repetitions).flat_map(|repetition| kinds.iter().map(move |&kind| (repetition, kind))).collect();
-    for source in Source::ALL.into_iter().filter(|source| source.applies(dims, n)) {
-        let methods = Method::all(source, dims, n, extent == Extent::Full);
-        let one = |&(repetition, (family, variant)): &(usize, (Family, Variant))| -> Result<(Measured, f64)> {
-            // The same integrands whatever the samples and their number.
-            let seed = mix((repetition * 8 + family as usize * 2 + variant as usize) as u64 ^ (dims as u64) << 32);
-            let mut rng = SplitMix64::new(seed);
-            let scenes = [(); CHANNELS].map(|()| Scene::new(family, variant, dims, &mut rng));
-            let start = Clock::now();
-            let u = source.points(dims, n, side, mix(seed ^ (n as u64) << 16 ^ source as u64))?;
-            let total = (side * side * n) as f64;
-            let draw_ns = start.ns() / total;
-            let f = values(&scenes, &u, dims, n, side);
-            let truth = scenes.each_ref().map(|scene| scene.moments(side));
-            let measured = methods.iter().map(|method| {
-                let (estimates, ns) = method.estimates(Samples::new(&u, &f), dims, side, n)?;
-                let errors = estimates.iter().zip(&truth).map(|(estimates, truth)| {
-                    let [raw, filtered] = score(estimates, truth, side, n);
-                    Errors { family, variant, raw, filtered }
-                });
-                Ok((errors.collect(), ns / total))
-            });
-            Ok((measured.collect::<Result<_>>()?, draw_ns))
-        };
-        let measured: Vec<(Measured, f64)> = images.par_iter().map(one).collect::<Result<_>>()?;
+    let subjects: Vec<Subject> = (0..if full { 4 } else { 1 })
+        .flat_map(|repetition| kinds.iter().map(move |&kind| (repetition, kind)))
+        .collect();
+    let sources: Vec<(Source, Vec<Method>)> = Source::ALL
+        .into_iter()
+        .filter(|source| source.applies(dims, n))
+        .map(|source| (source, Method::all(source, dims, n, full)))
+        .collect();
+    let images: Vec<_> = sources.iter().flat_map(|of| subjects.iter().map(move |&subject| (of, subject))).collect();
+    let errors: Vec<Vec<Vec<Errors>>> = images
+        .par_iter()
+        .with_max_len(1)
+        .map(|((source, methods), subject)| place.errors(*source, methods, *subject))
+        .collect::<Result<_>>()?;
+    // Of independent samples all methods are measured that are measured of any.
+    let timed = Method::all(Source::Independent, dims, n, full);
+    let times = place.times(&timed, subjects[0])?;
+    for ((source, methods), errors) in sources.iter().zip(errors.chunks(subjects.len())) {
+        let draw_ns = place.draw_times(*source, 1)?;
         for (index, &method) in methods.iter().enumerate() {
-            let of = || measured.iter().map(|(methods, _)| &methods[index]);
+            let at = timed.iter().position(|of| *of == method).context("an estimator was not timed")?;
             cells.push(Cell {
                 dims,
                 n,
-                source,
+                source: *source,
                 method,
-                errors: of().flat_map(|(errors, _)| errors.iter().copied()).collect(),
-                ns: of().map(|&(_, ns)| ns).collect(),
-                draw_ns: measured.iter().map(|&(_, ns)| ns).collect(),
+                errors: errors.iter().flat_map(|methods| methods[index].iter().copied()).collect(),
+                ns: times[at].clone(),
+                draw_ns: draw_ns.clone(),
             });
         }
     }

@@ -1,10 +1,9 @@
 //! What was measured, as two tables: errors over many repetitions, and outcomes of single calls.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use noisefloor::Error;
 use noisefloor_tests::statistics::Ratio;
 use std::fmt::Write;
-use std::fs;
 use std::path::Path;
 
 /// A case of many repetitions.
@@ -61,12 +60,8 @@ impl Tables {
 
     /// Writes errors.csv and outcomes.csv, each whole or not at all.
     pub(crate) fn write(&self, folder: &Path) -> Result<()> {
-        fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
         for (name, text) in [("errors.csv", self.errors()), ("outcomes.csv", self.outcomes())] {
-            let (path, new) = (folder.join(name), folder.join(format!("{name}.new")));
-            fs::write(&new, text)
-                .and_then(|()| fs::rename(&new, &path))
-                .with_context(|| format!("cannot write {}", path.display()))?;
+            noisefloor_bench::write(&folder.join(name), text)?;
         }
         Ok(())
     }

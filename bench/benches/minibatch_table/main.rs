@@ -9,13 +9,12 @@ mod drift;
 mod methods;
 mod times;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Parser;
 use methods::Method;
 use noisefloor::rng::Rng;
 use noisefloor_bench::c_abi;
 use std::fmt::Write as _;
-use std::fs;
 use std::path::PathBuf;
 use times::{Chunks, Memory, Times, median};
 
@@ -79,18 +78,9 @@ fn main() -> Result<()> {
         writeln!(tables.drift, "{},{updates},{method},{changed},{compared},{risen},{lost},{error:e}", drift::ITEMS)?;
     }
     if let Some(folder) = &options.output {
-        let write = || -> std::io::Result<()> {
-            fs::create_dir_all(folder)?;
-            for (name, text) in
-                [("times.csv", &tables.times), ("items.csv", &tables.items), ("drift.csv", &tables.drift)]
-            {
-                let part = folder.join(format!("{name}.part"));
-                fs::write(&part, text)?;
-                fs::rename(&part, folder.join(name))?;
-            }
-            Ok(())
-        };
-        write().with_context(|| format!("cannot write to {}", folder.display()))?;
+        for (name, text) in [("times.csv", &tables.times), ("items.csv", &tables.items), ("drift.csv", &tables.drift)] {
+            noisefloor_bench::write(&folder.join(name), text)?;
+        }
     }
     Ok(())
 }

@@ -14,7 +14,9 @@ fn integrands(spp: usize, share: f64) -> usize {
     let all = match spp {
         0..=4 => 64.0,
         5..=16 => 32.0,
-        _ => 16.0,
+        // No target is there; `--full` has more.
+        _ if share > 1.0 => 16.0,
+        _ => 8.0,
     };
     ((all * share) as usize).max(2)
 }

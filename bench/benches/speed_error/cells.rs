@@ -1,6 +1,6 @@
 //! One integrand, one degree, one sample count: errors and times of every estimator on the same samples.
 
-use noisefloor_bench::method::{MEAN, METHODS, ROBUST};
+use noisefloor_bench::method::{LEAST_SQUARES, LEAVE_ONE_OUT, MEAN, METHODS, ROBUST};
 use noisefloor_bench::{Door, Method};
 use noisefloor_tests::integrands::Integrand;
 use noisefloor_tests::random::{SplitMix64, mix};
@@ -101,7 +101,7 @@ impl Extent {
         }
     }
 
-    /// (chunks, repetitions in a chunk) of the mean and the robust estimator; every fourth chunk for all others.
+    /// (chunks, repetitions in a chunk) of the mean and the robust estimator; others see every [`Self::step`]-th chunk.
     fn chunks(self, dims: usize, n: usize) -> (usize, usize) {
         let (repetitions, size) = match (dims, n) {
             (..=5, ..=16) => (8192, 32),
@@ -118,6 +118,17 @@ impl Extent {
         };
         (chunks, size)
     }
+
+    /// Which chunks a method sees: targets are the robust estimator's; what takes longest shows its time and about how it errs, and
+    /// the grid of `estimators` has it too.
+    fn step(self, method: &Method) -> usize {
+        match method.name {
+            name if name == MEAN.name || name == ROBUST.name => 1,
+            _ if method.narrow || self != Self::Normal => 4,
+            name if [LEAST_SQUARES.name, LEAVE_ONE_OUT.name].contains(&name) => 4,
+            _ => 16,
+        }
+    }
 }
 
 /// Binomial (dims + degree) choose degree.
@@ -128,11 +139,19 @@ fn terms(dims: usize, degree: usize) -> usize {
 struct Track {
     method: Method,
     prepared: noisefloor_bench::Prepared,
-    /// Errors in the chunks that all methods see.
-    shared: Vec<f64>,
-    /// Errors in all chunks that it sees.
-    all: Vec<f64>,
+    /// It sees chunks 0, `step`, 2 `step`, ...
+    step: usize,
+    /// Errors in the chunks that it sees, and how many each has.
+    errors: Vec<f64>,
+    size: usize,
     ns: Vec<f64>,
+}
+
+impl Track {
+    /// Errors in every `step`-th chunk: of a method that sees more, those that another one saw too.
+    fn errors(&self, step: usize) -> Vec<f64> {
+        self.errors.chunks(self.size).step_by(step / self.step).flatten().copied().collect()
+    }
 }
 
 /// Adds a cell for each method.
@@ -155,17 +174,18 @@ pub(crate) fn measure(
         cells.extend(known.into_iter().map(|cell| Cell { degree, ..cell }));
         return;
     }
+    let (chunks, size) = extent.chunks(dims, n);
     let mut tracks: Vec<Track> = METHODS
         .iter()
         .map(|&method| Track {
             method,
             prepared: method.prepare(door, dims, order, n),
-            shared: vec![],
-            all: vec![],
+            step: extent.step(&method),
+            errors: vec![],
+            size,
             ns: vec![],
         })
         .collect();
-    let (chunks, size) = extent.chunks(dims, n);
     let mut u = vec![0.0_f32; size * n * dims];
     let mut f = vec![0.0_f32; size * n];
     let mut rng = SplitMix64::new(mix(seed << 16 | n as u64));
@@ -176,11 +196,7 @@ pub(crate) fn measure(
             point.iter_mut().zip(u).for_each(|(x, &u)| *x = u.into());
             *f = (integrand.evaluate)(&point) as f32;
         }
-        let shared = chunk % 4 == 0;
-        for track in &mut tracks {
-            if !shared && ![MEAN.name, ROBUST.name].contains(&track.method.name) {
-                continue;
-            }
+        for track in tracks.iter_mut().filter(|track| chunk % track.step == 0) {
             let mut errors = [0.0; 32];
             let start = Instant::now();
             for ((error, u), f) in errors.iter_mut().zip(u.chunks_exact(n * dims)).zip(f.chunks_exact(n)) {
@@ -189,15 +205,12 @@ pub(crate) fn measure(
             track.ns.push(start.elapsed().as_secs_f64() * 1e9 / (size * n) as f64);
             for value in &errors[..size] {
                 assert!(value.is_finite(), "{}: {} gave {value}", integrand.name, track.method.name);
-                track.all.push(value - integrand.integral);
-            }
-            if shared {
-                track.shared.extend(errors[..size].iter().map(|value| value - integrand.integral));
+                track.errors.push(value - integrand.integral);
             }
         }
     }
     for track in &tracks {
-        let mean = if track.all.len() == tracks[0].all.len() { &tracks[0].all } else { &tracks[0].shared };
+        let mean = tracks[0].errors(track.step);
         let wide = |other: &&Track| {
             track.method.narrow
                 && !other.method.narrow
@@ -211,10 +224,10 @@ pub(crate) fn measure(
             order,
             n,
             method: track.method.name,
-            repetitions: track.all.len(),
+            repetitions: track.errors.len(),
             mean_rmse: root_mean_square(mean.iter().copied()),
-            ratio: rmse_ratio(&track.all, mean),
-            narrow: tracks.iter().find(wide).map(|wide| narrow(&track.shared, &wide.shared, &tracks[0].shared)),
+            ratio: rmse_ratio(&track.errors, &mean),
+            narrow: tracks.iter().find(wide).map(|wide| narrow(&track.errors, &wide.errors(track.step), &mean)),
             ns: median(&track.ns),
             mean_ns: median(&tracks[0].ns),
         });

@@ -2,12 +2,11 @@
 
 use crate::cells::{COUNTS, Cell, DEGREES, Set};
 use crate::{Run, must_reach, speed};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use noisefloor_bench::c_abi;
 use noisefloor_bench::method::METHODS;
 use noisefloor_tests::statistics::{self, Ratio};
 use std::fmt::Write;
-use std::fs;
 use std::path::Path;
 
 /// The cell with the largest ratio.
@@ -29,7 +28,6 @@ fn mean_of(ratios: impl Iterator<Item = Ratio>) -> Ratio {
 
 /// Writes report.md, must_reach.csv (columns divided by semicolons), cells.csv and speed.csv.
 pub(crate) fn write(run: &Run, folder: &Path) -> Result<()> {
-    fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
     let files = [
         ("report.md", markdown(run)?),
         ("must_reach.csv", must_reach::csv(run)),
@@ -37,10 +35,7 @@ pub(crate) fn write(run: &Run, folder: &Path) -> Result<()> {
         ("speed.csv", speeds(run)?),
     ];
     for (name, text) in files {
-        let (path, new) = (folder.join(name), folder.join(format!("{name}.new")));
-        fs::write(&new, text)
-            .and_then(|()| fs::rename(&new, &path))
-            .with_context(|| format!("cannot write {}", path.display()))?;
+        noisefloor_bench::write(&folder.join(name), text)?;
     }
     Ok(())
 }

@@ -53,12 +53,11 @@ pub unsafe extern "C" fn nf_sampler_fill(
             return Err(NF_ERR_MEMORY);
         }
         // SAFETY: the caller passes room for `len` numbers, which are no fewer.
-        let mut rest = unsafe { convert::slice_mut(u, needed) }?;
+        let u = unsafe { convert::slice_mut(u, needed) }?;
         let sample = dims.iter().fold(0_usize, |sum, &dims| sum.wrapping_add(dims as usize));
-        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
-            let split = core::mem::take(&mut rest).split_at_mut_checked(sample.wrapping_mul(samples as usize));
-            let Some((mut pixel, more)) = split else { return Ok(()) };
-            rest = more;
+        let pixels = u.chunks_exact_mut(sample.wrapping_mul(samples as usize).max(1));
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (y, x)));
+        for (mut pixel, (y, x)) in pixels.zip(places) {
             for (sampler, &dims) in samplers.iter().zip(dims) {
                 // SAFETY: the caller passes samplers whose tiles, checked by nf_sampler_pixel, are NULL or live.
                 unsafe { samples_of(sampler, x, y, dims as usize, sample, pixel) };

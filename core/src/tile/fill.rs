@@ -56,17 +56,14 @@ pub fn fill(
     if len == 0 {
         return Ok(());
     }
-    let mut rest = u.get_mut(..len).ok_or(Error::Memory)?;
+    let u = u.get_mut(..len).ok_or(Error::Memory)?;
     let sample = domains.iter().fold(0_usize, |sum, &(_, dims)| sum.wrapping_add(dims));
-    for y in 0..height {
-        for x in 0..width {
-            let split = core::mem::take(&mut rest).split_at_mut_checked(sample.wrapping_mul(samples));
-            let Some((mut pixel, more)) = split else { return Ok(()) };
-            rest = more;
-            for &(sampler, dims) in domains {
-                sampler.moved(x as u32, y as u32, 0).draw_samples(dims, sample, pixel);
-                pixel = pixel.get_mut(dims..).unwrap_or_default();
-            }
+    let pixels = u.chunks_exact_mut(sample.wrapping_mul(samples).max(1));
+    let places = (0..height).flat_map(|y| (0..width).map(move |x| (y, x)));
+    for (mut pixel, (y, x)) in pixels.zip(places) {
+        for &(sampler, dims) in domains {
+            sampler.moved(x as u32, y as u32, 0).draw_samples(dims, sample, pixel);
+            pixel = pixel.get_mut(dims..).unwrap_or_default();
         }
     }
     Ok(())

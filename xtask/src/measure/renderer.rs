@@ -65,6 +65,14 @@ pub(crate) fn threads() -> u32 {
     std::thread::available_parallelism().map_or(1, |n| n.get().min(256) as u32)
 }
 
+/// Where a renderer leaves an estimator's images, one of each seed from `first` on.
+pub(crate) fn images(prefix: &Path, estimator: &str, first: u64, seeds: u32) -> impl Iterator<Item = PathBuf> {
+    (first..first + u64::from(seeds)).map(move |seed| match seeds {
+        1 => prefix.with_extension(format!("{estimator}.pfm")),
+        _ => prefix.with_extension(format!("{estimator}.{seed}.pfm")),
+    })
+}
+
 impl Renderer {
     /// Builds the library and the program that links it. Once `interrupted` is set, nothing is rendered any more.
     pub(crate) fn build(interrupted: Interrupted) -> Result<Self> {
@@ -93,7 +101,7 @@ impl Renderer {
         Ok(line.split_whitespace().map(str::to_owned).collect())
     }
 
-    /// Renders `size` x `size` pixels to `PREFIX.ESTIMATOR.pfm`, with as many threads as there are cores.
+    /// Renders `size` x `size` pixels to the files of [`images`], with as many threads as there are cores.
     pub(crate) fn render(&self, job: &Job, size: u32, prefix: &Path, bar: &ProgressBar) -> Result<Vec<Timing>> {
         self.render_with(threads(), job, size, prefix, bar)
     }

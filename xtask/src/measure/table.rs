@@ -42,6 +42,11 @@ impl Table {
         self.rows.iter().map(|cells| Row { table: self, cells })
     }
 
+    /// The first row with these cells under these headings.
+    pub(crate) fn find(&self, wanted: &[(&str, &str)]) -> Result<Row<'_>> {
+        self.rows().find(|row| row.has(wanted)).with_context(|| format!("{} has no row of {wanted:?}", self.name))
+    }
+
     /// The rows whose cell under a heading is this.
     pub(crate) fn only(&self, heading: &str, word: &str) -> Result<Self> {
         let column = self.column(heading)?;

@@ -4,7 +4,7 @@ use super::{scenes::Scene, stack};
 use crate::measure::image::read_pfm;
 use crate::measure::interrupt::Interrupted;
 use crate::measure::metric::Reference;
-use crate::measure::renderer::{Job, Renderer, Sampler, Timing, threads};
+use crate::measure::renderer::{Job, Renderer, Sampler, Timing, images, threads};
 use crate::measure::side_by_side;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
@@ -113,14 +113,8 @@ impl Oracle {
             .map(|job| (job, folder.path().join(format!("picture-{}", job.seed))))
             .collect();
         let timings = side_by_side::render(&self.renderer, &runs, view.size, RUNS, &ProgressBar::hidden())?.concat();
-        let file = |name: &str, prefix: &Path, seed: u64, seeds: u32| match seeds {
-            1 => prefix.with_extension(format!("{name}.pfm")),
-            _ => prefix.with_extension(format!("{name}.{seed}.pfm")),
-        };
         let one = |name: &str| -> Result<Renderings> {
-            let files = runs.iter().flat_map(|(job, prefix)| {
-                (job.seed..job.seed + u64::from(job.seeds)).map(move |seed| file(name, prefix, seed, job.seeds))
-            });
+            let files = runs.iter().flat_map(|(job, prefix)| images(prefix, name, job.seed, job.seeds));
             let images = files.map(|file| read_pfm(&file)).collect::<Result<_>>()?;
             let timings = timings.iter().filter(|timing| timing.estimator == name).cloned().collect();
             Ok(Renderings { images, timings })

@@ -80,10 +80,9 @@ pub(super) fn search(
         .filter(|(_, measured)| measured.kind == kind)
         .filter(|(_, measured)| kind == Kind::Value || context.before.contains(&measured.place))
         .collect();
-    let is_right = |value: f64| {
-        let half = 0.5 * 10f64.powi(-number.decimals) * (1.0 + 1e-6);
-        candidates.iter().any(|(_, measured)| (measured.value - value).abs() <= half)
-    };
+    let half = 0.5 * 10f64.powi(-number.decimals) * (1.0 + 1e-6);
+    let rounds_to = |measured: &Measured, value: f64| (measured.value - value).abs() <= half;
+    let is_right = |value: f64| candidates.iter().any(|(_, measured)| rounds_to(measured, value));
     let names = || selections.iter().map(|selection| selection.name.as_str()).collect::<Vec<_>>().join("; ");
     if !is_right(number.value) {
         let wrong = match kind {
@@ -104,8 +103,7 @@ pub(super) fn search(
             ));
         }
     }
-    let half = 0.5 * 10f64.powi(-number.decimals) * (1.0 + 1e-6);
-    let found = candidates.iter().filter(|(_, measured)| (measured.value - number.value).abs() <= half);
+    let found = candidates.iter().filter(|(_, measured)| rounds_to(measured, number.value));
     Ok(found
         .map(|(selection, measured)| {
             selection.is_used.set(true);

@@ -71,6 +71,11 @@ macro_rules! row {
 }
 pub(crate) use row;
 
+/// A table's columns: `words`, then `more` that depend on what was measured.
+pub(crate) fn headings(words: &[&str], more: impl IntoIterator<Item = String>) -> Vec<String> {
+    words.iter().map(|&word| word.to_owned()).chain(more).collect()
+}
+
 /// Grows as the chapter is written, from the top down.
 #[derive(Default)]
 pub(crate) struct Chapter {
@@ -138,11 +143,18 @@ impl Chapter {
     }
 
     /// `columns`: their headings; what stands in the first `words` of them is aligned left.
-    pub(crate) fn table(&mut self, name: &'static str, columns: &[&str], words: usize, rows: Vec<Vec<Cell>>) {
+    pub(crate) fn table(
+        &mut self,
+        name: &'static str,
+        columns: &[impl AsRef<str>],
+        words: usize,
+        rows: Vec<Vec<Cell>>,
+    ) {
+        let columns: Vec<&str> = columns.iter().map(AsRef::as_ref).collect();
         let cells = rows.iter().map(|row| row.iter().map(Cell::text).collect());
         let words: Vec<usize> = (0..words).collect();
-        self.text += &format!("\n{}", markdown::lines(columns, &words, cells.collect()));
-        let columns = columns.iter().map(|&column| column.to_owned()).collect();
+        self.text += &format!("\n{}", markdown::lines(&columns, &words, cells.collect()));
+        let columns = columns.into_iter().map(str::to_owned).collect();
         self.tables.push(Table { name, section: self.section.clone(), columns, rows });
     }
 

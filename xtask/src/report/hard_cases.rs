@@ -154,8 +154,7 @@ fn targets(chapter: &mut Chapter, cases: &[Case]) -> Result<()> {
             _ => "default over the mean, every hard case: RMSE",
         };
         targets.at_most(statement, &case.place(), case.judged()?, Unit::Ratio, BOUND);
-        let failed = case.rows[0].number("failed")?;
-        let failed = Estimate { value: failed, low: failed, high: failed, seeds: 1 };
+        let failed = Estimate::exact(case.rows[0].number("failed")?);
         targets.at_most("calls that failed", &case.place(), failed, Unit::Count, 0.0);
     }
     targets.write_summary(chapter);

@@ -5,7 +5,7 @@ use super::plan::Plan;
 use super::scenes;
 use crate::measure::image::read_pfm;
 use crate::measure::metric::Reference;
-use crate::measure::renderer::{Job, Renderer, Sampler, Timing, threads};
+use crate::measure::renderer::{Job, Renderer, Sampler, Timing, images, threads};
 use crate::measure::side_by_side;
 use anyhow::{Context, Result};
 use image::Rgb32FImage;
@@ -137,7 +137,8 @@ impl<'a> Measurement<'a> {
         self.bar.set_message(format!("{}: reference", view.scene));
         // Many pixels, few samples: the reference's error matters less.
         let divisor = self.plan.reference_divisor * if view.size >= self.plan.tile_size { 4 } else { 1 };
-        let spp = (view.precision * scenes::find(view.scene)?.reference_spp / divisor).max(16);
+        let factor = view.precision * self.plan.reference_factor;
+        let spp = (factor * scenes::find(view.scene)?.reference_spp / divisor).max(16);
         let index = self.references.borrow().len();
         let experiment = Experiment::new(view, spp, &[]);
         let prefixes = REFERENCE_SEEDS.map(|seed| self.path(&format!("half-{index}-{seed}")));
@@ -248,15 +249,10 @@ impl<'a> Measurement<'a> {
     /// What a run has left.
     fn read(experiment: &Experiment, prefix: &Path, timings: &[Timing]) -> Result<Vec<Renderings>> {
         let Experiment { seeds, estimators, .. } = *experiment;
-        let name = |estimator: &str, seed: u64| match seeds {
-            1 => format!("{estimator}.pfm"),
-            _ => format!("{estimator}.{seed}.pfm"),
-        };
         let renderings = estimators.iter().map(|&estimator| {
-            let files = (SEED..SEED + u64::from(seeds)).map(|seed| prefix.with_extension(name(estimator, seed)));
             Ok(Renderings {
                 estimator: estimator.to_owned(),
-                images: files.map(|file| read_pfm(&file)).collect::<Result<_>>()?,
+                images: images(prefix, estimator, SEED, seeds).map(|file| read_pfm(&file)).collect::<Result<_>>()?,
                 timings: timings.iter().filter(|timing| timing.estimator == estimator).cloned().collect(),
             })
         });

@@ -73,14 +73,14 @@ const CHAPTERS: &[Entry] = &[
         .runs(&["minibatch_table"]),
     entry(
         "gradients",
-        80,
+        95,
         "Variance of minibatches' gradients, and test error at equal steps and equal time",
         gradients::write,
     ),
     entry("instructions", 3, "What callgrind counts: the same on a busy machine", instructions::write),
     entry(
         "control_variates",
-        122,
+        80,
         "Every estimator, basis and order: error against time, convergence, f32 against f64",
         control_variates::write,
     )
@@ -96,20 +96,20 @@ const CHAPTERS: &[Entry] = &[
     .runs(&["analytic"]),
     entry(
         "embree",
-        275,
+        285,
         "Estimators and samplers in a path tracer on Embree, scenes after the thesis's",
         embree::write,
     ),
     entry(
         "samplers",
-        92,
+        95,
         "Samplers beside each other, with and without estimators; what is recommended",
         samplers::write,
     )
     .runs(&["samplers", "guidance"]),
-    entry("points", 52, "Seconds against quality of point sets, 256 to a million points", points::write)
+    entry("points", 65, "Seconds against quality of point sets, 256 to a million points", points::write)
         .runs(&["point_sets"]),
-    entry("povray", 140, "The same on integrands that unmodified POV-Ray renders", povray::write),
+    entry("povray", 115, "The same on integrands that unmodified POV-Ray renders", povray::write),
 ];
 
 #[derive(Args)]

@@ -11,7 +11,8 @@ pub(crate) struct Plan {
     pub(crate) tile_size: u32,
     /// Pixels on a side where many samples, many dimensions or many seeds are the point.
     pub(crate) small: u32,
-    /// Divides the samples per pixel of references.
+    /// Multiplies and divides the samples per pixel of references.
+    pub(crate) reference_factor: u32,
     pub(crate) reference_divisor: u32,
     /// Samples per pixel of the comparison of estimators.
     pub(crate) spp: &'static [u32],
@@ -33,9 +34,10 @@ impl Plan {
     pub(crate) fn new(quick: bool, full: bool) -> Self {
         let normal = Self {
             seeds: 8,
-            size: 56,
+            size: 52,
             tile_size: 128,
             small: 32,
+            reference_factor: 1,
             reference_divisor: 1,
             spp: &[16, 64, 256],
             many: 256,
@@ -52,6 +54,7 @@ impl Plan {
                 size: 16,
                 tile_size: 32,
                 small: 12,
+                reference_factor: 1,
                 reference_divisor: 16,
                 spp: &[16],
                 many: 64,
@@ -68,6 +71,7 @@ impl Plan {
                 size: 128,
                 tile_size: 256,
                 small: 64,
+                reference_factor: 2,
                 many: 512,
                 pixel_seeds: 1024,
                 frames: 4004,

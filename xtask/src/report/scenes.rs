@@ -23,7 +23,7 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("killeroos", 3, true, 1024, 500.0),
     scene("bathroom", 3, false, 1024, 500.0),
     scene("dining", 2, true, 1024, 400.0),
-    scene("duck", 15, false, 2048, 2500.0),
+    scene("duck", 15, false, 1024, 2500.0),
     scene("dragon", 2, true, 1024, 400.0),
     scene("chopper", 2, true, 1024, 400.0),
     scene("lens", 4, false, 1024, 600.0),
@@ -32,8 +32,8 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("plane_16", 3, false, 1024, 300.0),
     scene("plane_64", 3, false, 1024, 300.0),
     scene("microcity", 2, true, 1024, 500.0),
-    scene("animation", 2, true, 512, 400.0),
-    scene("glass", 12, false, 2048, 1500.0),
+    scene("animation", 2, true, 256, 400.0),
+    scene("glass", 12, false, 1024, 1500.0),
     scene("veach", 2, false, 1024, 500.0),
 ];
 

@@ -19,6 +19,11 @@ const FEWEST: usize = 6;
 const RESAMPLES: usize = 2000;
 
 impl Estimate {
+    /// Without repetitions: a value alone.
+    pub(crate) fn exact(value: f64) -> Self {
+        Self { value, low: value, high: value, seeds: 1 }
+    }
+
     /// The median, and the percentile bootstrap's interval (B. Efron 1979) of it; the same values give the same interval. Fewer
     /// values than [`FEWEST`] give none.
     pub(crate) fn median(values: &[f64]) -> Self {
@@ -104,11 +109,10 @@ impl Random {
     }
 }
 
-/// The value that a standard normal variable exceeds with probability `tail`, 0 < tail < .5: P. Acklam's rational
-/// approximation for the tail, refined by a step of Newton's method; good to about 1e-8 and beyond what is printed.
+/// The value that a standard normal variable exceeds with probability `tail`, 0 < tail < .5: Abramowitz and Stegun 26.2.23,
+/// good to 4.5e-4, refined by Newton's method.
 pub(crate) fn normal_quantile(tail: f64) -> f64 {
     let q = (-2.0 * tail.ln()).sqrt();
-    // Abramowitz and Stegun 26.2.23 starts it.
     let mut x =
         q - (2.515_517 + q * (0.802_853 + q * 0.010_328)) / (1.0 + q * (1.432_788 + q * (0.189_269 + q * 0.001_308)));
     for _ in 0..3 {

@@ -75,8 +75,8 @@ impl Problem<'_> {
         let mut any = false;
         let is_halved = judges.len < members.len;
         for (channel, limits) in limits.0.iter_mut().enumerate().take(self.config.channels) {
-            let is_doubted = get(plain, channel).to_f64() < DOUBT;
-            if is_doubted && !is_halved {
+            let mean_is_doubted = get(plain, channel).to_f64() < DOUBT;
+            if mean_is_doubted && !is_halved {
                 continue;
             }
             let (mut highest, mut lowest) = (Highest::new(aside), Highest::new(aside));
@@ -89,7 +89,7 @@ impl Problem<'_> {
             let far = FAR * (high - low);
             let near = [low - far, high + far];
             let is_far = -lowest.values[0] < near[0] || highest.values[0] > near[1];
-            if !is_far || !is_doubted {
+            if !is_far || !mean_is_doubted {
                 *limits = near;
             }
             any |= is_far || is_halved;

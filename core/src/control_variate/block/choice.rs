@@ -3,7 +3,7 @@
 use super::super::config::Config;
 use super::super::per_channel::{PerChannel, get, set};
 use super::super::trust;
-use super::fit::only_used;
+use super::panel::only_used;
 use super::terms::{MAX_AXES, MAX_FITS};
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::{ldlt, packed_len, row_mut};

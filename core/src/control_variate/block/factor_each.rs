@@ -1,8 +1,9 @@
 //! A factorisation for each pixel, eight side by side.
 
 use super::super::config::Config;
-use super::fit::{Problem, Setting, only_used};
+use super::fit::{Problem, Setting};
 use super::members::Members;
+use super::panel::only_used;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
@@ -81,6 +82,7 @@ impl Problem<'_> {
                 *out = own.map(|own| total - own);
             }
             if setting.leaves_out {
+                // Once more: told apart above, the usual case would take longer.
                 for ((out, &total), own) in system.iter_mut().zip(total.iter()).zip(own) {
                     *out = only_used(own, used).map(|own| total - own);
                 }

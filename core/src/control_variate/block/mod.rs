@@ -27,6 +27,7 @@ mod group;
 mod image;
 mod members;
 mod one_factor;
+mod panel;
 mod terms;
 
 pub use image::Image;

@@ -2,8 +2,9 @@
 
 use super::super::config::Config;
 use super::super::design::Design;
-use super::fit::{Problem, Setting, only_used};
+use super::fit::{Problem, Setting};
 use super::members::Members;
+use super::panel::only_used;
 use super::terms::MAX_AXES;
 use crate::arena::Arena;
 use crate::error::Error;

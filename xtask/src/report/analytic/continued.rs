@@ -1,7 +1,7 @@
 //! Samples beyond a tile's.
 
 use crate::measure::table::Table;
-use crate::report::chapter::{Cell, Chapter};
+use crate::report::chapter::{Cell, Chapter, headings};
 use crate::report::figure::{Figure, Unit};
 use anyhow::{Context, Result};
 
@@ -29,9 +29,8 @@ pub(super) fn write(chapter: &mut Chapter, table: &Table) -> Result<()> {
     }
     // As many as there are of few samples.
     rows.iter_mut().for_each(|row| row.resize(4 + times.len(), Cell::Missing));
-    let columns: Vec<String> = times.iter().map(|times| format!("n / spp = {times}")).collect();
-    let columns: Vec<&str> =
-        ["spp", "tile", "integrands", "samples"].into_iter().chain(columns.iter().map(String::as_str)).collect();
+    let times = times.iter().map(|times| format!("n / spp = {times}"));
+    let columns = headings(&["spp", "tile", "integrands", "samples"], times);
     chapter.table("continued tiles", &columns, 4, rows);
     Ok(())
 }

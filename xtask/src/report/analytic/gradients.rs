@@ -1,7 +1,7 @@
 //! Gradients of minibatches: optimal MIS beside importance sampling.
 
 use crate::measure::table::Table;
-use crate::report::chapter::{Cell, Chapter, row};
+use crate::report::chapter::{Cell, Chapter, headings, row};
 use crate::report::figure::{Figure, Unit};
 use crate::report::statistics::Estimate;
 use anyhow::{Context, Result};
@@ -44,8 +44,7 @@ pub(super) fn polynomial(chapter: &mut Chapter, table: &Table) -> Result<()> {
             rows.push(cells);
         }
     }
-    let columns: Vec<String> = steps.iter().map(|step| format!("{step} steps")).collect();
-    let columns: Vec<&str> = ["tables"].into_iter().chain(columns.iter().map(String::as_str)).collect();
+    let columns = headings(&["tables"], steps.iter().map(|step| format!("{step} steps")));
     chapter.table("polynomial", &columns, 1, rows);
     Ok(())
 }
@@ -66,14 +65,12 @@ pub(super) fn classifier(chapter: &mut Chapter, table: &Table) -> Result<()> {
     for batch in table.distinct("batch")? {
         for steps in table.distinct("steps")? {
             columns.push(format!("batch {batch}, {steps} steps"));
-            let found = table.rows().find(|row| row.has(&[("batch", batch), ("steps", steps)]));
-            let found = found.context("the program has left out a batch of the classifier")?;
+            let found = table.find(&[("batch", batch), ("steps", steps)])?;
             for ((heading, _), cells) in names.iter().zip(&mut rows) {
                 cells.push(Figure::exact(found.number(heading)?, Unit::Number).into());
             }
         }
     }
-    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
     chapter.table("classifier", &columns, 1, rows);
     Ok(())
 }
@@ -88,8 +85,7 @@ pub(super) fn bias(chapter: &mut Chapter, table: &Table) -> Result<()> {
     for batch in table.distinct("batch")? {
         let mut cells = row![format!("batch {batch}")];
         for solver in ["ridge", "plain"] {
-            let found = table.rows().find(|row| row.has(&[("batch", batch), ("solver", solver)]));
-            let found = found.context("the program has left out a solver")?;
+            let found = table.find(&[("batch", batch), ("solver", solver)])?;
             for heading in ["bias", "error"] {
                 cells.push(Figure::exact(found.number(heading)?, Unit::Number).into());
             }

@@ -1,11 +1,11 @@
 //! Fits shared by pixels.
 
-use crate::measure::table::{Row, Table};
-use crate::report::chapter::{Cell, Chapter, row};
+use crate::measure::table::Table;
+use crate::report::chapter::{Cell, Chapter, headings, row};
 use crate::report::figure::{Figure, Unit};
 use crate::report::statistics::Estimate;
 use crate::report::targets::Targets;
-use anyhow::{Context, Result};
+use anyhow::Result;
 
 /// Largest RMSE over the mean's where fits cannot help.
 const HARD: f64 = 1.03;
@@ -15,16 +15,11 @@ const GAINS: [(&str, [f64; 4]); 2] = [("1", [0.25, 0.17, 0.13, 0.055]), ("4", [0
 const ERRORS: [&str; 4] = ["half_planes", "bumps", "half_planes_blurred", "bumps_blurred"];
 const NAMES: [&str; 4] = ["half-planes", "bumps", "half-planes, filtered", "bumps, filtered"];
 
-/// Of tables without repetitions.
-fn alone(value: f64) -> Estimate {
-    Estimate { value, low: value, high: value, seeds: 1 }
-}
-
 pub(super) fn tiles(chapter: &mut Chapter, targets: &mut Targets, table: &Table) -> Result<()> {
     chapter.section("Shared fits on a tile's samples", "");
     let deviation = chapter.setting("the filter's standard deviation, pixels", 2.1);
     let pixels = chapter.setting("pixels over which integrands move and scale", 32);
-    let count = |samples: &str| find(table, &[("samples", samples)])?.number::<u32>("count");
+    let count = |samples: &str| table.find(&[("samples", samples)])?.number::<u32>("count");
     let few = chapter.setting("half-planes, and bumps", count("1")?);
     let many = chapter.setting("the same at 16 samples", count("16")?);
     let most = chapter.setting("samples of the tiles with fewer integrands", 16);
@@ -41,7 +36,7 @@ pub(super) fn tiles(chapter: &mut Chapter, targets: &mut Targets, table: &Table)
                 let mut cells = row![samples, integrands, name];
                 for &method in &methods {
                     let keys = [("samples", samples), ("integrands", integrands), ("method", method)];
-                    cells.push(Figure::exact(find(table, &keys)?.number(error)?, Unit::Number).into());
+                    cells.push(Figure::exact(table.find(&keys)?.number(error)?, Unit::Number).into());
                 }
                 rows.push(cells);
             }
@@ -52,17 +47,13 @@ pub(super) fn tiles(chapter: &mut Chapter, targets: &mut Targets, table: &Table)
     for (samples, bounds) in GAINS {
         for ((error, name), bound) in ERRORS.into_iter().zip(NAMES).zip(bounds) {
             let keys = [("samples", samples), ("integrands", "the same everywhere"), ("method", "8 x 8, order 4")];
-            let value = find(table, &keys)?.number(error)?;
+            let value = table.find(&keys)?.number(error)?;
             let statement =
                 format!("shared fits on a tile of {samples} spp, order 4, over independent samples: {name}");
-            targets.at_most(&statement, "windows of 8 x 8", alone(value), Unit::Number, bound);
+            targets.at_most(&statement, "windows of 8 x 8", Estimate::exact(value), Unit::Number, bound);
         }
     }
     Ok(())
-}
-
-fn find<'a>(table: &'a Table, keys: &[(&str, &str)]) -> Result<Row<'a>> {
-    table.rows().find(|row| row.has(keys)).with_context(|| format!("the program has not measured {keys:?}"))
 }
 
 pub(super) fn hard(chapter: &mut Chapter, targets: &mut Targets, table: &Table) -> Result<()> {
@@ -73,11 +64,11 @@ pub(super) fn hard(chapter: &mut Chapter, targets: &mut Targets, table: &Table) 
     let mut said = Vec::new();
     let counts = table.distinct("n")?;
     for of in table.distinct("of")? {
-        let mut worst = (alone(0.0), String::new());
+        let mut worst = (Estimate::exact(0.0), String::new());
         for scene in table.distinct("scene")? {
             let mut cells = row![scene, of];
             for &n in &counts {
-                let row = find(table, &[("of", of), ("scene", scene), ("n", n)])?;
+                let row = table.find(&[("of", of), ("scene", scene), ("n", n)])?;
                 let (value, half): (f64, f64) = (row.number("ratio")?, row.number("half_width")?);
                 let ratio = Estimate { value, low: value - half, high: value + half, seeds: row.number("images")? };
                 let place = format!("{scene}, n = {n}");
@@ -100,8 +91,7 @@ pub(super) fn hard(chapter: &mut Chapter, targets: &mut Targets, table: &Table) 
         said.join("; ")
     ));
     chapter.setting("order of the fits", 3);
-    let columns: Vec<String> = counts.iter().map(|n| format!("n = {n}")).collect();
-    let columns: Vec<&str> = ["scene", "as"].into_iter().chain(columns.iter().map(String::as_str)).collect();
+    let columns = headings(&["scene", "as"], counts.iter().map(|n| format!("n = {n}")));
     chapter.table("hard scenes", &columns, 2, rows);
     Ok(())
 }

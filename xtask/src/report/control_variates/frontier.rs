@@ -237,7 +237,7 @@ mod tests {
     use crate::report::statistics::Estimate;
 
     fn summary(order: usize, ratio: f64, ns: f64) -> Summary {
-        let ratio = Estimate { value: ratio, low: ratio, high: ratio, seeds: 1 };
+        let ratio = Estimate::exact(ratio);
         let setting = Setting { estimator: "robust".to_owned(), basis: "legendre".to_owned(), order };
         Summary { setting, ratio, ns, gains: [1.0; 2], worst: ratio, place: String::new() }
     }

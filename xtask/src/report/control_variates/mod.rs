@@ -19,7 +19,7 @@ use anyhow::Result;
 use cells::Cells;
 
 /// Roughly the seconds of each program.
-const SECONDS: [u64; 2] = [60, 80];
+const SECONDS: [u64; 2] = [25, 50];
 
 pub(super) fn write(report: &Report) -> Result<()> {
     let programs: [_; 2] = report.build()?;

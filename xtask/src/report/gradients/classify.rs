@@ -130,9 +130,8 @@ impl Trainer {
         chapter.picture(&file, &format!("variance over uniform's against epochs, {}", plan.name));
         let last = format!("epoch {epochs}");
         if let Some((ratio, _)) = summary.number(&["importance, as kept, delta .2"], &last) {
-            let estimate = Estimate { value: ratio, low: ratio, high: ratio, seeds: 1 };
             let statement = "Variance over uniform's late in training: importance as kept, delta .2";
-            targets.at_most(statement, &format!("{}, {last}", plan.name), estimate, Unit::Ratio, 0.5);
+            targets.at_most(statement, &format!("{}, {last}", plan.name), Estimate::exact(ratio), Unit::Ratio, 0.5);
         }
         Ok(())
     }

@@ -42,14 +42,8 @@ pub(super) fn write(context: &Context, chapter: &mut Chapter, targets: &mut Targ
         let column = variance.columns.get(ERROR).map_or("", String::as_str);
         let error = |method: &str| variance.number(&[step, method], column).map(|(error, _)| error);
         if let (Some(omis), Some(is)) = (error("omis3"), error("is")) {
-            let (value, statement) = (omis / is, "Photograph: error of the gradient, omis3 over is, tables as kept");
-            targets.below(
-                statement,
-                &format!("step {step}"),
-                Estimate { value, low: value, high: value, seeds: 1 },
-                Unit::Ratio,
-                1.0,
-            );
+            let statement = "Photograph: error of the gradient, omis3 over is, tables as kept";
+            targets.below(statement, &format!("step {step}"), Estimate::exact(omis / is), Unit::Ratio, 1.0);
         }
     }
     Ok(())

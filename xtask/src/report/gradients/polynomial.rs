@@ -46,13 +46,12 @@ pub(super) fn write(context: &Context, program: &Program, chapter: &mut Chapter,
     output.write_text("gradients-polynomial-variance.svg", &polynomial::error_plot(&errors.csv)?)?;
     chapter.picture("gradients-polynomial-variance.svg", "error over uniform's, by coefficient, at the end");
 
-    let exact = |value: f64| Estimate { value, low: value, high: value, seeds: 1 };
     let place = format!("{seeds} problems, step {steps}");
     if let Some((ratio, _)) = losses.number(&["omis4"], "over exact") {
         targets.at_most(
             "Polynomial: loss at the end over the exact gradient's, omis4",
             &place,
-            exact(ratio),
+            Estimate::exact(ratio),
             Unit::Ratio,
             2.0,
         );
@@ -62,7 +61,7 @@ pub(super) fn write(context: &Context, program: &Program, chapter: &mut Chapter,
         let error = |method: &str| variance.number(&[steps, method], &column).map(|(error, _)| error);
         if let (Some(omis), Some(is)) = (error("omis4"), error("is")) {
             let statement = "Polynomial: error of a coefficient's derivative, omis4 over is";
-            targets.below(statement, &format!("{column}, step {steps}"), exact(omis / is), Unit::Ratio, 1.0);
+            targets.below(statement, &format!("{column}, step {steps}"), Estimate::exact(omis / is), Unit::Ratio, 1.0);
         }
     }
     Ok(())

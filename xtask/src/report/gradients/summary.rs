@@ -30,8 +30,7 @@ impl Summary {
 
     pub(super) fn write(&self, chapter: &mut Chapter, name: &'static str, words: usize) {
         let rows = self.rows.iter().map(|row| row.iter().map(|cell| Cell::from(cell.as_str())).collect());
-        let columns: Vec<&str> = self.columns.iter().map(String::as_str).collect();
-        chapter.table(name, &columns, words, rows.collect());
+        chapter.table(name, &self.columns, words, rows.collect());
     }
 }
 

@@ -17,9 +17,8 @@ pub(super) fn memory(rows: &Table, chapter: &mut Chapter, targets: &mut Targets)
     for (((items, bytes), method), epsilon) in items.into_iter().zip(bytes).zip(methods).zip(epsilon) {
         let epsilon = epsilon.parse().ok().map(|value: f64| Figure::exact(value, Unit::PerItem));
         if method == "nf_table" {
-            let (value, place) = (bytes / items, format!("{items} items"));
-            let estimate = Estimate { value, low: value, high: value, seeds: 1 };
-            targets.at_most("Bytes per item", &place, estimate, Unit::BytesPerItem, 5.0);
+            let estimate = Estimate::exact(bytes / items);
+            targets.at_most("Bytes per item", &format!("{items} items"), estimate, Unit::BytesPerItem, 5.0);
         }
         cells.push(row![items as u32, method, Figure::exact(bytes / items, Unit::BytesPerItem), epsilon]);
     }
@@ -62,16 +61,15 @@ pub(super) fn write(rows: &Table, chapter: &mut Chapter, targets: &mut Targets) 
             error
         ]);
         if method == "nf_table" {
-            let estimate = |value: f64| Estimate { value, low: value, high: value, seeds: 1 };
             targets.at_most(
                 "Drift: numbers changed by updates",
                 "all updates",
-                estimate(changed[index]),
+                Estimate::exact(changed[index]),
                 Unit::Count,
                 0.0,
             );
             let wrong = risen[index] + lost[index];
-            targets.at_most("Drift: items risen or lost", "all updates", estimate(wrong), Unit::Count, 0.0);
+            targets.at_most("Drift: items risen or lost", "all updates", Estimate::exact(wrong), Unit::Count, 0.0);
         }
     }
     chapter.table("drift", &["method", "changed", "of", "risen", "lost", "largest error"], 1, cells);

@@ -23,7 +23,7 @@ const ORDER: u32 = 2;
 /// Pixels on a side of the pictures that the tests render, which serve for a quick look too.
 const SMALL: u32 = 32;
 /// And of those of a default report.
-const MIDDLE: u32 = 48;
+const MIDDLE: u32 = 40;
 /// Pixels on a side at most: stacks of larger pictures take gigabytes.
 const LARGEST: u32 = 128;
 

@@ -121,9 +121,14 @@ fn introduce(table: &Table, chapter: &mut Chapter) -> Result<()> {
          pixels, side by side or overlapping by half. tile: of as many samples, or of 16, continued; each pair of coordinates is a domain. \
          Sobol per pixel: Owen-scrambled in each pixel."
             .to_owned(),
-        "Cells that would take most of the time (overlapping windows of more than 30 functions) are measured with `--full` alone.".to_owned(),
+        "Cells that would take most of the time are measured with `--full` alone: overlapping windows of more than 30 functions or of 64 samples \
+         and more, and more than 100 functions from 64 samples on."
+            .to_owned(),
+        "Times are taken on one thread while nothing else runs, each the least of several rounds; drawing the median of the rounds.".to_owned(),
     ]);
     chapter.setting("functions beyond which overlapping windows are left out", 30);
+    chapter.setting("functions beyond which many samples are left out", 100);
+    chapter.setting("samples from which both are left out", 64);
     chapter.setting("samples of the largest tile", 16);
     chapter.paragraph("In the plots errors are divided by n, so that each line falls as samples are added.");
     Ok(())

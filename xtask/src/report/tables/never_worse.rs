@@ -2,7 +2,7 @@
 
 use super::Section;
 use super::comparison::seeds;
-use crate::report::chapter::row;
+use crate::report::chapter::{headings, row};
 use crate::report::figure::{Figure, Unit};
 use crate::report::measurement::{BASELINE, DEFAULT, Experiment, View};
 use crate::report::pixels::{BATCHES, SIGNIFICANCE, Shares, TOO_MUCH};
@@ -81,10 +81,8 @@ fn write_images(section: &mut Section) -> Result<()> {
         }
         rows.push(cells);
     }
-    let mut columns = vec!["scene".to_owned(), "dims".to_owned()];
-    columns
-        .extend(plan.spp.iter().flat_map(|spp| [format!("default, {spp} spp"), format!("least squares, {spp} spp")]));
-    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let each = plan.spp.iter().flat_map(|spp| [format!("default, {spp} spp"), format!("least squares, {spp} spp")]);
+    let columns = headings(&["scene", "dims"], each);
     section.chapter.table("never worse, images", &columns, 1, rows);
     Ok(())
 }

@@ -11,7 +11,7 @@ use anyhow::{Result, bail};
 
 const SCENES: [&str; 2] = ["dining", "microcity"];
 const SPP: [u32; 2] = [1, 4];
-/// What the others are compared with first.
+/// The first is what the others are compared with.
 const SAMPLERS: [Choice; 4] = [Choice::Random, Choice::Sobol, Choice::Tile(2), Choice::Tile(4)];
 const FILTERS: [(&str, &[&str]); 2] = [("box", &["--filter", "box"]), ("Gaussian", &["--filter", "gaussian"])];
 

@@ -7,7 +7,7 @@ use crate::measure::samplers::{Choice, Tiles};
 use crate::measure::score;
 use crate::measure::spectrum_sheet::{self, Cell as Panel, Row};
 use crate::measure::text;
-use crate::report::chapter::{Cell, row};
+use crate::report::chapter::{Cell, headings, row};
 use crate::report::figure::{Figure, Unit};
 use crate::report::measurement::{BASELINE, Experiment, Outcome, SHARED, View};
 use crate::report::pictures::write_small;
@@ -91,9 +91,8 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
         }
     }
     explain(section, &public);
-    let names: Vec<String> = OWN.iter().skip(1).map(|choice| choice.label()).chain(public.labels()).collect();
-    let heading = ["scene", "samples", "random, relMSE x 1000"];
-    let columns: Vec<&str> = heading.into_iter().chain(names.iter().map(String::as_str)).collect();
+    let names = OWN.iter().skip(1).map(|choice| choice.label()).chain(public.labels());
+    let columns = headings(&["scene", "samples", "random, relMSE x 1000"], names);
     section.chapter.paragraph("Unfiltered: the random samples' relMSE, and the others' over it.");
     let raw = all.iter().map(|one| error_row(one, |errors| &errors.raw)).collect();
     section.chapter.table("samplers, raw", &columns, 1, raw);

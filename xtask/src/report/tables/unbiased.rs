@@ -137,7 +137,8 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
 
 /// Many frames of few pixels.
 fn size(section: &Section) -> u32 {
-    section.measurement.plan.small * 3 / 4
+    let plan = section.measurement.plan;
+    if plan.is_full() { plan.small * 3 / 4 } else { plan.small * 5 / 8 }
 }
 
 fn tests<'a>(scene: &'static str, spps: &[u32], tiles: &'a Tiles) -> Vec<Test<'a>> {
