@@ -704,6 +704,8 @@ nf_status nf_omis_merge(nf_omis *omis,
 #define NF_TILE_64_1SPP_2D 10
 // nf_tile_builtin: 64 x 64 pixels, 4 samples, 2 dims.
 #define NF_TILE_64_4SPP_2D 11
+// nf_tile_builtin: 64 x 64 pixels, 4 samples, 2 dims, 16 frames.
+#define NF_TILE_64_4SPP_2D_TEMPORAL 12
 
 // A view of a tile: sample points for a square of pixels that repeats over the image (chapter 5; docs/tiles.md).
 //
