@@ -93,6 +93,14 @@ static void prepare_image(void)
     workspace = allocate(bytes, "nf_cv_image_workspace_size");
 }
 
+/* Where one pixel is far from the others, windows that hold it are fitted once more without it. */
+static void prepare_bright_image(void)
+{
+    prepare_image();
+    for (size_t i = 0; i < SPP; ++i)
+        f[(SIDE * SIDE / 2 + SIDE / 2) * SPP + i] *= 1000.0f;
+}
+
 static void call_image(void)
 {
     check(nf_cv_image_estimate(&config, &image, u, f, SPP, workspace, bytes, estimates), "nf_cv_image_estimate");
@@ -198,6 +206,7 @@ static const struct {
     {"nf_cv_estimate least squares 64", prepare_least_squares, call_64, 100, 64, "sample"},
     {"nf_cv_accumulator_add", prepare_accumulator, call_accumulator, 20, 64, "sample"},
     {"nf_cv_image_estimate", prepare_image, call_image, 1, SAMPLES, "sample"},
+    {"nf_cv_image_estimate bright pixel", prepare_bright_image, call_image, 1, SAMPLES, "sample"},
     {"nf_sampler_draw", prepare_tile, call_draw, 100, 64, "draw"},
     {"nf_sampler_draw domain", prepare_tile, call_domain, 100, 64, "draw"},
     {"nf_sampler_draw 4 of 4 dims", prepare_tile_4, call_draw_4, 100, 64, "sample"},

@@ -6,8 +6,8 @@ use libfuzzer_sys::fuzz_target;
 use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{
-    self, Accumulator, Color, Config, Estimate, Estimator, NonFinite, Optimizer, Ridge, Samples, Solver,
-    block_workspace_len, estimate_block, workspace_len,
+    self, Accumulator, Color, Config, Estimate, NonFinite, Optimizer, Ridge, Samples, Solver, block_workspace_len,
+    estimate_block, workspace_len,
 };
 use noisefloor::real::Real;
 use noisefloor_tests::ESTIMATORS;

@@ -59,7 +59,7 @@ static void built_in(void)
     }
     CHECK(present == sizeof all / sizeof *all);
     CHECK_REFUSED(nf_tile_builtin(0, &tile), NF_ERR_RANGE, tile);
-    CHECK_REFUSED(nf_tile_builtin(12, &tile), NF_ERR_RANGE, tile);
+    CHECK_REFUSED(nf_tile_builtin((uint32_t)(sizeof all / sizeof *all) + 1, &tile), NF_ERR_RANGE, tile);
     CHECK_REFUSED(nf_tile_builtin(UINT32_MAX, &tile), NF_ERR_RANGE, tile);
     CHECK_STATUS(nf_tile_builtin(NF_TILE_64_1SPP_2D, NULL), NF_ERR_NULL);
     {

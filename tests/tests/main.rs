@@ -2,6 +2,8 @@
 //! `cargo test -p noisefloor-tests --test noisefloor cv_hard::` runs those of one file. A new file needs a line here.
 //! `mis_c.rs`, which takes in parts of the C door's crate, stands alone.
 
+use std::path::Path;
+
 mod cv_basis;
 mod cv_block;
 mod cv_hard;
@@ -46,3 +48,15 @@ mod tile_statistics;
 mod tile_vectors;
 mod vectors;
 mod warp;
+
+/// A file that is not named above would not run.
+#[test]
+fn every_file_is_part_of_the_program() {
+    let named = include_str!("main.rs");
+    for entry in Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").read_dir().unwrap() {
+        let path = entry.unwrap().path();
+        let line = format!("mod {};", path.file_stem().unwrap().display());
+        let alone = ["main.rs", "mis_c.rs"].iter().any(|name| path.ends_with(name));
+        assert!(alone || named.lines().any(|other| other == line), "tests/main.rs has no line `{line}`");
+    }
+}

@@ -1,6 +1,6 @@
 //! Optimal MIS gradients: which are unbiased, how biased the others are, and what they gain.
 //!
-//! Seeds are fixed. Each z-test, and each comparison of errors, is at significance 1e-5. `cargo test --test minibatch_statistics -- --nocapture` prints
+//! Seeds are fixed. Each z-test, and each comparison of errors, is at significance 1e-5. `cargo test --test noisefloor minibatch_statistics:: -- --nocapture` prints
 //! what is measured.
 
 use noisefloor::minibatch::Gradient;

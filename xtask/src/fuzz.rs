@@ -1,5 +1,6 @@
 //! `cargo xtask fuzz`: every target of fuzz/ for a while, first on what once crashed it.
 
+use crate::test::Outcome;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -69,6 +70,33 @@ fn cargo_fuzz() -> Command {
     // A stable compiler refuses the flags of the instrumentation otherwise.
     command.arg("fuzz").env("RUSTC_BOOTSTRAP", "1");
     command
+}
+
+/// Builds all targets but `fsot_files`, not instrumented and not optimised, and runs the committed inputs through them: seeds, and what
+/// once crashed.
+pub(crate) fn replay() -> Result<Outcome> {
+    let (folder, target) = (paths::root().join("fuzz"), paths::target().join("fuzz"));
+    let mut build = run::cargo();
+    build.args(["build", "--quiet", "--locked", "--manifest-path"]).arg(folder.join("Cargo.toml"));
+    build.arg("--target-dir").arg(&target).env("CARGO_PROFILE_DEV_DEBUG", "false");
+    run::check(build.env("RUSTFLAGS", "--cfg fuzzing -D warnings"))?;
+    for seeds in files(&folder.join("seeds"))? {
+        let name = seeds.file_name().context("a folder of seeds has no name")?;
+        let mut inputs = files(&seeds)?;
+        let regressions = folder.join("regressions").join(name);
+        if regressions.is_dir() {
+            inputs.extend(files(&regressions)?);
+        }
+        let program = target.join("debug").join(name);
+        let output = run::command(&program)
+            .arg("-timeout=25")
+            .args(&inputs)
+            .output()
+            .with_context(|| format!("cannot start {}", program.display()))?;
+        judge(&output, &format!("{}: a committed input crashes it", name.display()))?;
+        println!("   {}: {} inputs", name.display(), inputs.len());
+    }
+    Ok(Outcome::Passed)
 }
 
 /// Instrumented, without the address sanitizer.

@@ -1,7 +1,7 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
 use crate::{
-    abi, c_tests, embree, examples, fit, header, install, instructions, library, links, path_tracer, povray,
+    abi, c_tests, embree, examples, fit, fuzz, header, install, instructions, library, links, path_tracer, povray,
     povray_patched, python, release, report, run, threads, tools, train_mlp, valgrind,
 };
 use anyhow::{Context, Result, bail};
@@ -13,6 +13,9 @@ use std::time::Instant;
 pub(crate) struct Options {
     /// Only the steps whose heading contains this
     filter: Option<String>,
+    /// A step that cannot run here is a failure
+    #[arg(long)]
+    strict: bool,
 }
 
 pub(crate) fn run(options: &Options) -> Result<()> {
@@ -24,7 +27,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let archive = || -> Result<PathBuf> {
         archive.clone().map_err(|error| anyhow::anyhow!("the C library could not be built: {error}"))
     };
-    let mut steps = Steps { options, passed: 0, failed: Vec::new(), left_out: 0 };
+    let mut steps = Steps { options, passed: 0, failed: Vec::new(), not_run: Vec::new(), left_out: 0 };
     steps.run("formatting (cargo fmt --check)", || {
         run::check(run::cargo().args(["fmt", "--all", "--check"]))?;
         Ok(Outcome::Passed)
@@ -73,6 +76,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         each_feature()?;
         Ok(Outcome::Passed)
     });
+    steps.run("fuzz targets: committed inputs", fuzz::replay);
     steps.run("C tests as C99", || c_tests::run(c_tests::Language::C99, &[], &archive()?));
     steps.run("C tests under the address and undefined-behaviour sanitizers", || {
         c_tests::sanitized(c_tests::Language::C99, &archive()?)
@@ -148,6 +152,8 @@ struct Steps<'a> {
     options: &'a Options,
     passed: usize,
     failed: Vec<&'static str>,
+    /// What this machine lacks something for.
+    not_run: Vec<&'static str>,
     left_out: usize,
 }
 
@@ -165,7 +171,10 @@ impl Steps<'_> {
                 println!("   ok ({:.1} s)", start.elapsed().as_secs_f64());
                 self.passed += 1;
             }
-            Ok(Outcome::NotRun(why)) => println!("   NOT RUN: {why}"),
+            Ok(Outcome::NotRun(why)) => {
+                println!("   NOT RUN: {why}");
+                self.not_run.push(heading);
+            }
             Err(error) => {
                 println!("   FAILED ({:.1} s): {error:#}", start.elapsed().as_secs_f64());
                 self.failed.push(heading);
@@ -181,8 +190,14 @@ impl Steps<'_> {
         for heading in &self.failed {
             println!("failed: {heading}");
         }
-        println!("{} passed, {} failed", self.passed, self.failed.len());
-        if self.passed == 0 && self.failed.is_empty() {
+        for heading in &self.not_run {
+            println!("not run: {heading}");
+        }
+        println!("{} passed, {} failed, {} not run", self.passed, self.failed.len(), self.not_run.len());
+        if self.options.strict && !self.not_run.is_empty() {
+            bail!("{} steps could not run, and --strict was given", self.not_run.len());
+        }
+        if self.passed == 0 && self.failed.is_empty() && self.not_run.is_empty() {
             bail!("no step ran: no heading contains the word that was given");
         }
         if !self.failed.is_empty() {

@@ -26,9 +26,8 @@ pub(crate) fn summary(cell: &Cell, cells: &[Cell]) -> Summary {
         let own = |index: usize| mean.map_or(1.0, |mean| of(&mean.errors[index]));
         cell.errors.iter().enumerate().map(|(index, errors)| of(errors) / own(index)).fold(0.0, f64::max)
     };
-    // The same work whatever the samples and integrands: on a busy machine the least is nearest to what it takes.
     let same = |other: &&Cell| (other.dims, other.n, other.method) == (cell.dims, cell.n, cell.method);
-    let times = cells.iter().filter(same).flat_map(|other| other.ns.iter().copied());
+    let times: Vec<f64> = cells.iter().filter(same).flat_map(|other| other.ns.iter().copied()).collect();
     // A filtered image has few independent pixels, and a logarithm of few is too small: first the mean of what is alike.
     let filtered: Vec<f64> = cell
         .errors
@@ -40,7 +39,7 @@ pub(crate) fn summary(cell: &Cell, cells: &[Cell]) -> Summary {
         worst: worst(|errors| errors.raw),
         filtered: geometric_mean(&filtered),
         worst_filtered: worst(|errors| errors.filtered),
-        ns: times.fold(f64::INFINITY, f64::min),
+        ns: median(&times),
     }
 }
 

@@ -228,13 +228,14 @@ impl Place {
         errors.collect()
     }
 
-    /// Nanoseconds per sample of each method, round by round: on one image, since the work is the same whatever is integrated.
-    fn times(self, methods: &[Method], subject: Subject) -> Result<Vec<Vec<f64>>> {
-        let (scenes, seed) = self.scenes(subject);
-        let u = self.points(Source::Independent, seed)?;
-        let f = values(&scenes, &u, self.dims, self.n, self.side);
+    /// Nanoseconds per sample of each method, one image of each family after the other: shared fits take longer where they leave
+    /// bright pixels out.
+    fn times(self, methods: &[Method], subjects: &[Subject]) -> Result<Vec<Vec<f64>>> {
         let mut all = vec![Vec::new(); methods.len()];
-        for _ in 0..ROUNDS {
+        for &subject in subjects {
+            let (scenes, seed) = self.scenes(subject);
+            let u = self.points(Source::Independent, seed)?;
+            let f = values(&scenes, &u, self.dims, self.n, self.side);
             for (method, times) in methods.iter().zip(&mut all) {
                 let (_, ns) = method.estimates(Samples::new(&u, &f), self.dims, self.side, self.n)?;
                 times.push(ns / self.samples() as f64);
@@ -254,7 +255,7 @@ impl Place {
     }
 }
 
-/// How often everything is timed.
+/// How often drawing is timed.
 const ROUNDS: usize = 3;
 
 /// Adds the cells of all kinds of samples. Errors come from all threads, image by image, and are the same on any number of them; times
@@ -279,7 +280,8 @@ pub(crate) fn measure(cells: &mut Vec<Cell>, dims: usize, n: usize, extent: Exte
         .collect::<Result<_>>()?;
     // Of independent samples all methods are measured that are measured of any.
     let timed = Method::all(Source::Independent, dims, n, full);
-    let times = place.times(&timed, subjects[0])?;
+    let each_family: Vec<Subject> = subjects.iter().copied().take(kinds.len()).step_by(Variant::ALL.len()).collect();
+    let times = place.times(&timed, &each_family)?;
     for ((source, methods), errors) in sources.iter().zip(errors.chunks(subjects.len())) {
         let draw_ns = place.draw_times(*source, 1)?;
         for (index, &method) in methods.iter().enumerate() {

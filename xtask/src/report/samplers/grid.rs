@@ -124,7 +124,7 @@ fn introduce(table: &Table, chapter: &mut Chapter) -> Result<()> {
         "Cells that would take most of the time are measured with `--full` alone: overlapping windows of more than 30 functions or of 64 samples \
          and more, and more than 100 functions from 64 samples on."
             .to_owned(),
-        "Times are taken on one thread while nothing else runs, each the least of several rounds; drawing the median of the rounds.".to_owned(),
+        "Times are taken on one thread while nothing else runs, each the median of images of independent samples, one of each family of integrands; drawing the median of several rounds.".to_owned(),
     ]);
     chapter.setting("functions beyond which overlapping windows are left out", 30);
     chapter.setting("functions beyond which many samples are left out", 100);
