@@ -1,11 +1,11 @@
 //! docs/report/README.md: the chapters, what they were measured on, and every target. Made of the chapters' JSON files, so
 //! that chapters that were not written this time stay in it.
 
-use super::CHAPTERS;
 use super::chapter::{Cell, Chapter, row};
 use super::check;
 use super::machine::Machine;
 use super::targets::Judged;
+use super::{CHAPTERS, Entry};
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -52,12 +52,12 @@ struct Summary {
 /// The index of the chapters in `folder`, where `name` has just been written and is not there yet.
 pub(super) fn write(folder: &Path, name: &str, json: &str) -> Result<String> {
     let mut all = Vec::new();
-    for entry in CHAPTERS {
-        let text = if entry.name == name {
+    for chapter in CHAPTERS.iter().flat_map(Entry::file_names) {
+        let text = if chapter == name {
             Some(json.to_owned())
         } else {
             // A chapter that was never written is not there.
-            fs::read_to_string(folder.join(format!("{}.json", entry.name))).ok()
+            fs::read_to_string(folder.join(format!("{chapter}.json"))).ok()
         };
         // One that was written before there was an index does not say how it came about, and is left out until it is written anew.
         all.extend(text.and_then(|text| serde_json::from_str::<Summary>(&text).ok()));
@@ -78,6 +78,12 @@ fn introduce(chapter: &mut Chapter) {
          name. `cargo xtask report --only CHAPTER` measures one anew and leaves the others as they are; `--full` measures more, `--quick` \
          only tries whether everything works.",
     );
+    let apart = CHAPTERS.iter().filter_map(|entry| Some((entry.name, entry.full?.name)));
+    for (name, full) in apart {
+        chapter.paragraph(&format!(
+            "`--only {name} --full` measures other things than `--only {name}`, and writes `{full}`: neither replaces the other's chapter."
+        ));
+    }
 }
 
 fn chapters(chapter: &mut Chapter, all: &[Summary]) {

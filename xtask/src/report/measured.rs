@@ -41,7 +41,8 @@ fn earlier_run_in(folder: &Path, facts: Facts) -> Result<Facts> {
     }
     let earlier: Facts =
         serde_json::from_str(&read(&path)?).with_context(|| format!("{} is damaged; remove it", path.display()))?;
-    Ok(Facts { kept, ..earlier })
+    // What the chapter is called is today's.
+    Ok(Facts { name: facts.name, description: facts.description, kept, ..earlier })
 }
 
 /// The folder of one chapter's measurements.
