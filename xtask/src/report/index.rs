@@ -22,9 +22,10 @@ pub(super) struct Facts {
     /// Without compiling. None: the run that measured left no record.
     pub(super) seconds: Option<f64>,
     pub(super) processor_seconds: Option<f64>,
+    /// Cores that others kept busy meanwhile, on average. None: the system does not say, or it was measured before this was recorded.
+    #[serde(default)]
+    pub(super) other_work: Option<f64>,
     pub(super) date: String,
-    /// The one-minute load average at its start.
-    pub(super) load: String,
     pub(super) machine: Machine,
     /// The date on which the text was written from what an earlier run had measured, the run that the other facts are of.
     #[serde(default)]
@@ -96,20 +97,20 @@ fn chapters(chapter: &mut Chapter, all: &[Summary]) {
             run.description.clone(),
             sizes(run),
             run.date.clone(),
-            run.load.clone(),
+            run.other_work.map(|cores| format!("{cores:.2}")),
             run.seconds.map(seconds),
             run.processor_seconds.map(seconds)
         ]
     });
-    let columns = ["chapter", "what it measures", "run", "measured", "load at start", "seconds", "CPU seconds"];
+    let columns = ["chapter", "what it measures", "run", "measured", "other work", "seconds", "CPU seconds"];
     chapter.table("chapters", &columns, 4, rows.collect());
     chapter.paragraph(
-        "Seconds are without compiling; CPU seconds are of all threads. Load: processes that wanted to run, on average over the minute before; beyond a \
-         few tenths other work shared the machine, and seconds say little while CPU seconds still hold.",
+        "Seconds are without compiling; CPU seconds are of all threads. Other work: how many cores other programs kept busy meanwhile, on average; beyond \
+         a few tenths seconds say little, while CPU seconds still hold.",
     );
     if all.iter().any(|one| one.run.kept.is_some()) {
         chapter.paragraph(
-            "Kept: the text was written on the date in brackets from what an earlier run had measured (`--reuse`). Date, load and seconds are \
+            "Kept: the text was written on the date in brackets from what an earlier run had measured (`--reuse`). Date, other work and seconds are \
              those of the run that measured.",
         );
     }
@@ -225,7 +226,7 @@ mod tests {
             seconds: Some(12.4),
             processor_seconds: Some(20.2),
             date: "2000-01-01".to_owned(),
-            load: "0.31".to_owned(),
+            other_work: Some(0.314),
             machine,
             kept: (name == "povray").then(|| "2000-01-02".to_owned()),
         };
@@ -249,6 +250,18 @@ mod tests {
         fs::write(folder.path().join("povray_patched.md"), "").expect("writable");
         let text = write(folder.path(), "embree", &json("embree", "First", 0.4)).expect("an index");
         assert!(text.contains("(povray_patched.md)"), "{text}");
+        // A chapter from before other work was recorded has a dash there.
+        let mut before: Value = serde_json::from_str(&json("povray", "Second", 0.7)).expect("an object");
+        let run = before["run"].as_object_mut().expect("an object");
+        assert!(run.remove("other_work").is_some() && run.insert("load".to_owned(), json!("3.31")).is_none());
+        fs::write(folder.path().join("povray.json"), before.to_string()).expect("writable");
+        let text = write(folder.path(), "embree", &json("embree", "First", 0.4)).expect("an index");
+        let cells = |title: &str| {
+            let row = text.lines().find(|line| line.contains(title)).expect("a row");
+            row.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>()
+        };
+        assert_eq!(cells("[First]")[5], "0.31");
+        assert_eq!(cells("[Second]")[5], "-");
         // A chapter from before the index is no reason to fail.
         fs::write(folder.path().join("povray.json"), "{\"tables\": []}").expect("writable");
         assert!(write(folder.path(), "embree", &json("embree", "First", 0.4)).is_ok());

@@ -103,7 +103,7 @@ fn write(
     interrupted: &Interrupted,
 ) -> Result<()> {
     let (output, large) = (Output::new(&folders.small)?, Output::new(&folders.large)?);
-    let (date, load) = (machine::date(), machine::load());
+    let date = machine::date();
     let plan = Plan::new(options.quick, options.full);
     let (name, description) = entry.chapter(&plan);
     let report = Report {
@@ -126,8 +126,8 @@ fn write(
         sizes: report.plan.name().to_owned(),
         seconds: Some(report.clock.seconds()),
         processor_seconds: report.clock.processor_seconds(),
+        other_work: report.clock.other_work(),
         date,
-        load,
         machine: machine.clone(),
         kept: None,
     };
