@@ -203,6 +203,7 @@ fn targets(chapter: &mut Chapter, all: &[Summary]) {
 mod tests {
     use super::*;
     use crate::report::figure::Unit;
+    use crate::report::plan::Plan;
     use crate::report::statistics::Estimate;
     use crate::report::targets::Targets;
 
@@ -231,6 +232,19 @@ mod tests {
             kept: (name == "povray").then(|| "2000-01-02".to_owned()),
         };
         facts.add_to(&chapter.json().to_string()).expect("an object")
+    }
+
+    #[test]
+    fn a_full_run_of_other_things_stands_beside_the_default_one() {
+        let entry = CHAPTERS.iter().find(|entry| entry.name == "gradients").expect("a chapter");
+        let names = [[true, false], [false, false], [false, true]]
+            .map(|[quick, full]| entry.chapter(&Plan::new(quick, full)).0);
+        assert_eq!(names, ["gradients", "gradients", "gradients_full"]);
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join("gradients.json"), json("gradients", "Short", 0.7)).expect("writable");
+        let text = write(folder.path(), "gradients_full", &json("gradients_full", "Long", 0.4)).expect("an index");
+        assert!(text.contains("[Short](gradients.md)") && text.contains("[Long](gradients_full.md)"), "{text}");
+        assert!(text.contains("[gradients_full](gradients_full.md)"), "its targets too: {text}");
     }
 
     #[test]
