@@ -106,7 +106,7 @@ fn chapters(chapter: &mut Chapter, all: &[Summary]) {
     chapter.table("chapters", &columns, 4, rows.collect());
     chapter.paragraph(
         "Seconds are without compiling; CPU seconds are of all threads. Other work: how many cores other programs kept busy meanwhile, on average; beyond \
-         a few tenths seconds say little, while CPU seconds still hold.",
+         a few tenths seconds say little, while CPU seconds still hold; a dash where it was not recorded.",
     );
     if all.iter().any(|one| one.run.kept.is_some()) {
         chapter.paragraph(

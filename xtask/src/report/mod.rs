@@ -124,7 +124,7 @@ const CHAPTERS: &[Entry] = &[
     .runs(&["analytic"]),
     entry(
         "embree",
-        285,
+        315,
         "Estimators and samplers in a path tracer on Embree, scenes after the thesis's",
         embree::write,
     ),

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 
 /// In every form of the report: small, and with many seeds.
 const DIGITS: &str = "examples_c/data/digits";
-/// The first epoch that is late in training: shorter runs are not judged by their variance, which keeps falling until then.
+/// The first epoch that is late in training: a run that ends before it is not judged by its variance.
 const LATE: u32 = 5;
 
 pub(super) struct Trainer {
