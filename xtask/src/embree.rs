@@ -58,12 +58,14 @@ pub(crate) fn scenes(archive: &Path) -> Result<Outcome> {
             tracer.check(&format!("{scene}, {sampler}"), &estimators, expected)?;
         }
     }
-    let [first, last] = ["0", "17"].map(|frame| {
-        tracer.render(&["--scene", "animation", "--spp", "1", "--frame", frame, "--reference"])?;
-        tracer.brightness("reference")
-    });
-    if first? == last? {
-        bail!("the animation stands still");
+    for scene in ["animation", "dining"] {
+        let [first, last] = ["0", "17"].map(|frame| {
+            tracer.render(&["--scene", scene, "--spp", "1", "--frame", frame, "--reference"])?;
+            tracer.brightness("reference")
+        });
+        if first? == last? {
+            bail!("the animation of {scene} stands still");
+        }
     }
     tracer.render(&["--scene", "veach", "--spp", "64", "--reference"])?;
     let expected = tracer.brightness("reference")?;

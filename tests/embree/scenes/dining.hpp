@@ -102,10 +102,12 @@ inline void lay_table(Stage &stage, float top)
         stage.sphere(heap[i] + Vector{-.62f, top, .02f}, .036f, stage.material(fruit[i % 3], {.15f, .15f, .15f}, 40));
 }
 
-inline void make_dining(uint32_t, float aspect, Scene &scene)
+inline void make_dining(uint32_t frame, float aspect, Scene &scene)
 {
     Stage stage(scene);
-    scene.camera.look({1.1f, 1.8f, 1.75f}, {-.06f, .66f, -.06f}, 42, aspect);
+    // In later frames the camera draws nearer.
+    const float time = static_cast<float>(frame);
+    scene.camera.look({1.1f - .02f * time, 1.8f - .01f * time, 1.75f - .03f * time}, {-.06f, .66f, -.06f}, 42, aspect);
     const uint32_t wall = stage.material({.5f, .55f, .5f}), panel = stage.material({.7f, .68f, .62f}),
                    wood = stage.material({.36f, .2f, .1f}, {.1f, .1f, .1f}, 30);
     stage.parallelogram({-2.2f, 0, -1.6f}, {6, 0, 0}, {0, 3, 0}, wall);
@@ -122,11 +124,11 @@ inline void make_dining(uint32_t, float aspect, Scene &scene)
         stage.put(box({.62f, .8f, .05f}, .02f), panel, move({-1.85f + .68f * static_cast<float>(i), .1f, -1.6f}));
         stage.put(box({.05f, .8f, .62f}, .02f), panel, move({-2.2f, .1f, -1.2f + .68f * static_cast<float>(i)}));
     }
-    const uint32_t frame = stage.material({.5f, .36f, .12f}, {.2f, .18f, .1f}, 30);
+    const uint32_t moulding = stage.material({.5f, .36f, .12f}, {.2f, .18f, .1f}, 30);
     const Color canvas[3] = {{.2f, .35f, .5f}, {.55f, .3f, .2f}, {.35f, .45f, .25f}};
     for (int i = 0; i < 3; ++i) {
         Vector at{-1.35f + .8f * static_cast<float>(i), 1.15f, -1.58f};
-        stage.put(box({.6f, .46f, .05f}, .02f), frame, move(at));
+        stage.put(box({.6f, .46f, .05f}, .02f), moulding, move(at));
         stage.put(box({.5f, .36f, .02f}), stage.material(canvas[i]), move(at + Vector{0, .05f, .025f}));
     }
     // The table with its cloth, and chairs.

@@ -1,4 +1,5 @@
-//! What a chapter takes: seconds, and seconds of processors. On a busy machine only the latter say something.
+//! What a chapter takes: seconds, and seconds of processors; and what else the machine did meanwhile. On a busy machine only the
+//! seconds of processors say something.
 
 use std::cell::Cell;
 use std::fs;
@@ -8,25 +9,64 @@ use std::time::Instant;
 const TICKS_PER_SECOND: f64 = 100.0;
 
 /// Runs from when it was made or restarted.
-pub(super) struct Clock(Cell<(Instant, Option<f64>)>);
+pub(super) struct Clock(Cell<Reading>);
+
+#[derive(Clone, Copy)]
+struct Reading {
+    time: Instant,
+    /// Processor time of this process and its children, and of the whole machine; None where the system does not say.
+    own: Option<f64>,
+    all: Option<f64>,
+}
+
+impl Reading {
+    fn now() -> Self {
+        let all = fs::read_to_string("/proc/stat").ok().and_then(|text| busy_seconds(&text));
+        Self { time: Instant::now(), own: processor_seconds(), all }
+    }
+
+    fn other_work(&self, since: &Self) -> Option<f64> {
+        let seconds = (self.time - since.time).as_secs_f64();
+        other_work(self.all? - since.all?, self.own? - since.own?, seconds)
+    }
+}
 
 impl Clock {
     pub(super) fn start() -> Self {
-        Self(Cell::new((Instant::now(), processor_seconds())))
+        Self(Cell::new(Reading::now()))
     }
 
     pub(super) fn restart(&self) {
-        self.0.set((Instant::now(), processor_seconds()));
+        self.0.set(Reading::now());
     }
 
     pub(super) fn seconds(&self) -> f64 {
-        self.0.get().0.elapsed().as_secs_f64()
+        self.0.get().time.elapsed().as_secs_f64()
     }
 
     /// Of this process and those that it ran and that have ended; None where the system does not say.
     pub(super) fn processor_seconds(&self) -> Option<f64> {
-        Some(processor_seconds()? - self.0.get().1?)
+        Some(processor_seconds()? - self.0.get().own?)
     }
+
+    /// How many cores others kept busy meanwhile, on average; None where the system does not say.
+    pub(super) fn other_work(&self) -> Option<f64> {
+        Reading::now().other_work(&self.0.get())
+    }
+}
+
+/// Both of the same `seconds`. What the two files count differs by a few ticks, so that a quiet machine's may be below 0.
+fn other_work(all: f64, own: f64, seconds: f64) -> Option<f64> {
+    (seconds > 0.0).then(|| ((all - own) / seconds).max(0.0))
+}
+
+/// proc(5), the first line of /proc/stat: user, nice, system, idle, iowait, irq, softirq, steal. All but idle and iowait is work; stolen
+/// time is that of other guests of the same computer. The guests of this machine, which follow, are in the user's time already.
+fn busy_seconds(text: &str) -> Option<f64> {
+    let fields = text.lines().next()?.strip_prefix("cpu ")?;
+    let ticks: Option<Vec<f64>> = fields.split_whitespace().take(8).map(|field| field.parse().ok()).collect();
+    let ticks = ticks.filter(|ticks| ticks.len() == 8)?;
+    Some((ticks.iter().sum::<f64>() - ticks[3] - ticks[4]) / TICKS_PER_SECOND)
 }
 
 /// proc(5): fields 14 to 17 are the user's and the system's time, and the same of children that were waited for.
@@ -52,7 +92,32 @@ mod tests {
         let work = "i=0; while [ $i -lt 100000 ]; do i=$((i + 1)); done";
         assert!(std::process::Command::new("sh").args(["-c", work]).status().expect("a shell").success());
         assert!(clock.processor_seconds().expect("Linux says") > before, "a child's loop takes more than a tick");
+        assert!(clock.other_work().expect("Linux says") >= 0.0);
         clock.restart();
         assert!(clock.seconds() < 1.0);
+    }
+
+    #[test]
+    fn idle_cores_and_waiting_for_disks_are_no_work() {
+        let text = "cpu  1000 200 300 90000 8000 50 60 70 900 0\ncpu0 1 1 1 1 1 1 1 1 0 0\n";
+        let seconds = busy_seconds(text).expect("eight fields");
+        assert!((seconds - 16.8).abs() < 1e-9, "{seconds}");
+        for damaged in ["", "cpu 1 2 3", "cpu0 1 2 3 4 5 6 7 8", "cpu 1 2 3 4 5 six 7 8"] {
+            assert!(busy_seconds(damaged).is_none(), "{damaged}");
+        }
+    }
+
+    #[test]
+    fn other_work_is_what_the_machine_did_beyond_ours() {
+        // In ten seconds two cores worked 18, ours 12 of them.
+        assert_eq!(other_work(18.0, 12.0, 10.0), Some(0.6));
+        assert_eq!(other_work(11.9, 12.0, 10.0), Some(0.0));
+        assert_eq!(other_work(1.0, 1.0, 0.0), None);
+        let time = Instant::now();
+        let start = Reading { time, own: Some(5.0), all: Some(100.0) };
+        let end = Reading { time: time + std::time::Duration::from_secs(10), own: Some(17.0), all: Some(118.0) };
+        assert_eq!(end.other_work(&start), Some(0.6));
+        assert_eq!(Reading { all: None, ..end }.other_work(&start), None);
+        assert_eq!(end.other_work(&Reading { own: None, ..start }), None);
     }
 }

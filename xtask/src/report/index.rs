@@ -1,11 +1,11 @@
 //! docs/report/README.md: the chapters, what they were measured on, and every target. Made of the chapters' JSON files, so
 //! that chapters that were not written this time stay in it.
 
-use super::CHAPTERS;
 use super::chapter::{Cell, Chapter, row};
 use super::check;
 use super::machine::Machine;
 use super::targets::Judged;
+use super::{CHAPTERS, Entry};
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -22,9 +22,10 @@ pub(super) struct Facts {
     /// Without compiling. None: the run that measured left no record.
     pub(super) seconds: Option<f64>,
     pub(super) processor_seconds: Option<f64>,
+    /// Cores that others kept busy meanwhile, on average. None: the system does not say, or it was measured before this was recorded.
+    #[serde(default)]
+    pub(super) other_work: Option<f64>,
     pub(super) date: String,
-    /// The one-minute load average at its start.
-    pub(super) load: String,
     pub(super) machine: Machine,
     /// The date on which the text was written from what an earlier run had measured, the run that the other facts are of.
     #[serde(default)]
@@ -52,12 +53,12 @@ struct Summary {
 /// The index of the chapters in `folder`, where `name` has just been written and is not there yet.
 pub(super) fn write(folder: &Path, name: &str, json: &str) -> Result<String> {
     let mut all = Vec::new();
-    for entry in CHAPTERS {
-        let text = if entry.name == name {
+    for chapter in CHAPTERS.iter().flat_map(Entry::file_names) {
+        let text = if chapter == name {
             Some(json.to_owned())
         } else {
             // A chapter that was never written is not there.
-            fs::read_to_string(folder.join(format!("{}.json", entry.name))).ok()
+            fs::read_to_string(folder.join(format!("{chapter}.json"))).ok()
         };
         // One that was written before there was an index does not say how it came about, and is left out until it is written anew.
         all.extend(text.and_then(|text| serde_json::from_str::<Summary>(&text).ok()));
@@ -78,6 +79,12 @@ fn introduce(chapter: &mut Chapter) {
          name. `cargo xtask report --only CHAPTER` measures one anew and leaves the others as they are; `--full` measures more, `--quick` \
          only tries whether everything works.",
     );
+    let apart = CHAPTERS.iter().filter_map(|entry| Some((entry.name, entry.full?.name)));
+    for (name, full) in apart {
+        chapter.paragraph(&format!(
+            "`--only {name} --full` measures other things than `--only {name}`, and writes `{full}`: neither replaces the other's chapter."
+        ));
+    }
 }
 
 fn chapters(chapter: &mut Chapter, all: &[Summary]) {
@@ -90,20 +97,20 @@ fn chapters(chapter: &mut Chapter, all: &[Summary]) {
             run.description.clone(),
             sizes(run),
             run.date.clone(),
-            run.load.clone(),
+            run.other_work.map(|cores| format!("{cores:.2}")),
             run.seconds.map(seconds),
             run.processor_seconds.map(seconds)
         ]
     });
-    let columns = ["chapter", "what it measures", "run", "measured", "load at start", "seconds", "CPU seconds"];
+    let columns = ["chapter", "what it measures", "run", "measured", "other work", "seconds", "CPU seconds"];
     chapter.table("chapters", &columns, 4, rows.collect());
     chapter.paragraph(
-        "Seconds are without compiling; CPU seconds are of all threads. Load: processes that wanted to run, on average over the minute before; beyond a \
-         few tenths other work shared the machine, and seconds say little while CPU seconds still hold.",
+        "Seconds are without compiling; CPU seconds are of all threads. Other work: how many cores other programs kept busy meanwhile, on average; beyond \
+         a few tenths seconds say little, while CPU seconds still hold; a dash where it was not recorded.",
     );
     if all.iter().any(|one| one.run.kept.is_some()) {
         chapter.paragraph(
-            "Kept: the text was written on the date in brackets from what an earlier run had measured (`--reuse`). Date, load and seconds are \
+            "Kept: the text was written on the date in brackets from what an earlier run had measured (`--reuse`). Date, other work and seconds are \
              those of the run that measured.",
         );
     }
@@ -196,6 +203,7 @@ fn targets(chapter: &mut Chapter, all: &[Summary]) {
 mod tests {
     use super::*;
     use crate::report::figure::Unit;
+    use crate::report::plan::Plan;
     use crate::report::statistics::Estimate;
     use crate::report::targets::Targets;
 
@@ -219,11 +227,24 @@ mod tests {
             seconds: Some(12.4),
             processor_seconds: Some(20.2),
             date: "2000-01-01".to_owned(),
-            load: "0.31".to_owned(),
+            other_work: Some(0.314),
             machine,
             kept: (name == "povray").then(|| "2000-01-02".to_owned()),
         };
         facts.add_to(&chapter.json().to_string()).expect("an object")
+    }
+
+    #[test]
+    fn a_full_run_of_other_things_stands_beside_the_default_one() {
+        let entry = CHAPTERS.iter().find(|entry| entry.name == "gradients").expect("a chapter");
+        let names = [[true, false], [false, false], [false, true]]
+            .map(|[quick, full]| entry.chapter(&Plan::new(quick, full)).0);
+        assert_eq!(names, ["gradients", "gradients", "gradients_full"]);
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join("gradients.json"), json("gradients", "Short", 0.7)).expect("writable");
+        let text = write(folder.path(), "gradients_full", &json("gradients_full", "Long", 0.4)).expect("an index");
+        assert!(text.contains("[Short](gradients.md)") && text.contains("[Long](gradients_full.md)"), "{text}");
+        assert!(text.contains("[gradients_full](gradients_full.md)"), "its targets too: {text}");
     }
 
     #[test]
@@ -243,6 +264,18 @@ mod tests {
         fs::write(folder.path().join("povray_patched.md"), "").expect("writable");
         let text = write(folder.path(), "embree", &json("embree", "First", 0.4)).expect("an index");
         assert!(text.contains("(povray_patched.md)"), "{text}");
+        // A chapter from before other work was recorded has a dash there.
+        let mut before: Value = serde_json::from_str(&json("povray", "Second", 0.7)).expect("an object");
+        let run = before["run"].as_object_mut().expect("an object");
+        assert!(run.remove("other_work").is_some() && run.insert("load".to_owned(), json!("3.31")).is_none());
+        fs::write(folder.path().join("povray.json"), before.to_string()).expect("writable");
+        let text = write(folder.path(), "embree", &json("embree", "First", 0.4)).expect("an index");
+        let cells = |title: &str| {
+            let row = text.lines().find(|line| line.contains(title)).expect("a row");
+            row.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>()
+        };
+        assert_eq!(cells("[First]")[5], "0.31");
+        assert_eq!(cells("[Second]")[5], "-");
         // A chapter from before the index is no reason to fail.
         fs::write(folder.path().join("povray.json"), "{\"tables\": []}").expect("writable");
         assert!(write(folder.path(), "embree", &json("embree", "First", 0.4)).is_ok());

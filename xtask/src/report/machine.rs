@@ -47,12 +47,6 @@ fn clock() -> String {
     }
 }
 
-/// The one-minute load average, as the system writes it.
-pub(super) fn load() -> String {
-    let text = fs::read_to_string("/proc/loadavg").unwrap_or_default();
-    text.split_whitespace().next().unwrap_or(UNKNOWN).to_owned()
-}
-
 /// Today's date, in universal time.
 pub(super) fn date() -> String {
     let date = run::read(run::command("date").args(["-u", "+%Y-%m-%d"])).unwrap_or_default();

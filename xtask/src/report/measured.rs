@@ -36,12 +36,19 @@ fn earlier_run_in(folder: &Path, facts: Facts) -> Result<Facts> {
     let path = folder.join(RUN);
     let kept = Some(facts.date.clone());
     if !path.exists() {
-        let unknown = || "unknown".to_owned();
-        return Ok(Facts { seconds: None, processor_seconds: None, date: unknown(), load: unknown(), kept, ..facts });
+        return Ok(Facts {
+            seconds: None,
+            processor_seconds: None,
+            other_work: None,
+            date: "unknown".to_owned(),
+            kept,
+            ..facts
+        });
     }
     let earlier: Facts =
         serde_json::from_str(&read(&path)?).with_context(|| format!("{} is damaged; remove it", path.display()))?;
-    Ok(Facts { kept, ..earlier })
+    // What the chapter is called is today's.
+    Ok(Facts { name: facts.name, description: facts.description, kept, ..earlier })
 }
 
 /// The folder of one chapter's measurements.
@@ -90,7 +97,7 @@ impl Measured {
         let reused = self.reused.borrow();
         (!reused.is_empty()).then(|| {
             format!(
-                "Taken from an earlier run of the same programs, whose date, load and time the index has: {}.",
+                "Taken from an earlier run of the same programs, whose date, times and other work the index has: {}.",
                 reused.join(", ")
             )
         })
@@ -119,9 +126,9 @@ mod tests {
             compilers: ["r", "c", "x"].map(str::to_owned),
         };
         let word = |word: &str| word.to_owned();
-        let (name, description, sizes, load) = (word("tables"), word("Words"), word("full"), word("0.10"));
-        let (seconds, processor_seconds, date) = (Some(seconds), Some(seconds), word(date));
-        Facts { name, description, sizes, seconds, processor_seconds, date, load, machine, kept: None }
+        let (name, description, sizes) = (word("tables"), word("Words"), word("full"));
+        let (seconds, processor_seconds, other_work, date) = (Some(seconds), Some(seconds), Some(0.25), word(date));
+        Facts { name, description, sizes, seconds, processor_seconds, other_work, date, machine, kept: None }
     }
 
     #[test]

@@ -54,16 +54,43 @@ struct Entry {
     description: &'static str,
     /// Bench targets of noisefloor-bench that it runs.
     programs: &'static [&'static str],
+    /// Where a `--full` run measures other things: a chapter of its own, which other runs leave as it is.
+    full: Option<Full>,
     write: fn(&Report) -> Result<()>,
 }
 
+/// What `--full` writes instead of a chapter.
+#[derive(Clone, Copy)]
+struct Full {
+    /// As files name it.
+    name: &'static str,
+    description: &'static str,
+}
+
 const fn entry(name: &'static str, seconds: u64, description: &'static str, write: fn(&Report) -> Result<()>) -> Entry {
-    Entry { name, seconds, description, programs: &[], write }
+    Entry { name, seconds, description, programs: &[], full: None, write }
 }
 
 impl Entry {
     const fn runs(self, programs: &'static [&'static str]) -> Self {
         Self { programs, ..self }
+    }
+
+    const fn full_apart(self, name: &'static str, description: &'static str) -> Self {
+        Self { full: Some(Full { name, description }), ..self }
+    }
+
+    /// What a run writes: the name of the files, and the index's line.
+    fn chapter(&self, plan: &Plan) -> (&'static str, &'static str) {
+        match self.full {
+            Some(Full { name, description }) if plan.is_full() => (name, description),
+            _ => (self.name, self.description),
+        }
+    }
+
+    /// Of all chapters that it can write.
+    fn file_names(&self) -> impl Iterator<Item = &'static str> {
+        std::iter::once(self.name).chain(self.full.map(|full| full.name))
     }
 }
 
@@ -76,7 +103,8 @@ const CHAPTERS: &[Entry] = &[
         95,
         "Variance of minibatches' gradients, and test error at equal steps and equal time",
         gradients::write,
-    ),
+    )
+    .full_apart("gradients_full", "The same with more seeds and epochs, and a photograph"),
     entry("instructions", 3, "What callgrind counts: the same on a busy machine", instructions::write),
     entry(
         "control_variates",
@@ -96,7 +124,7 @@ const CHAPTERS: &[Entry] = &[
     .runs(&["analytic"]),
     entry(
         "embree",
-        285,
+        315,
         "Estimators and samplers in a path tracer on Embree, scenes after the thesis's",
         embree::write,
     ),

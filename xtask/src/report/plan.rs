@@ -24,6 +24,8 @@ pub(crate) struct Plan {
     pub(crate) frames: u32,
     /// Last frames of the animations: figures 5.23 and 5.24.
     pub(crate) animation: [u32; 2],
+    /// Seeds of the animations: what is seen is one image for each, and its errors vary much.
+    pub(crate) animation_seeds: u32,
     /// What it is called in the index.
     name: &'static str,
     /// The first of several scenes and settings instead of all.
@@ -44,6 +46,7 @@ impl Plan {
             pixel_seeds: 256,
             frames: 504,
             animation: [16, 10],
+            animation_seeds: 32,
             name: "default",
             few: false,
         };
@@ -61,6 +64,7 @@ impl Plan {
                 pixel_seeds: 8,
                 frames: 36,
                 animation: [3, 2],
+                animation_seeds: 2,
                 few: true,
             };
         }

@@ -103,11 +103,13 @@ fn write(
     interrupted: &Interrupted,
 ) -> Result<()> {
     let (output, large) = (Output::new(&folders.small)?, Output::new(&folders.large)?);
-    let (date, load) = (machine::date(), machine::load());
+    let date = machine::date();
+    let plan = Plan::new(options.quick, options.full);
+    let (name, description) = entry.chapter(&plan);
     let report = Report {
-        name: entry.name,
+        name,
         programs: entry.programs,
-        plan: Plan::new(options.quick, options.full),
+        plan,
         program: options.program.clone(),
         interrupted: interrupted.clone(),
         output: &output,
@@ -119,22 +121,22 @@ fn write(
     (entry.write)(&report)?;
     interrupt::check(interrupted)?;
     let facts = Facts {
-        name: entry.name.to_owned(),
-        description: entry.description.to_owned(),
+        name: name.to_owned(),
+        description: description.to_owned(),
         sizes: report.plan.name().to_owned(),
         seconds: Some(report.clock.seconds()),
         processor_seconds: report.clock.processor_seconds(),
+        other_work: report.clock.other_work(),
         date,
-        load,
         machine: machine.clone(),
         kept: None,
     };
     let facts = if report.reused.get() { measured::earlier_run(facts)? } else { facts };
-    let [text, json] = ["md", "json"].map(|end| format!("{}.{end}", entry.name));
+    let [text, json] = ["md", "json"].map(|end| format!("{name}.{end}"));
     let completed = facts.add_to(&output.read_text(&json)?).with_context(|| format!("{json} is damaged"))?;
     check::numbers_are_recorded(&output.read_text(&text)?, &completed).with_context(|| text.clone())?;
     output.write_text(&json, &completed)?;
-    output.write_text("README.md", &index::write(&folders.small, entry.name, &completed)?)?;
+    output.write_text("README.md", &index::write(&folders.small, name, &completed)?)?;
     output::commit_together([output, large])?;
     if facts.kept.is_none() { measured::keep_run(&facts) } else { Ok(()) }
 }

@@ -27,8 +27,32 @@ struct Target {
 #[derive(Default)]
 pub(crate) struct Targets {
     all: Vec<Target>,
-    /// The likely reason why a statement's bound is missed: the statement's beginning and end, and the reason.
-    reasons: Vec<([&'static str; 2], &'static str)>,
+    reasons: Vec<Reason>,
+}
+
+/// The likely reason why a statement's bound is missed.
+struct Reason {
+    /// The statement's beginning and end.
+    statement: [&'static str; 2],
+    /// The end of the place's name, if it is the reason in some places only.
+    place: Option<&'static str>,
+    text: &'static str,
+}
+
+impl Reason {
+    /// For a list item: nothing, unless it is about this statement and one of the places where it is missed.
+    fn said_of(&self, statement: &str, missed: &[&Target]) -> Option<String> {
+        let [beginning, end] = self.statement;
+        let is_meant = statement.starts_with(beginning) && statement.ends_with(end);
+        let text = self.text;
+        match self.place {
+            None if is_meant => Some(format!(". Likely: {text}")),
+            Some(place) if is_meant && missed.iter().any(|target| target.scene.ends_with(place)) => {
+                Some(format!(". Likely, as for {place}: {text}"))
+            }
+            _ => None,
+        }
+    }
 }
 
 /// A statement as the chapter's JSON and the index have it: its worst place stands for it.
@@ -110,7 +134,12 @@ impl Targets {
 
     /// Said where a target that begins and ends like this is missed.
     pub(crate) fn reason(&mut self, statement: [&'static str; 2], reason: &'static str) {
-        self.reasons.push((statement, reason));
+        self.reasons.push(Reason { statement, place: None, text: reason });
+    }
+
+    /// The same, only where it is missed at a place whose name ends so.
+    pub(crate) fn reason_at(&mut self, statement: [&'static str; 2], place: &'static str, reason: &'static str) {
+        self.reasons.push(Reason { statement, place: Some(place), text: reason });
     }
 
     /// Targets of the same statement, in the order in which they were measured.
@@ -166,7 +195,7 @@ impl Targets {
     fn write_misses(&self, chapter: &mut Chapter, groups: &[Vec<&Target>]) {
         let mut points = Vec::new();
         for group in groups {
-            let missed: Vec<_> = group.iter().filter(|target| !target.is_reached()).collect();
+            let missed: Vec<_> = group.iter().copied().filter(|target| !target.is_reached()).collect();
             if missed.is_empty() {
                 continue;
             }
@@ -179,11 +208,7 @@ impl Targets {
             let scenes = scenes.collect::<Vec<_>>().join(", ");
             let statement = &group[0].statement;
             chapter.setting(format!("statement: {statement}"), statement.as_str());
-            let reason = self
-                .reasons
-                .iter()
-                .find(|([beginning, end], _)| statement.starts_with(beginning) && statement.ends_with(end));
-            let reason = reason.map_or(String::new(), |(_, reason)| format!(". Likely: {reason}"));
+            let reason = self.reasons.iter().find_map(|reason| reason.said_of(statement, &missed)).unwrap_or_default();
             points.push(format!("{statement}: {scenes}{reason}"));
         }
         if !points.is_empty() {
@@ -254,6 +279,23 @@ mod tests {
         assert_eq!(json["targets"][0]["place"], "garden");
         assert_eq!(json["targets"][0]["bound"], "at most 0.500");
         assert_eq!((json["targets"][0]["reached"].as_u64(), json["targets"][0]["of"].as_u64()), (Some(1), Some(2)));
+    }
+
+    #[test]
+    fn a_reason_of_one_place_is_said_where_that_place_misses() {
+        let text = |eye: f64| {
+            let mut targets = Targets::default();
+            targets.at_most("error", "garden, average", exact(0.7), Unit::Ratio, 0.5);
+            targets.at_most("error", "garden, eye", exact(eye), Unit::Ratio, 0.5);
+            targets.reason_at(["error", ""], "eye", "Leaves.");
+            let mut chapter = Chapter::new("Title");
+            targets.write_summary(&mut chapter);
+            chapter.markdown().to_owned()
+        };
+        let missed = text(0.8);
+        assert!(missed.contains("garden, average 0.700, garden, eye 0.800. Likely, as for eye: Leaves."), "{missed}");
+        let kept = text(0.2);
+        assert!(kept.contains("- error: garden, average 0.700\n") && !kept.contains("Leaves"), "{kept}");
     }
 
     #[test]

@@ -33,6 +33,14 @@ struct Written {
 }
 
 impl Context<'_> {
+    /// Writes a plot under the chapter's name, and shows it.
+    fn plot(&self, chapter: &mut Chapter, name: &str, plot: &str, description: &str) -> Result<()> {
+        let file = format!("{}-{name}.svg", self.report.name);
+        self.report.output.write_text(&file, plot)?;
+        chapter.picture(&file, description);
+        Ok(())
+    }
+
     fn sizes(&self) -> &'static str {
         self.report.plan.name()
     }
@@ -58,21 +66,23 @@ impl Context<'_> {
 
 pub(super) fn write(report: &Report) -> Result<()> {
     let archive = library::build()?;
-    let measured = Measured::new("gradients", report.plan.name(), report.reuse)?;
+    let measured = Measured::new(report.name, report.plan.name(), report.reuse)?;
     let context = Context { report, measured, archive, bar: progress::bar(7)? };
     let classify = classify::Trainer::new(&context)?;
     let polynomial = Program::compile("fit_polynomial.c", &context.archive)?;
     report.compiled();
 
-    let mut chapter = Chapter::new("Gradients of minibatches");
+    let is_full = report.plan.is_full();
+    let mut chapter =
+        Chapter::new(if is_full { "Gradients of minibatches, long runs" } else { "Gradients of minibatches" });
     let (mut body, mut targets) = (Chapter::default(), Targets::default());
     classify.write(&context, &mut body, &mut targets)?;
     polynomial::write(&context, &polynomial, &mut body, &mut targets)?;
-    if context.sizes() == "full" {
+    if is_full {
         photograph::write(&context, &mut body, &mut targets)?;
     }
     context.bar.finish_and_clear();
-    introduce(&mut chapter);
+    introduce(report.name, &mut chapter);
     if let Some(note) = context.measured.note() {
         report.reused.set(true);
         chapter.paragraph(&note);
@@ -82,11 +92,11 @@ pub(super) fn write(report: &Report) -> Result<()> {
     report.write(&chapter)
 }
 
-fn introduce(chapter: &mut Chapter) {
+fn introduce(name: &str, chapter: &mut Chapter) {
     let percent = chapter.setting("confidence of intervals, percent", 95);
     chapter.paragraph(&format!(
-        "Made by `cargo xtask report`; machine-readable in `gradients.json`; the programs are the trainers of `examples_c`. `--full` trains longer, \
-         with more seeds, and adds the photograph. \"+-\": half of a {percent} % confidence interval, Student's t over the seeds; differences \
+        "Made by `cargo xtask report`; machine-readable in `{name}.json`; the programs are the trainers of `examples_c`. `--only gradients` \
+         writes `gradients`; with `--full` it trains longer, with more seeds, adds the photograph, and writes `gradients_full`. \"+-\": half of a {percent} % confidence interval, Student's t over the seeds; differences \
          are taken seed by seed: the modes of a seed begin with the same network and see the same first epoch. Time is processor time of training \
          alone; modes take turns, an epoch at a time."
     ));

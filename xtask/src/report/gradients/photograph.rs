@@ -29,9 +29,8 @@ pub(super) fn write(context: &Context, chapter: &mut Chapter, targets: &mut Targ
     Summary::parse(&losses.summary)?.write(chapter, "photograph", 1);
     chapter.paragraph("One draw in each stratum:");
     Summary::parse(&strata.summary)?.write(chapter, "photograph strata", 1);
-    let file = "gradients-photograph.svg";
-    context.report.output.write_text(file, &photograph::loss_plot(&losses.csv, &strata.csv, "step", "steps")?)?;
-    chapter.picture(file, "peak signal-to-noise ratio against steps");
+    let plot = photograph::loss_plot(&losses.csv, &strata.csv, "step", "steps")?;
+    context.plot(chapter, "photograph", &plot, "peak signal-to-noise ratio against steps")?;
     chapter
         .paragraph("Mean squared errors of the gradient's estimate over those of uniform draws, at the same states:");
     let variance = Summary::parse(&errors.summary)?;

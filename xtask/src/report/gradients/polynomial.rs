@@ -34,17 +34,16 @@ pub(super) fn write(context: &Context, program: &Program, chapter: &mut Chapter,
     ));
     let losses = Summary::parse(&trained.summary)?;
     losses.write(chapter, "polynomial", 1);
-    let output = context.report.output;
-    output.write_text("gradients-polynomial.svg", &polynomial::ratio_plot(&trained.csv)?)?;
-    chapter.picture("gradients-polynomial.svg", "mean loss over the exact gradient's, against steps");
+    let description = "mean loss over the exact gradient's, against steps";
+    context.plot(chapter, "polynomial", &polynomial::ratio_plot(&trained.csv)?, description)?;
     chapter.paragraph(&format!(
         "Mean squared error of the gradient's estimate over that of uniform draws, each coefficient's, at the same states on the exact gradient's way, \
          tables as the method's own batches have left them, {batches} batches:"
     ));
     let variance = Summary::parse(&errors.summary)?;
     variance.write(chapter, "polynomial variance", 2);
-    output.write_text("gradients-polynomial-variance.svg", &polynomial::error_plot(&errors.csv)?)?;
-    chapter.picture("gradients-polynomial-variance.svg", "error over uniform's, by coefficient, at the end");
+    let description = "error over uniform's, by coefficient, at the end";
+    context.plot(chapter, "polynomial-variance", &polynomial::error_plot(&errors.csv)?, description)?;
 
     let place = format!("{seeds} problems, step {steps}");
     if let Some((ratio, _)) = losses.number(&["omis4"], "over exact") {

@@ -30,7 +30,9 @@ pub(super) fn write(report: &Report) -> Result<()> {
     introduce(&mut chapter);
     if reused {
         report.reused.set(true);
-        chapter.paragraph("Written anew from what an earlier run measured, whose date, load and time the index has.");
+        chapter.paragraph(
+            "Written anew from what an earlier run measured, whose date, times and other work the index has.",
+        );
     }
     let (mut body, mut targets) = (Chapter::default(), Targets::default());
     times.write(&mut body, &mut targets, report.output)?;

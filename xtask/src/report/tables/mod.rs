@@ -48,7 +48,7 @@ pub(crate) const SECTIONS: &[Entry] = &[
     (4, luminance::write),
     (74, samplers::write),
     (15, reconstruction::write),
-    (17, animation::write),
+    (55, animation::write),
     (20, overhead::write),
     (34, never_worse::write),
     (23, unbiased::write),
