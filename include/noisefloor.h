@@ -9,8 +9,9 @@
  *  - Every function that can fail returns nf_status: 0 (NF_OK) or a negative NF_ERR_*. Outputs are written, and objects
  *    changed, only on success. Inputs are checked: NULL, ranges, lengths, alignment, finite values.
  *  - Memory: nothing is ever allocated. Objects and workspaces live in caller memory, 8-byte aligned, of at least the
- *    bytes that the matching size function returns. Nothing needs to be destroyed. An object must not be moved or
- *    copied while it is in use, unless its description says otherwise.
+ *    bytes that the matching size function returns. Neither they nor outputs need be
+ *    initialised. Nothing needs to be destroyed. An object must not be moved or copied while it is in use, unless its
+ *    description says otherwise.
  *  - Threads: no locks, and no shared state but a cached answer of the processor's. Any number of threads may read an
  *    object; one at a time may write it.
  *  - Arithmetic: IEEE 754, rounding to nearest, subnormal numbers not flushed to zero.

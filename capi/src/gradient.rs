@@ -57,10 +57,10 @@ pub unsafe extern "C" fn nf_gradient_init(
             return Err(NF_ERR_RANGE);
         }
         // SAFETY: the caller passes a place for a pointer.
-        let out = unsafe { convert::reference_mut(out) }?;
+        let out = unsafe { convert::room(out) }?;
         let header = Header { magic: MAGIC, techniques, parameters, system: System::new(techniques as usize) };
         // SAFETY: the caller passes memory of the size it says; all-zero averages are those of no batches.
-        *out = unsafe { convert::create(memory, bytes, size, header) }?.cast();
+        out.write(unsafe { convert::create(memory, bytes, size, header) }?.cast());
         Ok(())
     })())
 }
@@ -108,7 +108,7 @@ pub unsafe extern "C" fn nf_gradient_estimate(
             (convert::slice(pdf, pdfs)?, convert::slice(technique, samples)?, convert::slice(gradient, gradients)?)
         };
         // SAFETY: as above, but written, and no part of another.
-        let estimate = unsafe { convert::slice_mut(estimate, parameters) }?;
+        let estimate = unsafe { convert::outputs(estimate, parameters) }?;
         let solver = solver_of(solver, ridge)?;
         let batch = Batch::new(items, techniques, pdf, technique).map_err(status_of)?;
         let mut state = Gradient::resume(averages, header.system, parameters).map_err(status_of)?;

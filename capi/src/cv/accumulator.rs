@@ -54,7 +54,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_init(
 ) -> nf_status {
     status((|| {
         // SAFETY: the caller's pointers, each checked there.
-        let (config, out) = unsafe { (convert::reference(config)?, convert::reference_mut(out)?) };
+        let (config, out) = unsafe { (convert::reference(config)?, convert::room(out)?) };
         let core = core_config(config)?;
         let (state, sums) = if is_narrow(config)? {
             let state = State::new(&core).map_err(status_of)?;
@@ -71,7 +71,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_init(
             memory.add(HEADER).write_bytes(0, sums);
             accumulator.write(nf_cv_accumulator { magic: MAGIC, state });
         }
-        *out = accumulator;
+        out.write(accumulator);
         Ok(())
     })())
 }
@@ -162,7 +162,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_estimate(
     status((|| {
         // SAFETY: the caller's object and memory, each checked there.
         unsafe {
-            let out = convert::reference_mut(out)?;
+            let out = convert::room(out)?;
             let estimate = match open_shared(accumulator)? {
                 OpenedShared::Double(state, sums) => {
                     let workspace = convert::workspace(workspace, bytes, state.workspace_len())?;
@@ -173,7 +173,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_estimate(
                     state.estimate(sums, workspace)
                 }
             };
-            *out = c_estimate(&estimate.map_err(status_of)?);
+            out.write(c_estimate(&estimate.map_err(status_of)?));
             Ok(())
         }
     })())
