@@ -1,6 +1,7 @@
 //! Optimal multiple importance sampling weights, found from the samples.
 
 use crate::convert;
+use crate::magic::magic;
 use crate::status::*;
 use noisefloor_core::minibatch::{self, Batch};
 use noisefloor_core::mis::{self, DEFAULT_RIDGE, MAX_TECHNIQUES, OptimalMis, Solver};
@@ -39,8 +40,7 @@ struct Header {
     counts: [u32; MAX_TECHNIQUES],
 }
 
-/// "nf_omis" and the version of the layout.
-const MAGIC: u64 = u64::from_le_bytes(*b"nf_omis\x01");
+const MAGIC: u64 = magic::<Header>("nf_omis");
 
 /// The bytes of memory an nf_omis needs; 0 unless techniques is in 1..NF_MIS_MAX_TECHNIQUES, integrals at least 1, and the
 /// size one that memory can have.
