@@ -9,8 +9,10 @@
  *  - Every function that can fail returns nf_status: 0 (NF_OK) or a negative NF_ERR_*. Outputs are written, and objects
  *    changed, only on success. Inputs are checked: NULL, ranges, lengths, alignment, finite values.
  *  - Memory: nothing is ever allocated. Objects and workspaces live in caller memory, 8-byte aligned, of at least the
- *    bytes that the matching size function returns. Nothing needs to be destroyed. An object must not be moved or
- *    copied while it is in use, unless its description says otherwise.
+ *    bytes that the matching size function returns. Neither they nor outputs need be initialised. Nothing needs to be
+ *    destroyed. An object must not be moved or copied while it is in use, unless its description says otherwise. The bytes
+ *    of one in caller memory mean something only to the library file that made them; tables are kept, and sent to other
+ *    builds and machines, with nf_table_save().
  *  - Threads: no locks, and no shared state but a cached answer of the processor's. Any number of threads may read an
  *    object; one at a time may write it.
  *  - Arithmetic: IEEE 754, rounding to nearest, subnormal numbers not flushed to zero.
@@ -346,7 +348,9 @@ nf_status nf_cv_block_estimate(const nf_cv_config *config,
                                size_t bytes,
                                nf_estimate *out);
 
-// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls.
+// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, in one process or
+// among those that run the same library file. The bytes are no file format: another build may lay them out otherwise.
+// NF_ERR_STATE tells those of another version, or of another size, not of every other build.
 typedef struct nf_cv_accumulator nf_cv_accumulator;
 
 // Bytes that an accumulator needs; 0 for a configuration that is NULL, out of range or not for streaming.
@@ -1199,8 +1203,9 @@ nf_status nf_omis_weights(uint32_t solver,
 //
 // Without momentum nf_omis_weights gives the same estimate, at the cost of one weighted backward pass.
 //
-// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; may be moved and copied as bytes between calls;
-// nothing to destroy.
+// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; nothing to destroy. May be moved and copied as bytes
+// between calls, in one process or among those that run the same library file; no file format, as for
+// nf_cv_accumulator.
 typedef struct nf_gradient nf_gradient;
 
 // The bytes of memory an nf_gradient needs: 4 (techniques + 1) per parameter and about 1.4 kB. 0 unless techniques is

@@ -1,10 +1,17 @@
 //! All pointer checks: raw pointers in, references or a status out.
 //!
 //! Lengths are checked against `isize::MAX` bytes, alignment against the element type, before any slice is made.
+//!
+//! C callers pass outputs that nobody has written yet. A single output, and an array of structs, is therefore [`Room`], which may
+//! hold anything, until its value is there. Arrays of numbers, which the core fills through slices, are [`outputs`].
 
 use crate::status::*;
 use core::ffi::c_void;
+use core::mem::MaybeUninit;
 use noisefloor_core::real::Real;
+
+/// Where an object will be: to be written, never read.
+pub(crate) type Room<T> = MaybeUninit<T>;
 
 /// A shared reference to one object.
 ///
@@ -21,7 +28,7 @@ pub(crate) unsafe fn reference<'a, T>(pointer: *const T) -> Result<&'a T, nf_sta
     Ok(unsafe { &*pointer })
 }
 
-/// An exclusive reference to one object.
+/// An exclusive reference to one object that already exists; [`room`] is for one that may not.
 ///
 /// # Safety
 /// As for [`reference`], and no one else may read or write the object during `'a`.
@@ -36,19 +43,31 @@ pub(crate) unsafe fn reference_mut<'a, T>(pointer: *mut T) -> Result<&'a mut T, 
     Ok(unsafe { &mut *pointer })
 }
 
+/// Room for one object, where there may never have been one.
+///
+/// # Safety
+/// A non-NULL, aligned `pointer` must be the start of room for a `T` that no one else uses during `'a`.
+pub(crate) unsafe fn room<'a, T>(pointer: *mut T) -> Result<&'a mut Room<T>, nf_status> {
+    // SAFETY: any memory is a `Room`, written or not; the rest is the caller's promise.
+    unsafe { reference_mut(pointer.cast()) }
+}
+
+/// Room for `len` objects, where there may never have been any; a zero length gives an empty slice whatever the pointer.
+///
+/// # Safety
+/// As for [`room`], of all elements.
+pub(crate) unsafe fn rooms<'a, T>(pointer: *mut T, len: usize) -> Result<&'a mut [Room<T>], nf_status> {
+    // SAFETY: as in `room`.
+    unsafe { slice_mut(pointer.cast(), len) }
+}
+
 /// Writes one object to where there may never have been one.
 ///
 /// # Safety
-/// A non-NULL, aligned `pointer` must be the start of room for a `T` that no one else uses.
+/// As for [`room`].
 pub(crate) unsafe fn write<T>(pointer: *mut T, value: T) -> Result<(), nf_status> {
-    if pointer.is_null() {
-        return Err(NF_ERR_NULL);
-    }
-    if !pointer.is_aligned() {
-        return Err(NF_ERR_ALIGNMENT);
-    }
     // SAFETY: passed on to the caller.
-    unsafe { pointer.write(value) };
+    unsafe { room(pointer) }?.write(value);
     Ok(())
 }
 
@@ -65,7 +84,7 @@ pub(crate) unsafe fn slice<'a, T>(pointer: *const T, len: usize) -> Result<&'a [
     Ok(unsafe { core::slice::from_raw_parts(pointer, len) })
 }
 
-/// `len` elements to write; a zero length gives an empty slice whatever the pointer.
+/// `len` elements that already exist, to change; a zero length gives an empty slice whatever the pointer.
 ///
 /// # Safety
 /// As for [`slice`], and no one else may read or write the elements during `'a`.
@@ -76,6 +95,30 @@ pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, len: usize) -> Result<&'a
     check(pointer, len)?;
     // SAFETY: not NULL, aligned and of a representable length as just checked; the rest is the caller's promise.
     Ok(unsafe { core::slice::from_raw_parts_mut(pointer, len) })
+}
+
+/// Numbers of which every pattern of bits is one.
+pub(crate) trait AnyBits: Copy {}
+
+impl AnyBits for u8 {}
+impl AnyBits for u32 {}
+impl AnyBits for f32 {}
+
+/// `len` numbers that the core will write, through the slices of its safe interface; clearing them first would cost time, and
+/// an error must leave them as they are. A zero length gives an empty slice whatever the pointer.
+///
+/// A slice of numbers that Rust code has left uninitialised would be invalid, even unread. These are another language's: the
+/// memory was allocated, and perhaps written, by code that this crate's compiler cannot see, so that it must take them for some
+/// numbers, whatever C calls them; every pattern of bits being a number, they are. The core writes each before it reads it,
+/// so no result depends on which. This fails where the compiler does see that code: under link-time optimisation across languages,
+/// which the archive, machine code, takes no part in; and where Rust code is the caller.
+///
+/// # Safety
+/// A non-NULL, aligned `pointer` must be the start of room for `len` elements that no one else uses during `'a`. Where this crate's
+/// compiler sees what allocated them, a Rust caller say, they must be initialised.
+pub(crate) unsafe fn outputs<'a, T: AnyBits>(pointer: *mut T, len: usize) -> Result<&'a mut [T], nf_status> {
+    // SAFETY: passed on to the caller; numbers of any bits are initialised, as said above.
+    unsafe { slice_mut(pointer, len) }
 }
 
 /// `needed` bytes of caller memory, 8-byte aligned, of which nothing is assumed.

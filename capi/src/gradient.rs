@@ -1,5 +1,6 @@
 //! Optimal MIS gradients with momentum.
 
+use crate::magic::magic;
 use crate::omis::solver_of;
 use crate::status::*;
 use crate::{convert, dispatch};
@@ -10,8 +11,9 @@ use noisefloor_core::minibatch::{self, Batch, Gradient, System};
 ///
 /// Without momentum nf_omis_weights gives the same estimate, at the cost of one weighted backward pass.
 ///
-/// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; may be moved and copied as bytes between calls;
-/// nothing to destroy.
+/// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; nothing to destroy. May be moved and copied as bytes
+/// between calls, in one process or among those that run the same library file; no file format, as for
+/// nf_cv_accumulator.
 #[allow(non_camel_case_types)]
 pub struct nf_gradient {
     _private: (),
@@ -27,8 +29,7 @@ struct Header {
     system: System,
 }
 
-/// "nf_grad" and the version of the layout.
-const MAGIC: u64 = u64::from_le_bytes(*b"nf_grad\x01");
+const MAGIC: u64 = magic::<Header>("nf_gradient");
 
 /// The bytes of memory an nf_gradient needs: 4 (techniques + 1) per parameter and about 1.4 kB. 0 unless techniques is
 /// in 1..NF_MIS_MAX_TECHNIQUES, parameters at least 1, and the size one that memory can have.
@@ -57,10 +58,10 @@ pub unsafe extern "C" fn nf_gradient_init(
             return Err(NF_ERR_RANGE);
         }
         // SAFETY: the caller passes a place for a pointer.
-        let out = unsafe { convert::reference_mut(out) }?;
+        let out = unsafe { convert::room(out) }?;
         let header = Header { magic: MAGIC, techniques, parameters, system: System::new(techniques as usize) };
         // SAFETY: the caller passes memory of the size it says; all-zero averages are those of no batches.
-        *out = unsafe { convert::create(memory, bytes, size, header) }?.cast();
+        out.write(unsafe { convert::create(memory, bytes, size, header) }?.cast());
         Ok(())
     })())
 }
@@ -108,7 +109,7 @@ pub unsafe extern "C" fn nf_gradient_estimate(
             (convert::slice(pdf, pdfs)?, convert::slice(technique, samples)?, convert::slice(gradient, gradients)?)
         };
         // SAFETY: as above, but written, and no part of another.
-        let estimate = unsafe { convert::slice_mut(estimate, parameters) }?;
+        let estimate = unsafe { convert::outputs(estimate, parameters) }?;
         let solver = solver_of(solver, ridge)?;
         let batch = Batch::new(items, techniques, pdf, technique).map_err(status_of)?;
         let mut state = Gradient::resume(averages, header.system, parameters).map_err(status_of)?;

@@ -75,7 +75,7 @@ pub unsafe extern "C" fn nf_cross_entropy_gradient(
     status((|| {
         // SAFETY: the caller passes arrays of the length it says, one of them to be written and no part of the other.
         let (logits, gradient) =
-            unsafe { (convert::slice(logits, classes as usize)?, convert::slice_mut(gradient, classes as usize)?) };
+            unsafe { (convert::slice(logits, classes as usize)?, convert::outputs(gradient, classes as usize)?) };
         importance::cross_entropy_gradient(logits, label as usize, gradient).map_err(status_of)
     })())
 }
@@ -110,7 +110,7 @@ pub unsafe extern "C" fn nf_importance_nodes(
         }
         // SAFETY: the caller passes arrays of the lengths it says, one of them to be written and no part of the other.
         let (gradient, importance) = unsafe {
-            (convert::slice(gradient, outputs as usize)?, convert::slice_mut(importance, techniques as usize)?)
+            (convert::slice(gradient, outputs as usize)?, convert::outputs(importance, techniques as usize)?)
         };
         importance::nodes(gradient, split, importance).map_err(status_of)
     })())

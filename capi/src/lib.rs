@@ -14,6 +14,7 @@ mod cv;
 mod dispatch;
 mod gradient;
 mod importance;
+mod magic;
 mod mis;
 mod omis;
 mod recommend;

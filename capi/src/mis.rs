@@ -181,8 +181,7 @@ unsafe fn with_alpha(
             unsafe { (convert::slice(pdf, len)?, convert::slice(counts, len)?, convert::slice(alpha, len)?) };
         let value = compute(pdf, counts, alpha).map_err(status_of)?;
         // SAFETY: passed on to the caller.
-        *unsafe { convert::reference_mut(weight) }? = value;
-        Ok(())
+        unsafe { convert::write(weight, value) }
     })();
     status(result)
 }

@@ -1,6 +1,7 @@
 //! Optimal multiple importance sampling weights, found from the samples.
 
 use crate::convert;
+use crate::magic::magic;
 use crate::status::*;
 use noisefloor_core::minibatch::{self, Batch};
 use noisefloor_core::mis::{self, DEFAULT_RIDGE, MAX_TECHNIQUES, OptimalMis, Solver};
@@ -39,8 +40,7 @@ struct Header {
     counts: [u32; MAX_TECHNIQUES],
 }
 
-/// "nf_omis" and the version of the layout.
-const MAGIC: u64 = u64::from_le_bytes(*b"nf_omis\x01");
+const MAGIC: u64 = magic::<Header>("nf_omis");
 
 /// The bytes of memory an nf_omis needs; 0 unless techniques is in 1..NF_MIS_MAX_TECHNIQUES, integrals at least 1, and the
 /// size one that memory can have.
@@ -77,9 +77,9 @@ pub unsafe extern "C" fn nf_omis_init(
         let mut header = Header { magic: MAGIC, techniques, integrals, counts: [0; MAX_TECHNIQUES] };
         header.counts.iter_mut().zip(counts).for_each(|(to, &from)| *to = from);
         // SAFETY: the caller passes a place for a pointer.
-        let out = unsafe { convert::reference_mut(out) }?;
+        let out = unsafe { convert::room(out) }?;
         // SAFETY: the caller passes memory of the size it says; all-zero sums are those of no samples.
-        *out = unsafe { convert::create(memory, bytes, size, header) }?.cast();
+        out.write(unsafe { convert::create(memory, bytes, size, header) }?.cast());
         Ok(())
     })())
 }
@@ -127,7 +127,7 @@ pub unsafe extern "C" fn nf_omis_solve(omis: *const nf_omis, solver: u32, ridge:
         // SAFETY: the caller passes an object that no one writes meanwhile, and room for its integrals.
         let omis = unsafe { open(omis) }?;
         // SAFETY: as above.
-        let estimate = unsafe { convert::slice_mut(estimate, omis.integrals()) }?;
+        let estimate = unsafe { convert::outputs(estimate, omis.integrals()) }?;
         omis.solve(solver_of(solver, ridge)?, estimate).map_err(status_of)
     })())
 }
@@ -144,7 +144,7 @@ pub unsafe extern "C" fn nf_omis_alpha(omis: *const nf_omis, solver: u32, ridge:
         let omis = unsafe { open(omis) }?;
         let len = convert::product(omis.integrals(), omis.techniques())?;
         // SAFETY: as above.
-        let alpha = unsafe { convert::slice_mut(alpha, len) }?;
+        let alpha = unsafe { convert::outputs(alpha, len) }?;
         omis.alpha(solver_of(solver, ridge)?, alpha).map_err(status_of)
     })())
 }
@@ -247,7 +247,7 @@ pub unsafe extern "C" fn nf_omis_weights(
         let pdfs = convert::product(samples, techniques as usize)?;
         // SAFETY: the caller passes arrays of these lengths, of which the last is written and no part of another.
         let (pdf, technique, weight) = unsafe {
-            (convert::slice(pdf, pdfs)?, convert::slice(technique, samples)?, convert::slice_mut(weight, samples)?)
+            (convert::slice(pdf, pdfs)?, convert::slice(technique, samples)?, convert::outputs(weight, samples)?)
         };
         let solver = solver_of(solver, ridge)?;
         let batch = Batch::new(items, techniques as usize, pdf, technique).map_err(status_of)?;

@@ -22,8 +22,8 @@ pub struct nf_rng {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_rng_seed(rng: *mut nf_rng, seed: u64) {
     // SAFETY: the caller passes NULL or a generator that nothing else uses meanwhile.
-    if let Ok(rng) = unsafe { convert::reference_mut(rng) } {
-        store(rng, Rng::seed(seed));
+    if let Ok(rng) = unsafe { convert::room(rng) } {
+        rng.write(stored(Rng::seed(seed)));
     }
 }
 
@@ -48,7 +48,7 @@ unsafe fn with<T: Default>(rng: *mut nf_rng, draw: impl FnOnce(&mut Rng) -> T) -
     let Ok(rng) = (unsafe { convert::reference_mut(rng) }) else { return T::default() };
     let mut generator = Rng { state: rng.state, increment: rng.increment };
     let value = draw(&mut generator);
-    store(rng, generator);
+    *rng = stored(generator);
     value
 }
 
@@ -64,10 +64,10 @@ pub(crate) unsafe fn try_with(
     let rng = unsafe { convert::reference_mut(rng) }?;
     let mut generator = Rng { state: rng.state, increment: rng.increment };
     draw(&mut generator)?;
-    store(rng, generator);
+    *rng = stored(generator);
     Ok(())
 }
 
-fn store(rng: &mut nf_rng, generator: Rng) {
-    *rng = nf_rng { state: generator.state, increment: generator.increment };
+fn stored(generator: Rng) -> nf_rng {
+    nf_rng { state: generator.state, increment: generator.increment }
 }

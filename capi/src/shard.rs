@@ -57,7 +57,7 @@ pub unsafe extern "C" fn nf_shards_allocate(
         // SAFETY: the caller passes `shards` shards, a generator that no one else uses, and room for as many counts.
         unsafe {
             let shard = convert::slice(shard, shards as usize)?;
-            let counts = convert::slice_mut(counts, shards as usize)?;
+            let counts = convert::outputs(counts, shards as usize)?;
             rng::try_with(rng, |rng| {
                 table::allocate(shared(shard), uniform_fraction, rng, batch, counts).map_err(status_of)
             })
@@ -89,7 +89,7 @@ pub unsafe extern "C" fn nf_table_draw_shard(
         unsafe {
             let table = open(table)?;
             let all = Shard::sum(shared(convert::slice(shard, shards as usize)?)).map_err(status_of)?;
-            let (index, weight) = (convert::slice_mut(index, batch as usize)?, weights(weight, batch)?);
+            let (index, weight) = (convert::outputs(index, batch as usize)?, weights(weight, batch)?);
             rng::try_with(rng, |rng| dispatch::table_draw_shard(&table, &all, rng, index, weight).map_err(status_of))
         }
     })())

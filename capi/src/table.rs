@@ -161,7 +161,7 @@ pub unsafe extern "C" fn nf_table_draw_distinct(
     status((|| {
         // SAFETY: the caller passes a table and a generator that no one else uses, and outputs of `batch` elements.
         let (mut opened, index, weight) =
-            unsafe { (open_mut(table)?, convert::slice_mut(index, batch as usize)?, weights(weight, batch)?) };
+            unsafe { (open_mut(table)?, convert::outputs(index, batch as usize)?, weights(weight, batch)?) };
         // SAFETY: as above.
         unsafe {
             rng::try_with(rng, |rng| dispatch::table_draw_distinct(&mut opened, rng, index, weight).map_err(status_of))
@@ -303,7 +303,7 @@ pub unsafe extern "C" fn nf_table_saved_size(table: *const nf_table) -> usize {
 pub unsafe extern "C" fn nf_table_save(table: *const nf_table, saved: *mut c_void, len: usize) -> nf_status {
     status((|| {
         // SAFETY: the caller passes a table that no one writes meanwhile, and room for `len` bytes.
-        let (table, saved) = unsafe { (open(table)?, convert::slice_mut(saved.cast::<u8>(), len)?) };
+        let (table, saved) = unsafe { (open(table)?, convert::outputs(saved.cast::<u8>(), len)?) };
         table.save(saved).map_err(status_of)
     })())
 }
@@ -357,7 +357,7 @@ unsafe fn draw(
         // SAFETY: the caller passes a table that no one writes meanwhile, a generator that no one else uses, and outputs of
         // `batch` elements.
         let (table, index, weight) =
-            unsafe { (open(table)?, convert::slice_mut(index, batch as usize)?, weights(weight, batch)?) };
+            unsafe { (open(table)?, convert::outputs(index, batch as usize)?, weights(weight, batch)?) };
         // SAFETY: as above.
         unsafe { rng::try_with(rng, |rng| draw(&table, rng, index, weight).map_err(status_of)) }
     })())
@@ -369,7 +369,7 @@ unsafe fn draw(
 /// A non-NULL `weight` must be room for `batch` elements that no one else uses.
 pub(crate) unsafe fn weights<'a>(weight: *mut f32, batch: u32) -> Result<Option<&'a mut [f32]>, nf_status> {
     // SAFETY: passed on to the caller.
-    if weight.is_null() { Ok(None) } else { unsafe { convert::slice_mut(weight, batch as usize) }.map(Some) }
+    if weight.is_null() { Ok(None) } else { unsafe { convert::outputs(weight, batch as usize) }.map(Some) }
 }
 
 pub(crate) type Reader<'a> = Table<&'a [f32], &'a [i64]>;

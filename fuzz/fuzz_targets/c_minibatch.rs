@@ -152,7 +152,29 @@ fn run(bytes: &[u8]) -> Result<()> {
     importances(&mut source)
 }
 
-fuzz_target!(|bytes: &[u8]| {
+/// Valid arguments are not refused: a library that refused all would fail no input.
+fn defaults_work() {
+    let (mut table, mut rng) = (MaybeUninit::uninit(), MaybeUninit::uninit());
+    let mut memory = vec![0_u64; nf_table_size(3).div_ceil(8)];
+    let (mut index, mut weight) = ([u32::MAX; 2], [0.0_f32; 2]);
+    // SAFETY: arrays have the lengths that the header asks for.
+    unsafe {
+        let (to, bytes) = (memory.as_mut_ptr().cast(), 8 * memory.len());
+        assert_eq!(nf_table_init(table.as_mut_ptr(), to, bytes, 3, [1.0, 2.0, 3.0].as_ptr()), NF_OK);
+        nf_rng_seed(rng.as_mut_ptr(), 1);
+        let (table, rng) = (table.as_mut_ptr(), rng.as_mut_ptr());
+        for draw in [nf_table_draw, nf_table_draw_stratified] {
+            assert_eq!(draw(table, rng, 2, index.as_mut_ptr(), weight.as_mut_ptr()), NF_OK);
+        }
+        assert_eq!(nf_table_draw_distinct(table, rng, 2, index.as_mut_ptr(), weight.as_mut_ptr()), NF_OK);
+        assert!(index.iter().all(|&item| item < 3) && weight.iter().all(|&w| w > 0.0), "{index:?} {weight:?}");
+        assert_eq!(nf_table_update(table, index.as_ptr(), weight.as_ptr(), 2, 0.3), NF_OK);
+        check(&*table);
+        assert!(nf_importance_cross_entropy([0.0, 1.0].as_ptr(), 2, 1) > 0.0);
+    }
+}
+
+fuzz_target!(init: defaults_work(), |bytes: &[u8]| {
     // Bytes that ran out are no input.
     run(bytes).ok();
 });

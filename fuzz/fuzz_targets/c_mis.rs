@@ -161,7 +161,31 @@ fn run(bytes: &[u8]) -> Result<()> {
     }
 }
 
-fuzz_target!(|bytes: &[u8]| {
+/// Valid arguments are not refused: a library that refused all would fail no input.
+fn defaults_work() {
+    let (pdf, counts, technique) = ([0.25, 0.75, 0.5, 0.5], [1, 1], [0, 1]);
+    // SAFETY: arrays have the lengths that the header asks for.
+    unsafe {
+        let mut weight = [f32::NAN; 2];
+        assert_eq!(nf_mis_balance(pdf.as_ptr(), counts.as_ptr(), 2, 1, weight.as_mut_ptr()), NF_OK);
+        assert_eq!(weight[0], 0.75);
+        let mut memory = vec![0_u64; nf_omis_size(2, 1).div_ceil(8)];
+        let (to, bytes, mut omis) = (memory.as_mut_ptr().cast(), 8 * memory.len(), null_mut());
+        assert_eq!(nf_omis_init(to, bytes, 2, 1, counts.as_ptr(), &mut omis), NF_OK);
+        assert_eq!(nf_omis_add(omis, 0, pdf.as_ptr(), &1.0), NF_OK);
+        assert_eq!(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0, weight.as_mut_ptr()), NF_OK);
+        let (p, j, to) = (pdf.as_ptr(), technique.as_ptr(), weight.as_mut_ptr());
+        assert_eq!(nf_omis_weights(NF_OMIS_RIDGE, 0.0, 2, 2, p, j, 2, to), NF_OK);
+        let mut memory = vec![0_u64; nf_gradient_size(2, 1).div_ceil(8)];
+        let (place, bytes, mut state) = (memory.as_mut_ptr().cast(), 8 * memory.len(), null_mut());
+        assert_eq!(nf_gradient_init(place, bytes, 2, 1, &mut state), NF_OK);
+        let gradient = [1.0, 2.0];
+        assert_eq!(nf_gradient_estimate(state, NF_OMIS_RIDGE, 0.0, 0.5, 2, p, j, gradient.as_ptr(), 2, to), NF_OK);
+        assert!(weight.iter().all(|value| value.is_finite()), "{weight:?}");
+    }
+}
+
+fuzz_target!(init: defaults_work(), |bytes: &[u8]| {
     // Bytes that ran out are no input.
     run(bytes).ok();
 });

@@ -185,6 +185,22 @@ static void no_object(void)
     stream_free(&good);
 }
 
+static nf_status reset(void *object) { return nf_cv_accumulator_reset((nf_cv_accumulator *)object); }
+
+/* Bytes of another build of the library, which may mean something else by them. */
+static void another_build(void)
+{
+    uint32_t precision;
+    for (precision = 0; precision < 2; ++precision) {
+        nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
+        stream s;
+        config.precision = precision;
+        s = stream_new(&config);
+        check_other_builds(s.accumulator, "nf_cvac1", reset);
+        stream_free(&s);
+    }
+}
+
 /* Whatever is refused leaves every byte of the accumulator as it was, and the accumulator usable. */
 static void refused_calls_change_nothing(uint32_t estimator)
 {
@@ -304,6 +320,7 @@ int main(void)
     normal_use(NF_CV_LEAST_SQUARES, NF_PRECISION_F32, NF_SOLVER_SQUARE_ROOT);
     init_errors();
     no_object();
+    another_build();
     skipping();
     controls();
     return report("accumulator");

@@ -110,6 +110,25 @@ static inline void memory_free(memory *m)
     m->base = NULL;
 }
 
+/* The first 8 bytes of an object say which build of the library made it. `call` must take them for its
+ * own, but find NF_ERR_STATE where a byte differs, and for `before`, a fixed name, which says nothing of the object's layout. */
+static inline void check_other_builds(void *object, const char *before, nf_status (*call)(void *object))
+{
+    unsigned char *byte = (unsigned char *)object, kept[8];
+    int i;
+    memcpy(kept, object, sizeof kept);
+    CHECK_STATUS(call(object), NF_OK);
+    for (i = 0; i < 8; ++i) {
+        byte[i] = (unsigned char)(byte[i] ^ 1);
+        CHECK_STATUS(call(object), NF_ERR_STATE);
+        byte[i] = kept[i];
+    }
+    memcpy(object, before, sizeof kept);
+    CHECK_STATUS(call(object), NF_ERR_STATE);
+    memcpy(object, kept, sizeof kept);
+    CHECK_STATUS(call(object), NF_OK);
+}
+
 /* One address further on: misaligned for anything larger than a byte. */
 static inline void *misaligned(void *pointer) { return (unsigned char *)pointer + 1; }
 

@@ -102,6 +102,16 @@ static void sizes_and_init(void)
     memory_free(&m);
 }
 
+static nf_status reset(void *object) { return nf_gradient_reset((nf_gradient *)object); }
+
+/* Bytes of another build of the library, which may mean something else by them. */
+static void another_build(void)
+{
+    memory m;
+    check_other_builds(make(&m), "nf_grad\x01", reset);
+    memory_free(&m);
+}
+
 /* Whatever is refused leaves every byte as it was. */
 static void errors(void)
 {
@@ -165,5 +175,6 @@ int main(void)
     normal_use();
     sizes_and_init();
     errors();
+    another_build();
     return report("gradient");
 }

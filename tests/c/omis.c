@@ -203,10 +203,21 @@ static void errors(void)
     memory_free(&before);
 }
 
+static nf_status reset(void *object) { return nf_omis_reset((nf_omis *)object); }
+
+/* Bytes of another build of the library, which may mean something else by them. */
+static void another_build(void)
+{
+    memory m;
+    check_other_builds(make(&m), "nf_omis\x01", reset);
+    memory_free(&m);
+}
+
 int main(void)
 {
     normal_use();
     sizes_and_init();
     errors();
+    another_build();
     return report("omis");
 }

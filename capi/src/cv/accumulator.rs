@@ -3,14 +3,23 @@
 use super::batch::{samples, size};
 use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimate};
 use crate::convert;
+use crate::magic::magic;
 use crate::status::*;
 use core::ffi::c_void;
 use noisefloor_core::control_variate::State;
 use noisefloor_core::real::Real;
 
-/// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls.
+/// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, in one process or
+/// among those that run the same library file. The bytes are no file format: another build may lay them out otherwise.
+/// NF_ERR_STATE tells those of another version, or of another size, not of every other build.
 #[allow(non_camel_case_types)]
 pub struct nf_cv_accumulator {
+    _private: (),
+}
+
+/// What stands at the start of the memory, before the sums.
+#[repr(C, align(8))]
+struct Header {
     magic: u64,
     state: AnyState,
 }
@@ -24,11 +33,10 @@ enum AnyState {
 /// Whether accumulators in double precision are part of the library: if not, nothing must make the compiler think so.
 const HAS_DOUBLE: bool = cfg!(feature = "double");
 
-/// "nf_cvac1" as bytes; the last is the layout's version.
-const MAGIC: u64 = u64::from_le_bytes(*b"nf_cvac1");
+const MAGIC: u64 = magic::<Header>("nf_cv_accumulator");
 
 /// Bytes that the sums start at.
-const HEADER: usize = size_of::<nf_cv_accumulator>().next_multiple_of(8);
+const HEADER: usize = size_of::<Header>();
 
 /// Bytes that an accumulator needs; 0 for a configuration that is NULL, out of range or not for streaming.
 #[unsafe(no_mangle)]
@@ -54,7 +62,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_init(
 ) -> nf_status {
     status((|| {
         // SAFETY: the caller's pointers, each checked there.
-        let (config, out) = unsafe { (convert::reference(config)?, convert::reference_mut(out)?) };
+        let (config, out) = unsafe { (convert::reference(config)?, convert::room(out)?) };
         let core = core_config(config)?;
         let (state, sums) = if is_narrow(config)? {
             let state = State::new(&core).map_err(status_of)?;
@@ -65,13 +73,12 @@ pub unsafe extern "C" fn nf_cv_accumulator_init(
         };
         // SAFETY: the caller's memory, `bytes` long.
         let memory = unsafe { convert::memory(memory, bytes, HEADER + sums)? };
-        let accumulator = memory.cast::<nf_cv_accumulator>();
         // SAFETY: `memory` is aligned to 8 bytes and holds the header and, cleared, the sums.
         unsafe {
             memory.add(HEADER).write_bytes(0, sums);
-            accumulator.write(nf_cv_accumulator { magic: MAGIC, state });
+            memory.cast::<Header>().write(Header { magic: MAGIC, state });
         }
-        *out = accumulator;
+        out.write(memory.cast());
         Ok(())
     })())
 }
@@ -162,7 +169,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_estimate(
     status((|| {
         // SAFETY: the caller's object and memory, each checked there.
         unsafe {
-            let out = convert::reference_mut(out)?;
+            let out = convert::room(out)?;
             let estimate = match open_shared(accumulator)? {
                 OpenedShared::Double(state, sums) => {
                     let workspace = convert::workspace(workspace, bytes, state.workspace_len())?;
@@ -173,7 +180,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_estimate(
                     state.estimate(sums, workspace)
                 }
             };
-            *out = c_estimate(&estimate.map_err(status_of)?);
+            out.write(c_estimate(&estimate.map_err(status_of)?));
             Ok(())
         }
     })())
@@ -210,7 +217,7 @@ unsafe fn open<'a>(accumulator: *mut nf_cv_accumulator) -> Result<Opened<'a>, nf
     unsafe {
         check(accumulator)?;
         let sums = accumulator.cast::<u8>().add(HEADER);
-        Ok(match &mut (*accumulator).state {
+        Ok(match &mut (*accumulator.cast::<Header>()).state {
             AnyState::Double(_) if !HAS_DOUBLE => return Err(NF_ERR_STATE),
             AnyState::Double(state) => {
                 let sums = convert::slice_mut(sums.cast(), state.len())?;
@@ -232,7 +239,7 @@ unsafe fn open_shared<'a>(accumulator: *const nf_cv_accumulator) -> Result<Opene
     unsafe {
         check(accumulator)?;
         let sums = accumulator.cast::<u8>().add(HEADER);
-        Ok(match &(*accumulator).state {
+        Ok(match &(*accumulator.cast::<Header>()).state {
             AnyState::Double(_) if !HAS_DOUBLE => return Err(NF_ERR_STATE),
             AnyState::Double(state) => OpenedShared::Double(state, convert::slice(sums.cast(), state.len())?),
             AnyState::Single(state) => OpenedShared::Single(state, convert::slice(sums.cast(), state.len())?),
@@ -246,11 +253,11 @@ unsafe fn check(accumulator: *const nf_cv_accumulator) -> Result<(), nf_status> 
     if accumulator.is_null() {
         return Err(NF_ERR_NULL);
     }
-    if !accumulator.is_aligned() {
+    if !accumulator.cast::<Header>().is_aligned() {
         return Err(NF_ERR_ALIGNMENT);
     }
     // SAFETY: the caller's promise; any bytes are a number.
-    if unsafe { (&raw const (*accumulator).magic).read() } != MAGIC {
+    if unsafe { accumulator.cast::<u64>().read() } != MAGIC {
         return Err(NF_ERR_STATE);
     }
     Ok(())

@@ -59,7 +59,7 @@ pub unsafe extern "C" fn nf_cv_estimate_with_controls(
 ) -> nf_status {
     status((|| {
         // SAFETY: the caller's pointers, each checked there.
-        let (config, out) = unsafe { (convert::reference(config)?, convert::reference_mut(out)?) };
+        let (config, out) = unsafe { (convert::reference(config)?, convert::room(out)?) };
         let (core, narrow) = (core_config(config)?, is_narrow(config)?);
         // SAFETY: the caller's arrays, of the lengths the header states.
         let samples = unsafe { samples(&core, u, f, h, h_integral, n)? };
@@ -74,7 +74,7 @@ pub unsafe extern "C" fn nf_cv_estimate_with_controls(
                 unsafe { convert::workspace::<f64>(workspace, bytes, len(cv::workspace_len::<f64>(&core, n))?)? };
             dispatch::estimate(&core, samples, workspace)
         };
-        *out = c_estimate(&estimate.map_err(status_of)?);
+        out.write(c_estimate(&estimate.map_err(status_of)?));
         Ok(())
     })())
 }
@@ -95,7 +95,7 @@ pub unsafe extern "C" fn nf_cv_gradient_descent(
 ) -> nf_status {
     status((|| {
         // SAFETY: the caller's pointers, each checked there.
-        let (config, out) = unsafe { (convert::reference(config)?, convert::reference_mut(out)?) };
+        let (config, out) = unsafe { (convert::reference(config)?, convert::room(out)?) };
         let (core, narrow) = (core_config(config)?, is_narrow(config)?);
         if core.estimator != cv::Estimator::GradientDescent || core.controls > 0 {
             return Err(NF_ERR_UNSUPPORTED);
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn nf_cv_gradient_descent(
                 unsafe { convert::workspace::<f64>(workspace, bytes, len(cv::workspace_len::<f64>(&core, n))?)? };
             cv::gradient_descent(&core, samples, coefficients, workspace)
         };
-        *out = c_estimate(&estimate.map_err(status_of)?);
+        out.write(c_estimate(&estimate.map_err(status_of)?));
         Ok(())
     })())
 }

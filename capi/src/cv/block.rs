@@ -77,7 +77,7 @@ pub unsafe extern "C" fn nf_cv_block_estimate(
         let total = convert::product(pixels, n)?;
         // SAFETY: the caller's arrays, of the lengths the header states.
         let (samples, out) = unsafe {
-            (samples(&core, u, f, core::ptr::null(), core::ptr::null(), total)?, convert::slice_mut(out, pixels)?)
+            (samples(&core, u, f, core::ptr::null(), core::ptr::null(), total)?, convert::rooms(out, pixels)?)
         };
         let image = Image::unordered(pixels);
         // SAFETY: the caller's workspace, `bytes` long.
@@ -131,7 +131,7 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
         let total = convert::product(pixels, n)?;
         // SAFETY: the caller's arrays, of the lengths the header states.
         let (samples, out) = unsafe {
-            (samples(&core, u, f, core::ptr::null(), core::ptr::null(), total)?, convert::slice_mut(out, pixels)?)
+            (samples(&core, u, f, core::ptr::null(), core::ptr::null(), total)?, convert::rooms(out, pixels)?)
         };
         if !given.surfaces.is_null() {
             // SAFETY: as above.
@@ -187,11 +187,11 @@ unsafe fn estimate(
     samples: Samples<'_>,
     n: usize,
     (workspace, bytes): (*mut core::ffi::c_void, usize),
-    out: &mut [nf_estimate],
+    out: &mut [convert::Room<nf_estimate>],
 ) -> Result<(), nf_status> {
     let write = |pixel: usize, estimate: Estimate| {
         if let Some(out) = out.get_mut(pixel) {
-            *out = c_estimate(&estimate);
+            out.write(c_estimate(&estimate));
         }
     };
     if narrow {

@@ -133,8 +133,8 @@ pub struct nf_estimate {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_config_default(config: *mut nf_cv_config) {
     // SAFETY: the caller's pointer, checked there for NULL and alignment.
-    if let Ok(config) = unsafe { convert::reference_mut(config) } {
-        *config = default_config();
+    if let Ok(config) = unsafe { convert::room(config) } {
+        config.write(default_config());
     }
 }
 

@@ -53,7 +53,7 @@ pub unsafe extern "C" fn nf_sampler_fill(
             return Err(NF_ERR_MEMORY);
         }
         // SAFETY: the caller passes room for `len` numbers, which are no fewer.
-        let u = unsafe { convert::slice_mut(u, needed) }?;
+        let u = unsafe { convert::outputs(u, needed) }?;
         let sample = dims.iter().fold(0_usize, |sum, &dims| sum.wrapping_add(dims as usize));
         let pixels = u.chunks_exact_mut(sample.wrapping_mul(samples as usize).max(1));
         let places = (0..height).flat_map(|y| (0..width).map(move |x| (y, x)));

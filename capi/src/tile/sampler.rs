@@ -126,26 +126,23 @@ unsafe fn stored<const N: usize>(sampler: &nf_sampler, u: *mut f32) -> bool {
     // SAFETY: passed on to the caller.
     let Some(tile) = (unsafe { core_view(sampler.tile) }) else { return false };
     // SAFETY: passed on to the caller.
-    let Ok(u) = (unsafe { convert::reference_mut(u.cast::<[f32; N]>()) }) else { return false };
+    let Ok(u) = (unsafe { convert::room(u.cast::<[f32; N]>()) }) else { return false };
     let sampler = Sampler::resume(&tile, state(sampler));
-    if N < 4 {
-        return sampler.draw_stored(u);
-    }
     let mut drawn = [0.0; N];
     sampler.draw_stored(&mut drawn) && put(u, drawn)
 }
 
-/// Writes four numbers at once: a caller that reads them as one vector would have to wait for four writes to reach the cache.
+/// Writes the numbers, four at once: a caller that reads them as one vector would have to wait for four writes to reach the cache.
 #[inline(always)]
-fn put<const N: usize>(u: &mut [f32; N], drawn: [f32; N]) -> bool {
+fn put<const N: usize>(u: &mut convert::Room<[f32; N]>, drawn: [f32; N]) -> bool {
     match drawn[..] {
         #[cfg(target_arch = "x86_64")]
         [a, b, c, d] => {
             use core::arch::x86_64::{_mm_set_ps, _mm_storeu_ps};
             // SAFETY: every x86-64 has SSE. N is 4, and no alignment is needed.
-            unsafe { _mm_storeu_ps(u.as_mut_ptr(), _mm_set_ps(d, c, b, a)) }
+            unsafe { _mm_storeu_ps(u.as_mut_ptr().cast(), _mm_set_ps(d, c, b, a)) }
         }
-        _ => *u = drawn,
+        _ => _ = u.write(drawn),
     }
     true
 }
@@ -157,12 +154,12 @@ fn put<const N: usize>(u: &mut [f32; N], drawn: [f32; N]) -> bool {
 #[inline(never)]
 unsafe fn computed<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
     // SAFETY: passed on to the caller.
-    let Ok(u) = (unsafe { convert::reference_mut(u.cast::<[f32; N]>()) }) else { return };
+    let Ok(u) = (unsafe { convert::room(u.cast::<[f32; N]>()) }) else { return };
     // SAFETY: passed on to the caller.
-    *u = match unsafe { core_view(sampler.tile) } {
+    u.write(match unsafe { core_view(sampler.tile) } {
         Some(tile) => Sampler::resume(&tile, state(sampler)).draw(),
         None => [0.0; N],
-    }
+    });
 }
 
 #[inline(always)]
