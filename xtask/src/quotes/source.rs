@@ -150,6 +150,10 @@ fn collect(json: &Value, place: &Rc<Place>, found: &mut Vec<Measured>) {
 
 /// Words and numbers of a name, in no order.
 pub(super) fn words(text: &str) -> HashSet<String> {
+    in_order(text).into_iter().collect()
+}
+
+pub(super) fn in_order(text: &str) -> Vec<String> {
     text.split(|c: char| !c.is_alphanumeric() && !"._".contains(c))
         .map(|word| word.trim_matches('.').to_lowercase())
         .filter(|word| !word.is_empty())
