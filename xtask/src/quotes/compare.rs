@@ -101,13 +101,20 @@ pub(super) fn search(
         .filter(|(_, measured)| kind == Kind::Value || context.before.contains(&measured.place))
         .collect();
     let half = 0.5 * 10f64.powi(-number.decimals) * (1.0 + 1e-6);
-    let rounds_to = |measured: &Measured, value: f64| (measured.value - value).abs() <= half;
+    let rounds_to = |measured: &Measured, value: f64| {
+        [measured.value, measured.other].iter().all(|own| (own - value).abs() <= half)
+    };
     let is_right = |value: f64| candidates.iter().any(|(_, measured)| rounds_to(measured, value));
     let names = || selections.iter().map(|selection| selection.name.as_str()).collect::<Vec<_>>().join("; ");
     if !is_right(number.value) {
         let wrong = match kind {
             Kind::Value => format!("{} is not in {}", number.text, names()),
-            _ => format!("{} is no interval's of the figure before it in {}", number.text, names()),
+            Kind::Bound => format!("{} is no end of an interval of the figure before it in {}", number.text, names()),
+            Kind::HalfWidth => format!(
+                "± {} is not both sides of an interval of the figure before it in {}; where they differ, write [low, high]",
+                number.text,
+                names()
+            ),
         };
         let all = selections.iter().flat_map(|selection| &selection.numbers).filter(|one| one.kind == kind);
         let nearest = nearest::of(number.value, context.line, all);

@@ -93,11 +93,21 @@ fn only_values_count() {
 fn intervals_are_of_the_figure_before_them() {
     accepted("embree/direct", ".43 ± .03 and -.71 ± .1");
     accepted("embree/direct", ".43 [.40, .46]");
-    assert!(error("embree/direct", ".43 ± .1").contains("no interval's of the figure before it"));
+    assert!(error("embree/direct", ".43 ± .1").contains("not both sides of an interval of the figure before it"));
+    assert!(error("embree/direct", ".43 [.40, .47]").contains("no end of an interval of the figure before it"));
     error("embree/direct", ".43 [-.8, .46]");
     error("embree/direct", "± .03");
     accepted("embree/indirect", "+.315 ± .04");
     error("embree/indirect", ".04");
+}
+
+/// 0.4343 [0.400, 0.460]: .0343 below, .0257 above, .030 on average.
+#[test]
+fn sides_that_differ_are_quoted_as_ends() {
+    for of in [".434 ± .030", ".434 ± .034", ".434 ± .026"] {
+        assert!(error("embree/direct", of).contains("write [low, high]"), "{of}");
+    }
+    accepted("embree/direct", ".434 [.400, .460]");
 }
 
 #[test]
