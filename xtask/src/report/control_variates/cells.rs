@@ -88,6 +88,8 @@ pub(super) struct Summary {
     /// For free samples, and for those of a microsecond.
     pub(super) gains: [f64; 2],
     pub(super) worst: Estimate,
+    /// The largest of the lower and of the upper ends of the integrands' intervals.
+    pub(super) ends: [f64; 2],
     /// Its integrand.
     pub(super) place: String,
 }
@@ -97,6 +99,7 @@ impl Summary {
     pub(super) fn new(setting: &Setting, cells: &[&Cell]) -> Option<Self> {
         let worst = cells.iter().max_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value))?;
         let count = cells.len() as f64;
+        let largest = |end: &dyn Fn(&Estimate) -> f64| cells.iter().map(|cell| end(&cell.ratio)).fold(0.0, f64::max);
         let mean = |of: &dyn Fn(&Cell) -> f64| (cells.iter().map(|cell| of(cell).ln()).sum::<f64>() / count).exp();
         Some(Self {
             setting: setting.clone(),
@@ -104,6 +107,7 @@ impl Summary {
             ns: mean(&|cell| cell.ns),
             gains: [0.0, MICROSECOND].map(|cost| mean(&|cell| cell.gain(cost))),
             worst: worst.ratio,
+            ends: [largest(&|ratio| ratio.low), largest(&|ratio| ratio.high)],
             place: worst.integrand.clone(),
         })
     }
