@@ -24,7 +24,7 @@ const SOLVE_BOUND: f64 = 150.0;
 fn verdict(ratio: Ratio, bound: f64) -> &'static str {
     if ratio.upper() <= bound {
         "pass"
-    } else if ratio.value - ratio.half_width > bound {
+    } else if ratio.lower() > bound {
         "FAIL"
     } else if ratio.value <= bound {
         "pass, but for its interval"

@@ -22,8 +22,8 @@ pub(crate) fn geometric_mean<'a>(cells: impl Iterator<Item = &'a Cell>) -> Ratio
 fn mean_of(ratios: impl Iterator<Item = Ratio>) -> Ratio {
     let ratios: Vec<Ratio> = ratios.collect();
     let value = statistics::geometric_mean(&ratios.iter().map(|ratio| ratio.value).collect::<Vec<_>>());
-    let spread: f64 = ratios.iter().map(|ratio| (ratio.half_width / ratio.value).powi(2)).sum();
-    Ratio { value, half_width: value * spread.sqrt() / ratios.len() as f64 }
+    let spread: f64 = ratios.iter().map(|ratio| (ratio.half_width / ratio.value).ln_1p().powi(2)).sum();
+    Ratio { value, half_width: value * (spread.sqrt() / ratios.len() as f64).exp_m1() }
 }
 
 /// Writes report.md, must_reach.csv (columns divided by semicolons), cells.csv and speed.csv.

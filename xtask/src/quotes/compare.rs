@@ -2,7 +2,7 @@
 
 use super::nearest;
 use super::number::Number;
-use super::source::{Kind, Measured, Place, Sources, TILES, words};
+use super::source::{Kind, Measured, Place, Sources, TILES, in_order, words};
 use std::cell::Cell;
 use std::collections::HashSet;
 use std::rc::Rc;
@@ -25,14 +25,15 @@ impl Selection {
             let hint = if like.is_empty() { String::new() } else { format!("; there are {like}") };
             format!("there is no source `{source}`{hint}")
         })?;
-        let wanted = words(wanted);
-        let is_wanted = |measured: &&Measured| {
-            let Place { row, column } = &*measured.place;
-            let mut own = words(row);
-            own.extend(words(column));
-            wanted.is_subset(&own)
-        };
-        let numbers: Vec<Measured> = all.iter().filter(is_wanted).cloned().collect();
+        let place = |measured: &Measured| [&measured.place.row, &measured.place.column].map(|name| in_order(name));
+        let places: Vec<[Vec<String>; 2]> = all.iter().map(place).collect();
+        let wanted = phrases(&in_order(wanted), places.iter().flatten());
+        // A phrase that names rows chooses among them: a heading that has it too would let every row pass.
+        let names_rows = |phrase: &[String]| places.iter().any(|[row, _]| has(row, phrase));
+        let wanted: Vec<_> = wanted.into_iter().map(|phrase| (usize::from(!names_rows(&phrase)), phrase)).collect();
+        let is_wanted = |place: &[Vec<String>; 2]| wanted.iter().all(|(part, phrase)| has(&place[*part], phrase));
+        let numbers: Vec<Measured> =
+            all.iter().zip(&places).filter(|(_, place)| is_wanted(place)).map(|(one, _)| one.clone()).collect();
         if numbers.is_empty() && !wanted.is_empty() {
             return Err(format!("`{name}`: no row and column of {source} have these words"));
         }
@@ -48,6 +49,25 @@ impl Selection {
         }
         (most, self.numbers.iter().filter(|measured| shared(measured) == most).collect())
     }
+}
+
+/// Each word alone, but a number with the word before it where a name has them together: `order 4` is not order 3 of 4 samples.
+fn phrases<'a>(words: &[String], names: impl Iterator<Item = &'a Vec<String>> + Clone) -> Vec<Vec<String>> {
+    let mut phrases: Vec<Vec<String>> = Vec::new();
+    for word in words {
+        let is_number = !word.contains(char::is_alphabetic);
+        match phrases.last_mut().filter(|last| is_number && last.len() == 1) {
+            Some(last) if names.clone().any(|name| has(name, &[last[0].clone(), word.clone()])) => {
+                last.push(word.clone())
+            }
+            _ => phrases.push(vec![word.clone()]),
+        }
+    }
+    phrases
+}
+
+fn has(name: &[String], phrase: &[String]) -> bool {
+    name.windows(phrase.len()).any(|words| words == phrase)
 }
 
 /// Where a figure stands.
@@ -81,13 +101,20 @@ pub(super) fn search(
         .filter(|(_, measured)| kind == Kind::Value || context.before.contains(&measured.place))
         .collect();
     let half = 0.5 * 10f64.powi(-number.decimals) * (1.0 + 1e-6);
-    let rounds_to = |measured: &Measured, value: f64| (measured.value - value).abs() <= half;
+    let rounds_to = |measured: &Measured, value: f64| {
+        [measured.value, measured.other].iter().all(|own| (own - value).abs() <= half)
+    };
     let is_right = |value: f64| candidates.iter().any(|(_, measured)| rounds_to(measured, value));
     let names = || selections.iter().map(|selection| selection.name.as_str()).collect::<Vec<_>>().join("; ");
     if !is_right(number.value) {
         let wrong = match kind {
             Kind::Value => format!("{} is not in {}", number.text, names()),
-            _ => format!("{} is no interval's of the figure before it in {}", number.text, names()),
+            Kind::Bound => format!("{} is no end of an interval of the figure before it in {}", number.text, names()),
+            Kind::HalfWidth => format!(
+                "± {} is not both sides of an interval of the figure before it in {}; where they differ, write [low, high]",
+                number.text,
+                names()
+            ),
         };
         let all = selections.iter().flat_map(|selection| &selection.numbers).filter(|one| one.kind == kind);
         let nearest = nearest::of(number.value, context.line, all);

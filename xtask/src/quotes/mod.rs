@@ -9,9 +9,10 @@
 //! - A figure is a number with decimals or with a unit (of time, `%`, `times`, `instructions`), outside of code, links and formulas.
 //! - A source is a table of a chapter of docs/report (CHAPTER/TABLE), the figures that the chapter's text quotes (CHAPTER/quoted), its settings
 //!   (CHAPTER/settings), or one of core/tiles/*.toml (tiles/NAME; `tiles` where the rows of a table
-//!   name the tiles). `@` narrows it to the cells whose row and column have all these words. A chapter alone is none.
+//!   name the tiles). `@` narrows it to the cells whose row and column have all these words: a word of any row's name must be in
+//!   the cell's, any other in its column's. A chapter alone is none.
 //! - The figure must be a cell's value, sign included, rounded to the figure's digits. In a table's row only the source's rows count that share the most words with
-//!   it. Behind `±` stands half of the interval of the same cell, in brackets its ends.
+//!   it. Behind `±` stands how far both ends of the same cell's interval are from it, in brackets its ends.
 //! - If more than a third of the figures beside it would pass as well, the figure is not accepted: the source must be narrowed.
 //! - A source that no figure comes from is an error; so is `none (why)`, for numbers that nothing here has measured, without such a number.
 

@@ -54,7 +54,7 @@ fn significant(value: f64) -> String {
 fn the_row_that_the_line_names_is_told() {
     let measured = |value, row: &str, column: &str| {
         let place = Place { row: row.to_owned(), column: column.to_owned() };
-        Measured { value, kind: super::source::Kind::Value, place: place.into() }
+        Measured { value, other: value, kind: super::source::Kind::Value, place: place.into() }
     };
     let all = [
         measured(0.44, "bathroom", "direct"),

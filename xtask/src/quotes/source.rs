@@ -13,7 +13,7 @@ pub(super) enum Kind {
     Value,
     /// An end of its interval.
     Bound,
-    /// Half of its interval's width.
+    /// The distance from it to the ends of its interval.
     HalfWidth,
 }
 
@@ -28,6 +28,8 @@ pub(super) struct Place {
 #[derive(Clone, Debug)]
 pub(super) struct Measured {
     pub(super) value: f64,
+    /// Of the width of an interval the other side, which must be the same as far as is quoted; else the value.
+    pub(super) other: f64,
     pub(super) kind: Kind,
     /// The same for what one cell holds.
     pub(super) place: Rc<Place>,
@@ -126,7 +128,8 @@ fn files(folder: &Path, extension: &str) -> Vec<(String, String)> {
 
 /// The numbers of values and of texts; of a figure its value and its interval, not how it is written or from how many seeds it is.
 fn collect(json: &Value, place: &Rc<Place>, found: &mut Vec<Measured>) {
-    let mut push = |kind, value| found.push(Measured { value, kind, place: Rc::clone(place) });
+    let mut add = |kind, value, other| found.push(Measured { value, other, kind, place: Rc::clone(place) });
+    let mut push = |kind, value| add(kind, value, value);
     match json {
         Value::Number(number) => number.as_f64().into_iter().for_each(|value| push(Kind::Value, value)),
         Value::String(text) => {
@@ -136,12 +139,13 @@ fn collect(json: &Value, place: &Rc<Place>, found: &mut Vec<Measured>) {
         }
         Value::Array(values) => values.iter().for_each(|value| collect(value, place, found)),
         Value::Object(fields) => {
-            fields.get("value").and_then(Value::as_f64).into_iter().for_each(|value| push(Kind::Value, value));
+            let value = fields.get("value").and_then(Value::as_f64);
+            value.into_iter().for_each(|value| push(Kind::Value, value));
             let interval = fields.get("interval").and_then(Value::as_array).map(Vec::as_slice);
             if let Some([Some(low), Some(high)]) = interval.map(|ends| [0, 1].map(|end| ends.get(end)?.as_f64())) {
                 push(Kind::Bound, low);
                 push(Kind::Bound, high);
-                push(Kind::HalfWidth, (high - low) / 2.0);
+                value.into_iter().for_each(|value| add(Kind::HalfWidth, high - value, value - low));
             }
         }
         Value::Null | Value::Bool(_) => {}
@@ -150,6 +154,10 @@ fn collect(json: &Value, place: &Rc<Place>, found: &mut Vec<Measured>) {
 
 /// Words and numbers of a name, in no order.
 pub(super) fn words(text: &str) -> HashSet<String> {
+    in_order(text).into_iter().collect()
+}
+
+pub(super) fn in_order(text: &str) -> Vec<String> {
     text.split(|c: char| !c.is_alphanumeric() && !"._".contains(c))
         .map(|word| word.trim_matches('.').to_lowercase())
         .filter(|word| !word.is_empty())

@@ -13,7 +13,10 @@ fn folder() -> TempDir {
             ["dining", "16", {"text": "0.434 [0.400, 0.460]", "value": 0.4343, "interval": [0.40, 0.46], "seeds": 77}],
             ["dragon", "64", {"text": "-0.712 [-0.800, -0.600]", "value": -0.712, "interval": [-0.8, -0.6]}]]},
         {"name": "indirect", "columns": ["scene", "bound", "ratio"], "rows": [["duck", "at most 0.8", "0.921"],
-            ["lens", "at most 0.8", "+0.315 +- 0.04"]]}]}"#;
+            ["lens", "at most 0.8", "+0.315 +- 0.04"]]},
+        {"name": "rays", "columns": ["a ray for each", "frame, ns per sample", "default, %"], "rows": [
+            ["sample", {"value": 512.3}, {"value": 35.7}], ["pixel", {"value": 434.2}, {"value": 16.3}]]},
+        {"name": "orders", "columns": ["samples", "order 3", "order 4"], "rows": [["4", 0.512, 0.443], ["16", 0.212, 0.125]]}]}"#;
     let many: Vec<String> =
         (0..200).map(|i| format!(r#"["row {i}", {{"value": {}}}]"#, 0.3 + 0.001 * f64::from(i))).collect();
     let many = format!(r#"{{"tables": [{{"name": "all", "columns": ["", "x"], "rows": [{}]}}]}}"#, many.join(","));
@@ -90,11 +93,21 @@ fn only_values_count() {
 fn intervals_are_of_the_figure_before_them() {
     accepted("embree/direct", ".43 ± .03 and -.71 ± .1");
     accepted("embree/direct", ".43 [.40, .46]");
-    assert!(error("embree/direct", ".43 ± .1").contains("no interval's of the figure before it"));
+    assert!(error("embree/direct", ".43 ± .1").contains("not both sides of an interval of the figure before it"));
+    assert!(error("embree/direct", ".43 [.40, .47]").contains("no end of an interval of the figure before it"));
     error("embree/direct", ".43 [-.8, .46]");
     error("embree/direct", "± .03");
     accepted("embree/indirect", "+.315 ± .04");
     error("embree/indirect", ".04");
+}
+
+/// 0.4343 [0.400, 0.460]: .0343 below, .0257 above, .030 on average.
+#[test]
+fn sides_that_differ_are_quoted_as_ends() {
+    for of in [".434 ± .030", ".434 ± .034", ".434 ± .026"] {
+        assert!(error("embree/direct", of).contains("write [low, high]"), "{of}");
+    }
+    accepted("embree/direct", ".434 [.400, .460]");
 }
 
 #[test]
@@ -107,6 +120,19 @@ fn what_says_little_must_be_narrowed() {
 }
 
 #[test]
+fn a_word_of_rows_names_no_column() {
+    accepted("embree/rays @ sample", "512.3 ns, 35.7 %");
+    accepted("embree/rays @ pixel frame", "434.2 ns");
+    error("embree/rays @ sample", "434.2 ns");
+    error("embree/rays @ sample", "16.3 %");
+    error("embree/rays @ sample frame", "35.7 %");
+    assert!(error("embree/rays @ sample pixel", "512.3 ns").contains("no row and column"));
+    accepted("embree/orders @ order 4", ".443 and .125");
+    error("embree/orders @ order 4", ".512");
+    accepted("embree/orders @ 4 order", ".512 and .443");
+}
+
+#[test]
 fn rows_are_of_the_same_name() {
     accepted("embree/direct", "| dining (2) | .43 |\n| dragon | -.71 |\n| | -.71 |\n| other | .43 |");
     error("embree/direct", "| dragon | .43 |");
@@ -116,10 +142,9 @@ fn rows_are_of_the_same_name() {
 
 #[test]
 fn sources_are_tables_that_are_there_and_needed() {
-    assert!(
-        error("embree/nothing", ".43")
-            .contains("there are embree/direct; embree/indirect; embree/quoted; embree/settings")
-    );
+    assert!(error("embree/nothing", ".43").contains(
+        "there are embree/direct; embree/indirect; embree/orders; embree/quoted; embree/rays; embree/settings"
+    ));
     assert!(error("embree", ".43").contains("there is no source `embree`"), "a chapter alone");
     error("tiles", ".043");
     accepted("tiles", "| `NF_TILE_A` | .043 |");

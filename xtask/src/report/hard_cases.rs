@@ -120,12 +120,7 @@ impl Case<'_> {
         let Some(row) = self.row(estimator) else { return Ok(None) };
         let Some(value) = row.optional("ratio")? else { return Ok(None) };
         let half: f64 = row.number("half_width")?;
-        Ok(Some(Estimate {
-            value,
-            low: (value - half).max(0.0),
-            high: value + half,
-            seeds: row.number("repetitions")?,
-        }))
+        Ok(Some(Estimate::of_logarithm(value, half, row.number("repetitions")?)))
     }
 
     /// The default's ratio. Without one, because calls failed, no bound is kept: it counts as infinite.

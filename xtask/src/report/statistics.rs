@@ -24,6 +24,24 @@ impl Estimate {
         Self { value, low: value, high: value, seeds: 1 }
     }
 
+    /// A ratio by an interval of its logarithm, whose upper end is `above` it; infinite if nothing is known.
+    pub(crate) fn of_logarithm(value: f64, above: f64, seeds: usize) -> Self {
+        let high = value + above;
+        Self { value, low: if above == 0.0 { value } else { value * (value / high) }, high, seeds }
+    }
+
+    /// The geometric mean of positive values, and Student's interval of its logarithm. Of fewer than three there is none: Student's quantile
+    /// of two, 12.7, says nothing.
+    pub(crate) fn geometric_mean(values: &[f64]) -> Self {
+        let logarithms: Vec<f64> = values.iter().map(|value| value.ln()).collect();
+        let Self { value, low, high, seeds } = Self::mean(&logarithms);
+        let value = value.exp();
+        if values.len() < 3 {
+            return Self { value, low: value, high: value, seeds };
+        }
+        Self { value, low: low.exp(), high: high.exp(), seeds }
+    }
+
     /// The median, and the percentile bootstrap's interval (B. Efron 1979) of it; the same values give the same interval. Fewer
     /// values than [`FEWEST`] give none.
     pub(crate) fn median(values: &[f64]) -> Self {
@@ -182,6 +200,24 @@ mod tests {
         assert!(mean.value == 2.0 && (mean.high - 2.0 - 4.303 / 3.0_f64.sqrt()).abs() < 1e-9);
         let ratio = Estimate::mean_ratio(&[2.0, 8.0], &[1.0, 1.0]);
         assert!((ratio.value - 4.0).abs() < 1e-12 && ratio.low < 2.0 && ratio.high > 8.0);
+    }
+
+    #[test]
+    fn intervals_of_logarithms_are_positive() {
+        let few = Estimate::geometric_mean(&[1.0, 4.0]);
+        assert!((few.value - 2.0).abs() < 1e-12 && !few.has_interval(), "{few:?}");
+        let three = Estimate::geometric_mean(&[0.5, 1.0, 8.0]);
+        assert!(three.has_interval() && three.low > 0.0, "{three:?}");
+        let value = 4f64.powf(1.0 / 3.0);
+        assert!((three.value - value).abs() < 1e-12 && (three.low * three.high - value * value).abs() < 1e-9);
+        // Logarithms 0, 1 and 2, whose standard deviation is 1.
+        let known = Estimate::geometric_mean(&[1.0, 1f64.exp(), 2f64.exp()]);
+        assert!((known.high.ln() - 1.0 - 4.303 / 3f64.sqrt()).abs() < 1e-9, "{known:?}");
+        let ratio = Estimate::of_logarithm(2.0, 6.0, 27);
+        assert_eq!((ratio.low, ratio.high), (0.5, 8.0));
+        let unknown = Estimate::of_logarithm(2.0, f64::INFINITY, 16);
+        assert!(unknown.low == 0.0 && !unknown.has_interval());
+        assert_eq!(Estimate::of_logarithm(0.0, 0.0, 16).low, 0.0);
     }
 
     #[test]

@@ -70,7 +70,7 @@ pub(super) fn hard(chapter: &mut Chapter, targets: &mut Targets, table: &Table) 
             for &n in &counts {
                 let row = table.find(&[("of", of), ("scene", scene), ("n", n)])?;
                 let (value, half): (f64, f64) = (row.number("ratio")?, row.number("half_width")?);
-                let ratio = Estimate { value, low: value - half, high: value + half, seeds: row.number("images")? };
+                let ratio = Estimate::of_logarithm(value, half, row.number("images")?);
                 let place = format!("{scene}, n = {n}");
                 let statement = format!("shared fits over the mean where they cannot help, {of}s: RMSE");
                 targets.at_most(&statement, &place, ratio, Unit::Ratio, HARD);

@@ -76,8 +76,7 @@ impl Cell {
 
 /// The ratio of a row that has one, with its interval.
 pub(super) fn ratio(row: Row) -> Result<Estimate> {
-    let (value, half): (f64, f64) = (row.number("ratio")?, row.number("half_width")?);
-    Ok(Estimate { value, low: (value - half).max(0.0), high: value + half, seeds: row.number("repetitions")? })
+    Ok(Estimate::of_logarithm(row.number("ratio")?, row.number("half_width")?, row.number("repetitions")?))
 }
 
 /// A setting over several integrands.
@@ -89,6 +88,8 @@ pub(super) struct Summary {
     /// For free samples, and for those of a microsecond.
     pub(super) gains: [f64; 2],
     pub(super) worst: Estimate,
+    /// The largest of the lower and of the upper ends of the integrands' intervals.
+    pub(super) ends: [f64; 2],
     /// Its integrand.
     pub(super) place: String,
 }
@@ -98,19 +99,33 @@ impl Summary {
     pub(super) fn new(setting: &Setting, cells: &[&Cell]) -> Option<Self> {
         let worst = cells.iter().max_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value))?;
         let count = cells.len() as f64;
+        let largest = |end: &dyn Fn(&Estimate) -> f64| cells.iter().map(|cell| end(&cell.ratio)).fold(0.0, f64::max);
         let mean = |of: &dyn Fn(&Cell) -> f64| (cells.iter().map(|cell| of(cell).ln()).sum::<f64>() / count).exp();
-        let value = mean(&|cell| cell.ratio.value.max(LEAST));
-        let spread = |cell: &&Cell| ((cell.ratio.high - cell.ratio.value) / cell.ratio.value.max(LEAST)).powi(2);
-        let half = value * cells.iter().map(spread).sum::<f64>().sqrt() / count;
         Some(Self {
             setting: setting.clone(),
-            ratio: Estimate { value, low: value - half, high: value + half, seeds: cells.len() },
+            ratio: geometric_mean(cells),
             ns: mean(&|cell| cell.ns),
             gains: [0.0, MICROSECOND].map(|cost| mean(&|cell| cell.gain(cost))),
             worst: worst.ratio,
+            ends: [largest(&|ratio| ratio.low), largest(&|ratio| ratio.high)],
             place: worst.integrand.clone(),
         })
     }
+}
+
+/// The geometric mean of the ratios of independent cells. Each side of the logarithms' intervals is combined by itself, in squares: the cells' need not be
+/// symmetric, as ratios below [`LEAST`] count as it.
+fn geometric_mean(cells: &[&Cell]) -> Estimate {
+    let count = cells.len() as f64;
+    let logarithm = |ratio: f64| ratio.max(LEAST).ln();
+    let value = cells.iter().map(|cell| logarithm(cell.ratio.value)).sum::<f64>() / count;
+    let side = |end: fn(&Estimate) -> f64| {
+        let squares = cells.iter().map(|cell| (logarithm(end(&cell.ratio)) - logarithm(cell.ratio.value)).powi(2));
+        squares.sum::<f64>().sqrt() / count
+    };
+    let [low, high] = [value - side(|ratio| ratio.low), value + side(|ratio| ratio.high)].map(f64::exp);
+    let seeds = cells.iter().map(|cell| cell.ratio.seeds).min().unwrap_or(0);
+    Estimate { value: value.exp(), low, high, seeds }
 }
 
 const MICROSECOND: f64 = 1000.0;
@@ -170,5 +185,49 @@ impl Cells {
             let _ = writeln!(out, "{:.3e},{half:.1e},{ns:.0},{efficiency}", ratio.value);
         }
         out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    pub(in super::super) fn cell(value: f64, above: f64) -> Cell {
+        Cell {
+            integrand: format!("f{value}"),
+            dims: 2,
+            n: 16,
+            setting: Setting { estimator: DEFAULT.to_owned(), basis: "legendre".to_owned(), order: 2 },
+            ratio: Estimate::of_logarithm(value, above, 27),
+            ns: 20.0,
+            mean_ns: 5.0,
+            efficiency: String::new(),
+        }
+    }
+
+    #[test]
+    fn intervals_of_means_are_positive_and_those_of_logarithms() {
+        // Three of four are exact: the interval is a fourth of the one's in logarithms.
+        let cells = [cell(0.5, 0.0), cell(0.5, 0.0), cell(0.5, 0.0), cell(0.5, 0.5)];
+        let mean = geometric_mean(&cells.each_ref());
+        assert!((mean.high - 0.5 * 2f64.powf(0.25)).abs() < 1e-12 && (mean.low - 0.5 / 2f64.powf(0.25)).abs() < 1e-12);
+        // A ratio of a thousandth that may be a tenth: the mean is of what counts, .01, and nothing is below that.
+        let mean = geometric_mean(&[&cell(0.001, 0.099), &cell(0.01, 0.0)]);
+        assert!((mean.value - 0.01).abs() < 1e-12 && (mean.low - 0.01).abs() < 1e-12, "{mean:?}");
+        assert!((mean.high - 0.01 * 10f64.sqrt()).abs() < 1e-9, "{mean:?}");
+        // Wide, as few repetitions are.
+        let mean = geometric_mean(&[&cell(2.231, 4.18), &cell(0.002, 0.5), &cell(0.1, 0.9)]);
+        assert!(0.0 < mean.low && mean.low < mean.value && mean.value < mean.high, "{mean:?}");
+        // Where one knows nothing, nothing is known of all.
+        assert!(!geometric_mean(&[&cell(0.5, f64::INFINITY), &cell(0.5, 0.1)]).has_interval());
+    }
+
+    #[test]
+    fn the_lower_end_of_a_cell_is_of_its_logarithm() -> Result<()> {
+        let text = "ratio,half_width,repetitions\n2.231,4.18,27\n";
+        let table = Table::parse(text, "grid.csv", ',')?;
+        let ratio = ratio(table.rows().next().expect("a row"))?;
+        assert!((ratio.low - 2.231 * 2.231 / 6.411).abs() < 1e-9, "{ratio:?}");
+        Ok(())
     }
 }

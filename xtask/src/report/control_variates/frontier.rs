@@ -18,8 +18,7 @@ const FAMILIES: [(&str, &str, [usize; 2]); 4] = [
 /// Settings that are worse than this are left out of the plots.
 const LARGEST: f64 = 2.0;
 const SHAPES: [Shape; 4] = [Shape::Circle, Shape::Square, Shape::Triangle, Shape::Cross];
-/// A setting is safe if no integrand's error is larger: the targets' 1.03, and an allowance for the noise of the largest of
-/// several figures.
+/// A setting is safe if no integrand's error is larger: the targets' 1.03, and an allowance.
 const SAFE: f64 = 1.05;
 /// On the frontier each point has so much less error than every faster one: less is noise.
 const STEP: f64 = 0.02;
@@ -34,7 +33,9 @@ pub(super) fn write(report: &Report, chapter: &mut Chapter, cells: &Cells) -> Re
          line is the frontier: each of its points has at least {step} percent less error than every faster setting; numbers beside it are orders. Coloured lines lead from the \
          frontier's points and the recommended setting to their worst integrand. Ringed: what `recommend()` says for independent samples, the default with polynomials. \
          Errors above {largest} are not shown, nor settings slower than twice the slowest of the frontier. The tables have the frontier, the recommended setting, and the \
-         most efficient of the safe settings if a sample costs a microsecond: safe is a setting whose worst integrand here has at most {safe} of MC's error. That is no \
+         most efficient of the safe settings if a sample costs a microsecond: safe is a setting of which every integrand's interval ends at or below {safe} of MC's error, not safe one of which some integrand's begins above; in \
+         between it is not decided, and is not named the best safe one. The worst is the largest of several noisy figures, so that it lies above the largest true \
+         one on average, and its interval is that integrand's alone; safety does not follow from it. That is no \
          promise for others: least squares is safe on smooth families only, the default by its construction."
     ));
     for (file, title, [low, high]) in FAMILIES {
@@ -61,7 +62,7 @@ fn family(
         let frontier = frontier(&all);
         let recommended = cells.recommended(high.min(15), n);
         panels.push(panel(&all, &frontier, &recommended, n));
-        let is_safe = |summary: &&Summary| summary.worst.value <= SAFE && summary.setting.estimator != MEAN;
+        let is_safe = |summary: &&Summary| is_safe(summary) == Some(true) && summary.setting.estimator != MEAN;
         let best = all.iter().filter(is_safe).max_by(|a, b| a.gains[1].total_cmp(&b.gains[1]));
         let advised = all.iter().find(|summary| summary.setting == recommended);
         let mut listed: Vec<&Summary> = frontier.clone();
@@ -99,6 +100,7 @@ fn family(
         "ns per sample",
         "efficiency, free samples",
         "efficiency, 1 us samples",
+        "safe",
         "what it is",
     ];
     chapter.table(file, &columns, 2, rows);
@@ -119,8 +121,19 @@ fn table_row(n: usize, summary: &Summary, roles: &str) -> Vec<Cell> {
         ns,
         free,
         dear,
+        safety(summary),
         roles,
     ]
+}
+
+/// None: the intervals do not decide.
+fn is_safe(summary: &Summary) -> Option<bool> {
+    let [low, high] = summary.ends;
+    if high <= SAFE { Some(true) } else { (low > SAFE).then_some(false) }
+}
+
+fn safety(summary: &Summary) -> &'static str {
+    is_safe(summary).map_or("not decided", |is_safe| if is_safe { "yes" } else { "no" })
 }
 
 /// Settings with less error than every faster one.
@@ -214,9 +227,10 @@ fn verdict(
         format!(
             "{n} samples: {name} is recommended because no safe setting is more efficient ({own} times MC's, worst error {worst})"
         )
-    } else if advised.worst.value > SAFE {
+    } else if is_safe(advised) != Some(true) {
+        let is = if is_safe(advised).is_some() { "is not safe" } else { "is not decided to be safe" };
         format!(
-            "{n} samples: {name} is recommended, but its worst error is {worst}; {} has an efficiency of {other}",
+            "{n} samples: {name} is recommended, but {is} (worst error {worst}); {}, which is, has an efficiency of {other}",
             best.setting.name()
         )
     } else {
@@ -239,7 +253,24 @@ mod tests {
     fn summary(order: usize, ratio: f64, ns: f64) -> Summary {
         let ratio = Estimate::exact(ratio);
         let setting = Setting { estimator: "robust".to_owned(), basis: "legendre".to_owned(), order };
-        Summary { setting, ratio, ns, gains: [1.0; 2], worst: ratio, place: String::new() }
+        Summary {
+            setting,
+            ratio,
+            ns,
+            gains: [1.0; 2],
+            worst: ratio,
+            ends: [ratio.low, ratio.high],
+            place: String::new(),
+        }
+    }
+
+    #[test]
+    fn what_intervals_do_not_decide_is_not_safe() {
+        let of = |ends| is_safe(&Summary { ends, ..summary(1, 1.0, 20.0) });
+        assert_eq!(of([0.9, 1.05]), Some(true));
+        assert_eq!(of([0.715, 1.349]), None);
+        assert_eq!(of([0.9, f64::INFINITY]), None);
+        assert_eq!(of([1.06, 1.2]), Some(false));
     }
 
     #[test]

@@ -11,7 +11,7 @@ pub(super) fn collect(targets: &mut Targets, table: &Table) -> Result<()> {
         let value = row.number("value")?;
         let half = row.optional("half_width")?.unwrap_or(0.0);
         let seeds = if half > 0.0 { 2 } else { 1 };
-        let estimate = Estimate { value, low: value - half, high: value + half, seeds };
+        let estimate = Estimate::of_logarithm(value, half, seeds);
         let unit = if row.word("unit")? == "ns" { Unit::Nanoseconds } else { Unit::Ratio };
         let note = row.word("note")?;
         let note = if note.is_empty() { "all" } else { note };

@@ -30,12 +30,13 @@ fn introduce(sets: &Sets, chapter: &mut Chapter) -> Result<()> {
     let threads = sets.0.rows().map(|row| row.number::<u32>("threads")).collect::<Result<Vec<_>>>()?;
     let threads = chapter.setting("threads", threads.into_iter().max().unwrap_or(1));
     let confidence = chapter.setting("confidence, percent", 95);
+    let few = chapter.setting("seeds of an interval, at least", 3);
     chapter.paragraph(&format!(
         "Made by `cargo xtask report --only points`; machine-readable in `points.json`. Sets of points in the unit square, made by \
          `fsot::optimize` on {threads} threads, beside random and Owen-scrambled Sobol points. Seconds are those that passed."
     ));
     chapter.list(&[
-        format!("A figure is the mean over seeds, and in brackets its {confidence} % interval where there are several."),
+        format!("A figure is the geometric mean over seeds, and in brackets the {confidence} % interval of it, Student's of its logarithm, where there are at least {few}."),
         "Classes: equal shares of the points are colours, and every combination of colours is to be uniform: two colours have three \
          classes, three have seven, four have fifteen."
             .to_owned(),
@@ -56,10 +57,11 @@ impl Sets {
         self.0.rows().filter(move |row| row.has(wanted))
     }
 
-    /// The mean of a column over the seeds of what is wanted; none where there is nothing, or no number.
+    /// The geometric mean of a column over the seeds of what is wanted; none where there is nothing, or no number.
     fn mean(&self, wanted: &[(&str, &str)], column: &str) -> Result<Option<Estimate>> {
         let values: Vec<f64> = self.rows(wanted).map(|row| row.number(column)).collect::<Result<_>>()?;
-        Ok((!values.is_empty() && values.iter().all(|value| value.is_finite())).then(|| Estimate::mean(&values)))
+        Ok((!values.is_empty() && values.iter().all(|value| value.is_finite()))
+            .then(|| Estimate::geometric_mean(&values)))
     }
 
     /// The values of a column among what is wanted, each once.

@@ -9,8 +9,9 @@ use anyhow::{Context, Result};
 
 const SCENES: [&str; 6] = ["killeroos", "bathroom", "dining", "chopper", "microcity", "duck"];
 const ESTIMATORS: [&str; 4] = [BASELINE, DEFAULT, LEAST_SQUARES, SHARED];
-/// Camera rays: one for each sample, as renderers trace them, or one for each pixel.
-const RAYS: [(&str, &[&str]); 2] = [("sample", &["--filter", "box"]), ("pixel", &[])];
+/// As many camera rays as samples, as renderers trace them, or one for each pixel.
+const EACH: &str = "many";
+const RAYS: [(&str, &[&str]); 2] = [(EACH, &["--filter", "box"]), ("one", &[])];
 
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Overhead", "section 4.3.5, computation time");
@@ -18,7 +19,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     let order = section.chapter.setting("order of the overhead", 2);
     section.chapter.paragraph(&format!(
         "Time of each estimator, less the plain mean's, as a part of the plain mean's whole frame time (drawing points, tracing, adding up); order \
-         {order}, three channels. With a camera ray for each sample the pixel's footprint is two more dims, which are regressed too."
+         {order}, three channels. Camera rays of a pixel: many is one for each sample; the pixel's footprint is two more dims then, which are regressed too."
     ));
     section.targets.reason(
         ["overhead", ""],
@@ -45,7 +46,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
                 for estimator in &ESTIMATORS[1..] {
                     let part = overhead(find(&renderings, estimator)?, plain);
                     cells.push(Figure::new(part, Unit::Percent).into());
-                    if rays == "sample" && *estimator != SHARED && spp == plan.middle() {
+                    if rays == EACH && *estimator != SHARED && spp == plan.middle() {
                         let label = if *estimator == DEFAULT { "default" } else { "least squares" };
                         let statement = format!(
                             "overhead of the {label}, order {order}, {spp} spp, a camera ray per sample, percent"
@@ -59,7 +60,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     }
     let columns = [
         "scene",
-        "camera ray for each",
+        "camera rays of a pixel",
         "samples",
         "frame, ns per sample",
         "default, %",
