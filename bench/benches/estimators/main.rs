@@ -2,8 +2,9 @@
 //! `cargo bench --package noisefloor-bench --bench estimators`.
 //!
 //! Settings take turns on the same samples, eight estimates at a time, so that a busy machine slows all alike. Seeds are
-//! fixed: errors are the same in every run, times are not.
+//! fixed: errors are the same in every run, times are not. Where errors do not tell whether a setting is safe, they are measured again, longer.
 
+mod again;
 mod convergence;
 mod fits;
 mod functions;
@@ -13,11 +14,15 @@ mod table;
 
 use anyhow::Result;
 use clap::Parser;
+use grid::Row;
 use indicatif::{ProgressBar, ProgressStyle};
 use noisefloor_bench::{Door, c_abi};
 use race::Effort;
 use std::path::PathBuf;
 use std::time::Instant;
+
+/// Seeds of what is measured again begin here.
+const AGAIN: u64 = 1000;
 
 /// Measures error and time of every setting and writes tables.
 #[derive(Parser)]
@@ -68,6 +73,25 @@ fn main() -> Result<()> {
             bar.inc(1);
         }
     }
+    let first = start.elapsed().as_secs_f64();
+    let open = again::open(&cells);
+    bar.inc_length(open.len() as u64);
+    let times = again::TIMES;
+    let effort = Effort {
+        budget: effort.budget * times as f64,
+        repetitions: effort.repetitions.map(|bound| bound * times),
+        ..effort
+    };
+    // Rows of a function and sample count follow each other.
+    let same = |&a: &usize, &b: &usize| (&cells[a].integrand, cells[a].n) == (&cells[b].integrand, cells[b].n);
+    let groups: Vec<Vec<usize>> = open.chunk_by(same).map(<[usize]>::to_vec).collect();
+    for group in groups {
+        let Row { integrand, n, .. } = &cells[group[0]];
+        bar.set_message(format!("{integrand}, n = {n}, again"));
+        let (seed, (_, function)) = (0..).zip(&functions).find(|(_, (_, f))| &f.name == integrand).expect("a function");
+        again::measure_again(&mut cells, &group, function, AGAIN + seed, effort);
+        bar.inc(group.len() as u64);
+    }
     let grid = start.elapsed().as_secs_f64();
     let effort = options.effort(1e7, [24, 1024]);
     let points = convergence::rows(effort, |figure| {
@@ -77,7 +101,14 @@ fn main() -> Result<()> {
     bar.finish_and_clear();
     table::write(&options.output, &cells, &points, &fits::rows())?;
     let all = start.elapsed().as_secs_f64();
-    println!("{} settings {grid:.0} s, {} points of plots {:.0} s", cells.len(), points.len(), all - grid);
+    println!(
+        "{} settings {first:.0} s, {} of them again {:.0} s, {} points of plots {:.0} s",
+        cells.len(),
+        open.len(),
+        grid - first,
+        points.len(),
+        all - grid
+    );
     println!("tables: {}", options.output.display());
     Ok(())
 }
