@@ -40,6 +40,7 @@ static nf_status estimate(void)
 
     nf_cv_config config;
     nf_cv_config_default(&config); /* 2 dimensions, order 2, 1 channel, the robust choice of fits */
+    config.stratified = 1; /* the tile's samples are; order and stride for other samples: nf_recommend() */
     nf_cv_image image = {0};
     image.width = SIZE;
     image.height = SIZE;
