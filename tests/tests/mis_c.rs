@@ -8,6 +8,8 @@ extern crate noisefloor as noisefloor_core;
 mod convert;
 #[path = "../../capi/src/mis.rs"]
 mod door;
+#[path = "../../capi/src/magic.rs"]
+mod magic;
 #[path = "../../capi/src/omis.rs"]
 mod omis;
 #[path = "../../capi/src/rng.rs"]
