@@ -87,7 +87,7 @@ fn a_name_as_long_as_there_can_be() {
 fn runs_with_the_same_outputs_do_not_mix() {
     let place = Place::new();
     let barrier = Barrier::new(2);
-    for _ in 0..200 {
+    for _ in 0..60 {
         std::thread::scope(|scope| {
             for content in [b"first", b"other"] {
                 let (place, barrier) = (&place, &barrier);
@@ -107,7 +107,7 @@ fn runs_with_the_same_outputs_do_not_mix() {
 #[test]
 fn tiles_made_at_once_under_one_name_are_one_of_them() {
     let place = Place::new();
-    for _ in 0..5 {
+    for _ in 0..3 {
         let start = |seed| {
             place.start(&format!("tile --size 16 --iterations 2 --integrands 1 --quiet --seed {seed} --out t.nft"))
         };
