@@ -9,11 +9,14 @@ use crate::run::Optimization;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use std::fs;
+use std::fs::{self, File};
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 const MAGIC: &[u8; 8] = b"FSOTCKP1";
 const DIGEST: usize = 32;
+/// The most bytes of a header. It names every input file of an animation, in some 70 bytes each.
+const MOST_HEADER: u32 = 16 << 20;
 /// Differences that an error lists.
 const LISTED: usize = 4;
 
@@ -83,17 +86,22 @@ pub fn save(path: &Path, problem: &Problem, optimization: &dyn Optimization) -> 
 /// The file cannot be read, is no checkpoint, is truncated or damaged, or belongs to another problem or version: the
 /// sentence says which, and what differs.
 pub fn resume(path: &Path, problem: &Problem, optimization: &mut dyn Optimization) -> Result<bool> {
-    let bytes = match fs::read(path) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(false),
-        result => result.map_err(Error::io(path))?,
-    };
     let refuse = |why: String| {
         Error::Input(format!(
             "cannot continue from the checkpoint {}: {why}. Remove it to start anew, or name another with --checkpoint",
             path.display()
         ))
     };
-    let (header, coordinates) = decode(&bytes).map_err(|why| refuse(why.to_owned()))?;
+    match fs::metadata(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
+        Err(error) => return Err(Error::io(path)(error)),
+        Ok(metadata) if !metadata.is_file() => return Err(refuse("it is not a file".to_owned())),
+        Ok(_) => {}
+    }
+    let file = File::open(path).map_err(Error::io(path))?;
+    let length = file.metadata().map_err(Error::io(path))?.len();
+    let wanted = optimization.coordinates().len();
+    let (header, coordinates) = decode(file, length, wanted).map_err(|why| refuse(why.to_owned()))?;
     if header.version != env!("CARGO_PKG_VERSION") {
         let version = env!("CARGO_PKG_VERSION");
         return Err(refuse(format!("it is of version {}, this is fsot {version}", header.version)));
@@ -104,32 +112,62 @@ pub fn resume(path: &Path, problem: &Problem, optimization: &mut dyn Optimizatio
             differences(&header.problem, &problem.description)
         )));
     }
-    if !optimization.restore(header.iteration, &coordinates) {
-        return Err(refuse("its state is not one of this problem's".to_owned()));
+    match coordinates {
+        Some(coordinates) if optimization.restore(header.iteration, &coordinates) => Ok(true),
+        _ => Err(refuse("its state is not one of this problem's".to_owned())),
     }
-    Ok(true)
 }
 
-fn decode(bytes: &[u8]) -> std::result::Result<(Header, Vec<f32>), &'static str> {
+/// The header of a file of `length` bytes, and its coordinates, unless there are not `wanted` of them: no more is read
+/// than this problem's state has, whatever a file says.
+fn decode(
+    mut file: impl Read,
+    length: u64,
+    wanted: usize,
+) -> std::result::Result<(Header, Option<Vec<f32>>), &'static str> {
     const TRUNCATED: &str = "it is truncated";
     const DAMAGED: &str = "it is damaged (its checksum does not match)";
-    if bytes.is_empty() {
+    if length == 0 {
         return Err("it is empty");
     }
-    let rest = bytes.strip_prefix(MAGIC).ok_or("it is not a checkpoint of fsot")?;
-    let (length, rest) = rest.split_first_chunk::<4>().ok_or(TRUNCATED)?;
-    let (header, rest) = rest.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or(TRUNCATED)?;
-    let header: Header = serde_json::from_slice(header).map_err(|_| DAMAGED)?;
-    let expected = header.coordinates.checked_mul(4).and_then(|size| size.checked_add(DIGEST as u64)).ok_or(DAMAGED)?;
-    if (rest.len() as u64) < expected {
+    let mut bytes = Vec::new();
+    // Reads on to an offset of the file.
+    let mut read_to = |bytes: &mut Vec<u8>, end: u64| {
+        let more = end.saturating_sub(bytes.len() as u64);
+        file.by_ref().take(more).read_to_end(bytes).is_ok_and(|read| read as u64 == more)
+    };
+    let start = MAGIC.len() as u64 + 4;
+    let whole = read_to(&mut bytes, start);
+    let size = bytes.strip_prefix(MAGIC).ok_or("it is not a checkpoint of fsot")?.first_chunk::<4>();
+    let size = u32::from_le_bytes(*size.filter(|_| whole).ok_or(TRUNCATED)?);
+    let body = start + u64::from(size);
+    if body > length {
+        return Err(TRUNCATED);
+    }
+    if size > MOST_HEADER {
+        return Err(DAMAGED);
+    }
+    if !read_to(&mut bytes, body) {
+        return Err(TRUNCATED);
+    }
+    let header: Header = serde_json::from_slice(&bytes[start as usize..]).map_err(|_| DAMAGED)?;
+    let content = header.coordinates.checked_mul(4).and_then(|size| size.checked_add(body)).ok_or(DAMAGED)?;
+    let end = content.checked_add(DIGEST as u64).ok_or(DAMAGED)?;
+    if length != end {
+        return Err(if length < end { TRUNCATED } else { DAMAGED });
+    }
+    if header.coordinates != wanted as u64 {
+        return Ok((header, None));
+    }
+    if !read_to(&mut bytes, end) {
         return Err(TRUNCATED);
     }
     let (content, digest) = bytes.split_at(bytes.len() - DIGEST);
-    if rest.len() as u64 != expected || Sha256::digest(content).as_slice() != digest {
+    if Sha256::digest(content).as_slice() != digest {
         return Err(DAMAGED);
     }
-    let coordinates = rest[..rest.len() - DIGEST].as_chunks::<4>().0;
-    Ok((header, coordinates.iter().map(|value| f32::from_le_bytes(*value)).collect()))
+    let coordinates = content[body as usize..].as_chunks::<4>().0;
+    Ok((header, Some(coordinates.iter().map(|value| f32::from_le_bytes(*value)).collect())))
 }
 
 /// "points: 4096 there, 1024 here; ..."

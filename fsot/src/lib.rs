@@ -5,6 +5,7 @@
 
 pub mod checkpoint;
 pub mod class;
+pub mod counted;
 pub mod error;
 pub mod export;
 pub mod memory;

@@ -1,13 +1,17 @@
 //! Files that appear whole or not at all.
 //!
 //! [`Outputs`] writes every file of a command beside its final place first; only when all are complete does
-//! [`commit`](Outputs::commit) rename them, one after the other, each of which replaces an older file atomically.
+//! [`commit`](Outputs::commit) rename them, one after the other, each of which replaces an older file atomically. What
+//! a run that was killed leaves beside them, [`check`] removes before the next.
+
+mod temporary;
 
 use crate::error::{Error, Result};
+use std::collections::HashSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use tempfile::{Builder, NamedTempFile};
+use tempfile::NamedTempFile;
 
 /// Files that are complete but not yet in their place. Dropped before [`commit`](Outputs::commit), they leave nothing.
 #[derive(Debug, Default)]
@@ -47,7 +51,7 @@ impl Outputs {
             self.pending.push(Pending::Stream { bytes: bytes.to_vec(), path: place });
             return Ok(());
         }
-        let mut file = temporary(&place).map_err(Error::io(path))?;
+        let mut file = temporary::create(&place).map_err(Error::io(path))?;
         // Synchronised, so that a full disk or quota is noticed before anything is replaced.
         file.as_file_mut().write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(Error::io(path))?;
         self.pending.push(Pending::File { file, path: place });
@@ -61,6 +65,7 @@ impl Outputs {
     pub fn commit(self) -> Result<()> {
         let (streams, files): (Vec<_>, Vec<_>) =
             self.pending.into_iter().partition(|pending| matches!(pending, Pending::Stream { .. }));
+        let _turn = files.first().and_then(|file| temporary::turn(folder(file.path()).to_owned()));
         for pending in streams.into_iter().chain(files) {
             match pending {
                 Pending::Stream { bytes, path } => write_stream(&path, &bytes).map_err(Error::io(path))?,
@@ -81,25 +86,41 @@ impl Pending {
     }
 }
 
-/// Whether something can be written at `path`, asked before an hour of work rather than after it. Returns the place that
-/// will be written: `path`, or what it links to.
+/// Whether something can be written at each of these paths, or at what they link to: asked before an hour of work
+/// rather than after it. Also removes what earlier runs with the same outputs left behind when they were killed.
 ///
 /// # Errors
-/// The folder is missing or cannot be written to; `path` is a folder; `path` is a read-only file.
-pub fn check(path: &Path) -> Result<PathBuf> {
-    let place = place(path)?;
-    if !is_stream(&place) {
-        temporary(&place).map_err(Error::io(path))?;
+/// A folder is missing or cannot be written to; a path is a folder or a read-only file; two are the same file.
+pub fn check<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<()> {
+    let mut places = Vec::new();
+    let mut seen = HashSet::new();
+    for path in paths {
+        let place = place(path)?;
+        if is_stream(&place) {
+            continue;
+        }
+        if !seen.insert(place.clone()) {
+            return Err(Error::Input(format!(
+                "{} would be written twice: give each file its own name",
+                place.display()
+            )));
+        }
+        places.push((path, place));
     }
-    Ok(place)
+    temporary::sweep(places.iter().map(|(_, place)| place.as_path()));
+    for (path, place) in places {
+        temporary::create(&place).map_err(Error::io(path))?;
+    }
+    Ok(())
 }
 
-/// As [`check`], but for whether a file can be made in the folder.
+/// Where `path` is written: there, or at what it links to. Errors as those of [`check`], but for whether a file can be
+/// made in the folder.
 fn place(path: &Path) -> Result<PathBuf> {
     if is_stream(path) {
         return Ok(path.to_owned());
     }
-    let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let place = fs::canonicalize(path).or_else(|_| followed(path))?;
     if let Ok(metadata) = fs::metadata(&place) {
         if metadata.is_dir() {
             return Err(Error::Input(format!("{} is a folder: give the name of a file in it", path.display())));
@@ -125,6 +146,21 @@ fn place(path: &Path) -> Result<PathBuf> {
         _ => place,
     })
 }
+
+/// What a link to a file that does not exist stands for; `path` itself if it is no link.
+fn followed(path: &Path) -> Result<PathBuf> {
+    let mut place = path.to_owned();
+    for _ in 0..LINKS {
+        match fs::read_link(&place) {
+            Ok(target) => place = place.parent().unwrap_or(Path::new("")).join(target),
+            Err(_) => return Ok(place),
+        }
+    }
+    Err(Error::Input(format!("cannot write {}: it is a link that leads nowhere; remove it", path.display())))
+}
+
+/// More links one behind the other are taken for a circle, as Linux does.
+const LINKS: usize = 40;
 
 /// Writes one file, whole or not at all.
 ///
@@ -154,20 +190,6 @@ fn is_standard_output(path: &Path) -> bool {
 
 fn folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// In the folder of `path`, because files are renamed only within one file system; with the permissions that a new file, or
-/// the file that it replaces, has.
-fn temporary(path: &Path) -> std::io::Result<NamedTempFile> {
-    let mut builder = Builder::new();
-    builder.prefix(".fsot-");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let file = builder.tempfile_in(folder(path))?;
-    if let Ok(metadata) = fs::metadata(path) {
-        file.as_file().set_permissions(metadata.permissions())?;
-    }
-    Ok(file)
 }
 
 fn write_stream(path: &Path, bytes: &[u8]) -> std::io::Result<()> {

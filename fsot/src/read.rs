@@ -1,27 +1,58 @@
 //! Reading what other commands and programs wrote.
 
+mod bounded;
+
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::export::points::{Json, Labels, Table};
 use crate::points::Points;
 use crate::target::image::ImageTarget;
-use image::{DynamicImage, ImageFormat, ImageReader};
-use std::fs;
+use image::error::ImageError;
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
+use noisefloor::tile::MAGIC;
 use std::io::Cursor;
 use std::path::Path;
 
-/// The content of a file.
+/// The most bytes of a picture's pixels.
+const MOST_DECODED: u64 = 512 << 20;
+const NO_PICTURE: &str = "not a picture that can be read: use PNG, JPEG or OpenEXR";
+
+/// The content of a picture's file, to be decoded by [`decode_image`].
 ///
 /// # Errors
-/// The file is missing, a folder, unreadable or empty.
-pub fn bytes(path: &Path) -> Result<Vec<u8>> {
-    if path.is_dir() {
-        return Err(Error::Input(format!("{} is a folder: give the name of a file", path.display())));
+/// The file is missing, a folder, unreadable, empty, too large (1 GiB; 128 MiB from a pipe or a device) or no picture.
+pub fn picture(path: &Path) -> Result<Vec<u8>> {
+    bounded::read(path, |beginning| format(beginning).map(drop).ok_or(NO_PICTURE))
+}
+
+/// The content of a tile's file, which begins as such files do; nothing else is known of it.
+///
+/// # Errors
+/// As [`picture`].
+pub fn tile(path: &Path) -> Result<Vec<u8>> {
+    bounded::read(path, |beginning| {
+        let same = beginning.iter().zip(&MAGIC).all(|(byte, magic)| byte == magic);
+        if same { Ok(()) } else { Err("not a tile file (.nft)") }
+    })
+}
+
+/// The content of a file of text, which is to be `what`.
+///
+/// # Errors
+/// As [`picture`]; the file is not text in UTF-8.
+pub fn text(path: &Path, what: &str) -> Result<String> {
+    let none = || Error::Input(format!("{} is not {what}: it is not text", path.display()));
+    let mut binary = false;
+    let bytes = bounded::read(path, |beginning| {
+        // The last letter may be cut in two.
+        let broken = std::str::from_utf8(beginning).is_err_and(|error| error.error_len().is_some());
+        binary = broken || beginning.contains(&0);
+        if binary { Err("binary") } else { Ok(()) }
+    });
+    if binary {
+        return Err(none());
     }
-    let bytes = fs::read(path).map_err(Error::io(path))?;
-    if bytes.is_empty() {
-        return Err(Error::Input(format!("{} is empty", path.display())));
-    }
-    Ok(bytes)
+    String::from_utf8(bytes?).map_err(|_| none())
 }
 
 /// The ending of a file's name, in lower case; empty if it has none.
@@ -32,30 +63,60 @@ pub fn ending(path: &Path) -> String {
 /// A picture, PNG, JPEG or OpenEXR by its content, whatever its name says.
 ///
 /// # Errors
-/// As [`bytes`]; the content is of no such format, or damaged.
+/// As [`picture`] and [`decode_image`].
 pub fn image(path: &Path) -> Result<DynamicImage> {
-    decode_image(&bytes(path)?, path)
+    decode_image(&picture(path)?, path)
 }
 
 /// As [`image`](fn@image), from the content of the file `path`.
 ///
 /// # Errors
-/// The content is of no known format, or damaged.
+/// The content is of no known format, damaged, or of more pixels than 512 MiB hold.
 pub fn decode_image(bytes: &[u8], path: &Path) -> Result<DynamicImage> {
-    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(Error::io(path))?;
-    let format = reader.format();
-    let name = match format {
-        Some(ImageFormat::Png) => "PNG",
-        Some(ImageFormat::Jpeg) => "JPEG",
-        Some(ImageFormat::OpenExr) => "OpenEXR",
-        _ => {
-            return Err(Error::Input(format!(
-                "{} is not a picture that can be read: use PNG, JPEG or OpenEXR",
-                path.display()
-            )));
-        }
+    let Some((format, name)) = format(bytes) else {
+        return Err(Error::Input(format!("{} is {NO_PICTURE}", path.display())));
     };
-    reader.decode().map_err(|error| Error::Input(format!("{} is a damaged {name} file: {error}", path.display())))
+    let path = path.display();
+    let failed = |error: ImageError| {
+        Error::Input(match error {
+            ImageError::Limits(_) => too_large(&path.to_string(), png_size(bytes), None),
+            error => format!("{path} is a damaged {name} file: {error}"),
+        })
+    };
+    let decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder().map_err(failed)?;
+    if decoder.total_bytes() > MOST_DECODED {
+        let bytes = decoder.color_type().bytes_per_pixel();
+        return Err(Error::Input(too_large(&path.to_string(), Some(decoder.dimensions()), Some(bytes))));
+    }
+    DynamicImage::from_decoder(decoder).map_err(failed)
+}
+
+/// Which of the formats that can be read these bytes begin as, and its name.
+fn format(bytes: &[u8]) -> Option<(ImageFormat, &'static str)> {
+    let format = image::guess_format(bytes).ok()?;
+    let name = match format {
+        ImageFormat::Png => "PNG",
+        ImageFormat::Jpeg => "JPEG",
+        ImageFormat::OpenExr => "OpenEXR",
+        _ => return None,
+    };
+    Some((format, name))
+}
+
+/// That a picture has too many pixels: how many, as far as known, and how many there may be.
+fn too_large(path: &str, size: Option<(u32, u32)>, bytes: Option<u8>) -> String {
+    let size = size.map_or("its pixels".to_owned(), |(width, height)| format!("{width} x {height} pixels"));
+    let most = match bytes {
+        Some(bytes) => format!("{} of them, {} each,", MOST_DECODED / u64::from(bytes), counted(bytes, "byte")),
+        None => format!("{MOST_DECODED} bytes of them"),
+    };
+    format!("{path} is too large: it has {size}, and at most {most} are read; scale it down")
+}
+
+/// What the header of a PNG file, which comes first, says of its size.
+fn png_size(bytes: &[u8]) -> Option<(u32, u32)> {
+    let number = |at: usize| bytes.get(at..)?.first_chunk().map(|bytes| u32::from_be_bytes(*bytes));
+    (bytes.get(12..16)? == b"IHDR").then_some((number(16)?, number(20)?))
 }
 
 /// A picture as a density for `points` points: its luma as it is stored (not linear light), or what is missing to white; transparent
@@ -91,11 +152,9 @@ pub fn density(bytes: &[u8], path: &Path, points: usize, invert: bool) -> Result
 /// `class` holds each point's class. What follows a `#` is a comment.
 ///
 /// # Errors
-/// As [`bytes`]; not text; a value that is no finite number; rows of different lengths; no points; more than 8 coordinates.
+/// As [`text`]; a value that is no finite number; rows of different lengths; no points; more than 8 coordinates.
 pub fn points(path: &Path) -> Result<Table> {
-    let bytes = bytes(path)?;
-    let text = std::str::from_utf8(&bytes)
-        .map_err(|_| Error::Input(format!("{} is not a point set: it is not text", path.display())))?;
+    let text = &text(path, "a point set")?;
     let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
     let table = if first.starts_with('{') {
         json(text)
@@ -115,7 +174,11 @@ pub fn points(path: &Path) -> Result<Table> {
 fn json(text: &str) -> std::result::Result<Table, String> {
     let json: Json = serde_json::from_str(text).map_err(|error| error.to_string())?;
     if let Some(index) = json.points.iter().position(|point| point.len() != json.dims) {
-        return Err(format!("point {index} has {} coordinates, not {}", json.points[index].len(), json.dims));
+        return Err(format!(
+            "point {index} has {}, not {}",
+            counted(json.points[index].len(), "coordinate"),
+            json.dims
+        ));
     }
     if json.classes.as_ref().is_some_and(|classes| classes.len() != json.points.len()) {
         return Err("there are not as many classes as points".to_owned());
@@ -130,30 +193,39 @@ fn json(text: &str) -> std::result::Result<Table, String> {
 fn csv(text: &str) -> std::result::Result<Table, String> {
     let mut builder = csv::ReaderBuilder::new();
     builder.has_headers(false).comment(Some(b'#')).trim(csv::Trim::All);
-    let records: Vec<csv::StringRecord> =
-        builder.from_reader(text.as_bytes()).into_records().collect::<csv::Result<_>>().map_err(|e| e.to_string())?;
-    rows(records.iter().map(|record| {
-        (record.position().map_or(0, csv::Position::line), record.iter().map(str::to_owned).collect::<Vec<_>>())
-    }))
+    let mut wrong = None;
+    let records = builder.from_reader(text.as_bytes()).into_records().map_while(|record| {
+        let record: csv::StringRecord = record.map_err(|error| wrong = Some(error.to_string())).ok()?;
+        let line = record.position().map_or(0, csv::Position::line);
+        Some((line, record.iter().map(str::to_owned).collect()))
+    });
+    let table = rows(records);
+    wrong.map_or(table, Err)
 }
 
 fn lines(text: &str) -> std::result::Result<Table, String> {
     let content =
         |line: &str| line.split('#').next().unwrap_or_default().split_whitespace().map(str::to_owned).collect();
     let lines = text.lines().zip(1..).map(|(line, number)| (number, content(line)));
+    let lines = lines.filter(|(_, words): &(u64, Vec<String>)| !words.is_empty());
     let names = text.lines().find_map(|line| line.strip_prefix("# classes:"));
-    let Some(names) = names else { return rows(lines.filter(|(_, words): &(u64, Vec<String>)| !words.is_empty())) };
+    let Some(names) = names else { return rows(lines) };
     let names: Vec<String> = names.split_whitespace().map(str::to_owned).collect();
-    let mut labels = Vec::new();
-    let mut coordinates = Vec::new();
-    for (number, mut words) in lines.filter(|(_, words)| !words.is_empty()) {
+    let mut index = Vec::new();
+    let mut wrong = None;
+    let coordinates = lines.map_while(|(number, mut words)| {
         let class = words.pop().unwrap_or_default();
-        let known = class.parse::<usize>().ok().filter(|index| *index < names.len());
-        labels.push(known.ok_or_else(|| format!("line {number}: `{class}` is not the index of a class"))?);
-        coordinates.push((number, words));
+        match class.parse::<usize>() {
+            Ok(known) if known < names.len() => index.push(known),
+            _ => wrong = Some(format!("line {number}: `{class}` is not the index of a class")),
+        }
+        wrong.is_none().then_some((number, words))
+    });
+    let table = rows(coordinates);
+    match wrong {
+        Some(wrong) => Err(wrong),
+        None => Ok(Table { classes: Some(Labels { names, index }), ..table? }),
     }
-    let table = rows(coordinates.into_iter())?;
-    Ok(Table { classes: Some(Labels { names, index: labels }), ..table })
 }
 
 /// From numbered rows of words.
@@ -166,7 +238,7 @@ fn rows(rows: impl Iterator<Item = (u64, Vec<String>)>) -> std::result::Result<T
     let mut classes = Vec::new();
     for (number, words) in rows {
         if words.len() != columns {
-            return Err(format!("line {number} has {} columns, the lines before {columns}", words.len()));
+            return Err(format!("line {number} has {}, the lines before {columns}", counted(words.len(), "column")));
         }
         for (column, word) in words.into_iter().enumerate() {
             if class_column == Some(column) {

@@ -58,7 +58,7 @@ fn foreign_text_is_read() {
     for (text, message) in [
         ("", "empty"),
         ("# nothing\n", "no points"),
-        ("1 2\n3\n", "line 2 has 1 columns"),
+        ("1 2\n3\n", "line 2 has 1 column,"),
         ("1 2\n3 nan\n", "line 2: `nan`"),
         ("1,2\n3,x\n", "line 2: `x`"),
         ("1 2 3 4 5 6 7 8 9\n", "9 coordinates"),

@@ -238,7 +238,7 @@ fn what_is_no_tile_is_refused() {
         assert!(TileView::new(size, spp, dims, frames, &good).unwrap_err().to_string().contains("at least 1"));
     }
     let error = TileView::new(2, 2, 2, 1, &good).unwrap_err().to_string();
-    assert!(error.contains("24 coordinates are not those of 1 frames of 2x2 pixels"), "{error}");
+    assert!(error.contains("24 coordinates cannot make 1 frame of 2x2 pixels"), "{error}");
     assert!(TileView::new(usize::MAX, 2, 2, 2, &good).is_err());
     for (bad, shown) in [(f32::NAN, "NaN"), (1.5, "1.5"), (-0.1, "-0.1"), (f32::INFINITY, "inf")] {
         let mut coordinates = good.clone();

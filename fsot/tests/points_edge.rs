@@ -186,7 +186,7 @@ fn every_error_says_what_is_wrong() {
         (with(|p| p.class_coordinates = ClassCoordinates::Plane(vec![[0.0; 2]; 9])), "9 class coordinates"),
         (with(|p| p.class_coordinates = ClassCoordinates::Plane(vec![[2.0; 2]; 10])), "coordinate is 2"),
         (with(|p| p.initial = Some(Points::new(2, vec![0.0; 18]))), "9 initial points"),
-        (with(|p| p.initial = Some(Points::new(1, vec![0.0; 10]))), "of 1 dimensions"),
+        (with(|p| p.initial = Some(Points::new(1, vec![0.0; 10]))), "of 1 dimension, for 10 of 2"),
         (with(|p| p.initial = Some(Points::new(2, vec![1.0; 20]))), "coordinate is 1"),
         (torus(), "only uniform targets"),
     ] {

@@ -174,7 +174,7 @@ fn animations_that_cannot_be_are_refused() {
     };
     let plain = options(0, 1);
     assert!(refused(&photos, Windows { cyclic: true, ..windows }, &plain).contains("window"));
-    assert!(refused(&photos[..1], windows, &plain).contains("1 pictures for 2 frames"));
+    assert!(refused(&photos[..1], windows, &plain).contains("1 picture for 2 frames"));
     assert!(refused(&photos, windows, &Options { cmyk: true, ..plain }).contains("one ink"));
     let other = [frame(0.0), Photo::from_fn(3, 3, |x, _| [x as f32 / 2.0; 3])];
     assert!(refused(&other, windows, &plain).contains("3 x 3"));

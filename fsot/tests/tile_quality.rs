@@ -1,5 +1,4 @@
-//! What optimised tiles reach: energies of the error image relative to white noise, with the metric of DESIGN.md
-//! section 4.
+//! What optimised tiles reach: energies of the error image relative to white noise, as docs/metrics.md defines them.
 
 use fsot::metrics::{TileOptions, TileReport, TileView, measure_tile};
 use fsot::tile::{Projections, TemporalKernel, TileOptimizer, TileProblem, TileSamples};

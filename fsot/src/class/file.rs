@@ -81,8 +81,7 @@ impl ClassFile {
 
     /// Reads a class file.
     pub fn read(path: &Path) -> Result<ClassFile> {
-        let text = std::fs::read_to_string(path).map_err(Error::io(path))?;
-        ClassFile::parse(path, &text)
+        ClassFile::parse(path, &read::text(path, "a class file")?)
     }
 
     /// Its classes, for points of `dims` coordinates; `image` opens the targets that are pictures.

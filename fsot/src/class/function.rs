@@ -1,6 +1,7 @@
 //! Class functions.
 
 use crate::Error;
+use crate::counted::counted;
 use crate::error::Result;
 use serde::Deserialize;
 
@@ -145,7 +146,7 @@ impl ClassFunction {
                 if let ClassFunction::Image { width, .. } = self
                     && (*width == 0 || values.len() % width != 0)
                 {
-                    return fail(format!("{} pixels in rows of {width}: give whole rows", values.len()));
+                    return fail(format!("{} in rows of {width}: give whole rows", counted(values.len(), "pixel")));
                 }
                 match values.iter().find(|&&value| !unit(value)) {
                     Some(value) => fail(format!("the table holds {value}: values are in [0, 1]")),

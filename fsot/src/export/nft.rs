@@ -1,6 +1,7 @@
 //! Tile files (`.nft`), written and read through `noisefloor::tile`.
 
 use super::tile;
+use crate::counted;
 use crate::error::{Error, Result};
 use crate::read;
 use noisefloor::tile::{HEADER_BYTES, Header, Shape, Tile, quantize};
@@ -21,8 +22,9 @@ pub fn header(shape: Shape, seed: u64, kernel: &str) -> Result<Header> {
     let Shape { size, spp, dims, frames, bits, .. } = shape;
     Header::new(shape, seed, kernel).map_err(|_| {
         Error::Input(format!(
-            "a tile file cannot hold {frames} frames of {size}x{size} pixels with {spp} samples of {dims} dimensions in {bits} bits, \
-             made for `{kernel}`: the size is a power of two up to 1024, the samples one up to 256, and there are at most 256 frames"
+            "a tile file cannot hold {} in {bits} bits, made for `{kernel}`: the size is a power of two up to 1024, \
+             the samples one up to 256, and there are at most 256 frames",
+            counted::tile(size as usize, spp as usize, dims as usize, frames as usize)
         ))
     })
 }
@@ -39,9 +41,9 @@ impl TileFile {
         } else {
             coordinates.iter().flat_map(|u| quantize(*u, shape.bits).to_le_bytes()).collect()
         };
-        let head = header
-            .encode(&payload)
-            .map_err(|_| Error::Input(format!("{} coordinates are not those of such a tile", coordinates.len())))?;
+        let head = header.encode(&payload).map_err(|_| {
+            Error::Input(format!("{} cannot make such a tile", counted::counted(coordinates.len(), "coordinate")))
+        })?;
         Ok(TileFile { header, bytes: [&head[..], &payload].concat() })
     }
 
@@ -50,7 +52,7 @@ impl TileFile {
     /// # Errors
     /// The file cannot be read, is no tile, of a newer version, truncated or damaged.
     pub fn read(path: &Path) -> Result<TileFile> {
-        let bytes = read::bytes(path)?;
+        let bytes = read::tile(path)?;
         let (header, _) = Header::decode(&bytes).map_err(|error| {
             let why = match error {
                 noisefloor::Error::Foreign => "not a tile file (.nft)",

@@ -1,5 +1,6 @@
 //! Point sets as text, CSV and JSON. [`crate::read`] reads all three.
 
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::points::Points;
 use crate::read;
@@ -91,7 +92,11 @@ pub fn encode(table: &Table, format: Format) -> Result<Vec<u8>> {
     if let Some(classes) = &table.classes {
         let known = classes.index.iter().all(|index| *index < classes.names.len());
         if !known || classes.index.len() != table.points.len() {
-            return Err(Error::Input(format!("there are not {} classes, one for each point", table.points.len())));
+            return Err(Error::Input(format!(
+                "{} cannot have {}: give each its class, one of those that have names",
+                counted(table.points.len(), "point"),
+                counted(classes.index.len(), "class")
+            )));
         }
         let unfit = |c: char| c.is_whitespace() || c.is_control() || c == '#';
         if let Some(name) = classes.names.iter().find(|name| name.is_empty() || name.contains(unfit)) {

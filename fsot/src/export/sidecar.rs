@@ -4,6 +4,7 @@ use crate::checkpoint::digest;
 use crate::error::{Error, Result};
 use crate::metrics::TileReport;
 use crate::metrics::tile::Energies;
+use crate::read;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -114,9 +115,9 @@ impl Sidecar {
     /// The file cannot be read or is no sidecar.
     pub fn read(tile: &Path) -> Result<Option<Sidecar>> {
         let path = Sidecar::path(tile);
-        let text = match std::fs::read_to_string(&path) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            text => text.map_err(Error::io(&path))?,
+        let text = match read::text(&path, "a sidecar") {
+            Err(Error::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            text => text?,
         };
         toml::from_str(&text)
             .map(Some)

@@ -5,6 +5,7 @@
 //! that is the layout of a texture array. Red, green, blue and alpha are the coordinates in order. An integer texel v of b bits
 //! stands for the coordinate (v + 0.5) / 2^b, never 1; a GPU that reads v / (2^b - 1) must undo that.
 
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use image::{DynamicImage, ImageBuffer, ImageFormat};
 use noisefloor::tile::{Shape, Tile};
@@ -22,10 +23,10 @@ fn check(tile: &Tile<'_>) -> Result<()> {
     let shape = tile.shape();
     Tile::new(shape, tile.payload()).map(|_| ()).map_err(|_| {
         Error::Input(format!(
-            "a tile of {} coordinates of {} bits cannot have {} bytes",
-            shape.coordinates(),
+            "a tile of {} of {} bits cannot have {}",
+            counted(shape.coordinates(), "coordinate"),
             shape.bits,
-            tile.payload().len()
+            counted(tile.payload().len(), "byte")
         ))
     })
 }

@@ -1,6 +1,7 @@
 //! Integration error on random half-spaces and Gaussian bumps.
 
 use super::integrands::{Family, Integrand};
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::points::Points;
 use rayon::prelude::*;
@@ -66,7 +67,10 @@ pub fn prefix_errors(sets: &[Points], counts: &[usize], integrands: usize) -> Re
     }
     let increasing = counts.is_sorted_by(|a, b| a < b);
     if !increasing || counts.first() == Some(&0) || counts.last().is_some_and(|&c| c > first.len()) {
-        return Err(Error::input(format!("prefixes must be increasing numbers from 1 to the {} points", first.len())));
+        return Err(Error::input(format!(
+            "prefixes must be increasing numbers from 1 to the {}",
+            counted(first.len(), "point")
+        )));
     }
     let [half, bumps] = [Family::HalfSpace, Family::Gaussian].map(|family| {
         let mut mean = vec![0.0; counts.len()];

@@ -5,6 +5,7 @@ use super::integration::{Integration, integration};
 use super::neighbours::{Neighbours, neighbours};
 use super::spectrum::{Spectrum, SpectrumSummary};
 use super::transport::{Transport, transport};
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::points::Points;
 use serde::Serialize;
@@ -73,7 +74,11 @@ pub fn select(points: &Points, mut wanted: impl FnMut(usize) -> bool) -> Points 
 /// [`check`](super::check).
 pub fn by_class(points: &Points, classes: &[usize]) -> Result<Vec<(usize, PointReport)>> {
     if classes.len() != points.len() {
-        return Err(Error::input(format!("{} classes for {} points", classes.len(), points.len())));
+        return Err(Error::input(format!(
+            "{} for {}: give each point one",
+            counted(classes.len(), "class"),
+            counted(points.len(), "point")
+        )));
     }
     let mut present = classes.to_vec();
     present.sort_unstable();

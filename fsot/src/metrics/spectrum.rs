@@ -1,6 +1,7 @@
 //! Power spectra in the plane, their radial average and anisotropy.
 
 use super::exponential_sums;
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::points::Points;
 use serde::Serialize;
@@ -61,7 +62,7 @@ impl Spectrum {
     pub fn of_points(points: &Points, axes: [usize; 2]) -> Result<Spectrum> {
         super::check(points)?;
         if axes.iter().any(|&a| a >= points.dims()) {
-            return Err(Error::input(format!("axes {axes:?} of points with {} coordinates", points.dims())));
+            return Err(Error::input(format!("axes {axes:?} of points with {}", counted(points.dims(), "coordinate"))));
         }
         let plane: Vec<[f64; 2]> = points.iter().map(|p| axes.map(|a| f64::from(p[a]))).collect();
         let unit = principal_frequency(plane.len());

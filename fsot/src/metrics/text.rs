@@ -3,6 +3,7 @@
 use super::integration::PrefixError;
 use super::report::{PlaneSpectrum, PointReport};
 use super::tile::{Energies, FamilyEnergies, TileReport};
+use crate::counted::counted;
 use std::fmt::{Display, Formatter, Result};
 
 /// A number of 4 digits; a dash where there is none.
@@ -22,7 +23,7 @@ impl Display for PointReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let mut line =
             |name: &str, value: f64, meaning: &str| writeln!(f, "  {name:<14}{:>12}  {meaning}", number(value));
-        line("points", self.points as f64, &format!("in {} dimensions", self.dims))?;
+        line("points", self.points as f64, &format!("in {}", counted(self.dims, "dimension")))?;
         if let [PlaneSpectrum { summary: s, .. }] = &self.spectra[..] {
             line("P_low", s.low, "mean power below half the principal frequency (random 1)")?;
             let at = number(s.peak_frequency);
@@ -77,8 +78,10 @@ impl Display for TileReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let TileReport { size, spp, dims, frames, integrands, .. } = self;
         let many = if *frames > 1 { format!(", {frames} frames") } else { String::new() };
-        writeln!(f, "  tile of {size}x{size} pixels, {spp} samples of {dims} dimensions{many}")?;
-        writeln!(f, "  error energy relative to white noise (1), {integrands} integrands of each family")?;
+        let [samples, dims] = [counted(spp, "sample"), counted(dims, "dimension")];
+        writeln!(f, "  tile of {size}x{size} pixels, {samples} of {dims}{many}")?;
+        let integrands = counted(integrands, "integrand");
+        writeln!(f, "  error energy relative to white noise (1), {integrands} of each family")?;
         let names: String = ["G2.1", "A", "G1", "raw"].iter().map(|n| format!("{n:>10}")).collect();
         writeln!(f, "  {:<22}{:>40} |{:>40}", "", "half-spaces", "Gaussians")?;
         writeln!(f, "  {:<22}{names} |{names}", "")?;

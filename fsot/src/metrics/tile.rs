@@ -3,6 +3,7 @@
 use super::integrands::{Family, Integrand};
 use super::plane::{Plane, Transform};
 use super::spectrum::Spectrum;
+use crate::counted;
 use crate::error::{Error, Result};
 use rayon::prelude::*;
 use rustfft::num_complex::Complex;
@@ -30,15 +31,16 @@ impl<'a> TileView<'a> {
     pub fn new(size: usize, spp: usize, dims: usize, frames: usize, coordinates: &'a [f32]) -> Result<TileView<'a>> {
         if size == 0 || spp == 0 || frames == 0 || !(1..=8).contains(&dims) {
             return Err(Error::input(format!(
-                "a tile of {size}x{size} pixels, {spp} samples, {dims} dimensions, {frames} frames: every number must be at least 1, \
-                 and there are at most 8 dimensions"
+                "a tile of {}: every number must be at least 1, and there are at most 8 dimensions",
+                counted::tile(size, spp, dims, frames)
             )));
         }
         let needed = [size, spp, dims, frames].iter().try_fold(size, |product, &n| product.checked_mul(n));
         if needed != Some(coordinates.len()) {
             return Err(Error::input(format!(
-                "{} coordinates are not those of {frames} frames of {size}x{size} pixels with {spp} samples of {dims} dimensions",
-                coordinates.len()
+                "{} cannot make {}",
+                counted::counted(coordinates.len(), "coordinate"),
+                counted::tile(size, spp, dims, frames)
             )));
         }
         super::check_coordinates(dims, coordinates)?;

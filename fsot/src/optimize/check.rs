@@ -3,6 +3,7 @@
 use super::{Domain, Problem};
 use crate::Error;
 use crate::class::{ClassCoordinates, check_weight};
+use crate::counted::counted;
 use crate::error::Result;
 use crate::target::MAX_DIMS;
 
@@ -24,7 +25,11 @@ pub(super) fn check(problem: &Problem) -> Result<()> {
     check_classes(problem)?;
     if let ClassCoordinates::Plane(places) = &problem.class_coordinates {
         if places.len() != points {
-            return fail(format!("{} class coordinates for {points} points: give one per point", places.len()));
+            return fail(format!(
+                "{} for {}: give one per point",
+                counted(places.len(), "class coordinate"),
+                counted(points, "point")
+            ));
         }
         if let Some(place) = places.iter().flatten().find(|c| !(0.0..=1.0).contains(*c)) {
             return fail(format!("a class coordinate is {place}: give numbers in [0, 1]"));
@@ -33,7 +38,11 @@ pub(super) fn check(problem: &Problem) -> Result<()> {
     if let Some(initial) = &problem.initial {
         if initial.dims() != dims || initial.len() != points {
             let (given, given_dims) = (initial.len(), initial.dims());
-            return fail(format!("{given} initial points of {given_dims} dimensions, for {points} of {dims}"));
+            return fail(format!(
+                "{} of {}, for {points} of {dims}",
+                counted(given, "initial point"),
+                counted(given_dims, "dimension")
+            ));
         }
         if let Some(x) = initial.coordinates().iter().find(|x| !(0.0..1.0).contains(*x)) {
             return fail(format!("an initial coordinate is {x}: give numbers in [0, 1)"));
@@ -53,7 +62,11 @@ fn check_classes(problem: &Problem) -> Result<()> {
         check_weight(class.weight, name)?;
         if class.target.dims() != problem.dims {
             let dims = class.target.dims();
-            return fail(format!("class {name:?}: a target of {dims} dimensions for points of {}", problem.dims));
+            return fail(format!(
+                "class {name:?}: a target of {} for points of {}",
+                counted(dims, "dimension"),
+                problem.dims
+            ));
         }
         if class.function.coordinates() > 1 && problem.class_coordinates == ClassCoordinates::Index {
             return fail(format!(

@@ -6,6 +6,7 @@ mod draw;
 pub use draw::{colour_of, drawing};
 
 use crate::class::{Class, ClassCoordinates, ClassFunction};
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::optimize::{Problem, Quality};
 use crate::points::{BELOW_ONE, Points};
@@ -71,7 +72,8 @@ impl Placement {
         }
         if points < colours {
             return Err(Error::Input(format!(
-                "{points} objects cannot have {colours} colours: give at least one for each"
+                "{} cannot have {colours} colours: give at least one for each",
+                counted(points, "object")
             )));
         }
         let mut kinds = Vec::with_capacity(points);

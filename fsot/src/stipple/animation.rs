@@ -2,6 +2,7 @@
 
 use super::{Options, effort, inks, paper, radius};
 use crate::class::{Class, ClassFunction, Step};
+use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::optimize::Problem;
 use crate::picture::{Drawing, Photo};
@@ -25,6 +26,11 @@ pub struct Windows {
     pub cyclic: bool,
 }
 
+/// "2 frames of 1 point".
+fn frames_of(frames: usize, window: usize) -> String {
+    format!("{} of {}", counted(frames, "frame"), counted(window, "point"))
+}
+
 impl Windows {
     /// # Errors
     ///
@@ -34,7 +40,8 @@ impl Windows {
         let Windows { frames, window, step, cyclic } = *self;
         if frames == 0 || window == 0 || step == 0 {
             return Err(Error::Input(format!(
-                "{frames} frames of {window} points, {step} of them new in each: give at least 1 of each"
+                "{}, {step} of them new in each: give at least 1 of each",
+                frames_of(frames, window)
             )));
         }
         if step > window {
@@ -45,13 +52,14 @@ impl Windows {
         }
         if cyclic && frames.saturating_mul(step) < window {
             return Err(Error::Input(format!(
-                "{frames} frames with {step} new points each have {} points in a cycle, fewer than the window of {window}: \
-                 give more frames or a larger step",
-                frames * step
+                "{}, {step} of them new in each, have {} in a cycle, fewer than the window: give more frames or a \
+                 larger step",
+                frames_of(frames, window),
+                counted(frames * step, "point")
             )));
         }
         let points = self.checked_points().ok_or_else(|| {
-            Error::Input(format!("{frames} frames of {window} points, {step} of them new in each, are too many points"))
+            Error::Input(format!("{}, {step} of them new in each, are too many points", frames_of(frames, window)))
         })?;
         super::check_points(points)
     }
@@ -105,7 +113,11 @@ impl Animation {
             return Err(Error::input("an animation is drawn with one ink: leave out --cmyk or --frames"));
         }
         if photos.len() != windows.frames {
-            return Err(Error::Input(format!("there are {} pictures for {} frames", photos.len(), windows.frames)));
+            return Err(Error::Input(format!(
+                "{} for {}: give each frame one",
+                counted(photos.len(), "picture"),
+                counted(windows.frames, "frame")
+            )));
         }
         let points = windows.points();
         let first = &photos[0];

@@ -1,5 +1,6 @@
 //! The samples of a tile.
 
+use crate::counted;
 use crate::{Error, error::Result};
 
 /// The samples of a tile: every coordinate in `[0, 1)`.
@@ -23,9 +24,9 @@ impl TileSamples {
         let needed = [size, size, spp, dims, frames].iter().try_fold(1usize, |product, &n| product.checked_mul(n));
         if needed != Some(coordinates.len()) {
             return Err(Error::input(format!(
-                "{} coordinates are not those of {frames} frames of {size}x{size} pixels with {spp} samples of {dims} \
-                 dimensions",
-                coordinates.len()
+                "{} cannot make {}",
+                counted::counted(coordinates.len(), "coordinate"),
+                counted::tile(size, spp, dims, frames)
             )));
         }
         if let Some(bad) = coordinates.iter().find(|value| !(0.0..1.0).contains(*value)) {
@@ -53,7 +54,10 @@ impl TileSamples {
     /// The tile with `spp` samples per pixel, the first ones of each. An [`Error::Input`] if there are not as many.
     pub fn prefix(&self, spp: usize) -> Result<TileSamples> {
         if spp == 0 || spp > self.spp {
-            return Err(Error::input(format!("a tile with {} samples per pixel has no prefix of {spp}", self.spp)));
+            return Err(Error::input(format!(
+                "a tile with {} per pixel has no prefix of {spp}",
+                counted::counted(self.spp, "sample")
+            )));
         }
         let coordinates = self
             .coordinates

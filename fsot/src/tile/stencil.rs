@@ -2,6 +2,7 @@
 
 use super::kernel::{Kernel, Tap};
 use super::problem::TileProblem;
+use crate::counted::counted;
 use crate::{Error, error::Result};
 
 /// The most samples of a subclass.
@@ -94,7 +95,8 @@ fn narrow(kernel: &Kernel, size: usize) -> Result<Vec<Tap>> {
     let radius = taps.iter().map(|tap| tap.dx.abs().max(tap.dy.abs())).max().unwrap_or(0) as usize;
     if 2 * radius > size {
         return Err(Error::input(format!(
-            "the kernel {kernel} has a radius of {radius} pixels: too wide for a tile of {size} pixels"
+            "the kernel {kernel} has a radius of {}: too wide for a tile of {size} pixels",
+            counted(radius, "pixel")
         )));
     }
     Ok(taps)

@@ -1,5 +1,6 @@
 //! What an animation is filtered by along time (5.8).
 
+use crate::counted::counted;
 use crate::{Error, error::Result};
 use std::fmt;
 use std::str::FromStr;
@@ -45,8 +46,8 @@ impl TemporalKernel {
         }
         if weights.len() > frames {
             return Err(Error::input(format!(
-                "the temporal kernel {self} spans {} frames, the animation has {frames}",
-                weights.len()
+                "the temporal kernel {self} spans {}, the animation has {frames}",
+                counted(weights.len(), "frame")
             )));
         }
         Ok(weights)

@@ -1,5 +1,6 @@
 //! Options that subcommands share, and how they report.
 
+use crate::say::{STANDARD_OUTPUT, say};
 use clap::{Args, ValueEnum};
 use fsot::{Error, error::Result, optimize, output};
 use serde_json::Value;
@@ -88,7 +89,7 @@ impl Report {
         let text = if self.json { format!("{json:#}") } else { text.to_owned() };
         let mut stdout = std::io::stdout().lock();
         let written = writeln!(stdout, "{}", text.trim_end()).and_then(|()| stdout.flush());
-        written.map_err(Error::io("standard output"))
+        written.map_err(Error::io(STANDARD_OUTPUT))
     }
 }
 
@@ -136,22 +137,20 @@ impl Common {
         path.into()
     }
 
-    /// Fails if one of these files could not be written: call it before the work.
-    pub(crate) fn check_outputs<'a>(&'a self, more: impl IntoIterator<Item = &'a Path>) -> Result<()> {
-        let paths: Vec<PathBuf> = std::iter::once(self.out.as_path())
-            .chain(more)
-            .map(output::check)
-            .chain([output::check(&self.checkpoint())])
-            .collect::<Result<_>>()?;
-        for (index, path) in paths.iter().enumerate() {
-            if !output::is_stream(path) && paths[..index].contains(path) {
-                return Err(Error::Input(format!(
-                    "{} would be written twice: give each file its own name",
-                    path.display()
-                )));
-            }
+    /// Fails if one of these files, the output or the checkpoint could not be written: call it before the work.
+    pub(crate) fn check_outputs<'a>(&self, more: impl IntoIterator<Item = &'a Path>) -> Result<()> {
+        let checkpoint = self.checkpoint();
+        if output::is_stream(&checkpoint) {
+            return Err(Error::Input(format!(
+                "--checkpoint {}: a checkpoint is read again, so it must be a file: give another name",
+                checkpoint.display()
+            )));
         }
-        Ok(())
+        let mut paths = vec![self.out.as_path(), checkpoint.as_path()];
+        for path in more {
+            paths.push(path);
+        }
+        output::check(paths)
     }
 
     /// Prints what was made, unless --quiet; to standard error if standard output may be the output.
@@ -161,8 +160,7 @@ impl Common {
         }
         if output::is_stream(&self.out) {
             let text = if self.report.json { format!("{json:#}") } else { text.to_owned() };
-            eprintln!("{}", text.trim_end());
-            return Ok(());
+            return say(text.trim_end());
         }
         self.report.print(text, json)
     }

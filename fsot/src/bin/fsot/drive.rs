@@ -2,7 +2,9 @@
 
 use crate::common::Common;
 use crate::interrupt::Watch;
+use crate::say::say;
 use fsot::checkpoint::{self, Problem};
+use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::output::Outputs;
 use fsot::run::Optimization;
@@ -44,7 +46,8 @@ impl Run {
     pub(crate) fn describe(&self, text: &mut String) {
         let energy = self.energy.map_or(String::new(), |energy| format!(", energy {energy:.3e} at the end"));
         let resumed = if self.resumed_at > 0 { format!(", continued at {}", self.resumed_at) } else { String::new() };
-        text.push_str(&format!("  {} steps{resumed} in {:.2} s{energy}\n", self.iterations, self.seconds));
+        let steps = counted(self.iterations, "step");
+        text.push_str(&format!("  {steps}{resumed} in {:.2} s{energy}\n", self.seconds));
     }
 
     /// The same for a report in JSON.
@@ -59,7 +62,8 @@ impl Run {
 /// Takes all steps that are left. `problem` describes everything that the result depends on.
 ///
 /// # Errors
-/// A checkpoint that cannot be used; [`Error::Stopped`] after Ctrl-C, with the state saved.
+/// A checkpoint that cannot be used; with the state saved, [`Error::Stopped`] after Ctrl-C, and what [`say`] returns if
+/// nobody reads standard error any more.
 pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serialize, common: &Common) -> Result<Run> {
     let problem = Problem::new(problem)?;
     let checkpoint = common.checkpoint();
@@ -72,13 +76,17 @@ pub(crate) fn drive(optimization: &mut dyn Optimization, problem: &impl Serializ
     let every = Duration::try_from_secs_f64(common.checkpoint_every).unwrap_or(Duration::MAX);
     let mut saved = Instant::now();
     let mut can_save = true;
-    while optimization.iteration() < optimization.iterations() {
-        if watch.stopped() {
+    loop {
+        let finished = optimization.iteration() >= optimization.iterations();
+        if progress.unheard.is_some() || (watch.stopped() && !finished) {
             progress.clear();
             if let Err(error) = checkpoint::save(&checkpoint, &problem, optimization) {
                 return Err(Error::Input(format!("stopped, and the state could not be saved: {error}")));
             }
-            return Err(Error::Stopped(stopped(&*optimization, common)));
+            return Err(progress.unheard.unwrap_or_else(|| Error::Stopped(stopped(&*optimization, common))));
+        }
+        if finished {
+            break;
         }
         let energy = optimization.step();
         progress.step(&*optimization, energy);
@@ -111,7 +119,8 @@ pub(crate) fn finish(outputs: Outputs, runs: impl IntoIterator<Item = Run>) -> R
     let _watch = Watch::start()?;
     outputs.commit()?;
     for run in runs {
-        std::fs::remove_file(run.checkpoint).ok();
+        // What a link leads to, as it was written: the link stays.
+        std::fs::canonicalize(run.checkpoint).and_then(std::fs::remove_file).ok();
     }
     Ok(())
 }
@@ -133,6 +142,8 @@ struct Progress {
     quiet: bool,
     bar: Option<ProgressBar>,
     line: Instant,
+    /// Why nobody reads what is said.
+    unheard: Option<Error>,
 }
 
 impl Progress {
@@ -145,14 +156,19 @@ impl Progress {
             quiet: common.quiet,
             bar: None,
             line: Instant::now(),
+            unheard: None,
         }
     }
 
-    fn say(&self, text: &str) {
+    fn say(&mut self, text: &str) {
         match &self.bar {
             _ if self.quiet => {}
             Some(bar) => bar.println(text),
-            None => eprintln!("{text}"),
+            None => {
+                if let Err(error) = say(text) {
+                    self.unheard = Some(error);
+                }
+            }
         }
     }
 
@@ -180,7 +196,7 @@ impl Progress {
         } else if self.announced && self.line.elapsed() >= LINE_EVERY {
             self.line = Instant::now();
             let left = self.left(done, all, steps);
-            eprintln!("step {done} of {all}, energy {energy:.3e}, {} left", HumanDuration(left));
+            self.say(&format!("step {done} of {all}, energy {energy:.3e}, {} left", HumanDuration(left)));
         }
     }
 
@@ -195,8 +211,8 @@ impl Progress {
             HumanDuration(total).to_string()
         };
         let memory = peak_memory().map_or(String::new(), |mebibytes| format!(", {mebibytes} MiB of memory"));
-        let plural = if threads == 1 { "" } else { "s" };
-        eprintln!("{} steps, about {duration} on {threads} thread{plural}{memory}", all - self.first);
+        let [steps, threads] = [counted(all - self.first, "step"), counted(threads, "thread")];
+        self.say(&format!("{steps}, about {duration} on {threads}{memory}"));
         if std::io::stderr().is_terminal() && done < all {
             let style = ProgressStyle::with_template("{wide_bar} {percent}% energy {msg}, {eta} left");
             let bar = ProgressBar::new(all).with_position(self.first);

@@ -1,5 +1,6 @@
 //! `fsot export`: a tile for programs that do not link noisefloor.
 
+use crate::names;
 use clap::ValueEnum;
 use fsot::error::{Error, Result};
 use fsot::export::nft::TileFile;
@@ -38,9 +39,22 @@ enum Format {
     Rust,
 }
 
+impl Format {
+    fn name(self) -> &'static str {
+        match self {
+            Format::Png => "png",
+            Format::Exr => "exr",
+            Format::Raw => "raw",
+            Format::CHeader => "c-header",
+            Format::Rust => "rust",
+        }
+    }
+}
+
 /// Reads the tile and writes it anew.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    output::check(&args.out)?;
+    names::export(&args.out, args.format.name())?;
+    output::check([args.out.as_path()])?;
     let file = TileFile::read(&args.tile)?;
     let view = file.view();
     let stem = || args.tile.file_stem().map_or_else(|| "tile".into(), |stem| stem.to_string_lossy().into_owned());

@@ -1,7 +1,9 @@
 //! `fsot info`: what a tile's file and its sidecar say.
 
 use crate::common::Report;
+use crate::say::say;
 use fsot::checkpoint::digest;
+use fsot::counted::counted;
 use fsot::error::Result;
 use fsot::export::nft::TileFile;
 use fsot::export::sidecar::{Row, Sidecar};
@@ -37,7 +39,9 @@ fn list() -> Result<(String, Value)> {
         let progressive = if problem.progressive { ", progressive" } else { "" };
         writeln!(
             text,
-            "{name:<26}{size} x {size} pixels, {spp} spp, {dims} dims{frames}{progressive}, {kernels}, {iterations} steps"
+            "{name:<26}{size} x {size} pixels, {spp} spp, {}{frames}{progressive}, {kernels}, {}",
+            counted(dims, "dim"),
+            counted(iterations, "step")
         )
         .unwrap_or(());
     }
@@ -49,7 +53,7 @@ fn tell(tile: &Path) -> Result<(String, Value)> {
     let file = TileFile::read(tile)?;
     let mut sidecar = Sidecar::read(tile)?;
     if sidecar.as_ref().is_some_and(|sidecar| !sidecar.describes(file.bytes())) {
-        eprintln!("warning: {} describes another tile: its sha256 differs", Sidecar::path(tile).display());
+        say(&format!("warning: {} describes another tile: its sha256 differs", Sidecar::path(tile).display()))?;
         sidecar = None;
     }
     let header = file.header();
@@ -71,7 +75,10 @@ fn tell(tile: &Path) -> Result<(String, Value)> {
         line("version", sidecar.version.clone());
         line(
             "quality",
-            format!("over {} half-spaces and as many Gaussians; white noise is 1", sidecar.quality.integrands),
+            format!(
+                "over {} and as many Gaussians; white noise is 1",
+                counted(sidecar.quality.integrands, "half-space")
+            ),
         );
         let quality = &sidecar.quality;
         for row in quality.energy.iter().chain(&quality.marginal).chain(&quality.temporal) {

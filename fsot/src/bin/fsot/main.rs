@@ -1,20 +1,27 @@
 //! `fsot`: makes point sets and sample tiles by filtered sliced optimal transport.
 
+// They panic if nobody reads: see `say`.
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 mod common;
 mod drive;
 mod export;
 mod info;
 mod interrupt;
 mod measure;
+mod names;
 mod pictures;
 mod place;
 mod points;
+mod say;
 mod spectrum;
 mod stipple;
 mod tile;
 
 use clap::{Parser, Subcommand};
 use fsot::Error;
+use say::{GONE, is_cut, is_gone, say};
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Exit code of every error; clap uses it for arguments that it cannot parse.
@@ -48,7 +55,11 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let result = match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(answer) => return print(&answer),
+    };
+    let result = match arguments.command {
         Command::Points(args) => points::run(&args),
         Command::Place(args) => place::run(&args),
         Command::Stipple(args) => stipple::run(&args),
@@ -61,12 +72,22 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(Error::Stopped(sentence)) => {
-            eprintln!("{sentence}");
+            say(&sentence).ok();
             ExitCode::from(interrupt::EXIT)
         }
         Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(FAILURE)
+            if !is_cut(&error) {
+                say(&format!("error: {error}")).ok();
+            }
+            ExitCode::from(if is_gone(&error) { GONE } else { FAILURE })
         }
+    }
+}
+
+/// Prints what clap answers: help, the version or what is wrong with the arguments.
+fn print(answer: &clap::Error) -> ExitCode {
+    match answer.print().and_then(|()| std::io::stdout().flush()) {
+        Err(_) if !answer.use_stderr() => ExitCode::from(GONE),
+        _ => ExitCode::from(u8::try_from(answer.exit_code()).unwrap_or(FAILURE)),
     }
 }

@@ -1,6 +1,8 @@
 //! `fsot measure`.
 
 use crate::common::{Report, Threads};
+use crate::names;
+use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::export::nft::TileFile;
 use fsot::export::points::Table;
@@ -96,10 +98,10 @@ impl Tile {
         let per_frame = size.checked_mul(size).and_then(|pixels| pixels.checked_mul(self.spp)).unwrap_or(0);
         if per_frame == 0 || table.points.len() % per_frame != 0 {
             return Err(Error::Input(format!(
-                "{}: its {} points do not make whole frames of {size}x{size} pixels with {} samples each",
+                "{}: {} cannot make whole frames of {size}x{size} pixels with {} each",
                 path.display(),
-                table.points.len(),
-                self.spp
+                counted(table.points.len(), "point"),
+                counted(self.spp, "sample")
             )));
         }
         Ok(Content::Tile(Samples {
@@ -132,9 +134,8 @@ pub(crate) fn in_file(path: &Path) -> impl Fn(Error) -> Error + '_ {
 
 /// Reads every file before it measures the first, so that a wrong name costs no time.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    if let Some(path) = &args.plot {
-        output::check(path)?;
-    }
+    args.plot.iter().try_for_each(|path| names::picture(path, &["png", "svg"]))?;
+    output::check(args.plot.as_deref())?;
     let contents: Vec<Content> = args.files.iter().map(|path| args.tile.read(path)).collect::<Result<_>>()?;
     let (text, json) =
         args.threads.install(|| if args.prefix { prefix(args, &contents) } else { all(args, &contents) })??;
@@ -204,9 +205,9 @@ fn prefix(args: &Args, contents: &[Content]) -> Result<(String, Value)> {
         output::write(path, &if is_svg { sheet.svg()?.into_bytes() } else { sheet.png()? })?;
     }
     let text = format!(
-        "error of the first points, averaged over {} sets and {} integrands of each family\n{}",
-        sets.len(),
-        args.integrands,
+        "error of the first points, averaged over {} and {} of each family\n{}",
+        counted(sets.len(), "set"),
+        counted(args.integrands, "integrand"),
         PrefixTable(&errors)
     );
     let files: Vec<_> = args.files.iter().map(|path| path.to_string_lossy()).collect();

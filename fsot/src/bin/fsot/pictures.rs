@@ -1,5 +1,6 @@
 //! Drawings beside a table of points.
 
+use crate::names;
 use fsot::error::Result;
 use fsot::output::Outputs;
 use fsot::picture::{Drawing, png, rasterise, svg};
@@ -17,6 +18,12 @@ pub(crate) struct Pictures {
 }
 
 impl Pictures {
+    /// Refuses names of other pictures.
+    pub(crate) fn check(&self) -> Result<()> {
+        self.png.iter().try_for_each(|path| names::picture(path, &["png"]))?;
+        self.svg.iter().try_for_each(|path| names::picture(path, &["svg"]))
+    }
+
     /// The files that are asked for.
     pub(crate) fn paths(&self) -> impl Iterator<Item = &Path> {
         self.png.iter().chain(&self.svg).map(PathBuf::as_path)

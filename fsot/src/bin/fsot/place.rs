@@ -4,6 +4,7 @@ use crate::common::Common;
 use crate::drive::{drive, finish};
 use crate::pictures::Pictures;
 use fsot::checkpoint::digest;
+use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::optimize::Optimizer;
 use fsot::output::Outputs;
@@ -45,12 +46,13 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 
 fn make(args: &Args) -> Result<()> {
     let format = Format::of(&args.common.out)?;
+    args.pictures.check()?;
     args.common.check_outputs(args.pictures.paths())?;
     let (points, colours) = (args.n as usize, usize::from(args.colors));
     let mut map_digest = None;
     let mut map = None;
     if let Some(path) = &args.map {
-        let bytes = read::bytes(path)?;
+        let bytes = read::picture(path)?;
         map_digest = Some(digest(&bytes));
         map = Some(read::density(&bytes, path, points, true)?);
     }
@@ -68,10 +70,13 @@ fn make(args: &Args) -> Result<()> {
     outputs.add(&args.common.out, &format.encode(&objects, colours)?)?;
     args.pictures.add(&mut outputs, PICTURE, || drawing(&objects, colours, placement.extent()))?;
     let classes = placement.problem.classes.len();
-    let iterations = run.iterations - run.resumed_at;
     let text = format!(
-        "{points} objects, {colours} colours{}: {classes} classes\n{iterations} iterations in {:.1} s",
+        "{}, {}{}: {}\n{} in {:.1} s",
+        counted(points, "object"),
+        counted(colours, "colour"),
         if args.sizes { ", sizes from 0 to 1" } else { "" },
+        counted(classes, "class"),
+        counted(run.iterations - run.resumed_at, "iteration"),
         run.seconds
     );
     let json = json!({

@@ -5,6 +5,7 @@ mod report;
 
 use crate::common::Common;
 use crate::drive::{drive, finish};
+use crate::names;
 use crate::pictures::Pictures;
 use classes::Classes;
 use fsot::checkpoint::digest;
@@ -76,6 +77,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 }
 
 fn make(args: &Args) -> Result<()> {
+    args.pictures.check()?;
+    names::table(&args.common.out, "; --png and --svg draw the points")?;
     args.common.check_outputs(args.pictures.paths())?;
     if args.d < 2 && args.pictures.paths().next().is_some() {
         return Err(Error::input("points of 1 coordinate cannot be drawn: leave out --png and --svg"));
@@ -110,10 +113,8 @@ fn problem(args: &Args) -> Result<(Problem, Value, [f32; 2])> {
             if !path.exists() {
                 return Err(Error::Input(format!("--classes {name}: give 2color, 3color, ramp or the name of a file")));
             }
-            let bytes = read::bytes(path)?;
-            files.push(digest(&bytes));
-            let text = String::from_utf8(bytes)
-                .map_err(|_| Error::Input(format!("{}: not a class file: it is not text", path.display())))?;
+            let text = read::text(path, "a class file")?;
+            files.push(digest(text.as_bytes()));
             // Pictures are named relative to the file that names them.
             let folder = path.parent().unwrap_or(Path::new(""));
             let mut shape: Option<[f32; 2]> = None;
@@ -171,7 +172,7 @@ fn density(path: &Path, dims: usize, points: usize, invert: bool, files: &mut Ve
             path.display()
         )));
     }
-    let bytes = read::bytes(path)?;
+    let bytes = read::picture(path)?;
     files.push(digest(&bytes));
     read::density(&bytes, path, points, invert)
 }

@@ -2,6 +2,7 @@
 
 use crate::common::Threads;
 use crate::measure::{Content, Tile, title};
+use crate::names;
 use fsot::error::{Error, Result};
 use fsot::metrics::figure::{self, Subject};
 use fsot::metrics::{Spectrum, error_spectrum};
@@ -35,13 +36,11 @@ pub(crate) struct Args {
 /// Computes the spectra and draws their average.
 pub(crate) fn run(args: &Args) -> Result<()> {
     let svg = args.out.with_extension("svg");
-    fsot::output::check(&args.out)?;
-    if args.svg {
-        fsot::output::check(&svg)?;
-        if svg == args.out {
-            return Err(Error::Input(format!("{}: with --svg, give --out the name of the PNG file", svg.display())));
-        }
+    if args.svg && svg == args.out {
+        return Err(Error::Input(format!("{}: with --svg, give --out the name of the PNG file", svg.display())));
     }
+    names::picture(&args.out, &["png"])?;
+    fsot::output::check([args.out.as_path()].into_iter().chain(args.svg.then_some(svg.as_path())))?;
     let (spectrum, subject) = args.threads.install(|| average(args))??;
     let sheet = figure::spectrum(&title(&args.files), &spectrum, subject);
     let mut outputs = Outputs::new();

@@ -4,7 +4,9 @@ mod frames;
 
 use crate::common::Common;
 use crate::drive::{Run, drive, finish};
+use crate::names;
 use fsot::checkpoint::digest;
+use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::export::points::{Format, Table, encode};
 use fsot::optimize::Optimizer;
@@ -96,8 +98,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 
 fn picture(args: &Args, image: &Path) -> Result<()> {
     let format = Picture::of(&args.common.out)?;
+    args.copies.check()?;
     args.common.check_outputs(args.copies.paths())?;
-    let bytes = read::bytes(image)?;
+    let bytes = read::picture(image)?;
     let named = |why| Error::Input(format!("{}: {why}", image.display()));
     let photo = Photo::new(&read::decode_image(&bytes, image)?).map_err(named)?;
     let options = args.options(args.n.unwrap_or(0) as usize);
@@ -118,9 +121,9 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
     args.copies.add(&mut outputs, &drawing, size, &table)?;
     let counts: Vec<String> = stipple.inks.iter().map(|dots| format!("{} {}", dots.range.len(), dots.name)).collect();
     let text = format!(
-        "{} dots ({}), radius {:.2} px, drawn {} x {}\n{}\n\
+        "{} ({}), radius {:.2} px, drawn {} x {}\n{}\n\
          blurred PSNR {psnr:.2} dB (both blurred by sigma {sigma:.2} px, the mean distance between dots)",
-        options.points,
+        counted(options.points, "dot"),
         counts.join(", "),
         stipple.radius * size as f32,
         drawn.width(),
@@ -144,10 +147,15 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
 }
 
 fn took(run: &Run) -> String {
-    format!("{} iterations in {:.1} s", run.iterations - run.resumed_at, run.seconds)
+    format!("{} in {:.1} s", counted(run.iterations - run.resumed_at, "iteration"), run.seconds)
 }
 
 impl Copies {
+    fn check(&self) -> Result<()> {
+        self.svg.iter().try_for_each(|path| names::picture(path, &["svg"]))?;
+        self.points.iter().try_for_each(|path| names::table(path, ""))
+    }
+
     fn paths(&self) -> impl Iterator<Item = &Path> {
         self.svg.iter().chain(&self.points).map(PathBuf::as_path)
     }

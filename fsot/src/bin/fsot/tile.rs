@@ -2,6 +2,7 @@
 
 use crate::common::Common;
 use crate::drive::{Run, drive, finish};
+use crate::names;
 use fsot::checkpoint::digest;
 use fsot::error::{Error, Result};
 use fsot::export::nft::{self, TileFile};
@@ -79,6 +80,7 @@ fn make(args: &Args) -> Result<()> {
     let out = &args.common.out;
     let sidecar = (!output::is_stream(out)).then(|| Sidecar::path(out));
     args.common.check_outputs(sidecar.as_deref())?;
+    names::tile(out)?;
     let problem = problem(args)?;
     let shape = shape(&problem, args.bits);
     let kernel = problem.kernels();

@@ -3,10 +3,11 @@
 use super::{Args, Picture, took};
 use crate::drive::{drive, finish};
 use fsot::checkpoint::digest;
+use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::export::points::Table;
 use fsot::optimize::Optimizer;
-use fsot::output::{self, Outputs};
+use fsot::output::Outputs;
 use fsot::picture::{Photo, blurred_psnr, rasterise};
 use fsot::read;
 use fsot::stipple::{Animation, Windows};
@@ -24,18 +25,21 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     let needed = windows.points();
     if let Some(n) = args.n.filter(|n| *n as usize != needed) {
         return Err(Error::Input(format!(
-            "{} frames of {} points, {} of them new in each, have {needed} points together, not {n}: leave out -n",
-            windows.frames, windows.window, windows.step
+            "{} of {}, {} of them new in each, have {} together, not {n}: leave out -n",
+            counted(windows.frames, "frame"),
+            counted(windows.window, "point"),
+            windows.step,
+            counted(needed, "point")
         )));
     }
     let outs: Vec<PathBuf> = (0..windows.frames).map(|frame| numbered(&args.common.out, frame)).collect();
-    args.common.check_outputs(args.copies.paths())?;
-    outs.iter().try_for_each(|path| output::check(path).map(drop))?;
+    args.copies.check()?;
+    args.common.check_outputs(args.copies.paths().chain(outs.iter().map(PathBuf::as_path)))?;
 
     let mut photos = Vec::with_capacity(pictures.len());
     let mut digests = Vec::with_capacity(pictures.len());
     for path in &pictures {
-        let bytes = read::bytes(path)?;
+        let bytes = read::picture(path)?;
         digests.push(digest(&bytes));
         let named = |why| Error::Input(format!("{}: {why}", path.display()));
         photos.push(Photo::new(&read::decode_image(&bytes, path)?).map_err(named)?);
@@ -62,10 +66,11 @@ pub(super) fn animation(args: &Args, pattern: &str) -> Result<()> {
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
     let worst = ratios.iter().copied().fold(f64::INFINITY, f64::min);
     let text = format!(
-        "{needed} points in {} frames of {}, {} of them new in each\n{}\n\
+        "{} in {} of {}, {} of them new in each\n{}\n\
          blurred PSNR of the frames {mean:.2} dB in the mean, {worst:.2} dB at least \
          (sigma {sigma:.2} px, the mean distance between a frame's dots)",
-        windows.frames,
+        counted(needed, "point"),
+        counted(windows.frames, "frame"),
         windows.window,
         windows.step,
         took(&run),

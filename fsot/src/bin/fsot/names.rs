@@ -1,0 +1,79 @@
+//! The names of outputs: none ends in what the file is not.
+
+use fsot::error::{Error, Result};
+use fsot::{output, read};
+use std::path::Path;
+
+/// Endings that programs open as pictures.
+const PICTURES: [&str; 5] = ["png", "svg", "jpg", "jpeg", "exr"];
+
+/// Of a picture: refuses the endings of others than the `written` kinds.
+///
+/// # Errors
+/// A sentence that names them.
+pub(crate) fn picture(path: &Path, written: &[&str]) -> Result<()> {
+    let ending = read::ending(path);
+    if is_free(path) || written.contains(&&ending[..]) || !PICTURES.contains(&&ending[..]) {
+        return Ok(());
+    }
+    let kinds = written.iter().map(|kind| kind.to_ascii_uppercase()).collect::<Vec<_>>().join(" or ");
+    let endings = written.iter().map(|kind| format!(".{kind}")).collect::<Vec<_>>().join(" or ");
+    Err(Error::Input(format!("{} would be {kinds}, not {ending}: end its name in {endings}", path.display())))
+}
+
+/// Of a table of points.
+///
+/// # Errors
+/// The name is that of a picture.
+pub(crate) fn table(path: &Path, advice: &str) -> Result<()> {
+    if is_free(path) || !PICTURES.contains(&&read::ending(path)[..]) {
+        return Ok(());
+    }
+    let name = path.display();
+    Err(Error::Input(format!(
+        "{name} would be a table of points, not a picture: end its name in .txt, .csv or .json{advice}"
+    )))
+}
+
+/// Of a tile.
+///
+/// # Errors
+/// It ends in anything but `.nft`; the sentence says how to make what it names.
+pub(crate) fn tile(path: &Path) -> Result<()> {
+    let ending = read::ending(path);
+    if is_free(path) || path.extension().is_none() || ending == "nft" {
+        return Ok(());
+    }
+    let (name, tile) = (path.display(), path.with_extension("nft"));
+    let tile = tile.display();
+    let format = match &ending[..] {
+        "png" | "exr" => &ending[..],
+        "raw" | "bin" => "raw",
+        "h" | "hpp" => "c-header",
+        "rs" => "rust",
+        _ => {
+            return Err(Error::Input(format!(
+                "{name} is no name for a tile: end it in .nft; `fsot export` makes other files of a tile"
+            )));
+        }
+    };
+    Err(Error::Input(format!(
+        "{name} is no name for a tile: use --out {tile}, then `fsot export {tile} --format {format} --out {name}`"
+    )))
+}
+
+/// Of what a tile is exported as, `written`.
+///
+/// # Errors
+/// It is that of a tile, which it would replace, or of another picture.
+pub(crate) fn export(path: &Path, written: &str) -> Result<()> {
+    if !is_free(path) && read::ending(path) == "nft" {
+        return Err(Error::Input(format!("{} is the name of a tile: give the {written} file another", path.display())));
+    }
+    if PICTURES.contains(&written) { picture(path, &[written]) } else { Ok(()) }
+}
+
+/// Pipes and devices have the names that they have.
+fn is_free(path: &Path) -> bool {
+    output::is_stream(path)
+}
