@@ -911,7 +911,8 @@ float nf_rng_uniform(nf_rng *rng);
 // NF_ERR_NO_SAMPLES if d is 0.
 //
 // A complete struct that refers to the memory its items live in; the fields are to be read, never written. A copy refers to
-// the same memory: keep one. Nothing to destroy.
+// the same memory: keep one. Nothing to destroy. Should that memory change on its own, what is drawn are still items that
+// exist, if not as often as they should be.
 typedef struct nf_table {
     // The importance of each item, in the memory given to nf_table_init.
     float *importance;
