@@ -11,8 +11,9 @@
  *  - Memory: nothing is ever allocated. Objects and workspaces live in caller memory, 8-byte aligned, of at least the
  *    bytes that the matching size function returns. Neither they nor outputs need be initialised. Nothing needs to be
  *    destroyed. An object must not be moved or copied while it is in use, unless its description says otherwise. The bytes
- *    of one in caller memory mean something only to the library file that made them; tables are kept, and sent to other
- *    builds and machines, with nf_table_save().
+ *    of one in caller memory mean something only to the library file that made them, which alone may change them:
+ *    NF_ERR_STATE tells memory that holds no object, not an object whose bytes were changed. Tables are kept, and sent to
+ *    other builds and machines, with nf_table_save().
  *  - Threads: no locks, and no shared state but a cached answer of the processor's. Any number of threads may read an
  *    object; one at a time may write it.
  *  - Arithmetic: IEEE 754, rounding to nearest, subnormal numbers not flushed to zero.
@@ -350,7 +351,8 @@ nf_status nf_cv_block_estimate(const nf_cv_config *config,
 
 // A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, in one process or
 // among those that run the same library file. The bytes are no file format: another build may lay them out otherwise.
-// NF_ERR_STATE tells those of another version, or of another size, not of every other build.
+// NF_ERR_STATE tells those of another version, or of another size, not of every other build. No one but the library may
+// change them: behind the first 8 they are not checked.
 typedef struct nf_cv_accumulator nf_cv_accumulator;
 
 // Bytes that an accumulator needs; 0 for a configuration that is NULL, out of range or not for streaming.
@@ -585,7 +587,8 @@ nf_status nf_mis_optimal_contribution(const float *pdf,
 // After R rounds of n_k samples each, an integral is sum_s f / S / R - (sum_s p / S / R - 1)' alpha with alpha
 // from A alpha = b: the balance estimate, less what the samples got wrong about the densities' integrals.
 //
-// Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use; nothing to destroy.
+// Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use, nor changed by anyone else;
+// nothing to destroy.
 typedef struct nf_omis nf_omis;
 
 // The bytes of memory an nf_omis needs; 0 unless techniques is in 1..NF_MIS_MAX_TECHNIQUES, integrals at least 1, and the
@@ -1205,8 +1208,8 @@ nf_status nf_omis_weights(uint32_t solver,
 // Without momentum nf_omis_weights gives the same estimate, at the cost of one weighted backward pass.
 //
 // Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; nothing to destroy. May be moved and copied as bytes
-// between calls, in one process or among those that run the same library file; no file format, as for
-// nf_cv_accumulator.
+// between calls, in one process or among those that run the same library file; no file format, and for no one else to
+// change, as for nf_cv_accumulator.
 typedef struct nf_gradient nf_gradient;
 
 // The bytes of memory an nf_gradient needs: 4 (techniques + 1) per parameter and about 1.4 kB. 0 unless techniques is
