@@ -136,9 +136,9 @@ pub unsafe extern "C" fn nf_gradient_reset(state: *mut nf_gradient) -> nf_status
 /// The object's header and averages.
 ///
 /// # Safety
-/// A non-NULL, aligned `state` must point to at least 8 initialised bytes that no one else uses during `'a`. If they are the magic
-/// number, an nf_gradient must stand there: what nf_gradient_init wrote, or all its bytes copied there, changed since by this library
-/// alone. So memory follows for as many averages as its header says.
+/// A non-NULL, aligned `state` must point to at least 8 initialised bytes that no one else uses during `'a`. If they
+/// are the magic number, an nf_gradient must stand there: what nf_gradient_init wrote, or all its bytes copied there,
+/// changed since by this library alone. So memory follows for as many averages as its header says.
 unsafe fn open<'a>(state: *mut nf_gradient) -> Result<(&'a mut Header, &'a mut [f32]), nf_status> {
     // SAFETY: passed on to the caller.
     unsafe { magic::check::<Header>(state.cast(), MAGIC) }?;

@@ -4,9 +4,9 @@
 //! depends on what can be known of it here: a check against the plain mistake of keeping objects in files, or sending them to another
 //! program, not a proof. The header says what may be done with their bytes.
 //!
-//! Behind the number there is no check, and could be none: an object says itself how long it is, and in its header stand enums, of
-//! which not every pattern of bits is one. Who finds the number takes the rest for what the library wrote, and the header asks that
-//! no one else write there.
+//! Behind the number there is no check, and could be none: an object says itself how long it is, and in its header
+//! stand enums, of which not every pattern of bits is one. Who finds the number takes the rest for what the library
+//! wrote, and the header asks that no one else write there.
 
 use crate::status::{NF_ABI_VERSION, NF_ERR_ALIGNMENT, NF_ERR_NULL, NF_ERR_STATE, nf_status};
 
@@ -24,8 +24,8 @@ pub(crate) const fn magic<H>(name: &str) -> u64 {
     hash
 }
 
-/// Whether an object with this number stands there: nothing behind the number is looked at. An `Ok` says that `object` is not NULL and
-/// aligned as its header.
+/// Whether an object with this number stands there: nothing behind the number is looked at. An `Ok` says that `object`
+/// is not NULL and aligned as its header.
 ///
 /// # Safety
 /// A non-NULL, aligned `object` must point to at least 8 initialised bytes that no one writes meanwhile.

@@ -24,8 +24,8 @@ pub const NF_OMIS_BALANCE: u32 = 3;
 /// After R rounds of n_k samples each, an integral is sum_s f / S / R - (sum_s p / S / R - 1)' alpha with alpha
 /// from A alpha = b: the balance estimate, less what the samples got wrong about the densities' integrals.
 ///
-/// Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use, nor changed by anyone else;
-/// nothing to destroy.
+/// Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use, nor changed by anyone
+/// else; nothing to destroy.
 #[allow(non_camel_case_types)]
 pub struct nf_omis {
     _private: (),
@@ -259,9 +259,9 @@ pub unsafe extern "C" fn nf_omis_weights(
 /// The object as the core sees it, to read.
 ///
 /// # Safety
-/// A non-NULL, aligned `omis` must point to at least 8 initialised bytes that no one writes during `'a`. If they are the magic
-/// number, an nf_omis must stand there: what nf_omis_init wrote, changed since by this library alone. So memory follows for as many sums as
-/// its header says.
+/// A non-NULL, aligned `omis` must point to at least 8 initialised bytes that no one writes during `'a`. If they are
+/// the magic number, an nf_omis must stand there: what nf_omis_init wrote, changed since by this library alone. So
+/// memory follows for as many sums as its header says.
 unsafe fn open<'a>(omis: *const nf_omis) -> Result<OptimalMis<&'a [f64]>, nf_status> {
     // SAFETY: passed on to the caller.
     let header = *unsafe { header(omis) }?;

@@ -124,7 +124,8 @@ fn one_slice_is_none() {
     assert_eq!(batch::<f64>(&none, &u, &f), batch::<f64>(&one, &u, &f));
 }
 
-/// The most slices there can be, and the most that have their own functions of each degree: as docs/control_variates.md has them.
+/// The most slices there can be, and the most that have their own functions of each degree: as docs/control_variates.md
+/// has them.
 #[test]
 fn most_slices() {
     let terms = |dims, order, slices| Config { slices, ..Config::new(dims, order, 1) }.terms();

@@ -9,10 +9,10 @@ use core::ffi::c_void;
 use noisefloor_core::control_variate::State;
 use noisefloor_core::real::Real;
 
-/// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, in one process or
-/// among those that run the same library file. The bytes are no file format: another build may lay them out otherwise.
-/// NF_ERR_STATE tells those of another version, or of another size, not of every other build. No one but the library may
-/// change them: behind the first 8 they are not checked.
+/// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, in one
+/// process or among those that run the same library file. The bytes are no file format: another build may lay them out
+/// otherwise. NF_ERR_STATE tells those of another version, or of another size, not of every other build. No one but
+/// the library may change them: behind the first 8 they are not checked.
 #[allow(non_camel_case_types)]
 pub struct nf_cv_accumulator {
     _private: (),
@@ -210,9 +210,10 @@ enum OpenedShared<'a> {
 }
 
 /// # Safety
-/// A non-NULL, aligned pointer must be to at least 8 initialised bytes that nobody else uses during `'a`. If they are the magic number,
-/// an accumulator must stand there: what nf_cv_accumulator_init() wrote, or all its bytes copied there, changed since by this library alone. So
-/// the enums in its state are valid, and memory follows for as many sums as the state says.
+/// A non-NULL, aligned pointer must be to at least 8 initialised bytes that nobody else uses during `'a`. If they are
+/// the magic number, an accumulator must stand there: what nf_cv_accumulator_init() wrote, or all its bytes copied
+/// there, changed since by this library alone. So the enums in its state are valid, and memory follows for as many sums
+/// as the state says.
 #[inline(always)]
 unsafe fn open<'a>(accumulator: *mut nf_cv_accumulator) -> Result<Opened<'a>, nf_status> {
     // SAFETY: the caller's promise, of which the second half counts once the number has been found.

@@ -5,8 +5,8 @@ use super::{Kernel, Mixture, Portable, Table};
 use crate::Error;
 use crate::rng::Rng;
 
-/// A search for an item not yet taken ends where so many should have been found: once in e^64 searches, or where the table's memory
-/// has been damaged.
+/// A search for an item not yet taken ends where so many should have been found: once in e^64 searches, or where the
+/// table's memory has been damaged.
 const PATIENCE: f64 = 64.0;
 
 impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S> {

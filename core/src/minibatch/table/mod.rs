@@ -107,9 +107,9 @@ pub struct Table<I, S> {
 impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// Takes up memory that a table of this state has used.
     ///
-    /// Errors: [`Error::Memory`] if it is too small for the items, [`Error::Range`] for a state that no table has. The contents
-    /// are not checked: if they are not what that table left there, draws are still of items that exist, but not as often as they
-    /// should be, and weights are any numbers.
+    /// Errors: [`Error::Memory`] if it is too small for the items, [`Error::Range`] for a state that no table has. The
+    /// contents are not checked: if they are not what that table left there, draws are still of items that exist, but
+    /// not as often as they should be, and weights are any numbers.
     ///
     /// ```
     /// use noisefloor::minibatch::{Table, table};
