@@ -11,8 +11,9 @@
  *  - Memory: nothing is ever allocated. Objects and workspaces live in caller memory, 8-byte aligned, of at least the
  *    bytes that the matching size function returns. Neither they nor outputs need be initialised. Nothing needs to be
  *    destroyed. An object must not be moved or copied while it is in use, unless its description says otherwise. The bytes
- *    of one in caller memory mean something only to the library file that made them; tables are kept, and sent to other
- *    builds and machines, with nf_table_save().
+ *    of one in caller memory mean something only to the library file that made them, which alone may change them:
+ *    NF_ERR_STATE tells memory that holds no object, not an object whose bytes were changed. Tables are kept, and sent
+ *    to other builds and machines, with nf_table_save().
  *  - Threads: no locks, and no shared state but a cached answer of the processor's. Any number of threads may read an
  *    object; one at a time may write it.
  *  - Arithmetic: IEEE 754, rounding to nearest, subnormal numbers not flushed to zero.
@@ -184,6 +185,9 @@ typedef struct nf_cv_config {
     // take their std_error from the pixels' spread.
     uint32_t stratified;
     // If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (figure 4.15).
+    // Each takes a term: at most 136 less binomial(dims - 1 + order, order), those of the other coordinates, and
+    // `controls`. That is 130 at 3 dims, order 2, where up to 43 have functions of their own as well
+    // (docs/control_variates.md). Of more alternatives let each slice stand for several.
     uint32_t slices;
     // User-supplied control functions with known integrals (4.18), 0 to 4.
     uint32_t controls;
@@ -259,6 +263,7 @@ typedef struct nf_cv_image {
     const uint32_t *surfaces;
     // `channels` numbers for each pixel, or NULL: what its values are divided by before a fit and multiplied by after
     // it, such as its albedo. Finite and not negative; 0 counts as 1. Must not depend on the pixel's own samples either.
+    // For textures, where all samples of a pixel see one albedo: with defocus or motion blur they can raise the error.
     // Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
     const float *factors;
 } nf_cv_image;
@@ -348,9 +353,10 @@ nf_status nf_cv_block_estimate(const nf_cv_config *config,
                                size_t bytes,
                                nf_estimate *out);
 
-// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, in one process or
-// among those that run the same library file. The bytes are no file format: another build may lay them out otherwise.
-// NF_ERR_STATE tells those of another version, or of another size, not of every other build.
+// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, in one
+// process or among those that run the same library file. The bytes are no file format: another build may lay them out
+// otherwise. NF_ERR_STATE tells those of another version, or of another size, not of every other build. No one but
+// the library may change them: behind the first 8 they are not checked.
 typedef struct nf_cv_accumulator nf_cv_accumulator;
 
 // Bytes that an accumulator needs; 0 for a configuration that is NULL, out of range or not for streaming.
@@ -585,7 +591,8 @@ nf_status nf_mis_optimal_contribution(const float *pdf,
 // After R rounds of n_k samples each, an integral is sum_s f / S / R - (sum_s p / S / R - 1)' alpha with alpha
 // from A alpha = b: the balance estimate, less what the samples got wrong about the densities' integrals.
 //
-// Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use; nothing to destroy.
+// Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use, nor changed by anyone
+// else; nothing to destroy.
 typedef struct nf_omis nf_omis;
 
 // The bytes of memory an nf_omis needs; 0 unless techniques is in 1..NF_MIS_MAX_TECHNIQUES, integrals at least 1, and the
@@ -910,8 +917,9 @@ float nf_rng_uniform(nf_rng *rng);
 // unless set. No weight 1 / (N p_i) is then above 1 / d. Where all importances are 0 draws are uniform, or
 // NF_ERR_NO_SAMPLES if d is 0.
 //
-// A complete struct that refers to the memory its items live in; the fields are to be read, never written. A copy refers to
-// the same memory: keep one. Nothing to destroy.
+// A complete struct that refers to the memory its items live in; the fields are to be read, never written. A copy
+// refers to the same memory: keep one. Nothing to destroy. Should that memory change on its own, what is drawn are
+// still items that exist, if not as often as they should be.
 typedef struct nf_table {
     // The importance of each item, in the memory given to nf_table_init.
     float *importance;
@@ -1204,8 +1212,8 @@ nf_status nf_omis_weights(uint32_t solver,
 // Without momentum nf_omis_weights gives the same estimate, at the cost of one weighted backward pass.
 //
 // Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; nothing to destroy. May be moved and copied as bytes
-// between calls, in one process or among those that run the same library file; no file format, as for
-// nf_cv_accumulator.
+// between calls, in one process or among those that run the same library file; no file format, and for no one else to
+// change, as for nf_cv_accumulator.
 typedef struct nf_gradient nf_gradient;
 
 // The bytes of memory an nf_gradient needs: 4 (techniques + 1) per parameter and about 1.4 kB. 0 unless techniques is

@@ -1,6 +1,6 @@
 //! Optimal MIS gradients with momentum.
 
-use crate::magic::magic;
+use crate::magic::{self, magic};
 use crate::omis::solver_of;
 use crate::status::*;
 use crate::{convert, dispatch};
@@ -12,8 +12,8 @@ use noisefloor_core::minibatch::{self, Batch, Gradient, System};
 /// Without momentum nf_omis_weights gives the same estimate, at the cost of one weighted backward pass.
 ///
 /// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; nothing to destroy. May be moved and copied as bytes
-/// between calls, in one process or among those that run the same library file; no file format, as for
-/// nf_cv_accumulator.
+/// between calls, in one process or among those that run the same library file; no file format, and for no one else to
+/// change, as for nf_cv_accumulator.
 #[allow(non_camel_case_types)]
 pub struct nf_gradient {
     _private: (),
@@ -136,15 +136,13 @@ pub unsafe extern "C" fn nf_gradient_reset(state: *mut nf_gradient) -> nf_status
 /// The object's header and averages.
 ///
 /// # Safety
-/// A non-NULL `state` must be 8-byte-aligned memory that nf_gradient_init was given and that no one else uses during
-/// `'a`.
+/// A non-NULL, aligned `state` must point to at least 8 initialised bytes that no one else uses during `'a`. If they
+/// are the magic number, an nf_gradient must stand there: what nf_gradient_init wrote, or all its bytes copied there,
+/// changed since by this library alone. So memory follows for as many averages as its header says.
 unsafe fn open<'a>(state: *mut nf_gradient) -> Result<(&'a mut Header, &'a mut [f32]), nf_status> {
-    // Only the first words until the magic number says that the rest can be trusted.
     // SAFETY: passed on to the caller.
-    if *unsafe { convert::reference(state.cast::<u64>()) }? != MAGIC {
-        return Err(NF_ERR_STATE);
-    }
-    // SAFETY: passed on to the caller.
+    unsafe { magic::check::<Header>(state.cast(), MAGIC) }?;
+    // SAFETY: passed on to the caller, who promises more where the number has been found.
     let header = unsafe { convert::reference_mut(state.cast::<Header>()) }?;
     let len = minibatch::gradient_len(header.techniques as usize, header.parameters as usize);
     if len == 0 {

@@ -3,8 +3,12 @@
 //! The compiler chooses the layout of what objects are made of, and may choose another one in each build. So the number
 //! depends on what can be known of it here: a check against the plain mistake of keeping objects in files, or sending them to another
 //! program, not a proof. The header says what may be done with their bytes.
+//!
+//! Behind the number there is no check, and could be none: an object says itself how long it is, and in its header
+//! stand enums, of which not every pattern of bits is one. Who finds the number takes the rest for what the library
+//! wrote, and the header asks that no one else write there.
 
-use crate::status::NF_ABI_VERSION;
+use crate::status::{NF_ABI_VERSION, NF_ERR_ALIGNMENT, NF_ERR_NULL, NF_ERR_STATE, nf_status};
 
 /// The number of objects whose header is an `H`, for the library's version and the target's width of pointers. It is to stand first.
 pub(crate) const fn magic<H>(name: &str) -> u64 {
@@ -18,6 +22,24 @@ pub(crate) const fn magic<H>(name: &str) -> u64 {
         i += 1;
     }
     hash
+}
+
+/// Whether an object with this number stands there: nothing behind the number is looked at. An `Ok` says that `object`
+/// is not NULL and aligned as its header.
+///
+/// # Safety
+/// A non-NULL, aligned `object` must point to at least 8 initialised bytes that no one writes meanwhile.
+#[inline(always)]
+pub(crate) unsafe fn check<H>(object: *const H, magic: u64) -> Result<(), nf_status> {
+    const { assert!(align_of::<H>() >= align_of::<u64>()) };
+    if object.is_null() {
+        return Err(NF_ERR_NULL);
+    }
+    if !object.is_aligned() {
+        return Err(NF_ERR_ALIGNMENT);
+    }
+    // SAFETY: not NULL and aligned, as just checked; the rest is the caller's promise. Any 8 bytes are a number.
+    if unsafe { object.cast::<u64>().read() } == magic { Ok(()) } else { Err(NF_ERR_STATE) }
 }
 
 /// FNV-1a: Fowler, Noll and Vo's hash.

@@ -1,7 +1,7 @@
 //! Optimal multiple importance sampling weights, found from the samples.
 
 use crate::convert;
-use crate::magic::magic;
+use crate::magic::{self, magic};
 use crate::status::*;
 use noisefloor_core::minibatch::{self, Batch};
 use noisefloor_core::mis::{self, DEFAULT_RIDGE, MAX_TECHNIQUES, OptimalMis, Solver};
@@ -24,7 +24,8 @@ pub const NF_OMIS_BALANCE: u32 = 3;
 /// After R rounds of n_k samples each, an integral is sum_s f / S / R - (sum_s p / S / R - 1)' alpha with alpha
 /// from A alpha = b: the balance estimate, less what the samples got wrong about the densities' integrals.
 ///
-/// Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use; nothing to destroy.
+/// Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use, nor changed by anyone
+/// else; nothing to destroy.
 #[allow(non_camel_case_types)]
 pub struct nf_omis {
     _private: (),
@@ -258,7 +259,9 @@ pub unsafe extern "C" fn nf_omis_weights(
 /// The object as the core sees it, to read.
 ///
 /// # Safety
-/// A non-NULL `omis` must be 8-byte-aligned memory that nf_omis_init was given and that no one writes to during `'a`.
+/// A non-NULL, aligned `omis` must point to at least 8 initialised bytes that no one writes during `'a`. If they are
+/// the magic number, an nf_omis must stand there: what nf_omis_init wrote, changed since by this library alone. So
+/// memory follows for as many sums as its header says.
 unsafe fn open<'a>(omis: *const nf_omis) -> Result<OptimalMis<&'a [f64]>, nf_status> {
     // SAFETY: passed on to the caller.
     let header = *unsafe { header(omis) }?;
@@ -283,8 +286,10 @@ unsafe fn open_mut<'a>(omis: *mut nf_omis) -> Result<OptimalMis<&'a mut [f64]>, 
 /// As for [`open`].
 unsafe fn header<'a>(omis: *const nf_omis) -> Result<&'a Header, nf_status> {
     // SAFETY: passed on to the caller.
+    unsafe { magic::check::<Header>(omis.cast(), MAGIC) }?;
+    // SAFETY: passed on to the caller, who promises more where the number has been found.
     let header = unsafe { convert::reference(omis.cast::<Header>()) }?;
-    if header.magic == MAGIC && sums_len(header) > 0 { Ok(header) } else { Err(NF_ERR_STATE) }
+    if sums_len(header) > 0 { Ok(header) } else { Err(NF_ERR_STATE) }
 }
 
 fn sums_len(header: &Header) -> usize {

@@ -13,8 +13,9 @@ use noisefloor_core::minibatch::table::{self, State, Table};
 /// unless set. No weight 1 / (N p_i) is then above 1 / d. Where all importances are 0 draws are uniform, or
 /// NF_ERR_NO_SAMPLES if d is 0.
 ///
-/// A complete struct that refers to the memory its items live in; the fields are to be read, never written. A copy refers to
-/// the same memory: keep one. Nothing to destroy.
+/// A complete struct that refers to the memory its items live in; the fields are to be read, never written. A copy
+/// refers to the same memory: keep one. Nothing to destroy. Should that memory change on its own, what is drawn are
+/// still items that exist, if not as often as they should be.
 #[repr(C)]
 #[allow(non_camel_case_types)]
 pub struct nf_table {
@@ -432,6 +433,10 @@ fn lengths(table: &nf_table) -> Result<(usize, usize), nf_status> {
         return Err(NF_ERR_STATE);
     }
     let (importance, sums) = parts(table.blocks).ok_or(NF_ERR_STATE)?;
+    // nf_table_init put the sums right behind: where that no longer holds, pointers or lengths have been changed since.
+    if table.sums.addr() != table.importance.addr().wrapping_add(importance) {
+        return Err(NF_ERR_STATE);
+    }
     Ok((importance / size_of::<f32>(), sums / size_of::<i64>()))
 }
 

@@ -126,11 +126,13 @@ private:
 class Shared final : public Estimator {
 public:
     // For rectangles of at most `side` x `side` pixels. Windows do not reach beyond a rectangle, which should be large beside
-    // them: theirs are 8 x 8 pixels.
-    Shared(const nf_cv_config &config, uint32_t side, size_t n) : config_(config), results_(size_t{side} * side)
+    // them: theirs are 8 x 8 pixels. `blind`: without surfaces, in windows side by side, to show what that does.
+    Shared(const nf_cv_config &config, uint32_t side, size_t n, bool blind)
+        : config_(config), blind_(blind), results_(size_t{side} * side)
     {
         nf_cv_image image = {};
         image.width = image.height = side;
+        image.stride = blind ? 8 : 0;
         workspace_ = memory(nf_cv_image_workspace_size(&config, &image, n));
     }
 
@@ -139,17 +141,19 @@ public:
         nf_cv_image image = {};
         image.width = s.width;
         image.height = s.height;
-        image.surfaces = s.surface;
+        image.surfaces = blind_ ? nullptr : s.surface;
+        image.stride = blind_ ? 8 : 0;
         check(nf_cv_image_estimate(&config_, &image, s.u, s.f, s.n, workspace_.data(), 8 * workspace_.size(), results_.data()),
               "nf_cv_image_estimate");
         for (size_t p = 0; p < s.pixels(); ++p)
             std::copy_n(results_[p].mean, 3, means + 3 * p);
     }
 
-    bool needs_surfaces() const override { return true; }
+    bool needs_surfaces() const override { return !blind_; }
 
 private:
     nf_cv_config config_;
+    bool blind_;
     std::vector<uint64_t> workspace_;
     std::vector<nf_estimate> results_;
 };
@@ -179,6 +183,7 @@ inline const EstimatorName estimator_names[] = {
     {"incremental", NF_CV_INCREMENTAL, "each sample against a fit to those before it; streamed, 8 samples at a time"},
     {"shared", NF_CV_ROBUST, "each pixel against fits to its neighbours; suits every sampler"},
     {"shared_k_fold", NF_CV_K_FOLD, "the same, unbiased: halves of the neighbours choose fits for each other"},
+    {"shared_blind", NF_CV_ROBUST, "shared, but not told which pixels show the same surface, in windows side by side"},
     {"luminance", NF_CV_LEAST_SQUARES, "a fit to the luminance of all samples, which scales the plain mean", NF_COLOR_LUMINANCE_RATIO},
     {"robust_luminance", NF_CV_ROBUST, "the same with the default estimator", NF_COLOR_LUMINANCE_RATIO},
     {"slices", NF_CV_ROBUST, "robust, told which light was picked; for scenes that pick one"},
@@ -196,7 +201,10 @@ struct EstimatorSetup {
 };
 
 // Whether it needs the samples of neighbouring pixels.
-inline bool shares(const std::string &name) { return name == "shared" || name == "shared_k_fold"; }
+inline bool shares(const std::string &name)
+{
+    return name == "shared" || name == "shared_k_fold" || name == "shared_blind";
+}
 
 // Throws if the name is unknown.
 inline const EstimatorName &find_estimator(const std::string &name)
@@ -247,7 +255,7 @@ inline std::unique_ptr<Estimator> make_estimator(const std::string &name, const 
     if (nf_cv_workspace_size(&config, setup.samples) == 0)
         throw std::runtime_error(refusal(name, config, setup));
     if (shares(name))
-        return std::make_unique<Shared>(config, setup.side, setup.samples);
+        return std::make_unique<Shared>(config, setup.side, setup.samples, name == "shared_blind");
     if (name == "incremental")
         return std::make_unique<Streaming>(config);
     return std::make_unique<Regression>(config, setup.samples);

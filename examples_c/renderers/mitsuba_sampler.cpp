@@ -65,10 +65,10 @@ private:
     std::vector<nf_cv_accumulator *> accumulators_;
 };
 
-// The vectorised variants' numbers must be the scalar ones'.
-void check_wavefront(TileSampler &sampler)
+// What estimators are told after rendering must be what was drawn.
+void check_numbers(TileSampler &sampler)
 {
-    const std::vector<Float> all = sampler.wavefront(0, emitter_dimension, 2, sampler.sample_count());
+    const std::vector<Float> all = sampler.numbers(0, emitter_dimension, 2, sampler.sample_count());
     for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
         sampler.seed(pixel, 1);
         for (uint32_t j = 0; j < sampler.sample_count(); ++j, sampler.advance()) {
@@ -76,7 +76,7 @@ void check_wavefront(TileSampler &sampler)
             const Point2f u = sampler.next_2d(true);
             const size_t at = 2 * (size_t{pixel} * sampler.sample_count() + j);
             if (u.x != all[at] || u.y != all[at + 1])
-                throw std::runtime_error("a wavefront differs from single draws");
+                throw std::runtime_error("all numbers together differ from single draws");
         }
     }
 }
@@ -98,7 +98,7 @@ void run()
     IndependentSampler independent(spp);
     report("independent", plain_means(independent));
     TileSampler sampler(&tile, spp, film_size);
-    check_wavefront(sampler);
+    check_numbers(sampler);
     report("tile", plain_means(sampler));
 
     std::printf("%u samples per pixel, in %u passes\n", spp * passes, passes);

@@ -1,4 +1,4 @@
-// Samplers for Mitsuba 3: one that draws from a tile, and one that remembers what another gave.
+// Samplers for Mitsuba 3's scalar variants: one that draws from a tile, and one that remembers what another gave.
 #pragma once
 
 #include "mitsuba_interface.hpp"
@@ -41,9 +41,9 @@ public:
         return {u[0], u[1]};
     }
 
-    // For the vectorised variants, and for estimators: what every pixel's `samples` samples are given at a count of dimensions,
-    // in the order of a wavefront (sample by sample within a pixel, pixel by pixel along the rows).
-    std::vector<Float> wavefront(uint32_t frame, uint32_t dimension, uint32_t dims, uint32_t samples) const
+    // For estimators, after rendering: what every pixel's `samples` samples were given at a count of dimensions, sample
+    // by sample within a pixel, pixel by pixel along the rows.
+    std::vector<Float> numbers(uint32_t frame, uint32_t dimension, uint32_t dims, uint32_t samples) const
     {
         const nf_sampler first = nf_sampler_domain(nf_sampler_pixel(m_tile, 0, 0, frame, 0), dimension);
         std::vector<Float> u(nf_sampler_fill_len(&dims, 1, m_film_size.x, m_film_size.y, samples));

@@ -3,7 +3,7 @@
 
 use arbitrary::Arbitrary;
 use libfuzzer_sys::fuzz_target;
-use noisefloor::minibatch::table::{Shard, allocate, check_saved, importance_len, saved_len, sums_len};
+use noisefloor::minibatch::table::{Shard, State, allocate, check_saved, importance_len, saved_len, sums_len};
 use noisefloor::minibatch::{Table, shuffle};
 use noisefloor::rng::Rng;
 
@@ -39,6 +39,33 @@ fn load(bytes: &[u8], capacity: u32) -> (Table<Vec<f32>, Vec<i64>>, Vec<i64>) {
     Table::load(&mut q[..], &mut sums[..], bytes).unwrap();
     let (owned, owned_sums) = memory(capacity);
     (Owned::load(owned, owned_sums, bytes).unwrap(), sums)
+}
+
+/// Whatever bits have changed on their own, draws return, and what they draw exists.
+fn damage(q: &mut [f32], sums: &mut [i64], state: State, seed: u64) {
+    let mut rng = Rng::seed(seed);
+    for _ in 0..1 + seed % 16 {
+        let (word, bit) = (rng.next_u32() as usize % (q.len() + sums.len()), rng.next_u32());
+        match q.get_mut(word) {
+            Some(q) => *q = f32::from_bits(q.to_bits() ^ 1 << (bit % 32)),
+            None => sums[word - q.len()] ^= 1 << (bit % 64),
+        }
+    }
+    let mut table = Table::resume(q, sums, state).unwrap();
+    let all = Shard { importance: 2.0 * table.total(), items: 2 * u64::from(table.items()) };
+    for batch in [1, 65] {
+        let (mut index, mut weight) = (vec![u32::MAX; batch], vec![0.0; batch]);
+        for way in 0..4 {
+            let result = match way {
+                0 => table.draw(&mut rng, &mut index, Some(&mut weight)),
+                1 => table.draw_stratified(&mut rng, &mut index, Some(&mut weight)),
+                2 => table.draw_shard(&all, &mut rng, &mut index, Some(&mut weight)),
+                _ => table.draw_distinct(&mut rng, &mut index, Some(&mut weight)),
+            };
+            assert!(result.is_err() || index.iter().all(|&item| item < table.items()), "{way}: {index:?}");
+            index.fill(u32::MAX);
+        }
+    }
 }
 
 fuzz_target!(|input: Input| {
@@ -165,4 +192,5 @@ fuzz_target!(|input: Input| {
         }
     }
     assert!(shuffle(input.seed, items, input.room.into()) < items);
+    damage(&mut q, &mut sums, state, input.seed);
 });

@@ -111,7 +111,8 @@ static inline void memory_free(memory *m)
 }
 
 /* The first 8 bytes of an object say which build of the library made it. `call` must take them for its
- * own, but find NF_ERR_STATE where a byte differs, and for `before`, a fixed name, which says nothing of the object's layout. */
+ * own, but find NF_ERR_STATE where a byte differs, and for `before`, a fixed name, which says nothing of the object's
+ * layout. Of memory that holds no object nothing behind them may be read. */
 static inline void check_other_builds(void *object, const char *before, nf_status (*call)(void *object))
 {
     unsigned char *byte = (unsigned char *)object, kept[8];
@@ -127,6 +128,12 @@ static inline void check_other_builds(void *object, const char *before, nf_statu
     CHECK_STATUS(call(object), NF_ERR_STATE);
     memcpy(object, kept, sizeof kept);
     CHECK_STATUS(call(object), NF_OK);
+    object = malloc(sizeof kept);
+    if (object != NULL) {
+        memcpy(object, before, sizeof kept);
+        CHECK_STATUS(call(object), NF_ERR_STATE);
+    }
+    free(object);
 }
 
 /* One address further on: misaligned for anything larger than a byte. */

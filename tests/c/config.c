@@ -49,6 +49,33 @@ static void terms(void)
     CHECK(nf_cv_terms(NULL) == 0);
 }
 
+/* The most slices there can be: 136 less the terms of the other coordinates, as the header says. */
+static void most_slices(void)
+{
+    static const uint32_t most[][3] = {/* dims, order, slices */
+                                       {1, 2, 135}, {2, 1, 134}, {2, 2, 133}, {2, 7, 128}, {3, 1, 133},
+                                       {3, 2, 130}, {3, 3, 126}, {3, 7, 100}, {4, 2, 126}, {5, 2, 121}, {7, 3, 52}, {15, 2, 16}};
+    nf_cv_config config;
+    size_t i;
+    for (i = 0; i < sizeof most / sizeof *most; ++i) {
+        config = make_config(most[i][0], most[i][1], 1, NF_CV_ROBUST);
+        config.slices = most[i][2];
+        CHECK(nf_cv_terms(&config) > 0 && nf_cv_workspace_size(&config, 8) > 0);
+        CHECK(most[i][2] == 136 - (most[i][0] == 1 ? 1 : expected_terms(most[i][0] - 1, most[i][1])));
+        ++config.slices;
+        CHECK(nf_cv_terms(&config) == 0 && nf_cv_workspace_size(&config, 8) == 0);
+        config.slices = 256;
+        CHECK(nf_cv_terms(&config) == 0);
+    }
+    /* Control functions take a term each. */
+    config = make_config(3, 2, 1, NF_CV_ROBUST);
+    config.slices = 130;
+    config.controls = 1;
+    CHECK(nf_cv_terms(&config) == 0);
+    config.slices = 129;
+    CHECK(nf_cv_terms(&config) == 136);
+}
+
 /* Every function that takes a configuration refuses this one. */
 static void refused(const nf_cv_config *config, nf_status status)
 {
@@ -162,6 +189,7 @@ int main(void)
     fill_linear(f, u, N, 2, 1);
     defaults();
     terms();
+    most_slices();
     ranges();
     limits();
     return report("config");

@@ -408,6 +408,61 @@ static void saving(void)
     memory_free(&changed);
 }
 
+/* Bits of the memory, or one of the struct's, that have changed on their own: an error, or items that exist. */
+static void damaged(void)
+{
+    nf_table table, made;
+    memory m = make(&table, 300, NULL), kept = memory_new(m.bytes);
+    nf_rng rng;
+    nf_shard shards[2];
+    uint32_t index[70], every[300], i, way, k, drawn = 0;
+    float weight[70], importance[300];
+    for (i = 0; i < 300; ++i) {
+        every[i] = i;
+        importance[i] = (float)(i % 7);
+    }
+    CHECK_STATUS(nf_table_update(&table, every, importance, 300, 0.0f), NF_OK);
+    made = table;
+    memcpy(kept.start, m.start, m.bytes);
+    nf_rng_seed(&rng, 7);
+    shards[1].importance = 1000.0;
+    shards[1].items = 300;
+    for (i = 0; i < 3000; ++i) {
+        unsigned char *const bytes = (unsigned char *)(i % 10 < 8 ? m.start : (void *)&table);
+        const uint32_t count = i % 10 < 8 ? (uint32_t)m.bytes : (uint32_t)sizeof table;
+        const uint32_t flips = i % 10 >= 8 || i % 2 == 0 ? 1 : i % 5 == 0 ? 1000 : 5;
+        const uint32_t batch = i % 3 == 0 ? 70 : 1;
+        table.uniform_fraction = i % 4 == 0 ? 0.2f : 0.0f;
+        for (k = 0; k < flips; ++k)
+            bytes[nf_rng_next(&rng) % count] ^= (unsigned char)(1 << nf_rng_next(&rng) % 8);
+        for (way = 0; way < 4; ++way) {
+            nf_status status = NF_ERR_STATE;
+            poison(index, sizeof index);
+            if (way == 0)
+                status = nf_table_draw(&table, &rng, batch, index, weight);
+            else if (way == 1)
+                status = nf_table_draw_stratified(&table, &rng, batch, index, weight);
+            else if (way == 2)
+                status = nf_table_draw_distinct(&table, &rng, batch, index, weight);
+            else if (nf_table_shard(&table, shards) == NF_OK)
+                status = nf_table_draw_shard(&table, shards, 2, &rng, batch, index, weight);
+            if (status == NF_OK) {
+                uint32_t largest = 0;
+                for (k = 0; k < batch; ++k)
+                    largest = index[k] > largest ? index[k] : largest;
+                CHECK(largest < table.items);
+                ++drawn;
+            }
+        }
+        table = made;
+        memcpy(m.start, kept.start, m.bytes);
+    }
+    /* Most damage leaves something that can be drawn. */
+    CHECK(drawn > 3 * 3000);
+    memory_free(&kept);
+    memory_free(&m);
+}
+
 static void shuffling(void)
 {
     unsigned char seen[1000] = {0};
@@ -430,6 +485,7 @@ int main(void)
     zeros();
     growing();
     saving();
+    damaged();
     shuffling();
     return report("table");
 }

@@ -4,6 +4,7 @@
 //! fourth half hidden. The first two coordinates are a point on the light, the third picks one of the lights.
 
 use crate::cv_support::*;
+use noisefloor::Error;
 use noisefloor::control_variate::{Config, Estimator, Samples, estimate, workspace_len};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::statistics::{Ratio, rmse_ratio};
@@ -121,4 +122,38 @@ fn one_slice_is_none() {
     let none = config(2, 2, Estimator::Robust);
     let one = Config { slices: 1, ..none };
     assert_eq!(batch::<f64>(&none, &u, &f), batch::<f64>(&one, &u, &f));
+}
+
+/// The most slices there can be, and the most that have their own functions of each degree: as docs/control_variates.md
+/// has them.
+#[test]
+fn most_slices() {
+    let terms = |dims, order, slices| Config { slices, ..Config::new(dims, order, 1) }.terms();
+    // dims, order; the most; up to degree 1, 2, ...
+    let expected: [(usize, usize, usize, &[usize]); 7] = [
+        (2, 2, 133, &[66, 44]),
+        (3, 1, 133, &[44]),
+        (3, 2, 130, &[43, 21]),
+        (3, 3, 126, &[42, 21, 12]),
+        (4, 2, 126, &[31, 12]),
+        (5, 2, 121, &[24, 8]),
+        (7, 3, 52, &[7, 1]),
+    ];
+    for (dims, order, most, with_own) in expected {
+        let others = Config::new(dims - 1, order, 1).terms().unwrap();
+        assert_eq!(most, 136 - others);
+        assert_eq!(terms(dims, order, most), Ok(136), "{dims} dims, order {order}");
+        assert_eq!(terms(dims, order, most + 1), Err(Error::Range), "{dims} dims, order {order}");
+        for (degree, &slices) in (1..).zip(with_own) {
+            let own = Config::new(dims - 1, degree, 1).terms().unwrap();
+            assert_eq!(slices, (136 - others) / own, "{dims} dims, order {order}");
+            // One slice is none.
+            if slices > 1 {
+                assert_eq!(terms(dims, order, slices), Ok(others + slices * own), "{dims} dims, order {order}");
+            }
+            assert!(terms(dims, order, slices + 1).unwrap() < others + (slices + 1) * own);
+        }
+    }
+    // Of order 0 nothing is regressed.
+    assert_eq!(terms(3, 0, 135), Ok(1));
 }

@@ -28,6 +28,7 @@ mod minibatch_omis;
 mod minibatch_shuffle;
 mod minibatch_statistics;
 mod minibatch_table;
+mod minibatch_table_damage;
 mod minibatch_table_draws;
 mod minibatch_table_properties;
 mod minibatch_table_unbiased;

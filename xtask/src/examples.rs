@@ -38,6 +38,34 @@ pub(crate) fn integrate(archive: &Path, name: &str) -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
+/// Every block of C in a document that includes the header is a whole piece of code: it compiles as it stands.
+pub(crate) fn documents() -> Result<Outcome> {
+    let mut compiled = 0;
+    let folder = paths::root().join("docs");
+    let mut files: Vec<_> = fs::read_dir(&folder)
+        .with_context(|| format!("cannot read {}", folder.display()))?
+        .map(|entry| Ok(entry?.path()))
+        .collect::<Result<_>>()?;
+    files.sort();
+    for file in files.iter().filter(|file| file.extension().is_some_and(|extension| extension == "md")) {
+        let text = fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+        let blocks = text.split("\n```c\n").skip(1).filter_map(|rest| rest.split_once("\n```"));
+        for (block, _) in blocks.filter(|(block, _)| block.contains("#include \"noisefloor.h\"")) {
+            let source = output("document.c")?;
+            fs::write(&source, format!("{block}\n")).with_context(|| format!("cannot write {}", source.display()))?;
+            let mut compiler = run::compiler("CC", "cc");
+            compiler.arg("-std=c99").args(STRICT).arg("-c").arg(&source).arg("-o").arg(output("document.o")?);
+            run::check(&mut compiler).with_context(|| format!("code in {}", file.display()))?;
+            compiled += 1;
+        }
+    }
+    println!("   {compiled} pieces of code");
+    if compiled == 0 {
+        bail!("no document has a block of C that includes the header");
+    }
+    Ok(Outcome::Passed)
+}
+
 /// examples_c/renderers: each program prints pairs of errors of which the second must be the smaller.
 pub(crate) fn renderers(archive: &Path) -> Result<Outcome> {
     let strict = [&STRICT[..], &["-Wconversion", "-Wshadow"]].concat();

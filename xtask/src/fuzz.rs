@@ -3,7 +3,7 @@
 use crate::test::Outcome;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -21,6 +21,34 @@ pub(crate) struct Options {
     /// Only this target; fsot_files, which takes minutes to compile, runs only if asked for
     #[arg(long)]
     target: Option<String>,
+    /// What the targets are built with; `address` is slower, and finds what wrong `unsafe` code reads or writes
+    #[arg(long, value_enum, default_value_t = Sanitizer::None)]
+    sanitizer: Sanitizer,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Sanitizer {
+    None,
+    Address,
+}
+
+impl Sanitizer {
+    /// As cargo-fuzz calls it.
+    fn name(self) -> &'static str {
+        match self {
+            Sanitizer::None => "none",
+            Sanitizer::Address => "address",
+        }
+    }
+
+    /// Where its programs are, so that the other's stay compiled.
+    fn folder(self) -> PathBuf {
+        let target = paths::root().join("fuzz/target");
+        match self {
+            Sanitizer::None => target,
+            Sanitizer::Address => target.join(self.name()),
+        }
+    }
 }
 
 pub(crate) fn run(options: &Options) -> Result<()> {
@@ -28,10 +56,10 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         bail!("--seconds 0 is for ever; at least 1");
     }
     let targets = targets(options.target.as_deref())?;
-    build(options.target.as_deref())?;
+    build(options)?;
     let mut crashed = Vec::new();
     for target in &targets {
-        match fuzz(target, options.seconds) {
+        match fuzz(target, options) {
             Ok(executions) => println!("{target:20} {executions:>12} executions"),
             Err(error) => {
                 println!("{target:20} {error:#}");
@@ -99,10 +127,11 @@ pub(crate) fn replay() -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// Instrumented, without the address sanitizer.
-fn build(target: Option<&str>) -> Result<()> {
+/// Instrumented.
+fn build(options: &Options) -> Result<()> {
+    let target = options.target.as_deref();
     let mut build = cargo_fuzz();
-    build.args(["build", "-s", "none"]);
+    build.args(["build", "--sanitizer", options.sanitizer.name(), "--target-dir"]).arg(options.sanitizer.folder());
     if target == Some(FSOT.0) {
         build.args(["--features", FSOT.1]);
     }
@@ -110,9 +139,9 @@ fn build(target: Option<&str>) -> Result<()> {
 }
 
 /// Runs one target on its regressions and then on new inputs; how many it executed, or what crashed it.
-fn fuzz(target: &str, seconds: u64) -> Result<u64> {
+fn fuzz(target: &str, options: &Options) -> Result<u64> {
     let folder = paths::root().join("fuzz");
-    let program = folder.join("target").join(host()?).join("release").join(target);
+    let program = options.sanitizer.folder().join(host()?).join("release").join(target);
     let regressions = folder.join("regressions").join(target);
     let corpus = folder.join("corpus").join(target);
     let seeds = folder.join("seeds").join(target);
@@ -126,7 +155,7 @@ fn fuzz(target: &str, seconds: u64) -> Result<u64> {
         judge(&output, "an input that crashed it before crashes it again")?;
     }
     let mut command = run::command(&program);
-    command.arg(format!("-max_total_time={seconds}")).arg(format!("-max_len={MAX_BYTES}"));
+    command.arg(format!("-max_total_time={}", options.seconds)).arg(format!("-max_len={MAX_BYTES}"));
     command.args(["-print_final_stats=1", "-timeout=25"]);
     // Files are named after what they hold, and the prefix is a folder only with the slash.
     command.arg(format!("-artifact_prefix={}/", regressions.display())).arg(corpus);
@@ -137,7 +166,7 @@ fn fuzz(target: &str, seconds: u64) -> Result<u64> {
     fs::remove_dir(&regressions).ok();
     let count = executions(&String::from_utf8_lossy(&output.stderr));
     match count.context("the fuzz target did not say how many inputs it ran")? {
-        0 => bail!("the fuzz target `{target}` ran no input in {seconds} s"),
+        0 => bail!("the fuzz target `{target}` ran no input in {} s", options.seconds),
         count => Ok(count),
     }
 }

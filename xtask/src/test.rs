@@ -138,6 +138,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     steps.run("THIRD_PARTY.md: the licences of all dependencies, each allowed", release::licences::check);
     steps.run("versions: Rust's and the project's, as the texts say", release::versions::check);
     steps.run("README.md opens with examples_c/integrate.c", examples::readme);
+    steps.run("C code in docs/ that includes the header compiles", examples::documents);
     steps.finish(start)
 }
 

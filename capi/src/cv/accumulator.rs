@@ -3,15 +3,16 @@
 use super::batch::{samples, size};
 use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimate};
 use crate::convert;
-use crate::magic::magic;
+use crate::magic::{self, magic};
 use crate::status::*;
 use core::ffi::c_void;
 use noisefloor_core::control_variate::State;
 use noisefloor_core::real::Real;
 
-/// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, in one process or
-/// among those that run the same library file. The bytes are no file format: another build may lay them out otherwise.
-/// NF_ERR_STATE tells those of another version, or of another size, not of every other build.
+/// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, in one
+/// process or among those that run the same library file. The bytes are no file format: another build may lay them out
+/// otherwise. NF_ERR_STATE tells those of another version, or of another size, not of every other build. No one but
+/// the library may change them: behind the first 8 they are not checked.
 #[allow(non_camel_case_types)]
 pub struct nf_cv_accumulator {
     _private: (),
@@ -209,13 +210,15 @@ enum OpenedShared<'a> {
 }
 
 /// # Safety
-/// A non-NULL, aligned pointer must be to memory that nf_cv_accumulator_init() or something else wrote at least a
-/// header's bytes to, and that nobody else uses.
+/// A non-NULL, aligned pointer must be to at least 8 initialised bytes that nobody else uses during `'a`. If they are
+/// the magic number, an accumulator must stand there: what nf_cv_accumulator_init() wrote, or all its bytes copied
+/// there, changed since by this library alone. So the enums in its state are valid, and memory follows for as many sums
+/// as the state says.
 #[inline(always)]
 unsafe fn open<'a>(accumulator: *mut nf_cv_accumulator) -> Result<Opened<'a>, nf_status> {
-    // SAFETY: the caller's promise; the magic number tells an accumulator from other bytes before the rest is looked at.
+    // SAFETY: the caller's promise, of which the second half counts once the number has been found.
     unsafe {
-        check(accumulator)?;
+        magic::check::<Header>(accumulator.cast(), MAGIC)?;
         let sums = accumulator.cast::<u8>().add(HEADER);
         Ok(match &mut (*accumulator.cast::<Header>()).state {
             AnyState::Double(_) if !HAS_DOUBLE => return Err(NF_ERR_STATE),
@@ -237,7 +240,7 @@ unsafe fn open<'a>(accumulator: *mut nf_cv_accumulator) -> Result<Opened<'a>, nf
 unsafe fn open_shared<'a>(accumulator: *const nf_cv_accumulator) -> Result<OpenedShared<'a>, nf_status> {
     // SAFETY: as in `open`.
     unsafe {
-        check(accumulator)?;
+        magic::check::<Header>(accumulator.cast(), MAGIC)?;
         let sums = accumulator.cast::<u8>().add(HEADER);
         Ok(match &(*accumulator.cast::<Header>()).state {
             AnyState::Double(_) if !HAS_DOUBLE => return Err(NF_ERR_STATE),
@@ -245,22 +248,6 @@ unsafe fn open_shared<'a>(accumulator: *const nf_cv_accumulator) -> Result<Opene
             AnyState::Single(state) => OpenedShared::Single(state, convert::slice(sums.cast(), state.len())?),
         })
     }
-}
-
-/// # Safety
-/// As for [`open`].
-unsafe fn check(accumulator: *const nf_cv_accumulator) -> Result<(), nf_status> {
-    if accumulator.is_null() {
-        return Err(NF_ERR_NULL);
-    }
-    if !accumulator.cast::<Header>().is_aligned() {
-        return Err(NF_ERR_ALIGNMENT);
-    }
-    // SAFETY: the caller's promise; any bytes are a number.
-    if unsafe { accumulator.cast::<u64>().read() } != MAGIC {
-        return Err(NF_ERR_STATE);
-    }
-    Ok(())
 }
 
 /// # Safety

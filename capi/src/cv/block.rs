@@ -32,6 +32,7 @@ pub struct nf_cv_image {
     pub surfaces: *const u32,
     /// `channels` numbers for each pixel, or NULL: what its values are divided by before a fit and multiplied by after
     /// it, such as its albedo. Finite and not negative; 0 counts as 1. Must not depend on the pixel's own samples either.
+    /// For textures, where all samples of a pixel see one albedo: with defocus or motion blur they can raise the error.
     /// Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
     pub factors: *const f32,
 }

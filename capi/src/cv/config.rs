@@ -83,6 +83,9 @@ pub struct nf_cv_config {
     /// take their std_error from the pixels' spread.
     pub stratified: u32,
     /// If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (figure 4.15).
+    /// Each takes a term: at most 136 less binomial(dims - 1 + order, order), those of the other coordinates, and
+    /// `controls`. That is 130 at 3 dims, order 2, where up to 43 have functions of their own as well
+    /// (docs/control_variates.md). Of more alternatives let each slice stand for several.
     pub slices: u32,
     /// User-supplied control functions with known integrals (4.18), 0 to 4.
     pub controls: u32,

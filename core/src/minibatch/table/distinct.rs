@@ -1,9 +1,13 @@
 //! Drawing without replacement.
 
 use super::draw::check_lengths;
-use super::{Kernel, Portable, Table};
+use super::{Kernel, Mixture, Portable, Table};
 use crate::Error;
 use crate::rng::Rng;
+
+/// A search for an item not yet taken ends where so many should have been found: once in e^64 searches, or where the
+/// table's memory has been damaged.
+const PATIENCE: f64 = 64.0;
 
 impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S> {
     /// Draws different items, one after the other. The k-th is item i with probability
@@ -64,34 +68,29 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         if index.len() > self.state.items as usize {
             return Err(Error::Range);
         }
-        let possible = || self.importance.as_ref().iter().filter(|q| **q > 0.0).take(index.len()).count();
+        let items = self.state.items;
+        let importance = || self.importance.as_ref().iter().take(items as usize);
+        let possible = || importance().filter(|q| **q > 0.0).take(index.len()).count();
         if self.state.uniform_fraction == 0.0 && possible() < index.len() {
             return Err(Error::NoSamples);
         }
         let scale = self.state.scale;
-        let items = f64::from(self.state.items);
         let batch = index.len() as f64;
         for drawn in 0..index.len() {
-            // There is something left to draw, as checked.
-            let Ok(mixture) = self.mixture() else { break };
-            let mut item = [0];
-            loop {
-                self.draw_mixture::<K, 1>(&mixture, 1.0, rng, &mut item, None);
-                // What has been taken is met by a uniform draw only.
-                if !self.is_taken(item[0]) {
-                    break;
-                }
-            }
-            let left = 1.0 - mixture.uniform * (drawn as f64 / items);
-            let chance = self.probability_in(&mixture, item[0]) / left;
+            // There is something left to draw, as checked; sums that say otherwise have been damaged.
+            let mixture = self.mixture().unwrap_or(Mixture::uniform(items));
+            // What has been taken is met by a uniform draw only.
+            let left = 1.0 - mixture.uniform * (drawn as f64 / f64::from(items));
+            let item = self.draw_left::<K>(&mixture, left, rng);
+            let chance = self.probability_in(&mixture, item) / left;
             if let Some(out) = weight.as_mut().and_then(|weight| weight.get_mut(drawn)) {
-                *out = ((1.0 / chance + (batch - (drawn + 1) as f64)) / items) as f32;
+                *out = ((1.0 / chance + (batch - (drawn + 1) as f64)) / f64::from(items)) as f32;
             }
             if let Some(out) = index.get_mut(drawn) {
-                *out = item[0];
+                *out = item;
             }
-            self.turn(item[0]);
-            self.refresh::<K>(item[0]);
+            self.turn(item);
+            self.refresh::<K>(item);
         }
         for &item in index.iter() {
             self.turn(item);
@@ -105,6 +104,28 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
             self.rebuild_at_scale();
         }
         Ok(())
+    }
+
+    /// Draws until an item has not been taken, of which a draw has the probability `left`.
+    #[inline(always)]
+    fn draw_left<K: Kernel>(&self, mixture: &Mixture, left: f64, rng: &mut Rng) -> u32 {
+        let (mut item, mut expected) = ([0], 0.0);
+        while expected < PATIENCE {
+            self.draw_mixture::<K, 1>(mixture, 1.0, rng, &mut item, None);
+            if !self.is_taken(item[0]) {
+                return item[0];
+            }
+            expected += left;
+        }
+        self.next_left(item[0])
+    }
+
+    /// The first item not taken from this one on, and then from the first; this one if there is none.
+    #[cold]
+    #[inline(never)]
+    fn next_left(&self, item: u32) -> u32 {
+        let is_left = |item: &u32| !self.is_taken(*item);
+        (item..self.state.items).chain(0..item).find(is_left).unwrap_or(item)
     }
 
     fn is_taken(&self, item: u32) -> bool {

@@ -22,11 +22,16 @@ pub(super) struct Mixture {
 }
 
 impl Mixture {
+    /// Every draw uniform.
+    pub(super) fn uniform(items: u32) -> Mixture {
+        Mixture { sum: 0, items, tree: 0.0, uniform: 1.0 }
+    }
+
     /// Errors: [`Error::NoSamples`] if every weight is 0 and no draw uniform.
     pub(super) fn of(sum: i64, items: u32, uniform: f64) -> Result<Mixture, Error> {
         match (sum > 0, uniform > 0.0) {
             (true, _) => Ok(Mixture { sum, items, tree: 1.0 - uniform, uniform }),
-            (false, true) => Ok(Mixture { sum, items, tree: 0.0, uniform: 1.0 }),
+            (false, true) => Ok(Mixture::uniform(items)),
             (false, false) => Err(Error::NoSamples),
         }
     }
@@ -253,6 +258,8 @@ struct Descent<'a> {
     /// What an item's weight in the tree, and what its existence adds to `factor` times its probability.
     by_weight: f64,
     by_item: f64,
+    /// The last item.
+    last: u32,
 }
 
 impl<'a> Descent<'a> {
@@ -265,6 +272,7 @@ impl<'a> Descent<'a> {
             ways: mixture.ways(),
             by_weight,
             by_item,
+            last: mixture.items.saturating_sub(1),
         }
     }
 
@@ -307,8 +315,8 @@ impl<'a> Descent<'a> {
             let Some(node) = self.nodes.get(*place as usize) else { continue };
             let child = K::find_child(node, *rest) % CHILDREN;
             let (begin, end) = tree::span(node, child);
-            *fraction += (*rest - begin) as f64;
-            *weight = (end - begin) as f64;
+            *fraction += rest.wrapping_sub(begin) as f64;
+            *weight = end.wrapping_sub(begin) as f64;
             *place = *place * CHILDREN as u32 + child as u32;
             if let Some(next) = self.blocks.get(*place as usize) {
                 K::prefetch(next);
@@ -329,6 +337,10 @@ impl<'a> Descent<'a> {
             if let Some(out) = index.get_mut(slot as usize) {
                 *out = place * ARITY as u32 + item as u32;
             }
+        }
+        // Nothing to do, unless the table's memory has been damaged: whatever it holds, what is drawn exists.
+        for out in index.iter_mut() {
+            *out = (*out).min(self.last);
         }
         if weight.is_empty() {
             return;
@@ -352,7 +364,7 @@ impl<'a> Descent<'a> {
             let total = K::total(block);
             // A block of importance 0 can be drawn from uniformly only.
             let (q, total) = if total > 0.0 { (block[item as usize % ARITY], total) } else { (0.0, 1.0) };
-            *out = self.weight(q, total, (end - begin) as f64);
+            *out = self.weight(q, total, end.wrapping_sub(begin) as f64);
         }
     }
 
@@ -390,7 +402,7 @@ impl<'a> Descent<'a> {
     fn step<K: Kernel>(&self, start: usize, place: &mut u32, rest: &mut i64) {
         let Some(node) = self.nodes.get(start + *place as usize) else { return };
         let child = K::find_child(node, *rest) % CHILDREN;
-        *rest -= tree::span(node, child).0;
+        *rest = rest.wrapping_sub(tree::span(node, child).0);
         *place = *place * CHILDREN as u32 + child as u32;
     }
 

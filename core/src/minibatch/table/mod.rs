@@ -107,8 +107,9 @@ pub struct Table<I, S> {
 impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// Takes up memory that a table of this state has used.
     ///
-    /// Errors: [`Error::Memory`] if it is too small for the items, [`Error::Range`] for a state that no table has. The contents
-    /// are not checked: they must be what that table left there, or draws may be of items that do not exist.
+    /// Errors: [`Error::Memory`] if it is too small for the items, [`Error::Range`] for a state that no table has. The
+    /// contents are not checked: if they are not what that table left there, draws are still of items that exist, but
+    /// not as often as they should be, and weights are any numbers.
     ///
     /// ```
     /// use noisefloor::minibatch::{Table, table};
@@ -255,7 +256,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         let block = self.blocks().get(item / ARITY);
         let q = self.importance.as_ref().get(item).copied().unwrap_or(0.0);
         let (begin, end) = self.span(item / ARITY);
-        mixture.probability(q, block.map_or(0.0, Portable::total), end - begin)
+        mixture.probability(q, block.map_or(0.0, Portable::total), end.wrapping_sub(begin))
     }
 
     /// Whether the table has these items: else [`Error::Range`].

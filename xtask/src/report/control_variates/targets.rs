@@ -1,4 +1,4 @@
-//! What was to be reached: DESIGN's bounds, as the benchmark `speed_error` judges them.
+//! What was to be reached: the bounds that the project has set itself, as the benchmark `speed_error` judges them.
 
 use crate::measure::table::Table;
 use crate::report::figure::Unit;

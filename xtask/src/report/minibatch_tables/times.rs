@@ -15,7 +15,7 @@ const PEER: &str = "WeightedTreeIndex";
 const ALIAS: &str = "alias table rebuilt";
 const CACHES: [&str; 2] = ["warm", "cold"];
 
-/// (items, microseconds of a step): what issue and design ask for, warm.
+/// (items, microseconds of a step): what the project has set itself, warm.
 const BOUNDS: [(u32, f64); 2] = [(60_000, 1.0), (1_000_000, 2.5)];
 /// How many times as fast as the peer, and as the alias table from so many items on.
 const FASTER: f64 = 5.0;

@@ -133,7 +133,8 @@ fn plot(x: &str, series: &[Series]) -> Result<String> {
     Plot { title: "Gaussian bumps", x: axis(x), y, series }.svg()
 }
 
-/// DESIGN's prototype: the time of a slice on one core, and the quality that it reached.
+/// The bounds are those of a prototype that was written to try the method: its time of a slice on one core, and the
+/// quality that it reached.
 fn judge(sets: &Sets, targets: &mut Targets) -> Result<()> {
     let single = [("study", "one thread"), ("points", "4096")];
     let times: Vec<f64> = sets

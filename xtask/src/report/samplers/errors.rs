@@ -18,7 +18,7 @@ const KERNELS: [(&str, &str); 4] = [
 ];
 const FAMILIES: [&str; 2] = ["half-planes", "Gaussians"];
 
-/// What DESIGN says the tiles must reach: dims, samples, sampler, kernel, family, bound.
+/// What the project wants its tiles to reach: dims, samples, sampler, kernel, family, bound.
 const WANTED: &[(&str, &str, &str, &str, usize, f64)] = &[
     ("2", "1", "tile", "g2", 0, 0.095),
     ("2", "1", "tile", "g2", 1, 0.027),
