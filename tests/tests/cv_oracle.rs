@@ -105,14 +105,15 @@ fn leave_one_out() {
             let design = design(&base, &wide(&u));
             let ridge = f64::from(strength) * n as f64;
             let brute = Regression::leave_one_out_by_refitting(&design, &wide(&f), ridge);
-            let variance = brute.press() * (n as f64 - 1.0) / (n as f64).powi(3);
+            let (_, freedom) = Regression::offset(&design, ridge);
+            let variance = brute.variance(freedom);
             for solver in [Solver::Auto, Solver::NormalEquations, Solver::Dual] {
                 let config = Config { solver, ridge: Ridge::Fixed(strength), ..base };
                 let what = format!("{dims} {order} {n} {solver:?} {strength}");
                 let estimate = batch::<f64>(&config, &u, &f).unwrap();
                 close(&estimate, brute.mean(), &f, F64, &what);
                 close(&batch::<f32>(&config, &u, &f).unwrap(), brute.mean(), &f, 10.0 * F32, &format!("{what} f32"));
-                // The standard error is that of the leave-one-out residuals.
+                // The standard error is that of the leave-one-out residuals and of their weights.
                 assert!((f64::from(estimate.std_error[0]) / variance.sqrt() - 1.0).abs() < 1e-5, "{what}");
             }
         }
@@ -194,33 +195,37 @@ fn k_fold_in_batch_and_streaming() {
             let split = rule.split(&u64s, dims, &f64s, order, folds);
             close(&batch::<f64>(&config, &u, &f).unwrap(), split, &f, F64, &what);
             close(&batch::<f32>(&config, &u, &f).unwrap(), split, &f, 10.0 * F32, &format!("{what} f32"));
-            let nested = rule.k_fold(&u64s, dims, &f64s, order, folds, true);
+            let nested = rule.nested(&u64s, dims, &f64s, order, folds);
             close(&streamed::<f64>(&config, &u, &f).unwrap(), nested, &f, F64, &format!("{what} nested"));
-            let pooled = rule.k_fold(&u64s, dims, &f64s, order, folds, false);
+            let pooled = rule.pooled(&u64s, dims, &f64s, order, folds);
             let config = Config { estimator: Estimator::Robust, ..config };
             close(&streamed::<f64>(&config, &u, &f).unwrap(), pooled, &f, F64, &format!("{what} pooled"));
         }
     }
 }
 
-/// A fixed ridge: each fold meets one fit to the others. Batch and stream agree with that and with each other.
+/// A fixed ridge: each fold meets one fit to the others.
 #[test]
 fn k_fold_with_a_fixed_ridge() {
     let (u, f) = noisy(30, 2, 650);
     for folds in [2, 4, 16] {
         let config = Config { folds, ridge: Ridge::Fixed(0.05), ..config(2, 2, Estimator::KFold) };
         let design = design(&config, &wide(&u));
-        let mut expected = 0.0;
-        for fold in 0..folds {
-            let others: Vec<usize> = (0..30).filter(|i| i % folds != fold).collect();
-            let values: Vec<f64> = others.iter().map(|&i| f64::from(f[i])).collect();
-            let ridge = f64::from(0.05_f32) * others.len() as f64;
-            let fit = Regression::fit(&design.select(&others), &values, ridge);
-            let corrected = (fold..30).step_by(folds).map(|i| f64::from(f[i]) - fit.control(&design.rows[i]));
-            expected += corrected.sum::<f64>() / 30.0;
-        }
-        close(&batch::<f64>(&config, &u, &f).unwrap(), expected, &f, F64, "batch");
-        close(&streamed::<f64>(&config, &u, &f).unwrap(), expected, &f, F64, "streaming");
+        let expected = |fold_of: &[usize]| {
+            let corrected = |fold: usize| {
+                let others: Vec<usize> = (0..30).filter(|&i| fold_of[i] != fold).collect();
+                let values: Vec<f64> = others.iter().map(|&i| f64::from(f[i])).collect();
+                let fit = Regression::fit(&design.select(&others), &values, f64::from(0.05_f32) * others.len() as f64);
+                let own = (0..30).filter(|&i| fold_of[i] == fold);
+                own.map(|i| f64::from(f[i]) - fit.control(&design.rows[i])).sum::<f64>()
+            };
+            (0..folds).map(corrected).sum::<f64>() / 30.0
+        };
+        let runs = oracle::runs(30, folds);
+        let batches: Vec<usize> = (0..30).map(|i| runs.iter().position(|run| run.contains(&i)).unwrap()).collect();
+        close(&batch::<f64>(&config, &u, &f).unwrap(), expected(&batches), &f, F64, "batch");
+        let stream = oracle::stream_folds(30, folds);
+        close(&streamed::<f64>(&config, &u, &f).unwrap(), expected(&stream), &f, F64, "streaming");
     }
 }
 

@@ -9,7 +9,7 @@ use noisefloor::control_variate::{
 };
 use noisefloor::real::Real;
 use noisefloor_tests::ESTIMATORS;
-use noisefloor_tests::oracle::Regression;
+use noisefloor_tests::oracle::{Regression, stream_folds};
 use noisefloor_tests::random::SplitMix64;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -379,17 +379,18 @@ impl Model {
     }
 
     fn add(&mut self, u: &[f32], dims: usize, f: &[f32]) {
+        let folds = stream_folds(self.count + f.len(), self.folds.len());
         for (u, &f) in u.chunks(dims).zip(f) {
-            let fold = self.count % self.folds.len();
-            self.folds[fold].push((u.to_vec(), f));
+            self.folds[folds[self.count]].push((u.to_vec(), f));
             self.count += 1;
         }
     }
 
     fn merge(&mut self, other: &Self) {
         let folds = self.folds.len();
+        let next = stream_folds(self.count + 1, folds)[self.count];
         for (fold, theirs) in other.folds.iter().enumerate() {
-            self.folds[(self.count + fold) % folds].extend(theirs.iter().cloned());
+            self.folds[(next + fold) % folds].extend(theirs.iter().cloned());
         }
         self.count += other.count;
     }

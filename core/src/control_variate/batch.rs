@@ -3,7 +3,6 @@
 use super::config::{Color, Config, Estimate, Estimator, Solver};
 use super::design::Design;
 use super::fitter::{self, Fitter, Rule};
-use super::per_channel::PerChannel;
 use super::result::{self, Outcome};
 use super::samples::{Reader, Samples, Subset};
 use super::state::State;
@@ -53,8 +52,12 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
 }
 
 /// Whether the estimate is the plain mean whatever the samples are.
-fn is_plain(config: &Config, columns: usize) -> bool {
-    columns == 0 || (config.stratified && config.estimator == Estimator::Robust)
+///
+/// What corrects some samples by fits to others undoes what is even about all of them, and errors on samples that a fit
+/// has not seen do not show it.
+pub(crate) fn is_plain(config: &Config, columns: usize) -> bool {
+    let fits_all = matches!(config.estimator, Estimator::LeastSquares | Estimator::GradientDescent);
+    columns == 0 || (config.stratified && !fits_all)
 }
 
 /// How a configuration is carried out.
@@ -163,28 +166,10 @@ fn fit<'a, R: Real>(
     };
     let fitter = Fitter::new(design, config, basis, plan.dual, arena)?;
     let blend = fitter.solve(rule, None, arena)?;
-    if let Rule::LeastSquares(_) = rule {
-        // Algorithm 1. Its residuals have mean zero, so the estimate is the fit's constant term.
-        let mut residual = blend.blended(|fit| fit.explained);
-        for (channel, value) in residual.iter_mut().enumerate() {
-            *value = (design.sum_of_squares(channel) - *value).max(R::ZERO);
-        }
-        let correction = blend.blended(|fit| fit.in_sample);
-        return Ok(Outcome { correction, variance: residual_variance(design, residual) });
-    }
-    let correction = blend.blended(|fit| fit.leave_one_out);
-    Ok(Outcome { correction, variance: result::variance_of_press(&blend.press(design), design.n) })
-}
-
-/// The variance of a fit's constant term for a sum of squared residuals, or the plain mean's if no residual is left
-/// over to tell: the square of the degrees of freedom, not times n, as the constant is an extrapolation itself.
-pub(crate) fn residual_variance<R: Real>(design: &Design<'_, R>, residual: PerChannel<R>) -> Option<PerChannel<R>> {
-    match design.n.checked_sub(design.columns + 1) {
-        None | Some(0) => result::plain_variance(design),
-        Some(freedom) => {
-            let freedom = R::from_usize(freedom);
-            let factor = R::ONE / (freedom * freedom);
-            Some(residual.map(|residual| residual * factor))
-        }
-    }
+    // Algorithm 1 for least squares: its residuals have mean zero, so the estimate is the fit's constant term.
+    let variance = match rule {
+        Rule::LeastSquares(_) if design.n <= design.columns + 1 => result::plain_variance(design),
+        _ => blend.variance(design),
+    };
+    Ok(Outcome { correction: blend.correction(), variance })
 }

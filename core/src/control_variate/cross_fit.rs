@@ -1,16 +1,16 @@
-//! Cross-fit estimates from per-fold sums.
+//! Estimates from per-fold sums, whose fits are weighted by their errors on folds they have not seen.
 //!
-//! Each fold's samples are corrected by fits to the other folds, and the fits are weighted by their held-out errors.
-//! Pooled weights, from all held-out errors, are the sharper choice and make the weights depend a little on the samples
-//! they weight. Nested weights, for fold j from fits that know neither fold j nor the fold that judges them, keep the
-//! estimate exactly unbiased.
+//! - [`pooled`], robust: one fit to all folds, most of whose estimate is used and some of the cross-fit's, weighted by all
+//!   held-out errors. A fit to all keeps what is even about all samples together.
+//! - [`nested`], K-fold: each fold is corrected by a fit to the others, and weighted by fits that know neither that fold
+//!   nor the one that judges them. Exactly unbiased.
 
 use super::config::Ridge;
 use super::moments::{self, Centred, Moments};
 use super::per_channel::{PerChannel, add, get, set};
 use super::result::{self, Outcome};
 use super::ridge::{self, MIXED};
-use super::trust;
+use super::trust::{self, Centre};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::real::Real;
@@ -30,7 +30,7 @@ pub(crate) struct Groups<'a, R> {
 /// Candidate fits and their squared errors.
 type Errors<R> = [PerChannel<R>; CANDIDATES];
 
-/// Numbers that [`estimate`] takes from its arena beyond one fit and one group of sums.
+/// Numbers that an estimate takes from its arena beyond one fit and one group of sums.
 pub(crate) fn len(columns: usize, channels: usize) -> usize {
     CANDIDATES * columns * channels
 }
@@ -41,8 +41,14 @@ impl<'a, R: Real> Groups<'a, R> {
         Moments::new(self.sums.get(fold * len..(fold + 1) * len)?, self.columns + 1, self.channels)
     }
 
+    /// The folds that hold samples.
+    fn each(&self) -> impl Iterator<Item = (usize, Moments<'a, R>)> {
+        let filled = |fold| self.group(fold).filter(|group| group.count() > R::ZERO);
+        (0..self.folds).filter_map(move |fold| Some((fold, filled(fold)?)))
+    }
+
     /// Writes the sums of all folds but those left out; None for a buffer that is too short.
-    fn train<'b>(&self, left_out: [usize; 2], sums: &'b mut [R]) -> Option<Moments<'b, R>> {
+    fn train<'b>(&self, left_out: &[usize], sums: &'b mut [R]) -> Option<Moments<'b, R>> {
         for value in sums.iter_mut() {
             *value = R::ZERO;
         }
@@ -56,113 +62,168 @@ impl<'a, R: Real> Groups<'a, R> {
     }
 }
 
-/// The estimate in the sums' units.
-pub(crate) fn estimate<R: Real>(
+/// What both estimates work with.
+struct Problem<'p, 'a, R> {
+    groups: &'p Groups<'a, R>,
+    penalties: &'p [R],
+    strengths: &'p [f64],
+    ridge: Ridge,
+}
+
+/// What is added to the plain mean, robust; `plain` is the mean and its variance in the sums' units.
+pub(crate) fn pooled<R: Real>(
     groups: &Groups<'_, R>,
     penalties: &[R],
-    ridge: Ridge,
-    nested: bool,
+    plain: (&PerChannel<R>, &PerChannel<R>),
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
-    // The mixture has its own ridges. With two nested folds no third is left to judge a fit: one ridge it is.
-    let ridge = if nested { ridge } else { Ridge::Default };
-    let ridge = if nested && groups.folds < 3 { Ridge::Fixed(ridge::single::<R>(ridge) as f32) } else { ridge };
-    let fixed = [ridge::single::<R>(ridge)];
-    let strengths: &[f64] = if matches!(ridge, Ridge::Default | Ridge::Auto) { &MIXED } else { &fixed };
+    let problem = Problem { groups, penalties, strengths: &MIXED, ridge: Ridge::Default };
     let channels = groups.channels;
     let coefficients = arena.take(CANDIDATES * groups.columns * channels)?;
     let train = arena.take(moments::len(groups.columns + 1, channels))?;
-    let mut pooled = Judge::default();
-    // Means of f - b'p over each fold, for each candidate and for the plain mean, summed with the folds' weights.
-    let mut sums = [PerChannel::<R>::default(); CANDIDATES];
-    let mut plain_sum = PerChannel::default();
-    let mut nested_sum = PerChannel::default();
-    let mut nested_press = PerChannel::default();
-    let mut count = R::ZERO;
-    for fold in 0..groups.folds {
-        let Some(held_out) = groups.group(fold).filter(|group| group.count() > R::ZERO) else { continue };
-        count += held_out.count();
-        let weights = if nested {
-            let mut judge = Judge::default();
-            for other in (0..groups.folds).filter(|&other| other != fold) {
-                let Some(judging) = groups.group(other).filter(|group| group.count() > R::ZERO) else { continue };
-                let train = groups.train([fold, other], train).ok_or(Error::Memory)?;
-                let discounts = fit(&train, groups, penalties, strengths, coefficients, &mut arena.scratch())?;
-                judge.add(&train, &judging, groups, &discounts, coefficients);
-            }
-            Some(judge.weights(channels, strengths.len(), ridge))
-        } else {
-            None
-        };
-        let train = groups.train([fold, fold], train).ok_or(Error::Memory)?;
-        let discounts = fit(&train, groups, penalties, strengths, coefficients, &mut arena.scratch())?;
-        let mut own = Judge::default();
-        own.add(&train, &held_out, groups, &discounts, coefficients);
+    let mut judge = Judge::default();
+    // Sums of f - b'p over the folds, b from the others.
+    let mut crossed = Errors::default();
+    for (fold, held_out) in groups.each() {
+        let train = groups.train(&[fold], train).ok_or(Error::Memory)?;
+        problem.fit(&train, coefficients, arena)?;
+        judge.add(&train, &held_out, groups, coefficients);
         for channel in 0..channels {
-            let plain = held_out.total(channel);
-            add(&mut plain_sum, channel, plain);
-            for (candidate, sum) in sums.iter_mut().enumerate().take(strengths.len()) {
+            for (candidate, crossed) in crossed.iter_mut().enumerate() {
                 let b = row_of(coefficients, candidate, channel, groups);
-                let total = held_out.residual_total(channel, b);
-                add(sum, channel, total);
-                if let Some((_, weights)) = &weights {
-                    let weight = weights.get(candidate).map_or(R::ZERO, |weights| get(weights, channel));
-                    add(&mut nested_sum, channel, weight * total);
-                    let error = own.errors.get(candidate).map_or(R::ZERO, |errors| get(errors, channel));
-                    add(&mut nested_press, channel, weight * error);
-                }
-            }
-            if let Some((plain_weights, _)) = &weights {
-                let weight = get(plain_weights, channel);
-                add(&mut nested_sum, channel, weight * plain);
-                add(&mut nested_press, channel, weight * get(&own.plain, channel));
+                add(crossed, channel, held_out.residual_total(channel, b));
             }
         }
-        pooled.merge(&own);
     }
+    let all = groups.train(&[], train).ok_or(Error::Memory)?;
+    let centres = problem.fit(&all, coefficients, arena)?;
+    let (n, inverse) = (all.count(), R::ONE / all.count());
+    let factor = result::press_factor(n);
     let mut outcome = Outcome { correction: PerChannel::default(), variance: None };
-    let mut press = nested_press;
-    let (plain_weights, weights) = pooled.weights(channels, strengths.len(), ridge);
+    let mut variance = PerChannel::default();
     for channel in 0..channels {
-        let total = if nested {
-            get(&nested_sum, channel)
-        } else {
-            let mut total = get(&plain_weights, channel) * get(&plain_sum, channel);
-            let mut error = get(&plain_weights, channel) * get(&pooled.plain, channel);
-            for ((weights, sum), errors) in weights.iter().zip(&sums).zip(&pooled.errors) {
-                total += get(weights, channel) * get(sum, channel);
-                error += get(weights, channel) * get(errors, channel);
+        let (mean, mean_variance) = (get(plain.0, channel), get(plain.1, channel));
+        let mut corrections = [R::ZERO; CANDIDATES];
+        let mut discounts = [R::ZERO; CANDIDATES];
+        let each = corrections.iter_mut().zip(&mut discounts).zip(&centres).zip(&crossed).enumerate();
+        for (candidate, (((correction, discount), centre), crossed)) in each {
+            let b = row_of(coefficients, candidate, channel, groups);
+            let whole = all.residual_total(channel, b) * inverse - mean;
+            let share = centre.map_or(R::ZERO, |centre| centre.share());
+            *correction = whole + share * (get(crossed, channel) * inverse - mean - whole);
+            if mean_variance > R::ZERO {
+                *discount = trust::surprise(*correction, mean_variance);
             }
-            set(&mut press, channel, error);
-            total
-        };
-        set(&mut outcome.correction, channel, total / count);
+            *discount += centre.map_or(R::ZERO, |centre| centre.discount());
+        }
+        let (plain_weight, weights) = judge.weigh(channel, &problem, &discounts);
+        let mut total = R::ZERO;
+        for (&weight, &correction) in weights.iter().zip(&corrections) {
+            total += weight * correction;
+        }
+        let mut sum = plain_weight * (get(&judge.plain, channel) * factor + total * total);
+        for (candidate, (&weight, &correction)) in weights.iter().zip(&corrections).enumerate() {
+            let inflation = centres.get(candidate).copied().flatten().map_or(R::ONE, |centre| centre.inflation);
+            let error = judge.errors.get(candidate).map_or(R::ZERO, |errors| get(errors, channel));
+            sum += weight * (error * factor * inflation + (correction - total) * (correction - total));
+        }
+        set(&mut outcome.correction, channel, total);
+        set(&mut variance, channel, sum);
     }
-    outcome.variance = result::variance_of_press(&press, count.to_f64() as usize);
+    outcome.variance = (n > R::ONE).then_some(variance);
     Ok(outcome)
 }
 
-/// Every candidate's coefficients for a training set, zero where there is no sample, and the discounts of their trust.
-fn fit<R: Real>(
-    train: &Moments<'_, R>,
+/// What is added to the plain `mean`, unbiased.
+pub(crate) fn nested<R: Real>(
     groups: &Groups<'_, R>,
     penalties: &[R],
-    strengths: &[f64],
-    coefficients: &mut [R],
+    ridge: Ridge,
+    mean: &PerChannel<R>,
     arena: &mut Arena<'_, R>,
-) -> Result<[R; CANDIDATES], Error> {
-    let mut discounts = [R::ZERO; CANDIDATES];
-    for value in coefficients.iter_mut() {
-        *value = R::ZERO;
-    }
-    let each = groups.columns * groups.channels;
-    if let Some(centred) = Centred::new(train, groups.columns, groups.channels, arena)? {
-        let candidates = strengths.iter().zip(rows_mut(coefficients, each)).zip(&mut discounts);
-        for ((&strength, coefficients), discount) in candidates {
-            *discount = centred.solve(penalties, R::from_f64(strength), coefficients, true, &mut arena.scratch())?;
+) -> Result<Outcome<R>, Error> {
+    // With two folds no third is left to judge a fit: one ridge it is.
+    let ridge = if groups.folds < 3 { Ridge::Fixed(ridge::single::<R>(ridge) as f32) } else { ridge };
+    let fixed = [ridge::single::<R>(ridge)];
+    let strengths: &[f64] = if matches!(ridge, Ridge::Default | Ridge::Auto) { &MIXED } else { &fixed };
+    let problem = Problem { groups, penalties, strengths, ridge };
+    let channels = groups.channels;
+    let coefficients = arena.take(CANDIDATES * groups.columns * channels)?;
+    let train = arena.take(moments::len(groups.columns + 1, channels))?;
+    let mut sums = PerChannel::default();
+    let mut press = PerChannel::default();
+    let mut count = R::ZERO;
+    for (fold, held_out) in groups.each() {
+        count += held_out.count();
+        let mut judge = Judge::default();
+        let mut discounts = [R::ZERO; CANDIDATES];
+        for (other, judging) in groups.each().filter(|&(other, _)| other != fold) {
+            let train = groups.train(&[fold, other], train).ok_or(Error::Memory)?;
+            let centres = problem.fit(&train, coefficients, arena)?;
+            judge.add(&train, &judging, groups, coefficients);
+            for (discount, centre) in discounts.iter_mut().zip(centres) {
+                *discount += centre.map_or(R::ZERO, |centre| centre.discount());
+            }
+        }
+        let discounts = discounts.map(|total| total / judge.fits.max(R::ONE));
+        let train = groups.train(&[fold], train).ok_or(Error::Memory)?;
+        let centres = problem.fit(&train, coefficients, arena)?;
+        let mut own = Judge::default();
+        own.add(&train, &held_out, groups, coefficients);
+        for channel in 0..channels {
+            let (mut plain_weight, mut weights) = judge.weigh(channel, &problem, &discounts);
+            if !matches!(ridge, Ridge::Fixed(_)) {
+                for (weight, centre) in weights.iter_mut().zip(&centres) {
+                    let kept = *weight * centre.map_or(R::ONE, |centre| centre.independence());
+                    plain_weight += *weight - kept;
+                    *weight = kept;
+                }
+            }
+            let mut sum = plain_weight * held_out.total(channel);
+            let mut error = plain_weight * get(&own.plain, channel);
+            for (candidate, &weight) in weights.iter().enumerate() {
+                let b = row_of(coefficients, candidate, channel, groups);
+                sum += weight * held_out.residual_total(channel, b);
+                let inflation = centres.get(candidate).copied().flatten().map_or(R::ONE, |centre| centre.inflation);
+                let own = own.errors.get(candidate).map_or(R::ZERO, |errors| get(errors, channel));
+                error += weight * own * inflation;
+            }
+            add(&mut sums, channel, sum);
+            add(&mut press, channel, error);
         }
     }
-    Ok(discounts)
+    let mut correction = PerChannel::default();
+    for ((correction, sum), &mean) in correction.iter_mut().zip(sums).zip(mean) {
+        *correction = sum / count - mean;
+    }
+    let factor = result::press_factor(count);
+    Ok(Outcome { correction, variance: (count > R::ONE).then(|| press.map(|press| press * factor)) })
+}
+
+impl<R: Real> Problem<'_, '_, R> {
+    /// Writes every candidate's coefficients for a training set, zero where there is no sample, and says where its samples
+    /// lie.
+    fn fit(
+        &self,
+        train: &Moments<'_, R>,
+        coefficients: &mut [R],
+        arena: &mut Arena<'_, R>,
+    ) -> Result<[Option<Centre<R>>; CANDIDATES], Error> {
+        let mut arena = arena.scratch();
+        let mut centres = [None; CANDIDATES];
+        for value in coefficients.iter_mut() {
+            *value = R::ZERO;
+        }
+        let (columns, channels) = (self.groups.columns, self.groups.channels);
+        if let Some(centred) = Centred::new(train, columns, channels, &mut arena)? {
+            let candidates = self.strengths.iter().zip(rows_mut(coefficients, columns * channels)).zip(&mut centres);
+            for ((&strength, coefficients), centre) in candidates {
+                let strength = R::from_f64(strength);
+                *centre = centred.solve(self.penalties, strength, coefficients, true, &mut arena.scratch())?;
+            }
+        }
+        Ok(centres)
+    }
 }
 
 fn row_of<'c, R>(coefficients: &'c [R], candidate: usize, channel: usize, groups: &Groups<'_, R>) -> &'c [R] {
@@ -176,38 +237,21 @@ struct Judge<R> {
     errors: Errors<R>,
     plain: PerChannel<R>,
     count: R,
-    /// Sums of the fits' discounts, and their number.
-    discounts: [R; CANDIDATES],
+    /// How many fits were judged.
     fits: R,
 }
 
 impl<R: Real> Default for Judge<R> {
     fn default() -> Self {
-        Self {
-            errors: Default::default(),
-            plain: Default::default(),
-            count: R::ZERO,
-            discounts: [R::ZERO; CANDIDATES],
-            fits: R::ZERO,
-        }
+        Self { errors: Default::default(), plain: Default::default(), count: R::ZERO, fits: R::ZERO }
     }
 }
 
 impl<R: Real> Judge<R> {
     /// Adds the errors on one group of the fits to another.
-    fn add(
-        &mut self,
-        train: &Moments<'_, R>,
-        judging: &Moments<'_, R>,
-        groups: &Groups<'_, R>,
-        discounts: &[R; CANDIDATES],
-        coefficients: &[R],
-    ) {
+    fn add(&mut self, train: &Moments<'_, R>, judging: &Moments<'_, R>, groups: &Groups<'_, R>, coefficients: &[R]) {
         self.count += judging.count();
         self.fits += R::ONE;
-        for (total, &discount) in self.discounts.iter_mut().zip(discounts) {
-            *total += discount;
-        }
         let inverse = if train.count() > R::ZERO { R::ONE / train.count() } else { R::ZERO };
         for channel in 0..groups.channels {
             let mean = train.total(channel) * inverse;
@@ -222,44 +266,17 @@ impl<R: Real> Judge<R> {
         }
     }
 
-    fn merge(&mut self, other: &Self) {
-        self.count += other.count;
-        self.fits += other.fits;
-        for (ours, &theirs) in self.discounts.iter_mut().zip(&other.discounts) {
-            *ours += theirs;
+    /// A channel's weights of the plain mean and of the candidates; a ridge of the caller's choice gets all.
+    fn weigh(&self, channel: usize, problem: &Problem<'_, '_, R>, discounts: &[R; CANDIDATES]) -> (R, [R; CANDIDATES]) {
+        let mut weights = [R::ZERO; CANDIDATES];
+        if matches!(problem.ridge, Ridge::Fixed(_)) {
+            weights[0] = R::ONE;
+            return (R::ZERO, weights);
         }
-        let pairs = self.errors.iter_mut().zip(&other.errors).chain([(&mut self.plain, &other.plain)]);
-        for (ours, theirs) in pairs {
-            for (ours, &theirs) in ours.iter_mut().zip(theirs) {
-                *ours += theirs;
-            }
-        }
-    }
-
-    /// Weights of the plain mean and of the candidates; a ridge of the caller's choice gets all.
-    fn weights(&self, channels: usize, candidates: usize, ridge: Ridge) -> (PerChannel<R>, Errors<R>) {
-        let mut plain_weights = PerChannel::default();
-        let mut weights = Errors::default();
-        for channel in 0..channels {
-            if matches!(ridge, Ridge::Fixed(_)) {
-                if let Some(weights) = weights.first_mut() {
-                    set(weights, channel, R::ONE);
-                }
-                continue;
-            }
-            let mut errors = [R::ZERO; CANDIDATES];
-            for (error, all) in errors.iter_mut().zip(&self.errors).take(candidates) {
-                *error = get(all, channel);
-            }
-            let power = self.count * R::from_f64(trust::SHARPNESS);
-            let discounts = self.discounts.map(|total| total / self.fits.max(R::ONE));
-            let mut each = [R::ZERO; CANDIDATES];
-            let plain = trust::weigh(get(&self.plain, channel), &errors, &discounts, power, self.count, &mut each);
-            set(&mut plain_weights, channel, plain);
-            for (weights, weight) in weights.iter_mut().zip(each) {
-                set(weights, channel, weight);
-            }
-        }
-        (plain_weights, weights)
+        let power = self.count * R::from_f64(trust::SHARPNESS);
+        let errors = self.errors.map(|errors| get(&errors, channel));
+        let prior = trust::prior(self.count);
+        let plain = trust::weigh(get(&self.plain, channel), &errors, discounts, power, self.count, prior, &mut weights);
+        (plain, weights)
     }
 }

@@ -2,10 +2,11 @@
 
 use super::config::{Config, Ridge};
 use super::design::Design;
-use super::per_channel::{PerChannel, add, get, set};
+use super::per_channel::{PerChannel, get, set};
+use super::result;
 use super::ridge::{self, CHOICES, MAX_FITS, MIXED};
 use super::ridge_fit::{self, Choice, Dual, RidgeFit};
-use super::trust;
+use super::trust::{self, Centre};
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
@@ -18,15 +19,20 @@ use crate::rows::{rows, rows_mut};
 pub(crate) enum Rule {
     /// The mixture of all strengths and the plain mean.
     Robust,
-    /// One strength.
+    /// The same for a fit that corrects other samples, which is not used where these samples are too even.
+    Fold,
+    /// One strength, each sample corrected by the fit to the others.
     Single(Ridge),
-    /// One strength, next to none by default, and no leave-one-out figures.
+    /// One strength, next to none by default, and the fit's own estimate.
     LeastSquares(Ridge),
 }
 
 /// Fits and their weights.
 pub(crate) struct Blend<R> {
     fits: [RidgeFit<R>; MAX_FITS],
+    centres: [Centre<R>; MAX_FITS],
+    /// What each fit adds to the mean.
+    corrections: [PerChannel<R>; MAX_FITS],
     weights: [PerChannel<R>; MAX_FITS],
     plain_weight: PerChannel<R>,
 }
@@ -83,21 +89,21 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         let single = [match rule {
             Rule::LeastSquares(ridge) => ridge::least_squares::<R>(ridge),
             Rule::Single(ridge) => ridge::single::<R>(ridge),
-            Rule::Robust => 0.0,
+            Rule::Robust | Rule::Fold => 0.0,
         }];
         let (strengths, leave_one_out) = match rule {
-            Rule::Robust => (&MIXED[..], true),
+            Rule::Robust | Rule::Fold => (&MIXED[..], true),
             Rule::Single(Ridge::Auto) | Rule::LeastSquares(Ridge::Auto) => (&CHOICES[..], true),
             Rule::Single(_) => (&single[..], true),
-            Rule::LeastSquares(_) => (&single[..], false),
+            // As many terms as samples leave nothing to tell the error from.
+            Rule::LeastSquares(_) => (&single[..], design.n > design.columns + 1),
         };
-        let residual = matches!(rule, Rule::LeastSquares(_));
         let each = design.columns * design.channels;
         let kept = arena.take(if coefficients.is_some() { strengths.len() * each } else { 0 })?;
         let mut fits = [RidgeFit::default(); MAX_FITS];
         for (index, (&strength, fit)) in strengths.iter().zip(&mut fits).enumerate() {
             let kept = kept.get_mut(index * each..(index + 1) * each).filter(|kept| !kept.is_empty());
-            let choice = Choice { strength: R::from_f64(strength), penalties: self.penalties, leave_one_out, residual };
+            let choice = Choice { strength: R::from_f64(strength), penalties: self.penalties, leave_one_out };
             *fit = match &self.dual {
                 Some(dual) => dual.fit(design, choice, kept, arena.scratch())?,
                 None => ridge_fit::primal(design, self.gram, self.rhs, choice, kept, arena.scratch())?,
@@ -117,23 +123,48 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
     }
 
     fn weigh(&self, rule: Rule, fits: [RidgeFit<R>; MAX_FITS], used: usize) -> Blend<R> {
-        let mut blend = Blend { fits, weights: Default::default(), plain_weight: PerChannel::default() };
+        let n = R::from_usize(self.design.n);
+        let centres = fits.map(|fit| Centre::new(fit.eccentricity, fit.freedom, n));
+        let corrections =
+            fits.map(|fit| if let Rule::LeastSquares(_) = rule { fit.in_sample } else { fit.leave_one_out });
+        let (weights, plain_weight) = Default::default();
+        let mut blend = Blend { fits, centres, corrections, weights, plain_weight };
         let plain = plain_press(self.design);
-        if rule != Rule::Robust {
+        if !matches!(rule, Rule::Robust | Rule::Fold) {
             let best = if used > 1 { best_of(&fits, &plain) } else { 0 };
             if let Some(weights) = blend.weights.get_mut(best) {
                 *weights = [R::ONE; Config::MAX_CHANNELS];
             }
             return blend;
         }
-        let n = R::from_usize(self.design.n);
         let power = n * R::from_f64(trust::SHARPNESS);
-        let discounts = fits.map(|fit| trust::discount(fit.eccentricity, fit.freedom, n));
+        let shares = centres.map(|centre| centre.share());
+        for ((correction, fit), share) in blend.corrections.iter_mut().zip(&fits).zip(shares) {
+            for (all, one) in correction.iter_mut().zip(&fit.in_sample) {
+                *all = *one + share * (*all - *one);
+            }
+        }
+        let discounts = centres.map(|centre| centre.discount());
         for channel in 0..self.design.channels {
             let press = fits.map(|fit| get(&fit.press, channel));
+            let plain = get(&plain, channel);
+            let variance = plain * result::press_factor(n);
+            let mut discounts = discounts;
+            for (discount, correction) in discounts.iter_mut().zip(&blend.corrections) {
+                if variance > R::ZERO {
+                    *discount += trust::surprise(get(correction, channel), variance);
+                }
+            }
             let mut weights = [R::ZERO; MAX_FITS];
-            let used = weights.get_mut(..used).unwrap_or(&mut []);
-            let plain_weight = trust::weigh(get(&plain, channel), &press, &discounts, power, n, used);
+            let each = weights.get_mut(..used).unwrap_or(&mut []);
+            let mut plain_weight = trust::weigh(plain, &press, &discounts, power, n, trust::prior(n), each);
+            if rule == Rule::Fold {
+                for (weight, centre) in weights.iter_mut().zip(&centres) {
+                    let kept = *weight * centre.independence();
+                    plain_weight += *weight - kept;
+                    *weight = kept;
+                }
+            }
             set(&mut blend.plain_weight, channel, plain_weight);
             for (slot, weight) in blend.weights.iter_mut().zip(weights) {
                 set(slot, channel, weight);
@@ -160,26 +191,44 @@ fn best_of<R: Real>(fits: &[RidgeFit<R>; MAX_FITS], plain: &PerChannel<R>) -> us
 }
 
 impl<R: Real> Blend<R> {
-    /// A weighted figure of the fits.
-    #[inline(always)]
-    pub(crate) fn blended(&self, figure: impl Fn(&RidgeFit<R>) -> PerChannel<R>) -> PerChannel<R> {
+    /// What the mixture adds to the plain mean.
+    pub(crate) fn correction(&self) -> PerChannel<R> {
         let mut total = PerChannel::default();
-        for (fit, weights) in self.fits.iter().zip(&self.weights) {
-            let figure = figure(fit);
-            for channel in 0..Config::MAX_CHANNELS {
-                add(&mut total, channel, get(weights, channel) * get(&figure, channel));
+        for (correction, weights) in self.corrections.iter().zip(&self.weights) {
+            for ((total, &correction), &weight) in total.iter_mut().zip(correction).zip(weights) {
+                *total += weight * correction;
             }
         }
         total
     }
 
-    /// The sum of squared leave-one-out residuals, the plain mean's share included.
-    pub(crate) fn press(&self, design: &Design<'_, R>) -> PerChannel<R> {
-        let mut press = self.blended(|fit| fit.press);
-        for ((press, plain), &weight) in press.iter_mut().zip(plain_press(design)).zip(&self.plain_weight) {
-            *press += weight * plain;
+    /// The variance of the mixture's estimate: of what it is made of, and of what its parts disagree in.
+    pub(crate) fn variance(&self, design: &Design<'_, R>) -> Option<PerChannel<R>> {
+        let n = R::from_usize(design.n);
+        let factor = result::press_factor(n);
+        let total = self.correction();
+        let plain = plain_press(design);
+        let mut variance = PerChannel::default();
+        for channel in 0..design.channels {
+            let spread = |value: R| (value - get(&total, channel)) * (value - get(&total, channel));
+            let mut sum = get(&self.plain_weight, channel) * (get(&plain, channel) * factor + spread(R::ZERO));
+            let fits = self.fits.iter().zip(&self.corrections).zip(&self.weights);
+            for ((fit, correction), weights) in fits {
+                let own = get(&fit.influence, channel) * factor * trust::few_left(fit.freedom, n);
+                sum += get(weights, channel) * (own + spread(get(correction, channel)));
+            }
+            set(&mut variance, channel, sum);
         }
-        press
+        (design.n > 1).then_some(variance)
+    }
+
+    /// What the error of the mixture's coefficients adds to the variance of an estimate that is corrected by them, as a
+    /// factor.
+    pub(crate) fn inflation(&self, channel: usize) -> R {
+        let fits = self.centres.iter().zip(&self.weights);
+        fits.fold(get(&self.plain_weight, channel), |sum, (centre, weights)| {
+            sum + get(weights, channel) * centre.inflation
+        })
     }
 }
 

@@ -4,7 +4,7 @@
 //! that the early steps go where functions vary most. A fit that stopped early is a shrunk one: at low sample counts this
 //! is safer than least squares, with no matrix at all.
 
-use super::batch::{self, Plan};
+use super::batch::Plan;
 use super::config::{Config, Estimate, Optimizer};
 use super::design::Design;
 use super::moments::Centred;
@@ -32,7 +32,7 @@ const POWER_ROUNDS: usize = 12;
 
 /// Numbers that a descent takes from its arena, its solution included.
 pub(crate) fn size(columns: usize, channels: usize) -> usize {
-    columns * (channels + 4)
+    columns * (channels + 5)
 }
 
 /// Curvatures and gradients below this, in units of the functions' and the values' variance, are taken for rounding noise of
@@ -49,6 +49,8 @@ pub(crate) trait Objective<R> {
     fn columns(&self) -> usize;
     /// The number of samples.
     fn count(&self) -> usize;
+    /// The functions' means.
+    fn means(&self) -> &[R];
 }
 
 /// As [`estimate`](super::estimate) with [`Estimator::GradientDescent`](super::Estimator::GradientDescent), starting
@@ -121,12 +123,45 @@ pub(crate) fn estimate<R: Real>(
         set(&mut correction, channel, in_sample);
         set(&mut residual, channel, design.residual_square(channel, solution));
     }
+    let variance = variance(residual, design);
+    let mut outcome = Outcome { correction, variance: variance.or_else(|| result::plain_variance(design)) };
+    add_rest(design, solutions, &mut outcome, arena)?;
     if let Some(warm) = warm {
         for (index, (out, &value)) in warm.iter_mut().zip(solutions.iter()).enumerate() {
             *out = unit(index).map_or(0.0, |unit| result::saturate(unit.length(value)));
         }
     }
-    Ok(Outcome { correction, variance: batch::residual_variance(design, residual) })
+    Ok(outcome)
+}
+
+/// The variance of what descended to residuals of such sums of squares; None if no residual is left over to tell.
+///
+/// As for least squares ([`result::residual_variance`]), with functions that the samples see as orthonormal, and half of
+/// what uncertain coefficients add: a descent that stops early has made fewer of them.
+pub(crate) fn variance<R: Real>(residual: PerChannel<R>, objective: &impl Objective<R>) -> Option<PerChannel<R>> {
+    let freedom = objective.count().checked_sub(objective.columns() + 1).filter(|&freedom| freedom > 0)?;
+    let (n, freedom) = (R::from_usize(objective.count()), R::from_usize(freedom));
+    let square = objective.means().iter().fold(R::ZERO, |sum, &mean| sum + mean * mean);
+    let factor = (R::ONE + R::from_f64(0.5) * n * square) / (freedom * freedom);
+    Some(residual.map(|residual| residual * factor))
+}
+
+/// Adds to the variance the square of what a descent to its end would still change.
+pub(crate) fn add_rest<R: Real>(
+    objective: &impl Objective<R>,
+    coefficients: &[R],
+    outcome: &mut Outcome<R>,
+    arena: &mut Arena<'_, R>,
+) -> Result<(), Error> {
+    let gradient = arena.take(objective.columns())?;
+    let Some(variance) = &mut outcome.variance else { return Ok(()) };
+    for ((channel, b), variance) in rows(coefficients, objective.columns()).enumerate().zip(variance) {
+        // The curvature of orthonormal functions is one: the gradient is what the coefficients lack.
+        objective.gradient(Some(channel), b, gradient);
+        let rest = gradient.iter().zip(objective.means()).fold(R::ZERO, |sum, (&b, &mean)| sum + b * mean);
+        *variance += rest * rest;
+    }
+    Ok(())
 }
 
 /// Improves the coefficients, a row for each channel, step by step. A descent that diverges, for a step length of the
@@ -265,6 +300,10 @@ impl<R: Real> Objective<R> for Design<'_, R> {
     fn count(&self) -> usize {
         self.n
     }
+
+    fn means(&self) -> &[R] {
+        self.column_means
+    }
 }
 
 impl<R: Real> Objective<R> for Centred<'_, R> {
@@ -282,6 +321,10 @@ impl<R: Real> Objective<R> for Centred<'_, R> {
 
     fn count(&self) -> usize {
         self.count.to_f64() as usize
+    }
+
+    fn means(&self) -> &[R] {
+        self.means
     }
 }
 

@@ -65,7 +65,8 @@ pub(crate) fn correct<R: Real>(progress: &mut Progress<R>, ridge: Ridge, coeffic
                     let power = n * R::from_f64(SHARPNESS);
                     let plain = get(&progress.plain_error, channel);
                     let mut weights = [R::ZERO; FITS];
-                    trust::weigh(plain, &errors, &[], power, n, &mut weights);
+                    let prior = R::from_f64(trust::PRIOR);
+                    trust::weigh(plain, &errors, &[], power, n, prior, &mut weights);
                     weights
                 }
             };

@@ -1,9 +1,13 @@
 //! Cross-fit: each fold is corrected by a fit to the other folds, so that no sample shapes its own correction.
+//!
+//! With folds that are no runs of independent samples but even, what a fold's fit lacks and what the others' have do not
+//! cancel: [`Rule::Fold`] then trusts the mean.
 
 use super::batch::Plan;
 use super::config::{Config, Ridge, Solver};
 use super::design::Design;
 use super::fitter::{self, Fitter, Rule};
+use super::folds::Fold;
 use super::per_channel::{PerChannel, add, get, set};
 use super::result::Outcome;
 use super::samples::{Reader, Subset};
@@ -26,7 +30,7 @@ pub(crate) fn size<R: Real>(config: &Config, columns: usize, channels: usize, n:
     primal.max(dual).checked_add(designs)?.checked_add(columns * channels)
 }
 
-/// The estimate over `config.folds` folds, sample i in fold i mod folds. `whole` holds all samples.
+/// The estimate over `config.folds` folds. `whole` holds all samples.
 #[inline(never)]
 pub(crate) fn estimate<R: Real>(
     reader: &Reader<'_>,
@@ -38,26 +42,31 @@ pub(crate) fn estimate<R: Real>(
     let channels = whole.channels;
     let mut sums = PerChannel::default();
     let mut squares = PerChannel::default();
+    let mut inflations = PerChannel::default();
     let coefficients = arena.take(whole.columns * channels)?;
-    for fold in 0..config.fold_count() {
-        let folds = config.fold_count();
+    for index in 0..config.fold_count() {
+        let fold = Fold::new(index, config.fold_count(), reader.len());
         let mut arena = arena.scratch();
-        let held_out = match load(reader, basis, whole.columns, Subset::Fold { fold, folds }, false, &mut arena) {
+        let held_out = match load(reader, basis, whole.columns, Subset::Fold(fold), false, &mut arena) {
             Err(Error::NoSamples) => continue,
             other => other?,
         };
-        let train = match load(reader, basis, whole.columns, Subset::Complement { fold, folds }, true, &mut arena) {
+        let train = match load(reader, basis, whole.columns, Subset::Complement(fold), true, &mut arena) {
             Err(Error::NoSamples) => None,
             other => Some(other?),
         };
         for value in coefficients.iter_mut() {
             *value = R::ZERO;
         }
+        let mut inflation = [R::ONE; Config::MAX_CHANNELS];
         if let Some(train) = train.filter(|train| train.n > 1) {
             let plan = Plan::new(config, basis.columns(), train.n)?;
             let fitter = Fitter::new(&train, config, basis, plan.dual, &mut arena)?;
-            let rule = if config.ridge == Ridge::Default { Rule::Robust } else { Rule::Single(config.ridge) };
-            fitter.solve(rule, Some(coefficients), &mut arena)?;
+            let rule = if config.ridge == Ridge::Default { Rule::Fold } else { Rule::Single(config.ridge) };
+            let blend = fitter.solve(rule, Some(coefficients), &mut arena)?;
+            for (channel, inflation) in inflation.iter_mut().enumerate().take(channels) {
+                *inflation = blend.inflation(channel);
+            }
             // Coefficients came in the training set's units and meet the held-out values in theirs.
             for (coefficients, (from, to)) in
                 rows_mut(coefficients, whole.columns).zip(train.units.iter().zip(&held_out.units))
@@ -66,6 +75,9 @@ pub(crate) fn estimate<R: Real>(
                     *value = to.converted(*value, from);
                 }
             }
+        }
+        for (total, inflation) in inflations.iter_mut().zip(inflation) {
+            *total += R::from_usize(held_out.n) * inflation;
         }
         for (panel_index, (panel, values)) in held_out.each_panel().enumerate() {
             let used = held_out.n.saturating_sub(panel_index * LANES);
@@ -90,7 +102,7 @@ pub(crate) fn estimate<R: Real>(
         let (sum, square) = (get(&sums, channel), get(&squares, channel));
         set(&mut outcome.correction, channel, sum / n);
         let spread = (square - sum * sum / n).max(R::ZERO);
-        set(&mut variance, channel, spread / (n * (n - R::ONE)));
+        set(&mut variance, channel, spread * get(&inflations, channel) / (n * n * (n - R::ONE)));
     }
     outcome.variance = (whole.n > 1).then_some(variance);
     Ok(outcome)

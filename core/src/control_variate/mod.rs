@@ -10,6 +10,7 @@ mod config;
 mod cross_fit;
 mod design;
 mod fitter;
+mod folds;
 mod gradient_descent;
 mod incremental;
 mod k_fold;

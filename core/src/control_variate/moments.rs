@@ -3,7 +3,7 @@
 //! For rows p = (1, functions) and values f the sums are P'P (packed), P'f (a row for each column) and f'f.
 
 use super::per_channel::{PerChannel, get, set};
-use super::trust;
+use super::trust::Centre;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::linalg::{ldlt, packed_len, row, row_mut};
@@ -239,17 +239,17 @@ impl<'a, R: Real> Centred<'a, R> {
         Ok(Some(Self { columns, count, gram, rhs, means, value_means, squares }))
     }
 
-    /// Writes the coefficients of the fit with a ridge of `strength` per sample, a row for each channel, and returns
-    /// the [`discount`](trust::discount) of its trust, if that is wanted.
+    /// Writes the coefficients of the fit with a ridge of `strength` per sample, a row for each channel, and returns where
+    /// its samples lie, if that is wanted and there are two.
     #[inline(always)]
     pub(crate) fn solve(
         &self,
         penalties: &[R],
         strength: R,
         coefficients: &mut [R],
-        with_discount: bool,
+        with_centre: bool,
         arena: &mut Arena<'_, R>,
-    ) -> Result<R, Error> {
+    ) -> Result<Option<Centre<R>>, Error> {
         let factor = arena.take(packed_len(self.columns))?;
         for (out, &value) in factor.iter_mut().zip(self.gram.iter()) {
             *out = value;
@@ -263,8 +263,8 @@ impl<'a, R: Real> Centred<'a, R> {
             }
             ldlt::solve(factor, out);
         }
-        if !with_discount {
-            return Ok(R::ZERO);
+        if !with_centre || self.count <= R::ONE {
+            return Ok(None);
         }
         let inverse = arena.take(packed_len(self.columns))?;
         let diagonal = arena.take(self.columns)?;
@@ -285,7 +285,7 @@ impl<'a, R: Real> Centred<'a, R> {
                 eccentricity += if k == j { both } else { both + both };
             }
         }
-        Ok(trust::discount(eccentricity * self.count, freedom, self.count))
+        Ok(Some(Centre::new(eccentricity * self.count, freedom, self.count)))
     }
 
     /// The intercept that goes with coefficients.

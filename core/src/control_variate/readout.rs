@@ -1,5 +1,6 @@
 //! The estimates that a streaming estimate's sums hold.
 
+use super::batch;
 use super::config::{Color, Config, Estimate, Estimator, Solver};
 use super::cross_fit;
 use super::design::Units;
@@ -44,8 +45,7 @@ impl<R: Real> State<R> {
         }
         let mut arena = Arena::new(workspace);
         let total = Totals::new(self, sums)?;
-        let outcome = if state.columns == 0 || (state.config.stratified && state.config.estimator == Estimator::Robust)
-        {
+        let outcome = if batch::is_plain(&state.config, state.columns) {
             total.plain()
         } else {
             match state.config.estimator {
@@ -116,9 +116,13 @@ impl<R: Real> State<R> {
         let penalties = self.penalties(&first, arena)?;
         let groups =
             cross_fit::Groups { sums, folds: state.groups(), columns: state.columns, channels: state.channels };
-        let nested = state.config.estimator == Estimator::KFold;
-        let outcome = cross_fit::estimate(&groups, penalties, state.config.ridge, nested, arena)?;
-        Ok(outcome.relative_to(total))
+        // With one sample there is no spread to weigh fits by, and no other sample to fit.
+        let Some(variance) = &total.variance else { return Ok(total.plain()) };
+        if state.config.estimator == Estimator::KFold {
+            cross_fit::nested(&groups, penalties, state.config.ridge, &total.mean, arena)
+        } else {
+            cross_fit::pooled(&groups, penalties, (&total.mean, variance), arena)
+        }
     }
 
     fn least_squares(
@@ -132,8 +136,11 @@ impl<R: Real> State<R> {
         let coefficients = arena.take(columns * channels)?;
         let Some(centred) = Centred::new(group, columns, channels, arena)? else { return Ok(total.plain()) };
         let strength = R::from_f64(ridge::least_squares::<R>(self.config.ridge));
-        centred.solve(penalties, strength, coefficients, false, arena)?;
-        Ok(in_sample(&centred, coefficients, total))
+        let centre = centred.solve(penalties, strength, coefficients, true, arena)?;
+        let eccentricity = centre.map_or(R::ZERO, |centre| centre.eccentricity);
+        let (correction, residual) = in_sample(&centred, coefficients);
+        let variance = result::residual_variance(residual, columns, centred.count, eccentricity);
+        Ok(Outcome { correction, variance: variance.or(total.variance) })
     }
 
     fn descend(
@@ -149,23 +156,22 @@ impl<R: Real> State<R> {
             *value = R::ZERO;
         }
         gradient_descent::descend(&centred, &self.config, &self.basis()?, coefficients, arena)?;
-        Ok(in_sample(&centred, coefficients, total))
+        let (correction, residual) = in_sample(&centred, coefficients);
+        let variance = gradient_descent::variance(residual, &centred);
+        let mut outcome = Outcome { correction, variance: variance.or(total.variance) };
+        gradient_descent::add_rest(&centred, coefficients, &mut outcome, arena)?;
+        Ok(outcome)
     }
 }
 
-/// The outcome of a fit to all samples: its intercept is the estimate.
-fn in_sample<R: Real>(centred: &Centred<'_, R>, coefficients: &[R], total: &Totals<R>) -> Outcome<R> {
-    let mut correction = PerChannel::default();
-    let mut variance = PerChannel::default();
-    let freedom = centred.count - R::from_usize(centred.columns + 1);
+/// What a fit to all samples adds to the mean, and its sums of squared residuals: its intercept is the estimate.
+fn in_sample<R: Real>(centred: &Centred<'_, R>, coefficients: &[R]) -> (PerChannel<R>, PerChannel<R>) {
+    let (mut correction, mut residual) = (PerChannel::default(), PerChannel::default());
     for (channel, b) in rows(coefficients, centred.columns).enumerate() {
-        let shift = centred.intercept(channel, b) - get(&centred.value_means, channel);
-        set(&mut correction, channel, shift);
-        let residual = centred.residual_square(channel, b);
-        set(&mut variance, channel, residual / (freedom * freedom));
+        set(&mut correction, channel, centred.intercept(channel, b) - get(&centred.value_means, channel));
+        set(&mut residual, channel, centred.residual_square(channel, b));
     }
-    let variance = if freedom > R::ZERO { Some(variance) } else { total.variance };
-    Outcome { correction, variance }
+    (correction, residual)
 }
 
 /// What the sums say about the plain mean.

@@ -162,9 +162,8 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         ldlt::factor(factor, TERMS);
         let mut outcome = Outcome { correction: PerChannel::default(), variance: None };
         let mut units = [Units::default(); Config::MAX_CHANNELS];
-        let mut variance = PerChannel::default();
+        let mut residuals = PerChannel::default();
         let mut plain_variance = PerChannel::default();
-        let freedom = n - TERMS as f64;
         for channel in 0..CHANNELS {
             let rhs = core::array::from_fn::<f64, TERMS, _>(|j| self.rhs[j][channel]);
             let mut solution = rhs;
@@ -176,20 +175,22 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
                 unit.offset = f64::from(offset) + mean;
             }
             // f'f - 2 b'r + b'G b
-            let mut residual = self.square[channel];
-            for (j, (&b, &r)) in solution.iter().zip(&rhs).enumerate() {
-                let mut product = 0.0;
-                for (k, (&gram, &other)) in row(sums, j).iter().zip(&solution).enumerate() {
-                    product += if k == j { gram * other } else { (gram + gram) * other };
-                }
-                residual += b * (product - r - r);
-            }
+            let cross: f64 = solution.iter().zip(&rhs).map(|(b, r)| b * r).sum();
+            let residual = self.square[channel] + quadratic(sums, &solution) - cross - cross;
             let plain = (self.square[channel] - total * total / n).max(0.0) / (n * (n - 1.0));
             set(&mut plain_variance, channel, plain);
-            set(&mut variance, channel, residual.max(0.0) / (freedom * freedom));
+            set(&mut residuals, channel, residual.max(0.0));
         }
         let plain_variance = (self.samples > 1).then_some(plain_variance);
-        outcome.variance = if freedom > 0.0 { Some(variance) } else { plain_variance };
+        // With e the first unit vector and x = A^-1 e, the intercept's weights on the samples have squares of sum x'P'P x.
+        let mut x = [0.0; TERMS];
+        if let Some(first) = x.first_mut() {
+            *first = 1.0;
+        }
+        ldlt::solve(factor, &mut x);
+        let eccentricity = (n * quadratic(sums, &x) - 1.0).max(0.0);
+        let variance = result::residual_variance(residuals, TERMS.saturating_sub(1), n, eccentricity);
+        outcome.variance = variance.or(plain_variance);
         let samples = usize::try_from(self.samples).unwrap_or(usize::MAX);
         Ok(result::finish(Summary { samples, channels: CHANNELS, units, plain_variance, colour: None }, outcome))
     }
@@ -233,4 +234,15 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         self.samples = self.samples.saturating_add(other.samples);
         Ok(())
     }
+}
+
+/// x'G x for a packed G.
+fn quadratic(gram: &[f64], x: &[f64]) -> f64 {
+    let mut total = 0.0;
+    for (j, &value) in x.iter().enumerate() {
+        for (k, (&gram, &other)) in row(gram, j).iter().zip(x).enumerate() {
+            total += value * if k == j { gram * other } else { (gram + gram) * other };
+        }
+    }
+    total
 }

@@ -4,6 +4,7 @@ use super::config::{Config, Estimate};
 use super::design::{Design, Units};
 use super::per_channel::{PerChannel, get};
 use super::samples::Reader;
+use super::trust::Centre;
 use crate::real::Real;
 
 /// What an estimator found, in a design's units.
@@ -25,11 +26,33 @@ pub(crate) fn plain_variance<R: Real>(design: &Design<'_, R>) -> Option<PerChann
     (design.n > 1).then_some(variance)
 }
 
-/// The variance that a sum of squared leave-one-out residuals of `n` samples stands for: exact for the plain mean.
-pub(crate) fn variance_of_press<R: Real>(press: &PerChannel<R>, n: usize) -> Option<PerChannel<R>> {
-    let n_real = R::from_usize(n);
-    let factor = (n_real - R::ONE) / (n_real * n_real * n_real);
-    (n > 1).then(|| press.map(|press| press * factor))
+/// What a sum of squared leave-one-out residuals of `n` samples, at least two, is multiplied by to be a variance: exact for
+/// the plain mean.
+#[inline(always)]
+pub(crate) fn press_factor<R: Real>(n: R) -> R {
+    (n - R::ONE) / (n * n * n)
+}
+
+/// The variance of the constant term of a fit of so many columns to `n` samples, from the sum of its squared residuals and
+/// its `eccentricity` ([`Centre`]); None if no residual is left over to tell.
+///
+/// The square of the degrees of freedom, not times n: the residuals of a fit are smaller than those of samples that it has
+/// not seen, by as much again.
+pub(crate) fn residual_variance<R: Real>(
+    residual: PerChannel<R>,
+    columns: usize,
+    n: R,
+    eccentricity: R,
+) -> Option<PerChannel<R>> {
+    let columns = R::from_usize(columns);
+    let freedom = n - R::ONE - columns;
+    // A count that comes from a square root is not exact: a half tells one from none.
+    if freedom < R::from_f64(0.5) {
+        return None;
+    }
+    let rest = (n - R::ONE) / freedom;
+    let factor = Centre::new(eccentricity, columns, n).inflation * rest * rest / (freedom * freedom);
+    Some(residual.map(|residual| residual * factor))
 }
 
 /// What an [`Estimate`] is put together from, besides the outcome.

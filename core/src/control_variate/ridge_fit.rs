@@ -11,10 +11,13 @@
 //!
 //! where q_i = p_i + m is the column before centring, whose integral is zero. For a fixed L that mean is exactly
 //! unbiased although every sample serves both the fit and the estimate.
+//!
+//! The estimate of the fit to all, mean f - b'm, has the weight 1/n - m'A^-1 p_i on sample i. The sum of (1 - n m'A^-1 p_i)^2
+//! r_i^2 is therefore n^2 times its variance whatever the noise depends on (White 1980; HC3 of MacKinnon and White 1985).
 
 use super::Config;
 use super::design::Design;
-use super::per_channel::{PerChannel, add, get, set};
+use super::per_channel::{PerChannel, get, set};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
@@ -27,12 +30,12 @@ use crate::rows::{rows, rows_mut};
 pub(crate) struct RidgeFit<R> {
     /// The sum of squared leave-one-out residuals.
     pub(crate) press: PerChannel<R>,
+    /// The sum of squares of those residuals times n times the weight of their sample in the estimate.
+    pub(crate) influence: PerChannel<R>,
     /// The mean of y_i minus the mean of f_i: what leaving one out adds to the plain mean.
     pub(crate) leave_one_out: PerChannel<R>,
     /// -b'm: what the fit to all samples adds to the plain mean (Alg. 1).
     pub(crate) in_sample: PerChannel<R>,
-    /// f'f less the sum of squared residuals of the fit; only if [`Choice::residual`] asks.
-    pub(crate) explained: PerChannel<R>,
     /// n sum_i (m'A^-1 p_i)^2: how far the columns' means are from their integrals, as the fit measures distance.
     pub(crate) eccentricity: R,
     /// The effective number of coefficients, tr(P A^-1 P').
@@ -48,8 +51,6 @@ pub(crate) struct Choice<'a, R> {
     pub(crate) penalties: &'a [R],
     /// Whether the leave-one-out figures are wanted.
     pub(crate) leave_one_out: bool,
-    /// Whether what the fit explains of its own samples is wanted.
-    pub(crate) residual: bool,
 }
 
 /// The smallest 1 - h that a division is trusted with, in units of the type's epsilon.
@@ -95,30 +96,20 @@ pub(crate) fn primal<R: Real>(
             *out = rhs;
         }
         ldlt::forward(factor, solution);
-        let (mut in_sample, mut explained) = (R::ZERO, R::ZERO);
+        let mut in_sample = R::ZERO;
         for (j, (value, &mean)) in solution.iter_mut().zip(means.iter()).enumerate() {
-            let scaled = *value * ldlt::inverse_pivot(factor, j);
-            explained += *value * scaled;
-            in_sample -= scaled * mean;
-            *value = scaled;
+            *value *= ldlt::inverse_pivot(factor, j);
+            in_sample -= *value * mean;
         }
         set(&mut fit.in_sample, channel, in_sample);
-        set(&mut fit.explained, channel, explained);
     }
     if choice.leave_one_out {
         residuals(design, factor, means, solution, z, &mut fit);
     }
-    if coefficients.is_none() && !choice.residual {
-        return Ok(fit);
-    }
-    for (channel, solution) in rows_mut(solution, columns).enumerate() {
-        ldlt::backward(factor, solution);
-        // f'P A^-1 P'f = b'A b, and the residual has b'P'P b: a penalty's worth less.
-        let penalty = |(&b, &penalty): (&R, &R)| b * b * penalty;
-        let spent = solution.iter().zip(choice.penalties).map(penalty).fold(R::ZERO, |sum, value| sum + value);
-        add(&mut fit.explained, channel, strength * spent);
-    }
     if let Some(coefficients) = coefficients {
+        for solution in rows_mut(solution, columns) {
+            ldlt::backward(factor, solution);
+        }
         copy_padded(coefficients, solution);
     }
     Ok(fit)
@@ -139,7 +130,7 @@ fn residuals<R: Real>(
     let inverse_n = R::ONE / n;
     let smallest_gap = R::from_f64(SMALLEST_GAP) * R::EPSILON;
     let zero = [R::ZERO; LANES];
-    let (mut press, mut corrections) = ([zero; Config::MAX_CHANNELS], [zero; Config::MAX_CHANNELS]);
+    let [mut press, mut influences, mut corrections] = [[zero; Config::MAX_CHANNELS]; 3];
     let (mut freedom, mut eccentricity) = (zero, zero);
     for (panel, values) in design.each_panel() {
         for (z, column) in z.iter_mut().zip(panel) {
@@ -159,29 +150,36 @@ fn residuals<R: Real>(
         }
         freedom = lanes::zip(&freedom, &leverage, |a, b| a + b);
         lanes::add_product(&mut eccentricity, &shift, &shift);
-        let mut gap = zero;
+        let (mut gap, mut weight) = (zero, zero);
         for l in 0..LANES {
             gap[l] = R::ONE / (R::ONE - inverse_n - leverage[l]).max(smallest_gap);
+            weight[l] = R::ONE - n * shift[l];
         }
-        let channels = values.iter().zip(rows(solution, columns)).zip(&mut press).zip(&mut corrections);
-        for (((values, solution), press), corrections) in channels {
+        let sums = press.iter_mut().zip(&mut influences).zip(&mut corrections);
+        for ((values, solution), ((press, influences), corrections)) in
+            values.iter().zip(rows(solution, columns)).zip(sums)
+        {
             let mut residual = *values;
             for (z, &weight) in z.iter().zip(solution) {
                 lanes::subtract_scaled(&mut residual, weight, z);
             }
-            let (mut press_sum, mut correction_sum) = (*press, *corrections);
+            let (mut press_sum, mut influence_sum, mut correction_sum) = (*press, *influences, *corrections);
             for l in 0..LANES {
                 let residual = residual[l] * gap[l];
+                let influence = residual * weight[l];
                 press_sum[l] += residual * residual;
+                influence_sum[l] += influence * influence;
                 correction_sum[l] += (leverage[l] + shift[l]) * residual;
             }
-            (*press, *corrections) = (press_sum, correction_sum);
+            (*press, *influences, *corrections) = (press_sum, influence_sum, correction_sum);
         }
     }
     fit.freedom = lanes::sum(&freedom);
     fit.eccentricity = lanes::sum(&eccentricity) * n;
-    for (channel, (press, corrections)) in press.iter().zip(&corrections).enumerate().take(design.channels) {
+    let sums = press.iter().zip(&influences).zip(&corrections).enumerate();
+    for (channel, ((press, influences), corrections)) in sums.take(design.channels) {
         set(&mut fit.press, channel, lanes::sum(press));
+        set(&mut fit.influence, channel, lanes::sum(influences));
         let correction = lanes::sum(corrections) * inverse_n;
         let in_sample = get(&fit.in_sample, channel);
         set(&mut fit.leave_one_out, channel, in_sample + correction);
@@ -250,8 +248,9 @@ impl<'a, R: Real> Dual<'a, R> {
         mut arena: Arena<'_, R>,
     ) -> Result<RidgeFit<R>, Error> {
         let n = design.n;
-        let inverse_n = R::ONE / R::from_usize(n);
-        let strength = choice.strength * R::from_usize(n);
+        let count = R::from_usize(n);
+        let inverse_n = R::ONE / count;
+        let strength = choice.strength * count;
         let factor = arena.take(packed_len(n))?;
         let inverse = arena.take(packed_len(n))?;
         let diagonal = arena.take(n)?;
@@ -282,7 +281,7 @@ impl<'a, R: Real> Dual<'a, R> {
         for &value in shift.iter() {
             fit.eccentricity += value * value;
         }
-        fit.eccentricity *= R::from_usize(n);
+        fit.eccentricity *= count;
         for &value in diagonal.iter() {
             fit.freedom += R::ONE - strength * value;
         }
@@ -296,23 +295,24 @@ impl<'a, R: Real> Dual<'a, R> {
                 *out = value(i);
             }
             ldlt::solve(factor, alpha);
-            let (mut in_sample, mut residual_square) = (R::ZERO, R::ZERO);
-            let (mut press, mut correction) = (R::ZERO, R::ZERO);
+            let (mut in_sample, mut correction) = (R::ZERO, R::ZERO);
+            let (mut press, mut influences) = (R::ZERO, R::ZERO);
             for (i, &alpha) in alpha.iter().enumerate() {
-                let residual = strength * alpha;
                 in_sample -= self.shift.get(i).copied().unwrap_or(R::ZERO) * alpha;
-                residual_square += residual * residual;
                 let complement = strength * diagonal.get(i).copied().unwrap_or(R::ZERO);
                 let gap = (complement - left * inverse_n).max(smallest_gap);
-                let residual = residual / gap;
+                let residual = strength * alpha / gap;
+                let shift = shift.get(i).copied().unwrap_or(R::ZERO);
+                let influence = residual * (R::ONE - count * shift);
                 press += residual * residual;
+                influences += influence * influence;
                 let leverage = R::ONE - complement - (R::ONE - left) * inverse_n;
-                correction += (leverage + shift.get(i).copied().unwrap_or(R::ZERO)) * residual;
+                correction += (leverage + shift) * residual;
             }
             set(&mut fit.press, channel, press);
+            set(&mut fit.influence, channel, influences);
             set(&mut fit.in_sample, channel, in_sample);
             set(&mut fit.leave_one_out, channel, in_sample + correction * inverse_n);
-            set(&mut fit.explained, channel, design.sum_of_squares(channel) - residual_square);
         }
         if let Some(coefficients) = coefficients {
             for (out, alpha) in rows_mut(coefficients, design.columns).zip(rows(alpha, n)) {

@@ -7,6 +7,7 @@ use crate::lanes::{LANES, Lanes};
 use crate::real::Real;
 
 use super::config::{Color, NonFinite};
+use super::folds::Fold;
 
 /// Rec. 709 luminance of linear RGB.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
@@ -52,16 +53,10 @@ impl<'a> Samples<'a> {
 #[derive(Clone, Copy)]
 pub(crate) enum Subset {
     All,
-    /// Indices that are `fold` modulo `folds`.
-    Fold {
-        fold: usize,
-        folds: usize,
-    },
+    /// Those of one fold.
+    Fold(Fold),
     /// All others.
-    Complement {
-        fold: usize,
-        folds: usize,
-    },
+    Complement(Fold),
 }
 
 impl Subset {
@@ -69,8 +64,8 @@ impl Subset {
     fn contains(self, index: usize) -> bool {
         match self {
             Subset::All => true,
-            Subset::Fold { fold, folds } => index.checked_rem(folds) == Some(fold),
-            Subset::Complement { fold, folds } => index.checked_rem(folds) != Some(fold),
+            Subset::Fold(fold) => fold.contains(index),
+            Subset::Complement(fold) => !fold.contains(index),
         }
     }
 }
@@ -140,10 +135,8 @@ impl<'a> Reader<'a> {
     pub(crate) fn count(&self, subset: Subset) -> usize {
         match subset {
             Subset::All => self.n,
-            Subset::Fold { fold, folds } => (self.n + folds.saturating_sub(1 + fold)).checked_div(folds).unwrap_or(0),
-            Subset::Complement { fold, folds } => {
-                self.n - (self.n + folds.saturating_sub(1 + fold)).checked_div(folds).unwrap_or(0)
-            }
+            Subset::Fold(fold) => fold.len(),
+            Subset::Complement(fold) => self.n - fold.len(),
         }
     }
 

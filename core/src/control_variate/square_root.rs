@@ -1,11 +1,10 @@
 //! Least squares by Givens rotations, for samples so badly placed that normal equations lose their digits.
 
-use super::batch;
 use super::config::{Config, Ridge};
 use super::design::Design;
 use super::moments::Moments;
 use super::per_channel::{PerChannel, set};
-use super::result::Outcome;
+use super::result::{self, Outcome};
 use super::ridge_fit;
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -75,7 +74,10 @@ pub(crate) fn least_squares<R: Real>(
         set(&mut correction, channel, value);
         set(&mut residual, channel, design.residual_square(channel, solution));
     }
-    Ok(Outcome { correction, variance: batch::residual_variance(design, residual) })
+    ridge_fit::copy_padded(x, design.column_means);
+    let eccentricity = n * givens::inverse_square(triangle.factor, x);
+    let variance = result::residual_variance(residual, columns, n, eccentricity);
+    Ok(Outcome { correction, variance: variance.or_else(|| result::plain_variance(design)) })
 }
 
 /// Algorithm 1 from the triangular factor of the rows (1, functions); the estimate is in the sums' units.
@@ -120,10 +122,13 @@ pub(crate) fn from_factor<R: Real>(
         }
         set(&mut residuals, channel, residual);
     }
-    let freedom = count - R::from_usize(terms);
-    let variance = residuals.map(|residual| residual / (freedom * freedom));
-    // The count comes from a square root: a half tells one from none.
-    Ok(Outcome { correction, variance: (freedom > R::from_f64(0.5)).then_some(variance) })
+    // The constant is the first column, and has a share of 1 in its own variance.
+    for (k, x) in x.iter_mut().enumerate() {
+        *x = if k == 0 { R::ONE } else { R::ZERO };
+    }
+    let eccentricity = (count * givens::inverse_square(triangle.factor, x) - R::ONE).max(R::ZERO);
+    let variance = result::residual_variance(residuals, terms.saturating_sub(1), count, eccentricity);
+    Ok(Outcome { correction, variance })
 }
 
 fn strength<R: Real>(ridge: Ridge) -> Result<R, Error> {

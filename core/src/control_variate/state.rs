@@ -3,6 +3,7 @@
 use super::config::{Color, Config, Estimator, Ridge, Solver};
 use super::cross_fit;
 use super::design::Units;
+use super::folds;
 use super::incremental;
 use super::moments::{self, Moments, MomentsMut};
 use super::per_channel::PerChannel;
@@ -274,7 +275,7 @@ impl<R: Real> State<R> {
             incremental::refit(state.samples, &mut state.incremental, &state.config, group, rest, terms - 1, channels);
             return;
         }
-        let fold = state.samples.checked_rem(groups as u64).unwrap_or(0) as usize;
+        let fold = folds::of_stream(state.samples, groups);
         state.samples += 1;
         let sums = sums.get_mut(fold * group..(fold + 1) * group).unwrap_or(&mut []);
         if let Some(mut moments) = MomentsMut::new(sums, terms, channels) {
@@ -328,7 +329,7 @@ impl<R: Real> State<R> {
             *shift = theirs.offset * *factor - ours.offset;
         }
         // Folds stay even: the other's first sample goes where the next one would have gone.
-        let next = state.samples.checked_rem(groups as u64).unwrap_or(0) as usize;
+        let next = folds::of_stream(state.samples, groups);
         for fold in 0..groups {
             let range = fold * group..(fold + 1) * group;
             let ours = sums.get_mut(range).and_then(|sums| MomentsMut::new(sums, terms, channels));

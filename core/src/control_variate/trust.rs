@@ -2,39 +2,136 @@
 //!
 //! Least squares alone is not "never worse" than the mean at low sample counts ((4.16) holds in the limit): its worst
 //! RMSE ratio over the test integrands is 17 at 8 samples. A soft mixture of the mean and a few ridge fits, each trusted
-//! by its error on samples it has not seen, is.
+//! by its error on samples it has not seen, is. Three things besides that error tell how far:
+//!
+//! - where the samples' centre lies ([`Centre`]): far from the cube's, a fit extrapolates;
+//! - how far the fit moves the mean ([`surprise`]): a fit that explains the values moves it by about its error, one that
+//!   follows noise by more;
+//! - how few samples there are ([`prior`]).
 
 use crate::real::Real;
 
 /// Trust in a candidate is its error, relative to the mean's, to the power of minus this times the number of samples (of
 /// pixels, where pixels are compared) that judge it.
 pub(crate) const SHARPNESS: f64 = 1.0 / 6.0;
-/// How much the plain mean is trusted before any sample is seen, with 1 for all candidates together.
-const PRIOR: f64 = 8.0;
+/// How much the plain mean is trusted before anything is seen, with 1 for all candidates together.
+pub(crate) const PRIOR: f64 = 8.0;
+/// The same where [`Centre`] and [`surprise`] are asked too.
+const INFORMED_PRIOR: f64 = 5.0;
+/// The fourth power of the sample count where that prior doubles.
+const FEW: f64 = 128.0;
 
 /// How many samples it takes to be sure: the mean keeps at least e^-(n^2 / this) of any candidate's trust, whatever the
 /// candidate's errors.
 const CAUTION: f64 = 14.0;
-/// The F statistic that is still nothing to worry about.
-const USUAL_F: f64 = 1.5;
 
-/// The logarithm of what trust in a fit is divided by because its samples lie to one side.
+/// The F statistic that is still nothing to worry about.
+const USUAL_F: f64 = 0.5;
+/// Trust is divided by the F statistic over the usual one, to this power.
+const DISCOUNT: f64 = 0.8;
+/// How much of what leaving samples out adds to a fit's estimate is used: all of it is unbiased, none varies least.
+const SHARE: f64 = 0.4;
+/// The F statistic that halves that share. Samples that lie far more evenly than independent ones, as those of a Sobol
+/// sequence, have a smaller one: their fit has next to no bias, and what leaving some out adds is error.
+const EVEN_F: f64 = 0.1;
+/// Trust loses this times the square of how far a fit moves the mean, in standard errors of the mean.
+const SURPRISE: f64 = 0.25;
+/// How much likelier it must be that samples are even before folds are trusted less, as a logarithm.
+const DOUBT: f64 = 4.0;
+
+/// Where the centre of the samples lies as a fit to them measures distance, from the cube's.
 ///
-/// If all samples lie in one part of the cube, errors on held-out samples are small and yet the fit's integral is an
-/// extrapolation. For q = `eccentricity` = n sum_i (m'A^-1 p_i)^2, with m the columns' means and p_i the centred columns,
-/// and k = `freedom` effective coefficients, Hotelling's F = (q / k) (n - 1 - k) tells: it is about 1 if the samples'
-/// centre is the cube's. Trust is divided by max(1, F / 1.5)^2.
+/// For q = `eccentricity` = n sum_i (m'A^-1 p_i)^2, with m the columns' means and p_i the centred columns, and k =
+/// `freedom` effective coefficients, Hotelling's F = (q / k) (n - 1 - k) tells: it is about 1 for independent samples.
+/// If all lie in one part of the cube, errors on held-out samples are small and yet the fit's integral is an
+/// extrapolation: F is large. If they were placed to be even it is small.
+#[derive(Clone, Copy)]
+pub(crate) struct Centre<R> {
+    f: R,
+    freedom: R,
+    /// q.
+    pub(crate) eccentricity: R,
+    /// What the error of the fit's coefficients adds to the variance of its estimate, and of its own estimate.
+    pub(crate) inflation: R,
+}
+
+impl<R: Real> Centre<R> {
+    /// Of a fit to `n` samples, at least two.
+    #[inline(always)]
+    pub(crate) fn new(eccentricity: R, freedom: R, n: R) -> Self {
+        let freedom = freedom.min(n - R::from_f64(1.5)).max(R::EPSILON);
+        let f = eccentricity * (n - R::ONE - freedom) / freedom;
+        Self { f, freedom, eccentricity, inflation: (R::ONE + eccentricity) * few_left(freedom, n) }
+    }
+
+    /// The logarithm of what trust in the fit is divided by because its samples lie to one side.
+    #[inline(always)]
+    pub(crate) fn discount(&self) -> R {
+        let f = self.f * R::from_f64(1.0 / USUAL_F);
+        if f > R::ONE { R::from_f64(DISCOUNT) * f.ln() } else { R::ZERO }
+    }
+
+    /// How much of what leaving samples out adds to the estimate of the fit to all is used.
+    #[inline(always)]
+    pub(crate) fn share(&self) -> R {
+        let f = self.f.max(R::ZERO);
+        R::from_f64(SHARE) * f / (f + R::from_f64(EVEN_F))
+    }
+
+    /// From 1 for samples that may well be independent to 0 for such as are too even for it, from the logarithm of the
+    /// likelihood ratio of the two, (k / 2) (F - 1 - ln F).
+    ///
+    /// A fit to some folds that corrects another undoes what is even about all of them together.
+    #[inline(always)]
+    pub(crate) fn independence(&self) -> R {
+        let f = self.f.max(R::from_f64(1e-12));
+        if f >= R::ONE {
+            return R::ONE;
+        }
+        let evidence = self.freedom * R::from_f64(0.5) * (f - R::ONE - f.ln()) - R::from_f64(DOUBT);
+        // exp(80) is within the range of both types, and leaves nothing.
+        R::ONE / (R::ONE + evidence.min(R::from_f64(80.0)).exp())
+    }
+}
+
+/// What few residual degrees of freedom, n - 1 - k, add to a variance that is estimated from residuals.
 #[inline(always)]
-pub(crate) fn discount<R: Real>(eccentricity: R, freedom: R, n: R) -> R {
-    let freedom = freedom.min(n - R::from_f64(1.5)).max(R::EPSILON);
-    let f = eccentricity * (n - R::ONE - freedom) / (freedom * R::from_f64(USUAL_F));
-    if f > R::ONE { f.ln() + f.ln() } else { R::ZERO }
+pub(crate) fn few_left<R: Real>(freedom: R, n: R) -> R {
+    let two = R::ONE + R::ONE;
+    let left = (n - R::ONE - freedom).max(R::from_f64(0.5));
+    (R::ONE + two / left) / (R::ONE + two / (n - R::ONE))
+}
+
+/// The logarithm of what trust in a fit that adds `correction` to the mean is divided by, for a mean of a positive
+/// variance.
+#[inline(always)]
+pub(crate) fn surprise<R: Real>(correction: R, variance: R) -> R {
+    let errors = correction.abs() / variance.sqrt();
+    // More leaves nothing; so does a correction that is no number.
+    let most = R::from_f64(1e4);
+    let errors = if errors < most { errors } else { most };
+    R::from_f64(SURPRISE) * errors * errors
+}
+
+/// The trust in the mean of `n` samples where fits were discounted.
+#[inline(always)]
+pub(crate) fn prior<R: Real>(n: R) -> R {
+    let square = n * n;
+    R::from_f64(INFORMED_PRIOR) * (R::ONE + R::from_f64(FEW) / (square * square))
 }
 
 /// Sets `weights` to those of C candidates, (error / plain error)^(-power) / C less a discount, and returns the plain
-/// mean's, 8, all normalised. Errors are sums of squares over `n` samples.
+/// mean's, `prior`, all normalised. Errors are sums of squares over `n` samples.
 #[inline(always)]
-pub(crate) fn weigh<R: Real>(plain: R, errors: &[R], discounts: &[R], power: R, n: R, weights: &mut [R]) -> R {
+pub(crate) fn weigh<R: Real>(
+    plain: R,
+    errors: &[R],
+    discounts: &[R],
+    power: R,
+    n: R,
+    prior: R,
+    weights: &mut [R],
+) -> R {
     // Constant values: the mean is exact. A NaN cannot come from finite samples, but trust would go to the mean.
     let varies = plain > R::ZERO;
     if !varies {
@@ -51,7 +148,7 @@ pub(crate) fn weigh<R: Real>(plain: R, errors: &[R], discounts: &[R], power: R, 
         largest = largest.max(*weight);
     }
     let caution = (largest - n * n / R::from_f64(CAUTION)).max(R::ZERO);
-    let prior = (R::from_f64(PRIOR) * R::from_usize(weights.len())).ln() + caution;
+    let prior = (prior * R::from_usize(weights.len())).ln() + caution;
     largest = prior;
     for (index, weight) in weights.iter_mut().enumerate() {
         *weight -= discounts.get(index).copied().unwrap_or(R::ZERO);

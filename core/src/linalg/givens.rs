@@ -56,6 +56,23 @@ pub(crate) fn solve<R: Real>(factor: &[R], rhs: &[R], width: usize, channel: usi
     }
 }
 
+/// The squared length of R'^-1 x, which is x'A^-1 x for A = R'R; `x` is used up. A column with no pivot adds nothing.
+pub(crate) fn inverse_square<R: Real>(factor: &[R], x: &mut [R]) -> R {
+    let mut total = R::ZERO;
+    for j in 0..x.len() {
+        let (before, from_j) = x.split_at_mut_checked(j).unwrap_or((&mut [], &mut []));
+        let Some(value) = from_j.first_mut() else { return total };
+        let column = row(factor, j);
+        for (x, &r) in before.iter().zip(column) {
+            *value -= r * *x;
+        }
+        let pivot = column.last().copied().unwrap_or(R::ZERO);
+        *value = if pivot == R::ZERO { R::ZERO } else { *value / pivot };
+        total += *value * *value;
+    }
+    total
+}
+
 /// For a factor whose first column is the constant 1: the sum of a right-hand side and of its squares.
 pub(crate) fn first_column<R: Real>(factor: &[R], rhs: &[R], residual: &[R], width: usize, channel: usize) -> (R, R) {
     let root = factor.first().copied().unwrap_or(R::ZERO);

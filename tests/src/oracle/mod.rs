@@ -9,4 +9,4 @@ mod robust;
 
 pub use linear::{Matrix, least_squares};
 pub use regression::{Design, LeftOut, Regression, gradient_descent, incremental};
-pub use robust::{Candidate, RobustRule};
+pub use robust::{RobustRule, runs, stream_folds};

@@ -50,12 +50,23 @@ pub struct LeftOut {
     pub residuals: Vec<f64>,
     /// y_i = f_i - slopes_{-i} . phi(u_i): an unbiased estimate of the integral (eq. 4.9).
     pub estimates: Vec<f64>,
+    /// n times the weight of sample i in the constant of the fit to all.
+    pub weights: Vec<f64>,
 }
 
 impl LeftOut {
     /// The sum of squared residuals (Allen 1974).
     pub fn press(&self) -> f64 {
         self.residuals.iter().map(|r| r * r).sum()
+    }
+
+    /// The variance of the fit's constant whatever the noise depends on (MacKinnon and White 1985, HC3; the factor makes it
+    /// exact for a plain mean), for d degrees of freedom that the ridge leaves.
+    pub fn variance(&self, freedom: f64) -> f64 {
+        let n = self.residuals.len() as f64;
+        let left = (n - 1.0 - freedom).max(0.5);
+        let sum: f64 = self.residuals.iter().zip(&self.weights).map(|(r, w)| (r * w).powi(2)).sum();
+        sum * (n - 1.0) / n.powi(3) * (1.0 + 2.0 / left) / (1.0 + 2.0 / (n - 1.0))
     }
 
     /// The estimate of the integral: the mean of the y_i.
@@ -100,13 +111,16 @@ impl Regression {
     /// Leave-one-out by refitting n times: the definition.
     pub fn leave_one_out_by_refitting(design: &Design, f: &[f64], ridge: f64) -> LeftOut {
         let n = f.len();
-        let mut left_out = LeftOut { residuals: vec![], estimates: vec![] };
+        let mut left_out = LeftOut { residuals: vec![], estimates: vec![], weights: vec![] };
         for i in 0..n {
             let keep: Vec<usize> = (0..n).filter(|&j| j != i).collect();
             let others: Vec<f64> = keep.iter().map(|&j| f[j]).collect();
             let fit = Self::fit(&design.select(&keep), &others, ridge);
             left_out.estimates.push(f[i] - fit.control(&design.rows[i]));
             left_out.residuals.push(f[i] - fit.control(&design.rows[i]) - fit.intercept);
+            // The constant is linear in the values.
+            let unit: Vec<f64> = (0..n).map(|j| f64::from(u8::from(j == i))).collect();
+            left_out.weights.push(n as f64 * Self::fit(design, &unit, ridge).intercept);
         }
         left_out
     }
@@ -118,7 +132,7 @@ impl Regression {
         let n = f.len() as f64;
         let means = design.means();
         let fit = Self::fit(design, f, ridge);
-        let mut left_out = LeftOut { residuals: vec![], estimates: vec![] };
+        let mut left_out = LeftOut { residuals: vec![], estimates: vec![], weights: vec![] };
         for (i, row) in design.rows.iter().enumerate() {
             let centred: Vec<f64> = row.iter().zip(&means).map(|(p, m)| p - m).collect();
             let solved = solve_centred(design, &means, &centred, ridge);
@@ -126,6 +140,7 @@ impl Regression {
             let left = residual / (1.0 - 1.0 / n - dot(&centred, &solved));
             left_out.residuals.push(left);
             left_out.estimates.push(f[i] - fit.control(row) + dot(row, &solved) * left);
+            left_out.weights.push(1.0 - n * dot(&means, &solved));
         }
         left_out
     }
@@ -133,8 +148,8 @@ impl Regression {
     /// How far the samples' centre is from the domain's, where every term has mean zero: Hotelling's
     /// F = q (n - 1 - d) / d with a_i = c_i' A^-1 m for the column means m, q = n sum a_i^2 (the variance of the
     /// fit's constant is (1 + q) / n times the residual's) and d = sum c_i' A^-1 c_i, at most n - 1.5, the degrees of
-    /// freedom the ridge leaves. About 1 for well spread samples. Needs ridge > 0.
-    pub fn offset(design: &Design, ridge: f64) -> f64 {
+    /// freedom the ridge leaves. About 1 for well spread samples. Needs ridge > 0. Returns F and d.
+    pub fn offset(design: &Design, ridge: f64) -> (f64, f64) {
         let n = design.rows.len() as f64;
         let means = design.means();
         let (mut q, mut freedom) = (0.0, 0.0);
@@ -145,7 +160,7 @@ impl Regression {
             freedom += dot(&centred, &solved);
         }
         let freedom = freedom.min(n - 1.5);
-        if freedom > 0.0 { q * (n - 1.0 - freedom) / freedom } else { 0.0 }
+        (if freedom > 0.0 { q * (n - 1.0 - freedom) / freedom } else { 0.0 }, freedom)
     }
 }
 
@@ -223,6 +238,7 @@ mod tests {
             for i in 0..n {
                 assert!((fast.residuals[i] - slow.residuals[i]).abs() < 1e-9 * (1.0 + slow.residuals[i].abs()));
                 assert!((fast.estimates[i] - slow.estimates[i]).abs() < 1e-9 * (1.0 + slow.estimates[i].abs()));
+                assert!((fast.weights[i] - slow.weights[i]).abs() < 1e-9 * (1.0 + slow.weights[i].abs()));
             }
         }
     }

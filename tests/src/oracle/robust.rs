@@ -1,210 +1,288 @@
-//! The soft mixture of plain Monte Carlo and a few ridge fits, weighted by their errors on samples they have not seen.
+//! The soft mixture of plain Monte Carlo and ridge fits, weighted by their errors on samples they have not seen.
 
-use super::regression::{Design, LeftOut, Regression};
+use super::regression::{Design, Regression};
+use core::ops::Range;
 
-/// One ridge fit of the mixture.
-#[derive(Clone, Copy, Debug)]
-pub struct Candidate {
-    /// Total degree of its terms; larger than the configured order means the configured one.
-    pub order: usize,
-    /// Penalty per sample: the ridge is n * penalty.
-    pub penalty: f64,
-}
-
-/// How candidates are weighed. With l_k = -n exponent ln(error_k / error_0) and Hotelling's F_k of "the samples' centre is
-/// the domain's" (`Regression::offset`): w_k = exp(l_k) max(1, F_k / offset)^-2 / C for the C candidates and, for Monte
-/// Carlo, w_0 = prior max(1, exp(max l_k - n^2 / cap)); then all are divided by their sum.
+/// How the fits are made and weighed, with F and d of [`Regression::offset`] and n samples:
 ///
-/// F guards against extrapolation, the cap against fits that are exact on a handful of badly spread samples.
-#[derive(Clone, Debug)]
+/// - A fit's estimate is y = a + s (l - a), a the constant of the fit to all samples, l the estimate that corrects samples by
+///   fits to others, and s = `share` F / (F + `even`).
+/// - Its trust is (error / error of the mean)^(-n `exponent`) / C for C fits, divided by max(1, F / `offset`)^`discount` and
+///   by e^(`surprise` (y - mean)^2 / variance of the mean).
+/// - The mean's is `prior` (1 + `few` / n^4), and at least e^-(n^2 / `cap`) of the largest before those divisions.
+/// - A fit that corrects other samples loses to the mean all but 1 / (1 + e^(d (F - 1 - ln F) / 2 - `doubt`)) of its weight,
+///   if F is below one.
+#[derive(Clone, Copy, Debug)]
 pub struct RobustRule {
-    /// The fits.
-    pub candidates: Vec<Candidate>,
+    /// Penalties per sample: the ridges are n times them.
+    pub penalties: [f64; 2],
     /// Power of the error ratio per sample.
     pub exponent: f64,
-    /// Weight of plain Monte Carlo against 1 for all candidates together.
+    /// Trust in plain Monte Carlo against 1 for all fits together.
     pub prior: f64,
-    /// F values up to this one cost nothing; infinity ignores F.
-    pub offset: f64,
-    /// Divisor of n^2 in the cap; 0 for no cap.
+    /// The fourth power of the n that doubles it.
+    pub few: f64,
+    /// Divisor of n^2 in the cap.
     pub cap: f64,
+    /// F values up to this one cost nothing.
+    pub offset: f64,
+    /// The power of F.
+    pub discount: f64,
+    /// The factor of the squared number of standard errors.
+    pub surprise: f64,
+    /// How much of what leaving out changes is used.
+    pub share: f64,
+    /// The F at which that is half as much.
+    pub even: f64,
+    /// How much likelier even samples must be than independent ones.
+    pub doubt: f64,
 }
 
-/// The samples of one estimate.
+/// The folds of n samples that are all there: runs, the first of them one sample longer where they do not divide evenly.
+pub fn runs(n: usize, folds: usize) -> Vec<Range<usize>> {
+    let longer = |fold: usize| usize::from(fold < n % folds);
+    let mut start = 0;
+    let mut run = |fold| {
+        let range = start..start + n / folds + longer(fold);
+        start = range.end;
+        range
+    };
+    (0..folds).map(&mut run).collect()
+}
+
+/// The fold of each of the first n samples of a stream: P runs of 4 for the power of two P next to the number of folds, P of
+/// 4 again, then P of 8, of 16 and so on, dealt to the folds in turn.
+pub fn stream_folds(n: usize, folds: usize) -> Vec<usize> {
+    let runs = folds.next_power_of_two();
+    let lengths = (0..runs).map(|_| 4).chain((0..32).flat_map(|octave| vec![4_usize << octave; runs]));
+    let dealt = lengths.enumerate().flat_map(|(run, length)| core::iter::repeat_n(run % folds, length));
+    dealt.take(n).collect()
+}
+
+/// The samples of one estimate, with a fold for each.
 struct Samples<'a> {
-    u: &'a [f64],
-    dims: usize,
+    design: &'a Design,
     f: &'a [f64],
+    folds: Vec<usize>,
 }
 
 impl RobustRule {
-    /// The library's rule: two ridges of the highest order.
+    /// The library's rule.
     pub fn standard() -> Self {
-        let penalties = [2e-5, 0.02];
-        let candidates = penalties.map(|penalty| Candidate { order: usize::MAX, penalty }).to_vec();
-        Self { candidates, exponent: 1.0 / 6.0, prior: 8.0, offset: 1.5, cap: 14.0 }
-    }
-
-    /// The seven candidates of an earlier study: four ridges of the highest order and three of order 1.
-    pub fn seven() -> Self {
-        let highest = [5e-5, 5e-3, 0.05, 0.5].map(|penalty| Candidate { order: usize::MAX, penalty });
-        let first = [0.01, 0.1, 1.0].map(|penalty| Candidate { order: 1, penalty });
         Self {
-            candidates: [&highest[..], &first].concat(),
-            exponent: 1.0 / 8.0,
-            prior: 8.0,
-            offset: f64::INFINITY,
-            cap: 0.0,
+            penalties: [2e-5, 0.02],
+            exponent: 1.0 / 6.0,
+            prior: 5.0,
+            few: 128.0,
+            cap: 14.0,
+            offset: 0.5,
+            discount: 0.8,
+            surprise: 0.25,
+            share: 0.4,
+            even: 0.1,
+            doubt: 4.0,
         }
     }
 
-    /// What a fit's trust loses in logarithms: 2 ln max(1, F / offset).
+    /// What a fit's trust loses in logarithms because of F.
     fn discount(&self, f: f64) -> f64 {
-        2.0 * (f / self.offset).max(1.0).ln()
+        self.discount * (f / self.offset).max(1.0).ln()
     }
 
-    /// The weights of the candidates and, last, of Monte Carlo, from each candidate's error ratio over n samples and its
-    /// discount; computed in logarithms, so that nothing overflows.
+    /// What it loses for moving the mean by so many of its variances.
+    fn surprise(&self, squared_errors: f64) -> f64 {
+        self.surprise * squared_errors.min(1e8)
+    }
+
+    fn estimate_of(&self, all: f64, left_out: f64, f: f64) -> f64 {
+        all + self.share * f / (f + self.even) * (left_out - all)
+    }
+
+    /// The share of a fold's fit.
+    fn independence(&self, (f, freedom): (f64, f64)) -> f64 {
+        if f >= 1.0 {
+            return 1.0;
+        }
+        let f = f.max(1e-12);
+        1.0 / (1.0 + (freedom * 0.5 * (f - 1.0 - f.ln()) - self.doubt).min(80.0).exp())
+    }
+
+    /// The weights of the fits and, last, of Monte Carlo, from each fit's error ratio over n samples and its discount;
+    /// computed in logarithms, so that nothing overflows.
     fn weigh(&self, n: f64, ratios: &[f64], discounts: &[f64]) -> Vec<f64> {
         let count = ratios.len() as f64;
         let logs: Vec<f64> = ratios.iter().map(|ratio| -n * self.exponent * ratio.max(1e-30).ln()).collect();
-        let best = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let trusted = if self.cap > 0.0 { n * n / self.cap } else { f64::INFINITY };
+        let best = logs.iter().copied().fold(0.0, f64::max);
+        let prior = (self.prior * (1.0 + self.few / n.powi(4))).ln() + (best - n * n / self.cap).max(0.0);
         let penalised = logs.iter().zip(discounts).map(|(l, discount)| l - discount - count.ln());
-        let scores: Vec<f64> = penalised.chain([self.prior.ln() + (best - trusted).max(0.0)]).collect();
+        let scores: Vec<f64> = penalised.chain([prior]).collect();
         let largest = scores.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let raw: Vec<f64> = scores.iter().map(|s| (s - largest).exp()).collect();
         let sum: f64 = raw.iter().sum();
         raw.iter().map(|w| w / sum).collect()
     }
 
-    /// The estimate from samples of any design, whose order no candidate limits.
-    pub fn estimate_design(&self, design: &Design, f: &[f64]) -> f64 {
-        let (weights, estimates) = self.mix(f, |_| design.clone());
-        weights.iter().zip(&estimates).map(|(w, e)| w * e).sum()
-    }
-
-    /// The weights of the candidates and, last, of Monte Carlo, beside each one's estimate.
-    pub fn weights_and_estimates(&self, u: &[f64], dims: usize, f: &[f64], order: usize) -> (Vec<f64>, Vec<f64>) {
-        self.mix(f, |candidate| Design::legendre(u, dims, candidate.order.min(order)))
-    }
-
-    fn mix(&self, f: &[f64], design: impl Fn(&Candidate) -> Design) -> (Vec<f64>, Vec<f64>) {
+    /// The weights of the fits and, last, of Monte Carlo, beside each one's estimate.
+    pub fn weights_and_estimates(&self, design: &Design, f: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let n = f.len() as f64;
         let mean = f.iter().sum::<f64>() / n;
         let press_0 = f.iter().map(|f| ((f - mean) * n / (n - 1.0)).powi(2)).sum::<f64>();
         if f.len() < 2 || press_0 == 0.0 {
             return (vec![1.0], vec![mean]);
         }
+        let variance = press_0 * (n - 1.0) / n.powi(3);
         let (mut ratios, mut discounts, mut estimates) = (vec![], vec![], vec![]);
-        for candidate in &self.candidates {
-            let design = design(candidate);
-            let ridge = candidate.penalty * n;
-            let left_out: LeftOut = Regression::leave_one_out(&design, f, ridge);
+        for penalty in self.penalties {
+            let ridge = penalty * n;
+            let left_out = Regression::leave_one_out(design, f, ridge);
+            let (offset, _) = Regression::offset(design, ridge);
+            let estimate = self.estimate_of(Regression::fit(design, f, ridge).intercept, left_out.mean(), offset);
             ratios.push(left_out.press() / press_0);
-            discounts.push(self.discount(Regression::offset(&design, ridge)));
-            estimates.push(left_out.mean());
+            discounts.push(self.discount(offset) + self.surprise((estimate - mean).powi(2) / variance));
+            estimates.push(estimate);
         }
         estimates.push(mean);
         (self.weigh(n, &ratios, &discounts), estimates)
     }
 
-    /// The estimate of the integral from all samples: sum of w_k mean(y_k).
-    pub fn estimate(&self, u: &[f64], dims: usize, f: &[f64], order: usize) -> f64 {
-        let (weights, estimates) = self.weights_and_estimates(u, dims, f, order);
+    /// The estimate from samples of any design.
+    pub fn estimate_design(&self, design: &Design, f: &[f64]) -> f64 {
+        let (weights, estimates) = self.weights_and_estimates(design, f);
         weights.iter().zip(&estimates).map(|(w, e)| w * e).sum()
     }
 
-    /// The slopes of all fits mixed by their weights; Monte Carlo has none.
-    fn slopes(&self, u: &[f64], dims: usize, f: &[f64], order: usize) -> Vec<f64> {
-        let (weights, _) = self.weights_and_estimates(u, dims, f, order);
-        let design = Design::legendre(u, dims, order);
+    /// The estimate from points in `dims` dimensions, by Legendre terms.
+    pub fn estimate(&self, u: &[f64], dims: usize, f: &[f64], order: usize) -> f64 {
+        self.estimate_design(&Design::legendre(u, dims, order), f)
+    }
+
+    /// The slopes of a fit that corrects other samples: of all fits, mixed by their weights; Monte Carlo has none.
+    fn slopes(&self, design: &Design, f: &[f64]) -> Vec<f64> {
+        let (weights, _) = self.weights_and_estimates(design, f);
         let mut slopes = vec![0.0; design.weights.len()];
         if weights.len() > 1 {
-            for (candidate, weight) in self.candidates.iter().zip(weights) {
-                let fit = Regression::fit(&design, f, candidate.penalty * f.len() as f64);
+            for (penalty, weight) in self.penalties.into_iter().zip(weights) {
+                let ridge = penalty * f.len() as f64;
+                let weight = weight * self.independence(Regression::offset(design, ridge));
+                let fit = Regression::fit(design, f, ridge);
                 slopes.iter_mut().zip(fit.slopes).for_each(|(total, slope)| *total += weight * slope);
             }
         }
         slopes
     }
 
-    /// Cross-fit over `folds` folds by index modulo `folds`: each fold's samples meet the mixture of the others alone.
-    /// Exactly unbiased. Every candidate must be of the highest order.
+    /// Cross-fit over `folds` folds, which are runs: each fold's samples meet the mixture of the others alone. Exactly
+    /// unbiased.
     pub fn split(&self, u: &[f64], dims: usize, f: &[f64], order: usize, folds: usize) -> f64 {
-        let n = f.len();
         let design = Design::legendre(u, dims, order);
         let mut sum = 0.0;
-        for fold in 0..folds {
-            let others: Vec<usize> = (0..n).filter(|i| i % folds != fold).collect();
-            let f_others: Vec<f64> = others.iter().map(|&i| f[i]).collect();
-            let u_others: Vec<f64> = others.iter().flat_map(|&i| u[i * dims..(i + 1) * dims].to_vec()).collect();
-            let fit = Regression { intercept: 0.0, slopes: self.slopes(&u_others, dims, &f_others, order) };
-            sum += (fold..n).step_by(folds).map(|i| f[i] - fit.control(&design.rows[i])).sum::<f64>();
+        for fold in runs(f.len(), folds) {
+            let others: Vec<usize> = (0..f.len()).filter(|i| !fold.contains(i)).collect();
+            let values: Vec<f64> = others.iter().map(|&i| f[i]).collect();
+            let fit = Regression { intercept: 0.0, slopes: self.slopes(&design.select(&others), &values) };
+            sum += fold.map(|i| f[i] - fit.control(&design.rows[i])).sum::<f64>();
         }
-        sum / n as f64
+        sum / f.len() as f64
     }
 
-    /// Cross-fit over `folds` folds by index modulo `folds`: each fold's samples meet only fits to the others, with
-    /// penalty times the size of the fit's own samples. Trust comes from held-out errors, and F is that of the samples the
-    /// judged fits were made of. With `nested` the fits that decide about a fold neither know it nor are judged on it,
-    /// which keeps the estimate exactly unbiased; else all folds decide together.
-    pub fn k_fold(&self, u: &[f64], dims: usize, f: &[f64], order: usize, folds: usize, nested: bool) -> f64 {
-        let samples = Samples { u, dims, f };
-        let n = f.len();
-        let orders =
-            self.candidates.iter().map(|c| (c.order.min(order), c.penalty)).chain([(0, 1.0)]).collect::<Vec<_>>();
-        let last = orders.len() - 1;
-        let mut estimate = 0.0;
-        for fold in 0..folds.min(n) {
-            let inside: Vec<usize> = (fold..n).step_by(folds).collect();
-            let judges: Vec<usize> = (0..folds.min(n)).filter(|&other| !(nested && other == fold)).collect();
-            let judged = judges.iter().map(|&other| (other..n).step_by(folds).count()).sum::<usize>() as f64;
-            let (mut errors, mut discounts) = (vec![0.0; orders.len()], vec![0.0; last]);
-            for &other in &judges {
-                let left = if nested { vec![fold, other] } else { vec![other] };
-                for (k, &(order, penalty)) in orders.iter().enumerate() {
-                    let fit = samples.fit_without(folds, &left, order, penalty);
-                    errors[k] += samples.squared_error(&fit, folds, other, order);
-                    if k < last {
-                        let offset = samples.offset_without(folds, &left, order, penalty);
-                        discounts[k] += self.discount(offset) / judges.len() as f64;
-                    }
+    /// The streaming robust estimate: fits to all samples, weighted by the errors of fits to all folds but one on that one.
+    pub fn pooled(&self, u: &[f64], dims: usize, f: &[f64], order: usize, folds: usize) -> f64 {
+        let design = Design::legendre(u, dims, order);
+        let samples = Samples { design: &design, f, folds: stream_folds(f.len(), folds) };
+        let n = f.len() as f64;
+        let mean = f.iter().sum::<f64>() / n;
+        let variance = f.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / (n * (n - 1.0));
+        let errors = |penalty| (0..folds).map(|fold| samples.squared_error(&[fold], fold, penalty)).sum::<f64>();
+        let error_0 = errors(None);
+        if error_0 == 0.0 {
+            return mean;
+        }
+        let (mut ratios, mut discounts, mut estimates) = (vec![], vec![], vec![]);
+        for penalty in self.penalties {
+            let all = Regression::fit(&design, f, penalty * n);
+            let crossed =
+                (0..f.len()).map(|i| f[i] - samples.fit(&[samples.folds[i]], penalty).control(&design.rows[i]));
+            let (offset, _) = Regression::offset(&design, penalty * n);
+            let estimate = self.estimate_of(all.intercept, crossed.sum::<f64>() / n, offset);
+            ratios.push(errors(Some(penalty)) / error_0);
+            discounts.push(self.discount(offset) + self.surprise((estimate - mean).powi(2) / variance));
+            estimates.push(estimate);
+        }
+        estimates.push(mean);
+        self.weigh(n, &ratios, &discounts).iter().zip(&estimates).map(|(w, e)| w * e).sum()
+    }
+
+    /// The streaming K-fold estimate: each fold's samples meet only fits to the others, weighted by fits that neither know
+    /// that fold nor are judged on it.
+    pub fn nested(&self, u: &[f64], dims: usize, f: &[f64], order: usize, folds: usize) -> f64 {
+        let design = Design::legendre(u, dims, order);
+        let samples = Samples { design: &design, f, folds: stream_folds(f.len(), folds) };
+        let filled: Vec<usize> = (0..folds).filter(|fold| samples.folds.contains(fold)).collect();
+        let mut sum = 0.0;
+        for &fold in &filled {
+            let judges: Vec<usize> = filled.iter().copied().filter(|&other| other != fold).collect();
+            let judged = samples.folds.iter().filter(|&&other| other != fold).count() as f64;
+            let errors = |penalty| {
+                judges.iter().map(|&other| samples.squared_error(&[fold, other], other, penalty)).sum::<f64>()
+            };
+            let discounts = self.penalties.map(|penalty| {
+                let each = judges.iter().map(|&other| samples.offset(&[fold, other], penalty));
+                each.map(|offset| offset.map_or(0.0, |(f, _)| self.discount(f))).sum::<f64>() / judges.len() as f64
+            });
+            let error_0 = errors(None);
+            let weights = if error_0 > 0.0 {
+                let ratios = self.penalties.map(|penalty| errors(Some(penalty)) / error_0);
+                self.weigh(judged, &ratios, &discounts)
+            } else {
+                vec![0.0, 0.0, 1.0]
+            };
+            for i in (0..f.len()).filter(|&i| samples.folds[i] == fold) {
+                let mut value = f[i];
+                for (penalty, weight) in self.penalties.into_iter().zip(&weights) {
+                    let independence = samples.offset(&[fold], penalty).map_or(1.0, |offset| self.independence(offset));
+                    value -= weight * independence * samples.fit(&[fold], penalty).control(&design.rows[i]);
                 }
-            }
-            if errors[last] == 0.0 {
-                return f.iter().sum::<f64>() / n as f64;
-            }
-            let ratios: Vec<f64> = errors[..last].iter().map(|error| error / errors[last]).collect();
-            for (weight, &(order, penalty)) in self.weigh(judged, &ratios, &discounts).iter().zip(&orders) {
-                let fit = samples.fit_without(folds, &[fold], order, penalty);
-                let design = Design::legendre(u, dims, order);
-                let sum: f64 = inside.iter().map(|&i| f[i] - fit.control(&design.rows[i])).sum();
-                estimate += weight * sum / n as f64;
+                sum += value;
             }
         }
-        estimate
+        sum / f.len() as f64
     }
 }
 
 impl Samples<'_> {
-    fn fit_without(&self, folds: usize, left: &[usize], order: usize, penalty: f64) -> Regression {
-        let keep: Vec<usize> = (0..self.f.len()).filter(|i| !left.contains(&(i % folds))).collect();
-        let f: Vec<f64> = keep.iter().map(|&i| self.f[i]).collect();
-        let design = Design::legendre(self.u, self.dims, order).select(&keep);
-        Regression::fit(&design, &f, penalty * keep.len() as f64)
+    /// The samples that are in none of these folds.
+    fn without(&self, left_out: &[usize]) -> (Design, Vec<f64>) {
+        let keep: Vec<usize> = (0..self.f.len()).filter(|&i| !left_out.contains(&self.folds[i])).collect();
+        (self.design.select(&keep), keep.iter().map(|&i| self.f[i]).collect())
     }
 
-    fn offset_without(&self, folds: usize, left: &[usize], order: usize, penalty: f64) -> f64 {
-        let keep: Vec<usize> = (0..self.f.len()).filter(|i| !left.contains(&(i % folds))).collect();
-        let design = Design::legendre(self.u, self.dims, order).select(&keep);
-        Regression::offset(&design, penalty * keep.len() as f64)
+    /// A fit to them, with a penalty per sample of its own; of nothing it is zero.
+    fn fit(&self, left_out: &[usize], penalty: f64) -> Regression {
+        let (design, f) = self.without(left_out);
+        if f.is_empty() {
+            return Regression { intercept: 0.0, slopes: vec![0.0; design.weights.len()] };
+        }
+        Regression::fit(&design, &f, penalty * f.len() as f64)
     }
 
-    fn squared_error(&self, fit: &Regression, folds: usize, fold: usize, order: usize) -> f64 {
-        let design = Design::legendre(self.u, self.dims, order);
-        let inside = (0..self.f.len()).filter(|i| i % folds == fold);
-        inside.map(|i| (self.f[i] - fit.intercept - fit.control(&design.rows[i])).powi(2)).sum()
+    /// Where they lie, if they are two or more.
+    fn offset(&self, left_out: &[usize], penalty: f64) -> Option<(f64, f64)> {
+        let (design, f) = self.without(left_out);
+        (f.len() > 1).then(|| Regression::offset(&design, penalty * f.len() as f64))
+    }
+
+    /// The squared errors on a fold of such a fit or, without a penalty, of the mean.
+    fn squared_error(&self, left_out: &[usize], fold: usize, penalty: Option<f64>) -> f64 {
+        let fit = match penalty {
+            Some(penalty) => self.fit(left_out, penalty),
+            None => {
+                let (_, f) = self.without(left_out);
+                let mean = f.iter().sum::<f64>() / (f.len() as f64).max(1.0);
+                Regression { intercept: mean, slopes: vec![0.0; self.design.weights.len()] }
+            }
+        };
+        let inside = (0..self.f.len()).filter(|&i| self.folds[i] == fold);
+        inside.map(|i| (self.f[i] - fit.intercept - fit.control(&self.design.rows[i])).powi(2)).sum()
     }
 }
 
@@ -220,8 +298,8 @@ mod tests {
         let u: Vec<f64> = (0..16).map(|i| f64::from(i) / 16.0).collect();
         for estimate in [
             RobustRule::standard().estimate(&u, 2, &[2.5; 8], 3),
-            RobustRule::standard().k_fold(&u, 2, &[2.5; 8], 3, 4, false),
-            RobustRule::standard().k_fold(&u, 2, &[2.5; 8], 3, 4, true),
+            RobustRule::standard().pooled(&u, 2, &[2.5; 8], 3, 4),
+            RobustRule::standard().nested(&u, 2, &[2.5; 8], 3, 4),
         ] {
             assert!((estimate - 2.5).abs() < 1e-14);
         }
@@ -240,7 +318,7 @@ mod tests {
             let f: Vec<f64> = u.chunks(2).map(integrand.evaluate).collect();
             robust.push(rule.estimate(&u, 2, &f, 2) - integrand.integral);
             plain.push(f.iter().sum::<f64>() / 16.0 - integrand.integral);
-            nested.add(rule.k_fold(&u, 2, &f, 2, 4, true));
+            nested.add(rule.nested(&u, 2, &f, 2, 4));
         }
         assert!(rmse_ratio(&robust, &plain).upper() < 0.5);
         assert!(nested.z(integrand.integral).abs() < 4.0);

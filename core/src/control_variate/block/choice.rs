@@ -105,7 +105,8 @@ impl<R: Real> Spreads<R> {
             let mut trusted = [R::ZERO; MAX_FITS];
             let power = self.freedom * R::from_f64(trust::SHARPNESS);
             let (fits, used) = (fits.get(..self.fits).unwrap_or(&[]), trusted.get_mut(..self.fits).unwrap_or(&mut []));
-            let plain = trust::weigh(plain, fits, &[], power, self.freedom, used);
+            let prior = R::from_f64(trust::PRIOR);
+            let plain = trust::weigh(plain, fits, &[], power, self.freedom, prior, used);
             for (out, weight) in weights.iter_mut().zip([plain].into_iter().chain(trusted)) {
                 set(out, channel, weight);
             }

@@ -39,7 +39,8 @@ pub struct Image<'a> {
     pub surfaces: &'a [u32],
     /// `channels` numbers for each pixel, or empty: what its values are divided by before a fit and multiplied by
     /// after it, such as its albedo. Finite and not negative; 0 counts as 1. Must not depend on the pixel's own samples
-    /// either. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
+    /// either. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit. For
+    /// textures where all samples of a pixel see one albedo: with defocus or motion blur they can raise the error.
     pub factors: &'a [f32],
 }
 

@@ -1,0 +1,49 @@
+//! Which samples correct which.
+//!
+//! Folds are runs of samples in the order they came in, as long as can be: every aligned run of 2^m points of a Sobol
+//! sequence, in its own or in Gray code order, and of a tile is as even as the whole. Of folds that took every k-th
+//! sample each would be one side of the cube, and what corrects it a fit to the other sides. Independent samples are the
+//! same in every order.
+
+/// One of the folds of `n` samples that are all there: a run, all of the same length but for one sample.
+#[derive(Clone, Copy)]
+pub(crate) struct Fold {
+    start: usize,
+    end: usize,
+}
+
+impl Fold {
+    /// Fold `index` of `folds`, which is not zero.
+    pub(crate) fn new(index: usize, folds: usize, n: usize) -> Self {
+        let (each, more) = (n.checked_div(folds).unwrap_or(0), n.checked_rem(folds).unwrap_or(0));
+        let start = |index: usize| index * each + index.min(more);
+        Self { start: start(index), end: start(index + 1) }
+    }
+
+    /// How many samples it has.
+    pub(crate) fn len(&self) -> usize {
+        self.end - self.start
+    }
+
+    #[inline(always)]
+    pub(crate) fn contains(&self, index: usize) -> bool {
+        (self.start..self.end).contains(&index)
+    }
+}
+
+/// The shortest run of a stream.
+const RUN: u64 = 4;
+
+/// The fold of sample `index` of a stream whose end nobody knows.
+///
+/// Runs grow with the stream: with P the power of two next to the number of folds, the first 4 P samples are P runs of 4,
+/// the next 4 P samples are P runs too, the next 8 P, and so on, and runs go to the folds in turn.
+#[inline(always)]
+pub(crate) fn of_stream(index: u64, folds: usize) -> usize {
+    let (index, folds) = (index / RUN, folds.max(1) as u64);
+    let bits = folds.next_power_of_two().trailing_zeros();
+    let octave = (index >> bits).checked_ilog2().map_or(0, |octave| octave + 1);
+    // Runs of the octaves before, and of this one.
+    let run = if octave == 0 { index } else { (u64::from(octave) << bits) + (index >> (octave - 1)) - (1 << bits) };
+    run.checked_rem(folds).unwrap_or(0) as usize
+}
