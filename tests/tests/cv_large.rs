@@ -69,21 +69,26 @@ fn block_of_many_pixels() {
     }
 }
 
-/// Accumulators of one sample each, or two, merged, have folds as even as one that was given every sample: the estimates
-/// are equal to rounding.
+/// Accumulators of a few samples each, merged, have folds as even as one that was given every sample: over 2,000 sets, the
+/// errors are no more than a fifth larger. If all parts went to one fold, little would be left of the gain.
 #[test]
 fn many_small_parts() {
     for estimator in [Estimator::Robust, Estimator::KFold] {
         for folds in [2, 3, 4, 5] {
             let config = Config { estimator, folds, ..Config::new(2, 2, 1) };
             for size in [1, 2, 3, 7] {
-                let (u, f) = draw(63, 9);
-                let parts: Vec<_> =
-                    u.chunks(2 * size).zip(f.chunks(size)).map(|(u, f)| (u.to_vec(), f.to_vec())).collect();
-                let merged = stream::<f64>(&config, &parts);
-                let added = stream::<f64>(&config, &[(u, f)]);
-                assert!((merged.mean[0] - added.mean[0]).abs() < 1e-6, "{folds} {size}: {merged:?} {added:?}");
-                assert!((merged.gain / added.gain - 1.0).abs() < 1e-3, "{folds} {size}: {merged:?} {added:?}");
+                let (mut parted, mut whole) = (0.0, 0.0);
+                for seed in 0..2000 {
+                    let (u, f) = draw(63, seed);
+                    let parts: Vec<_> =
+                        u.chunks(2 * size).zip(f.chunks(size)).map(|(u, f)| (u.to_vec(), f.to_vec())).collect();
+                    let error = |estimate: Estimate| (f64::from(estimate.mean[0]) - EXACT).abs();
+                    parted += error(stream::<f64>(&config, &parts));
+                    whole += error(stream::<f64>(&config, &[(u, f)]));
+                }
+                let ratio = parted / whole;
+                println!("{estimator:?} {folds} {size}: {ratio:.3}");
+                assert!(ratio < 1.2, "{estimator:?} {folds} {size}: {ratio}");
             }
         }
     }

@@ -222,8 +222,9 @@ fn robust_bias_is_small() {
 }
 
 /// The mean of std_error^2 over the true squared error at 64 samples, order 2, on smooth and discontinuous integrands:
-/// .75 to 1.3 where errors are judged on samples the fit has not seen; .5 to 1.3 for in-sample fits, whose residuals flatter
-/// them. 2,000 repetitions know the ratio within 7 % (95 %).
+/// at least .75, and at most 1.3 n / (n - 1 - k) for k functions, 3.5 for a descent, which does not know how far it got.
+/// Leave-one-out residuals are larger than the error of the fit to all by that factor: it is what few samples need to
+/// be covered, and 1 where there are many. 2,000 repetitions know the ratio within 7 % (95 %).
 #[test]
 fn standard_errors_are_calibrated() {
     for estimator in ESTIMATORS {
@@ -248,13 +249,13 @@ fn standard_errors_are_calibrated() {
                 // An integrand within the basis, as `linear` is, leaves rounding, or what a descent has yet to do.
                 if error > 1e-3 * plain {
                     println!("{estimator:?} {streaming} {name}: {:.3}", square / error);
-                    worst = (worst.0.min(square / error), worst.1.max(square / error));
+                    let judged = (64 - config.terms().unwrap()) as f64 / 64.0;
+                    worst = (worst.0.min(square / error), worst.1.max(judged * square / error));
                 }
             }
             println!("{estimator:?} {streaming}: {worst:?}");
-            let is_flattered = matches!(estimator, Estimator::LeastSquares | Estimator::GradientDescent);
-            let least = if is_flattered { 0.5 } else { 0.75 };
-            assert!(worst.0 > least && worst.1 < 1.3, "{estimator:?}, streaming {streaming}: {worst:?}");
+            let most = if estimator == Estimator::GradientDescent { 3.5 } else { 1.3 };
+            assert!(worst.0 > 0.75 && worst.1 < most, "{estimator:?}, streaming {streaming}: {worst:?}");
         }
     }
 }

@@ -168,28 +168,34 @@ pub(crate) fn nested<R: Real>(
         let discounts = discounts.map(|total| total / judge.fits.max(R::ONE));
         let train = groups.train(&[fold], train).ok_or(Error::Memory)?;
         let centres = problem.fit(&train, coefficients, arena)?;
-        let mut own = Judge::default();
-        own.add(&train, &held_out, groups, coefficients);
+        let inverse = if train.count() > R::ZERO { R::ONE / train.count() } else { R::ZERO };
         for channel in 0..channels {
-            let (mut plain_weight, mut weights) = judge.weigh(channel, &problem, &discounts);
-            if !matches!(ridge, Ridge::Fixed(_)) {
-                for (weight, centre) in weights.iter_mut().zip(&centres) {
-                    let kept = *weight * centre.map_or(R::ONE, |centre| centre.independence());
-                    plain_weight += *weight - kept;
-                    *weight = kept;
+            let (mut inflation, mut weights) = judge.weigh(channel, &problem, &discounts);
+            for (weight, centre) in weights.iter_mut().zip(&centres) {
+                let (mut share, mut factor) = (R::ONE, R::ONE);
+                if let Some(centre) = centre {
+                    factor = centre.inflation;
+                    share = if matches!(ridge, Ridge::Fixed(_)) { R::ONE } else { centre.independence() };
+                }
+                let kept = *weight * share;
+                inflation += *weight - kept + kept * factor;
+                *weight = kept;
+            }
+            // The mixture's coefficients, in place of the first candidate's.
+            for j in 0..groups.columns {
+                let mut mixed = R::ZERO;
+                for (candidate, &weight) in weights.iter().enumerate() {
+                    mixed +=
+                        weight * row_of(coefficients, candidate, channel, groups).get(j).copied().unwrap_or(R::ZERO);
+                }
+                if let Some(out) = coefficients.get_mut(channel * groups.columns + j) {
+                    *out = mixed;
                 }
             }
-            let mut sum = plain_weight * held_out.total(channel);
-            let mut error = plain_weight * get(&own.plain, channel);
-            for (candidate, &weight) in weights.iter().enumerate() {
-                let b = row_of(coefficients, candidate, channel, groups);
-                sum += weight * held_out.residual_total(channel, b);
-                let inflation = centres.get(candidate).copied().flatten().map_or(R::ONE, |centre| centre.inflation);
-                let own = own.errors.get(candidate).map_or(R::ZERO, |errors| get(errors, channel));
-                error += weight * own * inflation;
-            }
-            add(&mut sums, channel, sum);
-            add(&mut press, channel, error);
+            let b = row_of(coefficients, 0, channel, groups);
+            let a = train.residual_total(channel, b) * inverse;
+            add(&mut sums, channel, held_out.residual_total(channel, b));
+            add(&mut press, channel, held_out.residual_square(channel, channels, a, b) * inflation);
         }
     }
     let mut correction = PerChannel::default();

@@ -47,3 +47,19 @@ pub(crate) fn of_stream(index: u64, folds: usize) -> usize {
     let run = if octave == 0 { index } else { (u64::from(octave) << bits) + (index >> (octave - 1)) - (1 << bits) };
     run.checked_rem(folds).unwrap_or(0) as usize
 }
+
+/// By how many folds those of another stream are moved on before ours get their samples, from the sizes of both: so that
+/// the folds are as even as can be.
+pub(crate) fn rotation(folds: usize, ours: impl Fn(usize) -> f64, theirs: impl Fn(usize) -> f64) -> usize {
+    let moved = |fold: usize, rotation: usize| (fold + rotation).checked_rem(folds).unwrap_or(0);
+    // The sum of the squared sizes, but for what no rotation changes.
+    let crowding = |rotation| (0..folds).map(|fold| ours(moved(fold, rotation)) * theirs(fold)).sum::<f64>();
+    let (mut best, mut least) = (0, f64::INFINITY);
+    for rotation in 0..folds {
+        let crowding = crowding(rotation);
+        if crowding < least {
+            (best, least) = (rotation, crowding);
+        }
+    }
+    best
+}

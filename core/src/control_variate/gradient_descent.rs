@@ -136,13 +136,16 @@ pub(crate) fn estimate<R: Real>(
 
 /// The variance of what descended to residuals of such sums of squares; None if no residual is left over to tell.
 ///
-/// As for least squares ([`result::residual_variance`]), with functions that the samples see as orthonormal, and half of
-/// what uncertain coefficients add: a descent that stops early has made fewer of them.
+/// As for least squares ([`result::residual_variance`]), with functions that the samples see as orthonormal. What uncertain
+/// coefficients add is taken as 2 k times what k columns of a finished fit would: a descent that stops early is wrong in
+/// all of them in the same way. It overstates the error of one that nearly finished, up to 1.8 times on the test
+/// integrands.
 pub(crate) fn variance<R: Real>(residual: PerChannel<R>, objective: &impl Objective<R>) -> Option<PerChannel<R>> {
     let freedom = objective.count().checked_sub(objective.columns() + 1).filter(|&freedom| freedom > 0)?;
     let (n, freedom) = (R::from_usize(objective.count()), R::from_usize(freedom));
     let square = objective.means().iter().fold(R::ZERO, |sum, &mean| sum + mean * mean);
-    let factor = (R::ONE + R::from_f64(0.5) * n * square) / (freedom * freedom);
+    let rest = (n - R::ONE) / freedom;
+    let factor = (R::ONE + R::from_usize(2 * objective.columns()) * square) * rest / (freedom * freedom);
     Some(residual.map(|residual| residual * factor))
 }
 

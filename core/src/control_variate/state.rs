@@ -328,12 +328,15 @@ impl<R: Real> State<R> {
             *factor = R::ONE.scale(theirs.exponent - ours.exponent);
             *shift = theirs.offset * *factor - ours.offset;
         }
-        // Folds stay even: the other's first sample goes where the next one would have gone.
-        let next = folds::of_stream(state.samples, groups);
+        let size = |sums: &[R], fold: usize| {
+            let moments = sums.get(fold * group..).and_then(|sums| Moments::new(sums, terms, channels));
+            moments.map_or(0.0, |moments| moments.count().to_f64())
+        };
+        let rotation = folds::rotation(groups, |fold| size(sums, fold), |fold| size(other_sums, fold));
         for fold in 0..groups {
             let range = fold * group..(fold + 1) * group;
             let ours = sums.get_mut(range).and_then(|sums| MomentsMut::new(sums, terms, channels));
-            let theirs = (fold + groups - next).checked_rem(groups).unwrap_or(0);
+            let theirs = (fold + groups - rotation).checked_rem(groups).unwrap_or(0);
             let theirs = other_sums.get(theirs * group..(theirs + 1) * group);
             let theirs = theirs.and_then(|sums| Moments::new(sums, terms, channels));
             let (Some(mut ours), Some(theirs)) = (ours, theirs) else { continue };

@@ -36,8 +36,10 @@ const SHARE: f64 = 0.4;
 const EVEN_F: f64 = 0.1;
 /// Trust loses this times the square of how far a fit moves the mean, in standard errors of the mean.
 const SURPRISE: f64 = 0.25;
-/// How much likelier it must be that samples are even before folds are trusted less, as a logarithm.
-const DOUBT: f64 = 4.0;
+/// And no more than for this many standard errors: fits that are nearly exact are right to move the mean that far.
+const FAR: f64 = 4.0;
+/// How much likelier it must be that samples are even before folds are trusted less, as the logarithm of its square.
+const DOUBT: f64 = 8.0;
 
 /// Where the centre of the samples lies as a fit to them measures distance, from the cube's.
 ///
@@ -79,7 +81,7 @@ impl<R: Real> Centre<R> {
     }
 
     /// From 1 for samples that may well be independent to 0 for such as are too even for it, from the logarithm of the
-    /// likelihood ratio of the two, (k / 2) (F - 1 - ln F).
+    /// square of the two's likelihood ratio, k (F - 1 - ln F).
     ///
     /// A fit to some folds that corrects another undoes what is even about all of them together.
     #[inline(always)]
@@ -88,7 +90,7 @@ impl<R: Real> Centre<R> {
         if f >= R::ONE {
             return R::ONE;
         }
-        let evidence = self.freedom * R::from_f64(0.5) * (f - R::ONE - f.ln()) - R::from_f64(DOUBT);
+        let evidence = self.freedom * (f - R::ONE - f.ln()) - R::from_f64(DOUBT);
         // exp(80) is within the range of both types, and leaves nothing.
         R::ONE / (R::ONE + evidence.min(R::from_f64(80.0)).exp())
     }
@@ -107,8 +109,8 @@ pub(crate) fn few_left<R: Real>(freedom: R, n: R) -> R {
 #[inline(always)]
 pub(crate) fn surprise<R: Real>(correction: R, variance: R) -> R {
     let errors = correction.abs() / variance.sqrt();
-    // More leaves nothing; so does a correction that is no number.
-    let most = R::from_f64(1e4);
+    // A correction that is no number is as surprising as can be.
+    let most = R::from_f64(FAR);
     let errors = if errors < most { errors } else { most };
     R::from_f64(SURPRISE) * errors * errors
 }

@@ -8,9 +8,9 @@ use core::ops::Range;
 /// - A fit's estimate is y = a + s (l - a), a the constant of the fit to all samples, l the estimate that corrects samples by
 ///   fits to others, and s = `share` F / (F + `even`).
 /// - Its trust is (error / error of the mean)^(-n `exponent`) / C for C fits, divided by max(1, F / `offset`)^`discount` and
-///   by e^(`surprise` (y - mean)^2 / variance of the mean).
+///   by e^(`surprise` (y - mean)^2 / variance of the mean), of which no more than `far` standard errors count.
 /// - The mean's is `prior` (1 + `few` / n^4), and at least e^-(n^2 / `cap`) of the largest before those divisions.
-/// - A fit that corrects other samples loses to the mean all but 1 / (1 + e^(d (F - 1 - ln F) / 2 - `doubt`)) of its weight,
+/// - A fit that corrects other samples loses to the mean all but 1 / (1 + e^(d (F - 1 - ln F) - `doubt`)) of its weight,
 ///   if F is below one.
 #[derive(Clone, Copy, Debug)]
 pub struct RobustRule {
@@ -30,11 +30,13 @@ pub struct RobustRule {
     pub discount: f64,
     /// The factor of the squared number of standard errors.
     pub surprise: f64,
+    /// And the most standard errors that it counts.
+    pub far: f64,
     /// How much of what leaving out changes is used.
     pub share: f64,
     /// The F at which that is half as much.
     pub even: f64,
-    /// How much likelier even samples must be than independent ones.
+    /// How much likelier even samples must be than independent ones, as the logarithm of the ratio's square.
     pub doubt: f64,
 }
 
@@ -78,9 +80,10 @@ impl RobustRule {
             offset: 0.5,
             discount: 0.8,
             surprise: 0.25,
+            far: 4.0,
             share: 0.4,
             even: 0.1,
-            doubt: 4.0,
+            doubt: 8.0,
         }
     }
 
@@ -91,7 +94,7 @@ impl RobustRule {
 
     /// What it loses for moving the mean by so many of its variances.
     fn surprise(&self, squared_errors: f64) -> f64 {
-        self.surprise * squared_errors.min(1e8)
+        self.surprise * squared_errors.min(self.far.powi(2))
     }
 
     fn estimate_of(&self, all: f64, left_out: f64, f: f64) -> f64 {
@@ -104,7 +107,7 @@ impl RobustRule {
             return 1.0;
         }
         let f = f.max(1e-12);
-        1.0 / (1.0 + (freedom * 0.5 * (f - 1.0 - f.ln()) - self.doubt).min(80.0).exp())
+        1.0 / (1.0 + (freedom * (f - 1.0 - f.ln()) - self.doubt).min(80.0).exp())
     }
 
     /// The weights of the fits and, last, of Monte Carlo, from each fit's error ratio over n samples and its discount;
