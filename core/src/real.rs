@@ -183,7 +183,9 @@ impl Real for f32 {
         libm::expf(self)
     }
     fn ln(self) -> Self {
-        libm::logf(self)
+        // Of logf the compiler may compute what it returns for a negative number before it knows that there is none, an
+        // invalid operation.
+        libm::log(f64::from(self)) as f32
     }
     fn cos(self) -> Self {
         libm::cosf(self)
@@ -193,7 +195,9 @@ impl Real for f32 {
         libm::fabsf(self)
     }
     fn scale(self, exponent: i32) -> Self {
-        libm::scalbnf(self, exponent)
+        // Rounded once, by the last cast. scalbnf multiplies in steps, and a compiler may take one more than there are.
+        let power = f64::from_bits(((exponent.clamp(-1022, 1023) + 1023) as u64) << 52);
+        (f64::from(self) * power) as f32
     }
     fn exponent(self) -> i32 {
         libm::frexpf(self).1

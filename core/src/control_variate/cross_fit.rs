@@ -47,6 +47,11 @@ impl<'a, R: Real> Groups<'a, R> {
         (0..self.folds).filter_map(move |fold| Some((fold, filled(fold)?)))
     }
 
+    /// Whether there are two folds, one to fit to and one to judge by.
+    pub(crate) fn can_judge(&self) -> bool {
+        self.each().nth(1).is_some()
+    }
+
     /// Writes the sums of all folds but those left out; None for a buffer that is too short.
     fn train<'b>(&self, left_out: &[usize], sums: &'b mut [R]) -> Option<Moments<'b, R>> {
         for value in sums.iter_mut() {
@@ -111,9 +116,7 @@ pub(crate) fn pooled<R: Real>(
             let whole = all.residual_total(channel, b) * inverse - mean;
             let share = centre.map_or(R::ZERO, |centre| centre.share());
             *correction = whole + share * (get(crossed, channel) * inverse - mean - whole);
-            if mean_variance > R::ZERO {
-                *discount = trust::surprise(*correction, mean_variance);
-            }
+            *discount = trust::surprise(*correction, mean_variance);
             *discount += centre.map_or(R::ZERO, |centre| centre.discount());
         }
         let (plain_weight, weights) = judge.weigh(channel, &problem, &discounts);

@@ -151,9 +151,7 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
             let variance = plain * result::press_factor(n);
             let mut discounts = discounts;
             for (discount, correction) in discounts.iter_mut().zip(&blend.corrections) {
-                if variance > R::ZERO {
-                    *discount += trust::surprise(get(correction, channel), variance);
-                }
+                *discount += trust::surprise(get(correction, channel), variance);
             }
             let mut weights = [R::ZERO; MAX_FITS];
             let each = weights.get_mut(..used).unwrap_or(&mut []);
@@ -177,10 +175,11 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
 /// Of fits the one with the smallest leave-one-out error summed over the channels, each relative to its plain mean's.
 fn best_of<R: Real>(fits: &[RidgeFit<R>; MAX_FITS], plain: &PerChannel<R>) -> usize {
     let error = |fit: &RidgeFit<R>| {
-        let channels = fit.press.iter().zip(plain).filter(|(_, plain)| **plain > R::ZERO);
-        channels.fold(R::ZERO, |sum, (&press, &plain)| sum + press / plain)
+        // Of a channel that is constant nothing counts.
+        let ratio = |press: R, plain: R| press.to_f64() / if plain > R::ZERO { plain.to_f64() } else { f64::INFINITY };
+        fit.press.iter().zip(plain).map(|(&press, &plain)| ratio(press, plain)).sum::<f64>()
     };
-    let mut best = (0, R::ZERO);
+    let mut best = (0, 0.0);
     for (index, fit) in fits.iter().enumerate() {
         let error = error(fit);
         if index == 0 || error < best.1 {

@@ -144,8 +144,8 @@ pub(crate) fn variance<R: Real>(residual: PerChannel<R>, objective: &impl Object
     let freedom = objective.count().checked_sub(objective.columns() + 1).filter(|&freedom| freedom > 0)?;
     let (n, freedom) = (R::from_usize(objective.count()), R::from_usize(freedom));
     let square = objective.means().iter().fold(R::ZERO, |sum, &mean| sum + mean * mean);
-    let rest = (n - R::ONE) / freedom;
-    let factor = (R::ONE + R::from_usize(2 * objective.columns()) * square) * rest / (freedom * freedom);
+    let uncertain = R::ONE + R::from_usize(2 * objective.columns()) * square;
+    let factor = uncertain * (n - R::ONE) / (freedom * freedom * freedom);
     Some(residual.map(|residual| residual * factor))
 }
 

@@ -67,9 +67,9 @@ pub(crate) fn estimate<R: Real>(
             for (channel, inflation) in inflation.iter_mut().enumerate().take(channels) {
                 *inflation = blend.inflation(channel);
             }
-            // Coefficients came in the training set's units and meet the held-out values in theirs.
+            // Everything meets in the units of all samples, which are the largest.
             for (coefficients, (from, to)) in
-                rows_mut(coefficients, whole.columns).zip(train.units.iter().zip(&held_out.units))
+                rows_mut(coefficients, whole.columns).zip(train.units.iter().zip(&whole.units))
             {
                 for value in coefficients {
                     *value = to.converted(*value, from);
@@ -82,13 +82,12 @@ pub(crate) fn estimate<R: Real>(
         for (panel_index, (panel, values)) in held_out.each_panel().enumerate() {
             let used = held_out.n.saturating_sub(panel_index * LANES);
             for (channel, (values, coefficients)) in values.iter().zip(rows(coefficients, whole.columns)).enumerate() {
-                let residuals = residuals(panel, values, coefficients);
+                let (Some(from), Some(to)) = (held_out.units.get(channel), whole.units.get(channel)) else {
+                    continue;
+                };
                 // Relative to the whole design's mean.
+                let residuals = residuals(panel, &values.map(|value| to.relative(value, from)), coefficients);
                 for &residual in residuals.iter().take(used) {
-                    let (Some(from), Some(to)) = (held_out.units.get(channel), whole.units.get(channel)) else {
-                        continue;
-                    };
-                    let residual = to.relative(residual, from);
                     add(&mut sums, channel, residual);
                     add(&mut squares, channel, residual * residual);
                 }
@@ -102,7 +101,7 @@ pub(crate) fn estimate<R: Real>(
         let (sum, square) = (get(&sums, channel), get(&squares, channel));
         set(&mut outcome.correction, channel, sum / n);
         let spread = (square - sum * sum / n).max(R::ZERO);
-        set(&mut variance, channel, spread * get(&inflations, channel) / (n * n * (n - R::ONE)));
+        set(&mut variance, channel, spread * get(&inflations, channel) / (n * n * (n - R::ONE).max(R::ONE)));
     }
     outcome.variance = (whole.n > 1).then_some(variance);
     Ok(outcome)

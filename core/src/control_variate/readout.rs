@@ -116,8 +116,8 @@ impl<R: Real> State<R> {
         let penalties = self.penalties(&first, arena)?;
         let groups =
             cross_fit::Groups { sums, folds: state.groups(), columns: state.columns, channels: state.channels };
-        // With one sample there is no spread to weigh fits by, and no other sample to fit.
-        let Some(variance) = &total.variance else { return Ok(total.plain()) };
+        // With one sample there is no spread to weigh fits by, with one fold no other sample to fit.
+        let Some(variance) = total.variance.as_ref().filter(|_| groups.can_judge()) else { return Ok(total.plain()) };
         if state.config.estimator == Estimator::KFold {
             cross_fit::nested(&groups, penalties, state.config.ridge, &total.mean, arena)
         } else {
@@ -209,7 +209,7 @@ impl<R: Real> Totals<R> {
             unit.offset += mean;
             set(&mut result.mean, channel, mean);
             let square = Real::max(get::<R>(&squares, channel) - total * mean, R::ZERO);
-            set(&mut variance, channel, square / (n * (n - R::ONE)));
+            set(&mut variance, channel, square / (n * (n - R::ONE).max(R::ONE)));
         }
         result.variance = (state.samples > 1).then_some(variance);
         Ok(result)

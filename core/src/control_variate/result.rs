@@ -6,6 +6,7 @@ use super::per_channel::{PerChannel, get};
 use super::samples::Reader;
 use super::trust::Centre;
 use crate::real::Real;
+use core::hint::black_box;
 
 /// What an estimator found, in a design's units.
 pub(crate) struct Outcome<R> {
@@ -18,7 +19,7 @@ pub(crate) struct Outcome<R> {
 /// The variance of the plain mean, None for one sample.
 pub(crate) fn plain_variance<R: Real>(design: &Design<'_, R>) -> Option<PerChannel<R>> {
     let n = R::from_usize(design.n);
-    let factor = R::ONE / (n * (n - R::ONE));
+    let factor = R::ONE / (n * (n - R::ONE).max(R::ONE));
     let mut variance = PerChannel::default();
     for (channel, variance) in variance.iter_mut().enumerate().take(design.channels) {
         *variance = design.sum_of_squares(channel) * factor;
@@ -50,8 +51,8 @@ pub(crate) fn residual_variance<R: Real>(
     if freedom < R::from_f64(0.5) {
         return None;
     }
-    let rest = (n - R::ONE) / freedom;
-    let factor = Centre::new(eccentricity, columns, n).inflation * rest * rest / (freedom * freedom);
+    let (all, square) = (n - R::ONE, freedom * freedom);
+    let factor = Centre::new(eccentricity, columns, n).inflation * all * all / (square * square);
     Some(residual.map(|residual| residual * factor))
 }
 
@@ -95,7 +96,8 @@ pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estim
                 let variance = if is_usable { get(variance, channel).max(R::ZERO) } else { plain };
                 *error = unit.length(variance.sqrt());
                 if plain > R::ZERO {
-                    gain += (variance / plain).to_f64();
+                    // Behind a black box, so that no compiler divides by zero ahead of the decision.
+                    gain += (variance / black_box(plain)).to_f64();
                     counted += 1.0;
                 }
             }
@@ -104,12 +106,13 @@ pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estim
     if let Some((colour, luminance)) = summary.colour {
         // (4.3): the colour of the plain mean, with the regressed luminance.
         let ([regressed, ..], [deviation, ..]) = (mean, error);
-        let ratio = if luminance == 0.0 { 1.0 } else { regressed / luminance };
+        let divisor = black_box(if luminance == 0.0 { 1.0 } else { luminance });
+        let ratio = if luminance == 0.0 { 1.0 } else { regressed / divisor };
         for ((mean, error), colour) in mean.iter_mut().zip(&mut error).zip(colour) {
             *mean = ratio * colour;
             // One sample's error is unknown in every channel, also where its colour is 0.
             if deviation.is_finite() {
-                *error = if luminance == 0.0 { 0.0 } else { libm::fabs(deviation * colour / luminance) };
+                *error = if luminance == 0.0 { 0.0 } else { libm::fabs(deviation * colour / divisor) };
             } else {
                 *error = f64::INFINITY;
             }
@@ -117,10 +120,15 @@ pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estim
     }
     Estimate {
         mean: mean.map(saturate),
-        std_error: error.map(|error| error as f32),
+        std_error: error.map(standard_error),
         samples: u32::try_from(summary.samples).unwrap_or(u32::MAX),
         gain: if counted > 0.0 { (gain / counted) as f32 } else { 1.0 },
     }
+}
+
+/// As an `f32`: infinite if unknown or, as of values at the end of a narrow type's range, no number.
+pub(crate) fn standard_error(value: f64) -> f32 {
+    if value.is_finite() { saturate(value) } else { f32::INFINITY }
 }
 
 /// The nearest finite `f32`: a fit to values near the type's end can reach beyond it.

@@ -380,13 +380,16 @@ fn raise_exponents<R: Real>(state: &mut State<R>, exponents: &[i32; Config::MAX_
     for ((unit, &exponent), factor) in state.units.iter_mut().zip(exponents).zip(&mut factors) {
         let exponent = exponent.clamp(-126, 126);
         if exponent > unit.exponent || (fresh && R::NARROW) {
-            *factor = R::ONE.scale((unit.exponent - exponent).clamp(-149, 149));
-            unit.offset *= *factor;
+            // Of nothing yet there is nothing to rescale.
+            if !fresh {
+                *factor = R::ONE.scale((unit.exponent - exponent).max(-149));
+                unit.offset *= *factor;
+                any = true;
+            }
             unit.exponent = exponent;
-            any = true;
         }
     }
-    if !any || fresh {
+    if !any {
         return;
     }
     let (terms, channels, group, groups) = (state.terms(), state.channels, state.group(), state.groups());

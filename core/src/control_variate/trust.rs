@@ -39,7 +39,7 @@ const SURPRISE: f64 = 0.25;
 /// And no more than for this many standard errors: fits that are nearly exact are right to move the mean that far.
 const FAR: f64 = 4.0;
 /// How much likelier it must be that samples are even before folds are trusted less, as the logarithm of its square.
-const DOUBT: f64 = 8.0;
+const DOUBT: f64 = 6.0;
 
 /// Where the centre of the samples lies as a fit to them measures distance, from the cube's.
 ///
@@ -101,14 +101,17 @@ impl<R: Real> Centre<R> {
 pub(crate) fn few_left<R: Real>(freedom: R, n: R) -> R {
     let two = R::ONE + R::ONE;
     let left = (n - R::ONE - freedom).max(R::from_f64(0.5));
-    (R::ONE + two / left) / (R::ONE + two / (n - R::ONE))
+    let all = (n - R::ONE).max(R::from_f64(0.5));
+    // (1 + 2 / left) / (1 + 2 / all).
+    (left + two) * all / (left * (all + two))
 }
 
-/// The logarithm of what trust in a fit that adds `correction` to the mean is divided by, for a mean of a positive
-/// variance.
+/// The logarithm of what trust in a fit that adds `correction` to the mean is divided by; nothing for a mean without
+/// variance, which is exact.
 #[inline(always)]
 pub(crate) fn surprise<R: Real>(correction: R, variance: R) -> R {
-    let errors = correction.abs() / variance.sqrt();
+    let error = if variance > R::ZERO { variance.sqrt() } else { R::INFINITY };
+    let errors = correction.abs() / error;
     // A correction that is no number is as surprising as can be.
     let most = R::from_f64(FAR);
     let errors = if errors < most { errors } else { most };

@@ -135,9 +135,8 @@ impl Shares {
             *share = f64::from(n) * density;
             largest = largest.max(*share);
         }
-        if largest > 0.0 {
-            share.iter_mut().take(techniques).for_each(|share| *share /= largest);
-        }
+        let divisor = if largest > 0.0 { largest } else { 1.0 };
+        share.iter_mut().take(techniques).for_each(|share| *share /= divisor);
         let own = share.get(technique).copied().unwrap_or(0.0);
         Ok(Shares { share, techniques, own })
     }
@@ -149,6 +148,7 @@ impl Shares {
     /// The part that the technique's own share has of the sum over all, once `f` has been applied to each.
     fn weight(&self, f: impl Fn(f64) -> f64) -> f32 {
         let sum: f64 = self.all().map(&f).sum();
-        if sum > 0.0 { (f(self.own) / sum) as f32 } else { 0.0 }
+        let divisor = if sum > 0.0 { sum } else { 1.0 };
+        (f(self.own) / divisor) as f32
     }
 }

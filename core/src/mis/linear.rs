@@ -56,7 +56,10 @@ impl Factor {
             *value = row[i];
         }
         let largest = values.iter().take(n).fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        let inverse = values.map(|value| if value.abs() > RANK_TOLERANCE * largest { 1.0 / value } else { 0.0 });
+        let mut inverse = Vector::default();
+        for (inverse, value) in inverse.iter_mut().zip(values).filter(|(_, value)| value.abs() > RANK_TOLERANCE * largest) {
+            *inverse = 1.0 / value;
+        }
         Factor::Spectral { vectors, inverse, n }
     }
 

@@ -479,5 +479,5 @@ fn root_counts(counts: &[u32; MAX_TECHNIQUES]) -> Vector {
 
 /// Rounds to f32, a value beyond its range to the largest finite one.
 pub(crate) fn to_f32(value: f64) -> f32 {
-    (value as f32).clamp(f32::MIN, f32::MAX)
+    value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
 }

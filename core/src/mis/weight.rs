@@ -33,8 +33,8 @@ pub fn optimal(pdf: &[f32], counts: &[u32], technique: usize, alpha: &[f32], val
     }
     let value = f64::from(value);
     let balance = point.own_count * point.own_pdf / point.sum;
-    let weight = (point.own_alpha * point.own_pdf / value + balance * (1.0 - point.control / value)) as f32;
-    if weight.is_finite() { Ok(weight) } else { Err(Error::Range) }
+    let weight = point.own_alpha * point.own_pdf / value + balance * (1.0 - point.control / value);
+    narrowed(weight)
 }
 
 /// What one sample adds to the optimal MIS estimate: the term `w_j f / (n_j p_j)` of (2.10) with the weight of (2.15),
@@ -65,8 +65,13 @@ pub fn optimal_contribution(
     if point.own_pdf == 0.0 {
         return Err(Error::Range);
     }
-    let term = (point.own_alpha / point.own_count + (f64::from(value) - point.control) / point.sum) as f32;
-    if term.is_finite() { Ok(term) } else { Err(Error::Range) }
+    let term = point.own_alpha / point.own_count + (f64::from(value) - point.control) / point.sum;
+    narrowed(term)
+}
+
+/// As an f32, if it is in range: a NaN is not.
+fn narrowed(value: f64) -> Result<f32, Error> {
+    if libm::fabs(value) <= f64::from(f32::MAX) { Ok(value as f32) } else { Err(Error::Range) }
 }
 
 /// The checked arguments, in f64.

@@ -83,7 +83,7 @@ impl RobustRule {
             far: 4.0,
             share: 0.4,
             even: 0.1,
-            doubt: 8.0,
+            doubt: 6.0,
         }
     }
 
@@ -197,7 +197,7 @@ impl RobustRule {
         let variance = f.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / (n * (n - 1.0));
         let errors = |penalty| (0..folds).map(|fold| samples.squared_error(&[fold], fold, penalty)).sum::<f64>();
         let error_0 = errors(None);
-        if error_0 == 0.0 {
+        if error_0 == 0.0 || samples.folds.iter().all(|&fold| fold == 0) {
             return mean;
         }
         let (mut ratios, mut discounts, mut estimates) = (vec![], vec![], vec![]);

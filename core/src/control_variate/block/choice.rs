@@ -118,8 +118,8 @@ impl<R: Real> Spreads<R> {
     #[inline(always)]
     pub(super) fn gain(&self, weights: &Weights<R>, channel: usize) -> R {
         let plain = get(&self.sums[0], channel);
-        let gain = self.mixed(weights, channel) / plain;
-        if gain.is_finite() { gain } else { R::ONE }
+        let gain = self.mixed(weights, channel) / if plain > R::ZERO { plain } else { R::ONE };
+        if plain > R::ZERO && gain.is_finite() { gain } else { R::ONE }
     }
 
     /// A mixture's spread per degree of freedom, of which there must be some: the variance of its estimates, and what signal

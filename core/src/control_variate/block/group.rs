@@ -10,6 +10,9 @@ use crate::error::Error;
 use crate::real::Real;
 use crate::rows::rows_mut;
 
+/// The largest correction that the windows of a pixel may add up in a narrow type, 2^120.
+const MOST: f64 = (1_u128 << 120) as f64;
+
 /// What fits to some pixels say of those that correct a pixel.
 #[derive(Clone, Copy)]
 struct Choice<R> {
@@ -164,7 +167,9 @@ impl Problem<'_> {
                 let correction = group.correction(index, &choice.weights, channel).to_f64() * unit * factor;
                 let error = if self.error_is_the_blocks() { error * factor } else { error };
                 for (sum, value) in each.iter_mut().zip([correction, error]) {
-                    *sum += near * R::from_f64(value);
+                    // What a narrow type cannot add up is no number, and found at the end.
+                    let fits = !R::NARROW || libm::fabs(value) < MOST;
+                    *sum += near * R::from_f64(if fits { value } else { f64::NAN });
                 }
             }
         }

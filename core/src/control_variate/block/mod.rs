@@ -33,7 +33,7 @@ mod terms;
 pub use image::Image;
 
 use super::config::{Color, Config, Estimate, Estimator, NonFinite};
-use super::result::saturate;
+use super::result::{saturate, standard_error};
 use super::samples::{Reader, Samples};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -247,7 +247,9 @@ impl Problem<'_> {
         let (common, each) = sums.split_at_checked(COMMON).unwrap_or((&[], &[]));
         let at = |sums: &[R], index: usize| sums.get(index).map_or(0.0, |value| value.to_f64());
         let [weight, error_weight, gain] = [0, 1, 2].map(|index| at(common, index));
-        let (inverse, error_inverse) = (1.0 / weight, 1.0 / error_weight);
+        // Without a weight all sums are zero.
+        let inverse_of = |weight: f64| 1.0 / if weight > 0.0 { weight } else { 1.0 };
+        let (inverse, error_inverse) = (inverse_of(weight), inverse_of(error_weight));
         estimate.gain = if weight > 0.0 { (gain * inverse) as f32 } else { 1.0 };
         let outputs = estimate.mean.iter_mut().zip(&mut estimate.std_error);
         for (channel, (mean, error)) in outputs.enumerate().take(self.config.channels) {
@@ -273,8 +275,7 @@ impl Problem<'_> {
             } else {
                 f64::INFINITY
             };
-            // Spreads of values at the end of a narrow type's range may be no numbers.
-            *error = if told.is_nan() { f32::INFINITY } else { told as f32 };
+            *error = standard_error(told);
         }
     }
 }

@@ -8,6 +8,9 @@ use crate::lanes::{self, LANES, Lanes};
 use crate::real::Real;
 use crate::rows::rows_mut;
 
+/// The largest value of a narrow type, in units of the largest that is used.
+const MOST: f64 = (1_u64 << 56) as f64;
+
 /// Eight pixels.
 pub(super) struct Panel {
     pixels: [usize; LANES],
@@ -89,7 +92,8 @@ impl Problem<'_> {
                     value /= self.factor(pixel, channel);
                 }
                 if R::NARROW {
-                    value = libm::scalbn(value, -unit.exponent);
+                    // Only pixels that are left out have values far beyond the unit; their squares fit too.
+                    value = libm::scalbn(value, -unit.exponent).clamp(-MOST, MOST);
                 }
                 if let Some(out) = out.get_mut(lane) {
                     *out = R::from_f64(value) - unit.offset;

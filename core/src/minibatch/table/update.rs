@@ -259,10 +259,14 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     }
 }
 
+/// The largest f64 that an i64 holds.
+const MOST_WEIGHT: f64 = 9_223_372_036_854_774_784.0;
+
 /// The weight of a block: its sum times the scale, rounded, at least 1 if it is not 0.
 #[inline(always)]
 fn weight(total: f64, scale: f64) -> i64 {
-    let rounded = (total * scale + 0.5) as i64;
+    // A number that no i64 holds is an invalid operation on some processors, though the cast saturates.
+    let rounded = (total * scale + 0.5).min(MOST_WEIGHT) as i64;
     if total > 0.0 { rounded.max(1) } else { 0 }
 }
 
