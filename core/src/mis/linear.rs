@@ -57,7 +57,9 @@ impl Factor {
         }
         let largest = values.iter().take(n).fold(0.0_f64, |largest, value| largest.max(value.abs()));
         let mut inverse = Vector::default();
-        for (inverse, value) in inverse.iter_mut().zip(values).filter(|(_, value)| value.abs() > RANK_TOLERANCE * largest) {
+        for (inverse, value) in
+            inverse.iter_mut().zip(values).filter(|(_, value)| value.abs() > RANK_TOLERANCE * largest)
+        {
             *inverse = 1.0 / value;
         }
         Factor::Spectral { vectors, inverse, n }

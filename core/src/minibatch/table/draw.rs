@@ -327,7 +327,7 @@ impl<'a> Descent<'a> {
             *fraction = (*fraction / weight).min(BELOW_ONE);
         }
         let mut totals = [1f64; AT_ONCE];
-        let mut importance = [0f32; AT_ONCE];
+        let mut importance = [1f32; AT_ONCE];
         for ((((&place, &fraction), &slot), total), q) in
             place.iter().zip(&fraction).zip(&slot).zip(&mut totals).zip(&mut importance).take(trees)
         {
