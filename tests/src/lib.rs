@@ -6,6 +6,7 @@ pub mod integrands;
 pub mod legendre;
 pub mod minibatch;
 pub mod oracle;
+pub mod ordered;
 pub mod planar;
 pub mod random;
 pub mod shared;

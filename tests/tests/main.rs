@@ -17,6 +17,7 @@ mod cv_image_unbiased;
 mod cv_large;
 mod cv_never_worse;
 mod cv_oracle;
+mod cv_ordered;
 mod cv_properties;
 mod cv_slices;
 mod cv_support;
