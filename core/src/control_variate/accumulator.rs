@@ -1,7 +1,7 @@
 //! Streaming estimates: sums of fixed size that samples are added to and that can be merged.
 //!
 //! Leave-one-out errors need the samples, which are gone, so the robust estimate here trusts held-out errors instead:
-//! sample i of an accumulator is summed into fold i mod K, and each fold judges the fits to the other folds.
+//! runs of an accumulator's samples are summed into folds, and each fold judges the fits to the other folds.
 
 use super::config::{Config, Estimate};
 use super::samples::Samples;
