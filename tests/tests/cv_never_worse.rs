@@ -105,9 +105,9 @@ fn streaming_of_order_3() {
     never_worse(3, true, 1.03);
 }
 
-/// What a search found hardest, in 1 to 7 dims and where samples are about as many as terms: at most 1.03 at order 1,
-/// which 12,000 sets know within .008. Of stripes most sets of samples see one or none; no rule that uses the samples alone tells them from a slope, and up to 1.06 is
-/// what this one costs.
+/// What a search found hardest, in 1 to 7 dims and where samples are about as many as terms: at most 1.03 at order 1, which
+/// 12,000 sets know within .008. Of stripes most sets of samples see one or none; no rule that uses the samples alone tells
+/// them from a slope, and up to 1.06 is what this one costs.
 #[test]
 fn hardest() {
     let mut failures = vec![];
