@@ -113,7 +113,9 @@ const char *nf_status_message(nf_status status);
  * ------------------------------------------------------------------------------------------------------------------- */
 
 // Estimator: a soft mixture of the plain mean and ridge fits, weighted by their leave-one-out errors (streaming:
-// held-out errors). The default; never noticeably worse than the mean. Slightly biased at low sample counts.
+// held-out errors). The default; never noticeably worse than the mean: at most 1.03 times its RMSE where that was
+// searched, in 1 to 8 dims at orders 1 to 3 and 4 to 64 samples, 1.06 times on stripes that samples rarely see.
+// Slightly biased at low sample counts.
 #define NF_CV_ROBUST 0
 // Estimator: least squares on its own samples (Alg. 1). The cheapest; bias O(1/n); needs several samples per term.
 #define NF_CV_LEAST_SQUARES 1
@@ -182,9 +184,10 @@ typedef struct nf_cv_config {
     uint32_t estimator;
     // NF_BASIS_*
     uint32_t basis;
-    // 1 if the samples are stratified (a tile, Sobol), 0 if independent. Leave-one-out errors cannot see
-    // stratification: with 1, NF_CV_ROBUST of one pixel is the plain mean. Fits shared by pixels correct all the same, and
-    // take their std_error from the pixels' spread.
+    // 1 if the samples are stratified (a tile, Sobol points, a lattice), 0 if independent. With 1, one pixel's
+    // estimate is the plain mean, but for NF_CV_LEAST_SQUARES and NF_CV_GRADIENT_DESCENT: what corrects some samples by
+    // fits to others undoes what is even about all, and their errors do not show it. Fits shared by pixels correct all
+    // the same, and take their std_error from the pixels' spread.
     uint32_t stratified;
     // If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (figure 4.15).
     // Each takes a term: at most 136 less binomial(dims - 1 + order, order), those of the other coordinates, and
@@ -204,7 +207,8 @@ typedef struct nf_cv_config {
     uint32_t nonfinite;
     // NF_COLOR_*
     uint32_t color;
-    // Folds of NF_CV_K_FOLD and of the streaming NF_CV_ROBUST, 2 to 16; 0 means 4.
+    // Folds of NF_CV_K_FOLD and of the streaming NF_CV_ROBUST, 2 to 16; 0 means 4. Runs of samples in the order in
+    // which they come.
     uint32_t folds;
     // Steps of gradient descent, at most 2^20; 0 means half as many as samples, 8 to 128.
     uint32_t iterations;
