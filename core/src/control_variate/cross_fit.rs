@@ -1,7 +1,7 @@
 //! Estimates from per-fold sums, whose fits are weighted by their errors on folds they have not seen.
 //!
-//! - [`pooled`], robust: one fit to all folds, most of whose estimate is used and some of the cross-fit's, weighted by all
-//!   held-out errors. A fit to all keeps what is even about all samples together.
+//! - [`pooled`], robust: between a fit to all folds and the cross-fit, weighted by all held-out errors. The fit to all keeps
+//!   what is even about all samples together, the cross-fit has no bias: where samples lie says how much of each is used.
 //! - [`nested`], K-fold: each fold is corrected by a fit to the others, and weighted by fits that know neither that fold
 //!   nor the one that judges them. Exactly unbiased.
 
