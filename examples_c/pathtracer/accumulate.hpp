@@ -1,9 +1,8 @@
-// Renders in passes over the whole image, as a progressive renderer does: no samples are kept, only an accumulator for each pixel. Every
-// thread has accumulators of its own, so that none waits for another; they are merged at the end.
+// Renders in passes, as a progressive renderer does: no samples are kept, only an accumulator for each pixel. Each row is one thread's, and
+// gets its passes in order: what a pixel's fit makes of them does not depend on the threads.
 #pragma once
 
 #include "render.hpp"
-#include <map>
 
 namespace demo {
 
@@ -21,13 +20,6 @@ public:
     }
 
     nf_cv_accumulator *pixel(size_t p) { return reinterpret_cast<nf_cv_accumulator *>(&memory_[p * words_]); }
-
-    // Adds what another holds of all pixels.
-    void merge(AccumulatorImage &other)
-    {
-        for (size_t p = 0; p * words_ < memory_.size(); ++p)
-            check(nf_cv_accumulator_merge(pixel(p), other.pixel(p)), "nf_cv_accumulator_merge");
-    }
 
     void estimate(Image &image)
     {
@@ -57,37 +49,30 @@ public:
             configs_.push_back(configure(find_estimator(name), setup));
             if (nf_cv_accumulator_size(&configs_.back()) == 0)
                 throw std::runtime_error(refusal(name, configs_.back(), setup) + ", or it cannot be streamed, as --accumulate does");
+            accumulators_.emplace_back(configs_.back(), size_t{options.width} * options.height);
         }
     }
 
 private:
-    // Threads take turns at passes; what each did is merged in the order of the threads.
-    void work(uint32_t thread, Times &times) override
+    // Threads take turns at rows.
+    void work(uint32_t, Times &times) override
     {
-        const size_t pixels = size_t{options_.width} * options_.height;
-        std::vector<AccumulatorImage> images;
-        for (size_t e = 0; e < names_.size(); ++e)
-            images.emplace_back(configs_[e], pixels);
         // Samples of one row of pixels.
         std::vector<float> u(size_t{options_.width} * pass_ * dims_), f(size_t{options_.width} * pass_ * 3);
         const uint32_t passes = (options_.spp + pass_ - 1) / pass_;
-        bool any = false;
-        for (uint64_t pass; (pass = next_++) < passes; any = true) {
-            uint32_t first = static_cast<uint32_t>(pass) * pass_, count = std::min(pass_, options_.spp - first);
-            for (uint32_t y = 0; y < options_.height; ++y) {
-                row(y, first, count, u.data(), f.data(), images, times);
-                report(options_.width, pixels * passes);
+        for (uint64_t y; (y = next_++) < options_.height;) {
+            for (uint32_t first = 0; first < options_.spp; first += pass_) {
+                row(static_cast<uint32_t>(y), first, std::min(pass_, options_.spp - first), u.data(), f.data(), times);
+                report(options_.width, size_t{options_.width} * options_.height * passes);
             }
         }
         // Whoever comes last finishes the picture.
         std::lock_guard<std::mutex> lock(mutex_);
-        if (any)
-            parts_[thread] = std::move(images);
         if (++finished_threads_ == options_.threads)
             finish(times);
     }
 
-    void row(uint32_t y, uint32_t first, uint32_t count, float *u, float *f, std::vector<AccumulatorImage> &images, Times &times)
+    void row(uint32_t y, uint32_t first, uint32_t count, float *u, float *f, Times &times)
     {
         auto start = Clock::now();
         for (uint32_t x = 0; x < options_.width; ++x)
@@ -99,10 +84,10 @@ private:
             integrand_.evaluate(x, y, count, u + size_t{x} * count * dims_, f + size_t{x} * count * 3, nullptr);
         stop = Clock::now();
         times.tracing += seconds(start, stop);
-        for (size_t e = 0; e < images.size(); ++e) {
+        for (size_t e = 0; e < accumulators_.size(); ++e) {
             start = stop;
             for (uint32_t x = 0; x < options_.width; ++x)
-                check(nf_cv_accumulator_add(images[e].pixel(size_t{y} * options_.width + x), u + size_t{x} * count * dims_,
+                check(nf_cv_accumulator_add(accumulators_[e].pixel(size_t{y} * options_.width + x), u + size_t{x} * count * dims_,
                                             f + size_t{x} * count * 3, count),
                       "nf_cv_accumulator_add");
             stop = Clock::now();
@@ -112,19 +97,9 @@ private:
 
     void finish(Times &times)
     {
-        std::vector<AccumulatorImage> *sum = nullptr;
-        for (auto &part : parts_) {
-            for (size_t e = 0; sum && e < names_.size(); ++e) {
-                auto start = Clock::now();
-                (*sum)[e].merge(part.second[e]);
-                times.estimating[e] += seconds(start, Clock::now());
-            }
-            if (!sum)
-                sum = &part.second;
-        }
-        for (size_t e = 0; sum && e < names_.size(); ++e) {
+        for (size_t e = 0; e < accumulators_.size(); ++e) {
             auto start = Clock::now();
-            (*sum)[e].estimate(images_[e]);
+            accumulators_[e].estimate(images_[e]);
             times.estimating[e] += seconds(start, Clock::now());
         }
     }
@@ -134,10 +109,9 @@ private:
     const uint32_t dims_; // of the sample vector
     uint32_t pass_ = 0;   // samples of one
     std::vector<nf_cv_config> configs_;
-    std::atomic<uint64_t> next_{0}; // pass
-    // Guarded by mutex_:
-    std::map<uint32_t, std::vector<AccumulatorImage>> parts_; // by thread
-    uint32_t finished_threads_ = 0;
+    std::vector<AccumulatorImage> accumulators_;
+    std::atomic<uint64_t> next_{0}; // row
+    uint32_t finished_threads_ = 0; // guarded by mutex_
 };
 
 } // namespace demo

@@ -55,7 +55,7 @@ inline void print_usage(FILE *to, const Program &program)
                "--seeds renders PREFIX.ESTIMATOR.SEED.pfm with each of so many seeds.\n"
                "--statistics writes PREFIX.ESTIMATOR.mean.pfm and PREFIX.ESTIMATOR.mse.pfm over all seeds instead: the mean image, and\n"
                "the mean squared error of each pixel and channel, (I - A)(I - B) for two independent halves of a reference.\n"
-               "--accumulate: threads render passes of N samples (a multiple of 4) over the image into accumulators of their own.\n"
+               "--accumulate: rows get passes of N samples (a multiple of 4), one after the other, into accumulators.\n"
                "--bounces: how many reflections paths have, instead of as many as the scene says.\n"
                "--mis: direct light by two techniques, a half of the samples each: light sampling and direction sampling.\n"
                "--scramble: tiles are shifted by the seed instead of placed by it: exactly unbiased, and not as good.\n"

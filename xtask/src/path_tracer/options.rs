@@ -62,7 +62,7 @@ pub(super) fn check_table(tracer: &PathTracer, table: &str) -> Result<()> {
     Ok(())
 }
 
-/// However many threads accumulate passes, and in whatever order, the picture is the same; the plain mean's is that of a run without.
+/// However many threads accumulate passes, of however many samples, the picture is the same; the plain mean's is that of a run without.
 pub(super) fn check_accumulation(tracer: &PathTracer) -> Result<()> {
     println!("   accumulation");
     let names = ["mc", "robust", "least_squares", "k_fold"];
