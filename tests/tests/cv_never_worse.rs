@@ -1,7 +1,6 @@
 //! The robust estimator's promises: never noticeably worse than the mean, usually far better.
 //!
-//! Errors are paired: both estimates see the same samples. Seeds are fixed and no one chose the rule looking at them. The
-//! interval of a ratio is the 95 % one of `statistics::rmse_ratio`; what is asserted is its upper end. Among the 75 ratios of
+//! Errors are paired: both estimates see the same samples. Seeds are fixed. The interval of a ratio is the 95 % one of `statistics::rmse_ratio`; what is asserted is its upper end. Among the 75 ratios of
 //! a set a few intervals miss their ratio, but no ratio's true value is near enough to 1.03 for that to decide.
 
 use crate::cv_support::*;

@@ -111,7 +111,7 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
         self.state.add(self.sums.as_mut(), samples)
     }
 
-    /// Adds all samples of another accumulator, fold to fold, as if they had been added here.
+    /// Adds all samples of another accumulator ([`State::merge`]).
     ///
     /// # Errors
     /// [`Error::Mismatch`] if the configurations differ.

@@ -141,7 +141,7 @@ pub(crate) fn outcome<R: Real>(progress: &Progress<R>, samples: u64) -> Outcome<
     for (channel, (correction, variance)) in correction.iter_mut().zip(&mut variance).enumerate() {
         let (total, square) = (get(&progress.total, channel), get(&progress.square, channel));
         *correction = total / n;
-        *variance = (square - total * total / n).max(R::ZERO) / (n * (n - R::ONE));
+        *variance = (square - total * total / n).max(R::ZERO) / (n * (n - R::ONE).max(R::ONE));
     }
     Outcome { correction, variance: (samples > 1).then_some(variance) }
 }

@@ -1,7 +1,7 @@
 //! Cross-fit: each fold is corrected by a fit to the other folds, so that no sample shapes its own correction.
 //!
-//! With folds that are no runs of independent samples but even, what a fold's fit lacks and what the others' have do not
-//! cancel: [`Rule::Fold`] then trusts the mean.
+//! If the samples are even as a whole, what a fold lacks and what the others have does not cancel: [`Rule::Fold`] then
+//! trusts the mean.
 
 use super::batch::Plan;
 use super::config::{Config, Ridge, Solver};

@@ -89,7 +89,7 @@ impl<'a, R: Real> Moments<'a, R> {
             let rhs = self.rhs.get(j * channels + channel).copied().unwrap_or(R::ZERO);
             total += theta(j) * (product - rhs - rhs);
         }
-        total.max(R::ZERO)
+        not_below_zero(total)
     }
 }
 
@@ -305,7 +305,7 @@ impl<'a, R: Real> Centred<'a, R> {
             }
             total += value * (product - rhs - rhs);
         }
-        total.max(R::ZERO)
+        not_below_zero(total)
     }
 
     /// Half the negative gradient of the mean squared residual, (c - G b) / n; without a channel, G b / n.
@@ -336,4 +336,9 @@ pub(crate) fn add_sums<R: Real>(into: &mut [R], other: &[R]) {
     for (into, &other) in into.iter_mut().zip(other) {
         *into += other;
     }
+}
+
+/// What rounding took below zero is zero; what is no number stays so, and is not taken for a perfect fit.
+fn not_below_zero<R: Real>(square: R) -> R {
+    if square < R::ZERO { R::ZERO } else { square }
 }

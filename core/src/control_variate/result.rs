@@ -93,7 +93,10 @@ pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estim
             *error = f64::INFINITY;
             if let (Some(variance), Some(plain)) = (&outcome.variance, &summary.plain_variance) {
                 let plain = get(plain, channel);
-                let variance = if is_usable { get(variance, channel).max(R::ZERO) } else { plain };
+                let variance = get(variance, channel);
+                // Of what is no number all that is known is the mean's.
+                let is_known = is_usable && (variance >= R::ZERO || variance < R::ZERO);
+                let variance = if is_known { variance.max(R::ZERO) } else { plain };
                 *error = unit.length(variance.sqrt());
                 if plain > R::ZERO {
                     // Behind a black box, so that no compiler divides by zero ahead of the decision.
