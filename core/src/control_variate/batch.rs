@@ -167,9 +167,10 @@ fn fit<'a, R: Real>(
     let fitter = Fitter::new(design, config, basis, plan.dual, arena)?;
     let blend = fitter.solve(rule, None, arena)?;
     // Algorithm 1 for least squares: its residuals have mean zero, so the estimate is the fit's constant term.
+    let correction = blend.correction();
     let variance = match rule {
         Rule::LeastSquares(_) if design.n <= design.columns + 1 => result::plain_variance(design),
-        _ => blend.variance(design),
+        _ => blend.variance(design, &correction),
     };
-    Ok(Outcome { correction: blend.correction(), variance })
+    Ok(Outcome { correction, variance })
 }

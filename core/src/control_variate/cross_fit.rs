@@ -75,7 +75,7 @@ struct Problem<'p, 'a, R> {
     ridge: Ridge,
 }
 
-/// What is added to the plain mean, robust; `plain` is the mean and its variance in the sums' units.
+/// What is added to the plain mean, robust, where [`Groups::can_judge`]; `plain` is the mean and its variance in the sums' units.
 pub(crate) fn pooled<R: Real>(
     groups: &Groups<'_, R>,
     penalties: &[R],
@@ -133,11 +133,11 @@ pub(crate) fn pooled<R: Real>(
         set(&mut outcome.correction, channel, total);
         set(&mut variance, channel, sum);
     }
-    outcome.variance = (n > R::ONE).then_some(variance);
+    outcome.variance = Some(variance);
     Ok(outcome)
 }
 
-/// What is added to the plain `mean`, unbiased.
+/// What is added to the plain `mean`, unbiased, where [`Groups::can_judge`].
 pub(crate) fn nested<R: Real>(
     groups: &Groups<'_, R>,
     penalties: &[R],
@@ -206,7 +206,7 @@ pub(crate) fn nested<R: Real>(
         *correction = sum / count - mean;
     }
     let factor = result::press_factor(count);
-    Ok(Outcome { correction, variance: (count > R::ONE).then(|| press.map(|press| press * factor)) })
+    Ok(Outcome { correction, variance: Some(press.map(|press| press * factor)) })
 }
 
 impl<R: Real> Problem<'_, '_, R> {

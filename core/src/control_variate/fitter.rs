@@ -30,7 +30,6 @@ pub(crate) enum Rule {
 /// Fits and their weights.
 pub(crate) struct Blend<R> {
     fits: [RidgeFit<R>; MAX_FITS],
-    centres: [Centre<R>; MAX_FITS],
     /// What each fit adds to the mean.
     corrections: [PerChannel<R>; MAX_FITS],
     weights: [PerChannel<R>; MAX_FITS],
@@ -123,12 +122,10 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
     }
 
     fn weigh(&self, rule: Rule, fits: [RidgeFit<R>; MAX_FITS], used: usize) -> Blend<R> {
-        let n = R::from_usize(self.design.n);
-        let centres = fits.map(|fit| Centre::new(fit.eccentricity, fit.freedom, n));
         let corrections =
             fits.map(|fit| if let Rule::LeastSquares(_) = rule { fit.in_sample } else { fit.leave_one_out });
         let (weights, plain_weight) = Default::default();
-        let mut blend = Blend { fits, centres, corrections, weights, plain_weight };
+        let mut blend = Blend { fits, corrections, weights, plain_weight };
         let plain = plain_press(self.design);
         if !matches!(rule, Rule::Robust | Rule::Fold) {
             let best = if used > 1 { best_of(&fits, &plain) } else { 0 };
@@ -137,6 +134,8 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
             }
             return blend;
         }
+        let n = R::from_usize(self.design.n);
+        let centres = fits.map(|fit| Centre::new(fit.eccentricity, fit.freedom, n));
         let power = n * R::from_f64(trust::SHARPNESS);
         let shares = centres.map(|centre| centre.share());
         for ((correction, fit), share) in blend.corrections.iter_mut().zip(&fits).zip(shares) {
@@ -201,15 +200,15 @@ impl<R: Real> Blend<R> {
         total
     }
 
-    /// The variance of the mixture's estimate: of what it is made of, and of what its parts disagree in.
-    pub(crate) fn variance(&self, design: &Design<'_, R>) -> Option<PerChannel<R>> {
+    /// The variance of the mixture's estimate, which adds `total` to the mean: of what it is made of, and of what its parts
+    /// disagree in.
+    pub(crate) fn variance(&self, design: &Design<'_, R>, total: &PerChannel<R>) -> Option<PerChannel<R>> {
         let n = R::from_usize(design.n);
         let factor = result::press_factor(n);
-        let total = self.correction();
         let plain = plain_press(design);
         let mut variance = PerChannel::default();
         for channel in 0..design.channels {
-            let spread = |value: R| (value - get(&total, channel)) * (value - get(&total, channel));
+            let spread = |value: R| (value - get(total, channel)) * (value - get(total, channel));
             let mut sum = get(&self.plain_weight, channel) * (get(&plain, channel) * factor + spread(R::ZERO));
             let fits = self.fits.iter().zip(&self.corrections).zip(&self.weights);
             for ((fit, correction), weights) in fits {
@@ -222,11 +221,11 @@ impl<R: Real> Blend<R> {
     }
 
     /// What the error of the mixture's coefficients adds to the variance of an estimate that is corrected by them, as a
-    /// factor.
-    pub(crate) fn inflation(&self, channel: usize) -> R {
-        let fits = self.centres.iter().zip(&self.weights);
-        fits.fold(get(&self.plain_weight, channel), |sum, (centre, weights)| {
-            sum + get(weights, channel) * centre.inflation
+    /// factor, of fits to `n` samples.
+    pub(crate) fn inflation(&self, channel: usize, n: R) -> R {
+        let fits = self.fits.iter().zip(&self.weights);
+        fits.fold(get(&self.plain_weight, channel), |sum, (fit, weights)| {
+            sum + get(weights, channel) * Centre::new(fit.eccentricity, fit.freedom, n).inflation
         })
     }
 }

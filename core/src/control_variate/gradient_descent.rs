@@ -123,9 +123,7 @@ pub(crate) fn estimate<R: Real>(
         set(&mut correction, channel, in_sample);
         set(&mut residual, channel, design.residual_square(channel, solution));
     }
-    let variance = variance(residual, design);
-    let mut outcome = Outcome { correction, variance: variance.or_else(|| result::plain_variance(design)) };
-    add_rest(design, solutions, &mut outcome, arena)?;
+    let outcome = outcome(design, solutions, (correction, residual), result::plain_variance(design), arena)?;
     if let Some(warm) = warm {
         for (index, (out, &value)) in warm.iter_mut().zip(solutions.iter()).enumerate() {
             *out = unit(index).map_or(0.0, |unit| result::saturate(unit.length(value)));
@@ -140,7 +138,7 @@ pub(crate) fn estimate<R: Real>(
 /// coefficients add is taken as 2 k times what k columns of a finished fit would: a descent that stops early is wrong in
 /// all of them in the same way. It overstates the error of one that nearly finished, up to 1.8 times on the test
 /// integrands.
-pub(crate) fn variance<R: Real>(residual: PerChannel<R>, objective: &impl Objective<R>) -> Option<PerChannel<R>> {
+fn variance<R: Real>(residual: PerChannel<R>, objective: &impl Objective<R>) -> Option<PerChannel<R>> {
     let freedom = objective.count().checked_sub(objective.columns() + 1).filter(|&freedom| freedom > 0)?;
     let (n, freedom) = (R::from_usize(objective.count()), R::from_usize(freedom));
     let square = objective.means().iter().fold(R::ZERO, |sum, &mean| sum + mean * mean);
@@ -149,22 +147,26 @@ pub(crate) fn variance<R: Real>(residual: PerChannel<R>, objective: &impl Object
     Some(residual.map(|residual| residual * factor))
 }
 
-/// Adds to the variance the square of what a descent to its end would still change.
-pub(crate) fn add_rest<R: Real>(
+/// What a descent to these coefficients, correction and sums of squared residuals found: to the variance, or the plain mean's,
+/// the square is added of what a descent to its end would still change.
+pub(crate) fn outcome<R: Real>(
     objective: &impl Objective<R>,
     coefficients: &[R],
-    outcome: &mut Outcome<R>,
+    (correction, residual): (PerChannel<R>, PerChannel<R>),
+    plain: Option<PerChannel<R>>,
     arena: &mut Arena<'_, R>,
-) -> Result<(), Error> {
+) -> Result<Outcome<R>, Error> {
     let gradient = arena.take(objective.columns())?;
-    let Some(variance) = &mut outcome.variance else { return Ok(()) };
-    for ((channel, b), variance) in rows(coefficients, objective.columns()).enumerate().zip(variance) {
+    let mut variance = variance(residual, objective).or(plain);
+    for ((channel, b), variance) in
+        rows(coefficients, objective.columns()).enumerate().zip(variance.iter_mut().flatten())
+    {
         // The curvature of orthonormal functions is one: the gradient is what the coefficients lack.
         objective.gradient(Some(channel), b, gradient);
         let rest = gradient.iter().zip(objective.means()).fold(R::ZERO, |sum, (&b, &mean)| sum + b * mean);
         *variance += rest * rest;
     }
-    Ok(())
+    Ok(Outcome { correction, variance })
 }
 
 /// Improves the coefficients, a row for each channel, step by step. A descent that diverges, for a step length of the

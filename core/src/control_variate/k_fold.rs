@@ -65,7 +65,7 @@ pub(crate) fn estimate<R: Real>(
             let rule = if config.ridge == Ridge::Default { Rule::Fold } else { Rule::Single(config.ridge) };
             let blend = fitter.solve(rule, Some(coefficients), &mut arena)?;
             for (channel, inflation) in inflation.iter_mut().enumerate().take(channels) {
-                *inflation = blend.inflation(channel);
+                *inflation = blend.inflation(channel, R::from_usize(train.n));
             }
             // Everything meets in the units of all samples, which are the largest.
             for (coefficients, (from, to)) in

@@ -156,11 +156,7 @@ impl<R: Real> State<R> {
             *value = R::ZERO;
         }
         gradient_descent::descend(&centred, &self.config, &self.basis()?, coefficients, arena)?;
-        let (correction, residual) = in_sample(&centred, coefficients);
-        let variance = gradient_descent::variance(residual, &centred);
-        let mut outcome = Outcome { correction, variance: variance.or(total.variance) };
-        gradient_descent::add_rest(&centred, coefficients, &mut outcome, arena)?;
-        Ok(outcome)
+        gradient_descent::outcome(&centred, coefficients, in_sample(&centred, coefficients), total.variance, arena)
     }
 }
 
