@@ -89,6 +89,12 @@ pub trait Real:
         if self < other { self } else { other }
     }
 
+    /// Itself if positive, else one: a divisor that a compiler may use ahead of the decision whether there is one.
+    #[inline(always)]
+    fn or_one(self) -> Self {
+        if self > Self::ZERO { self } else { Self::ONE }
+    }
+
     /// Neither NaN nor infinite.
     #[inline(always)]
     fn is_finite(self) -> bool {

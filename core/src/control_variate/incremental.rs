@@ -8,7 +8,7 @@
 use super::config::{Config, Ridge};
 use super::moments::{self, Centred, Moments};
 use super::per_channel::{PerChannel, add, get, set};
-use super::result::Outcome;
+use super::result::{self, Outcome};
 use super::{ridge, trust};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -141,7 +141,7 @@ pub(crate) fn outcome<R: Real>(progress: &Progress<R>, samples: u64) -> Outcome<
     for (channel, (correction, variance)) in correction.iter_mut().zip(&mut variance).enumerate() {
         let (total, square) = (get(&progress.total, channel), get(&progress.square, channel));
         *correction = total / n;
-        *variance = (square - total * total / n).max(R::ZERO) / (n * (n - R::ONE).max(R::ONE));
+        *variance = (square - total * total / n).max(R::ZERO) / result::mean_divisor(n);
     }
     Outcome { correction, variance: (samples > 1).then_some(variance) }
 }

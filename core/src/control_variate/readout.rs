@@ -205,7 +205,7 @@ impl<R: Real> Totals<R> {
             unit.offset += mean;
             set(&mut result.mean, channel, mean);
             let square = Real::max(get::<R>(&squares, channel) - total * mean, R::ZERO);
-            set(&mut variance, channel, square / (n * (n - R::ONE).max(R::ONE)));
+            set(&mut variance, channel, square / result::mean_divisor(n));
         }
         result.variance = (state.samples > 1).then_some(variance);
         Ok(result)

@@ -177,7 +177,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
             // f'f - 2 b'r + b'G b
             let cross: f64 = solution.iter().zip(&rhs).map(|(b, r)| b * r).sum();
             let residual = self.square[channel] + quadratic(sums, &solution) - cross - cross;
-            let plain = (self.square[channel] - total * total / n).max(0.0) / (n * (n - 1.0).max(1.0));
+            let plain = (self.square[channel] - total * total / n).max(0.0) / result::mean_divisor(n);
             set(&mut plain_variance, channel, plain);
             set(&mut residuals, channel, residual.max(0.0));
         }

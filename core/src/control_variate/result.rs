@@ -19,12 +19,19 @@ pub(crate) struct Outcome<R> {
 /// The variance of the plain mean, None for one sample.
 pub(crate) fn plain_variance<R: Real>(design: &Design<'_, R>) -> Option<PerChannel<R>> {
     let n = R::from_usize(design.n);
-    let factor = R::ONE / (n * (n - R::ONE).max(R::ONE));
+    let factor = R::ONE / mean_divisor(n);
     let mut variance = PerChannel::default();
     for (channel, variance) in variance.iter_mut().enumerate().take(design.channels) {
         *variance = design.sum_of_squares(channel) * factor;
     }
     (design.n > 1).then_some(variance)
+}
+
+/// What a sum of squared deviations of `n` values is divided by to be the variance of their mean; for one, which has none,
+/// still no zero.
+#[inline(always)]
+pub(crate) fn mean_divisor<R: Real>(n: R) -> R {
+    n * (n - R::ONE).max(R::ONE)
 }
 
 /// What a sum of squared leave-one-out residuals of `n` samples, at least two, is multiplied by to be a variance: exact for

@@ -14,6 +14,7 @@
 
 use super::MAX_TECHNIQUES;
 use crate::Error;
+use crate::real::Real;
 
 /// The exponent that Veach recommends for [`power`].
 pub const DEFAULT_BETA: f32 = 2.0;
@@ -135,7 +136,7 @@ impl Shares {
             *share = f64::from(n) * density;
             largest = largest.max(*share);
         }
-        let divisor = if largest > 0.0 { largest } else { 1.0 };
+        let divisor = largest.or_one();
         share.iter_mut().take(techniques).for_each(|share| *share /= divisor);
         let own = share.get(technique).copied().unwrap_or(0.0);
         Ok(Shares { share, techniques, own })
@@ -148,7 +149,6 @@ impl Shares {
     /// The part that the technique's own share has of the sum over all, once `f` has been applied to each.
     fn weight(&self, f: impl Fn(f64) -> f64) -> f32 {
         let sum: f64 = self.all().map(&f).sum();
-        let divisor = if sum > 0.0 { sum } else { 1.0 };
-        (f(self.own) / divisor) as f32
+        (f(self.own) / sum.or_one()) as f32
     }
 }

@@ -118,7 +118,7 @@ impl<R: Real> Spreads<R> {
     #[inline(always)]
     pub(super) fn gain(&self, weights: &Weights<R>, channel: usize) -> R {
         let plain = get(&self.sums[0], channel);
-        let gain = self.mixed(weights, channel) / if plain > R::ZERO { plain } else { R::ONE };
+        let gain = self.mixed(weights, channel) / plain.or_one();
         if plain > R::ZERO && gain.is_finite() { gain } else { R::ONE }
     }
 

@@ -248,8 +248,7 @@ impl Problem<'_> {
         let at = |sums: &[R], index: usize| sums.get(index).map_or(0.0, |value| value.to_f64());
         let [weight, error_weight, gain] = [0, 1, 2].map(|index| at(common, index));
         // Without a weight all sums are zero.
-        let inverse_of = |weight: f64| 1.0 / if weight > 0.0 { weight } else { 1.0 };
-        let (inverse, error_inverse) = (inverse_of(weight), inverse_of(error_weight));
+        let (inverse, error_inverse) = (1.0 / weight.or_one(), 1.0 / error_weight.or_one());
         estimate.gain = if weight > 0.0 { (gain * inverse) as f32 } else { 1.0 };
         let outputs = estimate.mean.iter_mut().zip(&mut estimate.std_error);
         for (channel, (mean, error)) in outputs.enumerate().take(self.config.channels) {
