@@ -53,7 +53,7 @@ mod linalg;
 pub mod minibatch;
 #[cfg(feature = "mis")]
 pub mod mis;
-#[cfg(feature = "control-variate")]
+#[cfg(any(feature = "control-variate", feature = "mis"))]
 pub mod real;
 #[cfg(feature = "control-variate")]
 pub mod recommend;

@@ -15,6 +15,7 @@ mod sealed {
 /// target returns the same bits.
 ///
 /// ```
+/// # #[cfg(feature = "control-variate")] {
 /// use noisefloor::control_variate::{Config, workspace_len};
 ///
 /// // The type of the workspace decides in which precision an estimate is computed.
@@ -23,6 +24,7 @@ mod sealed {
 /// # assert!(!narrow.is_empty() && !wide.is_empty());
 /// # narrow.clear();
 /// # wide.clear();
+/// # }
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
 pub trait Real:
