@@ -18,7 +18,7 @@
  *    object; one at a time may write it.
  *  - Arithmetic: IEEE 754, rounding to nearest. Where the host flushes subnormal numbers to zero, values above 1e-30
  *    give the same bits. Built for x86-64, nothing raises an invalid operation, a division by zero or an overflow for
- *    zeros and for values of magnitude 1e-15 to 1e15: hosts may trap these.
+ *    zeros and for values of magnitude 1e-15 to 1e15 (control functions in float: 1e-8 to 1e8): hosts may trap these.
  *  - Configurations are plain numbers; zero in an optional field means the documented default (of nf_cv_config all but
  *    dims, order and channels are optional), an unknown value is NF_ERR_RANGE.
  *  - NF_ERR_RANGE does not say which argument it means: a function's comment lists those that it can mean, with their

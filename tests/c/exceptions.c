@@ -65,7 +65,7 @@ static void control_variates(void)
     for (turn = 0; turn < 6000; ++turn) {
         const int kind = turn % KINDS;
         nf_cv_config config = make_config(1 + below(5), below(4), 1 + below(4), (uint32_t)turn / KINDS % 6);
-        const float integral = 0.5f;
+        float size = 1.0f, integral;
         const size_t n = 1 + below(turn % 2 ? 80 : 6);
         nf_estimate out;
         nf_cv_accumulator *accumulator = NULL, *other = NULL;
@@ -77,11 +77,16 @@ static void control_variates(void)
         config.ridge = below(4) == 0 ? NF_RIDGE_AUTO : 0.0f;
         config.slices = config.dims > 1 && below(4) == 0 ? 3 : 0;
         config.controls = below(4) == 0;
+        if (below(2)) { /* squares of squares must fit */
+            const float digits = config.precision == NF_PRECISION_F32 ? 8.0f : 15.0f;
+            size = powf(10.0f, digits * (2.0f * nf_rng_uniform(&rng) - 1.0f));
+        }
+        integral = 0.5f * size;
         config.optimizer = below(2) ? NF_OPTIMIZER_ADAM : NF_OPTIMIZER_MOMENTUM;
         fill_points(u, n * config.dims);
         fill_values(kind, u, config.dims, f, n, config.channels);
         for (i = 0; i < n; ++i)
-            controls[i] = u[i * config.dims];
+            controls[i] = size * u[i * config.dims];
         work = memory_new(nf_cv_workspace_size(&config, n));
         feclearexcept(FE_ALL_EXCEPT);
         nf_cv_estimate_with_controls(&config, u, f, controls, &integral, n, work.start, work.bytes, &out);

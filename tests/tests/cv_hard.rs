@@ -511,3 +511,35 @@ fn extreme_control_functions() {
         }
     }
 }
+
+/// The unit of a control function is its maker's: estimates and errors do not depend on it.
+#[test]
+fn units_of_control_functions_do_not_matter() {
+    let mut rng = SplitMix64::new(29);
+    let u = points(40, 2, &mut rng);
+    let f: Vec<f32> = u.chunks(2).map(|u| 3.0 * u[0] * u[0] * u[0] + u[1] + 0.2 * (9.0 * u[0] * u[1]).sin()).collect();
+    let estimates = |size: f32, config: &Config| {
+        let h: Vec<f32> = u.chunks(2).map(|u| size * u[0] * u[0] * u[0]).collect();
+        let samples = Samples { u: &u, f: &f, controls: &h, control_integrals: &[0.25 * size] };
+        let mut all = vec![batch_of::<f64>(config, samples).unwrap()];
+        if config.estimator != Estimator::LeaveOneOut {
+            let mut accumulator = accumulator::<f64>(config);
+            accumulator.add(samples).unwrap();
+            all.push(finish(config, &accumulator).unwrap());
+        }
+        all
+    };
+    for estimator in ESTIMATORS {
+        for optimizer in [Optimizer::Adam, Optimizer::Momentum, Optimizer::Plain] {
+            let config = Config { controls: 1, optimizer, ..config(2, 1, estimator) };
+            let expected = estimates(1.0, &config);
+            for size in [1e-6, 1e-3, 1e3, 1e6] {
+                for (estimate, expected) in estimates(size, &config).iter().zip(&expected) {
+                    let what = format!("{estimator:?} {optimizer:?} {size}: {estimate:?} instead of {expected:?}");
+                    assert!((estimate.mean[0] - expected.mean[0]).abs() < 1e-3 * expected.std_error[0], "{what}");
+                    assert!((estimate.std_error[0] / expected.std_error[0] - 1.0).abs() < 1e-3, "{what}");
+                }
+            }
+        }
+    }
+}

@@ -5,13 +5,14 @@
 //! - [`nested`], K-fold: each fold is corrected by a fit to the others, and weighted by fits that know neither that fold
 //!   nor the one that judges them. Exactly unbiased.
 
-use super::config::Ridge;
+use super::config::{Config, Ridge};
 use super::moments::{self, Centred, Moments};
 use super::per_channel::{PerChannel, add, get, set};
 use super::result::{self, Outcome};
 use super::ridge::{self, MIXED};
 use super::trust::{self, Centre};
 use crate::arena::Arena;
+use crate::basis::Basis;
 use crate::error::Error;
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
@@ -47,9 +48,9 @@ impl<'a, R: Real> Groups<'a, R> {
         (0..self.folds).filter_map(move |fold| Some((fold, filled(fold)?)))
     }
 
-    /// Whether there are two folds, one to fit to and one to judge by.
-    pub(crate) fn can_judge(&self) -> bool {
-        self.each().nth(1).is_some()
+    /// Whether at least so many folds hold samples.
+    pub(crate) fn has(&self, folds: usize) -> bool {
+        self.each().count() >= folds
     }
 
     /// Writes the sums of all folds but those left out; None for a buffer that is too short.
@@ -70,19 +71,22 @@ impl<'a, R: Real> Groups<'a, R> {
 /// What both estimates work with.
 struct Problem<'p, 'a, R> {
     groups: &'p Groups<'a, R>,
-    penalties: &'p [R],
+    config: &'p Config,
+    basis: &'p Basis,
     strengths: &'p [f64],
-    ridge: Ridge,
+    /// Whether the one strength was asked for, so that nothing is weighed.
+    is_fixed: bool,
 }
 
-/// What is added to the plain mean, robust, where [`Groups::can_judge`]; `plain` is the mean and its variance in the sums' units.
+/// What is added to the plain mean, robust, of two folds or more; `plain` is the mean and its variance in the sums' units.
 pub(crate) fn pooled<R: Real>(
     groups: &Groups<'_, R>,
-    penalties: &[R],
+    config: &Config,
+    basis: &Basis,
     plain: (&PerChannel<R>, &PerChannel<R>),
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
-    let problem = Problem { groups, penalties, strengths: &MIXED, ridge: Ridge::Default };
+    let problem = Problem { groups, config, basis, strengths: &MIXED, is_fixed: false };
     let channels = groups.channels;
     let coefficients = arena.take(CANDIDATES * groups.columns * channels)?;
     let train = arena.take(moments::len(groups.columns + 1, channels))?;
@@ -137,19 +141,19 @@ pub(crate) fn pooled<R: Real>(
     Ok(outcome)
 }
 
-/// What is added to the plain `mean`, unbiased, where [`Groups::can_judge`].
+/// What is added to the plain `mean`, unbiased, of two folds, or three or more.
 pub(crate) fn nested<R: Real>(
     groups: &Groups<'_, R>,
-    penalties: &[R],
-    ridge: Ridge,
+    config: &Config,
+    basis: &Basis,
     mean: &PerChannel<R>,
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
     // With two folds no third is left to judge a fit: one ridge it is.
-    let ridge = if groups.folds < 3 { Ridge::Fixed(ridge::single::<R>(ridge) as f32) } else { ridge };
-    let fixed = [ridge::single::<R>(ridge)];
-    let strengths: &[f64] = if matches!(ridge, Ridge::Default | Ridge::Auto) { &MIXED } else { &fixed };
-    let problem = Problem { groups, penalties, strengths, ridge };
+    let is_fixed = groups.folds < 3 || matches!(config.ridge, Ridge::Fixed(_));
+    let fixed = [ridge::single::<R>(config.ridge)];
+    let strengths: &[f64] = if is_fixed { &fixed } else { &MIXED };
+    let problem = Problem { groups, config, basis, strengths, is_fixed };
     let channels = groups.channels;
     let coefficients = arena.take(CANDIDATES * groups.columns * channels)?;
     let train = arena.take(moments::len(groups.columns + 1, channels))?;
@@ -178,7 +182,7 @@ pub(crate) fn nested<R: Real>(
                 let (mut share, mut factor) = (R::ONE, R::ONE);
                 if let Some(centre) = centre {
                     factor = centre.inflation;
-                    share = if matches!(ridge, Ridge::Fixed(_)) { R::ONE } else { centre.independence() };
+                    share = if is_fixed { R::ONE } else { centre.independence() };
                 }
                 let kept = *weight * share;
                 inflation += *weight - kept + kept * factor;
@@ -224,11 +228,15 @@ impl<R: Real> Problem<'_, '_, R> {
             *value = R::ZERO;
         }
         let (columns, channels) = (self.groups.columns, self.groups.channels);
+        let penalties = arena.take(columns)?;
         if let Some(centred) = Centred::new(train, columns, channels, &mut arena)? {
+            // From the training set alone, as the coefficients.
+            let mean_square = |j| train.column_square(j) / train.count();
+            ridge::penalties(self.config, self.basis, mean_square, penalties);
             let candidates = self.strengths.iter().zip(rows_mut(coefficients, columns * channels)).zip(&mut centres);
             for ((&strength, coefficients), centre) in candidates {
                 let strength = R::from_f64(strength);
-                *centre = centred.solve(self.penalties, strength, coefficients, true, &mut arena.scratch())?;
+                *centre = centred.solve(penalties, strength, coefficients, true, &mut arena.scratch())?;
             }
         }
         Ok(centres)
@@ -278,7 +286,7 @@ impl<R: Real> Judge<R> {
     /// A channel's weights of the plain mean and of the candidates; a ridge of the caller's choice gets all.
     fn weigh(&self, channel: usize, problem: &Problem<'_, '_, R>, discounts: &[R; CANDIDATES]) -> (R, [R; CANDIDATES]) {
         let mut weights = [R::ZERO; CANDIDATES];
-        if matches!(problem.ridge, Ridge::Fixed(_)) {
+        if problem.is_fixed {
             weights[0] = R::ONE;
             return (R::ZERO, weights);
         }

@@ -10,6 +10,9 @@ use crate::linalg::row_mut;
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 
+/// The size of a control function about its mean, in epsilons of its size about zero, that is rounding noise.
+const NOISE: f64 = 64.0;
+
 /// The design matrix and the values, eight samples to a panel. Unused lanes of the last panel are zero.
 pub(crate) struct Design<'a, R> {
     /// Samples.
@@ -120,6 +123,9 @@ impl<'a, R: Real> Design<'a, R> {
         clear_unused(values, channels, n);
         let mut design = Self { n, columns, channels, panels, values, column_means, units };
         design.centre(centre);
+        if centre {
+            design.clear_constant(reader.control_integrals());
+        }
         Ok(design)
     }
 
@@ -167,10 +173,35 @@ impl<'a, R: Real> Design<'a, R> {
         clear_unused(self.values, self.channels, self.n);
     }
 
+    /// Zeroes control functions that hardly move about their means: what is left is rounding noise, and says nothing about
+    /// the values.
+    fn clear_constant(&mut self, integrals: &[f32]) {
+        for (j, &integral) in integrals.iter().enumerate().take(self.columns) {
+            let mean = self.column_means.get(j).copied().unwrap_or(R::ZERO).abs();
+            let noise = R::from_f64(NOISE) * R::EPSILON * (mean + R::from_f32(integral).abs());
+            if (self.column_square(j) / R::from_usize(self.n)).sqrt() <= noise {
+                for column in rows_mut(self.panels, self.columns).filter_map(|panel| panel.get_mut(j)) {
+                    *column = [R::ZERO; LANES];
+                }
+            }
+        }
+    }
+
     /// The panels one by one: columns and values of eight samples.
     #[inline(always)]
     pub(crate) fn each_panel(&self) -> impl Iterator<Item = (&[Lanes<R>], &[Lanes<R>])> {
         rows(self.panels, self.columns).zip(rows(self.values, self.channels))
+    }
+
+    /// The sum of squares of a column.
+    pub(crate) fn column_square(&self, column: usize) -> R {
+        let mut total = [R::ZERO; LANES];
+        for panel in rows(self.panels, self.columns) {
+            if let Some(values) = panel.get(column) {
+                lanes::add_product(&mut total, values, values);
+            }
+        }
+        lanes::sum(&total)
     }
 
     /// The sum of squares of a channel.

@@ -1,9 +1,9 @@
 //! Which samples correct which.
 //!
-//! Folds are runs of samples in the order they came in, as long as can be: every aligned run of 2^m points of a Sobol
-//! sequence, in its own or in Gray code order, and of a tile is as even as the whole. Of folds that took every k-th
-//! sample each would be one side of the cube, and what corrects it a fit to the other sides. Independent samples are the
-//! same in every order.
+//! Folds are runs of samples in the order they came in: an aligned run of 2^m points of a Sobol sequence, in its own or in
+//! Gray code order, and of a tile is as even as the whole, and folds of other lengths are nearly. Of folds that took every
+//! k-th sample each would be one side of the cube, and what corrects it a fit to the other sides. Independent samples are
+//! the same in every order.
 
 /// One of the folds of `n` samples that are all there: a run, all of the same length but for one sample.
 #[derive(Clone, Copy)]

@@ -16,7 +16,7 @@ use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::real::Real;
-use crate::rows::{rows, rows_mut};
+use crate::rows::rows_mut;
 
 /// Steps, if the caller names none: half as many as samples, within these bounds. Stopping early shrinks the fit as a
 /// ridge does, which few samples need.
@@ -32,7 +32,7 @@ const POWER_ROUNDS: usize = 12;
 
 /// Numbers that a descent takes from its arena, its solution included.
 pub(crate) fn size(columns: usize, channels: usize) -> usize {
-    columns * (channels + 5)
+    columns * (channels + 6)
 }
 
 /// Curvatures and gradients below this, in units of the functions' and the values' variance, are taken for rounding noise of
@@ -43,8 +43,12 @@ const FLOOR: [f64; 2] = [1e-6, 1e-2];
 pub(crate) trait Objective<R> {
     /// Half the negative gradient of the mean squared residual, P'(f - P b) / n; without a channel, P'P b / n.
     fn gradient(&self, channel: Option<usize>, b: &[R], out: &mut [R]);
-    /// The values' standard deviation.
-    fn deviation(&self, channel: usize) -> R;
+    /// The sum of squared values.
+    fn square(&self, channel: usize) -> R;
+    /// The sum of squared residuals, |f - P b|^2.
+    fn residual_square(&self, channel: usize, b: &[R]) -> R;
+    /// The sum of squares of a function.
+    fn column_square(&self, column: usize) -> R;
     /// The number of functions.
     fn columns(&self) -> usize;
     /// The number of samples.
@@ -115,15 +119,7 @@ pub(crate) fn estimate<R: Real>(
             *out = unit(index).map_or(R::ZERO, |unit| unit.stored_length(value));
         }
     }
-    descend(design, config, basis, solutions, arena)?;
-    let mut residual = PerChannel::default();
-    let mut correction = PerChannel::default();
-    for (channel, solution) in rows(solutions, columns).enumerate() {
-        let in_sample = solution.iter().zip(design.column_means.iter()).fold(R::ZERO, |sum, (&b, &m)| sum - b * m);
-        set(&mut correction, channel, in_sample);
-        set(&mut residual, channel, design.residual_square(channel, solution));
-    }
-    let outcome = outcome(design, solutions, (correction, residual), result::plain_variance(design), arena)?;
+    let outcome = descend(design, config, basis, solutions, result::plain_variance(design), arena)?;
     if let Some(warm) = warm {
         for (index, (out, &value)) in warm.iter_mut().zip(solutions.iter()).enumerate() {
             *out = unit(index).map_or(0.0, |unit| result::saturate(unit.length(value)));
@@ -132,44 +128,8 @@ pub(crate) fn estimate<R: Real>(
     Ok(outcome)
 }
 
-/// The variance of what descended to residuals of such sums of squares; None if no residual is left over to tell.
-///
-/// As for least squares ([`result::residual_variance`]), with functions that the samples see as orthonormal. What uncertain
-/// coefficients add is taken as 2 k times what k columns of a finished fit would: a descent that stops early is wrong in
-/// all of them in the same way. It overstates the error of one that nearly finished, up to 1.8 times on the test
-/// integrands.
-fn variance<R: Real>(residual: PerChannel<R>, objective: &impl Objective<R>) -> Option<PerChannel<R>> {
-    let freedom = objective.count().checked_sub(objective.columns() + 1).filter(|&freedom| freedom > 0)?;
-    let (n, freedom) = (R::from_usize(objective.count()), R::from_usize(freedom));
-    let square = objective.means().iter().fold(R::ZERO, |sum, &mean| sum + mean * mean);
-    let uncertain = R::ONE + R::from_usize(2 * objective.columns()) * square;
-    let factor = uncertain * (n - R::ONE) / (freedom * freedom * freedom);
-    Some(residual.map(|residual| residual * factor))
-}
-
-/// What a descent to these coefficients, correction and sums of squared residuals found: to the variance, or the plain mean's,
-/// the square is added of what a descent to its end would still change.
-pub(crate) fn outcome<R: Real>(
-    objective: &impl Objective<R>,
-    coefficients: &[R],
-    (correction, residual): (PerChannel<R>, PerChannel<R>),
-    plain: Option<PerChannel<R>>,
-    arena: &mut Arena<'_, R>,
-) -> Result<Outcome<R>, Error> {
-    let gradient = arena.take(objective.columns())?;
-    let mut variance = variance(residual, objective).or(plain);
-    for ((channel, b), variance) in
-        rows(coefficients, objective.columns()).enumerate().zip(variance.iter_mut().flatten())
-    {
-        // The curvature of orthonormal functions is one: the gradient is what the coefficients lack.
-        objective.gradient(Some(channel), b, gradient);
-        let rest = gradient.iter().zip(objective.means()).fold(R::ZERO, |sum, (&b, &mean)| sum + b * mean);
-        *variance += rest * rest;
-    }
-    Ok(Outcome { correction, variance })
-}
-
-/// Improves the coefficients, a row for each channel, step by step. A descent that diverges, for a step length of the
+/// Improves the coefficients, a row for each channel, step by step, and says what they make of the plain mean and of its
+/// variance. A descent that ends farther from the values than it would without any function, as for a step length of the
 /// caller's, ends at zero: the plain mean.
 #[inline(never)]
 pub(crate) fn descend<R: Real>(
@@ -177,21 +137,27 @@ pub(crate) fn descend<R: Real>(
     config: &Config,
     basis: &Basis,
     coefficients: &mut [R],
+    plain: Option<PerChannel<R>>,
     arena: &mut Arena<'_, R>,
-) -> Result<(), Error> {
+) -> Result<Outcome<R>, Error> {
     let columns = objective.columns();
     let (gradient, first, second) = (arena.take(columns)?, arena.take(columns)?, arena.take(columns)?);
-    let scales = arena.take(columns)?;
-    for value in scales.iter_mut() {
-        *value = R::ONE;
+    let (scales, units) = (arena.take(columns)?, arena.take(columns)?);
+    control_units(objective, config.controls, units);
+    for (scale, &unit) in scales.iter_mut().zip(units.iter()) {
+        *scale = unit;
     }
     basis.scales(scales.get_mut(config.controls..).unwrap_or(&mut []));
     let curvature = match config.optimizer {
         Optimizer::Adam => R::ONE,
         Optimizer::Momentum | Optimizer::Plain => largest_curvature(objective, scales, first, gradient, second),
     };
+    let n = R::from_usize(objective.count());
+    let variance_factor = variance_factor(objective, units);
+    let mut outcome = Outcome { correction: PerChannel::default(), variance: plain };
     for (channel, solution) in rows_mut(coefficients, columns).enumerate() {
-        let descent = Descent::new(config, objective.deviation(channel), curvature);
+        let square = objective.square(channel);
+        let descent = Descent::new(config, (square / n).sqrt(), curvature);
         for value in first.iter_mut().chain(second.iter_mut()) {
             *value = R::ZERO;
         }
@@ -202,15 +168,57 @@ pub(crate) fn descend<R: Real>(
         let mut bias = [R::ONE; 2];
         for _ in 0..steps {
             objective.gradient(Some(channel), solution, gradient);
-            descent.step(solution, gradient, scales, first, second, &mut bias);
+            descent.step(solution, gradient, (scales, units), first, second, &mut bias);
         }
-        if !solution.iter().all(|value| value.is_finite()) {
+        let residual = objective.residual_square(channel, solution);
+        let is_fit = residual <= square;
+        if !is_fit {
             for value in solution {
                 *value = R::ZERO;
             }
+            continue;
+        }
+        objective.gradient(Some(channel), solution, gradient);
+        let (mut correction, mut rest) = (R::ZERO, R::ZERO);
+        for (((&b, &g), &mean), &unit) in solution.iter().zip(gradient.iter()).zip(objective.means()).zip(units.iter()) {
+            correction -= b * mean;
+            // The curvature of orthonormal functions is one: the gradient is what the coefficients lack.
+            rest += (g * unit) * (unit * mean);
+        }
+        set(&mut outcome.correction, channel, correction);
+        if let Some(variance) = &mut outcome.variance {
+            let own = variance_factor.map_or(get(variance, channel), |factor| residual * factor);
+            // The square of what a descent to its end would still change.
+            set(variance, channel, own + rest * rest);
         }
     }
-    Ok(())
+    Ok(outcome)
+}
+
+/// What each coefficient is measured in: one for the basis, and one over a control function's size, whose unit is its
+/// maker's.
+fn control_units<R: Real>(objective: &impl Objective<R>, controls: usize, units: &mut [R]) {
+    let n = R::from_usize(objective.count());
+    for (column, unit) in units.iter_mut().enumerate() {
+                let square = if column < controls { objective.column_square(column) } else { n };
+        *unit = R::ONE / (square / n).sqrt().or_one();
+    }
+}
+
+/// What a sum of squared residuals of a descent is multiplied by to be a variance; None if no residual is left over to tell.
+///
+/// As for least squares ([`result::residual_variance`]), with functions that the samples see as orthonormal, and of the
+/// degrees of freedom one power less. What uncertain coefficients add is taken as 2 k times what k columns of a finished fit
+/// would: a descent that stops early is wrong in all of them in the same way. It overstates the error of one that nearly
+/// finished, up to 1.8 times on the test integrands.
+fn variance_factor<R: Real>(objective: &impl Objective<R>, units: &[R]) -> Option<R> {
+    let freedom = objective.count().checked_sub(objective.columns() + 1).filter(|&freedom| freedom > 0)?;
+    let (n, freedom) = (R::from_usize(objective.count()), R::from_usize(freedom));
+    let means = objective.means().iter().zip(units).map(|(&mean, &unit)| mean * unit);
+    let square = means.fold(R::ZERO, |sum, mean| sum + mean * mean);
+    let uncertain = R::ONE + R::from_usize(2 * objective.columns()) * square;
+    let all = n - R::ONE;
+    Some(uncertain * all * all / (n * freedom * freedom * freedom))
 }
 
 /// The step rule and its constants.
@@ -240,13 +248,13 @@ impl<R: Real> Descent<R> {
         Self { optimizer: config.optimizer, rate, momentum, smallest: floor::<R>() * deviation }
     }
 
-    /// One step along the negative gradient; `bias` holds the powers of Adam's decays so far.
+    /// One step along the negative gradient, of lengths `scales` for gradients in `units`; `bias` holds the powers of Adam's decays so far.
     #[inline(always)]
     fn step(
         &self,
         solution: &mut [R],
         gradient: &[R],
-        scales: &[R],
+        (scales, units): (&[R], &[R]),
         first: &mut [R],
         second: &mut [R],
         bias: &mut [R; 2],
@@ -262,7 +270,9 @@ impl<R: Real> Descent<R> {
         bias[0] *= self.momentum;
         bias[1] *= decay;
         let unbias = [R::ONE / (R::ONE - bias[0]), R::ONE / (R::ONE - bias[1])];
-        for ((((b, &g), m), v), &scale) in solution.iter_mut().zip(gradient).zip(first).zip(second).zip(scales) {
+        let columns = solution.iter_mut().zip(gradient).zip(first).zip(second).zip(scales).zip(units);
+        for (((((b, &g), m), v), &scale), &unit) in columns {
+            let g = g * unit;
             *m = self.momentum * *m + (R::ONE - self.momentum) * g;
             *v = decay * *v + (R::ONE - decay) * g * g;
             let length = (*v * unbias[1]).sqrt() + self.smallest;
@@ -294,8 +304,16 @@ impl<R: Real> Objective<R> for Design<'_, R> {
         }
     }
 
-    fn deviation(&self, channel: usize) -> R {
-        (self.sum_of_squares(channel) / R::from_usize(self.n)).sqrt()
+    fn square(&self, channel: usize) -> R {
+        self.sum_of_squares(channel)
+    }
+
+    fn residual_square(&self, channel: usize, b: &[R]) -> R {
+        Design::residual_square(self, channel, b)
+    }
+
+    fn column_square(&self, column: usize) -> R {
+        Design::column_square(self, column)
     }
 
     fn columns(&self) -> usize {
@@ -316,8 +334,16 @@ impl<R: Real> Objective<R> for Centred<'_, R> {
         self.half_gradient(channel, b, out);
     }
 
-    fn deviation(&self, channel: usize) -> R {
-        (get(&self.squares, channel) / self.count).sqrt()
+    fn square(&self, channel: usize) -> R {
+        get(&self.squares, channel)
+    }
+
+    fn residual_square(&self, channel: usize, b: &[R]) -> R {
+        Centred::residual_square(self, channel, b)
+    }
+
+    fn column_square(&self, column: usize) -> R {
+        self.column_square(column)
     }
 
     fn columns(&self) -> usize {

@@ -288,6 +288,11 @@ impl<'a, R: Real> Centred<'a, R> {
         Ok(Some(Centre::new(eccentricity * self.count, freedom, self.count)))
     }
 
+    /// The sum of squares of a column about its mean.
+    pub(crate) fn column_square(&self, column: usize) -> R {
+        row(self.gram, column).last().copied().unwrap_or(R::ZERO)
+    }
+
     /// The intercept that goes with coefficients.
     pub(crate) fn intercept(&self, channel: usize, b: &[R]) -> R {
         let mean = get(&self.value_means, channel);

@@ -1,7 +1,6 @@
 //! The estimates that a streaming estimate's sums hold.
 
-use super::batch;
-use super::config::{Color, Config, Estimate, Estimator, Solver};
+use super::config::{Color, Config, Estimate, Estimator, Ridge, Solver};
 use super::cross_fit;
 use super::design::Units;
 use super::incremental;
@@ -45,7 +44,7 @@ impl<R: Real> State<R> {
         }
         let mut arena = Arena::new(workspace);
         let total = Totals::new(self, sums)?;
-        let outcome = if batch::is_plain(&state.config, state.columns) {
+        let outcome = if state.columns == 0 {
             total.plain()
         } else {
             match state.config.estimator {
@@ -111,17 +110,16 @@ impl<R: Real> State<R> {
     }
 
     fn cross_fit(&self, sums: &[R], total: &Totals<R>, arena: &mut Arena<'_, R>) -> Result<Outcome<R>, Error> {
-        let state = self;
-        let first = self.moments(sums, 0).ok_or(Error::Memory)?;
-        let penalties = self.penalties(&first, arena)?;
-        let groups =
-            cross_fit::Groups { sums, folds: state.groups(), columns: state.columns, channels: state.channels };
-        // With one sample there is no spread to weigh fits by, with one fold no other sample to fit.
-        let Some(variance) = total.variance.as_ref().filter(|_| groups.can_judge()) else { return Ok(total.plain()) };
-        if state.config.estimator == Estimator::KFold {
-            cross_fit::nested(&groups, penalties, state.config.ridge, &total.mean, arena)
+        let (config, basis) = (&self.config, self.basis()?);
+        let groups = cross_fit::Groups { sums, folds: self.groups(), columns: self.columns, channels: self.channels };
+        let k_fold = config.estimator == Estimator::KFold;
+        // One fold to fit to and one to judge by, and for K-fold one to correct.
+        let needed = if k_fold && !matches!(config.ridge, Ridge::Fixed(_)) { groups.folds.min(3) } else { 2 };
+        let Some(variance) = total.variance.as_ref().filter(|_| groups.has(needed)) else { return Ok(total.plain()) };
+        if k_fold {
+            cross_fit::nested(&groups, config, &basis, &total.mean, arena)
         } else {
-            cross_fit::pooled(&groups, penalties, (&total.mean, variance), arena)
+            cross_fit::pooled(&groups, config, &basis, (&total.mean, variance), arena)
         }
     }
 
@@ -155,8 +153,7 @@ impl<R: Real> State<R> {
         for value in coefficients.iter_mut() {
             *value = R::ZERO;
         }
-        gradient_descent::descend(&centred, &self.config, &self.basis()?, coefficients, arena)?;
-        gradient_descent::outcome(&centred, coefficients, in_sample(&centred, coefficients), total.variance, arena)
+        gradient_descent::descend(&centred, &self.config, &self.basis()?, coefficients, total.variance, arena)
     }
 }
 

@@ -44,8 +44,8 @@ pub(crate) fn press_factor<R: Real>(n: R) -> R {
 /// The variance of the constant term of a fit of so many columns to `n` samples, from the sum of its squared residuals and
 /// its `eccentricity` ([`Centre`]); None if no residual is left over to tell.
 ///
-/// The square of the degrees of freedom, not times n: the residuals of a fit are smaller than those of samples that it has
-/// not seen, by as much again.
+/// For no column that of the plain mean. With f = n - 1 - k degrees of freedom left, residuals of samples that a fit has not
+/// seen are (n - 1) / f times as long, and, as measured on integrands that no fit follows, so is its own error once more.
 pub(crate) fn residual_variance<R: Real>(
     residual: PerChannel<R>,
     columns: usize,
@@ -59,7 +59,7 @@ pub(crate) fn residual_variance<R: Real>(
         return None;
     }
     let (all, square) = (n - R::ONE, freedom * freedom);
-    let factor = Centre::new(eccentricity, columns, n).inflation * all * all / (square * square);
+    let factor = Centre::new(eccentricity, columns, n).inflation * all * all * all / (n * square * square);
     Some(residual.map(|residual| residual * factor))
 }
 

@@ -140,6 +140,11 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// The exact integral of each control function.
+    pub(crate) fn control_integrals(&self) -> &'a [f32] {
+        self.samples.control_integrals
+    }
+
     /// How many values of a sample are regressed.
     #[inline(always)]
     pub(crate) fn channels(&self) -> usize {

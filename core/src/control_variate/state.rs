@@ -1,5 +1,6 @@
 //! What a streaming estimate knows besides its sums, and how samples get into them.
 
+use super::batch;
 use super::config::{Color, Config, Estimator, Ridge, Solver};
 use super::cross_fit;
 use super::design::Units;
@@ -59,7 +60,10 @@ impl<R: Real> State<R> {
     /// ```
     pub fn new(config: &Config) -> Result<Self, Error> {
         let shape = config.checked_shape()?;
-        let columns = config.controls + shape.columns();
+        let mut columns = config.controls + shape.columns();
+        if batch::is_plain(config, columns) {
+            columns = 0;
+        }
         let square_root = config.solver == Solver::SquareRoot;
         let supported = match config.estimator {
             Estimator::LeaveOneOut => false,
@@ -94,7 +98,7 @@ impl<R: Real> State<R> {
     /// Groups of sums: one for each fold, or one.
     pub(super) fn groups(&self) -> usize {
         match self.config.estimator {
-            Estimator::Robust | Estimator::KFold => self.config.fold_count(),
+            Estimator::Robust | Estimator::KFold if self.columns > 0 => self.config.fold_count(),
             _ => 1,
         }
     }

@@ -69,7 +69,14 @@ impl<R: Real> Centre<R> {
     #[inline(always)]
     pub(crate) fn discount(&self) -> R {
         let f = self.f * R::from_f64(1.0 / USUAL_F);
-        if f > R::ONE { R::from_f64(DISCOUNT) * f.ln() } else { R::ZERO }
+        if f <= R::ONE {
+            R::ZERO
+        } else if f.is_finite() {
+            R::from_f64(DISCOUNT) * f.ln()
+        } else {
+            // A place that is no number earns no trust.
+            R::ONE / R::EPSILON
+        }
     }
 
     /// How much of what leaving samples out adds to the estimate of the fit to all is used.
