@@ -1,5 +1,5 @@
-// Figure 6.13 of the thesis: a network learns the colours of a photograph from the coordinates of its pixels, minibatch by
-// minibatch, with batches drawn and weighted in several ways. C++17.
+// Figure 6.13 of the thesis: a network learns the colours of a photograph from the coordinates of its pixels, minibatch
+// by minibatch, with batches drawn and weighted in several ways. C++17.
 //
 //   c++ -std=c++17 -O3 -march=native -Iinclude examples_c/fit_image.cpp target/noisefloor/libnoisefloor.a -o fit_image
 //   ./fit_image --output cat > losses.csv   # cat.METHOD.ppm, cat.METHOD.error.ppm; a table on standard error

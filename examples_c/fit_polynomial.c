@@ -3,7 +3,8 @@
  *
  *   cc -std=c99 -O3 -Iinclude examples_c/fit_polynomial.c target/noisefloor/libnoisefloor.a -lm -o fit_polynomial
  *   ./fit_polynomial > losses.csv            # method,seed,step,loss; a table on standard error
- *   ./fit_polynomial --variance > errors.csv # step,method,coefficient,error,bias: of the gradient, over uniform's error
+ *   ./fit_polynomial --variance > errors.csv # step,method,coefficient,error,bias: of the gradient, over uniform's
+ * error
  *
  * To see how the library is used, read fit_polynomial/sampler.h. */
 #include "fit_polynomial/sampler.h"
@@ -159,8 +160,10 @@ static void compare_errors(problem *p, const options *o)
         }
     }
     printf("step,method,coefficient,error,bias\n");
-    fprintf(stderr, "| step | method   |   mean |  worst | squared bias | x^0    | x^1    | x^2    | x^3    | x^4    | x^5    | x^6    |\n");
-    fprintf(stderr, "| ---: | -------- | -----: | -----: | -----------: | -----: | -----: | -----: | -----: | -----: | -----: | -----: |\n");
+    fprintf(stderr, "| step | method   |   mean |  worst | squared bias | x^0    | x^1    | x^2    | x^3    | x^4    | "
+                    "x^5    | x^6    |\n");
+    fprintf(stderr, "| ---: | -------- | -----: | -----: | -----------: | -----: | -----: | -----: | -----: | -----: | "
+                    "-----: | -----: |\n");
     for (int state = 0; state < STATES; ++state)
         for (int m = UNIFORM; m < METHOD_COUNT; ++m) {
             if (METHODS[m].explicit_gradients)
@@ -174,7 +177,8 @@ static void compare_errors(problem *p, const options *o)
                 squared_bias += bias[m][state][k] / TERMS;
                 worst = value > worst ? value : worst;
             }
-            fprintf(stderr, "| %4u | %-8s | %6.3f | %6.3f | %12.4f |", step, METHODS[m].name, mean, worst, squared_bias);
+            fprintf(stderr, "| %4u | %-8s | %6.3f | %6.3f | %12.4f |", step, METHODS[m].name, mean, worst,
+                    squared_bias);
             for (int k = 0; k < TERMS; ++k)
                 fprintf(stderr, " %6.3f |", relative[m][state][k]);
             fputc('\n', stderr);

@@ -4,8 +4,8 @@
 //   ./pathtracer --scene direct --spp 64 --estimators mc,robust
 //   ./pathtracer --scene direct --spp 4 --sampler tile --estimators mc,shared
 //
-// To see how the library is used, read pathtracer/estimators.hpp and pathtracer/tile_sampler.hpp; what samples are used for,
-// pathtracer/scene_integrand.hpp.
+// To see how the library is used, read pathtracer/estimators.hpp and pathtracer/tile_sampler.hpp; what samples are used
+// for, pathtracer/scene_integrand.hpp.
 #include "pathtracer/app.hpp"
 #include "pathtracer/bvh.hpp"
 #include "pathtracer/scenes.hpp"

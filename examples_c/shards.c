@@ -1,7 +1,8 @@
 /* Several processes train one model, each with a part of the data: minibatches by importance over all parts.
  *
- * Per step they exchange 16 bytes each (the size and total importance of their table) and, as any data-parallel trainer, the
- * sum of their gradients. Here through pipes; on a cluster all_gather() is MPI_Allgather() and all_reduce() MPI_Allreduce(). */
+ * Per step they exchange 16 bytes each (the size and total importance of their table) and, as any data-parallel
+ * trainer, the sum of their gradients. Here through pipes; on a cluster all_gather() is MPI_Allgather() and
+ * all_reduce() MPI_Allreduce(). */
 #define _POSIX_C_SOURCE 200112L
 #include "noisefloor.h"
 #include <math.h>
@@ -104,7 +105,8 @@ static float importance(const double *theta, uint32_t item)
     return (float)(fabs(residual(theta, item)) * sqrt(1.0 + (double)x[item] * x[item]));
 }
 
-/* Every process's part of one batch, and the estimate of the gradient of the mean loss over the items of all of them. */
+/* Every process's part of one batch, and the estimate of the gradient of the mean loss over the items of all of them.
+ */
 static void estimate(nf_table *table, nf_rng *common, nf_rng *own, double *theta, double *gradient)
 {
     nf_shard mine, shards[RANKS];
@@ -126,11 +128,13 @@ static void estimate(nf_table *table, nf_rng *common, nf_rng *own, double *theta
     all_reduce(gradient, 2);
 }
 
-/* Mean and variance of the estimates where the model stands still, against the exact gradient and uniform minibatches. */
+/* Mean and variance of the estimates where the model stands still, against the exact gradient and uniform minibatches.
+ */
 static int statistics(nf_table *table, nf_rng *common, nf_rng *own)
 {
     const int steps = 3000;
-    double theta[2] = {0.0, 0.0}, exact[3] = {0.0, 0.0, 0.0}, gradient[2], items = 0.0, sum = 0.0, squares = 0.0, uniform, variance, z;
+    double theta[2] = {0.0, 0.0}, exact[3] = {0.0, 0.0, 0.0}, gradient[2], items = 0.0, sum = 0.0, squares = 0.0,
+           uniform, variance, z;
     uint32_t i;
     int step;
     for (i = 0; i < sizes[rank]; ++i) {

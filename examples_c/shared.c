@@ -1,4 +1,5 @@
-/* An image of 64 x 64 integrals, one sample of a tile in each pixel: by that sample alone, and by fits that pixels share. */
+/* An image of 64 x 64 integrals, one sample of a tile in each pixel: by that sample alone, and by fits that pixels
+ * share. */
 #include "noisefloor.h"
 #include <math.h>
 #include <stdio.h>

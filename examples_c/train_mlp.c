@@ -127,8 +127,8 @@ static void step(run *r, const options *o, const dataset *data, workspace *space
 static void print_row(const options *o, enum mode mode, uint32_t seed, uint32_t point, run *r, const quality *train,
                       const quality *test)
 {
-    printf("%s,%u,%.4g,%u,%.4f,%.6g,%.6g,%.6g\n", mode_name[mode], seed, (double)point / o->rows, r->opt.steps, r->seconds,
-           train->loss, test->loss, test->error);
+    printf("%s,%u,%.4g,%u,%.4f,%.6g,%.6g,%.6g\n", mode_name[mode], seed, (double)point / o->rows, r->opt.steps,
+           r->seconds, train->loss, test->loss, test->error);
     fflush(stdout);
 }
 

@@ -124,7 +124,8 @@ const char *nf_status_message(nf_status status);
 #define NF_CV_LEAVE_ONE_OUT 2
 // Estimator: each fold corrected by a robust fit to the other folds (two folds: 4.2.6). Exactly unbiased.
 #define NF_CV_K_FOLD 3
-// Estimator: the fit by gradient descent on its own samples (Alg. 2). Biased, below 32 samples more than least squares.
+// Estimator: the fit by gradient descent on its own samples (Alg. 2). Biased, below 32 samples more than least
+// squares.
 #define NF_CV_GRADIENT_DESCENT 4
 // Estimator: each sample corrected by a fit to those before it (4.30). Exactly unbiased after every sample.
 #define NF_CV_INCREMENTAL 5
@@ -185,9 +186,9 @@ typedef struct nf_cv_config {
     // NF_BASIS_*
     uint32_t basis;
     // 1 if the samples are stratified (a tile, Sobol points, a lattice), 0 if independent. With 1, one pixel's
-    // estimate is the plain mean, but for NF_CV_LEAST_SQUARES and NF_CV_GRADIENT_DESCENT: what corrects some samples by
-    // fits to others undoes what is even about all, and their errors do not show it. Fits shared by pixels correct all
-    // the same, and take their std_error from the pixels' spread.
+    // estimate is the plain mean, but for NF_CV_LEAST_SQUARES and NF_CV_GRADIENT_DESCENT: what corrects some samples
+    // by fits to others undoes what is even about all, and their errors do not show it. Fits shared by pixels correct
+    // all the same, and take their std_error from the pixels' spread.
     uint32_t stratified;
     // If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (figure 4.15).
     // Each takes a term: at most 136 less binomial(dims - 1 + order, order), those of the other coordinates, and
@@ -243,8 +244,8 @@ typedef struct nf_estimate {
     float gain;
 } nf_estimate;
 
-// Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL, out
-// of range or unsupported, or a size no memory has.
+// Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL,
+// out of range or unsupported, or a size no memory has.
 size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
 // The pixels of an image, or of a part of one, and what is known of them. All zero but width and height: nothing.
@@ -256,21 +257,23 @@ typedef struct nf_cv_image {
     uint32_t height;
     // Images of the same pixels at other times, which share fits; 0 means 1.
     uint32_t frames;
-    // Width and height of the windows that pixels share a fit in; 0 means 8. At most 1024 pixels in all frames together.
+    // Width and height of the windows that pixels share a fit in; 0 means 8. At most 1024 pixels in all frames
+    // together.
     uint32_t window;
     // Pixels from one window to the next, at most `window`; 0 means half of it. Where windows overlap corrections are
     // averaged. The time of an estimate goes with the square of window / stride.
     uint32_t stride;
-    // 1 if the pixels have no places: all of the same surface, in all frames, then share one fit, whatever `window` and
-    // `stride` say. With `surfaces` they are at most 1024.
+    // 1 if the pixels have no places: all of the same surface, in all frames, then share one fit, whatever `window`
+    // and `stride` say. With `surfaces` they are at most 1024.
     uint32_t unordered;
-    // A number for each pixel, or NULL: only pixels with the same number share a fit. What shows the same material under
-    // a similar normal and depth, for example. Must not depend on the pixel's own samples, or no estimator is unbiased.
+    // A number for each pixel, or NULL: only pixels with the same number share a fit. What shows the same material
+    // under a similar normal and depth, for example. Must not depend on the pixel's own samples, or no estimator is
+    // unbiased.
     const uint32_t *surfaces;
     // `channels` numbers for each pixel, or NULL: what its values are divided by before a fit and multiplied by after
-    // it, such as its albedo. Finite and not negative; 0 counts as 1. Must not depend on the pixel's own samples either.
-    // For textures, where all samples of a pixel see one albedo: with defocus or motion blur they can raise the error.
-    // Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
+    // it, such as its albedo. Finite and not negative; 0 counts as 1. Must not depend on the pixel's own samples
+    // either. For textures, where all samples of a pixel see one albedo: with defocus or motion blur they can raise
+    // the error. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
     const float *factors;
 } nf_cv_image;
 
@@ -312,14 +315,12 @@ nf_status nf_cv_gradient_descent(const nf_cv_config *config,
                                  size_t bytes,
                                  nf_estimate *out);
 
-// Bytes of workspace that nf_cv_image_estimate() needs for n samples in each pixel; 0 as for nf_cv_workspace_size(), and
-// for an image that is NULL, has no pixels, or has windows that nf_cv_image does not allow.
-size_t nf_cv_image_workspace_size(const nf_cv_config *config,
-                                  const nf_cv_image *image,
-                                  size_t n);
+// Bytes of workspace that nf_cv_image_estimate() needs for n samples in each pixel; 0 as for nf_cv_workspace_size(),
+// and for an image that is NULL, has no pixels, or has windows that nf_cv_image does not allow.
+size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image *image, size_t n);
 
-// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of the
-// same window and surface share a fit. Fits also follow integrands that change across the window.
+// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of
+// the same window and surface share a fit. Fits also follow integrands that change across the window.
 //
 // NF_ERR_RANGE also for an image without pixels, for windows that nf_cv_image does not allow and for negative factors,
 // NF_ERR_NOT_FINITE for factors that are not finite.
@@ -339,15 +340,15 @@ size_t nf_cv_block_workspace_size(const nf_cv_config *config, size_t pixels, siz
 // nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to the other pixels'
 // samples (4.3.6), even from one sample in each.
 //
-// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance of
-// their estimates across the pixels, whatever stratification the samples have; unbiased as the block grows.
+// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance
+// of their estimates across the pixels, whatever stratification the samples have; unbiased as the block grows.
 // NF_CV_K_FOLD lets two halves of the pixels choose for each other, NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both
-// exactly unbiased, if the pixels' samples are independent. NF_CV_K_FOLD leaves groups of 2 or 3 pixels at their mean; one
-// fit to 2 to 12 pixels can be a fifth worse than the mean. Where fits explain little, NF_CV_ROBUST and NF_CV_K_FOLD leave
-// pixels far brighter or darker than all others out of the fits to others.
+// exactly unbiased, if the pixels' samples are independent. NF_CV_K_FOLD leaves groups of 2 or 3 pixels at their mean;
+// one fit to 2 to 12 pixels can be a fifth worse than the mean. Where fits explain little, NF_CV_ROBUST and
+// NF_CV_K_FOLD leave pixels far brighter or darker than all others out of the fits to others.
 //
-// With one sample, or `stratified`, std_error is the spread of the pixels' estimates about their linear trend: an upper
-// bound where the signal varies otherwise.
+// With one sample, or `stratified`, std_error is the spread of the pixels' estimates about their linear trend: an
+// upper bound where the signal varies otherwise.
 //
 // NF_ERR_UNSUPPORTED for other estimators, controls, skipping and luminance ratio; else as nf_cv_estimate().
 nf_status nf_cv_block_estimate(const nf_cv_config *config,
@@ -377,13 +378,10 @@ nf_status nf_cv_accumulator_init(void *memory,
                                  const nf_cv_config *config,
                                  nf_cv_accumulator **out);
 
-// Adds n samples, laid out as for nf_cv_estimate(): all of them or, on an error, none. Several at a time are cheaper. In
-// single precision an accumulator holds 2^22 samples: NF_ERR_RANGE beyond. A configuration with `controls`
-// needs nf_cv_accumulator_add_with_controls().
-nf_status nf_cv_accumulator_add(nf_cv_accumulator *accumulator,
-                                const float *u,
-                                const float *f,
-                                size_t n);
+// Adds n samples, laid out as for nf_cv_estimate(): all of them or, on an error, none. Several at a time are cheaper.
+// In single precision an accumulator holds 2^22 samples: NF_ERR_RANGE beyond. A configuration with `controls` needs
+// nf_cv_accumulator_add_with_controls().
+nf_status nf_cv_accumulator_add(nf_cv_accumulator *accumulator, const float *u, const float *f, size_t n);
 
 // As nf_cv_accumulator_add(), with the control functions of nf_cv_estimate_with_controls().
 nf_status nf_cv_accumulator_add_with_controls(nf_cv_accumulator *accumulator,
@@ -393,8 +391,8 @@ nf_status nf_cv_accumulator_add_with_controls(nf_cv_accumulator *accumulator,
                                               const float *h_integral,
                                               size_t n);
 
-// Adds all samples of `other`, which stays as it is. NF_ERR_MISMATCH if the configurations differ, NF_ERR_RANGE if both
-// are the same object. Like every function of an accumulator, NF_ERR_STATE for memory that holds none.
+// Adds all samples of `other`, which stays as it is. NF_ERR_MISMATCH if the configurations differ, NF_ERR_RANGE if
+// both are the same object. Like every function of an accumulator, NF_ERR_STATE for memory that holds none.
 nf_status nf_cv_accumulator_merge(nf_cv_accumulator *accumulator, const nf_cv_accumulator *other);
 
 // Bytes of workspace that nf_cv_accumulator_estimate() needs; 0 as for nf_cv_accumulator_size().
@@ -433,28 +431,31 @@ nf_status nf_cv_accumulator_reset(nf_cv_accumulator *accumulator);
 typedef struct nf_recommendation {
     // How to make estimates of the samples: NF_METHOD_*
     uint32_t method;
-    // The `stride` of nf_cv_image for NF_METHOD_SHARED, for windows of 8. With surfaces leave it 0, for overlapping windows.
+    // The `stride` of nf_cv_image for NF_METHOD_SHARED, for windows of 8. With surfaces leave it 0, for overlapping
+    // windows.
     uint32_t image_stride;
-    // Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued as a
-    // Sobol sequence.
+    // Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued
+    // as a Sobol sequence.
     uint32_t tile_samples;
     // The same: its dims.
     uint32_t tile_dims;
     // What to expect: mean squared error over that of the plain mean of independent samples. Of stratified samples
-    // measured on the tile named above, except: for 5 to 8 dims and 1 to 3 samples, on that of 2 dims; from 64 samples on,
-    // with Sobol points scrambled in each pixel (on the tile of 1 sample, continued, only the plain mean was measured, at .77
-    // to 1.1 times this error).
+    // measured on the tile named above, except: for 5 to 8 dims and 1 to 3 samples, on that of 2 dims; from 64 samples
+    // on, with Sobol points scrambled in each pixel (on the tile of 1 sample, continued, only the plain mean was
+    // measured, at .77 to 1.1 times this error).
     float error;
-    // The same of the image filtered by a Gaussian of 2.1 pixels, with the same exceptions; the plain mean of the tile of 1 sample,
-    // continued, has .81 to 1.4 times the error of Sobol points scrambled in each pixel that is given here.
+    // The same of the image filtered by a Gaussian of 2.1 pixels, with the same exceptions; the plain mean of the tile
+    // of 1 sample, continued, has .81 to 1.4 times the error of Sobol points scrambled in each pixel that is given
+    // here.
     float filtered_error;
     // How to estimate. `channels` is 1: set your own. `stride` is all dims.
     nf_cv_config config;
 } nf_recommendation;
 
-// Which estimator, of which order, and which of the library's tiles to use for samples of `dims` coordinates and `spp` of
-// them per pixel, both at least 1. `sampling` is NF_SAMPLING_*; `can_share` is 1 if neighbouring pixels' samples are at
-// hand together and integrate similar functions, else 0. docs/choosing.md has the measurements that it rests on.
+// Which estimator, of which order, and which of the library's tiles to use for samples of `dims` coordinates and `spp`
+// of them per pixel, both at least 1. `sampling` is NF_SAMPLING_*; `can_share` is 1 if neighbouring pixels' samples
+// are at hand together and integrate similar functions, else 0. docs/choosing.md has the measurements that it rests
+// on.
 nf_status nf_recommend(uint32_t dims,
                        uint32_t spp,
                        uint32_t sampling,
@@ -478,14 +479,14 @@ nf_status nf_recommend(uint32_t dims,
 
 // The balance heuristic (2.12): the weight n_j p_j / sum_k n_k p_k of technique j at one point.
 //
-// pdf[techniques]: p_k, the density of each technique at the point, in any one measure, at least 0. Infinity stands for a
-// delta distribution: where any is infinite the finite ones count as 0 and the infinite ones are equally dense.
-// counts[techniques]: n_k, the number of samples of each technique; one with 0 has no part in it.
-// techniques: 1..NF_MIS_MAX_TECHNIQUES. technique: j, below techniques.
+// pdf[techniques]: p_k, the density of each technique at the point, in any one measure, at least 0. Infinity stands
+// for a delta distribution: where any is infinite the finite ones count as 0 and the infinite ones are equally dense.
+// counts[techniques]: n_k, the number of samples of each technique; one with 0 has no part in it. techniques:
+// 1..NF_MIS_MAX_TECHNIQUES. technique: j, below techniques.
 //
-// The weights of all techniques sum to 1 and are safe for densities from 1e-38 to 1e38. Where every n_k p_k is 0, so that
-// the point cannot have been drawn, each is 0. With them, the sum over all samples of weight * f / (n_j p_j) is unbiased
-// (2.10).
+// The weights of all techniques sum to 1 and are safe for densities from 1e-38 to 1e38. Where every n_k p_k is 0, so
+// that the point cannot have been drawn, each is 0. With them, the sum over all samples of weight * f / (n_j p_j) is
+// unbiased (2.10).
 //
 // NF_ERR_NULL; NF_ERR_RANGE: techniques, technique, or a negative density; NF_ERR_NOT_FINITE: a density is NaN.
 nf_status nf_mis_balance(const float *pdf,
@@ -496,10 +497,11 @@ nf_status nf_mis_balance(const float *pdf,
 
 // The power heuristic: the weight (n_j p_j)^beta / sum_k (n_k p_k)^beta.
 //
-// beta: positive and finite; 0 means the usual 2. 1 is the balance heuristic. (2.13) prints the exponent outside the sum;
-// those weights would not sum to 1, and these are Veach's.
+// beta: positive and finite; 0 means the usual 2. 1 is the balance heuristic. (2.13) prints the exponent outside the
+// sum; those weights would not sum to 1, and these are Veach's.
 //
-// Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: beta is negative; NF_ERR_NOT_FINITE: beta is not finite.
+// Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: beta is negative; NF_ERR_NOT_FINITE: beta is not
+// finite.
 nf_status nf_mis_power(const float *pdf,
                        const uint32_t *counts,
                        uint32_t techniques,
@@ -509,9 +511,9 @@ nf_status nf_mis_power(const float *pdf,
 
 // The cutoff heuristic: the balance heuristic among the techniques with n_k p_k >= epsilon * max_i n_i p_i.
 //
-// epsilon: 0..1; 0 is the balance heuristic, 1 the maximum heuristic with ties shared. (2.14) prints an absolute threshold
-// on p_k, without the counts; it would depend on the unit of the density, and leave points where no technique reaches
-// it. This is Veach's form.
+// epsilon: 0..1; 0 is the balance heuristic, 1 the maximum heuristic with ties shared. (2.14) prints an absolute
+// threshold on p_k, without the counts; it would depend on the unit of the density, and leave points where no
+// technique reaches it. This is Veach's form.
 //
 // Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: epsilon; NF_ERR_NOT_FINITE: epsilon is not finite.
 nf_status nf_mis_cutoff(const float *pdf,
@@ -521,7 +523,8 @@ nf_status nf_mis_cutoff(const float *pdf,
                         float epsilon,
                         float *weight);
 
-// The maximum heuristic: 1 for the technique with the largest n_k p_k (the first of them if several tie), 0 for others.
+// The maximum heuristic: 1 for the technique with the largest n_k p_k (the first of them if several tie), 0 for
+// others.
 //
 // Arguments and errors as for nf_mis_balance.
 nf_status nf_mis_maximum(const float *pdf,
@@ -533,9 +536,9 @@ nf_status nf_mis_maximum(const float *pdf,
 // The optimal weight (2.15) of Kondapaneni et al. (2019), for an alpha from nf_omis_alpha:
 // w_j = alpha_j p_j / f + n_j p_j / S (1 - sum_k alpha_k p_k / f), S = sum_k n_k p_k.
 //
-// pdf[techniques]: finite and at least 0. counts[techniques]: at least 1. alpha[techniques]: finite.
-// value: f at the point, not divided by a density, finite and not 0. Where f is 0 the weight does not exist, though the
-// sample still contributes: see nf_mis_optimal_contribution.
+// pdf[techniques]: finite and at least 0. counts[techniques]: at least 1. alpha[techniques]: finite. value: f at the
+// point, not divided by a density, finite and not 0. Where f is 0 the weight does not exist, though the sample still
+// contributes: see nf_mis_optimal_contribution.
 //
 // Whatever alpha is, the weights sum to 1; they may be negative or above 1. Where no density is positive each is 0.
 //
@@ -552,8 +555,8 @@ nf_status nf_mis_optimal(const float *pdf,
 // w_j f / (n_j p_j) = alpha_j / n_j + (f - sum_k alpha_k p_k) / S, S = sum_k n_k p_k.
 //
 // The sum over all samples is the estimate, unbiased if alpha came from other samples. The term is not 0 where f is;
-// leaving such samples out keeps the mean and loses part of the gain. These terms, times the number of samples, are what a
-// regression control variate is fitted to (4.3.3).
+// leaving such samples out keeps the mean and loses part of the gain. These terms, times the number of samples, are
+// what a regression control variate is fitted to (4.3.3).
 //
 // Arguments and errors as for nf_mis_optimal, except that value may be 0, and pdf[technique] must be positive.
 nf_status nf_mis_optimal_contribution(const float *pdf,
@@ -590,21 +593,20 @@ nf_status nf_mis_optimal_contribution(const float *pdf,
 // nf_omis solver: alpha = 0, the balance heuristic. Unbiased.
 #define NF_OMIS_BALANCE 3
 
-// Optimal multiple importance sampling (Kondapaneni et al. 2019; 2.15): sums over samples of J techniques, from which P
-// integrals are estimated with weights of least variance.
+// Optimal multiple importance sampling (Kondapaneni et al. 2019; 2.15): sums over samples of J techniques, from which
+// P integrals are estimated with weights of least variance.
 //
-// With S = sum_k n_k p_k and s over all samples, it keeps A = sum_s p p' / S^2 and b = sum_s f p / S^2 and a few sums more.
-// After R rounds of n_k samples each, an integral is sum_s f / S / R - (sum_s p / S / R - 1)' alpha with alpha
+// With S = sum_k n_k p_k and s over all samples, it keeps A = sum_s p p' / S^2 and b = sum_s f p / S^2 and a few sums
+// more. After R rounds of n_k samples each, an integral is sum_s f / S / R - (sum_s p / S / R - 1)' alpha with alpha
 // from A alpha = b: the balance estimate, less what the samples got wrong about the densities' integrals.
 //
 // Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use, nor changed by anyone
 // else; nothing to destroy.
 typedef struct nf_omis nf_omis;
 
-// The bytes of memory an nf_omis needs; 0 unless techniques is in 1..NF_MIS_MAX_TECHNIQUES, integrals at least 1, and the
-// size one that memory can have.
-size_t nf_omis_size(uint32_t techniques,
-                    uint32_t integrals);
+// The bytes of memory an nf_omis needs; 0 unless techniques is in 1..NF_MIS_MAX_TECHNIQUES, integrals at least 1, and
+// the size one that memory can have.
+size_t nf_omis_size(uint32_t techniques, uint32_t integrals);
 
 // Makes an empty nf_omis in `memory`, `*out` being its handle (the same address).
 //
@@ -621,33 +623,27 @@ nf_status nf_omis_init(void *memory,
 
 // Adds one sample, drawn by `technique`.
 //
-// pdf[techniques]: the density of each technique at the sample's point, finite and at least 0, positive for the technique
-// that drew it. value[integrals]: the value of each integrand there, not divided by any density, finite.
+// pdf[techniques]: the density of each technique at the sample's point, finite and at least 0, positive for the
+// technique that drew it. value[integrals]: the value of each integrand there, not divided by any density, finite.
 //
-// Add every sample, those of value 0 included: without them no solver but NF_OMIS_BALANCE is unbiased or consistent. The
-// samples should make whole rounds of the counts, or each be drawn from technique k with probability n_k / sum n.
+// Add every sample, those of value 0 included: without them no solver but NF_OMIS_BALANCE is unbiased or consistent.
+// The samples should make whole rounds of the counts, or each be drawn from technique k with probability n_k / sum n.
 //
 // NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE: a density (combine delta
 // distributions outside) or a value.
-nf_status nf_omis_add(nf_omis *omis,
-                      uint32_t technique,
-                      const float *pdf,
-                      const float *value);
+nf_status nf_omis_add(nf_omis *omis, uint32_t technique, const float *pdf, const float *value);
 
-// Estimates the integrals from all samples so far. The object does not change: the same call gives the same answer, and
-// more samples may be added.
+// Estimates the integrals from all samples so far. The object does not change: the same call gives the same answer,
+// and more samples may be added.
 //
 // solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN, NF_OMIS_PROGRESSIVE or NF_OMIS_BALANCE; each says whether it is unbiased.
-// ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for the default 2; otherwise
-// ignored. With the densities' counts N and n samples it adds L = ridge (tr(N A) - 1) / n N^-1 to A, at
-// least 1e-8 tr(N A) N^-1.
-// estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite float.
+// ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for the default 2;
+// otherwise ignored. With the densities' counts N and n samples it adds L = ridge (tr(N A) - 1) / n N^-1 to A, at
+// least 1e-8 tr(N A) N^-1. estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite
+// float.
 //
 // NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.
-nf_status nf_omis_solve(const nf_omis *omis,
-                        uint32_t solver,
-                        float ridge,
-                        float *estimate);
+nf_status nf_omis_solve(const nf_omis *omis, uint32_t solver, float ridge, float *estimate);
 
 // The coefficients of the weights (2.15), for nf_mis_optimal and nf_mis_optimal_contribution:
 // alpha[p * techniques + j] of integral p and technique j.
@@ -656,18 +652,17 @@ nf_status nf_omis_solve(const nf_omis *omis,
 // alpha of the current batch, NF_OMIS_BALANCE for zeros. Arguments and errors as for nf_omis_solve.
 nf_status nf_omis_alpha(const nf_omis *omis, uint32_t solver, float ridge, float *alpha);
 
-// Ends a batch: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so far on those that follow.
+// Ends a batch: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so far on those that
+// follow.
 //
-// Before the first call alpha is 0, the balance heuristic; NF_OMIS_BALANCE returns to that. Call it between whole rounds,
-// whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
+// Before the first call alpha is 0, the balance heuristic; NF_OMIS_BALANCE returns to that. Call it between whole
+// rounds, whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
 //
 // Other arguments and errors as for nf_omis_solve; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE as the solver.
-nf_status nf_omis_next_batch(nf_omis *omis,
-                             uint32_t solver,
-                             float ridge);
+nf_status nf_omis_next_batch(nf_omis *omis, uint32_t solver, float ridge);
 
-// Multiplies all sums by beta in 0..1, so that older samples count for less: for integrals that drift, as gradients do.
-// NF_OMIS_PROGRESSIVE keeps its alpha.
+// Multiplies all sums by beta in 0..1, so that older samples count for less: for integrals that drift, as gradients
+// do. NF_OMIS_PROGRESSIVE keeps its alpha.
 //
 // NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE, NF_ERR_NOT_FINITE: beta.
 nf_status nf_omis_decay(nf_omis *omis, float beta);
@@ -677,13 +672,12 @@ nf_status nf_omis_decay(nf_omis *omis, float beta);
 // NF_ERR_NULL; NF_ERR_STATE.
 nf_status nf_omis_reset(nf_omis *omis);
 
-// Adds the samples of `other`, of another thread or pass, to `omis`. `other` does not change and must be another object;
-// NF_OMIS_PROGRESSIVE's alpha stays that of `omis`.
+// Adds the samples of `other`, of another thread or pass, to `omis`. `other` does not change and must be another
+// object; NF_OMIS_PROGRESSIVE's alpha stays that of `omis`.
 //
 // NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: their techniques, integrals or
 // counts differ.
-nf_status nf_omis_merge(nf_omis *omis,
-                        const nf_omis *other);
+nf_status nf_omis_merge(nf_omis *omis, const nf_omis *other);
 
 /* -------------------------------------------------------------------------------------------------------------------
  * Tiles and samplers: sample points whose error is spread over the image where it shows least
@@ -711,7 +705,8 @@ nf_status nf_omis_merge(nf_omis *omis,
 #define NF_TILE_128_1SPP_4D 5
 // nf_tile_builtin: 128 x 128 pixels, 4 samples, 4 dims.
 #define NF_TILE_128_4SPP_4D 6
-// nf_tile_builtin: 128 x 128 pixels, 1 sample, 2 dims, for images reconstructed with a Gaussian filter (figures 5.21, 5.22).
+// nf_tile_builtin: 128 x 128 pixels, 1 sample, 2 dims, for images reconstructed with a Gaussian filter (figures 5.21,
+// 5.22).
 #define NF_TILE_128_1SPP_2D_GAUSSIAN 7
 // nf_tile_builtin: 128 x 128 pixels, 4 samples, 2 dims, for images reconstructed with a Gaussian filter.
 #define NF_TILE_128_4SPP_2D_GAUSSIAN 8
@@ -726,8 +721,8 @@ nf_status nf_omis_merge(nf_omis *omis,
 
 // A view of a tile: sample points for a square of pixels that repeats over the image (chapter 5; docs/tiles.md).
 //
-// A complete struct, to be copied freely; it owns nothing. Made by nf_tile_builtin or nf_tile_from_bytes. The fields are to
-// be read, never written; all zero is a valid tile, whose samples are all 0.
+// A complete struct, to be copied freely; it owns nothing. Made by nf_tile_builtin or nf_tile_from_bytes. The fields
+// are to be read, never written; all zero is a valid tile, whose samples are all 0.
 typedef struct nf_tile {
     // The stored values, in the memory that the tile was made from.
     const void *values;
@@ -762,9 +757,9 @@ nf_status nf_tile_from_bytes(const void *bytes, size_t len, nf_tile *out);
 // One sample of one pixel: a small struct, passed and copied by value. Drawing does not change it.
 //
 // A sampler stands for a point of a cube with as many dimensions as are asked for. There are no dimension counters:
-// each decision of a path (lens, light, bounce, ...) has a domain, a child of the sampler by a key of its own. A domain's
-// numbers depend on nothing but tile, pixel, frame, index and the keys that led to it, so that any sample can be drawn
-// in any order, on any thread, and at any time. Made by nf_sampler_pixel; the fields are not to be written.
+// each decision of a path (lens, light, bounce, ...) has a domain, a child of the sampler by a key of its own. A
+// domain's numbers depend on nothing but tile, pixel, frame, index and the keys that led to it, so that any sample can
+// be drawn in any order, on any thread, and at any time. Made by nf_sampler_pixel; the fields are not to be written.
 typedef struct nf_sampler {
     // The tile; it must outlive the sampler and stay where it is.
     const nf_tile *tile;
@@ -784,57 +779,45 @@ typedef struct nf_sampler {
 
 // Sample `index` of pixel (x, y) in `frame`, any values of each: pixels repeat with the tile's size.
 //
-// The first tile->spp samples are the tile's. Those that follow continue with a scrambled Sobol sequence in their place; none is
-// repeated. Frames 0 to tile->frames - 1 are the tile's; each later run of them is the tile at another place, unrelated to it.
-// For an image that is refined over time leave the frame and count the index.
+// The first tile->spp samples are the tile's. Those that follow continue with a scrambled Sobol sequence in their
+// place; none is repeated. Frames 0 to tile->frames - 1 are the tile's; each later run of them is the tile at another
+// place, unrelated to it. For an image that is refined over time leave the frame and count the index.
 //
 // tile: it must outlive the sampler and stay where it is. All draws of a sampler without a tile, NULL, are 0.
-nf_sampler nf_sampler_pixel(const nf_tile *tile,
-                            uint32_t x,
-                            uint32_t y,
-                            uint32_t frame,
-                            uint32_t index);
+nf_sampler nf_sampler_pixel(const nf_tile *tile, uint32_t x, uint32_t y, uint32_t frame, uint32_t index);
 
-// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent. Keys mean
-// something only among the children of one parent: a bounce's light may have the same key as the next bounce's.
-nf_sampler nf_sampler_domain(nf_sampler sampler,
-                             uint32_t key);
+// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent.
+// Keys mean something only among the children of one parent: a bounce's light may have the same key as the next
+// bounce's.
+nf_sampler nf_sampler_domain(nf_sampler sampler, uint32_t key);
 
 // An independent version of the sampler for each seed but 0; seed 0 changes nothing.
 //
-// It is the tile at another place, with all values of a dimension shifted, modulo 1, by a hash of seed and domain. Over random
-// seeds every value is uniform, so an estimate is unbiased, as far as a hash of 32 bits is random (the tile's own values are
-// fixed, and an estimate from them is what it is). The shift costs quality: where good images are wanted, and not exact
-// unbiasedness, take another frame instead. Children of a scrambled sampler are scrambled.
-nf_sampler nf_sampler_scramble(nf_sampler sampler,
-                               uint32_t seed);
+// It is the tile at another place, with all values of a dimension shifted, modulo 1, by a hash of seed and domain.
+// Over random seeds every value is uniform, so an estimate is unbiased, as far as a hash of 32 bits is random (the
+// tile's own values are fixed, and an estimate from them is what it is). The shift costs quality: where good images
+// are wanted, and not exact unbiasedness, take another frame instead. Children of a scrambled sampler are scrambled.
+nf_sampler nf_sampler_scramble(nf_sampler sampler, uint32_t seed);
 
 // Writes the first `dims` coordinates, 1..4, of the sampler's point to u[dims]: each in [0, 1), a multiple of 2^-24.
 //
-// Up to tile->dims they are optimised together, and more come from other places of the tile; fewer are the first of those. If
-// the tile has at least two dims and spp, and is not progressive, each further number of its samples is stratified, and the
-// third of a tile of two dims with those two: draw a choice, or a time, after the two numbers that it goes with. Two further
-// numbers that belong together are better drawn from a domain of their own.
-// Writes nothing if dims is out of range or u is NULL.
-void nf_sampler_draw(nf_sampler sampler,
-                     uint32_t dims,
-                     float *u);
+// Up to tile->dims they are optimised together, and more come from other places of the tile; fewer are the first of
+// those. If the tile has at least two dims and spp, and is not progressive, each further number of its samples is
+// stratified, and the third of a tile of two dims with those two: draw a choice, or a time, after the two numbers that
+// it goes with. Two further numbers that belong together are better drawn from a domain of their own. Writes nothing
+// if dims is out of range or u is NULL.
+void nf_sampler_draw(nf_sampler sampler, uint32_t dims, float *u);
 
-// How many numbers nf_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside 1..4, or
-// memory has not that many.
-size_t nf_sampler_fill_len(const uint32_t *dims,
-                           size_t domains,
-                           uint32_t width,
-                           uint32_t height,
-                           uint32_t samples);
+// How many numbers nf_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
+// 1..4, or memory has not that many.
+size_t nf_sampler_fill_len(const uint32_t *dims, size_t domains, uint32_t width, uint32_t height, uint32_t samples);
 
 // Draws for many pixels and samples at once, for renderers that work on whole images. The same bits as single draws.
 //
-// samplers[domains]: one for each domain, all at the first pixel and the first sample.
-// dims[domains]: how many numbers to draw from each, 1..4.
-// width, height: how many pixels, to the right and down. samples: how many samples of each, by ascending index.
-// u[height][width][samples][sum of dims]: what the samplers draw there, one after the other; len numbers are there, at least
-// nf_sampler_fill_len.
+// samplers[domains]: one for each domain, all at the first pixel and the first sample. dims[domains]: how many numbers
+// to draw from each, 1..4. width, height: how many pixels, to the right and down. samples: how many samples of each,
+// by ascending index. u[height][width][samples][sum of dims]: what the samplers draw there, one after the other; len
+// numbers are there, at least nf_sampler_fill_len.
 //
 // NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: dims, or sizes that memory cannot have; NF_ERR_MEMORY: len.
 nf_status nf_sampler_fill(const nf_sampler *samplers,
@@ -854,7 +837,8 @@ nf_status nf_sampler_fill(const nf_sampler *samplers,
  *   nf_rng_uniform  The next number uniform in [0, 1), a multiple of 2^-24
  * ------------------------------------------------------------------------------------------------------------------- */
 
-// A PCG32 random number generator (O'Neill 2014), for minibatches, examples and tests: the same numbers on every target.
+// A PCG32 random number generator (O'Neill 2014), for minibatches, examples and tests: the same numbers on every
+// target.
 //
 // A complete struct, kept by value. A copy repeats the numbers its original has yet to give. Give each thread its own,
 // with its own seed. Any value of the fields is valid; nf_rng_seed sets them well. Not for cryptography.
@@ -865,10 +849,9 @@ typedef struct nf_rng {
     uint64_t increment;
 } nf_rng;
 
-// Starts a generator. Any seed is good, and neighbouring seeds (pixel numbers, say) give unrelated numbers. Does nothing
-// if `rng` is NULL.
-void nf_rng_seed(nf_rng *rng,
-                 uint64_t seed);
+// Starts a generator. Any seed is good, and neighbouring seeds (pixel numbers, say) give unrelated numbers. Does
+// nothing if `rng` is NULL.
+void nf_rng_seed(nf_rng *rng, uint64_t seed);
 
 // The next 32 random bits; 0 if `rng` is NULL.
 uint32_t nf_rng_next(nf_rng *rng);
@@ -919,8 +902,8 @@ float nf_rng_uniform(nf_rng *rng);
 
 // The importances of the items of a data set, from which minibatches are drawn (Algorithm 3).
 //
-// Item i is drawn with probability p_i = (1 - d) q_i / sum q + d / N: q_i is its importance, d the uniform fraction, .2
-// unless set. No weight 1 / (N p_i) is then above 1 / d. Where all importances are 0 draws are uniform, or
+// Item i is drawn with probability p_i = (1 - d) q_i / sum q + d / N: q_i is its importance, d the uniform fraction,
+// .2 unless set. No weight 1 / (N p_i) is then above 1 / d. Where all importances are 0 draws are uniform, or
 // NF_ERR_NO_SAMPLES if d is 0.
 //
 // A complete struct that refers to the memory its items live in; the fields are to be read, never written. A copy
@@ -943,15 +926,15 @@ typedef struct nf_table {
     uint32_t magic;
 } nf_table;
 
-// The bytes of memory a table of so many items needs, at most 4.6 for each and a few hundred; 0 for 0 items or a size that no
-// memory has.
+// The bytes of memory a table of so many items needs, at most 4.6 for each and a few hundred; 0 for 0 items or a size
+// that no memory has.
 size_t nf_table_size(uint32_t items);
 
 // Makes a table of `items` items in `memory`.
 //
-// memory: at least nf_table_size(items) bytes, 8-byte aligned; what it holds is lost. More is room for nf_table_append.
-// importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch that visits every
-// item (Algorithm 4).
+// memory: at least nf_table_size(items) bytes, 8-byte aligned; what it holds is lost. More is room for
+// nf_table_append. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch
+// that visits every item (Algorithm 4).
 //
 // NF_ERR_NULL; NF_ERR_RANGE: no items, or a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all are 0;
 // NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
@@ -959,9 +942,9 @@ nf_status nf_table_init(nf_table *table, void *memory, size_t bytes, uint32_t it
 
 // Draws `batch` items with replacement, independently, in proportion to importance.
 //
-// index[batch]: the items. weight[batch]: 1 / (N p) of each, for importance sampling: gradients times weights, averaged over
-// the batch, estimate the gradient of the mean loss without bias (6.3). NULL where they are not wanted: without weights it is
-// adaptive sampling (w = p in Algorithm 3), which favours important items, a bias by design.
+// index[batch]: the items. weight[batch]: 1 / (N p) of each, for importance sampling: gradients times weights,
+// averaged over the batch, estimate the gradient of the mean loss without bias (6.3). NULL where they are not wanted:
+// without weights it is adaptive sampling (w = p in Algorithm 3), which favours important items, a bias by design.
 //
 // NF_ERR_NULL; NF_ERR_STATE; NF_ERR_NO_SAMPLES: nothing can be drawn. A batch of 0 is no error.
 nf_status nf_table_draw(const nf_table *table,
@@ -970,9 +953,9 @@ nf_status nf_table_draw(const nf_table *table,
                         uint32_t *index,
                         float *weight);
 
-// As nf_table_draw, from `batch` equal parts of the line of probabilities: item i comes about `batch` p_i times, so that the
-// estimate varies less where neighbouring items are alike. Items drawn uniformly come first, and all in the order of the data
-// set: use the batch as a whole.
+// As nf_table_draw, from `batch` equal parts of the line of probabilities: item i comes about `batch` p_i times, so
+// that the estimate varies less where neighbouring items are alike. Items drawn uniformly come first, and all in the
+// order of the data set: use the batch as a whole.
 nf_status nf_table_draw_stratified(const nf_table *table,
                                    nf_rng *rng,
                                    uint32_t batch,
@@ -981,14 +964,14 @@ nf_status nf_table_draw_stratified(const nf_table *table,
 
 // Draws `batch` different items, without replacement, the k-th being item i with probability
 //     c_i = ((1 - d) q_i / sum q + d / N) / (1 - d (k - 1) / N),
-// the sum being that of the items not yet drawn, and d the uniform fraction (1 where that sum is 0). Weights make the same
-// estimate as nf_table_draw's, without bias (Raj 1956): (1 / c_k + batch - k) / N for the k-th item.
+// the sum being that of the items not yet drawn, and d the uniform fraction (1 where that sum is 0). Weights make the
+// same estimate as nf_table_draw's, without bias (Raj 1956): (1 / c_k + batch - k) / N for the k-th item.
 //
-// The table is the same afterwards, but is written meanwhile. A draw takes the time of some ten updates; where a few items have
-// nearly all of the sum the table is built again without them, which takes time for every item.
+// The table is the same afterwards, but is written meanwhile. A draw takes the time of some ten updates; where a few
+// items have nearly all of the sum the table is built again without them, which takes time for every item.
 //
-// Other arguments and errors as for nf_table_draw; NF_ERR_RANGE: more than there are items; NF_ERR_NO_SAMPLES also where the
-// uniform fraction is 0 and fewer items have an importance above 0.
+// Other arguments and errors as for nf_table_draw; NF_ERR_RANGE: more than there are items; NF_ERR_NO_SAMPLES also
+// where the uniform fraction is 0 and fewer items have an importance above 0.
 nf_status nf_table_draw_distinct(nf_table *table,
                                  nf_rng *rng,
                                  uint32_t batch,
@@ -1008,18 +991,17 @@ nf_status nf_table_update(nf_table *table,
                           uint32_t batch,
                           float momentum);
 
-// Sets the uniform fraction d, 0..1. 0 draws by importance alone: an item of importance 0 is never drawn, and one whose
-// importance is out of date can get a weight of thousands. 1 draws uniformly.
+// Sets the uniform fraction d, 0..1. 0 draws by importance alone: an item of importance 0 is never drawn, and one
+// whose importance is out of date can get a weight of thousands. 1 draws uniformly.
 //
 // NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE; NF_ERR_NOT_FINITE.
 nf_status nf_table_set_uniform_fraction(nf_table *table, float fraction);
 
-// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3, after an epoch. The uniform fraction does as much and
-// costs nothing.
+// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3, after an epoch. The uniform fraction does as
+// much and costs nothing.
 //
 // NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE; NF_ERR_NOT_FINITE.
-nf_status nf_table_add_epsilon(nf_table *table,
-                               float epsilon);
+nf_status nf_table_add_epsilon(nf_table *table, float epsilon);
 
 // Adds `count` items behind the last.
 //
@@ -1031,8 +1013,8 @@ nf_status nf_table_append(nf_table *table, const float *importance, uint32_t cou
 // nf_table_draw's weight; this is for items that another table drew.
 float nf_table_probability(const nf_table *table, uint32_t item);
 
-// The probabilities of count items: p[k * stride] of index[k]. With J tables, stride J and p + j for the j-th table make the
-// rows of densities that nf_omis_weights takes.
+// The probabilities of count items: p[k * stride] of index[k]. With J tables, stride J and p + j for the j-th table
+// make the rows of densities that nf_omis_weights takes.
 //
 // NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item that does not exist, or stride 0; NF_ERR_NO_SAMPLES as for
 // nf_table_draw.
@@ -1056,10 +1038,9 @@ size_t nf_table_saved_size(const nf_table *table);
 // NF_ERR_NULL; NF_ERR_STATE; NF_ERR_LENGTH.
 nf_status nf_table_save(const nf_table *table, void *saved, size_t len);
 
-// The number of items in what nf_table_save wrote, to make memory for it with nf_table_size; 0 if it is no saved table. Only
-// the first bytes are looked at.
-uint32_t nf_table_saved_items(const void *saved,
-                              size_t len);
+// The number of items in what nf_table_save wrote, to make memory for it with nf_table_size; 0 if it is no saved
+// table. Only the first bytes are looked at.
+uint32_t nf_table_saved_items(const void *saved, size_t len);
 
 // A table as it was when nf_table_save wrote it, in memory as for nf_table_init. It draws the same items from the same
 // generator.
@@ -1068,8 +1049,8 @@ uint32_t nf_table_saved_items(const void *saved,
 // NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
 nf_status nf_table_load(nf_table *table, void *memory, size_t bytes, const void *saved, size_t len);
 
-// What the processes of a data-parallel trainer must know of each other's tables. Each owns the table of its part of the
-// data; before a draw all gather these 16 bytes from each (MPI_Allgather, for example).
+// What the processes of a data-parallel trainer must know of each other's tables. Each owns the table of its part of
+// the data; before a draw all gather these 16 bytes from each (MPI_Allgather, for example).
 typedef struct nf_shard {
     // The sum of the importances.
     double importance;
@@ -1082,11 +1063,11 @@ typedef struct nf_shard {
 // NF_ERR_NULL; NF_ERR_STATE.
 nf_status nf_table_shard(const nf_table *table, nf_shard *out);
 
-// How many of a batch's items each process draws: counts[shards], in proportion to the shards' probabilities, rounded up or
-// down at random so that each is right on average. They sum to batch.
+// How many of a batch's items each process draws: counts[shards], in proportion to the shards' probabilities, rounded
+// up or down at random so that each is right on average. They sum to batch.
 //
-// Every process calls it with the same shards and a generator of the same seed, and finds its own count among the results.
-// uniform_fraction: 0..1, that of all tables.
+// Every process calls it with the same shards and a generator of the same seed, and finds its own count among the
+// results. uniform_fraction: 0..1, that of all tables.
 //
 // NF_ERR_NULL; NF_ERR_RANGE: a negative sum, 2^53 items or more, uniform_fraction; NF_ERR_NOT_FINITE;
 // NF_ERR_NO_SAMPLES: no shards, no items, or nothing that can be drawn.
@@ -1097,14 +1078,15 @@ nf_status nf_shards_allocate(const nf_shard *shard,
                              uint32_t batch,
                              uint32_t *counts);
 
-// As nf_table_draw, for this process's part of a batch over all shards, of which this table is one: weights are those of the
-// whole. Gradients times weights, summed over all processes and divided by the whole batch's size, estimate the gradient of
-// the mean loss over all items.
+// As nf_table_draw, for this process's part of a batch over all shards, of which this table is one: weights are those
+// of the whole. Gradients times weights, summed over all processes and divided by the whole batch's size, estimate the
+// gradient of the mean loss over all items.
 //
 // All tables must have the same uniform fraction; batch is what nf_shards_allocate gave to this process.
 //
-// Other arguments and errors as for nf_table_draw and nf_shards_allocate; NF_ERR_RANGE: the shards together have
-// less than this table. A table must not have changed since its nf_shard was made. Where the others dwarf it a weight may be infinite.
+// Other arguments and errors as for nf_table_draw and nf_shards_allocate; NF_ERR_RANGE: the shards together have less
+// than this table. A table must not have changed since its nf_shard was made. Where the others dwarf it a weight may
+// be infinite.
 nf_status nf_table_draw_shard(const nf_table *table,
                               const nf_shard *shard,
                               uint32_t shards,
@@ -1114,11 +1096,9 @@ nf_status nf_table_draw_shard(const nf_table *table,
                               float *weight);
 
 // The element at `position` of a random permutation of 0..items-1, which seed chooses: the order of an initial epoch
-// (Algorithm 4), or of minibatches drawn uniformly without replacement, with no array of indices. 0 if there are no items;
-// positions beyond the last start again.
-uint32_t nf_shuffle(uint64_t seed,
-                    uint32_t items,
-                    uint32_t position);
+// (Algorithm 4), or of minibatches drawn uniformly without replacement, with no array of indices. 0 if there are no
+// items; positions beyond the last start again.
+uint32_t nf_shuffle(uint64_t seed, uint32_t items, uint32_t position);
 
 // nf_importance_nodes split: one importance per group of nodes, the norm over it.
 #define NF_NODES_NORM 0
@@ -1188,15 +1168,13 @@ nf_status nf_importance_nodes(const float *gradient,
 // solver: NF_OMIS_RIDGE, the default: shrinks to the balance heuristic where the batch says little. NF_OMIS_PLAIN:
 // exact where a gradient is a linear combination of the probabilities; heavy-tailed with similar techniques or small
 // batches. Both are consistent, not unbiased, and their weights may be negative. NF_OMIS_BALANCE: unbiased, positive.
-// ridge: for NF_OMIS_RIDGE, as for nf_omis_solve: 1e-8..1e8, or 0 for the default 2; otherwise ignored.
-// techniques: J in 1..NF_MIS_MAX_TECHNIQUES. items: N, the size of the data set, at least 1.
-// pdf[batch * techniques]: at s * techniques + j the probability with which technique j draws the item of sample s;
-// each technique's sum to 1 over the items. Finite, at least 0 and at most 1, positive for the technique that drew it. Those of
-// before the batch was drawn: tables may be updated meanwhile.
-// technique[batch]: which technique drew sample s. Their numbers n_j are counted from it; a technique that drew
-// nothing has no part in the weights.
-// batch: the number of samples, at least 1. weight[batch]: the output. One beyond the range of float becomes the
-// largest finite float.
+// ridge: for NF_OMIS_RIDGE, as for nf_omis_solve: 1e-8..1e8, or 0 for the default 2; otherwise ignored. techniques: J
+// in 1..NF_MIS_MAX_TECHNIQUES. items: N, the size of the data set, at least 1. pdf[batch * techniques]: at s *
+// techniques + j the probability with which technique j draws the item of sample s; each technique's sum to 1 over the
+// items. Finite, at least 0 and at most 1, positive for the technique that drew it. Those of before the batch was
+// drawn: tables may be updated meanwhile. technique[batch]: which technique drew sample s. Their numbers n_j are
+// counted from it; a technique that drew nothing has no part in the weights. batch: the number of samples, at least 1.
+// weight[batch]: the output. One beyond the range of float becomes the largest finite float.
 //
 // With S_s = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2,
 // weight_s = (1 / S_s - (q - 1)' (A + ridge)^-1 p_s / S_s^2) batch / items.
@@ -1217,9 +1195,9 @@ nf_status nf_omis_weights(uint32_t solver,
 //
 // Without momentum nf_omis_weights gives the same estimate, at the cost of one weighted backward pass.
 //
-// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; nothing to destroy. May be moved and copied as bytes
-// between calls, in one process or among those that run the same library file; no file format, and for no one else to
-// change, as for nf_cv_accumulator.
+// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; nothing to destroy. May be moved and copied as
+// bytes between calls, in one process or among those that run the same library file; no file format, and for no one
+// else to change, as for nf_cv_accumulator.
 typedef struct nf_gradient nf_gradient;
 
 // The bytes of memory an nf_gradient needs: 4 (techniques + 1) per parameter and about 1.4 kB. 0 unless techniques is
@@ -1241,16 +1219,14 @@ nf_status nf_gradient_init(void *memory,
 // Adds a batch of drawn items, and estimates the gradient of the mean loss from it and, with momentum, those before.
 //
 // solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN or NF_OMIS_BALANCE, and ridge, as for nf_omis_weights, where it is said which
-// is unbiased. They may change from call to call.
-// beta: 0..1, the momentum. A batch that is t steps old counts beta^t, divided by the sum of those weights: the
-// estimate has its right size from the first step on. 0 forgets the earlier batches, and the estimate is that of
-// nf_omis_weights but for rounding, which NF_OMIS_PLAIN magnifies where techniques are nearly alike; 1 averages all. Older gradients lag: under an optimiser with momentum of its own, such as Adam, use
-// 0.
-// items, pdf[batch * techniques], technique[batch]: as for nf_omis_weights, with the techniques of nf_gradient_init.
-// gradient[batch * parameters]: that of sample s by parameter p at s * parameters + p, finite, unweighted.
-// It is read twice: once to see that all of it is finite.
-// batch: the number of samples. estimate[parameters]: the output. One beyond the range of float becomes the largest
-// finite float.
+// is unbiased. They may change from call to call. beta: 0..1, the momentum. A batch that is t steps old counts beta^t,
+// divided by the sum of those weights: the estimate has its right size from the first step on. 0 forgets the earlier
+// batches, and the estimate is that of nf_omis_weights but for rounding, which NF_OMIS_PLAIN magnifies where
+// techniques are nearly alike; 1 averages all. Older gradients lag: under an optimiser with momentum of its own, such
+// as Adam, use 0. items, pdf[batch * techniques], technique[batch]: as for nf_omis_weights, with the techniques of
+// nf_gradient_init. gradient[batch * parameters]: that of sample s by parameter p at s * parameters + p, finite,
+// unweighted. It is read twice: once to see that all of it is finite. batch: the number of samples.
+// estimate[parameters]: the output. One beyond the range of float becomes the largest finite float.
 //
 // Sums are in float, in an order that does not depend on the processor.
 //

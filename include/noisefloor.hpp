@@ -1,10 +1,11 @@
 // noisefloor for C++17: thin wrappers over noisefloor.h.
 //
-// Everything is header-only, and nothing allocates or owns: memory is the caller's, views are pointer and length, and objects
-// end without a destructor. The C header has the full description of every function; here stand only the differences.
+// Everything is header-only, and nothing allocates or owns: memory is the caller's, views are pointer and length, and
+// objects end without a destructor. The C header has the full description of every function; here stand only the
+// differences.
 //
-// A call that fails throws noisefloor::error. With NOISEFLOOR_NO_EXCEPTIONS defined, or exceptions turned off in the compiler,
-// the same functions return noisefloor::result<T>, or a status, instead: see `returned`.
+// A call that fails throws noisefloor::error. With NOISEFLOOR_NO_EXCEPTIONS defined, or exceptions turned off in the
+// compiler, the same functions return noisefloor::result<T>, or a status, instead: see `returned`.
 #ifndef NOISEFLOOR_HPP
 #define NOISEFLOOR_HPP
 
@@ -31,7 +32,7 @@ inline namespace returning {
 inline namespace throwing {
 #endif
 
-// ---- Views -----------------------------------------------------------------------------------------------------------------
+// ---- Views ----
 
 // A pointer and a length, as std::span: made from arrays, and from whatever has data() and size().
 template <class T> class span {
@@ -82,7 +83,7 @@ private:
     std::size_t bytes_ = 0;
 };
 
-// ---- Errors ----------------------------------------------------------------------------------------------------------------
+// ---- Errors ----
 
 enum class status : nf_status {
     ok = NF_OK,
@@ -166,7 +167,7 @@ template <class T> result<T> finish(nf_status code, const T &value) noexcept
 // Whether header and library belong together.
 inline bool abi_matches() noexcept { return nf_abi_version() == NF_ABI_VERSION; }
 
-// ---- Control variates ------------------------------------------------------------------------------------------------------
+// ---- Control variates ----
 
 enum class estimator : std::uint32_t {
     robust = NF_CV_ROBUST,
@@ -188,7 +189,11 @@ enum class solver : std::uint32_t {
     square_root = NF_SOLVER_SQUARE_ROOT,
     dual = NF_SOLVER_DUAL
 };
-enum class optimizer : std::uint32_t { momentum = NF_OPTIMIZER_MOMENTUM, adam = NF_OPTIMIZER_ADAM, plain = NF_OPTIMIZER_PLAIN };
+enum class optimizer : std::uint32_t {
+    momentum = NF_OPTIMIZER_MOMENTUM,
+    adam = NF_OPTIMIZER_ADAM,
+    plain = NF_OPTIMIZER_PLAIN
+};
 
 // nf_cv_config with its defaults, and functions that change one thing and can be chained:
 // `config(3, 2, 3).with(estimator::k_fold).with_folds(2)`. The C fields remain accessible.
@@ -202,11 +207,26 @@ struct config : nf_cv_config {
     }
     explicit config(const nf_cv_config &other) noexcept : nf_cv_config(other) {}
 
-    config with(noisefloor::estimator value) const noexcept { return set(&nf_cv_config::estimator, static_cast<std::uint32_t>(value)); }
-    config with(noisefloor::basis value) const noexcept { return set(&nf_cv_config::basis, static_cast<std::uint32_t>(value)); }
-    config with(noisefloor::solver value) const noexcept { return set(&nf_cv_config::solver, static_cast<std::uint32_t>(value)); }
-    config with(noisefloor::optimizer value) const noexcept { return set(&nf_cv_config::optimizer, static_cast<std::uint32_t>(value)); }
-    config with_stratified_samples(bool value = true) const noexcept { return set(&nf_cv_config::stratified, value ? 1u : 0u); }
+    config with(noisefloor::estimator value) const noexcept
+    {
+        return set(&nf_cv_config::estimator, static_cast<std::uint32_t>(value));
+    }
+    config with(noisefloor::basis value) const noexcept
+    {
+        return set(&nf_cv_config::basis, static_cast<std::uint32_t>(value));
+    }
+    config with(noisefloor::solver value) const noexcept
+    {
+        return set(&nf_cv_config::solver, static_cast<std::uint32_t>(value));
+    }
+    config with(noisefloor::optimizer value) const noexcept
+    {
+        return set(&nf_cv_config::optimizer, static_cast<std::uint32_t>(value));
+    }
+    config with_stratified_samples(bool value = true) const noexcept
+    {
+        return set(&nf_cv_config::stratified, value ? 1u : 0u);
+    }
     config with_slices(std::uint32_t count) const noexcept { return set(&nf_cv_config::slices, count); }
     config with_controls(std::uint32_t count) const noexcept { return set(&nf_cv_config::controls, count); }
     config with_stride(std::uint32_t floats) const noexcept { return set(&nf_cv_config::stride, floats); }
@@ -216,11 +236,13 @@ struct config : nf_cv_config {
     }
     config with_non_finite_skipped(bool value = true) const noexcept
     {
-        return set(&nf_cv_config::nonfinite, value ? std::uint32_t{NF_NONFINITE_SKIP} : std::uint32_t{NF_NONFINITE_ERROR});
+        return set(&nf_cv_config::nonfinite,
+                   value ? std::uint32_t{NF_NONFINITE_SKIP} : std::uint32_t{NF_NONFINITE_ERROR});
     }
     config with_luminance_ratio(bool value = true) const noexcept
     {
-        return set(&nf_cv_config::color, value ? std::uint32_t{NF_COLOR_LUMINANCE_RATIO} : std::uint32_t{NF_COLOR_PER_CHANNEL});
+        return set(&nf_cv_config::color,
+                   value ? std::uint32_t{NF_COLOR_LUMINANCE_RATIO} : std::uint32_t{NF_COLOR_PER_CHANNEL});
     }
     config with_folds(std::uint32_t count) const noexcept { return set(&nf_cv_config::folds, count); }
     config with_iterations(std::uint32_t count) const noexcept { return set(&nf_cv_config::iterations, count); }
@@ -234,7 +256,10 @@ struct config : nf_cv_config {
     bool valid() const noexcept { return terms() > 0; }
     // Bytes; 0 for a configuration that is out of range.
     std::size_t workspace_size(std::size_t n) const noexcept { return nf_cv_workspace_size(this, n); }
-    std::size_t block_workspace_size(std::size_t pixels, std::size_t n) const noexcept { return nf_cv_block_workspace_size(this, pixels, n); }
+    std::size_t block_workspace_size(std::size_t pixels, std::size_t n) const noexcept
+    {
+        return nf_cv_block_workspace_size(this, pixels, n);
+    }
     // For n samples in each pixel.
     std::size_t image_workspace_size(const nf_cv_image &where, std::size_t n) const noexcept
     {
@@ -253,8 +278,8 @@ private:
 };
 
 // nf_cv_image: the pixels of an image and what is known of them, and functions that add one thing and can be chained:
-// `image(640, 480).with_surfaces(ids).with_window(16)`. The C fields remain accessible, but the lengths of arrays that they
-// point to are then unknown: only the functions set them. The arrays must outlive the image.
+// `image(640, 480).with_surfaces(ids).with_window(16)`. The C fields remain accessible, but the lengths of arrays that
+// they point to are then unknown: only the functions set them. The arrays must outlive the image.
 class image : public nf_cv_image {
 public:
     image(std::uint32_t width_, std::uint32_t height_, std::uint32_t frames_ = 1) noexcept : nf_cv_image()
@@ -356,13 +381,15 @@ inline returned<nf_estimate> estimate(const nf_cv_config &how, const samples &wh
     std::size_t n = 0;
     nf_status code = detail::count(how, what, n);
     if (code == NF_OK)
-        code = nf_cv_estimate_with_controls(&how, what.u.data(), what.f.data(), what.controls.data(), what.control_integrals.data(), n,
-                                            workspace.data(), workspace.bytes(), &out);
+        code =
+            nf_cv_estimate_with_controls(&how, what.u.data(), what.f.data(), what.controls.data(),
+                                         what.control_integrals.data(), n, workspace.data(), workspace.bytes(), &out);
     return detail::finish(code, out);
 }
 
 // nf_cv_gradient_descent(): `coefficients` are the start, and afterwards the solution.
-inline returned<nf_estimate> gradient_descent(const nf_cv_config &how, const samples &what, span<float> coefficients, memory workspace)
+inline returned<nf_estimate> gradient_descent(const nf_cv_config &how, const samples &what, span<float> coefficients,
+                                              memory workspace)
 {
     nf_estimate out{};
     std::size_t n = 0;
@@ -372,31 +399,36 @@ inline returned<nf_estimate> gradient_descent(const nf_cv_config &how, const sam
     if (code == NF_OK && terms > 0 && coefficients.size() != rows * (terms - 1))
         code = NF_ERR_RANGE;
     if (code == NF_OK)
-        code = nf_cv_gradient_descent(&how, what.u.data(), what.f.data(), n, coefficients.data(), workspace.data(), workspace.bytes(), &out);
+        code = nf_cv_gradient_descent(&how, what.u.data(), what.f.data(), n, coefficients.data(), workspace.data(),
+                                      workspace.bytes(), &out);
     return detail::finish(code, out);
 }
 
 // nf_cv_block_estimate(): one estimate for each element of `out`, from as many samples of each.
-inline returned<void> estimate_block(const nf_cv_config &how, const samples &what, memory workspace, span<nf_estimate> out)
+inline returned<void> estimate_block(const nf_cv_config &how, const samples &what, memory workspace,
+                                     span<nf_estimate> out)
 {
     std::size_t n = 0;
     nf_status code = detail::count(how, what, n);
     if (code == NF_OK && (out.empty() || n % out.size() != 0))
         code = NF_ERR_RANGE;
     if (code == NF_OK)
-        code = nf_cv_block_estimate(&how, what.u.data(), what.f.data(), out.size(), n / out.size(), workspace.data(), workspace.bytes(), out.data());
+        code = nf_cv_block_estimate(&how, what.u.data(), what.f.data(), out.size(), n / out.size(), workspace.data(),
+                                    workspace.bytes(), out.data());
     return detail::finish(code);
 }
 
 // nf_cv_image_estimate(): one estimate for each pixel, as many as `out` has elements, from as many samples of each.
-inline returned<void> estimate_image(const nf_cv_config &how, const image &where, const samples &what, memory workspace, span<nf_estimate> out)
+inline returned<void> estimate_image(const nf_cv_config &how, const image &where, const samples &what, memory workspace,
+                                     span<nf_estimate> out)
 {
     std::size_t n = 0;
     nf_status code = detail::count(how, what, n);
     if (code == NF_OK && (out.empty() || out.size() != where.pixels() || n % out.size() != 0 || !where.fits(how)))
         code = NF_ERR_RANGE;
     if (code == NF_OK)
-        code = nf_cv_image_estimate(&how, &where, what.u.data(), what.f.data(), n / out.size(), workspace.data(), workspace.bytes(), out.data());
+        code = nf_cv_image_estimate(&how, &where, what.u.data(), what.f.data(), n / out.size(), workspace.data(),
+                                    workspace.bytes(), out.data());
     return detail::finish(code);
 }
 
@@ -418,10 +450,14 @@ public:
         std::size_t n = 0;
         nf_status code = detail::count(how_, what, n);
         if (code == NF_OK)
-            code = nf_cv_accumulator_add_with_controls(handle_, what.u.data(), what.f.data(), what.controls.data(), what.control_integrals.data(), n);
+            code = nf_cv_accumulator_add_with_controls(handle_, what.u.data(), what.f.data(), what.controls.data(),
+                                                       what.control_integrals.data(), n);
         return detail::finish(code);
     }
-    returned<void> merge(const accumulator &other) const { return detail::finish(nf_cv_accumulator_merge(handle_, other.handle_)); }
+    returned<void> merge(const accumulator &other) const
+    {
+        return detail::finish(nf_cv_accumulator_merge(handle_, other.handle_));
+    }
     returned<void> reset() const { return detail::finish(nf_cv_accumulator_reset(handle_)); }
     returned<nf_estimate> estimate(memory workspace) const
     {
@@ -445,7 +481,7 @@ inline returned<nf_recommendation> recommend(std::uint32_t dims, std::uint32_t s
     return detail::finish(code, out);
 }
 
-// ---- Multiple importance sampling ------------------------------------------------------------------------------------------
+// ---- Multiple importance sampling ----
 
 namespace mis {
 
@@ -458,7 +494,10 @@ struct point {
 };
 
 namespace detail {
-inline bool fits(const point &at) noexcept { return at.pdf.size() == at.counts.size() && at.pdf.size() <= max_techniques; }
+inline bool fits(const point &at) noexcept
+{
+    return at.pdf.size() == at.counts.size() && at.pdf.size() <= max_techniques;
+}
 inline std::uint32_t techniques(const point &at) noexcept { return static_cast<std::uint32_t>(at.pdf.size()); }
 } // namespace detail
 
@@ -466,27 +505,32 @@ inline returned<float> balance(const point &at, std::uint32_t technique)
 {
     float weight = 0;
     return noisefloor::detail::finish(
-        detail::fits(at) ? nf_mis_balance(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, &weight) : NF_ERR_RANGE, weight);
+        detail::fits(at) ? nf_mis_balance(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, &weight)
+                         : NF_ERR_RANGE,
+        weight);
 }
 inline returned<float> power(const point &at, std::uint32_t technique, float beta = 2.0f)
 {
     float weight = 0;
-    const nf_status code =
-        detail::fits(at) ? nf_mis_power(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, beta, &weight) : NF_ERR_RANGE;
+    const nf_status code = detail::fits(at) ? nf_mis_power(at.pdf.data(), at.counts.data(), detail::techniques(at),
+                                                           technique, beta, &weight)
+                                            : NF_ERR_RANGE;
     return noisefloor::detail::finish(code, weight);
 }
 inline returned<float> cutoff(const point &at, std::uint32_t technique, float epsilon)
 {
     float weight = 0;
-    const nf_status code =
-        detail::fits(at) ? nf_mis_cutoff(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, epsilon, &weight) : NF_ERR_RANGE;
+    const nf_status code = detail::fits(at) ? nf_mis_cutoff(at.pdf.data(), at.counts.data(), detail::techniques(at),
+                                                            technique, epsilon, &weight)
+                                            : NF_ERR_RANGE;
     return noisefloor::detail::finish(code, weight);
 }
 inline returned<float> maximum(const point &at, std::uint32_t technique)
 {
     float weight = 0;
     const nf_status code =
-        detail::fits(at) ? nf_mis_maximum(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, &weight) : NF_ERR_RANGE;
+        detail::fits(at) ? nf_mis_maximum(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, &weight)
+                         : NF_ERR_RANGE;
     return noisefloor::detail::finish(code, weight);
 }
 inline returned<float> optimal(const point &at, std::uint32_t technique, span<const float> alpha, float value)
@@ -494,15 +538,18 @@ inline returned<float> optimal(const point &at, std::uint32_t technique, span<co
     float weight = 0;
     nf_status code = NF_ERR_RANGE;
     if (detail::fits(at) && alpha.size() == at.pdf.size())
-        code = nf_mis_optimal(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, alpha.data(), value, &weight);
+        code = nf_mis_optimal(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, alpha.data(), value,
+                              &weight);
     return noisefloor::detail::finish(code, weight);
 }
-inline returned<float> optimal_contribution(const point &at, std::uint32_t technique, span<const float> alpha, float value)
+inline returned<float> optimal_contribution(const point &at, std::uint32_t technique, span<const float> alpha,
+                                            float value)
 {
     float term = 0;
     nf_status code = NF_ERR_RANGE;
     if (detail::fits(at) && alpha.size() == at.pdf.size())
-        code = nf_mis_optimal_contribution(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, alpha.data(), value, &term);
+        code = nf_mis_optimal_contribution(at.pdf.data(), at.counts.data(), detail::techniques(at), technique,
+                                           alpha.data(), value, &term);
     return noisefloor::detail::finish(code, term);
 }
 
@@ -511,10 +558,18 @@ inline returned<float> optimal_contribution(const point &at, std::uint32_t techn
 // A view of an nf_omis in caller memory: copying the view does not copy the sums.
 class optimal_mis {
 public:
-    enum class solver : std::uint32_t { ridge = NF_OMIS_RIDGE, plain = NF_OMIS_PLAIN, progressive = NF_OMIS_PROGRESSIVE, balance = NF_OMIS_BALANCE };
+    enum class solver : std::uint32_t {
+        ridge = NF_OMIS_RIDGE,
+        plain = NF_OMIS_PLAIN,
+        progressive = NF_OMIS_PROGRESSIVE,
+        balance = NF_OMIS_BALANCE
+    };
 
     // Bytes.
-    static std::size_t size(std::uint32_t techniques, std::uint32_t integrals) noexcept { return nf_omis_size(techniques, integrals); }
+    static std::size_t size(std::uint32_t techniques, std::uint32_t integrals) noexcept
+    {
+        return nf_omis_size(techniques, integrals);
+    }
 
     // Empty sums in `where`, for techniques that draw counts[j] samples a round.
     static returned<optimal_mis> create(span<const std::uint32_t> counts, std::uint32_t integrals, memory where)
@@ -540,13 +595,15 @@ public:
     returned<void> solve(span<float> out, solver how = solver::ridge, float ridge = 0.0f) const
     {
         const bool fits = out.size() == integrals_;
-        return detail::finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, out.data()) : NF_ERR_RANGE);
+        return detail::finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, out.data())
+                                   : NF_ERR_RANGE);
     }
     // out[integrals * techniques]
     returned<void> alpha(span<float> out, solver how = solver::ridge, float ridge = 0.0f) const
     {
         const bool fits = techniques_ > 0 && out.size() % techniques_ == 0 && out.size() / techniques_ == integrals_;
-        return detail::finish(fits ? nf_omis_alpha(handle_, static_cast<std::uint32_t>(how), ridge, out.data()) : NF_ERR_RANGE);
+        return detail::finish(fits ? nf_omis_alpha(handle_, static_cast<std::uint32_t>(how), ridge, out.data())
+                                   : NF_ERR_RANGE);
     }
     returned<void> next_batch(solver how = solver::ridge, float ridge = 0.0f) const
     {
@@ -554,7 +611,10 @@ public:
     }
     returned<void> decay(float beta) const { return detail::finish(nf_omis_decay(handle_, beta)); }
     returned<void> reset() const { return detail::finish(nf_omis_reset(handle_)); }
-    returned<void> merge(const optimal_mis &other) const { return detail::finish(nf_omis_merge(handle_, other.handle_)); }
+    returned<void> merge(const optimal_mis &other) const
+    {
+        return detail::finish(nf_omis_merge(handle_, other.handle_));
+    }
     nf_omis *handle() const noexcept { return handle_; }
 
 private:
@@ -562,7 +622,7 @@ private:
     std::uint32_t techniques_ = 0, integrals_ = 0;
 };
 
-// ---- Tiles and samplers ----------------------------------------------------------------------------------------------------
+// ---- Tiles and samplers ----
 
 // nf_tile: a view of sample points. The C fields remain accessible.
 struct tile : nf_tile {
@@ -596,7 +656,10 @@ public:
     explicit sampler(const nf_sampler &state) noexcept : state_(state) {}
 
     [[nodiscard]] sampler domain(std::uint32_t key) const noexcept { return sampler(nf_sampler_domain(state_, key)); }
-    [[nodiscard]] sampler scramble(std::uint32_t seed) const noexcept { return sampler(nf_sampler_scramble(state_, seed)); }
+    [[nodiscard]] sampler scramble(std::uint32_t seed) const noexcept
+    {
+        return sampler(nf_sampler_scramble(state_, seed));
+    }
     // The first N coordinates.
     template <std::uint32_t N> [[nodiscard]] std::array<float, N> draw() const noexcept
     {
@@ -618,17 +681,17 @@ private:
     nf_sampler state_;
 };
 
-// nf_sampler_fill(): u[height][width][samples][sum of dims] from samplers of the first pixel and sample, dims[i] from samplers[i].
-// status::range also for lengths that do not agree.
-inline returned<void> fill(span<const nf_sampler> samplers, span<const std::uint32_t> dims, std::uint32_t width, std::uint32_t height,
-                           std::uint32_t samples, span<float> u)
+// nf_sampler_fill(): u[height][width][samples][sum of dims] from samplers of the first pixel and sample, dims[i] from
+// samplers[i]. status::range also for lengths that do not agree.
+inline returned<void> fill(span<const nf_sampler> samplers, span<const std::uint32_t> dims, std::uint32_t width,
+                           std::uint32_t height, std::uint32_t samples, span<float> u)
 {
     return detail::finish(samplers.size() != dims.size() ? NF_ERR_RANGE
-                                                         : nf_sampler_fill(samplers.data(), dims.data(), dims.size(), width, height,
-                                                                           samples, u.data(), u.size()));
+                                                         : nf_sampler_fill(samplers.data(), dims.data(), dims.size(),
+                                                                           width, height, samples, u.data(), u.size()));
 }
 
-// ---- Random numbers --------------------------------------------------------------------------------------------------------
+// ---- Random numbers ----
 
 // nf_rng as a standard uniform random bit generator.
 class rng {
@@ -652,10 +715,11 @@ private:
     nf_rng state_{};
 };
 
-// ---- Minibatches -----------------------------------------------------------------------------------------------------------
+// ---- Minibatches ----
 
-// nf_table: the importances of a data set's items, in memory of the caller's. It may be moved, not copied: the memory would be
-// shared. The importance functions, nf_shuffle() and nf_gradient_*() are called as in C. Lengths that do not agree are status::range; an empty `weight` stands for none.
+// nf_table: the importances of a data set's items, in memory of the caller's. It may be moved, not copied: the memory
+// would be shared. The importance functions, nf_shuffle() and nf_gradient_*() are called as in C. Lengths that do not
+// agree are status::range; an empty `weight` stands for none.
 class table {
 public:
     // Bytes.
@@ -679,7 +743,9 @@ public:
     returned<void> init(memory where, span<const float> importance)
     {
         const bool fits = importance.size() <= UINT32_MAX && importance.data() != nullptr;
-        return detail::finish(fits ? nf_table_init(&state_, where.data(), where.bytes(), length(importance), importance.data()) : NF_ERR_RANGE);
+        return detail::finish(
+            fits ? nf_table_init(&state_, where.data(), where.bytes(), length(importance), importance.data())
+                 : NF_ERR_RANGE);
     }
     returned<void> draw(rng &random, span<std::uint32_t> index, span<float> weight = {}) const
     {
@@ -694,22 +760,30 @@ public:
         return finish_draw(nf_table_draw_distinct, &state_, random, index, weight);
     }
     // This process's part of a batch over all shards.
-    returned<void> draw_shard(span<const nf_shard> all, rng &random, span<std::uint32_t> index, span<float> weight = {}) const
+    returned<void> draw_shard(span<const nf_shard> all, rng &random, span<std::uint32_t> index,
+                              span<float> weight = {}) const
     {
         const bool fit = fits(index, weight) && all.size() <= UINT32_MAX;
-        return detail::finish(fit ? nf_table_draw_shard(&state_, all.data(), length(all), &random.state(), length(index), index.data(), weight.data())
+        return detail::finish(fit ? nf_table_draw_shard(&state_, all.data(), length(all), &random.state(),
+                                                        length(index), index.data(), weight.data())
                                   : NF_ERR_RANGE);
     }
     returned<void> update(span<const std::uint32_t> index, span<const float> importance, float momentum)
     {
         const bool fits = index.size() == importance.size() && index.size() <= UINT32_MAX;
-        return detail::finish(fits ? nf_table_update(&state_, index.data(), importance.data(), length(index), momentum) : NF_ERR_RANGE);
+        return detail::finish(fits ? nf_table_update(&state_, index.data(), importance.data(), length(index), momentum)
+                                   : NF_ERR_RANGE);
     }
-    returned<void> set_uniform_fraction(float fraction) { return detail::finish(nf_table_set_uniform_fraction(&state_, fraction)); }
+    returned<void> set_uniform_fraction(float fraction)
+    {
+        return detail::finish(nf_table_set_uniform_fraction(&state_, fraction));
+    }
     returned<void> add_epsilon(float epsilon) { return detail::finish(nf_table_add_epsilon(&state_, epsilon)); }
     returned<void> append(span<const float> importance)
     {
-        return detail::finish(importance.size() <= UINT32_MAX ? nf_table_append(&state_, importance.data(), length(importance)) : NF_ERR_RANGE);
+        return detail::finish(importance.size() <= UINT32_MAX
+                                  ? nf_table_append(&state_, importance.data(), length(importance))
+                                  : NF_ERR_RANGE);
     }
 
     std::uint32_t items() const noexcept { return state_.items; }
@@ -717,8 +791,10 @@ public:
     // p[k * stride] of index[k].
     returned<void> probabilities(span<const std::uint32_t> index, span<float> p, std::uint32_t stride = 1) const
     {
-        const bool fits = index.size() <= UINT32_MAX && stride > 0 && (index.empty() || (p.size() > 0 && (p.size() - 1) / stride >= index.size() - 1));
-        return detail::finish(fits ? nf_table_probabilities(&state_, index.data(), length(index), stride, p.data()) : NF_ERR_RANGE);
+        const bool fits = index.size() <= UINT32_MAX && stride > 0 &&
+                          (index.empty() || (p.size() > 0 && (p.size() - 1) / stride >= index.size() - 1));
+        return detail::finish(fits ? nf_table_probabilities(&state_, index.data(), length(index), stride, p.data())
+                                   : NF_ERR_RANGE);
     }
     float importance(std::uint32_t item) const noexcept { return nf_table_importance(&state_, item); }
     double total() const noexcept { return nf_table_total(&state_); }
@@ -729,7 +805,10 @@ public:
     }
 
     std::size_t saved_size() const noexcept { return nf_table_saved_size(&state_); }
-    returned<void> save(span<unsigned char> saved) const { return detail::finish(nf_table_save(&state_, saved.data(), saved.size())); }
+    returned<void> save(span<unsigned char> saved) const
+    {
+        return detail::finish(nf_table_save(&state_, saved.data(), saved.size()));
+    }
     returned<void> load(memory where, span<const unsigned char> saved)
     {
         return detail::finish(nf_table_load(&state_, where.data(), where.bytes(), saved.data(), saved.size()));
@@ -737,43 +816,54 @@ public:
     const nf_table &state() const noexcept { return state_; }
 
 private:
-    template <class T> static std::uint32_t length(const span<T> &what) noexcept { return static_cast<std::uint32_t>(what.size()); }
+    template <class T> static std::uint32_t length(const span<T> &what) noexcept
+    {
+        return static_cast<std::uint32_t>(what.size());
+    }
     static bool fits(const span<std::uint32_t> &index, const span<float> &weight) noexcept
     {
         return index.size() <= UINT32_MAX && (weight.empty() || weight.size() == index.size());
     }
     template <class F, class T>
-    static returned<void> finish_draw(F function, T *state, rng &random, const span<std::uint32_t> &index, const span<float> &weight)
+    static returned<void> finish_draw(F function, T *state, rng &random, const span<std::uint32_t> &index,
+                                      const span<float> &weight)
     {
-        return detail::finish(fits(index, weight) ? function(state, &random.state(), length(index), index.data(), weight.data()) : NF_ERR_RANGE);
+        return detail::finish(fits(index, weight)
+                                  ? function(state, &random.state(), length(index), index.data(), weight.data())
+                                  : NF_ERR_RANGE);
     }
 
     nf_table state_{};
 };
 
 // nf_shards_allocate(): how many of a batch's items each shard draws.
-inline returned<void> allocate(span<const nf_shard> shards, float uniform_fraction, rng &random, std::uint32_t batch, span<std::uint32_t> counts)
+inline returned<void> allocate(span<const nf_shard> shards, float uniform_fraction, rng &random, std::uint32_t batch,
+                               span<std::uint32_t> counts)
 {
     const bool fits = shards.size() == counts.size() && shards.size() <= UINT32_MAX;
-    return detail::finish(fits ? nf_shards_allocate(shards.data(), static_cast<std::uint32_t>(shards.size()), uniform_fraction, &random.state(), batch,
-                                                    counts.data())
+    return detail::finish(fits ? nf_shards_allocate(shards.data(), static_cast<std::uint32_t>(shards.size()),
+                                                    uniform_fraction, &random.state(), batch, counts.data())
                                : NF_ERR_RANGE);
 }
 
 // nf_omis_weights(): pdf[batch * techniques], technique[batch], weight[batch].
-inline returned<void> omis_weights(std::uint32_t techniques, std::uint32_t items, span<const float> pdf, span<const std::uint32_t> technique,
-                                   span<float> weight, optimal_mis::solver how = optimal_mis::solver::ridge, float ridge = 0.0f)
+inline returned<void> omis_weights(std::uint32_t techniques, std::uint32_t items, span<const float> pdf,
+                                   span<const std::uint32_t> technique, span<float> weight,
+                                   optimal_mis::solver how = optimal_mis::solver::ridge, float ridge = 0.0f)
 {
     const std::size_t batch = weight.size();
-    const bool fits = batch <= UINT32_MAX && technique.size() == batch && techniques > 0 && pdf.size() % techniques == 0 && pdf.size() / techniques == batch;
-    return detail::finish(fits ? nf_omis_weights(static_cast<std::uint32_t>(how), ridge, techniques, items, pdf.data(), technique.data(),
-                                                 static_cast<std::uint32_t>(batch), weight.data())
+    const bool fits = batch <= UINT32_MAX && technique.size() == batch && techniques > 0 &&
+                      pdf.size() % techniques == 0 && pdf.size() / techniques == batch;
+    return detail::finish(fits ? nf_omis_weights(static_cast<std::uint32_t>(how), ridge, techniques, items, pdf.data(),
+                                                 technique.data(), static_cast<std::uint32_t>(batch), weight.data())
                                : NF_ERR_RANGE);
 }
 
 static_assert(sizeof(config) == sizeof(nf_cv_config), "config is an nf_cv_config");
-static_assert(std::is_trivially_copyable_v<config> && std::is_trivially_copyable_v<accumulator>, "views and values only");
-static_assert(std::is_trivially_destructible_v<optimal_mis> && std::is_trivially_destructible_v<accumulator>, "nothing to destroy");
+static_assert(std::is_trivially_copyable_v<config> && std::is_trivially_copyable_v<accumulator>,
+              "views and values only");
+static_assert(std::is_trivially_destructible_v<optimal_mis> && std::is_trivially_destructible_v<accumulator>,
+              "nothing to destroy");
 
 } // inline namespace
 } // namespace noisefloor

@@ -116,8 +116,8 @@ fn solve(criterion: &mut Criterion) {
     bench::<3, 10>(&mut group);
 }
 
-/// Fits that the pixels of 32 x 32 share, through the C ABI: blocks of 8 x 8 in no order, windows of 8 x 8 side by side, and
-/// overlapping by half.
+/// Fits that the pixels of 32 x 32 share, through the C ABI: blocks of 8 x 8 in no order, windows of 8 x 8 side by
+/// side, and overlapping by half.
 fn shared(criterion: &mut Criterion) {
     if !c_abi::LINKED {
         return;

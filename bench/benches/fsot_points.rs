@@ -1,7 +1,7 @@
 //! Nanoseconds per slice of the point optimiser: one iteration is 16 slices and moving the points.
 //!
-//! Ids are numbers of points; throughput is in points times slices, so that "elem/s" is what one slice does to points per second.
-//! One thread, so that a slice's cost shows and not the machine's cores.
+//! Ids are numbers of points; throughput is in points times slices, so that "elem/s" is what one slice does to points
+//! per second. One thread, so that a slice's cost shows and not the machine's cores.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use fsot::class::{ramp, three_colors};

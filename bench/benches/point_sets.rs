@@ -1,7 +1,8 @@
 //! Seconds against quality of point sets: `cargo bench --package noisefloor-bench --bench point_sets`.
 //!
-//! Sets of 256 to a million points and of 1 to 15 classes are optimised and measured beside random and Owen-scrambled Sobol points;
-//! longer and shorter runs of the same sizes say what a second buys. What the report's chapter on points shows, as CSV.
+//! Sets of 256 to a million points and of 1 to 15 classes are optimised and measured beside random and Owen-scrambled
+//! Sobol points; longer and shorter runs of the same sizes say what a second buys. What the report's chapter on points
+//! shows, as CSV.
 
 use anyhow::{Context, Result};
 use clap::Parser;
@@ -45,7 +46,8 @@ const MILLION: usize = 1 << 20;
 /// Steps of a million points where the time is short: draft quality has 80.
 const FEW_STEPS: u64 = 24;
 
-/// How often random and Sobol points are measured: from so many on one set is like another, and measuring takes seconds.
+/// How often random and Sobol points are measured: from so many on one set is like another, and measuring takes
+/// seconds.
 fn peer_seeds(points: usize, full: bool) -> u64 {
     match points {
         ..=16_384 => 4,

@@ -1,5 +1,6 @@
-//! Weights that are needed once for each sample: of multiple importance sampling's heuristics, and what the optimal weights add
-//! up; and draws and updates of a table of importances, through criterion. Ids are numbers of techniques, or of items.
+//! Weights that are needed once for each sample: of multiple importance sampling's heuristics, and what the optimal
+//! weights add up; and draws and updates of a table of importances, through criterion. Ids are numbers of techniques,
+//! or of items.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use noisefloor::minibatch::{Table, table};

@@ -230,7 +230,8 @@ mod linked {
             Self { config, image, block, n, workspace: memory(bytes), out: vec![Estimate::default(); pixels] }
         }
 
-        /// All pixels' estimates; returns the first. `u` and `f` hold the samples of pixel after pixel, or block after block.
+        /// All pixels' estimates; returns the first. `u` and `f` hold the samples of pixel after pixel, or block after
+        /// block.
         pub fn estimate(&mut self, u: &[f32], f: &[f32]) -> f32 {
             let (dims, channels) = (self.config.dims as usize, self.config.channels as usize);
             let samples = self.out.len() * self.n;

@@ -64,8 +64,8 @@ mod linked {
             }
         }
 
-        /// The sum of two numbers of the pixel's own domain. (To return both, Rust would load them as one, and wait for the
-        /// two stores.)
+        /// The sum of two numbers of the pixel's own domain. (To return both, Rust would load them as one, and wait for
+        /// the two stores.)
         #[inline]
         pub fn root(&self, x: u32, y: u32, index: u32) -> f32 {
             let mut u = [0.0; 2];
@@ -114,7 +114,8 @@ mod linked {
             (u[0] + u[1]) + (u[2] + u[3])
         }
 
-        /// The samples of a pixel in one call, and the sum of the last two numbers: `dims` numbers of the root, or two of each of two child domains.
+        /// The samples of a pixel in one call, and the sum of the last two numbers: `dims` numbers of the root, or two
+        /// of each of two child domains.
         #[inline]
         pub fn samples(&self, x: u32, y: u32, samples: u32, dims: u32, u: &mut [f32]) -> f32 {
             // SAFETY: as above; the length is that of `u`.

@@ -1,4 +1,5 @@
-//! The inner operations of a table of importances, in AVX2: the same bits as [`Portable`], in a third of the instructions.
+//! The inner operations of a table of importances, in AVX2: the same bits as [`Portable`], in a third of the
+//! instructions.
 //!
 //! Compilers do not find these: they spread the columns of a block over scalar registers. Tests compare both.
 

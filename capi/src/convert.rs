@@ -2,8 +2,9 @@
 //!
 //! Lengths are checked against `isize::MAX` bytes, alignment against the element type, before any slice is made.
 //!
-//! C callers pass outputs that nobody has written yet. A single output, and an array of structs, is therefore [`Room`], which may
-//! hold anything, until its value is there. Arrays of numbers, which the core fills through slices, are [`outputs`].
+//! C callers pass outputs that nobody has written yet. A single output, and an array of structs, is therefore [`Room`],
+//! which may hold anything, until its value is there. Arrays of numbers, which the core fills through slices, are
+//! [`outputs`].
 
 use crate::status::*;
 use core::ffi::c_void;
@@ -52,7 +53,8 @@ pub(crate) unsafe fn room<'a, T>(pointer: *mut T) -> Result<&'a mut Room<T>, nf_
     unsafe { reference_mut(pointer.cast()) }
 }
 
-/// Room for `len` objects, where there may never have been any; a zero length gives an empty slice whatever the pointer.
+/// Room for `len` objects, where there may never have been any; a zero length gives an empty slice whatever the
+/// pointer.
 ///
 /// # Safety
 /// As for [`room`], of all elements.
@@ -104,18 +106,19 @@ impl AnyBits for u8 {}
 impl AnyBits for u32 {}
 impl AnyBits for f32 {}
 
-/// `len` numbers that the core will write, through the slices of its safe interface; clearing them first would cost time, and
-/// an error must leave them as they are. A zero length gives an empty slice whatever the pointer.
+/// `len` numbers that the core will write, through the slices of its safe interface; clearing them first would cost
+/// time, and an error must leave them as they are. A zero length gives an empty slice whatever the pointer.
 ///
-/// A slice of numbers that Rust code has left uninitialised would be invalid, even unread. These are another language's: the
-/// memory was allocated, and perhaps written, by code that this crate's compiler cannot see, so that it must take them for some
-/// numbers, whatever C calls them; every pattern of bits being a number, they are. The core writes each before it reads it,
-/// so no result depends on which. This fails where the compiler does see that code: under link-time optimisation across languages,
-/// which the archive, machine code, takes no part in; and where Rust code is the caller.
+/// A slice of numbers that Rust code has left uninitialised would be invalid, even unread. These are another
+/// language's: the memory was allocated, and perhaps written, by code that this crate's compiler cannot see, so that it
+/// must take them for some numbers, whatever C calls them; every pattern of bits being a number, they are. The core
+/// writes each before it reads it, so no result depends on which. This fails where the compiler does see that code:
+/// under link-time optimisation across languages, which the archive, machine code, takes no part in; and where Rust
+/// code is the caller.
 ///
 /// # Safety
-/// A non-NULL, aligned `pointer` must be the start of room for `len` elements that no one else uses during `'a`. Where this crate's
-/// compiler sees what allocated them, a Rust caller say, they must be initialised.
+/// A non-NULL, aligned `pointer` must be the start of room for `len` elements that no one else uses during `'a`. Where
+/// this crate's compiler sees what allocated them, a Rust caller say, they must be initialised.
 pub(crate) unsafe fn outputs<'a, T: AnyBits>(pointer: *mut T, len: usize) -> Result<&'a mut [T], nf_status> {
     // SAFETY: passed on to the caller; numbers of any bits are initialised, as said above.
     unsafe { slice_mut(pointer, len) }
@@ -159,7 +162,8 @@ pub(crate) unsafe fn workspace<'a, T: Real>(
     }
 }
 
-/// The bytes of an object in caller memory: an `H`, and `len` `T` right behind it. 0 for a `len` of 0 or a size no memory has.
+/// The bytes of an object in caller memory: an `H`, and `len` `T` right behind it. 0 for a `len` of 0 or a size no
+/// memory has.
 pub(crate) fn object_size<H, T>(len: usize) -> usize {
     match len.checked_mul(size_of::<T>()).and_then(|bytes| bytes.checked_add(size_of::<H>())) {
         Some(bytes) if len > 0 && bytes <= isize::MAX as usize => bytes,

@@ -1,12 +1,13 @@
 //! Choosing, at run time, code for the vector units that the processor has.
 //!
 //! Every version is the same Rust code, compiled for more registers, but for the inner operations of tables, which
-//! [`avx2`](crate::avx2) writes out. No operation is fused or reordered, so all return the same bits. Code for a feature that the
-//! build does not assume is entered here alone.
+//! [`avx2`](crate::avx2) writes out. No operation is fused or reordered, so all return the same bits. Code for a
+//! feature that the build does not assume is entered here alone.
 //!
-//! Not all has two. With AVX2 `nf_cv_accumulator_add` takes 1 to 9 % more instructions: it goes through one sample at a time, in rows too
-//! short for wide registers. `nf_cv_accumulator_estimate` keeps its bulk in functions of its own, and gains nothing. Gradient descent,
-//! whose steps are such functions too, takes 14 to 22 % fewer if all of it is inlined, for some 70 kB of code: too much for one estimator.
+//! Not all has two. With AVX2 `nf_cv_accumulator_add` takes 1 to 9 % more instructions: it goes through one sample at a
+//! time, in rows too short for wide registers. `nf_cv_accumulator_estimate` keeps its bulk in functions of its own, and
+//! gains nothing. Gradient descent, whose steps are such functions too, takes 14 to 22 % fewer if all of it is inlined,
+//! for some 70 kB of code: too much for one estimator.
 
 use noisefloor_core::Error;
 use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Samples};
@@ -20,8 +21,8 @@ use noisefloor_core::rng::Rng;
 use crate::avx2::Avx2;
 use crate::table::{Reader, Writer};
 
-/// Functions of two bodies: one compiled for every processor of the target, and one for those that have the vector units named, which
-/// run that.
+/// Functions of two bodies: one compiled for every processor of the target, and one for those that have the vector
+/// units named, which run that.
 macro_rules! by_processor {
     ($(
         $(#[$doc:meta])*

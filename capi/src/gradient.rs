@@ -11,9 +11,9 @@ use noisefloor_core::minibatch::{self, Batch, Gradient, System};
 ///
 /// Without momentum nf_omis_weights gives the same estimate, at the cost of one weighted backward pass.
 ///
-/// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; nothing to destroy. May be moved and copied as bytes
-/// between calls, in one process or among those that run the same library file; no file format, and for no one else to
-/// change, as for nf_cv_accumulator.
+/// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; nothing to destroy. May be moved and copied as
+/// bytes between calls, in one process or among those that run the same library file; no file format, and for no one
+/// else to change, as for nf_cv_accumulator.
 #[allow(non_camel_case_types)]
 pub struct nf_gradient {
     _private: (),
@@ -69,16 +69,14 @@ pub unsafe extern "C" fn nf_gradient_init(
 /// Adds a batch of drawn items, and estimates the gradient of the mean loss from it and, with momentum, those before.
 ///
 /// solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN or NF_OMIS_BALANCE, and ridge, as for nf_omis_weights, where it is said which
-/// is unbiased. They may change from call to call.
-/// beta: 0..1, the momentum. A batch that is t steps old counts beta^t, divided by the sum of those weights: the
-/// estimate has its right size from the first step on. 0 forgets the earlier batches, and the estimate is that of
-/// nf_omis_weights but for rounding, which NF_OMIS_PLAIN magnifies where techniques are nearly alike; 1 averages all. Older gradients lag: under an optimiser with momentum of its own, such as Adam, use
-/// 0.
-/// items, pdf[batch * techniques], technique[batch]: as for nf_omis_weights, with the techniques of nf_gradient_init.
-/// gradient[batch * parameters]: that of sample s by parameter p at s * parameters + p, finite, unweighted.
-/// It is read twice: once to see that all of it is finite.
-/// batch: the number of samples. estimate[parameters]: the output. One beyond the range of float becomes the largest
-/// finite float.
+/// is unbiased. They may change from call to call. beta: 0..1, the momentum. A batch that is t steps old counts beta^t,
+/// divided by the sum of those weights: the estimate has its right size from the first step on. 0 forgets the earlier
+/// batches, and the estimate is that of nf_omis_weights but for rounding, which NF_OMIS_PLAIN magnifies where
+/// techniques are nearly alike; 1 averages all. Older gradients lag: under an optimiser with momentum of its own, such
+/// as Adam, use 0. items, pdf[batch * techniques], technique[batch]: as for nf_omis_weights, with the techniques of
+/// nf_gradient_init. gradient[batch * parameters]: that of sample s by parameter p at s * parameters + p, finite,
+/// unweighted. It is read twice: once to see that all of it is finite. batch: the number of samples.
+/// estimate[parameters]: the output. One beyond the range of float becomes the largest finite float.
 ///
 /// Sums are in float, in an order that does not depend on the processor.
 ///

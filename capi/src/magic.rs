@@ -1,8 +1,8 @@
 //! What tells an object in caller memory from other bytes, and from one that another build of the library made.
 //!
 //! The compiler chooses the layout of what objects are made of, and may choose another one in each build. So the number
-//! depends on what can be known of it here: a check against the plain mistake of keeping objects in files, or sending them to another
-//! program, not a proof. The header says what may be done with their bytes.
+//! depends on what can be known of it here: a check against the plain mistake of keeping objects in files, or sending
+//! them to another program, not a proof. The header says what may be done with their bytes.
 //!
 //! Behind the number there is no check, and could be none: an object says itself how long it is, and in its header
 //! stand enums, of which not every pattern of bits is one. Who finds the number takes the rest for what the library
@@ -10,7 +10,8 @@
 
 use crate::status::{NF_ABI_VERSION, NF_ERR_ALIGNMENT, NF_ERR_NULL, NF_ERR_STATE, nf_status};
 
-/// The number of objects whose header is an `H`, for the library's version and the target's width of pointers. It is to stand first.
+/// The number of objects whose header is an `H`, for the library's version and the target's width of pointers. It is to
+/// stand first.
 pub(crate) const fn magic<H>(name: &str) -> u64 {
     let numbers = [size_of::<H>(), align_of::<H>(), usize::BITS as usize, NF_ABI_VERSION as usize];
     let mut hash = add(BASIS, name.as_bytes());

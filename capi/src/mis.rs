@@ -12,14 +12,14 @@ const _: () = assert!(NF_MIS_MAX_TECHNIQUES as usize == MAX_TECHNIQUES);
 
 /// The balance heuristic (2.12): the weight n_j p_j / sum_k n_k p_k of technique j at one point.
 ///
-/// pdf[techniques]: p_k, the density of each technique at the point, in any one measure, at least 0. Infinity stands for a
-/// delta distribution: where any is infinite the finite ones count as 0 and the infinite ones are equally dense.
-/// counts[techniques]: n_k, the number of samples of each technique; one with 0 has no part in it.
-/// techniques: 1..NF_MIS_MAX_TECHNIQUES. technique: j, below techniques.
+/// pdf[techniques]: p_k, the density of each technique at the point, in any one measure, at least 0. Infinity stands
+/// for a delta distribution: where any is infinite the finite ones count as 0 and the infinite ones are equally dense.
+/// counts[techniques]: n_k, the number of samples of each technique; one with 0 has no part in it. techniques:
+/// 1..NF_MIS_MAX_TECHNIQUES. technique: j, below techniques.
 ///
-/// The weights of all techniques sum to 1 and are safe for densities from 1e-38 to 1e38. Where every n_k p_k is 0, so that
-/// the point cannot have been drawn, each is 0. With them, the sum over all samples of weight * f / (n_j p_j) is unbiased
-/// (2.10).
+/// The weights of all techniques sum to 1 and are safe for densities from 1e-38 to 1e38. Where every n_k p_k is 0, so
+/// that the point cannot have been drawn, each is 0. With them, the sum over all samples of weight * f / (n_j p_j) is
+/// unbiased (2.10).
 ///
 /// NF_ERR_NULL; NF_ERR_RANGE: techniques, technique, or a negative density; NF_ERR_NOT_FINITE: a density is NaN.
 #[unsafe(no_mangle)]
@@ -36,10 +36,11 @@ pub unsafe extern "C" fn nf_mis_balance(
 
 /// The power heuristic: the weight (n_j p_j)^beta / sum_k (n_k p_k)^beta.
 ///
-/// beta: positive and finite; 0 means the usual 2. 1 is the balance heuristic. (2.13) prints the exponent outside the sum;
-/// those weights would not sum to 1, and these are Veach's.
+/// beta: positive and finite; 0 means the usual 2. 1 is the balance heuristic. (2.13) prints the exponent outside the
+/// sum; those weights would not sum to 1, and these are Veach's.
 ///
-/// Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: beta is negative; NF_ERR_NOT_FINITE: beta is not finite.
+/// Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: beta is negative; NF_ERR_NOT_FINITE: beta is not
+/// finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_mis_power(
     pdf: *const f32,
@@ -58,9 +59,9 @@ pub unsafe extern "C" fn nf_mis_power(
 
 /// The cutoff heuristic: the balance heuristic among the techniques with n_k p_k >= epsilon * max_i n_i p_i.
 ///
-/// epsilon: 0..1; 0 is the balance heuristic, 1 the maximum heuristic with ties shared. (2.14) prints an absolute threshold
-/// on p_k, without the counts; it would depend on the unit of the density, and leave points where no technique reaches
-/// it. This is Veach's form.
+/// epsilon: 0..1; 0 is the balance heuristic, 1 the maximum heuristic with ties shared. (2.14) prints an absolute
+/// threshold on p_k, without the counts; it would depend on the unit of the density, and leave points where no
+/// technique reaches it. This is Veach's form.
 ///
 /// Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: epsilon; NF_ERR_NOT_FINITE: epsilon is not finite.
 #[unsafe(no_mangle)]
@@ -78,7 +79,8 @@ pub unsafe extern "C" fn nf_mis_cutoff(
     }
 }
 
-/// The maximum heuristic: 1 for the technique with the largest n_k p_k (the first of them if several tie), 0 for others.
+/// The maximum heuristic: 1 for the technique with the largest n_k p_k (the first of them if several tie), 0 for
+/// others.
 ///
 /// Arguments and errors as for nf_mis_balance.
 #[unsafe(no_mangle)]
@@ -96,9 +98,9 @@ pub unsafe extern "C" fn nf_mis_maximum(
 /// The optimal weight (2.15) of Kondapaneni et al. (2019), for an alpha from nf_omis_alpha:
 /// w_j = alpha_j p_j / f + n_j p_j / S (1 - sum_k alpha_k p_k / f), S = sum_k n_k p_k.
 ///
-/// pdf[techniques]: finite and at least 0. counts[techniques]: at least 1. alpha[techniques]: finite.
-/// value: f at the point, not divided by a density, finite and not 0. Where f is 0 the weight does not exist, though the
-/// sample still contributes: see nf_mis_optimal_contribution.
+/// pdf[techniques]: finite and at least 0. counts[techniques]: at least 1. alpha[techniques]: finite. value: f at the
+/// point, not divided by a density, finite and not 0. Where f is 0 the weight does not exist, though the sample still
+/// contributes: see nf_mis_optimal_contribution.
 ///
 /// Whatever alpha is, the weights sum to 1; they may be negative or above 1. Where no density is positive each is 0.
 ///
@@ -125,8 +127,8 @@ pub unsafe extern "C" fn nf_mis_optimal(
 /// w_j f / (n_j p_j) = alpha_j / n_j + (f - sum_k alpha_k p_k) / S, S = sum_k n_k p_k.
 ///
 /// The sum over all samples is the estimate, unbiased if alpha came from other samples. The term is not 0 where f is;
-/// leaving such samples out keeps the mean and loses part of the gain. These terms, times the number of samples, are what a
-/// regression control variate is fitted to (4.3.3).
+/// leaving such samples out keeps the mean and loses part of the gain. These terms, times the number of samples, are
+/// what a regression control variate is fitted to (4.3.3).
 ///
 /// Arguments and errors as for nf_mis_optimal, except that value may be 0, and pdf[technique] must be positive.
 #[unsafe(no_mangle)]

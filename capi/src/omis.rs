@@ -17,11 +17,11 @@ pub const NF_OMIS_PROGRESSIVE: u32 = 2;
 /// nf_omis solver: alpha = 0, the balance heuristic. Unbiased.
 pub const NF_OMIS_BALANCE: u32 = 3;
 
-/// Optimal multiple importance sampling (Kondapaneni et al. 2019; 2.15): sums over samples of J techniques, from which P
-/// integrals are estimated with weights of least variance.
+/// Optimal multiple importance sampling (Kondapaneni et al. 2019; 2.15): sums over samples of J techniques, from which
+/// P integrals are estimated with weights of least variance.
 ///
-/// With S = sum_k n_k p_k and s over all samples, it keeps A = sum_s p p' / S^2 and b = sum_s f p / S^2 and a few sums more.
-/// After R rounds of n_k samples each, an integral is sum_s f / S / R - (sum_s p / S / R - 1)' alpha with alpha
+/// With S = sum_k n_k p_k and s over all samples, it keeps A = sum_s p p' / S^2 and b = sum_s f p / S^2 and a few sums
+/// more. After R rounds of n_k samples each, an integral is sum_s f / S / R - (sum_s p / S / R - 1)' alpha with alpha
 /// from A alpha = b: the balance estimate, less what the samples got wrong about the densities' integrals.
 ///
 /// Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use, nor changed by anyone
@@ -43,8 +43,8 @@ struct Header {
 
 const MAGIC: u64 = magic::<Header>("nf_omis");
 
-/// The bytes of memory an nf_omis needs; 0 unless techniques is in 1..NF_MIS_MAX_TECHNIQUES, integrals at least 1, and the
-/// size one that memory can have.
+/// The bytes of memory an nf_omis needs; 0 unless techniques is in 1..NF_MIS_MAX_TECHNIQUES, integrals at least 1, and
+/// the size one that memory can have.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_omis_size(techniques: u32, integrals: u32) -> usize {
     convert::object_size::<Header, f64>(mis::len(techniques as usize, integrals as usize))
@@ -87,11 +87,11 @@ pub unsafe extern "C" fn nf_omis_init(
 
 /// Adds one sample, drawn by `technique`.
 ///
-/// pdf[techniques]: the density of each technique at the sample's point, finite and at least 0, positive for the technique
-/// that drew it. value[integrals]: the value of each integrand there, not divided by any density, finite.
+/// pdf[techniques]: the density of each technique at the sample's point, finite and at least 0, positive for the
+/// technique that drew it. value[integrals]: the value of each integrand there, not divided by any density, finite.
 ///
-/// Add every sample, those of value 0 included: without them no solver but NF_OMIS_BALANCE is unbiased or consistent. The
-/// samples should make whole rounds of the counts, or each be drawn from technique k with probability n_k / sum n.
+/// Add every sample, those of value 0 included: without them no solver but NF_OMIS_BALANCE is unbiased or consistent.
+/// The samples should make whole rounds of the counts, or each be drawn from technique k with probability n_k / sum n.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE: a density (combine delta
 /// distributions outside) or a value.
@@ -103,7 +103,8 @@ pub unsafe extern "C" fn nf_omis_add(
     value: *const f32,
 ) -> nf_status {
     status((|| {
-        // SAFETY: the caller passes an object that no one else uses meanwhile, and arrays of the lengths it was made for.
+        // SAFETY: the caller passes an object that no one else uses meanwhile, and arrays of the lengths it was made
+        // for.
         let mut omis = unsafe { open_mut(omis) }?;
         // SAFETY: as above.
         let (pdf, value) =
@@ -112,14 +113,14 @@ pub unsafe extern "C" fn nf_omis_add(
     })())
 }
 
-/// Estimates the integrals from all samples so far. The object does not change: the same call gives the same answer, and
-/// more samples may be added.
+/// Estimates the integrals from all samples so far. The object does not change: the same call gives the same answer,
+/// and more samples may be added.
 ///
 /// solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN, NF_OMIS_PROGRESSIVE or NF_OMIS_BALANCE; each says whether it is unbiased.
-/// ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for the default 2; otherwise
-/// ignored. With the densities' counts N and n samples it adds L = ridge (tr(N A) - 1) / n N^-1 to A, at
-/// least 1e-8 tr(N A) N^-1.
-/// estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite float.
+/// ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for the default 2;
+/// otherwise ignored. With the densities' counts N and n samples it adds L = ridge (tr(N A) - 1) / n N^-1 to A, at
+/// least 1e-8 tr(N A) N^-1. estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite
+/// float.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.
 #[unsafe(no_mangle)]
@@ -150,10 +151,11 @@ pub unsafe extern "C" fn nf_omis_alpha(omis: *const nf_omis, solver: u32, ridge:
     })())
 }
 
-/// Ends a batch: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so far on those that follow.
+/// Ends a batch: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so far on those that
+/// follow.
 ///
-/// Before the first call alpha is 0, the balance heuristic; NF_OMIS_BALANCE returns to that. Call it between whole rounds,
-/// whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
+/// Before the first call alpha is 0, the balance heuristic; NF_OMIS_BALANCE returns to that. Call it between whole
+/// rounds, whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
 ///
 /// Other arguments and errors as for nf_omis_solve; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE as the solver.
 #[unsafe(no_mangle)]
@@ -165,8 +167,8 @@ pub unsafe extern "C" fn nf_omis_next_batch(omis: *mut nf_omis, solver: u32, rid
     })())
 }
 
-/// Multiplies all sums by beta in 0..1, so that older samples count for less: for integrals that drift, as gradients do.
-/// NF_OMIS_PROGRESSIVE keeps its alpha.
+/// Multiplies all sums by beta in 0..1, so that older samples count for less: for integrals that drift, as gradients
+/// do. NF_OMIS_PROGRESSIVE keeps its alpha.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE, NF_ERR_NOT_FINITE: beta.
 #[unsafe(no_mangle)]
@@ -189,8 +191,8 @@ pub unsafe extern "C" fn nf_omis_reset(omis: *mut nf_omis) -> nf_status {
     })())
 }
 
-/// Adds the samples of `other`, of another thread or pass, to `omis`. `other` does not change and must be another object;
-/// NF_OMIS_PROGRESSIVE's alpha stays that of `omis`.
+/// Adds the samples of `other`, of another thread or pass, to `omis`. `other` does not change and must be another
+/// object; NF_OMIS_PROGRESSIVE's alpha stays that of `omis`.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: their techniques, integrals or
 /// counts differ.
@@ -214,15 +216,13 @@ pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis
 /// solver: NF_OMIS_RIDGE, the default: shrinks to the balance heuristic where the batch says little. NF_OMIS_PLAIN:
 /// exact where a gradient is a linear combination of the probabilities; heavy-tailed with similar techniques or small
 /// batches. Both are consistent, not unbiased, and their weights may be negative. NF_OMIS_BALANCE: unbiased, positive.
-/// ridge: for NF_OMIS_RIDGE, as for nf_omis_solve: 1e-8..1e8, or 0 for the default 2; otherwise ignored.
-/// techniques: J in 1..NF_MIS_MAX_TECHNIQUES. items: N, the size of the data set, at least 1.
-/// pdf[batch * techniques]: at s * techniques + j the probability with which technique j draws the item of sample s;
-/// each technique's sum to 1 over the items. Finite, at least 0 and at most 1, positive for the technique that drew it. Those of
-/// before the batch was drawn: tables may be updated meanwhile.
-/// technique[batch]: which technique drew sample s. Their numbers n_j are counted from it; a technique that drew
-/// nothing has no part in the weights.
-/// batch: the number of samples, at least 1. weight[batch]: the output. One beyond the range of float becomes the
-/// largest finite float.
+/// ridge: for NF_OMIS_RIDGE, as for nf_omis_solve: 1e-8..1e8, or 0 for the default 2; otherwise ignored. techniques: J
+/// in 1..NF_MIS_MAX_TECHNIQUES. items: N, the size of the data set, at least 1. pdf[batch * techniques]: at s *
+/// techniques + j the probability with which technique j draws the item of sample s; each technique's sum to 1 over the
+/// items. Finite, at least 0 and at most 1, positive for the technique that drew it. Those of before the batch was
+/// drawn: tables may be updated meanwhile. technique[batch]: which technique drew sample s. Their numbers n_j are
+/// counted from it; a technique that drew nothing has no part in the weights. batch: the number of samples, at least 1.
+/// weight[batch]: the output. One beyond the range of float becomes the largest finite float.
 ///
 /// With S_s = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2,
 /// weight_s = (1 / S_s - (q - 1)' (A + ridge)^-1 p_s / S_s^2) batch / items.

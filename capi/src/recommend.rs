@@ -24,28 +24,31 @@ pub const NF_METHOD_SHARED: u32 = 2;
 pub struct nf_recommendation {
     /// How to make estimates of the samples: NF_METHOD_*
     pub method: u32,
-    /// The `stride` of nf_cv_image for NF_METHOD_SHARED, for windows of 8. With surfaces leave it 0, for overlapping windows.
+    /// The `stride` of nf_cv_image for NF_METHOD_SHARED, for windows of 8. With surfaces leave it 0, for overlapping
+    /// windows.
     pub image_stride: u32,
-    /// Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued as a
-    /// Sobol sequence.
+    /// Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued
+    /// as a Sobol sequence.
     pub tile_samples: u32,
     /// The same: its dims.
     pub tile_dims: u32,
     /// What to expect: mean squared error over that of the plain mean of independent samples. Of stratified samples
-    /// measured on the tile named above, except: for 5 to 8 dims and 1 to 3 samples, on that of 2 dims; from 64 samples on,
-    /// with Sobol points scrambled in each pixel (on the tile of 1 sample, continued, only the plain mean was measured, at .77
-    /// to 1.1 times this error).
+    /// measured on the tile named above, except: for 5 to 8 dims and 1 to 3 samples, on that of 2 dims; from 64 samples
+    /// on, with Sobol points scrambled in each pixel (on the tile of 1 sample, continued, only the plain mean was
+    /// measured, at .77 to 1.1 times this error).
     pub error: f32,
-    /// The same of the image filtered by a Gaussian of 2.1 pixels, with the same exceptions; the plain mean of the tile of 1 sample,
-    /// continued, has .81 to 1.4 times the error of Sobol points scrambled in each pixel that is given here.
+    /// The same of the image filtered by a Gaussian of 2.1 pixels, with the same exceptions; the plain mean of the tile
+    /// of 1 sample, continued, has .81 to 1.4 times the error of Sobol points scrambled in each pixel that is given
+    /// here.
     pub filtered_error: f32,
     /// How to estimate. `channels` is 1: set your own. `stride` is all dims.
     pub config: nf_cv_config,
 }
 
-/// Which estimator, of which order, and which of the library's tiles to use for samples of `dims` coordinates and `spp` of
-/// them per pixel, both at least 1. `sampling` is NF_SAMPLING_*; `can_share` is 1 if neighbouring pixels' samples are at
-/// hand together and integrate similar functions, else 0. docs/choosing.md has the measurements that it rests on.
+/// Which estimator, of which order, and which of the library's tiles to use for samples of `dims` coordinates and `spp`
+/// of them per pixel, both at least 1. `sampling` is NF_SAMPLING_*; `can_share` is 1 if neighbouring pixels' samples
+/// are at hand together and integrate similar functions, else 0. docs/choosing.md has the measurements that it rests
+/// on.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_recommend(
     dims: u32,

@@ -4,7 +4,8 @@ use crate::convert;
 use crate::status::nf_status;
 pub(crate) use noisefloor_core::rng::Rng;
 
-/// A PCG32 random number generator (O'Neill 2014), for minibatches, examples and tests: the same numbers on every target.
+/// A PCG32 random number generator (O'Neill 2014), for minibatches, examples and tests: the same numbers on every
+/// target.
 ///
 /// A complete struct, kept by value. A copy repeats the numbers its original has yet to give. Give each thread its own,
 /// with its own seed. Any value of the fields is valid; nf_rng_seed sets them well. Not for cryptography.
@@ -17,8 +18,8 @@ pub struct nf_rng {
     pub increment: u64,
 }
 
-/// Starts a generator. Any seed is good, and neighbouring seeds (pixel numbers, say) give unrelated numbers. Does nothing
-/// if `rng` is NULL.
+/// Starts a generator. Any seed is good, and neighbouring seeds (pixel numbers, say) give unrelated numbers. Does
+/// nothing if `rng` is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_rng_seed(rng: *mut nf_rng, seed: u64) {
     // SAFETY: the caller passes NULL or a generator that nothing else uses meanwhile.

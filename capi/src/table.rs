@@ -9,8 +9,8 @@ use noisefloor_core::minibatch::table::{self, State, Table};
 
 /// The importances of the items of a data set, from which minibatches are drawn (Algorithm 3).
 ///
-/// Item i is drawn with probability p_i = (1 - d) q_i / sum q + d / N: q_i is its importance, d the uniform fraction, .2
-/// unless set. No weight 1 / (N p_i) is then above 1 / d. Where all importances are 0 draws are uniform, or
+/// Item i is drawn with probability p_i = (1 - d) q_i / sum q + d / N: q_i is its importance, d the uniform fraction,
+/// .2 unless set. No weight 1 / (N p_i) is then above 1 / d. Where all importances are 0 draws are uniform, or
 /// NF_ERR_NO_SAMPLES if d is 0.
 ///
 /// A complete struct that refers to the memory its items live in; the fields are to be read, never written. A copy
@@ -44,8 +44,8 @@ const SLACK: usize = ALIGNMENT - 8;
 const BLOCK: usize = 16;
 const MAX_BLOCKS: u32 = 1 << 28;
 
-/// The bytes of memory a table of so many items needs, at most 4.6 for each and a few hundred; 0 for 0 items or a size that no
-/// memory has.
+/// The bytes of memory a table of so many items needs, at most 4.6 for each and a few hundred; 0 for 0 items or a size
+/// that no memory has.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_table_size(items: u32) -> usize {
     let blocks = items.div_ceil(BLOCK as u32);
@@ -67,9 +67,9 @@ fn parts(blocks: u32) -> Option<(usize, usize)> {
 
 /// Makes a table of `items` items in `memory`.
 ///
-/// memory: at least nf_table_size(items) bytes, 8-byte aligned; what it holds is lost. More is room for nf_table_append.
-/// importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch that visits every
-/// item (Algorithm 4).
+/// memory: at least nf_table_size(items) bytes, 8-byte aligned; what it holds is lost. More is room for
+/// nf_table_append. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch
+/// that visits every item (Algorithm 4).
 ///
 /// NF_ERR_NULL; NF_ERR_RANGE: no items, or a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all are 0;
 /// NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
@@ -109,9 +109,9 @@ pub unsafe extern "C" fn nf_table_init(
 
 /// Draws `batch` items with replacement, independently, in proportion to importance.
 ///
-/// index[batch]: the items. weight[batch]: 1 / (N p) of each, for importance sampling: gradients times weights, averaged over
-/// the batch, estimate the gradient of the mean loss without bias (6.3). NULL where they are not wanted: without weights it is
-/// adaptive sampling (w = p in Algorithm 3), which favours important items, a bias by design.
+/// index[batch]: the items. weight[batch]: 1 / (N p) of each, for importance sampling: gradients times weights,
+/// averaged over the batch, estimate the gradient of the mean loss without bias (6.3). NULL where they are not wanted:
+/// without weights it is adaptive sampling (w = p in Algorithm 3), which favours important items, a bias by design.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_NO_SAMPLES: nothing can be drawn. A batch of 0 is no error.
 #[unsafe(no_mangle)]
@@ -126,9 +126,9 @@ pub unsafe extern "C" fn nf_table_draw(
     unsafe { draw(table, rng, batch, index, weight, dispatch::table_draw) }
 }
 
-/// As nf_table_draw, from `batch` equal parts of the line of probabilities: item i comes about `batch` p_i times, so that the
-/// estimate varies less where neighbouring items are alike. Items drawn uniformly come first, and all in the order of the data
-/// set: use the batch as a whole.
+/// As nf_table_draw, from `batch` equal parts of the line of probabilities: item i comes about `batch` p_i times, so
+/// that the estimate varies less where neighbouring items are alike. Items drawn uniformly come first, and all in the
+/// order of the data set: use the batch as a whole.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_draw_stratified(
     table: *const nf_table,
@@ -143,14 +143,14 @@ pub unsafe extern "C" fn nf_table_draw_stratified(
 
 /// Draws `batch` different items, without replacement, the k-th being item i with probability
 ///     c_i = ((1 - d) q_i / sum q + d / N) / (1 - d (k - 1) / N),
-/// the sum being that of the items not yet drawn, and d the uniform fraction (1 where that sum is 0). Weights make the same
-/// estimate as nf_table_draw's, without bias (Raj 1956): (1 / c_k + batch - k) / N for the k-th item.
+/// the sum being that of the items not yet drawn, and d the uniform fraction (1 where that sum is 0). Weights make the
+/// same estimate as nf_table_draw's, without bias (Raj 1956): (1 / c_k + batch - k) / N for the k-th item.
 ///
-/// The table is the same afterwards, but is written meanwhile. A draw takes the time of some ten updates; where a few items have
-/// nearly all of the sum the table is built again without them, which takes time for every item.
+/// The table is the same afterwards, but is written meanwhile. A draw takes the time of some ten updates; where a few
+/// items have nearly all of the sum the table is built again without them, which takes time for every item.
 ///
-/// Other arguments and errors as for nf_table_draw; NF_ERR_RANGE: more than there are items; NF_ERR_NO_SAMPLES also where the
-/// uniform fraction is 0 and fewer items have an importance above 0.
+/// Other arguments and errors as for nf_table_draw; NF_ERR_RANGE: more than there are items; NF_ERR_NO_SAMPLES also
+/// where the uniform fraction is 0 and fewer items have an importance above 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_draw_distinct(
     table: *mut nf_table,
@@ -196,8 +196,8 @@ pub unsafe extern "C" fn nf_table_update(
     }
 }
 
-/// Sets the uniform fraction d, 0..1. 0 draws by importance alone: an item of importance 0 is never drawn, and one whose
-/// importance is out of date can get a weight of thousands. 1 draws uniformly.
+/// Sets the uniform fraction d, 0..1. 0 draws by importance alone: an item of importance 0 is never drawn, and one
+/// whose importance is out of date can get a weight of thousands. 1 draws uniformly.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
@@ -206,8 +206,8 @@ pub unsafe extern "C" fn nf_table_set_uniform_fraction(table: *mut nf_table, fra
     unsafe { change(table, |table| table.set_uniform_fraction(fraction).map_err(status_of)) }
 }
 
-/// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3, after an epoch. The uniform fraction does as much and
-/// costs nothing.
+/// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3, after an epoch. The uniform fraction does as
+/// much and costs nothing.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
@@ -234,8 +234,8 @@ pub unsafe extern "C" fn nf_table_probability(table: *const nf_table, item: u32)
     unsafe { open(table) }.map_or(0.0, |table| table.probability(item))
 }
 
-/// The probabilities of count items: p[k * stride] of index[k]. With J tables, stride J and p + j for the j-th table make the
-/// rows of densities that nf_omis_weights takes.
+/// The probabilities of count items: p[k * stride] of index[k]. With J tables, stride J and p + j for the j-th table
+/// make the rows of densities that nf_omis_weights takes.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item that does not exist, or stride 0; NF_ERR_NO_SAMPLES as for
 /// nf_table_draw.
@@ -267,7 +267,8 @@ pub unsafe extern "C" fn nf_table_probabilities(
             let mut probability = [0.0; 64];
             table.probabilities(index, 1, &mut probability).map_err(status_of)?;
             for &value in probability.iter().take(index.len()) {
-                // SAFETY: the caller passes room for the last of them. Those between are another's: no slice may cover them.
+                // SAFETY: the caller passes room for the last of them. Those between are another's: no slice may cover
+                // them.
                 unsafe { place.write(value) };
                 place = place.wrapping_add(stride as usize);
             }
@@ -309,8 +310,8 @@ pub unsafe extern "C" fn nf_table_save(table: *const nf_table, saved: *mut c_voi
     })())
 }
 
-/// The number of items in what nf_table_save wrote, to make memory for it with nf_table_size; 0 if it is no saved table. Only
-/// the first bytes are looked at.
+/// The number of items in what nf_table_save wrote, to make memory for it with nf_table_size; 0 if it is no saved
+/// table. Only the first bytes are looked at.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_saved_items(saved: *const c_void, len: usize) -> u32 {
     // SAFETY: the caller passes `len` bytes.
@@ -355,8 +356,8 @@ unsafe fn draw(
     draw: impl FnOnce(&Reader<'_>, &mut rng::Rng, &mut [u32], Option<&mut [f32]>) -> Result<(), noisefloor_core::Error>,
 ) -> nf_status {
     status((|| {
-        // SAFETY: the caller passes a table that no one writes meanwhile, a generator that no one else uses, and outputs of
-        // `batch` elements.
+        // SAFETY: the caller passes a table that no one writes meanwhile, a generator that no one else uses, and
+        // outputs of `batch` elements.
         let (table, index, weight) =
             unsafe { (open(table)?, convert::outputs(index, batch as usize)?, weights(weight, batch)?) };
         // SAFETY: as above.
@@ -472,8 +473,8 @@ unsafe fn room<'a>(
     }
     let (importance, sums) = parts(fit).ok_or(NF_ERR_MEMORY)?;
     let start = aligned(memory);
-    // SAFETY: `start` is aligned for both, and at most SLACK bytes behind the start of memory that holds as much and both.
-    // All zero bits are numbers.
+    // SAFETY: `start` is aligned for both, and at most SLACK bytes behind the start of memory that holds as much and
+    // both. All zero bits are numbers.
     unsafe {
         start.write_bytes(0, importance + sums);
         Ok((

@@ -8,7 +8,8 @@
 //! - [`mis`]: weights for multiple importance sampling, the variance-minimising ones included (section 2.2.2).
 //! - [`tile`]: sample points whose error over the image is the least visible (chapter 5).
 //! - [`warp`]: from primary sample space to the shapes that a scene needs (section 2.2.1).
-//! - [`minibatch`]: minibatches drawn in proportion to importance, and gradients of least variance from them (chapter 6).
+//! - [`minibatch`]: minibatches drawn in proportion to importance, and gradients of least variance from them (chapter
+//!   6).
 //! - [`rng`]: a small generator with the same stream on every target.
 //!
 //! Nothing allocates, and nothing panics on any input: errors are values. The same input gives the same bits on every

@@ -70,30 +70,32 @@ pub struct Recommendation {
     /// With which configuration. Its `channels` is 1: set your own. Its `stride` is all dims, its `dims` those that are
     /// regressed.
     pub config: Config,
-    /// The [`Image::stride`](crate::control_variate::Image::stride) of [`Method::Shared`], for windows of 8. With surfaces
-    /// leave it 0, for overlapping windows.
+    /// The [`Image::stride`](crate::control_variate::Image::stride) of [`Method::Shared`], for windows of 8. With
+    /// surfaces leave it 0, for overlapping windows.
     pub image_stride: usize,
-    /// Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued as a
-    /// Sobol sequence that all pixels share.
+    /// Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued
+    /// as a Sobol sequence that all pixels share.
     pub tile_samples: usize,
     /// The same: its dims.
     pub tile_dims: usize,
     /// What to expect: the mean squared error over that of the plain mean of as many independent samples, the geometric
     /// mean over the integrands of the study.
     ///
-    /// Of stratified samples it was measured on the tile named here, with two exceptions. For 5 to 8 dims and 1 to 3 samples
-    /// it is that of the tile of 2 dims. From 64 samples on it is that of Sobol points scrambled in each pixel: on the tile of 1
-    /// sample, continued, only the plain mean was measured, at .77 to 1.1 times this error.
+    /// Of stratified samples it was measured on the tile named here, with two exceptions. For 5 to 8 dims and 1 to 3
+    /// samples it is that of the tile of 2 dims. From 64 samples on it is that of Sobol points scrambled in each pixel:
+    /// on the tile of 1 sample, continued, only the plain mean was measured, at .77 to 1.1 times this error.
     pub error: f32,
-    /// The same of the image filtered by a Gaussian of 2.1 pixels, with the same exceptions: from 64 stratified samples on it is that
-    /// of Sobol points scrambled in each pixel; the plain mean of the tile of 1 sample, continued, has .81 to 1.4 times this.
+    /// The same of the image filtered by a Gaussian of 2.1 pixels, with the same exceptions: from 64 stratified samples
+    /// on it is that of Sobol points scrambled in each pixel; the plain mean of the tile of 1 sample, continued, has
+    /// .81 to 1.4 times this.
     pub filtered_error: f32,
 }
 
-/// What is best for samples of `dims` coordinates, `samples_per_pixel` of them, both at least 1. `can_share` says whether
-/// neighbouring pixels' samples are at hand together and integrate similar functions.
+/// What is best for samples of `dims` coordinates, `samples_per_pixel` of them, both at least 1. `can_share` says
+/// whether neighbouring pixels' samples are at hand together and integrate similar functions.
 ///
-/// What was measured are 1, 2, 4, 5, 8 and 15 dims with 1, 4, 16, 64 and 256 samples: dims are rounded up, samples down.
+/// What was measured are 1, 2, 4, 5, 8 and 15 dims with 1, 4, 16, 64 and 256 samples: dims are rounded up, samples
+/// down.
 ///
 /// # Errors
 /// [`Error::Range`] if `dims` or `samples_per_pixel` is 0.
@@ -152,8 +154,8 @@ fn cell<T: Copy>(table: &Table<T>, dims: usize, samples: usize) -> T {
     }
 }
 
-/// A decision, and the errors that were measured: mean squares over those of the plain mean of independent samples, raw and
-/// filtered by a Gaussian of 2.1 pixels.
+/// A decision, and the errors that were measured: mean squares over those of the plain mean of independent samples, raw
+/// and filtered by a Gaussian of 2.1 pixels.
 #[derive(Clone, Copy)]
 struct Cell {
     method: Method,
@@ -181,8 +183,9 @@ const fn windows(order: usize, error: f32, filtered_error: f32) -> Cell {
     Cell { method: Method::Shared, order, image_stride: 4, error, filtered_error }
 }
 
-/// Independent samples of one pixel: a fit, as soon as there are several samples to a term. In 2 dims the order is 5 from 64
-/// samples on: 6 and 7 gain more on the smooth integrands of the study, and lose on harder ones (docs/choosing.md).
+/// Independent samples of one pixel: a fit, as soon as there are several samples to a term. In 2 dims the order is 5
+/// from 64 samples on: 6 and 7 gain more on the smooth integrands of the study, and lose on harder ones
+/// (docs/choosing.md).
 #[rustfmt::skip]
 const INDEPENDENT_ALONE: Table<Cell> = [
     [plain(1.0, 1.0),            plain(1.0, 0.92),           pixel(5, 0.049, 0.15),      pixel(7, 0.00036, 0.003),   pixel(7, 0.0001, 0.00086)],
@@ -228,8 +231,9 @@ const STRATIFIED_SHARED: Table<Cell> = [
     [blocks(1, 0.61, 0.32),      plain(0.35, 0.19),          plain(0.23, 0.14),          plain(0.2, 0.2),            plain(0.16, 0.13)],
 ];
 
-/// Samples and dims of the tile with the least error of the plain mean, √(raw filtered). From 64 samples on a tile of 1 sample,
-/// continued as a Sobol sequence: at 64 samples it has .0096 in 2 dims and .033 in 4, the tile of 16 samples, continued, .029 and .12.
+/// Samples and dims of the tile with the least error of the plain mean, √(raw filtered). From 64 samples on a tile of 1
+/// sample, continued as a Sobol sequence: at 64 samples it has .0096 in 2 dims and .033 in 4, the tile of 16 samples,
+/// continued, .029 and .12.
 const TILES: Table<(usize, usize)> = [
     [(1, 2), (4, 2), (16, 2), (1, 4), (1, 4)],
     [(1, 2), (4, 2), (16, 2), (1, 2), (1, 2)],

@@ -43,8 +43,8 @@ impl Rng {
 
     /// A generator for a seed of any value.
     ///
-    /// Neighbouring seeds (pixel numbers, say) give unrelated state and stream: both come from SplitMix64. Seeding state
-    /// alone would leave all generators on one cycle, and seeds that differ in high bits only visibly correlated.
+    /// Neighbouring seeds (pixel numbers, say) give unrelated state and stream: both come from SplitMix64. Seeding
+    /// state alone would leave all generators on one cycle, and seeds that differ in high bits only visibly correlated.
     ///
     /// ```
     /// use noisefloor::rng::Rng;

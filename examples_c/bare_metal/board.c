@@ -20,7 +20,8 @@ void platform_print(const char *text)
     board_semihosting(SYS_WRITE0, text);
 }
 
-/* What compilers call without being asked, written so that they do not make it call itself. The library brings its own. */
+/* What compilers call without being asked, written so that they do not make it call itself. The library brings its own.
+ */
 void *memset(void *to, int value, size_t bytes)
 {
     volatile unsigned char *byte = to;

@@ -1,5 +1,5 @@
-/* The same services on a computer: what the board's output is compared with. They run in a thread, as its stack is a place
-   that is known. */
+/* The same services on a computer: what the board's output is compared with. They run in a thread, as its stack is a
+   place that is known. */
 #include "platform.h"
 #include <pthread.h>
 #include <stdio.h>

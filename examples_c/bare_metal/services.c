@@ -1,5 +1,5 @@
-/* Every service of noisefloor without an operating system, a C library or a heap. Prints the bits of what it computes, which
-   are the same on every target, and the stack that each call used. */
+/* Every service of noisefloor without an operating system, a C library or a heap. Prints the bits of what it computes,
+   which are the same on every target, and the stack that each call used. */
 #include "platform.h"
 #include "noisefloor.h"
 

@@ -1,4 +1,5 @@
-/* How deep calls go: the free part of the stack is painted before, and looked at after. stack_limit is where it ends. */
+/* How deep calls go: the free part of the stack is painted before, and looked at after. stack_limit is where it ends.
+ */
 #include "platform.h"
 
 #define PAINT 0xC0DEC0DEu

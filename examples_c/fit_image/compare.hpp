@@ -16,7 +16,8 @@ inline void write_pictures(const std::string &prefix, const Picture &picture, co
         for (std::size_t c = 0; c < 3; ++c) {
             const float value = output[c * picture.pixels() + i];
             result.bytes[3 * i + c] = to_byte(value);
-            error.bytes[3 * i + c] = to_byte(4.0f * std::abs(value - picture.value(i, c)) - 1.0f); // eight times too bright
+            error.bytes[3 * i + c] =
+                to_byte(4.0f * std::abs(value - picture.value(i, c)) - 1.0f); // eight times too bright
         }
     write_ppm(prefix + ".ppm", result);
     write_ppm(prefix + ".error.ppm", error);
@@ -91,9 +92,9 @@ inline std::vector<double> errors(Trainer &trainer, Sampler &sampler, const std:
     return sum;
 }
 
-// step,method,tables,distance,parameter: mean squared errors of the estimates over those of uniform sampling: summed over
-// the parameters, and as the mean over the parameters of their own ratios. Tables as they are after visiting a batch per
-// step ("kept"), and fresh. All on the way of one network trained with uniform batches.
+// step,method,tables,distance,parameter: mean squared errors of the estimates over those of uniform sampling: summed
+// over the parameters, and as the mean over the parameters of their own ratios. Tables as they are after visiting a
+// batch per step ("kept"), and fresh. All on the way of one network trained with uniform batches.
 inline void compare_errors(const Picture &picture, const Options &options)
 {
     const std::uint32_t pixels = std::uint32_t(picture.pixels());
@@ -136,7 +137,8 @@ inline void compare_errors(const Picture &picture, const Options &options)
                     const std::unique_ptr<Sampler> other = sampler(*options.chosen[m], seed + 3000);
                     if (fresh)
                         other->refresh(output.data(), target.data());
-                    const std::vector<double> error = errors(trainer, fresh ? *other : *kept[m], exact, options.batches);
+                    const std::vector<double> error =
+                        errors(trainer, fresh ? *other : *kept[m], exact, options.batches);
                     double ours = 0.0, theirs = 0.0, mean = 0.0;
                     for (std::size_t i = 0; i < error.size(); ++i) {
                         ours += error[i];

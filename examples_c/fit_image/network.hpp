@@ -1,4 +1,5 @@
-// A SIREN (Sitzmann et al. 2020): from a point of [-1, 1]^2 to three colours, fully connected layers with sines between.
+// A SIREN (Sitzmann et al. 2020): from a point of [-1, 1]^2 to three colours, fully connected layers with sines
+// between.
 #pragma once
 #include "matrix.hpp"
 #include "noisefloor.h"

@@ -23,7 +23,10 @@ struct Picture {
     float y(std::size_t pixel) const { return (2.0f * float(places[pixel] / width) + 1.0f) / float(height) - 1.0f; }
 
     // A channel, 0..=255 being -1..=1.
-    float value(std::size_t pixel, std::size_t channel) const { return float(bytes[3 * pixel + channel]) / 127.5f - 1.0f; }
+    float value(std::size_t pixel, std::size_t channel) const
+    {
+        return float(bytes[3 * pixel + channel]) / 127.5f - 1.0f;
+    }
 };
 
 inline std::uint8_t to_byte(float value)

@@ -42,8 +42,8 @@ class Sampler {
 public:
     static constexpr std::uint32_t MAX_TABLES = 6;
 
-    // uniform_fraction: part of every distribution that is uniform; momentum: how much of an importance is kept when its
-    // pixel is visited. stratified: see nf_table_draw_stratified.
+    // uniform_fraction: part of every distribution that is uniform; momentum: how much of an importance is kept when
+    // its pixel is visited. stratified: see nf_table_draw_stratified.
     Sampler(const Method &method, std::uint32_t items, std::uint32_t batch, float uniform_fraction, float momentum,
             bool stratified, std::uint64_t seed)
         : method_(method), items_(items), batch_(batch), uniform_fraction_(uniform_fraction), momentum_(momentum),
@@ -149,7 +149,8 @@ private:
     void start()
     {
         for (std::uint32_t j = 0; j < method_.tables; ++j) {
-            // Where no derivative has the table's sign, it has nothing to draw by: it is uniform until a visit finds one.
+            // Where no derivative has the table's sign, it has nothing to draw by: it is uniform until a visit finds
+            // one.
             if (*std::max_element(initial_[j].begin(), initial_[j].end()) == 0.0f)
                 std::fill(initial_[j].begin(), initial_[j].end(), 1e-20f);
             const std::size_t bytes = memory_[j].size() * sizeof(std::uint64_t);

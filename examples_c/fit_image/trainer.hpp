@@ -41,8 +41,8 @@ public:
         sampler.update(network_.forward(points_.data()).data(), target_.data());
     }
 
-    // `rest`: the part of the steps yet to come. The learning rate falls with it to nought, or else the last few batches'
-    // noise decides what the network is like at the end.
+    // `rest`: the part of the steps yet to come. The learning rate falls with it to nought, or else the last few
+    // batches' noise decides what the network is like at the end.
     void step(float rest) { optimiser_.step(rate_ * rest, gradient_, network_.parameters()); }
 
     // output[3][pixels], of the whole picture.

@@ -81,9 +81,9 @@ static void sampler_end(sampler *s)
 /* q of one item for each table, from the derivatives of its loss.
  *
  * SIGNED_RESIDUAL splits the derivative by the output in two. SIGNED_DERIVATIVES does so with the derivatives by the
- * coefficients, those of even powers (group 0) apart from those of odd powers (group 1): differences of the four densities
- * are then r(x) e(x) and r(x) o(x), an even and an odd profile, and every derivative r(x) x^k is nearly a multiple of one
- * of them. What optimal MIS can write with the densities, it integrates without noise. */
+ * coefficients, those of even powers (group 0) apart from those of odd powers (group 1): differences of the four
+ * densities are then r(x) e(x) and r(x) o(x), an even and an odd profile, and every derivative r(x) x^k is nearly a
+ * multiple of one of them. What optimal MIS can write with the densities, it integrates without noise. */
 static void importances(const method *m, const float *gradient, float *q)
 {
     const float output = gradient[0], zero = 0.0f; /* The derivative by the constant is that by the output. */

@@ -1,5 +1,5 @@
-// Renders in passes, as a progressive renderer does: no samples are kept, only an accumulator for each pixel. Each row is one thread's, and
-// gets its passes in order: what a pixel's fit makes of them does not depend on the threads.
+// Renders in passes, as a progressive renderer does: no samples are kept, only an accumulator for each pixel. Each row
+// is one thread's, and gets its passes in order: what a pixel's fit makes of them does not depend on the threads.
 #pragma once
 
 #include "render.hpp"
@@ -15,7 +15,8 @@ public:
     {
         for (size_t p = 0; p < pixels; ++p) {
             nf_cv_accumulator *accumulator = nullptr;
-            check(nf_cv_accumulator_init(&memory_[p * words_], 8 * words_, &config, &accumulator), "nf_cv_accumulator_init");
+            check(nf_cv_accumulator_init(&memory_[p * words_], 8 * words_, &config, &accumulator),
+                  "nf_cv_accumulator_init");
         }
     }
 
@@ -25,7 +26,8 @@ public:
     {
         for (size_t p = 0; p * words_ < memory_.size(); ++p) {
             nf_estimate result;
-            check(nf_cv_accumulator_estimate(pixel(p), workspace_.data(), 8 * workspace_.size(), &result), "nf_cv_accumulator_estimate");
+            check(nf_cv_accumulator_estimate(pixel(p), workspace_.data(), 8 * workspace_.size(), &result),
+                  "nf_cv_accumulator_estimate");
             std::copy_n(result.mean, 3, &image.rgb[3 * p]);
         }
     }
@@ -39,16 +41,19 @@ class AccumulatingRenderer final : public Rendering {
 public:
     // All three must outlive it. options.accumulate samples make a pass. Throws if an estimator cannot do so.
     AccumulatingRenderer(const Integrand &integrand, const Sampler &sampler, const Options &options)
-        : Rendering(options.estimators, options), integrand_(integrand), sampler_(sampler), dims_(dims(integrand.domains()))
+        : Rendering(options.estimators, options), integrand_(integrand), sampler_(sampler),
+          dims_(dims(integrand.domains()))
     {
         pass_ = std::min(options.accumulate, (options.spp + 3) / 4 * 4);
         EstimatorSetup setup = estimator_setup(integrand, options, 1);
         for (const std::string &name : names_) {
             if (shares(name))
-                throw std::runtime_error("`" + name + "` needs the samples of neighbouring pixels, which --accumulate does not keep");
+                throw std::runtime_error(
+                    "`" + name + "` needs the samples of neighbouring pixels, which --accumulate does not keep");
             configs_.push_back(configure(find_estimator(name), setup));
             if (nf_cv_accumulator_size(&configs_.back()) == 0)
-                throw std::runtime_error(refusal(name, configs_.back(), setup) + ", or it cannot be streamed, as --accumulate does");
+                throw std::runtime_error(refusal(name, configs_.back(), setup) +
+                                         ", or it cannot be streamed, as --accumulate does");
             accumulators_.emplace_back(configs_.back(), size_t{options.width} * options.height);
         }
     }
@@ -87,8 +92,8 @@ private:
         for (size_t e = 0; e < accumulators_.size(); ++e) {
             start = stop;
             for (uint32_t x = 0; x < options_.width; ++x)
-                check(nf_cv_accumulator_add(accumulators_[e].pixel(size_t{y} * options_.width + x), u + size_t{x} * count * dims_,
-                                            f + size_t{x} * count * 3, count),
+                check(nf_cv_accumulator_add(accumulators_[e].pixel(size_t{y} * options_.width + x),
+                                            u + size_t{x} * count * dims_, f + size_t{x} * count * 3, count),
                       "nf_cv_accumulator_add");
             stop = Clock::now();
             times.estimating[e] += seconds(start, stop);

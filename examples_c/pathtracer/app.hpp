@@ -28,8 +28,8 @@ inline std::string json(const std::string &text)
 }
 
 // One line of JSON for each estimator.
-inline void print(const Options &options, const Integrand &integrand, uint32_t samples_per_vector, const Rendering &renderer,
-                  const std::vector<std::string> &names, uint64_t seed)
+inline void print(const Options &options, const Integrand &integrand, uint32_t samples_per_vector,
+                  const Rendering &renderer, const std::vector<std::string> &names, uint64_t seed)
 {
     const Times &times = renderer.times();
     const uint32_t spp = options.spp * samples_per_vector;
@@ -37,23 +37,27 @@ inline void print(const Options &options, const Integrand &integrand, uint32_t s
     double sampling = times.drawing + times.tracing;
     auto each = [&](double seconds) { return seconds / samples * 1e9; };
     for (size_t e = 0; e < names.size(); ++e)
-        std::printf("{\"scene\":%s,\"sampler\":\"%s\",\"estimator\":\"%s\",\"spp\":%u,\"dims\":%u,\"order\":%u,"
-                    "\"threads\":%u,\"width\":%u,\"height\":%u,\"seed\":%llu,\"frame\":%u,\"camera_rays_per\":\"%s\","
-                    "\"total_seconds\":%.6f,\"drawing_ns_per_sample\":%.2f,"
-                    "\"tracing_ns_per_sample\":%.2f,\"sampling_ns_per_sample\":%.2f,\"estimating_ns_per_sample\":%.2f}\n",
-                    json(options.scene).c_str(), options.reference ? "lattice" : options.sampler.c_str(), names[e].c_str(), spp,
-                    dims(integrand.domains()), options.order, options.threads, options.width, options.height,
-                    static_cast<unsigned long long>(seed), options.frame, integrand.camera_ray_per_sample() ? "sample" : "pixel",
-                    sampling + times.estimating[e], each(times.drawing), each(times.tracing), each(sampling), each(times.estimating[e]));
+        std::printf(
+            "{\"scene\":%s,\"sampler\":\"%s\",\"estimator\":\"%s\",\"spp\":%u,\"dims\":%u,\"order\":%u,"
+            "\"threads\":%u,\"width\":%u,\"height\":%u,\"seed\":%llu,\"frame\":%u,\"camera_rays_per\":\"%s\","
+            "\"total_seconds\":%.6f,\"drawing_ns_per_sample\":%.2f,"
+            "\"tracing_ns_per_sample\":%.2f,\"sampling_ns_per_sample\":%.2f,\"estimating_ns_per_sample\":%.2f}\n",
+            json(options.scene).c_str(), options.reference ? "lattice" : options.sampler.c_str(), names[e].c_str(), spp,
+            dims(integrand.domains()), options.order, options.threads, options.width, options.height,
+            static_cast<unsigned long long>(seed), options.frame,
+            integrand.camera_ray_per_sample() ? "sample" : "pixel", sampling + times.estimating[e], each(times.drawing),
+            each(times.tracing), each(sampling), each(times.estimating[e]));
     std::fflush(stdout);
 }
 
-// Renders any integrand with every seed: what is left of a program with an integrand of its own. `options.scene` only names it.
+// Renders any integrand with every seed: what is left of a program with an integrand of its own. `options.scene` only
+// names it.
 inline void render(const Options &options, const Integrand &integrand, uint32_t samples_per_vector = 1)
 {
     if (nf_abi_version() != NF_ABI_VERSION)
         throw std::runtime_error("noisefloor.h and the linked library are of different versions");
-    const std::vector<std::string> names = options.reference ? std::vector<std::string>{"reference"} : options.estimators;
+    const std::vector<std::string> names =
+        options.reference ? std::vector<std::string>{"reference"} : options.estimators;
     std::unique_ptr<Halves> halves;
     if (!options.statistics.empty())
         halves = std::make_unique<Halves>(options.statistics[0], options.statistics[1], options.width, options.height);
@@ -64,7 +68,8 @@ inline void render(const Options &options, const Integrand &integrand, uint32_t 
     Outputs outputs;
     for (uint32_t i = 0; i < options.seeds; ++i) {
         const uint64_t seed = options.seed + i;
-        SamplerSetup setup{integrand.domains(), dims(integrand.domains()), options.spp, options.frame, seed, options.scramble};
+        SamplerSetup setup{integrand.domains(), dims(integrand.domains()), options.spp, options.frame, seed,
+                           options.scramble};
         std::unique_ptr<Sampler> sampler;
         if (samplers)
             sampler = samplers->make(setup);
@@ -94,7 +99,8 @@ inline void render(const Options &options, const Integrand &integrand, uint32_t 
 
 inline void render(const Options &options, const Program &program)
 {
-    auto entry = std::find_if(program.scenes.begin(), program.scenes.end(), [&](const SceneEntry &e) { return e.name == options.scene; });
+    auto entry = std::find_if(program.scenes.begin(), program.scenes.end(),
+                              [&](const SceneEntry &e) { return e.name == options.scene; });
     if (entry == program.scenes.end())
         throw std::runtime_error("there is no scene `" + options.scene + "`; --help lists them");
     Scene scene;

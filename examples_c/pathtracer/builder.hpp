@@ -121,7 +121,10 @@ public:
         scene_.lights.push_back(mesh_light(std::move(shining), radiance));
     }
 
-    void environment(std::shared_ptr<const Environment> map) { scene_.lights.push_back(environment_light(std::move(map))); }
+    void environment(std::shared_ptr<const Environment> map)
+    {
+        scene_.lights.push_back(environment_light(std::move(map)));
+    }
 
 private:
     int32_t next_light() const { return static_cast<int32_t>(scene_.lights.size()); }

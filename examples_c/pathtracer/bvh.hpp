@@ -128,7 +128,8 @@ private:
                 best = cut;
             }
         }
-        auto middle = std::partition(order_.begin() + begin, order_.begin() + end, [&](uint32_t i) { return bin(i) < best; });
+        auto middle =
+            std::partition(order_.begin() + begin, order_.begin() + end, [&](uint32_t i) { return bin(i) < best; });
         uint32_t cut = static_cast<uint32_t>(middle - order_.begin());
         uint32_t child = static_cast<uint32_t>(nodes_.size());
         nodes_.resize(child + 2);
@@ -163,7 +164,8 @@ private:
             }
             for (uint32_t i = node.first; i < node.first + node.count; ++i) {
                 uint32_t primitive = order_[i];
-                bool hit = primitive < geometry_.triangles.size() ? triangle(primitive, ray, best) : sphere(primitive, ray, best);
+                bool hit = primitive < geometry_.triangles.size() ? triangle(primitive, ray, best)
+                                                                  : sphere(primitive, ray, best);
                 found = found || hit;
                 if (hit && any)
                     return true;
@@ -172,8 +174,9 @@ private:
         return found;
     }
 
-    // Where the ray enters the box; infinity if it misses it. A ray that runs in a face's plane makes 0 * infinity there, which is not
-    // a number: std::max and std::min then keep their first argument, so that such a face decides nothing.
+    // Where the ray enters the box; infinity if it misses it. A ray that runs in a face's plane makes 0 * infinity
+    // there, which is not a number: std::max and std::min then keep their first argument, so that such a face decides
+    // nothing.
     static float enter(const Box &box, Vector origin, Vector inverse)
     {
         float near = 0, far = Box::infinity;

@@ -5,11 +5,11 @@
 
 namespace demo {
 
-// What happens to light that leaves a boundary towards `out` (unit). Where it came from, and how much of it: by reflection on the
-// side of `out`, by refraction through the other.
+// What happens to light that leaves a boundary towards `out` (unit). Where it came from, and how much of it: by
+// reflection on the side of `out`, by refraction through the other.
 //
-// Radiance over the squared index of its medium is what refraction keeps, so that value is what paths carry: nothing need be
-// scaled, as long as lights and the camera are outside.
+// Radiance over the squared index of its medium is what refraction keeps, so that value is what paths carry: nothing
+// need be scaled, as long as lights and the camera are outside.
 struct Boundary {
     Vector reflected, refracted; // unit, away from the boundary
     float reflectance;           // Fresnel's, of unpolarised light; 1: total reflection, and `refracted` says nothing

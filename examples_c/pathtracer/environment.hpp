@@ -1,5 +1,5 @@
-// Light from all around: an image of the sphere of directions, latitude by longitude, sampled in proportion to its luminance times the
-// sine that the map spends too many pixels on at the poles.
+// Light from all around: an image of the sphere of directions, latitude by longitude, sampled in proportion to its
+// luminance times the sine that the map spends too many pixels on at the poles.
 #pragma once
 
 #include "vector.hpp"
@@ -30,8 +30,9 @@ public:
                 const Color &color = pixels_[size_t{y} * width + x];
                 for (int c = 0; c < 3; ++c)
                     if (!(color[c] >= 0 && std::isfinite(color[c])))
-                        throw std::runtime_error("an environment map must be finite and not negative: pixel (" + std::to_string(x) + ", " +
-                                                 std::to_string(y) + ") has " + std::to_string(color[c]));
+                        throw std::runtime_error("an environment map must be finite and not negative: pixel (" +
+                                                 std::to_string(x) + ", " + std::to_string(y) + ") has " +
+                                                 std::to_string(color[c]));
                 columns_[size_t{y} * width + x] = static_cast<float>(row += weight(x, y));
             }
             rows_[y] = static_cast<float>(total += row);
@@ -48,7 +49,8 @@ public:
         float x = u * static_cast<float>(width_) - 0.5f, y = v * static_cast<float>(height_) - 0.5f;
         float left = std::floor(x), top = std::floor(y), s = x - left, t = y - top;
         int32_t i = static_cast<int32_t>(left), j = static_cast<int32_t>(top);
-        return (1 - t) * ((1 - s) * pixel(i, j) + s * pixel(i + 1, j)) + t * ((1 - s) * pixel(i, j + 1) + s * pixel(i + 1, j + 1));
+        return (1 - t) * ((1 - s) * pixel(i, j) + s * pixel(i + 1, j)) +
+               t * ((1 - s) * pixel(i, j + 1) + s * pixel(i + 1, j + 1));
     }
 
     // The density of `sample`, per solid angle.

@@ -107,11 +107,14 @@ protected:
     {
         constexpr size_t pass = 8;
         nf_cv_accumulator *accumulator = nullptr;
-        check(nf_cv_accumulator_init(state_.data(), 8 * state_.size(), &config_, &accumulator), "nf_cv_accumulator_init");
+        check(nf_cv_accumulator_init(state_.data(), 8 * state_.size(), &config_, &accumulator),
+              "nf_cv_accumulator_init");
         for (size_t i = 0; i < n; i += pass)
-            check(nf_cv_accumulator_add(accumulator, u + i * config_.stride, f + i * 3, std::min(pass, n - i)), "nf_cv_accumulator_add");
+            check(nf_cv_accumulator_add(accumulator, u + i * config_.stride, f + i * 3, std::min(pass, n - i)),
+                  "nf_cv_accumulator_add");
         nf_estimate result;
-        check(nf_cv_accumulator_estimate(accumulator, workspace_.data(), 8 * workspace_.size(), &result), "nf_cv_accumulator_estimate");
+        check(nf_cv_accumulator_estimate(accumulator, workspace_.data(), 8 * workspace_.size(), &result),
+              "nf_cv_accumulator_estimate");
         std::copy(result.mean, result.mean + 3, mean);
     }
 
@@ -121,12 +124,12 @@ private:
 };
 
 // Each pixel is corrected by fits to the samples of its neighbours: even one sample a pixel is enough, and whatever
-// stratification the samples have within the pixel, or over the image, stays. The fits help as far as the pixels' integrands
-// are alike, so only pixels that show the same surface share them.
+// stratification the samples have within the pixel, or over the image, stays. The fits help as far as the pixels'
+// integrands are alike, so only pixels that show the same surface share them.
 class Shared final : public Estimator {
 public:
-    // For rectangles of at most `side` x `side` pixels. Windows do not reach beyond a rectangle, which should be large beside
-    // them: theirs are 8 x 8 pixels. `blind`: without surfaces, in windows side by side, to show what that does.
+    // For rectangles of at most `side` x `side` pixels. Windows do not reach beyond a rectangle, which should be large
+    // beside them: theirs are 8 x 8 pixels. `blind`: without surfaces, in windows side by side, to show what that does.
     Shared(const nf_cv_config &config, uint32_t side, size_t n, bool blind)
         : config_(config), blind_(blind), results_(size_t{side} * side)
     {
@@ -143,7 +146,8 @@ public:
         image.height = s.height;
         image.surfaces = blind_ ? nullptr : s.surface;
         image.stride = blind_ ? 8 : 0;
-        check(nf_cv_image_estimate(&config_, &image, s.u, s.f, s.n, workspace_.data(), 8 * workspace_.size(), results_.data()),
+        check(nf_cv_image_estimate(&config_, &image, s.u, s.f, s.n, workspace_.data(), 8 * workspace_.size(),
+                                   results_.data()),
               "nf_cv_image_estimate");
         for (size_t p = 0; p < s.pixels(); ++p)
             std::copy_n(results_[p].mean, 3, means + 3 * p);
@@ -184,7 +188,8 @@ inline const EstimatorName estimator_names[] = {
     {"shared", NF_CV_ROBUST, "each pixel against fits to its neighbours; suits every sampler"},
     {"shared_k_fold", NF_CV_K_FOLD, "the same, unbiased: halves of the neighbours choose fits for each other"},
     {"shared_blind", NF_CV_ROBUST, "shared, but not told which pixels show the same surface, in windows side by side"},
-    {"luminance", NF_CV_LEAST_SQUARES, "a fit to the luminance of all samples, which scales the plain mean", NF_COLOR_LUMINANCE_RATIO},
+    {"luminance", NF_CV_LEAST_SQUARES, "a fit to the luminance of all samples, which scales the plain mean",
+     NF_COLOR_LUMINANCE_RATIO},
     {"robust_luminance", NF_CV_ROBUST, "the same with the default estimator", NF_COLOR_LUMINANCE_RATIO},
     {"slices", NF_CV_ROBUST, "robust, told which light was picked; for scenes that pick one"},
 };

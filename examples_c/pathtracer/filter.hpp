@@ -1,5 +1,5 @@
-// A pixel's footprint: the filter that the image is reconstructed with, sampled in proportion to it (Ernst et al. 2006), so that every
-// sample has the same weight and each pixel remains an integral of its own.
+// A pixel's footprint: the filter that the image is reconstructed with, sampled in proportion to it (Ernst et al.
+// 2006), so that every sample has the same weight and each pixel remains an integral of its own.
 #pragma once
 
 #include <algorithm>
@@ -18,14 +18,15 @@ struct FilterName {
     Filter filter;
 };
 
-inline const FilterName filter_names[] = {{"center", Filter::center}, {"box", Filter::box}, {"gaussian", Filter::gaussian}};
+inline const FilterName filter_names[] = {
+    {"center", Filter::center}, {"box", Filter::box}, {"gaussian", Filter::gaussian}};
 
 // The inverse of std::erf (M. Giles, "Approximating the erfinv function", 2010), for |x| < .9975: to about 1e-5 in erf.
 inline float inverse_erf(float x)
 {
     float w = -std::log((1 - x) * (1 + x)) - 2.5f, p = 2.81022636e-08f;
-    for (float c : {3.43273939e-07f, -3.5233877e-06f, -4.39150654e-06f, 2.1858087e-04f, -1.25372503e-03f, -4.17768164e-03f,
-                    2.46640727e-01f, 1.50140941f})
+    for (float c : {3.43273939e-07f, -3.5233877e-06f, -4.39150654e-06f, 2.1858087e-04f, -1.25372503e-03f,
+                    -4.17768164e-03f, 2.46640727e-01f, 1.50140941f})
         p = c + p * w;
     return p * x;
 }

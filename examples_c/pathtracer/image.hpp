@@ -40,7 +40,8 @@ inline Image read_pfm(const std::string &path)
     if ((scale < 0) != little_endian())
         throw std::runtime_error(path + " was written on a machine of the other byte order");
     if (width == 0 || height == 0 || width > 1 << 16 || height > 1 << 16)
-        throw std::runtime_error(path + " has " + std::to_string(width) + " x " + std::to_string(height) + " pixels: not 1 to 65536 each way");
+        throw std::runtime_error(path + " has " + std::to_string(width) + " x " + std::to_string(height) +
+                                 " pixels: not 1 to 65536 each way");
     Image image(width, height);
     size_t row = size_t{3} * width;
     for (uint32_t y = height; y-- > 0;)
@@ -69,7 +70,8 @@ public:
             throw std::runtime_error("cannot create " + temporary);
         files_.emplace_back(temporary, path);
         // The sign of the scale tells the byte order.
-        bool good = std::fprintf(file, "PF\n%u %u\n%s\n", image.width, image.height, little_endian() ? "-1.0" : "1.0") > 0;
+        bool good =
+            std::fprintf(file, "PF\n%u %u\n%s\n", image.width, image.height, little_endian() ? "-1.0" : "1.0") > 0;
         size_t row = size_t{3} * image.width;
         for (uint32_t y = image.height; y-- > 0;)
             good = std::fwrite(image.rgb.data() + y * row, sizeof(float), row, file) == row && good;

@@ -1,5 +1,5 @@
-// The integrand in primary sample space: a pixel's radiance as a function of the sample vector u in [0, 1)^dims, divided by the
-// density of what u stands for. Its mean over u is the pixel's value.
+// The integrand in primary sample space: a pixel's radiance as a function of the sample vector u in [0, 1)^dims,
+// divided by the density of what u stands for. Its mean over u is the pixel's value.
 //
 // All that samplers, estimators and the renderer know of what is rendered. SceneIntegrand is the path tracer's.
 #pragma once
@@ -23,13 +23,13 @@ struct Integrand {
     virtual std::vector<Domain> domains() const = 0;
     // How many alternatives the domain `choice` picks from; 1 if there is none.
     virtual uint32_t lights() const = 0;
-    // Whether each sample traces a camera ray of its own. If not, one ray serves all samples of a pixel that are evaluated
-    // together, and the number of the surface comes with it; else that number costs a ray.
+    // Whether each sample traces a camera ray of its own. If not, one ray serves all samples of a pixel that are
+    // evaluated together, and the number of the surface comes with it; else that number costs a ray.
     virtual bool camera_ray_per_sample() const = 0;
     // How many numbers a sample's value has: red, green and blue, unless estimators of another kind take more.
     virtual uint32_t values() const { return 3; }
-    // The values of n samples of pixel (x, y): u[n * dims] -> f[n * values()]. n may be 0, if only the surface is asked for.
-    // *surface, unless null: a number for what the pixel shows. It does not depend on u.
+    // The values of n samples of pixel (x, y): u[n * dims] -> f[n * values()]. n may be 0, if only the surface is asked
+    // for. *surface, unless null: a number for what the pixel shows. It does not depend on u.
     virtual void evaluate(uint32_t x, uint32_t y, size_t n, const float *u, float *f, uint32_t *surface) const = 0;
 };
 

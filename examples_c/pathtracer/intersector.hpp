@@ -8,8 +8,8 @@
 
 namespace demo {
 
-// Like spheres, triangles move on a line: what is said of their places holds at time 0, and at time t in [0, 1] they are
-// t * motion further. Lights do not move.
+// Like spheres, triangles move on a line: what is said of their places holds at time 0, and at time t in [0, 1] they
+// are t * motion further. Lights do not move.
 struct Triangle {
     Vector corner[3];
     Vector normal[3]; // unit shading normals at the corners, interpolated
@@ -53,8 +53,8 @@ inline void describe(const Triangle &t, float b1, float b2, Hit &hit)
     hit.light = t.light;
 }
 
-// What the point of a sphere shows that the ray meets at hit.distance. Not divided by the radius: the distance is rounded, and beside a
-// small sphere far away much so.
+// What the point of a sphere shows that the ray meets at hit.distance. Not divided by the radius: the distance is
+// rounded, and beside a small sphere far away much so.
 inline void describe(const Sphere &s, const Ray &ray, Hit &hit)
 {
     Vector point = ray.origin + hit.distance * ray.direction;

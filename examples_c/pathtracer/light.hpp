@@ -1,5 +1,5 @@
-// Lights: flat ones and meshes (sampled by area, shining on one side), spheres (sampled by the solid angle that they fill) and
-// environments (importance-sampled). Each takes two numbers.
+// Lights: flat ones and meshes (sampled by area, shining on one side), spheres (sampled by the solid angle that they
+// fill) and environments (importance-sampled). Each takes two numbers.
 #pragma once
 
 #include "environment.hpp"
@@ -12,7 +12,10 @@ struct LightTriangle {
     Vector origin, edge1, edge2;
     Vector normal; // unit, along cross(edge1, edge2): the side that shines
 
-    LightTriangle(Vector corner, Vector e1, Vector e2) : origin(corner), edge1(e1), edge2(e2), normal(normalize(cross(e1, e2))) {}
+    LightTriangle(Vector corner, Vector e1, Vector e2)
+        : origin(corner), edge1(e1), edge2(e2), normal(normalize(cross(e1, e2)))
+    {
+    }
 };
 
 struct Light {
@@ -30,12 +33,23 @@ struct Light {
 
 inline Light parallelogram_light(Vector corner, Vector edge1, Vector edge2, Color radiance)
 {
-    return {Light::parallelogram, radiance, corner, edge1, edge2, normalize(cross(edge1, edge2)), 0, length(cross(edge1, edge2)), {}, {}, {}};
+    return {Light::parallelogram,        radiance, corner, edge1, edge2, normalize(cross(edge1, edge2)), 0,
+            length(cross(edge1, edge2)), {},       {},     {}};
 }
 
 inline Light triangle_light(Vector corner, Vector edge1, Vector edge2, Color radiance)
 {
-    return {Light::triangle, radiance, corner, edge1, edge2, normalize(cross(edge1, edge2)), 0, length(cross(edge1, edge2)) / 2, {}, {}, {}};
+    return {Light::triangle,
+            radiance,
+            corner,
+            edge1,
+            edge2,
+            normalize(cross(edge1, edge2)),
+            0,
+            length(cross(edge1, edge2)) / 2,
+            {},
+            {},
+            {}};
 }
 
 inline Light sphere_light(Vector center, float radius, Color radiance)
@@ -51,7 +65,8 @@ inline Light mesh_light(std::vector<LightTriangle> triangles, Color radiance)
         light.areas.push_back(static_cast<float>(area += length(cross(t.edge1, t.edge2)) / 2));
     light.area = static_cast<float>(area);
     if (!(area > 0))
-        throw std::runtime_error("a mesh of " + std::to_string(light.triangles.size()) + " triangles without area cannot be a light");
+        throw std::runtime_error("a mesh of " + std::to_string(light.triangles.size()) +
+                                 " triangles without area cannot be a light");
     return light;
 }
 
@@ -80,8 +95,8 @@ inline float cone_angle(float cosine, const Light &light, Vector to_center)
     return 2 * pi * ratio / (1 + cosine);
 }
 
-// The density at which `sample_light` picks the direction to a point of the light, seen from `from`. `normal`: of the light at that
-// point, unit; spheres and environments do not need it.
+// The density at which `sample_light` picks the direction to a point of the light, seen from `from`. `normal`: of the
+// light at that point, unit; spheres and environments do not need it.
 inline float light_pdf(const Light &light, Vector from, Vector direction, float distance, Vector normal)
 {
     if (light.kind == Light::environment)
@@ -111,7 +126,8 @@ inline Vector triangle_point(Vector corner, Vector edge1, Vector edge2, float u,
     return corner + (1 - root) * edge1 + v * root * edge2;
 }
 
-// One triangle of a mesh is picked by area with u, which is then reused: what (u, v) stands for jumps from triangle to triangle.
+// One triangle of a mesh is picked by area with u, which is then reused: what (u, v) stands for jumps from triangle to
+// triangle.
 inline LightSample sample_mesh(const Light &light, Vector from, float u, float v)
 {
     float at = u * light.area;

@@ -1,5 +1,6 @@
-// Surfaces: smooth glass (dielectric.hpp), or reflection by Lambert's diffuse term plus the normalised Phong lobe (Lafortune and
-// Willems 1994). That reflects at most diffuse + glossy of the light that arrives, and scenes keep the sum at or below 1.
+// Surfaces: smooth glass (dielectric.hpp), or reflection by Lambert's diffuse term plus the normalised Phong lobe
+// (Lafortune and Willems 1994). That reflects at most diffuse + glossy of the light that arrives, and scenes keep the
+// sum at or below 1.
 #pragma once
 
 #include "dielectric.hpp"

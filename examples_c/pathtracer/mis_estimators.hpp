@@ -1,4 +1,5 @@
-// Direct light by two techniques, combined by multiple importance sampling, without and with regression (section 4.3.3).
+// Direct light by two techniques, combined by multiple importance sampling, without and with regression (section
+// 4.3.3).
 #pragma once
 
 #include "estimators.hpp"
@@ -6,8 +7,9 @@
 
 namespace demo {
 
-// What of one sample the estimators need, beside its numbers: a direction's value and both densities, per solid angle. Not divided by
-// any density. `pdf` of the technique that drew it may be 0 where nothing can be seen; such a sample is worth nothing.
+// What of one sample the estimators need, beside its numbers: a direction's value and both densities, per solid angle.
+// Not divided by any density. `pdf` of the technique that drew it may be 0 where nothing can be seen; such a sample is
+// worth nothing.
 struct Drawn {
     float value[3];
     float pdf[2]; // by light sampling, by direction sampling
@@ -37,8 +39,8 @@ inline const MisEstimatorName mis_estimator_names[] = {
 class MisEstimator final : public Estimator {
 public:
     MisEstimator(const MisEstimatorName &kind, const nf_cv_config &config, size_t pairs)
-        : kind_(kind), config_(config), pairs_(pairs), weighted_(3 * pairs), workspace_(memory(nf_cv_workspace_size(&config, pairs))),
-          omis_(memory(nf_omis_size(2, 3)))
+        : kind_(kind), config_(config), pairs_(pairs), weighted_(3 * pairs),
+          workspace_(memory(nf_cv_workspace_size(&config, pairs))), omis_(memory(nf_omis_size(2, 3)))
     {
     }
 
@@ -70,7 +72,8 @@ private:
         for (uint32_t t = 0; t < 2; ++t) {
             for (size_t i = 0; i < n; ++i)
                 for (size_t c = 0; c < 3; ++c)
-                    weighted_[3 * i + c] = static_cast<float>(n) * contribution(pairs[i].drawn[t], t, n, alpha + 2 * c, c);
+                    weighted_[3 * i + c] =
+                        static_cast<float>(n) * contribution(pairs[i].drawn[t], t, n, alpha + 2 * c, c);
             add_mean(u + 2 * t, n, mean);
         }
     }
@@ -90,7 +93,8 @@ private:
     {
         if (kind_.regression) {
             nf_estimate result;
-            check(nf_cv_estimate(&config_, u, weighted_.data(), n, workspace_.data(), 8 * workspace_.size(), &result), "nf_cv_estimate");
+            check(nf_cv_estimate(&config_, u, weighted_.data(), n, workspace_.data(), 8 * workspace_.size(), &result),
+                  "nf_cv_estimate");
             for (size_t c = 0; c < 3; ++c)
                 mean[c] += result.mean[c];
             return;

@@ -6,16 +6,17 @@
 
 namespace demo {
 
-// How often a light's sampling draws a direction, whatever stands before the light and whichever side of it shines: per solid
-// angle, and 1 integrated over all directions, which optimal weights rely on.
-inline float drawing_density(Vector origin, Vector edge1, Vector edge2, Vector normal, bool triangle, float area, Vector from,
-                             Vector direction)
+// How often a light's sampling draws a direction, whatever stands before the light and whichever side of it shines: per
+// solid angle, and 1 integrated over all directions, which optimal weights rely on.
+inline float drawing_density(Vector origin, Vector edge1, Vector edge2, Vector normal, bool triangle, float area,
+                             Vector from, Vector direction)
 {
     float cosine = dot(normal, direction), distance = dot(origin - from, normal) / cosine;
     if (!(distance > 0))
         return 0;
     Vector at = from + distance * direction - origin, across = cross(edge1, edge2);
-    float scale = 1 / dot(across, normal), a = dot(cross(at, edge2), normal) * scale, b = dot(cross(edge1, at), normal) * scale;
+    float scale = 1 / dot(across, normal), a = dot(cross(at, edge2), normal) * scale,
+          b = dot(cross(edge1, at), normal) * scale;
     bool inside = a >= 0 && b >= 0 && (triangle ? a + b <= 1 : a <= 1 && b <= 1);
     return inside ? distance * distance / (std::abs(cosine) * area) : 0.0f;
 }
@@ -25,8 +26,8 @@ inline float drawing_density(const Light &light, Vector from, Vector direction)
     switch (light.kind) {
     case Light::parallelogram:
     case Light::triangle:
-        return drawing_density(light.origin, light.edge1, light.edge2, light.normal, light.kind == Light::triangle, light.area, from,
-                               direction);
+        return drawing_density(light.origin, light.edge1, light.edge2, light.normal, light.kind == Light::triangle,
+                               light.area, from, direction);
     case Light::mesh: {
         float sum = 0;
         for (const LightTriangle &t : light.triangles)
@@ -47,7 +48,8 @@ inline float drawing_density(const Light &light, Vector from, Vector direction)
 
 class MisIntegrand final : public SceneIntegrand {
 public:
-    // As for SceneIntegrand. Throws if a sample would need a camera ray of its own: there are numbers for light and direction only.
+    // As for SceneIntegrand. Throws if a sample would need a camera ray of its own: there are numbers for light and
+    // direction only.
     MisIntegrand(const Scene &scene, const Intersector &intersector, uint32_t width, uint32_t height, Filter filter)
         : SceneIntegrand(scene, intersector, width, height, filter, direct_light(scene.layout))
     {
@@ -62,7 +64,8 @@ public:
     void evaluate(uint32_t x, uint32_t y, size_t n, const float *u, float *f, uint32_t *surface) const override
     {
         const View view = center(x, y, surface);
-        const Color emitted_light = view.throughput * (view.found ? emitted(view.ray, view.hit) : background(view.ray.direction));
+        const Color emitted_light =
+            view.throughput * (view.found ? emitted(view.ray, view.hit) : background(view.ray.direction));
         const bool lit = view.found && !material(view.hit).dark() && !material(view.hit).specular();
         for (size_t i = 0; i < n; ++i, u += 4, f += values()) {
             TwoTechniques pair = {};
@@ -94,8 +97,10 @@ private:
     // The first number picks one of several lights, and is then reused.
     Vector to_light(Vector from, float u, float v) const
     {
-        size_t count = scene().lights.size(), i = std::min(static_cast<size_t>(u * static_cast<float>(count)), count - 1);
-        return sample_light(scene().lights[i], from, u * static_cast<float>(count) - static_cast<float>(i), v).direction;
+        size_t count = scene().lights.size(),
+               i = std::min(static_cast<size_t>(u * static_cast<float>(count)), count - 1);
+        return sample_light(scene().lights[i], from, u * static_cast<float>(count) - static_cast<float>(i), v)
+            .direction;
     }
 
     Drawn drawn(const View &view, const Shading &s, Vector from, Vector direction) const

@@ -45,23 +45,29 @@ inline std::vector<std::string> split(const std::string &text)
 
 inline void print_usage(FILE *to, const Program &program)
 {
-    std::fprintf(to, "usage: %s [--scene NAME] [--width N] [--height N] [--spp N] [--estimators A,B,...] [--order N]\n"
-               "                  [--basis NAME] [--regressed N] [--sampler NAME] [--tile NAME|FILE.nft] [--table FILE] [--filter NAME]\n"
-               "                  [--frame N] [--seed N] [--seeds N] [--statistics A.pfm,B.pfm] [--threads N] [--output PREFIX]\n"
-               "                  [--accumulate N] [--bounces N] [--mis] [--reference]\n"
-               "                  [--scramble]\n\n"
-               "Renders PREFIX.ESTIMATOR.pfm with each estimator from the same samples and prints one line of JSON for each.\n"
-               "--reference renders PREFIX.reference.pfm instead: the plain mean over a shifted lattice.\n"
-               "--seeds renders PREFIX.ESTIMATOR.SEED.pfm with each of so many seeds.\n"
-               "--statistics writes PREFIX.ESTIMATOR.mean.pfm and PREFIX.ESTIMATOR.mse.pfm over all seeds instead: the mean image, and\n"
-               "the mean squared error of each pixel and channel, (I - A)(I - B) for two independent halves of a reference.\n"
-               "--accumulate: rows get passes of N samples (a multiple of 4), one after the other, into accumulators.\n"
-               "--bounces: how many reflections paths have, instead of as many as the scene says.\n"
-               "--mis: direct light by two techniques, a half of the samples each: light sampling and direction sampling.\n"
-               "--scramble: tiles are shifted by the seed instead of placed by it: exactly unbiased, and not as good.\n"
-               "--table: points for the sampler of that name, made elsewhere; their format is in pathtracer/table_sampler.hpp.\n"
-               "--regressed: how many of the sample vector's numbers the estimators regress, from its start.\n\nsamplers:",
-               program.name.c_str());
+    std::fprintf(
+        to,
+        "usage: %s [--scene NAME] [--width N] [--height N] [--spp N] [--estimators A,B,...] [--order N]\n"
+        "                  [--basis NAME] [--regressed N] [--sampler NAME] [--tile NAME|FILE.nft] [--table FILE] "
+        "[--filter NAME]\n"
+        "                  [--frame N] [--seed N] [--seeds N] [--statistics A.pfm,B.pfm] [--threads N] [--output "
+        "PREFIX]\n"
+        "                  [--accumulate N] [--bounces N] [--mis] [--reference]\n"
+        "                  [--scramble]\n\n"
+        "Renders PREFIX.ESTIMATOR.pfm with each estimator from the same samples and prints one line of JSON for each.\n"
+        "--reference renders PREFIX.reference.pfm instead: the plain mean over a shifted lattice.\n"
+        "--seeds renders PREFIX.ESTIMATOR.SEED.pfm with each of so many seeds.\n"
+        "--statistics writes PREFIX.ESTIMATOR.mean.pfm and PREFIX.ESTIMATOR.mse.pfm over all seeds instead: the mean "
+        "image, and\n"
+        "the mean squared error of each pixel and channel, (I - A)(I - B) for two independent halves of a reference.\n"
+        "--accumulate: rows get passes of N samples (a multiple of 4), one after the other, into accumulators.\n"
+        "--bounces: how many reflections paths have, instead of as many as the scene says.\n"
+        "--mis: direct light by two techniques, a half of the samples each: light sampling and direction sampling.\n"
+        "--scramble: tiles are shifted by the seed instead of placed by it: exactly unbiased, and not as good.\n"
+        "--table: points for the sampler of that name, made elsewhere; their format is in "
+        "pathtracer/table_sampler.hpp.\n"
+        "--regressed: how many of the sample vector's numbers the estimators regress, from its start.\n\nsamplers:",
+        program.name.c_str());
     for (const char *name : sampler_names)
         std::fprintf(to, " %s", name);
     std::fputs("\ntiles:", to);
@@ -90,8 +96,8 @@ inline uint64_t parse_number(const std::string &option, const std::string &text,
     bool digits = !text.empty() && text.size() < 20 && text.find_first_not_of("0123456789") == std::string::npos;
     uint64_t value = digits ? std::strtoull(text.c_str(), nullptr, 10) : 0;
     if (!digits || value < low || value > high)
-        throw std::runtime_error(option + " takes a number from " + std::to_string(low) + " to " + std::to_string(high) + ", not `" +
-                                 text + "`");
+        throw std::runtime_error(option + " takes a number from " + std::to_string(low) + " to " +
+                                 std::to_string(high) + ", not `" + text + "`");
     return value;
 }
 
@@ -145,7 +151,9 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
         if (i + 1 == argc)
             throw std::runtime_error("`" + name + "` is unknown or lacks its value; --help lists the options");
         std::string value = argv[++i];
-        auto number = [&](uint64_t low, uint64_t high) { return static_cast<uint32_t>(parse_number(name, value, low, high)); };
+        auto number = [&](uint64_t low, uint64_t high) {
+            return static_cast<uint32_t>(parse_number(name, value, low, high));
+        };
         if (name == "--scene")
             options.scene = value;
         else if (name == "--width")
@@ -178,7 +186,8 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
         } else if (name == "--statistics") {
             options.statistics = split(value);
             if (options.statistics.size() != 2)
-                throw std::runtime_error("--statistics takes the two halves of a reference, A.pfm,B.pfm, not `" + value + "`");
+                throw std::runtime_error("--statistics takes the two halves of a reference, A.pfm,B.pfm, not `" +
+                                         value + "`");
         } else if (name == "--seeds")
             options.seeds = number(1, 1 << 20);
         else if (name == "--accumulate")
@@ -200,8 +209,9 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
     if (options.mis && (options.accumulate || options.reference || options.spp % 2))
         throw std::runtime_error("--mis takes an even --spp, and neither --accumulate nor --reference");
     if (options.mis && (options.bounces || options.regressed))
-        throw std::runtime_error(std::string(options.bounces ? "--bounces" : "--regressed") +
-                                 " is not for --mis: that is direct light, and regresses the two numbers of each technique");
+        throw std::runtime_error(
+            std::string(options.bounces ? "--bounces" : "--regressed") +
+            " is not for --mis: that is direct light, and regresses the two numbers of each technique");
     if (options.accumulate && options.reference)
         throw std::runtime_error("--reference does without --accumulate");
     // Sample i of an accumulator is in its fold i mod 4, whichever thread adds it.

@@ -67,7 +67,8 @@ inline void lattice_points(uint64_t key, size_t first, size_t n, uint32_t dims, 
     static const int primes[max_dims] = {2,  3,  5,  7,  11, 13, 17, 19, 23, 29, 31,  37,  41,  43,  47,  53,
                                          59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107, 109, 113, 127, 131};
     if (dims > max_dims)
-        throw std::runtime_error("a reference has at most " + std::to_string(max_dims) + " dimensions, not " + std::to_string(dims));
+        throw std::runtime_error("a reference has at most " + std::to_string(max_dims) + " dimensions, not " +
+                                 std::to_string(dims));
     for (uint32_t d = 0; d < dims; ++d) {
         double root = std::sqrt(static_cast<double>(primes[d]));
         uint64_t step = static_cast<uint64_t>((root - std::floor(root)) * 0x1p53) << 11;

@@ -30,8 +30,8 @@ class Renderer final : public Rendering {
 public:
     // All three must outlive it.
     Renderer(const Integrand &integrand, const Sampler &sampler, const Options &options)
-        : Rendering(options.reference ? std::vector<std::string>{"mc"} : options.estimators, options), integrand_(integrand),
-          sampler_(sampler), dims_(dims(integrand.domains()))
+        : Rendering(options.reference ? std::vector<std::string>{"mc"} : options.estimators, options),
+          integrand_(integrand), sampler_(sampler), dims_(dims(integrand.domains()))
     {
         // As many samples as stay in the cache between sampling and estimating; pixels that share fits need neighbours.
         bool shared = std::any_of(names_.begin(), names_.end(), shares);
@@ -53,8 +53,8 @@ private:
         return estimators;
     }
 
-    // Square buckets of pixels: reading the clock costs nothing beside them, and every estimator meets the machine in the same
-    // mood.
+    // Square buckets of pixels: reading the clock costs nothing beside them, and every estimator meets the machine in
+    // the same mood.
     void work(uint32_t, Times &times) override
     {
         const size_t n = options_.spp, pixels = size_t{side_} * side_;
@@ -90,7 +90,8 @@ private:
         auto stop = Clock::now();
         times.drawing += seconds(start, stop);
 
-        // The number of a pixel's surface comes with its samples, or costs a ray: that is the estimator's who asks for it.
+        // The number of a pixel's surface comes with its samples, or costs a ray: that is the estimator's who asks for
+        // it.
         start = stop;
         const bool free_surface = !integrand_.camera_ray_per_sample();
         for (size_t p = 0; p < pixels; ++p) {

@@ -45,7 +45,10 @@ public:
 
 protected:
     using Clock = std::chrono::steady_clock;
-    static double seconds(Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double>(to - from).count(); }
+    static double seconds(Clock::time_point from, Clock::time_point to)
+    {
+        return std::chrono::duration<double>(to - from).count();
+    }
 
     // One image for each name. `options` must outlive it.
     Rendering(const std::vector<std::string> &names, const Options &options)

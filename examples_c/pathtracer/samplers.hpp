@@ -1,4 +1,5 @@
-// Where sample points come from. To see how a renderer draws from noisefloor's tiles, read TileSampler in tile_sampler.hpp.
+// Where sample points come from. To see how a renderer draws from noisefloor's tiles, read TileSampler in
+// tile_sampler.hpp.
 #pragma once
 
 #include "integrand.hpp"
@@ -18,7 +19,8 @@ struct Sampler {
     // `count` of them from number `first` on, for passes over the image: the same numbers. Not every sampler can.
     virtual void range(uint32_t, uint32_t, uint32_t, uint32_t, float *) const
     {
-        throw std::runtime_error("this sampler makes all samples of a pixel at once, and none for passes over the image");
+        throw std::runtime_error(
+            "this sampler makes all samples of a pixel at once, and none for passes over the image");
     }
 };
 
@@ -72,8 +74,8 @@ private:
 using RandomSampler = KeyedSampler<random_points>;   // independent uniform points
 using LatticeSampler = KeyedSampler<lattice_points>; // for references only
 
-// Owen-scrambled Sobol points, scrambled anew in each pixel. Groups of up to four dimensions are paired in a random order
-// ("padding").
+// Owen-scrambled Sobol points, scrambled anew in each pixel. Groups of up to four dimensions are paired in a random
+// order ("padding").
 class SobolSampler final : public Sampler {
 public:
     explicit SobolSampler(const SamplerSetup &setup) : setup_(setup), groups_(group(setup.domains, sobol_dims))

@@ -11,14 +11,16 @@
 
 namespace demo {
 
-// What the sample vector decides, in this order: the point in the pixel's footprint (2), the time (1), the point on the lens
-// (2); then for every vertex of a path the point on a light (2), which light (1), and for paths the next direction (2).
+// What the sample vector decides, in this order: the point in the pixel's footprint (2), the time (1), the point on the
+// lens (2); then for every vertex of a path the point on a light (2), which light (1), and for paths the next direction
+// (2).
 struct Layout {
     bool footprint = false; // the command line decides: --filter
     bool time = false, lens = false;
     bool choice = false;  // among the scene's lights, which must otherwise be one
     uint32_t bounces = 0; // reflections of a path; 0: direct light alone, by next event estimation
-    bool roulette = false; // paths go on beyond that by Russian roulette, with numbers that are not in the sample vector
+    bool roulette =
+        false; // paths go on beyond that by Russian roulette, with numbers that are not in the sample vector
 
     uint32_t head() const { return (footprint ? 2u : 0u) + (time ? 1u : 0u) + (lens ? 2u : 0u); }
     uint32_t dims_per_bounce() const { return 2u + (choice ? 1u : 0u) + (bounces > 0 ? 2u : 0u); }

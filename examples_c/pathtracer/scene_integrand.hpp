@@ -11,7 +11,8 @@ namespace demo {
 class SceneIntegrand : public Integrand {
 public:
     // Scene and intersector must outlive it. Throws if the scene's layout does not suit its lights.
-    SceneIntegrand(const Scene &scene, const Intersector &intersector, uint32_t width, uint32_t height, Filter filter = Filter::center)
+    SceneIntegrand(const Scene &scene, const Intersector &intersector, uint32_t width, uint32_t height,
+                   Filter filter = Filter::center)
         : SceneIntegrand(scene, intersector, width, height, filter, scene.layout)
     {
     }
@@ -31,7 +32,8 @@ protected:
                                      " lights: it needs one, or a layout with a choice among several");
         auto surrounds = [](const Light &light) { return light.kind == Light::environment; };
         if (std::count_if(scene.lights.begin(), scene.lights.end(), surrounds) > 1)
-            throw std::runtime_error("the scene has several environments: rays that leave it would see the first alone");
+            throw std::runtime_error(
+                "the scene has several environments: rays that leave it would see the first alone");
         choices_ = static_cast<float>(scene.lights.size());
     }
 
@@ -74,7 +76,8 @@ protected:
     // What the ray through the pixel's centre and the lens' sees, amid the exposure.
     View center(uint32_t x, uint32_t y, uint32_t *surface) const
     {
-        View view = look(scene_.camera.ray((static_cast<float>(x) + 0.5f) / width_, (static_cast<float>(y) + 0.5f) / height_, 0.5f));
+        View view = look(
+            scene_.camera.ray((static_cast<float>(x) + 0.5f) / width_, (static_cast<float>(y) + 0.5f) / height_, 0.5f));
         if (surface)
             *surface = number(view);
         return view;
@@ -101,7 +104,8 @@ protected:
         View view;
         view.ray = ray;
         view.found = intersector_.closest(view.ray, view.hit);
-        for (int i = 0; i < most_boundaries && layout_.bounces == 0 && view.found && material(view.hit).specular(); ++i) {
+        for (int i = 0; i < most_boundaries && layout_.bounces == 0 && view.found && material(view.hit).specular();
+             ++i) {
             Shading s = shading(view.ray, view.hit);
             Boundary boundary(s.normal, s.out, s.material.index, s.inside);
             bool mirrored = boundary.reflectance > 0.5f;
@@ -158,7 +162,9 @@ protected:
 
     Color emitted(const Ray &ray, const Hit &hit) const
     {
-        return hit.light >= 0 && dot(hit.geometric, ray.direction) < 0 ? scene_.lights[static_cast<size_t>(hit.light)].radiance : Color{};
+        return hit.light >= 0 && dot(hit.geometric, ray.direction) < 0
+                   ? scene_.lights[static_cast<size_t>(hit.light)].radiance
+                   : Color{};
     }
 
     // Emitted light plus next event estimation with one light.
@@ -184,8 +190,8 @@ protected:
         return value * sample.radiance / sample.pdf;
     }
 
-    // Light over paths of up to layout.bounces reflections. Each reflection is lit by next event estimation and by its sampled
-    // direction, if that meets a light; the balance heuristic weights the two (Veach and Guibas 1995).
+    // Light over paths of up to layout.bounces reflections. Each reflection is lit by next event estimation and by its
+    // sampled direction, if that meets a light; the balance heuristic weights the two (Veach and Guibas 1995).
     Color path(const View &view, const float *u) const
     {
         Ray ray = view.ray;
@@ -203,7 +209,8 @@ protected:
             }
             Shading s = shading(ray, hit);
             Vector direction;
-            float pdf = 0; // of the direction times the number of lights; 0 stands for a mirror or glass, which nothing else finds
+            float pdf = 0; // of the direction times the number of lights; 0 stands for a mirror or glass, which nothing
+                           // else finds
             if (s.material.specular()) {
                 Boundary boundary(s.normal, s.out, s.material.index, s.inside);
                 direction = numbers[step - 2] < boundary.reflectance ? boundary.reflected : boundary.refracted;
@@ -225,7 +232,8 @@ protected:
             }
             Color light = emitted(ray, hit);
             if (!black(light))
-                sum += throughput * light * met(scene_.lights[static_cast<size_t>(hit.light)], ray, hit.distance, hit.geometric, pdf);
+                sum += throughput * light *
+                       met(scene_.lights[static_cast<size_t>(hit.light)], ray, hit.distance, hit.geometric, pdf);
         }
         return sum;
     }

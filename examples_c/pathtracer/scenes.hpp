@@ -1,4 +1,5 @@
-// The scenes that come with the path tracer, all in one box: x in [-1, 1], y (up) in [0, 2], z in [-1, 1], open to the camera.
+// The scenes that come with the path tracer, all in one box: x in [-1, 1], y (up) in [0, 2], z in [-1, 1], open to the
+// camera.
 #pragma once
 
 #include "builder.hpp"

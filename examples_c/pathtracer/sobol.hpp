@@ -1,4 +1,5 @@
-// Sobol's sequence in up to four dimensions, scrambled as Owen (1995) proposed: the best known points that need no tables.
+// Sobol's sequence in up to four dimensions, scrambled as Owen (1995) proposed: the best known points that need no
+// tables.
 #pragma once
 
 #include "random.hpp"
@@ -66,8 +67,9 @@ private:
     uint64_t leaves_; // the leaves' key
 };
 
-// Owen's nested scrambling for the first 2^levels points of a sequence: each digit is flipped or not depending on all digits
-// before it. No two of these points share their first `levels` digits, so that their further digits are independent.
+// Owen's nested scrambling for the first 2^levels points of a sequence: each digit is flipped or not depending on all
+// digits before it. No two of these points share their first `levels` digits, so that their further digits are
+// independent.
 inline uint32_t scramble(uint32_t digits, uint32_t levels, const Tree &tree)
 {
     uint32_t node = 1, flips = 0;
@@ -81,8 +83,8 @@ inline uint32_t scramble(uint32_t digits, uint32_t levels, const Tree &tree)
     return high | tree.leaf(node) >> levels;
 }
 
-// The same for the digits of an index from the lowest up: an order of the sequence in which every aligned block of 2^k points
-// remains one. Different keys give orders that have nothing to do with each other.
+// The same for the digits of an index from the lowest up: an order of the sequence in which every aligned block of 2^k
+// points remains one. Different keys give orders that have nothing to do with each other.
 inline uint32_t shuffle(uint32_t index, uint32_t levels, const Tree &tree)
 {
     uint32_t flips = 0;

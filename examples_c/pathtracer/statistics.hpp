@@ -10,7 +10,8 @@ struct Halves {
     Image a, b;
 
     // Throws unless both can be read and have that size.
-    Halves(const std::string &path_a, const std::string &path_b, uint32_t width, uint32_t height) : a(read_pfm(path_a)), b(read_pfm(path_b))
+    Halves(const std::string &path_a, const std::string &path_b, uint32_t width, uint32_t height)
+        : a(read_pfm(path_a)), b(read_pfm(path_b))
     {
         check(a, path_a, width, height);
         check(b, path_b, width, height);
@@ -20,15 +21,19 @@ private:
     static void check(const Image &image, const std::string &path, uint32_t width, uint32_t height)
     {
         if (image.width != width || image.height != height)
-            throw std::runtime_error(path + " has " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                                     " pixels, the image " + std::to_string(width) + " x " + std::to_string(height));
+            throw std::runtime_error(path + " has " + std::to_string(image.width) + " x " +
+                                     std::to_string(image.height) + " pixels, the image " + std::to_string(width) +
+                                     " x " + std::to_string(height));
     }
 };
 
 // Of each pixel and channel.
 class Statistics {
 public:
-    Statistics(uint32_t width, uint32_t height) : width_(width), height_(height), sum_(size_t{3} * width * height), error_(sum_.size()) {}
+    Statistics(uint32_t width, uint32_t height)
+        : width_(width), height_(height), sum_(size_t{3} * width * height), error_(sum_.size())
+    {
+    }
 
     void add(const Image &image, const Halves &halves)
     {

@@ -60,7 +60,8 @@ public:
                 continue;
             nf_status status = nf_tile_builtin(known.id, &view_);
             if (status == NF_ERR_UNSUPPORTED)
-                throw std::runtime_error("the library was built without the tile " + name + "; it carries " + tile_list());
+                throw std::runtime_error("the library was built without the tile " + name + "; it carries " +
+                                         tile_list());
             check(status, name);
             return;
         }
@@ -77,7 +78,8 @@ private:
     {
         FILE *file = std::fopen(path.c_str(), "rb");
         if (!file)
-            throw std::runtime_error("there is no tile `" + path + "`, and no such file that can be read; tiles are " + tile_list());
+            throw std::runtime_error("there is no tile `" + path + "`, and no such file that can be read; tiles are " +
+                                     tile_list());
         char buffer[4096];
         for (size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;)
             bytes_.insert(bytes_.end(), buffer, buffer + n);
@@ -125,7 +127,8 @@ public:
           // A tile of two dimensions has a third that is stratified with them, which suits a choice or a time.
           groups_(group(setup.domains, std::min(std::max(tile_->view().dims, 3u), 4u)))
     {
-        // Another seed is the tile at another place: as good as the first, which a scrambled tile is not. Frames stay in their order.
+        // Another seed is the tile at another place: as good as the first, which a scrambled tile is not. Frames stay
+        // in their order.
         if (setup.scramble)
             scramble_ = static_cast<uint32_t>(mix(setup.seed)) | 1;
         else
@@ -139,8 +142,8 @@ public:
             nf_sampler sampler = nf_sampler_pixel(&tile_->view(), x, y, frame_, i);
             sampler = nf_sampler_scramble(sampler, scramble_);
             for (const Group &g : groups_) {
-                // A tree of domains: the bounce, and in it the decision. Keys are all that tells them apart: nothing is counted,
-                // and a path that takes another turn does not disturb what the others draw.
+                // A tree of domains: the bounce, and in it the decision. Keys are all that tells them apart: nothing is
+                // counted, and a path that takes another turn does not disturb what the others draw.
                 nf_sampler bounce = nf_sampler_domain(sampler, g.first.bounce);
                 nf_sampler_draw(nf_sampler_domain(bounce, g.first.kind), g.dims, u);
                 // The two numbers that belong together are drawn first, wherever they go.
@@ -155,7 +158,8 @@ private:
     SamplerSetup setup_;
     uint32_t frame_, scramble_ = 0;
     std::shared_ptr<const LoadedTile> tile_;
-    std::vector<Group> groups_; // what one draw makes: domains that fit into the tile's dimensions are optimised together
+    std::vector<Group>
+        groups_; // what one draw makes: domains that fit into the tile's dimensions are optimised together
 };
 
 inline const char *const sampler_names[] = {"random", "sobol", "tile", "table"};
@@ -183,7 +187,8 @@ public:
             return std::make_unique<SobolSampler>(setup);
         if (table_)
             return std::make_unique<TableSampler>(table_, setup);
-        return std::make_unique<TileSampler>(tile_ ? tile_ : std::make_shared<const LoadedTile>(default_tile(setup.samples)), setup);
+        return std::make_unique<TileSampler>(
+            tile_ ? tile_ : std::make_shared<const LoadedTile>(default_tile(setup.samples)), setup);
     }
 
 private:

@@ -41,7 +41,8 @@ inline bool black(Color c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 // `direction` seen from a surface: mirrored at the normal, both pointing away from it.
 inline Vector reflect(Vector direction, Vector normal) { return 2 * dot(direction, normal) * normal - direction; }
 
-// (u, v) in [0, 1)^2 to the unit disc (Shirley and Chiu 1997): without the seam of polar coordinates, which polynomials cannot follow.
+// (u, v) in [0, 1)^2 to the unit disc (Shirley and Chiu 1997): without the seam of polar coordinates, which polynomials
+// cannot follow.
 inline void concentric_disc(float u, float v, float &x, float &y)
 {
     float a = 2 * u - 1, b = 2 * v - 1;

@@ -1,5 +1,5 @@
-// A stand-in for the parts of Mitsuba 3 that a sampler meets, in a scalar variant: the same names and calling order, none of
-// its code.
+// A stand-in for the parts of Mitsuba 3 that a sampler meets, in a scalar variant: the same names and calling order,
+// none of its code.
 #pragma once
 
 #include "noisefloor.h"
@@ -52,8 +52,8 @@ private:
     nf_rng m_rng{};
 };
 
-// Light sampling at the first hit. Mitsuba asks for two numbers; the first chooses the emitter, and what is left of it is used
-// again.
+// Light sampling at the first hit. Mitsuba asks for two numbers; the first chooses the emitter, and what is left of it
+// is used again.
 inline Float sample(const room::Hit &hit, Sampler &sampler)
 {
     const Point2f u = sampler.next_2d();
@@ -62,8 +62,8 @@ inline Float sample(const room::Hit &hit, Sampler &sampler)
     return room::direct_light(hit, lamp, scaled - static_cast<Float>(lamp), u.y);
 }
 
-// SamplingIntegrator::render_sample: the film's two numbers, (aperture, time, wavelengths: not in this scene and variant,) then
-// the integrator's.
+// SamplingIntegrator::render_sample: the film's two numbers, (aperture, time, wavelengths: not in this scene and
+// variant,) then the integrator's.
 inline Float render_sample(Sampler &sampler, Point2u pos, Point2u film_size)
 {
     const Point2f offset = sampler.next_2d();
@@ -72,8 +72,8 @@ inline Float render_sample(Sampler &sampler, Point2u pos, Point2u film_size)
                   sampler);
 }
 
-// Stands for SamplingIntegrator::render_block over the whole film. `pass` counts renderings: Mitsuba's own seed is such a
-// number times the film's pixels. Unlike in Mitsuba a pixel's seed adds its place in the film, not that in a block.
+// Stands for SamplingIntegrator::render_block over the whole film. `pass` counts renderings: Mitsuba's own seed is such
+// a number times the film's pixels. Unlike in Mitsuba a pixel's seed adds its place in the film, not that in a block.
 // `store(pixel, sample, value)` stands for the image block.
 template <class Store> void render(Sampler &sampler, Point2u film_size, uint32_t pass, const Store &store)
 {

@@ -41,7 +41,8 @@ public:
     void add(uint32_t pixel, RecordingSampler &sampler, Float value)
     {
         const Float x = sampler.number(emitter_dimension), scaled = x * static_cast<Float>(room::lamps);
-        const Float u[] = {scaled - static_cast<Float>(static_cast<int>(scaled)), sampler.number(emitter_dimension + 1), x};
+        const Float u[] = {scaled - static_cast<Float>(static_cast<int>(scaled)), sampler.number(emitter_dimension + 1),
+                           x};
         room::check(nf_cv_accumulator_add(accumulators_[pixel], u, &value, 1), "nf_cv_accumulator_add");
     }
 

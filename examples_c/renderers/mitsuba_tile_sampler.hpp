@@ -6,7 +6,8 @@
 
 namespace mitsuba {
 
-// Mitsuba tells a sampler no pixel, only a seed. Here seed = frame * pixels + y * width + x, as render_block can form it.
+// Mitsuba tells a sampler no pixel, only a seed. Here seed = frame * pixels + y * width + x, as render_block can form
+// it.
 class TileSampler : public Sampler {
 public:
     // The tile must outlive the sampler and stay where it is.
@@ -94,8 +95,8 @@ public:
         return {keep(u.x), keep(u.y)};
     }
 
-    // Number `dimension` of this sample, as it was given. Whether a path asked for it or ended before, it must be uniform:
-    // what was not asked for is drawn now.
+    // Number `dimension` of this sample, as it was given. Whether a path asked for it or ended before, it must be
+    // uniform: what was not asked for is drawn now.
     Float number(size_t dimension)
     {
         while (m_count <= dimension)

@@ -1,5 +1,5 @@
-// A stand-in for the parts of pbrt-v4 that a sampler meets: the same names and calling order, none of its code. In pbrt the
-// class pbrt::Sampler passes calls on to one of a list of types; here integrators are templates over the type.
+// A stand-in for the parts of pbrt-v4 that a sampler meets: the same names and calling order, none of its code. In pbrt
+// the class pbrt::Sampler passes calls on to one of a list of types; here integrators are templates over the type.
 #pragma once
 
 #include "noisefloor.h"
@@ -64,8 +64,8 @@ template <class Sampler> void EvaluatePixelSample(Point2i pPixel, int sampleInde
     sampler.Get1D(); // wavelengths
     const CameraSample camera = GetCameraSample(sampler, pPixel);
     const Point2i resolution = film.FullResolution();
-    const room::Hit hit =
-        room::camera_ray(camera.pFilm.x / static_cast<Float>(resolution.x), camera.pFilm.y / static_cast<Float>(resolution.y));
+    const room::Hit hit = room::camera_ray(camera.pFilm.x / static_cast<Float>(resolution.x),
+                                           camera.pFilm.y / static_cast<Float>(resolution.y));
     film.AddSample(pPixel, sampleIndex, Li(hit, sampler));
 }
 
@@ -88,7 +88,9 @@ public:
     int SamplesPerPixel() const { return samplesPerPixel_; }
     void StartPixelSample(Point2i p, int sampleIndex, int dim)
     {
-        const auto part = [](int value, int shift) { return static_cast<uint64_t>(static_cast<uint32_t>(value)) << shift; };
+        const auto part = [](int value, int shift) {
+            return static_cast<uint64_t>(static_cast<uint32_t>(value)) << shift;
+        };
         nf_rng_seed(&rng_, part(p.x, 48) ^ part(p.y, 32) ^ part(sampleIndex, 8) ^ part(dim, 0));
     }
     Float Get1D() { return nf_rng_uniform(&rng_); }

@@ -1,4 +1,5 @@
-// noisefloor in a renderer like pbrt-v4: a sampler from a tile, and fits shared by pixels after rendering. docs/renderer.md.
+// noisefloor in a renderer like pbrt-v4: a sampler from a tile, and fits shared by pixels after rendering.
+// docs/renderer.md.
 #include "pbrt_tile_sampler.hpp"
 #include <cstdio>
 #include <exception>
@@ -7,13 +8,15 @@ namespace {
 
 using namespace pbrt;
 
-// At which count of dimensions Li asks for the light and for the point on it: behind wavelengths 0, time 1, lens 2 and 3.
+// At which count of dimensions Li asks for the light and for the point on it: behind wavelengths 0, time 1, lens 2
+// and 3.
 constexpr uint32_t choice_dimension = 4, light_dimension = 5;
 
 // The estimates of all pixels. The integrator did not keep its numbers: a tile gives them again.
 std::vector<Float> shared_fits(const Film &film, const TileSampler &sampler)
 {
-    const auto width = static_cast<uint32_t>(film.FullResolution().x), height = static_cast<uint32_t>(film.FullResolution().y);
+    const auto width = static_cast<uint32_t>(film.FullResolution().x),
+               height = static_cast<uint32_t>(film.FullResolution().y);
     const auto n = static_cast<uint32_t>(sampler.SamplesPerPixel());
 
     // For each sample the point on the light, then the choice: a number that picks one of several is the last.
@@ -36,8 +39,8 @@ std::vector<Float> shared_fits(const Film &film, const TileSampler &sampler)
 
     std::vector<uint64_t> workspace(nf_cv_image_workspace_size(&config, &image, n) / 8 + 1);
     std::vector<nf_estimate> estimates(surfaces.size());
-    room::check(nf_cv_image_estimate(&config, &image, u.data(), film.Values().data(), n, workspace.data(), 8 * workspace.size(),
-                                     estimates.data()),
+    room::check(nf_cv_image_estimate(&config, &image, u.data(), film.Values().data(), n, workspace.data(),
+                                     8 * workspace.size(), estimates.data()),
                 "nf_cv_image_estimate");
     std::vector<Float> pixels;
     for (const nf_estimate &estimate : estimates)

@@ -52,8 +52,8 @@ public:
     // What the request at a count of dimensions was, or will be, answered with.
     nf_sampler Request(Point2i p, uint32_t dimension) const
     {
-        return nf_sampler_domain(nf_sampler_pixel(tile_, static_cast<uint32_t>(p.x), static_cast<uint32_t>(p.y), frame_, 0),
-                                 dimension);
+        return nf_sampler_domain(
+            nf_sampler_pixel(tile_, static_cast<uint32_t>(p.x), static_cast<uint32_t>(p.y), frame_, 0), dimension);
     }
 
 private:

@@ -1,4 +1,5 @@
-// What both programs render: a ball on a floor, seen from above, under two lamps. No acceleration structure, no material.
+// What both programs render: a ball on a floor, seen from above, under two lamps. No acceleration structure, no
+// material.
 #pragma once
 
 #include <algorithm>
@@ -50,7 +51,8 @@ inline bool shadowed(Vector from, Vector to)
 // Light from the point (u, v) of a lamp that was chosen with probability 1 / lamps: integrand over density.
 inline float direct_light(const Hit &hit, int lamp, float u, float v)
 {
-    const Vector at = lamp == 0 ? Vector{-1.6f + 0.9f * u, -0.4f + 0.9f * v, 2.2f} : Vector{0.9f + 0.5f * u, 0.5f + 0.5f * v, 1.7f};
+    const Vector at =
+        lamp == 0 ? Vector{-1.6f + 0.9f * u, -0.4f + 0.9f * v, 2.2f} : Vector{0.9f + 0.5f * u, 0.5f + 0.5f * v, 1.7f};
     const float power = lamp == 0 ? 4.0f : 2.0f, area = lamp == 0 ? 0.81f : 0.25f;
     const Vector d = at - hit.point;
     const float square = dot(d, d), cosine = dot(d, hit.normal);

@@ -12,8 +12,8 @@ typedef struct dataset {
     uint32_t classes; /* the largest label, plus one */
 } dataset;
 
-/* The whole file's bytes after its header of 4 * (1 + dims) bytes; `sizes` gets the dims numbers. The file must be exactly
-   as long as its header says. */
+/* The whole file's bytes after its header of 4 * (1 + dims) bytes; `sizes` gets the dims numbers. The file must be
+   exactly as long as its header says. */
 static uint8_t *idx_read(const char *folder, const char *name, uint32_t dims, uint32_t *sizes)
 {
     size_t length = strlen(folder) + strlen(name) + 2;

@@ -1,4 +1,5 @@
-/* A multilayer perceptron with two hidden layers, ReLU and softmax cross-entropy: batched forward and backward passes. */
+/* A multilayer perceptron with two hidden layers, ReLU and softmax cross-entropy: batched forward and backward passes.
+ */
 #ifndef TRAIN_MLP_MLP_H
 #define TRAIN_MLP_MLP_H
 
@@ -7,7 +8,8 @@
 
 #define LAYERS 3
 
-/* Layer l maps size[l] numbers to size[l + 1]: weights [size[l]][size[l + 1]], then biases [size[l + 1]], at offset[l]. */
+/* Layer l maps size[l] numbers to size[l + 1]: weights [size[l]][size[l + 1]], then biases [size[l + 1]], at offset[l].
+ */
 typedef struct mlp {
     uint32_t size[LAYERS + 1];
     size_t offset[LAYERS];
@@ -15,8 +17,8 @@ typedef struct mlp {
     float *theta; /* [parameters] */
 } mlp;
 
-/* Of one batch. activation[0] is the input, activation[LAYERS] the logits; delta[l] is the loss's derivative by the l-th
-   layer's output before the ReLU, one row per item. */
+/* Of one batch. activation[0] is the input, activation[LAYERS] the logits; delta[l] is the loss's derivative by the
+   l-th layer's output before the ReLU, one row per item. */
 typedef struct workspace {
     uint32_t rows;
     float *activation[LAYERS + 1]; /* [rows * size[l]] */
@@ -27,11 +29,11 @@ typedef struct workspace {
 
 /* ---- c[m * n] += a b, with a's element (i, p) at a[i * row + p * column] and b [k * n] ---- */
 
-/* Four rows of c, four of b: 16 multiplications for every 4 + 4 loads. The loop over j is what the compiler vectorises, and
-   it keeps the order of the sums: the results do not depend on the width of the vectors. */
+/* Four rows of c, four of b: 16 multiplications for every 4 + 4 loads. The loop over j is what the compiler vectorises,
+   and it keeps the order of the sums: the results do not depend on the width of the vectors. */
 static void multiply_4x4(size_t n, const float *a, size_t row, size_t column, const float *restrict b0,
-                         const float *restrict b1, const float *restrict b2, const float *restrict b3, float *restrict c0,
-                         float *restrict c1, float *restrict c2, float *restrict c3)
+                         const float *restrict b1, const float *restrict b2, const float *restrict b3,
+                         float *restrict c0, float *restrict c1, float *restrict c2, float *restrict c3)
 {
     const float *r0 = a, *r1 = a + row, *r2 = a + 2 * row, *r3 = a + 3 * row;
     const float a00 = r0[0], a01 = r0[column], a02 = r0[2 * column], a03 = r0[3 * column];

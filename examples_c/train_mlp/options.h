@@ -49,14 +49,17 @@ static const char usage[] =
     "  --gamma X           0.3: an item's importance is gamma old + (1 - gamma) new\n"
     "  --delta X           0.2: share of items drawn uniformly; bounds every weight by 1 / delta\n"
     "  --epsilon X         0: added to every importance after each epoch\n"
-    "  --stratified        one draw in each of as many equal parts of the distribution as there are items in the batch\n"
+    "  --stratified        one draw in each of as many equal parts of the distribution as there are items in the "
+    "batch\n"
     "  --techniques J      8: distributions of balance and omis, an even number\n"
     "  --seed N            1; the first seed\n"
     "  --seeds N           1; runs with that many seeds, and a summary\n"
     "  --rows N            1: rows per epoch\n"
-    "  --variance FILE     instead: one network, trained uniformly; FILE (CSV) gets the gradient's variance under each way\n"
+    "  --variance FILE     instead: one network, trained uniformly; FILE (CSV) gets the gradient's variance under each "
+    "way\n"
     "                      to draw, relative to uniform draws\n"
-    "Standard output: CSV. seconds is processor time spent in training, without evaluation. Standard error: the summary.\n";
+    "Standard output: CSV. seconds is processor time spent in training, without evaluation. Standard error: the "
+    "summary.\n";
 
 static double option_number(const char *name, const char *text, double low, double high)
 {
@@ -171,7 +174,8 @@ static options options_parse(int count, char **words)
         fail("--data FOLDER is missing; --help lists the options");
     for (uint32_t i = 0; i < o.mode_count; ++i)
         if ((o.modes[i] == BALANCE || o.modes[i] == OMIS) && o.techniques > o.batch)
-            fail("%s: a batch of %u has no item for each of %u distributions", mode_name[o.modes[i]], o.batch, o.techniques);
+            fail("%s: a batch of %u has no item for each of %u distributions", mode_name[o.modes[i]], o.batch,
+                 o.techniques);
     if (o.rate == 0.0f)
         o.rate = o.adam ? 0.001f : 0.1f;
     return o;

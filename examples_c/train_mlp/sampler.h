@@ -79,8 +79,8 @@ static void sampler_draw_weighted(sampler *s, uint32_t count, uint32_t *index, f
     }
     for (uint32_t j = 0; j < s->tables; ++j)
         check(nf_table_probabilities(&s->table[j], index, count, s->tables, s->pdf + j), "probabilities");
-    check(nf_omis_weights(s->mode == OMIS ? NF_OMIS_RIDGE : NF_OMIS_BALANCE, 0.0f, s->tables, s->items, s->pdf, s->technique,
-                          count, weight),
+    check(nf_omis_weights(s->mode == OMIS ? NF_OMIS_RIDGE : NF_OMIS_BALANCE, 0.0f, s->tables, s->items, s->pdf,
+                          s->technique, count, weight),
           "weights of the minibatch");
 }
 
@@ -97,8 +97,9 @@ static void sampler_draw(sampler *s, uint32_t epoch, uint32_t position, uint32_t
     }
 }
 
-/* Remembers how important the items were, from the forward pass that training needed anyway: the space holds their logits,
-   and softmax - onehot in delta[LAYERS]. `gamma` is nought where there is nothing older (Algorithm 3, line 13; 5, line 19). */
+/* Remembers how important the items were, from the forward pass that training needed anyway: the space holds their
+   logits, and softmax - onehot in delta[LAYERS]. `gamma` is nought where there is nothing older (Algorithm 3, line 13;
+   5, line 19). */
 static void sampler_update(sampler *s, const mlp *net, const workspace *space, const uint32_t *index, uint32_t count,
                            float gamma)
 {
@@ -110,7 +111,8 @@ static void sampler_update(sampler *s, const mlp *net, const workspace *space, c
         check(nf_table_update(&s->table[0], index, s->importance, count, gamma), "update of the importances");
         return;
     }
-    /* Each output's derivative, its positive and its negative part apart, outputs grouped so that the tables suffice. */
+    /* Each output's derivative, its positive and its negative part apart, outputs grouped so that the tables suffice.
+     */
     float part[MAX_TECHNIQUES];
     for (uint32_t r = 0; r < count && s->tables > 0; ++r) {
         check(nf_importance_nodes(space->delta[LAYERS] + (size_t)r * classes, classes, NF_NODES_SIGN, s->tables, part),

@@ -13,9 +13,9 @@ typedef struct curve {
 /* Student's t, 97.5 %, for 1.. degrees of freedom. */
 static double student(uint32_t freedom)
 {
-    static const double t[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160,
-                               2.145,  2.131, 2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056,
-                               2.052,  2.048, 2.045, 2.042};
+    static const double t[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
+                               2.201,  2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086,
+                               2.080,  2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042};
     return freedom > sizeof t / sizeof *t ? 1.96 + 2.5 / freedom : t[freedom - 1];
 }
 
@@ -52,8 +52,9 @@ static void print_cell(const double *value, uint32_t count, int empty, const cha
         print_interval(value, count, format);
 }
 
-/* curves[mode of o->modes][seed], half-way and at the end. Equal time is that which uniform (or the first mode) takes for these
-   epochs; differences are to it too, seed by seed: the modes begin with the same network and see the same first epoch. */
+/* curves[mode of o->modes][seed], half-way and at the end. Equal time is that which uniform (or the first mode) takes
+   for these epochs; differences are to it too, seed by seed: the modes begin with the same network and see the same
+   first epoch. */
 static void print_summary(const options *o, curve (*curves)[MAX_SEEDS])
 {
     uint32_t base = 0;

@@ -1,7 +1,8 @@
-/* Figure 6.2: how much the gradient estimate varies with each way to draw, at the same states of one network that is trained
-   uniformly. What one importance gives is exact: with B draws from p, and g_i the gradient of item i's loss,
+/* Figure 6.2: how much the gradient estimate varies with each way to draw, at the same states of one network that is
+   trained uniformly. What one importance gives is exact: with B draws from p, and g_i the gradient of item i's loss,
        variance = (1/B) ((1/N^2) sum ||g_i||^2 / p_i - ||mean g||^2).
-   Several distributions at once are measured by drawing: the mean squared distance to the exact gradient, bias included. */
+   Several distributions at once are measured by drawing: the mean squared distance to the exact gradient, bias
+   included. */
 #ifndef TRAIN_MLP_VARIANCE_H
 #define TRAIN_MLP_VARIANCE_H
 
@@ -87,7 +88,8 @@ static void scan_items(scan *all, const mlp *net, const dataset *data, workspace
             all->rating[RATE_OURS][start + r] = nf_importance_cross_entropy(logits, classes, space->label[r]);
             all->rating[RATE_LAST_LAYER][start + r] = (float)sqrt(last);
             all->rating[RATE_GRADIENT][start + r] = (float)sqrt(square);
-            check(nf_importance_nodes(space->delta[LAYERS] + (size_t)r * classes, classes, NF_NODES_SIGN, techniques, part),
+            check(nf_importance_nodes(space->delta[LAYERS] + (size_t)r * classes, classes, NF_NODES_SIGN, techniques,
+                                      part),
                   "importances");
             for (uint32_t j = 0; j < techniques; ++j)
                 all->part[j][start + r] = part[j];
@@ -129,7 +131,8 @@ static double table_variance(const scan *all, const nf_table *table, const uint3
 }
 
 /* Mean squared distance of `DRAWN_BATCHES` estimates to the exact gradient, and its standard error. `s` is a copy. */
-static double drawn_error(sampler s, const scan *all, const mlp *net, const dataset *data, workspace *space, double *error)
+static double drawn_error(sampler s, const scan *all, const mlp *net, const dataset *data, workspace *space,
+                          double *error)
 {
     uint32_t index[DRAWN_BATCH], classes = net->size[LAYERS];
     float weight[DRAWN_BATCH], *gradient = allocate(net->parameters, sizeof *gradient);

@@ -1,8 +1,8 @@
 //! Integration error of the prefixes of progressive point sets (figure 5.17), as a table in Markdown.
 //!
-//! `cargo run --profile fsot -p noisefloor-fsot --example progressive -- [POINTS] [SETS] [INTEGRANDS]`: root mean square errors over sets and
-//! Gaussian integrands, for sets of 1, 3 and as many levels as POINTS has doublings, fully progressive ones, and random points. The
-//! defaults are 1024, 20 and 30.
+//! `cargo run --profile fsot -p noisefloor-fsot --example progressive -- [POINTS] [SETS] [INTEGRANDS]`: root mean
+//! square errors over sets and Gaussian integrands, for sets of 1, 3 and as many levels as POINTS has doublings, fully
+//! progressive ones, and random points. The defaults are 1024, 20 and 30.
 
 use fsot::class::progressive;
 use fsot::error::Result;

@@ -80,7 +80,8 @@ pub fn save(path: &Path, problem: &Problem, optimization: &dyn Optimization) -> 
     output::write(path, &bytes)
 }
 
-/// Continues an optimisation from a checkpoint of the same problem. Returns false, and changes nothing, if there is none.
+/// Continues an optimisation from a checkpoint of the same problem. Returns false, and changes nothing, if there is
+/// none.
 ///
 /// # Errors
 /// The file cannot be read, is no checkpoint, is truncated or damaged, or belongs to another problem or version: the

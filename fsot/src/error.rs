@@ -7,7 +7,8 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// An argument, a file's content or a combination of both that cannot be used: the sentence says which value and why.
+    /// An argument, a file's content or a combination of both that cannot be used: the sentence says which value and
+    /// why.
     #[error("{0}")]
     Input(String),
     /// A file could not be read or written.

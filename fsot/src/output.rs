@@ -61,7 +61,8 @@ impl Outputs {
     /// Puts all files into their places, those first that cannot be replaced atomically.
     ///
     /// # Errors
-    /// What the system says of a stream that takes no more, or of a folder that vanished meanwhile: the files renamed before that stay.
+    /// What the system says of a stream that takes no more, or of a folder that vanished meanwhile: the files renamed
+    /// before that stay.
     pub fn commit(self) -> Result<()> {
         let (streams, files): (Vec<_>, Vec<_>) =
             self.pending.into_iter().partition(|pending| matches!(pending, Pending::Stream { .. }));
@@ -172,8 +173,8 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     outputs.commit()
 }
 
-/// Whether `path` is `-` (standard output), an open file of this process by its name in `/dev`, a pipe or a device: something that is
-/// written to, not replaced.
+/// Whether `path` is `-` (standard output), an open file of this process by its name in `/dev`, a pipe or a device:
+/// something that is written to, not replaced.
 pub fn is_stream(path: &Path) -> bool {
     // What these names stand for may be a regular file, opened by the shell.
     is_standard_output(path)

@@ -119,8 +119,8 @@ fn png_size(bytes: &[u8]) -> Option<(u32, u32)> {
     (bytes.get(12..16)? == b"IHDR").then_some((number(16)?, number(20)?))
 }
 
-/// A picture as a density for `points` points: its luma as it is stored (not linear light), or what is missing to white; transparent
-/// parts have none. Values beyond 1 (OpenEXR) are densities too, but not if inverted.
+/// A picture as a density for `points` points: its luma as it is stored (not linear light), or what is missing to
+/// white; transparent parts have none. Values beyond 1 (OpenEXR) are densities too, but not if inverted.
 ///
 /// # Errors
 /// As [`decode_image`]; a value that is negative or not finite; a density of 0 everywhere.
@@ -148,8 +148,8 @@ pub fn density(bytes: &[u8], path: &Path, points: usize, invert: bool) -> Result
 }
 
 /// A point set by its content: JSON, CSV (rows with commas) or text (columns separated by spaces), as
-/// [`Format`](crate::export::points::Format) describes them. A first row that holds no number names the columns; one named
-/// `class` holds each point's class. What follows a `#` is a comment.
+/// [`Format`](crate::export::points::Format) describes them. A first row that holds no number names the columns; one
+/// named `class` holds each point's class. What follows a `#` is a comment.
 ///
 /// # Errors
 /// As [`text`]; a value that is no finite number; rows of different lengths; no points; more than 8 coordinates.

@@ -2,8 +2,8 @@
 
 /// An optimisation that runs step by step.
 ///
-/// Its whole state is the number of steps done and the coordinates: an optimisation made from the same problem, given both
-/// by [`restore`](Optimization::restore), continues with the same bits.
+/// Its whole state is the number of steps done and the coordinates: an optimisation made from the same problem, given
+/// both by [`restore`](Optimization::restore), continues with the same bits.
 pub trait Optimization {
     /// The steps that it will take in all.
     fn iterations(&self) -> u64;
@@ -11,14 +11,14 @@ pub trait Optimization {
     /// The steps that it has taken.
     fn iteration(&self) -> u64;
 
-    /// Takes one step, on the threads of the current rayon pool. Returns the mean squared sliced Wasserstein distance of
-    /// its slices before the step.
+    /// Takes one step, on the threads of the current rayon pool. Returns the mean squared sliced Wasserstein distance
+    /// of its slices before the step.
     fn step(&mut self) -> f64;
 
     /// All coordinates being optimised.
     fn coordinates(&self) -> &[f32];
 
-    /// Continues from a saved state. Returns false, and changes nothing, if the state is not one of this problem's (wrong number of
-    /// coordinates, not finite, beyond the last step).
+    /// Continues from a saved state. Returns false, and changes nothing, if the state is not one of this problem's
+    /// (wrong number of coordinates, not finite, beyond the last step).
     fn restore(&mut self, iteration: u64, coordinates: &[f32]) -> bool;
 }

@@ -14,8 +14,8 @@ fn signal(name: &str, process: u32) {
     Command::new("sh").args(["-c", &format!("kill -{name} {process}")]).status().unwrap();
 }
 
-/// Starts a run, waits for a checkpoint that was not there before, and sends a signal. Returns the exit code (none if killed)
-/// and what was printed to standard error.
+/// Starts a run, waits for a checkpoint that was not there before, and sends a signal. Returns the exit code (none if
+/// killed) and what was printed to standard error.
 fn interrupt(place: &Place, command: &str, checkpoint: &str, name: &str) -> (Option<i32>, String) {
     let path = place.path(checkpoint);
     let before = std::fs::read(&path).ok();

@@ -41,7 +41,8 @@ impl Place {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// Runs and fails with exit code 2, a sentence that contains `message`, no change of the folder and nothing on standard output.
+    /// Runs and fails with exit code 2, a sentence that contains `message`, no change of the folder and nothing on
+    /// standard output.
     pub(crate) fn refuse(&self, arguments: &str, message: &str) {
         let before = self.state();
         let output = self.run(arguments);

@@ -24,7 +24,8 @@ fn integrals_and_variances_are_those_of_quadrature() {
                     squares += value * value;
                 }
                 let mean = sum / count as f64;
-                // The midpoint rule: second order for bumps; a plane crosses at most `dims` sheets of cells, wrong by half a cell each.
+                // The midpoint rule: second order for bumps; a plane crosses at most `dims` sheets of cells, wrong by
+                // half a cell each.
                 let tolerance = match family {
                     Family::Gaussian => 60.0 * dims as f64 / (cells * cells) as f64 + 1e-6,
                     Family::HalfSpace => dims as f64 / cells as f64,

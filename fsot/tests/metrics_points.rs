@@ -47,7 +47,8 @@ fn neighbours_of_lattices_and_of_degenerate_sets() {
     assert_near(square.min, square.mean, 1e-6, "square grid");
     let line = Points::new(1, (0..10).map(|i| i as f32 / 10.0).collect());
     assert_near(neighbours(&line).unwrap().mean_toroidal, 1.0, 1e-6, "equidistant points on a line");
-    // Densest lattices in the unit torus: face-centred cubic (4 points), D4 (2^3 / 2 * 2 = 8 points on the half-integers of even sum), E8.
+    // Densest lattices in the unit torus: face-centred cubic (4 points), D4 (2^3 / 2 * 2 = 8 points on the
+    // half-integers of even sum), E8.
     let even = |dims: usize| -> Vec<f32> {
         let corners = (0..1_usize << dims).filter(|c| c.count_ones() % 2 == 0);
         corners.flat_map(|c| (0..dims).map(move |i| (c >> i & 1) as f32 * 0.5)).collect()
@@ -68,7 +69,8 @@ fn neighbours_of_lattices_and_of_degenerate_sets() {
     assert_eq!([ends.min * lattice_distance(2, 1), ends.min_toroidal], [1.0, 0.0]);
 }
 
-/// The integral of the squared local discrepancy, cell by cell between the coordinates of the points, where the count is constant.
+/// The integral of the squared local discrepancy, cell by cell between the coordinates of the points, where the count
+/// is constant.
 fn slow_discrepancy(points: &Points) -> f64 {
     let d = points.dims();
     let all: Vec<Vec<f64>> = points.iter().map(|p| p.iter().map(|&x| f64::from(x)).collect()).collect();

@@ -65,7 +65,8 @@ fn mean_square(image: &[f64]) -> f64 {
     image.iter().map(|e| e * e).sum::<f64>() / image.len() as f64
 }
 
-/// Energies in the order G2.1, A, G1, raw, of error images over those of white noise: `images(integrand)` gives several.
+/// Energies in the order G2.1, A, G1, raw, of error images over those of white noise: `images(integrand)` gives
+/// several.
 fn slow(
     size: usize,
     spp: usize,
@@ -253,7 +254,8 @@ fn what_is_no_tile_is_refused() {
     }
 }
 
-/// All samples' energies alone are those of the report; another first number is another draw of integrands, of the same expectation.
+/// All samples' energies alone are those of the report; another first number is another draw of integrands, of the same
+/// expectation.
 #[test]
 fn energies_of_numbered_integrands() {
     let tile = Tile::random(16, 4, 2, 2, 5);

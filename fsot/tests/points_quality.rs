@@ -123,7 +123,8 @@ fn windows_bring_points_into_order() {
     assert!(nn > 0.8, "{nn}");
 }
 
-/// Integration error of the first points, averaged over sets and Gaussians; [`errors`] of every prefix length asked for.
+/// Integration error of the first points, averaged over sets and Gaussians; [`errors`] of every prefix length asked
+/// for.
 fn errors(levels: usize, points: usize, prefixes: &[usize], sets: u64, integrands: u64) -> Vec<f64> {
     let mut sums = vec![0.0; prefixes.len()];
     for set in 0..sets {

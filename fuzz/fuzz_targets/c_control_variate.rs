@@ -1,5 +1,5 @@
-//! Every control-variate function of the C library: any configuration, samples and addresses give an error, and outputs as they
-//! were, or finite numbers.
+//! Every control-variate function of the C library: any configuration, samples and addresses give an error, and outputs
+//! as they were, or finite numbers.
 #![no_main]
 
 mod support;
@@ -87,7 +87,8 @@ fn samples(source: &mut Source<'_>, config: &nf_cv_config, n: usize) -> Result<S
 fn batch(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
     let count = usize::from(source.any::<u8>()? % 33);
     let Samples { n, u, f, h, integrals } = samples(source, config, count)?;
-    // SAFETY: arrays have the lengths that the header asks for; wrong addresses are NULL or misaligned, which are refused.
+    // SAFETY: arrays have the lengths that the header asks for; wrong addresses are NULL or misaligned, which are
+    // refused.
     unsafe {
         let bytes = nf_cv_workspace_size(config, n);
         if bytes > MOST {
@@ -238,7 +239,8 @@ fn run(bytes: &[u8]) -> Result<()> {
     }
 }
 
-/// What is to be fuzzed is there: a library without double precision would refuse half of all inputs, and none would fail.
+/// What is to be fuzzed is there: a library without double precision would refuse half of all inputs, and none would
+/// fail.
 fn defaults_work() {
     let (u, f) = ([0.1, 0.2, 0.7, 0.4, 0.5, 0.9], [1.0, 2.0, 3.0]);
     // SAFETY: arrays have the lengths that the header asks for.

@@ -25,7 +25,8 @@ fn operation(source: &mut Source<'_>, table: &mut nf_table, rng: &mut nf_rng) ->
     let mut index = source.array(count, |source| source.small(items.saturating_sub(1)))?;
     let mut weight = source.array(count, |_| Ok(-7.0_f32))?;
     let importance = source.array(count, |source| source.number().map(f32::abs))?;
-    // SAFETY: arrays have the lengths that the header asks for; wrong addresses are NULL or misaligned, which are refused.
+    // SAFETY: arrays have the lengths that the header asks for; wrong addresses are NULL or misaligned, which are
+    // refused.
     unsafe {
         let draws = source.any::<u8>()? % 12;
         match draws {

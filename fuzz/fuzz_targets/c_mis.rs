@@ -1,4 +1,5 @@
-//! Every function of multiple importance sampling and of gradients in the C library, the heuristics against their formulas.
+//! Every function of multiple importance sampling and of gradients in the C library, the heuristics against their
+//! formulas.
 #![no_main]
 
 mod support;
@@ -23,7 +24,8 @@ fn weights(source: &mut Source<'_>) -> Result<()> {
     let which = source.any::<u8>()? % 6;
     let (p, n) = (pdf.pointer(), counts.pointer());
     let call = |technique: u32, out: *mut f32| {
-        // SAFETY: arrays have the lengths that the header asks for; wrong addresses are NULL or misaligned, which are refused.
+        // SAFETY: arrays have the lengths that the header asks for; wrong addresses are NULL or misaligned, which are
+        // refused.
         unsafe {
             match which {
                 0 => nf_mis_balance(p, n, techniques, technique, out),

@@ -1,6 +1,7 @@
 //! Any bytes as a tile, and draws from what is accepted: an error or numbers in [0, 1), never a panic.
 //!
-//! Few random bytes have the right checksum, so the input is also read with its header's checksum and lengths put right.
+//! Few random bytes have the right checksum, so the input is also read with its header's checksum and lengths put
+//! right.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

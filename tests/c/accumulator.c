@@ -4,7 +4,8 @@
 #define N 96
 static float u[N * 2], f[N * 2], h[N];
 /* All estimators but leave-one-out, which needs all samples at once. */
-static const uint32_t streaming[] = {NF_CV_ROBUST, NF_CV_LEAST_SQUARES, NF_CV_K_FOLD, NF_CV_GRADIENT_DESCENT, NF_CV_INCREMENTAL};
+static const uint32_t streaming[] = {NF_CV_ROBUST, NF_CV_LEAST_SQUARES, NF_CV_K_FOLD, NF_CV_GRADIENT_DESCENT,
+                                     NF_CV_INCREMENTAL};
 #define STREAMING (sizeof streaming / sizeof *streaming)
 
 typedef struct stream {
@@ -96,7 +97,8 @@ static void normal_use(uint32_t estimator, uint32_t precision, uint32_t solver)
 
     /* Reset: as new. */
     CHECK_STATUS(nf_cv_accumulator_reset(at_once.accumulator), NF_OK);
-    CHECK_STATUS(nf_cv_accumulator_estimate(at_once.accumulator, at_once.work.start, at_once.work.bytes, &b), NF_ERR_NO_SAMPLES);
+    CHECK_STATUS(nf_cv_accumulator_estimate(at_once.accumulator, at_once.work.start, at_once.work.bytes, &b),
+                 NF_ERR_NO_SAMPLES);
     CHECK_STATUS(nf_cv_accumulator_add(at_once.accumulator, u, f, N), NF_OK);
     a = estimate(&at_once);
     CHECK(memcmp(&a, &whole, sizeof a) == 0);
@@ -250,7 +252,8 @@ static void refused_calls_change_nothing(uint32_t estimator)
 
     CHECK_REFUSED(nf_cv_accumulator_estimate(s.accumulator, NULL, s.work.bytes, &out), NF_ERR_NULL, out);
     CHECK_REFUSED(nf_cv_accumulator_estimate(s.accumulator, s.work.start, s.work.bytes - 1, &out), NF_ERR_MEMORY, out);
-    CHECK_REFUSED(nf_cv_accumulator_estimate(s.accumulator, (char *)s.work.start + 4, s.work.bytes, &out), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_accumulator_estimate(s.accumulator, (char *)s.work.start + 4, s.work.bytes, &out),
+                  NF_ERR_ALIGNMENT, out);
     CHECK_STATUS(nf_cv_accumulator_estimate(s.accumulator, s.work.start, s.work.bytes, NULL), NF_ERR_NULL);
 
     out = estimate(&s);

@@ -151,7 +151,8 @@ static void slices_and_colors(void)
 /* The pointers, the workspace and the samples, for one function. */
 typedef nf_status (*estimate_function)(const nf_cv_config *, const float *, const float *, size_t, void *, size_t,
                                        nf_estimate *);
-static nf_status plain(const nf_cv_config *c, const float *pu, const float *pf, size_t n, void *w, size_t b, nf_estimate *out)
+static nf_status plain(const nf_cv_config *c, const float *pu, const float *pf, size_t n, void *w, size_t b,
+                       nf_estimate *out)
 {
     return nf_cv_estimate(c, pu, pf, n, w, b, out);
 }
@@ -161,7 +162,8 @@ static nf_status with_controls(const nf_cv_config *c, const float *pu, const flo
     return nf_cv_estimate_with_controls(c, pu, pf, NULL, NULL, n, w, b, out);
 }
 static float start[64];
-static nf_status descent(const nf_cv_config *c, const float *pu, const float *pf, size_t n, void *w, size_t b, nf_estimate *out)
+static nf_status descent(const nf_cv_config *c, const float *pu, const float *pf, size_t n, void *w, size_t b,
+                         nf_estimate *out)
 {
     nf_status status;
     float before[64];
@@ -174,8 +176,8 @@ static nf_status descent(const nf_cv_config *c, const float *pu, const float *pf
 
 static void errors(estimate_function call, uint32_t estimator, uint32_t precision)
 {
-    static const size_t huge[] = {SIZE_MAX, SIZE_MAX - 1, SIZE_MAX / 2, SIZE_MAX / 2 + 1, SIZE_MAX / 3, SIZE_MAX / 4, SIZE_MAX / 8,
-                                  SIZE_MAX / 16, SIZE_MAX / 256, SIZE_MAX / 65536};
+    static const size_t huge[] = {SIZE_MAX,     SIZE_MAX - 1, SIZE_MAX / 2,  SIZE_MAX / 2 + 1, SIZE_MAX / 3,
+                                  SIZE_MAX / 4, SIZE_MAX / 8, SIZE_MAX / 16, SIZE_MAX / 256,   SIZE_MAX / 65536};
     nf_cv_config config = make_config(2, 2, 1, estimator);
     memory work;
     nf_estimate out;
@@ -200,7 +202,8 @@ static void errors(estimate_function call, uint32_t estimator, uint32_t precisio
         CHECK_REFUSED(call(&config, u, f, N, (char *)work.start + i, bytes - i, &out), NF_ERR_ALIGNMENT, out);
     CHECK_REFUSED(call(&config, (const float *)misaligned(u), f, N, work.start, bytes, &out), NF_ERR_ALIGNMENT, out);
     CHECK_REFUSED(call(&config, u, (const float *)misaligned(f), N, work.start, bytes, &out), NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(call((const nf_cv_config *)misaligned(&config), u, f, N, work.start, bytes, &out), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(call((const nf_cv_config *)misaligned(&config), u, f, N, work.start, bytes, &out), NF_ERR_ALIGNMENT,
+                  out);
 
     /* Counts that no array can have, or that the workspace is much too small for: nothing is read. */
     for (i = 0; i < sizeof huge / sizeof *huge; ++i) {
@@ -265,7 +268,8 @@ static void combinations(void)
     config.solver = NF_SOLVER_DUAL;
     config.controls = 1;
     CHECK(nf_cv_workspace_size(&config, N) == 0);
-    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, f, u, N, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, f, u, N, work.start, work.bytes, &out),
+                  NF_ERR_UNSUPPORTED, out);
     config.controls = 0;
     CHECK(nf_cv_workspace_size(&config, 4096) > 0);
     CHECK(nf_cv_workspace_size(&config, 4097) == 0);
@@ -288,15 +292,20 @@ static void controls(void)
     work = memory_new(nf_cv_workspace_size(&config, N));
     CHECK_STATUS(nf_cv_estimate_with_controls(&config, u, f, h, &integral, N, work.start, work.bytes, &out), NF_OK);
     CHECK(fabsf(out.mean[0] - 1.25f) < 1e-4f);
-    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, NULL, &integral, N, work.start, work.bytes, &out), NF_ERR_NULL, out);
-    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, h, NULL, N, work.start, work.bytes, &out), NF_ERR_NULL, out);
-    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, (const float *)misaligned(h), &integral, N, work.start, work.bytes, &out),
+    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, NULL, &integral, N, work.start, work.bytes, &out),
+                  NF_ERR_NULL, out);
+    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, h, NULL, N, work.start, work.bytes, &out), NF_ERR_NULL,
+                  out);
+    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, (const float *)misaligned(h), &integral, N, work.start,
+                                               work.bytes, &out),
                   NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, h, &bad, N, work.start, work.bytes, &out), NF_ERR_NOT_FINITE, out);
+    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, h, &bad, N, work.start, work.bytes, &out),
+                  NF_ERR_NOT_FINITE, out);
     CHECK_REFUSED(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_NULL, out);
     saved = h[3];
     h[3] = infinity_f();
-    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, h, &integral, N, work.start, work.bytes, &out), NF_ERR_NOT_FINITE, out);
+    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, h, &integral, N, work.start, work.bytes, &out),
+                  NF_ERR_NOT_FINITE, out);
     h[3] = saved;
     memory_free(&work);
 
@@ -332,18 +341,22 @@ static void warm_starts(void)
         }
     }
     CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, NULL, work.start, work.bytes, &out), NF_ERR_NULL, out);
-    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, (float *)misaligned(coefficients), work.start, work.bytes, &out),
-                  NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(
+        nf_cv_gradient_descent(&config, u, f, N, (float *)misaligned(coefficients), work.start, work.bytes, &out),
+        NF_ERR_ALIGNMENT, out);
     coefficients[9] = not_a_number();
     memcpy(before, coefficients, sizeof before);
-    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &out), NF_ERR_NOT_FINITE, out);
+    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &out),
+                  NF_ERR_NOT_FINITE, out);
     CHECK(memcmp(before, coefficients, sizeof before) == 0);
     coefficients[9] = 0.0f;
     config.estimator = NF_CV_ROBUST;
-    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &out),
+                  NF_ERR_UNSUPPORTED, out);
     config.estimator = NF_CV_GRADIENT_DESCENT;
     config.controls = 1;
-    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &out),
+                  NF_ERR_UNSUPPORTED, out);
     memory_free(&work);
 }
 

@@ -42,7 +42,8 @@ static void estimates(void)
                 error += (out[p].mean[0] - 2.0 * scale) * (out[p].mean[0] - 2.0 * scale);
                 CHECK(out[p].samples == N && isfinite(out[p].gain));
                 for (c = 0; c < 4; ++c)
-                    CHECK(c < channels ? out[p].std_error[c] > 0.0f : out[p].mean[c] == 0.0f && out[p].std_error[c] == 0.0f);
+                    CHECK(c < channels ? out[p].std_error[c] > 0.0f
+                                       : out[p].mean[c] == 0.0f && out[p].std_error[c] == 0.0f);
                 if (channels > 1)
                     CHECK(fabsf(out[p].mean[1] - 2.0f * out[p].mean[0]) < 0.2f);
             }
@@ -67,7 +68,8 @@ static void single_pixel_is_the_mean(void)
 
 static void errors(void)
 {
-    static const size_t huge[] = {SIZE_MAX, SIZE_MAX / 2, SIZE_MAX / 2 + 1, SIZE_MAX / 16, SIZE_MAX / 4096, (SIZE_MAX >> 16) + 1};
+    static const size_t huge[] = {SIZE_MAX,      SIZE_MAX / 2,    SIZE_MAX / 2 + 1,
+                                  SIZE_MAX / 16, SIZE_MAX / 4096, (SIZE_MAX >> 16) + 1};
     nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
     const size_t bytes = nf_cv_block_workspace_size(&config, PIXELS, N);
     memory work = memory_new(bytes);
@@ -84,9 +86,12 @@ static void errors(void)
     CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, 0, N, work.start, bytes, out), NF_ERR_NO_SAMPLES, out);
     CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, 0, work.start, bytes, out), NF_ERR_NO_SAMPLES, out);
     CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, bytes - 1, out), NF_ERR_MEMORY, out);
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, misaligned(work.start), bytes - 1, out), NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_block_estimate(&config, (const float *)misaligned(u), f, PIXELS, N, work.start, bytes, out), NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, bytes, (nf_estimate *)misaligned(out)), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, misaligned(work.start), bytes - 1, out),
+                  NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_block_estimate(&config, (const float *)misaligned(u), f, PIXELS, N, work.start, bytes, out),
+                  NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, bytes, (nf_estimate *)misaligned(out)),
+                  NF_ERR_ALIGNMENT, out);
     for (i = 0; i < sizeof huge / sizeof *huge; ++i) {
         nf_status status;
         poison(out, sizeof out);

@@ -44,8 +44,8 @@ static inline void check_status_at(nf_status actual, nf_status expected, const c
         check_at(is_poisoned(&(out), sizeof(out)), "outputs untouched: " #call, __FILE__, __LINE__); \
     } while (0)
 
-/* The same with NF_ERR_NOT_FINITE, for a NaN that the library finds by comparing vectors. Where NAN_TAKEN_FOR_FINITE is defined,
- * because what emulates the processor gets that comparison wrong, these checks and no others are left out. */
+/* The same with NF_ERR_NOT_FINITE, for a NaN that the library finds by comparing vectors. Where NAN_TAKEN_FOR_FINITE is
+ * defined, because what emulates the processor gets that comparison wrong, these checks and no others are left out. */
 #ifdef NAN_TAKEN_FOR_FINITE
 #define CHECK_NAN_STATUS(call) ((void)++nf_left_out)
 #define CHECK_NAN_REFUSED(call, out) ((void)++nf_left_out)
@@ -76,7 +76,8 @@ static inline int is_poisoned(const void *bytes, size_t count)
     return 1;
 }
 
-/* Exactly `bytes` bytes at `start`, 16-byte aligned, with guards before and behind; full of what is no useful number. */
+/* Exactly `bytes` bytes at `start`, 16-byte aligned, with guards before and behind; full of what is no useful number.
+ */
 #define GUARD 64
 typedef struct memory {
     unsigned char *base;

@@ -1,5 +1,6 @@
-/* No invalid operation, no division by zero and no overflow: hosts that trap them, as renderers in debug builds do, go on.
- * Values of magnitudes 1e-15 to 1e15, black ones and constants; x86-64 alone, where the flags are known to be kept. */
+/* No invalid operation, no division by zero and no overflow: hosts that trap them, as renderers in debug builds do, go
+ * on. Values of magnitudes 1e-15 to 1e15, black ones and constants; x86-64 alone, where the flags are known to be kept.
+ */
 #include "check.h"
 #include <fenv.h>
 

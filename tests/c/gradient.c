@@ -60,7 +60,8 @@ static void normal_use(void)
     CHECK_STATUS(nf_gradient_reset(state), NF_OK);
     CHECK_STATUS(step(state, NF_OMIS_RIDGE, 0.0f, again), NF_OK);
     CHECK(memcmp(estimate, again, sizeof estimate) == 0);
-    /* The same batch once more changes no average. It counts as 1.7 batches: a ridge 1.7 times as large has the same effect. */
+    /* The same batch once more changes no average. It counts as 1.7 batches: a ridge 1.7 times as large has the same
+     * effect. */
     CHECK_STATUS(nf_gradient_estimate(state, NF_OMIS_RIDGE, 3.4f, 0.7f, ITEMS, pdf, technique, gradient, BATCH, again),
                  NF_OK);
     for (p = 0; p < PARAMETERS; ++p)
@@ -135,7 +136,8 @@ static void errors(void)
     CHECK_STATUS(step(state, NF_OMIS_RIDGE, 0.7f, NULL), NF_ERR_NULL);
     CHECK_STATUS(step(state, NF_OMIS_RIDGE, 0.7f, (float *)misaligned(estimate)), NF_ERR_ALIGNMENT);
     REFUSED(ESTIMATE(state, 4, 0.0f, 0.7f, ITEMS, pdf, technique, gradient, BATCH), NF_ERR_RANGE);
-    REFUSED(ESTIMATE(state, NF_OMIS_PROGRESSIVE, 0.0f, 0.7f, ITEMS, pdf, technique, gradient, BATCH), NF_ERR_UNSUPPORTED);
+    REFUSED(ESTIMATE(state, NF_OMIS_PROGRESSIVE, 0.0f, 0.7f, ITEMS, pdf, technique, gradient, BATCH),
+            NF_ERR_UNSUPPORTED);
     REFUSED(ESTIMATE(state, NF_OMIS_RIDGE, 1e9f, 0.7f, ITEMS, pdf, technique, gradient, BATCH), NF_ERR_RANGE);
     REFUSED(ESTIMATE(state, NF_OMIS_RIDGE, bad[0], 0.7f, ITEMS, pdf, technique, gradient, BATCH), NF_ERR_NOT_FINITE);
     REFUSED(ESTIMATE(state, NF_OMIS_RIDGE, 0.0f, -0.1f, ITEMS, pdf, technique, gradient, BATCH), NF_ERR_RANGE);

@@ -60,7 +60,8 @@ static void estimates(void)
                     error += (out[p].mean[0] - truth) * (out[p].mean[0] - truth);
                     CHECK(out[p].samples == N && isfinite(out[p].gain));
                     for (c = 0; c < 4; ++c)
-                        CHECK(c < channels ? out[p].std_error[c] >= 0.0f : out[p].mean[c] == 0.0f && out[p].std_error[c] == 0.0f);
+                        CHECK(c < channels ? out[p].std_error[c] >= 0.0f
+                                           : out[p].mean[c] == 0.0f && out[p].std_error[c] == 0.0f);
                     if (channels > 1)
                         CHECK(fabsf(out[p].mean[1] - 2.0f * out[p].mean[0]) < 1e-3f);
                 }
@@ -175,7 +176,8 @@ static void unordered(void)
     memory_free(&work);
 }
 
-#define REFUSED(expected) CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), expected, out)
+#define REFUSED(expected)                                                                                              \
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), expected, out)
 
 static void errors(void)
 {
@@ -202,12 +204,20 @@ static void errors(void)
     CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, 0, out), NF_ERR_MEMORY, out);
 
     /* Alignment, of everything that is pointed to. */
-    CHECK_REFUSED(nf_cv_image_estimate(&config, (const nf_cv_image *)misaligned(&image), u, f, N, work.start, bytes, out), NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_image_estimate((const nf_cv_config *)misaligned(&config), &image, u, f, N, work.start, bytes, out), NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, (const float *)misaligned(u), f, N, work.start, bytes, out), NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, (const float *)misaligned(f), N, work.start, bytes, out), NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, misaligned(work.start), bytes - 1, out), NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, (nf_estimate *)misaligned(out)), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(
+        nf_cv_image_estimate(&config, (const nf_cv_image *)misaligned(&image), u, f, N, work.start, bytes, out),
+        NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(
+        nf_cv_image_estimate((const nf_cv_config *)misaligned(&config), &image, u, f, N, work.start, bytes, out),
+        NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, (const float *)misaligned(u), f, N, work.start, bytes, out),
+                  NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, (const float *)misaligned(f), N, work.start, bytes, out),
+                  NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, misaligned(work.start), bytes - 1, out),
+                  NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, (nf_estimate *)misaligned(out)),
+                  NF_ERR_ALIGNMENT, out);
     image.surfaces = (const uint32_t *)misaligned(surfaces);
     REFUSED(NF_ERR_ALIGNMENT);
     image.surfaces = NULL;

@@ -2,10 +2,22 @@
 #include "check.h"
 
 typedef nf_status (*heuristic)(const float *, const uint32_t *, uint32_t, uint32_t, float *);
-static nf_status balance(const float *p, const uint32_t *n, uint32_t count, uint32_t j, float *w) { return nf_mis_balance(p, n, count, j, w); }
-static nf_status power(const float *p, const uint32_t *n, uint32_t count, uint32_t j, float *w) { return nf_mis_power(p, n, count, j, 0.0f, w); }
-static nf_status cutoff(const float *p, const uint32_t *n, uint32_t count, uint32_t j, float *w) { return nf_mis_cutoff(p, n, count, j, 0.1f, w); }
-static nf_status maximum(const float *p, const uint32_t *n, uint32_t count, uint32_t j, float *w) { return nf_mis_maximum(p, n, count, j, w); }
+static nf_status balance(const float *p, const uint32_t *n, uint32_t count, uint32_t j, float *w)
+{
+    return nf_mis_balance(p, n, count, j, w);
+}
+static nf_status power(const float *p, const uint32_t *n, uint32_t count, uint32_t j, float *w)
+{
+    return nf_mis_power(p, n, count, j, 0.0f, w);
+}
+static nf_status cutoff(const float *p, const uint32_t *n, uint32_t count, uint32_t j, float *w)
+{
+    return nf_mis_cutoff(p, n, count, j, 0.1f, w);
+}
+static nf_status maximum(const float *p, const uint32_t *n, uint32_t count, uint32_t j, float *w)
+{
+    return nf_mis_maximum(p, n, count, j, w);
+}
 static const heuristic heuristics[] = {balance, power, cutoff, maximum};
 
 static float pdf[16], alpha[16];
@@ -66,8 +78,10 @@ static void sums(void)
             for (j = 0; j < techniques; ++j) {
                 float w, contribution;
                 CHECK_STATUS(nf_mis_optimal(pdf, counts, techniques, j, alpha, value, &w), NF_OK);
-                CHECK_STATUS(nf_mis_optimal_contribution(pdf, counts, techniques, j, alpha, value, &contribution), NF_OK);
-                CHECK(fabs(contribution - w * value / (double)((float)counts[j] * pdf[j])) < 1e-5 * (1.0 + fabs(contribution)));
+                CHECK_STATUS(nf_mis_optimal_contribution(pdf, counts, techniques, j, alpha, value, &contribution),
+                             NF_OK);
+                CHECK(fabs(contribution - w * value / (double)((float)counts[j] * pdf[j])) <
+                      1e-5 * (1.0 + fabs(contribution)));
                 total += w;
             }
             CHECK(fabs(total - 1.0) < 1e-4);

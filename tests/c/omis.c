@@ -1,8 +1,8 @@
 /* Optimal multiple importance sampling from the samples: nf_omis_*(). */
 #include "check.h"
 
-/* Two techniques on [0, 1]: p_0 = 1 and p_1 = 2x, and two integrands: 3 p_0 + 2 p_1, whose integral is 5 and which optimal
- * weights integrate without error, and x^2, whose integral is 1/3. */
+/* Two techniques on [0, 1]: p_0 = 1 and p_1 = 2x, and two integrands: 3 p_0 + 2 p_1, whose integral is 5 and which
+ * optimal weights integrate without error, and x^2, whose integral is 1/3. */
 static const uint32_t counts[2] = {2, 1};
 
 static void add_round(nf_omis *omis, nf_rng *rng)
@@ -87,7 +87,8 @@ static void sizes_and_init(void)
     memory m = memory_new(bytes);
     nf_omis *out;
     uint32_t j;
-    CHECK(nf_omis_size(0, 1) == 0 && nf_omis_size(17, 1) == 0 && nf_omis_size(1, 0) == 0 && nf_omis_size(UINT32_MAX, 1) == 0);
+    CHECK(nf_omis_size(0, 1) == 0 && nf_omis_size(17, 1) == 0 && nf_omis_size(1, 0) == 0 &&
+          nf_omis_size(UINT32_MAX, 1) == 0);
     for (j = 1; j <= 16; ++j)
         CHECK(nf_omis_size(j, 1) > 0 && nf_omis_size(j, 1) % 8 == 0 && nf_omis_size(j, 2) > nf_omis_size(j, 1));
     if (sizeof(size_t) == 4)
@@ -102,7 +103,8 @@ static void sizes_and_init(void)
     CHECK_REFUSED(nf_omis_init(m.start, bytes, 17, 2, counts, &out), NF_ERR_RANGE, out);
     CHECK_REFUSED(nf_omis_init(m.start, bytes, 2, 0, counts, &out), NF_ERR_RANGE, out);
     CHECK_REFUSED(nf_omis_init(m.start, bytes, 2, 2, zero, &out), NF_ERR_RANGE, out);
-    CHECK_REFUSED(nf_omis_init(m.start, bytes, 2, 2, (const uint32_t *)misaligned((void *)(size_t)counts), &out), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_omis_init(m.start, bytes, 2, 2, (const uint32_t *)misaligned((void *)(size_t)counts), &out),
+                  NF_ERR_ALIGNMENT, out);
     CHECK(is_poisoned(m.start, bytes));
     memory_free(&m);
 }

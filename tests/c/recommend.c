@@ -65,7 +65,8 @@ static void errors(void)
     CHECK_REFUSED(nf_recommend(2, 4, UINT32_MAX, 1, &out), NF_ERR_RANGE, out);
     CHECK_REFUSED(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 2, &out), NF_ERR_RANGE, out);
     CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, NULL), NF_ERR_NULL);
-    CHECK_REFUSED(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, (nf_recommendation *)misaligned(&out)), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, (nf_recommendation *)misaligned(&out)),
+                  NF_ERR_ALIGNMENT, out);
 }
 
 int main(void)

@@ -98,7 +98,8 @@ static void errors(void)
     CHECK_REFUSED(nf_shards_allocate(NULL, SHARDS, 0.2f, &rng, 10, counts), NF_ERR_NULL, counts);
     CHECK_REFUSED(nf_shards_allocate(s.shard, SHARDS, 0.2f, NULL, 10, counts), NF_ERR_NULL, counts);
     CHECK_STATUS(nf_shards_allocate(s.shard, SHARDS, 0.2f, &rng, 10, NULL), NF_ERR_NULL);
-    CHECK_REFUSED(nf_shards_allocate((const nf_shard *)misaligned(s.shard), SHARDS, 0.2f, &rng, 10, counts), NF_ERR_ALIGNMENT, counts);
+    CHECK_REFUSED(nf_shards_allocate((const nf_shard *)misaligned(s.shard), SHARDS, 0.2f, &rng, 10, counts),
+                  NF_ERR_ALIGNMENT, counts);
     CHECK_REFUSED(nf_shards_allocate(s.shard, SHARDS, -0.1f, &rng, 10, counts), NF_ERR_RANGE, counts);
     CHECK_REFUSED(nf_shards_allocate(s.shard, SHARDS, 1.1f, &rng, 10, counts), NF_ERR_RANGE, counts);
     CHECK_REFUSED(nf_shards_allocate(s.shard, SHARDS, not_a_number(), &rng, 10, counts), NF_ERR_NOT_FINITE, counts);

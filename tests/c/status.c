@@ -4,9 +4,10 @@
 
 static void messages(void)
 {
-    static const nf_status known[] = {NF_OK, NF_ERR_NULL, NF_ERR_RANGE, NF_ERR_NOT_FINITE, NF_ERR_MEMORY, NF_ERR_ALIGNMENT,
-                                      NF_ERR_NO_SAMPLES, NF_ERR_UNSUPPORTED, NF_ERR_STATE, NF_ERR_MISMATCH,
-                                      NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT};
+    static const nf_status known[] = {NF_OK,         NF_ERR_NULL,      NF_ERR_RANGE,      NF_ERR_NOT_FINITE,
+                                      NF_ERR_MEMORY, NF_ERR_ALIGNMENT, NF_ERR_NO_SAMPLES, NF_ERR_UNSUPPORTED,
+                                      NF_ERR_STATE,  NF_ERR_MISMATCH,  NF_ERR_FOREIGN,    NF_ERR_VERSION,
+                                      NF_ERR_LENGTH, NF_ERR_CORRUPT};
     static const nf_status extremes[] = {INT32_MIN, INT32_MIN + 1, INT32_MAX, INT32_MAX - 1, 65536, -65536};
     const size_t count = sizeof known / sizeof *known;
     const char *unknown = nf_status_message(1);

@@ -179,7 +179,8 @@ static void errors(void)
     uint32_t index[4] = {0, 1, 2, 3}, out[4], k;
     float weight[4], value[4] = {1.0f, 2.0f, 3.0f, 4.0f};
     const float nan = not_a_number(), infinite = infinity_f();
-    nf_status (*const draw[2])(const nf_table *, nf_rng *, uint32_t, uint32_t *, float *) = {nf_table_draw, nf_table_draw_stratified};
+    nf_status (*const draw[2])(const nf_table *, nf_rng *, uint32_t, uint32_t *, float *) = {nf_table_draw,
+                                                                                             nf_table_draw_stratified};
     nf_rng_seed(&rng, 1);
     before_rng = rng;
     before_struct = table;
@@ -382,9 +383,13 @@ static void saving(void)
     CHECK_REFUSED(nf_table_load(&loaded, m2.start, m2.bytes, NULL, len), NF_ERR_NULL, loaded);
     CHECK_REFUSED(nf_table_load(&loaded, m2.start, m2.bytes - 1, saved.start, len), NF_ERR_MEMORY, loaded);
     CHECK_REFUSED(nf_table_load(&loaded, misaligned(m2.start), m2.bytes, saved.start, len), NF_ERR_ALIGNMENT, loaded);
-    CHECK_STATUS(nf_table_load((nf_table *)misaligned(&loaded), m2.start, m2.bytes, saved.start, len), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_table_load((nf_table *)misaligned(&loaded), m2.start, m2.bytes, saved.start, len),
+                 NF_ERR_ALIGNMENT);
     for (i = 0; i < len; ++i) {
-        const nf_status expected = i < 8 ? NF_ERR_FOREIGN : i < 12 ? NF_ERR_VERSION : i < 16 ? NF_ERR_LENGTH : NF_ERR_CORRUPT;
+        const nf_status expected = i < 8    ? NF_ERR_FOREIGN
+                                   : i < 12 ? NF_ERR_VERSION
+                                   : i < 16 ? NF_ERR_LENGTH
+                                            : NF_ERR_CORRUPT;
         CHECK_REFUSED(nf_table_load(&loaded, m2.start, m2.bytes, saved.start, i), NF_ERR_LENGTH, loaded);
         memcpy(changed.start, saved.start, len);
         ((unsigned char *)changed.start)[i] ^= 0xff;
@@ -396,7 +401,8 @@ static void saving(void)
 
     memcpy(misaligned(changed.start), saved.start, len);
     CHECK_STATUS(nf_table_load(&loaded, m2.start, m2.bytes, misaligned(changed.start), len), NF_OK);
-    CHECK(loaded.items == ITEMS && nf_table_total(&loaded) == nf_table_total(&table) && loaded.uniform_fraction == 0.3f);
+    CHECK(loaded.items == ITEMS && nf_table_total(&loaded) == nf_table_total(&table) &&
+          loaded.uniform_fraction == 0.3f);
     nf_rng_seed(&rng, 6);
     copy = rng;
     CHECK_STATUS(nf_table_draw(&table, &rng, 32, index, weight), NF_OK);

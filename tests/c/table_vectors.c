@@ -114,8 +114,9 @@ static void check_line(const char *line, int number)
     unsigned long long seed, hash[6];
     float fraction;
     result r;
-    if (sscanf(line, "%u %llu %u %x : %u %x %u %x %llx %llx %llx %llx %llx %llx", &items, &seed, &draws, &fraction_bits, &item[0],
-               &weight[0], &item[1], &weight[1], &hash[0], &hash[1], &hash[2], &hash[3], &hash[4], &hash[5]) != 14) {
+    if (sscanf(line, "%u %llu %u %x : %u %x %u %x %llx %llx %llx %llx %llx %llx", &items, &seed, &draws, &fraction_bits,
+               &item[0], &weight[0], &item[1], &weight[1], &hash[0], &hash[1], &hash[2], &hash[3], &hash[4],
+               &hash[5]) != 14) {
         fprintf(stderr, "tests/vectors/table.txt:%d: cannot be read\n", number);
         CHECK(0);
         return;
@@ -124,12 +125,14 @@ static void check_line(const char *line, int number)
     r = draw(items, seed, draws, fraction);
     for (k = 0; k < 2; ++k) {
         if (r.item[k] != item[k] || r.weight[k] != weight[k])
-            fprintf(stderr, "tests/vectors/table.txt:%d: draw %u is %u %08x\n", number, k, (unsigned)r.item[k], (unsigned)r.weight[k]);
+            fprintf(stderr, "tests/vectors/table.txt:%d: draw %u is %u %08x\n", number, k, (unsigned)r.item[k],
+                    (unsigned)r.weight[k]);
         CHECK(r.item[k] == item[k] && r.weight[k] == weight[k]);
     }
     for (k = 0; k < 6; ++k) {
         if (r.hash[k] != hash[k])
-            fprintf(stderr, "tests/vectors/table.txt:%d: figure %u is %016llx\n", number, k, (unsigned long long)r.hash[k]);
+            fprintf(stderr, "tests/vectors/table.txt:%d: figure %u is %016llx\n", number, k,
+                    (unsigned long long)r.hash[k]);
         CHECK(r.hash[k] == hash[k]);
     }
 }

@@ -65,7 +65,9 @@ static void built_in(void)
     {
         unsigned char room[sizeof(nf_tile) + 16];
         poison(room, sizeof room);
-        CHECK_STATUS(nf_tile_builtin(NF_TILE_64_1SPP_2D, (nf_tile *)misaligned(((uintptr_t)room & 1) ? room + 1 : room)), NF_ERR_ALIGNMENT);
+        CHECK_STATUS(
+            nf_tile_builtin(NF_TILE_64_1SPP_2D, (nf_tile *)misaligned(((uintptr_t)room & 1) ? room + 1 : room)),
+            NF_ERR_ALIGNMENT);
         CHECK(is_poisoned(room, sizeof room));
     }
 }
@@ -77,7 +79,8 @@ static void from_bytes(void)
     nf_tile tile, again;
     size_t i;
     CHECK_STATUS(nf_tile_from_bytes(bytes, file.bytes, &tile), NF_OK);
-    CHECK(tile.size == 8 && tile.spp == 4 && tile.dims == 3 && tile.frames == 1 && tile.bits == 16 && tile.progressive == 0);
+    CHECK(tile.size == 8 && tile.spp == 4 && tile.dims == 3 && tile.frames == 1 && tile.bits == 16 &&
+          tile.progressive == 0);
     CHECK(tile.values == bytes + 128 && tile.bytes == file.bytes - 128);
 
     /* Any alignment. */

@@ -10,8 +10,8 @@ static void check_line(const char *line, int number)
     nf_tile tile;
     nf_sampler sampler;
     float u[4];
-    if (sscanf(line, "%63s %u %u %u %u %u %u %u %u %u : %x %x %x %x", name, &in[0], &in[1], &in[2], &in[3], &in[4], &in[5], &in[6],
-               &in[7], &in[8], &expected[0], &expected[1], &expected[2], &expected[3]) != 14) {
+    if (sscanf(line, "%63s %u %u %u %u %u %u %u %u %u : %x %x %x %x", name, &in[0], &in[1], &in[2], &in[3], &in[4],
+               &in[5], &in[6], &in[7], &in[8], &expected[0], &expected[1], &expected[2], &expected[3]) != 14) {
         fprintf(stderr, "tests/vectors/tile.txt:%d: cannot be read\n", number);
         CHECK(0);
         return;

@@ -23,8 +23,8 @@ static inline void set_as_hosts_do(void)
 #endif
 }
 
-/* Calls check for every line but comments and empty ones, with its number; returns how many. Ends the program if there is no
-   file. */
+/* Calls check for every line but comments and empty ones, with its number; returns how many. Ends the program if there
+   is no file. */
 static inline int each_vector(const char *path, void (*check)(const char *line, int number))
 {
     char line[512];

@@ -20,9 +20,10 @@ static void check_line(const char *line, int number)
     memory work;
     size_t n, i, d, c;
     int k;
-    if (sscanf(line, "%u %u %u %u %u %u %u %u %u %u %u %u : %u %x %x %x %x %x %x %x %x %x", &in[0], &in[1], &in[2], &in[3], &in[4],
-               &in[5], &in[6], &in[7], &in[8], &in[9], &in[10], &in[11], &samples, &expected[0], &expected[1], &expected[2],
-               &expected[3], &expected[4], &expected[5], &expected[6], &expected[7], &expected[8]) != 22) {
+    if (sscanf(line, "%u %u %u %u %u %u %u %u %u %u %u %u : %u %x %x %x %x %x %x %x %x %x", &in[0], &in[1], &in[2],
+               &in[3], &in[4], &in[5], &in[6], &in[7], &in[8], &in[9], &in[10], &in[11], &samples, &expected[0],
+               &expected[1], &expected[2], &expected[3], &expected[4], &expected[5], &expected[6], &expected[7],
+               &expected[8]) != 22) {
         fprintf(stderr, "tests/vectors/cv.txt:%d: cannot be read\n", number);
         CHECK(0);
         return;

@@ -1,5 +1,5 @@
-// noisefloor.hpp: the same results as the C functions, lengths checked, errors thrown or returned. Compiled with and without
-// exceptions; nothing in the wrapper may allocate, which the replaced operator new checks.
+// noisefloor.hpp: the same results as the C functions, lengths checked, errors thrown or returned. Compiled with and
+// without exceptions; nothing in the wrapper may allocate, which the replaced operator new checks.
 #include "check.h"
 #include <array>
 #include <cmath>
@@ -95,15 +95,18 @@ static void configurations()
                                   .with_learning_rate(0.25f)
                                   .with_momentum(0.75f);
     CHECK(config.dims == 3 && config.order == 1 && config.channels == 2 && config.estimator == NF_CV_K_FOLD);
-    CHECK(config.basis == NF_BASIS_SINE && config.solver == NF_SOLVER_NORMAL_EQUATIONS && config.optimizer == NF_OPTIMIZER_ADAM);
-    CHECK(config.stratified == 1 && config.slices == 4 && config.controls == 1 && config.stride == 7 && config.precision == NF_PRECISION_F32);
+    CHECK(config.basis == NF_BASIS_SINE && config.solver == NF_SOLVER_NORMAL_EQUATIONS &&
+          config.optimizer == NF_OPTIMIZER_ADAM);
+    CHECK(config.stratified == 1 && config.slices == 4 && config.controls == 1 && config.stride == 7 &&
+          config.precision == NF_PRECISION_F32);
     CHECK(config.nonfinite == NF_NONFINITE_SKIP && config.folds == 5 && config.iterations == 9);
     CHECK(config.ridge == 0.5f && config.learning_rate == 0.25f && config.momentum == 0.75f);
     CHECK(config.with_automatic_ridge().ridge == NF_RIDGE_AUTO);
     CHECK(config.with_luminance_ratio().color == NF_COLOR_LUMINANCE_RATIO);
     CHECK(config.terms() == nf_cv_terms(&config) && config.valid());
     CHECK(!nf::config(0, 1).valid() && nf::config(17, 1).workspace_size(4) == 0);
-    CHECK(config.workspace_size(64) == nf_cv_workspace_size(&config, 64) && config.accumulator_size() == nf_cv_accumulator_size(&config));
+    CHECK(config.workspace_size(64) == nf_cv_workspace_size(&config, 64) &&
+          config.accumulator_size() == nf_cv_accumulator_size(&config));
 }
 
 static void estimates()
@@ -165,7 +168,8 @@ static void images()
     std::array<nf_estimate, 16> pixels{}, expected{};
     const nf::image image = nf::image(4, 4).with_window(4, 2);
     CHECK(image.width == 4 && image.height == 4 && image.frames == 1 && image.window == 4 && image.stride == 2);
-    CHECK(image.surfaces == nullptr && image.factors == nullptr && image.pixels() == 16 && nf::image(2, 4, 2).pixels() == 16);
+    CHECK(image.surfaces == nullptr && image.factors == nullptr && image.pixels() == 16 &&
+          nf::image(2, 4, 2).pixels() == 16);
     CHECK(nf::image(UINT32_MAX, UINT32_MAX, UINT32_MAX).pixels() == 0 && nf::image(0, 4).pixels() == 0);
     CHECK(image.with_window(6).window == 6 && image.with_window(6).stride == 0);
     const nf_cv_image plain = {4, 4, 1, 4, 2, 0, nullptr, nullptr};
@@ -188,11 +192,13 @@ static void images()
 
     const span<const std::uint32_t> few(surfaces.data(), 15);
     CHECK(CODE(nf::estimate_image(config, image.with_surfaces(few), {u, f}, workspace, pixels)) == status::range);
-    CHECK(CODE(nf::estimate_image(config, image.with_factors({factors.data(), 15}), {u, f}, workspace, pixels)) == status::range);
+    CHECK(CODE(nf::estimate_image(config, image.with_factors({factors.data(), 15}), {u, f}, workspace, pixels)) ==
+          status::range);
     CHECK(CODE(nf::estimate_image(config, image, {u, f}, workspace, {pixels.data(), 8})) == status::range);
     CHECK(CODE(nf::estimate_image(config, image, {u, f}, workspace, {})) == status::range);
     CHECK(CODE(nf::estimate_image(config, nf::image(4, 3), {u, f}, workspace, {pixels.data(), 12})) == status::range);
-    CHECK(CODE(nf::estimate_image(config, image, {span<const float>(u, 2 * n - 1), f}, workspace, pixels)) == status::range);
+    CHECK(CODE(nf::estimate_image(config, image, {span<const float>(u, 2 * n - 1), f}, workspace, pixels)) ==
+          status::range);
     CHECK(CODE(nf::estimate_image(config, image, {}, workspace, pixels)) == status::no_samples);
     CHECK(CODE(nf::estimate_image(config, image, {u, f}, {}, pixels)) == status::null);
     CHECK(CODE(nf::estimate_image(config, image, {u, f}, {workspace.data(), 8}, pixels)) == status::memory);
@@ -212,7 +218,8 @@ static void accumulators()
     std::array<std::uint64_t, 512> first{}, second{}, workspace{};
     CHECK(config.accumulator_size() <= sizeof first && config.accumulator_workspace_size() <= sizeof workspace);
     const std::size_t before = allocations;
-    nf::accumulator a = value_of(nf::accumulator::create(config, first)), b = value_of(nf::accumulator::create(config, second));
+    nf::accumulator a = value_of(nf::accumulator::create(config, first)),
+                    b = value_of(nf::accumulator::create(config, second));
     SUCCEED(a.add({nf::span<const float>(u, n), nf::span<const float>(f, n / 2)}));
     SUCCEED(b.add({nf::span<const float>(u + n, n), nf::span<const float>(f + n / 2, n / 2)}));
     SUCCEED(a.merge(b));
@@ -238,7 +245,8 @@ static void mis()
     CHECK(value_of(nf::mis::power(at, 0)) == 0.1f);
     CHECK(value_of(nf::mis::cutoff(at, 1, 0.5f)) == 1.0f);
     CHECK(value_of(nf::mis::maximum(at, 1)) == 1.0f);
-    const float weight = value_of(nf::mis::optimal(at, 1, alpha, 2.0f)), term = value_of(nf::mis::optimal_contribution(at, 1, alpha, 2.0f));
+    const float weight = value_of(nf::mis::optimal(at, 1, alpha, 2.0f)),
+                term = value_of(nf::mis::optimal_contribution(at, 1, alpha, 2.0f));
     CHECK(std::fabs(weight * 2.0f / 3.0f - term) < 1e-6f);
     CHECK(CODE(nf::mis::balance(at, 2)) == nf::status::range);
     CHECK(CODE(nf::mis::balance({pdf, {counts, 1}}, 0)) == nf::status::range);
@@ -284,7 +292,8 @@ static void tiles()
     CHECK(drawn[3] == expected[3] && drawn[4] == 0.0f);
     nf_sampler_draw(nf_sampler_scramble(nf_sampler_domain(pixel.state(), 7), 9), 3, expected);
     CHECK(child.draw<3>()[2] == expected[2]);
-    static_assert(!std::is_constructible_v<nf::sampler, nf::tile, unsigned, unsigned, unsigned, unsigned>, "a temporary tile ends first");
+    static_assert(!std::is_constructible_v<nf::sampler, nf::tile, unsigned, unsigned, unsigned, unsigned>,
+                  "a temporary tile ends first");
 
     const nf_sampler both[2] = {pixel.state(), child.state()};
     const std::uint32_t dims[2] = {2, 3};

@@ -1,5 +1,6 @@
-// Embree's intersector against the path tracer's own, hit by hit: on random rays through triangles and spheres that stand still and
-// that move, then in every scene. Prints a line of JSON for each scene: its size, and how many million rays either traces in a second of one core's time.
+// Embree's intersector against the path tracer's own, hit by hit: on random rays through triangles and spheres that
+// stand still and that move, then in every scene. Prints a line of JSON for each scene: its size, and how many million
+// rays either traces in a second of one core's time.
 #include "compare.hpp"
 #include "embree.hpp"
 #include "load.hpp"
@@ -26,12 +27,14 @@ demo::Geometry jumble(Numbers &numbers)
         for (Vector &corner : t.corner)
             corner = center + numbers.vector(-.15f, .15f);
         for (Vector &normal : t.normal)
-            normal = demo::normalize(cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]) + numbers.vector(-1e-3f, 1e-3f));
+            normal = demo::normalize(cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]) +
+                                     numbers.vector(-1e-3f, 1e-3f));
         geometry.triangles.push_back(t);
     }
     for (uint32_t i = 0; i < 200; ++i) {
         Vector center = numbers.vector(-2, 2);
-        geometry.spheres.push_back({center, numbers(.02f, .3f), i % 2 ? numbers.vector(-.3f, .3f) : Vector{}, 5000 + i, -1});
+        geometry.spheres.push_back(
+            {center, numbers(.02f, .3f), i % 2 ? numbers.vector(-.3f, .3f) : Vector{}, 5000 + i, -1});
     }
     return geometry;
 }
@@ -44,7 +47,8 @@ void compare_jumble()
     const EmbreeIntersector embree(geometry);
     Comparison comparison;
     for (int i = 0; i < 400000; ++i) {
-        demo::Ray ray{numbers.vector(-3, 3), demo::normalize(numbers.vector(-1, 1) + Vector{1e-6f, 0, 0}), numbers(0, 1)};
+        demo::Ray ray{numbers.vector(-3, 3), demo::normalize(numbers.vector(-1, 1) + Vector{1e-6f, 0, 0}),
+                      numbers(0, 1)};
         comparison.add(own, embree, ray, numbers(0, 3));
     }
     comparison.check("random rays");
@@ -86,10 +90,11 @@ void compare_scene(const demo::SceneEntry &entry)
     for (const demo::Ray &ray : rays)
         comparison.add(own, embree, ray, numbers(0, 2));
     comparison.check(entry.name);
-    std::printf("{\"scene\":\"%s\",\"dims\":%u,\"triangles\":%zu,\"spheres\":%zu,\"lights\":%zu,\"embree_mrays\":%.2f,\"own_"
-                "mrays\":%.2f}\n",
-                entry.name.c_str(), demo::dims(scene.layout.domains()), scene.geometry.triangles.size(),
-                scene.geometry.spheres.size(), scene.lights.size(), speed(embree, rays), speed(own, rays));
+    std::printf(
+        "{\"scene\":\"%s\",\"dims\":%u,\"triangles\":%zu,\"spheres\":%zu,\"lights\":%zu,\"embree_mrays\":%.2f,\"own_"
+        "mrays\":%.2f}\n",
+        entry.name.c_str(), demo::dims(scene.layout.domains()), scene.geometry.triangles.size(),
+        scene.geometry.spheres.size(), scene.lights.size(), speed(embree, rays), speed(own, rays));
     if (entry.name == "microcity" && scene.geometry.triangles.size() < 100000)
         throw std::runtime_error("microcity has fewer than 100,000 triangles");
 }

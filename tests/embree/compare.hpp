@@ -46,16 +46,17 @@ struct Comparison {
         other_shadow += hidden != other.occluded(ray, distance);
     }
 
-    // Where a ray grazes an edge or a silhouette, rounding decides which surface it meets: one ray in 5000 may differ in each respect.
+    // Where a ray grazes an edge or a silhouette, rounding decides which surface it meets: one ray in 5000 may differ
+    // in each respect.
     void check(const std::string &what) const
     {
         const size_t graze = rays / 5000;
         if (other_surface > graze || other_distance > graze || other_normal > graze || other_shadow > graze)
-            throw std::runtime_error(what + ": Embree and the path tracer's own tree differ in more than " + std::to_string(graze) +
-                                     " of " + std::to_string(rays) + " rays: " + std::to_string(other_surface) +
-                                     " meet another surface, " + std::to_string(other_distance) + " at another distance, " +
-                                     std::to_string(other_normal) + " with another normal; " + std::to_string(other_shadow) +
-                                     " are shadowed differently");
+            throw std::runtime_error(
+                what + ": Embree and the path tracer's own tree differ in more than " + std::to_string(graze) + " of " +
+                std::to_string(rays) + " rays: " + std::to_string(other_surface) + " meet another surface, " +
+                std::to_string(other_distance) + " at another distance, " + std::to_string(other_normal) +
+                " with another normal; " + std::to_string(other_shadow) + " are shadowed differently");
     }
 };
 

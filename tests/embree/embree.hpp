@@ -1,5 +1,5 @@
-// Embree as the path tracer's intersector. Written for Embree 3 (Debian's libembree-dev); it also compiles with Embree 4, whose
-// header it prefers if both are there.
+// Embree as the path tracer's intersector. Written for Embree 3 (Debian's libembree-dev); it also compiles with Embree
+// 4, whose header it prefers if both are there.
 #pragma once
 
 #if __has_include(<embree4/rtcore.h>)
@@ -147,7 +147,8 @@ private:
         RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
         rtcSetGeometryTimeStepCount(geometry, steps);
         for (unsigned step = 0; step < steps; ++step) {
-            auto *corner = buffer<demo::Vector>(geometry, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3, 3 * members.size());
+            auto *corner =
+                buffer<demo::Vector>(geometry, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3, 3 * members.size());
             for (uint32_t member : members) {
                 const demo::Triangle &triangle = geometry_.triangles[member];
                 for (demo::Vector point : triangle.corner)
@@ -184,7 +185,8 @@ private:
     const demo::Geometry &geometry_;
     Owned<RTCDevice> device_;
     Owned<RTCScene> scene_;
-    std::vector<std::vector<uint32_t>> triangles_; // of each of Embree's geometries but the spheres': indices into geometry_
+    std::vector<std::vector<uint32_t>>
+        triangles_; // of each of Embree's geometries but the spheres': indices into geometry_
 };
 
 } // namespace harness

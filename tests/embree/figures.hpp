@@ -50,7 +50,10 @@ inline Mesh leaper()
                 {{.06f, .03f, .16f}, .035f},
                 {{.16f, .025f, .17f}, .02f}});
     body.mirrored(4);
-    body.limbs({{{.08f, .62f, .09f}, .045f}, {{.14f, .5f, .15f}, .03f}, {{.26f, .5f, .13f}, .022f}, {{.3f, .46f, .12f}, .014f}})
+    body.limbs({{{.08f, .62f, .09f}, .045f},
+                {{.14f, .5f, .15f}, .03f},
+                {{.26f, .5f, .13f}, .022f},
+                {{.3f, .46f, .12f}, .014f}})
         .mirrored(3);
     body.limbs({{{.17f, .94f, .05f}, .03f}, {{.1f, 1.03f, .1f}, .024f}, {{.06f, 1.1f, .12f}, .006f}}).mirrored(2);
     Body fins(.01f);
@@ -69,7 +72,8 @@ inline Mesh dragon()
     constexpr int joints = 40;
     auto spine = [](float t) { // from the tail's tip to the neck
         float angle = 2 * demo::pi * (1.35f * t + .32f), radius = .52f - .2f * t * t;
-        float lift = .1f + .06f * std::sin(9 * t) * (1 - t) + .72f * std::max(0.0f, t - .55f) * std::max(0.0f, t - .55f) / .2f;
+        float lift =
+            .1f + .06f * std::sin(9 * t) * (1 - t) + .72f * std::max(0.0f, t - .55f) * std::max(0.0f, t - .55f) / .2f;
         return Vector{radius * std::cos(angle), lift, radius * std::sin(angle)};
     };
     auto girth = [](float t) { return .012f + .105f * std::sin(demo::pi * std::min(1.0f, .08f + .8f * t)); };
@@ -89,9 +93,11 @@ inline Mesh dragon()
     body.limb(at(.35f, .09f, 0), .035f, at(.38f, .12f, 0), .02f);
     for (float s : {-1.0f, 1.0f}) {
         body.limb(at(.13f, .17f, s * .06f), .035f, at(.19f, .17f, s * .065f), .02f);
-        body.limbs({{at(.05f, .17f, s * .05f), .026f}, {at(-.08f, .28f, s * .1f), .02f}, {at(-.2f, .31f, s * .09f), .006f}});
+        body.limbs(
+            {{at(.05f, .17f, s * .05f), .026f}, {at(-.08f, .28f, s * .1f), .02f}, {at(-.2f, .31f, s * .09f), .006f}});
         body.limbs({{at(-.06f, .23f, s * .09f), .018f}, {at(-.09f, .34f, s * .13f), .006f}});
-        body.limbs({{at(.34f, .05f, s * .04f), .012f}, {at(.42f, .0f, s * .12f), .01f}, {at(.36f, -.1f, s * .18f), .006f}});
+        body.limbs(
+            {{at(.34f, .05f, s * .04f), .012f}, {at(.42f, .0f, s * .12f), .01f}, {at(.36f, -.1f, s * .18f), .006f}});
         body.limb(at(.02f, .08f, s * .08f), .05f, at(-.13f, .05f, s * .17f), .008f);
         body.limb(at(.02f, .02f, s * .07f), .05f, at(-.1f, -.06f, s * .15f), .008f);
     }
@@ -99,7 +105,8 @@ inline Mesh dragon()
         for (float s : {-1.0f, 1.0f}) {
             Vector hip = spine(t), forward = demo::normalize(spine(t + .02f) - spine(t - .02f)),
                    out = s * demo::normalize(cross(forward, up));
-            Vector knee = hip + .14f * out + .04f * up + .02f * forward, foot{knee.x + .08f * out.x, .03f, knee.z + .08f * out.z};
+            Vector knee = hip + .14f * out + .04f * up + .02f * forward,
+                   foot{knee.x + .08f * out.x, .03f, knee.z + .08f * out.z};
             body.limbs({{hip, .06f}, {knee, .045f}, {foot, .03f}});
             for (float toe : {-.05f, 0.0f, .05f})
                 body.limb(foot, .02f, foot + .07f * out + toe * forward - .015f * up, .006f);

@@ -15,7 +15,8 @@
 
 namespace harness {
 
-// All meshes of the file as one. A file without normals gets smooth ones, which break where faces meet at more than 60 degrees.
+// All meshes of the file as one. A file without normals gets smooth ones, which break where faces meet at more than 60
+// degrees.
 inline Mesh load(const std::string &path)
 {
     Assimp::Importer importer;
@@ -25,8 +26,9 @@ inline Mesh load(const std::string &path)
         importer.ReadFile(path, aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals |
                                     aiProcess_PreTransformVertices | aiProcess_FindDegenerates | aiProcess_SortByPType);
     if (!file)
-        throw std::runtime_error("cannot load the mesh " + path + ": " + importer.GetErrorString() +
-                                 " $NOISEFLOOR_MESHES may name the folder, which is tests/embree/meshes of the sources.");
+        throw std::runtime_error(
+            "cannot load the mesh " + path + ": " + importer.GetErrorString() +
+            " $NOISEFLOOR_MESHES may name the folder, which is tests/embree/meshes of the sources.");
     Mesh mesh;
     for (unsigned m = 0; m < file->mNumMeshes; ++m) {
         const aiMesh &part = *file->mMeshes[m];
@@ -48,7 +50,8 @@ inline Mesh load(const std::string &path)
     return mesh;
 }
 
-// A mesh that comes with the harness, standing, one unit high. $NOISEFLOOR_MESHES names another folder than the source's.
+// A mesh that comes with the harness, standing, one unit high. $NOISEFLOOR_MESHES names another folder than the
+// source's.
 inline Mesh shipped(const std::string &name)
 {
     const char *folder = std::getenv("NOISEFLOOR_MESHES");

@@ -101,8 +101,8 @@ struct Surface {
     }
 };
 
-// A corner's normal is the mean over the triangles around its point, by area, that turn less than `crease` degrees from its own.
-// Triangles without area are left out.
+// A corner's normal is the mean over the triangles around its point, by area, that turn less than `crease` degrees from
+// its own. Triangles without area are left out.
 inline Mesh smooth(const Surface &surface, float crease = 50)
 {
     const size_t count = surface.corners.size() / 3;

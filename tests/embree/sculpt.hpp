@@ -70,7 +70,8 @@ public:
         return sum;
     }
 
-    // What matters within a ball. A distance changes no faster than its point, and beyond the blend's width it changes nothing.
+    // What matters within a ball. A distance changes no faster than its point, and beyond the blend's width it changes
+    // nothing.
     Body near(Vector center, float radius) const
     {
         float least = std::numeric_limits<float>::max();
@@ -105,7 +106,8 @@ private:
     std::vector<Field> parts_;
 };
 
-// Naive surface nets (Gibson 1998): a point in every cell that the surface crosses, moved onto it. `cell` is the cells' size.
+// Naive surface nets (Gibson 1998): a point in every cell that the surface crosses, moved onto it. `cell` is the cells'
+// size.
 inline Mesh sculpt(const LocalField &local, Vector low, Vector high, float cell)
 {
     constexpr size_t block = 8;

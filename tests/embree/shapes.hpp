@@ -34,14 +34,15 @@ inline std::vector<Profile> rounded(const std::vector<Profile> &points, int step
 {
     std::vector<Profile> result;
     for (size_t i = 0; i + 1 < points.size(); ++i) {
-        Profile a = points[i ? i - 1 : 0], b = points[i], c = points[i + 1], d = points[std::min(i + 2, points.size() - 1)];
+        Profile a = points[i ? i - 1 : 0], b = points[i], c = points[i + 1],
+                d = points[std::min(i + 2, points.size() - 1)];
         for (int k = 0; k < steps; ++k) {
             float t = static_cast<float>(k) / static_cast<float>(steps);
             auto at = [t](float p, float q, float r, float s) {
                 return q + 0.5f * t * (r - p + t * (2 * p - 5 * q + 4 * r - s + t * (3 * (q - r) + s - p)));
             };
-            result.push_back(
-                {std::max(0.0f, at(a.radius, b.radius, c.radius, d.radius)), at(a.height, b.height, c.height, d.height)});
+            result.push_back({std::max(0.0f, at(a.radius, b.radius, c.radius, d.radius)),
+                              at(a.height, b.height, c.height, d.height)});
         }
     }
     result.push_back(points.back());
@@ -117,7 +118,8 @@ inline Mesh rectangle(Vector corner, Vector edge1, Vector edge2)
 }
 
 // A round rod along a curve over [0, 1]; its ends are open unless the radius is 0 there.
-inline Mesh tube(const std::function<Vector(float)> &curve, const std::function<float(float)> &radius, int rings, int sides = 16)
+inline Mesh tube(const std::function<Vector(float)> &curve, const std::function<float(float)> &radius, int rings,
+                 int sides = 16)
 {
     Surface surface;
     Vector across;

@@ -17,13 +17,15 @@ inline float smoothstep(float low, float high, float x)
     return t * t * (3 - 2 * t);
 }
 
-inline std::shared_ptr<const demo::Environment> map(uint32_t width, uint32_t height, const std::function<Color(Vector)> &sky)
+inline std::shared_ptr<const demo::Environment> map(uint32_t width, uint32_t height,
+                                                    const std::function<Color(Vector)> &sky)
 {
     std::vector<Color> pixels;
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x) {
             float longitude = 2 * demo::pi * (static_cast<float>(x) + .5f) / static_cast<float>(width);
-            float latitude = demo::pi * (static_cast<float>(y) + .5f) / static_cast<float>(height), sine = std::sin(latitude);
+            float latitude = demo::pi * (static_cast<float>(y) + .5f) / static_cast<float>(height),
+                  sine = std::sin(latitude);
             pixels.push_back(sky({sine * std::sin(longitude), std::cos(latitude), sine * std::cos(longitude)}));
         }
     return std::make_shared<const demo::Environment>(width, height, std::move(pixels));
@@ -35,7 +37,8 @@ inline float glow(Vector direction, Vector around, float sharpness)
     return std::exp(sharpness * (dot(direction, demo::normalize(around)) - 1));
 }
 
-// Evening: blue above, warm at the horizon, a glow where the sun is, large and soft unless it is sharpened, and another colour opposite.
+// Evening: blue above, warm at the horizon, a glow where the sun is, large and soft unless it is sharpened, and another
+// colour opposite.
 inline std::shared_ptr<const demo::Environment> smooth_sky(Vector sun, float sharpness = 9, float strength = 1)
 {
     return map(128, 64, [=](Vector d) {
@@ -47,8 +50,8 @@ inline std::shared_ptr<const demo::Environment> smooth_sky(Vector sun, float sha
     });
 }
 
-// Night falls over a town: facades with lit windows all around, lamps, a strong low sun. Half of all light is in few pixels, but
-// no single one decides a picture.
+// Night falls over a town: facades with lit windows all around, lamps, a strong low sun. Half of all light is in few
+// pixels, but no single one decides a picture.
 inline std::shared_ptr<const demo::Environment> town_sky(Vector sun)
 {
     return map(768, 384, [=](Vector d) {
@@ -68,7 +71,8 @@ inline std::shared_ptr<const demo::Environment> town_sky(Vector sun)
             int i = static_cast<int>(std::floor(column)), j = static_cast<int>(std::floor(row));
             float x = column - std::floor(column), y = row - std::floor(row);
             if (x > .25f && x < .8f && y > .2f && y < .8f && hash(i, j, 3) < .36f)
-                sky = (1.5f + 7 * hash(i, j, 4)) * mix({1, .72f, .38f}, {.75f, .88f, 1}, hash(i, j, 5) > .7f ? 1.0f : 0.0f);
+                sky = (1.5f + 7 * hash(i, j, 4)) *
+                      mix({1, .72f, .38f}, {.75f, .88f, 1}, hash(i, j, 5) > .7f ? 1.0f : 0.0f);
         } else if (elevation <= -.04f) {
             sky = {.12f, .11f, .1f};
         } else {

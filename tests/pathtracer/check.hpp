@@ -1,8 +1,8 @@
 // Tests of the path tracer's parts, by statistics: two ways to the same integral must agree.
 //
-// A test compares means at 5 standard errors: with fixed seeds it always says the same, and a correct program would fail one in
-// 1.7 million of them by another choice of seeds. Each also demands standard errors small enough that an error of `resolution` would
-// show: a test that is too noisy to fail is no test.
+// A test compares means at 5 standard errors: with fixed seeds it always says the same, and a correct program would
+// fail one in 1.7 million of them by another choice of seeds. Each also demands standard errors small enough that an
+// error of `resolution` would show: a test that is too noisy to fail is no test.
 #pragma once
 
 #include "../../examples_c/pathtracer/random.hpp"

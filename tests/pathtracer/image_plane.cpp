@@ -22,8 +22,8 @@ void footprints()
 
 void lens()
 {
-    // Rays through all of the lens meet in the plane that is sharp, and the lens is covered evenly: its moments up to the second are those
-    // of the disc.
+    // Rays through all of the lens meet in the plane that is sharp, and the lens is covered evenly: its moments up to
+    // the second are those of the disc.
     Camera camera;
     camera.look({0, 0, 5}, {0, 0, 0}, 40, 1);
     camera.aperture = 0.3f;

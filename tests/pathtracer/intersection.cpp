@@ -17,7 +17,8 @@ Geometry floor_of_squares(int half)
     return scene.geometry;
 }
 
-// Straight down on the squares' edges and corners: in the face planes of the boxes on both sides, whose entry is 0 * infinity.
+// Straight down on the squares' edges and corners: in the face planes of the boxes on both sides, whose entry is 0 *
+// infinity.
 void face_planes()
 {
     constexpr int half = 8;

@@ -1,4 +1,5 @@
-// Each kind of light: what is sampled, the density that is claimed for it, and what a ray finds there are the same thing.
+// Each kind of light: what is sampled, the density that is claimed for it, and what a ray finds there are the same
+// thing.
 #include "scenes.hpp"
 
 using namespace test;
@@ -75,7 +76,8 @@ void densities(const LitScene &lit, const Bvh &bvh, Vector from)
     }
 }
 
-// The environment's density integrates to 1 over the sphere: midpoints of a fine grid of the map, exactly in proportion.
+// The environment's density integrates to 1 over the sphere: midpoints of a fine grid of the map, exactly in
+// proportion.
 void environment_density()
 {
     auto sky = uneven_sky();

@@ -1,4 +1,5 @@
-// Two techniques for direct light: densities of what each draws, and estimates that agree with next event estimation alone.
+// Two techniques for direct light: densities of what each draws, and estimates that agree with next event estimation
+// alone.
 #include "../../examples_c/pathtracer/mis_integrand.hpp"
 #include "scenes.hpp"
 
@@ -72,8 +73,8 @@ template <typename Render> Estimate render(uint32_t size, int runs, Render pixel
     return all;
 }
 
-// Balance is unbiased at any number of samples. The others use coefficients from the samples that they are applied to: what that costs
-// with 16 pairs must stay below `bias` of the mean.
+// Balance is unbiased at any number of samples. The others use coefficients from the samples that they are applied to:
+// what that costs with 16 pairs must stay below `bias` of the mean.
 void estimates(const LitScene &lit, bool several)
 {
     constexpr uint32_t size = 6;

@@ -1,4 +1,5 @@
-// The normals that an intersector reports, against those of the surface that it met: computed from the geometry, in double precision.
+// The normals that an intersector reports, against those of the surface that it met: computed from the geometry, in
+// double precision.
 #pragma once
 
 #include "../../examples_c/pathtracer/intersector.hpp"

@@ -1,4 +1,5 @@
-// Materials: densities that integrate to 1, directions drawn by them, energy kept; glass by the laws of Snell and Fresnel.
+// Materials: densities that integrate to 1, directions drawn by them, energy kept; glass by the laws of Snell and
+// Fresnel.
 #include "scenes.hpp"
 
 using namespace test;

@@ -1,5 +1,5 @@
-// A stack of pictures: one of a scene for every cell of a grid over the unit cube of samples. `cargo xtask` renders them with
-// POV-Ray and writes them as files: lines of text, then numbers, little-endian.
+// A stack of pictures: one of a scene for every cell of a grid over the unit cube of samples. `cargo xtask` renders
+// them with POV-Ray and writes them as files: lines of text, then numbers, little-endian.
 //
 //   noisefloor-stack 1
 //   size 128 128                       width and height
@@ -8,8 +8,8 @@
 //   checksum 0123456789abcdef          FNV-1a, 64 bits, of all that follows `data`
 //   data
 //
-// then for each pixel, rows from the top down, a 16-bit number of the surface that it shows; then for each pixel and each
-// cell, the last axis fastest, three 16-bit values, of which 65535 is 1.
+// then for each pixel, rows from the top down, a 16-bit number of the surface that it shows; then for each pixel and
+// each cell, the last axis fastest, three 16-bit values, of which 65535 is 1.
 #pragma once
 
 #include "../../examples_c/pathtracer/integrand.hpp"

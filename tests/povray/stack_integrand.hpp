@@ -1,5 +1,5 @@
-// A stack of pictures as an integrand: what POV-Ray rendered at the centres of a grid's cells becomes a function of the whole
-// sample vector. Its exact mean is the mean of the stack, so that no reference needs to be rendered.
+// A stack of pictures as an integrand: what POV-Ray rendered at the centres of a grid's cells becomes a function of the
+// whole sample vector. Its exact mean is the mean of the stack, so that no reference needs to be rendered.
 #pragma once
 
 #include "../../examples_c/pathtracer/image.hpp"
@@ -11,9 +11,9 @@ namespace povray {
 // How values between the cells' centres are found.
 enum class Model {
     cells, // constant in each cell
-    // Linear between the centres along every axis but that of the choice, constant beyond the outermost. Along an axis of n cells
-    // the values then have the weights 1 / n too: an inner one the area of its hat, 1 / n, an outer one half a hat and half a
-    // cell. So the mean stays that of the stack.
+    // Linear between the centres along every axis but that of the choice, constant beyond the outermost. Along an axis
+    // of n cells the values then have the weights 1 / n too: an inner one the area of its hat, 1 / n, an outer one half
+    // a hat and half a cell. So the mean stays that of the stack.
     linear,
 };
 

@@ -1,5 +1,6 @@
-//! Beyond a tile's samples: the error of a pixel's estimate, as root mean square over 256 pixels and the integrands, relative to the integrand's standard
-//! deviation; of the tile's samples, and beside them of random ones and of Owen-scrambled Sobol points. Seeds are fixed.
+//! Beyond a tile's samples: the error of a pixel's estimate, as root mean square over 256 pixels and the integrands,
+//! relative to the integrand's standard deviation; of the tile's samples, and beside them of random ones and of
+//! Owen-scrambled Sobol points. Seeds are fixed.
 
 use crate::random::SplitMix64;
 use crate::tile::{noise, ordered};
@@ -73,7 +74,8 @@ pub fn kinds(count: usize, rng: &mut SplitMix64) -> [Kind; 2] {
     ]
 }
 
-/// The bytes of tiles by name: independent and jittered samples, which are the hardest for the sequence to join, and some that are built in.
+/// The bytes of tiles by name: independent and jittered samples, which are the hardest for the sequence to join, and
+/// some that are built in.
 pub fn tiles() -> Vec<(String, Vec<u8>)> {
     let mut tiles = vec![("noise".to_owned(), single())];
     tiles.extend([4, 16].map(|spp| ("jittered".to_owned(), ordered(64, spp, false, 43))));

@@ -171,9 +171,9 @@ pub fn adversarial() -> Vec<Integrand> {
     ]
 }
 
-/// What a search found hardest for the robust mixture: each in as many dimensions as asked for, of which it reads the first
-/// three at most. In a kink or a bump the fit sees a slope that is none; stripes are seen by one sample in twenty, and those
-/// that see none say nothing of them.
+/// What a search found hardest for the robust mixture: each in as many dimensions as asked for, of which it reads the
+/// first three at most. In a kink or a bump the fit sees a slope that is none; stripes are seen by one sample in
+/// twenty, and those that see none say nothing of them.
 pub fn hardest(dims: usize) -> Vec<Integrand> {
     let bump = 0.27 * PI.sqrt() * 0.991_178_981_850_296_4;
     let all = [

@@ -1,5 +1,5 @@
-//! Half-planes and Gaussian bumps over the unit square that may move and scale across an image, with exact integrals, and
-//! the error of an image with and without the eye's blur.
+//! Half-planes and Gaussian bumps over the unit square that may move and scale across an image, with exact integrals,
+//! and the error of an image with and without the eye's blur.
 
 use crate::random::SplitMix64;
 use core::f64::consts::TAU;

@@ -1,5 +1,5 @@
-//! Shared fits with fresh workspaces full of NaN: an estimator that relied on their content would show it. Not generic, so
-//! that they are compiled once for all test files.
+//! Shared fits with fresh workspaces full of NaN: an estimator that relied on their content would show it. Not generic,
+//! so that they are compiled once for all test files.
 
 use noisefloor::Error;
 use noisefloor::control_variate::{

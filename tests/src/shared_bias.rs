@@ -56,8 +56,8 @@ pub fn independent(pixels: usize) -> impl Fn(&mut SplitMix64) -> Vec<f32> {
     move |rng| (0..2 * pixels).map(|_| rng.uniform_f32()).collect()
 }
 
-/// Samples of 8 x 8 pixels of a built-in tile, anywhere in it, all values shifted at random, which leaves each uniform but not
-/// independent.
+/// Samples of 8 x 8 pixels of a built-in tile, anywhere in it, all values shifted at random, which leaves each uniform
+/// but not independent.
 pub fn of_tile(builtin: Builtin) -> impl Fn(&mut SplitMix64) -> Vec<f32> {
     let tile = builtin.tile().unwrap();
     move |rng| {

@@ -128,7 +128,8 @@ pub fn ratio(errors: &[[f64; 2]]) -> Ratio {
     rmse_ratio(&at(0), &at(1))
 }
 
-/// A scene's RMSE ratio to the mean, by `call`: over as many images as have `samples` of each pixel together, half as many at 1 sample.
+/// A scene's RMSE ratio to the mean, by `call`: over as many images as have `samples` of each pixel together, half as
+/// many at 1 sample.
 pub fn measure(
     make: Make,
     n: usize,

@@ -1,8 +1,8 @@
 //! Shared fits to the samples of the built-in tiles: what they gain, raw and as the eye sees it.
 //!
-//! The integrands are half-planes and Gaussian bumps, the same in every pixel or moving and scaling across the image. Scores are mean squared
-//! errors relative to white noise, that is independent samples without a fit, of the image itself and of the image blurred by a Gaussian of 2.1
-//! pixels. Seeds are fixed.
+//! The integrands are half-planes and Gaussian bumps, the same in every pixel or moving and scaling across the image.
+//! Scores are mean squared errors relative to white noise, that is independent samples without a fit, of the image
+//! itself and of the image blurred by a Gaussian of 2.1 pixels. Seeds are fixed.
 
 use crate::planar::{Blur, Planar};
 use crate::random::SplitMix64;
@@ -53,8 +53,8 @@ fn tile_points(spp: usize) -> Vec<f32> {
         .collect()
 }
 
-/// Values of four integrands at a tile's samples, their integrals pixel after pixel, and the variance of a pixel's mean of
-/// independent samples.
+/// Values of four integrands at a tile's samples, their integrals pixel after pixel, and the variance of a pixel's mean
+/// of independent samples.
 struct Scene {
     f: Vec<f32>,
     truth: Vec<f64>,

@@ -67,16 +67,17 @@ impl Ratio {
         self.value + self.half_width
     }
 
-    /// The lower end: the interval is of the logarithm. Of 8 repetitions 93 % of these intervals hold the truth (148 of 2000 miss, 204 of
-    /// heavy tails), where those as wide on both sides keep 95 %.
+    /// The lower end: the interval is of the logarithm. Of 8 repetitions 93 % of these intervals hold the truth (148 of
+    /// 2000 miss, 204 of heavy tails), where those as wide on both sides keep 95 %.
     pub fn lower(&self) -> f64 {
         if self.half_width == 0.0 { self.value } else { self.value * (self.value / self.upper()) }
     }
 }
 
-/// RMSE(a) / RMSE(b) of paired errors. The jackknife tells the standard error of the logarithm (Efron and Tibshirani 1993, chapter 11), which
-/// few repetitions and heavy tails do not shrink as they do the delta method's; Student's quantile goes with it, and the interval's ends are as
-/// far from the value in logarithms; the upper, longer side is kept. Two sets of zero errors give 1; one is exact where the other is not: 0 or infinity.
+/// RMSE(a) / RMSE(b) of paired errors. The jackknife tells the standard error of the logarithm (Efron and Tibshirani
+/// 1993, chapter 11), which few repetitions and heavy tails do not shrink as they do the delta method's; Student's
+/// quantile goes with it, and the interval's ends are as far from the value in logarithms; the upper, longer side is
+/// kept. Two sets of zero errors give 1; one is exact where the other is not: 0 or infinity.
 pub fn rmse_ratio(a: &[f64], b: &[f64]) -> Ratio {
     assert_eq!(a.len(), b.len());
     let squares = |errors: &[f64]| errors.iter().map(|e| e * e).sum::<f64>();
@@ -98,8 +99,8 @@ pub fn rmse_ratio(a: &[f64], b: &[f64]) -> Ratio {
     Ratio { value, half_width: if half_width.is_nan() { f64::INFINITY } else { half_width } }
 }
 
-/// What Student's t of so many degrees of freedom exceeds with 2.5 %: exact for 1 and 2, else Abramowitz and Stegun 26.7.5, to four terms,
-/// which is .004 too small for 3 and good to .001 from 4 on.
+/// What Student's t of so many degrees of freedom exceeds with 2.5 %: exact for 1 and 2, else Abramowitz and Stegun
+/// 26.7.5, to four terms, which is .004 too small for 3 and good to .001 from 4 on.
 pub fn student(freedom: f64) -> f64 {
     if freedom <= 2.0 {
         return if freedom < 1.5 { 12.7062 } else { 4.3027 };
@@ -166,8 +167,8 @@ mod tests {
         }
     }
 
-    /// Scales that vary by a factor of 2 (one standard deviation): few repetitions hardly show the largest. One in 14 misses; one in ten
-    /// would be 5 standard deviations more.
+    /// Scales that vary by a factor of 2 (one standard deviation): few repetitions hardly show the largest. One in 14
+    /// misses; one in ten would be 5 standard deviations more.
     #[test]
     fn ratio_interval_of_heavy_tails() {
         for repetitions in [8, 16, 100] {

@@ -27,7 +27,8 @@ pub fn noise(shape: Shape, seed: u64) -> Vec<u8> {
     file(shape, |_, _, _, _| rng.uniform_f32())
 }
 
-/// In each pixel, sample j lies anywhere in part j of [0, 1)^2: as ordered as samples can be. `spp` is a power of 4, dims is 2.
+/// In each pixel, sample j lies anywhere in part j of [0, 1)^2: as ordered as samples can be. `spp` is a power of 4,
+/// dims is 2.
 pub fn ordered(size: u32, spp: u32, progressive: bool, seed: u64) -> Vec<u8> {
     let side = spp.isqrt();
     assert_eq!(side * side, spp);

@@ -23,8 +23,8 @@ fn binomial(dims: usize, order: usize) -> usize {
     (1..=order).fold(1, |count, k| count * (dims + k) / k)
 }
 
-/// Every function at random points and at the cube's corners: within 4e-6 of its definition in `f64`, as the estimate that
-/// shows it is `f32` and sums four products, and within 2e-5 in `f32`.
+/// Every function at random points and at the cube's corners: within 4e-6 of its definition in `f64`, as the estimate
+/// that shows it is `f32` and sums four products, and within 2e-5 in `f32`.
 #[test]
 fn values_are_those_of_the_definition() {
     let mut rng = SplitMix64::new(101);
@@ -50,8 +50,8 @@ fn values_are_those_of_the_definition() {
     }
 }
 
-/// Points and weights that integrate products of two functions of a family: Gauss-Legendre for polynomials, on four parts
-/// for Gaussians, and midpoints of equal parts, which are exact for steps and half-waves.
+/// Points and weights that integrate products of two functions of a family: Gauss-Legendre for polynomials, on four
+/// parts for Gaussians, and midpoints of equal parts, which are exact for steps and half-waves.
 fn quadrature(family: Family) -> Vec<(f32, f64)> {
     let parts = match family {
         Family::Legendre => 1,

@@ -15,8 +15,8 @@ fn block<R: Real>(config: &Config, u: &[f32], f: &[f32], pixels: usize) -> Resul
     block_as::<R>(config, pixels, Samples::new(u, f))
 }
 
-/// A fixed ridge: pixel by pixel the mean of f - b'phi with b from the other pixels' samples, within 4e-7 of the largest
-/// value in `f64`, 1e-4 in `f32`.
+/// A fixed ridge: pixel by pixel the mean of f - b'phi with b from the other pixels' samples, within 4e-7 of the
+/// largest value in `f64`, 1e-4 in `f32`.
 #[test]
 fn fixed_ridge_against_the_oracle() {
     let mut rng = SplitMix64::new(1);

@@ -1,7 +1,7 @@
 //! Hard cases: few samples, badly placed samples, extreme values, values that are no numbers.
 //!
-//! Each is compared with the oracle or with its exact outcome. Tolerances are relative to the largest |f|: 4e-7 for what is
-//! well conditioned, else as stated where it is used.
+//! Each is compared with the oracle or with its exact outcome. Tolerances are relative to the largest |f|: 4e-7 for
+//! what is well conditioned, else as stated where it is used.
 
 use crate::cv_support::*;
 use noisefloor::Error;
@@ -162,8 +162,8 @@ fn badly_placed_samples_against_the_oracle() {
     }
 }
 
-/// Where all samples coincide there is nothing to fit: every estimator gives the mean, least squares without a ridge too.
-/// Within 1e-6 of the largest value, `f32` 1e-3.
+/// Where all samples coincide there is nothing to fit: every estimator gives the mean, least squares without a ridge
+/// too. Within 1e-6 of the largest value, `f32` 1e-3.
 #[test]
 fn equal_positions_give_the_mean() {
     let mut rng = SplitMix64::new(4);
@@ -296,8 +296,8 @@ fn largest_values() {
     assert_eq!(estimate.mean[0], f32::MIN);
 }
 
-/// RMSE of the robust estimate over the plain mean's, batch and streaming, where fits are useless: at most 1.05 (upper end
-/// of the 95 % interval). Seeds 20..; 4,000 repetitions.
+/// RMSE of the robust estimate over the plain mean's, batch and streaming, where fits are useless: at most 1.05 (upper
+/// end of the 95 % interval). Seeds 20..; 4,000 repetitions.
 #[test]
 fn robust_on_hopeless_data() {
     let integral = {

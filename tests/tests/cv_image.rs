@@ -29,7 +29,8 @@ fn scene(pixels: usize, n: usize, channels: usize, rng: &mut SplitMix64) -> (Vec
     (u, f)
 }
 
-/// Knowledge that says nothing changes no bit: one surface, factors of 1 or 0, defaults that are spelled out, fresh calls.
+/// Knowledge that says nothing changes no bit: one surface, factors of 1 or 0, defaults that are spelled out, fresh
+/// calls.
 #[test]
 fn trivial_knowledge_changes_nothing() {
     let mut rng = SplitMix64::new(1);
@@ -59,7 +60,8 @@ fn trivial_knowledge_changes_nothing() {
     }
 }
 
-/// A surface's pixels do not see the others: the estimates of one are those of an image where the others' samples differ.
+/// A surface's pixels do not see the others: the estimates of one are those of an image where the others' samples
+/// differ.
 #[test]
 fn surfaces_are_separate() {
     let mut rng = SplitMix64::new(2);
@@ -83,7 +85,8 @@ fn surfaces_are_separate() {
     }
 }
 
-/// Values divided by the factors, estimated, multiplied: the same as factors, within the rounding of outputs and inputs.
+/// Values divided by the factors, estimated, multiplied: the same as factors, within the rounding of outputs and
+/// inputs.
 #[test]
 fn factors_are_demodulation() {
     let mut rng = SplitMix64::new(3);
@@ -107,8 +110,8 @@ fn factors_are_demodulation() {
     }
 }
 
-/// Constant values are exact. Constant pixels of different values, of which the mean is exact, are not: what is left of the
-/// fits in the mixture adds noise, here at most .018 where the values are uniform in 0 to 1.
+/// Constant values are exact. Constant pixels of different values, of which the mean is exact, are not: what is left of
+/// the fits in the mixture adds noise, here at most .018 where the values are uniform in 0 to 1.
 #[test]
 fn constants() {
     let mut rng = SplitMix64::new(4);
@@ -360,8 +363,8 @@ fn any_call() -> impl Strategy<Value = (Config, [usize; 5], usize, u64)> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 150, rng_seed: proptest::test_runner::RngSeed::Fixed(8), failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Any shape and configuration, values of any size, surfaces and factors: finite numbers, each pixel once and in order
-    /// (which the calls check), the same again.
+    /// Any shape and configuration, values of any size, surfaces and factors: finite numbers, each pixel once and in
+    /// order (which the calls check), the same again.
     #[test]
     fn any_shape_gives_finite_numbers((config, [width, height, frames, window, stride], n, seed) in any_call()) {
         let mut rng = SplitMix64::new(seed);

@@ -1,7 +1,8 @@
-//! Bright pixels beside others, fireflies and small highlights: what their neighbours pay; and integrands whose rare bright
-//! samples are no such pixels, which fits must still explain.
+//! Bright pixels beside others, fireflies and small highlights: what their neighbours pay; and integrands whose rare
+//! bright samples are no such pixels, which fits must still explain.
 //!
-//! RMSE relative to the plain mean's, over all pixels but the bright ones. The upper end of the 95 % interval is asserted.
+//! RMSE relative to the plain mean's, over all pixels but the bright ones. The upper end of the 95 % interval is
+//! asserted.
 
 use crate::cv_support::points;
 use noisefloor::control_variate::{Config, Estimator, Image, Samples};
@@ -45,8 +46,9 @@ fn check(what: &str, ratio: Ratio, limit: f64) {
     assert!(ratio.upper() < limit, "{what}: {ratio:?}, not below {limit}");
 }
 
-/// One of 64 pixels has so much more light than the others, whose values are alike: in a block, and in overlapping windows.
-/// Fits that had seen it left the others 2.6 times the error of the mean at 1 sample and a light of 1000, 3.4 times at 4.
+/// One of 64 pixels has so much more light than the others, whose values are alike: in a block, and in overlapping
+/// windows. Fits that had seen it left the others 2.6 times the error of the mean at 1 sample and a light of 1000, 3.4
+/// times at 4.
 #[test]
 fn one_bright_pixel() {
     for n in COUNTS {
@@ -63,7 +65,8 @@ fn one_bright_pixel() {
     }
 }
 
-/// Halves of the pixels judge for each other: the bright pixel in the half that is corrected, and in the one that judges.
+/// Halves of the pixels judge for each other: the bright pixel in the half that is corrected, and in the one that
+/// judges.
 #[test]
 fn one_bright_pixel_of_two_halves() {
     for n in COUNTS {
@@ -85,9 +88,9 @@ fn is_in_highlight(pixel: usize, side: usize) -> bool {
     (7..7 + side).contains(&(pixel % 16)) && (7..7 + side).contains(&(pixel / 16))
 }
 
-/// A highlight of 2 x 2 pixels, a thousand times as bright as the others: its neighbours are served at 4 samples. At 1, and
-/// where it is larger, it takes a surface of its own: without, its neighbours have 20 times
-/// the error of their mean.
+/// A highlight of 2 x 2 pixels, a thousand times as bright as the others: its neighbours are served at 4 samples. At 1,
+/// and where it is larger, it takes a surface of its own: without, its neighbours have 20 times the error of their
+/// mean.
 #[test]
 fn highlights() {
     for (n, side, has_surface, limit) in [
@@ -110,8 +113,9 @@ fn highlights() {
     }
 }
 
-/// Every pixel is bright in the same small part of the square, as where one light of many is: those are no bright pixels, and
-/// fits keep what they gain. With every pixel in every fit the ratios at 1 sample were .963, .929, .759, .551.
+/// Every pixel is bright in the same small part of the square, as where one light of many is: those are no bright
+/// pixels, and fits keep what they gain. With every pixel in every fit the ratios at 1 sample were .963, .929, .759,
+/// .551.
 #[test]
 fn rare_bright_samples() {
     for (part, limits) in [(0.01, [0.99, 0.985]), (0.02, [0.96, 0.93]), (0.05, [0.79, 0.72]), (0.1, [0.57, 0.53])] {

@@ -1,5 +1,5 @@
-//! Shared fits that choose, robust and by two halves, against their definition: every candidate a fit of its own, solved
-//! for each pixel that is left out, every window by itself.
+//! Shared fits that choose, robust and by two halves, against their definition: every candidate a fit of its own,
+//! solved for each pixel that is left out, every window by itself.
 
 use crate::cv_support::{design, largest, points, smooth, wide};
 use noisefloor::control_variate::{Config, Estimate, Estimator, Image, Samples};
@@ -192,8 +192,8 @@ impl Case {
         windows
     }
 
-    /// How many functions have products with the axes, in fits to a group and to its halves: degree 2 or 1 or none, as far as
-    /// there are two samples for each column.
+    /// How many functions have products with the axes, in fits to a group and to its halves: degree 2 or 1 or none, as
+    /// far as there are two samples for each column.
     fn moving(&self, group: &[Member], degrees: &[usize]) -> usize {
         let axes = group[0].at.len();
         let up_to = |degree: usize| degrees.iter().filter(|&&other| other <= degree).count();

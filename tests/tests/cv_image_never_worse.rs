@@ -1,7 +1,7 @@
 //! Shared fits that cannot help: never noticeably worse than the plain mean of the same samples.
 //!
-//! What is asserted is the upper end of the 95 % interval of the RMSE ratio to the mean, over images that are independent of
-//! each other; pixels of one image are not. Seeds are fixed, and no one chose the rule looking at them.
+//! What is asserted is the upper end of the 95 % interval of the RMSE ratio to the mean, over images that are
+//! independent of each other; pixels of one image are not. Seeds are fixed, and no one chose the rule looking at them.
 
 use crate::cv_support::{points, values, wide};
 use noisefloor::control_variate::{Config, Image, Samples, estimate, workspace_len};
@@ -86,8 +86,8 @@ fn pixels_that_share_nothing_keep_their_mean() {
     }
 }
 
-/// One very large sample among values of a bump: its pixel keeps it, the image is no worse, and its neighbours, whose fits do
-/// without it, are better than their mean.
+/// One very large sample among values of a bump: its pixel keeps it, the image is no worse, and its neighbours, whose
+/// fits do without it, are better than their mean.
 #[test]
 fn fireflies() {
     for n in [1, 4, 16] {
@@ -125,8 +125,8 @@ fn fireflies() {
     }
 }
 
-/// The plain mean's RMSE, and of the per-pixel robust estimator that is told of the stratification and that is not, on a
-/// tile's samples, which continue as a scrambled Sobol sequence: told, it is the mean.
+/// The plain mean's RMSE, and of the per-pixel robust estimator that is told of the stratification and that is not, on
+/// a tile's samples, which continue as a scrambled Sobol sequence: told, it is the mean.
 #[test]
 fn alone_on_stratified_samples() {
     for n in [1, 4, 16, 64] {

@@ -93,9 +93,9 @@ impl Case {
         at.into_iter().zip(self.shape).filter(|&(_, extent)| extent > 1).map(along).collect()
     }
 
-    /// What the documentation says: for pixels that share a fit the columns constant, axes, control functions, basis, and
-    /// functions of low degree times each axis; then the estimate is the pixel's mean, without what functions and products
-    /// explain there.
+    /// What the documentation says: for pixels that share a fit the columns constant, axes, control functions, basis,
+    /// and functions of low degree times each axis; then the estimate is the pixel's mean, without what functions and
+    /// products explain there.
     fn expected(&self, pixel: usize, channel: usize) -> f64 {
         let (config, n) = (&self.config, self.n);
         let own_surface = self.surfaces.get(pixel);

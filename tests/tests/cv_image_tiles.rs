@@ -1,7 +1,7 @@
 //! Shared fits to the samples of the built-in tiles: what they gain, raw and as the eye sees it.
 //!
-//! 24 half-planes and 24 Gaussian bumps (12 at 16 samples); what a score is: `noisefloor_tests::shared_tiles`. The report's chapter `analytic`
-//! has more settings.
+//! 24 half-planes and 24 Gaussian bumps (12 at 16 samples); what a score is: `noisefloor_tests::shared_tiles`. The
+//! report's chapter `analytic` has more settings.
 
 use noisefloor_tests::shared_tiles::{self, Method, Motion, Score, Scores, quadruples};
 
@@ -25,8 +25,9 @@ const ORDER_3: Method = Method::Image(3, 8, 4);
 const ORDER_4: Method = Method::Image(4, 8, 4);
 const WIDE: Method = Method::Image(4, 16, 8);
 
-/// One sample, raw and blurred: half-planes .25 and .13, bumps .17 and .055, already by order 3. Measured .233 and .096, .167
-/// and .024 by order 3, .225 and .098, .116 and .020 by order 4, .188 and .090, .084 and .015 by order 4 in windows of 16.
+/// One sample, raw and blurred: half-planes .25 and .13, bumps .17 and .055, already by order 3. Measured .233 and
+/// .096, .167 and .024 by order 3, .225 and .098, .116 and .020 by order 4, .188 and .090, .084 and .015 by order 4 in
+/// windows of 16.
 #[test]
 fn one_sample() {
     for [half_planes, bumps] in scores(1, Motion::None, [ORDER_3, ORDER_4, WIDE, Method::Blocks(3), Method::Blocks(4)])
@@ -45,8 +46,8 @@ fn one_sample_of_what_moves() {
     }
 }
 
-/// Four samples, raw and blurred: half-planes .22 and .048, bumps .16 and .009. Measured .189 and .043, .129 and .0024 by
-/// order 3; .179 and .043, .087 and .0019 by order 4. The plain mean has .277 and .042, .270 and .0019.
+/// Four samples, raw and blurred: half-planes .22 and .048, bumps .16 and .009. Measured .189 and .043, .129 and .0024
+/// by order 3; .179 and .043, .087 and .0019 by order 4. The plain mean has .277 and .042, .270 and .0019.
 #[test]
 fn four_samples() {
     for [half_planes, bumps] in scores(4, Motion::None, [ORDER_3, ORDER_4, Method::Blocks(4)]) {
@@ -54,8 +55,9 @@ fn four_samples() {
     }
 }
 
-/// Sixteen samples, of which the tile leaves little to gain: order 4 is at most 1.03 of the plain mean, raw and blurred.
-/// Measured .96 and 1.00 for half-planes, .70 and .93 for bumps. Order 3 side by side is not: bumps blurred 1.8.
+/// Sixteen samples, of which the tile leaves little to gain: order 4 is at most 1.03 of the plain mean, raw and
+/// blurred. Measured .96 and 1.00 for half-planes, .70 and .93 for bumps. Order 3 side by side is not: bumps blurred
+/// 1.8.
 #[test]
 fn sixteen_samples_do_no_harm() {
     for motion in [Motion::None, Motion::Steep] {

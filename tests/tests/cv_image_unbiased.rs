@@ -1,8 +1,9 @@
 //! Which shared fits are exactly unbiased, and how little the others are biased.
 //!
-//! Seeds are fixed. A z-test is two-sided at |z| < 4.75, probability 2e-6. For each setting the mean over an image's pixels, its
-//! difference between left and right half, and five pixels are tested: 7 deviates, 504 in all, so that the chance that any
-//! failed by chance was 1e-3 when the seeds were chosen. Eight times as many samples found nothing either.
+//! Seeds are fixed. A z-test is two-sided at |z| < 4.75, probability 2e-6. For each setting the mean over an image's
+//! pixels, its difference between left and right half, and five pixels are tested: 7 deviates, 504 in all, so that the
+//! chance that any failed by chance was 1e-3 when the seeds were chosen. Eight times as many samples found nothing
+//! either.
 
 use crate::cv_support::points;
 use noisefloor::control_variate::{Config, Estimator, Image, Ridge, Samples};
@@ -120,8 +121,8 @@ fn exactly_unbiased(estimator: Estimator, ridge: Ridge) {
                 if known != Known::Nothing && index != 2 {
                     continue;
                 }
-                // In one window halves that choose for themselves show, by z = 11.
-                // What all pixels together, instead of the other half, say is to be left out shows in the last scene, by z = 5.
+                // In one window halves that choose for themselves show, by z = 11. What all pixels together, instead of
+                // the other half, say is to be left out shows in the last scene, by z = 5.
                 let repetitions = match (n, window) {
                     (1, 4) if index == SCENES.len() - 1 && estimator == Estimator::KFold => 20_000,
                     (1, WIDTH) => 10_000,
@@ -178,9 +179,9 @@ fn robust_on_independent_samples() {
     assert!(typical[1] < typical[0] && typical[2] < typical[1], "{typical:?}");
 }
 
-/// Samples of the built-in tiles, a random part of it with all values shifted at random, which leaves each uniform but not
-/// independent: not exactly unbiased for any estimator. Measured at one sample: robust .004 (largest of 24 integrands .012), leave-one-out
-/// .008 (.016), two halves .005 (.016); at four .003 (.011) or less.
+/// Samples of the built-in tiles, a random part of it with all values shifted at random, which leaves each uniform but
+/// not independent: not exactly unbiased for any estimator. Measured at one sample: robust .004 (largest of 24
+/// integrands .012), leave-one-out .008 (.016), two halves .005 (.016); at four .003 (.011) or less.
 #[test]
 fn on_the_built_in_tiles() {
     for (builtin, n) in [(Builtin::Size128Spp1Dims2, 1), (Builtin::Size128Spp4Dims2, 4)] {

@@ -69,8 +69,8 @@ fn block_of_many_pixels() {
     }
 }
 
-/// Accumulators of a few samples each, merged, have folds as even as one that was given every sample: over 2,000 sets, the
-/// errors are no more than a fifth larger. If all parts went to one fold, little would be left of the gain.
+/// Accumulators of a few samples each, merged, have folds as even as one that was given every sample: over 2,000 sets,
+/// the errors are no more than a fifth larger. If all parts went to one fold, little would be left of the gain.
 #[test]
 fn many_small_parts() {
     for estimator in [Estimator::Robust, Estimator::KFold] {

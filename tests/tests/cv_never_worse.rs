@@ -1,7 +1,8 @@
 //! The robust estimator's promises: never noticeably worse than the mean, usually far better.
 //!
-//! Errors are paired: both estimates see the same samples. Seeds are fixed. The interval of a ratio is the 95 % one of `statistics::rmse_ratio`; what is asserted is its upper end. Among the 75 ratios of
-//! a set a few intervals miss their ratio, but no ratio's true value is near enough to 1.03 for that to decide.
+//! Errors are paired: both estimates see the same samples. Seeds are fixed. The interval of a ratio is the 95 % one of
+//! `statistics::rmse_ratio`; what is asserted is its upper end. Among the 75 ratios of a set a few intervals miss their
+//! ratio, but no ratio's true value is near enough to 1.03 for that to decide.
 
 use crate::cv_support::*;
 use noisefloor::control_variate::{Accumulator, Config, Estimator, Samples, estimate, workspace_len};
@@ -104,9 +105,9 @@ fn streaming_of_order_3() {
     never_worse(3, true, 1.03);
 }
 
-/// What a search found hardest, in 1 to 7 dims and where samples are about as many as terms: at most 1.03 at order 1, which
-/// 12,000 sets know within .008. Of stripes most sets of samples see one or none; no rule that uses the samples alone tells
-/// them from a slope, and up to 1.06 is what this one costs.
+/// What a search found hardest, in 1 to 7 dims and where samples are about as many as terms: at most 1.03 at order 1,
+/// which 12,000 sets know within .008. Of stripes most sets of samples see one or none; no rule that uses the samples
+/// alone tells them from a slope, and up to 1.06 is what this one costs.
 #[test]
 fn hardest() {
     let mut failures = vec![];
@@ -134,8 +135,9 @@ fn hardest() {
     assert!(failures.is_empty(), "{failures:?}");
 }
 
-/// Geometric means of the RMSE ratio over the nine integrands, order 3 (2 in 15 dimensions), 16 / 32 / 64 / 256 samples: at
-/// most .52 / .31 / .22 / .16. Asserted is the lower end of the 95 % interval, whose half width is below .005.
+/// Geometric means of the RMSE ratio over the nine integrands, order 3 (2 in 15 dimensions), 16 / 32 / 64 / 256
+/// samples: at most .52 / .31 / .22 / .16. Asserted is the lower end of the 95 % interval, whose half width is below
+/// .005.
 #[test]
 fn gains_on_the_nine() {
     let mut failures = vec![];

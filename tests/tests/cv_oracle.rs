@@ -1,7 +1,7 @@
 //! Every solver and estimator against the slow oracle in `f64`.
 //!
-//! Estimates are `f32`. Unless a test says otherwise an `f64` path must agree within 4e-7 of the largest |f| (an estimate's
-//! own rounding is 6e-8 of itself), an `f32` path within 1e-4 of it.
+//! Estimates are `f32`. Unless a test says otherwise an `f64` path must agree within 4e-7 of the largest |f| (an
+//! estimate's own rounding is 6e-8 of itself), an `f32` path within 1e-4 of it.
 
 use crate::cv_support::*;
 use noisefloor::basis::Family;
@@ -55,7 +55,8 @@ fn least_squares_by_every_solver() {
                 let tolerance = if short { 1e-4 } else { F64 };
                 close(&batch::<f64>(&config, &u, &f).unwrap(), expected, &f, tolerance, &what);
                 if !short {
-                    // The dual's system is all but singular where samples outnumber terms and only a ridge of 1e-6 helps.
+                    // The dual's system is all but singular where samples outnumber terms and only a ridge of 1e-6
+                    // helps.
                     let dual = solver == Solver::Dual && ridge == Ridge::Default;
                     let tolerance = if dual { 5e-3 } else { F32 };
                     close(&batch::<f32>(&config, &u, &f).unwrap(), expected_f32, &f, tolerance, &format!("{what} f32"));
@@ -293,8 +294,8 @@ fn control_functions_are_integrated_exactly() {
     }
 }
 
-/// Rows of a longer path: what lies between a row's first coordinates and the next row has no influence, and the last row
-/// may end early.
+/// Rows of a longer path: what lies between a row's first coordinates and the next row has no influence, and the last
+/// row may end early.
 #[test]
 fn stride() {
     let (u, f) = noisy(33, 2, 850);
@@ -436,7 +437,8 @@ fn gradient_descent_converges() {
     }
 }
 
-/// The oracle's plain descent, step by step: columns of degree k scaled by 2^(1 - k) are the oracle's on a scaled design.
+/// The oracle's plain descent, step by step: columns of degree k scaled by 2^(1 - k) are the oracle's on a scaled
+/// design.
 #[test]
 fn gradient_descent_takes_the_documented_steps() {
     let (u, f) = noisy(50, 2, 1150);
@@ -491,8 +493,8 @@ fn warm_start_beats_cold() {
     assert_eq!(started, batch::<f64>(&config, &u, &f).unwrap());
 }
 
-/// (4.30) by a loop that keeps all samples: fits of total ridge .1 and 1 to the samples before, mixed by their errors so
-/// far, renewed at the documented times.
+/// (4.30) by a loop that keeps all samples: fits of total ridge .1 and 1 to the samples before, mixed by their errors
+/// so far, renewed at the documented times.
 fn incremental_by_loop(u: &[f32], dims: usize, f: &[f32], order: usize, fixed: Option<f64>) -> f64 {
     let design = design(&config(dims, order, Estimator::Robust), &wide(u));
     let f = wide(f);

@@ -36,7 +36,8 @@ fn declared_is_the_mean() {
     }
 }
 
-/// RMSE over that of the mean of the same samples, 256 sets, the worst of the nine in up to 5 dims and 16 to 256 samples.
+/// RMSE over that of the mean of the same samples, 256 sets, the worst of the nine in up to 5 dims and 16 to 256
+/// samples.
 fn worst(order: Order, estimator: Estimator, streaming: bool) -> (f64, String) {
     let mut worst = (0.0, String::new());
     for integrand in integrands::nine().iter().filter(|integrand| integrand.dims <= 5) {
@@ -61,8 +62,8 @@ fn worst(order: Order, estimator: Estimator, streaming: bool) -> (f64, String) {
     worst
 }
 
-/// Not told, the robust fit of order 2 keeps most of what is even: at most 1.5 times the mean's error on Sobol points, and next
-/// to never worse on tiles.
+/// Not told, the robust fit of order 2 keeps most of what is even: at most 1.5 times the mean's error on Sobol points,
+/// and next to never worse on tiles.
 #[test]
 fn undeclared_robust() {
     for streaming in [false, true] {
@@ -75,8 +76,8 @@ fn undeclared_robust() {
     }
 }
 
-/// K-fold, whose fits do not know the fold that they correct, cannot keep it: with folds that are runs it is at most 1.8 times as
-/// far off from arrays, 3.2 times from a stream. With every fourth sample in a fold it was 37 times.
+/// K-fold, whose fits do not know the fold that they correct, cannot keep it: with folds that are runs it is at most
+/// 1.8 times as far off from arrays, 3.2 times from a stream. With every fourth sample in a fold it was 37 times.
 #[test]
 fn undeclared_k_fold() {
     for (streaming, limit) in [(false, 1.8), (true, 3.2)] {

@@ -275,9 +275,9 @@ proptest! {
         prop_assert!((a.mean[0] - b.mean[0]).abs() < 1e-6 * (1.0 + largest(&f) as f32 + a.mean[0].abs()), "{:?} {:?}", a, b);
     }
 
-    /// Merging in any grouping and order: within 1e-6 of each other, and of one accumulator for everything, where there is
-    /// one fold. Folds fill in the order of merging: there the samples are counted, and merging the same parts in the same
-    /// order is the same.
+    /// Merging in any grouping and order: within 1e-6 of each other, and of one accumulator for everything, where there
+    /// is one fold. Folds fill in the order of merging: there the samples are counted, and merging the same parts in
+    /// the same order is the same.
     #[test]
     fn merging(estimator in streaming(), dims in 1_usize..4, sizes in prop::collection::vec(0_usize..20, 3), seed in any::<u64>()) {
         let config = Config { ridge: Ridge::Fixed(0.01), ..config(dims, 2, estimator) };
@@ -408,8 +408,8 @@ impl Model {
     }
 }
 
-/// The estimate that a model stands for, slowly, for a fixed ridge: each fold corrected by a fit to the others, or, with one
-/// fold, a fit to all.
+/// The estimate that a model stands for, slowly, for a fixed ridge: each fold corrected by a fit to the others, or,
+/// with one fold, a fit to all.
 fn expected(config: &Config, model: &Model, ridge: f64) -> f64 {
     let fit = |samples: &[(Vec<f32>, f32)]| {
         let u: Vec<f64> = samples.iter().flat_map(|(u, _)| wide(u)).collect();
@@ -435,8 +435,8 @@ fn expected(config: &Config, model: &Model, ridge: f64) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
-    /// Any sequence of operations: the estimate is that of the samples which went in, within 1e-6 of the largest; what is
-    /// refused changes nothing.
+    /// Any sequence of operations: the estimate is that of the samples which went in, within 1e-6 of the largest; what
+    /// is refused changes nothing.
     #[test]
     fn accumulators_hold_their_samples(
         steps in steps(),

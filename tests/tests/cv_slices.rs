@@ -1,7 +1,8 @@
-//! Discrete light choices: a fit that knows which coordinate picks a light beats one that takes it for a number (4.3.5).
+//! Discrete light choices: a fit that knows which coordinate picks a light beats one that takes it for a number
+//! (4.3.5).
 //!
-//! Many lights as in figure 4.15: random intensities, each falling off with the distance to its own nearest point, every
-//! fourth half hidden. The first two coordinates are a point on the light, the third picks one of the lights.
+//! Many lights as in figure 4.15: random intensities, each falling off with the distance to its own nearest point,
+//! every fourth half hidden. The first two coordinates are a point on the light, the third picks one of the lights.
 
 use crate::cv_support::*;
 use noisefloor::Error;
@@ -69,8 +70,8 @@ fn ratios(count: usize, n: usize, repetitions: usize) -> [Ratio; 2] {
     errors.map(|errors| rmse_ratio(&errors, &plain))
 }
 
-/// At 1024 samples, upper ends of the 95 % intervals: .45, .55 and .95 of the mean's error with 4, 16 and 64 lights, and
-/// below the lower end for the plain basis.
+/// At 1024 samples, upper ends of the 95 % intervals: .45, .55 and .95 of the mean's error with 4, 16 and 64 lights,
+/// and below the lower end for the plain basis.
 #[test]
 fn slices_beat_the_plain_basis() {
     for (count, limit) in [(4, 0.45), (16, 0.55), (64, 0.95)] {

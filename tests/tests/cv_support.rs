@@ -178,8 +178,8 @@ fn gaussians(dims: usize, count: usize, u: &[f64]) -> Vec<f64> {
     (0..count).map(component).collect()
 }
 
-/// The design matrix of a configuration, slices included, and its penalties: 4^(degree - 1) times the number of columns of
-/// that degree, from their definitions.
+/// The design matrix of a configuration, slices included, and its penalties: 4^(degree - 1) times the number of columns
+/// of that degree, from their definitions.
 pub fn design(config: &Config, u: &[f64]) -> Design {
     let sliced = config.slices > 1;
     let dims = config.dims - usize::from(sliced);

@@ -1,7 +1,8 @@
 //! Which estimators are exactly unbiased, and whether standard errors say the truth.
 //!
-//! Seeds are fixed. A z-test here is two-sided at |z| < 4.75, probability 2e-6; with fewer than 50 of them, the chance that any
-//! fails by chance was below 1e-4 when the seed was chosen. Settings are such that least squares fails the same test by far.
+//! Seeds are fixed. A z-test here is two-sided at |z| < 4.75, probability 2e-6; with fewer than 50 of them, the chance
+//! that any fails by chance was below 1e-4 when the seed was chosen. Settings are such that least squares fails the
+//! same test by far.
 
 use crate::cv_support::*;
 use noisefloor::control_variate::{
@@ -199,8 +200,8 @@ fn biased_ones_are_detected() {
     detect("skipped samples", skipped, listing.integral);
 }
 
-/// The bias of the robust estimate stays below .13 of the plain mean's error at 8 samples, on the nine integrands, and below
-/// .15 on all. 4,000 repetitions know it within .016.
+/// The bias of the robust estimate stays below .13 of the plain mean's error at 8 samples, on the nine integrands, and
+/// below .15 on all. 4,000 repetitions know it within .016.
 #[test]
 fn robust_bias_is_small() {
     for (set, limit) in [(integrands::nine(), 0.13), (integrands::all(), 0.15)] {
@@ -222,9 +223,9 @@ fn robust_bias_is_small() {
 }
 
 /// The mean of std_error^2 over the true squared error at 64 samples, order 2, on smooth and discontinuous integrands:
-/// at least .75, and at most 1.3 n / (n - 1 - k) for k functions, 3.5 for a descent, which does not know how far it got.
-/// Leave-one-out residuals are larger than the error of the fit to all by that factor: it is what few samples need to
-/// be covered, and 1 where there are many. 2,000 repetitions know the ratio within 7 % (95 %).
+/// at least .75, and at most 1.3 n / (n - 1 - k) for k functions, 3.5 for a descent, which does not know how far it
+/// got. Leave-one-out residuals are larger than the error of the fit to all by that factor: it is what few samples need
+/// to be covered, and 1 where there are many. 2,000 repetitions know the ratio within 7 % (95 %).
 #[test]
 fn standard_errors_are_calibrated() {
     for estimator in ESTIMATORS {
@@ -260,9 +261,9 @@ fn standard_errors_are_calibrated() {
     }
 }
 
-/// Two standard errors around the estimate hold the integral about as often as around the plain mean of the same samples:
-/// of all integrands, orders and counts at most one in twenty is .055 below, none .13. 1,000 repetitions know a share within
-/// .02 (95 %). Rare bright samples, which a fit sees as seldom as the mean, are left out.
+/// Two standard errors around the estimate hold the integral about as often as around the plain mean of the same
+/// samples: of all integrands, orders and counts at most one in twenty is .055 below, none .13. 1,000 repetitions know
+/// a share within .02 (95 %). Rare bright samples, which a fit sees as seldom as the mean, are left out.
 #[test]
 fn two_standard_errors_cover() {
     for estimator in ESTIMATORS {

@@ -1,5 +1,5 @@
-//! What docs/minibatch.md and docs/tiles.md say in words of any table, shard, shuffle and tile, held against random ones. What needs a
-//! slow model or statistics is in the other tests of tables and tiles.
+//! What docs/minibatch.md and docs/tiles.md say in words of any table, shard, shuffle and tile, held against random
+//! ones. What needs a slow model or statistics is in the other tests of tables and tiles.
 
 use crate::table_support::{saved, table};
 use noisefloor::minibatch::shuffle;
@@ -32,8 +32,8 @@ fn fraction() -> impl Strategy<Value = f32> {
 proptest! {
     #![proptest_config(cases(1000))]
 
-    /// minibatch.md: p_i = (1 - d) q_i / sum q + d / N are probabilities, and the weight 1 / (N p_i) is at most 1 / d, drawn
-    /// independently or stratified.
+    /// minibatch.md: p_i = (1 - d) q_i / sum q + d / N are probabilities, and the weight 1 / (N p_i) is at most 1 / d,
+    /// drawn independently or stratified.
     #[test]
     fn probabilities_sum_to_one(q in prop::collection::vec(importance(), 1..400), fraction in fraction(), seed in any::<u64>()) {
         let (table, items) = (table(&q, fraction), q.len());
@@ -55,7 +55,8 @@ proptest! {
         }
     }
 
-    /// minibatch.md: sums do not depend on the order of updates of different items, and only ratios of importances count.
+    /// minibatch.md: sums do not depend on the order of updates of different items, and only ratios of importances
+    /// count.
     #[test]
     fn order_and_unit_of_importances_do_not_matter(
         q in prop::collection::vec(prop_oneof![4 => 1e-6_f32..1e6, 1 => Just(0.0)], 2..300),
@@ -146,8 +147,8 @@ fn walk<'a>(tile: &'a Tile<'a>, [x, y, frame, index]: [u32; 4], path: &[u32]) ->
 proptest! {
     #![proptest_config(cases(1000))]
 
-    /// tiles.md: x and y modulo `size`, any 32-bit values, negative ones as C converts them; in every domain, frame and sample,
-    /// those beyond the tile's too. What is drawn is a multiple of 2^-24 in [0, 1).
+    /// tiles.md: x and y modulo `size`, any 32-bit values, negative ones as C converts them; in every domain, frame and
+    /// sample, those beyond the tile's too. What is drawn is a multiple of 2^-24 in [0, 1).
     #[test]
     fn tile_draws_wrap(
         shape in shapes(), place in any::<[u32; 4]>(), turns in any::<[i32; 2]>(), small in any::<bool>(),
@@ -168,8 +169,8 @@ proptest! {
         prop_assert!(u.iter().all(|u| (0.0..1.0).contains(u) && (u * 16_777_216.0).fract() == 0.0), "{:?}", u);
     }
 
-    /// tiles.md, what is unbiased: over the pixels, the sets of a domain's first `spp` samples are those of the tile, so that the
-    /// mean of any estimate is exactly the tile's.
+    /// tiles.md, what is unbiased: over the pixels, the sets of a domain's first `spp` samples are those of the tile,
+    /// so that the mean of any estimate is exactly the tile's.
     #[test]
     fn domains_are_toroidal_shifts(shape in shapes(), frame in any::<u32>(), keys in prop::collection::vec(any::<u32>(), 0..3), seed in any::<u64>()) {
         let bytes = noise(shape, seed);

@@ -1,5 +1,5 @@
-//! What docs/mis.md, docs/choosing.md, docs/control_variates.md and docs/shared_fits.md say in words of any samples, held against random
-//! ones. What needs a slow model or statistics is in the other tests of those services.
+//! What docs/mis.md, docs/choosing.md, docs/control_variates.md and docs/shared_fits.md say in words of any samples,
+//! held against random ones. What needs a slow model or statistics is in the other tests of those services.
 
 use crate::cv_support::*;
 use crate::mis_support::Sample;
@@ -70,7 +70,8 @@ proptest! {
         prop_assert_eq!(here, Recommendation { config, ..there });
     }
 
-    /// control_variates.md: estimates are in the unit of f, whose sign does not matter, within 1e-5: in batches and streams.
+    /// control_variates.md: estimates are in the unit of f, whose sign does not matter, within 1e-5: in batches and
+    /// streams.
     #[test]
     fn estimates_scale_with_f(estimator in prop::sample::select(ESTIMATORS.to_vec()), dims in 1..4_usize, n in 12..60_usize, factor in -100..100_i32, seed in any::<u64>()) {
         let config = config(dims, 2, estimator);
@@ -91,7 +92,8 @@ proptest! {
         }
     }
 
-    /// shared_fits.md: but for the robust choice a pixel's own samples never shape its correction, and their order never matters.
+    /// shared_fits.md: but for the robust choice a pixel's own samples never shape its correction, and their order
+    /// never matters.
     #[test]
     fn a_pixel_does_not_see_itself(
         estimator in 0..3_usize, width in 1..10_usize, height in 1..10_usize, n in 1..5_usize, order in 1..3_usize, in_order in any::<bool>(), seed in any::<u64>(),

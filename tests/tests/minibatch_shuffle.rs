@@ -27,8 +27,8 @@ fn positions_wrap_around() {
     assert!(shuffle(9, u32::MAX, u32::MAX - 1) < u32::MAX);
 }
 
-/// Each element at each position equally often, over 100,000 seeds; the rows and columns of counts have fixed sums, so the
-/// statistic has (n - 1)^2 degrees of freedom. At significance 1e-4.
+/// Each element at each position equally often, over 100,000 seeds; the rows and columns of counts have fixed sums, so
+/// the statistic has (n - 1)^2 degrees of freedom. At significance 1e-4.
 #[test]
 fn positions_are_uniform() {
     const SEEDS: u64 = 100_000;

@@ -1,7 +1,7 @@
 //! Optimal MIS gradients: which are unbiased, how biased the others are, and what they gain.
 //!
-//! Seeds are fixed. Each z-test, and each comparison of errors, is at significance 1e-5. `cargo test --test noisefloor minibatch_statistics:: -- --nocapture` prints
-//! what is measured.
+//! Seeds are fixed. Each z-test, and each comparison of errors, is at significance 1e-5.
+//! `cargo test --test noisefloor minibatch_statistics:: -- --nocapture` prints what is measured.
 
 use noisefloor::minibatch::Gradient;
 use noisefloor::minibatch::importance::{self, Split};
@@ -98,7 +98,8 @@ fn classification() {
                  J = 10 balance {b:.3}, plain {p:.3}, ridge {r:.3}"
             );
             assert!(ridge.is_below(0.9, balance) && ridge.is_below(0.9, one), "{steps} steps, batch {batch}");
-            // Two standard errors, significance .03: the plain solve's errors have heavy tails, so their mean is known badly.
+            // Two standard errors, significance .03: the plain solve's errors have heavy tails, so their mean is known
+            // badly.
             assert!(batch > 20 || plain.value > ridge.value + 2.0 * plain.standard_error, "{steps} steps");
         }
     }

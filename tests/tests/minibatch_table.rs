@@ -55,7 +55,8 @@ fn updates_in_order() {
     table.update(&[], &[], 0.5).unwrap();
 }
 
-/// Sums beyond the range of their integers that would wrap around to numbers within it: five blocks of .9 times the range.
+/// Sums beyond the range of their integers that would wrap around to numbers within it: five blocks of .9 times the
+/// range.
 #[test]
 fn sums_do_not_wrap_around() {
     let (items, range) = (80, 2f32.powi(18));

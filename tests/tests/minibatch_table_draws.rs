@@ -1,7 +1,7 @@
 //! How often a table draws each item, and with which weight, against the ideal probabilities in f64.
 //!
-//! Seeds are fixed. Each chi-square test has 1e7 draws, with few items 1e6, and is at significance 1e-4; stratified draws, which vary less, are
-//! tested for too much only.
+//! Seeds are fixed. Each chi-square test has 1e7 draws, with few items 1e6, and is at significance 1e-4; stratified
+//! draws, which vary less, are tested for too much only.
 
 use crate::table_support::{families, ideal, table};
 use noisefloor::rng::Rng;

@@ -53,8 +53,9 @@ fn batches_are_unbiased() {
             assert!(z.abs() < Z_LIMIT, "{name}, {way}: z = {z:.2}");
         }
         println!("{name}: variance {:.4}, stratified {:.4}", plain.variance(), stratified.variance());
-        // Stratified estimates are sums of independent terms, none of more variance than the plain one's. 50,000 values: the
-        // ratio's standard error is .6 % for normal values, 1 % for a kurtosis of 8, so 3 % is three of them at least.
+        // Stratified estimates are sums of independent terms, none of more variance than the plain one's. 50,000
+        // values: the ratio's standard error is .6 % for normal values, 1 % for a kurtosis of 8, so 3 % is three of
+        // them at least.
         assert!(stratified.variance() < 1.03 * plain.variance(), "{name}");
     }
 }
@@ -86,7 +87,8 @@ fn distinct_batches_are_unbiased() {
                 assert!(z.abs() < Z_LIMIT, "{name}, {batch} of {items}: z = {z:.2}");
                 let ratio = distinct.variance() / plain.variance();
                 println!("{name}, {batch} of {items}: z {z:.2}, variance {ratio:.3} of that with replacement");
-                // 6,700 values or more: a ratio's standard error is 1.7 % for normal values, 3.2 % for a kurtosis of 8: 1.2 is six of them.
+                // 6,700 values or more: a ratio's standard error is 1.7 % for normal values, 3.2 % for a kurtosis of 8:
+                // 1.2 is six of them.
                 assert!(ratio < 1.2, "{name}, {batch} of {items}: {ratio}");
                 assert!(batch < items / 2 || ratio < 0.9, "{name}, {batch} of {items}: {ratio}");
             }
@@ -142,7 +144,8 @@ fn shards_are_unbiased() {
             let z = if frequency.variance() > 0.0 { frequency.z(expected) } else { 0.0 };
             assert!(z.abs() < Z_LIMIT, "fraction {fraction}, shard {k}: {} {expected}", frequency.mean());
         }
-        // With a share of 1e-8 the first shard is hardly ever drawn: with fraction 0 only its parts' weights can be checked.
+        // With a share of 1e-8 the first shard is hardly ever drawn: with fraction 0 only its parts' weights can be
+        // checked.
         if fraction > 0.0 {
             let z = moments.z(mean);
             println!("fraction {fraction}: {} {mean}, z {z:.2}", moments.mean());

@@ -1,7 +1,9 @@
-//! Pinned batches, to the bit: `tests/vectors/table.txt`, which a C test reads too and draws with the vector unit's code.
+//! Pinned batches, to the bit: `tests/vectors/table.txt`, which a C test reads too and draws with the vector unit's
+//! code.
 //!
 //! A change of any figure is a change of every training run: rewrite the file with
-//! `NOISEFLOOR_WRITE_VECTORS=1 cargo test -p noisefloor-tests --test noisefloor minibatch_table_vectors::`, and say why in CHANGELOG.md.
+//! `NOISEFLOOR_WRITE_VECTORS=1 cargo test -p noisefloor-tests --test noisefloor minibatch_table_vectors::`, and say why
+//! in CHANGELOG.md.
 
 use crate::table_support::{Owned, memory, saved};
 use noisefloor::rng::Rng;

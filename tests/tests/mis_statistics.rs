@@ -51,9 +51,9 @@ fn balance_and_progressive_are_unbiased() {
     }
 }
 
-/// The known defect of a public implementation: it adds sum alpha for every round but skips the samples whose value is 0,
-/// which should take their alpha p / S away again. As contributions, which carry their own part of alpha, samples of value 0
-/// have mean 0 over the techniques: leaving them out costs variance alone.
+/// The known defect of a public implementation: it adds sum alpha for every round but skips the samples whose value is
+/// 0, which should take their alpha p / S away again. As contributions, which carry their own part of alpha, samples of
+/// value 0 have mean 0 over the techniques: leaving them out costs variance alone.
 #[test]
 fn samples_of_value_zero_count() {
     let problem = &problems()[3];
@@ -198,7 +198,8 @@ fn contributions_have_the_variance_of_theory() {
     }
 }
 
-/// The mean squared error at R = 64 rounds, against theory: never below the optimum, and not above the balance heuristic.
+/// The mean squared error at R = 64 rounds, against theory: never below the optimum, and not above the balance
+/// heuristic.
 #[test]
 fn estimated_weights_reach_most_of_the_gain() {
     let rounds = 64;

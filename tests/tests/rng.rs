@@ -119,8 +119,8 @@ fn below_is_unbiased() {
     assert_eq!(rng.below(1), 0);
 }
 
-/// Generators of neighbouring seeds, and of seeds that differ in one high bit, must not follow one another: the correlation
-/// of n pairs of uniforms has standard deviation 1 / sqrt(n).
+/// Generators of neighbouring seeds, and of seeds that differ in one high bit, must not follow one another: the
+/// correlation of n pairs of uniforms has standard deviation 1 / sqrt(n).
 #[test]
 fn neighbouring_seeds_are_uncorrelated() {
     let n = 20_000;

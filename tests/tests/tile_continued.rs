@@ -1,6 +1,7 @@
 //! Beyond the tile's samples: the error of a pixel's estimate, against random samples and Owen-scrambled Sobol points.
 //!
-//! The figures are the report's (chapter `analytic`); `cargo test -p noisefloor-tests --test noisefloor tile_continued:: -- --nocapture` prints them too.
+//! The figures are the report's (chapter `analytic`);
+//! `cargo test -p noisefloor-tests --test noisefloor tile_continued:: -- --nocapture` prints them too.
 
 use noisefloor::tile::Tile;
 use noisefloor_tests::continued::{Errors, TIMES, counts, kinds, measure, tiles};

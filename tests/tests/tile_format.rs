@@ -129,8 +129,8 @@ fn each_error() {
     assert_eq!(error(&sealed(changed(8, 0))), Error::Corrupt);
     assert_eq!(error(&changed(12, good[12] ^ 1)), Error::Corrupt);
     assert_eq!(error(&changed(good.len() - 1, good[good.len() - 1] ^ 128)), Error::Corrupt);
-    // Fields that make no sense, though the checksum is right: header length, payload length, size, spp, frames, dims, bits,
-    // flags, reserved, and text behind its end.
+    // Fields that make no sense, though the checksum is right: header length, payload length, size, spp, frames, dims,
+    // bits, flags, reserved, and text behind its end.
     for at in [10, 16, 23, 32, 34, 36, 38, 39, 43, 44, 47, 127] {
         let refused = error(&sealed(changed(at, good[at] ^ 9)));
         assert!(matches!(refused, Error::Corrupt | Error::Length), "byte {at}: {refused:?}");

@@ -1,7 +1,9 @@
-//! The shipped tiles' dimensions of several domains, those beyond the tile's own among them: uniform, and jointly independent.
+//! The shipped tiles' dimensions of several domains, those beyond the tile's own among them: uniform, and jointly
+//! independent.
 //!
-//! All randomness is in the seeds of the scramble, which are fixed. Each seed is another place of the tile and another shift, so that one
-//! sample of one pixel is an independent draw for each, and needs no pixels that may resemble each other.
+//! All randomness is in the seeds of the scramble, which are fixed. Each seed is another place of the tile and another
+//! shift, so that one sample of one pixel is an independent draw for each, and needs no pixels that may resemble each
+//! other.
 
 use noisefloor::tile::{Builtin, Sampler, Tile};
 use noisefloor_tests::statistics::chi_square;
@@ -70,7 +72,8 @@ fn every_number_is_uniform_over_the_shifts() {
     }
 }
 
-/// Each pair of numbers of different domains, in eight by eight cells: dependence of any kind shows, correlation among it.
+/// Each pair of numbers of different domains, in eight by eight cells: dependence of any kind shows, correlation among
+/// it.
 #[test]
 fn numbers_of_different_domains_are_independent_in_pairs() {
     for (name, tile) in tiles() {
@@ -88,8 +91,8 @@ fn numbers_of_different_domains_are_independent_in_pairs() {
     }
 }
 
-/// The further numbers, the third and the fourth, of three domains at once, in halves: 64 cells. Pairs may be independent where all together
-/// are not.
+/// The further numbers, the third and the fourth, of three domains at once, in halves: 64 cells. Pairs may be
+/// independent where all together are not.
 #[test]
 fn further_numbers_of_three_domains_are_independent_jointly() {
     for (name, tile) in tiles() {

@@ -40,7 +40,8 @@ fn pixels_repeat() {
     }
 }
 
-/// In a domain or another run of frames each pixel's first samples are those of some pixel of the tile, each pixel's once.
+/// In a domain or another run of frames each pixel's first samples are those of some pixel of the tile, each pixel's
+/// once.
 #[test]
 fn domains_and_frames_are_the_tile_elsewhere() {
     for progressive in [false, true] {
@@ -190,7 +191,8 @@ fn fill_gives_the_same_bits() {
     assert_eq!(fill(&[], 5, 5, 5, &mut []), Ok(()));
 }
 
-/// Samples that share their hashes are the samples drawn one by one: of each kind of tile, from any first index, to beyond the tile's.
+/// Samples that share their hashes are the samples drawn one by one: of each kind of tile, from any first index, to
+/// beyond the tile's.
 #[test]
 fn samples_of_a_pixel_give_the_same_bits() {
     for (spp, dims, bits, progressive) in [
@@ -246,8 +248,9 @@ fn further_dimensions_are_others() {
     }
 }
 
-/// Of a shipped tile: in every pixel and domain each further number has one sample in each stratum, and over the pixels each sample
-/// is in each stratum equally often (chi-square with 15 degrees of freedom; the 32 limits of 4.5 together fail one time in 9,000).
+/// Of a shipped tile: in every pixel and domain each further number has one sample in each stratum, and over the pixels
+/// each sample is in each stratum equally often (chi-square with 15 degrees of freedom; the 32 limits of 4.5 together
+/// fail one time in 9,000).
 #[test]
 fn further_dimensions_are_stratified() {
     let tile = Builtin::Size128Spp16Dims2.tile().unwrap();

@@ -1,6 +1,7 @@
 //! That domains are unrelated, and what is unbiased over what.
 //!
-//! Seeds are fixed. Each test states the probability that it fails by chance; all statistics are two-sided normal deviates, at
+//! Seeds are fixed. Each test states the probability that it fails by chance; all statistics are two-sided normal
+//! deviates, at
 //! |z| < 4.75 (2e-6) unless it says otherwise.
 
 use noisefloor::tile::{Sampler, Shape, Tile};
@@ -24,9 +25,11 @@ fn domains<'a>(root: Sampler<'a>) -> Vec<Sampler<'a>> {
     all
 }
 
-/// Correlation of every pair of 37 domains over the pixels of a tile of noise, coordinate by coordinate: 2,664 deviates.
+/// Correlation of every pair of 37 domains over the pixels of a tile of noise, coordinate by coordinate: 2,664
+/// deviates.
 ///
-/// Their squares sum to a chi-square; two domains at the same place of the tile, of chance 666 / 131072, would fail the test too.
+/// Their squares sum to a chi-square; two domains at the same place of the tile, of chance 666 / 131072, would fail the
+/// test too.
 #[test]
 fn domains_are_uncorrelated() {
     let bytes = noise(Shape { size: 128, spp: 1, dims: 2, frames: 1, bits: 16, progressive: false }, 21);
@@ -55,10 +58,11 @@ fn domains_are_uncorrelated() {
     assert!(squares.z(1.0).abs() < Z_LIMIT, "{} {}", squares.mean(), squares.z(1.0));
 }
 
-/// Joint histograms of the stratum of a sample in one domain and in another, over pixels and samples, for tiles whose sample
-/// j always lies in stratum j, and for the whole pixel and each octave of a progressive tile: 80 deviates.
+/// Joint histograms of the stratum of a sample in one domain and in another, over pixels and samples, for tiles whose
+/// sample j always lies in stratum j, and for the whole pixel and each octave of a progressive tile: 80 deviates.
 ///
-/// Each pixel contributes permutations, so a statistic of k strata is `k / (k - 1)` times a chi-square of `(k - 1)^2` degrees.
+/// Each pixel contributes permutations, so a statistic of k strata is `k / (k - 1)` times a chi-square of `(k - 1)^2`
+/// degrees.
 #[test]
 fn samples_of_two_domains_meet_at_random() {
     for (spp, progressive) in [(4, false), (16, false), (16, true)] {
@@ -97,9 +101,10 @@ fn samples_of_two_domains_meet_at_random() {
     }
 }
 
-/// As above for what follows the tile: strata of sample pairs of two domains over indices and pixels. A run of 256 indices is a
-/// net in either domain, so only the pairing is at random; neighbouring indices are paired alike, which the count of pixels
-/// (each its own) makes up for: the mean over 64 pairs of domains of each cell, against its own spread.
+/// As above for what follows the tile: strata of sample pairs of two domains over indices and pixels. A run of 256
+/// indices is a net in either domain, so only the pairing is at random; neighbouring indices are paired alike, which
+/// the count of pixels (each its own) makes up for: the mean over 64 pairs of domains of each cell, against its own
+/// spread.
 #[test]
 fn continued_samples_of_two_domains_cover_the_product() {
     let bytes = noise(Shape { size: 64, spp: 1, dims: 2, frames: 1, bits: 16, progressive: false }, 23);
@@ -141,7 +146,8 @@ fn estimate(sampler: Sampler<'_>, n: u32, f: fn([f32; 2]) -> f64) -> f64 {
     (0..n).map(|index| f(sampler.moved(0, 0, index).draw())).sum::<f64>() / f64::from(n)
 }
 
-/// The mean over all toroidal shifts of a tile, that is over its pixels, of any domain's estimate is the tile's own mean, exactly.
+/// The mean over all toroidal shifts of a tile, that is over its pixels, of any domain's estimate is the tile's own
+/// mean, exactly.
 #[test]
 fn over_all_shifts_the_mean_is_the_tiles() {
     let bytes = ordered(16, 4, false, 24);
@@ -175,8 +181,8 @@ fn over_random_shifts_the_mean_is_the_tiles() {
     }
 }
 
-/// Scrambled, an estimate has no bias at all, even from a tile whose values are all wrong, within or beyond its spp, in the root
-/// or in a child, in one pixel or in one that each seed draws at random: 72 deviates over 5,000 seeds.
+/// Scrambled, an estimate has no bias at all, even from a tile whose values are all wrong, within or beyond its spp, in
+/// the root or in a child, in one pixel or in one that each seed draws at random: 72 deviates over 5,000 seeds.
 #[test]
 fn scrambled_estimates_are_unbiased() {
     let shape = Shape { size: 32, spp: 4, dims: 2, frames: 1, bits: 16, progressive: false };
@@ -211,8 +217,8 @@ fn scrambled_estimates_are_unbiased() {
     }
 }
 
-/// Two scrambled domains are unrelated: products of their numbers average to the product of the averages, over 20,000 seeds
-/// in one pixel of a constant tile, where nothing else is random: 12 deviates.
+/// Two scrambled domains are unrelated: products of their numbers average to the product of the averages, over 20,000
+/// seeds in one pixel of a constant tile, where nothing else is random: 12 deviates.
 #[test]
 fn scrambled_domains_are_uncorrelated() {
     let bytes = file(Shape { size: 1, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false }, |_, _, _, _| 0.3);

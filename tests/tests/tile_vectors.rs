@@ -1,7 +1,8 @@
 //! Pinned draws, to the bit: `tests/vectors/tile.txt` and the tiles beside it, which the C tests read too.
 //!
 //! A change of any figure is a change of every renderer's images: rewrite the files with
-//! `NOISEFLOOR_WRITE_VECTORS=1 cargo test -p noisefloor-tests --test noisefloor tile_vectors::`, and say why in CHANGELOG.md.
+//! `NOISEFLOOR_WRITE_VECTORS=1 cargo test -p noisefloor-tests --test noisefloor tile_vectors::`, and say why in
+//! CHANGELOG.md.
 
 use noisefloor::tile::{Sampler, Shape, Tile};
 use noisefloor_tests::random::SplitMix64;

@@ -1,7 +1,8 @@
 //! Pinned outputs, to the bit: `tests/vectors/cv.txt`, which the C tests read too.
 //!
 //! A change of any figure is a change of the library's results: regenerate the file with
-//! `NOISEFLOOR_WRITE_VECTORS=1 cargo test -p noisefloor-tests --test noisefloor vectors::`, and say why in CHANGELOG.md.
+//! `NOISEFLOOR_WRITE_VECTORS=1 cargo test -p noisefloor-tests --test noisefloor vectors::`, and say why in
+//! CHANGELOG.md.
 
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{

@@ -1,5 +1,5 @@
-// What the header says of threads: any number may read an object, one at a time may write it. Without arguments the rules are
-// kept; `accumulator`, `table`, `generator` and `tile` each break one, which a race detector must find.
+// What the header says of threads: any number may read an object, one at a time may write it. Without arguments the
+// rules are kept; `accumulator`, `table`, `generator` and `tile` each break one, which a race detector must find.
 #include "noisefloor.h"
 
 #include <cstdio>
@@ -67,8 +67,8 @@ public:
     nf_cv_accumulator *state = nullptr;
 };
 
-// Threads share out the tiles of an image, beforehand: a counter of tiles would put their work in an order, and hide races. Each
-// tile has an accumulator; they are merged in the order of the tiles.
+// Threads share out the tiles of an image, beforehand: a counter of tiles would put their work in an order, and hide
+// races. Each tile has an accumulator; they are merged in the order of the tiles.
 bool render(bool shared)
 {
     nf_tile blue;

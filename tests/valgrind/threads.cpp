@@ -1,5 +1,5 @@
-// What the header says of threads: each has an accumulator of its own, and one merges them when all are done. The first argument
-// `race` lets all threads add to one accumulator instead, which a race detector must find.
+// What the header says of threads: each has an accumulator of its own, and one merges them when all are done. The first
+// argument `race` lets all threads add to one accumulator instead, which a race detector must find.
 #include "noisefloor.h"
 
 #include <cstdio>

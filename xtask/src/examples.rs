@@ -113,7 +113,8 @@ pub(crate) fn shards(archive: &Path) -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// README.md's first block of code is integrate.c, letter by letter, and the two commands that do all the set-up follow.
+/// README.md's first block of code is integrate.c, letter by letter, and the two commands that do all the set-up
+/// follow.
 pub(crate) fn readme() -> Result<Outcome> {
     let read = |name: &str| fs::read_to_string(paths::root().join(name)).with_context(|| format!("cannot read {name}"));
     let (text, program) = (read("README.md")?, read("examples_c/integrate.c")?);

@@ -1,5 +1,5 @@
-//! The tests of `examples_c/fit_polynomial.c` and `examples_c/fit_image.cpp`: short runs, and what they say to bad options and
-//! bad files.
+//! The tests of `examples_c/fit_polynomial.c` and `examples_c/fit_image.cpp`: short runs, and what they say to bad
+//! options and bad files.
 
 use crate::c_tests::output;
 use crate::test::Outcome;

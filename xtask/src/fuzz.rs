@@ -100,8 +100,8 @@ fn cargo_fuzz() -> Command {
     command
 }
 
-/// Builds all targets but `fsot_files`, not instrumented and not optimised, and runs the committed inputs through them: seeds, and what
-/// once crashed.
+/// Builds all targets but `fsot_files`, not instrumented and not optimised, and runs the committed inputs through them:
+/// seeds, and what once crashed.
 pub(crate) fn replay() -> Result<Outcome> {
     let (folder, target) = (paths::root().join("fuzz"), paths::target().join("fuzz"));
     let mut build = run::cargo();

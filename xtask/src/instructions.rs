@@ -81,7 +81,8 @@ fn count_case(program: &Path, line: &str) -> Result<Count> {
     })
 }
 
-/// Fails where a function takes more instructions than the committed report says. With another compiler they are only told.
+/// Fails where a function takes more instructions than the committed report says. With another compiler they are only
+/// told.
 pub(crate) fn check(archive: &Path) -> Result<Outcome> {
     if let Some(missing) = tools::packages(&PACKAGES)? {
         return Ok(Outcome::NotRun(missing));

@@ -19,8 +19,8 @@ pub(crate) fn build() -> Result<PathBuf> {
     one_object(&paths::target().join("release/libnoisefloor.a"), &paths::output(), "")
 }
 
-/// Makes cargo's archive `raw` into one of a single object, in the folder `output`. The binutils' names begin with `prefix`:
-/// nothing, or a target.
+/// Makes cargo's archive `raw` into one of a single object, in the folder `output`. The binutils' names begin with
+/// `prefix`: nothing, or a target.
 pub(crate) fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<PathBuf> {
     let tool = |name: &str| format!("{prefix}{name}");
     fs::create_dir_all(output).with_context(|| format!("cannot create {}", output.display()))?;

@@ -5,6 +5,7 @@ mod c_tests;
 mod demo;
 mod embree;
 mod examples;
+mod fill;
 mod fit;
 mod fuzz;
 mod header;
@@ -18,8 +19,6 @@ mod paths;
 mod povray;
 mod povray_patched;
 mod python;
-#[cfg(test)]
-mod quotes;
 mod release;
 mod report;
 mod run;
@@ -50,6 +49,8 @@ enum Command {
     Povray(povray_patched::Options),
     /// Measure errors and times of everything, and write docs/report: chapters with their tables, plots and pictures
     Report(report::Options),
+    /// Write the report's figures into the documents
+    Fill,
     /// Run every test; installs what it needs when it may
     Test(test::Options),
     /// Run the fuzz targets for a while; inputs that crash go to fuzz/regressions
@@ -66,7 +67,8 @@ enum Command {
     Library,
     /// Build target/noisefloor/embree_harness, the path tracer on Embree with the thesis's scenes
     Embree,
-    /// Build for other targets, run the C tests and a bare-metal program there under QEMU, and write docs/report/sizes.md
+    /// Build for other targets, run the C tests and a bare-metal program there under QEMU, and write
+    /// docs/report/sizes.md
     Targets(targets::Options),
     /// Make the tiles in core/tiles with fsot, or check that they are what it makes
     Tiles(tiles::Options),
@@ -77,6 +79,7 @@ fn main() -> ExitCode {
         Command::Demo(options) => demo::run(&options),
         Command::Povray(options) => povray_patched::run(&options),
         Command::Report(options) => report::run(&options),
+        Command::Fill => fill::run(),
         Command::Test(options) => test::run(&options),
         Command::Fuzz(options) => fuzz::run(&options),
         Command::Header => header::write(),

@@ -1,5 +1,5 @@
-//! `examples_c/pathtracer.cpp`, compiled as its reader would, and run: what it lists, what it promises of its options, and what it
-//! refuses.
+//! `examples_c/pathtracer.cpp`, compiled as its reader would, and run: what it lists, what it promises of its options,
+//! and what it refuses.
 
 mod options;
 

@@ -1,4 +1,5 @@
-//! The header's rules for threads under ThreadSanitizer, which watches the library too: it is built again, instrumented.
+//! The header's rules for threads under ThreadSanitizer, which watches the library too: it is built again,
+//! instrumented.
 
 use crate::c_tests::{STRICT, output};
 use crate::test::Outcome;
@@ -53,7 +54,8 @@ pub(crate) fn run() -> Result<Outcome> {
 
 /// How an instrumented program starts.
 struct Start {
-    /// ThreadSanitizer wants some addresses for itself, and those of a system that spreads its addresses widely may be in the way.
+    /// ThreadSanitizer wants some addresses for itself, and those of a system that spreads its addresses widely may be
+    /// in the way.
     fixed_addresses: bool,
 }
 
@@ -101,8 +103,8 @@ fn instrumented() -> Result<[PathBuf; 2]> {
     let mut cargo = run::cargo();
     cargo.args(["rustc", "--quiet", "--release", "--package", "noisefloor-capi", "--crate-type", "staticlib"]);
     cargo.args(["--target", &host, "--target-dir"]).arg(&folder);
-    // A stable compiler refuses sanitizers otherwise. The precompiled part of Rust's core is not instrumented, which it refuses too;
-    // nearly all that is used of it is inlined, and so is.
+    // A stable compiler refuses sanitizers otherwise. The precompiled part of Rust's core is not instrumented, which it
+    // refuses too; nearly all that is used of it is inlined, and so is.
     cargo.env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-Zsanitizer=thread -Cunsafe-allow-abi-mismatch=sanitizer");
     run::check(cargo.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1"))?;
     let archive = library::one_object(&folder.join(host).join("release/libnoisefloor.a"), &folder, "")?;

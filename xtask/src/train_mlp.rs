@@ -10,7 +10,8 @@ use std::path::Path;
 
 const DATA: &str = "examples_c/data/digits";
 const MODES: &str = "uniform,importance,adaptive,balance,omis";
-/// After 15 epochs, of 20 seeds: at most .15 (adaptive, SGD; at a rate of .05 it is erratic and reaches .24). After none: about .9.
+/// After 15 epochs, of 20 seeds: at most .15 (adaptive, SGD; at a rate of .05 it is erratic and reaches .24). After
+/// none: about .9.
 const ERROR_BOUND: f64 = 0.2;
 
 pub(crate) fn digits(archive: &Path) -> Result<Outcome> {

@@ -1,4 +1,5 @@
-//! The C tests under valgrind's memcheck, and threads under its detectors of races: valgrind also sees what the library, compiled without sanitizers, does.
+//! The C tests under valgrind's memcheck, and threads under its detectors of races: valgrind also sees what the
+//! library, compiled without sanitizers, does.
 
 use crate::test::Outcome;
 use crate::tools::{self, Package};

@@ -1,7 +1,8 @@
-//! What can be told only where integrals and gradients are known exactly: shared fits, tiles beyond their samples, optimal MIS.
-//! `cargo bench --package noisefloor-bench --bench analytic`.
+//! What can be told only where integrals and gradients are known exactly: shared fits, tiles beyond their samples,
+//! optimal MIS. `cargo bench --package noisefloor-bench --bench analytic`.
 //!
-//! Errors, no times: seeds are fixed, so that every run of a build has the same figures, on a busy machine too. Tests assert bounds for what is measured here.
+//! Errors, no times: seeds are fixed, so that every run of a build has the same figures, on a busy machine too. Tests
+//! assert bounds for what is measured here.
 
 mod continued;
 mod gradients;

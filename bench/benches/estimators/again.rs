@@ -29,8 +29,9 @@ pub(crate) fn open(rows: &[Row]) -> Vec<usize> {
     (0..rows.len()).filter(|&index| is_open(&rows[index])).collect()
 }
 
-/// Measures these rows, of one function and sample count, on other samples, whose errors replace the first ones: pooled, a first figure
-/// that was chosen for being near the bound would still count. Times stay those of all settings in turns.
+/// Measures these rows, of one function and sample count, on other samples, whose errors replace the first ones:
+/// pooled, a first figure that was chosen for being near the bound would still count. Times stay those of all settings
+/// in turns.
 pub(crate) fn measure_again(rows: &mut [Row], open: &[usize], function: &Function, seed: u64, effort: Effort) {
     let settings: Vec<Setting> = open.iter().map(|&index| rows[index].result.setting).collect();
     let results = measure(function, &settings, rows[open[0]].n, seed, effort);

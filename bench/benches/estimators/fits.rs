@@ -39,8 +39,8 @@ pub(crate) fn rows() -> Vec<Row> {
     rows
 }
 
-/// Legendre coefficients of the fit: the library's gradient descent, which hands them out, taken to its end. The constant
-/// makes the residuals' mean zero, as least squares does.
+/// Legendre coefficients of the fit: the library's gradient descent, which hands them out, taken to its end. The
+/// constant makes the residuals' mean zero, as least squares does.
 fn coefficients(order: usize, u: &[f32], f: &[f32]) -> Vec<f64> {
     let config = Config { estimator: Estimator::GradientDescent, iterations: 4000, ..Config::new(1, order, 1) };
     let mut slopes = vec![0.0; order];

@@ -102,8 +102,8 @@ impl Light {
     }
 }
 
-/// `count` lights, the third coordinate picks one (figure 4.15): random intensities, each falling off with the distance to
-/// its own nearest point, every fourth half hidden.
+/// `count` lights, the third coordinate picks one (figure 4.15): random intensities, each falling off with the distance
+/// to its own nearest point, every fourth half hidden.
 pub(crate) fn lights(count: usize) -> Function {
     let mut rng = SplitMix64::new(77);
     let lights: Vec<Light> = (0..count)

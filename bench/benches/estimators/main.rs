@@ -1,8 +1,9 @@
 //! Every estimator, basis and order on every integrand, and the convergence plots of chapter 4:
 //! `cargo bench --package noisefloor-bench --bench estimators`.
 //!
-//! Settings take turns on the same samples, eight estimates at a time, so that a busy machine slows all alike. Seeds are
-//! fixed: errors are the same in every run, times are not. Where errors do not tell whether a setting is safe, they are measured again, longer.
+//! Settings take turns on the same samples, eight estimates at a time, so that a busy machine slows all alike. Seeds
+//! are fixed: errors are the same in every run, times are not. Where errors do not tell whether a setting is safe, they
+//! are measured again, longer.
 
 mod again;
 mod convergence;

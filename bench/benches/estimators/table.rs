@@ -66,7 +66,8 @@ fn curves(rows: &[fits::Row]) -> String {
     out
 }
 
-/// What the library recommends for independent samples of one pixel: the order of the default estimator, 0 for the mean.
+/// What the library recommends for independent samples of one pixel: the order of the default estimator, 0 for the
+/// mean.
 fn recommended() -> String {
     let mut out = "dims,n,order\n".to_owned();
     for dims in 1..=16 {

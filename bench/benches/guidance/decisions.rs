@@ -12,7 +12,8 @@ use std::fmt::Write;
 const COST: f64 = 1000.0;
 /// How much worse than the plain mean of the same samples an estimator may be for any integrand.
 const TOLERANCE: f64 = 1.05;
-/// Student's t of 97.5 % for the 7 degrees of freedom of 8 kinds of integrands; more kinds are of `--full`, and nearer to 1.96.
+/// Student's t of 97.5 % for the 7 degrees of freedom of 8 kinds of integrands; more kinds are of `--full`, and nearer
+/// to 1.96.
 const STUDENT: f64 = 2.365;
 
 /// One decision: what is recommended, what was best, and how much worse the first is than the second.
@@ -64,8 +65,8 @@ fn excess(a: &Cell, b: &Cell, times: f64) -> [f64; 3] {
     [middle.exp(), (middle - spread).exp(), (middle + spread).exp()]
 }
 
-/// The recommended kind of samples, or one that stands for it, on which estimators are measured: a tile of 1 sample, continued, is a
-/// Sobol sequence.
+/// The recommended kind of samples, or one that stands for it, on which estimators are measured: a tile of 1 sample,
+/// continued, is a Sobol sequence.
 fn source(says: &Recommendation, stratified: bool, dims: usize, n: usize) -> Source {
     match (stratified, n) {
         (false, _) => Source::Independent,

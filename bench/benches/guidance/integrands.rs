@@ -12,7 +12,8 @@ pub(crate) enum Family {
     Bump,
     /// A product of a factor 1 + a cos(pi u + b) for each coordinate.
     Product,
-    /// A sum of such functions of two coordinates each (of one, if there are only two), each of less weight: a path's vertices.
+    /// A sum of such functions of two coordinates each (of one, if there are only two), each of less weight: a path's
+    /// vertices.
     Parts,
 }
 
@@ -160,7 +161,8 @@ impl Part {
     }
 }
 
-/// The distribution of sum a_i (u_i - 1/2) for independent uniform u_i, as a Fourier series of a period that has room for all of it.
+/// The distribution of sum a_i (u_i - 1/2) for independent uniform u_i, as a Fourier series of a period that has room
+/// for all of it.
 struct Series {
     /// Half of the sum's range.
     reach: f64,

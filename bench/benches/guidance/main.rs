@@ -1,8 +1,9 @@
 //! Which sampler and which estimator, and of which order: `cargo bench --package noisefloor-bench --bench guidance`.
 //!
-//! Small images of many integrands, whose parameters change slowly from pixel to pixel or jump at edges, are estimated from
-//! each kind of samples by each estimator. Errors are mean squares over those of the plain mean of as many independent
-//! samples, which are known exactly. The report's chapter on samplers has the tables; `core/src/recommend.rs` holds decisions from them.
+//! Small images of many integrands, whose parameters change slowly from pixel to pixel or jump at edges, are estimated
+//! from each kind of samples by each estimator. Errors are mean squares over those of the plain mean of as many
+//! independent samples, which are known exactly. The report's chapter on samplers has the tables;
+//! `core/src/recommend.rs` holds decisions from them.
 
 mod decisions;
 mod integrands;

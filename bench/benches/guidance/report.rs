@@ -28,7 +28,8 @@ pub(crate) fn summary(cell: &Cell, cells: &[Cell]) -> Summary {
     };
     let same = |other: &&Cell| (other.dims, other.n, other.method) == (cell.dims, cell.n, cell.method);
     let times: Vec<f64> = cells.iter().filter(same).flat_map(|other| other.ns.iter().copied()).collect();
-    // A filtered image has few independent pixels, and a logarithm of few is too small: first the mean of what is alike.
+    // A filtered image has few independent pixels, and a logarithm of few is too small: first the mean of what is
+    // alike.
     let filtered: Vec<f64> = cell
         .errors
         .chunks(CHANNELS)

@@ -70,7 +70,8 @@ impl Method {
             methods.push(Self { kind: Kind::Windows, order: 2, regressed: 4 });
         }
         let terms = |method: &Self| Config::new(method.regressed, method.order, CHANNELS).terms();
-        // Most of the time would go there: overlapping windows, where many samples gain nothing by them, and many functions.
+        // Most of the time would go there: overlapping windows, where many samples gain nothing by them, and many
+        // functions.
         let large = |method: &Self| match method.kind {
             Kind::Windows => n >= 64 || terms(method).is_ok_and(|terms| terms > 30),
             _ => terms(method).is_ok_and(|terms| terms > 100) && n >= 64,
@@ -228,8 +229,8 @@ impl Place {
         errors.collect()
     }
 
-    /// Nanoseconds per sample of each method, one image of each family after the other: shared fits take longer where they leave
-    /// bright pixels out.
+    /// Nanoseconds per sample of each method, one image of each family after the other: shared fits take longer where
+    /// they leave bright pixels out.
     fn times(self, methods: &[Method], subjects: &[Subject]) -> Result<Vec<Vec<f64>>> {
         let mut all = vec![Vec::new(); methods.len()];
         for &subject in subjects {
@@ -258,8 +259,8 @@ impl Place {
 /// How often drawing is timed.
 const ROUNDS: usize = 3;
 
-/// Adds the cells of all kinds of samples. Errors come from all threads, image by image, and are the same on any number of them; times
-/// are taken after that, when nothing else runs.
+/// Adds the cells of all kinds of samples. Errors come from all threads, image by image, and are the same on any number
+/// of them; times are taken after that, when nothing else runs.
 pub(crate) fn measure(cells: &mut Vec<Cell>, dims: usize, n: usize, extent: Extent) -> Result<()> {
     let (full, place) = (extent == Extent::Full, Place { dims, n, side: side(dims, n) });
     let kinds = Family::ALL.into_iter().flat_map(|family| Variant::ALL.map(|variant| (family, variant)));
@@ -326,7 +327,8 @@ fn score(estimates: &[f64], truth: &[Moments], side: usize, n: usize) -> [f64; 2
     [square(&errors) / variances.iter().sum::<f64>(), filtered]
 }
 
-/// A separable filter, of the pixels that have all its taps in the image: parts of a tile have no opposite borders that match.
+/// A separable filter, of the pixels that have all its taps in the image: parts of a tile have no opposite borders that
+/// match.
 fn filter(image: &[f64], weights: &[f64], side: usize) -> Vec<f64> {
     let rows: Vec<f64> = image.chunks_exact(side).flat_map(|row| along(row, weights)).collect();
     let narrow = side + 1 - weights.len();

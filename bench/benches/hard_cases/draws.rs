@@ -1,5 +1,5 @@
-//! How the samples of each hard case are made. Each position alone is uniform over the cube, so that the plain mean is right
-//! on average; it is how positions lie to each other, or the values, that is hard.
+//! How the samples of each hard case are made. Each position alone is uniform over the cube, so that the plain mean is
+//! right on average; it is how positions lie to each other, or the values, that is hard.
 
 use noisefloor_tests::integrands::Integrand;
 use noisefloor_tests::random::SplitMix64;

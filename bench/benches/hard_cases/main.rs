@@ -1,7 +1,8 @@
 //! The numerical hard cases: what each gives, its error, and the plain mean's beside it.
 //! `cargo bench --package noisefloor-bench --bench hard_cases`.
 //!
-//! The cases are those that the tests assert bounds for; here they are measured. Through the Rust API, whose errors have names.
+//! The cases are those that the tests assert bounds for; here they are measured. Through the Rust API, whose errors
+//! have names.
 
 mod draws;
 mod errors;

@@ -110,7 +110,8 @@ fn row(case: &Case, repetitions: usize, seed: u64) -> ErrorRow {
     }
 }
 
-/// Weights of densities that overflow when squared or added: their sum's distance from 1, beside plain `f32` arithmetic.
+/// Weights of densities that overflow when squared or added: their sum's distance from 1, beside plain `f32`
+/// arithmetic.
 fn weights(tables: &mut Tables) {
     let cases: [(&str, [f32; 3]); 4] = [
         ("densities 1e-38, 1 and 1e38", [1e-38, 1.0, 1e38]),

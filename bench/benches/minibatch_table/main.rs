@@ -1,9 +1,10 @@
 //! A training step's sampling, 64 draws and 64 updates, by tables of importances and by their public peers:
 //! `cargo bench --package noisefloor-bench --bench minibatch_table`.
 //!
-//! All methods take turns, a chunk of steps at a time, so that a busy machine slows all alike. "Warm" steps follow each other at
-//! once; before each "cold" draw and update 64 MB are read, as a training step does. Prints medians; with `--output FOLDER` also
-//! writes every chunk's times (times.csv), the tables' sizes (items.csv) and what many updates did to them (drift.csv).
+//! All methods take turns, a chunk of steps at a time, so that a busy machine slows all alike. "Warm" steps follow each
+//! other at once; before each "cold" draw and update 64 MB are read, as a training step does. Prints medians; with
+//! `--output FOLDER` also writes every chunk's times (times.csv), the tables' sizes (items.csv) and what many updates
+//! did to them (drift.csv).
 
 mod drift;
 mod methods;

@@ -37,8 +37,8 @@ pub(crate) struct Chunks<'a> {
     pub(crate) cold: Option<&'a Memory>,
 }
 
-/// Chunks of steps by each method in turn. A chunk's figures are the medians of its steps': a step during which another program
-/// ran does not count. As many steps before them, which are not timed, bring the table back into the caches.
+/// Chunks of steps by each method in turn. A chunk's figures are the medians of its steps': a step during which another
+/// program ran does not count. As many steps before them, which are not timed, bring the table back into the caches.
 pub(crate) fn measure(methods: &mut [Box<dyn Method>], chunks: &Chunks) -> Vec<Times> {
     let mut rng = Rng::seed(2);
     let mut times: Vec<Times> = methods.iter().map(|_| Times::default()).collect();

@@ -1,7 +1,7 @@
 //! Samplers beside each other: `cargo bench --package noisefloor-bench --bench samplers`.
 //!
-//! Errors of an image's pixels, raw and filtered, over those of independent samples; nanoseconds of a draw; images of an error and
-//! its mean spectrum. What the report's chapter on samplers shows, as CSV and PFM.
+//! Errors of an image's pixels, raw and filtered, over those of independent samples; nanoseconds of a draw; images of
+//! an error and its mean spectrum. What the report's chapter on samplers shows, as CSV and PFM.
 
 mod quality;
 mod sampler;

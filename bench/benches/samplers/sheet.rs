@@ -15,8 +15,8 @@ const SHOWN: [(Sampler, &str); 5] = [
     (Sampler::Tile, "tile"),
 ];
 
-/// NAME-SPP.pfm: in the first channel the error over its standard deviation with one independent sample, in the second the mean power of
-/// errors, relative to white noise of as many samples, frequency zero in the middle.
+/// NAME-SPP.pfm: in the first channel the error over its standard deviation with one independent sample, in the second
+/// the mean power of errors, relative to white noise of as many samples, frequency zero in the middle.
 pub(crate) fn write(counts: &[usize], integrands: usize, write: impl Fn(&str, &[u8]) -> Result<()>) -> Result<()> {
     eprintln!("images");
     let shown = Integrand::random(Family::HalfSpace, 2, 0.2, 7, 1);

@@ -119,8 +119,8 @@ impl Extent {
         (chunks, size)
     }
 
-    /// Which chunks a method sees: targets are the robust estimator's; what takes longest shows its time and about how it errs, and
-    /// the grid of `estimators` has it too.
+    /// Which chunks a method sees: targets are the robust estimator's; what takes longest shows its time and about how
+    /// it errs, and the grid of `estimators` has it too.
     fn step(self, method: &Method) -> usize {
         match method.name {
             name if name == MEAN.name || name == ROBUST.name => 1,

@@ -84,9 +84,9 @@ pub unsafe extern "C" fn nf_cv_accumulator_init(
     })())
 }
 
-/// Adds n samples, laid out as for nf_cv_estimate(): all of them or, on an error, none. Several at a time are cheaper. In
-/// single precision an accumulator holds 2^22 samples: NF_ERR_RANGE beyond. A configuration with `controls`
-/// needs nf_cv_accumulator_add_with_controls().
+/// Adds n samples, laid out as for nf_cv_estimate(): all of them or, on an error, none. Several at a time are cheaper.
+/// In single precision an accumulator holds 2^22 samples: NF_ERR_RANGE beyond. A configuration with `controls` needs
+/// nf_cv_accumulator_add_with_controls().
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_add(
     accumulator: *mut nf_cv_accumulator,
@@ -119,8 +119,8 @@ pub unsafe extern "C" fn nf_cv_accumulator_add_with_controls(
     })())
 }
 
-/// Adds all samples of `other`, which stays as it is. NF_ERR_MISMATCH if the configurations differ, NF_ERR_RANGE if both
-/// are the same object. Like every function of an accumulator, NF_ERR_STATE for memory that holds none.
+/// Adds all samples of `other`, which stays as it is. NF_ERR_MISMATCH if the configurations differ, NF_ERR_RANGE if
+/// both are the same object. Like every function of an accumulator, NF_ERR_STATE for memory that holds none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_merge(
     accumulator: *mut nf_cv_accumulator,

@@ -7,8 +7,8 @@ use crate::status::*;
 use noisefloor_core::Error;
 use noisefloor_core::control_variate::{self as cv, Config, Samples};
 
-/// Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL, out
-/// of range or unsupported, or a size no memory has.
+/// Bytes of workspace that nf_cv_estimate() and its variants need for n samples; 0 for a configuration that is NULL,
+/// out of range or unsupported, or a size no memory has.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_workspace_size(config: *const nf_cv_config, n: usize) -> usize {
     // SAFETY: the caller's pointer, checked there for NULL and alignment.

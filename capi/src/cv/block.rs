@@ -19,21 +19,23 @@ pub struct nf_cv_image {
     pub height: u32,
     /// Images of the same pixels at other times, which share fits; 0 means 1.
     pub frames: u32,
-    /// Width and height of the windows that pixels share a fit in; 0 means 8. At most 1024 pixels in all frames together.
+    /// Width and height of the windows that pixels share a fit in; 0 means 8. At most 1024 pixels in all frames
+    /// together.
     pub window: u32,
     /// Pixels from one window to the next, at most `window`; 0 means half of it. Where windows overlap corrections are
     /// averaged. The time of an estimate goes with the square of window / stride.
     pub stride: u32,
-    /// 1 if the pixels have no places: all of the same surface, in all frames, then share one fit, whatever `window` and
-    /// `stride` say. With `surfaces` they are at most 1024.
+    /// 1 if the pixels have no places: all of the same surface, in all frames, then share one fit, whatever `window`
+    /// and `stride` say. With `surfaces` they are at most 1024.
     pub unordered: u32,
-    /// A number for each pixel, or NULL: only pixels with the same number share a fit. What shows the same material under
-    /// a similar normal and depth, for example. Must not depend on the pixel's own samples, or no estimator is unbiased.
+    /// A number for each pixel, or NULL: only pixels with the same number share a fit. What shows the same material
+    /// under a similar normal and depth, for example. Must not depend on the pixel's own samples, or no estimator is
+    /// unbiased.
     pub surfaces: *const u32,
     /// `channels` numbers for each pixel, or NULL: what its values are divided by before a fit and multiplied by after
-    /// it, such as its albedo. Finite and not negative; 0 counts as 1. Must not depend on the pixel's own samples either.
-    /// For textures, where all samples of a pixel see one albedo: with defocus or motion blur they can raise the error.
-    /// Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
+    /// it, such as its albedo. Finite and not negative; 0 counts as 1. Must not depend on the pixel's own samples
+    /// either. For textures, where all samples of a pixel see one albedo: with defocus or motion blur they can raise
+    /// the error. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
     pub factors: *const f32,
 }
 
@@ -49,15 +51,15 @@ pub unsafe extern "C" fn nf_cv_block_workspace_size(config: *const nf_cv_config,
 /// nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to the other pixels'
 /// samples (4.3.6), even from one sample in each.
 ///
-/// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance of
-/// their estimates across the pixels, whatever stratification the samples have; unbiased as the block grows.
+/// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance
+/// of their estimates across the pixels, whatever stratification the samples have; unbiased as the block grows.
 /// NF_CV_K_FOLD lets two halves of the pixels choose for each other, NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both
-/// exactly unbiased, if the pixels' samples are independent. NF_CV_K_FOLD leaves groups of 2 or 3 pixels at their mean; one
-/// fit to 2 to 12 pixels can be a fifth worse than the mean. Where fits explain little, NF_CV_ROBUST and NF_CV_K_FOLD leave
-/// pixels far brighter or darker than all others out of the fits to others.
+/// exactly unbiased, if the pixels' samples are independent. NF_CV_K_FOLD leaves groups of 2 or 3 pixels at their mean;
+/// one fit to 2 to 12 pixels can be a fifth worse than the mean. Where fits explain little, NF_CV_ROBUST and
+/// NF_CV_K_FOLD leave pixels far brighter or darker than all others out of the fits to others.
 ///
-/// With one sample, or `stratified`, std_error is the spread of the pixels' estimates about their linear trend: an upper
-/// bound where the signal varies otherwise.
+/// With one sample, or `stratified`, std_error is the spread of the pixels' estimates about their linear trend: an
+/// upper bound where the signal varies otherwise.
 ///
 /// NF_ERR_UNSUPPORTED for other estimators, controls, skipping and luminance ratio; else as nf_cv_estimate().
 #[unsafe(no_mangle)]
@@ -86,8 +88,8 @@ pub unsafe extern "C" fn nf_cv_block_estimate(
     })())
 }
 
-/// Bytes of workspace that nf_cv_image_estimate() needs for n samples in each pixel; 0 as for nf_cv_workspace_size(), and
-/// for an image that is NULL, has no pixels, or has windows that nf_cv_image does not allow.
+/// Bytes of workspace that nf_cv_image_estimate() needs for n samples in each pixel; 0 as for nf_cv_workspace_size(),
+/// and for an image that is NULL, has no pixels, or has windows that nf_cv_image does not allow.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_workspace_size(
     config: *const nf_cv_config,
@@ -104,8 +106,8 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
     }
 }
 
-/// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of the
-/// same window and surface share a fit. Fits also follow integrands that change across the window.
+/// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of
+/// the same window and surface share a fit. Fits also follow integrands that change across the window.
 ///
 /// NF_ERR_RANGE also for an image without pixels, for windows that nf_cv_image does not allow and for negative factors,
 /// NF_ERR_NOT_FINITE for factors that are not finite.

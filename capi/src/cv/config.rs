@@ -17,7 +17,8 @@ pub const NF_CV_LEAST_SQUARES: u32 = 1;
 pub const NF_CV_LEAVE_ONE_OUT: u32 = 2;
 /// Estimator: each fold corrected by a robust fit to the other folds (two folds: 4.2.6). Exactly unbiased.
 pub const NF_CV_K_FOLD: u32 = 3;
-/// Estimator: the fit by gradient descent on its own samples (Alg. 2). Biased, below 32 samples more than least squares.
+/// Estimator: the fit by gradient descent on its own samples (Alg. 2). Biased, below 32 samples more than least
+/// squares.
 pub const NF_CV_GRADIENT_DESCENT: u32 = 4;
 /// Estimator: each sample corrected by a fit to those before it (4.30). Exactly unbiased after every sample.
 pub const NF_CV_INCREMENTAL: u32 = 5;
@@ -81,9 +82,9 @@ pub struct nf_cv_config {
     /// NF_BASIS_*
     pub basis: u32,
     /// 1 if the samples are stratified (a tile, Sobol points, a lattice), 0 if independent. With 1, one pixel's
-    /// estimate is the plain mean, but for NF_CV_LEAST_SQUARES and NF_CV_GRADIENT_DESCENT: what corrects some samples by
-    /// fits to others undoes what is even about all, and their errors do not show it. Fits shared by pixels correct all
-    /// the same, and take their std_error from the pixels' spread.
+    /// estimate is the plain mean, but for NF_CV_LEAST_SQUARES and NF_CV_GRADIENT_DESCENT: what corrects some samples
+    /// by fits to others undoes what is even about all, and their errors do not show it. Fits shared by pixels correct
+    /// all the same, and take their std_error from the pixels' spread.
     pub stratified: u32,
     /// If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (figure 4.15).
     /// Each takes a term: at most 136 less binomial(dims - 1 + order, order), those of the other coordinates, and

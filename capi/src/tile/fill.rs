@@ -6,8 +6,8 @@ use crate::convert;
 use crate::status::*;
 use noisefloor_core::tile::Sampler;
 
-/// How many numbers nf_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside 1..4, or
-/// memory has not that many.
+/// How many numbers nf_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
+/// 1..4, or memory has not that many.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_sampler_fill_len(
     dims: *const u32,
@@ -23,11 +23,10 @@ pub unsafe extern "C" fn nf_sampler_fill_len(
 
 /// Draws for many pixels and samples at once, for renderers that work on whole images. The same bits as single draws.
 ///
-/// samplers[domains]: one for each domain, all at the first pixel and the first sample.
-/// dims[domains]: how many numbers to draw from each, 1..4.
-/// width, height: how many pixels, to the right and down. samples: how many samples of each, by ascending index.
-/// u[height][width][samples][sum of dims]: what the samplers draw there, one after the other; len numbers are there, at least
-/// nf_sampler_fill_len.
+/// samplers[domains]: one for each domain, all at the first pixel and the first sample. dims[domains]: how many numbers
+/// to draw from each, 1..4. width, height: how many pixels, to the right and down. samples: how many samples of each,
+/// by ascending index. u[height][width][samples][sum of dims]: what the samplers draw there, one after the other; len
+/// numbers are there, at least nf_sampler_fill_len.
 ///
 /// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: dims, or sizes that memory cannot have; NF_ERR_MEMORY: len.
 #[unsafe(no_mangle)]

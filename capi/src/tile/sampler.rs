@@ -7,9 +7,9 @@ use noisefloor_core::tile::{Sampler, State};
 /// One sample of one pixel: a small struct, passed and copied by value. Drawing does not change it.
 ///
 /// A sampler stands for a point of a cube with as many dimensions as are asked for. There are no dimension counters:
-/// each decision of a path (lens, light, bounce, ...) has a domain, a child of the sampler by a key of its own. A domain's
-/// numbers depend on nothing but tile, pixel, frame, index and the keys that led to it, so that any sample can be drawn
-/// in any order, on any thread, and at any time. Made by nf_sampler_pixel; the fields are not to be written.
+/// each decision of a path (lens, light, bounce, ...) has a domain, a child of the sampler by a key of its own. A
+/// domain's numbers depend on nothing but tile, pixel, frame, index and the keys that led to it, so that any sample can
+/// be drawn in any order, on any thread, and at any time. Made by nf_sampler_pixel; the fields are not to be written.
 #[repr(C)]
 #[allow(non_camel_case_types)]
 #[derive(Clone, Copy)]
@@ -32,9 +32,9 @@ pub struct nf_sampler {
 
 /// Sample `index` of pixel (x, y) in `frame`, any values of each: pixels repeat with the tile's size.
 ///
-/// The first tile->spp samples are the tile's. Those that follow continue with a scrambled Sobol sequence in their place; none is
-/// repeated. Frames 0 to tile->frames - 1 are the tile's; each later run of them is the tile at another place, unrelated to it.
-/// For an image that is refined over time leave the frame and count the index.
+/// The first tile->spp samples are the tile's. Those that follow continue with a scrambled Sobol sequence in their
+/// place; none is repeated. Frames 0 to tile->frames - 1 are the tile's; each later run of them is the tile at another
+/// place, unrelated to it. For an image that is refined over time leave the frame and count the index.
 ///
 /// tile: it must outlive the sampler and stay where it is. All draws of a sampler without a tile, NULL, are 0.
 #[unsafe(no_mangle)]
@@ -57,8 +57,9 @@ fn later(tile: *const nf_tile, x: u32, y: u32, frame: u32, index: u32) -> nf_sam
     sampler(tile, state.unwrap_or_default())
 }
 
-/// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent. Keys mean
-/// something only among the children of one parent: a bounce's light may have the same key as the next bounce's.
+/// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent.
+/// Keys mean something only among the children of one parent: a bounce's light may have the same key as the next
+/// bounce's.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_sampler_domain(sampler: nf_sampler, key: u32) -> nf_sampler {
     self::sampler(sampler.tile, state(&sampler).domain(key))
@@ -66,10 +67,10 @@ pub extern "C" fn nf_sampler_domain(sampler: nf_sampler, key: u32) -> nf_sampler
 
 /// An independent version of the sampler for each seed but 0; seed 0 changes nothing.
 ///
-/// It is the tile at another place, with all values of a dimension shifted, modulo 1, by a hash of seed and domain. Over random
-/// seeds every value is uniform, so an estimate is unbiased, as far as a hash of 32 bits is random (the tile's own values are
-/// fixed, and an estimate from them is what it is). The shift costs quality: where good images are wanted, and not exact
-/// unbiasedness, take another frame instead. Children of a scrambled sampler are scrambled.
+/// It is the tile at another place, with all values of a dimension shifted, modulo 1, by a hash of seed and domain.
+/// Over random seeds every value is uniform, so an estimate is unbiased, as far as a hash of 32 bits is random (the
+/// tile's own values are fixed, and an estimate from them is what it is). The shift costs quality: where good images
+/// are wanted, and not exact unbiasedness, take another frame instead. Children of a scrambled sampler are scrambled.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_sampler_scramble(sampler: nf_sampler, seed: u32) -> nf_sampler {
     self::sampler(sampler.tile, state(&sampler).scramble(seed))
@@ -77,16 +78,17 @@ pub extern "C" fn nf_sampler_scramble(sampler: nf_sampler, seed: u32) -> nf_samp
 
 /// Writes the first `dims` coordinates, 1..4, of the sampler's point to u[dims]: each in [0, 1), a multiple of 2^-24.
 ///
-/// Up to tile->dims they are optimised together, and more come from other places of the tile; fewer are the first of those. If
-/// the tile has at least two dims and spp, and is not progressive, each further number of its samples is stratified, and the
-/// third of a tile of two dims with those two: draw a choice, or a time, after the two numbers that it goes with. Two further
-/// numbers that belong together are better drawn from a domain of their own.
-/// Writes nothing if dims is out of range or u is NULL.
+/// Up to tile->dims they are optimised together, and more come from other places of the tile; fewer are the first of
+/// those. If the tile has at least two dims and spp, and is not progressive, each further number of its samples is
+/// stratified, and the third of a tile of two dims with those two: draw a choice, or a time, after the two numbers that
+/// it goes with. Two further numbers that belong together are better drawn from a domain of their own. Writes nothing
+/// if dims is out of range or u is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_sampler_draw(sampler: nf_sampler, dims: u32, u: *mut f32) {
     // SAFETY: passed on to the caller.
     unsafe {
-        // What is drawn most often, and fast: two stored values of the root's first frame. Apart from all else, so that it needs few registers.
+        // What is drawn most often, and fast: two stored values of the root's first frame. Apart from all else, so that
+        // it needs few registers.
         if dims == 2 {
             let root = (sampler.domain, sampler.frame, sampler.scrambled) == (0, 0, 0);
             if !root || !stored::<2>(&nf_sampler { domain: 0, frame: 0, scrambled: 0, ..sampler }, u) {
@@ -132,7 +134,8 @@ unsafe fn stored<const N: usize>(sampler: &nf_sampler, u: *mut f32) -> bool {
     sampler.draw_stored(&mut drawn) && put(u, drawn)
 }
 
-/// Writes the numbers, four at once: a caller that reads them as one vector would have to wait for four writes to reach the cache.
+/// Writes the numbers, four at once: a caller that reads them as one vector would have to wait for four writes to reach
+/// the cache.
 #[inline(always)]
 fn put<const N: usize>(u: &mut convert::Room<[f32; N]>, drawn: [f32; N]) -> bool {
     match drawn[..] {
@@ -170,8 +173,8 @@ pub(crate) fn state(sampler: &nf_sampler) -> State {
 
 /// The struct, written so that a caller's copy of it is fast.
 ///
-/// Compilers copy the 24 bytes as 16 and 8. A load can take what was just stored from the store that wrote all of it, but
-/// has to wait for several to reach the cache: 15 ns where the struct was written field by field.
+/// Compilers copy the 24 bytes as 16 and 8. A load can take what was just stored from the store that wrote all of it,
+/// but has to wait for several to reach the cache: 15 ns where the struct was written field by field.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn sampler(tile: *const nf_tile, State { domain, index, x, y, frame, scrambled }: State) -> nf_sampler {
@@ -180,7 +183,8 @@ fn sampler(tile: *const nf_tile, State { domain, index, x, y, frame, scrambled }
     let first = u64::from(domain) | u64::from(index) << 32;
     let last = u64::from(x) | u64::from(y) << 16 | u64::from(frame) << 32 | u64::from(scrambled) << 48;
     let mut out = core::mem::MaybeUninit::<nf_sampler>::uninit();
-    // SAFETY: every x86-64 has SSE2. The two stores write all 24 bytes: pointer, domain and index, then four 16-bit numbers.
+    // SAFETY: every x86-64 has SSE2. The two stores write all 24 bytes: pointer, domain and index, then four 16-bit
+    // numbers.
     unsafe {
         _mm_storeu_si128(out.as_mut_ptr().cast(), _mm_set_epi64x(first as i64, tile.expose_provenance() as i64));
         out.as_mut_ptr().cast::<u64>().add(2).write(last);

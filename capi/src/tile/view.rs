@@ -17,7 +17,8 @@ pub const NF_TILE_128_16SPP_2D_PROGRESSIVE: u32 = 4;
 pub const NF_TILE_128_1SPP_4D: u32 = 5;
 /// nf_tile_builtin: 128 x 128 pixels, 4 samples, 4 dims.
 pub const NF_TILE_128_4SPP_4D: u32 = 6;
-/// nf_tile_builtin: 128 x 128 pixels, 1 sample, 2 dims, for images reconstructed with a Gaussian filter (figures 5.21, 5.22).
+/// nf_tile_builtin: 128 x 128 pixels, 1 sample, 2 dims, for images reconstructed with a Gaussian filter (figures 5.21,
+/// 5.22).
 pub const NF_TILE_128_1SPP_2D_GAUSSIAN: u32 = 7;
 /// nf_tile_builtin: 128 x 128 pixels, 4 samples, 2 dims, for images reconstructed with a Gaussian filter.
 pub const NF_TILE_128_4SPP_2D_GAUSSIAN: u32 = 8;
@@ -47,8 +48,8 @@ const _: () = {
 
 /// A view of a tile: sample points for a square of pixels that repeats over the image (chapter 5; docs/tiles.md).
 ///
-/// A complete struct, to be copied freely; it owns nothing. Made by nf_tile_builtin or nf_tile_from_bytes. The fields are to
-/// be read, never written; all zero is a valid tile, whose samples are all 0.
+/// A complete struct, to be copied freely; it owns nothing. Made by nf_tile_builtin or nf_tile_from_bytes. The fields
+/// are to be read, never written; all zero is a valid tile, whose samples are all 0.
 #[repr(C)]
 #[allow(non_camel_case_types)]
 #[derive(Clone, Copy)]

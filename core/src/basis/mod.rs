@@ -1,7 +1,7 @@
 //! The functions a regression combines: everything but the constant (4.22).
 //!
-//! Every function is centred, its integral over `[0, 1]^d` is exactly zero, and scaled to unit variance. The integral of
-//! a fitted sum is therefore its constant coefficient (4.23), and a ridge penalty means the same for every basis.
+//! Every function is centred, its integral over `[0, 1]^d` is exactly zero, and scaled to unit variance. The integral
+//! of a fitted sum is therefore its constant coefficient (4.23), and a ridge penalty means the same for every basis.
 //!
 //! - [`Family::Legendre`]: products of orthonormal shifted Legendre polynomials, of total degree 1 to `order`.
 //!   Monomials span the same space but at (dims, order) = (3, 7) their normal equations have condition 5e10; these 2.

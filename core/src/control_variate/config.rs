@@ -13,8 +13,8 @@ use crate::error::Error;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Estimator {
-    /// A soft mixture of the plain mean and two ridge fits, weighted by their errors on samples that they have not seen:
-    /// the default. Never noticeably worse than the mean; slightly biased at low sample counts.
+    /// A soft mixture of the plain mean and two ridge fits, weighted by their errors on samples that they have not
+    /// seen: the default. Never noticeably worse than the mean; slightly biased at low sample counts.
     #[default]
     Robust,
     /// The fit's residuals on its own samples (Alg. 1). Cheapest; biased O(1/n); needs several samples per term.
@@ -143,13 +143,13 @@ pub struct Config {
     /// The functions that are combined.
     pub basis: Family,
     /// Whether the samples are stratified (a tile, Sobol points, a lattice) instead of independent. Of one pixel all
-    /// estimators are then the mean but [`Estimator::LeastSquares`] and [`Estimator::GradientDescent`]: what corrects some
-    /// samples by fits to others undoes what is even about all, and the errors that decide how far do not show it. Fits
-    /// shared by pixels correct all the same, and take their standard errors from the pixels' spread.
+    /// estimators are then the mean but [`Estimator::LeastSquares`] and [`Estimator::GradientDescent`]: what corrects
+    /// some samples by fits to others undoes what is even about all, and the errors that decide how far do not show it.
+    /// Fits shared by pixels correct all the same, and take their standard errors from the pixels' spread.
     pub stratified: bool,
-    /// If above 1, the last coordinate picks one of this many equally likely alternatives (figure 4.15). Each takes a term:
-    /// at most 136 less binomial(dims - 1 + order, order), the terms of the other coordinates, less `controls`. That is 130
-    /// at 3 dims and order 2, of which up to 43 have functions of their own as well.
+    /// If above 1, the last coordinate picks one of this many equally likely alternatives (figure 4.15). Each takes a
+    /// term: at most 136 less binomial(dims - 1 + order, order), the terms of the other coordinates, less `controls`.
+    /// That is 130 at 3 dims and order 2, of which up to 43 have functions of their own as well.
     pub slices: usize,
     /// User-supplied control functions with known integrals (4.18), 0 to 4.
     pub controls: usize,
@@ -162,8 +162,8 @@ pub struct Config {
     pub non_finite: NonFinite,
     /// How channels are treated.
     pub color: Color,
-    /// Folds of [`Estimator::KFold`] and of the streaming robust estimate: 2 to 16; 0 means 4. They are runs of samples in
-    /// the order in which they come.
+    /// Folds of [`Estimator::KFold`] and of the streaming robust estimate: 2 to 16; 0 means 4. They are runs of samples
+    /// in the order in which they come.
     pub folds: usize,
     /// Steps of gradient descent, at most 2^20; 0 means half as many as samples, at least 8 and at most 128.
     pub iterations: usize,

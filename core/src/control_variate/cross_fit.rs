@@ -1,9 +1,10 @@
 //! Estimates from per-fold sums, whose fits are weighted by their errors on folds they have not seen.
 //!
-//! - [`pooled`], robust: between a fit to all folds and the cross-fit, weighted by all held-out errors. The fit to all keeps
-//!   what is even about all samples together, the cross-fit has no bias: where samples lie says how much of each is used.
-//! - [`nested`], K-fold: each fold is corrected by a fit to the others, and weighted by fits that know neither that fold
-//!   nor the one that judges them. Exactly unbiased.
+//! - [`pooled`], robust: between a fit to all folds and the cross-fit, weighted by all held-out errors. The fit to all
+//!   keeps what is even about all samples together, the cross-fit has no bias: where samples lie says how much of each
+//!   is used.
+//! - [`nested`], K-fold: each fold is corrected by a fit to the others, and weighted by fits that know neither that
+//!   fold nor the one that judges them. Exactly unbiased.
 
 use super::config::{Config, Ridge};
 use super::moments::{self, Centred, Moments};
@@ -78,7 +79,8 @@ struct Problem<'p, 'a, R> {
     is_fixed: bool,
 }
 
-/// What is added to the plain mean, robust, of two folds or more; `plain` is the mean and its variance in the sums' units.
+/// What is added to the plain mean, robust, of two folds or more; `plain` is the mean and its variance in the sums'
+/// units.
 pub(crate) fn pooled<R: Real>(
     groups: &Groups<'_, R>,
     config: &Config,
@@ -214,8 +216,8 @@ pub(crate) fn nested<R: Real>(
 }
 
 impl<R: Real> Problem<'_, '_, R> {
-    /// Writes every candidate's coefficients for a training set, zero where there is no sample, and says where its samples
-    /// lie.
+    /// Writes every candidate's coefficients for a training set, zero where there is no sample, and says where its
+    /// samples lie.
     fn fit(
         &self,
         train: &Moments<'_, R>,

@@ -173,8 +173,8 @@ impl<'a, R: Real> Design<'a, R> {
         clear_unused(self.values, self.channels, self.n);
     }
 
-    /// Zeroes control functions that hardly move about their means: what is left is rounding noise, and says nothing about
-    /// the values.
+    /// Zeroes control functions that hardly move about their means: what is left is rounding noise, and says nothing
+    /// about the values.
     fn clear_constant(&mut self, integrals: &[f32]) {
         for (j, &integral) in integrals.iter().enumerate().take(self.columns) {
             let mean = self.column_means.get(j).copied().unwrap_or(R::ZERO).abs();

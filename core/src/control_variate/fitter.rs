@@ -200,8 +200,8 @@ impl<R: Real> Blend<R> {
         total
     }
 
-    /// The variance of the mixture's estimate, which adds `total` to the mean: of what it is made of, and of what its parts
-    /// disagree in.
+    /// The variance of the mixture's estimate, which adds `total` to the mean: of what it is made of, and of what its
+    /// parts disagree in.
     pub(crate) fn variance(&self, design: &Design<'_, R>, total: &PerChannel<R>) -> Option<PerChannel<R>> {
         let n = R::from_usize(design.n);
         let factor = result::press_factor(n);

@@ -1,9 +1,9 @@
 //! Which samples correct which.
 //!
-//! Folds are runs of samples in the order they came in: an aligned run of 2^m points of a Sobol sequence, in its own or in
-//! Gray code order, and of a tile is as even as the whole, and folds of other lengths are nearly. Of folds that took every
-//! k-th sample each would be one side of the cube, and what corrects it a fit to the other sides. Independent samples are
-//! the same in every order.
+//! Folds are runs of samples in the order they came in: an aligned run of 2^m points of a Sobol sequence, in its own or
+//! in Gray code order, and of a tile is as even as the whole, and folds of other lengths are nearly. Of folds that took
+//! every k-th sample each would be one side of the cube, and what corrects it a fit to the other sides. Independent
+//! samples are the same in every order.
 
 /// One of the folds of `n` samples that are all there: a run, all of the same length but for one sample.
 #[derive(Clone, Copy)]
@@ -36,8 +36,8 @@ const RUN: u64 = 4;
 
 /// The fold of sample `index` of a stream whose end nobody knows.
 ///
-/// Runs grow with the stream: with P the power of two next to the number of folds, the first 4 P samples are P runs of 4,
-/// the next 4 P samples are P runs too, the next 8 P, and so on, and runs go to the folds in turn.
+/// Runs grow with the stream: with P the power of two next to the number of folds, the first 4 P samples are P runs of
+/// 4, the next 4 P samples are P runs too, the next 8 P, and so on, and runs go to the folds in turn.
 #[inline(always)]
 pub(crate) fn of_stream(index: u64, folds: usize) -> usize {
     let (index, folds) = (index / RUN, folds.max(1) as u64);
@@ -48,8 +48,8 @@ pub(crate) fn of_stream(index: u64, folds: usize) -> usize {
     run.checked_rem(folds).unwrap_or(0) as usize
 }
 
-/// By how many folds those of another stream are moved on before ours get their samples, from the sizes of both: so that
-/// the folds are as even as can be.
+/// By how many folds those of another stream are moved on before ours get their samples, from the sizes of both: so
+/// that the folds are as even as can be.
 pub(crate) fn rotation(folds: usize, ours: impl Fn(usize) -> f64, theirs: impl Fn(usize) -> f64) -> usize {
     let moved = |fold: usize, rotation: usize| (fold + rotation).checked_rem(folds).unwrap_or(0);
     // The sum of the squared sizes, but for what no rotation changes.

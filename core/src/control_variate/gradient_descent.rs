@@ -1,8 +1,8 @@
 //! The fit by gradient descent (Alg. 2, 4.29).
 //!
 //! With orthonormal functions the loss is nearly round, so few steps do. Columns of degree k are scaled by 2^(1-k), so
-//! that the early steps go where functions vary most. A fit that stopped early is a shrunk one: at low sample counts this
-//! is safer than least squares, with no matrix at all.
+//! that the early steps go where functions vary most. A fit that stopped early is a shrunk one: at low sample counts
+//! this is safer than least squares, with no matrix at all.
 
 use super::batch::Plan;
 use super::config::{Config, Estimate, Optimizer};
@@ -35,8 +35,9 @@ pub(crate) fn size(columns: usize, channels: usize) -> usize {
     columns * (channels + 6)
 }
 
-/// Curvatures and gradients below this, in units of the functions' and the values' variance, are taken for rounding noise of
-/// samples that all but coincide, for `f64` and for narrower types: a step of one over the curvature would go anywhere.
+/// Curvatures and gradients below this, in units of the functions' and the values' variance, are taken for rounding
+/// noise of samples that all but coincide, for `f64` and for narrower types: a step of one over the curvature would go
+/// anywhere.
 const FLOOR: [f64; 2] = [1e-6, 1e-2];
 
 /// A least-squares problem whose intercept was eliminated.
@@ -128,9 +129,9 @@ pub(crate) fn estimate<R: Real>(
     Ok(outcome)
 }
 
-/// Improves the coefficients, a row for each channel, step by step, and says what they make of the plain mean and of its
-/// variance. A descent that ends farther from the values than it would without any function, as for a step length of the
-/// caller's, ends at zero: the plain mean.
+/// Improves the coefficients, a row for each channel, step by step, and says what they make of the plain mean and of
+/// its variance. A descent that ends farther from the values than it would without any function, as for a step length
+/// of the caller's, ends at zero: the plain mean.
 #[inline(never)]
 pub(crate) fn descend<R: Real>(
     objective: &impl Objective<R>,
@@ -180,7 +181,8 @@ pub(crate) fn descend<R: Real>(
         }
         objective.gradient(Some(channel), solution, gradient);
         let (mut correction, mut rest) = (R::ZERO, R::ZERO);
-        for (((&b, &g), &mean), &unit) in solution.iter().zip(gradient.iter()).zip(objective.means()).zip(units.iter()) {
+        for (((&b, &g), &mean), &unit) in solution.iter().zip(gradient.iter()).zip(objective.means()).zip(units.iter())
+        {
             correction -= b * mean;
             // The curvature of orthonormal functions is one: the gradient is what the coefficients lack.
             rest += (g * unit) * (unit * mean);
@@ -200,17 +202,18 @@ pub(crate) fn descend<R: Real>(
 fn control_units<R: Real>(objective: &impl Objective<R>, controls: usize, units: &mut [R]) {
     let n = R::from_usize(objective.count());
     for (column, unit) in units.iter_mut().enumerate() {
-                let square = if column < controls { objective.column_square(column) } else { n };
+        let square = if column < controls { objective.column_square(column) } else { n };
         *unit = R::ONE / (square / n).sqrt().or_one();
     }
 }
 
-/// What a sum of squared residuals of a descent is multiplied by to be a variance; None if no residual is left over to tell.
+/// What a sum of squared residuals of a descent is multiplied by to be a variance; None if no residual is left over to
+/// tell.
 ///
 /// As for least squares ([`result::residual_variance`]), with functions that the samples see as orthonormal, and of the
-/// degrees of freedom one power less. What uncertain coefficients add is taken as 2 k times what k columns of a finished fit
-/// would: a descent that stops early is wrong in all of them in the same way. It overstates the error of one that nearly
-/// finished, up to 1.8 times on the test integrands.
+/// degrees of freedom one power less. What uncertain coefficients add is taken as 2 k times what k columns of a
+/// finished fit would: a descent that stops early is wrong in all of them in the same way. It overstates the error of
+/// one that nearly finished, up to 1.8 times on the test integrands.
 fn variance_factor<R: Real>(objective: &impl Objective<R>, units: &[R]) -> Option<R> {
     let freedom = objective.count().checked_sub(objective.columns() + 1).filter(|&freedom| freedom > 0)?;
     let (n, freedom) = (R::from_usize(objective.count()), R::from_usize(freedom));
@@ -248,7 +251,8 @@ impl<R: Real> Descent<R> {
         Self { optimizer: config.optimizer, rate, momentum, smallest: floor::<R>() * deviation }
     }
 
-    /// One step along the negative gradient, of lengths `scales` for gradients in `units`; `bias` holds the powers of Adam's decays so far.
+    /// One step along the negative gradient, of lengths `scales` for gradients in `units`; `bias` holds the powers of
+    /// Adam's decays so far.
     #[inline(always)]
     fn step(
         &self,

@@ -1,7 +1,7 @@
 //! The incremental estimate (4.30): each sample is corrected by fits to the samples before it.
 //!
-//! As no sample shapes its own correction the estimate is exactly unbiased after every sample (4.31). Two ridge fits and
-//! the plain value are weighed by how well they predicted the samples so far, which keeps the early fits, which
+//! As no sample shapes its own correction the estimate is exactly unbiased after every sample (4.31). Two ridge fits
+//! and the plain value are weighed by how well they predicted the samples so far, which keeps the early fits, which
 //! (4.30) never forgets, from doing harm. The fits are renewed after each of the first samples and then each time their
 //! number has grown by a sixteenth: they are always fits to preceding samples.
 

@@ -239,8 +239,8 @@ impl<'a, R: Real> Centred<'a, R> {
         Ok(Some(Self { columns, count, gram, rhs, means, value_means, squares }))
     }
 
-    /// Writes the coefficients of the fit with a ridge of `strength` per sample, a row for each channel, and returns where
-    /// its samples lie, if that is wanted and there are two.
+    /// Writes the coefficients of the fit with a ridge of `strength` per sample, a row for each channel, and returns
+    /// where its samples lie, if that is wanted and there are two.
     #[inline(always)]
     pub(crate) fn solve(
         &self,

@@ -182,7 +182,8 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
             set(&mut residuals, channel, residual.max(0.0));
         }
         let plain_variance = (self.samples > 1).then_some(plain_variance);
-        // With e the first unit vector and x = A^-1 e, the intercept's weights on the samples have squares of sum x'P'P x.
+        // With e the first unit vector and x = A^-1 e, the intercept's weights on the samples have squares of sum x'P'P
+        // x.
         let mut x = [0.0; TERMS];
         if let Some(first) = x.first_mut() {
             *first = 1.0;

@@ -27,25 +27,26 @@ pub(crate) fn plain_variance<R: Real>(design: &Design<'_, R>) -> Option<PerChann
     (design.n > 1).then_some(variance)
 }
 
-/// What a sum of squared deviations of `n` values is divided by to be the variance of their mean; for one, which has none,
-/// still no zero.
+/// What a sum of squared deviations of `n` values is divided by to be the variance of their mean; for one, which has
+/// none, still no zero.
 #[inline(always)]
 pub(crate) fn mean_divisor<R: Real>(n: R) -> R {
     n * (n - R::ONE).max(R::ONE)
 }
 
-/// What a sum of squared leave-one-out residuals of `n` samples, at least two, is multiplied by to be a variance: exact for
-/// the plain mean.
+/// What a sum of squared leave-one-out residuals of `n` samples, at least two, is multiplied by to be a variance: exact
+/// for the plain mean.
 #[inline(always)]
 pub(crate) fn press_factor<R: Real>(n: R) -> R {
     (n - R::ONE) / (n * n * n)
 }
 
-/// The variance of the constant term of a fit of so many columns to `n` samples, from the sum of its squared residuals and
-/// its `eccentricity` ([`Centre`]); None if no residual is left over to tell.
+/// The variance of the constant term of a fit of so many columns to `n` samples, from the sum of its squared residuals
+/// and its `eccentricity` ([`Centre`]); None if no residual is left over to tell.
 ///
-/// For no column that of the plain mean. With f = n - 1 - k degrees of freedom left, residuals of samples that a fit has not
-/// seen are (n - 1) / f times as long, and, as measured on integrands that no fit follows, so is its own error once more.
+/// For no column that of the plain mean. With f = n - 1 - k degrees of freedom left, residuals of samples that a fit
+/// has not seen are (n - 1) / f times as long, and, as measured on integrands that no fit follows, so is its own error
+/// once more.
 pub(crate) fn residual_variance<R: Real>(
     residual: PerChannel<R>,
     columns: usize,

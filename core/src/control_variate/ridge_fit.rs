@@ -12,8 +12,9 @@
 //! where q_i = p_i + m is the column before centring, whose integral is zero. For a fixed L that mean is exactly
 //! unbiased although every sample serves both the fit and the estimate.
 //!
-//! The estimate of the fit to all, mean f - b'm, has the weight 1/n - m'A^-1 p_i on sample i. The sum of (1 - n m'A^-1 p_i)^2
-//! r_i^2 is therefore n^2 times its variance whatever the noise depends on (White 1980; HC3 of MacKinnon and White 1985).
+//! The estimate of the fit to all, mean f - b'm, has the weight 1/n - m'A^-1 p_i on sample i. The sum of (1 - n m'A^-1
+//! p_i)^2 r_i^2 is therefore n^2 times its variance whatever the noise depends on (White 1980; HC3 of MacKinnon and
+//! White 1985).
 
 use super::Config;
 use super::design::Design;

@@ -156,8 +156,8 @@ impl<R: Real> Triangle<'_, R> {
 
     /// Adds a row sqrt(strength penalty_j) e_j for each column with a penalty; `x` is scratch.
     ///
-    /// Where columns depend on each other, a row of the factor is rounding noise with a right-hand side that is not: the
-    /// quotient would be anything. What is noise in a column of the squared length given is therefore zero.
+    /// Where columns depend on each other, a row of the factor is rounding noise with a right-hand side that is not:
+    /// the quotient would be anything. What is noise in a column of the squared length given is therefore zero.
     fn add_penalty(&mut self, penalties: &[R], strength: R, squares: &[R], x: &mut [R]) {
         let noise = R::from_f64(NOISE) * R::EPSILON;
         for (j, &penalty) in penalties.iter().enumerate() {

@@ -291,11 +291,11 @@ impl<R: Real> State<R> {
         }
     }
 
-    /// Adds all samples of another state and its sums, as if they had been added here, up to rounding, where there is one
-    /// fold.
+    /// Adds all samples of another state and its sums, as if they had been added here, up to rounding, where there is
+    /// one fold.
     ///
-    /// The robust estimate and K-fold put the other's folds where they make theirs most even: the same parts merged in the
-    /// same order give the same bits, other splits of the same samples other folds, and estimates as good.
+    /// The robust estimate and K-fold put the other's folds where they make theirs most even: the same parts merged in
+    /// the same order give the same bits, other splits of the same samples other folds, and estimates as good.
     ///
     /// # Errors
     /// [`Error::Mismatch`] if the configurations differ.

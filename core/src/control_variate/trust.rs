@@ -1,18 +1,18 @@
 //! How far a fit is trusted beside the plain mean.
 //!
 //! Least squares alone is not "never worse" than the mean at low sample counts ((4.16) holds in the limit): its worst
-//! RMSE ratio over the test integrands is 17 at 8 samples. A soft mixture of the mean and a few ridge fits, each trusted
-//! by its error on samples it has not seen, is. Three things besides that error tell how far:
+//! RMSE ratio over the test integrands is 17 at 8 samples. A soft mixture of the mean and a few ridge fits, each
+//! trusted by its error on samples it has not seen, is. Three things besides that error tell how far:
 //!
 //! - where the samples' centre lies ([`Centre`]): far from the cube's, a fit extrapolates;
-//! - how far the fit moves the mean ([`surprise`]): a fit that explains the values moves it by about its error, one that
-//!   follows noise by more;
+//! - how far the fit moves the mean ([`surprise`]): a fit that explains the values moves it by about its error, one
+//!   that follows noise by more;
 //! - how few samples there are ([`prior`]).
 
 use crate::real::Real;
 
-/// Trust in a candidate is its error, relative to the mean's, to the power of minus this times the number of samples (of
-/// pixels, where pixels are compared) that judge it.
+/// Trust in a candidate is its error, relative to the mean's, to the power of minus this times the number of samples
+/// (of pixels, where pixels are compared) that judge it.
 pub(crate) const SHARPNESS: f64 = 1.0 / 6.0;
 /// How much the plain mean is trusted before anything is seen, with 1 for all candidates together.
 pub(crate) const PRIOR: f64 = 8.0;
@@ -30,8 +30,8 @@ const USUAL_F: f64 = 0.5;
 /// Trust is divided by the F statistic over the usual one, to this power.
 const DISCOUNT: f64 = 0.8;
 /// The F statistic at which half of what leaving samples out adds to a fit's estimate is used. All of it is unbiased.
-/// Samples that lie far more evenly than independent ones, as those of a Sobol sequence, have a smaller F: their fit has
-/// next to no bias, and what leaving some out adds is error.
+/// Samples that lie far more evenly than independent ones, as those of a Sobol sequence, have a smaller F: their fit
+/// has next to no bias, and what leaving some out adds is error.
 const EVEN_F: f64 = 0.2;
 /// Trust loses this times the square of how far a fit moves the mean, in standard errors of the mean.
 const SURPRISE: f64 = 0.25;

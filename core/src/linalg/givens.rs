@@ -9,7 +9,8 @@ use crate::real::Real;
 use crate::rows::rows;
 
 /// Rotates one row into the factor: `x` has one number for each of the `n` columns, `y` one for each right-hand side.
-/// `rhs` has `n` rows of `y.len()` numbers; `residual` gathers what no coefficient can explain. `x` and `y` are used up.
+/// `rhs` has `n` rows of `y.len()` numbers; `residual` gathers what no coefficient can explain. `x` and `y` are used
+/// up.
 #[inline(always)]
 pub(crate) fn add_row<R: Real>(factor: &mut [R], rhs: &mut [R], residual: &mut [R], x: &mut [R], y: &mut [R]) {
     let n = x.len();

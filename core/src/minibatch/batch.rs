@@ -33,8 +33,8 @@ impl<'a> Batch<'a> {
     /// - `items`: N, the size of the data set, at least 1.
     /// - `techniques`: J in 1..=16.
     /// - `pdf[s * J + j]`: the probability with which technique j draws the item of sample s; over the N items each
-    ///   technique's probabilities sum to 1. Finite, at least 0 and, but for rounding, at most 1; positive for the technique
-    ///   that drew it.
+    ///   technique's probabilities sum to 1. Finite, at least 0 and, but for rounding, at most 1; positive for the
+    ///   technique that drew it.
     /// - `technique[s]`: the one that drew it, below J. n_j is the number of its samples; one that drew nothing has no
     ///   part in the batch, whatever its probabilities.
     ///

@@ -38,8 +38,9 @@ pub const fn gradient_len(techniques: usize, parameters: usize) -> usize {
 ///
 /// Each parameter has the averages of its balance estimate and of its b over the batches so far, in `f32`; what they
 /// share is a [`System`]. With beta = 0 the estimate is that of [`weights`](super::weights()), whose one backward pass
-/// is much cheaper: this is for momentum. The averages' rounding to `f32` is magnified by [`Solver::Plain`] where techniques are
-/// nearly alike: by a part in 50 of the estimate for tables that differ by a part in 100,000. The default ridge does not.
+/// is much cheaper: this is for momentum. The averages' rounding to `f32` is magnified by [`Solver::Plain`] where
+/// techniques are nearly alike: by a part in 50 of the estimate for tables that differ by a part in 100,000. The
+/// default ridge does not.
 ///
 /// **Momentum** beta gives a batch that is t steps old the weight beta^t, in A, b, q and the balance estimate alike,
 /// and divides by the sum of those weights. So from the first step on the estimate has its right size (Algorithm 5

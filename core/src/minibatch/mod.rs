@@ -1,6 +1,8 @@
-//! Minibatches whose items are drawn in proportion to their importance, and gradients of the mean loss from them (chapter 6).
+//! Minibatches whose items are drawn in proportion to their importance, and gradients of the mean loss from them
+//! (chapter 6).
 //!
-//! - [`Table`]: a persistent importance for each item of a data set; draws batches, follows what training learns (6.1.3).
+//! - [`Table`]: a persistent importance for each item of a data set; draws batches, follows what training learns
+//!   (6.1.3).
 //! - [`shuffle()`]: the items in a random order, without an array: the first epoch.
 //! - [`importance`]: how important an item is, from the output layer alone (6.1.4).
 //! - [`weights()`]: one weight per drawn item of several importance distributions, so that the optimal MIS gradient

@@ -117,8 +117,8 @@ pub(crate) fn scaled(cells: &[f64], divisor: f64, scale: &Vector, n: usize) -> M
     matrix
 }
 
-/// v' M v, for v the direction of `scale`: the part of the trace of [`scaled`]'s matrix, about 1, that belongs to what all
-/// densities have in common. The counts' weighted sum of the densities over S is 1 at every sample.
+/// v' M v, for v the direction of `scale`: the part of the trace of [`scaled`]'s matrix, about 1, that belongs to what
+/// all densities have in common. The counts' weighted sum of the densities over S is 1 at every sample.
 pub(crate) fn along(matrix: &Matrix, scale: &Vector, n: usize) -> f64 {
     let sum: f64 = matrix.iter().zip(scale).take(n).map(|(row, entry)| entry * dot(row, scale, n)).sum();
     sum / dot(scale, scale, n)
@@ -129,7 +129,8 @@ fn dot(a: &Vector, b: &Vector, n: usize) -> f64 {
     a.iter().zip(b).take(n).map(|(a, b)| a * b).sum()
 }
 
-/// One Jacobi rotation that makes `m[p][q]` zero; the rows of `vectors` turn with it. False if it already was negligible.
+/// One Jacobi rotation that makes `m[p][q]` zero; the rows of `vectors` turn with it. False if it already was
+/// negligible.
 fn rotate(m: &mut Matrix, vectors: &mut Matrix, p: usize, q: usize, n: usize) -> bool {
     let (p, q) = (p % MAX_TECHNIQUES, q % MAX_TECHNIQUES);
     let off = m[p][q];

@@ -1,7 +1,7 @@
 //! The optimal MIS weights, found from the samples: Kondapaneni et al., "Optimal Multiple Importance Sampling", 2019.
 //!
-//! Put (2.15) into (2.10) and the estimate becomes a control variate g = sum_k alpha_k p_k, whose integral sum_k alpha_k
-//! is known, on top of the balance heuristic: with S = sum_k n_k p_k and s over all samples of all techniques,
+//! Put (2.15) into (2.10) and the estimate becomes a control variate g = sum_k alpha_k p_k, whose integral sum_k
+//! alpha_k is known, on top of the balance heuristic: with S = sum_k n_k p_k and s over all samples of all techniques,
 //!
 //! `F = sum_k alpha_k + sum_s (f - sum_k alpha_k p_k) / S`.
 //!
@@ -17,8 +17,8 @@ use super::memory::{self, RecordMut, Sums};
 use super::{MAX_TECHNIQUES, len};
 use crate::Error;
 
-/// The ridge of [`Solver::default`], in samples: less loses to the balance heuristic where a few samples must tell apart
-/// densities that bring little, more gives away gain where they bring much.
+/// The ridge of [`Solver::default`], in samples: less loses to the balance heuristic where a few samples must tell
+/// apart densities that bring little, more gives away gain where they bring much.
 pub const DEFAULT_RIDGE: f32 = 2.0;
 
 /// The ridges that [`Solver::Ridge`] accepts.
@@ -39,11 +39,11 @@ const LEAST_SAMPLES: f64 = 1e-8;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Solver {
-    /// alpha = (A + L)^-1 b, with L = ridge (tr(N A) - 1) / n N^-1, N the diagonal matrix of the counts and n the number of
-    /// samples. tr(N A) - 1 is how much the densities differ, so that the ridge counts for as much whether they differ
-    /// much or little: for as many samples more, which know nothing of f. A larger ridge shrinks the estimate towards the
-    /// balance heuristic's, more samples towards the plain solve's. L is at least 1e-8 tr(N A) N^-1. Consistent, not
-    /// unbiased: alpha comes from the samples it is applied to.
+    /// alpha = (A + L)^-1 b, with L = ridge (tr(N A) - 1) / n N^-1, N the diagonal matrix of the counts and n the
+    /// number of samples. tr(N A) - 1 is how much the densities differ, so that the ridge counts for as much whether
+    /// they differ much or little: for as many samples more, which know nothing of f. A larger ridge shrinks the
+    /// estimate towards the balance heuristic's, more samples towards the plain solve's. L is at least 1e-8 tr(N A)
+    /// N^-1. Consistent, not unbiased: alpha comes from the samples it is applied to.
     Ridge(f32),
     /// alpha = A^-1 b, the pseudo-inverse (of N^1/2 A N^1/2) where A is singular: the limit of a vanishing ridge. The
     /// estimate is sum_k alpha_k, the direct estimator of Kondapaneni et al. Consistent, not unbiased, and heavy-tailed
@@ -112,10 +112,10 @@ impl Solver {
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
 ///
-/// Add **every** sample, those with f = 0 included: each says something about the densities, and without them no estimate
-/// but the balance heuristic's is unbiased or consistent. The samples should make whole rounds of `counts`, or be drawn
-/// from technique j with probability n_j / sum n; the number of rounds R is taken to be samples / sum n, and a round
-/// interrupted in the middle over- or under-weights the techniques accordingly.
+/// Add **every** sample, those with f = 0 included: each says something about the densities, and without them no
+/// estimate but the balance heuristic's is unbiased or consistent. The samples should make whole rounds of `counts`, or
+/// be drawn from technique j with probability n_j / sum n; the number of rounds R is taken to be samples / sum n, and a
+/// round interrupted in the middle over- or under-weights the techniques accordingly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OptimalMis<M> {
     counts: [u32; MAX_TECHNIQUES],
@@ -175,8 +175,8 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
 
     /// Estimates every integral from all samples so far; `estimate` has one element per integral.
     ///
-    /// Nothing is changed: the same call gives the same answer, and more samples may follow. An estimate beyond the range
-    /// of `f32` becomes the largest finite one.
+    /// Nothing is changed: the same call gives the same answer, and more samples may follow. An estimate beyond the
+    /// range of `f32` becomes the largest finite one.
     ///
     /// Errors: [`Error::Range`] for a wrong length or a ridge outside [`RIDGE_RANGE`]; [`Error::NotFinite`] for a ridge
     /// that is NaN or infinite; [`Error::NoSamples`].
@@ -214,11 +214,11 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         Ok(())
     }
 
-    /// The alpha of (2.15), for [`optimal`](super::optimal()) and [`optimal_contribution`](super::optimal_contribution):
-    /// `alpha[p * J + j]` of integral p and technique j.
+    /// The alpha of (2.15), for [`optimal`](super::optimal()) and
+    /// [`optimal_contribution`](super::optimal_contribution): `alpha[p * J + j]` of integral p and technique j.
     ///
-    /// Used on samples other than the ones it came from, it gives unbiased estimates. [`Solver::Progressive`] stands for
-    /// the alpha that the current batch uses, [`Solver::Balance`] for zeros. Errors as for [`OptimalMis::solve`].
+    /// Used on samples other than the ones it came from, it gives unbiased estimates. [`Solver::Progressive`] stands
+    /// for the alpha that the current batch uses, [`Solver::Balance`] for zeros. Errors as for [`OptimalMis::solve`].
     ///
     /// ```
     /// use noisefloor::mis::{self, OptimalMis, Solver};
@@ -306,11 +306,11 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         self.memory.as_mut().fill(0.0);
     }
 
-    /// Adds one sample that `technique` drew: `pdf[j]` of each technique at its point, and the value f of each integrand
-    /// there (not divided by any density).
+    /// Adds one sample that `technique` drew: `pdf[j]` of each technique at its point, and the value f of each
+    /// integrand there (not divided by any density).
     ///
-    /// Errors, which leave the sums as they were: [`Error::Range`] for wrong lengths, a technique that does not exist, a
-    /// negative density, or a density of 0 for the technique that drew the sample; [`Error::NotFinite`] for NaN or
+    /// Errors, which leave the sums as they were: [`Error::Range`] for wrong lengths, a technique that does not exist,
+    /// a negative density, or a density of 0 for the technique that drew the sample; [`Error::NotFinite`] for NaN or
     /// infinity among the densities (combine delta distributions outside) or values.
     ///
     /// ```
@@ -360,8 +360,8 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
 
     /// Ends a batch: the progressive estimator uses the alpha of all samples so far on those that follow.
     ///
-    /// Before the first call alpha is 0, the balance heuristic. [`Solver::Balance`] returns to that. Call it between whole
-    /// rounds, whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
+    /// Before the first call alpha is 0, the balance heuristic. [`Solver::Balance`] returns to that. Call it between
+    /// whole rounds, whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
     ///
     /// Errors, which change nothing: [`Error::Unsupported`] for [`Solver::Progressive`]; others as for
     /// [`OptimalMis::solve`].

@@ -22,9 +22,9 @@ pub fn fill_len(domains: &[(Sampler<'_>, usize)], width: usize, height: usize, s
 
 /// Draws for `width x height` pixels, `samples` samples of each, in several domains: the same bits as single draws.
 ///
-/// Each element of `domains` is a sampler, for the first pixel and sample, and how many dimensions to draw from it, 1 to 4.
-/// `u[y][x][sample][..]` is what those samplers, moved by y rows, x columns and `sample` samples, draw, one after the other:
-/// [`fill_len`] numbers; more stay as they are.
+/// Each element of `domains` is a sampler, for the first pixel and sample, and how many dimensions to draw from it, 1
+/// to 4. `u[y][x][sample][..]` is what those samplers, moved by y rows, x columns and `sample` samples, draw, one after
+/// the other: [`fill_len`] numbers; more stay as they are.
 ///
 /// # Errors
 /// [`Error::Range`] for dims outside 1 to 4 or sizes that overflow; [`Error::Memory`] if `u` is too short.

@@ -38,8 +38,8 @@ pub struct Header {
 impl Header {
     /// A header to [`encode`](Header::encode).
     ///
-    /// `seed` is the one the tile was made with. `kernel` says what for, such as `perceptual` or `gaussian:1.5`: at most
-    /// [`KERNEL_BYTES`] printable ASCII characters and spaces.
+    /// `seed` is the one the tile was made with. `kernel` says what for, such as `perceptual` or `gaussian:1.5`: at
+    /// most [`KERNEL_BYTES`] printable ASCII characters and spaces.
     ///
     /// # Errors
     /// [`Error::Range`] for a shape or text outside these limits.
@@ -149,8 +149,8 @@ impl Header {
         if payload.len() as u64 != header.shape.payload_bytes() {
             return Err(Error::Length);
         }
-        // The header says nothing but its fields: all of its bytes are those it would be written with. Compared one by one,
-        // as `==` may call bcmp, which not every C library has.
+        // The header says nothing but its fields: all of its bytes are those it would be written with. Compared one by
+        // one, as `==` may call bcmp, which not every C library has.
         let written = header.encode(payload)?;
         let difference = head.iter().zip(&written).fold(0, |all, (a, b)| all | (a ^ b));
         if difference == 0 { Ok((header, payload)) } else { Err(Error::Corrupt) }
@@ -222,8 +222,8 @@ impl Header {
     }
 }
 
-/// The stored integer of `bits` (8 or 16) whose value, `(v + 1/2) / 2^bits`, is nearest to u in [0, 1); u outside, or NaN, is
-/// clamped.
+/// The stored integer of `bits` (8 or 16) whose value, `(v + 1/2) / 2^bits`, is nearest to u in [0, 1); u outside, or
+/// NaN, is clamped.
 ///
 /// ```
 /// use noisefloor::tile::quantize;

@@ -13,18 +13,18 @@ pub(super) const fn mix(mut h: u32) -> u32 {
 /// The fractional part of the golden ratio, odd: multiples of it differ in many bits.
 pub(super) const GOLDEN: u32 = 0x9e37_79b9;
 
-/// The domain that `key` leads to from `domain`; never the root, 0. For either argument fixed, a bijection of the other but for
-/// that exception.
+/// The domain that `key` leads to from `domain`; never the root, 0. For either argument fixed, a bijection of the other
+/// but for that exception.
 #[inline(always)]
 pub(super) const fn child(domain: u32, key: u32) -> u32 {
     let h = mix(key.wrapping_add(GOLDEN) ^ domain.wrapping_mul(0x2c92_77b5));
     h + (h == 0) as u32
 }
 
-/// Where sample `index` of `samples` goes, a power of two up to 256: `a * index + b` in the field of as many elements, for random
-/// b and a != 0. Of all affine bijections each is equally likely (to 2^-16), so that any two samples go to any two places with
-/// the same probability: what it takes for sums of products of two sampled domains to have the mean and the
-/// variance of random pairing.
+/// Where sample `index` of `samples` goes, a power of two up to 256: `a * index + b` in the field of as many elements,
+/// for random b and a != 0. Of all affine bijections each is equally likely (to 2^-16), so that any two samples go to
+/// any two places with the same probability: what it takes for sums of products of two sampled domains to have the mean
+/// and the variance of random pairing.
 #[inline(always)]
 pub(super) fn permute(index: u32, samples: u32, random: u32) -> u32 {
     permute_few(index, samples, random).unwrap_or_else(|| {
@@ -102,7 +102,8 @@ pub(super) fn permute_octave_few(index: u32, random: u32) -> Option<u32> {
     Some(first | permute_few(index ^ first, first, random)?)
 }
 
-/// The first index of an octave, which is as many as the octave has, and its random bits: octaves are permuted independently.
+/// The first index of an octave, which is as many as the octave has, and its random bits: octaves are permuted
+/// independently.
 #[inline(always)]
 fn octave(index: u32, random: u32) -> Option<(u32, u32)> {
     let bits = index.checked_ilog2()?;

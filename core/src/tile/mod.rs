@@ -1,8 +1,8 @@
 //! Tiles: tables of sample points for the pixels of an image, and the sampler that draws from them.
 //!
 //! A tile holds, for each pixel of a small square that repeats over the image, a few points of the unit cube. They are
-//! optimised offline (chapter 5) so that each pixel's points are well distributed, and so that what error remains differs as
-//! much as it can between neighbouring pixels: the eye, a filter or a denoiser then removes most of it.
+//! optimised offline (chapter 5) so that each pixel's points are well distributed, and so that what error remains
+//! differs as much as it can between neighbouring pixels: the eye, a filter or a denoiser then removes most of it.
 //!
 //! - [`Tile`]: a view of a table, from a file's bytes ([`Tile::from_bytes`]) or of those compiled in ([`Builtin`]).
 //! - [`Sampler`]: one sample of one pixel. Each decision of a path (lens, light, bounce) has a *domain*, a child of the

@@ -47,8 +47,8 @@ const fn more(state: &State, number: u32) -> State {
     State { domain: child(state.domain ^ DIMENSIONS, number), ..*state }
 }
 
-/// Calls with all arguments in registers: structs just written, field by field, would be read in larger pieces, which takes as long as
-/// the rest of the work.
+/// Calls with all arguments in registers: structs just written, field by field, would be read in larger pieces, which
+/// takes as long as the rest of the work.
 #[inline(always)]
 fn call<const N: usize>(
     tile: &Tile<'_>,
@@ -59,8 +59,8 @@ fn call<const N: usize>(
     function(tile.payload(), Rest::pack(tile.shape(), state), domain, index, u32::from(x) | u32::from(y) << 16)
 }
 
-/// Where a point is, but for domain, index and pixel: 4 bits each of log2 of size and spp, and of dims; 8 of the frame; whether
-/// scrambled, progressive, of 16 bits.
+/// Where a point is, but for domain, index and pixel: 4 bits each of log2 of size and spp, and of dims; 8 of the frame;
+/// whether scrambled, progressive, of 16 bits.
 #[derive(Clone, Copy)]
 struct Rest(u32);
 
@@ -160,7 +160,8 @@ fn moved(shape: Shape, state: &State, fixed: &mut [u32]) {
     }
 }
 
-/// How far a scrambled domain's values are shifted; a bijection of the domain, so over all of them each shift occurs once.
+/// How far a scrambled domain's values are shifted; a bijection of the domain, so over all of them each shift occurs
+/// once.
 #[inline(always)]
 const fn rotation(domain: u32, dim: u32) -> u32 {
     mix(domain.wrapping_add(dim.wrapping_mul(GOLDEN)))

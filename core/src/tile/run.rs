@@ -6,9 +6,9 @@ use super::site::Site;
 use super::view::unit;
 
 impl Sampler<'_> {
-    /// Draws `dims` coordinates, 1 to 4, of this sample and of those that follow it: sample k's to `u[k * stride..]`, for as many
-    /// samples as `u` has room for. The same bits as [`draw`](Sampler::draw) of each, at less cost: hashes are computed once.
-    /// Draws nothing for other `dims`; a stride of less than `dims` is `dims`.
+    /// Draws `dims` coordinates, 1 to 4, of this sample and of those that follow it: sample k's to `u[k * stride..]`,
+    /// for as many samples as `u` has room for. The same bits as [`draw`](Sampler::draw) of each, at less cost: hashes
+    /// are computed once. Draws nothing for other `dims`; a stride of less than `dims` is `dims`.
     ///
     /// ```
     /// use noisefloor::tile::{Sampler, Shape, Tile};

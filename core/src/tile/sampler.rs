@@ -35,9 +35,9 @@ pub struct State {
 
 /// One sample of one pixel: 24 bytes, to be copied freely. Drawing does not change it.
 ///
-/// A sampler stands for a point of a cube with as many dimensions as are asked for, by domain: each decision of a path has
-/// its own, [`domain`](Sampler::domain) with a key of its own. A domain's numbers depend on nothing but tile, pixel, frame,
-/// index and the keys, so samples can be had in any order and on any thread.
+/// A sampler stands for a point of a cube with as many dimensions as are asked for, by domain: each decision of a path
+/// has its own, [`domain`](Sampler::domain) with a key of its own. A domain's numbers depend on nothing but tile,
+/// pixel, frame, index and the keys, so samples can be had in any order and on any thread.
 ///
 /// ```
 /// use noisefloor::tile::{Sampler, Shape, Tile};
@@ -64,10 +64,11 @@ const SCRAMBLE: u32 = 0x7363_7261;
 impl<'a> Sampler<'a> {
     /// Sample `index` of pixel (x, y), any values: pixels repeat with the tile's size.
     ///
-    /// The first `spp` samples are the tile's. Those that follow continue with a scrambled Sobol sequence in their place.
+    /// The first `spp` samples are the tile's. Those that follow continue with a scrambled Sobol sequence in their
+    /// place.
     ///
-    /// Frames 0 to `frames - 1` are the tile's (a tile that is not temporal has one). Each later run of them is the tile at
-    /// another place, unrelated to it.
+    /// Frames 0 to `frames - 1` are the tile's (a tile that is not temporal has one). Each later run of them is the
+    /// tile at another place, unrelated to it.
     ///
     /// ```
     /// use noisefloor::tile::{Sampler, Shape, Tile};
@@ -155,10 +156,10 @@ impl<'a> Sampler<'a> {
 
     /// An independent version for each seed but 0; seed 0 changes nothing.
     ///
-    /// It is the tile at another place, with all values of each dimension shifted, modulo 1, by a hash of seed and domain.
-    /// Over random seeds every value is uniform, so estimates are unbiased, as far as a hash of 32 bits is random. The shift costs
-    /// quality: where good images are wanted, and not exact unbiasedness, take another frame instead. Children of a scrambled sampler are
-    /// scrambled.
+    /// It is the tile at another place, with all values of each dimension shifted, modulo 1, by a hash of seed and
+    /// domain. Over random seeds every value is uniform, so estimates are unbiased, as far as a hash of 32 bits is
+    /// random. The shift costs quality: where good images are wanted, and not exact unbiasedness, take another frame
+    /// instead. Children of a scrambled sampler are scrambled.
     ///
     /// ```
     /// use noisefloor::tile::{Sampler, Shape, Tile};
@@ -200,9 +201,10 @@ impl<'a> Sampler<'a> {
 
     /// The first N coordinates, 1 to 4, of this domain's point; each in [0, 1), a multiple of 2^-24.
     ///
-    /// Up to the tile's dims they are optimised together; further ones come from other places of the tile. If it has at least two
-    /// dimensions and samples, and is not progressive, each further coordinate of its samples is stratified, and the third of a tile of two
-    /// dimensions with those two, as far as the samples are in the order in which `fsot` writes them.
+    /// Up to the tile's dims they are optimised together; further ones come from other places of the tile. If it has at
+    /// least two dimensions and samples, and is not progressive, each further coordinate of its samples is stratified,
+    /// and the third of a tile of two dimensions with those two, as far as the samples are in the order in which `fsot`
+    /// writes them.
     ///
     /// ```
     /// use noisefloor::tile::{Sampler, Shape, Tile};
@@ -220,9 +222,9 @@ impl<'a> Sampler<'a> {
         if self.draw_stored(&mut u) { u } else { point(self.tile, &self.state).map(unit) }
     }
 
-    /// [`draw`](Sampler::draw), if that needs little but to look up stored values: for indices below the tile's spp, at most 16,
-    /// in unscrambled samplers, with no more dimensions than the tile has. Otherwise returns false and writes nothing; the
-    /// root's are stored at any spp.
+    /// [`draw`](Sampler::draw), if that needs little but to look up stored values: for indices below the tile's spp, at
+    /// most 16, in unscrambled samplers, with no more dimensions than the tile has. Otherwise returns false and writes
+    /// nothing; the root's are stored at any spp.
     ///
     /// ```
     /// use noisefloor::tile::{Sampler, Shape, Tile};

@@ -5,9 +5,9 @@ use super::view::MAX_DIMS;
 
 /// Moves a pixel's first sample to where its sample `index`, at least 1, belongs.
 ///
-/// That is exclusive or with point `index` of a sequence that all pixels share: S. Joe and F. Kuo's Sobol sequence (2008)
-/// in an order shuffled within each octave of indices, Owen-scrambled, and shifted so that its first point is the origin.
-/// With the pixel's first sample at index 0, any aligned run of 2^k indices is a digital net.
+/// That is exclusive or with point `index` of a sequence that all pixels share: S. Joe and F. Kuo's Sobol sequence
+/// (2008) in an order shuffled within each octave of indices, Owen-scrambled, and shifted so that its first point is
+/// the origin. With the pixel's first sample at index 0, any aligned run of 2^k indices is a digital net.
 #[inline(always)]
 pub(super) fn shift(domain: u32, index: u32, fixed: &mut [u32]) {
     let index = shuffle(index, mix(domain ^ SHUFFLE));
@@ -117,7 +117,8 @@ mod tests {
         set.fold(0, |point, bit| point ^ DIRECTIONS[dim][bit]).reverse_bits()
     }
 
-    /// In each dimension every run of 2^k points has one in each of 2^k equal intervals; the first two are a (0, 2)-sequence.
+    /// In each dimension every run of 2^k points has one in each of 2^k equal intervals; the first two are a (0,
+    /// 2)-sequence.
     #[test]
     fn points_are_nets() {
         for bits in 0..=8 {

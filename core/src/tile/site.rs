@@ -53,10 +53,11 @@ impl Site {
         if progressive { permute_octave_few(index, self.random) } else { permute_few(index, spp, self.random) }
     }
 
-    /// Coordinate `number`, 0 or 1, after those of the tile, for the tile's sample that has those: this is the site of `number`.
+    /// Coordinate `number`, 0 or 1, after those of the tile, for the tile's sample that has those: this is the site of
+    /// `number`.
     ///
-    /// Each is in a stratum of its own, of spp, and where in it comes from another sample of the tile for each stratum, so that the
-    /// sum over the pixel is as even as the tile's.
+    /// Each is in a stratum of its own, of spp, and where in it comes from another sample of the tile for each stratum,
+    /// so that the sum over the pixel is as even as the tile's.
     #[inline(always)]
     pub(super) fn further(self, tile: &Tile<'_>, sample: u32, number: u32) -> u32 {
         let shape = tile.shape();
@@ -68,7 +69,8 @@ impl Site {
     }
 }
 
-/// Where in the tile a domain finds the pixel: a shift and one of the eight symmetries of the square; for the root neither.
+/// Where in the tile a domain finds the pixel: a shift and one of the eight symmetries of the square; for the root
+/// neither.
 #[inline(always)]
 const fn place(state: &State, size: u32) -> (u32, u32) {
     let State { domain, x, y, .. } = *state;

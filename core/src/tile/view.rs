@@ -119,10 +119,12 @@ impl<'a> Tile<'a> {
         Ok(Tile { shape: header.shape(), payload })
     }
 
-    /// A tile of values in memory: `payload[frame][y][x][sample][dim]`, unsigned integers of `shape.bits`, little-endian.
+    /// A tile of values in memory: `payload[frame][y][x][sample][dim]`, unsigned integers of `shape.bits`,
+    /// little-endian.
     ///
     /// # Errors
-    /// [`Error::Range`] for a shape out of range, [`Error::Length`] for a payload that is not exactly as long as it says.
+    /// [`Error::Range`] for a shape out of range, [`Error::Length`] for a payload that is not exactly as long as it
+    /// says.
     ///
     /// ```
     /// use noisefloor::tile::{Shape, Tile};
@@ -142,8 +144,8 @@ impl<'a> Tile<'a> {
         Ok(Tile { shape, payload })
     }
 
-    /// As [`Tile::new`], unchecked: for the parts of a tile that was checked before. Other parts draw wrong numbers, though
-    /// still in [0, 1).
+    /// As [`Tile::new`], unchecked: for the parts of a tile that was checked before. Other parts draw wrong numbers,
+    /// though still in [0, 1).
     ///
     /// ```
     /// use noisefloor::tile::{Shape, Tile};

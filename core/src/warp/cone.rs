@@ -1,7 +1,7 @@
 //! The directions within an angle of +z: those towards a sphere, for one.
 //!
-//! `cos_max` is the cosine of the half-angle: 1 is the direction +z alone, 0 the hemisphere, -1 every direction. What lies
-//! outside -1..=1 is clamped, and NaN counts as 1.
+//! `cos_max` is the cosine of the half-angle: 1 is the direction +z alone, 0 the hemisphere, -1 every direction. What
+//! lies outside -1..=1 is clamped, and NaN counts as 1.
 
 use super::{direction, drop_and_turn, is_direction, unit, unit_square};
 use core::f64::consts::TAU;
@@ -21,8 +21,8 @@ pub fn uniform_cone(u: Vec2, cos_max: f32) -> Vec3 {
     direction(part * depth(cos_max), turn)
 }
 
-/// The density of [`uniform_cone`] per solid angle: 1/(2 pi (1 - cos_max)) in the cone, 0 outside. A cone of no width has
-/// infinite density.
+/// The density of [`uniform_cone`] per solid angle: 1/(2 pi (1 - cos_max)) in the cone, 0 outside. A cone of no width
+/// has infinite density.
 ///
 /// ```
 /// use glam::Vec3;

@@ -18,8 +18,8 @@ pub fn uniform_triangle(u: Vec2) -> Vec3 {
     Vec3::new(b0 as f32, b1 as f32, unit(1.0 - b0 - b1) as f32)
 }
 
-/// The density of [`uniform_triangle`] per area: 1 over the triangle's area, infinite for a triangle without area, 0 if a
-/// vertex is not finite.
+/// The density of [`uniform_triangle`] per area: 1 over the triangle's area, infinite for a triangle without area, 0 if
+/// a vertex is not finite.
 ///
 /// ```
 /// use glam::Vec3;

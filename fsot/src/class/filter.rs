@@ -3,7 +3,8 @@
 use super::{ClassCoordinates, ClassFunction};
 use std::ops::Range;
 
-/// A class function at all points of a set: neighbours of equal value are one run, so a box costs one entry and a ramp one per point.
+/// A class function at all points of a set: neighbours of equal value are one run, so a box costs one entry and a ramp
+/// one per point.
 #[derive(Clone, Debug)]
 pub(crate) struct Filter {
     runs: Vec<(Range<u32>, f32)>,

@@ -17,8 +17,8 @@ pub struct Step {
 
 /// A class function w (5.3.1): how much the point at a class coordinate takes part in the class, in [0, 1].
 ///
-/// The points with `w > z` make the subclass of threshold z. A coordinate is a number in [0, 1) (the index space of the points), or two (the
-/// image plane); a function of one number uses the first.
+/// The points with `w > z` make the subclass of threshold z. A coordinate is a number in [0, 1) (the index space of the
+/// points), or two (the image plane); a function of one number uses the first.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]

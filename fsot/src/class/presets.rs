@@ -44,7 +44,8 @@ pub fn three_colors(dims: usize) -> Vec<Class> {
     ]
 }
 
-/// Figure 5.14: a falling and a rising ramp, so that the points before and behind any index are uniform, and all of them.
+/// Figure 5.14: a falling and a rising ramp, so that the points before and behind any index are uniform, and all of
+/// them.
 pub fn ramp(dims: usize) -> Vec<Class> {
     let target = uniform(dims);
     vec![
@@ -53,8 +54,8 @@ pub fn ramp(dims: usize) -> Vec<Class> {
     ]
 }
 
-/// Figure 5.17: one staircase whose `levels` prefixes are uniform; they end at `points^(k / levels)`, k = 1 to `levels`. As many levels as
-/// points, or more, make a ramp: every prefix.
+/// Figure 5.17: one staircase whose `levels` prefixes are uniform; they end at `points^(k / levels)`, k = 1 to
+/// `levels`. As many levels as points, or more, make a ramp: every prefix.
 pub fn progressive(dims: usize, levels: usize, points: usize) -> Vec<Class> {
     let target = uniform(dims);
     if levels >= points.max(2) {

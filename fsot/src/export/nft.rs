@@ -30,7 +30,8 @@ pub fn header(shape: Shape, seed: u64, kernel: &str) -> Result<Header> {
 }
 
 impl TileFile {
-    /// Quantises `coordinates`, `[frame][y][x][sample][dim]` in [0, 1), to `shape.bits` bits. `kernel` says what the tile was optimised for.
+    /// Quantises `coordinates`, `[frame][y][x][sample][dim]` in [0, 1), to `shape.bits` bits. `kernel` says what the
+    /// tile was optimised for.
     ///
     /// # Errors
     /// As [`header`]; not as many coordinates as the shape says.

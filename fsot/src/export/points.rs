@@ -48,8 +48,8 @@ impl Labels {
 /// A file format of point sets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// A line of numbers per point, separated by spaces: the coordinates, then the class's index if there are classes, which
-    /// are named in a last line `# classes: NAME NAME ...`.
+    /// A line of numbers per point, separated by spaces: the coordinates, then the class's index if there are classes,
+    /// which are named in a last line `# classes: NAME NAME ...`.
     Text,
     /// A header row `x,y,class`, then a row per point with its class's name.
     Csv,

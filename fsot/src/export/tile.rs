@@ -1,9 +1,9 @@
 //! Tiles for programs that do not link noisefloor: textures, raw numbers, C and Rust source.
 //!
 //! A texture stacks its layers from top to bottom, each `size` x `size` texels: layer
-//! `(frame * spp + sample) * groups + group`, where group 0 has coordinates 1 to 4, group 1 coordinates 5 to 8. In memory
-//! that is the layout of a texture array. Red, green, blue and alpha are the coordinates in order. An integer texel v of b bits
-//! stands for the coordinate (v + 0.5) / 2^b, never 1; a GPU that reads v / (2^b - 1) must undo that.
+//! `(frame * spp + sample) * groups + group`, where group 0 has coordinates 1 to 4, group 1 coordinates 5 to 8. In
+//! memory that is the layout of a texture array. Red, green, blue and alpha are the coordinates in order. An integer
+//! texel v of b bits stands for the coordinate (v + 0.5) / 2^b, never 1; a GPU that reads v / (2^b - 1) must undo that.
 
 use crate::counted::counted;
 use crate::error::{Error, Result};
@@ -99,7 +99,8 @@ pub fn png(tile: &Tile<'_>) -> Result<Vec<u8>> {
     encode(picture, ImageFormat::Png)
 }
 
-/// An OpenEXR texture of 32-bit floats, the coordinates themselves: RGB for 1 to 3 of them (absent ones are 0), RGBA for more.
+/// An OpenEXR texture of 32-bit floats, the coordinates themselves: RGB for 1 to 3 of them (absent ones are 0), RGBA
+/// for more.
 ///
 /// # Errors
 /// The payload has another length than the shape says.
@@ -184,7 +185,8 @@ fn integers(tile: &Tile<'_>, text: &mut String) {
     }
 }
 
-/// A name that C and Rust accept: what is no letter, digit or underscore becomes `_`; a leading digit gets `tile_` before it.
+/// A name that C and Rust accept: what is no letter, digit or underscore becomes `_`; a leading digit gets `tile_`
+/// before it.
 fn identifier(name: &str) -> String {
     let name: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     if name.starts_with(|c: char| c.is_ascii_alphabetic()) { name } else { format!("tile_{name}") }

@@ -12,9 +12,10 @@ const BAND: usize = 8;
 
 /// `|sum_j exp(-2 pi i (kx x_j + ky y_j))|^2` for kx, ky in -extent..=extent: row ky + extent, column kx + extent.
 ///
-/// Each point is spread over 13 x 13 cells of a grid at least twice as fine as the frequencies need, the grid transformed, and the
-/// spreading divided out (Barnett, Magland, af Klinteberg 2019: "exponential of semicircle"). The error of each sum is below 1e-10
-/// times the number of points. Memory: 112 extent^2 bytes, 32 of them the result, plus 230 bytes per point.
+/// Each point is spread over 13 x 13 cells of a grid at least twice as fine as the frequencies need, the grid
+/// transformed, and the spreading divided out (Barnett, Magland, af Klinteberg 2019: "exponential of semicircle"). The
+/// error of each sum is below 1e-10 times the number of points. Memory: 112 extent^2 bytes, 32 of them the result, plus
+/// 230 bytes per point.
 pub fn power(points: &[[f64; 2]], extent: usize) -> Vec<f64> {
     let grid = smooth(2 * (2 * extent + 1).max(WIDTH));
     let fft = FftPlanner::new().plan_fft_forward(grid);
@@ -120,7 +121,8 @@ fn kernel(z: f64) -> f64 {
     if inside <= 0.0 { 0.0 } else { libm::exp(SHARPNESS * (inside.sqrt() - 1.0)) }
 }
 
-/// Its Fourier transform at frequency `k`, in units of the grid: the trapezoidal rule, exact to rounding as it ends at e^-30.
+/// Its Fourier transform at frequency `k`, in units of the grid: the trapezoidal rule, exact to rounding as it ends at
+/// e^-30.
 fn transform_of_spread(k: usize, grid: usize) -> f64 {
     const STEPS: i32 = 400;
     let half = WIDTH as f64 / 2.0;

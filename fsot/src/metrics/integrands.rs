@@ -33,7 +33,8 @@ enum Shape {
 impl Integrand {
     /// Draws number `index` of a family in `dims` dimensions.
     ///
-    /// Normals with a component below `smallest` are redrawn (as the published figures of the tiles do), except in one dimension.
+    /// Normals with a component below `smallest` are redrawn (as the published figures of the tiles do), except in one
+    /// dimension.
     pub fn random(family: Family, dims: usize, smallest: f64, seed: u64, index: u64) -> Integrand {
         let mut rng = random::stream(seed, family as u64, index);
         match family {

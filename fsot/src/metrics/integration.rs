@@ -42,8 +42,8 @@ pub struct PrefixError {
     pub gaussians_relative: f64,
 }
 
-/// Integration errors of all of valid points: sum of squared errors over sum of variances, over 4,096 integrands (fewer above 32,768
-/// points: 512 at 262,144).
+/// Integration errors of all of valid points: sum of squared errors over sum of variances, over 4,096 integrands (fewer
+/// above 32,768 points: 512 at 262,144).
 pub fn integration(points: &Points) -> Integration {
     let integrands = (EVALUATIONS / points.len().max(1)).clamp(FEWEST, INTEGRANDS);
     let [half_spaces, gaussians] = [Family::HalfSpace, Family::Gaussian].map(|family| {
@@ -53,9 +53,11 @@ pub fn integration(points: &Points) -> Integration {
     Integration { half_spaces, gaussians, integrands }
 }
 
-/// Errors of the first points of progressive sets, averaged over sets (figure 5.17), for the given increasing numbers of points.
+/// Errors of the first points of progressive sets, averaged over sets (figure 5.17), for the given increasing numbers
+/// of points.
 ///
-/// Errors: no set, sets of different sizes, no integrand, a number of points that is 0 or more than there are, or numbers that do not increase.
+/// Errors: no set, sets of different sizes, no integrand, a number of points that is 0 or more than there are, or
+/// numbers that do not increase.
 pub fn prefix_errors(sets: &[Points], counts: &[usize], integrands: usize) -> Result<Vec<PrefixError>> {
     let Some(first) = sets.first() else { return Err(Error::input("no point set")) };
     sets.iter().try_for_each(super::check)?;

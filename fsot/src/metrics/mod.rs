@@ -1,7 +1,8 @@
 //! How good point sets and tiles are: the figures that chapter 5 judges by.
 //!
-//! Definitions and sources: docs/metrics.md. All points are compared with the uniform distribution on the unit cube. Seeds are fixed:
-//! the same points give the same figures on any number of threads, and across targets up to the rounding of the Fourier transforms.
+//! Definitions and sources: docs/metrics.md. All points are compared with the uniform distribution on the unit cube.
+//! Seeds are fixed: the same points give the same figures on any number of threads, and across targets up to the
+//! rounding of the Fourier transforms.
 
 pub mod discrepancy;
 pub mod exponential_sums;

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::num::NonZeroUsize;
 
-/// Distances to the nearest other point, divided by the largest possible smallest distance of a toroidal set of as many points
-/// (the densest lattice: hexagonal in two dimensions). Random points in two dimensions: mean .465.
+/// Distances to the nearest other point, divided by the largest possible smallest distance of a toroidal set of as many
+/// points (the densest lattice: hexagonal in two dimensions). Random points in two dimensions: mean .465.
 #[derive(Clone, Debug, Serialize)]
 pub struct Neighbours {
     /// Mean, distances within the unit cube.
@@ -94,8 +94,8 @@ fn distances<const D: usize>(points: &Points) -> [Vec<f64>; 2] {
     [search(&bounded, false), search(&wrapped, true)]
 }
 
-/// Visits the copies of a point in the neighbouring cells of the torus that are nearer to the unit cube than the best squared distance
-/// so far: `visit(copy, squared distance to the cube, best)` returns the new best.
+/// Visits the copies of a point in the neighbouring cells of the torus that are nearer to the unit cube than the best
+/// squared distance so far: `visit(copy, squared distance to the cube, best)` returns the new best.
 fn images<const D: usize>(point: &[f64; D], visit: &mut impl FnMut(&[f64; D], f64, f64) -> f64, best: &mut f64) {
     fn axis<const D: usize>(
         image: &mut [f64; D],

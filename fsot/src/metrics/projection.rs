@@ -1,17 +1,18 @@
 //! The uniform distribution on the unit cube, projected on a direction through the cube's centre.
 
-/// Below this share of the largest component, a direction's component is left out: it would move no quantile by 1e-8, and the
-/// inclusion-exclusion sums divide by it.
+/// Below this share of the largest component, a direction's component is left out: it would move no quantile by 1e-8,
+/// and the inclusion-exclusion sums divide by it.
 const NEGLIGIBLE: f64 = 1e-5;
-/// Cells of the table of the cumulative distribution, over its lower half, in up to 4 dimensions; in more the law is smoother, and has
-/// more corners to sum.
+/// Cells of the table of the cumulative distribution, over its lower half, in up to 4 dimensions; in more the law is
+/// smoother, and has more corners to sum.
 const CELLS: usize = 512;
 const FEWER_CELLS: usize = 160;
 
 /// The law of `sum a_i (U_i - 1/2)` for U uniform on the unit cube: symmetric about 0.
 ///
-/// It depends on the absolute values of the components only. In two dimensions its density is a trapezoid; in general a spline of
-/// degree d - 1, here by inclusion and exclusion over the cube's corners (P. Hall 1927; Barrow and Smith 1979).
+/// It depends on the absolute values of the components only. In two dimensions its density is a trapezoid; in general a
+/// spline of degree d - 1, here by inclusion and exclusion over the cube's corners (P. Hall 1927; Barrow and Smith
+/// 1979).
 #[derive(Clone, Debug)]
 pub struct Projection {
     /// The components that count, absolute.
@@ -85,8 +86,8 @@ impl Projection {
         }
     }
 
-    /// Bins for three dimensions and more: quantiles from a table with cubic Hermite interpolation of the cumulative distribution, whose
-    /// error is below 1e-8.
+    /// Bins for three dimensions and more: quantiles from a table with cubic Hermite interpolation of the cumulative
+    /// distribution, whose error is below 1e-8.
     fn spline_bins(&self, means: &mut [f64]) {
         let cells = if self.components.len() > 4 { FEWER_CELLS } else { CELLS };
         let step = self.half / cells as f64;
@@ -112,7 +113,8 @@ impl Projection {
     }
 }
 
-/// Where in a cell, 0 to 1, the cubic that has the values and slopes of its ends reaches `value`, and its integral up to there.
+/// Where in a cell, 0 to 1, the cubic that has the values and slopes of its ends reaches `value`, and its integral up
+/// to there.
 fn solve(left: [f64; 3], right: [f64; 3], step: f64, value: f64) -> (f64, f64) {
     let (f0, s0, s1) = (left[0], left[1] * step, right[1] * step);
     let rise = right[0] - f0;

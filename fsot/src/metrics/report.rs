@@ -10,7 +10,8 @@ use crate::error::{Error, Result};
 use crate::points::Points;
 use serde::Serialize;
 
-/// The quality of a point set. What does not apply (a spectrum of points on a line, neighbours of a single point) is absent.
+/// The quality of a point set. What does not apply (a spectrum of points on a line, neighbours of a single point) is
+/// absent.
 #[derive(Clone, Debug, Serialize)]
 pub struct PointReport {
     /// How many points.
@@ -70,8 +71,8 @@ pub fn select(points: &Points, mut wanted: impl FnMut(usize) -> bool) -> Points 
     Points::new(points.dims(), chosen.collect())
 }
 
-/// Measures the points of every class that occurs, ascending: (class, report). Errors: not as many classes as points; see
-/// [`check`](super::check).
+/// Measures the points of every class that occurs, ascending: (class, report). Errors: not as many classes as points;
+/// see [`check`](super::check).
 pub fn by_class(points: &Points, classes: &[usize]) -> Result<Vec<(usize, PointReport)>> {
     if classes.len() != points.len() {
         return Err(Error::input(format!(

@@ -18,7 +18,8 @@ pub struct Spectrum {
     pub side: usize,
     /// Row after row; zero frequency at row and column `side / 2`.
     pub power: Vec<f64>,
-    /// The integer frequency that counts as 1: for points the principal frequency, for tiles the size (cycles per pixel).
+    /// The integer frequency that counts as 1: for points the principal frequency, for tiles the size (cycles per
+    /// pixel).
     pub unit: f64,
     /// How many independent realisations were averaged: point sets, or frames of a tile.
     pub realisations: usize,
@@ -33,8 +34,8 @@ pub struct Ring {
     pub frequency: f64,
     /// Mean power.
     pub power: f64,
-    /// Variance of the power over its squared mean, in dB: Ulichney's anisotropy (1988). One realisation of an isotropic process: 0;
-    /// an average of N: -10 log10 N. Not a number where there is no power.
+    /// Variance of the power over its squared mean, in dB: Ulichney's anisotropy (1988). One realisation of an
+    /// isotropic process: 0; an average of N: -10 log10 N. Not a number where there is no power.
     pub anisotropy: f64,
 }
 
@@ -57,8 +58,9 @@ pub fn principal_frequency(points: usize) -> f64 {
 }
 
 impl Spectrum {
-    /// The periodogram `|sum_j exp(-2 pi i k . x_j)|^2 / n` of two coordinates of a point set, up to twice the principal frequency or
-    /// 2,400 (1.2 million points), whatever is less. Errors: fewer than one point, axes out of range.
+    /// The periodogram `|sum_j exp(-2 pi i k . x_j)|^2 / n` of two coordinates of a point set, up to twice the
+    /// principal frequency or 2,400 (1.2 million points), whatever is less. Errors: fewer than one point, axes out of
+    /// range.
     pub fn of_points(points: &Points, axes: [usize; 2]) -> Result<Spectrum> {
         super::check(points)?;
         if axes.iter().any(|&a| a >= points.dims()) {

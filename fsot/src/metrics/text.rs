@@ -74,7 +74,8 @@ impl FamilyEnergies {
 }
 
 impl Display for TileReport {
-    /// A row per prefix, pair of dimensions, frame and temporal filter; columns: filters, for half-spaces and Gaussians.
+    /// A row per prefix, pair of dimensions, frame and temporal filter; columns: filters, for half-spaces and
+    /// Gaussians.
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let TileReport { size, spp, dims, frames, integrands, .. } = self;
         let many = if *frames > 1 { format!(", {frames} frames") } else { String::new() };

@@ -26,8 +26,8 @@ pub struct TileView<'a> {
 impl<'a> TileView<'a> {
     /// A view of `frames * size * size * spp * dims` coordinates in [0, 1].
     ///
-    /// Errors: a size, count of samples, of frames or of dimensions that is 0, more than 8 dimensions, a number of coordinates that is
-    /// not their product, a coordinate that is not in [0, 1].
+    /// Errors: a size, count of samples, of frames or of dimensions that is 0, more than 8 dimensions, a number of
+    /// coordinates that is not their product, a coordinate that is not in [0, 1].
     pub fn new(size: usize, spp: usize, dims: usize, frames: usize, coordinates: &'a [f32]) -> Result<TileView<'a>> {
         if size == 0 || spp == 0 || frames == 0 || !(1..=8).contains(&dims) {
             return Err(Error::input(format!(
@@ -54,8 +54,8 @@ impl<'a> TileView<'a> {
     }
 }
 
-/// Energies of one kind of error image under every filter: mean squares relative to those of white noise, i.e. of independent uniform
-/// samples, of which there are as many per pixel.
+/// Energies of one kind of error image under every filter: mean squares relative to those of white noise, i.e. of
+/// independent uniform samples, of which there are as many per pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Energies {
     /// Filtered by a Gaussian of standard deviation 2.1 pixels.
@@ -106,7 +106,8 @@ pub struct MarginalEnergies {
 pub struct TemporalEnergies {
     /// The weight of the newest frame in the exponential moving average.
     pub alpha: f64,
-    /// Energies relative to white noise in space and time that repeats after as many frames and goes through the same filters.
+    /// Energies relative to white noise in space and time that repeats after as many frames and goes through the same
+    /// filters.
     pub energies: FamilyEnergies,
 }
 
@@ -149,10 +150,10 @@ impl Default for TileOptions {
     }
 }
 
-/// Measures a tile: for every random integrand, the same at every pixel, the image of (pixel's estimate - integral) is filtered by
-/// toroidal convolution with a normalised kernel; energies are sums over integrands of its mean square over sums of its expectation for
-/// white noise, `variance / spp * sum of the kernel's squares`. With 512 integrands, two draws
-/// of them differ by 1-5 %.
+/// Measures a tile: for every random integrand, the same at every pixel, the image of (pixel's estimate - integral) is
+/// filtered by toroidal convolution with a normalised kernel; energies are sums over integrands of its mean square over
+/// sums of its expectation for white noise, `variance / spp * sum of the kernel's squares`. With 512 integrands, two
+/// draws of them differ by 1-5 %.
 ///
 /// Errors: no integrand; an alpha out of range.
 pub fn measure_tile(tile: &TileView, options: &TileOptions) -> Result<TileReport> {
@@ -175,8 +176,9 @@ pub fn measure_tile(tile: &TileView, options: &TileOptions) -> Result<TileReport
     Ok(whole)
 }
 
-/// Energies of all samples and all dimensions on `count` integrands of each family (an odd number is rounded up), from number `first` on:
-/// other numbers are other integrands, so that several draws say how much of a figure is theirs. [`measure_tile`] begins with 0.
+/// Energies of all samples and all dimensions on `count` integrands of each family (an odd number is rounded up), from
+/// number `first` on: other numbers are other integrands, so that several draws say how much of a figure is theirs.
+/// [`measure_tile`] begins with 0.
 ///
 /// Errors: no integrand.
 pub fn measure_energies(tile: &TileView, first: u64, count: usize) -> Result<FamilyEnergies> {
@@ -188,8 +190,8 @@ pub fn measure_energies(tile: &TileView, first: u64, count: usize) -> Result<Fam
     }
 }
 
-/// The spectrum of the tile's error with all samples, averaged over integrands of both families and over frames and relative to white
-/// noise: what figure 5.20 shows of a rendering's error.
+/// The spectrum of the tile's error with all samples, averaged over integrands of both families and over frames and
+/// relative to white noise: what figure 5.20 shows of a rendering's error.
 pub fn error_spectrum(tile: &TileView, integrands: usize) -> Result<Spectrum> {
     if integrands == 0 {
         return Err(Error::input("0 integrands: give at least 1"));
@@ -226,8 +228,8 @@ pub fn error_spectrum(tile: &TileView, integrands: usize) -> Result<Spectrum> {
     Ok(Spectrum::new(size, power, size as f64, tile.frames))
 }
 
-/// The integrands that tiles of `dims` dimensions are measured with. Normals of half-spaces have no component below .001 (.03 in more
-/// than two dimensions).
+/// The integrands that tiles of `dims` dimensions are measured with. Normals of half-spaces have no component below
+/// .001 (.03 in more than two dimensions).
 pub fn integrands(family: Family, dims: usize, count: usize) -> Vec<Integrand> {
     numbered(family, dims, 0, count)
 }
@@ -243,7 +245,8 @@ fn pairs_of(family: Family, axes: &[usize], first: u64, count: usize) -> Vec<[In
     all.chunks_exact(2).map(|pair| [pair[0].clone(), pair[1].clone()]).collect()
 }
 
-/// Error images of a pair of integrands, as real and imaginary parts, of the first samples of every pixel: `[frame][prefix]` of `[y][x]`.
+/// Error images of a pair of integrands, as real and imaginary parts, of the first samples of every pixel:
+/// `[frame][prefix]` of `[y][x]`.
 fn errors(tile: &TileView, axes: &[usize], pair: &[Integrand; 2], prefixes: &[usize]) -> Vec<Plane> {
     let pixels = tile.size * tile.size;
     let mut images = vec![vec![Complex::new(0.0, 0.0); pixels]; tile.frames * prefixes.len()];

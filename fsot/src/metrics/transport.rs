@@ -18,7 +18,8 @@ const SEED: u64 = 0x51_1ced;
 pub struct Transport {
     /// Over 512 directions: stratified in two dimensions, random in more.
     pub sliced_w2: f64,
-    /// What no set of as many points can go below on the same slices: every point the mean of its part of the projected square.
+    /// What no set of as many points can go below on the same slices: every point the mean of its part of the projected
+    /// square.
     pub lower_bound: f64,
     /// Over 8 random toroidal shifts of 128 directions each (32 above 65,536 points): the quality as a tile.
     pub shifted: f64,
@@ -68,8 +69,8 @@ fn sliced(centred: &[f64], dims: usize, slices: usize, set: u64) -> (f64, f64) {
     (mean(|r| r.0).max(0.0), mean(|r| r.1).max(0.0))
 }
 
-/// The squared semi-discrete distance between points about the origin, projected on a unit direction, and the projected cube;
-/// and its lower bound for as many points.
+/// The squared semi-discrete distance between points about the origin, projected on a unit direction, and the projected
+/// cube; and its lower bound for as many points.
 pub fn slice_distance(centred: &[f64], direction: &[f64]) -> (f64, f64) {
     let along = |p: &[f64]| p.iter().zip(direction).map(|(x, a)| x * a).sum();
     let projected: Vec<f64> = centred.chunks_exact(direction.len()).map(along).collect();
@@ -79,12 +80,14 @@ pub fn slice_distance(centred: &[f64], direction: &[f64]) -> (f64, f64) {
     law.bins(&mut means);
     let count = projected.len() as f64;
     let between = projected.iter().zip(&means).map(|(p, m)| (p - m) * (p - m)).sum::<f64>() / count;
-    // The cube's second moment along any unit direction is 1/12; what the bins' means do not have of it is spread within the bins.
+    // The cube's second moment along any unit direction is 1/12; what the bins' means do not have of it is spread
+    // within the bins.
     let within = (1.0 / 12.0 - means.iter().map(|m| m * m).sum::<f64>() / count).max(0.0);
     (between + within, within)
 }
 
-/// The values, most of them in [-half, half], in ascending order: shared out to as many buckets first, each of which is then sorted.
+/// The values, most of them in [-half, half], in ascending order: shared out to as many buckets first, each of which is
+/// then sorted.
 fn sorted(values: &[f64], half: f64) -> Vec<f64> {
     let count = values.len();
     let scale = count as f64 / (2.0 * half);

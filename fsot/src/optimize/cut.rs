@@ -16,9 +16,10 @@ pub(super) struct Piece<const D: usize> {
 
 /// Cuts `points` at random places, each axis into `per_axis` pieces.
 ///
-/// A cut is between two ranks, and at the place where as much of the domain is below it as of the points: so a window's part of the points is
-/// its part of the domain, though some points may be outside by a little. If cuts were between coordinates, a window would have some points
-/// too many or too few, push them evenly between its walls, and so turn chance at its walls into errors of its own size, which no window sees.
+/// A cut is between two ranks, and at the place where as much of the domain is below it as of the points: so a window's
+/// part of the points is its part of the domain, though some points may be outside by a little. If cuts were between
+/// coordinates, a window would have some points too many or too few, push them evenly between its walls, and so turn
+/// chance at its walls into errors of its own size, which no window sees.
 pub(super) fn cut<const D: usize>(
     points: &[[f32; D]],
     groups: &[Group],

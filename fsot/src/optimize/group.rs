@@ -2,7 +2,8 @@
 
 use crate::class::Filter;
 
-/// Members per window of a group that windows share out by rank: of fewer, a point could be far from the window that its rank gives it.
+/// Members per window of a group that windows share out by rank: of fewer, a point could be far from the window that
+/// its rank gives it.
 const PER_WINDOW: usize = 32;
 
 /// Points that are cut together.
@@ -14,8 +15,9 @@ pub(super) struct Group {
     pub(super) ranked: bool,
 }
 
-/// Groups of all points: those that no class tells apart are one, if large enough, which at most about a hundred are; small ones are together,
-/// as in a ramp, where every point has values of its own. Points of no class are never moved, and apart from the others.
+/// Groups of all points: those that no class tells apart are one, if large enough, which at most about a hundred are;
+/// small ones are together, as in a ramp, where every point has values of its own. Points of no class are never moved,
+/// and apart from the others.
 pub(super) fn groups(filters: &[Filter], points: usize, windows: usize) -> Vec<Group> {
     let least = PER_WINDOW * windows;
     // Two points next to each other by number are told apart where a run of some class begins or ends.

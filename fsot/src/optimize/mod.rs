@@ -57,7 +57,8 @@ pub struct Problem {
     pub class_coordinates: ClassCoordinates,
     /// The shape of the domain.
     pub domain: Domain,
-    /// The probability that a slice is along an axis instead of a direction from the whole sphere, in [0, 1] (figure 5.7: .3).
+    /// The probability that a slice is along an axis instead of a direction from the whole sphere, in [0, 1] (figure
+    /// 5.7: .3).
     pub axis_priority: f32,
     /// Chooses all random numbers.
     pub seed: u64,

@@ -18,8 +18,9 @@ use std::sync::Mutex;
 
 /// An optimisation of a point set (5.18).
 ///
-/// One step draws a few slices, each a class, a threshold and a direction, finds where one-dimensional optimal transport moves each
-/// slice's points, and moves every point by the mean of what its slices want. Memory: about 200 bytes per point.
+/// One step draws a few slices, each a class, a threshold and a direction, finds where one-dimensional optimal
+/// transport moves each slice's points, and moves every point by the mean of what its slices want. Memory: about 200
+/// bytes per point.
 pub struct Optimizer {
     pub(super) problem: Problem,
     pub(super) filters: Vec<Filter>,
@@ -45,9 +46,9 @@ impl Optimizer {
     /// Prepares an optimisation.
     ///
     /// # Errors
-    /// [`Error::Input`](crate::Error::Input) for numbers out of range, targets of other dimensions than the points, functions that are not
-    /// class functions, initial points that do not fit, a torus with targets that are not uniform, and more memory than
-    /// [`memory::MOST`] or than the system gives.
+    /// [`Error::Input`](crate::Error::Input) for numbers out of range, targets of other dimensions than the points,
+    /// functions that are not class functions, initial points that do not fit, a torus with targets that are not
+    /// uniform, and more memory than [`memory::MOST`] or than the system gives.
     pub fn new(problem: Problem) -> Result<Optimizer> {
         check::check(&problem)?;
         memory::check(bytes(&problem))?;

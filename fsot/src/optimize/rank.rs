@@ -18,14 +18,14 @@ pub(crate) struct Ranking {
 }
 
 impl Ranking {
-    /// The numbers of keys for [`Ranking::at_once`]: of fewer, a wrong bin is a large error; the buckets of more would not
-    /// fit the cache.
+    /// The numbers of keys for [`Ranking::at_once`]: of fewer, a wrong bin is a large error; the buckets of more would
+    /// not fit the cache.
     pub(crate) const AT_ONCE: RangeInclusive<usize> = FEW..=16_384;
 
     /// The rank of every key. Keys in the same bucket, of at least two per key, are ranked in the order given.
     ///
-    /// Where the keys are about uniform, few share a bucket, and the offsets of those that do are wrong by about a bin, which is little
-    /// against what they are in a slice of random direction.
+    /// Where the keys are about uniform, few share a bucket, and the offsets of those that do are wrong by about a bin,
+    /// which is little against what they are in a slice of random direction.
     pub(crate) fn at_once(&mut self, keys: &[u32]) -> &[u32] {
         let bits = keys.len().max(2).next_power_of_two().ilog2() + 1;
         let shift = KEY_BITS - bits;
@@ -46,7 +46,8 @@ impl Ranking {
         ranks
     }
 
-    /// The rank of every key, by a radix sort of two passes; few keys, by comparisons. Equal keys are ranked in the order given.
+    /// The rank of every key, by a radix sort of two passes; few keys, by comparisons. Equal keys are ranked in the
+    /// order given.
     pub(crate) fn sorted(&mut self, keys: &[u32]) -> &[u32] {
         const DIGIT: u32 = KEY_BITS.div_ceil(2);
         const MASK: usize = (1 << DIGIT) - 1;

@@ -3,8 +3,8 @@
 use super::window::windows_per_axis;
 use super::{Problem, Quality};
 
-/// Slices per iteration. At 48,000 slices in all, 4096 points reach a nearest-neighbour distance of .873 of the maximum with 8 or 16 slices,
-/// .870 with 32; hundreds are much worse. Sixteen keep as many threads busy.
+/// Slices per iteration. At 48,000 slices in all, 4096 points reach a nearest-neighbour distance of .873 of the maximum
+/// with 8 or 16 slices, .870 with 32; hundreds are much worse. Sixteen keep as many threads busy.
 pub(crate) const SLICES: usize = 16;
 
 /// Points per window of a large set.
@@ -15,12 +15,13 @@ pub(crate) const WINDOWED_FROM: usize = 8192;
 pub(crate) const WINDOW_ITERATIONS: usize = 4;
 /// Iterations of all points together, before those in windows.
 const OPENING: u64 = 4;
-/// The same after them, for each objective: they remove most of the error of low frequencies that windows leave, and cost a little of the
-/// nearest-neighbour distance.
+/// The same after them, for each objective: they remove most of the error of low frequencies that windows leave, and
+/// cost a little of the nearest-neighbour distance.
 const CLOSING: u64 = 24;
 
-/// The iterations of an optimisation: of all points together, or, for large uniform sets, of windows, but for a few at the beginning, which
-/// spread the points evenly over the domain, and some at the end, which remove the errors that are larger than a window.
+/// The iterations of an optimisation: of all points together, or, for large uniform sets, of windows, but for a few at
+/// the beginning, which spread the points evenly over the domain, and some at the end, which remove the errors that are
+/// larger than a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Schedule {
     opening: u64,
@@ -60,8 +61,9 @@ impl Schedule {
         (self.opening..self.closing).contains(&iteration)
     }
 
-    /// The step of an iteration, relative to the way to the targets. It falls exponentially from twice the way, which leaves bad places
-    /// behind, to a small part of it, which averages over many directions; once in windows, and once again behind them.
+    /// The step of an iteration, relative to the way to the targets. It falls exponentially from twice the way, which
+    /// leaves bad places behind, to a small part of it, which averages over many directions; once in windows, and once
+    /// again behind them.
     pub(crate) fn step(&self, iteration: u64) -> f32 {
         let falling = |to: f64, from: u64, until: u64| {
             (2.0 * libm::pow(to / 2.0, (iteration - from) as f64 / (until - from) as f64)) as f32
@@ -76,7 +78,8 @@ impl Schedule {
     }
 }
 
-/// The number of subclasses that compete for the points: class functions count with the number of their values, up to [`MOST_OBJECTIVES`].
+/// The number of subclasses that compete for the points: class functions count with the number of their values, up to
+/// [`MOST_OBJECTIVES`].
 pub(crate) fn objectives(values: impl Iterator<Item = usize>) -> usize {
     values.sum::<usize>().clamp(1, MOST_OBJECTIVES)
 }

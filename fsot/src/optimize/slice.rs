@@ -46,8 +46,9 @@ pub(crate) struct Bins<F> {
     pub(crate) uniform: bool,
 }
 
-/// Transports the selected points of `coordinates`, in the region [0, lengths], to their target's bins and leaves what happened to point i in
-/// `offsets[i]`; those of other points are not touched. Returns the mean squared distance that the points have to their bins' means.
+/// Transports the selected points of `coordinates`, in the region [0, lengths], to their target's bins and leaves what
+/// happened to point i in `offsets[i]`; those of other points are not touched. Returns the mean squared distance that
+/// the points have to their bins' means.
 pub(crate) fn transport<const D: usize>(
     slice: &Slice<D>,
     lengths: &[f32; D],
@@ -150,9 +151,9 @@ fn project<const D: usize>(
     }
 }
 
-/// Moves the points `first..first + coordinates.len() / D`, whose coordinates are given, by the offsets that slices left for them:
-/// by the weighted mean of the offsets, times D because each shows one direction of D only, times `step`.
-/// `settle(from, to, axis)` says where a coordinate goes that would go from one place to the other.
+/// Moves the points `first..first + coordinates.len() / D`, whose coordinates are given, by the offsets that slices
+/// left for them: by the weighted mean of the offsets, times D because each shows one direction of D only, times
+/// `step`. `settle(from, to, axis)` says where a coordinate goes that would go from one place to the other.
 pub(crate) fn advance<const D: usize>(
     slices: &[(&Slice<D>, &[Offset])],
     first: usize,

@@ -117,7 +117,8 @@ fn transport_is_that_of_a_comparison_sort() {
     }
 }
 
-/// W2^2 between points on a line and the target of a slice (5.19), by quadrature of the difference of the inverse distributions.
+/// W2^2 between points on a line and the target of a slice (5.19), by quadrature of the difference of the inverse
+/// distributions.
 fn distance(sorted: &[f64], fine: &[f32]) -> f64 {
     let per_point = fine.len() / sorted.len();
     let sum: f64 = fine.iter().enumerate().map(|(k, &q)| (sorted[k / per_point] - f64::from(q)).powi(2)).sum();

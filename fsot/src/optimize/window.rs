@@ -1,4 +1,5 @@
-//! Windows: large uniform sets are optimised in boxes of about a thousand points, which costs less per point and moves them farther.
+//! Windows: large uniform sets are optimised in boxes of about a thousand points, which costs less per point and moves
+//! them farther.
 
 use super::Domain;
 use super::cut::{Piece, cut};

@@ -38,8 +38,8 @@ pub fn blurred_psnr(drawn: &RgbImage, source: &Photo, sigma: f32, linear: bool, 
     -10.0 * libm::log10(squares / 3.0)
 }
 
-/// The mean of the squares of blurred values. A wide blur leaves nothing that a coarser grid would lose: means of blocks of an
-/// eighth of the standard deviation are blurred instead.
+/// The mean of the squares of blurred values. A wide blur leaves nothing that a coarser grid would lose: means of
+/// blocks of an eighth of the standard deviation are blurred instead.
 fn blurred_squares(values: &[f32], width: usize, height: usize, sigma: f32) -> f64 {
     let block = (sigma / 8.0) as usize;
     if block >= 2 && width >= 2 * block && height >= 2 * block {

@@ -78,8 +78,8 @@ impl Windows {
         }
     }
 
-    /// The points of a frame: a range, and the rest of it if it reaches beyond the last point of a cycle; ascending, one may be
-    /// empty.
+    /// The points of a frame: a range, and the rest of it if it reaches beyond the last point of a cycle; ascending,
+    /// one may be empty.
     pub fn of_frame(&self, frame: usize) -> [Range<usize>; 2] {
         let (begin, points) = (frame * self.step, self.points());
         let end = begin + self.window;

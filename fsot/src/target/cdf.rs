@@ -1,7 +1,7 @@
 //! Bins of equal mass of a distribution on a line, from its cumulative distribution at equidistant nodes.
 
-/// Cuts the distribution whose cumulative mass at `start + k * step` is `cdf[k]` (not decreasing, any total above 0, linear between
-/// nodes) into `means.len()` bins of equal mass, as [`Target::bins`](super::Target::bins) wants them.
+/// Cuts the distribution whose cumulative mass at `start + k * step` is `cdf[k]` (not decreasing, any total above 0,
+/// linear between nodes) into `means.len()` bins of equal mass, as [`Target::bins`](super::Target::bins) wants them.
 ///
 /// Densities are relative to the mass spread over `range`.
 ///

@@ -9,8 +9,9 @@ use noisefloor::rng::Rng;
 
 /// A distribution whose density is a function on `[0, 1]^dims`, known up to a factor.
 ///
-/// The function is taken at many places, once: in one dimension at 4,096, in two at a grid of at least 128 x 128 cells and eight per
-/// point, whose projections are exact, in more at eight places per point of a low-discrepancy sequence, at least 16,384.
+/// The function is taken at many places, once: in one dimension at 4,096, in two at a grid of at least 128 x 128 cells
+/// and eight per point, whose projections are exact, in more at eight places per point of a low-discrepancy sequence,
+/// at least 16,384.
 #[derive(Clone, Debug)]
 pub struct Function(Form);
 
@@ -32,11 +33,12 @@ const PER_POINT: usize = 8;
 const CELLS: usize = 512;
 
 impl Function {
-    /// The distribution of density `density`, up to a factor, for about `points` points of `dims` coordinates. A constant is as well served
-    /// by [`Uniform`](super::Uniform).
+    /// The distribution of density `density`, up to a factor, for about `points` points of `dims` coordinates. A
+    /// constant is as well served by [`Uniform`](super::Uniform).
     ///
     /// # Errors
-    /// [`Error::Input`] if `dims` is not 1 to 8, or the density is negative or not finite somewhere, or 0 wherever it is taken.
+    /// [`Error::Input`] if `dims` is not 1 to 8, or the density is negative or not finite somewhere, or 0 wherever it
+    /// is taken.
     pub fn new(dims: usize, points: usize, density: impl Fn(&[f32]) -> f32) -> Result<Function> {
         if dims == 0 || dims > MAX_DIMS {
             return Err(Error::Input(format!("a density of {dims} dimensions: give 1 to {MAX_DIMS}")));

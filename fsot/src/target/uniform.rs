@@ -42,11 +42,12 @@ impl Target for Uniform {
     }
 }
 
-/// [`Target::bins`] for the uniform distribution on a box, by the box's projected centre and the projected lengths of its edges
-/// (`|direction[k]|` times the length of edge k; at most 8, not negative). Reorders `extents`. Densities are relative to the mass spread over
-/// `range`.
+/// [`Target::bins`] for the uniform distribution on a box, by the box's projected centre and the projected lengths of
+/// its edges (`|direction[k]|` times the length of edge k; at most 8, not negative). Reorders `extents`. Densities are
+/// relative to the mass spread over `range`.
 ///
-/// One or two edges: closed form (a trapezoid). More: the cumulative distribution at 1,024 nodes, relative error about 1e-6.
+/// One or two edges: closed form (a trapezoid). More: the cumulative distribution at 1,024 nodes, relative error about
+/// 1e-6.
 pub fn uniform_bins(center: f32, extents: &mut [f32], range: f32, means: &mut [f32], density: &mut [f32]) {
     extents.sort_unstable_by(|a, b| b.total_cmp(a));
     let longest = extents.first().copied().unwrap_or(0.0);
@@ -76,7 +77,8 @@ fn root_bin(i: usize) -> [f32; 2] {
     [(2.0 / 3.0) * (begin + a * b + end) / (a + b), a + b]
 }
 
-/// The projection of a rectangle: a density that is constant over `long - short` and falls linearly over `short` to both sides.
+/// The projection of a rectangle: a density that is constant over `long - short` and falls linearly over `short` to
+/// both sides.
 fn trapezoid(center: f32, [long, short]: [f32; 2], range: f32, means: &mut [f32], density: &mut [f32]) {
     let bins = means.len();
     if bins == 0 {
@@ -137,8 +139,8 @@ fn trapezoid(center: f32, [long, short]: [f32; 2], range: f32, means: &mut [f32]
 /// Cells of the table of the cumulative distribution.
 const CELLS: usize = 1024;
 
-/// The projection of a box of three or more edges, in descending order: the trapezoid of the longest two, averaged over each further
-/// edge in turn.
+/// The projection of a box of three or more edges, in descending order: the trapezoid of the longest two, averaged over
+/// each further edge in turn.
 fn tabulated(center: f32, extents: &[f32], range: f32, means: &mut [f32], density: &mut [f32]) {
     let width: f64 = extents.iter().map(|&extent| f64::from(extent)).sum();
     let step = width / CELLS as f64;
@@ -171,8 +173,8 @@ fn trapezoid_cdf(t: f64, long: f64, short: f64) -> f64 {
     if t > 0.0 { 1.0 - tail } else { tail }
 }
 
-/// Replaces F(t) at the nodes by its mean over [t - extent / 2, t + extent / 2]: the distribution of a sum with one more uniform
-/// variable. F is 0 before the first node and 1 behind the last.
+/// Replaces F(t) at the nodes by its mean over [t - extent / 2, t + extent / 2]: the distribution of a sum with one
+/// more uniform variable. F is 0 before the first node and 1 behind the last.
 fn average_over(extent: f64, step: f64, cdf: &mut [f64; CELLS + 1], integral: &mut [f64; CELLS + 1]) {
     // Fourth-order cumulative integration, then cubic Hermite interpolation, whose slope is F itself.
     integral[0] = 0.0;

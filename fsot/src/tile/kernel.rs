@@ -47,8 +47,8 @@ pub enum Kernel {
     Gaussian(f32),
     /// A Gaussian of standard deviation [`PERCEPTUAL_SIGMA`]: what the eye makes of the pixels at a usual distance.
     Perceptual,
-    /// The convolution of two kernels, themselves no convolutions: `p * r` in 5.6.1. A Gaussian's radius is 4.29 standard
-    /// deviations here; the radii of both add up to at most 96 pixels.
+    /// The convolution of two kernels, themselves no convolutions: `p * r` in 5.6.1. A Gaussian's radius is 4.29
+    /// standard deviations here; the radii of both add up to at most 96 pixels.
     Convolution(Box<Kernel>, Box<Kernel>),
     /// Any non-negative function: an odd number of rows as long as there are rows, the pixel itself in the centre.
     Tabulated(Vec<Vec<f32>>),

@@ -51,7 +51,8 @@ struct Bin {
     weight: i32,
 }
 
-/// The memory of an optimisation: the coordinates, the positions of all samples with their margins, and each thread's displacements.
+/// The memory of an optimisation: the coordinates, the positions of all samples with their margins, and each thread's
+/// displacements.
 fn bytes(problem: &TileProblem, samples: usize) -> u64 {
     let (directions, samples) = (problem.directions as u64, samples as u64);
     let sums = 8 * (directions + 1) * samples * rayon::current_num_threads() as u64;
@@ -59,8 +60,8 @@ fn bytes(problem: &TileProblem, samples: usize) -> u64 {
 }
 
 impl TileOptimizer {
-    /// Starts from random samples. An [`Error::Input`](crate::Error::Input) if the problem is not valid, or needs more memory than
-    /// [`memory::MOST`] or than the system gives.
+    /// Starts from random samples. An [`Error::Input`](crate::Error::Input) if the problem is not valid, or needs more
+    /// memory than [`memory::MOST`] or than the system gives.
     pub fn new(problem: TileProblem) -> Result<TileOptimizer> {
         let stencils = problem.stencils()?;
         memory::check(bytes(&problem, stencils.lattice.samples()))?;

@@ -1,10 +1,10 @@
 //! The order of a pixel's samples, which says where they are.
 //!
-//! Bit 0 of a sample's number tells the half of the pixel's samples by the first coordinate, bits 0 and 1 added, modulo 2, the half of
-//! those by the second, bits 2 and 3 the same of quarters, and so on; all bits are exclusive-or a constant of the pixel's, a hash of
-//! its samples. So every prefix of 2^k samples has one in each of 2^k cells (two are on a diagonal), the samples of one number are spread over
-//! all cells, and what `noisefloor` draws beyond a tile's dimensions is stratified together with them. A tile that is not progressive is as
-//! good in any order.
+//! Bit 0 of a sample's number tells the half of the pixel's samples by the first coordinate, bits 0 and 1 added, modulo
+//! 2, the half of those by the second, bits 2 and 3 the same of quarters, and so on; all bits are exclusive-or a
+//! constant of the pixel's, a hash of its samples. So every prefix of 2^k samples has one in each of 2^k cells (two are
+//! on a diagonal), the samples of one number are spread over all cells, and what `noisefloor` draws beyond a tile's
+//! dimensions is stratified together with them. A tile that is not progressive is as good in any order.
 
 use super::TileSamples;
 use crate::random::stream;
@@ -15,8 +15,8 @@ fn key(coordinate: f32) -> u16 {
 }
 
 impl TileSamples {
-    /// The same samples, those of each pixel in the order above. Nothing happens to pixels whose number of samples is no power of two,
-    /// or whose samples have one coordinate.
+    /// The same samples, those of each pixel in the order above. Nothing happens to pixels whose number of samples is
+    /// no power of two, or whose samples have one coordinate.
     pub fn ordered(mut self) -> TileSamples {
         let (spp, dims) = (self.spp, self.dims);
         if spp < 2 || !spp.is_power_of_two() || dims < 2 {
@@ -52,7 +52,8 @@ fn cell(number: usize, bits: u32) -> usize {
     (sides & ((1 << bits) - 1)).reverse_bits() >> (usize::BITS - bits)
 }
 
-/// Sorts into halves by the first and the second coordinate in turn, down to single samples; of equal ones the earlier is the smaller.
+/// Sorts into halves by the first and the second coordinate in turn, down to single samples; of equal ones the earlier
+/// is the smaller.
 fn split(samples: &mut [usize], level: usize, key: impl Fn(usize, usize) -> u16 + Copy) {
     if samples.len() < 2 {
         return;
@@ -93,7 +94,8 @@ mod tests {
         }
     }
 
-    /// In each pixel the numbers, exclusive-or one constant, are those that halving by each coordinate in turn gives; all constants occur.
+    /// In each pixel the numbers, exclusive-or one constant, are those that halving by each coordinate in turn gives;
+    /// all constants occur.
     #[test]
     fn numbers_tell_the_cell() {
         let samples = random(16, 16, 2).ordered();

@@ -10,10 +10,10 @@ const MAX_SAMPLES: usize = 1 << 16;
 
 /// The most that the pixels of all classes weigh together.
 ///
-/// A sample is in at most as many slices of a step as the classes have pixels. Each adds to a 64-bit sum an offset of at
-/// most 2^24, times a bin's weight, times the subclass's. The projected cube is nowhere more than 4 times as dense as in
-/// the mean (a section is at most sqrt 2, Ball 1986; the length at most sqrt 8), and the offset correction at most 2: a
-/// bin weighs at most 2^4 [`WEIGHT_UNIT`]s, and the sum is less than 2^(18 + 24 + 4 + 2 * 8) = 2^62.
+/// A sample is in at most as many slices of a step as the classes have pixels. Each adds to a 64-bit sum an offset of
+/// at most 2^24, times a bin's weight, times the subclass's. The projected cube is nowhere more than 4 times as dense
+/// as in the mean (a section is at most sqrt 2, Ball 1986; the length at most sqrt 8), and the offset correction at
+/// most 2: a bin weighs at most 2^4 [`WEIGHT_UNIT`]s, and the sum is less than 2^(18 + 24 + 4 + 2 * 8) = 2^62.
 const MAX_WEIGHT: f64 = (1u32 << 18) as f64;
 
 /// A subclass's size grows at least by this part from one threshold to the next: finer ones are joined with the next.

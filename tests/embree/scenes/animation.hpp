@@ -1,4 +1,5 @@
-// Section 5.8, figures 5.23 and 5.24: eighteen frames in which the camera glides around a turntable that turns slowly the other way.
+// Section 5.8, figures 5.23 and 5.24: eighteen frames in which the camera glides around a turntable that turns slowly
+// the other way.
 #pragma once
 
 #include "killeroos.hpp"
@@ -20,7 +21,8 @@ inline void make_animation(uint32_t frame, float aspect, Scene &scene)
     for (int i = 0; i < 24; ++i) // marks by which one sees it turn
         stage.put(box({.03f, .006f, .1f}, .002f, 2), stage.material({.8f, .75f, .6f}),
                   top * turn_up(15 * static_cast<float>(i)) * move({0, 0, .88f}));
-    stage.put(shipped("bunny.ply"), stage.material({.55f, .45f, .38f}), top * move({-.36f, 0, .22f}) * turn_up(20) * scale(.62f));
+    stage.put(shipped("bunny.ply"), stage.material({.55f, .45f, .38f}),
+              top * move({-.36f, 0, .22f}) * turn_up(20) * scale(.62f));
     stage.put(shipped("teapot.ply"), stage.material({.1f, .3f, .4f}, {.2f, .2f, .2f}, 25),
               top * move({.3f, 0, -.36f}) * turn_up(-30) * scale(.42f));
     const Duck bird = duck();

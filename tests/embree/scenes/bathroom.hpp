@@ -8,7 +8,8 @@
 namespace harness {
 
 // Tiles of a wall from `corner`, over `edge1` by `edge2`, standing out by a little.
-inline void tile_wall(Stage &stage, Vector corner, Vector edge1, Vector edge2, float size, const std::vector<uint32_t> &materials)
+inline void tile_wall(Stage &stage, Vector corner, Vector edge1, Vector edge2, float size,
+                      const std::vector<uint32_t> &materials)
 {
     const float width = length(edge1), height = length(edge2);
     const Vector x = edge1 / width, y = edge2 / height, z = cross(x, y);
@@ -17,7 +18,8 @@ inline void tile_wall(Stage &stage, Vector corner, Vector edge1, Vector edge2, f
     for (float v = .5f * size; v < height; v += size, ++i) {
         int j = 0;
         for (float u = .5f * size; u < width; u += size, ++j)
-            stage.put(tile, materials[static_cast<size_t>(i + j) % materials.size()], Transform{x, z, -y, corner + u * x + v * y});
+            stage.put(tile, materials[static_cast<size_t>(i + j) % materials.size()],
+                      Transform{x, z, -y, corner + u * x + v * y});
     }
     stage.parallelogram(corner + .004f * z, edge1, edge2, stage.material({.5f, .5f, .48f}));
 }
@@ -43,14 +45,16 @@ inline Mesh tub()
 
 inline Mesh basin()
 {
-    return lathe(rounded({{0, 0}, {.12f, 0}, {.2f, .07f}, {.24f, .14f}, {.225f, .15f}, {.18f, .08f}, {.08f, .03f}, {0, .025f}}), 64,
-                 60);
+    return lathe(
+        rounded({{0, 0}, {.12f, 0}, {.2f, .07f}, {.24f, .14f}, {.225f, .15f}, {.18f, .08f}, {.08f, .03f}, {0, .025f}}),
+        64, 60);
 }
 
 inline Mesh toilet()
 {
     Body body(.08f);
-    body.limbs({{{0, .05f, .05f}, .13f}, {{0, .2f, .04f}, .11f}, {{0, .34f, .1f}, .17f}}).egg({0, .36f, .14f}, {.19f, .08f, .25f});
+    body.limbs({{{0, .05f, .05f}, .13f}, {{0, .2f, .04f}, .11f}, {{0, .34f, .1f}, .17f}})
+        .egg({0, .36f, .14f}, {.19f, .08f, .25f});
     Mesh mesh = sculpt(body, {-.4f, -.15f, -.4f}, {.4f, .7f, .6f}, .02f);
     mesh.add(move({0, .36f, -.2f}) * box({.42f, .36f, .18f}, .04f));
     mesh.add(move({0, .42f, .13f}) * scale({1, 1, 1.25f}) * cylinder(.19f, .03f));
@@ -60,8 +64,9 @@ inline Mesh toilet()
 inline Mesh faucet()
 {
     Mesh mesh = cylinder(.022f, .1f, 24);
-    mesh.add(tube([](float t) { return Vector{0, .1f + .1f * std::sin(demo::pi * t), .07f * (1 - std::cos(demo::pi * t))}; },
-                  [](float) { return .012f; }, 24));
+    mesh.add(
+        tube([](float t) { return Vector{0, .1f + .1f * std::sin(demo::pi * t), .07f * (1 - std::cos(demo::pi * t))}; },
+             [](float) { return .012f; }, 24));
     for (float x : {-.09f, .09f})
         mesh.add(move({x, 0, 0}) *
                  lathe(rounded({{0, 0}, {.02f, 0}, {.014f, .03f}, {.03f, .05f}, {.025f, .07f}, {0, .075f}}), 24, 60));
@@ -75,7 +80,8 @@ inline void make_bathroom(uint32_t, float aspect, Scene &scene)
     scene.camera.look({1.3f, 1.5f, 2.6f}, {-.2f, .84f, -.6f}, 44, aspect);
     const uint32_t white = stage.material({.78f, .8f, .8f}, {.08f, .08f, .08f}, 40),
                    blue = stage.material({.2f, .4f, .5f}, {.1f, .1f, .1f}, 40);
-    const uint32_t pale = stage.material({.62f, .72f, .74f}, {.1f, .1f, .1f}, 40), plaster = stage.material({.72f, .68f, .6f});
+    const uint32_t pale = stage.material({.62f, .72f, .74f}, {.1f, .1f, .1f}, 40),
+                   plaster = stage.material({.72f, .68f, .6f});
     const uint32_t dark = stage.material({.16f, .17f, .19f}, {.12f, .12f, .12f}, 40),
                    chrome = stage.material({.12f, .12f, .13f}, {.7f, .7f, .7f}, 60);
     const uint32_t porcelain = stage.material({.8f, .8f, .78f}, {.12f, .12f, .12f}, 60),
@@ -98,21 +104,25 @@ inline void make_bathroom(uint32_t, float aspect, Scene &scene)
     // Cabinet, basin, mirror and shelf.
     stage.put(box({1.15f, .66f, .46f}, .02f), oak, move({.1f, .12f, -1.24f}));
     for (float x : {-.17f, .37f}) {
-        stage.put(box({.5f, .56f, .03f}, .012f), stage.material({.5f, .32f, .17f}, {.1f, .1f, .1f}, 25), move({x, .17f, -1.01f}));
+        stage.put(box({.5f, .56f, .03f}, .012f), stage.material({.5f, .32f, .17f}, {.1f, .1f, .1f}, 25),
+                  move({x, .17f, -1.01f}));
         stage.put(ball({.022f, .022f, .022f}, 20), chrome, move({x + (x < 0 ? .2f : -.2f), .46f, -.98f}));
     }
     stage.put(box({1.22f, .04f, .52f}, .01f), dark, move({.1f, .78f, -1.23f}));
     stage.put(basin(), porcelain, move({.1f, .82f, -1.2f}));
     stage.put(faucet(), chrome, move({.1f, .82f, -1.43f}));
     stage.put(box({.96f, .8f, .03f}, .012f), oak, move({.1f, 1.22f, -1.49f}));
-    stage.put(box({.88f, .72f, .02f}), stage.material({.16f, .2f, .22f}, {.6f, .6f, .6f}, 30), move({.1f, 1.26f, -1.475f}));
+    stage.put(box({.88f, .72f, .02f}), stage.material({.16f, .2f, .22f}, {.6f, .6f, .6f}, 30),
+              move({.1f, 1.26f, -1.475f}));
     stage.put(box({.07f, .17f, .07f}, .02f), pale, move({.56f, .82f, -1.3f}));
-    stage.put(lathe(rounded({{0, 0}, {.035f, 0}, {.04f, .07f}, {.036f, .1f}, {.033f, .1f}, {.034f, .03f}, {0, .02f}}), 32, 60),
+    stage.put(lathe(rounded({{0, 0}, {.035f, 0}, {.04f, .07f}, {.036f, .1f}, {.033f, .1f}, {.034f, .03f}, {0, .02f}}),
+                    32, 60),
               blue, move({-.36f, .82f, -1.25f}));
     stage.put(rod({-.36f, .84f, -1.25f}, {-.31f, 1.01f, -1.26f}, .006f), stage.material({.7f, .2f, .15f}), {});
     // Toilet, mat, and a towel on its rail.
     stage.put(toilet(), porcelain, move({1.12f, .015f, -1.15f}));
-    stage.put(box({.8f, .03f, .55f}, .014f), stage.material({.25f, .42f, .4f}), move({.12f, .016f, -.35f}) * turn_up(8));
+    stage.put(box({.8f, .03f, .55f}, .014f), stage.material({.25f, .42f, .4f}),
+              move({.12f, .016f, -.35f}) * turn_up(8));
     stage.put(rod({-1.62f, 1.2f, .35f}, {-1.62f, 1.2f, 1.25f}, .014f), chrome);
     stage.put(box({.05f, .62f, .5f}, .02f), stage.material({.7f, .32f, .22f}), move({-1.62f, .6f, .8f}));
     // Lamps: a globe on either side of the mirror, a ring at the ceiling, a window, and a shelf that glows.

@@ -17,7 +17,8 @@ inline Mesh rotor(int blades, float span, float chord)
     for (int i = 0; i < blades; ++i) {
         Transform place = turn_up(360 * static_cast<float>(i) / static_cast<float>(blades) + 20);
         mesh.add(place * rod({0, 0, 0}, {.2f, 0, 0}, .022f));
-        mesh.add(place * (move({.15f + .5f * span, -.008f, 0}) * turn({1, 0, 0}, 6) * box({span, .016f, chord}, .007f, 2)));
+        mesh.add(place *
+                 (move({.15f + .5f * span, -.008f, 0}) * turn({1, 0, 0}, 6) * box({span, .016f, chord}, .007f, 2)));
     }
     return mesh;
 }
@@ -33,7 +34,9 @@ inline Helicopter helicopter()
     tail.limb({-1.5f, .82f, -.34f}, .018f, {-1.5f, .82f, .34f}, .018f);
     h.hull = sculpt(
         [&](Vector center, float radius) {
-            return [a = hull.near(center, radius), b = tail.near(center, radius)](Vector p) { return blend(a(p), b(p), .06f); };
+            return [a = hull.near(center, radius), b = tail.near(center, radius)](Vector p) {
+                return blend(a(p), b(p), .06f);
+            };
         },
         {-2.2f, .1f, -.5f}, {1, 1.4f, .5f}, .022f);
     Body dome(.05f);
@@ -45,9 +48,9 @@ inline Helicopter helicopter()
         h.metal.add(tube([=](float t) { return Vector{-.7f + 1.5f * t, .03f + .16f * std::pow(t, 8.0f), z}; },
                          [](float) { return .028f; }, 40));
         for (float x : {-.35f, .35f})
-            h.metal.add(
-                tube([=](float t) { return Vector{x, .42f - .39f * t * t, z * (.45f + .55f * std::sin(demo::pi / 2 * t))}; },
-                     [](float) { return .022f; }, 16));
+            h.metal.add(tube(
+                [=](float t) { return Vector{x, .42f - .39f * t * t, z * (.45f + .55f * std::sin(demo::pi / 2 * t))}; },
+                [](float) { return .022f; }, 16));
         // Turbines and pods at both sides.
         h.metal.add(move({-.5f, .86f, .17f * side}) * turn({0, 0, 1}, 90) *
                     lathe({{.05f, 0}, {.075f, 0}, {.085f, .3f}, {.06f, .32f}, {.05f, .05f}, {0, .05f}}, 32, 40));

@@ -93,7 +93,8 @@ inline void lay_table(Stage &stage, float top)
     stage.put(shipped("teapot.ply"), china, move({-.2f, top, 0}) * turn_up(25) * scale(.15f));
     stage.put(vase(), stage.material({.1f, .3f, .35f}, {.25f, .25f, .25f}, 40), move({.17f, top, .02f}));
     const uint32_t bowl = stage.material({.55f, .35f, .15f}, {.1f, .1f, .1f}, 30);
-    stage.put(lathe(rounded({{0, .01f}, {.05f, 0}, {.1f, .03f}, {.13f, .09f}, {.122f, .09f}, {.09f, .04f}, {0, .02f}}), 64, 60),
+    stage.put(lathe(rounded({{0, .01f}, {.05f, 0}, {.1f, .03f}, {.13f, .09f}, {.122f, .09f}, {.09f, .04f}, {0, .02f}}),
+                    64, 60),
               bowl, move({-.62f, top, .02f}));
     const Color fruit[3] = {{.7f, .12f, .06f}, {.75f, .42f, .05f}, {.45f, .6f, .1f}};
     const Vector heap[6] = {{.05f, .075f, 0}, {-.03f, .075f, .045f}, {-.03f, .075f, -.045f},

@@ -1,5 +1,5 @@
-// Figure 4.7: a box with ducks, parted by a shelf. A lamp on either wall throws its light upwards: the upper half is lit by the
-// lamps, the lower one only by what the upper one reflects.
+// Figure 4.7: a box with ducks, parted by a shelf. A lamp on either wall throws its light upwards: the upper half is
+// lit by the lamps, the lower one only by what the upper one reflects.
 #pragma once
 
 #include "../figures.hpp"
@@ -19,7 +19,8 @@ inline void make_duck(uint32_t, float aspect, Scene &scene)
     stage.parallelogram({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, white);
     stage.parallelogram({-1, 0, 1}, {0, 0, -2}, {0, 2, 0}, stage.material({.66f, .16f, .11f}));
     stage.parallelogram({1, 0, -1}, {0, 0, 2}, {0, 2, 0}, stage.material({.2f, .5f, .17f}));
-    stage.put(box({.8f, .05f, .6f}, .015f), stage.material({.45f, .3f, .18f}, {.1f, .1f, .1f}, 30), move({0, .98f, -.55f}));
+    stage.put(box({.8f, .05f, .6f}, .015f), stage.material({.45f, .3f, .18f}, {.1f, .1f, .1f}, 30),
+              move({0, .98f, -.55f}));
 
     const Duck bird = duck();
     const uint32_t beak = stage.material({.75f, .28f, .05f}, {.15f, .15f, .15f}, 30),
@@ -39,7 +40,8 @@ inline void make_duck(uint32_t, float aspect, Scene &scene)
     for (float side : {-1.0f, 1.0f}) {
         float x = side * .85f;
         stage.put(box({.3f, .06f, .6f}, .02f), brass, move({x, 1, -.05f}));
-        stage.area_light({x - .11f, 1.065f, .2f}, {.22f, 0, 0}, {0, 0, -.5f}, side < 0 ? Color{40, 33, 25} : Color{27, 31, 37});
+        stage.area_light({x - .11f, 1.065f, .2f}, {.22f, 0, 0}, {0, 0, -.5f},
+                         side < 0 ? Color{40, 33, 25} : Color{27, 31, 37});
     }
 }
 

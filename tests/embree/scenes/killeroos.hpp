@@ -37,7 +37,8 @@ inline void make_killeroos(uint32_t, float aspect, Scene &scene)
     stage.put(beast, hide, move({-.72f, 0, .15f}) * turn_up(-28));
     stage.put(beast, steel, move({.62f, .22f, -.1f}) * turn_up(208) * turn({0, 0, 1}, 9), {-.07f, .06f, .02f});
     stage.put(beast, stage.material({.5f, .46f, .36f}), move({.15f, 0, -1.25f}) * turn_up(-70) * scale(.8f));
-    stage.sphere({-.02f, 1.28f, .25f}, .11f, stage.material({.6f, .12f, .08f}, {.25f, .25f, .25f}, 60), {.13f, .09f, 0});
+    stage.sphere({-.02f, 1.28f, .25f}, .11f, stage.material({.6f, .12f, .08f}, {.25f, .25f, .25f}, 60),
+                 {.13f, .09f, 0});
     stage.sphere({-.35f, .09f, .95f}, .09f, stage.material({.15f, .4f, .2f}, {.25f, .25f, .25f}, 60), {.1f, 0, .03f});
     stage.sphere_light({-1.3f, 3.1f, 2.6f}, .45f, {76, 71, 62});
 }

@@ -39,8 +39,8 @@ inline Mesh bishop()
 inline Mesh rook()
 {
     std::vector<Profile> profile = stem(.8f);
-    for (Profile p :
-         std::vector<Profile>{{.19f, .84f}, {.19f, 1}, {.27f, 1.04f}, {.27f, 1.12f}, {.18f, 1.12f}, {.18f, 1.05f}, {0, 1.05f}})
+    for (Profile p : std::vector<Profile>{
+             {.19f, .84f}, {.19f, 1}, {.27f, 1.04f}, {.27f, 1.12f}, {.18f, 1.12f}, {.18f, 1.05f}, {0, 1.05f}})
         profile.push_back(p);
     Mesh mesh = lathe(profile, 56, 40);
     for (int i = 0; i < 6; ++i)
@@ -76,22 +76,25 @@ inline void make_lens(uint32_t, float aspect, Scene &scene)
     const uint32_t ivory = stage.material({.74f, .68f, .55f}, {.1f, .1f, .1f}, 16),
                    ebony = stage.material({.09f, .06f, .055f}, {.16f, .15f, .14f}, 12);
     stage.put(lathe({{0, -.5f}, {40, -.5f}, {40, -.49f}, {0, -.49f}}, 64), stage.material({.3f, .36f, .3f}));
-    stage.put(box({8.8f, .3f, 8.8f}, .08f), stage.material({.3f, .16f, .08f}, {.1f, .1f, .1f}, 16), move({0, -.32f, 0}));
+    stage.put(box({8.8f, .3f, 8.8f}, .08f), stage.material({.3f, .16f, .08f}, {.1f, .1f, .1f}, 16),
+              move({0, -.32f, 0}));
     const Mesh square = box({.985f, .1f, .985f}, .012f, 2);
     for (int i = 0; i < 8; ++i)
         for (int j = 0; j < 8; ++j)
-            stage.put(square, (i + j) % 2 ? dark : light, move({static_cast<float>(i) - 3.5f, -.1f, static_cast<float>(j) - 3.5f}));
+            stage.put(square, (i + j) % 2 ? dark : light,
+                      move({static_cast<float>(i) - 3.5f, -.1f, static_cast<float>(j) - 3.5f}));
     // The position after a few moves; files along x, ranks along -z.
     const Mesh small = pawn(), runner = bishop(), tower = rook(), lady = queen(), ruler = king();
     const struct {
         const Mesh &mesh;
         int file, rank;
         uint32_t material;
-    } men[] = {{small, 0, 1, ivory},  {small, 1, 1, ivory},  {small, 5, 1, ivory},  {small, 6, 1, ivory},  {small, 7, 1, ivory},
-               {small, 0, 6, ebony},  {small, 2, 6, ebony},  {small, 5, 6, ebony},  {small, 6, 6, ebony},  {small, 7, 6, ebony},
-               {small, 4, 3, ivory},  {small, 3, 2, ivory},  {small, 4, 4, ebony},  {small, 1, 5, ebony},  {runner, 2, 3, ivory},
-               {runner, 5, 4, ebony}, {lady, 3, 5, ebony},   {ruler, 4, 7, ebony},  {tower, 0, 7, ebony},  {tower, 7, 7, ebony},
-               {ruler, 5, 2, ivory},  {tower, 7, 0, ivory},  {tower, 2, 5, ivory}};
+    } men[] = {{small, 0, 1, ivory}, {small, 1, 1, ivory}, {small, 5, 1, ivory},  {small, 6, 1, ivory},
+               {small, 7, 1, ivory}, {small, 0, 6, ebony}, {small, 2, 6, ebony},  {small, 5, 6, ebony},
+               {small, 6, 6, ebony}, {small, 7, 6, ebony}, {small, 4, 3, ivory},  {small, 3, 2, ivory},
+               {small, 4, 4, ebony}, {small, 1, 5, ebony}, {runner, 2, 3, ivory}, {runner, 5, 4, ebony},
+               {lady, 3, 5, ebony},  {ruler, 4, 7, ebony}, {tower, 0, 7, ebony},  {tower, 7, 7, ebony},
+               {ruler, 5, 2, ivory}, {tower, 7, 0, ivory}, {tower, 2, 5, ivory}};
     for (const auto &man : men) // each turned a little differently
         stage.put(man.mesh, man.material,
                   move({static_cast<float>(man.file) - 3.5f, 0, 3.5f - static_cast<float>(man.rank)}) *

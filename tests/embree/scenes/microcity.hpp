@@ -14,7 +14,8 @@ public:
                                  {.74f, .56f, .2f}, {.5f, .3f, .2f},    {.35f, .52f, .45f}};
         for (Color paint : paints)
             walls_.push_back(stage.material(paint));
-        const Color cars[5] = {{.6f, .08f, .06f}, {.1f, .2f, .5f}, {.75f, .75f, .72f}, {.08f, .08f, .09f}, {.75f, .55f, .08f}};
+        const Color cars[5] = {
+            {.6f, .08f, .06f}, {.1f, .2f, .5f}, {.75f, .75f, .72f}, {.08f, .08f, .09f}, {.75f, .55f, .08f}};
         for (Color car : cars)
             paints_.push_back(stage.material(car, {.25f, .25f, .25f}, 40));
         glass_ = stage.material({.06f, .1f, .13f}, {.5f, .5f, .5f}, 40);
@@ -49,8 +50,8 @@ public:
             if (number() < .4f)
                 stage_.put(cylinder(number(.03f, .06f), number(.06f, .16f), 16), trim_, move(at));
             else
-                stage_.put(box({number(.06f, .16f), number(.04f, .12f), number(.06f, .14f)}), number() < .5f ? roof_ : wall,
-                           move(at));
+                stage_.put(box({number(.06f, .16f), number(.04f, .12f), number(.06f, .14f)}),
+                           number() < .5f ? roof_ : wall, move(at));
         }
     }
 
@@ -70,7 +71,8 @@ public:
         stage_.put(box({.17f, .04f, .075f}, .012f, 2), one(paints_), place * move({0, .014f, 0}));
         stage_.put(box({.095f, .035f, .066f}, .012f, 2), glass_, place * move({-.01f, .048f, 0}));
         for (float x : {-.05f, .05f})
-            stage_.put(turn({1, 0, 0}, 90) * move({0, -.039f, 0}) * cylinder(.017f, .078f, 12), roof_, place * move({x, .017f, 0}));
+            stage_.put(turn({1, 0, 0}, 90) * move({0, -.039f, 0}) * cylinder(.017f, .078f, 12), roof_,
+                       place * move({x, .017f, 0}));
     }
 
 private:
@@ -115,15 +117,19 @@ inline void make_microcity(uint32_t, float aspect, Scene &scene)
             for (float k = -.7f; k < .8f; k += .2f)
                 for (int axis = 0; axis < 2; ++axis) {
                     Vector at = axis ? Vector{.5f * pitch, .001f, k} : Vector{k, .001f, .5f * pitch};
-                    stage.put(box(axis ? Vector{.012f, .002f, .09f} : Vector{.09f, .002f, .012f}), line, move(center + at));
+                    stage.put(box(axis ? Vector{.012f, .002f, .09f} : Vector{.09f, .002f, .012f}), line,
+                              move(center + at));
                 }
             for (int k = 0; k < 3; ++k) {
-                city.car(center + Vector{city.number(-.7f, .7f), 0, .5f * pitch + (k % 2 ? .09f : -.09f)}, k % 2 ? 0.0f : 180.0f);
-                city.car(center + Vector{.5f * pitch + (k % 2 ? .09f : -.09f), 0, city.number(-.7f, .7f)}, k % 2 ? 90.0f : 270.0f);
+                city.car(center + Vector{city.number(-.7f, .7f), 0, .5f * pitch + (k % 2 ? .09f : -.09f)},
+                         k % 2 ? 0.0f : 180.0f);
+                city.car(center + Vector{.5f * pitch + (k % 2 ? .09f : -.09f), 0, city.number(-.7f, .7f)},
+                         k % 2 ? 90.0f : 270.0f);
             }
             if (park) {
                 for (int k = 0; k < 26; ++k)
-                    city.tree(center + Vector{city.number(-.68f, .68f), .02f, city.number(-.68f, .68f)}, city.number(.16f, .32f));
+                    city.tree(center + Vector{city.number(-.68f, .68f), .02f, city.number(-.68f, .68f)},
+                              city.number(.16f, .32f));
                 stage.put(lathe(rounded({{0, 0},
                                          {.2f, 0},
                                          {.2f, .05f},
@@ -145,8 +151,9 @@ inline void make_microcity(uint32_t, float aspect, Scene &scene)
             for (int a = 0; a < 2; ++a)
                 for (int b = 0; b < 2; ++b)
                     city.house(center.x - .5f * block + .07f + static_cast<float>(a) * (width + .06f),
-                               center.z - .5f * block + .06f + static_cast<float>(b) * (width + .02f), width - city.number(0, .12f),
-                               width - city.number(0, .12f), tall * city.number(.55f, 1.35f));
+                               center.z - .5f * block + .06f + static_cast<float>(b) * (width + .02f),
+                               width - city.number(0, .12f), width - city.number(0, .12f),
+                               tall * city.number(.55f, 1.35f));
         }
     stage.environment(smooth_sky({-.75f, .55f, .65f}, 60, 2));
 }

@@ -1,4 +1,5 @@
-// Figure 4.15: a diffuse plane under 1, 4, 16 or 64 lights, one of which is picked at random. All together are equally strong.
+// Figure 4.15: a diffuse plane under 1, 4, 16 or 64 lights, one of which is picked at random. All together are equally
+// strong.
 #pragma once
 
 #include "killeroos.hpp"
@@ -33,8 +34,9 @@ inline demo::SceneEntry plane(uint32_t side)
     const uint32_t lights = side * side;
     std::string name = "plane_" + std::to_string(lights);
     return {name,
-            lights == 1 ? "2 dims (figure 4.15): a point on one light over a plane"
-                        : "3 dims (figure 4.15): a point on one of " + std::to_string(lights) + " lights, which of them",
+            lights == 1
+                ? "2 dims (figure 4.15): a point on one light over a plane"
+                : "3 dims (figure 4.15): a point on one of " + std::to_string(lights) + " lights, which of them",
             [side](uint32_t, float aspect, Scene &scene) { make_plane(side, aspect, scene); }};
 }
 

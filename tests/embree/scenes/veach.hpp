@@ -1,5 +1,5 @@
-// Figure 4.9: glossy plates under lights of several sizes, which light sampling and direction sampling find with opposite ease
-// (Veach and Guibas 1995). The lights are one mesh.
+// Figure 4.9: glossy plates under lights of several sizes, which light sampling and direction sampling find with
+// opposite ease (Veach and Guibas 1995). The lights are one mesh.
 #pragma once
 
 #include "../shapes.hpp"

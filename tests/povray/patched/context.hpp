@@ -7,8 +7,8 @@
 
 namespace noisefloor_povray {
 
-// The first point at which a light of the scene is asked for gets numbers of its own, which are the same decision in all of
-// a pixel's samples; further points (behind a mirror, in a medium) get whatever domain is next.
+// The first point at which a light of the scene is asked for gets numbers of its own, which are the same decision in
+// all of a pixel's samples; further points (behind a mirror, in a medium) get whatever domain is next.
 class Context {
 public:
     // numbers: two for each of `lights`, or NULL. They and the points must outlive the ray.

@@ -48,8 +48,8 @@ inline std::unique_ptr<demo::Sampler> make_sampler(const Settings &settings, uin
     return settings.samplers->make(setup);
 }
 
-// Points of one pixel in two-dimensional domains, made when they are asked for: how many light rays a path will need is not
-// known before.
+// Points of one pixel in two-dimensional domains, made when they are asked for: how many light rays a path will need is
+// not known before.
 class LazyPoints {
 public:
     LazyPoints(const Settings &settings, uint32_t samples, uint32_t first) : settings_(settings), samples_(samples), first_(first) {}

@@ -1,4 +1,5 @@
-//! The slow, obvious reference for the control-variate estimators: plain `f64`, textbook formulas, allocation everywhere.
+//! The slow, obvious reference for the control-variate estimators: plain `f64`, textbook formulas, allocation
+//! everywhere.
 //!
 //! `linear` solves least squares, `regression` fits and leaves samples out, `robust` mixes fits. Nothing here shares
 //! code with the library.

@@ -60,8 +60,8 @@ impl LeftOut {
         self.residuals.iter().map(|r| r * r).sum()
     }
 
-    /// The variance of the fit's constant whatever the noise depends on (MacKinnon and White 1985, HC3; the factor makes it
-    /// exact for a plain mean), for d degrees of freedom that the ridge leaves.
+    /// The variance of the fit's constant whatever the noise depends on (MacKinnon and White 1985, HC3; the factor
+    /// makes it exact for a plain mean), for d degrees of freedom that the ridge leaves.
     pub fn variance(&self, freedom: f64) -> f64 {
         let n = self.residuals.len() as f64;
         let left = (n - 1.0 - freedom).max(0.5);
@@ -80,8 +80,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Regression {
-    /// Least squares with the penalty `ridge * weights_j * slope_j^2`, as extra rows of the system (eq. 4.24 - 4.28 without
-    /// forming the normal equations). Ridge 0 with too few samples gives the minimum-norm solution.
+    /// Least squares with the penalty `ridge * weights_j * slope_j^2`, as extra rows of the system (eq. 4.24 - 4.28
+    /// without forming the normal equations). Ridge 0 with too few samples gives the minimum-norm solution.
     pub fn fit(design: &Design, f: &[f64], ridge: f64) -> Self {
         let columns = design.weights.len();
         let mut a: Matrix = design.rows.iter().map(|row| [&[1.0], row.as_slice()].concat()).collect();
@@ -103,7 +103,8 @@ impl Regression {
         dot(&self.slopes, row)
     }
 
-    /// The control variate estimate on the samples given: mean(f - g) + G (eq. 4.8, 4.9; Algorithms 1 and 2, last line).
+    /// The control variate estimate on the samples given: mean(f - g) + G (eq. 4.8, 4.9; Algorithms 1 and 2, last
+    /// line).
     pub fn estimate(&self, design: &Design, f: &[f64]) -> f64 {
         design.rows.iter().zip(f).map(|(row, f)| f - self.control(row)).sum::<f64>() / f.len() as f64
     }
@@ -164,8 +165,8 @@ impl Regression {
     }
 }
 
-/// A^-1 v for A = C'C + ridge diag(weights), as the least-squares problem with right-hand side W^-1/2 v on the penalty's
-/// rows: its normal equations are A x = v. Needs ridge > 0.
+/// A^-1 v for A = C'C + ridge diag(weights), as the least-squares problem with right-hand side W^-1/2 v on the
+/// penalty's rows: its normal equations are A x = v. Needs ridge > 0.
 fn solve_centred(design: &Design, means: &[f64], v: &[f64], ridge: f64) -> Vec<f64> {
     assert!(ridge > 0.0);
     let columns = means.len();

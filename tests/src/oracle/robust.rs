@@ -5,13 +5,14 @@ use core::ops::Range;
 
 /// How the fits are made and weighed, with F and d of [`Regression::offset`] and n samples:
 ///
-/// - A fit's estimate is y = a + s (l - a), a the constant of the fit to all samples, l the estimate that corrects samples by
-///   fits to others, and s = F / (F + `even`).
-/// - Its trust is (error / error of the mean)^(-n `exponent`) / C for C fits, divided by max(1, F / `offset`)^`discount` and
-///   by e^(`surprise` (y - mean)^2 / variance of the mean), of which no more than `far` standard errors count.
+/// - A fit's estimate is y = a + s (l - a), a the constant of the fit to all samples, l the estimate that corrects
+///   samples by fits to others, and s = F / (F + `even`).
+/// - Its trust is (error / error of the mean)^(-n `exponent`) / C for C fits, divided by max(1, F /
+///   `offset`)^`discount` and by e^(`surprise` (y - mean)^2 / variance of the mean), of which no more than `far`
+///   standard errors count.
 /// - The mean's is `prior` (1 + `few` / n^4), and at least e^-(n^2 / `cap`) of the largest before those divisions.
-/// - A fit that corrects other samples loses to the mean all but 1 / (1 + e^(d (F - 1 - ln F) - `doubt`)) of its weight,
-///   if F is below one.
+/// - A fit that corrects other samples loses to the mean all but 1 / (1 + e^(d (F - 1 - ln F) - `doubt`)) of its
+///   weight, if F is below one.
 #[derive(Clone, Copy, Debug)]
 pub struct RobustRule {
     /// Penalties per sample: the ridges are n times them.
@@ -38,7 +39,8 @@ pub struct RobustRule {
     pub doubt: f64,
 }
 
-/// The folds of n samples that are all there: runs, the first of them one sample longer where they do not divide evenly.
+/// The folds of n samples that are all there: runs, the first of them one sample longer where they do not divide
+/// evenly.
 pub fn runs(n: usize, folds: usize) -> Vec<Range<usize>> {
     let longer = |fold: usize| usize::from(fold < n % folds);
     let mut start = 0;
@@ -50,8 +52,8 @@ pub fn runs(n: usize, folds: usize) -> Vec<Range<usize>> {
     (0..folds).map(&mut run).collect()
 }
 
-/// The fold of each of the first n samples of a stream: P runs of 4 for the power of two P next to the number of folds, P of
-/// 4 again, then P of 8, of 16 and so on, dealt to the folds in turn.
+/// The fold of each of the first n samples of a stream: P runs of 4 for the power of two P next to the number of folds,
+/// P of 4 again, then P of 8, of 16 and so on, dealt to the folds in turn.
 pub fn stream_folds(n: usize, folds: usize) -> Vec<usize> {
     let runs = folds.next_power_of_two();
     let lengths = (0..runs).map(|_| 4).chain((0..32).flat_map(|octave| vec![4_usize << octave; runs]));
@@ -185,7 +187,8 @@ impl RobustRule {
         sum / f.len() as f64
     }
 
-    /// The streaming robust estimate: fits to all samples, weighted by the errors of fits to all folds but one on that one.
+    /// The streaming robust estimate: fits to all samples, weighted by the errors of fits to all folds but one on that
+    /// one.
     pub fn pooled(&self, u: &[f64], dims: usize, f: &[f64], order: usize, folds: usize) -> f64 {
         let design = Design::legendre(u, dims, order);
         let samples = Samples { design: &design, f, folds: stream_folds(f.len(), folds) };
@@ -212,8 +215,8 @@ impl RobustRule {
         self.weigh(n, &ratios, &discounts).iter().zip(&estimates).map(|(w, e)| w * e).sum()
     }
 
-    /// The streaming K-fold estimate: each fold's samples meet only fits to the others, weighted by fits that neither know
-    /// that fold nor are judged on it.
+    /// The streaming K-fold estimate: each fold's samples meet only fits to the others, weighted by fits that neither
+    /// know that fold nor are judged on it.
     pub fn nested(&self, u: &[f64], dims: usize, f: &[f64], order: usize, folds: usize) -> f64 {
         let design = Design::legendre(u, dims, order);
         let samples = Samples { design: &design, f, folds: stream_folds(f.len(), folds) };

@@ -43,8 +43,8 @@ impl Header {
         let (text, asserts) = text.split_once(ASSERTS).with_context(|| format!("the header has no `{ASSERTS}`"))?;
         let mut header = Self { asserts: asserts.to_owned(), ..Self::default() };
         let mut statement = String::new();
-        // Of the comments only the one at the top has lines that could be taken for code; those of the others begin with an
-        // asterisk, which no declaration does.
+        // Of the comments only the one at the top has lines that could be taken for code; those of the others begin
+        // with an asterisk, which no declaration does.
         let (_, text) = text.split_once("*/").context("the header does not begin with a comment")?;
         for line in text.lines().map(str::trim) {
             if let Some((name, value)) = line.strip_prefix("#define NF_").and_then(|rest| rest.split_once(' ')) {

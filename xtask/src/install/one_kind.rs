@@ -6,7 +6,8 @@ use crate::{paths, run};
 use anyhow::{Result, bail};
 use std::path::Path;
 
-/// What each has installed, and what a project finds there: nothing of the other kind, and under the common name its own.
+/// What each has installed, and what a project finds there: nothing of the other kind, and under the common name its
+/// own.
 pub(super) fn each() -> Result<()> {
     for (kind, off) in [("static", "NOISEFLOOR_SHARED"), ("shared", "NOISEFLOOR_STATIC")] {
         let prefix = folder(&format!("only {kind}"))?;

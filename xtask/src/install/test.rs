@@ -1,4 +1,5 @@
-//! Projects outside the tree that use an installed noisefloor: by CMake and by pkg-config, in C and C++, shared and static.
+//! Projects outside the tree that use an installed noisefloor: by CMake and by pkg-config, in C and C++, shared and
+//! static.
 
 use super::{compile, configure, one_kind, subproject};
 use crate::test::Outcome;

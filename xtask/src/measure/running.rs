@@ -13,8 +13,8 @@ use std::time::Duration;
 /// How soon an interrupt ends a program that says nothing.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// Runs a program to its end, and returns what it wrote to the standard error. `take` sees each line of the standard output as it
-/// comes. Where that fails, or the user interrupts, the program is ended.
+/// Runs a program to its end, and returns what it wrote to the standard error. `take` sees each line of the standard
+/// output as it comes. Where that fails, or the user interrupts, the program is ended.
 pub(crate) fn run(
     mut command: Command,
     interrupted: &AtomicBool,

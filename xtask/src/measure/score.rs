@@ -38,8 +38,8 @@ pub(crate) fn errors(image: &Rgb32FImage, reference: &Reference) -> [f64; 2] {
     [product(&a, &b), product(&gaussian(&a, width), &gaussian(&b, width))]
 }
 
-/// Relative errors beyond it count as this. One rare highlight in a dark pixel, a hundred times too bright, would otherwise
-/// outweigh all other pixels, and whether a frame has one is chance.
+/// Relative errors beyond it count as this. One rare highlight in a dark pixel, a hundred times too bright, would
+/// otherwise outweigh all other pixels, and whether a frame has one is chance.
 pub(crate) const LIMIT: f64 = 5.0;
 
 /// The share of the pixels whose error is limited.

@@ -1,5 +1,5 @@
-//! Several runs of the path tracer at the same time. Loading a scene and small images with shared fits, which are one bucket, keep
-//! one core of a run busy; runs beside each other keep all.
+//! Several runs of the path tracer at the same time. Loading a scene and small images with shared fits, which are one
+//! bucket, keep one core of a run busy; runs beside each other keep all.
 
 use super::renderer::{Job, Renderer, Timing, threads};
 use anyhow::{Result, anyhow};
@@ -30,7 +30,8 @@ pub(crate) fn render(
     })
 }
 
-/// What `action` makes of 0, 1, ... `count` - 1, with so many threads; the first failure, once those that run have ended.
+/// What `action` makes of 0, 1, ... `count` - 1, with so many threads; the first failure, once those that run have
+/// ended.
 fn in_turn<T: Send>(count: usize, workers: u32, action: impl Fn(usize) -> Result<T> + Sync) -> Result<Vec<T>> {
     let next = AtomicUsize::new(0);
     let work = || -> Result<Vec<(usize, T)>> {

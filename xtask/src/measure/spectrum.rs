@@ -8,7 +8,8 @@ use std::f64::consts::PI;
 /// Width and height of a square, in pixels.
 pub(crate) const WINDOW: usize = 32;
 
-/// Frequencies below it count as low, in cycles per pixel: the Gaussian of [`super::filter::SIGMA`] halves what has .09.
+/// Frequencies below it count as low, in cycles per pixel: the Gaussian of [`super::filter::SIGMA`] halves what has
+/// .09.
 const LOW: f64 = 0.1;
 
 /// The power of each frequency in each square: squares and frequencies row after row, frequency zero first.
@@ -48,7 +49,8 @@ impl Spectra {
         mean(&low) / mean(&all)
     }
 
-    /// The squares where they are in the image, frequency zero in the centre of each; a grey of .58 is a square's mean power.
+    /// The squares where they are in the image, frequency zero in the centre of each; a grey of .58 is a square's mean
+    /// power.
     pub(crate) fn picture(&self) -> GrayImage {
         let rows = self.powers.len() / self.columns.max(1);
         let mut picture = GrayImage::new((self.columns * WINDOW) as u32, (rows * WINDOW) as u32);

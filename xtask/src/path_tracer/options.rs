@@ -26,7 +26,8 @@ pub(super) fn check_tiles(tracer: &PathTracer, tiles: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// A file of points for the sampler `table`: in each of 2 x 3 pixels the midpoints of a grid of 4 x 4 cells, in another order.
+/// A file of points for the sampler `table`: in each of 2 x 3 pixels the midpoints of a grid of 4 x 4 cells, in another
+/// order.
 pub(super) fn write_table() -> Result<String> {
     let mut bytes = b"noisefloor-points 2 3 16 2\n".to_vec();
     for pixel in 0..6u8 {
@@ -62,7 +63,8 @@ pub(super) fn check_table(tracer: &PathTracer, table: &str) -> Result<()> {
     Ok(())
 }
 
-/// However many threads accumulate passes, of however many samples, the picture is the same; the plain mean's is that of a run without.
+/// However many threads accumulate passes, of however many samples, the picture is the same; the plain mean's is that
+/// of a run without.
 pub(super) fn check_accumulation(tracer: &PathTracer) -> Result<()> {
     println!("   accumulation");
     let names = ["mc", "robust", "least_squares", "k_fold"];

@@ -118,7 +118,8 @@ mod tests {
         let limit = limit(1e-3, TESTS);
         assert!((4.0..4.2).contains(&limit), "{limit}");
         assert!(largest(&images(|_| 1.0, 0.5), &reference).deviations < limit);
-        // A standard error is .5 / sqrt(3) / sqrt(64 images * 16 pixels) = .009 in a block, and a quarter of it over the image.
+        // A standard error is .5 / sqrt(3) / sqrt(64 images * 16 pixels) = .009 in a block, and a quarter of it over
+        // the image.
         let everywhere = largest(&images(|_| 1.015, 0.5), &reference);
         assert!(everywhere.deviations > limit && everywhere.place == "over the image");
         let one_column = largest(&images(|x| if x < 4 { 1.06 } else { 1.0 }, 0.5), &reference);

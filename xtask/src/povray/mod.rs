@@ -1,5 +1,5 @@
-//! POV-Ray as an oracle: scenes in which it computes what one sample sees, cell by cell of a grid over the unit cube, so that
-//! every estimator and sampler can be compared with the exact mean.
+//! POV-Ray as an oracle: scenes in which it computes what one sample sees, cell by cell of a grid over the unit cube,
+//! so that every estimator and sampler can be compared with the exact mean.
 
 pub(crate) mod bias;
 mod frames;

@@ -45,8 +45,8 @@ impl Scene {
         all.into_iter().chain(slices).collect()
     }
 
-    /// The built-in tile that suits its dimensions: what depends on each other is best drawn together, from one tile. Empty: the
-    /// path tracer's own choice among those of two dimensions.
+    /// The built-in tile that suits its dimensions: what depends on each other is best drawn together, from one tile.
+    /// Empty: the path tracer's own choice among those of two dimensions.
     pub(crate) fn tile(&self, spp: u32) -> &'static str {
         match (self.axes.len(), spp) {
             (..=2, _) | (_, 5..) => "",

@@ -1,5 +1,5 @@
-//! Stacks of pictures: rendered when they are needed, and kept in target/povray. tests/povray/stack.hpp reads them and says
-//! what is in them.
+//! Stacks of pictures: rendered when they are needed, and kept in target/povray. tests/povray/stack.hpp reads them and
+//! says what is in them.
 
 use super::scenes::Scene;
 use super::{frames, ppm};

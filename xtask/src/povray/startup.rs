@@ -1,4 +1,5 @@
-//! On a busy machine POV-Ray may give up before it begins, because its threads did not start in time. It is then run again.
+//! On a busy machine POV-Ray may give up before it begins, because its threads did not start in time. It is then run
+//! again.
 
 use anyhow::Result;
 use std::process::ExitStatus;

@@ -34,8 +34,8 @@ pub(crate) fn run(renderer: &Renderer) -> Result<Checks> {
     Ok(Checks { unchanged, frames: CELLS, difference, radiosity })
 }
 
-/// With noisefloor off, the patched program makes Debian's pictures: with antialiasing, both of its kinds, focal blur, area
-/// lights and radiosity.
+/// With noisefloor off, the patched program makes Debian's pictures: with antialiasing, both of its kinds, focal blur,
+/// area lights and radiosity.
 fn off_is_stock(renderer: &Renderer) -> Result<usize> {
     // One thread: stock POV-Ray's jitter and radiosity depend on which thread takes which block.
     let antialiased: [&[&str]; 2] = [&["+WT1", "+A0.3", "+AM2", "+J"], &["+WT1", "+A0.3", "+AM1", "-J"]];

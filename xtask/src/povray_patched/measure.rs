@@ -35,8 +35,8 @@ pub(crate) const METHODS: [Method; 7] = [
     Method { name: "tile, estimate", settings: Some(&[("", "estimate"), ("SAMPLER", "tile")]) },
 ];
 
-/// Stock POV-Ray has no seed. Which numbers of its generator a pixel gets depends on the pixels before it in a block, so
-/// blocks of other sizes are other pictures; its focal blur depends on the pixel's place alone, and has but one.
+/// Stock POV-Ray has no seed. Which numbers of its generator a pixel gets depends on the pixels before it in a block,
+/// so blocks of other sizes are other pictures; its focal blur depends on the pixel's place alone, and has but one.
 const BLOCKS: [u32; 16] = [32, 8, 12, 16, 20, 24, 28, 36, 40, 44, 48, 52, 56, 60, 64, 10];
 const REFERENCE_SEEDS: [u32; 2] = [1001, 1002];
 

@@ -1,5 +1,5 @@
-//! `cargo xtask povray`: POV-Ray, built from Debian's source package with a patch that draws its samples from noisefloor;
-//! checked, and compared with POV-Ray as it is.
+//! `cargo xtask povray`: POV-Ray, built from Debian's source package with a patch that draws its samples from
+//! noisefloor; checked, and compared with POV-Ray as it is.
 
 mod apt;
 mod build;

@@ -38,8 +38,8 @@ fn patch(source: &Path, file: &Path, options: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// Whether the patch is well formed, says its licence, and has a notice beside it that says the same; and whether our side
-/// of it compiles, and refuses what it should. POV-Ray itself is not needed.
+/// Whether the patch is well formed, says its licence, and has a notice beside it that says the same; and whether our
+/// side of it compiles, and refuses what it should. POV-Ray itself is not needed.
 pub(crate) fn check(archive: &Path) -> Result<Outcome> {
     let text = fs::read_to_string(path()).with_context(|| format!("cannot read {}", path().display()))?;
     let files = well_formed(&text)?;

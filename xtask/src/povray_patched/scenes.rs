@@ -1,4 +1,5 @@
-//! The example scenes that come with POV-Ray, and the few words that are changed so that stock POV-Ray takes so many samples.
+//! The example scenes that come with POV-Ray, and the few words that are changed so that stock POV-Ray takes so many
+//! samples.
 
 use super::folder;
 use anyhow::{Context, Result, bail};
@@ -111,8 +112,9 @@ fn blur(line: &str, spp: u32) -> Option<String> {
     Some(format!("blur_samples {spp} variance 0 {rest}"))
 }
 
-/// A full grid, its points jittered within their cells, over just the light: POV-Ray's own spans the light from corner to
-/// corner, so that jittered points lie outside, by half a cell, and the light's size depends on the number of points.
+/// A full grid, its points jittered within their cells, over just the light: POV-Ray's own spans the light from corner
+/// to corner, so that jittered points lie outside, by half a cell, and the light's size depends on the number of
+/// points.
 fn grid(line: &str, side: u32) -> Result<Option<String>> {
     let line = line.trim_start();
     if line.starts_with("adaptive ") {

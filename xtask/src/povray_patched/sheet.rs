@@ -1,5 +1,5 @@
-//! The contact sheet: for each scene a picture as a whole, and a part of it as every method makes it, with its errors. Each row is
-//! named.
+//! The contact sheet: for each scene a picture as a whole, and a part of it as every method makes it, with its errors.
+//! Each row is named.
 
 use super::measure::{METHODS, Measured};
 use super::scenes::SCENES;

@@ -8,7 +8,8 @@ use std::fs;
 /// Texts that name the oldest Rust that compiles the project.
 const NAME_RUST: [&str; 2] = ["README.md", "docs/install.md"];
 
-/// The declared Rust version is what the texts say and compiles the libraries; CHANGELOG.md knows the project's version.
+/// The declared Rust version is what the texts say and compiles the libraries; CHANGELOG.md knows the project's
+/// version.
 pub(crate) fn check() -> Result<Outcome> {
     let metadata = run::read(run::cargo().args(["metadata", "--no-deps", "--format-version", "1"]))?;
     let metadata: serde_json::Value = serde_json::from_str(&metadata).context("cargo metadata wrote no JSON")?;

@@ -4,8 +4,8 @@ use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// Fails with the first thing that the Markdown says and the JSON does not. Tables must be the JSON's, cell by cell and in
-/// order; headings its sections; numbers of any other line must be quoted figures or settings, in the sense of
+/// Fails with the first thing that the Markdown says and the JSON does not. Tables must be the JSON's, cell by cell and
+/// in order; headings its sections; numbers of any other line must be quoted figures or settings, in the sense of
 /// [`super::chapter::Chapter`]. Numbers of figures and chapters of the thesis, and those in links and code, are no
 /// measurements. The text of every figure must be its value, rounded.
 pub(crate) fn numbers_are_recorded(markdown: &str, json: &str) -> Result<()> {
@@ -137,8 +137,8 @@ fn collect(value: &Value, known: &mut BTreeSet<String>) {
     }
 }
 
-/// Drops what is in backquotes and in parentheses of links, and the numbers behind the words figure and chapter, and years
-/// behind authors' names.
+/// Drops what is in backquotes and in parentheses of links, and the numbers behind the words figure and chapter, and
+/// years behind authors' names.
 fn without_references(line: &str) -> String {
     let outside_code: String = line.split('`').step_by(2).collect::<Vec<_>>().join(" ");
     let mut rest = outside_code.as_str();
@@ -264,7 +264,8 @@ mod tests {
     #[test]
     fn a_number_that_is_not_recorded_is_found() {
         assert!(check(&format!("# Title 9\nAt 64 samples: 0.250 (figure 4.4).\n{TABLE}")).is_ok());
-        // Neither a number of a table, nor the end of an interval that is not written, nor a section's may be quoted as another.
+        // Neither a number of a table, nor the end of an interval that is not written, nor a section's may be quoted as
+        // another.
         for text in ["At 64 samples: 0.251.", "7.5 samples.", "0.3123", "9 samples"] {
             let error = check(&format!("{text}\n{TABLE}")).expect_err(text);
             assert!(error.to_string().contains("neither a quoted figure nor a setting"), "{error}");

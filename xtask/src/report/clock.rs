@@ -1,5 +1,5 @@
-//! What a chapter takes: seconds, and seconds of processors; and what else the machine did meanwhile. On a busy machine only the
-//! seconds of processors say something.
+//! What a chapter takes: seconds, and seconds of processors; and what else the machine did meanwhile. On a busy machine
+//! only the seconds of processors say something.
 
 use std::cell::Cell;
 use std::fs;
@@ -55,13 +55,15 @@ impl Clock {
     }
 }
 
-/// Both of the same `seconds`. What the two files count differs by a few ticks, so that a quiet machine's may be below 0.
+/// Both of the same `seconds`. What the two files count differs by a few ticks, so that a quiet machine's may be
+/// below 0.
 fn other_work(all: f64, own: f64, seconds: f64) -> Option<f64> {
     (seconds > 0.0).then(|| ((all - own) / seconds).max(0.0))
 }
 
-/// proc(5), the first line of /proc/stat: user, nice, system, idle, iowait, irq, softirq, steal. All but idle and iowait is work; stolen
-/// time is that of other guests of the same computer. The guests of this machine, which follow, are in the user's time already.
+/// proc(5), the first line of /proc/stat: user, nice, system, idle, iowait, irq, softirq, steal. All but idle and
+/// iowait is work; stolen time is that of other guests of the same computer. The guests of this machine, which follow,
+/// are in the user's time already.
 fn busy_seconds(text: &str) -> Option<f64> {
     let fields = text.lines().next()?.strip_prefix("cpu ")?;
     let ticks: Option<Vec<f64>> = fields.split_whitespace().take(8).map(|field| field.parse().ok()).collect();

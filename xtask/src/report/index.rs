@@ -1,5 +1,5 @@
-//! docs/report/README.md: the chapters, what they were measured on, and every target. Made of the chapters' JSON files, so
-//! that chapters that were not written this time stay in it.
+//! docs/report/README.md: the chapters, what they were measured on, and every target. Made of the chapters' JSON files,
+//! so that chapters that were not written this time stay in it.
 
 use super::chapter::{Cell, Chapter, row};
 use super::check;
@@ -22,12 +22,14 @@ pub(super) struct Facts {
     /// Without compiling. None: the run that measured left no record.
     pub(super) seconds: Option<f64>,
     pub(super) processor_seconds: Option<f64>,
-    /// Cores that others kept busy meanwhile, on average. None: the system does not say, or it was measured before this was recorded.
+    /// Cores that others kept busy meanwhile, on average. None: the system does not say, or it was measured before this
+    /// was recorded.
     #[serde(default)]
     pub(super) other_work: Option<f64>,
     pub(super) date: String,
     pub(super) machine: Machine,
-    /// The date on which the text was written from what an earlier run had measured, the run that the other facts are of.
+    /// The date on which the text was written from what an earlier run had measured, the run that the other facts are
+    /// of.
     #[serde(default)]
     pub(super) kept: Option<String>,
 }
@@ -60,7 +62,8 @@ pub(super) fn write(folder: &Path, name: &str, json: &str) -> Result<String> {
             // A chapter that was never written is not there.
             fs::read_to_string(folder.join(format!("{chapter}.json"))).ok()
         };
-        // One that was written before there was an index does not say how it came about, and is left out until it is written anew.
+        // One that was written before there was an index does not say how it came about, and is left out until it is
+        // written anew.
         all.extend(text.and_then(|text| serde_json::from_str::<Summary>(&text).ok()));
     }
     let mut chapter = Chapter::new("Measurements");

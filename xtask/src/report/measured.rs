@@ -1,4 +1,5 @@
-//! What measurement programs write: kept in target/report/measured, so that a text can be written anew without measuring again.
+//! What measurement programs write: kept in target/report/measured, so that a text can be written anew without
+//! measuring again.
 
 use super::index::Facts;
 use crate::paths;

@@ -163,7 +163,8 @@ impl<'a> Measurement<'a> {
         Ok(Job { scene, spp, order, seed, seeds, frame, sampler, estimators, options: &[], work })
     }
 
-    /// Renders every seed; or takes what was rendered before with the same samples, and with these estimators and perhaps more.
+    /// Renders every seed; or takes what was rendered before with the same samples, and with these estimators and
+    /// perhaps more.
     pub(crate) fn run(&self, experiment: &Experiment) -> Result<Outcome> {
         if let Some(known) = self.known(experiment) {
             return Ok(known);
@@ -172,8 +173,8 @@ impl<'a> Measurement<'a> {
         Ok(self.keep(experiment, Outcome { reference, renderings: self.render(experiment)?.into() }))
     }
 
-    /// As [`Self::run`] of each that there is, of one size, no two with the same samples, side by side: for sections that compare
-    /// no times.
+    /// As [`Self::run`] of each that there is, of one size, no two with the same samples, side by side: for sections
+    /// that compare no times.
     pub(crate) fn run_all(&self, experiments: &[Option<Experiment>]) -> Result<Vec<Option<Outcome>>> {
         let is_new = |experiment: &&Experiment| self.known(experiment).is_none();
         let new: Vec<Experiment> = experiments.iter().flatten().filter(is_new).copied().collect();
@@ -259,8 +260,8 @@ impl<'a> Measurement<'a> {
         renderings.collect()
     }
 
-    /// In batches of as many seeds, side by side: for each batch and estimator the mean, and the mean of (I - A)(I - B) pixel by
-    /// pixel.
+    /// In batches of as many seeds, side by side: for each batch and estimator the mean, and the mean of (I - A)(I - B)
+    /// pixel by pixel.
     pub(crate) fn statistics(&self, experiment: &Experiment, batches: u32) -> Result<Vec<Vec<[Rgb32FImage; 2]>>> {
         let Experiment { view, seeds, estimators, .. } = *experiment;
         self.reference(view)?;

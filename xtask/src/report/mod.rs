@@ -154,8 +154,8 @@ pub(crate) struct Options {
     /// Where everything goes, the large pictures to DIR.pictures [default: docs/report, and target/report]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write texts anew from what a run of the same size measured before (target/report/measured); tables and gradients keep it,
-    /// other chapters are measured
+    /// Write texts anew from what a run of the same size measured before (target/report/measured); tables and gradients
+    /// keep it, other chapters are measured
     #[arg(long)]
     reuse: bool,
     /// A program with the Embree harness's command line, instead of the one that is built

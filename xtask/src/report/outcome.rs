@@ -60,8 +60,8 @@ impl Outcome {
         Ok(pairs.map(|(own, plain)| own.total_seconds / plain.total_seconds).collect())
     }
 
-    /// relMSE over that of the plain mean of as many samples as it makes in the same time: its error falls as 1 / samples.
-    /// Error and time are of the same seed, so that the interval has the noise of both.
+    /// relMSE over that of the plain mean of as many samples as it makes in the same time: its error falls as 1 /
+    /// samples. Error and time are of the same seed, so that the interval has the noise of both.
     pub(crate) fn equal_time(&self, estimator: &str) -> Result<Estimate> {
         let pairs = self.errors(estimator)?.into_iter().zip(self.errors(BASELINE)?).zip(self.time_ratios(estimator)?);
         Ok(Estimate::median(&pairs.map(|((own, plain), time)| own / plain * time).collect::<Vec<_>>()))

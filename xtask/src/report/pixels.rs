@@ -29,8 +29,8 @@ pub(crate) struct Shares {
     pub(crate) twice: f64,
     /// Beyond, significantly.
     pub(crate) sure: f64,
-    /// Ratios of all pixels with noise. Where the plain mean has no error it counts as [`NOISE`], so that an error of the other
-    /// shows as a large ratio.
+    /// Ratios of all pixels with noise. Where the plain mean has no error it counts as [`NOISE`], so that an error of
+    /// the other shows as a large ratio.
     pub(crate) ratios: Vec<f64>,
 }
 
@@ -70,8 +70,8 @@ impl Shares {
         self.ratios.iter().copied().fold(0.0, f64::max)
     }
 
-    /// 95 % about `raw`, by Student's distribution: the percentile bootstrap would count the noise that throws pixels beyond
-    /// a second time.
+    /// 95 % about `raw`, by Student's distribution: the percentile bootstrap would count the noise that throws pixels
+    /// beyond a second time.
     pub(crate) fn interval(&self) -> [f64; 2] {
         // Resampling n values spreads less than they do, by (n - 1) / n, and their spread is itself an estimate.
         let n = self.batches;
@@ -105,7 +105,8 @@ fn is_sure(batches: &[Batch], pixel: usize) -> bool {
 mod tests {
     use super::*;
 
-    /// 1000 pixels, of which the first `bad` are twice as bad as the plain mean's; errors vary by `noise` from batch to batch.
+    /// 1000 pixels, of which the first `bad` are twice as bad as the plain mean's; errors vary by `noise` from batch to
+    /// batch.
     fn shares(bad: usize, noise: f64) -> Shares {
         let mut random = Random::new(3);
         let mut vary = |value: f64| value * (1.0 + noise * (random.below(1 << 20) as f64 / f64::from(1 << 20) - 0.5));

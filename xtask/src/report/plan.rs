@@ -95,8 +95,8 @@ impl Plan {
         self.name == "full"
     }
 
-    /// What measurement programs are compiled with. A quick report tests the report: most of its time would go into link-time
-    /// optimisation, and with this profile the dependencies are those of the tests.
+    /// What measurement programs are compiled with. A quick report tests the report: most of its time would go into
+    /// link-time optimisation, and with this profile the dependencies are those of the tests.
     pub(crate) fn profile(&self) -> &'static str {
         if self.name == "quick" { "suite" } else { "bench" }
     }

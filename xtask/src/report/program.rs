@@ -9,8 +9,8 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-/// Compiles bench targets, all in one call so that they compile side by side, and returns the programs, in the order of the
-/// names.
+/// Compiles bench targets, all in one call so that they compile side by side, and returns the programs, in the order of
+/// the names.
 pub(super) fn build(names: &[&str], plan: &Plan) -> Result<Vec<PathBuf>> {
     // The programs link it, so that what ships is what is measured.
     library::build()?;

@@ -1,20 +1,22 @@
 //! Is a mean image off, all over? A randomisation test that holds whatever the dependence between pixels.
 
-/// Deviations from the truth of the means of independent batches of frames, number by number of the image. Without bias each
-/// batch's deviation is as likely as its negative, for means of many frames: every choice of signs makes an equally likely
-/// sum, and the mean square of the one that was measured must not be among the largest (R. Fisher's randomisation test).
+/// Deviations from the truth of the means of independent batches of frames, number by number of the image. Without bias
+/// each batch's deviation is as likely as its negative, for means of many frames: every choice of signs makes an
+/// equally likely sum, and the mean square of the one that was measured must not be among the largest (R. Fisher's
+/// randomisation test).
 ///
-/// All batches share the reference, whose noise e does not flip with them: the sum of n batches has n e in it, one of signs that add up to s
-/// has s e. What is missing of its variance, (n^2 - s^2) var(e), is made up for by half of the difference of the reference's halves, which varies
-/// as e does and is independent of it: times the root of n^2 - s^2 it is added, with either sign.
+/// All batches share the reference, whose noise e does not flip with them: the sum of n batches has n e in it, one of
+/// signs that add up to s has s e. What is missing of its variance, (n^2 - s^2) var(e), is made up for by half of the
+/// difference of the reference's halves, which varies as e does and is independent of it: times the root of n^2 - s^2
+/// it is added, with either sign.
 pub(crate) struct SignFlips {
     /// Mean squares of the sums, by choice of signs; the first is the measured one.
     squares: Vec<f64>,
 }
 
 impl SignFlips {
-    /// `deviations`: of each batch, from two independent halves of a reference, so that its own noise cancels; `weights`: of
-    /// each number's square, the reciprocal of the variance of the sum over all batches.
+    /// `deviations`: of each batch, from two independent halves of a reference, so that its own noise cancels;
+    /// `weights`: of each number's square, the reciprocal of the variance of the sum over all batches.
     pub(crate) fn new(deviations: &[[Vec<f64>; 2]], weights: &[f64]) -> Self {
         let numbers = weights.len().max(1) as f64;
         let product = |a: &[f64], b: &[f64]| -> f64 {
@@ -63,8 +65,8 @@ mod tests {
     use super::*;
     use crate::report::statistics::Random;
 
-    /// 12 batches of 300 numbers of variance 1/3, the same in neighbouring `shared`, and a reference whose variance is that of their mean
-    /// times `reference`.
+    /// 12 batches of 300 numbers of variance 1/3, the same in neighbouring `shared`, and a reference whose variance is
+    /// that of their mean times `reference`.
     fn flips(seed: u64, bias: f64, shared: usize, reference: f64) -> SignFlips {
         let mut random = Random::new(seed);
         let mut noise = |scale: f64| -> Vec<f64> {
@@ -91,7 +93,8 @@ mod tests {
                 let flips = flips(1 + seed, 0.0, shared, reference);
                 flips.measured() > flips.allowed(0.05)
             });
-            // 20 of 400; 36 is 3.7 standard deviations more. Without regard to a reference of .3 it is 44 of independent numbers.
+            // 20 of 400; 36 is 3.7 standard deviations more. Without regard to a reference of .3 it is 44 of
+            // independent numbers.
             let exceeded = exceeded.count();
             assert!((5..36).contains(&exceeded), "{exceeded} of 400, {shared} numbers alike, reference {reference}");
         }

@@ -30,8 +30,8 @@ impl Estimate {
         Self { value, low: if above == 0.0 { value } else { value * (value / high) }, high, seeds }
     }
 
-    /// The geometric mean of positive values, and Student's interval of its logarithm. Of fewer than three there is none: Student's quantile
-    /// of two, 12.7, says nothing.
+    /// The geometric mean of positive values, and Student's interval of its logarithm. Of fewer than three there is
+    /// none: Student's quantile of two, 12.7, says nothing.
     pub(crate) fn geometric_mean(values: &[f64]) -> Self {
         let logarithms: Vec<f64> = values.iter().map(|value| value.ln()).collect();
         let Self { value, low, high, seeds } = Self::mean(&logarithms);
@@ -42,8 +42,8 @@ impl Estimate {
         Self { value, low: low.exp(), high: high.exp(), seeds }
     }
 
-    /// The median, and the percentile bootstrap's interval (B. Efron 1979) of it; the same values give the same interval. Fewer
-    /// values than [`FEWEST`] give none.
+    /// The median, and the percentile bootstrap's interval (B. Efron 1979) of it; the same values give the same
+    /// interval. Fewer values than [`FEWEST`] give none.
     pub(crate) fn median(values: &[f64]) -> Self {
         let value = median(values.iter().copied());
         if values.len() < FEWEST {
@@ -95,8 +95,8 @@ pub(crate) fn student(freedom: f64) -> f64 {
     student_quantile(1.959_963_985, freedom)
 }
 
-/// Student's quantile from the `normal` one of the same tail (Abramowitz and Stegun 26.7.5). At 1 %: 2.995 for 7 degrees of freedom,
-/// whose quantile is 2.998; 4.45 for 3, whose quantile is 4.54.
+/// Student's quantile from the `normal` one of the same tail (Abramowitz and Stegun 26.7.5). At 1 %: 2.995 for 7
+/// degrees of freedom, whose quantile is 2.998; 4.45 for 3, whose quantile is 4.54.
 pub(crate) fn student_quantile(normal: f64, freedom: f64) -> f64 {
     let x = normal;
     let (x3, x5, x7) = (x.powi(3), x.powi(5), x.powi(7));
@@ -127,8 +127,8 @@ impl Random {
     }
 }
 
-/// The value that a standard normal variable exceeds with probability `tail`, 0 < tail < .5: Abramowitz and Stegun 26.2.23,
-/// good to 4.5e-4, refined by Newton's method.
+/// The value that a standard normal variable exceeds with probability `tail`, 0 < tail < .5: Abramowitz and Stegun
+/// 26.2.23, good to 4.5e-4, refined by Newton's method.
 pub(crate) fn normal_quantile(tail: f64) -> f64 {
     let q = (-2.0 * tail.ln()).sqrt();
     let mut x =
@@ -222,8 +222,8 @@ mod tests {
 
     #[test]
     fn about_95_in_100_intervals_hold_the_truth() {
-        // Medians of 9 uniform numbers: 1/2 is the truth. The bootstrap's ends are the second number and the second to last,
-        // between which it is unless fewer than 2 of 9 are on a side: with 1 - 2 (1 + 9) / 2^9 = .961.
+        // Medians of 9 uniform numbers: 1/2 is the truth. The bootstrap's ends are the second number and the second to
+        // last, between which it is unless fewer than 2 of 9 are on a side: with 1 - 2 (1 + 9) / 2^9 = .961.
         let mut random = Random::new(7);
         let mut uniform = || random.below(1 << 30) as f64 / f64::from(1 << 30);
         let held = (0..2000).filter(|_| {

@@ -1,5 +1,5 @@
-//! examples_c/bare_metal: linked without an operating system, run on an emulated board or in node, its output compared with
-//! this machine's. On targets with an operating system it tells the stack.
+//! examples_c/bare_metal: linked without an operating system, run on an emulated board or in node, its output compared
+//! with this machine's. On targets with an operating system it tells the stack.
 
 use super::platform::Platform;
 use super::sizes;

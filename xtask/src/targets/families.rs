@@ -1,5 +1,5 @@
-//! What each family of estimators takes of a program that calls nf_cv_estimate: the sizes of its functions, by the modules that
-//! their names tell.
+//! What each family of estimators takes of a program that calls nf_cv_estimate: the sizes of its functions, by the
+//! modules that their names tell.
 
 use super::platform::Platform;
 use super::sizes;

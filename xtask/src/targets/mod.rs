@@ -1,5 +1,5 @@
-//! `cargo xtask targets`: the library on other processors, with and without an operating system, run under QEMU; and its size
-//! there.
+//! `cargo xtask targets`: the library on other processors, with and without an operating system, run under QEMU; and
+//! its size there.
 
 mod bare_metal;
 mod build;
@@ -112,8 +112,8 @@ fn c_tests_there(binutils: &str, emulator: &str, archive: &Path) -> Result<Strin
     c_tests::each(&sources, |source| {
         let program = c_tests::output(&format!("{binutils}c_test"))?;
         let mut compiler = run::command(format!("{binutils}gcc"));
-        // The tests' own arithmetic, from which they know what to expect, must be in float and not fused. Of s390x, C99 makes it
-        // double.
+        // The tests' own arithmetic, from which they know what to expect, must be in float and not fused. Of s390x, C99
+        // makes it double.
         compiler.args(["-std=c99", "-static", "-ffp-contract=off", "-fexcess-precision=fast"]);
         compiler.args(["-Iinclude", "-Itests/c"]).args(c_tests::STRICT).args(&options);
         run::check(compiler.arg(source).arg(archive).args(["-lm", "-o"]).arg(&program))?;

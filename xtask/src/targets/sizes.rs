@@ -1,5 +1,5 @@
-//! What each service adds to a program that links nothing else: the archive linked for the service's functions alone, unused
-//! sections dropped.
+//! What each service adds to a program that links nothing else: the archive linked for the service's functions alone,
+//! unused sections dropped.
 
 use super::platform::Platform;
 use super::wasm;
@@ -92,7 +92,8 @@ pub(crate) fn link(platform: &Platform, archive: &Path, functions: &[&str], outp
     run::check(link.arg(archive).arg("-o").arg(output))
 }
 
-/// Bytes of a program's memory of code: its own, the library's and its constants, which its linker script puts into .text.
+/// Bytes of a program's memory of code: its own, the library's and its constants, which its linker script puts into
+/// .text.
 pub(crate) fn program(path: &Path) -> Result<u64> {
     let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     let file = object::File::parse(&*bytes).with_context(|| format!("{} is no program", path.display()))?;

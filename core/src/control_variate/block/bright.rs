@@ -1,7 +1,7 @@
 //! Pixels whose values lie far from those of all others: fireflies, small highlights.
 //!
-//! A fit has seen them, and even a fit that is hardly trusted then moves the other pixels by more than their own error. So where
-//! the mean is trusted most, such pixels are left out of the fits to others.
+//! A fit has seen them, and even a fit that is hardly trusted then moves the other pixels by more than their own error.
+//! So where the mean is trusted most, such pixels are left out of the fits to others.
 
 use super::super::config::Config;
 use super::super::per_channel::get;
@@ -58,8 +58,8 @@ impl Highest {
 }
 
 impl Problem<'_> {
-    /// How far values of `members` may be from those of `judges`, if any is too far. Where a judge itself is too far and fits are
-    /// trusted, they explain it, and keep such values.
+    /// How far values of `members` may be from those of `judges`, if any is too far. Where a judge itself is too far
+    /// and fits are trusted, they explain it, and keep such values.
     pub(super) fn limits<R: Real>(
         &self,
         judges: &Members<'_>,

@@ -26,8 +26,9 @@ pub(super) struct Spreads<R> {
 pub(super) type Weights<R> = [PerChannel<R>; MAX_FITS + 1];
 
 impl<R: Real> Spreads<R> {
-    /// Panel after panel of eight pixels, `pixels` in all: `places` has the groups of lanes of [`Members::places`](super::members::Members::places), `fixed` of them, and
-    /// `estimates` the plain means of all channels, then each fit's.
+    /// Panel after panel of eight pixels, `pixels` in all: `places` has the groups of lanes of
+    /// [`Members::places`](super::members::Members::places), `fixed` of them, and `estimates` the plain means of all
+    /// channels, then each fit's.
     #[inline(always)]
     pub(super) fn new(
         pixels: usize,
@@ -122,8 +123,8 @@ impl<R: Real> Spreads<R> {
         if plain > R::ZERO && gain.is_finite() { gain } else { R::ONE }
     }
 
-    /// A mixture's spread per degree of freedom, of which there must be some: the variance of its estimates, and what signal
-    /// is left in it.
+    /// A mixture's spread per degree of freedom, of which there must be some: the variance of its estimates, and what
+    /// signal is left in it.
     #[inline(always)]
     pub(super) fn variance(&self, weights: &Weights<R>, channel: usize) -> R {
         self.mixed(weights, channel) / self.freedom

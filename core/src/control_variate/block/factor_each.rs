@@ -12,8 +12,8 @@ use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 
 impl Problem<'_> {
-    /// Many samples in each pixel: A less the pixel's own products, factored for eight pixels at a time, which takes less
-    /// time than updating one factor by rank n.
+    /// Many samples in each pixel: A less the pixel's own products, factored for eight pixels at a time, which takes
+    /// less time than updating one factor by rank n.
     #[inline(always)]
     pub(super) fn by_factor_each<R: Real>(
         &self,

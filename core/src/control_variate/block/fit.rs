@@ -124,8 +124,9 @@ impl<'a> Problem<'a> {
         sizes.into_iter().try_fold(0, |largest, size| Some(size?.max(largest)))
     }
 
-    /// Fits to all members but one, for each of them, of which there are at least two. Members beyond `limits` are in no fit, and
-    /// so corrected by one to all others: what corrects a pixel does not depend on whether it is beyond them.
+    /// Fits to all members but one, for each of them, of which there are at least two. Members beyond `limits` are in
+    /// no fit, and so corrected by one to all others: what corrects a pixel does not depend on whether it is beyond
+    /// them.
     #[inline(always)]
     pub(super) fn fit<'b, R: Real>(
         &self,

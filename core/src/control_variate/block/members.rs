@@ -68,7 +68,8 @@ impl Area {
     /// Where a pixel is along an axis, from -1 to 1.
     #[inline(always)]
     fn place<R: Real>(at: usize, extent: usize) -> R {
-        // In double precision: two neighbours in single would be divided in one vector, with whatever its other half holds.
+        // In double precision: two neighbours in single would be divided in one vector, with whatever its other half
+        // holds.
         R::from_f64((2 * at + 1) as f64 / extent.max(1) as f64 - 1.0)
     }
 }

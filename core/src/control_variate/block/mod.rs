@@ -6,15 +6,15 @@
 //!
 //! Three estimators decide which b:
 //!
-//! - [`Estimator::LeaveOneOut`], or any with a fixed ridge: one ridge fit with every column. Exactly unbiased, as b never
-//!   saw the pixel's own samples.
-//! - [`Estimator::Robust`]: fits of rising degree and the plain mean, weighted by the variance across the pixels of their
-//!   estimates. That choice is made from the same samples: unbiased as the window grows.
-//! - [`Estimator::KFold`]: the same with two halves of the pixels, each weighted by what the other half's fits to itself
-//!   say. Exactly unbiased, at twice the time.
+//! - [`Estimator::LeaveOneOut`], or any with a fixed ridge: one ridge fit with every column. Exactly unbiased, as b
+//!   never saw the pixel's own samples.
+//! - [`Estimator::Robust`]: fits of rising degree and the plain mean, weighted by the variance across the pixels of
+//!   their estimates. That choice is made from the same samples: unbiased as the window grows.
+//! - [`Estimator::KFold`]: the same with two halves of the pixels, each weighted by what the other half's fits to
+//!   itself say. Exactly unbiased, at twice the time.
 //!
-//! The last two leave bright pixels out of fits that explain little (`bright`). What is left out for a pixel depends on its
-//! own samples in the robust estimator alone.
+//! The last two leave bright pixels out of fits that explain little (`bright`). What is left out for a pixel depends on
+//! its own samples in the robust estimator alone.
 //!
 //! "Exactly" is for pixels whose samples are independent of each other. A tile's are not; how little that does is
 //! measured in the tests.
@@ -117,13 +117,13 @@ pub fn estimate_block<R: Real>(
     estimate_image(config, &Image::unordered(pixels), samples, workspace, out)
 }
 
-/// Estimates every pixel of an image from `samples.f.len() / (pixels channels)` samples in each, pixel after pixel. `out`
-/// is called once for each pixel in order, and only if all succeed.
+/// Estimates every pixel of an image from `samples.f.len() / (pixels channels)` samples in each, pixel after pixel.
+/// `out` is called once for each pixel in order, and only if all succeed.
 ///
 /// # Errors
-/// As for [`estimate`](super::estimate); [`Error::Unsupported`] also for a luminance ratio, for skipping samples and for
-/// estimators other than the robust, leave-one-out and K-fold ones; [`Error::Range`] also for an image without pixels, for
-/// windows that [`Image`] does not allow, for negative factors and for arrays of the wrong length;
+/// As for [`estimate`](super::estimate); [`Error::Unsupported`] also for a luminance ratio, for skipping samples and
+/// for estimators other than the robust, leave-one-out and K-fold ones; [`Error::Range`] also for an image without
+/// pixels, for windows that [`Image`] does not allow, for negative factors and for arrays of the wrong length;
 /// [`Error::NotFinite`] for factors that are not finite.
 ///
 /// ```
@@ -188,8 +188,8 @@ pub fn estimate_image<R: Real>(
     Ok(())
 }
 
-/// Numbers that are summed for each pixel over the groups that it was in: their weight, that of those with an error, their
-/// gain, and for each channel the correction and what the standard error comes from.
+/// Numbers that are summed for each pixel over the groups that it was in: their weight, that of those with an error,
+/// their gain, and for each channel the correction and what the standard error comes from.
 fn sums_len(channels: usize) -> usize {
     COMMON + 2 * channels
 }

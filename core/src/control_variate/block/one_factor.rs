@@ -17,10 +17,10 @@ use crate::rows::{rows, rows_mut};
 const SINGULAR: f64 = 64.0;
 
 impl Problem<'_> {
-    /// Few samples in each pixel: one factorisation A = L D L', from which each pixel's n samples are left out in closed
-    /// form. With X their rows, H = X A^-1 X' and e their residuals, the residuals under the fit to all others are
-    /// r = (I - H)^-1 e, and its coefficients b - A^-1 X' r. Every candidate is a prefix of the columns and so of L: with
-    /// Z = L^-1 X', H = Z'D^-1 Z and all else are partial sums over the rows of Z.
+    /// Few samples in each pixel: one factorisation A = L D L', from which each pixel's n samples are left out in
+    /// closed form. With X their rows, H = X A^-1 X' and e their residuals, the residuals under the fit to all others
+    /// are r = (I - H)^-1 e, and its coefficients b - A^-1 X' r. Every candidate is a prefix of the columns and so of
+    /// L: with Z = L^-1 X', H = Z'D^-1 Z and all else are partial sums over the rows of Z.
     #[inline(always)]
     pub(super) fn by_one_factor<R: Real>(
         &self,

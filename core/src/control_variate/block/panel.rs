@@ -36,8 +36,8 @@ impl Problem<'_> {
         Panel { pixels, used }
     }
 
-    /// Writes sample `sample` of a panel's pixels: their columns, and their values in `units`. Zero in unused lanes, and where
-    /// `places` are zero as well.
+    /// Writes sample `sample` of a panel's pixels: their columns, and their values in `units`. Zero in unused lanes,
+    /// and where `places` are zero as well.
     #[inline(always)]
     pub(super) fn load<R: Real>(
         &self,

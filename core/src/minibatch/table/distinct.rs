@@ -16,13 +16,13 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     ///
     /// the sum being that of the items not yet drawn, and d the uniform fraction (1 if that sum is 0).
     ///
-    /// Weights make the same estimate as those of [`Table::draw`], gradients times weights averaged over the batch, without
-    /// bias: with c_k the probability of the k-th of B draws, `weight = (1 / c_k + B - k) / N` (D. Raj, "Some Estimators in Sampling with
-    /// Varying Probabilities without Replacement", 1956).
+    /// Weights make the same estimate as those of [`Table::draw`], gradients times weights averaged over the batch,
+    /// without bias: with c_k the probability of the k-th of B draws, `weight = (1 / c_k + B - k) / N` (D. Raj, "Some
+    /// Estimators in Sampling with Varying Probabilities without Replacement", 1956).
     ///
-    /// Items drawn are taken out of the table while the others are drawn, and put back with the same bits: a draw takes the time
-    /// of ten updates or so, and exclusive access. Where a few items have nearly all of the sum, the table is built again without
-    /// them, which takes time for every item.
+    /// Items drawn are taken out of the table while the others are drawn, and put back with the same bits: a draw takes
+    /// the time of ten updates or so, and exclusive access. Where a few items have nearly all of the sum, the table is
+    /// built again without them, which takes time for every item.
     ///
     /// Errors, which change nothing: [`Error::Range`] for more draws than items, or another number of
     /// weights; [`Error::NoSamples`] where the uniform fraction is 0 and fewer items have an importance above 0.

@@ -83,7 +83,8 @@ impl Scale {
     /// For a span of at most 2^64 numbers from `first` on, and n below 2^63.
     fn new(first: u64, span: u128, n: u64) -> Scale {
         let Some(last) = span.checked_sub(1) else { return Scale { first, left: 0, factor: 0, right: 0, last: 0 } };
-        // The span stretched to between 2^63 and 2^64, and n likewise, so that the factor has 62 bits however small n is.
+        // The span stretched to between 2^63 and 2^64, and n likewise, so that the factor has 62 bits however small n
+        // is.
         let left = (last as u64).leading_zeros().min(63);
         let stretched = NonZeroU128::new(span << left).unwrap_or(NonZeroU128::MAX);
         let right = n.leading_zeros().clamp(2, 64) - 2;
@@ -107,14 +108,15 @@ const TWO_64: f64 = 18_446_744_073_709_551_616.0;
 impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// Draws items with replacement, independent of each other.
     ///
-    /// `weight`, as long as `index`, becomes 1 / (N p) of each: gradients times weights, averaged over the batch, estimate the
-    /// gradient of the mean loss without bias (importance sampling; the weight 1 / p of Algorithm 3 over N). With `None`,
-    /// or where the weights are not used, it is adaptive sampling (w = p): biased towards important items by design.
+    /// `weight`, as long as `index`, becomes 1 / (N p) of each: gradients times weights, averaged over the batch,
+    /// estimate the gradient of the mean loss without bias (importance sampling; the weight 1 / p of Algorithm 3 over
+    /// N). With `None`, or where the weights are not used, it is adaptive sampling (w = p): biased towards important
+    /// items by design.
     ///
     /// The generator advances by 64 bits, whatever the length. An empty `index` is no error, and leaves it where it is.
     ///
-    /// Errors: [`Error::Range`] for another number of weights; [`Error::NoSamples`] where every importance and the uniform
-    /// fraction are 0.
+    /// Errors: [`Error::Range`] for another number of weights; [`Error::NoSamples`] where every importance and the
+    /// uniform fraction are 0.
     ///
     /// ```
     /// use noisefloor::minibatch::{Table, table};
@@ -174,9 +176,9 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         self.draw_at::<K, AT_ONCE>(mixture, factor, index, weight, |k| noise(seed, k));
     }
 
-    /// As [`Table::draw`], one draw from each of as many equal parts of the line of probabilities as there are draws: for each of the
-    /// two ways to it, an item comes less than two times more or less often than on average. Less variance than independent draws wherever neighbouring items
-    /// are alike; weights and their use are the same.
+    /// As [`Table::draw`], one draw from each of as many equal parts of the line of probabilities as there are draws:
+    /// for each of the two ways to it, an item comes less than two times more or less often than on average. Less
+    /// variance than independent draws wherever neighbouring items are alike; weights and their use are the same.
     ///
     /// Those drawn uniformly come first, and both in the order of the data set: use the batch as a whole.
     ///
@@ -377,7 +379,8 @@ impl<'a> Descent<'a> {
         rest: &mut [i64; AT_ONCE],
     ) {
         let starts = self.levels.starts();
-        // Levels that the first cache holds in one go, the others one by one, so that many accesses are under way at a time.
+        // Levels that the first cache holds in one go, the others one by one, so that many accesses are under way at a
+        // time.
         let near = starts.iter().position(|&start| self.nodes.len() - start <= NEAR).unwrap_or(0).max(1);
         let (far, near) = starts.split_at_checked(near).unwrap_or_default();
         for (place, rest) in place.iter_mut().zip(rest.iter_mut()).take(draws) {

@@ -10,12 +10,12 @@ use super::tree::{self, Node};
 /// assert_eq!(Portable::total(&[0.5; 16]), 8.0);
 /// ```
 pub trait Kernel {
-    /// The sum of a block: of its columns from the first row to the last, and then of the columns from the first to the last.
-    /// An importance that is not above 0 counts as 0.
+    /// The sum of a block: of its columns from the first row to the last, and then of the columns from the first to the
+    /// last. An importance that is not above 0 counts as 0.
     fn total(block: &Block) -> f64;
 
-    /// The item of a block that `u` in `0.0..1.0` falls on, and the block's sum: the first whose end is above `u` times the
-    /// sum, in the order of columns, where an item ends at the start of its column plus the column's sum up to it.
+    /// The item of a block that `u` in `0.0..1.0` falls on, and the block's sum: the first whose end is above `u` times
+    /// the sum, in the order of columns, where an item ends at the start of its column plus the column's sum up to it.
     fn find_item(block: &Block, u: f64) -> (usize, f64);
 
     /// How many children end at or before `r`.

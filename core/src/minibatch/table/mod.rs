@@ -1,14 +1,14 @@
 //! A persistent importance for each item of a data set, and batches drawn in proportion to it (Algorithm 3).
 //!
-//! A position on a line as long as the sum of all importances picks an item. Leaves are the importances themselves, f32, in
-//! blocks of a cache line; above them stands a tree of integer sums, 16 children to a node. Whole batches go down level by
-//! level, so that the memory accesses of different draws overlap.
+//! A position on a line as long as the sum of all importances picks an item. Leaves are the importances themselves,
+//! f32, in blocks of a cache line; above them stands a tree of integer sums, 16 children to a node. Whole batches go
+//! down level by level, so that the memory accesses of different draws overlap.
 //!
 //! Integers neither drift nor depend on the order of updates: after any number of them the sums are those that the same
 //! importances give in a tree built afresh at the same scale. The scale is a power of two, so chosen that the sum is
-//! near 2^50, and changed when the sum leaves its range: a block's weight is its sum rounded to 1 / 2^50 or so of all, and never to 0. Within
-//! a block f64 decides. What [`Table::probability`] says is the probability of these rounded weights, so that estimates are
-//! unbiased, down to probabilities of 2^-53 within a block.
+//! near 2^50, and changed when the sum leaves its range: a block's weight is its sum rounded to 1 / 2^50 or so of all,
+//! and never to 0. Within a block f64 decides. What [`Table::probability`] says is the probability of these rounded
+//! weights, so that estimates are unbiased, down to probabilities of 2^-53 within a block.
 
 mod block;
 mod distinct;
@@ -77,8 +77,8 @@ pub struct State {
 /// Item i is drawn with probability `p_i = (1 - d) q_i / sum q + d / N`, d being the uniform fraction: every weight
 /// 1 / (N p_i) is then at most 1 / d. Where all importances are 0 draws are uniform, or refused if d is 0.
 ///
-/// The memory is [`importance_len`] values of f32 and [`sums_len`] of i64, borrowed or owned, 4.6 bytes per item in all. More
-/// memory is room for [`Table::append`].
+/// The memory is [`importance_len`] values of f32 and [`sums_len`] of i64, borrowed or owned, 4.6 bytes per item in
+/// all. More memory is room for [`Table::append`].
 ///
 /// ```
 /// use noisefloor::minibatch::{Table, table};
@@ -221,11 +221,11 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         if item < self.state.items { self.probability_in(&mixture, item) as f32 } else { 0.0 }
     }
 
-    /// Writes the probabilities of some items, one every `stride` elements: with as many tables as `stride`, and the k-th
-    /// writing from element k on, the densities of all techniques lie together for each item.
+    /// Writes the probabilities of some items, one every `stride` elements: with as many tables as `stride`, and the
+    /// k-th writing from element k on, the densities of all techniques lie together for each item.
     ///
-    /// Errors: [`Error::Range`] for an item that does not exist, `stride` 0, or a `probability` that ends before its last
-    /// element; [`Error::NoSamples`] as for [`Table::draw`].
+    /// Errors: [`Error::Range`] for an item that does not exist, `stride` 0, or a `probability` that ends before its
+    /// last element; [`Error::NoSamples`] as for [`Table::draw`].
     ///
     /// ```
     /// use noisefloor::minibatch::{Table, table};
@@ -306,8 +306,9 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
 impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S> {
     /// A table of `items` items, with these importances or, without, 1 for each, and [`DEFAULT_UNIFORM_FRACTION`].
     ///
-    /// Errors: [`Error::Range`] for no items, another number of importances or a negative one; [`Error::NotFinite`] for NaN
-    /// or infinity; [`Error::NoSamples`] if all are 0; [`Error::Memory`] for less than [`importance_len`] and [`sums_len`].
+    /// Errors: [`Error::Range`] for no items, another number of importances or a negative one; [`Error::NotFinite`] for
+    /// NaN or infinity; [`Error::NoSamples`] if all are 0; [`Error::Memory`] for less than [`importance_len`] and
+    /// [`sums_len`].
     ///
     /// ```
     /// use noisefloor::minibatch::{Table, table};
@@ -338,8 +339,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         Ok(table)
     }
 
-    /// Sets the part of draws that are uniform over the items, 0..=1: no weight is above its reciprocal. 0 draws by importance
-    /// alone, 1 uniformly. Small fractions let weights explode when an importance has become out of date.
+    /// Sets the part of draws that are uniform over the items, 0..=1: no weight is above its reciprocal. 0 draws by
+    /// importance alone, 1 uniformly. Small fractions let weights explode when an importance has become out of date.
     ///
     /// Errors: [`Error::NotFinite`], [`Error::Range`].
     ///

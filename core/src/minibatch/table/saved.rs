@@ -1,7 +1,7 @@
 //! A table as bytes.
 //!
-//! Little-endian: the magic "nf_table", version u32, items u32, scale f64, uniform fraction f32, CRC-32 of all other bytes
-//! u32, and an f32 for each item. The sums are made again: they are the same.
+//! Little-endian: the magic "nf_table", version u32, items u32, scale f64, uniform fraction f32, CRC-32 of all other
+//! bytes u32, and an f32 for each item. The sums are made again: they are the same.
 
 use super::{State, Table, is_scale};
 use crate::Error;
@@ -25,7 +25,8 @@ pub const fn saved_len(items: u32) -> usize {
 }
 
 impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
-    /// Writes the table to exactly [`saved_len`] bytes. A table loaded from them draws the same items from the same generator.
+    /// Writes the table to exactly [`saved_len`] bytes. A table loaded from them draws the same items from the same
+    /// generator.
     ///
     /// Errors: [`Error::Length`] for another number of bytes.
     ///

@@ -24,8 +24,8 @@ pub struct Shard {
 impl Shard {
     /// What all of these are together; every process must add them in the same order, for the same bits.
     ///
-    /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative sum or 2^53 items or more; [`Error::NoSamples`] if there is no
-    /// item.
+    /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative sum or 2^53 items or more; [`Error::NoSamples`] if
+    /// there is no item.
     ///
     /// ```
     /// use noisefloor::Error;
@@ -67,13 +67,13 @@ impl Shard {
     }
 }
 
-/// How many of a batch's items come from each shard: in proportion to their probabilities, rounded up or down at random so
-/// that each is right on average (systematic sampling). `counts`, as long as `shards`, sums to `batch`.
+/// How many of a batch's items come from each shard: in proportion to their probabilities, rounded up or down at random
+/// so that each is right on average (systematic sampling). `counts`, as long as `shards`, sums to `batch`.
 ///
 /// Every process calls it with the same shards and a generator of the same seed, and so learns its own part.
 ///
-/// Errors: as for [`Shard::sum`]; [`Error::Range`] for different lengths or a fraction outside 0..=1; [`Error::NotFinite`];
-/// [`Error::NoSamples`] if every importance and the fraction are 0.
+/// Errors: as for [`Shard::sum`]; [`Error::Range`] for different lengths or a fraction outside 0..=1;
+/// [`Error::NotFinite`]; [`Error::NoSamples`] if every importance and the fraction are 0.
 ///
 /// ```
 /// use noisefloor::minibatch::table::{Shard, allocate};
@@ -137,8 +137,9 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     }
 
     /// As [`Table::draw`] for this process's part of a batch over several tables that are, together, `all` (their
-    /// [`Shard::sum`], this table's [`Table::shard`] included): weights are those of the whole. Gradients times weights, summed over
-    /// the parts and divided by the whole batch's size, estimate the gradient of the mean loss over all items.
+    /// [`Shard::sum`], this table's [`Table::shard`] included): weights are those of the whole. Gradients times
+    /// weights, summed over the parts and divided by the whole batch's size, estimate the gradient of the mean loss
+    /// over all items.
     ///
     /// All tables must have the same uniform fraction. How many items each process draws, [`allocate`] says.
     ///

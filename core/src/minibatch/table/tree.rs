@@ -1,7 +1,8 @@
 //! The tree of sums over the blocks: nodes of 16 children, level by level.
 //!
-//! A node holds running sums of its children's weights, as integers: a draw compares 16 numbers and counts, a change adds a
-//! difference to some of them, and as integers lose nothing the sums are those of a tree built afresh, bit for bit.
+//! A node holds running sums of its children's weights, as integers: a draw compares 16 numbers and counts, a change
+//! adds a difference to some of them, and as integers lose nothing the sums are those of a tree built afresh, bit for
+//! bit.
 
 use core::hint::select_unpredictable;
 
@@ -53,7 +54,8 @@ impl Levels {
     }
 }
 
-/// How many children end at or before `r`: the child that `r`, below the node's weight, falls on. Never one of weight 0.
+/// How many children end at or before `r`: the child that `r`, below the node's weight, falls on. Never one of
+/// weight 0.
 #[inline(always)]
 pub(super) fn find(node: &Node, r: i64) -> usize {
     let mut count = 0;

@@ -6,8 +6,8 @@ use crate::Error;
 
 /// How many changes go up the tree together.
 const CHUNK: usize = 64;
-/// A scale is chosen so that the sum has this many bits: room to grow by a factor of 2^11, and to shrink by 2^6 with the
-/// most items there can be, by 2^18 with a million.
+/// A scale is chosen so that the sum has this many bits: room to grow by a factor of 2^11, and to shrink by 2^6 with
+/// the most items there can be, by 2^18 with a million.
 const BITS: i64 = 51;
 /// The sum stays below this.
 const LARGEST_SUM: i64 = 1 << 62;
@@ -16,11 +16,12 @@ const LEAST_WEIGHT: i64 = 1 << 16;
 
 impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S> {
     /// Sets the importance of the visited items: `q = momentum q + (1 - momentum) importance` (line 13 of Algorithm 3,
-    /// (6.11)), one after the other, so that an item that comes twice is changed twice. Momentum 0 forgets the old value;
-    /// .3 is a good choice.
+    /// (6.11)), one after the other, so that an item that comes twice is changed twice. Momentum 0 forgets the old
+    /// value; .3 is a good choice.
     ///
-    /// Where the sum of all has grown or shrunk by orders of magnitude since the table was built, it is built again at a new
-    /// scale, which takes time for every item; else a change costs the same few nanoseconds however many items there are.
+    /// Where the sum of all has grown or shrunk by orders of magnitude since the table was built, it is built again at
+    /// a new scale, which takes time for every item; else a change costs the same few nanoseconds however many items
+    /// there are.
     ///
     /// Errors, which change nothing: [`Error::Range`] for different lengths, an item that does not exist, a negative
     /// importance, or a momentum outside 0..=1; [`Error::NotFinite`].
@@ -116,8 +117,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         Ok(())
     }
 
-    /// Adds `epsilon` to every importance, as Algorithm 3 does after an epoch so that no item is forgotten. Exact: every
-    /// importance is the f32 sum. Takes time for every item; the uniform fraction does the same for nothing.
+    /// Adds `epsilon` to every importance, as Algorithm 3 does after an epoch so that no item is forgotten. Exact:
+    /// every importance is the f32 sum. Takes time for every item; the uniform fraction does the same for nothing.
     ///
     /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative number.
     ///
@@ -171,7 +172,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         self.restore_scale(in_range);
     }
 
-    /// At most [`CHUNK`] changes: an item, and its new importance from the old. False if the sums are beyond their range, and wrong until they are built again.
+    /// At most [`CHUNK`] changes: an item, and its new importance from the old. False if the sums are beyond their
+    /// range, and wrong until they are built again.
     #[inline(always)]
     fn change<K: Kernel, F: Fn(f32) -> f32>(&mut self, changes: impl Iterator<Item = (u32, F)>) -> bool {
         let scale = self.state.scale;
@@ -181,7 +183,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         // For each change the block and by how much its weight differs.
         let mut pending = [(0u32, 0i64); CHUNK];
         let mut count = 0;
-        // The sum of new weights: while it is in range, no sum in the tree can have wrapped around to a harmless number.
+        // The sum of new weights: while it is in range, no sum in the tree can have wrapped around to a harmless
+        // number.
         let mut fresh = 0i64;
         for (pending, (item, change)) in pending.iter_mut().zip(changes) {
             let which = item as usize / ARITY;

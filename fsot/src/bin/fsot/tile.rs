@@ -20,7 +20,8 @@ const INTEGRANDS: u32 = 512;
 /// What `fsot tile` is asked for.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// A tile that comes with noisefloor, such as 128_4SPP_2D: sets all that follows, and the number of steps (`fsot info` lists them)
+    /// A tile that comes with noisefloor, such as 128_4SPP_2D: sets all that follows, and the number of steps
+    /// (`fsot info` lists them)
     #[arg(long, value_name = "NAME", conflicts_with_all = ["size", "spp", "d", "kernel", "reconstruction", "temporal", "progressive", "box_share", "box_weight"])]
     preset: Option<String>,
     /// Pixels along each side, a power of two
@@ -32,10 +33,12 @@ pub(crate) struct Args {
     /// Coordinates of each sample, 1 to 8
     #[arg(short, long = "dims", value_name = "COUNT", default_value_t = 2)]
     d: usize,
-    /// What the image is filtered by: box, perceptual, gaussian:SIGMA (pixels), or a convolution, perceptual*gaussian:SIGMA
+    /// What the image is filtered by: box, perceptual, gaussian:SIGMA (pixels), or a convolution,
+    /// perceptual*gaussian:SIGMA
     #[arg(long, default_value = "perceptual")]
     kernel: Kernel,
-    /// What the renderer reconstructs a pixel by: the kernel of the slices that --box-share counts [default: the second factor of a convolution, else box]
+    /// What the renderer reconstructs a pixel by: the kernel of the slices that --box-share counts [default: the second
+    /// factor of a convolution, else box]
     #[arg(long, value_name = "KERNEL")]
     reconstruction: Option<Kernel>,
     /// An animation of this many frames

@@ -122,8 +122,8 @@ pub fn spectrum(title: &str, spectrum: &Spectrum, of: Subject) -> Sheet {
     sheet
 }
 
-/// Errors against the number of points on logarithmic axes (figure 5.17): half-spaces in red, Gaussians in blue, and in grey what random
-/// points have.
+/// Errors against the number of points on logarithmic axes (figure 5.17): half-spaces in red, Gaussians in blue, and in
+/// grey what random points have.
 pub fn prefix_errors(title: &str, errors: &[PrefixError]) -> Sheet {
     let mut sheet = Sheet::new(900, 600);
     let curve = |value: &dyn Fn(&PrefixError) -> f64, colour| Curve {

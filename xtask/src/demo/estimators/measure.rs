@@ -11,8 +11,8 @@ use image::Rgb32FImage;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-/// The plain mean is rendered with up to so many times the samples. Beyond that (an estimator that is very slow beside the
-/// scene) its relMSE is computed instead: it falls exactly as 1 / samples.
+/// The plain mean is rendered with up to so many times the samples. Beyond that (an estimator that is very slow beside
+/// the scene) its relMSE is computed instead: it falls exactly as 1 / samples.
 pub(crate) const EQUAL_TIME_LIMIT: u32 = 16;
 
 pub(crate) struct Measured {

@@ -23,8 +23,8 @@ pub(crate) struct Scene {
 /// What each sampler is compared with.
 pub(crate) const BASELINE: Choice = Choice::Random;
 
-/// The plain mean; fits to each pixel's own samples, which for stratified samples is the plain mean again; and fits shared by
-/// neighbouring pixels.
+/// The plain mean; fits to each pixel's own samples, which for stratified samples is the plain mean again; and fits
+/// shared by neighbouring pixels.
 pub(crate) const ESTIMATORS: [&str; 3] = ["mc", "robust", "shared"];
 
 const ALL_2D: &[Choice] = &[Choice::Random, Choice::Sobol, Choice::Tile(2)];

@@ -79,7 +79,8 @@ fn cell([raw, filtered]: [f64; 2]) -> String {
     format!("{raw:.3} / {filtered:.3}")
 }
 
-/// The ratios of one scene to random samples' plain mean, a row for each number of samples and estimator: raw / filtered.
+/// The ratios of one scene to random samples' plain mean, a row for each number of samples and estimator: raw /
+/// filtered.
 pub(crate) fn summary_rows(scene: &str, all: &[Measured]) -> Vec<[String; 8]> {
     let row = |(spp, estimator): (u32, &str)| {
         let cells = SUMMARY.map(|choice| {

@@ -15,7 +15,8 @@ use std::path::{Path, PathBuf};
 
 pub(crate) const MODES: [&str; 5] = ["uniform", "importance", "adaptive", "balance", "omis"];
 
-/// Items of a minibatch, and sizes of the hidden layers: [`Plan::arguments`] gives them to the trainer, reports quote them.
+/// Items of a minibatch, and sizes of the hidden layers: [`Plan::arguments`] gives them to the trainer, reports quote
+/// them.
 pub(crate) const BATCH: u32 = 64;
 pub(crate) const HIDDEN: [u32; 2] = [128, 64];
 

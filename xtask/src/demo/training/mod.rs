@@ -30,7 +30,8 @@ impl Training<'_> {
     }
 }
 
-/// The trainers, in the order of their tables: each compiles its program, runs it, writes its files and returns its table.
+/// The trainers, in the order of their tables: each compiles its program, runs it, writes its files and returns its
+/// table.
 const TRAINERS: [fn(&Training) -> Result<String>; 3] = [mlp::run, polynomial::run, photograph::run];
 
 pub(crate) fn run(options: &Options, interrupted: &AtomicBool, output: &Output) -> Result<String> {

@@ -13,8 +13,8 @@ use std::fs;
 use std::path::Path;
 
 const METHODS: [&str; 4] = ["uniform", "is", "omis3", "omis6"];
-/// Pixels on a side of a picture on the sheet, and the part of the photograph that is shown larger: (left, top, side) in
-/// 1/192 of its side. Whiskers and the nose.
+/// Pixels on a side of a picture on the sheet, and the part of the photograph that is shown larger: (left, top, side)
+/// in 1/192 of its side. Whiskers and the nose.
 const CELL: u32 = 384;
 const PART: (u32, u32, u32) = (8, 116, 72);
 

@@ -113,8 +113,8 @@ impl Summary {
     }
 }
 
-/// The geometric mean of the ratios of independent cells. Each side of the logarithms' intervals is combined by itself, in squares: the cells' need not be
-/// symmetric, as ratios below [`LEAST`] count as it.
+/// The geometric mean of the ratios of independent cells. Each side of the logarithms' intervals is combined by itself,
+/// in squares: the cells' need not be symmetric, as ratios below [`LEAST`] count as it.
 fn geometric_mean(cells: &[&Cell]) -> Estimate {
     let count = cells.len() as f64;
     let logarithm = |ratio: f64| ratio.max(LEAST).ln();

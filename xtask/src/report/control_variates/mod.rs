@@ -1,4 +1,5 @@
-//! The chapter of the estimators on functions whose integrals are known: error against time, and how it falls with samples.
+//! The chapter of the estimators on functions whose integrals are known: error against time, and how it falls with
+//! samples.
 
 mod cells;
 mod convergence;

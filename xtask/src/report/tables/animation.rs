@@ -15,8 +15,8 @@ use crate::report::statistics::Estimate;
 use anyhow::Result;
 use image::Rgb32FImage;
 
-/// The first is the thesis's, and what the temporal tile of [`CHOSEN`] samples had its settings chosen on; the second has had no part
-/// in any choice.
+/// The first is the thesis's, and what the temporal tile of [`CHOSEN`] samples had its settings chosen on; the second
+/// has had no part in any choice.
 const SCENES: [&str; 2] = ["animation", "dining"];
 /// Samples per pixel of the temporal tile whose settings were chosen by rendering.
 const CHOSEN: u32 = 4;
@@ -202,7 +202,8 @@ fn seen(references: &[std::rc::Rc<Reference>], weights: &[f64]) -> Reference {
     Reference::new(&a, &b)
 }
 
-/// `reference`: as the eye sees it, as the images are; the last frame alone would show what moves as an error of all samplers.
+/// `reference`: as the eye sees it, as the images are; the last frame alone would show what moves as an error of all
+/// samplers.
 fn write_sheet(section: &Section, reference: &Reference, all: &[(&str, Measured)], spp: u32) -> Result<()> {
     let names: Vec<String> = all.iter().map(|(label, _)| (*label).to_owned()).collect();
     let cells = all.iter().map(|(_, measured)| {

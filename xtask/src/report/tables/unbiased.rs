@@ -14,9 +14,11 @@ use image::Rgb32FImage;
 
 const SCENES: [&str; 2] = ["dining", "killeroos"];
 const SPP: [u32; 2] = [1, 4];
-/// Of all tests of the table together: each of them has a part of it (Bonferroni), whatever the dependence between them.
+/// Of all tests of the table together: each of them has a part of it (Bonferroni), whatever the dependence between
+/// them.
 const SIGNIFICANCE: f64 = 0.01;
-/// Batches of frames, whose signs the test of the mean of z^2 flips: 8192 ways, enough for its part of the significance.
+/// Batches of frames, whose signs the test of the mean of z^2 flips: 8192 ways, enough for its part of the
+/// significance.
 const BATCHES: u32 = 14;
 
 /// The estimators, as the table has them.
@@ -222,7 +224,8 @@ fn scores(frames: &Frames, halves: &[Vec<f64>; 2], lit: &[bool]) -> Scores {
 mod tests {
     use super::*;
 
-    /// 400 frames in 8 batches whose values are 0 or 2, in turn, plus `bias`, against a reference of 1; the batches' means differ by chance.
+    /// 400 frames in 8 batches whose values are 0 or 2, in turn, plus `bias`, against a reference of 1; the batches'
+    /// means differ by chance.
     fn scored(bias: f64) -> Scores {
         let batch = |batch: i32| vec![1.0 + bias + 0.1 * (f64::from(batch) - 3.5); 12];
         let frames = Frames { count: 400, batches: (0..8).map(batch).collect(), mse: vec![1.0 + bias * bias; 12] };
