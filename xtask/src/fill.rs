@@ -42,7 +42,7 @@ fn documents() -> Result<Vec<(PathBuf, String, String)>> {
     all.sort();
     let filled = all.into_iter().map(|path| {
         let old = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-        let new = fill(&old, &|cell| measured(&root, cell)).with_context(|| path.display().to_string())?;
+        let new = fill(&old, &|cell| measured(root, cell)).with_context(|| path.display().to_string())?;
         Ok((path, old, new))
     });
     filled.collect()
@@ -127,7 +127,8 @@ fn in_table(json: &Value, table: &str, cell: &str) -> Result<Value> {
         let whole = cells.join(", ");
         row.split(", ").all(|part| cells.iter().any(|cell| cell == part)) || whole.starts_with(row)
     };
-    let rows = tables.iter().flat_map(|table| list(&table["rows"]).into_iter().map(|row| (list(&table["columns"]), row)));
+    let rows =
+        tables.iter().flat_map(|table| list(&table["rows"]).into_iter().map(|row| (list(&table["columns"]), row)));
     let found: Vec<_> = rows.filter(|(_, row)| has(&names(row))).collect();
     let [(columns, found)] = &found[..] else { bail!("{} rows of {table} are `{row}`", found.len()) };
     let index = columns.iter().position(|name| name == column);
@@ -149,8 +150,9 @@ fn number(cell: &Value, end: Option<usize>, place: usize) -> Option<f64> {
         return Some(value);
     }
     let text = cell.as_str()?;
-    let numbers = text.split(|c: char| !c.is_ascii_digit() && !"+-.e".contains(c)).filter_map(|word| word.parse().ok());
-    numbers.skip(place.checked_sub(1)?).next()
+    let mut numbers =
+        text.split(|c: char| !c.is_ascii_digit() && !"+-.e".contains(c)).filter_map(|word| word.parse().ok());
+    numbers.nth(place.checked_sub(1)?)
 }
 
 #[cfg(test)]
@@ -179,7 +181,8 @@ mod tests {
     #[test]
     fn cells_are_found() {
         let cell = json!({"text": "2.0", "value": 2.0, "interval": [1.0, 3.0]});
-        let table = json!({"name": "t", "columns": ["scene", "n", "ratio"], "rows": [["a", "16", cell], ["a", "64", "7; 8"]]});
+        let table =
+            json!({"name": "t", "columns": ["scene", "n", "ratio"], "rows": [["a", "16", cell], ["a", "64", "7; 8"]]});
         let json = json!({"tables": [table]});
         assert_eq!(number(&in_table(&json, "t", "a, 16 | ratio").unwrap(), None, 1), Some(2.0));
         assert_eq!(number(&in_table(&json, "t", "16 | 3").unwrap(), Some(1), 1), Some(3.0));
