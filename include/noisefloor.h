@@ -683,7 +683,7 @@ nf_status nf_omis_merge(nf_omis *omis, const nf_omis *other);
  * Tiles and samplers: sample points whose error is spread over the image where it shows least
  * Guides, in docs/: tiles.md, renderer.md
  *
- *   nf_tile_builtin      One of the tiles that come with the library
+ *   nf_tile_builtin      One of the tiles that come with the library, by number
  *   nf_tile_from_bytes   The tile of an .nft file's bytes, all of them checked
  *   nf_sampler_pixel     Sample `index` of pixel (x, y) in `frame`, any values of each
  *   nf_sampler_domain    The child domain of a key, any value
@@ -721,8 +721,9 @@ nf_status nf_omis_merge(nf_omis *omis, const nf_omis *other);
 
 // A view of a tile: sample points for a square of pixels that repeats over the image (chapter 5; docs/tiles.md).
 //
-// A complete struct, to be copied freely; it owns nothing. Made by nf_tile_builtin or nf_tile_from_bytes. The fields
-// are to be read, never written; all zero is a valid tile, whose samples are all 0.
+// A complete struct, to be copied freely; it owns nothing. `nf_tile_128_1spp_2d` and its like come with the library, and
+// a program linked with `--gc-sections` carries those that it names; nf_tile_from_bytes makes others. The fields are to
+// be read, never written; all zero is a valid tile, whose samples are all 0.
 typedef struct nf_tile {
     // The stored values, in the memory that the tile was made from.
     const void *values;
@@ -742,7 +743,32 @@ typedef struct nf_tile {
     uint32_t progressive;
 } nf_tile;
 
-// One of the tiles that come with the library: id is NF_TILE_*.
+// The tile NF_TILE_128_1SPP_2D.
+extern const nf_tile nf_tile_128_1spp_2d;
+// The tile NF_TILE_128_4SPP_2D.
+extern const nf_tile nf_tile_128_4spp_2d;
+// The tile NF_TILE_128_16SPP_2D.
+extern const nf_tile nf_tile_128_16spp_2d;
+// The tile NF_TILE_128_16SPP_2D_PROGRESSIVE.
+extern const nf_tile nf_tile_128_16spp_2d_progressive;
+// The tile NF_TILE_128_1SPP_4D.
+extern const nf_tile nf_tile_128_1spp_4d;
+// The tile NF_TILE_128_4SPP_4D.
+extern const nf_tile nf_tile_128_4spp_4d;
+// The tile NF_TILE_128_1SPP_2D_GAUSSIAN.
+extern const nf_tile nf_tile_128_1spp_2d_gaussian;
+// The tile NF_TILE_128_4SPP_2D_GAUSSIAN.
+extern const nf_tile nf_tile_128_4spp_2d_gaussian;
+// The tile NF_TILE_128_1SPP_2D_TEMPORAL.
+extern const nf_tile nf_tile_128_1spp_2d_temporal;
+// The tile NF_TILE_64_1SPP_2D.
+extern const nf_tile nf_tile_64_1spp_2d;
+// The tile NF_TILE_64_4SPP_2D.
+extern const nf_tile nf_tile_64_4spp_2d;
+// The tile NF_TILE_64_4SPP_2D_TEMPORAL.
+extern const nf_tile nf_tile_64_4spp_2d_temporal;
+
+// One of the tiles that come with the library, by number: id is NF_TILE_*. A program that calls it carries all of them.
 //
 // NF_ERR_NULL; NF_ERR_RANGE: id; NF_ERR_UNSUPPORTED: this library was built without that tile.
 nf_status nf_tile_builtin(uint32_t id, nf_tile *out);

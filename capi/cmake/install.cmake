@@ -13,6 +13,9 @@ foreach(header IN ITEMS noisefloor.h noisefloor.hpp)
     file(REAL_PATH "include/${header}" header)
     install(FILES "${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 endforeach()
+# The tiles as files: for programs that read them (nf_tile_from_bytes), in place of the library's own.
+install(DIRECTORY ../core/tiles/ DESTINATION "${CMAKE_INSTALL_DATADIR}/noisefloor/tiles" FILES_MATCHING PATTERN "*.nft")
+
 # One file of targets for each kind, so that a distribution can leave one out of a package.
 if(NOISEFLOOR_STATIC)
     install(TARGETS noisefloor_static EXPORT noisefloor_static)

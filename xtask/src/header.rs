@@ -218,7 +218,7 @@ impl Item {
     }
 
     fn is_constant(&self) -> bool {
-        self.text.contains("#define ")
+        self.text.contains("#define ") || self.text.contains("\nextern const ")
     }
 }
 

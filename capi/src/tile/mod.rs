@@ -2,8 +2,10 @@
 
 mod fill;
 mod sampler;
+mod shipped;
 mod view;
 
 pub use fill::*;
 pub use sampler::*;
+pub use shipped::*;
 pub use view::*;

@@ -10,6 +10,8 @@ const ASSERTS: &str = "/* Layouts:";
 #[derive(Default)]
 pub(crate) struct Header {
     functions: Vec<Function>,
+    /// Type and name of what is data.
+    objects: Vec<String>,
     pub(super) structs: Vec<Struct>,
     /// Name, and the number that it is.
     pub(super) typedefs: Vec<(String, String)>,
@@ -69,8 +71,10 @@ impl Header {
         version.map(|(_, value)| value.as_str()).context("the header has no NF_ABI_VERSION")
     }
 
-    pub(crate) fn functions(&self) -> impl Iterator<Item = &str> {
-        self.functions.iter().map(|function| function.name.as_str())
+    /// What a library exports: functions and data.
+    pub(crate) fn symbols(&self) -> impl Iterator<Item = &str> {
+        let objects = self.objects.iter().map(|object| object.rsplit(' ').next().unwrap_or_default());
+        self.functions.iter().map(|function| function.name.as_str()).chain(objects)
     }
 
     /// Keeps one declaration, up to its semicolon.
@@ -78,6 +82,10 @@ impl Header {
         let text = text.trim_end_matches(';');
         if let Some(rest) = text.strip_prefix("typedef ") {
             return self.declare_type(rest);
+        }
+        if let Some(object) = text.strip_prefix("extern ").filter(|object| !object.contains('(')) {
+            self.objects.push(object.to_owned());
+            return Ok(());
         }
         let (before, parameters) =
             text.split_once('(').with_context(|| format!("neither a type nor a function: {text}"))?;
@@ -116,7 +124,8 @@ impl Header {
         let functions = self.functions.iter().map(|function| format!("function {}", function.prototype));
         let constants = self.constants.iter().filter(|(name, _)| name != "NF_ABI_VERSION");
         let constants = constants.map(|(name, value)| format!("constant {name} {value}"));
-        functions.chain(constants).chain(self.opaque.iter().map(|name| format!("opaque {name}"))).collect()
+        let objects = self.objects.iter().map(|object| format!("object {object}"));
+        functions.chain(objects).chain(constants).chain(self.opaque.iter().map(|name| format!("opaque {name}"))).collect()
     }
 
     /// Fails unless the header asserts the size of every struct and of every other name of a number.
@@ -169,7 +178,7 @@ mod tests {
     fn functions_constants_and_structs_are_read() {
         let header = Header::parse(TEXT).unwrap();
         assert_eq!(header.version().unwrap(), "3");
-        assert_eq!(header.functions().collect::<Vec<_>>(), ["nf_m", "nf_f", "nf_v"]);
+        assert_eq!(header.symbols().collect::<Vec<_>>(), ["nf_m", "nf_f", "nf_v"]);
         let lines = [
             "function const char *nf_m(nf_status)",
             "function nf_s nf_f(const float *, size_t)",

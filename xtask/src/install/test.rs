@@ -81,7 +81,7 @@ fn exported(shared: &Path) -> Result<()> {
     let symbols = library::names(shared, &["--dynamic", "--defined-only"])?;
     let node = format!("NOISEFLOOR_{}", header.version()?);
     let mut found: Vec<_> = symbols.into_iter().map(|(_, name)| name).filter(|name| *name != node).collect();
-    let mut wanted: Vec<_> = header.functions().map(|name| format!("{name}@@{node}")).collect();
+    let mut wanted: Vec<_> = header.symbols().map(|name| format!("{name}@@{node}")).collect();
     found.sort();
     wanted.sort();
     if found != wanted {

@@ -55,7 +55,7 @@ pub(crate) struct Size {
 pub(crate) fn measure(platform: &Platform, archive: &Path) -> Result<Vec<Size>> {
     // As the header has them: GNU nm cannot read WebAssembly.
     let header = abi::Header::committed()?;
-    let all: Vec<String> = header.functions().map(|name| name.to_string()).collect();
+    let all: Vec<String> = header.symbols().map(|name| name.to_string()).collect();
     let begins = |symbol: &str, with: &[&str]| with.iter().any(|prefix| symbol.starts_with(prefix));
     let mut sizes = Vec::new();
     for service in &SERVICES {
