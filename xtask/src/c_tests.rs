@@ -1,6 +1,6 @@
 //! The C tests of `tests/c`: one program for each theme, compiled strictly, linked with the library, run.
 
-use crate::test::Outcome;
+use crate::outcome::Outcome;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use std::fs;
@@ -9,17 +9,17 @@ use std::process::Stdio;
 
 /// What the sources are compiled as.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Language {
+pub enum Language {
     C99,
     /// The same C files as C++, where `check.h` includes noisefloor.hpp.
     Cpp17,
 }
 
-pub(crate) const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O1"];
-pub(crate) const SANITIZERS: [&str; 3] = ["-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=undefined"];
+pub const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O1"];
+pub const SANITIZERS: [&str; 3] = ["-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=undefined"];
 
 /// Compiles and runs every `tests/c/*.c`, with more compiler options.
-pub(crate) fn run(language: Language, options: &[&str], archive: &Path) -> Result<Outcome> {
+pub fn run(language: Language, options: &[&str], archive: &Path) -> Result<Outcome> {
     let sources = sources()?;
     check_coverage(&sources)?;
     each(&sources, |source| {
@@ -42,7 +42,7 @@ pub(crate) fn run(language: Language, options: &[&str], archive: &Path) -> Resul
 }
 
 /// The test programs, in order.
-pub(crate) fn sources() -> Result<Vec<PathBuf>> {
+pub fn sources() -> Result<Vec<PathBuf>> {
     let mut sources = Vec::new();
     for entry in fs::read_dir(paths::root().join("tests/c")).context("cannot read tests/c")? {
         let path = entry.context("cannot read tests/c")?.path();
@@ -76,7 +76,7 @@ fn check_coverage(sources: &[PathBuf]) -> Result<()> {
 }
 
 /// As [`run()`], under the sanitizers, if the compiler has them.
-pub(crate) fn sanitized(language: Language, archive: &Path) -> Result<Outcome> {
+pub fn sanitized(language: Language, archive: &Path) -> Result<Outcome> {
     if !has_sanitizers()? {
         return Ok(Outcome::NotRun(
             "the C compiler has no -fsanitize=address,undefined; gcc (Debian: libgcc-12-dev) and clang have".to_owned(),
@@ -86,7 +86,7 @@ pub(crate) fn sanitized(language: Language, archive: &Path) -> Result<Outcome> {
 }
 
 /// Whether the C compiler has [`SANITIZERS`].
-pub(crate) fn has_sanitizers() -> Result<bool> {
+pub fn has_sanitizers() -> Result<bool> {
     let source = output("sanitizers.c")?;
     fs::write(&source, "int main(void) { return 0; }\n")
         .with_context(|| format!("cannot write {}", source.display()))?;
@@ -98,7 +98,7 @@ pub(crate) fn has_sanitizers() -> Result<bool> {
 }
 
 /// The test of noisefloor.hpp, where errors are thrown, where the caller turned that off, and where the compiler did.
-pub(crate) fn wrapper(archive: &Path) -> Result<Outcome> {
+pub fn wrapper(archive: &Path) -> Result<Outcome> {
     for options in [&[][..], &["-DNOISEFLOOR_NO_EXCEPTIONS"], &["-fno-exceptions", "-fno-rtti"]] {
         let program = output("wrapper_test")?;
         let mut compiler = run::compiler("CXX", "c++");
@@ -115,14 +115,14 @@ pub(crate) fn wrapper(archive: &Path) -> Result<Outcome> {
 }
 
 /// Where a program of a test goes.
-pub(crate) fn output(name: &str) -> Result<PathBuf> {
+pub fn output(name: &str) -> Result<PathBuf> {
     let folder = paths::output().join("test");
     fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
     Ok(folder.join(name))
 }
 
 /// All of them, even if some fail; the error names those.
-pub(crate) fn each(sources: &[PathBuf], mut action: impl FnMut(&Path) -> Result<()>) -> Result<()> {
+pub fn each(sources: &[PathBuf], mut action: impl FnMut(&Path) -> Result<()>) -> Result<()> {
     let mut failures = Vec::new();
     for source in sources {
         if let Err(error) = action(source) {

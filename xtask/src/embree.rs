@@ -1,8 +1,8 @@
 //! The path tracer on Embree: `tests/embree`.
 
 use crate::c_tests::output;
+use crate::outcome::Outcome;
 use crate::path_tracer::{PathTracer, block};
-use crate::test::Outcome;
 use crate::{library, paths, run, tools};
 use anyhow::{Result, bail};
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ const EMBREE_3: tools::Package = tools::Package { name: "libembree-dev", file: "
 const EMBREE_4: [&str; 2] = ["/usr/include/embree4/rtcore.h", "/usr/local/include/embree4/rtcore.h"];
 
 /// Builds the C library and the harness, and returns the harness's path.
-pub(crate) fn build() -> Result<PathBuf> {
+pub fn build() -> Result<PathBuf> {
     if let Some(missing) = packages()? {
         bail!("{missing}");
     }
@@ -23,7 +23,7 @@ pub(crate) fn build() -> Result<PathBuf> {
 }
 
 /// The intersector against the path tracer's own, on random rays and in every scene.
-pub(crate) fn agreement(archive: &Path) -> Result<Outcome> {
+pub fn agreement(archive: &Path) -> Result<Outcome> {
     if let Some(missing) = packages()? {
         return Ok(Outcome::NotRun(missing));
     }
@@ -34,7 +34,7 @@ pub(crate) fn agreement(archive: &Path) -> Result<Outcome> {
 }
 
 /// Every scene that the harness lists, against its reference.
-pub(crate) fn scenes(archive: &Path) -> Result<Outcome> {
+pub fn scenes(archive: &Path) -> Result<Outcome> {
     if let Some(missing) = packages()? {
         return Ok(Outcome::NotRun(missing));
     }
@@ -80,7 +80,7 @@ pub(crate) fn scenes(archive: &Path) -> Result<Outcome> {
 }
 
 /// What `check` says of the report that is made with the harness.
-pub(crate) fn report(check: impl FnOnce() -> Result<()>) -> Result<Outcome> {
+pub fn report(check: impl FnOnce() -> Result<()>) -> Result<Outcome> {
     if let Some(missing) = packages()? {
         return Ok(Outcome::NotRun(missing));
     }

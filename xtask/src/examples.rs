@@ -1,16 +1,16 @@
 //! The programs of `examples_c`, compiled as their reader would, and run; and the README that shows one of them.
 
 use crate::c_tests::{SANITIZERS, has_sanitizers, output};
-use crate::test::Outcome;
+use crate::outcome::Outcome;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::Path;
 
-pub(crate) const STRICT: [&str; 6] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O2", "-Iinclude"];
+pub const STRICT: [&str; 6] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O2", "-Iinclude"];
 
 /// Compiles `examples_c/SOURCE` with the library, as C99 or C++17 by its extension.
-pub(crate) fn compile(source: &str, options: &[&str], archive: &Path, program: &Path) -> Result<()> {
+pub fn compile(source: &str, options: &[&str], archive: &Path, program: &Path) -> Result<()> {
     let (mut compiler, standard) = match source.ends_with(".c") {
         true => (run::compiler("CC", "cc"), "-std=c99"),
         false => (run::compiler("CXX", "c++"), "-std=c++17"),
@@ -21,7 +21,7 @@ pub(crate) fn compile(source: &str, options: &[&str], archive: &Path, program: &
 }
 
 /// integrate.c: its estimate must be closer than the mean.
-pub(crate) fn integrate(archive: &Path, name: &str) -> Result<Outcome> {
+pub fn integrate(archive: &Path, name: &str) -> Result<Outcome> {
     let program = output(name)?;
     compile(&format!("{name}.c"), &STRICT, archive, &program)?;
     let text = run::read(&mut run::command(&program))?;
@@ -39,7 +39,7 @@ pub(crate) fn integrate(archive: &Path, name: &str) -> Result<Outcome> {
 }
 
 /// Every block of C in a document that includes the header is a whole piece of code: it compiles as it stands.
-pub(crate) fn documents() -> Result<Outcome> {
+pub fn documents() -> Result<Outcome> {
     let mut compiled = 0;
     let folder = paths::root().join("docs");
     let mut files: Vec<_> = fs::read_dir(&folder)
@@ -67,7 +67,7 @@ pub(crate) fn documents() -> Result<Outcome> {
 }
 
 /// examples_c/renderers: each program prints pairs of errors of which the second must be the smaller.
-pub(crate) fn renderers(archive: &Path) -> Result<Outcome> {
+pub fn renderers(archive: &Path) -> Result<Outcome> {
     let strict = [&STRICT[..], &["-Wconversion", "-Wshadow"]].concat();
     for (name, pairs) in [
         ("pbrt_sampler", [("independent", "tile"), ("tile", "noisefloor")]),
@@ -103,7 +103,7 @@ pub(crate) fn renderers(archive: &Path) -> Result<Outcome> {
 }
 
 /// shards.c: its processes check their estimates themselves.
-pub(crate) fn shards(archive: &Path) -> Result<Outcome> {
+pub fn shards(archive: &Path) -> Result<Outcome> {
     if !cfg!(unix) {
         return Ok(Outcome::NotRun("the example uses fork and pipe, which POSIX systems have".to_owned()));
     }
@@ -115,7 +115,7 @@ pub(crate) fn shards(archive: &Path) -> Result<Outcome> {
 
 /// README.md's first block of code is integrate.c, letter by letter, and the two commands that do all the set-up
 /// follow.
-pub(crate) fn readme() -> Result<Outcome> {
+pub fn readme() -> Result<Outcome> {
     let read = |name: &str| fs::read_to_string(paths::root().join(name)).with_context(|| format!("cannot read {name}"));
     let (text, program) = (read("README.md")?, read("examples_c/integrate.c")?);
     let block = text.split_once("```c\n").and_then(|(before, rest)| (!before.contains("```")).then_some(rest));

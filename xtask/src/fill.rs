@@ -21,7 +21,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Fills all documents.
-pub(crate) fn run() -> Result<()> {
+pub fn run() -> Result<()> {
     for (path, old, new) in documents()? {
         if old != new {
             fs::write(&path, new).with_context(|| path.display().to_string())?;

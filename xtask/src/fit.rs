@@ -2,7 +2,7 @@
 //! options and bad files.
 
 use crate::c_tests::output;
-use crate::test::Outcome;
+use crate::outcome::Outcome;
 use crate::trainer::{Program, text, without_seconds};
 use anyhow::{Context, Result, bail};
 use std::fs;
@@ -10,7 +10,7 @@ use std::path::Path;
 
 const PHOTOGRAPH: &str = "examples_c/data/house_cat.ppm";
 
-pub(crate) fn polynomial(archive: &Path) -> Result<Outcome> {
+pub fn polynomial(archive: &Path) -> Result<Outcome> {
     let program = Program::compile("fit_polynomial", "c", "fit_polynomial", &["-O2"], archive)?;
     let short = ["--seeds", "6", "--steps", "2000", "--beta", "0.7"];
     let csv = program.run(&short)?;
@@ -60,7 +60,7 @@ pub(crate) fn polynomial(archive: &Path) -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-pub(crate) fn photograph(archive: &Path) -> Result<Outcome> {
+pub fn photograph(archive: &Path) -> Result<Outcome> {
     const METHODS: [&str; 6] = ["uniform", "is", "balance3", "omis3", "balance6", "omis6"];
     let program = Program::compile("fit_image", "cpp", "fit_image", &["-O3"], archive)?;
     let methods = METHODS.join(",");

@@ -1,6 +1,6 @@
 //! `cargo xtask fuzz`: every target of fuzz/ for a while, first on what once crashed it.
 
-use crate::test::Outcome;
+use crate::outcome::Outcome;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
@@ -14,7 +14,7 @@ const MAX_BYTES: u32 = 8192;
 const FSOT: (&str, &str) = ("fsot_files", "fsot");
 
 #[derive(Args)]
-pub(crate) struct Options {
+pub struct Options {
     /// How long each target runs
     #[arg(long, default_value_t = 60)]
     seconds: u64,
@@ -51,7 +51,7 @@ impl Sanitizer {
     }
 }
 
-pub(crate) fn run(options: &Options) -> Result<()> {
+pub fn run(options: &Options) -> Result<()> {
     if options.seconds == 0 {
         bail!("--seconds 0 is for ever; at least 1");
     }
@@ -102,7 +102,7 @@ fn cargo_fuzz() -> Command {
 
 /// Builds all targets but `fsot_files`, not instrumented and not optimised, and runs the committed inputs through them:
 /// seeds, and what once crashed.
-pub(crate) fn replay() -> Result<Outcome> {
+pub fn replay() -> Result<Outcome> {
     let (folder, target) = (paths::root().join("fuzz"), paths::target().join("fuzz"));
     let mut build = run::cargo();
     build.args(["build", "--quiet", "--locked", "--manifest-path"]).arg(folder.join("Cargo.toml"));
@@ -194,7 +194,7 @@ fn executions(said: &str) -> Option<u64> {
 }
 
 /// The triple that cargo and cargo-fuzz build for.
-pub(crate) fn host() -> Result<String> {
+pub fn host() -> Result<String> {
     let version = run::read(run::command("rustc").arg("-vV"))?;
     version.lines().find_map(|line| line.strip_prefix("host: ")).map(str::to_owned).context("rustc -vV names no host")
 }

@@ -99,13 +99,13 @@ const CHAPTERS: [Chapter; 8] = [
 ];
 
 /// Rewrites `include/noisefloor.h` from the `capi` crate.
-pub(crate) fn write() -> Result<()> {
+pub fn write() -> Result<()> {
     let path = paths::header();
     fs::write(&path, generate()?).with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// Fails if the committed header is not what the sources generate.
-pub(crate) fn check_committed() -> Result<()> {
+pub fn check_committed() -> Result<()> {
     let path = paths::header();
     let committed = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
     if committed != generate()? {
@@ -115,7 +115,7 @@ pub(crate) fn check_committed() -> Result<()> {
 }
 
 /// Compiles each header alone, with every warning an error, in every language standard it promises.
-pub(crate) fn check_compiles() -> Result<()> {
+pub fn check_compiles() -> Result<()> {
     let output = paths::output();
     fs::create_dir_all(&output).with_context(|| format!("cannot create {}", output.display()))?;
     let strict = ["-Wconversion", "-Wshadow"];

@@ -1,6 +1,6 @@
 //! How many instructions the library's hottest functions take: counted by callgrind, so the same on a busy machine.
 
-use crate::test::Outcome;
+use crate::outcome::Outcome;
 use crate::tools::{self, Package};
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
@@ -8,30 +8,30 @@ use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-pub(crate) const PACKAGES: [Package; 1] = [Package { name: "valgrind", file: "/usr/bin/valgrind" }];
+pub const PACKAGES: [Package; 1] = [Package { name: "valgrind", file: "/usr/bin/valgrind" }];
 /// The committed counts.
 const REPORT: &str = "docs/report/instructions.json";
 /// By how much a count may exceed the committed one, percent.
 const TOLERANCE: f64 = 3.0;
 
 /// What bench/instructions.c says of a case, and its count.
-pub(crate) struct Count {
-    pub(crate) name: String,
+pub struct Count {
+    pub name: String,
     /// What the count is divided by: a sample, a draw, ...
-    pub(crate) unit: String,
-    pub(crate) instructions: f64,
+    pub unit: String,
+    pub instructions: f64,
 }
 
 /// All counts, and what they depend on besides the library's sources.
-pub(crate) struct Counts {
-    pub(crate) compiler: String,
+pub struct Counts {
+    pub compiler: String,
     /// Those that the processor has, as far as valgrind knows them.
-    pub(crate) vector_units: String,
-    pub(crate) counts: Vec<Count>,
+    pub vector_units: String,
+    pub counts: Vec<Count>,
 }
 
 /// Compiles bench/instructions.c; counting then takes a second for each case.
-pub(crate) fn compile(archive: &Path) -> Result<PathBuf> {
+pub fn compile(archive: &Path) -> Result<PathBuf> {
     let program = paths::output().join("instructions");
     let mut compiler = run::compiler("CC", "cc");
     compiler.args(["-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic", "-Werror", "-Iinclude"]);
@@ -39,7 +39,7 @@ pub(crate) fn compile(archive: &Path) -> Result<PathBuf> {
     Ok(program)
 }
 
-pub(crate) fn count(program: &Path) -> Result<Counts> {
+pub fn count(program: &Path) -> Result<Counts> {
     let list = run::read(run::command("valgrind").args(["--quiet", "--tool=none"]).arg(program))?;
     let mut lines = list.lines();
     let vector_units = lines.next().and_then(|line| line.strip_prefix("vector units,"));
@@ -83,7 +83,7 @@ fn count_case(program: &Path, line: &str) -> Result<Count> {
 
 /// Fails where a function takes more instructions than the committed report says. With another compiler they are only
 /// told.
-pub(crate) fn check(archive: &Path) -> Result<Outcome> {
+pub fn check(archive: &Path) -> Result<Outcome> {
     if let Some(missing) = tools::packages(&PACKAGES)? {
         return Ok(Outcome::NotRun(missing));
     }

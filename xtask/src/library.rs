@@ -14,14 +14,14 @@ const RISC_V_32: (&str, &str) = ("LDEMULATION", "elf32lriscv");
 /// Builds the archive and returns its path.
 ///
 /// capi/cmake/one_object.sh, which the CMake build uses too, says why cargo's own archive is not the one.
-pub(crate) fn build() -> Result<PathBuf> {
+pub fn build() -> Result<PathBuf> {
     run::check(run::cargo().args(["build", "--quiet", "--release", "--package", "noisefloor-capi"]))?;
     one_object(&paths::target().join("release/libnoisefloor.a"), &paths::output(), "")
 }
 
 /// Makes cargo's archive `raw` into one of a single object, in the folder `output`. The binutils' names begin with
 /// `prefix`: nothing, or a target.
-pub(crate) fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<PathBuf> {
+pub fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<PathBuf> {
     let tool = |name: &str| format!("{prefix}{name}");
     fs::create_dir_all(output).with_context(|| format!("cannot create {}", output.display()))?;
     // Complete or not at all, also while another program links the one in place or makes it too.
@@ -46,7 +46,7 @@ pub(crate) fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<Path
 }
 
 /// Fails if the archive needs anything beyond the four memory functions, exports more than `nf_*`, or can panic.
-pub(crate) fn check(archive: &Path) -> Result<()> {
+pub fn check(archive: &Path) -> Result<()> {
     let symbols = names(archive, &[])?;
     let panics: Vec<_> = symbols.iter().filter(|(_, name)| name.contains("panic")).collect();
     if !panics.is_empty() {
@@ -67,7 +67,7 @@ pub(crate) fn check(archive: &Path) -> Result<()> {
 }
 
 /// (kind, name) of every symbol, with nm's one-letter kinds.
-pub(crate) fn names(archive: &Path, options: &[&str]) -> Result<Vec<(String, String)>> {
+pub fn names(archive: &Path, options: &[&str]) -> Result<Vec<(String, String)>> {
     // Debian's nm loads LLVM's plugin, which then says "no symbols".
     let text = run::read(run::command("nm").arg("--plugin=/none").args(options).arg(archive))?;
     let row = |line: &str| {

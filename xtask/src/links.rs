@@ -1,13 +1,13 @@
 //! Links between documents: each must lead to a file that exists, and to a heading in it.
 
+use crate::outcome::Outcome;
 use crate::paths;
-use crate::test::Outcome;
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Checks README.md, CONTRIBUTING.md, and all of docs/ and examples_c/.
-pub(crate) fn check() -> Result<Outcome> {
+pub fn check() -> Result<Outcome> {
     let root = paths::root();
     let mut documents = vec![root.join("README.md"), root.join("CONTRIBUTING.md")];
     for folder in ["docs", "docs/report", "examples_c"] {

@@ -1,38 +1,9 @@
 //! `cargo xtask`: everything the project does beyond `cargo build`.
 
-mod abi;
-mod c_tests;
-mod demo;
-mod embree;
-mod examples;
-mod fill;
-mod fit;
-mod fuzz;
-mod header;
-mod install;
-mod instructions;
-mod library;
-mod links;
-mod measure;
-mod path_tracer;
-mod paths;
-mod povray;
-mod povray_patched;
-mod python;
-mod release;
-mod report;
-mod run;
-mod targets;
-mod test;
-mod threads;
-mod tiles;
-mod tools;
-mod train_mlp;
-mod trainer;
-mod valgrind;
-
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
+use std::ffi::OsString;
 use std::process::ExitCode;
+use xtask::*;
 
 #[derive(Parser)]
 #[command(name = "cargo xtask", about = "Build, test and demonstrate noisefloor")]
@@ -41,14 +12,22 @@ struct Arguments {
     command: Command,
 }
 
+/// What the program that is started reads.
+#[derive(Args)]
+#[command(disable_help_flag = true)]
+struct Passed {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    arguments: Vec<OsString>,
+}
+
 #[derive(Subcommand)]
 enum Command {
     /// Render with every estimator: pictures and a table in target/demo
-    Demo(demo::Options),
+    Demo(Passed),
     /// Build POV-Ray with our patch, check it, and compare it with POV-Ray as it is
-    Povray(povray_patched::Options),
+    Povray(Passed),
     /// Measure errors and times of everything, and write docs/report: chapters with their tables, plots and pictures
-    Report(report::Options),
+    Report(Passed),
     /// Write the report's figures into the documents
     Fill,
     /// Run every test; installs what it needs when it may
@@ -69,16 +48,16 @@ enum Command {
     Embree,
     /// Build for other targets, run the C tests and a bare-metal program there under QEMU, and write
     /// docs/report/sizes.md
-    Targets(targets::Options),
+    Targets(Passed),
     /// Make the tiles in core/tiles with fsot, or check that they are what it makes
     Tiles(tiles::Options),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
-        Command::Demo(options) => demo::run(&options),
-        Command::Povray(options) => povray_patched::run(&options),
-        Command::Report(options) => report::run(&options),
+        Command::Demo(passed) => report::start("demo", &passed.arguments),
+        Command::Povray(passed) => report::start("povray", &passed.arguments),
+        Command::Report(passed) => report::start("report", &passed.arguments),
         Command::Fill => fill::run(),
         Command::Test(options) => test::run(&options),
         Command::Fuzz(options) => fuzz::run(&options),
@@ -86,7 +65,7 @@ fn main() -> ExitCode {
         Command::Abi(options) => abi::write(&options),
         Command::Licences => release::licences::write(),
         Command::Install(options) => install::run(&options),
-        Command::Targets(options) => targets::run(&options),
+        Command::Targets(passed) => report::start("targets", &passed.arguments),
         Command::Tiles(options) => tiles::run(&options),
         Command::Embree => embree::build().map(|path| println!("{}", path.display())),
         Command::Library => library::build().map(|path| println!("{}", path.display())),

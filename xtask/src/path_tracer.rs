@@ -5,8 +5,8 @@ mod options;
 
 use crate::c_tests::output;
 use crate::examples::{STRICT, compile};
+use crate::outcome::Outcome;
 use crate::run;
-use crate::test::Outcome;
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use std::process::{Command, Stdio};
 const SIZE: usize = 32;
 
 /// pathtracer.cpp: every estimator and every sampler that it lists, in every scene that it lists.
-pub(crate) fn check(archive: &Path) -> Result<Outcome> {
+pub fn check(archive: &Path) -> Result<Outcome> {
     let program = output("pathtracer")?;
     compile("pathtracer.cpp", &[&STRICT[..], &["-pthread"]].concat(), archive, &program)?;
 
@@ -98,7 +98,7 @@ pub(crate) fn check(archive: &Path) -> Result<Outcome> {
 }
 
 /// The programs of `tests/pathtracer`: the path tracer's parts, one by one.
-pub(crate) fn parts(archive: &Path) -> Result<Outcome> {
+pub fn parts(archive: &Path) -> Result<Outcome> {
     for name in ["intersection", "lights", "surfaces", "image_plane", "paths", "mis", "program"] {
         println!("   {name}");
         let program = output(&format!("pathtracer_{name}"))?;
@@ -111,15 +111,15 @@ pub(crate) fn parts(archive: &Path) -> Result<Outcome> {
 }
 
 /// The names in a program's help that are listed, with descriptions, indented under a heading.
-pub(crate) fn block<'a>(help: &'a str, heading: &str) -> Vec<&'a str> {
+pub fn block<'a>(help: &'a str, heading: &str) -> Vec<&'a str> {
     let lines = help.lines().skip_while(|line| line.strip_suffix(':') != Some(heading)).skip(1);
     lines.take_while(|line| line.starts_with(' ')).filter_map(|line| line.split_whitespace().next()).collect()
 }
 
 /// A compiled program with the path tracer's command line, and where its pictures go.
-pub(crate) struct PathTracer {
-    pub(crate) program: PathBuf,
-    pub(crate) prefix: PathBuf,
+pub struct PathTracer {
+    pub program: PathBuf,
+    pub prefix: PathBuf,
 }
 
 impl PathTracer {
@@ -131,26 +131,26 @@ impl PathTracer {
         command
     }
 
-    pub(crate) fn help(&self) -> Result<String> {
+    pub fn help(&self) -> Result<String> {
         run::read(run::command(&self.program).arg("--help"))
     }
 
-    pub(crate) fn render(&self, options: &[&str]) -> Result<()> {
+    pub fn render(&self, options: &[&str]) -> Result<()> {
         run::check(&mut self.command(options))
     }
 
-    pub(crate) fn accepts(&self, options: &[&str]) -> Result<bool> {
+    pub fn accepts(&self, options: &[&str]) -> Result<bool> {
         let status = self.command(options).stderr(Stdio::null()).status();
         Ok(status.context("cannot start the path tracer")?.success())
     }
 
-    pub(crate) fn brightness(&self, name: &str) -> Result<f64> {
+    pub fn brightness(&self, name: &str) -> Result<f64> {
         let values = self.values(name)?;
         Ok(values.iter().sum::<f64>() / values.len() as f64)
     }
 
     /// Fails unless the pictures of all these estimators are as bright as they should be.
-    pub(crate) fn check(&self, what: &str, names: &[&str], expected: f64) -> Result<()> {
+    pub fn check(&self, what: &str, names: &[&str], expected: f64) -> Result<()> {
         for name in names {
             let actual = self.brightness(name)?;
             // 8192 samples, noisy ones: a tenth of the brightness is far outside what they do by chance.

@@ -1,7 +1,7 @@
 //! examples_c/python: the ctypes declarations against the header, its tests, and a short training run.
 
 use crate::c_tests::output;
-use crate::test::Outcome;
+use crate::outcome::Outcome;
 use crate::tools::{self, Package};
 use crate::{paths, run};
 use anyhow::{Context, Result};
@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 
 const FOLDER: &str = "examples_c/python";
 
-pub(crate) fn run(archive: &Path) -> Result<Outcome> {
+pub fn run(archive: &Path) -> Result<Outcome> {
     if !works() {
         let wanted = [Package { name: "python3", file: "/usr/bin/python3" }];
         if let Some(missing) = tools::packages(&wanted)? {

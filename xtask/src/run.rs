@@ -5,24 +5,24 @@ use std::ffi::OsStr;
 use std::process::Command;
 
 /// A command that runs in the workspace root.
-pub(crate) fn command(program: impl AsRef<OsStr>) -> Command {
+pub fn command(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);
     command.current_dir(crate::paths::root());
     command
 }
 
 /// The cargo that runs this program.
-pub(crate) fn cargo() -> Command {
+pub fn cargo() -> Command {
     command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
 /// The C or C++ compiler: `$CC` / `$CXX`, or the system's.
-pub(crate) fn compiler(variable: &str, default: &str) -> Command {
+pub fn compiler(variable: &str, default: &str) -> Command {
     command(std::env::var_os(variable).unwrap_or_else(|| default.into()))
 }
 
 /// Runs to the end; a failure is an error that shows the command line.
-pub(crate) fn check(command: &mut Command) -> Result<()> {
+pub fn check(command: &mut Command) -> Result<()> {
     let status = command.status().with_context(|| missing(command))?;
     if !status.success() {
         bail!("failed ({status}): {}", line(command));
@@ -31,7 +31,7 @@ pub(crate) fn check(command: &mut Command) -> Result<()> {
 }
 
 /// As [`check`], and returns what the command wrote to standard output.
-pub(crate) fn read(command: &mut Command) -> Result<String> {
+pub fn read(command: &mut Command) -> Result<String> {
     let output = command.output().with_context(|| missing(command))?;
     if !output.status.success() {
         bail!("failed ({}): {}\n{}", output.status, line(command), String::from_utf8_lossy(&output.stderr));

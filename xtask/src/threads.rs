@@ -2,7 +2,7 @@
 //! instrumented.
 
 use crate::c_tests::{STRICT, output};
-use crate::test::Outcome;
+use crate::outcome::Outcome;
 use crate::{fuzz, library, paths, run};
 use anyhow::{Context, Result, bail};
 use std::fs;
@@ -15,7 +15,7 @@ const FOUND: i32 = 66;
 /// The rules that tests/threads/rules.cpp can break.
 const BREAKABLE: [&str; 4] = ["accumulator", "table", "generator", "tile"];
 
-pub(crate) fn run() -> Result<Outcome> {
+pub fn run() -> Result<Outcome> {
     let Some(start) = Start::find()? else {
         return Ok(Outcome::NotRun(
             "this C++ compiler or this system cannot run programs with -fsanitize=thread; on 64-bit Linux gcc (Debian: \

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// What `cargo xtask tiles` is asked for.
 #[derive(Args)]
-pub(crate) struct Options {
+pub struct Options {
     /// Which tiles, such as 64_1SPP_2D [default: all]
     names: Vec<String>,
     /// Make them elsewhere, and fail if a byte differs from those in core/tiles, or a sidecar says another thing
@@ -72,7 +72,7 @@ impl Quality {
 const TOLERANCE: f64 = 0.02;
 
 /// Makes the tiles, or checks them, and prints what they are worth.
-pub(crate) fn run(options: &Options) -> Result<()> {
+pub fn run(options: &Options) -> Result<()> {
     let program = build()?;
     let names = names(&program, &options.names)?;
     let elsewhere = tempfile::tempdir().context("no temporary folder")?;

@@ -12,7 +12,7 @@ struct Tool {
 }
 
 /// Fails unless every tool is there; on Debian, as root, missing compilers are installed first.
-pub(crate) fn ensure() -> Result<()> {
+pub fn ensure() -> Result<()> {
     let components: Vec<_> = ["fmt", "clippy"].into_iter().filter(|name| !works(&cargo_tool(name))).collect();
     if !components.is_empty() {
         bail!(
@@ -42,13 +42,13 @@ pub(crate) fn ensure() -> Result<()> {
 
 /// A Debian package, and a file that it brings: if that is there, the package or an equal of it is installed.
 #[derive(Clone, Copy)]
-pub(crate) struct Package {
-    pub(crate) name: &'static str,
-    pub(crate) file: &'static str,
+pub struct Package {
+    pub name: &'static str,
+    pub file: &'static str,
 }
 
 /// Installs those that are missing where that is allowed; otherwise returns what is missing and what to do.
-pub(crate) fn packages(wanted: &[Package]) -> Result<Option<String>> {
+pub fn packages(wanted: &[Package]) -> Result<Option<String>> {
     let missing = |wanted: &[Package]| -> Vec<&str> {
         wanted.iter().filter(|package| !Path::new(package.file).exists()).map(|package| package.name).collect()
     };
@@ -69,7 +69,7 @@ pub(crate) fn packages(wanted: &[Package]) -> Result<Option<String>> {
 }
 
 /// Debian's package manager is there and this user may use it.
-pub(crate) fn can_install() -> bool {
+pub fn can_install() -> bool {
     Path::new("/etc/debian_version").exists() && is_root()
 }
 

@@ -1,8 +1,8 @@
 //! The test of `examples_c/train_mlp.c`: every mode on the small digits, and what it says to bad options and bad files.
 
 use crate::c_tests::output;
+use crate::outcome::Outcome;
 use crate::paths;
-use crate::test::Outcome;
 use crate::trainer::{Program, text, without_seconds};
 use anyhow::{Context, Result, bail};
 use std::fs;
@@ -14,7 +14,7 @@ const MODES: &str = "uniform,importance,adaptive,balance,omis";
 /// none: about .9.
 const ERROR_BOUND: f64 = 0.2;
 
-pub(crate) fn digits(archive: &Path) -> Result<Outcome> {
+pub fn digits(archive: &Path) -> Result<Outcome> {
     let trainer = Program::compile("train_mlp", "c", "train_mlp", &["-O2"], archive)?;
     learns(&trainer)?;
     variances(&trainer)?;

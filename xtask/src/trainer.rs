@@ -9,14 +9,14 @@ use std::process::Stdio;
 const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-Iinclude"];
 
 /// A compiled trainer.
-pub(crate) struct Program {
+pub struct Program {
     name: &'static str,
     path: PathBuf,
 }
 
 impl Program {
     /// `examples_c/NAME.EXTENSION`, as `executable`.
-    pub(crate) fn compile(
+    pub fn compile(
         name: &'static str,
         extension: &str,
         executable: &str,
@@ -29,7 +29,7 @@ impl Program {
     }
 
     /// None: the compiler has no sanitizers.
-    pub(crate) fn sanitized(name: &'static str, extension: &str, archive: &Path) -> Result<Option<Self>> {
+    pub fn sanitized(name: &'static str, extension: &str, archive: &Path) -> Result<Option<Self>> {
         if !has_sanitizers()? {
             return Ok(None);
         }
@@ -39,12 +39,12 @@ impl Program {
     }
 
     /// Runs to the end; returns the CSV.
-    pub(crate) fn run(&self, arguments: &[&str]) -> Result<String> {
+    pub fn run(&self, arguments: &[&str]) -> Result<String> {
         run::read(run::command(&self.path).args(arguments).stderr(Stdio::null()))
     }
 
     /// Fails unless the program exits as programs do after an error, with a message that contains `word`.
-    pub(crate) fn refuses(&self, arguments: &[&str], word: &str) -> Result<()> {
+    pub fn refuses(&self, arguments: &[&str], word: &str) -> Result<()> {
         let mut command = run::command(&self.path);
         let output = command.args(arguments).stdin(Stdio::null()).output().context("cannot start the program")?;
         let message = String::from_utf8_lossy(&output.stderr);
@@ -58,12 +58,12 @@ impl Program {
 }
 
 /// A path as an argument.
-pub(crate) fn text(path: &Path) -> Result<&str> {
+pub fn text(path: &Path) -> Result<&str> {
     path.to_str().with_context(|| format!("{} is not Unicode", path.display()))
 }
 
 /// All rows of a CSV, but the column of seconds.
-pub(crate) fn without_seconds(csv: &str) -> Vec<Vec<&str>> {
+pub fn without_seconds(csv: &str) -> Vec<Vec<&str>> {
     let seconds = csv.lines().next().and_then(|header| header.split(',').position(|name| name == "seconds"));
     let rows = csv.lines().map(|line| line.split(',').enumerate());
     rows.map(|row| row.filter(|&(column, _)| Some(column) != seconds).map(|(_, cell)| cell).collect()).collect()

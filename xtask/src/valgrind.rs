@@ -1,7 +1,7 @@
 //! The C tests under valgrind's memcheck, and threads under its detectors of races: valgrind also sees what the
 //! library, compiled without sanitizers, does.
 
-use crate::test::Outcome;
+use crate::outcome::Outcome;
 use crate::tools::{self, Package};
 use crate::{c_tests, run};
 use anyhow::{Context, Result, bail};
@@ -16,7 +16,7 @@ const WRONG: i32 = 1;
 /// Has tests/c leave out the single checks that need it right (tests/c/check.h).
 const WITHOUT_NAN: &str = "-DNAN_TAKEN_FOR_FINITE";
 
-pub(crate) fn run(archive: &Path) -> Result<Outcome> {
+pub fn run(archive: &Path) -> Result<Outcome> {
     if let Some(missing) = tools::packages(&PACKAGES)? {
         return Ok(Outcome::NotRun(missing));
     }
@@ -38,7 +38,7 @@ pub(crate) fn run(archive: &Path) -> Result<Outcome> {
 }
 
 /// The header's rules for threads under the detectors of data races, which must find what breaks them.
-pub(crate) fn threads(archive: &Path) -> Result<Outcome> {
+pub fn threads(archive: &Path) -> Result<Outcome> {
     if let Some(missing) = tools::packages(&PACKAGES)? {
         return Ok(Outcome::NotRun(missing));
     }

@@ -6,7 +6,7 @@ use crate::race::{Effort, Setting, measure};
 use std::collections::HashSet;
 
 /// The report calls a setting safe whose error is at most so many times the plain mean's on every integrand of a family
-/// (`SAFE` in xtask/src/report/control_variates/frontier.rs).
+/// (`SAFE` in report/src/chapters/control_variates/frontier.rs).
 const SAFE: f64 = 1.05;
 /// Of the first look's repetitions.
 pub(crate) const TIMES: usize = 8;

@@ -8,7 +8,7 @@ use std::fs;
 const ASSERTS: &str = "/* Layouts:";
 
 #[derive(Default)]
-pub(crate) struct Header {
+pub struct Header {
     functions: Vec<Function>,
     /// Type and name of what is data.
     objects: Vec<String>,
@@ -35,7 +35,7 @@ pub(super) struct Struct {
 
 impl Header {
     /// Reads include/noisefloor.h.
-    pub(crate) fn committed() -> Result<Self> {
+    pub fn committed() -> Result<Self> {
         let path = paths::header();
         let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
         Self::parse(&text)
@@ -66,13 +66,13 @@ impl Header {
     }
 
     /// NF_ABI_VERSION.
-    pub(crate) fn version(&self) -> Result<&str> {
+    pub fn version(&self) -> Result<&str> {
         let version = self.constants.iter().find(|(name, _)| name == "NF_ABI_VERSION");
         version.map(|(_, value)| value.as_str()).context("the header has no NF_ABI_VERSION")
     }
 
     /// What a library exports: functions and data.
-    pub(crate) fn symbols(&self) -> impl Iterator<Item = &str> {
+    pub fn symbols(&self) -> impl Iterator<Item = &str> {
         let objects = self.objects.iter().map(|object| object.rsplit(' ').next().unwrap_or_default());
         self.functions.iter().map(|function| function.name.as_str()).chain(objects)
     }
@@ -125,7 +125,11 @@ impl Header {
         let constants = self.constants.iter().filter(|(name, _)| name != "NF_ABI_VERSION");
         let constants = constants.map(|(name, value)| format!("constant {name} {value}"));
         let objects = self.objects.iter().map(|object| format!("object {object}"));
-        functions.chain(objects).chain(constants).chain(self.opaque.iter().map(|name| format!("opaque {name}"))).collect()
+        functions
+            .chain(objects)
+            .chain(constants)
+            .chain(self.opaque.iter().map(|name| format!("opaque {name}")))
+            .collect()
     }
 
     /// Fails unless the header asserts the size of every struct and of every other name of a number.

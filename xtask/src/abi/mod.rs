@@ -3,24 +3,24 @@
 mod header;
 mod layout;
 
-pub(crate) use header::Header;
+pub use header::Header;
 
+use crate::outcome::Outcome;
 use crate::paths;
-use crate::test::Outcome;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::fs;
 use std::path::PathBuf;
 
 #[derive(Args)]
-pub(crate) struct Options {
+pub struct Options {
     /// Allow what breaks programs without a new NF_ABI_VERSION: no release has had the present one yet
     #[arg(long)]
     unreleased: bool,
 }
 
 /// Rewrites capi/abi.txt, unless what it promised is gone and the version is as it was.
-pub(crate) fn write(options: &Options) -> Result<()> {
+pub fn write(options: &Options) -> Result<()> {
     let (path, now) = (path(), current()?);
     let before = fs::read_to_string(&path).unwrap_or_default();
     let broken = gone(&before, &now);
@@ -36,7 +36,7 @@ pub(crate) fn write(options: &Options) -> Result<()> {
 }
 
 /// Fails if the committed list is not what the header and the compiler say.
-pub(crate) fn check() -> Result<Outcome> {
+pub fn check() -> Result<Outcome> {
     if !cfg!(target_pointer_width = "64") {
         return Ok(Outcome::NotRun("capi/abi.txt is of targets with pointers of 64 bits".to_owned()));
     }

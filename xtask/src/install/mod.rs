@@ -1,8 +1,8 @@
 //! `cargo xtask install`: what capi/CMakeLists.txt describes, with cargo's target folder shared.
 
 mod one_kind;
-pub(crate) mod subproject;
-pub(crate) mod test;
+pub mod subproject;
+pub mod test;
 
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
@@ -10,7 +10,7 @@ use clap::Args;
 use std::path::{Path, PathBuf};
 
 #[derive(Args)]
-pub(crate) struct Options {
+pub struct Options {
     /// The folder to install into; $DESTDIR, if set, stands before it
     #[arg(long, default_value = "/usr/local")]
     prefix: PathBuf,
@@ -19,7 +19,7 @@ pub(crate) struct Options {
     libdir: Option<PathBuf>,
 }
 
-pub(crate) fn run(options: &Options) -> Result<()> {
+pub fn run(options: &Options) -> Result<()> {
     let missing = missing(&["cmake", "cc", "ld", "nm", "objcopy"]);
     if !missing.is_empty() {
         bail!("missing: {}. On Debian: apt-get install cmake gcc libc6-dev binutils", missing.join(", "));

@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// How it is configured.
-pub(crate) struct Subproject {
+pub struct Subproject {
     build: PathBuf,
     options: Vec<String>,
 }
 
 impl Subproject {
     /// Built in a new folder of this name, with what `cargo` has made before in its target folder.
-    pub(crate) fn new(name: &str, target: &Path, cargo: &Path) -> Result<Self> {
+    pub fn new(name: &str, target: &Path, cargo: &Path) -> Result<Self> {
         let mut project = Self { build: folder(name)?, options: Vec::new() };
         project.option("NOISEFLOOR_SOURCE", &paths::root().display().to_string());
         project.option("NOISEFLOOR_CARGO", &cargo.display().to_string());
@@ -22,12 +22,12 @@ impl Subproject {
         Ok(project)
     }
 
-    pub(crate) fn option(&mut self, name: &str, value: &str) {
+    pub fn option(&mut self, name: &str, value: &str) {
         self.options.push(format!("-D{name}={value}"));
     }
 
     /// Configures, builds and runs its programs; `prepare` sees the command that builds.
-    pub(crate) fn run(&self, prepare: impl FnOnce(&mut Command)) -> Result<()> {
+    pub fn run(&self, prepare: impl FnOnce(&mut Command)) -> Result<()> {
         let mut configure = run::command("cmake");
         configure.args(["-S", "tests/package/subproject", "-B"]).arg(&self.build).args(&self.options);
         run::read(&mut configure)?;

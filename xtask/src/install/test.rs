@@ -2,7 +2,7 @@
 //! static.
 
 use super::{compile, configure, one_kind, subproject};
-use crate::test::Outcome;
+use crate::outcome::Outcome;
 use crate::{abi, library, paths, run, tools};
 use anyhow::{Context, Result, bail};
 use std::fs;
@@ -14,7 +14,7 @@ const PACKAGES: [tools::Package; 2] = [
 ];
 
 /// Installs into a folder with a space in its name, moves that elsewhere, and builds tests/package against it.
-pub(crate) fn projects() -> Result<Outcome> {
+pub fn projects() -> Result<Outcome> {
     if let Some(missing) = tools::packages(&PACKAGES)? {
         return Ok(Outcome::NotRun(missing));
     }
@@ -54,7 +54,7 @@ pub(crate) fn projects() -> Result<Outcome> {
 }
 
 /// Builds examples_c as its reader would, outside the tree, and runs those that are quick.
-pub(crate) fn examples() -> Result<Outcome> {
+pub fn examples() -> Result<Outcome> {
     if let Some(missing) = tools::packages(&PACKAGES)? {
         return Ok(Outcome::NotRun(missing));
     }

@@ -1,7 +1,7 @@
 //! THIRD_PARTY.md: the packages of others, their licences, and whether ours allows them.
 
 use super::PUBLISHED;
-use crate::test::Outcome;
+use crate::outcome::Outcome;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use spdx::{Expression, ParseMode};
@@ -30,13 +30,13 @@ LLVM-exception AND (MIT OR Apache-2.0)), of the compiler that built it.
 type Packages = BTreeMap<(String, String), String>;
 
 /// Rewrites THIRD_PARTY.md.
-pub(crate) fn write() -> Result<()> {
+pub fn write() -> Result<()> {
     let path = path();
     fs::write(&path, current()?).with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// Fails if the list is old or a licence is not allowed.
-pub(crate) fn check() -> Result<Outcome> {
+pub fn check() -> Result<Outcome> {
     let path = path();
     let committed = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
     if committed != current()? {

@@ -1,7 +1,7 @@
 //! `cargo package`: what would be published is complete, and small enough for the registry.
 
 use super::PUBLISHED;
-use crate::test::Outcome;
+use crate::outcome::Outcome;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
@@ -15,7 +15,7 @@ const ADDED: [&str; 2] = ["Cargo.toml.orig", "Cargo.lock"];
 const NEEDED: [&str; 3] = ["LICENSE-MIT", "LICENSE-APACHE", "Cargo.toml"];
 
 /// Packs each published package without compiling it again; the tests have compiled the same files.
-pub(crate) fn check() -> Result<Outcome> {
+pub fn check() -> Result<Outcome> {
     let mut package = run::cargo();
     package.args(["package", "--quiet", "--no-verify", "--allow-dirty", "--locked"]);
     run::read(package.args(PUBLISHED.iter().flat_map(|name| ["--package", name])))?;

@@ -1,6 +1,6 @@
 //! Versions that are said in several places: they must be the same.
 
-use crate::test::Outcome;
+use crate::outcome::Outcome;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use std::fs;
@@ -10,7 +10,7 @@ const NAME_RUST: [&str; 2] = ["README.md", "docs/install.md"];
 
 /// The declared Rust version is what the texts say and compiles the libraries; CHANGELOG.md knows the project's
 /// version.
-pub(crate) fn check() -> Result<Outcome> {
+pub fn check() -> Result<Outcome> {
     let metadata = run::read(run::cargo().args(["metadata", "--no-deps", "--format-version", "1"]))?;
     let metadata: serde_json::Value = serde_json::from_str(&metadata).context("cargo metadata wrote no JSON")?;
     let packages = metadata["packages"].as_array().map_or(&[][..], Vec::as_slice);

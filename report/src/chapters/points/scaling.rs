@@ -1,0 +1,106 @@
+//! Seconds against the number of points, and of classes.
+
+use super::Sets;
+use crate::chapters::chapter::{Cell, Chapter, row};
+use crate::chapters::figure::{Figure, Unit};
+use crate::chapters::statistics::{Estimate, student};
+use crate::measure::output::Output;
+use crate::measure::plot::{Axis, Plot, Series};
+use anyhow::Result;
+
+pub(super) fn write(output: &Output, sets: &Sets, chapter: &mut Chapter) -> Result<()> {
+    chapter.section("Seconds against points", "");
+    chapter.paragraph(
+        "Draft quality. Its steps grow with the logarithm of the points up to 8,192, and stay the same beyond, where points are optimised in \
+         windows; more classes take more steps, up to eight times. The last row is a million points, with fewer steps than draft quality has \
+         unless the report was made with `--full`. Colour: the figures of the first colour's points alone.",
+    );
+    chapter.setting("points up to which no windows are used", "8,192");
+    let mut rows = Vec::new();
+    let mut series = Vec::new();
+    let mut fits = Vec::new();
+    for classes in sets.distinct(&[("sampler", "optimised")], "classes")? {
+        let mut points = Vec::new();
+        for study in ["scaling", "million"] {
+            let counts = sets.distinct(&[("study", study), ("classes", &classes)], "points")?;
+            let all = counts.iter().filter_map(|count| Some((count, count.parse::<f64>().ok()?)));
+            for (count, number) in all {
+                let of = |part| [("study", study), ("classes", &classes), ("points", count), ("part", part)];
+                let seconds = sets.mean(&of("all"), "seconds")?;
+                let steps = sets.distinct(&of("all"), "steps")?.concat();
+                let cell = |part, column| -> Result<Cell> {
+                    Ok(sets.mean(&of(part), column)?.map(|mean| Figure::brief(mean, Unit::Number)).into())
+                };
+                rows.push(row![
+                    classes.as_str(),
+                    count.as_str(),
+                    steps,
+                    seconds.map(|seconds| Figure::new(seconds, Unit::Seconds)),
+                    seconds.map(|seconds| Figure::exact(1e6 * seconds.value / number, Unit::Number)),
+                    cell("all", "neighbour")?,
+                    cell("colour", "neighbour")?,
+                ]);
+                if let Some(seconds) = seconds.filter(|_| study == "scaling") {
+                    points.push((number, seconds.value));
+                }
+            }
+        }
+        if points.len() > 2 {
+            fits.push((classes.clone(), slope(&points), points.len()));
+        }
+        series.push(Series { name: format!("{classes} classes"), points, ..Series::default() });
+    }
+    let columns = [
+        "classes",
+        "points",
+        "steps",
+        "seconds",
+        "microseconds per point",
+        "nearest neighbour",
+        "colour: nearest neighbour",
+    ];
+    chapter.table("scaling", &columns, 0, rows);
+    output.write_text("points-seconds.svg", &plot(&series)?)?;
+    chapter.picture("points-seconds.svg", "seconds against points, by classes");
+    chapter.paragraph(
+        "The exponent a of seconds ~ points^a, fitted to the logarithms of the rows above but those of other qualities; the interval is of the \
+         fit (Student's, of its residuals). What is above 1 comes from small sets, whose steps grow; what is below from fixed costs.",
+    );
+    chapter.setting("linear", 1);
+    let rows = fits
+        .into_iter()
+        .map(|(classes, slope, sizes)| row![classes, sizes.to_string(), Figure::new(slope, Unit::Ratio)]);
+    chapter.table("exponents", &["classes", "sizes", "exponent"], 0, rows.collect());
+    Ok(())
+}
+
+/// The slope of the logarithms, and its interval.
+fn slope(points: &[(f64, f64)]) -> Estimate {
+    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let count = logs.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| logs.iter().map(of).sum::<f64>() / count;
+    let (x, y) = (mean(|log| log.0), mean(|log| log.1));
+    let spread: f64 = logs.iter().map(|log| (log.0 - x).powi(2)).sum();
+    let value = logs.iter().map(|log| (log.0 - x) * (log.1 - y)).sum::<f64>() / spread;
+    let residuals: f64 = logs.iter().map(|log| (log.1 - y - value * (log.0 - x)).powi(2)).sum();
+    let half = student(count - 2.0) * (residuals / (count - 2.0) / spread).sqrt();
+    Estimate { value, low: value - half, high: value + half, seeds: logs.len() }
+}
+
+fn plot(series: &[Series]) -> Result<String> {
+    let axis = |label| Axis { label, logarithmic: true, range: None };
+    Plot { title: "Draft quality", x: axis("points"), y: axis("seconds"), series }.svg()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_exponent_of_a_power_is_found() {
+        let exact = slope(&[(1.0, 2.0), (10.0, 2.0 * 10f64.powf(1.2)), (100.0, 2.0 * 100f64.powf(1.2))]);
+        assert!((exact.value - 1.2).abs() < 1e-12 && exact.high - exact.low < 1e-9);
+        let noisy = slope(&[(1.0, 1.0), (10.0, 12.0), (100.0, 95.0), (1000.0, 1010.0)]);
+        assert!(noisy.low < 1.0 && noisy.high > 1.0 && noisy.high - noisy.low < 0.3);
+    }
+}

@@ -1,0 +1,135 @@
+//! Global illumination: figures 4.7 and 4.8.
+
+use super::Section;
+use super::comparison::{ratios, seeds, thousandfold};
+use crate::chapters::chapter::{Cell, row};
+use crate::chapters::figure::{Figure, Unit};
+use crate::chapters::measurement::{BASELINE, DEFAULT, Experiment, LEAST_SQUARES, Outcome, View};
+use crate::chapters::pictures::write_small;
+use crate::chapters::statistics::Estimate;
+use crate::measure::error_sheet::{self, Column};
+use anyhow::Result;
+
+const SCENE: &str = "duck";
+const ESTIMATORS: [&str; 3] = [BASELINE, DEFAULT, LEAST_SQUARES];
+
+/// Shorter paths than the scene's, as the program is told.
+const SHORTER: [&[&str]; 2] = [&["--bounces", "1"], &["--bounces", "2"]];
+
+pub(super) fn write(section: &mut Section) -> Result<()> {
+    section.chapter.section("Global illumination", "figures 4.7 and 4.8");
+    let plan = section.measurement.plan;
+    let spp = section.chapter.setting("samples per pixel, 15 dims", plan.many);
+    let size = section.chapter.setting("pixels on a side of duck", view(section).size);
+    let dims = section.chapter.setting("dims of duck", 15);
+    section.chapter.paragraph(&format!(
+        "`duck`, three bounces: {dims} dims, {spp} samples per pixel, {size} x {size} pixels. The upper part is lit directly, \
+         the lower part only indirectly."
+    ));
+    let orders = orders(section, view(section))?;
+    let mut rows = vec![row![
+        "MC",
+        "-",
+        thousandfold(&orders[0], BASELINE)?,
+        Cell::Missing,
+        Cell::Missing,
+        Cell::Missing,
+        Cell::Missing
+    ]];
+    for (order, outcome) in (1_u32..).zip(&orders) {
+        for (estimator, label) in [(DEFAULT, "default"), (LEAST_SQUARES, "least squares")] {
+            let [upper, lower] = parts(outcome, estimator)?;
+            let [same_samples, same_time] = ratios(outcome, estimator)?;
+            rows.push(row![label, order, thousandfold(outcome, estimator)?, same_samples, upper, lower, same_time]);
+        }
+        let statement = format!("15 dims, order {order}: default over MC, below 1 outside its interval");
+        section.targets.below(&statement, SCENE, outcome.ratio(DEFAULT)?, Unit::Ratio, 1.0);
+    }
+    let columns =
+        ["estimator", "order", "relMSE x 1000", "ratio to MC", "upper half", "lower half", "ratio, same time"];
+    section.chapter.setting("relMSE is shown times", 1000);
+    section.chapter.table("indirect", &columns, 2, rows);
+    write_sheet(section, &orders)?;
+    write_lengths(section, &orders)
+}
+
+/// Ratios in the upper and in the lower half of the image.
+fn parts(outcome: &Outcome, estimator: &str) -> Result<[Figure; 2]> {
+    let halves = |name: &str| -> Result<[Vec<f64>; 2]> {
+        let images = &outcome.of(name)?.images;
+        let halves = images.iter().map(|image| {
+            let terms = outcome.reference.terms(image);
+            let (upper, lower) = terms.split_at(terms.len() / 2);
+            [upper, lower].map(|part| part.iter().sum::<f64>())
+        });
+        let (upper, lower) = halves.map(|[upper, lower]| (upper, lower)).unzip();
+        Ok([upper, lower])
+    };
+    let (own, plain) = (halves(estimator)?, halves(BASELINE)?);
+    Ok([0, 1].map(|half| Figure::new(Estimate::ratio(&own[half], &plain[half]), Unit::Ratio)))
+}
+
+fn write_sheet(section: &mut Section, orders: &[Outcome; 2]) -> Result<()> {
+    let reference = &orders[0].reference;
+    let column = |title: &str, outcome: &Outcome, estimator: &str| -> Result<Column> {
+        let image = outcome.of(estimator)?.images[0].clone();
+        let caption = format!("relMSE {:.2e}", reference.rel_mse(&image));
+        Ok(Column { title: title.to_owned(), cells: vec![(image, caption)] })
+    };
+    let columns = [
+        column("MC", &orders[0], BASELINE)?,
+        column("default, O1", &orders[0], DEFAULT)?,
+        column("default, O2", &orders[1], DEFAULT)?,
+        column("least squares, O2", &orders[1], LEAST_SQUARES)?,
+    ];
+    let rows = [format!("left: {} samples", section.measurement.plan.many)];
+    let picture = error_sheet::draw("duck: three bounces, the same samples", &rows, &columns, reference);
+    write_small(section.output, "indirect-duck.png", &picture)?;
+    section.chapter.picture("indirect-duck.png", "The duck's box with each estimator, and the errors");
+    Ok(())
+}
+
+/// Figure 4.8.
+fn write_lengths(section: &mut Section, longest: &[Outcome; 2]) -> Result<()> {
+    let plan = section.measurement.plan;
+    section.chapter.paragraph(
+        "Paths of one, two and three bounces (figure 4.8), order 2 and 1, ratios to MC of the same samples:",
+    );
+    let mut rows = Vec::new();
+    for (options, bounces) in plan.some(&SHORTER).iter().zip(1_u32..) {
+        let view = View { options, ..view(section) };
+        rows.push(length_row(bounces, &orders(section, view)?)?);
+    }
+    rows.push(length_row(3, longest)?);
+    let columns =
+        ["bounces", "dims", "MC, relMSE x 1000", "O1 default", "O1 least squares", "O2 default", "O2 least squares"];
+    section.chapter.setting("an order", 1);
+    section.chapter.setting("another order", 2);
+    section.chapter.table("path lengths", &columns, 1, rows);
+    Ok(())
+}
+
+fn length_row(bounces: u32, orders: &[Outcome; 2]) -> Result<Vec<Cell>> {
+    let dims = orders[0].of(BASELINE)?.timings.first().map_or(0, |timing| timing.dims);
+    let mut cells = row![bounces, dims, thousandfold(&orders[0], BASELINE)?];
+    for outcome in orders {
+        for estimator in [DEFAULT, LEAST_SQUARES] {
+            cells.push(Figure::new(outcome.ratio(estimator)?, Unit::Ratio).into());
+        }
+    }
+    Ok(cells)
+}
+
+/// Smaller than others: order 2 has 136 terms here.
+fn view(section: &Section) -> View {
+    View::new(SCENE, section.measurement.plan.small * 5 / 8)
+}
+
+/// With polynomials of order 1 and 2.
+fn orders(section: &Section, view: View) -> Result<[Outcome; 2]> {
+    let spp = section.measurement.plan.many;
+    let run = |order| {
+        section.measurement.run(&seeds(section, Experiment { order, ..Experiment::new(view, spp, &ESTIMATORS) }))
+    };
+    Ok([run(1)?, run(2)?])
+}

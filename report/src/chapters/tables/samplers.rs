@@ -1,0 +1,295 @@
+//! Samplers: figures 5.19, 5.20 and 5.22, and fits shared by neighbouring pixels.
+
+use super::Section;
+use super::public::Public;
+use crate::chapters::chapter::{Cell, headings, row};
+use crate::chapters::figure::{Figure, Unit};
+use crate::chapters::measurement::{BASELINE, Experiment, Outcome, SHARED, View};
+use crate::chapters::pictures::write_small;
+use crate::chapters::scenes;
+use crate::chapters::statistics::Estimate;
+use crate::measure::renderer::Sampler;
+use crate::measure::samplers::{Choice, Tiles};
+use crate::measure::score;
+use crate::measure::spectrum_sheet::{self, Cell as Panel, Row};
+use crate::measure::text;
+use anyhow::Result;
+use std::path::Path;
+
+const SCENES: [&str; 7] = ["dining", "dragon", "chopper", "microcity", "killeroos", "bathroom", "lens"];
+const SPP: [u32; 3] = [1, 4, 16];
+/// The library's samplers and what they are compared with first.
+const OWN: [Choice; 4] = [Choice::Random, Choice::Sobol, Choice::Tile(2), Choice::Tile(4)];
+const RANDOM: usize = 0;
+const SOBOL: usize = 1;
+const TILE: usize = 2;
+/// Scenes whose pictures are shown, and at how many samples: figures 5.19 and 5.20.
+const SHOWN: [(&str, u32); 3] = [("dining", 1), ("microcity", 4), ("lens", 1)];
+
+/// One sampler's errors, a number for each seed.
+pub(super) struct Errors {
+    pub(super) raw: Vec<f64>,
+    pub(super) filtered: Vec<f64>,
+}
+
+impl Errors {
+    pub(super) fn new(outcome: &Outcome, estimator: &str) -> Result<Self> {
+        let (raw, filtered) = outcome.seen(estimator)?.into_iter().map(|[raw, filtered]| (raw, filtered)).unzip();
+        Ok(Self { raw, filtered })
+    }
+}
+
+/// What limiting relative errors does.
+struct Limits {
+    /// Per cent of the pixels that are limited: random samples, and the tile.
+    percent: [Option<Estimate>; 2],
+    /// The tile's relMSE over the Sobol points', not limited.
+    unlimited: Option<Estimate>,
+}
+
+impl Limits {
+    fn new(samplers: &[Option<Outcome>]) -> Result<Self> {
+        let percent = |index: usize| -> Result<Option<Estimate>> {
+            let Some(outcome) = &samplers[index] else { return Ok(None) };
+            let images = &outcome.of(BASELINE)?.images;
+            let shares: Vec<f64> =
+                images.iter().map(|image| 100.0 * score::limited(image, &outcome.reference)).collect();
+            Ok(Some(Estimate::median(&shares)))
+        };
+        let unlimited = match (&samplers[TILE], &samplers[SOBOL]) {
+            (Some(tile), Some(sobol)) => Some(Estimate::ratio(&tile.errors(BASELINE)?, &sobol.errors(BASELINE)?)),
+            _ => None,
+        };
+        Ok(Self { percent: [percent(RANDOM)?, percent(TILE)?], unlimited })
+    }
+}
+
+/// One scene at one number of samples.
+struct Measured {
+    scene: &'static str,
+    spp: u32,
+    /// In the order of the columns; None: there is no such sampler.
+    samplers: Vec<Option<Outcome>>,
+    alone: Vec<Option<Errors>>,
+    limits: Limits,
+    shared: Vec<Option<Errors>>,
+}
+
+pub(super) fn write(section: &mut Section) -> Result<()> {
+    section.chapter.section("Samplers", "figures 5.19 and 5.20");
+    let plan = section.measurement.plan;
+    let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
+    let public = Public::new(section.measurement);
+    let mut all = Vec::new();
+    for &scene in plan.some(&SCENES) {
+        for &spp in plan.some(&SPP) {
+            let one = measure(section, &tiles, &public, scene, spp)?;
+            if SHOWN.contains(&(scene, spp)) {
+                write_sheet(section, &public, &one)?;
+            }
+            all.push(Measured { samplers: Vec::new(), ..one });
+        }
+    }
+    explain(section, &public);
+    let names = OWN.iter().skip(1).map(|choice| choice.label()).chain(public.labels());
+    let columns = headings(&["scene", "samples", "random, relMSE x 1000"], names);
+    section.chapter.paragraph("Unfiltered: the random samples' relMSE, and the others' over it.");
+    let raw = all.iter().map(|one| error_row(one, |errors| &errors.raw)).collect();
+    section.chapter.table("samplers, raw", &columns, 1, raw);
+    section.chapter.paragraph("Filtered as the eye does, the same:");
+    let filtered = all.iter().map(|one| error_row(one, |errors| &errors.filtered)).collect();
+    section.chapter.table("samplers, filtered", &columns, 1, filtered);
+    for (scene, _) in SHOWN.iter().filter(|(scene, _)| plan.some(&SCENES).contains(scene)) {
+        let description = format!("{scene}: images, errors and their spectra in squares, by sampler");
+        section.chapter.picture(&format!("samplers-{scene}.png"), &description);
+    }
+    write_limits(section, &all);
+    write_shared(section, &all);
+    aim(section, &all);
+    Ok(())
+}
+
+fn measure(section: &Section, tiles: &Tiles, public: &Public, scene: &'static str, spp: u32) -> Result<Measured> {
+    let view = View::new(scene, section.measurement.plan.tile_size);
+    let dims = scenes::find(scene)?.dims;
+    let seeds = section.measurement.plan.seeds;
+    // Beyond four samples what a tile is compared with is Sobol's sequence; `--full` has the public samplers there too.
+    let compared = spp <= 4 || section.measurement.plan.is_full();
+    let files = if compared { public.files(spp, dims)? } else { Vec::new() };
+    let mut wanted: Vec<Option<Experiment>> = Vec::new();
+    for choice in OWN {
+        // The tile of four dimensions is for scenes that have them.
+        let fits = choice != Choice::Tile(4) || dims >= 3;
+        let sampler = choice.sampler(spp, tiles).filter(|_| fits);
+        // Shared fits are shown on the first three.
+        let estimators: &[&str] = if choice == Choice::Tile(4) { &[BASELINE] } else { &[BASELINE, SHARED] };
+        wanted.push(sampler.map(|sampler| Experiment { sampler, seeds, ..Experiment::new(view, spp, estimators) }));
+    }
+    for (index, _) in public.labels().enumerate() {
+        let sampler = files.get(index).map(|file| Sampler::Table(Path::new(file)));
+        wanted.push(sampler.map(|sampler| Experiment { sampler, seeds, ..Experiment::new(view, spp, &[BASELINE]) }));
+    }
+    let samplers = section.measurement.run_all(&wanted)?;
+    let errors = |estimator: &str| -> Result<Vec<Option<Errors>>> {
+        let each = samplers.iter().map(|outcome| -> Result<Option<Errors>> {
+            let rendered = outcome.as_ref().filter(|outcome| outcome.of(estimator).is_ok());
+            rendered.map(|outcome| Errors::new(outcome, estimator)).transpose()
+        });
+        each.collect()
+    };
+    let (alone, shared) = (errors(BASELINE)?, errors(SHARED)?);
+    let limits = Limits::new(&samplers)?;
+    Ok(Measured { scene, spp, samplers, alone, limits, shared })
+}
+
+fn explain(section: &mut Section, public: &Public) {
+    let limit = section.chapter.setting("relative errors are limited to", crate::measure::score::LIMIT);
+    let sigma = section.chapter.setting("filter's standard deviation, pixels", crate::measure::filter::SIGMA);
+    section.chapter.paragraph(&format!(
+        "Plain means. Filtered: errors are filtered by a Gaussian of standard deviation {sigma} pixels, then squared. Relative errors beyond \
+         {limit} count as {limit}: one highlight in a dark pixel would otherwise decide. Seeds shift tiles and tables over the image. {}",
+        public.description()
+    ));
+}
+
+fn error_row(one: &Measured, of: fn(&Errors) -> &Vec<f64>) -> Vec<Cell> {
+    let random = one.alone[RANDOM].as_ref().map(of);
+    let plain = random.map(|errors| {
+        let errors: Vec<f64> = errors.iter().map(|error| 1e3 * error).collect();
+        Figure::new(Estimate::median(&errors), Unit::RelMseE3)
+    });
+    let mut cells = row![one.scene, one.spp, plain];
+    for errors in &one.alone[1..] {
+        let ratio = errors.as_ref().zip(random).map(|(errors, random)| Estimate::ratio(of(errors), random));
+        cells.push(ratio.map(|ratio| Figure::new(ratio, Unit::Ratio)).into());
+    }
+    cells
+}
+
+/// Whether limited errors tell another story.
+fn write_limits(section: &mut Section, all: &[Measured]) {
+    section.chapter.paragraph(
+        "What the limit does: per cent of the pixels whose error it cuts, and the unfiltered errors of the tile over those of the Sobol points, with it and \
+         without. Without it a few pixels with rare highlights decide, so that intervals widen; where no pixel is cut, both are the same.",
+    );
+    let rows = all.iter().map(|one| -> Vec<Cell> {
+        let percent = one.limits.percent.map(|share| share.map(|share| Figure::new(share, Unit::Percent)));
+        let limited = one.alone[TILE].as_ref().zip(one.alone[SOBOL].as_ref());
+        let limited = limited.map(|(tile, sobol)| Figure::new(Estimate::ratio(&tile.raw, &sobol.raw), Unit::Ratio));
+        let unlimited = one.limits.unlimited.map(|ratio| Figure::new(ratio, Unit::Ratio));
+        let [random, tile] = percent;
+        row![one.scene, one.spp, random, tile, limited, unlimited]
+    });
+    let columns =
+        ["scene", "samples", "random: cut, %", "tile 2D: cut, %", "tile over Owen-Sobol, limited", "not limited"];
+    section.chapter.table("samplers, limit", &columns, 1, rows.collect());
+}
+
+/// Shared fits over the same sampler's plain mean.
+fn write_shared(section: &mut Section, all: &[Measured]) {
+    section.chapter.section("Shared fits", "section 4.3.6, multi-pixel regression");
+    section.chapter.paragraph(
+        "Errors of `nf_cv_image_estimate()`, order 2, over those of the plain mean of the same samples. \
+         Told which number picks a light; pixels that show the same surface share fits.",
+    );
+    let mut rows = Vec::new();
+    for one in all {
+        let mut cells = row![one.scene, one.spp];
+        for index in [RANDOM, SOBOL, TILE] {
+            let pair = one.shared[index].as_ref().zip(one.alone[index].as_ref());
+            for of in [|errors: &Errors| errors.raw.clone(), |errors: &Errors| errors.filtered.clone()] {
+                let ratio = pair.map(|(shared, alone)| Estimate::ratio(&of(shared), &of(alone)));
+                cells.push(ratio.map(|ratio| Figure::new(ratio, Unit::Ratio)).into());
+            }
+        }
+        rows.push(cells);
+    }
+    let columns =
+        ["scene", "samples", "random: raw", "filtered", "Owen-Sobol: raw", "filtered", "tile: raw", "filtered"];
+    section.chapter.table("shared fits", &columns, 1, rows);
+}
+
+fn aim(section: &mut Section, all: &[Measured]) {
+    let targets = &mut *section.targets;
+    targets.reason(
+        ["tile over Owen-Sobol, filtered", ""],
+        "A tile is optimised for integrands that neighbours share: fine texture, edges and shadow borders that differ from pixel to \
+         pixel leave white noise; of a decision's three numbers only two are optimised.",
+    );
+    targets.reason(["tile over Owen-Sobol, raw", ""], "The tile weighs the image's error against the pixel's own.");
+    targets.reason(
+        ["shared fits over the tile alone", ""],
+        "Polynomials explain what varies smoothly with the sample: a visible edge of an occluder, a high-frequency environment or a thin highlight \
+         stays; with several samples the tile has already removed what is smooth.",
+    );
+    let ratio = |own: &Option<Errors>, other: &Option<Errors>, of: fn(&Errors) -> &Vec<f64>| {
+        own.as_ref().zip(other.as_ref()).map(|(own, other)| Estimate::ratio(of(own), of(other)))
+    };
+    for one in all {
+        let (scene, spp) = (one.scene, one.spp);
+        let (tile, sobol) = (&one.alone[TILE], &one.alone[SOBOL]);
+        if spp <= 4 {
+            if let Some(estimate) = ratio(tile, sobol, |errors| &errors.filtered) {
+                let statement = format!("tile over Owen-Sobol, filtered, {spp} spp, direct light");
+                targets.at_most(&statement, scene, estimate, Unit::Ratio, 0.5);
+            }
+            // The best of the public samplers in this scene.
+            let best = one.alone[OWN.len()..].iter().flatten().map(|errors| Estimate::median(&errors.filtered).value);
+            let best = best.fold(f64::INFINITY, f64::min);
+            if let Some(public) = one.alone[OWN.len()..]
+                .iter()
+                .find(|errors| errors.as_ref().is_some_and(|errors| Estimate::median(&errors.filtered).value == best))
+                && let Some(estimate) = ratio(tile, public, |errors| &errors.filtered)
+            {
+                let statement = format!("tile over the best public sampler, filtered, {spp} spp, direct light");
+                targets.at_most(&statement, scene, estimate, Unit::Ratio, 1.0);
+            }
+            if let Some(estimate) = ratio(&one.shared[TILE], tile, |errors| &errors.raw) {
+                let statement = format!("shared fits over the tile alone, raw, {spp} spp, direct light");
+                targets.at_most(&statement, scene, estimate, Unit::Ratio, 0.5);
+            }
+        }
+        if spp >= 4
+            && let Some(estimate) = ratio(tile, sobol, |errors| &errors.raw)
+        {
+            let statement = format!("tile over Owen-Sobol, raw, {spp} spp");
+            targets.at_most(&statement, scene, estimate, Unit::Ratio, 1.03);
+        }
+        if let Some(estimate) = ratio(&one.shared[TILE], tile, |errors| &errors.raw) {
+            targets.at_most(
+                &format!("shared fits over the tile alone, raw, {spp} spp"),
+                scene,
+                estimate,
+                Unit::Ratio,
+                1.01,
+            );
+        }
+    }
+}
+
+/// Figures 5.19 and 5.20.
+fn write_sheet(section: &Section, public: &Public, one: &Measured) -> Result<()> {
+    let mut names = Vec::new();
+    let mut cells = Vec::new();
+    let labels: Vec<String> = OWN.iter().map(|choice| choice.label()).chain(public.labels()).collect();
+    let Some(random) = &one.samplers[RANDOM] else { return Ok(()) };
+    let reference = &random.reference;
+    for (index, (outcome, label)) in one.samplers.iter().zip(labels).enumerate() {
+        let Some(outcome) = outcome else { continue };
+        let estimators: &[&str] = if index == TILE { &[BASELINE, SHARED] } else { &[BASELINE] };
+        for estimator in estimators {
+            let image = &outcome.of(estimator)?.images[0];
+            let [raw, filtered] = score::errors(image, reference);
+            names.push(if *estimator == SHARED { format!("{label}, shared fits") } else { label.clone() });
+            let caption = format!("raw {raw:.1e} filtered {filtered:.1e}");
+            let name =
+                format!("{}-{}spp-{}", one.scene, one.spp, names[names.len() - 1].replace([' ', ',', '(', ')'], "-"));
+            section.large.write_image(&name, image, reference)?;
+            cells.push(Some(Panel { image, caption }));
+        }
+    }
+    let title = format!("{}: the image, its errors, their spectra", one.scene);
+    let rows = [Row { name: text::samples_per_pixel(one.spp), cells }];
+    let picture = spectrum_sheet::draw(&title, &names, &rows, [0.25, 0.35], reference);
+    write_small(section.output, &format!("samplers-{}.png", one.scene), &picture)
+}

@@ -1,0 +1,255 @@
+//! Are shared fits unbiased? The mean of many independent frames against the reference.
+
+use super::Section;
+use crate::chapters::chapter::row;
+use crate::chapters::figure::{Figure, Unit};
+use crate::chapters::measurement::{BASELINE, Experiment, SHARED, SHARED_UNBIASED, View};
+use crate::chapters::sign_flips::SignFlips;
+use crate::chapters::statistics::{Estimate, normal_quantile};
+use crate::measure::metric::median;
+use crate::measure::renderer::Sampler;
+use crate::measure::samplers::{Choice, Tiles};
+use anyhow::Result;
+use image::Rgb32FImage;
+
+const SCENES: [&str; 2] = ["dining", "killeroos"];
+const SPP: [u32; 2] = [1, 4];
+/// Of all tests of the table together: each of them has a part of it (Bonferroni), whatever the dependence between
+/// them.
+const SIGNIFICANCE: f64 = 0.01;
+/// Batches of frames, whose signs the test of the mean of z^2 flips: 8192 ways, enough for its part of the
+/// significance.
+const BATCHES: u32 = 14;
+
+/// The estimators, as the table has them.
+const NAMES: [&str; 3] = ["plain mean", "shared fits", "shared fits, K-fold"];
+
+/// Frames that must light a pixel, about: fewer, and the mean is far from normal.
+const LIT: u32 = 50;
+
+/// Standard scores of every pixel and channel that has noise.
+struct Scores {
+    count: usize,
+    largest: f64,
+    /// Of the mean of their squares, which is about 1 without bias.
+    flips: SignFlips,
+    /// Of the image's mean.
+    image: f64,
+    median: f64,
+}
+
+/// What frames say together: of each batch the mean, and over all the mean of (I - A)(I - B).
+struct Frames {
+    count: u32,
+    batches: Vec<Vec<f64>>,
+    mse: Vec<f64>,
+}
+
+impl Frames {
+    fn new(batches: &[[Rgb32FImage; 2]], count: u32) -> Self {
+        let mse: Vec<Vec<f64>> = batches.iter().map(|[_, mse]| values(mse)).collect();
+        Self { count, batches: batches.iter().map(|[mean, _]| values(mean)).collect(), mse: average(&mse) }
+    }
+}
+
+/// One image of the table.
+struct Test<'a> {
+    scene: &'static str,
+    spp: u32,
+    label: &'static str,
+    sampler: Sampler<'a>,
+}
+
+pub(super) fn write(section: &mut Section) -> Result<()> {
+    section.chapter.section("Are shared fits unbiased?", "");
+    let plan = section.measurement.plan;
+    let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
+    let tests: Vec<Test> = plan.some(&SCENES).iter().flat_map(|&scene| tests(scene, plan.some(&SPP), &tiles)).collect();
+    // Of two estimators, the largest z and the mean of z^2.
+    let level = SIGNIFICANCE / (4 * tests.len()) as f64;
+    explain(section);
+    let mut rows = Vec::new();
+    for Test { scene, spp, label, sampler } in tests {
+        // The reference's error must be small beside that of the mean of so many frames.
+        let view = View { precision: 8, ..View::new(scene, size(section)) };
+        let estimators = [BASELINE, SHARED, SHARED_UNBIASED];
+        // A tile at other places keeps its own small error, which a thousand frames can show.
+        let experiment = Experiment {
+            sampler,
+            seeds: plan.frames / BATCHES,
+            options: &["--scramble"],
+            ..Experiment::new(view, spp, &estimators)
+        };
+        let batches = section.measurement.statistics(&experiment, BATCHES)?;
+        let halves = section.measurement.reference(view)?.images.each_ref().map(values);
+        let frames = |estimator: usize| {
+            let one: Vec<[Rgb32FImage; 2]> = batches.iter().map(|batch| batch[estimator].clone()).collect();
+            Frames::new(&one, BATCHES * experiment.seeds)
+        };
+        let lit = lit_pixels(&frames(0), &halves);
+        for (index, estimator) in NAMES.into_iter().enumerate() {
+            let scores = scores(&frames(index), &halves, &lit);
+            let allowed = [normal_quantile(level / (2.0 * scores.count as f64)), scores.flips.allowed(level)];
+            let found = [scores.largest, scores.flips.measured()];
+            if index > 0 {
+                for (what, (found, allowed)) in
+                    ["largest z", "mean z^2"].into_iter().zip(found.into_iter().zip(allowed))
+                {
+                    let statement = format!(
+                        "{estimator} unbiased: {what} of the mean of independent frames, over what chance allows"
+                    );
+                    let place = format!("{scene}, {label}, {spp} spp");
+                    let estimate = Estimate::median(&[found / allowed]);
+                    section.targets.at_most(&statement, &place, estimate, Unit::Ratio, 1.0);
+                }
+            }
+            let sigmas = |value| Figure::exact(value, Unit::Sigmas);
+            rows.push(row![
+                scene,
+                spp,
+                label,
+                estimator,
+                Figure::exact(scores.count as f64, Unit::Count),
+                sigmas(found[0]),
+                sigmas(allowed[0]),
+                Figure::exact(found[1], Unit::Ratio),
+                Figure::exact(allowed[1], Unit::Ratio),
+                sigmas(scores.median),
+                sigmas(scores.image)
+            ]);
+        }
+    }
+    let columns = [
+        "scene",
+        "samples",
+        "sampler",
+        "estimator",
+        "numbers",
+        "largest z",
+        "chance allows",
+        "mean z^2",
+        "chance allows",
+        "median z",
+        "mean z",
+    ];
+    section.chapter.setting("power of z", 2);
+    section.chapter.table("unbiased", &columns, 1, rows);
+    Ok(())
+}
+
+/// Many frames of few pixels.
+fn size(section: &Section) -> u32 {
+    let plan = section.measurement.plan;
+    if plan.is_full() { plan.small * 3 / 4 } else { plan.small * 5 / 8 }
+}
+
+fn tests<'a>(scene: &'static str, spps: &[u32], tiles: &'a Tiles) -> Vec<Test<'a>> {
+    let of = |&spp: &u32| {
+        let samplers = [("random", Some(Sampler::Random)), ("tile, scrambled", Choice::Tile(2).sampler(spp, tiles))];
+        samplers.into_iter().filter_map(move |(label, sampler)| Some(Test { scene, spp, label, sampler: sampler? }))
+    };
+    spps.iter().flat_map(of).collect()
+}
+
+fn explain(section: &mut Section) {
+    let plan = section.measurement.plan;
+    let frames = section.chapter.setting("frames of the test of biases", plan.frames / BATCHES * BATCHES);
+    let size = section.chapter.setting("pixels on a side of the test of biases", size(section));
+    let percent = section.chapter.setting("significance of the test of biases, percent", 100.0 * SIGNIFICANCE);
+    let lit = section.chapter.setting("frames with light, at least", LIT.min(plan.frames / 4));
+    let batches = section.chapter.setting("batches of the test of biases", BATCHES);
+    section.chapter.paragraph(&format!(
+        "The mean of {frames} independent frames, {size} x {size} pixels, against the reference: for each pixel and channel its distance in \
+         standard deviations, z. Two tests of each image, each with an equal part of {percent} % for the whole table (Bonferroni, so that dependence does no harm): the \
+         largest z, of either sign, over all numbers; and the mean of z^2, in which a bias spread over many pixels shows before it shows in the largest. Neighbours \
+         share fits, so what chance allows that mean is found by flipping the signs of the deviations of {batches} batches of frames in every way, which keeps the \
+         dependence between pixels (a randomisation test). The plain mean of the same samples, unbiased by construction, shows how the tests behave. \
+         Pixels that hardly any frame lights do not count, as z is then far from normal: the plain mean's n mean^2 / variance, about the number of frames \
+         with light, must be {lit} at least. The reference's own error, which all batches share, is part of the \
+         standard deviation, and of what chance allows. Shared fits choose how much to correct from the samples that \
+         they correct, which leaves a bias that many frames can show; K-fold, where halves of the neighbours choose for each other, has none where pixels are \
+         independent. A scrambled tile's are not."
+    ));
+}
+
+fn values(image: &Rgb32FImage) -> Vec<f64> {
+    image.as_raw().iter().map(|&value| f64::from(value)).collect()
+}
+
+fn average(all: &[Vec<f64>]) -> Vec<f64> {
+    let numbers = all.first().map_or(0, Vec::len);
+    (0..numbers).map(|i| all.iter().map(|one| one[i]).sum::<f64>() / all.len() as f64).collect()
+}
+
+/// The frames' variance, number by number: what is measured about the reference, less the square of the distance to it.
+fn variances(frames: &Frames, [a, b]: &[Vec<f64>; 2]) -> Vec<f64> {
+    let mean = average(&frames.batches);
+    (0..mean.len()).map(|i| (frames.mse[i] - (mean[i] - a[i]) * (mean[i] - b[i])).max(0.0)).collect()
+}
+
+/// Which numbers of the image enough frames light.
+fn lit_pixels(frames: &Frames, halves: &[Vec<f64>; 2]) -> Vec<bool> {
+    let least = f64::from(LIT.min(frames.count / 4));
+    let lit =
+        |(mean, variance): (f64, f64)| variance > 0.0 && f64::from(frames.count) * mean * mean >= least * variance;
+    average(&frames.batches).into_iter().zip(variances(frames, halves)).map(lit).collect()
+}
+
+fn scores(frames: &Frames, halves: &[Vec<f64>; 2], lit: &[bool]) -> Scores {
+    let (variances, mean, [a, b]) = (variances(frames, halves), average(&frames.batches), halves);
+    let (mut all, mut weights, mut counted) = (Vec::new(), Vec::new(), Vec::new());
+    for i in (0..mean.len()).filter(|&i| lit[i]) {
+        let reference = 0.5 * (a[i] + b[i]);
+        let own = 0.25 * (a[i] - b[i]).powi(2);
+        let variance = variances[i] / f64::from(frames.count - 1) + own;
+        // Pixels that see the light have no noise but rounding.
+        if variance > 1e-12 * reference * reference {
+            all.push((mean[i] - reference) / variance.sqrt());
+            weights.push(1.0 / (variance * (frames.batches.len() as f64).powi(2)));
+            counted.push(i);
+        }
+    }
+    let deviations = |batch: &Vec<f64>| [a, b].map(|half| counted.iter().map(|&i| batch[i] - half[i]).collect());
+    let deviations: Vec<[Vec<f64>; 2]> = frames.batches.iter().map(deviations).collect();
+    Scores {
+        count: all.len(),
+        largest: all.iter().map(|z| z.abs()).fold(0.0, f64::max),
+        flips: SignFlips::new(&deviations, &weights),
+        image: all.iter().sum::<f64>() / all.len().max(1) as f64,
+        median: median(all.iter().copied()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 400 frames in 8 batches whose values are 0 or 2, in turn, plus `bias`, against a reference of 1; the batches'
+    /// means differ by chance.
+    fn scored(bias: f64) -> Scores {
+        let batch = |batch: i32| vec![1.0 + bias + 0.1 * (f64::from(batch) - 3.5); 12];
+        let frames = Frames { count: 400, batches: (0..8).map(batch).collect(), mse: vec![1.0 + bias * bias; 12] };
+        let halves = [vec![1.0; 12], vec![1.0; 12]];
+        let lit = lit_pixels(&frames, &halves);
+        scores(&frames, &halves, &lit)
+    }
+
+    #[test]
+    fn a_bias_shows_and_its_absence_too() {
+        let unbiased = scored(0.0);
+        assert!(unbiased.largest < 1e-6 && unbiased.flips.measured() < unbiased.flips.allowed(0.1));
+        let scores = scored(0.5);
+        // .5 over a standard error of 1 / sqrt(399).
+        assert!((scores.largest - 0.5 * 399.0_f64.sqrt()).abs() < 1e-3, "{}", scores.largest);
+        assert!((scores.flips.measured() - 0.25 * 399.0).abs() < 1e-3, "{}", scores.flips.measured());
+        assert!(scores.flips.measured() > scores.flips.allowed(0.01));
+        assert_eq!(scores.count, 12);
+    }
+
+    #[test]
+    fn pixels_without_light_do_not_count() {
+        let dark = || vec![0.0; 12];
+        let frames = Frames { count: 400, batches: vec![dark(); 8], mse: dark() };
+        assert!(lit_pixels(&frames, &[dark(), dark()]).iter().all(|&lit| !lit));
+    }
+}

@@ -1,0 +1,51 @@
+//! The steps of `cargo xtask test` that run what is here.
+
+use crate::{chapters, povray, povray_patched};
+use anyhow::Result;
+use clap::{Args, ValueEnum};
+use std::process::ExitCode;
+use xtask::outcome::{NOT_RUN, Outcome};
+use xtask::{embree, library};
+
+#[derive(Args)]
+pub(crate) struct Options {
+    step: Step,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Step {
+    /// Quick chapters of what needs nothing but a compiler.
+    Chapters,
+    /// A quick chapter of the path tracer on Embree.
+    Embree,
+    /// POV-Ray's pictures as integrands.
+    Povray,
+    /// The patch of POV-Ray.
+    Patch,
+}
+
+const CHAPTERS: [&str; 7] = ["tables", "gradients", "control_variates", "hard_cases", "analytic", "samplers", "points"];
+
+/// Ends with 0, with [`NOT_RUN`] and a reason on standard error, or with an error.
+pub(crate) fn run(options: &Options) -> ExitCode {
+    match step(options.step) {
+        Ok(Outcome::Passed) => ExitCode::SUCCESS,
+        Ok(Outcome::NotRun(why)) => {
+            eprintln!("{why}");
+            ExitCode::from(NOT_RUN)
+        }
+        Err(error) => {
+            eprintln!("   {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn step(step: Step) -> Result<Outcome> {
+    match step {
+        Step::Chapters => chapters::check_quick(&CHAPTERS).map(|()| Outcome::Passed),
+        Step::Embree => embree::report(|| chapters::check_quick(&["embree"])),
+        Step::Povray => povray::test::run(&library::build()?),
+        Step::Patch => povray_patched::check_patch(&library::build()?),
+    }
+}

@@ -1,0 +1,52 @@
+//! What `cargo xtask demo`, `report`, `povray` and `targets` start: they measure, and make tables, plots and pictures of it.
+
+mod chapters;
+mod check;
+mod demo;
+mod measure;
+mod povray;
+mod povray_patched;
+mod targets;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+#[derive(Parser)]
+#[command(name = "cargo xtask", about = "Demonstrate and measure noisefloor")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Render with every estimator: pictures and a table in target/demo
+    Demo(demo::Options),
+    /// Build POV-Ray with our patch, check it, and compare it with POV-Ray as it is
+    Povray(povray_patched::Options),
+    /// Measure errors and times of everything, and write docs/report: chapters with their tables, plots and pictures
+    Report(chapters::Options),
+    /// Build for other targets, run the C tests and a bare-metal program there under QEMU, and write
+    /// docs/report/sizes.md
+    Targets(targets::Options),
+    /// A step of `cargo xtask test`
+    #[command(hide = true)]
+    Check(check::Options),
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Demo(options) => demo::run(&options),
+        Command::Povray(options) => povray_patched::run(&options),
+        Command::Report(options) => chapters::run(&options),
+        Command::Targets(options) => targets::run(&options),
+        Command::Check(options) => return check::run(&options),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
