@@ -39,7 +39,7 @@ impl Facts {
     pub(super) fn add_to(&self, json: &str) -> Result<String> {
         let mut json: Value = serde_json::from_str(json)?;
         json.as_object_mut().context("no object")?.insert("run".to_owned(), json!(self));
-        Ok(format!("{json:#}\n"))
+        Ok(super::json::written(&json))
     }
 }
 

@@ -12,6 +12,7 @@ mod gradients;
 mod hard_cases;
 mod index;
 mod instructions;
+mod json;
 mod machine;
 mod measured;
 mod measurement;
@@ -204,6 +205,6 @@ impl Report<'_> {
     /// Writes NAME.md and NAME.json.
     pub(crate) fn write(&self, chapter: &Chapter) -> Result<()> {
         self.output.write_text(&format!("{}.md", self.name), chapter.markdown())?;
-        self.output.write_text(&format!("{}.json", self.name), &format!("{:#}\n", chapter.json()))
+        self.output.write_text(&format!("{}.json", self.name), &json::written(&chapter.json()))
     }
 }

@@ -2,6 +2,7 @@
 //! minibatch, as pictures and as tables.
 
 mod estimators;
+mod index;
 mod tiles;
 pub(crate) mod training;
 
@@ -45,27 +46,36 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let folder = options.out.clone().unwrap_or_else(|| paths::target().join("demo"));
     let folder = std::path::absolute(&folder).with_context(|| format!("{} is no folder", folder.display()))?;
     let interrupted = interrupt::catch()?;
-    let output = Output::new(&folder)?;
     let wanted = |part| options.only.is_none_or(|only| only == part);
-    let mut tables = Vec::new();
-    if wanted(Part::Estimators) || wanted(Part::Tiles) {
+    let mut pages = index::Pages::default();
+    // Each part moves into the folder when it is complete.
+    let mut write = |title: &str, make: &dyn Fn(&Output) -> Result<String>| -> Result<()> {
+        println!("\n{title}");
+        let output = Output::new(&folder)?;
+        let table = make(&output)?;
+        interrupt::check(&interrupted)?;
+        pages.add(title, output.names()?);
+        output.write_text("index.html", &pages.html())?;
+        output.commit()?;
+        println!("{table}");
+        Ok(())
+    };
+    if wanted(Part::Tiles) || wanted(Part::Estimators) {
         println!("building the library and the path tracer");
         let renderer = Renderer::build(interrupted.clone())?;
-        let parts = [
-            (Part::Estimators, estimators::run as fn(&Options, &Renderer, &Output) -> Result<String>),
-            (Part::Tiles, tiles::run),
-        ];
-        for (_, make) in parts.into_iter().filter(|(part, _)| wanted(*part)) {
-            tables.push(make(options, &renderer, &output)?);
+        if wanted(Part::Tiles) {
+            write("Samplers, and fits shared by pixels", &|output| tiles::run(options, &renderer, output))?;
+        }
+        if wanted(Part::Estimators) {
+            write("Estimators of single pixels", &|output| estimators::run(options, &renderer, output))?;
         }
     }
     if wanted(Part::Training) {
         println!("building the library and the trainers");
-        tables.push(training::run(options, &interrupted, &output)?);
+        for (title, trainer) in training::TRAINERS {
+            write(title, &|output| training::run(options, &interrupted, output, trainer))?;
+        }
     }
-    interrupt::check(&interrupted)?;
-    output.commit()?;
-    println!("{}", tables.join("\n"));
-    println!("pictures and tables: {} ({:.0} s)", folder.display(), start.elapsed().as_secs_f64());
+    println!("\npictures and tables: {} ({:.0} s)", folder.join("index.html").display(), start.elapsed().as_secs_f64());
     Ok(())
 }

@@ -45,6 +45,15 @@ impl Output {
         self.write_picture(&format!("{name}.png"), &tone_map(image, exposure(&reference.image)))
     }
 
+    /// The names of what was written, in order.
+    pub(crate) fn names(&self) -> Result<Vec<String>> {
+        let names =
+            fs::read_dir(self.pending.path())?.map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()));
+        let mut names = names.collect::<Result<Vec<String>>>()?;
+        names.sort();
+        Ok(names)
+    }
+
     /// What was written.
     pub(crate) fn read_text(&self, name: &str) -> Result<String> {
         fs::read_to_string(self.pending.path().join(name)).with_context(|| format!("{name} was not written"))

@@ -54,8 +54,8 @@ pub(super) fn write(report: &Report) -> Result<()> {
 fn introduce(chapter: &mut Chapter) {
     let confidence = chapter.setting("confidence, percent", 95);
     chapter.paragraph(
-        "Made by `cargo xtask report`; machine-readable in `control_variates.json`, every single cell in `control_variates.csv`, every point of the convergence \
-         plots in `control_variates_convergence.csv`. Independent samples of integrands whose integrals are known, one pixel at a time; renderers are in the chapter \
+        "Made by `cargo xtask report`; machine-readable in `control_variates.json`, a run also writes every \
+         single cell to `control_variates.csv` and every point of the convergence plots to `control_variates_convergence.csv`. Independent samples of integrands whose integrals are known, one pixel at a time; renderers are in the chapter \
          on [Embree](embree.md), shared fits and tiles too. Through the C functions of the library that ships, one thread.",
     );
     chapter.list(&[

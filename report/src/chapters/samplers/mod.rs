@@ -37,7 +37,7 @@ pub(super) fn write(report: &Report) -> Result<()> {
 
 fn introduce(chapter: &mut Chapter) {
     chapter.paragraph(
-        "Made by `cargo xtask report --only samplers`; machine-readable in `samplers.json` and `samplers-grid.csv`. First the samplers \
+        "Made by `cargo xtask report --only samplers`; machine-readable in `samplers.json`; a run also writes `samplers-grid.csv`. First the samplers \
          alone, the same integrand in every pixel: what a tile is made for. Then samplers with estimators, on integrands that change from \
          pixel to pixel, and what `recommend()` makes of it.",
     );

@@ -64,7 +64,7 @@ impl Plan {
         if quick {
             Self { size: 64, spp: [16, 64], repetitions: 1, reference_divisor: 4 }
         } else {
-            Self { size: 128, spp: [16, 64], repetitions: 3, reference_divisor: 1 }
+            Self { size: 128, spp: [16, 64], repetitions: 1, reference_divisor: 1 }
         }
     }
 

@@ -1,7 +1,6 @@
 //! train_mlp.c: test error against steps and time, and the variance of the gradient (figures 6.2, 6.4 and 6.11).
 
 use super::Training;
-use super::data;
 use super::program::Program;
 use crate::measure::plot::{Axis, Plot, Series};
 use crate::measure::progress;
@@ -52,24 +51,9 @@ impl Plan {
     }
 
     fn new(quick: bool) -> Self {
-        let mnist = if quick { None } else { Some(data::mnist()) };
-        match mnist {
-            Some(Ok(data)) => Self { name: "MNIST", data, seeds: 5, epochs: 10, rate: "0.0005", variance_epochs: 10 },
-            other => {
-                if let Some(Err(error)) = other {
-                    println!("without MNIST, which could not be had: {error:#}; with the small digits instead");
-                }
-                let data = PathBuf::from("examples_c/data/digits");
-                Self {
-                    name: "digits, 8 x 8",
-                    data,
-                    seeds: if quick { 5 } else { 20 },
-                    epochs: 30,
-                    rate: "0.001",
-                    variance_epochs: 30,
-                }
-            }
-        }
+        let data = PathBuf::from("examples_c/data/digits");
+        let (seeds, epochs) = if quick { (5, 30) } else { (8, 30) };
+        Self { name: "digits, 8 x 8", data, seeds, epochs, rate: "0.001", variance_epochs: epochs }
     }
 }
 

@@ -15,7 +15,7 @@ use std::sync::atomic::AtomicBool;
 use xtask::library;
 
 /// What every trainer's part needs.
-struct Training<'a> {
+pub(super) struct Training<'a> {
     quick: bool,
     /// The C library.
     archive: PathBuf,
@@ -30,12 +30,16 @@ impl Training<'_> {
     }
 }
 
-/// The trainers, in the order of their tables: each compiles its program, runs it, writes its files and returns its
-/// table.
-const TRAINERS: [fn(&Training) -> Result<String>; 3] = [mlp::run, polynomial::run, photograph::run];
+/// Compiles its program, runs it, writes its files and returns its table.
+pub(super) type Trainer = fn(&Training) -> Result<String>;
 
-pub(crate) fn run(options: &Options, interrupted: &AtomicBool, output: &Output) -> Result<String> {
-    let training = Training { quick: options.quick, archive: library::build()?, interrupted, output };
-    let tables: Vec<String> = TRAINERS.iter().map(|trainer| trainer(&training)).collect::<Result<_>>()?;
-    Ok(tables.join("\n"))
+/// The trainers and what they learn.
+pub(super) const TRAINERS: [(&str, Trainer); 3] = [
+    ("Minibatches: digits", mlp::run),
+    ("Minibatches: a polynomial", polynomial::run),
+    ("Minibatches: a photograph", photograph::run),
+];
+
+pub(super) fn run(options: &Options, interrupted: &AtomicBool, output: &Output, trainer: Trainer) -> Result<String> {
+    trainer(&Training { quick: options.quick, archive: library::build()?, interrupted, output })
 }

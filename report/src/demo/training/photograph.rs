@@ -21,7 +21,7 @@ const PART: (u32, u32, u32) = (8, 116, 72);
 /// Writes training-image*.csv, .md, .svg and .png; returns the tables.
 pub(super) fn run(training: &Training) -> Result<String> {
     let program = Program::compile("fit_image.cpp", &training.archive)?;
-    let (seeds, steps, batches) = if training.quick { ("1", "1000", "20") } else { ("3", "4000", "100") };
+    let (seeds, steps, batches) = if training.quick { ("1", "1000", "20") } else { ("1", "3000", "30") };
     let small = ["--seeds", seeds, "--steps", steps, "--batches", batches];
     let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
     let prefix = scratch.path().join("picture");

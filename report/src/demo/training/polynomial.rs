@@ -10,7 +10,7 @@ use anyhow::Result;
 /// Writes training-polynomial*.csv, .md and .svg; returns the tables.
 pub(super) fn run(training: &Training) -> Result<String> {
     let program = Program::compile("fit_polynomial.c", &training.archive)?;
-    let (seeds, steps, batches) = if training.quick { ("3", "1000", "200") } else { ("40", "3000", "2000") };
+    let (seeds, steps, batches) = if training.quick { ("3", "1000", "200") } else { ("10", "3000", "500") };
     let small = ["--seeds", seeds, "--steps", steps, "--batches", batches];
     let bar = progress::bar(2)?;
     bar.set_message("polynomial");

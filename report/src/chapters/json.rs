@@ -1,0 +1,61 @@
+//! How a chapter's JSON is written: small, and a row of a table to a line, so that a difference is readable.
+
+use serde_json::Value;
+
+/// Significant digits of a number.
+const DIGITS: usize = 8;
+pub(super) fn written(value: &Value) -> String {
+    let mut out = String::new();
+    write(value, 0, &mut out);
+    out + "\n"
+}
+
+fn write(value: &Value, depth: usize, out: &mut String) {
+    let is_list =
+        value.as_array().is_some_and(|values| values.iter().any(|value| value.is_array() || value.is_object()));
+    let separator = if depth < 2 || (is_list && depth < 4) { ",\n" } else { "," };
+    match value {
+        Value::Array(values) => {
+            out.push('[');
+            for (index, value) in values.iter().enumerate() {
+                out.push_str(if index > 0 { separator } else { "" });
+                write(value, depth + 1, out);
+            }
+            out.push(']');
+        }
+        Value::Object(fields) => {
+            out.push('{');
+            for (index, (name, value)) in fields.iter().enumerate() {
+                out.push_str(if index > 0 { separator } else { "" });
+                *out += &format!("{}:", Value::from(name.as_str()));
+                write(value, depth + 1, out);
+            }
+            out.push('}');
+        }
+        Value::Number(number) if number.is_f64() => *out += &rounded(number.as_f64().unwrap_or(0.0)),
+        _ => *out += &value.to_string(),
+    }
+}
+
+fn rounded(value: f64) -> String {
+    let short: f64 = format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value);
+    Value::from(short).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{DIGITS, written};
+    use serde_json::{Value, json};
+
+    #[test]
+    fn only_the_last_digits_of_numbers_are_lost() {
+        let text = written(&json!({"tables": [{"rows": [["a, b", {"value": 0.123456789, "seeds": 8}], [null, -3]]}]}));
+        assert_eq!(text, "{\"tables\":[{\"rows\":[[\"a, b\",{\"seeds\":8,\"value\":0.12345679}],\n[null,-3]]}]}\n");
+        let large = json!([1e300, 123456789012.0, 2.0, 1e-5]);
+        let back: Value = serde_json::from_str(&written(&large)).expect("it is JSON");
+        for (a, b) in large.as_array().unwrap().iter().zip(back.as_array().unwrap()) {
+            let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
+            assert!((a / b - 1.0).abs() < 10f64.powi(1 - DIGITS as i32));
+        }
+    }
+}
