@@ -8,6 +8,7 @@ pub mod fill;
 pub mod fit;
 pub mod fuzz;
 pub mod header;
+pub mod house;
 pub mod install;
 pub mod instructions;
 pub mod library;

@@ -2,8 +2,8 @@
 
 use crate::outcome::Outcome;
 use crate::{
-    abi, c_tests, embree, examples, fit, fuzz, header, install, instructions, library, links, path_tracer, python,
-    release, report, run, threads, tools, train_mlp, valgrind,
+    abi, c_tests, embree, examples, fit, fuzz, header, house, install, instructions, library, links, path_tracer,
+    python, release, report, run, threads, tools, train_mlp, valgrind,
 };
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -132,6 +132,7 @@ pub fn run(options: &Options) -> Result<()> {
     );
     steps.run("THIRD_PARTY.md: the licences of all dependencies, each allowed", release::licences::check);
     steps.run("versions: Rust's and the project's, as the texts say", release::versions::check);
+    steps.run("sizes: product, tools, documents", || house::print().map(|()| Outcome::Passed));
     steps.run("README.md opens with examples_c/integrate.c", examples::readme);
     steps.run("C code in docs/ that includes the header compiles", examples::documents);
     steps.finish(start)

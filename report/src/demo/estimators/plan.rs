@@ -14,22 +14,22 @@ pub(crate) struct Scene {
 }
 
 pub(crate) const SCENES: [Scene; 4] = [
-    Scene { name: "direct", domain: "the light's surface (2 dims)", order: 2, reference_spp: 1024, cost: 250.0 },
+    Scene { name: "direct", domain: "the light's surface (2 dims)", order: 2, reference_spp: 512, cost: 250.0 },
     Scene {
         name: "motion",
         domain: "time and the light's surface (3 dims)",
         order: 2,
-        reference_spp: 1024,
+        reference_spp: 512,
         cost: 600.0,
     },
     Scene {
         name: "lights",
         domain: "six lights' surfaces and their choice (3 dims)",
         order: 2,
-        reference_spp: 1024,
+        reference_spp: 512,
         cost: 350.0,
     },
-    Scene { name: "global", domain: "three bounces (15 dims)", order: 1, reference_spp: 320, cost: 2900.0 },
+    Scene { name: "global", domain: "three bounces (15 dims)", order: 1, reference_spp: 160, cost: 2900.0 },
 ];
 
 /// The baseline: every ratio is to it.
