@@ -192,6 +192,19 @@ pub fn hardest(dims: usize) -> Vec<Integrand> {
     all.into_iter().filter(|(least, _)| *least <= dims).map(|(_, integrand)| integrand).collect()
 }
 
+/// What an hour's search over products of such functions found hardest: few sets of samples see anything of it.
+pub fn searched() -> Integrand {
+    const PEAK: (f64, f64) = (0.510_789, 0.016_317_1);
+    const SLIT: (f64, f64) = (0.603_03, 0.006_125_96);
+    const BUMP: (f64, f64) = (0.491_03, 0.024_847);
+    let peak = PEAK.1 * (((1.0 - PEAK.0) / PEAK.1).atan() + (PEAK.0 / PEAK.1).atan());
+    new("peak, slit and bump", 4, peak * SLIT.1 * BUMP.1 * PI.sqrt(), |u| {
+        let inside = u[2] > SLIT.0 && u[2] < SLIT.0 + SLIT.1;
+        let [peak, bump] = [(u[0], PEAK), (u[3], BUMP)].map(|(x, (at, width))| ((x - at) / width).powi(2));
+        if inside { (-bump).exp() / (1.0 + peak) } else { 0.0 }
+    })
+}
+
 /// 0 and 1 in turn, 57 of them.
 fn stripe(x: f64) -> f64 {
     f64::from(u8::from((57.0 * x) as u32 % 2 == 1))
