@@ -1,6 +1,5 @@
 //! What a streaming estimate knows besides its sums, and how samples get into them.
 
-use super::batch;
 use super::config::{Color, Config, Estimator, Ridge, Solver};
 use super::cross_fit;
 use super::design::Units;
@@ -8,6 +7,7 @@ use super::folds;
 use super::incremental;
 use super::moments::{self, Moments, MomentsMut};
 use super::per_channel::PerChannel;
+use super::plan::is_plain;
 use super::samples::{Reader, Samples, Subset};
 use super::{gradient_descent, square_root};
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
@@ -61,7 +61,7 @@ impl<R: Real> State<R> {
     pub fn new(config: &Config) -> Result<Self, Error> {
         let shape = config.checked_shape()?;
         let mut columns = config.controls + shape.columns();
-        if batch::is_plain(config, columns) {
+        if is_plain(config, columns) {
             columns = 0;
         }
         let square_root = config.solver == Solver::SquareRoot;

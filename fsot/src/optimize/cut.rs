@@ -1,7 +1,7 @@
 //! Cutting the domain into windows that hold their share of the points.
 
-use super::Domain;
 use super::group::Group;
+use super::problem::Domain;
 use noisefloor::rng::Rng;
 use rayon::prelude::*;
 

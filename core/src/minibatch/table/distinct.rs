@@ -1,7 +1,8 @@
 //! Drawing without replacement.
 
 use super::draw::check_lengths;
-use super::{Kernel, Mixture, Portable, Table};
+use super::mixture::Mixture;
+use super::{Kernel, Portable, Table};
 use crate::Error;
 use crate::rng::Rng;
 

@@ -14,6 +14,7 @@ mod block;
 mod distinct;
 mod draw;
 mod kernel;
+mod mixture;
 mod saved;
 mod shard;
 mod tree;
@@ -26,7 +27,7 @@ pub use shard::{Shard, allocate};
 pub use tree::{CHILDREN, Node};
 
 use crate::Error;
-use draw::Mixture;
+use mixture::Mixture;
 use tree::{Levels, MAX_BLOCKS};
 
 /// The uniform fraction of a new table: no weight above 5. Measured best on classification (.2 to .5 are close).

@@ -1,6 +1,7 @@
 //! Several tables drawn as one: each process of a data-parallel trainer owns the table of its part of the data.
 
-use super::draw::{CHUNK, Mixture, check_lengths};
+use super::draw::{CHUNK, check_lengths};
+use super::mixture::Mixture;
 use super::{Kernel, Portable, Table};
 use crate::Error;
 use crate::rng::Rng;

@@ -92,7 +92,7 @@ fn make(args: &Args) -> Result<()> {
     let mut outputs = Outputs::new();
     outputs.add(&args.common.out, &encode(&table, Format::of(&args.common.out))?)?;
     args.pictures.add(&mut outputs, PICTURE, || draw(&table, extent))?;
-    let report = if args.common.quiet { None } else { Some(report::report(args, &table, &classes, &run)?) };
+    let report = if args.common.quiet { None } else { Some(report::report(&args.common.out, &table, &classes, &run)?) };
     finish(outputs, [run])?;
     report.map_or(Ok(()), |(text, json)| args.common.print(&text, &json))
 }
