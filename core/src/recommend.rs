@@ -19,13 +19,6 @@ use crate::control_variate::Config;
 use crate::error::Error;
 
 /// What a pixel's samples are.
-///
-/// ```
-/// use noisefloor::recommend::{Sampling, recommend};
-/// let [independent, stratified] = [Sampling::Independent, Sampling::Stratified].map(|sampling| recommend(2, 16, sampling, true));
-/// assert!(stratified?.filtered_error < independent?.filtered_error);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Sampling {
     /// Independent of each other.
@@ -35,13 +28,6 @@ pub enum Sampling {
 }
 
 /// How samples become estimates.
-///
-/// ```
-/// use noisefloor::recommend::{Method, Sampling, recommend};
-/// assert_eq!(recommend(2, 4, Sampling::Stratified, false)?.method, Method::PlainMean);
-/// assert_eq!(recommend(2, 4, Sampling::Stratified, true)?.method, Method::Shared);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Method {
     /// The mean of the values.
@@ -99,13 +85,6 @@ pub struct Recommendation {
 ///
 /// # Errors
 /// [`Error::Range`] if `dims` or `samples_per_pixel` is 0.
-///
-/// ```
-/// use noisefloor::recommend::{Method, Sampling, recommend};
-/// assert_eq!(recommend(2, 64, Sampling::Independent, false)?.method, Method::PerPixel);
-/// assert_eq!(recommend(2, 64, Sampling::Stratified, false)?.method, Method::PlainMean);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 pub fn recommend(
     dims: usize,
     samples_per_pixel: usize,

@@ -22,36 +22,12 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     ///
     /// Errors: [`Error::Range`] for another number of weights; [`Error::NoSamples`] where every importance and the
     /// uniform fraction are 0.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    /// use noisefloor::rng::Rng;
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// let (mut index, mut weight) = ([0; 8], [0.0; 8]);
-    /// table.draw(&mut Rng::seed(1), &mut index, Some(&mut weight))?;
-    /// assert!((weight[0] - 1.0 / (4.0 * table.probability(index[0]))).abs() < 1e-5);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn draw(&self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
         self.draw_by::<Portable>(rng, index, weight)
     }
 
     /// [`Table::draw`] by another [`Kernel`]: the same bits.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::table::Portable;
-    /// use noisefloor::minibatch::{Table, table};
-    /// use noisefloor::rng::Rng;
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// let (mut index, mut again) = ([0; 8], [0; 8]);
-    /// table.draw(&mut Rng::seed(1), &mut index, None)?;
-    /// table.draw_by::<Portable>(&mut Rng::seed(1), &mut again, None)?;
-    /// assert_eq!(index, again);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn draw_by<K: Kernel>(
         &self,
@@ -86,36 +62,12 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// variance than independent draws wherever neighbouring items are alike; weights and their use are the same.
     ///
     /// Those drawn uniformly come first, and both in the order of the data set: use the batch as a whole.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    /// use noisefloor::rng::Rng;
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// let mut index = [0; 8];
-    /// table.draw_stratified(&mut Rng::seed(1), &mut index, None)?;
-    /// assert!(index.contains(&3)); // expected 2.96 times: at least twice
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn draw_stratified(&self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
         self.draw_stratified_by::<Portable>(rng, index, weight)
     }
 
     /// [`Table::draw_stratified`] by another [`Kernel`]: the same bits.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::table::Portable;
-    /// use noisefloor::minibatch::{Table, table};
-    /// use noisefloor::rng::Rng;
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// let (mut index, mut again) = ([0; 8], [0; 8]);
-    /// table.draw_stratified(&mut Rng::seed(1), &mut index, None)?;
-    /// table.draw_stratified_by::<Portable>(&mut Rng::seed(1), &mut again, None)?;
-    /// assert_eq!(index, again);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn draw_stratified_by<K: Kernel>(
         &self,
