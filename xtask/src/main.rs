@@ -2,6 +2,7 @@
 
 mod abi;
 mod c_tests;
+mod columns;
 mod demo;
 mod embree;
 mod examples;

@@ -1,8 +1,8 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
 use crate::{
-    abi, c_tests, embree, examples, fit, fuzz, header, install, instructions, library, links, path_tracer, povray,
-    povray_patched, python, release, report, run, threads, tools, train_mlp, valgrind,
+    abi, c_tests, columns, embree, examples, fit, fuzz, header, install, instructions, library, links, path_tracer,
+    povray, povray_patched, python, release, report, run, threads, tools, train_mlp, valgrind,
 };
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -32,6 +32,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         run::check(run::cargo().args(["fmt", "--all", "--check"]))?;
         Ok(Outcome::Passed)
     });
+    steps.run("lines of at most 120 columns", columns::check);
     steps.run("lints (cargo clippy, warnings are errors)", || {
         let mut clippy = run::cargo();
         clippy.args(["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"]);
