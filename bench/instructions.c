@@ -1,7 +1,7 @@
-/* Calls the library's hottest functions, so that callgrind can count their instructions: a number that no other program on the
- * machine changes. `cargo xtask report --only instructions` compiles, runs and tabulates it.
+/* Calls the library's hottest functions, so that callgrind can count their instructions: a number that no other program
+ * on the machine changes. `cargo xtask report --only instructions` compiles, runs and tabulates it.
  *
- *     ./instructions                                             the cases: name, repetitions, what a repetition does so often
+ *     ./instructions         the cases: name, repetitions, what a repetition does so often
  *     valgrind --tool=callgrind --toggle-collect=measured ./instructions NAME
  *
  * Inputs are always the same. Each case runs once before it is counted: caches of answers are full then. */
@@ -163,7 +163,10 @@ static void prepare_table(void)
 }
 
 static void call_table_draw(void) { check(nf_table_draw(&table, &rng, BATCH, item, weight), "nf_table_draw"); }
-static void call_table_update(void) { check(nf_table_update(&table, item, importance, BATCH, 0.3f), "nf_table_update"); }
+static void call_table_update(void)
+{
+    check(nf_table_update(&table, item, importance, BATCH, 0.3f), "nf_table_update");
+}
 
 static void call_balance(void)
 {
@@ -222,7 +225,7 @@ static const struct {
 };
 #define CASES (sizeof cases / sizeof *cases)
 
-/* What callgrind counts: it is told this name. Through a pointer that the compiler does not know, so that nothing is inlined. */
+/* What callgrind counts, by this name. Called through a pointer that the compiler does not know: never inlined. */
 void measured(void (*volatile call)(void), uint32_t repeat);
 #if defined(__GNUC__)
 __attribute__((noinline))

@@ -10,10 +10,10 @@
  *    changed, only on success. Inputs are checked: NULL, ranges, lengths, alignment, finite values.
  *  - Memory: nothing is ever allocated. Objects and workspaces live in caller memory, 8-byte aligned, of at least the
  *    bytes that the matching size function returns. Neither they nor outputs need be initialised. Nothing needs to be
- *    destroyed. An object must not be moved or copied while it is in use, unless its description says otherwise. The bytes
- *    of one in caller memory mean something only to the library file that made them, which alone may change them:
- *    NF_ERR_STATE tells memory that holds no object, not an object whose bytes were changed. Tables are kept, and sent
- *    to other builds and machines, with nf_table_save().
+ *    destroyed. An object must not be moved or copied while it is in use, unless its description says otherwise. The
+ *    bytes of one in caller memory mean something only to the library file that made them, which alone may change
+ *    them: NF_ERR_STATE tells memory that holds no object, not an object whose bytes were changed. Tables are kept, and
+ *    sent to other builds and machines, with nf_table_save().
  *  - Threads: no locks, and no shared state but a cached answer of the processor's. Any number of threads may read an
  *    object; one at a time may write it.
  *  - Arithmetic: IEEE 754, rounding to nearest. Where the host flushes subnormal numbers to zero, values above 1e-30
@@ -38,12 +38,12 @@
 extern "C" {
 #endif
 
-/* -------------------------------------------------------------------------------------------------------------------
+/* ------------------------------------------------------------------------------------------------------------------
  * Version and status
  *
  *   nf_abi_version     The ABI version the library was built with
  *   nf_status_message  A static, NUL-terminated sentence for a status
- * ------------------------------------------------------------------------------------------------------------------- */
+ * ------------------------------------------------------------------------------------------------------------------ */
 
 // The version of this header. `nf_abi_version()` returns the library's.
 #define NF_ABI_VERSION 1
@@ -86,7 +86,7 @@ typedef int32_t nf_status;
 // A static, NUL-terminated sentence for a status; never NULL, also for values that are no status.
 const char *nf_status_message(nf_status status);
 
-/* -------------------------------------------------------------------------------------------------------------------
+/* ------------------------------------------------------------------------------------------------------------------
  * Control variates: samples of one integral, or of a pixel, made into an estimate of lower error
  * Guides, in docs/: control_variates.md
  *
@@ -110,7 +110,7 @@ const char *nf_status_message(nf_status status);
  *   nf_cv_accumulator_workspace_size     Bytes of workspace that nf_cv_accumulator_estimate() needs
  *   nf_cv_accumulator_estimate           The estimate from all samples so far
  *   nf_cv_accumulator_reset              Forgets all samples
- * ------------------------------------------------------------------------------------------------------------------- */
+ * ------------------------------------------------------------------------------------------------------------------ */
 
 // Estimator: a soft mixture of the plain mean and ridge fits, weighted by their leave-one-out errors (streaming:
 // held-out errors). The default; never noticeably worse than the mean: at most 1.03 times its RMSE where that was
@@ -407,13 +407,13 @@ nf_status nf_cv_accumulator_estimate(const nf_cv_accumulator *accumulator,
 // Forgets all samples.
 nf_status nf_cv_accumulator_reset(nf_cv_accumulator *accumulator);
 
-/* -------------------------------------------------------------------------------------------------------------------
+/* ------------------------------------------------------------------------------------------------------------------
  * Guidance: which estimator and which tile to use
  * Guides, in docs/: choosing.md
  *
  *   nf_recommend  Which estimator, of which order, and which of the library's tiles to use for samples of `dims`
  *                 coordinates and `spp` of them per pixel, both at least 1
- * ------------------------------------------------------------------------------------------------------------------- */
+ * ------------------------------------------------------------------------------------------------------------------ */
 
 // Sampling: a pixel's samples are independent of each other.
 #define NF_SAMPLING_INDEPENDENT 0
@@ -462,7 +462,7 @@ nf_status nf_recommend(uint32_t dims,
                        uint32_t can_share,
                        nf_recommendation *out);
 
-/* -------------------------------------------------------------------------------------------------------------------
+/* ------------------------------------------------------------------------------------------------------------------
  * Multiple importance sampling: the weight of one technique at one point
  * Guides, in docs/: mis.md
  *
@@ -472,7 +472,7 @@ nf_status nf_recommend(uint32_t dims,
  *   nf_mis_maximum               The maximum heuristic
  *   nf_mis_optimal               The optimal weight (2.15) of Kondapaneni et al. (2019)
  *   nf_mis_optimal_contribution  What one sample of technique j adds to the estimate (2.10) with optimal weights
- * ------------------------------------------------------------------------------------------------------------------- */
+ * ------------------------------------------------------------------------------------------------------------------ */
 
 // The most techniques that multiple importance sampling combines.
 #define NF_MIS_MAX_TECHNIQUES 16
@@ -567,7 +567,7 @@ nf_status nf_mis_optimal_contribution(const float *pdf,
                                       float value,
                                       float *contribution);
 
-/* -------------------------------------------------------------------------------------------------------------------
+/* ------------------------------------------------------------------------------------------------------------------
  * Optimal multiple importance sampling: weights of least variance, found from the samples
  * Guides, in docs/: mis.md
  *
@@ -580,7 +580,7 @@ nf_status nf_mis_optimal_contribution(const float *pdf,
  *   nf_omis_decay       Multiplies all sums by beta in 0..1, so that older samples count for less
  *   nf_omis_reset       Forgets every sample and NF_OMIS_PROGRESSIVE's alpha
  *   nf_omis_merge       Adds the samples of `other`, of another thread or pass, to `omis`
- * ------------------------------------------------------------------------------------------------------------------- */
+ * ------------------------------------------------------------------------------------------------------------------ */
 
 // nf_omis solver: alpha = (A + ridge)^-1 b, which shrinks to the balance heuristic where the samples say little. The
 // default. Consistent, not unbiased: alpha comes from the samples it is applied to.
@@ -679,7 +679,7 @@ nf_status nf_omis_reset(nf_omis *omis);
 // counts differ.
 nf_status nf_omis_merge(nf_omis *omis, const nf_omis *other);
 
-/* -------------------------------------------------------------------------------------------------------------------
+/* ------------------------------------------------------------------------------------------------------------------
  * Tiles and samplers: sample points whose error is spread over the image where it shows least
  * Guides, in docs/: tiles.md, renderer.md
  *
@@ -691,7 +691,7 @@ nf_status nf_omis_merge(nf_omis *omis, const nf_omis *other);
  *   nf_sampler_draw      Writes the first `dims` coordinates, 1..4, of the sampler's point to u[dims]
  *   nf_sampler_fill_len  How many numbers nf_sampler_fill writes
  *   nf_sampler_fill      Draws for many pixels and samples at once, for renderers that work on whole images
- * ------------------------------------------------------------------------------------------------------------------- */
+ * ------------------------------------------------------------------------------------------------------------------ */
 
 // nf_tile_builtin: 128 x 128 pixels, 1 sample, 2 dims.
 #define NF_TILE_128_1SPP_2D 1
@@ -721,9 +721,9 @@ nf_status nf_omis_merge(nf_omis *omis, const nf_omis *other);
 
 // A view of a tile: sample points for a square of pixels that repeats over the image (chapter 5; docs/tiles.md).
 //
-// A complete struct, to be copied freely; it owns nothing. `nf_tile_128_1spp_2d` and its like come with the library, and
-// a program linked with `--gc-sections` carries those that it names; nf_tile_from_bytes makes others. The fields are to
-// be read, never written; all zero is a valid tile, whose samples are all 0.
+// A complete struct, to be copied freely; it owns nothing. `nf_tile_128_1spp_2d` and its like come with the library,
+// and a program linked with `--gc-sections` carries those that it names; nf_tile_from_bytes makes others. The fields
+// are to be read, never written; all zero is a valid tile, whose samples are all 0.
 typedef struct nf_tile {
     // The stored values, in the memory that the tile was made from.
     const void *values;
@@ -768,7 +768,8 @@ extern const nf_tile nf_tile_64_4spp_2d;
 // The tile NF_TILE_64_4SPP_2D_TEMPORAL.
 extern const nf_tile nf_tile_64_4spp_2d_temporal;
 
-// One of the tiles that come with the library, by number: id is NF_TILE_*. A program that calls it carries all of them.
+// One of the tiles that come with the library, by number: id is NF_TILE_*. A program that calls it carries all of
+// them.
 //
 // NF_ERR_NULL; NF_ERR_RANGE: id; NF_ERR_UNSUPPORTED: this library was built without that tile.
 nf_status nf_tile_builtin(uint32_t id, nf_tile *out);
@@ -855,13 +856,13 @@ nf_status nf_sampler_fill(const nf_sampler *samplers,
                           float *u,
                           size_t len);
 
-/* -------------------------------------------------------------------------------------------------------------------
+/* ------------------------------------------------------------------------------------------------------------------
  * Random numbers
  *
  *   nf_rng_seed     Starts a generator
  *   nf_rng_next     The next 32 random bits
  *   nf_rng_uniform  The next number uniform in [0, 1), a multiple of 2^-24
- * ------------------------------------------------------------------------------------------------------------------- */
+ * ------------------------------------------------------------------------------------------------------------------ */
 
 // A PCG32 random number generator (O'Neill 2014), for minibatches, examples and tests: the same numbers on every
 // target.
@@ -885,7 +886,7 @@ uint32_t nf_rng_next(nf_rng *rng);
 // The next number uniform in [0, 1), a multiple of 2^-24; 0 if `rng` is NULL.
 float nf_rng_uniform(nf_rng *rng);
 
-/* -------------------------------------------------------------------------------------------------------------------
+/* ------------------------------------------------------------------------------------------------------------------
  * Minibatches: items drawn in proportion to their importance, and gradients of the mean loss from them
  * Guides, in docs/: minibatch.md, minibatch_gradients.md
  *
@@ -924,7 +925,7 @@ float nf_rng_uniform(nf_rng *rng);
  *   nf_gradient_estimate              Adds a batch of drawn items, and estimates the gradient of the mean loss from
  *                                     it and, with momentum, those before
  *   nf_gradient_reset                 Forgets every batch
- * ------------------------------------------------------------------------------------------------------------------- */
+ * ------------------------------------------------------------------------------------------------------------------ */
 
 // The importances of the items of a data set, from which minibatches are drawn (Algorithm 3).
 //
@@ -1132,15 +1133,14 @@ uint32_t nf_shuffle(uint64_t seed, uint32_t items, uint32_t position);
 // of one sign can combine linearly to the derivative itself, which norms cannot: the choice for optimal MIS.
 #define NF_NODES_SIGN 1
 
-// || softmax(logits) - onehot(label) ||, the norm of the cross-entropy loss's derivative by the logits (6.10): 0..1.4143.
+// || softmax(logits) - onehot(label) ||, the norm of the cross-entropy loss's derivative by the logits (6.10):
+// 0..1.4143.
 //
 // logits[classes]: finite, of any size. label: below classes. No backward pass is needed; a norm near 0 keeps its
 // relative accuracy.
 //
 // NaN, which nf_table_update refuses, for NULL, misaligned, a label out of range, or a logit that is NaN or infinite.
-float nf_importance_cross_entropy(const float *logits,
-                                  uint32_t classes,
-                                  uint32_t label);
+float nf_importance_cross_entropy(const float *logits, uint32_t classes, uint32_t label);
 
 // The cross-entropy loss -ln softmax(logits)[label] itself, at least 0; one beyond the range of float becomes the
 // largest finite float.

@@ -118,7 +118,8 @@ fn runs(options: &Options) -> Vec<Run> {
 fn main() -> Result<()> {
     let options = Options::parse();
     fs::create_dir_all(&options.output).with_context(|| format!("cannot create {}", options.output.display()))?;
-    let mut out = "study,sampler,classes,points,steps,seed,threads,seconds,part,of_points,w2,bound,discrepancy,discrepancy_relative,neighbour,\
+    let mut out = "study,sampler,classes,points,steps,seed,threads,seconds,part,of_points,w2,bound,\
+                   discrepancy,discrepancy_relative,neighbour,\
                    half_planes,gaussians,half_planes_relative,gaussians_relative\n"
         .to_owned();
     let runs = runs(&options);

@@ -11,7 +11,7 @@
 
 use noisefloor_core::Error;
 use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Samples};
-use noisefloor_core::minibatch::table::Shard;
+use noisefloor_core::minibatch::table::{Shard, Table};
 use noisefloor_core::minibatch::{Batch, Gradient};
 use noisefloor_core::mis::Solver;
 use noisefloor_core::real::Real;
@@ -19,7 +19,10 @@ use noisefloor_core::rng::Rng;
 
 #[cfg(target_arch = "x86_64")]
 use crate::avx2::Avx2;
-use crate::table::{Reader, Writer};
+
+/// A table to draw from, and one to change.
+pub(crate) type Reader<'a> = Table<&'a [f32], &'a [i64]>;
+pub(crate) type Writer<'a> = Table<&'a mut [f32], &'a mut [i64]>;
 
 /// Functions of two bodies: one compiled for every processor of the target, and one for those that have the vector
 /// units named, which run that.

@@ -10,7 +10,8 @@ pub const NF_NODES_NORM: u32 = 0;
 /// of one sign can combine linearly to the derivative itself, which norms cannot: the choice for optimal MIS.
 pub const NF_NODES_SIGN: u32 = 1;
 
-/// || softmax(logits) - onehot(label) ||, the norm of the cross-entropy loss's derivative by the logits (6.10): 0..1.4143.
+/// || softmax(logits) - onehot(label) ||, the norm of the cross-entropy loss's derivative by the logits (6.10):
+/// 0..1.4143.
 ///
 /// logits[classes]: finite, of any size. label: below classes. No backward pass is needed; a norm near 0 keeps its
 /// relative accuracy.

@@ -1,7 +1,7 @@
 //! Tables of importances, and minibatches drawn from them.
 
 use crate::convert;
-use crate::dispatch;
+use crate::dispatch::{self, Reader, Writer};
 use crate::rng::{self, nf_rng};
 use crate::status::*;
 use core::ffi::c_void;
@@ -373,9 +373,6 @@ pub(crate) unsafe fn weights<'a>(weight: *mut f32, batch: u32) -> Result<Option<
     // SAFETY: passed on to the caller.
     if weight.is_null() { Ok(None) } else { unsafe { convert::outputs(weight, batch as usize) }.map(Some) }
 }
-
-pub(crate) type Reader<'a> = Table<&'a [f32], &'a [i64]>;
-pub(crate) type Writer<'a> = Table<&'a mut [f32], &'a mut [i64]>;
 
 /// The table as the core sees it, to read.
 ///

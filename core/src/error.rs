@@ -37,10 +37,6 @@ pub enum Error {
 
 impl Error {
     /// A static sentence that says what was wrong.
-    ///
-    /// ```
-    /// assert_eq!(noisefloor::Error::NotFinite.message(), "an input value is NaN or infinite");
-    /// ```
     pub const fn message(self) -> &'static str {
         match self {
             Error::Range => "an argument is outside its documented range: the function's description lists what can be",

@@ -12,21 +12,7 @@ mod sealed {
 /// `f64` where the target has it in hardware, `f32` elsewhere. Sealed: no other type implements it.
 ///
 /// Only operations that IEEE 754 defines to the last bit, or that `libm` computes in software, are used, so every
-/// target returns the same bits.
-///
-/// ```
-/// # #[cfg(feature = "control-variate")] {
-/// use noisefloor::control_variate::{Config, workspace_len};
-///
-/// // The type of the workspace decides in which precision an estimate is computed.
-/// let config = Config::new(2, 2, 1);
-/// let (mut narrow, mut wide) = (vec![0.0_f32; workspace_len::<f32>(&config, 16)?], vec![0.0_f64; workspace_len::<f64>(&config, 16)?]);
-/// # assert!(!narrow.is_empty() && !wide.is_empty());
-/// # narrow.clear();
-/// # wide.clear();
-/// # }
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
+/// target returns the same bits. The type of the workspace decides in which precision an estimate is computed.
 pub trait Real:
     sealed::Sealed
     + Copy

@@ -19,13 +19,6 @@ use crate::control_variate::Config;
 use crate::error::Error;
 
 /// What a pixel's samples are.
-///
-/// ```
-/// use noisefloor::recommend::{Sampling, recommend};
-/// let [independent, stratified] = [Sampling::Independent, Sampling::Stratified].map(|sampling| recommend(2, 16, sampling, true));
-/// assert!(stratified?.filtered_error < independent?.filtered_error);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Sampling {
     /// Independent of each other.
@@ -35,13 +28,6 @@ pub enum Sampling {
 }
 
 /// How samples become estimates.
-///
-/// ```
-/// use noisefloor::recommend::{Method, Sampling, recommend};
-/// assert_eq!(recommend(2, 4, Sampling::Stratified, false)?.method, Method::PlainMean);
-/// assert_eq!(recommend(2, 4, Sampling::Stratified, true)?.method, Method::Shared);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Method {
     /// The mean of the values.
@@ -99,13 +85,6 @@ pub struct Recommendation {
 ///
 /// # Errors
 /// [`Error::Range`] if `dims` or `samples_per_pixel` is 0.
-///
-/// ```
-/// use noisefloor::recommend::{Method, Sampling, recommend};
-/// assert_eq!(recommend(2, 64, Sampling::Independent, false)?.method, Method::PerPixel);
-/// assert_eq!(recommend(2, 64, Sampling::Stratified, false)?.method, Method::PlainMean);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 pub fn recommend(
     dims: usize,
     samples_per_pixel: usize,
@@ -188,23 +167,35 @@ const fn windows(order: usize, error: f32, filtered_error: f32) -> Cell {
 /// (docs/choosing.md).
 #[rustfmt::skip]
 const INDEPENDENT_ALONE: Table<Cell> = [
-    [plain(1.0, 1.0),            plain(1.0, 0.92),           pixel(5, 0.049, 0.15),      pixel(7, 0.00036, 0.003),   pixel(7, 0.0001, 0.00086)],
-    [plain(1.0, 1.0),            plain(1.0, 1.0),            pixel(3, 0.27, 0.36),       pixel(5, 0.025, 0.042),     pixel(5, 0.011, 0.016)],
-    [plain(1.0, 0.99),           plain(0.99, 1.0),           pixel(3, 0.49, 0.58),       pixel(3, 0.16, 0.21),       pixel(3, 0.079, 0.11)],
-    [plain(1.0, 0.96),           plain(0.99, 0.91),          pixel(2, 0.61, 0.67),       pixel(2, 0.24, 0.29),       pixel(3, 0.094, 0.14)],
-    [plain(0.98, 0.98),          plain(1.0, 1.0),            pixel(2, 0.74, 0.75),       pixel(2, 0.39, 0.44),       pixel(2, 0.21, 0.22)],
-    [plain(0.94, 0.92),          plain(0.99, 0.94),          pixel(2, 0.89, 0.88),       pixel(1, 0.58, 0.59),       pixel(1, 0.47, 0.33)],
+    [plain(1.0, 1.0),            plain(1.0, 0.92),           pixel(5, 0.049, 0.15),
+     pixel(7, 0.00036, 0.003),   pixel(7, 0.0001, 0.00086)],
+    [plain(1.0, 1.0),            plain(1.0, 1.0),            pixel(3, 0.27, 0.36),
+     pixel(5, 0.025, 0.042),     pixel(5, 0.011, 0.016)],
+    [plain(1.0, 0.99),           plain(0.99, 1.0),           pixel(3, 0.49, 0.58),
+     pixel(3, 0.16, 0.21),       pixel(3, 0.079, 0.11)],
+    [plain(1.0, 0.96),           plain(0.99, 0.91),          pixel(2, 0.61, 0.67),
+     pixel(2, 0.24, 0.29),       pixel(3, 0.094, 0.14)],
+    [plain(0.98, 0.98),          plain(1.0, 1.0),            pixel(2, 0.74, 0.75),
+     pixel(2, 0.39, 0.44),       pixel(2, 0.21, 0.22)],
+    [plain(0.94, 0.92),          plain(0.99, 0.94),          pixel(2, 0.89, 0.88),
+     pixel(1, 0.58, 0.59),       pixel(1, 0.47, 0.33)],
 ];
 
 /// Independent samples of an image.
 #[rustfmt::skip]
 const INDEPENDENT_SHARED: Table<Cell> = [
-    [blocks(5, 0.035, 0.06),     blocks(5, 0.033, 0.056),    blocks(5, 0.037, 0.064),    pixel(7, 0.00036, 0.003),   pixel(7, 0.0001, 0.00086)],
-    [blocks(3, 0.13, 0.17),      blocks(3, 0.11, 0.14),      blocks(3, 0.12, 0.15),      pixel(5, 0.025, 0.042),     pixel(5, 0.011, 0.016)],
-    [blocks(3, 0.22, 0.26),      blocks(3, 0.15, 0.18),      blocks(3, 0.14, 0.18),      pixel(3, 0.16, 0.21),       pixel(3, 0.079, 0.11)],
-    [blocks(2, 0.3, 0.31),       blocks(2, 0.23, 0.24),      blocks(2, 0.23, 0.25),      pixel(2, 0.24, 0.29),       pixel(3, 0.094, 0.14)],
-    [blocks(2, 0.39, 0.39),      blocks(2, 0.28, 0.29),      blocks(2, 0.27, 0.28),      blocks(2, 0.29, 0.3),       pixel(2, 0.21, 0.22)],
-    [blocks(1, 0.58, 0.57),      blocks(1, 0.51, 0.51),      blocks(1, 0.52, 0.58),      blocks(1, 0.54, 0.56),      pixel(1, 0.47, 0.33)],
+    [blocks(5, 0.035, 0.06),     blocks(5, 0.033, 0.056),    blocks(5, 0.037, 0.064),
+     pixel(7, 0.00036, 0.003),   pixel(7, 0.0001, 0.00086)],
+    [blocks(3, 0.13, 0.17),      blocks(3, 0.11, 0.14),      blocks(3, 0.12, 0.15),
+     pixel(5, 0.025, 0.042),     pixel(5, 0.011, 0.016)],
+    [blocks(3, 0.22, 0.26),      blocks(3, 0.15, 0.18),      blocks(3, 0.14, 0.18),
+     pixel(3, 0.16, 0.21),       pixel(3, 0.079, 0.11)],
+    [blocks(2, 0.3, 0.31),       blocks(2, 0.23, 0.24),      blocks(2, 0.23, 0.25),
+     pixel(2, 0.24, 0.29),       pixel(3, 0.094, 0.14)],
+    [blocks(2, 0.39, 0.39),      blocks(2, 0.28, 0.29),      blocks(2, 0.27, 0.28),
+     blocks(2, 0.29, 0.3),       pixel(2, 0.21, 0.22)],
+    [blocks(1, 0.58, 0.57),      blocks(1, 0.51, 0.51),      blocks(1, 0.52, 0.58),
+     blocks(1, 0.54, 0.56),      pixel(1, 0.47, 0.33)],
 ];
 
 /// Stratified samples of one pixel: leave-one-out errors do not see strata, and a fit may be many times worse.
@@ -212,23 +203,35 @@ const INDEPENDENT_SHARED: Table<Cell> = [
 /// for 5 and 8 dims and 1 sample, of the tile of 2 dims.
 #[rustfmt::skip]
 const STRATIFIED_ALONE: Table<Cell> = [
-    [plain(0.99, 0.039),         plain(0.17, 0.011),         plain(0.042, 0.0035),       plain(0.0017, 0.0024),      plain(0.00018, 0.00027)],
-    [plain(0.99, 0.045),         plain(0.2, 0.011),          plain(0.052, 0.0035),       plain(0.009, 0.012),        plain(0.0016, 0.0022)],
-    [plain(0.99, 0.08),          plain(0.36, 0.026),         plain(0.15, 0.085),         plain(0.028, 0.035),        plain(0.011, 0.014)],
-    [plain(0.98, 0.2),           plain(0.3, 0.14),           plain(0.15, 0.094),         plain(0.072, 0.097),        plain(0.046, 0.065)],
-    [plain(1.0, 0.24),           plain(0.33, 0.17),          plain(0.2, 0.14),           plain(0.14, 0.17),          plain(0.1, 0.12)],
-    [plain(1.0, 0.28),           plain(0.35, 0.19),          plain(0.23, 0.14),          plain(0.2, 0.2),            plain(0.16, 0.13)],
+    [plain(0.99, 0.039),         plain(0.17, 0.011),         plain(0.042, 0.0035),
+     plain(0.0017, 0.0024),      plain(0.00018, 0.00027)],
+    [plain(0.99, 0.045),         plain(0.2, 0.011),          plain(0.052, 0.0035),
+     plain(0.009, 0.012),        plain(0.0016, 0.0022)],
+    [plain(0.99, 0.08),          plain(0.36, 0.026),         plain(0.15, 0.085),
+     plain(0.028, 0.035),        plain(0.011, 0.014)],
+    [plain(0.98, 0.2),           plain(0.3, 0.14),           plain(0.15, 0.094),
+     plain(0.072, 0.097),        plain(0.046, 0.065)],
+    [plain(1.0, 0.24),           plain(0.33, 0.17),          plain(0.2, 0.14),
+     plain(0.14, 0.17),          plain(0.1, 0.12)],
+    [plain(1.0, 0.28),           plain(0.35, 0.19),          plain(0.23, 0.14),
+     plain(0.2, 0.2),            plain(0.16, 0.13)],
 ];
 
 /// Stratified samples of an image.
 #[rustfmt::skip]
 const STRATIFIED_SHARED: Table<Cell> = [
-    [blocks(5, 0.034, 0.03),     blocks(5, 0.019, 0.0096),   blocks(5, 0.011, 0.0038),   blocks(5, 0.0012, 0.0019),  blocks(5, 0.00014, 0.00023)],
-    [blocks(3, 0.13, 0.048),     blocks(3, 0.079, 0.011),    windows(3, 0.032, 0.0028),  blocks(3, 0.0073, 0.01),    blocks(3, 0.0015, 0.0019)],
-    [blocks(2, 0.25, 0.096),     blocks(2, 0.19, 0.028),     blocks(3, 0.073, 0.051),    plain(0.028, 0.035),        plain(0.011, 0.014)],
-    [blocks(2, 0.29, 0.19),      blocks(2, 0.18, 0.099),     blocks(2, 0.11, 0.075),     blocks(2, 0.058, 0.08),     blocks(2, 0.038, 0.053)],
-    [blocks(2, 0.39, 0.26),      blocks(2, 0.23, 0.14),      blocks(2, 0.15, 0.11),      blocks(2, 0.1, 0.12),       blocks(2, 0.078, 0.086)],
-    [blocks(1, 0.61, 0.32),      plain(0.35, 0.19),          plain(0.23, 0.14),          plain(0.2, 0.2),            plain(0.16, 0.13)],
+    [blocks(5, 0.034, 0.03),     blocks(5, 0.019, 0.0096),   blocks(5, 0.011, 0.0038),
+     blocks(5, 0.0012, 0.0019),  blocks(5, 0.00014, 0.00023)],
+    [blocks(3, 0.13, 0.048),     blocks(3, 0.079, 0.011),    windows(3, 0.032, 0.0028),
+     blocks(3, 0.0073, 0.01),    blocks(3, 0.0015, 0.0019)],
+    [blocks(2, 0.25, 0.096),     blocks(2, 0.19, 0.028),     blocks(3, 0.073, 0.051),
+     plain(0.028, 0.035),        plain(0.011, 0.014)],
+    [blocks(2, 0.29, 0.19),      blocks(2, 0.18, 0.099),     blocks(2, 0.11, 0.075),
+     blocks(2, 0.058, 0.08),     blocks(2, 0.038, 0.053)],
+    [blocks(2, 0.39, 0.26),      blocks(2, 0.23, 0.14),      blocks(2, 0.15, 0.11),
+     blocks(2, 0.1, 0.12),       blocks(2, 0.078, 0.086)],
+    [blocks(1, 0.61, 0.32),      plain(0.35, 0.19),          plain(0.23, 0.14),
+     plain(0.2, 0.2),            plain(0.16, 0.13)],
 ];
 
 /// Samples and dims of the tile with the least error of the plain mean, √(raw filtered). From 64 samples on a tile of 1

@@ -3,6 +3,8 @@
 //! A file is, little-endian: `FSOTCKP1`, the length of the header (u32), the header (JSON: version, problem, iteration,
 //! number of coordinates), the coordinates (f32), the SHA-256 of all of that.
 
+pub use crate::digest::digest;
+
 use crate::error::{Error, Result};
 use crate::output;
 use crate::run::Optimization;
@@ -50,11 +52,6 @@ impl Problem {
     pub fn fingerprint(&self) -> String {
         digest(format!("{}\n{}", env!("CARGO_PKG_VERSION"), self.description).as_bytes())
     }
-}
-
-/// The SHA-256 of some bytes, in hexadecimal.
-pub fn digest(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Saves the state of an optimisation; an older checkpoint is replaced atomically.

@@ -12,6 +12,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
+use temporary::folder;
 
 /// Files that are complete but not yet in their place. Dropped before [`commit`](Outputs::commit), they leave nothing.
 #[derive(Debug, Default)]
@@ -187,10 +188,6 @@ const STANDARD_ERROR: &str = "/dev/stderr";
 
 fn is_standard_output(path: &Path) -> bool {
     path == "-" || path == "/dev/stdout"
-}
-
-fn folder(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 fn write_stream(path: &Path, bytes: &[u8]) -> std::io::Result<()> {

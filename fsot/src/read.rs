@@ -1,6 +1,9 @@
 //! Reading what other commands and programs wrote.
 
 mod bounded;
+mod ending;
+
+pub use ending::ending;
 
 use crate::counted::counted;
 use crate::error::{Error, Result};
@@ -53,11 +56,6 @@ pub fn text(path: &Path, what: &str) -> Result<String> {
         return Err(none());
     }
     String::from_utf8(bytes?).map_err(|_| none())
-}
-
-/// The ending of a file's name, in lower case; empty if it has none.
-pub fn ending(path: &Path) -> String {
-    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 
 /// A picture, PNG, JPEG or OpenEXR by its content, whatever its name says.

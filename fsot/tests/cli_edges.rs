@@ -156,8 +156,10 @@ fn pictures_of_several_shapes_are_refused() {
     }
     let classes = |first: &str, second: &str| {
         format!(
-            "[[class]]\nname = \"a\"\nfunction = {{ box = {{ from = 0.0, to = 0.5 }} }}\ntarget = {{ image = \"{first}\" }}\n\
-             [[class]]\nname = \"b\"\nfunction = {{ box = {{ from = 0.5, to = 1.0 }} }}\ntarget = {{ image = \"{second}\" }}\n"
+            "[[class]]\nname = \"a\"\nfunction = {{ box = {{ from = 0.0, to = 0.5 }} }}\n\
+             target = {{ image = \"{first}\" }}\n\
+             [[class]]\nname = \"b\"\nfunction = {{ box = {{ from = 0.5, to = 1.0 }} }}\n\
+             target = {{ image = \"{second}\" }}\n"
         )
     };
     place.write("same.toml", classes("a.png", "b.png"));

@@ -12,7 +12,8 @@ int main(void) {
     nf_status status;
     int i;
     if (nf_abi_version() != NF_ABI_VERSION) {
-        fprintf(stderr, "the header is of ABI version %d, the library of %u\n", NF_ABI_VERSION, (unsigned)nf_abi_version());
+        fprintf(stderr, "the header is of ABI version %d, the library of %u\n", NF_ABI_VERSION,
+                (unsigned)nf_abi_version());
         return 1;
     }
     /* Least squares of order 1 are exact for a linear integrand. */
@@ -25,7 +26,8 @@ int main(void) {
     config.estimator = NF_CV_LEAST_SQUARES;
     status = nf_cv_estimate(&config, u, f, 8, workspace, sizeof workspace, &estimate);
     if (status != NF_OK || estimate.mean[0] < 1.9999f || estimate.mean[0] > 2.0001f) {
-        fprintf(stderr, "nf_cv_estimate: %s, mean %g instead of 2\n", nf_status_message(status), (double)estimate.mean[0]);
+        fprintf(stderr, "nf_cv_estimate: %s, mean %g instead of 2\n", nf_status_message(status),
+                (double)estimate.mean[0]);
         return 1;
     }
     status = nf_tile_builtin(NF_TILE_128_16SPP_2D, &tile);

@@ -64,7 +64,8 @@ void normals_of_small_spheres()
         Hit hit;
         if (!bvh.closest(ray, hit))
             continue;
-        worst = std::max({worst, std::abs(double(length(hit.shading)) - 1), std::abs(double(length(hit.geometric)) - 1)});
+        worst =
+            std::max({worst, std::abs(double(length(hit.shading)) - 1), std::abs(double(length(hit.geometric)) - 1)});
         normals.add(bvh, geometry, ray);
     }
     expect(normals.spheres > 10000, "normals: too few rays hit anything");
@@ -77,7 +78,8 @@ void normals()
 {
     const Geometry geometry = jumble_of_normals();
     const Normals normals = normals_of_jumble(geometry, Bvh(geometry));
-    std::printf("   %-72s %.1e\n", "normals of triangles and spheres, moving, from both sides: largest error", normals.worst);
+    std::printf("   %-72s %.1e\n", "normals of triangles and spheres, moving, from both sides: largest error",
+                normals.worst);
     expect(normals.behind > 1000 && normals.triangles - normals.behind > 1000, "normals: too few rays meet triangles");
     expect(normals.inside > 1000 && normals.spheres - normals.inside > 1000, "normals: too few rays meet spheres");
     expect_near(normals.worst, 0, 1e-3, "normals of triangles and spheres");

@@ -38,9 +38,10 @@ void irradiance(const LitScene &lit, const Bvh &bvh, Vector from, Vector normal,
         integrated_share.add(density * 4 * pi);
     }
     bool peaked = light.kind == Light::environment; // its one bright spot is hard to find by chance
-    expect_same((std::string(lit.name) + ": irradiance by light and by direction").c_str(), by_light, by_direction, peaked ? 0.2 : 0.03);
-    expect_same((std::string(lit.name) + ": share of visible samples, integral of the density").c_str(), sampled_share, integrated_share,
+    expect_same((std::string(lit.name) + ": irradiance by light and by direction").c_str(), by_light, by_direction,
                 peaked ? 0.2 : 0.03);
+    expect_same((std::string(lit.name) + ": share of visible samples, integral of the density").c_str(), sampled_share,
+                integrated_share, peaked ? 0.2 : 0.03);
 }
 
 // The density that comes with a sample is that of its direction.

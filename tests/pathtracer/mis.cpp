@@ -36,7 +36,8 @@ void densities(const LitScene &lit)
         }
         expect(density > sample.pdf * 0.99f, "a direction is drawn more often than is said");
         // A mesh has a back, which adds to the density of the front.
-        expect(light.kind == Light::mesh || density < sample.pdf * 1.01f, "a direction is drawn more seldom than is said");
+        expect(light.kind == Light::mesh || density < sample.pdf * 1.01f,
+               "a direction is drawn more seldom than is said");
     }
     std::printf("   %-72s %d of %d\n", (std::string(lit.name) + ": drawn, but of density 0").c_str(), outside, seen);
     expect(outside <= seen / 10000, "directions that are drawn have density 0");
@@ -105,7 +106,8 @@ void estimates(const LitScene &lit, bool several)
         });
         std::string what = std::string(several ? "several lights" : lit.name) + ": " + kind.name;
         double bias = kind.optimal || kind.regression ? 0.02 * expected.mean : 0;
-        std::printf("   %-72s %.5f  %.5f  +- %.5f\n", what.c_str(), actual.mean, expected.mean, std::hypot(actual.error, expected.error));
+        std::printf("   %-72s %.5f  %.5f  +- %.5f\n", what.c_str(), actual.mean, expected.mean,
+                    std::hypot(actual.error, expected.error));
         expect_near(actual.mean, expected.mean, 5 * std::hypot(actual.error, expected.error) + bias, what.c_str());
         expect(5 * std::hypot(actual.error, expected.error) < 0.05 * expected.mean, "too noisy to tell");
     }

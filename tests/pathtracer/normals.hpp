@@ -46,7 +46,8 @@ inline Surface surface(const demo::Triangle &t, const demo::Ray &ray)
 // Normals point outwards, from within, too.
 inline Surface surface(const demo::Sphere &s, const demo::Ray &ray)
 {
-    const Wide direction = normalize(Wide(ray.direction)), from = Wide(ray.origin) - (Wide(s.center) + ray.time * Wide(s.motion));
+    const Wide direction = normalize(Wide(ray.direction)),
+               from = Wide(ray.origin) - (Wide(s.center) + ray.time * Wide(s.motion));
     const double middle = -dot(from, direction), radius = s.radius;
     const double half = std::sqrt(std::max(0.0, radius * radius - dot(from, from) + middle * middle));
     const Wide normal = 1 / radius * (from + (middle > half ? middle - half : middle + half) * direction);

@@ -43,13 +43,15 @@ void direct_light()
 {
     for (LitScene &lit : lit_scenes()) {
         Builder builder(lit.scene);
-        builder.parallelogram({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, builder.material({.4f, .4f, .3f}, {.3f, .3f, .3f}, 20));
+        builder.parallelogram({-3, 0, 3}, {6, 0, 0}, {0, 0, -6},
+                              builder.material({.4f, .4f, .3f}, {.3f, .3f, .3f}, 20));
         builder.sphere({.3f, .3f, .3f}, .3f, builder.material({.5f, .3f, .3f}));
         lit.scene.camera.look({0, 1.2f, 4}, {0, .5f, 0}, 40, 1);
         Estimate one = render(lit.scene, 16, 1024, 1);
         lit.scene.layout.bounces = 1;
         Estimate weighted = render(lit.scene, 16, 1024, 2);
-        expect_same((std::string(lit.name) + ": direct light, without and with sampled directions").c_str(), one, weighted);
+        expect_same((std::string(lit.name) + ": direct light, without and with sampled directions").c_str(), one,
+                    weighted);
     }
 }
 
@@ -81,7 +83,8 @@ void choice()
         scene.layout.choice = true;
         scene.layout.bounces = bounces;
         Estimate all = render(scene, 16, 1024, 20 + bounces);
-        expect_same(bounces ? "three lights, with sampled directions" : "three lights", all.mean(), all.error(), expected, std::sqrt(variance));
+        expect_same(bounces ? "three lights, with sampled directions" : "three lights", all.mean(), all.error(),
+                    expected, std::sqrt(variance));
     }
 }
 

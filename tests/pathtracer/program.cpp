@@ -10,7 +10,8 @@ namespace {
 void names_in_json()
 {
     expect(json("direct") == "\"direct\"", "json: a plain name");
-    expect(json("a \"b\"\\c\n\x01") == "\"a \\\"b\\\"\\\\c\\u000a\\u0001\"", "json: quotes, backslashes, control characters");
+    expect(json("a \"b\"\\c\n\x01") == "\"a \\\"b\\\"\\\\c\\u000a\\u0001\"",
+           "json: quotes, backslashes, control characters");
     expect(json("Fl\xc3\xa4" "che") == "\"Fl\xc3\xa4" "che\"", "json: UTF-8 as it is");
 }
 
@@ -67,7 +68,8 @@ void refusals_come_first()
     }
     for (const char *name : {"leave_one_out", "shared", "slices", "nonsense"}) {
         options.estimators = {"mc", name};
-        expect(refused(options).find(name) != std::string::npos, "what cannot be streamed is not refused by name before threads start");
+        expect(refused(options).find(name) != std::string::npos,
+               "what cannot be streamed is not refused by name before threads start");
     }
 }
 

@@ -43,14 +43,16 @@ inline void run(int argc, char **argv)
         return;
     }
     if (options.scene.empty())
-        throw std::runtime_error("--scene FILE.stack says what is rendered; `cargo xtask test povray` makes stacks in target/povray");
+        throw std::runtime_error(
+            "--scene FILE.stack says what is rendered; `cargo xtask test povray` makes stacks in target/povray");
     if (options.filter != demo::Filter::center || options.mis || options.bounces)
-        throw std::runtime_error("a stack's pixels are single points, its lights are sampled one way, and its paths are POV-Ray's: no "
-                                 "--filter, no --mis, no --bounces");
+        throw std::runtime_error(
+            "a stack's pixels are single points, its lights are sampled one way, and its paths are POV-Ray's: no "
+            "--filter, no --mis, no --bounces");
     const Stack stack(options.scene);
     if (options.width != stack.width() || options.height != stack.height())
-        throw std::runtime_error("the stack " + options.scene + " has other pixels: say --width " + std::to_string(stack.width()) +
-                                 " --height " + std::to_string(stack.height()));
+        throw std::runtime_error("the stack " + options.scene + " has other pixels: say --width " +
+                                 std::to_string(stack.width()) + " --height " + std::to_string(stack.height()));
     const StackIntegrand integrand(stack, model);
     if (options.reference) {
         demo::Outputs outputs;

@@ -69,7 +69,8 @@ private:
         explicit File(const std::string &path) : file_(std::fopen(path.c_str(), "rb"))
         {
             if (!file_)
-                throw std::runtime_error("cannot read the stack " + path + "; `cargo xtask test povray` renders small ones into target/povray");
+                throw std::runtime_error("cannot read the stack " + path +
+                                         "; `cargo xtask test povray` renders small ones into target/povray");
         }
         File(const File &) = delete;
         File &operator=(const File &) = delete;
@@ -82,7 +83,8 @@ private:
 
     [[noreturn]] void fail(const std::string &what) const
     {
-        throw std::runtime_error("the stack " + path_ + " is damaged: " + what + ". Delete it: it is rendered again when it is needed");
+        throw std::runtime_error("the stack " + path_ + " is damaged: " + what +
+                                 ". Delete it: it is rendered again when it is needed");
     }
 
     std::string line(FILE *file) const
@@ -99,7 +101,8 @@ private:
     void header(const File &file)
     {
         if (line(file.get()) != "noisefloor-stack 1")
-            throw std::runtime_error(path_ + " is no stack of this version: it does not begin with `noisefloor-stack 1`");
+            throw std::runtime_error(path_ +
+                                     " is no stack of this version: it does not begin with `noisefloor-stack 1`");
         bool checked = false;
         for (std::string text; (text = line(file.get())) != "data";) {
             char kind[16];
@@ -117,7 +120,8 @@ private:
                 fail("its header says `" + text + "`");
             }
         }
-        if (!checked || axes_.empty() || axes_.size() > 8 || width_ == 0 || height_ == 0 || cells() == 0 || pixels() > (size_t{1} << 31) / cells())
+        if (!checked || axes_.empty() || axes_.size() > 8 || width_ == 0 || height_ == 0 || cells() == 0 ||
+            pixels() > (size_t{1} << 31) / cells())
             fail("its header lacks a line, or states an impossible size");
     }
 

@@ -361,7 +361,12 @@ fn any_call() -> impl Strategy<Value = (Config, [usize; 5], usize, u64)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 150, rng_seed: proptest::test_runner::RngSeed::Fixed(8), failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 150,
+        rng_seed: proptest::test_runner::RngSeed::Fixed(8),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     /// Any shape and configuration, values of any size, surfaces and factors: finite numbers, each pixel once and in
     /// order (which the calls check), the same again.

@@ -117,7 +117,8 @@ fn fireflies() {
             let [whole, rest, share] =
                 [ratio(&whole).upper(), ratio(&rest).value, root(0) * n as f64 / f64::from(size)];
             println!(
-                "{n} samples, firefly {size:e}: {whole:.4}; other pixels {rest:.3} of the mean, {share:.5} of the firefly"
+                "{n} samples, firefly {size:e}: {whole:.4}; other pixels {rest:.3} of the mean, {share:.5} of \
+                 the firefly"
             );
             assert!(whole < LIMIT, "{n} {size}: {whole}");
             assert!(rest < 0.8, "{n} {size}: {rest} {share}");

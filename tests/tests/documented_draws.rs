@@ -35,7 +35,11 @@ proptest! {
     /// minibatch.md: p_i = (1 - d) q_i / sum q + d / N are probabilities, and the weight 1 / (N p_i) is at most 1 / d,
     /// drawn independently or stratified.
     #[test]
-    fn probabilities_sum_to_one(q in prop::collection::vec(importance(), 1..400), fraction in fraction(), seed in any::<u64>()) {
+    fn probabilities_sum_to_one(
+        q in prop::collection::vec(importance(), 1..400),
+        fraction in fraction(),
+        seed in any::<u64>(),
+    ) {
         let (table, items) = (table(&q, fraction), q.len());
         let sum: f64 = (0..items).map(|item| f64::from(table.probability(item as u32))).sum();
         let possible = fraction > 0.0 || q.iter().any(|&q| q > 0.0);
@@ -91,7 +95,10 @@ proptest! {
     /// minibatch.md, shards: the counts are those of the whole batch, each its share rounded up or down.
     #[test]
     fn shards_share_out_the_batch(
-        shards in prop::collection::vec((prop_oneof![4 => 0.0..1e3_f64, 1 => Just(0.0), 1 => 0.0..1e30_f64], 0..1000_u64), 1..20),
+        shards in prop::collection::vec(
+            (prop_oneof![4 => 0.0..1e3_f64, 1 => Just(0.0), 1 => 0.0..1e30_f64], 0..1000_u64),
+            1..20,
+        ),
         fraction in fraction(),
         batch in 0..5000_u32,
         seed in any::<u64>(),
@@ -172,7 +179,12 @@ proptest! {
     /// tiles.md, what is unbiased: over the pixels, the sets of a domain's first `spp` samples are those of the tile,
     /// so that the mean of any estimate is exactly the tile's.
     #[test]
-    fn domains_are_toroidal_shifts(shape in shapes(), frame in any::<u32>(), keys in prop::collection::vec(any::<u32>(), 0..3), seed in any::<u64>()) {
+    fn domains_are_toroidal_shifts(
+        shape in shapes(),
+        frame in any::<u32>(),
+        keys in prop::collection::vec(any::<u32>(), 0..3),
+        seed in any::<u64>(),
+    ) {
         let bytes = noise(shape, seed);
         let tile = Tile::from_bytes(&bytes).unwrap();
         let dims = shape.dims.min(4) as usize;
@@ -180,7 +192,8 @@ proptest! {
             let set = |pixel: u32| {
                 let sampler = Sampler::pixel(&tile, pixel % shape.size, pixel / shape.size, frame, 0);
                 let sampler = keys.iter().fold(sampler, |sampler, &key| sampler.domain(key));
-                let mut set: Vec<_> = (0..shape.spp).map(|i| sampler.moved(0, 0, i).draw::<4>().map(f32::to_bits)[..dims].to_vec()).collect();
+                let drawn = |i| sampler.moved(0, 0, i).draw::<4>().map(f32::to_bits)[..dims].to_vec();
+                let mut set: Vec<_> = (0..shape.spp).map(drawn).collect();
                 set.sort_unstable();
                 set
             };
@@ -201,12 +214,14 @@ proptest! {
         let tile = Tile::from_bytes(&bytes).unwrap();
         let [x, y, frame, index] = if at_the_end { place.map(|c| u32::MAX - c % 4) } else { place };
         let (width, height, samples) = size;
-        let domains = [(walk(&tile, [x, y, frame, index], &path), dims), (Sampler::pixel(&tile, x, y, frame, index), 2)];
+        let root = Sampler::pixel(&tile, x, y, frame, index);
+        let domains = [(walk(&tile, [x, y, frame, index], &path), dims), (root, 2)];
         let mut u = vec![-1.0; fill_len(&domains, width, height, samples).unwrap()];
         fill(&domains, width, height, samples, &mut u).unwrap();
         let mut filled = u.chunks(dims + 2);
-        for (row, column, sample) in (0..height * width * samples).map(|i| (i / samples / width, i / samples % width, i % samples)) {
-            let place = [x.wrapping_add(column as u32), y.wrapping_add(row as u32), frame, index.wrapping_add(sample as u32)];
+        for i in 0..height * width * samples {
+            let [row, column, sample] = [i / samples / width, i / samples % width, i % samples].map(|k| k as u32);
+            let place = [x.wrapping_add(column), y.wrapping_add(row), frame, index.wrapping_add(sample)];
             let own = walk(&tile, place, &path).draw::<4>();
             let expected = [&own[..dims], &walk(&tile, place, &[]).draw::<2>()].concat();
             prop_assert_eq!(filled.next(), Some(&expected[..]));

@@ -29,7 +29,12 @@ proptest! {
 
     /// mis.md: merging is associative, the order of samples does not matter, and estimates scale with f, within 1e-5.
     #[test]
-    fn optimal_mis_merges_permutes_and_scales(techniques in 1..6_usize, sizes in prop::collection::vec(1..12_usize, 3), factor in -50.0..50.0_f32, seed in any::<u64>()) {
+    fn optimal_mis_merges_permutes_and_scales(
+        techniques in 1..6_usize,
+        sizes in prop::collection::vec(1..12_usize, 3),
+        factor in -50.0..50.0_f32,
+        seed in any::<u64>(),
+    ) {
         let mut rng = SplitMix64::new(seed);
         let counts: Vec<u32> = (0..techniques).map(|_| 1 + rng.below(3) as u32).collect();
         let mut samples: Vec<Sample> = (0..sizes.iter().sum()).map(|i: usize| {
@@ -41,7 +46,9 @@ proptest! {
             omis.solve(solver, &mut out).unwrap();
             out[0]
         });
-        let same = |a: [f32; 2], b: [f32; 2], size: f32| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-5 * size * (1.0 + a.abs()));
+        let same = |a: [f32; 2], b: [f32; 2], size: f32| {
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-5 * size * (1.0 + a.abs()))
+        };
         let whole = solve(&omis_of(&counts, &samples));
         let (first, rest) = samples.split_at(sizes[0]);
         let (second, third) = rest.split_at(sizes[1]);
@@ -60,11 +67,17 @@ proptest! {
 
     /// recommend(): dims are rounded up, samples down, to what was measured.
     #[test]
-    fn recommendations_are_rounded(dims in 1..=15_usize, samples in prop_oneof![1..20_usize, 1..70_usize, 1..3000_usize], stratified in any::<bool>(), can_share in any::<bool>()) {
+    fn recommendations_are_rounded(
+        dims in 1..=15_usize,
+        samples in prop_oneof![1..20_usize, 1..70_usize, 1..3000_usize],
+        stratified in any::<bool>(),
+        can_share in any::<bool>(),
+    ) {
         let sampling = if stratified { Sampling::Stratified } else { Sampling::Independent };
         let measured = [1, 2, 4, 5, 8, 15].into_iter().find(|&measured| measured >= dims).unwrap();
         let fewer = [256, 64, 16, 4, 1].into_iter().find(|&fewer| fewer <= samples).unwrap();
-        let (here, there) = (recommend(dims, samples, sampling, can_share).unwrap(), recommend(measured, fewer, sampling, can_share).unwrap());
+        let of = |dims, samples| recommend(dims, samples, sampling, can_share).unwrap();
+        let (here, there) = (of(dims, samples), of(measured, fewer));
         prop_assert_eq!(here.config.dims, dims);
         let config = Config { dims, stride: here.config.stride, ..there.config };
         prop_assert_eq!(here, Recommendation { config, ..there });
@@ -73,7 +86,13 @@ proptest! {
     /// control_variates.md: estimates are in the unit of f, whose sign does not matter, within 1e-5: in batches and
     /// streams.
     #[test]
-    fn estimates_scale_with_f(estimator in prop::sample::select(ESTIMATORS.to_vec()), dims in 1..4_usize, n in 12..60_usize, factor in -100..100_i32, seed in any::<u64>()) {
+    fn estimates_scale_with_f(
+        estimator in prop::sample::select(ESTIMATORS.to_vec()),
+        dims in 1..4_usize,
+        n in 12..60_usize,
+        factor in -100..100_i32,
+        seed in any::<u64>(),
+    ) {
         let config = config(dims, 2, estimator);
         let mut rng = SplitMix64::new(seed);
         let u = points(n, dims, &mut rng);
@@ -96,11 +115,18 @@ proptest! {
     /// never matters.
     #[test]
     fn a_pixel_does_not_see_itself(
-        estimator in 0..3_usize, width in 1..10_usize, height in 1..10_usize, n in 1..5_usize, order in 1..3_usize, in_order in any::<bool>(), seed in any::<u64>(),
+        estimator in 0..3_usize,
+        width in 1..10_usize,
+        height in 1..10_usize,
+        n in 1..5_usize,
+        order in 1..3_usize,
+        in_order in any::<bool>(),
+        seed in any::<u64>(),
     ) {
         let estimator = [Estimator::LeaveOneOut, Estimator::KFold, Estimator::Robust][estimator];
         let config = config(2, order, estimator);
-        let config = if estimator == Estimator::Robust { Config { ridge: Ridge::Fixed(0.02), ..config } } else { config };
+        let ridge = if estimator == Estimator::Robust { Ridge::Fixed(0.02) } else { config.ridge };
+        let config = Config { ridge, ..config };
         let (mut rng, pixels) = (SplitMix64::new(seed), width * height);
         let u = points(pixels * n, 2, &mut rng);
         let f = values(&u, 2, smooth);

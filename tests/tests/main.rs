@@ -41,6 +41,7 @@ mod mis_statistics;
 mod mis_support;
 mod mis_weight;
 mod rng;
+mod small_cases;
 mod table_support;
 mod tile_continued;
 mod tile_format;

@@ -530,7 +530,10 @@ proptest! {
         let mut rng = Rng::seed(seed);
         let mut number = |positive: bool| match style {
             0 => f32::from_bits(rng.next_u32()),
-            1 => f32::from_bits(rng.next_u32() & if positive { 0x7fff_ffff } else { u32::MAX }).clamp(f32::MIN, f32::MAX),
+            1 => {
+                let mask = if positive { 0x7fff_ffff } else { u32::MAX };
+                f32::from_bits(rng.next_u32() & mask).clamp(f32::MIN, f32::MAX)
+            }
             2 => 10f32.powf(-44.0 * rng.uniform_f32()),
             _ => rng.uniform_f32(),
         };

@@ -34,13 +34,28 @@ fn any_importance() -> impl Strategy<Value = f32> {
 }
 
 fn fraction() -> impl Strategy<Value = f32> {
-    prop_oneof![4 => Just(0.2_f32), 3 => Just(0.0), 1 => Just(1.0), 2 => 0.0_f32..1.0, 1 => Just(1e-12), 1 => Just(1.5), 1 => Just(-0.1)]
+    prop_oneof![
+        4 => Just(0.2_f32),
+        3 => Just(0.0),
+        1 => Just(1.0),
+        2 => 0.0_f32..1.0,
+        1 => Just(1e-12),
+        1 => Just(1.5),
+        1 => Just(-0.1),
+    ]
 }
 
 fn operation() -> impl Strategy<Value = Operation> {
     let draws = || prop_oneof![1_usize..5, 60_usize..70, Just(0), 1_usize..300];
     let items = prop::collection::vec((any::<u16>(), any_importance()), 0..150);
-    let momentum = prop_oneof![3 => Just(0.0_f32), 1 => Just(-0.0_f32), 4 => Just(0.3), 1 => Just(1.0), 1 => 0.0_f32..1.0, 1 => Just(1.1)];
+    let momentum = prop_oneof![
+        3 => Just(0.0_f32),
+        1 => Just(-0.0_f32),
+        4 => Just(0.3),
+        1 => Just(1.0),
+        1 => 0.0_f32..1.0,
+        1 => Just(1.1),
+    ];
     prop_oneof![
         4 => (draws(), any::<bool>()).prop_map(|(draws, stratified)| Operation::Draw { draws, stratified }),
         2 => draws().prop_map(|draws| Operation::Distinct { draws }),
@@ -233,10 +248,19 @@ fn run(start: &[f32], room: u32, operations: &[Operation]) -> Result<(), TestCas
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 3000, rng_seed: RngSeed::Fixed(61), failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 3000,
+        rng_seed: RngSeed::Fixed(61),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
-    fn operations_are_those_of_a_list(start in start(), room in 0_u32..200, operations in prop::collection::vec(operation(), 1..25)) {
+    fn operations_are_those_of_a_list(
+        start in start(),
+        room in 0_u32..200,
+        operations in prop::collection::vec(operation(), 1..25),
+    ) {
         run(&start, room, &operations)?;
     }
 }

@@ -13,10 +13,12 @@ use std::fs;
 use std::path::PathBuf;
 
 const HEAD: &str = "\
-# Batches drawn from tables of importances, to the bit. Written by tests/tests/minibatch_table_vectors.rs; read by it and by
+# Batches drawn from tables of importances, to the bit. Written by tests/tests/minibatch_table_vectors.rs; \
+read by it and by
 # tests/c/table_vectors.c, which say how the tables are made.
 #
-# items seed draws uniform_fraction : item weight item weight of the first two draws, then FNV-1a of all that is drawn: with
+# items seed draws uniform_fraction : item weight item weight of the first two draws, then FNV-1a of all that is \
+drawn: with
 # replacement, after updates stratified, with epsilon added, without replacement; total, FNV-1a of the saved bytes.
 # Floats and hashes as hexadecimal bits.
 ";

@@ -238,8 +238,11 @@ proptest! {
         let mut omis = empty(&counts, 2);
         for i in 0..samples {
             let technique = i % counts.len();
-            let mut pdf: Vec<f32> =
-                counts.iter().map(|_| if rng.below(4) == 0 { 0.0 } else { 10.0_f32.powf(76.0 * rng.uniform_f32() - 38.0) }).collect();
+            let mut density = || match rng.below(4) {
+                0 => 0.0,
+                _ => 10.0_f32.powf(76.0 * rng.uniform_f32() - 38.0),
+            };
+            let mut pdf: Vec<f32> = counts.iter().map(|_| density()).collect();
             pdf[technique] = pdf[technique].max(1e-38);
             let value = [f32::MAX * (2.0 * rng.uniform_f32() - 1.0), 1e-38];
             omis.add(technique, &pdf, &value).unwrap();

@@ -9,7 +9,10 @@ proptest! {
 
     #[test]
     fn weights_sum_to_one_for_any_alpha(
-        rows in prop::collection::vec((prop_oneof![4 => 0.01..10.0_f32, 1 => Just(0.0_f32)], 1..9_u32, -3.0..3.0_f32), 1..=16),
+        rows in prop::collection::vec(
+            (prop_oneof![4 => 0.01..10.0_f32, 1 => Just(0.0_f32)], 1..9_u32, -3.0..3.0_f32),
+            1..=16,
+        ),
         value in prop_oneof![0.1..5.0_f32, -5.0..-0.1_f32],
     ) {
         let pdf: Vec<f32> = rows.iter().map(|r| r.0).collect();

@@ -15,7 +15,8 @@ const HEAD: &str = "\
 # Draws of the sampler, to the bit. Written by tests/tests/tile_vectors.rs; read by it and by tests/c/tile_vectors.c.
 #
 # file x y frame index keys scramble key[0] key[1] key[2] : u[4], floats as hexadecimal bits
-# The first `keys` of the three keys are followed, one below the other; before the last, or at the root, the sampler is scrambled.
+# The first `keys` of the three keys are followed, one below the other; before the last, or at the root, \
+the sampler is scrambled.
 ";
 
 const FILES: [(&str, Shape); 4] = [

@@ -114,7 +114,8 @@ bool load(bool updating, bool one_generator)
             std::uint32_t index[batch];
             float weight[batch];
             for (unsigned round = 0; round < rounds; ++round) {
-                check(nf_table_draw(&table, &generators[one_generator ? 0 : thread], batch, index, weight), "nf_table_draw");
+                check(nf_table_draw(&table, &generators[one_generator ? 0 : thread], batch, index, weight),
+                      "nf_table_draw");
                 for (float one : weight)
                     sums[thread] += one;
                 if (updating && thread == 0)

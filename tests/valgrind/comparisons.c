@@ -1,5 +1,5 @@
-/* Whether the processor, or what emulates it, compares with NaN as AVX says: `x != y`, ordered, is false where x or y is
- * NaN. Compilers make this instruction of "is finite". Valgrind 3.19 returns true. Exit status 0: right; 1: wrong. */
+/* Whether the processor, or what emulates it, compares with NaN as AVX says: `x != y`, ordered, is false where x or y
+ * is NaN. Compilers make this instruction of "is finite". Valgrind 3.19 returns true. Exit status: 0 right, 1 wrong. */
 #include <stdio.h>
 
 #if defined(__x86_64__)

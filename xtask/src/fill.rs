@@ -1,7 +1,7 @@
 //! `cargo xtask fill`: writes the report's figures into the documents.
 //!
-//! A comment right behind a number names the cell that it is from, and the number is replaced by what the cell holds, with
-//! as many decimals as it has:
+//! A comment right behind a number names the cell that it is from, and the number is replaced by what the cell holds,
+//! with as many decimals as it has:
 //!
 //! ```text
 //! takes 600<!-- instructions/counts: nf_cv_estimate robust 64 | instructions --> instructions
@@ -9,7 +9,8 @@
 //!
 //! - `CHAPTER/TABLE: ROW | COLUMN` is a cell of docs/report/CHAPTER.json. ROW is some of the row's cells, with commas
 //!   between them, that no other row has; COLUMN is a column's name, or its place from 1 on.
-//! - `CHAPTER/quoted: NAME` and `CHAPTER/settings: NAME` are the figures that a chapter's text quotes, and its settings.
+//! - `CHAPTER/quoted: NAME` and `CHAPTER/settings: NAME` are the figures that a chapter's text quotes, and its
+//!   settings.
 //! - `tiles/NAME: KEY` is a line of core/tiles/NAME.toml.
 //! - Behind it may stand ` low` or ` high`, an end of the cell's interval; `[2]`, the second of several numbers; and
 //!   ` * 100`, another unit.

@@ -2,6 +2,7 @@
 
 pub mod abi;
 pub mod c_tests;
+pub mod columns;
 pub mod embree;
 pub mod examples;
 pub mod fill;

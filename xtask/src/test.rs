@@ -2,8 +2,8 @@
 
 use crate::outcome::Outcome;
 use crate::{
-    abi, c_tests, embree, examples, fit, fuzz, header, house, install, instructions, library, links, path_tracer,
-    python, release, report, run, threads, tools, train_mlp, valgrind,
+    abi, c_tests, columns, embree, examples, fit, fuzz, header, house, install, instructions, library, links,
+    path_tracer, python, release, report, run, threads, tools, train_mlp, valgrind,
 };
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -33,6 +33,7 @@ pub fn run(options: &Options) -> Result<()> {
         run::check(run::cargo().args(["fmt", "--all", "--check"]))?;
         Ok(Outcome::Passed)
     });
+    steps.run("lines of at most 120 columns", columns::check);
     steps.run("lints (cargo clippy, warnings are errors)", || {
         let mut clippy = run::cargo();
         clippy.args(["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"]);
@@ -90,7 +91,10 @@ pub fn run(options: &Options) -> Result<()> {
     steps
         .run("C tests as C++17, including noisefloor.hpp", || c_tests::run(c_tests::Language::Cpp17, &[], &archive()?));
     steps.run("C++ wrapper, with and without exceptions", || c_tests::wrapper(&archive()?));
-    steps.run("installed: CMake and pkg-config projects, C and C++, shared and static, either alone, and as a part of a project", install::test::projects);
+    steps.run(
+        "installed: CMake and pkg-config projects, C and C++, shared and static, either alone, part of another project",
+        install::test::projects,
+    );
     steps.run("installed: examples_c as a project of its own", install::test::examples);
     steps.run("examples_c/integrate.c", || examples::integrate(&archive()?, "integrate"));
     steps.run("examples_c/shared.c", || examples::integrate(&archive()?, "shared"));
@@ -132,7 +136,7 @@ pub fn run(options: &Options) -> Result<()> {
     );
     steps.run("THIRD_PARTY.md: the licences of all dependencies, each allowed", release::licences::check);
     steps.run("versions: Rust's and the project's, as the texts say", release::versions::check);
-    steps.run("sizes: product, tools, documents", || house::print().map(|()| Outcome::Passed));
+    steps.run("sizes: product, tools, documents", house::print);
     steps.run("README.md opens with examples_c/integrate.c", examples::readme);
     steps.run("C code in docs/ that includes the header compiles", examples::documents);
     steps.finish(start)

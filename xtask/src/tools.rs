@@ -16,8 +16,8 @@ pub fn ensure() -> Result<()> {
     let components: Vec<_> = ["fmt", "clippy"].into_iter().filter(|name| !works(&cargo_tool(name))).collect();
     if !components.is_empty() {
         bail!(
-            "missing: cargo {}. The tests check formatting and lints: `rustup component add rustfmt clippy` (Debian's own \
-             Rust: apt-get install rustfmt rust-clippy)",
+            "missing: cargo {}. The tests check formatting and lints: `rustup component add rustfmt clippy` (Debian's \
+             own Rust: apt-get install rustfmt rust-clippy)",
             components.join(", cargo ")
         );
     }
@@ -32,8 +32,8 @@ pub fn ensure() -> Result<()> {
     let missing = missing_compilers();
     if !missing.is_empty() {
         bail!(
-            "missing: {}. The C and C++ tests need a C99 and a C++17 compiler and binutils (Debian: apt-get install gcc g++ \
-             libc6-dev binutils); $CC and $CXX name other compilers",
+            "missing: {}. The C and C++ tests need a C99 and a C++17 compiler and binutils (Debian: apt-get install \
+             gcc g++ libc6-dev binutils); $CC and $CXX name other compilers",
             missing.join(", ")
         );
     }

@@ -1,6 +1,6 @@
 //! Samples beyond a tile's.
 
-use crate::Size;
+use crate::size::Size;
 use anyhow::{Result, anyhow};
 use noisefloor::tile::Tile;
 use noisefloor_tests::continued::{Errors, TIMES, counts, kinds, measure, tiles};

@@ -1,6 +1,6 @@
 //! Minibatches' gradients: optimal MIS beside importance sampling.
 
-use crate::Size;
+use crate::size::Size;
 use noisefloor::minibatch::importance::Split;
 use noisefloor::mis::{DEFAULT_RIDGE, Solver};
 use noisefloor_tests::gradients::{self, Classifier, Compared, Regression, compare};

@@ -7,9 +7,11 @@
 mod continued;
 mod gradients;
 mod shared;
+mod size;
 
 use anyhow::Result;
 use clap::Parser;
+use size::Size;
 use std::path::PathBuf;
 
 /// Measures on known integrands and gradients, and writes tables.
@@ -27,25 +29,6 @@ struct Options {
     /// What cargo adds.
     #[arg(long, hide = true)]
     bench: bool,
-}
-
-/// How much is measured.
-#[derive(Clone, Copy, PartialEq)]
-enum Size {
-    Quick,
-    Default,
-    Full,
-}
-
-impl Size {
-    /// `count` in a default run.
-    fn of(self, count: usize) -> usize {
-        match self {
-            Self::Quick => (count / 40).max(1),
-            Self::Default => count,
-            Self::Full => 4 * count,
-        }
-    }
 }
 
 fn main() -> Result<()> {

@@ -1,6 +1,6 @@
 //! Fits shared by pixels: on tiles' samples, where they cannot help, and how biased they are.
 
-use crate::Size;
+use crate::size::Size;
 use noisefloor::control_variate::{Config, Estimator};
 use noisefloor::tile::Builtin;
 use noisefloor_tests::shared_bias::{self, Bias, independent, of_tile};

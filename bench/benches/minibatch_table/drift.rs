@@ -1,7 +1,6 @@
 //! What many updates do to a table: against one made of the final importances, and against these importances in f64.
 
-use crate::BATCH;
-use crate::methods::tree;
+use crate::methods::{BATCH, tree};
 use noisefloor::minibatch::{Table, table};
 use noisefloor::rng::Rng;
 

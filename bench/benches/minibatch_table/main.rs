@@ -12,14 +12,13 @@ mod times;
 
 use anyhow::Result;
 use clap::Parser;
-use methods::Method;
+use methods::{BATCH, Method};
 use noisefloor::rng::Rng;
 use noisefloor_bench::c_abi;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use times::{Chunks, Memory, Times, median};
 
-const BATCH: usize = 64;
 /// Steps of a chunk: enough to bring a table of a million items into the caches.
 const STEPS: usize = 1000;
 

@@ -3,7 +3,6 @@
 // Without the archive the C table is a type of no values.
 #![cfg_attr(not(archive), allow(unreachable_code, unused_variables))]
 
-use crate::BATCH;
 use noisefloor::minibatch::{Table, table};
 use noisefloor::rng::Rng;
 use noisefloor_bench::{c_abi, c_table};
@@ -11,6 +10,9 @@ use rand::SeedableRng;
 use rand::rngs::SmallRng;
 use rand_distr::Distribution;
 use rand_distr::weighted::{WeightedAliasIndex, WeightedTreeIndex};
+
+/// Draws of a step, and updates.
+pub(crate) const BATCH: usize = 64;
 
 /// One method's table, and how it makes a step's draws and updates.
 pub(crate) trait Method {

@@ -1,7 +1,6 @@
 //! Nanoseconds of a draw and of an update.
 
-use crate::BATCH;
-use crate::methods::Method;
+use crate::methods::{BATCH, Method};
 use noisefloor::rng::Rng;
 use std::hint::black_box;
 use std::time::{Duration, Instant};

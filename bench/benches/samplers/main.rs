@@ -13,13 +13,8 @@ use clap::Parser;
 use std::fs;
 use std::path::PathBuf;
 
-/// Pixels on a side of every image: the tiles' period.
-const SIDE: usize = 128;
 /// Samples per pixel.
 const COUNTS: [usize; 4] = [1, 4, 16, 64];
-/// Numbers of a sample.
-const DIMS: [usize; 2] = [2, 4];
-
 /// Measures errors and times of samplers.
 #[derive(Parser)]
 struct Options {

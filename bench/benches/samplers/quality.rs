@@ -1,7 +1,6 @@
 //! Errors: mean squares over those of white noise, on half-spaces and Gaussians, raw and through three filters.
 
-use crate::sampler::Sampler;
-use crate::{DIMS, SIDE};
+use crate::sampler::{DIMS, SIDE, Sampler};
 use anyhow::{Context, Result};
 use fsot::metrics::{TileView, measure_energies};
 use std::fmt::Write;

@@ -1,11 +1,15 @@
 //! The samplers that are compared: the library's, and those that registries carry under permissive licences.
 
-use crate::SIDE;
 use anyhow::{Result, anyhow};
 use noisefloor::recommend::{Sampling, recommend};
 use noisefloor::rng::Rng;
 use noisefloor::tile::{Builtin, Sampler as Draw, Tile};
 use openqmc::{LatticeBnSampler, PmjBnSampler, SobolBnSampler};
+
+/// Pixels on a side of every image: the tiles' period.
+pub(crate) const SIDE: usize = 128;
+/// Numbers of a sample.
+pub(crate) const DIMS: [usize; 2] = [2, 4];
 
 /// A sampler. Each seed is another realisation, where there are any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

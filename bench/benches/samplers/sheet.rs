@@ -1,7 +1,6 @@
 //! Images of an error, and its spectrum over many integrands.
 
-use crate::SIDE;
-use crate::sampler::Sampler;
+use crate::sampler::{SIDE, Sampler};
 use anyhow::{Result, anyhow};
 use fsot::metrics::integrands::{Family, Integrand};
 use fsot::metrics::{TileView, error_spectrum};

@@ -3,8 +3,7 @@
 // Without the archive the C tile is a type of no values.
 #![cfg_attr(not(archive), allow(unreachable_code, unused_variables))]
 
-use crate::sampler::{Sampler, heitz, sobol};
-use crate::{DIMS, SIDE};
+use crate::sampler::{DIMS, SIDE, Sampler, heitz, sobol};
 use anyhow::Result;
 use noisefloor::rng::Rng;
 use noisefloor::tile::{Builtin, Sampler as Draw, Tile};

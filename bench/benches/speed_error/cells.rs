@@ -4,7 +4,7 @@ use noisefloor_bench::method::{LEAST_SQUARES, LEAVE_ONE_OUT, MEAN, METHODS, ROBU
 use noisefloor_bench::{Door, Method};
 use noisefloor_tests::integrands::Integrand;
 use noisefloor_tests::random::{SplitMix64, mix};
-use noisefloor_tests::statistics::{Ratio, median, rmse_ratio};
+use noisefloor_tests::statistics::{self, Ratio, median, rmse_ratio};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -242,4 +242,22 @@ fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 fn narrow(narrow: &[f64], wide: &[f64], mean: &[f64]) -> Narrow {
     let difference = root_mean_square(narrow.iter().zip(wide).map(|(narrow, wide)| narrow - wide));
     Narrow { ratio: rmse_ratio(narrow, wide), difference: difference / root_mean_square(mean.iter().copied()) }
+}
+
+/// The cell with the largest ratio.
+pub(crate) fn worst<'a>(cells: impl Iterator<Item = &'a Cell>) -> Option<&'a Cell> {
+    cells.max_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value))
+}
+
+/// The geometric mean of independent ratios; the interval is that of the mean logarithm, to first order.
+pub(crate) fn geometric_mean<'a>(cells: impl Iterator<Item = &'a Cell>) -> Ratio {
+    mean_of(cells.map(|cell| cell.ratio))
+}
+
+/// As [`geometric_mean`].
+pub(crate) fn mean_of(ratios: impl Iterator<Item = Ratio>) -> Ratio {
+    let ratios: Vec<Ratio> = ratios.collect();
+    let value = statistics::geometric_mean(&ratios.iter().map(|ratio| ratio.value).collect::<Vec<_>>());
+    let spread: f64 = ratios.iter().map(|ratio| (ratio.half_width / ratio.value).ln_1p().powi(2)).sum();
+    Ratio { value, half_width: value * (spread.sqrt() / ratios.len() as f64).exp_m1() }
 }

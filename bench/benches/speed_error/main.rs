@@ -8,14 +8,16 @@ mod machine;
 mod must_reach;
 mod peer;
 mod report;
+mod run;
 mod speed;
 
 use anyhow::Result;
-use cells::{Cell, Extent, Set};
+use cells::{Extent, Set};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use noisefloor_bench::{Door, c_abi};
 use noisefloor_tests::integrands;
+use run::Run;
 use std::path::PathBuf;
 
 /// Measures error against speed and writes a report.
@@ -33,16 +35,6 @@ struct Options {
     /// What cargo adds.
     #[arg(long, hide = true)]
     bench: bool,
-}
-
-/// All that a run measures.
-pub(crate) struct Run {
-    pub(crate) extent: Extent,
-    pub(crate) door: Door,
-    pub(crate) machine: machine::Machine,
-    pub(crate) cells: Vec<Cell>,
-    pub(crate) speeds: Vec<speed::Speed>,
-    pub(crate) solves: Vec<speed::Speed>,
 }
 
 fn main() -> Result<()> {

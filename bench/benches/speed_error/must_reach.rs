@@ -1,8 +1,7 @@
 //! The targets and whether they are met.
 
-use crate::Run;
-use crate::cells::{Cell, Set};
-use crate::report::{geometric_mean, worst};
+use crate::cells::{Cell, Set, geometric_mean, worst};
+use crate::run::Run;
 use crate::speed::{PEERS, SOLVE, Speed};
 use noisefloor_bench::method::{LEAST_SQUARES, ROBUST};
 use noisefloor_tests::statistics::{Ratio, geometric_mean as geometric_mean_of};

@@ -1,30 +1,14 @@
 //! The report: Markdown to read, CSV to plot.
 
-use crate::cells::{COUNTS, Cell, DEGREES, Set};
-use crate::{Run, must_reach, speed};
+use crate::cells::{COUNTS, Cell, DEGREES, Set, geometric_mean, mean_of, worst};
+use crate::run::Run;
+use crate::{must_reach, speed};
 use anyhow::Result;
 use noisefloor_bench::c_abi;
 use noisefloor_bench::method::METHODS;
 use noisefloor_tests::statistics::{self, Ratio};
 use std::fmt::Write;
 use std::path::Path;
-
-/// The cell with the largest ratio.
-pub(crate) fn worst<'a>(cells: impl Iterator<Item = &'a Cell>) -> Option<&'a Cell> {
-    cells.max_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value))
-}
-
-/// The geometric mean of independent ratios; the interval is that of the mean logarithm, to first order.
-pub(crate) fn geometric_mean<'a>(cells: impl Iterator<Item = &'a Cell>) -> Ratio {
-    mean_of(cells.map(|cell| cell.ratio))
-}
-
-fn mean_of(ratios: impl Iterator<Item = Ratio>) -> Ratio {
-    let ratios: Vec<Ratio> = ratios.collect();
-    let value = statistics::geometric_mean(&ratios.iter().map(|ratio| ratio.value).collect::<Vec<_>>());
-    let spread: f64 = ratios.iter().map(|ratio| (ratio.half_width / ratio.value).ln_1p().powi(2)).sum();
-    Ratio { value, half_width: value * (spread.sqrt() / ratios.len() as f64).exp_m1() }
-}
 
 /// Writes report.md, must_reach.csv (columns divided by semicolons), cells.csv and speed.csv.
 pub(crate) fn write(run: &Run, folder: &Path) -> Result<()> {

@@ -48,9 +48,9 @@ const _: () = {
 
 /// A view of a tile: sample points for a square of pixels that repeats over the image (chapter 5; docs/tiles.md).
 ///
-/// A complete struct, to be copied freely; it owns nothing. `nf_tile_128_1spp_2d` and its like come with the library, and
-/// a program linked with `--gc-sections` carries those that it names; nf_tile_from_bytes makes others. The fields are to
-/// be read, never written; all zero is a valid tile, whose samples are all 0.
+/// A complete struct, to be copied freely; it owns nothing. `nf_tile_128_1spp_2d` and its like come with the library,
+/// and a program linked with `--gc-sections` carries those that it names; nf_tile_from_bytes makes others. The fields
+/// are to be read, never written; all zero is a valid tile, whose samples are all 0.
 #[repr(C)]
 #[allow(non_camel_case_types)]
 #[derive(Clone, Copy)]
@@ -76,7 +76,8 @@ pub struct nf_tile {
 // SAFETY: nobody writes what `values` points to.
 unsafe impl Sync for nf_tile {}
 
-/// One of the tiles that come with the library, by number: id is NF_TILE_*. A program that calls it carries all of them.
+/// One of the tiles that come with the library, by number: id is NF_TILE_*. A program that calls it carries all of
+/// them.
 ///
 /// NF_ERR_NULL; NF_ERR_RANGE: id; NF_ERR_UNSUPPORTED: this library was built without that tile.
 #[unsafe(no_mangle)]

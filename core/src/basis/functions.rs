@@ -1,6 +1,6 @@
 //! One-dimensional functions: orthonormal on [0, 1], integral zero.
 
-use super::Family;
+use super::family::Family;
 use crate::lanes::Lanes;
 use crate::real::Real;
 

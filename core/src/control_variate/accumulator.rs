@@ -32,12 +32,6 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
     ///
     /// # Errors
     /// As for [`Accumulator::new`].
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Accumulator, Config};
-    /// assert_eq!(Accumulator::<f64, [f64; 112]>::len(&Config::new(2, 2, 1))?, 112);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn len(config: &Config) -> Result<usize, Error> {
         Ok(State::<R>::new(config)?.len())
     }
@@ -46,13 +40,6 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
     ///
     /// # Errors
     /// As for [`Accumulator::new`].
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Accumulator, Config};
-    /// let workspace = vec![0.0; Accumulator::<f64, [f64; 112]>::workspace_len(&Config::new(2, 2, 1))?];
-    /// # assert!(!workspace.is_empty());
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn workspace_len(config: &Config) -> Result<usize, Error> {
         Ok(State::<R>::new(config)?.workspace_len())
     }
@@ -61,16 +48,6 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
     ///
     /// # Errors
     /// [`Error::Memory`] if `sums` is too short, [`Error::Range`] or [`Error::Unsupported`] for the configuration.
-    ///
-    /// ```
-    /// use noisefloor::Error;
-    /// use noisefloor::control_variate::{Accumulator, Config};
-    ///
-    /// let config = Config::new(2, 2, 1);
-    /// assert_eq!(Accumulator::<f64, _>::new(&config, [0.0; 112])?.samples(), 0);
-    /// assert_eq!(Accumulator::<f64, _>::new(&config, [0.0; 111]).err(), Some(Error::Memory));
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn new(config: &Config, mut sums: S) -> Result<Self, Error> {
         let mut state = State::new(config)?;
         state.reset(sums.as_mut())?;
@@ -78,16 +55,6 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
     }
 
     /// Forgets all samples.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Accumulator, Config, Samples};
-    ///
-    /// let mut accumulator = Accumulator::<f64, _>::new(&Config::new(2, 2, 1), [0.0; 112])?;
-    /// accumulator.add(Samples::new(&[0.1, 0.7], &[1.0]))?;
-    /// accumulator.reset();
-    /// assert_eq!(accumulator.samples(), 0);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn reset(&mut self) {
         // The length was checked when it was made.
         let _ = self.state.reset(self.sums.as_mut());
@@ -97,16 +64,6 @@ impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
     ///
     /// # Errors
     /// As for [`estimate`](super::estimate); adding no samples is an error too.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Accumulator, Config, Samples};
-    ///
-    /// let mut accumulator = Accumulator::<f64, _>::new(&Config::new(2, 2, 1), [0.0; 112])?;
-    /// // One value is NaN: neither sample is added.
-    /// assert!(accumulator.add(Samples::new(&[0.1, 0.7, 0.5, 0.2], &[1.0, f32::NAN])).is_err());
-    /// assert_eq!(accumulator.samples(), 0);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn add(&mut self, samples: Samples<'_>) -> Result<(), Error> {
         self.state.add(self.sums.as_mut(), samples)
     }
@@ -139,47 +96,16 @@ impl<R: Real, S: AsRef<[R]>> Accumulator<R, S> {
     /// # Errors
     /// [`Error::NoSamples`] if there are none, [`Error::Memory`] if `workspace` is shorter than
     /// [`Accumulator::workspace_len`] says.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Accumulator, Config, Samples};
-    ///
-    /// let config = Config::new(1, 1, 1);
-    /// let new = || Accumulator::<f64, _>::new(&config, vec![0.0; Accumulator::<f64, Vec<f64>>::len(&config)?]);
-    /// let mut all = new()?;
-    /// all.add(Samples::new(&[0.1, 0.3], &[1.1, 1.3]))?;
-    /// let mut workspace = vec![0.0; Accumulator::<f64, Vec<f64>>::workspace_len(&config)?];
-    /// assert_eq!(all.estimate(&mut workspace)?.samples, 2);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn estimate(&self, workspace: &mut [R]) -> Result<Estimate, Error> {
         self.state.estimate(self.sums.as_ref(), workspace)
     }
 
     /// All but the buffer.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Accumulator, Config};
-    ///
-    /// let config = Config::new(2, 2, 1);
-    /// let accumulator = Accumulator::<f64, _>::new(&config, [0.0; 112])?;
-    /// assert_eq!(*accumulator.state().config(), config);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn state(&self) -> &State<R> {
         &self.state
     }
 
     /// Samples added so far.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Accumulator, Config, Samples};
-    ///
-    /// let mut accumulator = Accumulator::<f64, _>::new(&Config::new(2, 2, 1), [0.0; 112])?;
-    /// accumulator.add(Samples::new(&[0.1, 0.7, 0.5, 0.2], &[1.0, 3.0]))?;
-    /// accumulator.add(Samples::new(&[0.9, 0.4], &[2.0]))?;
-    /// assert_eq!(accumulator.samples(), 3);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn samples(&self) -> u64 {
         self.state.samples()
     }

@@ -30,12 +30,6 @@ pub enum Estimator {
 }
 
 /// How a least-squares system is solved.
-///
-/// ```
-/// use noisefloor::control_variate::{Config, Estimator, Solver};
-/// let config = Config { estimator: Estimator::LeastSquares, solver: Solver::SquareRoot, ..Config::new(2, 2, 1) };
-/// # assert!(config.terms().is_ok());
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Solver {
     /// The dual where there are fewer samples than terms, normal equations otherwise.
@@ -70,12 +64,6 @@ pub enum NonFinite {
 }
 
 /// How the channels of a vector integrand are treated.
-///
-/// ```
-/// use noisefloor::control_variate::{Color, Config};
-/// let config = Config { color: Color::LuminanceRatio, ..Config::new(2, 2, 3) };
-/// # assert!(config.terms().is_ok());
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Color {
     /// One factorisation, one right-hand side for each channel; each channel is as unbiased as the estimator.
@@ -86,12 +74,6 @@ pub enum Color {
 }
 
 /// The step rule of [`Estimator::GradientDescent`].
-///
-/// ```
-/// use noisefloor::control_variate::{Config, Estimator, Optimizer};
-/// let config = Config { estimator: Estimator::GradientDescent, optimizer: Optimizer::Adam, ..Config::new(2, 2, 1) };
-/// # assert!(config.terms().is_ok());
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Optimizer {
     /// Heavy-ball momentum.
@@ -104,12 +86,6 @@ pub enum Optimizer {
 }
 
 /// The strength of the ridge penalty.
-///
-/// ```
-/// use noisefloor::control_variate::{Config, Estimator, Ridge};
-/// let config = Config { estimator: Estimator::LeaveOneOut, ridge: Ridge::Fixed(0.02), ..Config::new(2, 2, 1) };
-/// # assert!(config.terms().is_ok());
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Ridge {
     /// The estimator's documented default.
@@ -187,12 +163,6 @@ impl Config {
     pub const MAX_CHANNELS: usize = 4;
 
     /// The default estimator over `dims` coordinates, of total degree `order`, for `channels` values.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Config, Estimator};
-    /// let config = Config::new(3, 2, 1);
-    /// assert_eq!((config.estimator, config.terms()), (Estimator::Robust, Ok(10)));
-    /// ```
     #[inline]
     pub const fn new(dims: usize, order: usize, channels: usize) -> Self {
         Self {
@@ -221,11 +191,6 @@ impl Config {
     ///
     /// # Errors
     /// [`Error::Range`] if a field is out of range, [`Error::Unsupported`] for options that exclude each other.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::Config;
-    /// assert_eq!(Config::new(2, 3, 1).terms(), Ok(10));
-    /// ```
     pub fn terms(&self) -> Result<usize, Error> {
         Ok(1 + self.controls + self.checked_shape()?.columns())
     }
@@ -271,13 +236,6 @@ impl Config {
 }
 
 /// An estimate of an integral over primary sample space.
-///
-/// ```
-/// use noisefloor::control_variate::{Config, Samples, estimate};
-/// let estimate = estimate(&Config::new(1, 0, 1), Samples::new(&[0.2, 0.6], &[1.0, 3.0]), &mut [0.0_f64; 16])?;
-/// assert_eq!((estimate.mean[0], estimate.std_error[0], estimate.samples), (2.0, 1.0, 2));
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The integral, for each channel; unused channels are zero.

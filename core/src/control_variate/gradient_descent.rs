@@ -4,11 +4,11 @@
 //! that the early steps go where functions vary most. A fit that stopped early is a shrunk one: at low sample counts
 //! this is safer than least squares, with no matrix at all.
 
-use super::batch::Plan;
 use super::config::{Config, Estimate, Optimizer};
 use super::design::Design;
 use super::moments::Centred;
 use super::per_channel::{PerChannel, get, set};
+use super::plan::Plan;
 use super::result::{self, Outcome};
 use super::samples::{Reader, Samples, Subset};
 use crate::arena::Arena;

@@ -3,12 +3,12 @@
 //! If the samples are even as a whole, what a fold lacks and what the others have does not cancel: [`Rule::Fold`] then
 //! trusts the mean.
 
-use super::batch::Plan;
 use super::config::{Config, Ridge, Solver};
 use super::design::Design;
 use super::fitter::{self, Fitter, Rule};
 use super::folds::Fold;
 use super::per_channel::{PerChannel, add, get, set};
+use super::plan::Plan;
 use super::result::Outcome;
 use super::samples::{Reader, Subset};
 use crate::arena::Arena;

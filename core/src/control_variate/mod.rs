@@ -16,6 +16,7 @@ mod incremental;
 mod k_fold;
 mod moments;
 mod per_channel;
+mod plan;
 mod readout;
 mod regressor;
 mod result;

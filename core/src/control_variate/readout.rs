@@ -23,17 +23,6 @@ impl<R: Real> State<R> {
     /// # Errors
     /// [`Error::NoSamples`] if there are none, [`Error::Memory`] if `workspace` is shorter than
     /// [`State::workspace_len`] says.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Config, Samples, State};
-    ///
-    /// let mut state = State::<f64>::new(&Config::new(1, 1, 1))?;
-    /// let mut sums = vec![0.0; state.len()];
-    /// state.reset(&mut sums)?;
-    /// state.add(&mut sums, Samples::new(&[0.1, 0.3], &[2.0, 2.0]))?;
-    /// assert_eq!(state.estimate(&sums, &mut vec![0.0; state.workspace_len()])?.mean[0], 2.0);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn estimate(&self, sums: &[R], workspace: &mut [R]) -> Result<Estimate, Error> {
         let state = self;
         if sums.len() < state.len() {

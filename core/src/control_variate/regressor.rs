@@ -43,13 +43,6 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     ///
     /// # Errors
     /// [`Error::Range`] if `DIMS`, `order` and `TERMS` do not belong together or `CHANNELS` is not 1 to 4.
-    ///
-    /// ```
-    /// use noisefloor::basis::Family;
-    /// use noisefloor::control_variate::Regressor;
-    /// assert!(Regressor::<3, 10, 1>::new(Family::Legendre, 2).is_ok());
-    /// assert!(Regressor::<3, 9, 1>::new(Family::Legendre, 2).is_err()); // order 2 of 3 coordinates has 10 terms
-    /// ```
     pub fn new(family: Family, order: usize) -> Result<Self, Error> {
         let basis = Basis::new(family, DIMS, order, 0)?;
         if basis.columns() + 1 != TERMS || CHANNELS == 0 || CHANNELS > Config::MAX_CHANNELS {
@@ -69,15 +62,6 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::Range`]; the sample is then not added.
-    ///
-    /// ```
-    /// use noisefloor::basis::Family;
-    /// use noisefloor::control_variate::Regressor;
-    /// let mut regressor = Regressor::<1, 2, 1>::new(Family::Legendre, 1)?;
-    /// assert!(regressor.add(&[1.5], &[2.0]).is_err()); // outside [0, 1]
-    /// assert!(regressor.add(&[0.5], &[2.0]).is_ok());
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn add(&mut self, u: &[f32; DIMS], f: &[f32; CHANNELS]) -> Result<(), Error> {
         if !u.iter().chain(f).all(|value| value.is_finite()) {
@@ -114,15 +98,6 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     }
 
     /// Samples added so far.
-    ///
-    /// ```
-    /// use noisefloor::basis::Family;
-    /// use noisefloor::control_variate::Regressor;
-    /// let mut regressor = Regressor::<1, 2, 1>::new(Family::Legendre, 1)?;
-    /// regressor.add(&[0.5], &[2.0])?;
-    /// assert_eq!(regressor.samples(), 1);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn samples(&self) -> u64 {
         self.samples
     }
@@ -131,17 +106,6 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     ///
     /// # Errors
     /// [`Error::NoSamples`], or [`Error::Range`] for a strength that is not positive and finite.
-    ///
-    /// ```
-    /// use noisefloor::basis::Family;
-    /// use noisefloor::control_variate::Regressor;
-    /// let mut regressor = Regressor::<1, 2, 1>::new(Family::Legendre, 1)?;
-    /// for u in [0.1, 0.2, 0.7] {
-    ///     regressor.add(&[u], &[3.0 * u])?;
-    /// }
-    /// assert!((regressor.estimate(1e-9)?.mean[0] - 1.5).abs() < 1e-6);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn estimate(&self, strength: f32) -> Result<Estimate, Error> {
         if self.samples == 0 {
@@ -200,18 +164,6 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     ///
     /// # Errors
     /// [`Error::Mismatch`] if the bases differ.
-    ///
-    /// ```
-    /// use noisefloor::{basis::Family, control_variate::Regressor};
-    ///
-    /// let mut regressor = Regressor::<1, 2, 1>::new(Family::Legendre, 1)?; // 1 and u
-    /// let mut other = regressor.clone();
-    /// regressor.add(&[0.1], &[1.1])?;
-    /// other.add(&[0.9], &[1.9])?;
-    /// regressor.merge(&other)?;
-    /// assert_eq!(regressor.samples(), 2);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn merge(&mut self, other: &Self) -> Result<(), Error> {
         if !self.basis.is_same(&other.basis) {
             return Err(Error::Mismatch);

@@ -17,7 +17,7 @@ const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 /// ```
 /// use noisefloor::control_variate::Samples;
 ///
-/// // Three samples of two coordinates and one value, and a function of known integral at each (`Config::controls` is 1).
+/// // Three samples of two coordinates and one value, and a function of known integral at each: `Config::controls` 1.
 /// let (u, f) = ([0.1, 0.2, 0.5, 0.6, 0.8, 0.1], [1.0, 2.0, 4.0]);
 /// let samples = Samples { controls: &[0.1, 0.5, 0.8], control_integrals: &[0.5], ..Samples::new(&u, &f) };
 /// # assert_eq!(samples.f.len(), 3);
@@ -37,12 +37,6 @@ pub struct Samples<'a> {
 
 impl<'a> Samples<'a> {
     /// Samples without control functions.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::Samples;
-    /// let samples = Samples::new(&[0.1, 0.7, 0.5, 0.2], &[1.0, 3.0]); // two samples of two coordinates
-    /// assert!(samples.controls.is_empty());
-    /// ```
     #[inline]
     pub const fn new(u: &'a [f32], f: &'a [f32]) -> Self {
         Self { u, f, controls: &[], control_integrals: &[] }

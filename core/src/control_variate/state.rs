@@ -1,6 +1,5 @@
 //! What a streaming estimate knows besides its sums, and how samples get into them.
 
-use super::batch;
 use super::config::{Color, Config, Estimator, Ridge, Solver};
 use super::cross_fit;
 use super::design::Units;
@@ -8,6 +7,7 @@ use super::folds;
 use super::incremental;
 use super::moments::{self, Moments, MomentsMut};
 use super::per_channel::PerChannel;
+use super::plan::is_plain;
 use super::samples::{Reader, Samples, Subset};
 use super::{gradient_descent, square_root};
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
@@ -51,17 +51,10 @@ impl<R: Real> State<R> {
     /// # Errors
     /// [`Error::Unsupported`] for [`Estimator::LeaveOneOut`], which needs all samples at once, and whatever
     /// [`Config::terms`] finds.
-    ///
-    /// ```
-    /// use noisefloor::Error;
-    /// use noisefloor::control_variate::{Config, Estimator, State};
-    /// let config = Config { estimator: Estimator::LeaveOneOut, ..Config::new(1, 1, 1) };
-    /// assert_eq!(State::<f64>::new(&config).err(), Some(Error::Unsupported));
-    /// ```
     pub fn new(config: &Config) -> Result<Self, Error> {
         let shape = config.checked_shape()?;
         let mut columns = config.controls + shape.columns();
-        if batch::is_plain(config, columns) {
+        if is_plain(config, columns) {
             columns = 0;
         }
         let square_root = config.solver == Solver::SquareRoot;
@@ -104,12 +97,6 @@ impl<R: Real> State<R> {
     }
 
     /// Numbers of the whole buffer.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Config, State};
-    /// assert_eq!(State::<f64>::new(&Config::new(2, 2, 1))?.len(), 112);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn len(&self) -> usize {
         let extra = match self.config.estimator {
             Estimator::Incremental => incremental::len(self.columns, self.channels),
@@ -119,24 +106,11 @@ impl<R: Real> State<R> {
     }
 
     /// Never: an accumulator has at least the sums of a constant.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Config, State};
-    /// assert!(!State::<f64>::new(&Config::new(1, 0, 1))?.is_empty());
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn is_empty(&self) -> bool {
         false
     }
 
     /// Numbers of workspace that an estimate takes.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Accumulator, Config, State};
-    /// let config = Config::new(2, 2, 1);
-    /// assert_eq!(State::<f64>::new(&config)?.workspace_len(), Accumulator::<f64, [f64; 112]>::workspace_len(&config)?);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn workspace_len(&self) -> usize {
         let (columns, channels) = (self.columns, self.channels);
         let solve = moments::solve_len(columns);
@@ -150,29 +124,11 @@ impl<R: Real> State<R> {
     }
 
     /// Samples added so far.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Config, Samples, State};
-    ///
-    /// let mut state = State::<f64>::new(&Config::new(1, 1, 1))?;
-    /// let mut sums = vec![0.0; state.len()];
-    /// state.reset(&mut sums)?;
-    /// state.add(&mut sums, Samples::new(&[0.1, 0.3], &[1.1, 1.3]))?;
-    /// assert_eq!(state.samples(), 2);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn samples(&self) -> u64 {
         self.samples
     }
 
     /// What it was made with.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Config, State};
-    /// let config = Config::new(1, 1, 1);
-    /// assert_eq!(*State::<f64>::new(&config)?.config(), config);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn config(&self) -> &Config {
         &self.config
     }
@@ -191,18 +147,6 @@ impl<R: Real> State<R> {
     ///
     /// # Errors
     /// [`Error::Memory`].
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Config, Samples, State};
-    ///
-    /// let mut state = State::<f64>::new(&Config::new(1, 1, 1))?;
-    /// let mut sums = vec![0.0; state.len()];
-    /// state.reset(&mut sums)?; // a new buffer may hold anything
-    /// state.add(&mut sums, Samples::new(&[0.1, 0.3], &[1.1, 1.3]))?;
-    /// state.reset(&mut sums)?;
-    /// assert_eq!(state.samples(), 0);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn reset(&mut self, sums: &mut [R]) -> Result<(), Error> {
         self.check_length(sums)?;
         self.samples = 0;
@@ -219,18 +163,6 @@ impl<R: Real> State<R> {
     ///
     /// # Errors
     /// As for [`estimate`](super::estimate); adding no samples is an error too, and in `f32` more than 2^22 of them.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Config, Samples, State};
-    ///
-    /// let mut state = State::<f64>::new(&Config::new(1, 1, 1))?;
-    /// let mut sums = vec![0.0; state.len()];
-    /// state.reset(&mut sums)?;
-    /// state.add(&mut sums, Samples::new(&[0.1], &[1.1]))?;
-    /// assert!(state.add(&mut sums[1..], Samples::new(&[0.3], &[1.3])).is_err()); // another buffer, too short
-    /// assert_eq!(state.samples(), 1);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn add(&mut self, sums: &mut [R], samples: Samples<'_>) -> Result<(), Error> {
         self.check_length(sums)?;
         let reader = Reader::new(&self.config, samples)?;
@@ -299,19 +231,6 @@ impl<R: Real> State<R> {
     ///
     /// # Errors
     /// [`Error::Mismatch`] if the configurations differ.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Config, Samples, State};
-    ///
-    /// let mut state = State::<f64>::new(&Config::new(1, 1, 1))?;
-    /// let mut sums = vec![0.0; state.len()];
-    /// state.reset(&mut sums)?;
-    /// let (mut other, mut others) = (state, sums.clone());
-    /// other.add(&mut others, Samples::new(&[0.1, 0.3], &[1.1, 1.3]))?;
-    /// state.merge(&mut sums, &other, &others)?;
-    /// assert_eq!(state.samples(), 2);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn merge(&mut self, sums: &mut [R], other: &Self, other_sums: &[R]) -> Result<(), Error> {
         if self.config != other.config {
             return Err(Error::Mismatch);

@@ -40,13 +40,6 @@ impl<'a> Batch<'a> {
     ///
     /// Errors: [`Error::Range`] for arguments outside these ranges or a wrong length; [`Error::NoSamples`] for an empty
     /// batch; [`Error::NotFinite`] for a probability that is NaN or infinite.
-    ///
-    /// ```
-    /// use noisefloor::Error;
-    /// use noisefloor::minibatch::Batch;
-    /// // The technique that drew an item cannot give it the probability 0.
-    /// assert_eq!(Batch::new(100, 2, &[0.0, 0.02], &[0]).err(), Some(Error::Range));
-    /// ```
     pub fn new(items: u32, techniques: usize, pdf: &'a [f32], technique: &'a [u32]) -> Result<Batch<'a>, Error> {
         if !(1..=MAX_TECHNIQUES).contains(&techniques) || items == 0 {
             return Err(Error::Range);
@@ -75,26 +68,12 @@ impl<'a> Batch<'a> {
     }
 
     /// The number of samples.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::Batch;
-    /// let batch = Batch::new(100, 2, &[0.01, 0.02], &[1])?;
-    /// assert_eq!(batch.len(), 1);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[allow(clippy::len_without_is_empty, reason = "no batch is empty")]
     pub fn len(&self) -> usize {
         self.technique.len()
     }
 
     /// The number of techniques J.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::Batch;
-    /// let batch = Batch::new(100, 2, &[0.01, 0.02], &[1])?;
-    /// assert_eq!(batch.techniques(), 2);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn techniques(&self) -> usize {
         self.techniques
     }

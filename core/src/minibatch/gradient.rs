@@ -19,10 +19,6 @@ const SUMS: usize = MAX_TECHNIQUES + 1;
 
 /// The f32 that [`Gradient`] needs: J + 1 per parameter. 0 if `techniques` is not in 1..=16, `parameters` is 0, or no
 /// memory could hold them.
-///
-/// ```
-/// assert_eq!(noisefloor::minibatch::gradient_len(4, 1000), 5000);
-/// ```
 pub const fn gradient_len(techniques: usize, parameters: usize) -> usize {
     if techniques == 0 || techniques > MAX_TECHNIQUES {
         return 0;
@@ -70,13 +66,6 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
     ///
     /// Errors: [`Error::Range`] for techniques outside 1..=16 or no parameters; [`Error::Memory`] for less than
     /// [`gradient_len`]`(techniques, parameters)` elements of memory.
-    ///
-    /// ```
-    /// use noisefloor::Error;
-    /// use noisefloor::minibatch::{Gradient, gradient_len};
-    /// assert!(Gradient::new([0.0; gradient_len(2, 7)], 2, 7).is_ok());
-    /// assert_eq!(Gradient::new([0.0; gradient_len(2, 7)], 2, 8).err(), Some(Error::Memory));
-    /// ```
     pub fn new(memory: M, techniques: usize, parameters: usize) -> Result<Self, Error> {
         let mut gradient = Gradient::resume(memory, System::new(techniques), parameters)?;
         gradient.reset();
@@ -86,18 +75,6 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
     /// Takes up averages that `memory` already holds, with the [`Gradient::system`] that belongs to them.
     ///
     /// Errors: as for [`Gradient::new`].
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Batch, Gradient, gradient_len};
-    /// use noisefloor::mis::Solver;
-    ///
-    /// let mut gradient = Gradient::new([0.0; gradient_len(1, 1)], 1, 1)?;
-    /// let (batch, mut estimate) = (Batch::new(100, 1, &[0.01], &[0])?, [0.0]);
-    /// gradient.estimate(&batch, Solver::Balance, 0.5, &[3.0], &mut estimate)?;
-    /// let (memory, system) = ([0.0; gradient_len(1, 1)], *gradient.system()); // both kept, or read from a file
-    /// assert!(Gradient::resume(memory, system, 1).is_ok());
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn resume(memory: M, system: System, parameters: usize) -> Result<Self, Error> {
         match gradient_len(system.techniques(), parameters) {
             0 => Err(Error::Range),
@@ -107,31 +84,11 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
     }
 
     /// What the parameters share.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Gradient, System, gradient_len};
-    /// assert_eq!(*Gradient::new([0.0; gradient_len(3, 1)], 3, 1)?.system(), System::new(3)); // no batch yet
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn system(&self) -> &System {
         &self.system
     }
 
     /// Forgets every batch.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Batch, Gradient, gradient_len};
-    /// use noisefloor::mis::Solver;
-    ///
-    /// let mut gradient = Gradient::new([0.0; gradient_len(1, 1)], 1, 1)?;
-    /// let (batch, mut estimate) = (Batch::new(100, 1, &[0.01], &[0])?, [0.0]);
-    /// gradient.estimate(&batch, Solver::Balance, 0.5, &[3.0], &mut estimate)?;
-    /// let fresh = Gradient::new([0.0; gradient_len(1, 1)], 1, 1)?;
-    /// assert_ne!(gradient, fresh);
-    /// gradient.reset();
-    /// assert_eq!(gradient, fresh);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn reset(&mut self) {
         self.system = System::new(self.system.techniques());
         self.memory.as_mut().fill(0.0);

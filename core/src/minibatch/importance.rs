@@ -26,11 +26,6 @@ pub fn cross_entropy(logits: &[f32], label: usize) -> f32 {
 }
 
 /// The cross-entropy loss `-ln softmax(logits)[label]`, at least 0.
-///
-/// ```
-/// let loss = noisefloor::minibatch::importance::cross_entropy_loss(&[0.0, 0.0], 0);
-/// assert!((loss - 2.0_f32.ln()).abs() < 1e-6);
-/// ```
 pub fn cross_entropy_loss(logits: &[f32], label: usize) -> f32 {
     match Softmax::new(logits, label) {
         // ln sum exp(z) - z_label, where the largest exp is 1: log1p of the others keeps a loss near 0 accurate.
@@ -43,13 +38,6 @@ pub fn cross_entropy_loss(logits: &[f32], label: usize) -> f32 {
 ///
 /// `gradient` has one element per logit. Errors: [`Error::Range`] for no logits, a label that does not exist or a wrong
 /// length; [`Error::NotFinite`] for a logit that is NaN or infinite.
-///
-/// ```
-/// let mut gradient = [0.0; 2];
-/// noisefloor::minibatch::importance::cross_entropy_gradient(&[0.0, 0.0], 0, &mut gradient)?;
-/// assert_eq!(gradient, [-0.5, 0.5]);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 pub fn cross_entropy_gradient(logits: &[f32], label: usize, gradient: &mut [f32]) -> Result<(), Error> {
     if gradient.len() != logits.len() || label >= logits.len() {
         return Err(Error::Range);
@@ -63,10 +51,6 @@ pub fn cross_entropy_gradient(logits: &[f32], label: usize, gradient: &mut [f32]
 }
 
 /// `|| 2 (output - target) ||`, for the loss `sum (output - target)^2`.
-///
-/// ```
-/// assert_eq!(noisefloor::minibatch::importance::squared_error(&[1.0, 2.0], &[4.0, 6.0]), 10.0);
-/// ```
 pub fn squared_error(output: &[f32], target: &[f32]) -> f32 {
     if output.len() != target.len() {
         return f32::NAN;
@@ -75,10 +59,6 @@ pub fn squared_error(output: &[f32], target: &[f32]) -> f32 {
 }
 
 /// The norm of any derivative of the loss by the outputs.
-///
-/// ```
-/// assert_eq!(noisefloor::minibatch::importance::gradient(&[3.0, -4.0]), 5.0);
-/// ```
 pub fn gradient(gradient: &[f32]) -> f32 {
     norm(gradient.iter().map(|&g| f64::from(g)), f64::from(f32::MAX))
 }
@@ -111,14 +91,6 @@ pub enum Split {
 ///
 /// Errors, which leave `importance` as it was: [`Error::Range`] unless there are 1..=16 importances, an even number
 /// with [`Split::Sign`], and at least one node per group; [`Error::NotFinite`] for NaN or infinity in `gradient`.
-///
-/// ```
-/// use noisefloor::minibatch::importance::{Split, nodes};
-/// let mut importance = [0.0; 2];
-/// nodes(&[3.0, 4.0, -2.0], Split::Sign, &mut importance)?;
-/// assert_eq!(importance, [5.0, 2.0]);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 pub fn nodes(gradient: &[f32], split: Split, importance: &mut [f32]) -> Result<(), Error> {
     let techniques = importance.len();
     let signs = if split == Split::Sign { 2 } else { 1 };

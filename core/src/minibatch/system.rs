@@ -20,14 +20,6 @@ use crate::mis::{MAX_TECHNIQUES, Solver};
 const CELLS: usize = MAX_TECHNIQUES * (MAX_TECHNIQUES + 1) / 2;
 
 /// Averages of A, q - 1 and the counts over the batches so far, newer ones counting for more.
-///
-/// ```
-/// use noisefloor::minibatch::{Gradient, System, gradient_len};
-///
-/// let gradient = Gradient::new([0.0; gradient_len(2, 1)], 2, 1)?;
-/// assert_eq!(*gradient.system(), System::new(2)); // keep it beside the memory, for `Gradient::resume`
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct System {
     techniques: usize,
@@ -42,11 +34,6 @@ pub struct System {
 
 impl System {
     /// No batches yet. A number of techniques outside 1..=16 fits no batch.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Gradient, System, gradient_len};
-    /// assert!(Gradient::resume([0.0; gradient_len(2, 1)], System::new(2), 1).is_ok());
-    /// ```
     pub const fn new(techniques: usize) -> System {
         System {
             techniques,

@@ -6,11 +6,6 @@ use super::MAX_TECHNIQUES;
 
 /// The f64 that [`OptimalMis`](super::OptimalMis) needs; 0 if `techniques` is not in 1..=16, `integrals` is 0, or no
 /// memory could hold them.
-///
-/// ```
-/// assert_eq!(noisefloor::mis::len(2, 1), 12);
-/// assert_eq!(noisefloor::mis::len(17, 1), 0); // more techniques than there can be
-/// ```
 pub const fn len(techniques: usize, integrals: usize) -> usize {
     if techniques == 0 || techniques > MAX_TECHNIQUES || integrals == 0 {
         return 0;

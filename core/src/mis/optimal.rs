@@ -32,11 +32,6 @@ const LEAST_RIDGE: f64 = 1e-8;
 const LEAST_SAMPLES: f64 = 1e-8;
 
 /// How [`OptimalMis::solve`] turns its sums into an estimate.
-///
-/// ```
-/// use noisefloor::mis::Solver;
-/// assert_eq!(Solver::default(), Solver::Ridge(2.0));
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Solver {
     /// alpha = (A + L)^-1 b, with L = ridge (tr(N A) - 1) / n N^-1, N the diagonal matrix of the counts and n the
@@ -128,16 +123,6 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     /// Takes up the sums that `memory` already holds, made earlier with the same `counts` and `integrals`.
     ///
     /// Errors: as for [`OptimalMis::new`].
-    ///
-    /// ```
-    /// use noisefloor::mis::{self, OptimalMis};
-    ///
-    /// let mut sums = [0.0; mis::len(2, 1)];
-    /// OptimalMis::new(&mut sums[..], &[1, 1], 1)?.add(0, &[1.0, 0.5], &[3.0])?;
-    /// let mut omis = OptimalMis::resume(&mut sums[..], &[1, 1], 1)?; // the sample is in the sums
-    /// omis.add(1, &[1.0, 1.5], &[4.0])?;
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn resume(memory: M, counts: &[u32], integrals: usize) -> Result<Self, Error> {
         let needed = len(counts.len(), integrals);
         if needed == 0 || counts.contains(&0) {
@@ -152,23 +137,11 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     }
 
     /// The number of techniques J.
-    ///
-    /// ```
-    /// use noisefloor::mis::{self, OptimalMis};
-    /// assert_eq!(OptimalMis::new([0.0; mis::len(2, 3)], &[1, 4], 3)?.techniques(), 2);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn techniques(&self) -> usize {
         self.techniques
     }
 
     /// The number of integrals P.
-    ///
-    /// ```
-    /// use noisefloor::mis::{self, OptimalMis};
-    /// assert_eq!(OptimalMis::new([0.0; mis::len(2, 3)], &[1, 4], 3)?.integrals(), 3);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn integrals(&self) -> usize {
         self.integrals
     }
@@ -180,18 +153,6 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     ///
     /// Errors: [`Error::Range`] for a wrong length or a ridge outside [`RIDGE_RANGE`]; [`Error::NotFinite`] for a ridge
     /// that is NaN or infinite; [`Error::NoSamples`].
-    ///
-    /// ```
-    /// use noisefloor::mis::{self, OptimalMis, Solver};
-    ///
-    /// let mut omis = OptimalMis::new([0.0; mis::len(2, 1)], &[1, 1], 1)?;
-    /// omis.add(0, &[1.0, 0.5], &[3.0])?; // f = 3 p_0
-    /// omis.add(1, &[1.0, 1.5], &[3.0])?;
-    /// let mut estimate = [0.0];
-    /// omis.solve(Solver::Plain, &mut estimate)?;
-    /// assert!((estimate[0] - 3.0).abs() < 1e-5); // exact, where f is a combination of the densities
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn solve(&self, solver: Solver, estimate: &mut [f32]) -> Result<(), Error> {
         if estimate.len() != self.integrals {
             return Err(Error::Range);
@@ -219,18 +180,6 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
     ///
     /// Used on samples other than the ones it came from, it gives unbiased estimates. [`Solver::Progressive`] stands
     /// for the alpha that the current batch uses, [`Solver::Balance`] for zeros. Errors as for [`OptimalMis::solve`].
-    ///
-    /// ```
-    /// use noisefloor::mis::{self, OptimalMis, Solver};
-    ///
-    /// let mut omis = OptimalMis::new([0.0; mis::len(2, 1)], &[1, 1], 1)?;
-    /// omis.add(0, &[1.0, 0.5], &[3.0])?; // f = 3 p_0
-    /// omis.add(1, &[1.0, 1.5], &[3.0])?;
-    /// let mut alpha = [0.0; 2];
-    /// omis.alpha(Solver::Plain, &mut alpha)?;
-    /// assert!((alpha[0] - 3.0).abs() < 1e-5 && alpha[1].abs() < 1e-5);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn alpha(&self, solver: Solver, alpha: &mut [f32]) -> Result<(), Error> {
         if self.integrals.checked_mul(self.techniques) != Some(alpha.len()) {
             return Err(Error::Range);
@@ -279,12 +228,6 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     ///
     /// Errors: [`Error::Range`] unless there are 1..=16 counts, all at least 1, and at least one integral;
     /// [`Error::Memory`] for less than [`len`]`(counts.len(), integrals)` elements of memory.
-    ///
-    /// ```
-    /// use noisefloor::mis::{self, OptimalMis};
-    /// assert!(OptimalMis::new([0.0; mis::len(2, 3)], &[1, 4], 3).is_ok());
-    /// assert!(OptimalMis::new([0.0; mis::len(2, 3)], &[1, 0], 3).is_err()); // a technique that draws nothing
-    /// ```
     pub fn new(memory: M, counts: &[u32], integrals: usize) -> Result<Self, Error> {
         let mut omis = OptimalMis::resume(memory, counts, integrals)?;
         omis.reset();
@@ -292,16 +235,6 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     }
 
     /// Forgets every sample, and the progressive estimator's alpha.
-    ///
-    /// ```
-    /// use noisefloor::mis::{self, OptimalMis};
-    /// let mut omis = OptimalMis::new([0.0; mis::len(1, 1)], &[1], 1)?;
-    /// let empty = omis.clone();
-    /// omis.add(0, &[1.0], &[3.0])?;
-    /// omis.reset();
-    /// assert_eq!(omis, empty);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn reset(&mut self) {
         self.memory.as_mut().fill(0.0);
     }
@@ -312,14 +245,6 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// Errors, which leave the sums as they were: [`Error::Range`] for wrong lengths, a technique that does not exist,
     /// a negative density, or a density of 0 for the technique that drew the sample; [`Error::NotFinite`] for NaN or
     /// infinity among the densities (combine delta distributions outside) or values.
-    ///
-    /// ```
-    /// use noisefloor::mis::{self, OptimalMis};
-    /// let mut omis = OptimalMis::new([0.0; mis::len(2, 1)], &[1, 1], 1)?;
-    /// omis.add(0, &[1.0, 0.5], &[0.0])?; // f = 0 says something about the densities too
-    /// assert!(omis.add(1, &[1.0, 0.0], &[3.0]).is_err()); // drawn with a density of 0
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn add(&mut self, technique: usize, pdf: &[f32], value: &[f32]) -> Result<(), Error> {
         let techniques = self.techniques;
         if pdf.len() != techniques || value.len() != self.integrals {
@@ -402,16 +327,6 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     ///
     /// With beta = 0 nothing is left but the progressive estimator's alpha. Errors: [`Error::NotFinite`] for NaN or
     /// infinity, [`Error::Range`] outside 0..=1.
-    ///
-    /// ```
-    /// use noisefloor::mis::{self, OptimalMis, Solver};
-    ///
-    /// let mut omis = OptimalMis::new([0.0; mis::len(2, 1)], &[1, 1], 1)?;
-    /// omis.add(0, &[1.0, 0.5], &[3.0])?; // f = 3 p_0
-    /// omis.add(1, &[1.0, 1.5], &[3.0])?;
-    /// omis.decay(0.5)?; // what was added counts half as much as what follows
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn decay(&mut self, beta: f32) -> Result<(), Error> {
         if !beta.is_finite() {
             return Err(Error::NotFinite);

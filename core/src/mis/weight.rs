@@ -17,12 +17,6 @@ use crate::Error;
 ///
 /// Errors: [`Error::Range`] for arguments outside these ranges or a weight beyond the range of `f32` (f much too
 /// small); [`Error::NotFinite`] for NaN or infinity among them.
-///
-/// ```
-/// // With alpha = 0 the balance heuristic.
-/// assert_eq!(noisefloor::mis::optimal(&[1.0, 3.0], &[1, 1], 1, &[0.0, 0.0], 2.0)?, 0.75);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 pub fn optimal(pdf: &[f32], counts: &[u32], technique: usize, alpha: &[f32], value: f32) -> Result<f32, Error> {
     let point = Point::new(pdf, counts, technique, alpha, value)?;
     if value == 0.0 {

@@ -61,21 +61,11 @@ impl Builtin {
     ];
 
     /// The tile of a number, `None` for a number of no tile.
-    ///
-    /// ```
-    /// use noisefloor::tile::Builtin;
-    /// assert_eq!(Builtin::from_id(10), Some(Builtin::Size64Spp1Dims2));
-    /// assert_eq!(Builtin::from_id(0), None);
-    /// ```
     pub fn from_id(id: u32) -> Option<Builtin> {
         Builtin::ALL.into_iter().find(|&tile| tile as u32 == id)
     }
 
     /// The name of its file in `core/tiles`, without the extension.
-    ///
-    /// ```
-    /// assert_eq!(noisefloor::tile::Builtin::Size64Spp1Dims2.name(), "64_1SPP_2D");
-    /// ```
     pub const fn name(self) -> &'static str {
         match self {
             Builtin::Size128Spp1Dims2 => "128_1SPP_2D",
@@ -94,13 +84,6 @@ impl Builtin {
     }
 
     /// The bytes of its file; `None` if its feature is off. A new tile needs a line here and one in Cargo.toml.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Builtin, MAGIC};
-    /// if let Some(bytes) = Builtin::Size64Spp1Dims2.bytes() { // if its feature is on
-    ///     assert!(bytes.starts_with(&MAGIC));
-    /// }
-    /// ```
     pub const fn bytes(self) -> Option<&'static [u8]> {
         match self {
             #[cfg(feature = "tile-128-1spp-2d")]
@@ -137,14 +120,6 @@ impl Builtin {
     ///
     /// # Errors
     /// [`Error::Unsupported`] if its feature is off.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Builtin, Sampler};
-    /// if let Ok(tile) = Builtin::Size64Spp1Dims2.tile() { // if its feature is on
-    ///     let [u, v] = Sampler::pixel(&tile, 3, 5, 0, 0).draw();
-    ///     # assert!(u < 1.0 && v < 1.0);
-    /// }
-    /// ```
     pub const fn tile(self) -> Result<Tile<'static>, Error> {
         let Some(bytes) = self.bytes() else { return Err(Error::Unsupported) };
         let Some((head, payload)) = bytes.split_first_chunk::<HEADER_BYTES>() else { return Err(Error::Length) };

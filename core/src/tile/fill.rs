@@ -4,17 +4,6 @@ use super::sampler::Sampler;
 use crate::Error;
 
 /// How many numbers [`fill`] writes; `None` for more than memory holds.
-///
-/// ```
-/// use noisefloor::tile::{Sampler, Shape, Tile, fill_len};
-///
-/// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-/// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-/// let tile = Tile::new(shape, &payload)?;
-/// let sampler = Sampler::pixel(&tile, 0, 0, 0, 0);
-/// assert_eq!(fill_len(&[(sampler.domain(1), 2), (sampler.domain(2), 1)], 64, 32, 4), Some(64 * 32 * 4 * 3));
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 pub fn fill_len(domains: &[(Sampler<'_>, usize)], width: usize, height: usize, samples: usize) -> Option<usize> {
     let dims = domains.iter().try_fold(0_usize, |sum, &(_, dims)| sum.checked_add(dims))?;
     width.checked_mul(height)?.checked_mul(samples)?.checked_mul(dims)

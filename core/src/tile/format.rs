@@ -43,13 +43,6 @@ impl Header {
     ///
     /// # Errors
     /// [`Error::Range`] for a shape or text outside these limits.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Header, Shape};
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// assert!(Header::new(shape, 1, "gaussian:1.5").is_ok());
-    /// assert!(Header::new(shape, 1, "gau\u{df}").is_err()); // not ASCII
-    /// ```
     pub fn new(shape: Shape, seed: u64, kernel: &str) -> Result<Header, Error> {
         let mut text = [0; KERNEL_BYTES];
         let place = text.get_mut(..kernel.len()).ok_or(Error::Range)?;
@@ -63,37 +56,16 @@ impl Header {
     }
 
     /// How many values, and how they are stored.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Header, Shape};
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// assert_eq!(Header::new(shape, 1, "")?.shape(), shape);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub const fn shape(&self) -> Shape {
         self.shape
     }
 
     /// The seed the tile was made with.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Header, Shape};
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// assert_eq!(Header::new(shape, 7, "")?.seed(), 7);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub const fn seed(&self) -> u64 {
         self.seed
     }
 
     /// What the tile was optimised for.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Header, Shape};
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// assert_eq!(Header::new(shape, 1, "perceptual")?.kernel(), "perceptual");
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn kernel(&self) -> &str {
         let len = self.kernel.iter().position(|&byte| byte == 0).unwrap_or(KERNEL_BYTES);
         self.kernel.get(..len).and_then(|text| core::str::from_utf8(text).ok()).unwrap_or("")
@@ -103,15 +75,6 @@ impl Header {
     ///
     /// # Errors
     /// [`Error::Length`] if the payload has not the bytes that the shape says.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Header, Shape};
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let header = Header::new(shape, 1, "")?;
-    /// assert_eq!(header.encode(&[0; 8])?.len(), 128);
-    /// assert!(header.encode(&[0; 7]).is_err());
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn encode(&self, payload: &[u8]) -> Result<[u8; HEADER_BYTES], Error> {
         if payload.len() as u64 != self.shape.payload_bytes() {
             return Err(Error::Length);
@@ -129,17 +92,6 @@ impl Header {
     ///
     /// # Errors
     /// As for [`Tile::from_bytes`](super::Tile::from_bytes).
-    ///
-    /// ```
-    /// use noisefloor::tile::{Header, Shape};
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let mut file = Header::new(shape, 1, "")?.encode(&[0; 8])?.to_vec();
-    /// file.extend([0; 8]);
-    /// assert_eq!(Header::decode(&file)?.1, [0; 8]);
-    /// file[130] = 1;
-    /// assert_eq!(Header::decode(&file), Err(noisefloor::Error::Corrupt));
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn decode(bytes: &[u8]) -> Result<(Header, &[u8]), Error> {
         if bytes.iter().zip(&MAGIC).any(|(byte, magic)| byte != magic) || bytes.is_empty() {
             return Err(Error::Foreign);
@@ -224,11 +176,6 @@ impl Header {
 
 /// The stored integer of `bits` (8 or 16) whose value, `(v + 1/2) / 2^bits`, is nearest to u in [0, 1); u outside, or
 /// NaN, is clamped.
-///
-/// ```
-/// use noisefloor::tile::quantize;
-/// assert_eq!((quantize(0.0, 8), quantize(0.5, 8), quantize(1.0, 8)), (0, 128, 255));
-/// ```
 pub fn quantize(u: f32, bits: u32) -> u16 {
     let levels = 1_u32 << (bits & 31).min(16);
     // The conversion saturates, and rounds down what is positive.

@@ -69,66 +69,24 @@ impl<'a> Sampler<'a> {
     ///
     /// Frames 0 to `frames - 1` are the tile's (a tile that is not temporal has one). Each later run of them is the
     /// tile at another place, unrelated to it.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Sampler, Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// assert_eq!(Sampler::pixel(&tile, 3, 2, 0, 0), Sampler::pixel(&tile, 1, 0, 0, 0)); // modulo 2 pixels
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline]
     pub const fn pixel(tile: &'a Tile<'a>, x: u32, y: u32, frame: u32, index: u32) -> Sampler<'a> {
         Sampler { tile, state: State::pixel(tile, x, y, frame, index) }
     }
 
     /// The sampler of a state that was kept: [`Sampler::state`].
-    ///
-    /// ```
-    /// use noisefloor::tile::{Sampler, Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// let sampler = Sampler::pixel(&tile, 1, 0, 0, 0).domain(7);
-    /// assert_eq!(Sampler::resume(&tile, sampler.state()), sampler);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline]
     pub const fn resume(tile: &'a Tile<'a>, state: State) -> Sampler<'a> {
         Sampler { tile, state }
     }
 
     /// What remains when the tile is known.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Sampler, Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// let state = Sampler::pixel(&tile, 3, 2, 0, 5).state();
-    /// assert_eq!((state.x, state.y, state.index), (1, 0, 5));
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline]
     pub const fn state(&self) -> State {
         self.state
     }
 
     /// The tile it draws from.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Sampler, Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// assert_eq!(Sampler::pixel(&tile, 1, 0, 0, 0).tile().shape(), shape);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline]
     pub const fn tile(&self) -> &'a Tile<'a> {
         self.tile
@@ -136,18 +94,6 @@ impl<'a> Sampler<'a> {
 
     /// The child domain of a key. Children of different keys are unrelated to each other and to their parent; keys mean
     /// something only among children of one parent.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Sampler, Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// let pixel = Sampler::pixel(&tile, 1, 0, 0, 0);
-    /// assert_ne!(pixel.domain(1), pixel.domain(2));
-    /// assert_ne!(pixel.domain(1).domain(2), pixel.domain(2).domain(1)); // a tree, not a set
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline]
     #[must_use]
     pub const fn domain(self, key: u32) -> Sampler<'a> {
@@ -160,18 +106,6 @@ impl<'a> Sampler<'a> {
     /// domain. Over random seeds every value is uniform, so estimates are unbiased, as far as a hash of 32 bits is
     /// random. The shift costs quality: where good images are wanted, and not exact unbiasedness, take another frame
     /// instead. Children of a scrambled sampler are scrambled.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Sampler, Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// let pixel = Sampler::pixel(&tile, 1, 0, 0, 0);
-    /// assert_eq!(pixel.scramble(0), pixel);
-    /// assert_ne!(pixel.scramble(1).draw::<2>(), pixel.scramble(2).draw::<2>());
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline]
     #[must_use]
     pub const fn scramble(self, seed: u32) -> Sampler<'a> {
@@ -179,16 +113,6 @@ impl<'a> Sampler<'a> {
     }
 
     /// The same domain of the pixel `x` columns to the right and `y` rows down, and of the sample `index` further.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Sampler, Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// assert_eq!(Sampler::pixel(&tile, 0, 0, 0, 0).moved(1, 1, 0), Sampler::pixel(&tile, 1, 1, 0, 0));
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline]
     #[must_use]
     pub const fn moved(self, x: u32, y: u32, index: u32) -> Sampler<'a> {
@@ -205,17 +129,6 @@ impl<'a> Sampler<'a> {
     /// least two dimensions and samples, and is not progressive, each further coordinate of its samples is stratified,
     /// and the third of a tile of two dimensions with those two, as far as the samples are in the order in which `fsot`
     /// writes them.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Sampler, Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// let [x, y] = Sampler::pixel(&tile, 1, 1, 0, 0).draw();
-    /// assert_eq!([x, y], [192.5 / 256.0, 128.5 / 256.0]);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn draw<const N: usize>(&self) -> [f32; N] {
         let mut u = [0.0; N];
@@ -225,18 +138,6 @@ impl<'a> Sampler<'a> {
     /// [`draw`](Sampler::draw), if that needs little but to look up stored values: for indices below the tile's spp, at
     /// most 16, in unscrambled samplers, with no more dimensions than the tile has. Otherwise returns false and writes
     /// nothing; the root's are stored at any spp.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Sampler, Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// let mut u = [0.0; 2];
-    /// assert!(Sampler::pixel(&tile, 1, 0, 0, 0).draw_stored(&mut u)); // the root, in the tile's own samples
-    /// assert!(!Sampler::pixel(&tile, 1, 0, 0, 1).draw_stored(&mut u)); // continued by a sequence
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn draw_stored<const N: usize>(&self, u: &mut [f32; N]) -> bool {
         const { assert!(0 < N && N <= 4, "a domain has 1 to 4 dimensions") };
@@ -250,18 +151,6 @@ impl<'a> Sampler<'a> {
     }
 
     /// As [`draw`](Sampler::draw), as many coordinates as `u` has room for, at most 4; more stay as they are.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Sampler, Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// let (sampler, mut u) = (Sampler::pixel(&tile, 1, 0, 0, 0), [0.0; 2]);
-    /// sampler.draw_into(&mut u);
-    /// assert_eq!(u, sampler.draw());
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline]
     pub fn draw_into(&self, u: &mut [f32]) {
         match u {
@@ -276,16 +165,6 @@ impl<'a> Sampler<'a> {
 
 impl State {
     /// [`Sampler::pixel`].
-    ///
-    /// ```
-    /// use noisefloor::tile::{Sampler, Shape, State, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// assert_eq!(State::pixel(&tile, 1, 0, 0, 0), Sampler::pixel(&tile, 1, 0, 0, 0).state());
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub const fn pixel(tile: &Tile<'_>, x: u32, y: u32, frame: u32, index: u32) -> State {
         let shape = tile.shape();
@@ -296,16 +175,6 @@ impl State {
     }
 
     /// [`Sampler::domain`].
-    ///
-    /// ```
-    /// use noisefloor::tile::{Sampler, Shape, State, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// assert_eq!(State::default().domain(7), Sampler::pixel(&tile, 0, 0, 0, 0).domain(7).state());
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     #[must_use]
     pub const fn domain(self, key: u32) -> State {
@@ -313,16 +182,6 @@ impl State {
     }
 
     /// [`Sampler::scramble`].
-    ///
-    /// ```
-    /// use noisefloor::tile::{Sampler, Shape, State, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// assert_eq!(State::default().scramble(7), Sampler::pixel(&tile, 0, 0, 0, 0).scramble(7).state());
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     #[must_use]
     pub const fn scramble(self, seed: u32) -> State {

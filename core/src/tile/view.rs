@@ -38,13 +38,6 @@ pub struct Shape {
 
 impl Shape {
     /// Whether every field is in its range.
-    ///
-    /// ```
-    /// use noisefloor::tile::Shape;
-    /// let shape = Shape { size: 64, spp: 4, dims: 2, frames: 1, bits: 16, progressive: false };
-    /// assert!(shape.is_valid());
-    /// assert!(!Shape { spp: 3, ..shape }.is_valid()); // no power of two
-    /// ```
     pub const fn is_valid(&self) -> bool {
         self.size.is_power_of_two()
             && self.size <= MAX_SIZE
@@ -58,12 +51,6 @@ impl Shape {
     }
 
     /// How many coordinates a tile of this shape has; meaningless unless [`is_valid`](Shape::is_valid).
-    ///
-    /// ```
-    /// use noisefloor::tile::Shape;
-    /// let shape = Shape { size: 64, spp: 4, dims: 2, frames: 1, bits: 16, progressive: false };
-    /// assert_eq!(shape.coordinates(), 64 * 64 * 4 * 2);
-    /// ```
     pub const fn coordinates(&self) -> u64 {
         // At most 2^(10 + 10 + 8 + 3 + 8) for a valid shape.
         (self.size as u64)
@@ -74,12 +61,6 @@ impl Shape {
     }
 
     /// How many bytes its payload has; meaningless unless [`is_valid`](Shape::is_valid).
-    ///
-    /// ```
-    /// use noisefloor::tile::Shape;
-    /// let shape = Shape { size: 64, spp: 4, dims: 2, frames: 1, bits: 16, progressive: false };
-    /// assert_eq!(shape.payload_bytes(), 64 * 64 * 4 * 2 * 2);
-    /// ```
     pub const fn payload_bytes(&self) -> u64 {
         self.coordinates().wrapping_mul(self.bits as u64 / 8)
     }
@@ -109,11 +90,6 @@ impl<'a> Tile<'a> {
     /// # Errors
     /// [`Error::Foreign`] for what is no tile, [`Error::Version`] for one of a newer format, [`Error::Length`] for
     /// missing or trailing bytes, [`Error::Corrupt`] for a damaged one.
-    ///
-    /// ```
-    /// use noisefloor::{Error, tile::Tile};
-    /// assert_eq!(Tile::from_bytes(b"no tile"), Err(Error::Foreign));
-    /// ```
     pub fn from_bytes(bytes: &'a [u8]) -> Result<Tile<'a>, Error> {
         let (header, payload) = Header::decode(bytes)?;
         Ok(Tile { shape: header.shape(), payload })
@@ -125,15 +101,6 @@ impl<'a> Tile<'a> {
     /// # Errors
     /// [`Error::Range`] for a shape out of range, [`Error::Length`] for a payload that is not exactly as long as it
     /// says.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// assert!(Tile::new(shape, &payload).is_ok());
-    /// assert_eq!(Tile::new(shape, &payload[1..]), Err(noisefloor::Error::Length));
-    /// ```
     pub const fn new(shape: Shape, payload: &'a [u8]) -> Result<Tile<'a>, Error> {
         if !shape.is_valid() {
             return Err(Error::Range);
@@ -146,63 +113,24 @@ impl<'a> Tile<'a> {
 
     /// As [`Tile::new`], unchecked: for the parts of a tile that was checked before. Other parts draw wrong numbers,
     /// though still in [0, 1).
-    ///
-    /// ```
-    /// use noisefloor::tile::{Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// assert_eq!(Tile::resume(tile.shape(), tile.payload()), tile);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline]
     pub const fn resume(shape: Shape, payload: &'a [u8]) -> Tile<'a> {
         Tile { shape, payload }
     }
 
     /// How many values there are.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// assert_eq!(Tile::new(shape, &payload)?.shape(), shape);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline]
     pub const fn shape(&self) -> Shape {
         self.shape
     }
 
     /// The stored values, as [`Tile::new`] takes them.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// assert_eq!(Tile::new(shape, &payload)?.payload(), payload);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline]
     pub const fn payload(&self) -> &'a [u8] {
         self.payload
     }
 
     /// A stored coordinate, `(v + 1/2) / 2^bits` for the stored integer v; `None` outside the shape.
-    ///
-    /// ```
-    /// use noisefloor::tile::{Shape, Tile};
-    ///
-    /// let shape = Shape { size: 2, spp: 1, dims: 2, frames: 1, bits: 8, progressive: false };
-    /// let payload = [0, 64, 128, 192, 64, 0, 192, 128];
-    /// let tile = Tile::new(shape, &payload)?;
-    /// assert_eq!(tile.value(0, 1, 0, 0, 1), Some(0.5 / 256.0)); // row 1, column 0: the 0 of [64, 0]
-    /// assert_eq!(tile.value(0, 2, 0, 0, 0), None); // there is no row 2
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn value(&self, frame: u32, y: u32, x: u32, sample: u32, dim: u32) -> Option<f32> {
         let Shape { size, spp, dims, frames, .. } = self.shape;
         if frame >= frames || y >= size || x >= size || sample >= spp || dim >= dims {

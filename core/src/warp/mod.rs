@@ -10,6 +10,16 @@
 //!   (a pole), it returns one of the points that map there.
 //!
 //! Arithmetic is f64 inside and the same on every target; only results are rounded to f32.
+//!
+//! ```
+//! use glam::Vec2;
+//! use noisefloor::warp::{cosine_hemisphere, cosine_hemisphere_inverse, cosine_hemisphere_pdf};
+//!
+//! let u = Vec2::new(0.3, 0.8);
+//! let direction = cosine_hemisphere(u);
+//! assert!((cosine_hemisphere_pdf(direction) - direction.z / core::f32::consts::PI).abs() < 1e-6);
+//! assert!(cosine_hemisphere_inverse(direction).distance(u) < 1e-5);
+//! ```
 
 mod cone;
 mod disc;

@@ -143,7 +143,11 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_subclass_has_the_points_above_its_threshold(function in functions(), points in 1usize..200, z in 0.0f32..1.0) {
+        fn a_subclass_has_the_points_above_its_threshold(
+            function in functions(),
+            points in 1usize..200,
+            z in 0.0f32..1.0,
+        ) {
             let coordinates = ClassCoordinates::Index;
             let filter = Filter::new(&function, &coordinates, points);
             let above = |z: f32| -> Vec<u32> {
@@ -167,7 +171,10 @@ mod tests {
 
         #[test]
         fn a_subclass_of_some_points(
-            function in functions(), points in 1usize..200, z in 0.0f32..1.0, some in prop::collection::btree_set(0u32..200, 0..60),
+            function in functions(),
+            points in 1usize..200,
+            z in 0.0f32..1.0,
+            some in prop::collection::btree_set(0u32..200, 0..60),
         ) {
             let filter = Filter::new(&function, &ClassCoordinates::Index, points);
             let numbers: Vec<u32> = some.into_iter().filter(|&i| (i as usize) < points).collect();
@@ -175,7 +182,8 @@ mod tests {
             filter.select(z, &mut all);
             let count = filter.select_of(z, &numbers, &mut selected);
             let all = places(&all);
-            let expected: Vec<u32> = (0..numbers.len() as u32).filter(|&k| all.contains(&numbers[k as usize])).collect();
+            let within = |k: &u32| all.contains(&numbers[*k as usize]);
+            let expected: Vec<u32> = (0..numbers.len() as u32).filter(within).collect();
             prop_assert_eq!(count, expected.len());
             prop_assert_eq!(places(&selected), expected);
             prop_assert!(selected.windows(2).all(|pair| pair[0].end < pair[1].start));

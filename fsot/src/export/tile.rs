@@ -154,7 +154,8 @@ pub fn c_header(tile: &Tile<'_>, name: &str) -> Result<Vec<u8>> {
 pub fn rust(tile: &Tile<'_>, name: &str) -> Result<Vec<u8>> {
     check(tile)?;
     let mut text = format!(
-        "//! Sample tile {}: `TILE` is `[FRAMES][SIZE (y)][SIZE (x)][SPP][DIMS]`, coordinate = (integer + 0.5) / 2^{}, in [0, 1).\n\n",
+        "//! Sample tile {}: `TILE` is `[FRAMES][SIZE (y)][SIZE (x)][SPP][DIMS]`, coordinate = (integer + 0.5) \
+         / 2^{}, in [0, 1).\n\n",
         identifier(name),
         tile.shape().bits
     );

@@ -1,6 +1,6 @@
 //! What a problem must fulfil.
 
-use super::{Domain, Problem};
+use super::problem::{Domain, Problem};
 use crate::Error;
 use crate::class::{ClassCoordinates, check_weight};
 use crate::counted::counted;

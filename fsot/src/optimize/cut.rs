@@ -1,7 +1,7 @@
 //! Cutting the domain into windows that hold their share of the points.
 
-use super::Domain;
 use super::group::Group;
+use super::problem::Domain;
 use noisefloor::rng::Rng;
 use rayon::prelude::*;
 
@@ -99,13 +99,19 @@ mod tests {
 
     proptest! {
         #[test]
-        fn windows_have_their_share(points in 200usize..2000, per_axis in 2usize..6, torus in any::<bool>(), seed in any::<u64>()) {
+        fn windows_have_their_share(
+            points in 200usize..2000,
+            per_axis in 2usize..6,
+            torus in any::<bool>(),
+            seed in any::<u64>(),
+        ) {
             let domain = if torus { Domain::Toroidal } else { Domain::Bounded };
             let rng = &mut stream(seed, 0, 0);
             let places: Vec<[f32; 2]> = (0..points).map(|_| [rng.uniform_f32(), rng.uniform_f32()]).collect();
             let split = points as u32 / 3;
             let of = |range: std::ops::Range<u32>, ranked| Group { members: range.collect(), ranked };
-            let groups = [of(0..split, true), of(split..points as u32 - 9, true), of(points as u32 - 9..points as u32, false)];
+            let (all, last) = (points as u32, points as u32 - 9);
+            let groups = [of(0..split, true), of(split..last, true), of(last..all, false)];
             let windows = cut(&places, &groups, per_axis, domain, rng);
             prop_assert_eq!(windows.len(), per_axis * per_axis);
             let mut area = 0.0;
@@ -116,7 +122,8 @@ mod tests {
                 prop_assert!((mine - ranked as f32 / (points - 9) as f32).abs() < 1e-5, "{mine} for {ranked}");
                 // Each group's too, but for rounding: half a point across each axis.
                 let first = mine * split as f32;
-                prop_assert!((first - window.members[0].len() as f32).abs() < 4.0, "{first} {}", window.members[0].len());
+                let count = window.members[0].len();
+                prop_assert!((first - count as f32).abs() < 4.0, "{first} {count}");
                 // The others are where they are.
                 for &i in &window.members[2] {
                     for ((at, start), length) in places[i as usize].iter().zip(window.start).zip(window.lengths) {

@@ -1,6 +1,6 @@
 //! Where points begin.
 
-use super::Problem;
+use super::problem::Problem;
 use crate::points::BELOW_ONE;
 use crate::random::stream;
 use std::collections::HashSet;

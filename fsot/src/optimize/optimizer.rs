@@ -1,11 +1,11 @@
 //! The optimisation of a point set, step by step.
 
+use super::check;
 use super::direction::direction;
 use super::group::{self, Group};
-use super::schedule::{MOST_OBJECTIVES, SLICES, Schedule, objectives};
+use super::problem::{Domain, Problem};
+use super::schedule::{MOST_OBJECTIVES, SLICES, Schedule, objectives, window_count};
 use super::slice::{Bins, Offset, Slice, Workspace, advance, transport};
-use super::window::window_count;
-use super::{Domain, Problem, check};
 use crate::class::{Filter, normalised};
 use crate::error::Result;
 use crate::memory;

@@ -1,14 +1,13 @@
 //! How long an optimisation runs.
 
-use super::window::windows_per_axis;
-use super::{Problem, Quality};
+use super::problem::{Problem, Quality};
 
 /// Slices per iteration. At 48,000 slices in all, 4096 points reach a nearest-neighbour distance of .873 of the maximum
 /// with 8 or 16 slices, .870 with 32; hundreds are much worse. Sixteen keep as many threads busy.
 pub(crate) const SLICES: usize = 16;
 
 /// Points per window of a large set.
-pub(crate) const WINDOW: usize = 1024;
+const WINDOW: usize = 1024;
 /// Sets of more points than this are optimised in windows.
 pub(crate) const WINDOWED_FROM: usize = 8192;
 /// Iterations inside each window before the set is cut into other windows.
@@ -18,6 +17,21 @@ const OPENING: u64 = 4;
 /// The same after them, for each objective: they remove most of the error of low frequencies that windows leave, and
 /// cost a little of the nearest-neighbour distance.
 const CLOSING: u64 = 24;
+
+/// How many windows each axis has for a number of points; fewer than 2: none.
+pub(super) fn windows_per_axis(points: usize, dims: usize) -> usize {
+    let windows = points as f64 / WINDOW as f64;
+    match dims {
+        1 => windows as usize,
+        2 => windows.sqrt() as usize,
+        _ => libm::cbrt(windows) as usize,
+    }
+}
+
+/// How many windows a set is cut into.
+pub(super) fn window_count(points: usize, dims: usize) -> usize {
+    windows_per_axis(points, dims).max(2).pow(dims as u32)
+}
 
 /// The iterations of an optimisation: of all points together, or, for large uniform sets, of windows, but for a few at
 /// the beginning, which spread the points evenly over the domain, and some at the end, which remove the errors that are

@@ -1,11 +1,11 @@
 //! Windows: large uniform sets are optimised in boxes of about a thousand points, which costs less per point and moves
 //! them farther.
 
-use super::Domain;
 use super::cut::{Piece, cut};
 use super::direction::direction;
 use super::optimizer::Optimizer;
-use super::schedule::{SLICES, WINDOW, WINDOW_ITERATIONS};
+use super::problem::Domain;
+use super::schedule::{SLICES, WINDOW_ITERATIONS, windows_per_axis};
 use super::slice::{Bins, Offset, Slice, Workspace, advance, transport};
 use crate::points::BELOW_ONE;
 use crate::random::stream;
@@ -14,21 +14,6 @@ use rayon::prelude::*;
 
 /// The stream that places the windows; those of slices are below.
 const PLACES: u64 = u64::MAX;
-
-/// How many windows each axis has for a number of points; fewer than 2: none.
-pub(super) fn windows_per_axis(points: usize, dims: usize) -> usize {
-    let windows = points as f64 / WINDOW as f64;
-    match dims {
-        1 => windows as usize,
-        2 => windows.sqrt() as usize,
-        _ => libm::cbrt(windows) as usize,
-    }
-}
-
-/// How many windows a set is cut into.
-pub(super) fn window_count(points: usize, dims: usize) -> usize {
-    windows_per_axis(points, dims).max(2).pow(dims as u32)
-}
 
 /// A window and its points.
 struct Window<const D: usize> {

@@ -4,8 +4,7 @@
 //! process that ends, however it ends. So a file of such a name that another process can lock is one that nobody will
 //! rename any more. Where a file system has no locks, none is removed.
 
-use super::folder;
-use crate::checkpoint::digest;
+use crate::digest::digest;
 use std::collections::{HashMap, HashSet};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
@@ -21,6 +20,11 @@ const LETTERS: usize = 6;
 const ATTEMPTS: usize = 64;
 /// Another run renames its files in milliseconds. Whoever locks the folder for longer is no run of fsot.
 const TURN: Duration = Duration::from_secs(2);
+
+/// The folder of a file.
+pub(super) fn folder(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
 
 /// How the names of the temporary files of a place begin.
 fn prefix(place: &Path) -> String {

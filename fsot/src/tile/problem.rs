@@ -1,7 +1,6 @@
 //! What a tile shall be.
 
 use super::kernel::Kernel;
-use super::stencil::{self, Stencils};
 use super::temporal::TemporalKernel;
 use crate::optimize::{Domain, Quality};
 use crate::{Error, error::Result};
@@ -142,27 +141,8 @@ impl TileProblem {
         self.frames * self.size * self.size * self.spp * self.dims
     }
 
-    /// The samples that all slices of a step look at, in the mean: a step's time is in proportion to it. An
-    /// [`Error::Input`] as for [`validate`](Self::validate).
-    pub fn cost(&self) -> Result<f64> {
-        self.validate()?;
-        let slices = (self.frames * self.size * self.size) as f64;
-        Ok(slices
-            * stencil::enumerate(self)?.iter().map(|entry| entry.probability * entry.length() as f64).sum::<f64>())
-    }
-
-    /// An [`Error::Input`] that names the first value that cannot be.
-    pub fn validate(&self) -> Result<()> {
-        self.stencils().map(|_| ())
-    }
-
-    /// Everything that a slice may select; checks all parameters.
-    pub(super) fn stencils(&self) -> Result<Stencils> {
-        self.check_ranges()?;
-        Stencils::new(self)
-    }
-
-    fn check_ranges(&self) -> Result<()> {
+    /// An [`Error::Input`] that names the first number out of its range.
+    pub(super) fn check_ranges(&self) -> Result<()> {
         let within = |n: usize, from: usize, to: u32| (from..=to as usize).contains(&n);
         let power = |n: usize, from: usize, to: u32| n.is_power_of_two() && within(n, from, to);
         check(power(self.size, 8, MAX_SIZE), "size", self.size, "a power of two from 8 to 1024 pixels")?;

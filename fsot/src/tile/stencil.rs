@@ -55,8 +55,29 @@ struct Class {
     weight: f32,
 }
 
+impl TileProblem {
+    /// The samples that all slices of a step look at, in the mean: a step's time is in proportion to it. An
+    /// [`Error::Input`] as for [`validate`](Self::validate).
+    pub fn cost(&self) -> Result<f64> {
+        self.validate()?;
+        let slices = (self.frames * self.size * self.size) as f64;
+        Ok(slices * enumerate(self)?.iter().map(|entry| entry.probability * entry.length() as f64).sum::<f64>())
+    }
+
+    /// An [`Error::Input`] that names the first value that cannot be.
+    pub fn validate(&self) -> Result<()> {
+        self.stencils().map(|_| ())
+    }
+
+    /// Everything that a slice may select; checks all parameters.
+    pub(super) fn stencils(&self) -> Result<Stencils> {
+        self.check_ranges()?;
+        Stencils::new(self)
+    }
+}
+
 /// All subclasses of a problem, with their probabilities, which add up to 1.
-pub(super) fn enumerate(problem: &TileProblem) -> Result<Vec<Entry>> {
+fn enumerate(problem: &TileProblem) -> Result<Vec<Entry>> {
     let classes = classes(problem)?;
     Ok(entries(problem, &classes))
 }

@@ -14,7 +14,10 @@ struct Layout {
 
     uint32_t decisions() const { return (box ? 1u : 0u) + (lens ? 1u : 0u) + static_cast<uint32_t>(lights.size()); }
     uint32_t dims() const { return 2 * decisions(); }
-    bool operator==(const Layout &other) const { return box == other.box && lens == other.lens && lights == other.lights; }
+    bool operator==(const Layout &other) const
+    {
+        return box == other.box && lens == other.lens && lights == other.lights;
+    }
 };
 
 // Library limit: nf_cv_config.dims.
@@ -23,7 +26,9 @@ constexpr uint32_t most_decisions = 8;
 // One per thread, used for block after block.
 class Block {
 public:
-    explicit Block(const Settings &settings) : settings_(settings), further_(settings, settings.samples, most_decisions) {}
+    explicit Block(const Settings &settings) : settings_(settings), further_(settings, settings.samples, most_decisions)
+    {
+    }
 
     void begin(int left, int top, uint32_t width, uint32_t height, Layout layout)
     {
@@ -94,7 +99,8 @@ public:
     void end(float *means)
     {
         if (estimator_)
-            estimator_->estimate({numbers_.data(), values_.data(), surfaces_.data(), width_, height_, settings_.samples}, means);
+            estimator_->estimate(
+                {numbers_.data(), values_.data(), surfaces_.data(), width_, height_, settings_.samples}, means);
         else
             for (size_t i = 0; i < sums_.size(); ++i)
                 means[i] = static_cast<float>(sums_[i] / settings_.samples);

@@ -60,7 +60,8 @@ int nfp_in_sample(void) { return nfp_enabled() && thread().in_sample; }
 
 int nfp_moves_lights(void) { return nfp_enabled() && settings.moves_lights && thread().context(); }
 
-void nfp_block_begin(int left, int top, unsigned width, unsigned height, int lens, const void *const *lights, size_t count)
+void nfp_block_begin(int left, int top, unsigned width, unsigned height, int lens, const void *const *lights,
+                     size_t count)
 {
     Layout layout;
     layout.box = settings.box;

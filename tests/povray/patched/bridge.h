@@ -1,7 +1,7 @@
 /* What the patched POV-Ray asks of noisefloor: numbers for a sample's decisions, and a colour for a pixel's samples.
  * MIT OR Apache-2.0. Nothing here is POV-Ray's.
  *
- * The order of calls, on any number of threads (each works on a block of its own; nothing is shared, nothing is locked):
+ * The order of calls, on any number of threads (each works on a block of its own; nothing is shared or locked):
  *   block_begin { pixel_begin { sample_begin, positions, sample_end } pixel_end } block_end
  * and, where irradiance is gathered for radiosity, inside a sample or not:
  *   gather_begin { gather_direction, positions, gather_value } gather_end
@@ -23,12 +23,13 @@ int nfp_enabled(void);
 unsigned nfp_samples(void);
 /* 1 while a sample is traced. */
 int nfp_in_sample(void);
-/* 1 while a sample or a gathered ray is traced in which the point of an area light stands for the light in shading as in
- * shadow; 0 if only in shadow, as in POV-Ray itself. */
+/* 1 while a sample or a gathered ray is traced in which the point of an area light stands for the light in shading as
+ * in shadow; 0 if only in shadow, as in POV-Ray itself. */
 int nfp_moves_lights(void);
 
-/* A rectangle of pixels. lens: whether rays leave from points of a lens; lights: the scene's area lights, by address. */
-void nfp_block_begin(int left, int top, unsigned width, unsigned height, int lens, const void *const *lights, size_t count);
+/* A rectangle of pixels. lens: whether rays leave from points of a lens. lights: the area lights, by address. */
+void nfp_block_begin(int left, int top, unsigned width, unsigned height, int lens, const void *const *lights,
+                     size_t count);
 /* means[3 * width * height]: red, green, blue of its pixels, row after row. */
 void nfp_block_end(float *means);
 
@@ -46,8 +47,8 @@ void nfp_sample_end(const float rgb[3]);
 
 /* A point of the unit disc: the centre while no sample is traced. 0 outside of a pixel. */
 int nfp_lens_position(double *x, double *y);
-/* A point of the unit square for the light as seen from `point`: the same for the same point until another is asked about. 0
- * if no sample and no gathered ray is traced. */
+/* A point of the unit square for the light as seen from `point`: the same for the same point until another is asked
+ * about. 0 if no sample and no gathered ray is traced. */
 int nfp_light_position(const void *light, const double point[3], double *u, double *v);
 
 /* Irradiance at a point, from `count` directions. */

@@ -30,7 +30,8 @@ inline void check_estimator(const std::string &name)
 }
 
 // By a name of estimators.hpp, or `accumulator`, or `recommended`: what nf_recommend() says.
-inline std::unique_ptr<demo::Estimator> make_estimator(const Settings &settings, uint32_t dims, uint32_t side, uint32_t samples)
+inline std::unique_ptr<demo::Estimator> make_estimator(const Settings &settings, uint32_t dims, uint32_t side,
+                                                       uint32_t samples)
 {
     std::string name = settings.estimator;
     check_estimator(name);

@@ -12,10 +12,12 @@ namespace noisefloor_povray {
 // The centres of a grid's cells: not to be used but to compare with pictures of the lights' points one by one.
 class GridSampler final : public demo::Sampler {
 public:
-    explicit GridSampler(const demo::SamplerSetup &setup) : setup_(setup), side_(static_cast<uint32_t>(std::lround(std::sqrt(setup.samples))))
+    explicit GridSampler(const demo::SamplerSetup &setup)
+        : setup_(setup), side_(static_cast<uint32_t>(std::lround(std::sqrt(setup.samples))))
     {
         if (side_ * side_ != setup.samples)
-            throw std::runtime_error("NOISEFLOOR_SAMPLER=grid needs a square number of samples, not " + std::to_string(setup.samples));
+            throw std::runtime_error("NOISEFLOOR_SAMPLER=grid needs a square number of samples, not " +
+                                     std::to_string(setup.samples));
     }
 
     void points(uint32_t, uint32_t, float *u) const override
@@ -33,7 +35,8 @@ private:
 
 // Numbers first, first + 1, ... of the two-dimensional domains that a pixel has. A renderer's kinds of decisions do not
 // matter to a sampler, so a domain is told from others by its number alone.
-inline std::unique_ptr<demo::Sampler> make_sampler(const Settings &settings, uint32_t samples, uint32_t first, uint32_t count)
+inline std::unique_ptr<demo::Sampler> make_sampler(const Settings &settings, uint32_t samples, uint32_t first,
+                                                   uint32_t count)
 {
     demo::SamplerSetup setup{};
     for (uint32_t d = first; d < first + count; ++d)
@@ -52,7 +55,10 @@ inline std::unique_ptr<demo::Sampler> make_sampler(const Settings &settings, uin
 // not known before.
 class LazyPoints {
 public:
-    LazyPoints(const Settings &settings, uint32_t samples, uint32_t first) : settings_(settings), samples_(samples), first_(first) {}
+    LazyPoints(const Settings &settings, uint32_t samples, uint32_t first)
+        : settings_(settings), samples_(samples), first_(first)
+    {
+    }
 
     void move_to(uint32_t x, uint32_t y)
     {
@@ -66,7 +72,8 @@ public:
     {
         while (parts_.size() <= domain) {
             uint32_t number = first_ + static_cast<uint32_t>(parts_.size());
-            parts_.push_back({make_sampler(settings_, samples_, number, 1), std::vector<float>(size_t{2} * samples_), false});
+            parts_.push_back(
+                {make_sampler(settings_, samples_, number, 1), std::vector<float>(size_t{2} * samples_), false});
         }
         Part &part = parts_[domain];
         if (!part.made)

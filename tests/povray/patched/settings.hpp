@@ -45,8 +45,9 @@ struct Settings {
 
 private:
     static constexpr const char *sampler_names[] = {"tile", "sobol", "random", "grid"};
-    static constexpr const char *names[] = {"NOISEFLOOR",           "NOISEFLOOR_SPP",   "NOISEFLOOR_SAMPLER", "NOISEFLOOR_TILE", "NOISEFLOOR_ESTIMATOR",
-                                            "NOISEFLOOR_ORDER", "NOISEFLOOR_SEED",    "NOISEFLOOR_PIXEL", "NOISEFLOOR_LIGHT"};
+    static constexpr const char *names[] = {"NOISEFLOOR",      "NOISEFLOOR_SPP",       "NOISEFLOOR_SAMPLER",
+                                            "NOISEFLOOR_TILE", "NOISEFLOOR_ESTIMATOR", "NOISEFLOOR_ORDER",
+                                            "NOISEFLOOR_SEED", "NOISEFLOOR_PIXEL",     "NOISEFLOOR_LIGHT"};
 
     static std::string text(const char *name, const std::string &otherwise)
     {
@@ -71,7 +72,8 @@ private:
         char *end = nullptr;
         uint64_t result = std::strtoull(value.c_str(), &end, 10);
         if (value[0] < '0' || value[0] > '9' || *end || result < least || result > most)
-            throw std::runtime_error(std::string(name) + "=" + value + " is not a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+            throw std::runtime_error(std::string(name) + "=" + value + " is not a whole number from " +
+                                     std::to_string(least) + " to " + std::to_string(most));
         return static_cast<uint32_t>(result);
     }
 

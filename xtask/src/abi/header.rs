@@ -173,8 +173,10 @@ fn without_name(parameter: &str) -> &str {
 mod tests {
     use super::*;
 
-    const TEXT: &str = "/* Top.\n */\n#ifndef H\nextern \"C\" {\n// Of nf_x(int).\n#define NF_ABI_VERSION 3\n#define NF_E (-2)\n\
-        typedef int32_t nf_status;\ntypedef struct nf_o nf_o;\ntypedef struct nf_s {\n    // A.\n    float mean[4];\n    \
+    const TEXT: &str = "/* Top.\n */\n#ifndef H\nextern \"C\" {\n// Of nf_x(int).\n#define NF_ABI_VERSION 3\n\
+        #define NF_E (-2)\n\
+        typedef int32_t nf_status;\ntypedef struct nf_o nf_o;\ntypedef struct nf_s {\n    // A.\n    \
+        float mean[4];\n    \
         const void *p;\n} nf_s;\nconst char *nf_m(nf_status status);\nnf_s nf_f(const float *u,\n          size_t n);\n\
         uint32_t nf_v(void);\n/* Layouts: */\nA(sizeof(nf_s) == 24)\nA(sizeof(nf_status) == 4)\n";
 

@@ -11,7 +11,8 @@ pub(super) fn measure(header: &Header) -> Result<Vec<String>> {
     let mut program = String::from("#include \"noisefloor.h\"\n#include <stdio.h>\nint main(void) {\n");
     for (name, kind) in &header.typedefs {
         program += &format!(
-            "printf(\"typedef {name}: size %zu, alignment %zu, %s, {kind}\\n\", sizeof({name}), (size_t)_Alignof({name}), \
+            "printf(\"typedef {name}: size %zu, alignment %zu, %s, {kind}\\n\", sizeof({name}), \
+             (size_t)_Alignof({name}), \
              ({name})-1 < 0 ? \"signed\" : \"unsigned\");\n"
         );
     }

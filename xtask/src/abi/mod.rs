@@ -26,9 +26,10 @@ pub fn write(options: &Options) -> Result<()> {
     let broken = gone(&before, &now);
     if !broken.is_empty() && version_line(&before) == version_line(&now) && !options.unreleased {
         bail!(
-            "programs built with the present header would break, and NF_ABI_VERSION is as before. Changed or removed:\n  {}\n\
-             raise NF_ABI_VERSION in capi/src/status.rs and run `cargo xtask header`; or, if no release has had it, add \
-             --unreleased",
+            "programs built with the present header would break, and NF_ABI_VERSION is as before. Changed or \
+             removed:\n  {}\n\
+             raise NF_ABI_VERSION in capi/src/status.rs and run `cargo xtask header`; or, if no release has had it, \
+             add --unreleased",
             broken.join("\n  ")
         );
     }
@@ -63,7 +64,8 @@ fn current() -> Result<String> {
     let header = Header::committed()?;
     header.check_asserts()?;
     let mut text = String::from(
-        "# The C ABI where pointers have 64 bits: what `cargo xtask abi` read from the header and the compiler. Do not edit.\n",
+        "# The C ABI where pointers have 64 bits: what `cargo xtask abi` read from the header and the compiler. \
+         Do not edit.\n",
     );
     text += &format!("version {}\n", header.version()?);
     for line in header.lines().iter().chain(&layout::measure(&header)?) {

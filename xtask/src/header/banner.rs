@@ -9,7 +9,7 @@ pub(super) fn banner<'a>(
     guides: &str,
     functions: impl Iterator<Item = &'a (String, String)> + Clone,
 ) -> String {
-    let rule = "-".repeat(WIDTH - 3);
+    let rule = "-".repeat(WIDTH - 4);
     let mut text = format!("\n/* {rule}\n * {title}\n");
     if !guides.is_empty() {
         text += &format!(" * Guides, in docs/: {guides}\n");

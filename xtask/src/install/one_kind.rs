@@ -28,9 +28,10 @@ pub(super) fn each() -> Result<()> {
         // The file is the same for both, and the linker takes what there is.
         let program = project.join(format!("pkg_config_{kind}"));
         let mut shell = run::command("sh");
-        let line = r#"flags=$(pkg-config --cflags --libs noisefloor) && eval "${CC:-cc} tests/package/app.c $flags -o \"\$1\"""#;
+        let flags = "flags=$(pkg-config --cflags --libs noisefloor)";
+        let line = format!(r#"{flags} && eval "${{CC:-cc}} tests/package/app.c $flags -o \"\$1\"""#);
         let lib = prefix.join("lib");
-        run::check(shell.args(["-c", line, "sh"]).arg(&program).env("PKG_CONFIG_PATH", lib.join("pkgconfig")))?;
+        run::check(shell.args(["-c", &line, "sh"]).arg(&program).env("PKG_CONFIG_PATH", lib.join("pkgconfig")))?;
         linked_as_named(&program)?;
         run::check(run::command(&program).env("LD_LIBRARY_PATH", &lib))?;
     }

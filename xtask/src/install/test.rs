@@ -36,8 +36,9 @@ pub fn projects() -> Result<Outcome> {
         for (kind, options) in [("shared", ("", "")), ("static", ("-Wl,-Bstatic", "-Wl,-Bdynamic"))] {
             let program = programs.join(format!("{name}_{kind}"));
             // pkg-config escapes the spaces of paths for a shell, which `eval` is.
+            let flags = "flags=$(pkg-config --cflags --libs noisefloor)";
             let line = format!(
-                r#"flags=$(pkg-config --cflags --libs noisefloor) && eval "{compiler} -Wall -Wextra -pedantic -Werror {source} {} $flags {} -o \"\$1\"""#,
+                r#"{flags} && eval "{compiler} -Wall -Wextra -pedantic -Werror {source} {} $flags {} -o \"\$1\"""#,
                 options.0, options.1
             );
             let mut shell = run::command("sh");

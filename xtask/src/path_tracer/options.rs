@@ -57,7 +57,8 @@ pub(super) fn check_table(tracer: &PathTracer, table: &str) -> Result<()> {
     let other = random.iter().zip(&reference).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / grid.len() as f64;
     if error > 0.3 * other {
         bail!(
-            "the squared error of a grid of points is {error}, that of random points {other}: the table is not used as it is"
+            "the squared error of a grid of points is {error}, that of random points {other}: the table is \
+             not used as it is"
         );
     }
     Ok(())

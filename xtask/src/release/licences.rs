@@ -18,12 +18,13 @@ const ALLOWED_IN_DEVELOPMENT: [&str; 1] = ["MPL-2.0"];
 const INTRODUCTION: &str = "\
 # Packages of others
 
-Written by `cargo xtask licences`; do not edit. Licences are as their authors declare them, for all targets; the full texts come with each package's source. A
-test compares this file with Cargo.lock, and every licence with those that xtask/src/release/licences.rs allows.
+Written by `cargo xtask licences`; do not edit. Licences are as their authors declare them, for all targets; the full
+texts come with each package's source. A test compares this file with Cargo.lock, and every licence with those that
+xtask/src/release/licences.rs allows.
 ";
 const STANDARD_LIBRARY: &str = "
-The C library also holds what it uses of Rust's `core` (MIT OR Apache-2.0) and compiler-builtins (MIT AND Apache-2.0 WITH
-LLVM-exception AND (MIT OR Apache-2.0)), of the compiler that built it.
+The C library also holds what it uses of Rust's `core` (MIT OR Apache-2.0) and compiler-builtins (MIT AND
+Apache-2.0 WITH LLVM-exception AND (MIT OR Apache-2.0)), of the compiler that built it.
 ";
 
 /// Name and version, and licence.

@@ -49,23 +49,12 @@ impl Image<'_> {
     pub const MAX_WINDOW: usize = 1024;
 
     /// An image of which nothing is known but its size.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::Image;
-    /// let image = Image { frames: 2, ..Image::new(640, 480) };
-    /// assert_eq!((image.width, image.height, image.window), (640, 480, 0)); // 0: the default window
-    /// ```
     #[inline]
     pub const fn new(width: usize, height: usize) -> Self {
         Self { width, height, frames: 1, unordered: false, window: 0, stride: 0, surfaces: &[], factors: &[] }
     }
 
     /// Pixels in no order.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::Image;
-    /// assert!(Image::unordered(100).unordered);
-    /// ```
     #[inline]
     pub const fn unordered(pixels: usize) -> Self {
         Self { unordered: true, ..Self::new(pixels, 1) }

@@ -49,12 +49,6 @@ use members::{Area, Members};
 ///
 /// # Errors
 /// As for [`estimate_block`].
-///
-/// ```
-/// use noisefloor::control_variate::{Config, block_workspace_len};
-/// assert!(block_workspace_len::<f64>(&Config::new(2, 2, 1), 64, 1)? > 64);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 pub fn block_workspace_len<R: Real>(config: &Config, pixels: usize, n: usize) -> Result<usize, Error> {
     // More pixels than 32 bits count need more memory than there is.
     u32::try_from(pixels).map_err(|_| Error::Memory)?;
@@ -65,12 +59,6 @@ pub fn block_workspace_len<R: Real>(config: &Config, pixels: usize, n: usize) ->
 ///
 /// # Errors
 /// As for [`estimate_image`]; [`Error::Memory`] if no memory could be large enough.
-///
-/// ```
-/// use noisefloor::control_variate::{Config, Image, image_workspace_len};
-/// assert!(image_workspace_len::<f64>(&Config::new(2, 2, 1), &Image::new(8, 8), 1)? > 64);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 pub fn image_workspace_len<R: Real>(config: &Config, image: &Image<'_>, n: usize) -> Result<usize, Error> {
     check_supported(config)?;
     let (shape, windows, pixels) = (config.checked_shape()?, image.windows()?, image.pixels()?);
@@ -135,7 +123,9 @@ pub fn estimate_block<R: Real>(
 /// let (config, image) = (Config::new(1, 1, 1), Image::new(8, 8));
 /// let mut workspace = vec![0.0; image_workspace_len::<f64>(&config, &image, 1)?];
 /// let mut pixels = [0.0; 64];
-/// estimate_image(&config, &image, Samples::new(&u, &f), &mut workspace, |pixel, estimate| pixels[pixel] = estimate.mean[0])?;
+/// estimate_image(&config, &image, Samples::new(&u, &f), &mut workspace, |pixel, estimate| {
+///     pixels[pixel] = estimate.mean[0];
+/// })?;
 /// assert!((pixels[10] - 2.5).abs() < 0.05);
 /// # Ok::<(), noisefloor::Error>(())
 /// ```

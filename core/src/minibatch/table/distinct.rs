@@ -1,7 +1,8 @@
 //! Drawing without replacement.
 
 use super::draw::check_lengths;
-use super::{Kernel, Mixture, Portable, Table};
+use super::mixture::Mixture;
+use super::{Kernel, Portable, Table};
 use crate::Error;
 use crate::rng::Rng;
 
@@ -26,37 +27,12 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     ///
     /// Errors, which change nothing: [`Error::Range`] for more draws than items, or another number of
     /// weights; [`Error::NoSamples`] where the uniform fraction is 0 and fewer items have an importance above 0.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    /// use noisefloor::rng::Rng;
-    ///
-    /// let mut table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// let (mut index, mut weight) = ([0; 4], [0.0; 4]);
-    /// table.draw_distinct(&mut Rng::seed(1), &mut index, Some(&mut weight))?;
-    /// index.sort();
-    /// assert_eq!(index, [0, 1, 2, 3]);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn draw_distinct(&mut self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
         self.draw_distinct_by::<Portable>(rng, index, weight)
     }
 
     /// [`Table::draw_distinct`] by another [`Kernel`]: the same bits.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::table::Portable;
-    /// use noisefloor::minibatch::{Table, table};
-    /// use noisefloor::rng::Rng;
-    ///
-    /// let mut table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// let (mut index, mut again) = ([0; 3], [0; 3]);
-    /// table.draw_distinct(&mut Rng::seed(1), &mut index, None)?;
-    /// table.draw_distinct_by::<Portable>(&mut Rng::seed(1), &mut again, None)?;
-    /// assert_eq!(index, again);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn draw_distinct_by<K: Kernel>(
         &mut self,

@@ -1,109 +1,14 @@
 //! Drawing batches with replacement.
 
+use super::mixture::{Mixture, Ways};
 use super::{ARITY, Block, CHILDREN, Kernel, Levels, Node, Portable, Table, tree};
 use crate::Error;
 use crate::rng::Rng;
-use core::num::NonZeroU128;
 
 /// How many draws go down the tree together: enough to hide the latency of memory, few enough for the first cache.
 pub(super) const CHUNK: usize = 64;
 /// How many nodes the first cache holds beside what else a draw needs.
 const NEAR: usize = 128;
-
-/// The two ways to an item: by the tree, and uniformly.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Mixture {
-    /// The sum of the tree's weights.
-    sum: i64,
-    items: u32,
-    /// The probability of each way.
-    pub(super) tree: f64,
-    pub(super) uniform: f64,
-}
-
-impl Mixture {
-    /// Every draw uniform.
-    pub(super) fn uniform(items: u32) -> Mixture {
-        Mixture { sum: 0, items, tree: 0.0, uniform: 1.0 }
-    }
-
-    /// Errors: [`Error::NoSamples`] if every weight is 0 and no draw uniform.
-    pub(super) fn of(sum: i64, items: u32, uniform: f64) -> Result<Mixture, Error> {
-        match (sum > 0, uniform > 0.0) {
-            (true, _) => Ok(Mixture { sum, items, tree: 1.0 - uniform, uniform }),
-            (false, true) => Ok(Mixture::uniform(items)),
-            (false, false) => Err(Error::NoSamples),
-        }
-    }
-
-    /// The probability of an item of importance `q` in a block of sum `total` that weighs `weight`.
-    #[inline(always)]
-    pub(super) fn probability(&self, q: f32, total: f64, weight: i64) -> f64 {
-        let (by_weight, by_item) = self.factors(1.0);
-        let q = f64::from(if q > 0.0 { q } else { 0.0 });
-        if total > 0.0 { by_weight * weight as f64 * (q / total) + by_item } else { by_item }
-    }
-
-    /// What an item's weight in the tree, and what its mere existence adds to `factor` times its probability.
-    fn factors(&self, factor: f64) -> (f64, f64) {
-        (factor * self.tree / self.sum.max(1) as f64, factor * self.uniform / f64::from(self.items))
-    }
-
-    /// The numbers of 64 bits, divided between the ways.
-    fn ways(&self) -> Ways {
-        let uniform = if self.uniform < 1.0 { (self.uniform * TWO_64) as u128 } else { 1 << 64 };
-        Ways {
-            last_uniform: uniform.checked_sub(1).map(|last| last as u64),
-            scales: [
-                Scale::new(uniform as u64, (1 << 64) - uniform, self.sum as u64),
-                Scale::new(0, uniform, u64::from(self.items)),
-            ],
-        }
-    }
-}
-
-/// 64 random bits choose the way, and what remains of them the place.
-struct Ways {
-    /// Draws of at most this are uniform; those above go by the tree.
-    last_uniform: Option<u64>,
-    /// Over the sum of the tree's weights, and, uniformly, over the items.
-    scales: [Scale; 2],
-}
-
-/// Maps the numbers of a span to those below n, and what is left to a fraction.
-struct Scale {
-    first: u64,
-    left: u32,
-    factor: u64,
-    right: u32,
-    last: u64,
-}
-
-impl Scale {
-    /// For a span of at most 2^64 numbers from `first` on, and n below 2^63.
-    fn new(first: u64, span: u128, n: u64) -> Scale {
-        let Some(last) = span.checked_sub(1) else { return Scale { first, left: 0, factor: 0, right: 0, last: 0 } };
-        // The span stretched to between 2^63 and 2^64, and n likewise, so that the factor has 62 bits however small n
-        // is.
-        let left = (last as u64).leading_zeros().min(63);
-        let stretched = NonZeroU128::new(span << left).unwrap_or(NonZeroU128::MAX);
-        let right = n.leading_zeros().clamp(2, 64) - 2;
-        // Rounded up, so that the last number is reached.
-        let factor = (u128::from(n << right) << 64) / stretched + 1;
-        let factor = u64::try_from(factor).unwrap_or(u64::MAX);
-        Scale { first, left, factor, right, last: n.saturating_sub(1) }
-    }
-
-    /// The place, and the bits behind its point.
-    #[inline(always)]
-    fn map(&self, x: u64) -> (u64, u64) {
-        let product =
-            (u128::from(x.wrapping_sub(self.first) << self.left) * u128::from(self.factor)) >> (self.right % 64);
-        (((product >> 64) as u64).min(self.last), product as u64)
-    }
-}
-
-const TWO_64: f64 = 18_446_744_073_709_551_616.0;
 
 impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// Draws items with replacement, independent of each other.
@@ -117,36 +22,12 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     ///
     /// Errors: [`Error::Range`] for another number of weights; [`Error::NoSamples`] where every importance and the
     /// uniform fraction are 0.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    /// use noisefloor::rng::Rng;
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// let (mut index, mut weight) = ([0; 8], [0.0; 8]);
-    /// table.draw(&mut Rng::seed(1), &mut index, Some(&mut weight))?;
-    /// assert!((weight[0] - 1.0 / (4.0 * table.probability(index[0]))).abs() < 1e-5);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn draw(&self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
         self.draw_by::<Portable>(rng, index, weight)
     }
 
     /// [`Table::draw`] by another [`Kernel`]: the same bits.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::table::Portable;
-    /// use noisefloor::minibatch::{Table, table};
-    /// use noisefloor::rng::Rng;
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// let (mut index, mut again) = ([0; 8], [0; 8]);
-    /// table.draw(&mut Rng::seed(1), &mut index, None)?;
-    /// table.draw_by::<Portable>(&mut Rng::seed(1), &mut again, None)?;
-    /// assert_eq!(index, again);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn draw_by<K: Kernel>(
         &self,
@@ -181,36 +62,12 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// variance than independent draws wherever neighbouring items are alike; weights and their use are the same.
     ///
     /// Those drawn uniformly come first, and both in the order of the data set: use the batch as a whole.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    /// use noisefloor::rng::Rng;
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// let mut index = [0; 8];
-    /// table.draw_stratified(&mut Rng::seed(1), &mut index, None)?;
-    /// assert!(index.contains(&3)); // expected 2.96 times: at least twice
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn draw_stratified(&self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
         self.draw_stratified_by::<Portable>(rng, index, weight)
     }
 
     /// [`Table::draw_stratified`] by another [`Kernel`]: the same bits.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::table::Portable;
-    /// use noisefloor::minibatch::{Table, table};
-    /// use noisefloor::rng::Rng;
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// let (mut index, mut again) = ([0; 8], [0; 8]);
-    /// table.draw_stratified(&mut Rng::seed(1), &mut index, None)?;
-    /// table.draw_stratified_by::<Portable>(&mut Rng::seed(1), &mut again, None)?;
-    /// assert_eq!(index, again);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn draw_stratified_by<K: Kernel>(
         &self,

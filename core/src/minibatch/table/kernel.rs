@@ -4,11 +4,6 @@ use super::block::{self, ARITY, Block};
 use super::tree::{self, Node};
 
 /// The inner operations of a table, which every implementation must do to the bit as [`Portable`] does.
-///
-/// ```
-/// use noisefloor::minibatch::table::{Kernel, Portable};
-/// assert_eq!(Portable::total(&[0.5; 16]), 8.0);
-/// ```
 pub trait Kernel {
     /// The sum of a block: of its columns from the first row to the last, and then of the columns from the first to the
     /// last. An importance that is not above 0 counts as 0.
@@ -32,19 +27,6 @@ pub trait Kernel {
 }
 
 /// Plain Rust.
-///
-/// ```
-/// use noisefloor::minibatch::table::Portable;
-/// use noisefloor::minibatch::{Table, table};
-/// use noisefloor::rng::Rng;
-///
-/// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-/// let (mut index, mut again) = ([0; 8], [0; 8]);
-/// table.draw(&mut Rng::seed(1), &mut index, None)?;
-/// table.draw_by::<Portable>(&mut Rng::seed(1), &mut again, None)?; // what `draw` does
-/// assert_eq!(index, again);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Portable;
 

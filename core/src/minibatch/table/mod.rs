@@ -14,6 +14,7 @@ mod block;
 mod distinct;
 mod draw;
 mod kernel;
+mod mixture;
 mod saved;
 mod shard;
 mod tree;
@@ -26,7 +27,7 @@ pub use shard::{Shard, allocate};
 pub use tree::{CHILDREN, Node};
 
 use crate::Error;
-use draw::Mixture;
+use mixture::Mixture;
 use tree::{Levels, MAX_BLOCKS};
 
 /// The uniform fraction of a new table: no weight above 5. Measured best on classification (.2 to .5 are close).
@@ -34,20 +35,12 @@ pub const DEFAULT_UNIFORM_FRACTION: f32 = 0.2;
 
 /// How many f32 of importances a table for so many items needs: `items`, rounded up to blocks of 16. 0 if no memory has
 /// them.
-///
-/// ```
-/// assert_eq!(noisefloor::minibatch::table::importance_len(17), 32);
-/// ```
 pub const fn importance_len(items: u32) -> usize {
     let len = (items as u64).div_ceil(ARITY as u64) * ARITY as u64;
     if len <= (isize::MAX as usize / size_of::<f32>()) as u64 { len as usize } else { 0 }
 }
 
 /// How many i64 of sums a table for so many items needs: one for 15 items or so. 0 if no memory has the importances.
-///
-/// ```
-/// assert_eq!(noisefloor::minibatch::table::sums_len(16), 16);
-/// ```
 pub const fn sums_len(items: u32) -> usize {
     Levels::new(importance_len(items) / ARITY).nodes() * CHILDREN
 }
@@ -57,9 +50,10 @@ pub const fn sums_len(items: u32) -> usize {
 /// ```
 /// use noisefloor::minibatch::{Table, table};
 ///
-/// let table = Table::new(vec![0.0; table::importance_len(4)], vec![0; table::sums_len(4)], 4, None)?;
-/// let state = table.state(); // with the memory, all there is of a table: C's `nf_table` is this
-/// assert_eq!((state.items, state.uniform_fraction), (4, 0.2));
+/// let (mut importance, mut sums) = ([0.0; table::importance_len(4)], [0; table::sums_len(4)]);
+/// let state = Table::new(&mut importance, &mut sums, 4, None)?.state(); // with the memory, all there is of a table
+/// let table = Table::resume(&mut importance, &mut sums, state)?;
+/// assert_eq!((table.items(), table.total()), (4, 4.0));
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,15 +104,6 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// Errors: [`Error::Memory`] if it is too small for the items, [`Error::Range`] for a state that no table has. The
     /// contents are not checked: if they are not what that table left there, draws are still of items that exist, but
     /// not as often as they should be, and weights are any numbers.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// let (importance, sums) = ([0.0; table::importance_len(4)], [0; table::sums_len(4)]);
-    /// assert!(Table::resume(importance, sums, table.state()).is_ok());
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn resume(importance: I, sums: S, state: State) -> Result<Self, Error> {
         if state.items == 0 || !is_scale(state.scale) || !(0.0..=1.0).contains(&state.uniform_fraction) {
             return Err(Error::Range);
@@ -142,80 +127,32 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     }
 
     /// What is needed to take up the memory again.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// assert_eq!(table.state().items, 4);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn state(&self) -> State {
         self.state
     }
 
     /// The number of items N.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// assert_eq!(table.items(), 4);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn items(&self) -> u32 {
         self.state.items
     }
 
     /// How many items there is room for.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// assert_eq!(table.capacity(), 16); // a block
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn capacity(&self) -> u32 {
         u32::try_from(self.blocks * ARITY).unwrap_or(u32::MAX)
     }
 
     /// The sum of all importances, as the tree has it: each block's sum is rounded, by 1 / 2^50 of all or so.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// assert_eq!(table.total(), 10.0);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn total(&self) -> f64 {
         self.sum() as f64 / self.state.scale
     }
 
     /// The importance of an item; 0 for an item that does not exist.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// assert_eq!((table.importance(3), table.importance(4)), (4.0, 0.0));
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn importance(&self, item: u32) -> f32 {
         let importance = self.importance.as_ref().get(item as usize);
         if item < self.state.items { importance.copied().unwrap_or(0.0) } else { 0.0 }
     }
 
     /// The probability of drawing an item, as f32; 0 for an item that does not exist, or if nothing can be drawn.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// assert!((table.probability(3) - (0.8 * 0.4 + 0.2 * 0.25)).abs() < 1e-6);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn probability(&self, item: u32) -> f32 {
         let Ok(mixture) = self.mixture() else { return 0.0 };
         if item < self.state.items { self.probability_in(&mixture, item) as f32 } else { 0.0 }
@@ -230,7 +167,8 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// ```
     /// use noisefloor::minibatch::{Table, table};
     ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+    /// let memory = ([0.0; table::importance_len(4)], [0; table::sums_len(4)]);
+    /// let table = Table::new(memory.0, memory.1, 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
     /// // Rows for two techniques, of which this is the first.
     /// let mut rows = [0.0; 4];
     /// table.probabilities(&[3, 0], 2, &mut rows)?;
@@ -260,14 +198,6 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     }
 
     /// Whether the table has these items: else [`Error::Range`].
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// assert!(table.check_items(&[0, 3]).is_ok() && table.check_items(&[4]).is_err());
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn check_items(&self, index: &[u32]) -> Result<(), Error> {
         let beyond = index.iter().fold(false, |beyond, &item| beyond | (item >= self.state.items));
@@ -309,14 +239,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     /// Errors: [`Error::Range`] for no items, another number of importances or a negative one; [`Error::NotFinite`] for
     /// NaN or infinity; [`Error::NoSamples`] if all are 0; [`Error::Memory`] for less than [`importance_len`] and
     /// [`sums_len`].
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// assert_eq!((table.items(), table.capacity()), (4, 16));
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn new(importance: I, sums: S, items: u32, values: Option<&[f32]>) -> Result<Self, Error> {
         let state = State { scale: 1.0, items, uniform_fraction: DEFAULT_UNIFORM_FRACTION };
         let mut table = Table::resume(importance, sums, state)?;
@@ -343,15 +265,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     /// importance alone, 1 uniformly. Small fractions let weights explode when an importance has become out of date.
     ///
     /// Errors: [`Error::NotFinite`], [`Error::Range`].
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let mut table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// table.set_uniform_fraction(1.0)?;
-    /// assert_eq!(table.probability(3), 0.25);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn set_uniform_fraction(&mut self, fraction: f32) -> Result<(), Error> {
         if !fraction.is_finite() {
             return Err(Error::NotFinite);
@@ -366,11 +279,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
 }
 
 /// Whether a table takes these importances: [`Error::NotFinite`], or [`Error::Range`] for a negative one.
-///
-/// ```
-/// use noisefloor::minibatch::table::check_importances;
-/// assert!(check_importances(&[0.0, 1.0]).is_ok() && check_importances(&[-1.0]).is_err());
-/// ```
 pub fn check_importances(values: &[f32]) -> Result<(), Error> {
     // No early end: compilers check eight at a time.
     let (finite, negative) =

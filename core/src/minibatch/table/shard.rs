@@ -1,18 +1,12 @@
 //! Several tables drawn as one: each process of a data-parallel trainer owns the table of its part of the data.
 
-use super::draw::{CHUNK, Mixture, check_lengths};
+use super::draw::{CHUNK, check_lengths};
+use super::mixture::Mixture;
 use super::{Kernel, Portable, Table};
 use crate::Error;
 use crate::rng::Rng;
 
 /// What the others must know of one process's table: 16 bytes that all processes exchange before a draw.
-///
-/// ```
-/// use noisefloor::minibatch::table::Shard;
-/// let all = Shard::sum([Shard { importance: 3.0, items: 10 }, Shard { importance: 1.0, items: 20 }])?;
-/// assert_eq!(all, Shard { importance: 4.0, items: 30 });
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shard {
     /// The sum of its importances.
@@ -26,13 +20,6 @@ impl Shard {
     ///
     /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative sum or 2^53 items or more; [`Error::NoSamples`] if
     /// there is no item.
-    ///
-    /// ```
-    /// use noisefloor::Error;
-    /// use noisefloor::minibatch::table::Shard;
-    /// assert_eq!(Shard::sum([Shard { importance: -1.0, items: 10 }]), Err(Error::Range));
-    /// assert_eq!(Shard::sum([]), Err(Error::NoSamples));
-    /// ```
     pub fn sum(shards: impl IntoIterator<Item = Shard>) -> Result<Shard, Error> {
         let mut all = Shard::default();
         for shard in shards {
@@ -124,14 +111,6 @@ pub fn allocate(
 
 impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// What other processes must know of this table.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// assert_eq!(table.shard(), table::Shard { importance: 10.0, items: 4 });
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn shard(&self) -> Shard {
         Shard { importance: self.total(), items: u64::from(self.state.items) }
     }
@@ -151,7 +130,8 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// use noisefloor::minibatch::{Table, table};
     /// use noisefloor::rng::Rng;
     ///
-    /// let part = |importance: &[f32]| Table::new([0.0; table::importance_len(2)], [0; table::sums_len(2)], 2, Some(importance));
+    /// let memory = || ([0.0; table::importance_len(2)], [0; table::sums_len(2)]);
+    /// let part = |importance: &[f32]| Table::new(memory().0, memory().1, 2, Some(importance));
     /// let (mine, other) = (part(&[3.0, 1.0])?, part(&[4.0, 8.0])?);
     /// let all = table::Shard::sum([mine.shard(), other.shard()])?;
     /// let (mut index, mut weight) = ([0; 4], [0.0; 4]);
@@ -172,19 +152,6 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     }
 
     /// [`Table::draw_shard`] by another [`Kernel`]: the same bits.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::table::Portable;
-    /// use noisefloor::minibatch::{Table, table};
-    /// use noisefloor::rng::Rng;
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// let (all, mut index, mut again) = (table.shard(), [0; 8], [0; 8]);
-    /// table.draw_shard(&all, &mut Rng::seed(1), &mut index, None)?;
-    /// table.draw_shard_by::<Portable>(&all, &mut Rng::seed(1), &mut again, None)?;
-    /// assert_eq!(index, again);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn draw_shard_by<K: Kernel>(
         &self,

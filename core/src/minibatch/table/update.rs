@@ -25,31 +25,12 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     ///
     /// Errors, which change nothing: [`Error::Range`] for different lengths, an item that does not exist, a negative
     /// importance, or a momentum outside 0..=1; [`Error::NotFinite`].
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let mut table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// table.update(&[0], &[5.0], 0.5)?;
-    /// assert_eq!(table.importance(0), 3.0); // half of 1, and half of 5
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn update(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
         self.update_by::<Portable>(index, importance, momentum)
     }
 
     /// [`Table::update`] by another [`Kernel`]: the same bits.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::table::Portable;
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let mut table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// table.update_by::<Portable>(&[0], &[5.0], 0.0)?;
-    /// assert_eq!(table.importance(0), 5.0);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn update_by<K: Kernel>(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
         check_importances(importance)?;
@@ -83,15 +64,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     ///
     /// Errors, which change nothing: [`Error::Memory`] if there is no room; [`Error::Range`] for a negative importance;
     /// [`Error::NotFinite`].
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let mut table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// table.append(&[9.0])?; // the memory has room for 16
-    /// assert_eq!((table.items(), table.importance(4)), (5, 9.0));
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn append(&mut self, importance: &[f32]) -> Result<(), Error> {
         check_importances(importance)?;
         let room = (self.capacity() - self.state.items) as usize;
@@ -121,31 +93,12 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     /// every importance is the f32 sum. Takes time for every item; the uniform fraction does the same for nothing.
     ///
     /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative number.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let mut table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// table.add_epsilon(0.5)?;
-    /// assert_eq!(table.importance(0), 1.5);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn add_epsilon(&mut self, epsilon: f32) -> Result<(), Error> {
         self.add_epsilon_by::<Portable>(epsilon)
     }
 
     /// [`Table::add_epsilon`] by another [`Kernel`]: the same bits.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::table::Portable;
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let mut table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// table.add_epsilon_by::<Portable>(0.5)?;
-    /// assert_eq!(table.importance(0), 1.5);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline(always)]
     pub fn add_epsilon_by<K: Kernel>(&mut self, epsilon: f32) -> Result<(), Error> {
         check_importances(&[epsilon])?;

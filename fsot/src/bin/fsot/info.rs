@@ -86,8 +86,9 @@ fn tell(tile: &Path) -> Result<(String, Value)> {
         }
     }
     let json = json!({
-        "tile": tile.to_string_lossy(), "size": size, "spp": spp, "progressive": progressive, "dims": dims, "frames": frames, "bits": bits,
-        "bytes": file.bytes().len(), "kernel": header.kernel(), "seed": header.seed(), "sha256": sha256, "sidecar": sidecar,
+        "tile": tile.to_string_lossy(), "size": size, "spp": spp, "progressive": progressive, "dims": dims,
+        "frames": frames, "bits": bits, "bytes": file.bytes().len(), "kernel": header.kernel(),
+        "seed": header.seed(), "sha256": sha256, "sidecar": sidecar,
     });
     Ok((text, json))
 }

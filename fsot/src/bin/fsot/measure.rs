@@ -29,7 +29,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", requires = "prefix")]
     plot: Option<PathBuf>,
     /// Numbers of points per doubling that --prefix prints
-    #[arg(long, value_name = "COUNT", default_value_t = 4, requires = "prefix", value_parser = clap::value_parser!(u8).range(1..=64))]
+    #[arg(long, value_name = "COUNT", default_value_t = 4, requires = "prefix")]
+    #[arg(value_parser = clap::value_parser!(u8).range(1..=64))]
     per_octave: u8,
     /// Random integrands of each family, of --prefix and of tiles
     #[arg(long, value_name = "COUNT", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=65536))]

@@ -45,7 +45,8 @@ pub(crate) struct Args {
     #[arg(short, long = "points", value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1 << 28))]
     n: u32,
     /// Coordinates of each point, 1 to 8
-    #[arg(short, long = "dims", value_name = "COUNT", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
+    #[arg(short, long = "dims", value_name = "COUNT", default_value_t = 2)]
+    #[arg(value_parser = clap::value_parser!(u8).range(1..=8))]
     d: u8,
     /// Opposite faces of the cube are one: for points that will be repeated like a tile, or shifted
     #[arg(long)]
@@ -92,7 +93,7 @@ fn make(args: &Args) -> Result<()> {
     let mut outputs = Outputs::new();
     outputs.add(&args.common.out, &encode(&table, Format::of(&args.common.out))?)?;
     args.pictures.add(&mut outputs, PICTURE, || draw(&table, extent))?;
-    let report = if args.common.quiet { None } else { Some(report::report(args, &table, &classes, &run)?) };
+    let report = if args.common.quiet { None } else { Some(report::report(&args.common.out, &table, &classes, &run)?) };
     finish(outputs, [run])?;
     report.map_or(Ok(()), |(text, json)| args.common.print(&text, &json))
 }
@@ -124,7 +125,8 @@ fn problem(args: &Args) -> Result<(Problem, Value, [f32; 2])> {
                 let this = target.extent();
                 if shape.is_some_and(|first| (0..2).any(|axis| (first[axis] - this[axis]).abs() > SAME_SHAPE)) {
                     return Err(Error::Input(format!(
-                        "{}: {} has another shape than the picture before: give all of them the same ratio of width to height",
+                        "{}: {} has another shape than the picture before: give all of them the same ratio of \
+                         width to height",
                         path.display(),
                         image.display()
                     )));
@@ -158,9 +160,10 @@ fn problem(args: &Args) -> Result<(Problem, Value, [f32; 2])> {
         initial: None,
     };
     let description = json!({
-        "command": "points", "points": points, "dims": dims, "toroidal": args.toroidal, "axis-priority": args.axis_priority,
-        "progressive": args.progressive, "classes": args.classes, "density": args.density.is_some(), "invert": args.invert,
-        "files": files, "seed": common.seed(), "quality": format!("{:?}", common.effort()),
+        "command": "points", "points": points, "dims": dims, "toroidal": args.toroidal,
+        "axis-priority": args.axis_priority, "progressive": args.progressive, "classes": args.classes,
+        "density": args.density.is_some(), "invert": args.invert, "files": files, "seed": common.seed(),
+        "quality": format!("{:?}", common.effort()),
     });
     Ok((problem, description, extent))
 }

@@ -22,7 +22,8 @@ pub(crate) struct Args {
     #[arg(long)]
     svg: bool,
     /// Which two coordinates of the points
-    #[arg(long, value_name = "COORDINATE", num_args = 2, default_values_t = [1, 2], value_parser = clap::value_parser!(u8).range(1..=8))]
+    #[arg(long, value_name = "COORDINATE", num_args = 2, default_values_t = [1, 2])]
+    #[arg(value_parser = clap::value_parser!(u8).range(1..=8))]
     axes: Vec<u8>,
     /// Random integrands of each family whose error spectra are averaged, for tiles
     #[arg(long, value_name = "COUNT", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=65536))]

@@ -1,91 +1,24 @@
 //! `fsot stipple`.
 
+mod args;
 mod frames;
 
-use crate::common::Common;
-use crate::drive::{Run, drive, finish};
-use crate::names;
+pub(crate) use args::Args;
+
+use crate::drive::{drive, finish};
+use args::{Picture, took};
 use fsot::checkpoint::digest;
 use fsot::counted::counted;
 use fsot::error::{Error, Result};
-use fsot::export::points::{Format, Table, encode};
+use fsot::export::points::Table;
 use fsot::optimize::Optimizer;
 use fsot::output::Outputs;
-use fsot::picture::{Drawing, Photo, blurred_psnr, png, rasterise, svg};
+use fsot::picture::{Photo, blurred_psnr, rasterise};
 use fsot::read;
-use fsot::stipple::{Options, Stipple, Tone};
+use fsot::stipple::Stipple;
 use serde_json::json;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-
-/// What `fsot stipple` is asked for.
-#[derive(clap::Args, Debug)]
-pub(crate) struct Args {
-    /// The picture: PNG, JPEG or OpenEXR
-    #[arg(required_unless_present = "frames", conflicts_with = "frames")]
-    image: Option<PathBuf>,
-    /// Dots of all inks together; with --frames it follows from the frames, the window and the step
-    #[arg(short, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
-    #[arg(required_unless_present = "frames")]
-    n: Option<u32>,
-    /// Cyan, magenta, yellow and black dots instead of black ones
-    #[arg(long, conflicts_with = "frames")]
-    cmyk: bool,
-    /// White dots on black paper
-    #[arg(long, conflicts_with = "cmyk")]
-    invert: bool,
-    /// What "half as dark" means: of encoded values, or of light
-    #[arg(long, value_enum, default_value_t = ToneArgument::Encoded)]
-    tone: ToneArgument,
-    /// The part of what cyan, magenta and yellow have in common that black replaces, 0 to 1
-    #[arg(long, value_name = "PART", default_value_t = 1.0, value_parser = part)]
-    black: f32,
-    /// Draw an animation: the pictures of its frames, in the order of their names ('frames/*.png')
-    #[arg(long, value_name = "GLOB", requires_all = ["window", "step"])]
-    frames: Option<String>,
-    /// Dots that a frame shows
-    #[arg(long, value_name = "COUNT", requires = "frames", value_parser = clap::value_parser!(u32).range(1..))]
-    window: Option<u32>,
-    /// Dots that the next frame replaces
-    #[arg(long, value_name = "COUNT", requires = "frames", value_parser = clap::value_parser!(u32).range(1..))]
-    step: Option<u32>,
-    /// The first frame follows the last one
-    #[arg(long, requires = "frames")]
-    cyclic: bool,
-    /// Pixels on the longer side of the drawing [default: 8 times the mean distance between dots, at least 1024]
-    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(16..=20_000))]
-    size: Option<u32>,
-    #[command(flatten)]
-    copies: Copies,
-    #[command(flatten)]
-    common: Common,
-}
-
-/// What is drawn, in other forms.
-#[derive(clap::Args, Clone, Debug)]
-struct Copies {
-    /// Also write the drawing as SVG
-    #[arg(long, value_name = "FILE")]
-    svg: Option<PathBuf>,
-    /// Also write the points: CSV or JSON by the name's ending, else text
-    #[arg(long, value_name = "FILE")]
-    points: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum ToneArgument {
-    /// Of sRGB-encoded values: even steps of lightness
-    Encoded,
-    /// Of linear light: right where dots are too small to be told apart
-    Linear,
-}
-
-fn part(text: &str) -> std::result::Result<f32, String> {
-    match text.parse() {
-        Ok(part) if (0.0..=1.0).contains(&part) => Ok(part),
-        _ => Err("give a number from 0 to 1".to_owned()),
-    }
-}
+use std::path::Path;
 
 /// Stipples a picture or an animation.
 pub(crate) fn run(args: &Args) -> Result<()> {
@@ -144,93 +77,4 @@ fn picture(args: &Args, image: &Path) -> Result<()> {
     });
     finish(outputs, [run])?;
     args.common.print(&text, &json)
-}
-
-fn took(run: &Run) -> String {
-    format!("{} in {:.1} s", counted(run.iterations - run.resumed_at, "iteration"), run.seconds)
-}
-
-impl Copies {
-    fn check(&self) -> Result<()> {
-        self.svg.iter().try_for_each(|path| names::picture(path, &["svg"]))?;
-        self.points.iter().try_for_each(|path| names::table(path, ""))
-    }
-
-    fn paths(&self) -> impl Iterator<Item = &Path> {
-        self.svg.iter().chain(&self.points).map(PathBuf::as_path)
-    }
-
-    fn add(&self, outputs: &mut Outputs, drawing: &Drawing, size: u32, table: &Table) -> Result<()> {
-        if let Some(path) = &self.svg {
-            outputs.add(path, svg(drawing, size as f32).as_bytes())?;
-        }
-        if let Some(path) = &self.points {
-            outputs.add(path, &encode(table, Format::of(path))?)?;
-        }
-        Ok(())
-    }
-}
-
-impl Args {
-    fn options(&self, points: usize) -> Options {
-        Options {
-            points,
-            cmyk: self.cmyk,
-            invert: self.invert,
-            tone: if self.linear() { Tone::Linear } else { Tone::Encoded },
-            grey_component: self.black,
-            seed: self.common.seed(),
-            quality: self.common.effort(),
-        }
-    }
-
-    fn linear(&self) -> bool {
-        self.tone == ToneArgument::Linear
-    }
-
-    fn size(&self, spacing: f32) -> u32 {
-        self.size.unwrap_or_else(|| ((8.0 / spacing).ceil() as u32).clamp(1024, 16_384))
-    }
-
-    /// What the points depend on, beside the program's version.
-    fn description(&self, pictures: &[String], options: &Options) -> serde_json::Value {
-        json!({
-            "command": "stipple",
-            "pictures": pictures,
-            "points": options.points,
-            "cmyk": options.cmyk,
-            "invert": options.invert,
-            "tone": options.tone,
-            "black": options.grey_component,
-            "window": self.window,
-            "step": self.step,
-            "cyclic": self.cyclic,
-            "seed": options.seed,
-            "quality": format!("{:?}", options.quality),
-        })
-    }
-}
-
-/// The file format of a drawing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Picture {
-    Png,
-    Svg,
-}
-
-impl Picture {
-    fn of(path: &Path) -> Result<Picture> {
-        match read::ending(path).as_str() {
-            "png" => Ok(Picture::Png),
-            "svg" => Ok(Picture::Svg),
-            _ => Err(Error::Input(format!("{} is no name for a drawing: end it in .png or .svg", path.display()))),
-        }
-    }
-
-    fn encode(self, drawing: &Drawing, drawn: &image::RgbImage, size: u32) -> Result<Vec<u8>> {
-        match self {
-            Picture::Png => png(drawn),
-            Picture::Svg => Ok(svg(drawing, size as f32).into_bytes()),
-        }
-    }
 }

@@ -22,7 +22,8 @@ const INTEGRANDS: u32 = 512;
 pub(crate) struct Args {
     /// A tile that comes with noisefloor, such as 128_4SPP_2D: sets all that follows, and the number of steps
     /// (`fsot info` lists them)
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["size", "spp", "d", "kernel", "reconstruction", "temporal", "progressive", "box_share", "box_weight"])]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["size", "spp", "d", "kernel", "reconstruction", "temporal"])]
+    #[arg(conflicts_with_all = ["progressive", "box_share", "box_weight"])]
     preset: Option<String>,
     /// Pixels along each side, a power of two
     #[arg(long, value_name = "PIXELS", default_value_t = 128)]
@@ -60,7 +61,8 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 16, value_parser = bits)]
     bits: u32,
     /// Random integrands of each family for the printed quality
-    #[arg(long, value_name = "COUNT", default_value_t = INTEGRANDS, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    #[arg(long, value_name = "COUNT", default_value_t = INTEGRANDS)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=65536))]
     integrands: u32,
     #[command(flatten)]
     common: Common,
@@ -163,14 +165,14 @@ fn description(problem: &TileProblem) -> Value {
     json!({
         "command": "tile", "size": problem.size, "spp": problem.spp, "dims": problem.dims, "frames": problem.frames,
         "kernel": format!("{:?}", problem.kernel), "reconstruction": format!("{:?}", problem.reconstruction),
-        "temporal-kernel": problem.temporal.as_ref().map(|kernel| format!("{kernel:?}")), "progressive": problem.progressive,
-        "seed": problem.seed, "iterations": problem.iterations, "box-share": box_class.share,
-        "box-weight": box_class.weight,
+        "temporal-kernel": problem.temporal.as_ref().map(|kernel| format!("{kernel:?}")),
+        "progressive": problem.progressive, "seed": problem.seed, "iterations": problem.iterations,
+        "box-share": box_class.share, "box-weight": box_class.weight,
         "parameters": format!(
             "{:?}",
             (
-                &problem.prefixes, problem.frame_share, problem.directions, projections, steps, problem.offset_correction,
-                problem.threshold_exponent, problem.domain,
+                &problem.prefixes, problem.frame_share, problem.directions, projections, steps,
+                problem.offset_correction, problem.threshold_exponent, problem.domain,
             )
         ),
     })

@@ -2,17 +2,16 @@
 
 mod plot;
 mod raster;
+mod sheet;
 mod vector;
+
+pub use sheet::Sheet;
 
 use super::integration::PrefixError;
 use super::spectrum::Spectrum;
 use plot::{Axis, Curve, Plot};
+use sheet::{Anchor, BLACK, Colour, Element, GREY};
 
-/// An RGB colour.
-type Colour = [u8; 3];
-
-const BLACK: Colour = [0, 0, 0];
-const GREY: Colour = [170, 170, 170];
 const BLUE: Colour = [31, 90, 180];
 const RED: Colour = [190, 50, 40];
 /// The side of the picture of a spectrum, in pixels of the sheet.
@@ -27,44 +26,7 @@ pub enum Subject {
     Tile,
 }
 
-/// A drawing, in pixels from the upper left.
-#[derive(Clone, Debug)]
-pub struct Sheet {
-    width: u32,
-    height: u32,
-    elements: Vec<Element>,
-}
-
-#[derive(Clone, Debug)]
-enum Element {
-    /// A polyline.
-    Line { points: Vec<[f64; 2]>, colour: Colour, width: f64 },
-    /// A word whose given point is the left end, the middle or the right end of its base line.
-    Text { at: [f64; 2], anchor: Anchor, text: String, colour: Colour },
-    /// A square grey picture.
-    Picture { at: [f64; 2], size: f64, side: usize, grey: Vec<u8> },
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Anchor {
-    Start,
-    Middle,
-    End,
-}
-
 impl Sheet {
-    fn new(width: u32, height: u32) -> Sheet {
-        Sheet { width, height, elements: Vec::new() }
-    }
-
-    fn line(&mut self, points: Vec<[f64; 2]>, colour: Colour, width: f64) {
-        self.elements.push(Element::Line { points, colour, width });
-    }
-
-    fn text(&mut self, at: [f64; 2], anchor: Anchor, text: impl Into<String>, colour: Colour) {
-        self.elements.push(Element::Text { at, anchor, text: text.into(), colour });
-    }
-
     /// The sheet as a PNG file.
     pub fn png(&self) -> crate::error::Result<Vec<u8>> {
         raster::png(self)

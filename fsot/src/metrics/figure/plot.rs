@@ -1,6 +1,6 @@
 //! Curves in a frame with ticks.
 
-use super::{Anchor, BLACK, Colour, GREY, Sheet};
+use super::sheet::{Anchor, BLACK, Colour, GREY, Sheet};
 
 /// The range of an axis.
 #[derive(Clone, Copy, Debug)]

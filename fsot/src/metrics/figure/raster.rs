@@ -1,6 +1,6 @@
 //! A sheet as pixels.
 
-use super::{Anchor, Colour, Element, Sheet};
+use super::sheet::{Anchor, Colour, Element, Sheet};
 use crate::error::{Error, Result};
 use font8x8::UnicodeFonts;
 use image::codecs::png::PngEncoder;

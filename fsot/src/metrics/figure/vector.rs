@@ -1,6 +1,6 @@
 //! A sheet as SVG; its pictures are PNG files within.
 
-use super::{Anchor, Colour, Element, Sheet};
+use super::sheet::{Anchor, Colour, Element, Sheet};
 use crate::error::{Error, Result};
 use base64::Engine;
 use image::codecs::png::PngEncoder;

@@ -1,6 +1,5 @@
 //! What `fsot points` prints of what it made.
 
-use super::Args;
 use super::classes::Classes;
 use crate::drive::Run;
 use fsot::error::Result;
@@ -9,6 +8,7 @@ use fsot::metrics::text::PrefixTable;
 use fsot::metrics::{self, PointReport};
 use serde_json::{Value, json};
 use std::fmt::Write;
+use std::path::Path;
 
 /// The integration error of more points than this is not measured: it would take longer than their optimisation.
 const INTEGRATED: usize = 16_384;
@@ -17,9 +17,9 @@ const ROWS: usize = 16;
 /// Integrands of each family for the errors of prefixes.
 const INTEGRANDS: usize = 256;
 
-pub(super) fn report(args: &Args, table: &Table, classes: &Classes, run: &Run) -> Result<(String, Value)> {
-    let mut text = format!("{}\n", args.common.out.display());
-    let mut json = json!({ "out": args.common.out.to_string_lossy(), "run": run.json() });
+pub(super) fn report(out: &Path, table: &Table, classes: &Classes, run: &Run) -> Result<(String, Value)> {
+    let mut text = format!("{}\n", out.display());
+    let mut json = json!({ "out": out.to_string_lossy(), "run": run.json() });
     run.describe(&mut text);
     // The metrics compare with the uniform distribution.
     let points = &table.points;

@@ -1,6 +1,6 @@
 //! `fsot stipple --frames`.
 
-use super::{Args, Picture, took};
+use super::args::{Args, Picture, took};
 use crate::drive::{drive, finish};
 use fsot::checkpoint::digest;
 use fsot::counted::counted;

@@ -1,0 +1,21 @@
+//! The kinds of one-dimensional functions.
+
+/// Which one-dimensional functions a basis is made of.
+///
+/// ```
+/// use noisefloor::{basis::Family, control_variate::Config};
+/// let config = Config { basis: Family::Step, ..Config::new(2, 2, 1) };
+/// assert_eq!(config.terms(), Ok(6));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Family {
+    /// Orthonormal shifted Legendre polynomials.
+    #[default]
+    Legendre,
+    /// Walsh functions: piecewise constant on eighths.
+    Step,
+    /// Half-waves sin(pi d x + pi/2).
+    Sine,
+    /// Isotropic Gaussians.
+    Gaussian,
+}

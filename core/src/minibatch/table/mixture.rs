@@ -1,0 +1,99 @@
+//! The two ways to an item, and what random bits make of them.
+
+use crate::Error;
+use core::num::NonZeroU128;
+
+/// The two ways to an item: by the tree, and uniformly.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mixture {
+    /// The sum of the tree's weights.
+    sum: i64,
+    pub(super) items: u32,
+    /// The probability of each way.
+    pub(super) tree: f64,
+    pub(super) uniform: f64,
+}
+
+impl Mixture {
+    /// Every draw uniform.
+    pub(super) fn uniform(items: u32) -> Mixture {
+        Mixture { sum: 0, items, tree: 0.0, uniform: 1.0 }
+    }
+
+    /// Errors: [`Error::NoSamples`] if every weight is 0 and no draw uniform.
+    pub(super) fn of(sum: i64, items: u32, uniform: f64) -> Result<Mixture, Error> {
+        match (sum > 0, uniform > 0.0) {
+            (true, _) => Ok(Mixture { sum, items, tree: 1.0 - uniform, uniform }),
+            (false, true) => Ok(Mixture::uniform(items)),
+            (false, false) => Err(Error::NoSamples),
+        }
+    }
+
+    /// The probability of an item of importance `q` in a block of sum `total` that weighs `weight`.
+    #[inline(always)]
+    pub(super) fn probability(&self, q: f32, total: f64, weight: i64) -> f64 {
+        let (by_weight, by_item) = self.factors(1.0);
+        let q = f64::from(if q > 0.0 { q } else { 0.0 });
+        if total > 0.0 { by_weight * weight as f64 * (q / total) + by_item } else { by_item }
+    }
+
+    /// What an item's weight in the tree, and what its mere existence adds to `factor` times its probability.
+    pub(super) fn factors(&self, factor: f64) -> (f64, f64) {
+        (factor * self.tree / self.sum.max(1) as f64, factor * self.uniform / f64::from(self.items))
+    }
+
+    /// The numbers of 64 bits, divided between the ways.
+    pub(super) fn ways(&self) -> Ways {
+        let uniform = if self.uniform < 1.0 { (self.uniform * TWO_64) as u128 } else { 1 << 64 };
+        Ways {
+            last_uniform: uniform.checked_sub(1).map(|last| last as u64),
+            scales: [
+                Scale::new(uniform as u64, (1 << 64) - uniform, self.sum as u64),
+                Scale::new(0, uniform, u64::from(self.items)),
+            ],
+        }
+    }
+}
+
+/// 64 random bits choose the way, and what remains of them the place.
+pub(super) struct Ways {
+    /// Draws of at most this are uniform; those above go by the tree.
+    pub(super) last_uniform: Option<u64>,
+    /// Over the sum of the tree's weights, and, uniformly, over the items.
+    pub(super) scales: [Scale; 2],
+}
+
+/// Maps the numbers of a span to those below n, and what is left to a fraction.
+pub(super) struct Scale {
+    first: u64,
+    left: u32,
+    factor: u64,
+    right: u32,
+    last: u64,
+}
+
+impl Scale {
+    /// For a span of at most 2^64 numbers from `first` on, and n below 2^63.
+    fn new(first: u64, span: u128, n: u64) -> Scale {
+        let Some(last) = span.checked_sub(1) else { return Scale { first, left: 0, factor: 0, right: 0, last: 0 } };
+        // The span stretched to between 2^63 and 2^64, and n likewise, so that the factor has 62 bits however small n
+        // is.
+        let left = (last as u64).leading_zeros().min(63);
+        let stretched = NonZeroU128::new(span << left).unwrap_or(NonZeroU128::MAX);
+        let right = n.leading_zeros().clamp(2, 64) - 2;
+        // Rounded up, so that the last number is reached.
+        let factor = (u128::from(n << right) << 64) / stretched + 1;
+        let factor = u64::try_from(factor).unwrap_or(u64::MAX);
+        Scale { first, left, factor, right, last: n.saturating_sub(1) }
+    }
+
+    /// The place, and the bits behind its point.
+    #[inline(always)]
+    pub(super) fn map(&self, x: u64) -> (u64, u64) {
+        let product =
+            (u128::from(x.wrapping_sub(self.first) << self.left) * u128::from(self.factor)) >> (self.right % 64);
+        (((product >> 64) as u64).min(self.last), product as u64)
+    }
+}
+
+const TWO_64: f64 = 18_446_744_073_709_551_616.0;
