@@ -543,3 +543,17 @@ fn units_of_control_functions_do_not_matter() {
         }
     }
 }
+
+/// A control function that does not move says nothing, whatever its unit.
+#[test]
+fn control_functions_that_never_move_change_nothing() {
+    let mut rng = SplitMix64::new(31);
+    let u = points(16, 1, &mut rng);
+    let f = values(&u, 1, smooth);
+    let config = Config { controls: 1, ..config(1, 1, Estimator::GradientDescent) };
+    let of = |size: f32| {
+        let (h, integral) = (vec![0.0; 16], [0.01 * size]);
+        batch_of::<f64>(&config, Samples { u: &u, f: &f, controls: &h, control_integrals: &integral }).unwrap()
+    };
+    assert_eq!(of(1.0), of(1e6));
+}

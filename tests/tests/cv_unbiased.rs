@@ -9,6 +9,7 @@ use noisefloor::control_variate::{
     Accumulator, Config, Estimate, Estimator, NonFinite, Ridge, Samples, Solver, block_workspace_len, estimate,
     estimate_block, workspace_len,
 };
+use noisefloor::real::Real;
 use noisefloor_tests::ESTIMATORS;
 use noisefloor_tests::integrands::{self, Integrand};
 use noisefloor_tests::random::SplitMix64;
@@ -314,4 +315,26 @@ fn least_squares_of_as_many_terms_as_samples() {
             }
         });
     }
+}
+
+/// A control function that one sample alone moves: that sample is not corrected by its own fit.
+#[test]
+fn leave_one_out_with_a_rare_control_function_is_unbiased() {
+    fn moments<R: Real>(ridge: Ridge) -> Moments {
+        let (n, mut rng) = (16, SplitMix64::new(77));
+        let config = Config { controls: 1, ridge, ..config(1, 0, Estimator::LeaveOneOut) };
+        let mut workspace = vec![R::ZERO; workspace_len::<R>(&config, n).unwrap()];
+        let mut moments = Moments::default();
+        for _ in 0..20_000 {
+            let u = points(n, 1, &mut rng);
+            let h: Vec<f32> = u.iter().map(|&u| f32::from(u8::from(u < 0.05))).collect();
+            let f: Vec<f32> = h.iter().map(|h| 20.0 * h).collect();
+            let samples = Samples { u: &u, f: &f, controls: &h, control_integrals: &[0.05] };
+            moments.add(f64::from(estimate(&config, samples, &mut workspace).unwrap().mean[0]));
+        }
+        moments
+    }
+    assert_unbiased("f64", moments::<f64>(Ridge::Default), 1.0);
+    assert_unbiased("f32", moments::<f32>(Ridge::Default), 1.0);
+    assert_unbiased("f64, ridge 1e-8", moments::<f64>(Ridge::Fixed(1e-8)), 1.0);
 }

@@ -72,6 +72,10 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         }
         let per_sample = R::ONE / R::from_usize(design.n);
         ridge::penalties(config, basis, |j| ridge_fit::diagonal_entry(gram, j) * per_sample, penalties);
+        let factor = ridge::control_factor::<R>(config);
+        for penalty in penalties.iter_mut().take(config.controls) {
+            *penalty *= factor;
+        }
         let dual = if use_dual { Some(Dual::new(design, penalties, arena)?) } else { None };
         Ok(Self { design, gram, rhs, penalties, dual })
     }

@@ -4,7 +4,7 @@
 //! that the early steps go where functions vary most. A fit that stopped early is a shrunk one: at low sample counts
 //! this is safer than least squares, with no matrix at all.
 
-use super::config::{Config, Estimate, Optimizer};
+use super::config::{Config, Estimate, Estimator, Optimizer};
 use super::design::Design;
 use super::moments::Centred;
 use super::per_channel::{PerChannel, get, set};
@@ -32,7 +32,7 @@ const POWER_ROUNDS: usize = 12;
 
 /// Numbers that a descent takes from its arena, its solution included.
 pub(crate) fn size(columns: usize, channels: usize) -> usize {
-    columns * (channels + 6)
+    columns * (channels + 5)
 }
 
 /// Curvatures and gradients below this, in units of the functions' and the values' variance, are taken for rounding
@@ -63,7 +63,8 @@ pub(crate) trait Objective<R> {
 /// there: a previous frame's solution is a good start for the next (4.2.6).
 ///
 /// # Errors
-/// As for [`estimate`](super::estimate), and [`Error::NotFinite`] for a start that is not finite. The coefficients are
+/// As for [`estimate`](super::estimate), [`Error::Unsupported`] for another estimator, and [`Error::NotFinite`] for a
+/// start that is not finite. The coefficients are
 /// written only on success.
 ///
 /// ```
@@ -83,6 +84,9 @@ pub fn estimate_from<R: Real>(
     coefficients: &mut [f32],
     workspace: &mut [R],
 ) -> Result<Estimate, Error> {
+    if config.estimator != Estimator::GradientDescent {
+        return Err(Error::Unsupported);
+    }
     let mut basis = Basis::empty();
     basis.set(config.basis, config.checked_shape()?)?;
     let reader = Reader::new(config, samples)?;
@@ -198,12 +202,12 @@ pub(crate) fn descend<R: Real>(
 }
 
 /// What each coefficient is measured in: one for the basis, and one over a control function's size, whose unit is its
-/// maker's.
+/// maker's; zero for one that does not move.
 fn control_units<R: Real>(objective: &impl Objective<R>, controls: usize, units: &mut [R]) {
     let n = R::from_usize(objective.count());
     for (column, unit) in units.iter_mut().enumerate() {
         let square = if column < controls { objective.column_square(column) } else { n };
-        *unit = R::ONE / (square / n).sqrt().or_one();
+        *unit = if square > R::ZERO { R::ONE / (square / n).sqrt().or_one() } else { R::ZERO };
     }
 }
 

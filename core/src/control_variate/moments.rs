@@ -345,5 +345,5 @@ pub(crate) fn add_sums<R: Real>(into: &mut [R], other: &[R]) {
 
 /// What rounding took below zero is zero; what is no number stays so, and is not taken for a perfect fit.
 fn not_below_zero<R: Real>(square: R) -> R {
-    if square < R::ZERO { R::ZERO } else { square }
+    if square < R::ZERO && square.is_finite() { R::ZERO } else { square }
 }

@@ -1,6 +1,6 @@
 //! How a configuration is carried out.
 
-use super::config::{Config, Estimator, Solver};
+use super::config::{Config, Estimator, Ridge, Solver};
 use crate::error::Error;
 
 /// The most samples that [`Solver::Dual`] takes: its system is as large as they are.
@@ -35,7 +35,7 @@ impl Plan {
             Solver::Dual if config.controls > 0 => return Err(Error::Unsupported),
             Solver::Dual if n > MAX_DUAL => return Err(Error::Range),
             Solver::Dual => true,
-            Solver::SquareRoot if config.estimator == Estimator::LeastSquares => false,
+            Solver::SquareRoot if config.estimator == Estimator::LeastSquares && config.ridge != Ridge::Auto => false,
             Solver::SquareRoot => return Err(Error::Unsupported),
         };
         Ok(Self { columns, dual })

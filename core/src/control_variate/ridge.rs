@@ -1,7 +1,7 @@
 //! Ridge strengths and penalties.
 
 use super::Config;
-use super::config::Ridge;
+use super::config::{Estimator, Ridge};
 use crate::basis::Basis;
 use crate::real::Real;
 
@@ -20,6 +20,17 @@ const CONTROL_PENALTY: f64 = 1e-7;
 
 /// The smallest strength that a caller gets, for `f64` and for narrower types: with less, leverages lose their digits.
 const SMALLEST: [f64; 2] = [1e-12, 1e-5];
+
+/// How much stronger control functions are held where a fit is judged by what it says of samples left out: with less, the
+/// leverage of a sample that alone moves one would be lost in rounding.
+pub(crate) fn control_factor<R: Real>(config: &Config) -> R {
+    let strength = match config.ridge {
+        Ridge::Fixed(strength) => fixed::<R>(strength),
+        Ridge::Default | Ridge::Auto => MIXED[0],
+    };
+    let least = if config.estimator == Estimator::LeastSquares { 0.0 } else { SMALLEST[usize::from(R::NARROW)] };
+    R::from_f64((least / (strength * CONTROL_PENALTY)).max(1.0))
+}
 
 /// A strength of the caller's.
 fn fixed<R: Real>(strength: f32) -> f64 {

@@ -115,12 +115,14 @@ impl<R: Real> State<R> {
         let (columns, channels) = (self.columns, self.channels);
         let solve = moments::solve_len(columns);
         let fit = moments::centred_len(columns, channels) + columns * (1 + channels) + solve;
-        match self.config.estimator {
+        let len = match self.config.estimator {
             Estimator::Robust | Estimator::KFold => cross_fit::len(columns, channels) + self.group() + fit,
             Estimator::GradientDescent => fit + gradient_descent::size(columns, channels),
             _ if self.config.solver == Solver::SquareRoot => square_root::size(self.terms(), channels) + self.group(),
             _ => fit,
-        }
+        };
+        // Zero would say that there is no such accumulator.
+        len.max(1)
     }
 
     /// Samples added so far.
@@ -169,15 +171,19 @@ impl<R: Real> State<R> {
         reader.check()?;
         self.check_capacity(reader.len() as u64)?;
         let mut basis = Basis::empty();
-        basis.set(self.config.basis, self.shape)?;
         let terms = self.terms();
+        if terms > 1 {
+            basis.set(self.config.basis, self.shape)?;
+        }
         let mut p = [[R::ZERO]; MAX_TERMS];
         p[0] = [R::ONE];
         let mut x = [[R::ZERO; 1]; MAX_DIMS];
         let mut h = [[R::ZERO; 1]; Config::MAX_CONTROLS];
         reader.each(Subset::All, |sample| {
             sample.put(0, &mut x, &mut h);
-            reader.columns(&basis, &x, &h, p.get_mut(1..terms).unwrap_or(&mut []));
+            if terms > 1 {
+                reader.columns(&basis, &x, &h, p.get_mut(1..terms).unwrap_or(&mut []));
+            }
             if let Some(colour) = reader.colour(sample) {
                 for (sum, value) in self.colour.iter_mut().zip(colour) {
                     *sum += value;
@@ -224,13 +230,13 @@ impl<R: Real> State<R> {
     }
 
     /// Adds all samples of another state and its sums, as if they had been added here, up to rounding, where there is
-    /// one fold.
+    /// one fold; of [`Estimator::Incremental`] each side's samples stay corrected by their own past.
     ///
     /// The robust estimate and K-fold put the other's folds where they make theirs most even: the same parts merged in
     /// the same order give the same bits, other splits of the same samples other folds, and estimates as good.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] if the configurations differ.
+    /// [`Error::Mismatch`] if the configurations differ; in `f32` [`Error::Range`] for more than 2^22 samples together.
     pub fn merge(&mut self, sums: &mut [R], other: &Self, other_sums: &[R]) -> Result<(), Error> {
         if self.config != other.config {
             return Err(Error::Mismatch);
