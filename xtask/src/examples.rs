@@ -22,8 +22,8 @@ pub fn compile(source: &str, options: &[&str], archive: &Path, program: &Path) -
 
 /// integrate.c: its estimate must be closer than the mean.
 pub fn integrate(archive: &Path, name: &str) -> Result<Outcome> {
-    let program = output(name)?;
-    compile(&format!("{name}.c"), &STRICT, archive, &program)?;
+    let program = output(name.split('.').next().unwrap_or(name))?;
+    compile(name, &STRICT, archive, &program)?;
     let text = run::read(&mut run::command(&program))?;
     print!("{text}");
     let error = |name: &str| -> Result<f64> {
@@ -113,15 +113,18 @@ pub fn shards(archive: &Path) -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// README.md's first block of code is integrate.c, letter by letter, and the two commands that do all the set-up
+/// README.md's first block of code is a part of image.cpp, letter by letter, and the two commands that do all the set-up
 /// follow.
 pub fn readme() -> Result<Outcome> {
     let read = |name: &str| fs::read_to_string(paths::root().join(name)).with_context(|| format!("cannot read {name}"));
-    let (text, program) = (read("README.md")?, read("examples_c/integrate.c")?);
-    let block = text.split_once("```c\n").and_then(|(before, rest)| (!before.contains("```")).then_some(rest));
-    let block = block.and_then(|rest| rest.split_once("```")).context("README.md does not open with a block of C")?;
-    if block.0 != program {
-        bail!("README.md's first block of code is not examples_c/integrate.c");
+    let (text, program) = (read("README.md")?, read("examples_c/image.cpp")?);
+    let part = program.split_once("    // README begin\n").and_then(|(_, rest)| rest.split_once("    // README end\n"));
+    let (part, _) = part.context("examples_c/image.cpp has no part between `README begin` and `README end`")?;
+    let part: String = part.lines().map(|line| format!("{}\n", line.strip_prefix("    ").unwrap_or(line))).collect();
+    let block = text.split_once("```cpp\n").and_then(|(before, rest)| (!before.contains("```")).then_some(rest));
+    let block = block.and_then(|rest| rest.split_once("```")).context("README.md does not open with a block of C++")?;
+    if block.0 != part {
+        bail!("README.md's first block of code is not the part of examples_c/image.cpp that it shows");
     }
     for command in ["\ncargo xtask demo ", "\ncargo xtask test "] {
         if !block.1.contains(command) {

@@ -96,8 +96,9 @@ pub fn run(options: &Options) -> Result<()> {
         install::test::projects,
     );
     steps.run("installed: examples_c as a project of its own", install::test::examples);
-    steps.run("examples_c/integrate.c", || examples::integrate(&archive()?, "integrate"));
-    steps.run("examples_c/shared.c", || examples::integrate(&archive()?, "shared"));
+    steps.run("examples_c/integrate.c", || examples::integrate(&archive()?, "integrate.c"));
+    steps.run("examples_c/image.cpp", || examples::integrate(&archive()?, "image.cpp"));
+    steps.run("examples_c/shared.c", || examples::integrate(&archive()?, "shared.c"));
     steps.run("examples_c/shards.c: four processes", || examples::shards(&archive()?));
     steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
         path_tracer::check(&archive()?)
@@ -137,7 +138,7 @@ pub fn run(options: &Options) -> Result<()> {
     steps.run("THIRD_PARTY.md: the licences of all dependencies, each allowed", release::licences::check);
     steps.run("versions: Rust's and the project's, as the texts say", release::versions::check);
     steps.run("sizes: product, tools, documents", house::print);
-    steps.run("README.md opens with examples_c/integrate.c", examples::readme);
+    steps.run("README.md opens with a part of examples_c/image.cpp", examples::readme);
     steps.run("C code in docs/ that includes the header compiles", examples::documents);
     steps.finish(start)
 }

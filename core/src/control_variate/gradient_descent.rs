@@ -4,7 +4,7 @@
 //! that the early steps go where functions vary most. A fit that stopped early is a shrunk one: at low sample counts
 //! this is safer than least squares, with no matrix at all.
 
-use super::config::{Config, Estimate, Estimator, Optimizer};
+use super::config::{Config, Estimate, Optimizer};
 use super::design::Design;
 use super::moments::Centred;
 use super::per_channel::{PerChannel, get, set};
@@ -63,8 +63,7 @@ pub(crate) trait Objective<R> {
 /// there: a previous frame's solution is a good start for the next (4.2.6).
 ///
 /// # Errors
-/// As for [`estimate`](super::estimate), [`Error::Unsupported`] for another estimator, and [`Error::NotFinite`] for a
-/// start that is not finite. The coefficients are
+/// As for [`estimate`](super::estimate), and [`Error::NotFinite`] for a start that is not finite. The coefficients are
 /// written only on success.
 ///
 /// ```
@@ -84,9 +83,6 @@ pub fn estimate_from<R: Real>(
     coefficients: &mut [f32],
     workspace: &mut [R],
 ) -> Result<Estimate, Error> {
-    if config.estimator != Estimator::GradientDescent {
-        return Err(Error::Unsupported);
-    }
     let mut basis = Basis::empty();
     basis.set(config.basis, config.checked_shape()?)?;
     let reader = Reader::new(config, samples)?;
