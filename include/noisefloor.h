@@ -18,7 +18,8 @@
  *    object; one at a time may write it.
  *  - Arithmetic: IEEE 754, rounding to nearest. Where the host flushes subnormal numbers to zero, values above 1e-30
  *    give the same bits. Built for x86-64, nothing raises an invalid operation, a division by zero or an overflow for
- *    zeros and for values of magnitude 1e-15 to 1e15 (control functions in float: 1e-8 to 1e8): hosts may trap these.
+ *    zeros and for values of magnitude 1e-15 to 1e15 (control functions in float: 1e-8 to 1e8), but for a descent with
+ *    a `learning_rate` of the caller's: hosts may trap these.
  *  - Configurations are plain numbers; zero in an optional field means the documented default (of nf_cv_config all but
  *    dims, order and channels are optional), an unknown value is NF_ERR_RANGE.
  *  - NF_ERR_RANGE does not say which argument it means: a function's comment lists those that it can mean, with their
@@ -305,7 +306,8 @@ nf_status nf_cv_estimate_with_controls(const nf_cv_config *config,
 
 // As nf_cv_estimate() with NF_CV_GRADIENT_DESCENT, which `estimator` must be, starting from `coefficients`, `channels`
 // rows (1 for a luminance ratio) of nf_cv_terms() - 1 floats in the values' unit, and leaving the solution there: a
-// previous frame's is a good start (4.2.6). NF_ERR_UNSUPPORTED for another estimator or `controls`.
+// previous frame's is a good start (4.2.6). A channel whose descent diverges is its mean, and its coefficients are 0.
+// NF_ERR_UNSUPPORTED for another estimator or `controls`.
 nf_status nf_cv_gradient_descent(const nf_cv_config *config,
                                  const float *u,
                                  const float *f,

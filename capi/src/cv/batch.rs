@@ -81,7 +81,8 @@ pub unsafe extern "C" fn nf_cv_estimate_with_controls(
 
 /// As nf_cv_estimate() with NF_CV_GRADIENT_DESCENT, which `estimator` must be, starting from `coefficients`, `channels`
 /// rows (1 for a luminance ratio) of nf_cv_terms() - 1 floats in the values' unit, and leaving the solution there: a
-/// previous frame's is a good start (4.2.6). NF_ERR_UNSUPPORTED for another estimator or `controls`.
+/// previous frame's is a good start (4.2.6). A channel whose descent diverges is its mean, and its coefficients are 0.
+/// NF_ERR_UNSUPPORTED for another estimator or `controls`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_gradient_descent(
     config: *const nf_cv_config,
