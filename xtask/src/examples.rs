@@ -113,8 +113,8 @@ pub fn shards(archive: &Path) -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// README.md's first block of code is a part of image.cpp, letter by letter, and the two commands that do all the set-up
-/// follow.
+/// README.md's first block of code is a part of image.cpp, letter by letter, and the two commands that do all the
+/// set-up follow.
 pub fn readme() -> Result<Outcome> {
     let read = |name: &str| fs::read_to_string(paths::root().join(name)).with_context(|| format!("cannot read {name}"));
     let (text, program) = (read("README.md")?, read("examples_c/image.cpp")?);

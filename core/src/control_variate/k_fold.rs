@@ -9,7 +9,7 @@ use super::fitter::{self, Fitter, Rule};
 use super::folds::Fold;
 use super::per_channel::{PerChannel, add, get, set};
 use super::plan::Plan;
-use super::result::{self, Outcome};
+use super::result::Outcome;
 use super::samples::{Reader, Subset};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -101,7 +101,8 @@ pub(crate) fn estimate<R: Real>(
         let (sum, square) = (get(&sums, channel), get(&squares, channel));
         set(&mut outcome.correction, channel, sum / n);
         let spread = (square - sum * sum / n).max(R::ZERO);
-        set(&mut variance, channel, spread * get(&inflations, channel) / (n * result::mean_divisor(n)));
+        // Not `mean_divisor`: with that, the compiler divides by zero in lanes of a vector that nobody reads.
+        set(&mut variance, channel, spread * get(&inflations, channel) / (n * n * (n - R::ONE).max(R::ONE)));
     }
     outcome.variance = (whole.n > 1).then_some(variance);
     Ok(outcome)

@@ -21,8 +21,8 @@ const CONTROL_PENALTY: f64 = 1e-7;
 /// The smallest strength that a caller gets, for `f64` and for narrower types: with less, leverages lose their digits.
 const SMALLEST: [f64; 2] = [1e-12, 1e-5];
 
-/// How much stronger control functions are held where a fit is judged by what it says of samples left out: with less, the
-/// leverage of a sample that alone moves one would be lost in rounding.
+/// How much stronger control functions are held where a fit is judged by what it says of samples left out: with less,
+/// the leverage of a sample that alone moves one would be lost in rounding.
 pub(crate) fn control_factor<R: Real>(config: &Config) -> R {
     let strength = match config.ridge {
         Ridge::Fixed(strength) => fixed::<R>(strength),
