@@ -47,6 +47,8 @@ pub(crate) fn check(archive: &Path) -> Result<Outcome> {
         bail!("{} does not say that it is under POV-Ray's licence", path().display());
     }
     let notice = fs::read_to_string(ours().join("README.md")).context("cannot read the notice beside the patch")?;
+    // However its lines are broken.
+    let notice = notice.split_whitespace().collect::<Vec<_>>().join(" ");
     for claim in ["AGPL-3.0-or-later", "nothing built from it is distributed", "noisefloor.patch"] {
         if !notice.contains(claim) {
             bail!("README.md beside the patch does not say `{claim}`");
