@@ -11,12 +11,12 @@ const APART: [&str; 3] = ["docs/report/", "THIRD_PARTY.md", "report/"];
 
 /// Checks every file that git knows.
 pub fn check() -> Result<Outcome> {
-    let Ok(files) = run::read(run::command("git").args(["ls-files", "-z"])) else {
+    let Some(files) = run::tracked() else {
         return Ok(Outcome::NotRun("git does not know which files there are".to_owned()));
     };
-    let of_a_kind = |name: &&str| name.rsplit_once('.').is_some_and(|(_, kind)| KINDS.contains(&kind));
+    let of_a_kind = |name: &&String| name.rsplit_once('.').is_some_and(|(_, kind)| KINDS.contains(&kind));
     let mut long = Vec::new();
-    for name in files.split('\0').filter(of_a_kind).filter(|name| !APART.iter().any(|apart| name.starts_with(apart))) {
+    for name in files.iter().filter(of_a_kind).filter(|name| !APART.iter().any(|apart| name.starts_with(apart))) {
         let path = paths::root().join(name);
         let text = fs::read_to_string(&path).with_context(|| format!("cannot read {name}"))?;
         let is_document = name.ends_with(".md");

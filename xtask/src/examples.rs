@@ -20,7 +20,7 @@ pub fn compile(source: &str, options: &[&str], archive: &Path, program: &Path) -
     run::check(&mut compiler)
 }
 
-/// integrate.c: its estimate must be closer than the mean.
+/// A program that prints an error of the mean and one of the estimate's, which must be the smaller.
 pub fn integrate(archive: &Path, name: &str) -> Result<Outcome> {
     let program = output(name.split('.').next().unwrap_or(name))?;
     compile(name, &STRICT, archive, &program)?;
@@ -41,14 +41,8 @@ pub fn integrate(archive: &Path, name: &str) -> Result<Outcome> {
 /// Every block of C in a document that includes the header is a whole piece of code: it compiles as it stands.
 pub fn documents() -> Result<Outcome> {
     let mut compiled = 0;
-    let folder = paths::root().join("docs");
-    let mut files: Vec<_> = fs::read_dir(&folder)
-        .with_context(|| format!("cannot read {}", folder.display()))?
-        .map(|entry| Ok(entry?.path()))
-        .collect::<Result<_>>()?;
-    files.sort();
-    for file in files.iter().filter(|file| file.extension().is_some_and(|extension| extension == "md")) {
-        let text = fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+    for file in paths::documents("docs")? {
+        let text = fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
         let blocks = text.split("\n```c\n").skip(1).filter_map(|rest| rest.split_once("\n```"));
         for (block, _) in blocks.filter(|(block, _)| block.contains("#include \"noisefloor.h\"")) {
             let source = output("document.c")?;

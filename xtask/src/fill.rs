@@ -36,11 +36,7 @@ pub fn run() -> Result<()> {
 fn documents() -> Result<Vec<(PathBuf, String, String)>> {
     let root = paths::root();
     let mut all = vec![root.join("README.md"), root.join("examples_c/README.md")];
-    for entry in fs::read_dir(root.join("docs"))? {
-        all.push(entry?.path());
-    }
-    all.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
-    all.sort();
+    all.extend(paths::documents("docs")?);
     let filled = all.into_iter().map(|path| {
         let old = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
         let new = fill(&old, &|cell| measured(root, cell)).with_context(|| path.display().to_string())?;
@@ -119,23 +115,25 @@ fn measured(root: &Path, marker: &str) -> Result<f64> {
 
 /// The cell of a table.
 fn in_table(json: &Value, table: &str, cell: &str) -> Result<Value> {
-    let list = |json: &Value| json.as_array().cloned().unwrap_or_default();
-    let tables: Vec<Value> = list(&json["tables"]).into_iter().filter(|known| known["name"] == table).collect();
     let (row, column) = cell.split_once(" | ").context("not ROW | COLUMN")?;
-    let names = |row: &Value| list(row).iter().map(text).collect::<Vec<String>>();
     // A cell's text may itself hold commas.
-    let has = |cells: &[String]| {
-        let whole = cells.join(", ");
-        row.split(", ").all(|part| cells.iter().any(|cell| cell == part)) || whole.starts_with(row)
+    let is_named = |cells: &[Value]| {
+        let names: Vec<String> = cells.iter().map(text).collect();
+        row.split(", ").all(|part| names.iter().any(|name| name == part)) || names.join(", ").starts_with(row)
     };
-    let rows =
-        tables.iter().flat_map(|table| list(&table["rows"]).into_iter().map(|row| (list(&table["columns"]), row)));
-    let found: Vec<_> = rows.filter(|(_, row)| has(&names(row))).collect();
-    let [(columns, found)] = &found[..] else { bail!("{} rows of {table} are `{row}`", found.len()) };
+    let tables = list(&json["tables"]).iter().filter(|known| known["name"] == table);
+    let rows = tables.flat_map(|table| list(&table["rows"]).iter().map(|row| (list(&table["columns"]), list(row))));
+    let found: Vec<_> = rows.filter(|(_, cells)| is_named(cells)).collect();
+    let [(columns, cells)] = found[..] else { bail!("{} rows of {table} are `{row}`", found.len()) };
     let index = columns.iter().position(|name| name == column);
     let index = index.or_else(|| column.parse::<usize>().ok()?.checked_sub(1));
-    let index = index.with_context(|| format!("no column `{column}` among {columns:?}"))?;
-    Ok(found[index].clone())
+    let cell = index.and_then(|index| cells.get(index));
+    cell.cloned().with_context(|| format!("no column `{column}` among {columns:?}"))
+}
+
+/// The elements of an array; none of anything else.
+fn list(json: &Value) -> &[Value] {
+    json.as_array().map_or(&[], Vec::as_slice)
 }
 
 fn text(cell: &Value) -> String {

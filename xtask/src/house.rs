@@ -7,10 +7,9 @@ use std::fs;
 
 /// Prints lines of Rust, words of the documents, and the report's size.
 pub fn print() -> Result<Outcome> {
-    let Ok(listed) = run::read(run::command("git").args(["ls-files"])) else {
+    let Some(files) = run::tracked() else {
         return Ok(Outcome::NotRun("git does not know which files there are".to_owned()));
     };
-    let files: Vec<&str> = listed.lines().collect();
     let of = |prefix: &str, ending: &str| -> Vec<String> {
         let wanted = files.iter().filter(|file| file.starts_with(prefix) && file.ends_with(ending));
         wanted.filter_map(|file| fs::read_to_string(paths::root().join(file)).ok()).collect()

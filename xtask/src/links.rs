@@ -11,11 +11,8 @@ pub fn check() -> Result<Outcome> {
     let root = paths::root();
     let mut documents = vec![root.join("README.md"), root.join("CONTRIBUTING.md")];
     for folder in ["docs", "docs/report", "examples_c"] {
-        for entry in fs::read_dir(root.join(folder)).with_context(|| format!("cannot read {folder}"))? {
-            documents.push(entry.with_context(|| format!("cannot read {folder}"))?.path());
-        }
+        documents.extend(paths::documents(folder)?);
     }
-    documents.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
     let (mut links, mut broken) = (0, Vec::new());
     for document in &documents {
         for link in links_of(&read(document)?).filter(|link| !link.contains("://")) {

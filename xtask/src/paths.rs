@@ -1,5 +1,7 @@
 //! Where things are.
 
+use anyhow::{Context, Result};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The workspace root.
@@ -15,6 +17,15 @@ pub fn target() -> PathBuf {
 /// Where the C library and what is linked with it go.
 pub fn output() -> PathBuf {
     target().join("noisefloor")
+}
+
+/// The documents of a folder, in order.
+pub fn documents(folder: &str) -> Result<Vec<PathBuf>> {
+    let entries = fs::read_dir(root().join(folder)).with_context(|| format!("cannot read {folder}"))?;
+    let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<PathBuf>>>()?;
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
+    paths.sort();
+    Ok(paths)
 }
 
 /// The generated C header.

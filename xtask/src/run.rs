@@ -39,6 +39,12 @@ pub fn read(command: &mut Command) -> Result<String> {
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
+/// The files that git knows, from the workspace root; None where there is no repository.
+pub fn tracked() -> Option<Vec<String>> {
+    let listed = read(command("git").args(["ls-files", "-z"])).ok()?;
+    Some(listed.split_terminator('\0').map(str::to_owned).collect())
+}
+
 fn missing(command: &Command) -> String {
     let program = command.get_program().to_string_lossy();
     format!("cannot start `{program}`: is it installed? (Debian: apt-get install build-essential)")

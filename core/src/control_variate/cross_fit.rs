@@ -233,8 +233,7 @@ impl<R: Real> Problem<'_, '_, R> {
         let penalties = arena.take(columns)?;
         if let Some(centred) = Centred::new(train, columns, channels, &mut arena)? {
             // From the training set alone, as the coefficients.
-            let mean_square = |j| train.column_square(j) / train.count();
-            ridge::penalties(self.config, self.basis, mean_square, penalties);
+            ridge::penalties(self.config, self.basis, |j| train.mean_square(j), penalties);
             let candidates = self.strengths.iter().zip(rows_mut(coefficients, columns * channels)).zip(&mut centres);
             for ((&strength, coefficients), centre) in candidates {
                 let strength = R::from_f64(strength);

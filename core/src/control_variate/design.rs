@@ -195,24 +195,12 @@ impl<'a, R: Real> Design<'a, R> {
 
     /// The sum of squares of a column.
     pub(crate) fn column_square(&self, column: usize) -> R {
-        let mut total = [R::ZERO; LANES];
-        for panel in rows(self.panels, self.columns) {
-            if let Some(values) = panel.get(column) {
-                lanes::add_product(&mut total, values, values);
-            }
-        }
-        lanes::sum(&total)
+        square(self.panels, self.columns, column)
     }
 
     /// The sum of squares of a channel.
     pub(crate) fn sum_of_squares(&self, channel: usize) -> R {
-        let mut total = [R::ZERO; LANES];
-        for panel in rows(self.values, self.channels) {
-            if let Some(values) = panel.get(channel) {
-                lanes::add_product(&mut total, values, values);
-            }
-        }
-        lanes::sum(&total)
+        square(self.values, self.channels, channel)
     }
 
     /// The sum of squared residuals of coefficients.
@@ -269,6 +257,16 @@ impl<'a, R: Real> Design<'a, R> {
         }
         [[a, b], [c, d]]
     }
+}
+
+/// The sum of squares of group `index` of every panel, of `width` groups each.
+#[inline(always)]
+fn square<R: Real>(panels: &[Lanes<R>], width: usize, index: usize) -> R {
+    let mut total = [R::ZERO; LANES];
+    for values in rows(panels, width).filter_map(|panel| panel.get(index)) {
+        lanes::add_product(&mut total, values, values);
+    }
+    lanes::sum(&total)
 }
 
 /// Groups `first` and the next; zero where there is none.

@@ -115,7 +115,7 @@ pub(crate) fn refit<R: Real>(
             // They stay in the buffer: only those of control functions depend on the samples.
             let mut basis = Basis::empty();
             basis.set(config.basis, config.checked_shape().ok()?).ok()?;
-            ridge::penalties(config, &basis, |j| sums.column_square(j) / sums.count(), penalties);
+            ridge::penalties(config, &basis, |j| sums.mean_square(j), penalties);
         }
         let centred = Centred::new(&sums, columns, channels, &mut arena).ok()??;
         let fits = rows_mut(coefficients, columns * channels).zip(strengths).zip(&mut progress.intercepts);

@@ -65,6 +65,11 @@ impl<'a, R: Real> Moments<'a, R> {
         row(self.gram, j + 1).last().copied().unwrap_or(R::ZERO)
     }
 
+    /// The mean of the squares of column j.
+    pub(crate) fn mean_square(&self, j: usize) -> R {
+        self.column_square(j) / self.count()
+    }
+
     /// The sum of f - b'p over the samples.
     pub(crate) fn residual_total(&self, channel: usize, b: &[R]) -> R {
         let mut total = self.total(channel);

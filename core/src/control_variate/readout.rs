@@ -94,7 +94,7 @@ impl<R: Real> State<R> {
 
     fn penalties<'a>(&self, group: &Moments<'_, R>, arena: &mut Arena<'a, R>) -> Result<&'a [R], Error> {
         let penalties = arena.take(self.columns)?;
-        ridge::penalties(&self.config, &self.basis()?, |j| group.column_square(j) / group.count(), penalties);
+        ridge::penalties(&self.config, &self.basis()?, |j| group.mean_square(j), penalties);
         Ok(penalties)
     }
 

@@ -4,6 +4,8 @@ use serde_json::Value;
 
 /// Significant digits of a number.
 const DIGITS: usize = 8;
+
+/// The text of a chapter's file.
 pub(super) fn written(value: &Value) -> String {
     let mut out = String::new();
     write(value, 0, &mut out);
