@@ -57,12 +57,12 @@ by_processor! {
         _ => cv::estimate(config, samples, workspace),
     }
 
-    /// [`cv::estimate_image`] in the precision of the workspace.
-    fn estimate_image<R: Real>(
+    /// [`cv::estimate_image`].
+    fn estimate_image(
         config: &Config,
         image: &Image<'_>,
         samples: Samples<'_>,
-        workspace: &mut [R],
+        workspace: &mut [f32],
         out: impl FnMut(usize, Estimate),
     ) -> Result<(), Error> {
         "avx2" => cv::estimate_image(config, image, samples, workspace, out),

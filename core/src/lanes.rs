@@ -102,3 +102,43 @@ pub(crate) fn dot<R: Real>(a: &[R], b: &[R]) -> R {
     }
     total
 }
+
+/// The base-2 logarithm lane by lane, of positive normal numbers; within 3e-7 of it, or of its magnitude if larger.
+#[inline(always)]
+pub(crate) fn log2(x: &Lanes<f32>) -> Lanes<f32> {
+    // x = m 2^e with m from sqrt(1/2) to sqrt(2), and ln m = 2 (t + t^3 / 3 + ...) with t = (m - 1) / (m + 1).
+    const SMALLEST: u32 = 0x3f35_04f3;
+    const SERIES: [f32; 5] = [2.885_39, 0.961_796_7, 0.577_078, 0.412_198_6, 0.320_598_9];
+    let mut out = *x;
+    for l in 0..LANES {
+        let bits = out[l].to_bits().wrapping_sub(SMALLEST) as i32;
+        let exponent = bits >> 23;
+        let m = f32::from_bits(((bits & 0x7f_ffff) as u32).wrapping_add(SMALLEST));
+        let t = (m - 1.0) / (m + 1.0);
+        let square = t * t;
+        let [a, b, c, d, e] = SERIES;
+        out[l] = exponent as f32 + t * (a + square * (b + square * (c + square * (d + square * e))));
+    }
+    out
+}
+
+/// 2 to the power of x lane by lane, for x from -126 to 126, what is beyond counted as that; within 3e-7 of it.
+#[inline(always)]
+pub(crate) fn exp2(x: &Lanes<f32>) -> Lanes<f32> {
+    // Adding this rounds to an integer, which is then in the low bits.
+    const ROUND: f32 = 12_582_912.0;
+    const SERIES: [f32; 6] = [0.693_147_2, 0.240_226_5, 0.055_504_1, 0.009_618_13, 0.001_333_36, 0.000_154_04];
+    let mut out = *x;
+    for l in 0..LANES {
+        let x = out[l];
+        let x = if x > -126.0 { x } else { -126.0 };
+        let x = if x < 126.0 { x } else { 126.0 };
+        let rounded = x + ROUND;
+        let f = x - (rounded - ROUND);
+        let [a, b, c, d, e, g] = SERIES;
+        let fraction = 1.0 + f * (a + f * (b + f * (c + f * (d + f * (e + f * g)))));
+        let power = rounded.to_bits().wrapping_sub(ROUND.to_bits()).wrapping_add(127) << 23;
+        out[l] = fraction * f32::from_bits(power);
+    }
+    out
+}

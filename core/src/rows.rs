@@ -27,6 +27,18 @@ pub(crate) fn rows_mut<T>(matrix: &mut [T], width: usize) -> RowsMut<'_, T> {
     RowsMut { rest: matrix, width }
 }
 
+/// Row `index` of `width` elements; empty if it is not there.
+#[inline(always)]
+pub(crate) fn row_at<T>(matrix: &[T], width: usize, index: usize) -> &[T] {
+    matrix.get(index * width..(index + 1) * width).unwrap_or(&[])
+}
+
+/// Row `index` of `width` elements; empty if it is not there.
+#[inline(always)]
+pub(crate) fn row_at_mut<T>(matrix: &mut [T], width: usize, index: usize) -> &mut [T] {
+    matrix.get_mut(index * width..(index + 1) * width).unwrap_or(&mut [])
+}
+
 impl<'a, T> Iterator for Rows<'a, T> {
     type Item = &'a [T];
 

@@ -1,6 +1,6 @@
 //! Estimates of neighbouring pixels, which share fits.
 
-use super::batch::{len, samples, size};
+use super::batch::{len, samples};
 use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimate};
 use crate::convert;
 use crate::dispatch;
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn nf_cv_block_estimate(
     status((|| {
         // SAFETY: the caller's pointer, checked there.
         let config = unsafe { convert::reference(config)? };
-        let (core, narrow) = (supported(config)?, is_narrow(config)?);
+        let core = supported(config)?;
         let total = convert::product(pixels, n)?;
         // SAFETY: the caller's arrays, of the lengths the header states.
         let (samples, out) = unsafe {
@@ -84,7 +84,7 @@ pub unsafe extern "C" fn nf_cv_block_estimate(
         };
         let image = Image::unordered(pixels);
         // SAFETY: the caller's workspace, `bytes` long.
-        unsafe { estimate(&core, narrow, &image, samples, n, (workspace, bytes), out) }
+        unsafe { estimate(&core, &image, samples, n, (workspace, bytes), out) }
     })())
 }
 
@@ -125,7 +125,7 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
     status((|| {
         // SAFETY: the caller's pointers, checked there.
         let (config, given) = unsafe { (convert::reference(config)?, convert::reference(image)?) };
-        let (core, narrow) = (supported(config)?, is_narrow(config)?);
+        let core = supported(config)?;
         let mut image = core_image(given)?;
         let pixels = convert::product(convert::product(image.width, image.height)?, image.frames.max(1))?;
         if pixels == 0 {
@@ -145,13 +145,15 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
             image.factors = unsafe { convert::slice(given.factors, convert::product(pixels, core.channels)?)? };
         }
         // SAFETY: the caller's workspace, `bytes` long.
-        unsafe { estimate(&core, narrow, &image, samples, n, (workspace, bytes), out) }
+        unsafe { estimate(&core, &image, samples, n, (workspace, bytes), out) }
     })())
 }
 
 /// The core's configuration.
 fn supported(config: &nf_cv_config) -> Result<Config, nf_status> {
     let core = core_config(config)?;
+    // All is computed in float, but a wrong number is an error.
+    is_narrow(config)?;
     if core.controls > 0 { Err(NF_ERR_UNSUPPORTED) } else { Ok(core) }
 }
 
@@ -169,23 +171,18 @@ fn core_image(image: &nf_cv_image) -> Result<Image<'static>, nf_status> {
 
 /// Bytes, 0 for what is not supported or out of range.
 fn workspace_size(config: &nf_cv_config, image: &Image<'_>, n: usize) -> usize {
-    if config.controls > 0 {
-        return 0;
-    }
-    size(config, |config, narrow| {
-        if narrow {
-            cv::image_workspace_len::<f32>(config, image, n)
-        } else {
-            cv::image_workspace_len::<f64>(config, image, n)
-        }
-    })
+    let size = || {
+        let core = supported(config)?;
+        let len = cv::image_workspace_len(&core, image, n).map_err(status_of)?;
+        len.checked_mul(size_of::<f32>()).ok_or(NF_ERR_MEMORY)
+    };
+    size().unwrap_or(0)
 }
 
 /// # Safety
 /// The workspace's pointer must be NULL or point to as many bytes as stand beside it.
 unsafe fn estimate(
     config: &Config,
-    narrow: bool,
     image: &Image<'_>,
     samples: Samples<'_>,
     n: usize,
@@ -197,15 +194,8 @@ unsafe fn estimate(
             out.write(c_estimate(&estimate));
         }
     };
-    if narrow {
-        let needed = len(cv::image_workspace_len::<f32>(config, image, n))?;
-        // SAFETY: the caller's promise, see above.
-        let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
-        dispatch::estimate_image(config, image, samples, workspace, write).map_err(status_of)
-    } else {
-        let needed = len(cv::image_workspace_len::<f64>(config, image, n))?;
-        // SAFETY: as above.
-        let workspace = unsafe { convert::workspace::<f64>(workspace, bytes, needed)? };
-        dispatch::estimate_image(config, image, samples, workspace, write).map_err(status_of)
-    }
+    let needed = len(cv::image_workspace_len(config, image, n))?;
+    // SAFETY: the caller's promise, see above.
+    let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
+    dispatch::estimate_image(config, image, samples, workspace, write).map_err(status_of)
 }

@@ -5,13 +5,13 @@
 
 mod accumulator;
 mod batch;
-mod block;
 mod config;
 mod cross_fit;
 mod design;
 mod fitter;
 mod folds;
 mod gradient_descent;
+mod image;
 mod incremental;
 mod k_fold;
 mod moments;
@@ -29,9 +29,9 @@ mod trust;
 
 pub use accumulator::Accumulator;
 pub use batch::{estimate, workspace_len};
-pub use block::{Image, block_workspace_len, estimate_block, estimate_image, image_workspace_len};
 pub use config::{Color, Config, Estimate, Estimator, NonFinite, Optimizer, Ridge, Solver};
 pub use gradient_descent::estimate_from as gradient_descent;
+pub use image::{Image, block_workspace_len, estimate_block, estimate_image, image_workspace_len};
 pub use regressor::Regressor;
 pub use samples::Samples;
 pub use state::State;

@@ -290,10 +290,29 @@ impl<'a> Reader<'a> {
         values
     }
 
+    /// Writes the position of sample `index` to lane `lane`.
+    #[inline(always)]
+    pub(crate) fn put_position<R: Real>(&self, index: usize, lane: usize, x: &mut [Lanes<R>; MAX_DIMS]) {
+        let row = self.samples.u.get(index * self.stride..).unwrap_or(&[]);
+        match (self.dims, row) {
+            (2, &[a, b, ..]) => [x[0][lane % LANES], x[1][lane % LANES]] = [a, b].map(R::from_f32),
+            (3, &[a, b, c, ..]) => {
+                [x[0][lane % LANES], x[1][lane % LANES], x[2][lane % LANES]] = [a, b, c].map(R::from_f32);
+            }
+            _ => x.iter_mut().zip(row).take(self.dims).for_each(|(x, &u)| x[lane % LANES] = R::from_f32(u)),
+        }
+    }
+
     /// One channel of a sample.
     #[inline(always)]
     pub(crate) fn value(&self, index: usize, channel: usize) -> f64 {
-        self.samples.f.get(index * self.inputs + channel).copied().map_or(0.0, f64::from)
+        f64::from(self.input(index, channel))
+    }
+
+    /// One channel of a sample as it was given.
+    #[inline(always)]
+    pub(crate) fn input(&self, index: usize, channel: usize) -> f32 {
+        self.samples.f.get(index * self.inputs + channel).copied().unwrap_or(0.0)
     }
 
     /// Evaluates control functions and basis at `L` positions; `x` has a group of lanes for each coordinate, `h` one

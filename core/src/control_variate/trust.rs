@@ -23,7 +23,7 @@ const FEW: f64 = 128.0;
 
 /// How many samples it takes to be sure: the mean keeps at least e^-(n^2 / this) of any candidate's trust, whatever the
 /// candidate's errors.
-const CAUTION: f64 = 14.0;
+pub(crate) const CAUTION: f64 = 14.0;
 
 /// The F statistic that is still nothing to worry about.
 const USUAL_F: f64 = 0.5;

@@ -130,17 +130,22 @@ pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
     }
 }
 
-/// X := L^-1 X for eight systems side by side; rows before `first` are zero and stay so.
+/// X := L^-1 X for eight systems side by side, of `N` right-hand sides each; rows before `first` are zero and stay so.
 #[inline(always)]
-pub(crate) fn forward_each<R: Real>(factors: &[Lanes<R>], first: usize, x: &mut [Lanes<R>]) {
+pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first: usize, x: &mut [[Lanes<R>; N]]) {
+    let mut rest = factors.get(packed_len(first)..).unwrap_or(&[]);
     for j in first..x.len() {
+        let Some((row, after)) = rest.split_at_checked(j + 1) else { return };
+        rest = after;
         let (before, from_j) = x.split_at_mut_checked(j).unwrap_or((&mut [], &mut []));
         if let Some(value) = from_j.first_mut() {
-            let mut sum = *value;
-            for (x, l) in before.iter().zip(row(factors, j)).skip(first) {
-                sum = lanes::minus_product(sum, *x, *l);
+            let mut sums = *value;
+            for (x, l) in before.iter().zip(row).skip(first) {
+                for (sum, x) in sums.iter_mut().zip(x) {
+                    *sum = lanes::minus_product(*sum, *x, *l);
+                }
             }
-            *value = sum;
+            *value = sums;
         }
     }
 }
@@ -154,11 +159,23 @@ pub(crate) fn scale_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
     }
 }
 
+/// Right-hand sides, one for each system.
+#[inline(always)]
+pub(crate) fn one_each_mut<R>(x: &mut [Lanes<R>]) -> &mut [[Lanes<R>; 1]] {
+    x.as_chunks_mut().0
+}
+
 /// X := A^-1 X for eight systems side by side.
 #[inline(always)]
 pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
-    forward_each(factors, 0, x);
+    forward_each::<R, 1>(factors, 0, one_each_mut(x));
     scale_each(factors, x);
+    backward_each(factors, x);
+}
+
+/// X := L'^-1 X for eight systems side by side.
+#[inline(always)]
+pub(crate) fn backward_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
     for j in (0..x.len()).rev() {
         let (before, from_j) = x.split_at_mut_checked(j).unwrap_or((&mut [], &mut []));
         let value = from_j.first().copied().unwrap_or([R::ZERO; LANES]);

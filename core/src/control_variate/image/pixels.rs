@@ -1,6 +1,6 @@
 //! The pixels of an image, and which of them share fits.
 
-use super::members::Area;
+use super::terms::MAX_AXES;
 use crate::control_variate::Config;
 use crate::error::Error;
 
@@ -60,13 +60,13 @@ impl Image<'_> {
         Self { unordered: true, ..Self::new(pixels, 1) }
     }
 
-    /// Width and height of a window, and the steps from one to the next.
+    /// Where its windows lie.
     pub(super) fn windows(&self) -> Result<Windows, Error> {
         if self.unordered {
             let pixels = self.pixels()?;
             let fits = pixels > 0 && (self.surfaces.is_empty() || pixels <= Self::MAX_WINDOW);
-            let windows =
-                Windows { width: pixels, height: 1, stride: pixels, image: [pixels, 1, 1], is_ordered: false };
+            let whole = [pixels, 1, 1];
+            let windows = Windows { extent: whole, stride: pixels, image: whole, is_ordered: false };
             return if fits { Ok(windows) } else { Err(Error::Range) };
         }
         let side = if self.window == 0 { 8 } else { self.window };
@@ -78,10 +78,10 @@ impl Image<'_> {
             return Err(Error::Range);
         }
         let image = [self.width, self.height, self.frames()];
-        Ok(Windows { width, height, stride, image, is_ordered: true })
+        Ok(Windows { extent: [width, height, self.frames()], stride, image, is_ordered: true })
     }
 
-    fn frames(&self) -> usize {
+    pub(super) fn frames(&self) -> usize {
         self.frames.max(1)
     }
 
@@ -105,51 +105,60 @@ impl Image<'_> {
     }
 }
 
-/// Where windows lie.
+/// Where windows lie: in rows of as many, all of one size.
 #[derive(Clone, Copy)]
 pub(super) struct Windows {
-    width: usize,
-    height: usize,
+    /// Width, height and frames of a window; of pixels in no order their number, 1 and 1.
+    pub(super) extent: [usize; MAX_AXES],
     stride: usize,
     /// Width, height and frames of the image.
-    image: [usize; 3],
-    is_ordered: bool,
+    pub(super) image: [usize; MAX_AXES],
+    pub(super) is_ordered: bool,
+}
+
+/// A window's first pixel.
+#[derive(Clone, Copy)]
+pub(super) struct Window {
+    pub(super) x: usize,
+    pub(super) y: usize,
 }
 
 impl Windows {
     /// Pixels of a window, in all frames.
     pub(super) fn pixels(&self) -> usize {
-        self.width * self.height * self.image[2]
+        let [width, height, frames] = self.extent;
+        width * height * frames
     }
 
-    /// The first window.
-    pub(super) fn first(&self) -> Area {
-        self.at(0, 0)
+    /// The axes along which a window's pixels differ.
+    pub(super) fn axes(&self) -> usize {
+        if self.is_ordered { self.extent.into_iter().filter(|&extent| extent > 1).count() } else { 0 }
     }
 
-    fn at(&self, x: usize, y: usize) -> Area {
-        let [image_width, image_height, frames] = self.image;
-        Area {
-            x,
-            y,
-            width: self.width,
-            height: self.height,
-            frames,
-            image_width,
-            image_height,
-            is_ordered: self.is_ordered,
-        }
+    /// Those axes; what follows the last is no axis.
+    pub(super) fn used_axes(&self) -> [usize; MAX_AXES] {
+        let mut axes = [0; MAX_AXES];
+        let used = self.extent.into_iter().enumerate().filter(|&(_, extent)| extent > 1);
+        axes.iter_mut().zip(used).for_each(|(out, (axis, _))| *out = axis);
+        axes
     }
 
-    /// All windows, row by row. The last of a row or column ends where the image does.
-    pub(super) fn each(self) -> impl Iterator<Item = Area> {
-        let [image_width, image_height, _] = self.image;
-        let starts = move |extent: usize, window: usize| {
-            let last = extent.saturating_sub(window);
-            let steps = last.div_ceil(self.stride.max(1));
-            (0..=steps).map(move |step| (step * self.stride).min(last))
-        };
-        let columns = move || starts(image_width, self.width);
-        starts(image_height, self.height).flat_map(move |y| columns().map(move |x| self.at(x, y)))
+    /// Windows in a row, and rows of windows.
+    pub(super) fn counts(&self) -> [usize; 2] {
+        let count = |extent: usize, window: usize| 1 + extent.saturating_sub(window).div_ceil(self.stride.max(1));
+        let [[width, height, _], [across, down, _]] = [self.image, self.extent];
+        [count(width, across), count(height, down)]
+    }
+
+    /// The first row of pixels of a row of windows; the last ends where the image does.
+    pub(super) fn top(&self, row: usize) -> usize {
+        let [[_, height, _], [_, down, _]] = [self.image, self.extent];
+        (row * self.stride).min(height.saturating_sub(down))
+    }
+
+    /// A window, row by row.
+    pub(super) fn window(&self, column: usize, row: usize) -> Window {
+        let [[width, ..], [across, ..]] = [self.image, self.extent];
+        Window { x: (column * self.stride).min(width.saturating_sub(across)), y: self.top(row) }
     }
 }

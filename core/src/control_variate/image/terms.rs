@@ -10,8 +10,8 @@ use heapless::Vec;
 pub(super) const MAX_FITS: usize = MAX_ORDER + 2;
 /// The pixels' axes: x, y and frames.
 pub(super) const MAX_AXES: usize = 3;
-/// The highest degree of the functions whose coefficients may change across a block.
-const MOVING_DEGREE: usize = 2;
+/// No products that make more columns than this.
+const MOST_COLUMNS: usize = 192;
 /// Relative penalty of the values' trend along an axis: next to none.
 const TREND_PENALTY: f64 = 1e-3;
 /// Penalty of a product with an axis, relative to that of the function.
@@ -42,12 +42,11 @@ impl Terms {
         if functions == 0 {
             return terms;
         }
-        if axes > 0 {
-            // As many degrees as leave two samples to each column.
-            let highest = MOVING_DEGREE.min(config.order.saturating_sub(1)).max(1);
-            let fits = |&moving: &usize| 2 * (fixed + functions + axes * moving) <= samples;
-            let counts = (1..=highest).rev().map(|degree| shape.up_to_degree(degree));
-            terms.moving.1 = counts.into_iter().find(fits).unwrap_or(0);
+        let moving = shape.up_to_degree(1);
+        let columns = fixed + functions + axes * moving;
+        // Two samples to each column.
+        if axes > 0 && columns <= MOST_COLUMNS && 2 * columns <= samples {
+            terms.moving.1 = moving;
         }
         let mut end = |columns: usize| {
             if !all && terms.ends.last().is_none_or(|&last| last < columns) {
@@ -76,14 +75,6 @@ impl Terms {
     #[inline(always)]
     pub(super) fn columns(&self) -> usize {
         self.fixed() + self.functions + self.axes * self.moving.1
-    }
-
-    /// As many columns as fits to fewer samples can have.
-    pub(super) fn fewer_columns(&self, shape: &Shape) -> [usize; MOVING_DEGREE + 1] {
-        core::array::from_fn(|degree| {
-            let moving = shape.up_to_degree(degree).min(self.moving.1);
-            self.fixed() + self.functions + self.axes * moving
-        })
     }
 
     /// The penalty of each column, relative to the strength times the number of samples.

@@ -1,0 +1,113 @@
+//! Pixels whose values lie far from those of all others: fireflies, small highlights.
+//!
+//! A fit has seen them, and even a fit that is hardly trusted then moves the other pixels by more than their own error.
+//! So where the mean is trusted most, such pixels are left out of the fits to others.
+
+use super::batch::{Batch, Eight, NONE, plus};
+use super::fit::Colours;
+use crate::lanes::{self, LANES};
+use crate::rows::row_at;
+
+/// One of so many pixels may be set aside at each end, rounded up.
+const SHARE: usize = 16;
+/// No more are.
+const MOST: usize = 16;
+/// Fewer pixels do not say what is usual.
+const FEWEST: f32 = 8.0;
+/// How far from the others a value is, in units of their range, that its pixel is left out.
+const FAR: f32 = 8.0;
+/// The least trust in the mean: where fits are better, rare bright values are what they explain.
+const DOUBT: f32 = 0.5;
+
+/// The highest values, in falling order.
+struct Highest([Eight; MOST + 1]);
+
+impl Highest {
+    fn new() -> Self {
+        Self([[f32::NEG_INFINITY; LANES]; MOST + 1])
+    }
+
+    /// Adds a value, keeping `count` of them.
+    #[inline(always)]
+    fn add(&mut self, mut value: Eight, count: usize) {
+        for place in self.0.iter_mut().take(count) {
+            let above = lanes::zip(place, &value, |place, value| if value > place { value } else { place });
+            value = lanes::zip(place, &value, |place, value| if value > place { place } else { value });
+            *place = above;
+        }
+    }
+
+    /// Makes the lanes one, in all of them.
+    fn join(&mut self, count: usize) {
+        let mut whole = Self::new();
+        for values in self.0.iter().take(count) {
+            for &value in values {
+                whole.add([value; LANES], count);
+            }
+        }
+        *self = whole;
+    }
+
+    /// The lane's value that is `aside` places below its highest.
+    fn below(&self, aside: usize, lane: usize) -> f32 {
+        self.0.get(aside).map_or(f32::INFINITY, |values| values[lane % LANES])
+    }
+}
+
+/// What values of a channel fits are made to, lowest and highest, in each lane; None where all are.
+pub(super) type Limits = [Option<[f32; 2]>; LANES];
+
+/// How far values of a channel may be from those of the `judges`, where any is too far. `trust` is that in the mean.
+/// Where a judge itself is too far and fits are trusted, they explain it, and keep such values.
+#[inline(always)]
+pub(super) fn limits(batch: &Batch<'_>, channels: usize, channel: usize, judges: Colours, trust: &Eight) -> Limits {
+    let is_halved = judges != Colours::ALL;
+    let mut counts = NONE;
+    for (_, inside) in batch.inside.iter().enumerate().filter(|&(slot, _)| judges.has(slot)) {
+        counts = plus(&counts, inside);
+    }
+    if batch.is_joined {
+        counts = [lanes::sum(&counts); LANES];
+    }
+    let aside = counts.map(|count| (count as usize).div_ceil(SHARE).min(MOST));
+    let kept = 1 + aside.into_iter().fold(0, usize::max);
+    let (mut highest, mut lowest) = (Highest::new(), Highest::new());
+    let (mut most, mut least) = (Highest::new(), Highest::new());
+    for (slot, inside) in batch.inside.iter().enumerate() {
+        let &[low, high] = row_at(batch.ranges, 2, slot * channels + channel) else { continue };
+        let seen = |value: Eight| {
+            lanes::zip(&value, inside, |value, inside| if inside > 0.0 { value } else { f32::NEG_INFINITY })
+        };
+        let (high, low) = (seen(high), seen(low.map(|low| -low)));
+        if judges.has(slot) {
+            highest.add(high, kept);
+            lowest.add(low, kept);
+        }
+        if is_halved {
+            most.add(high, 1);
+            least.add(low, 1);
+        }
+    }
+    if batch.is_joined {
+        for highest in [&mut highest, &mut lowest, &mut most, &mut least] {
+            highest.join(kept);
+        }
+    }
+    let mut limits = [None; LANES];
+    for l in 0..LANES {
+        let is_doubted = trust[l] < DOUBT;
+        if counts[l] < FEWEST || is_doubted && !is_halved {
+            continue;
+        }
+        let [low, high] = [-lowest.below(aside[l], l), highest.below(aside[l], l)];
+        let far = FAR * (high - low);
+        let near = [low - far, high + far];
+        let is_beyond = |least: f32, most: f32| least < near[0] || most > near[1];
+        let is_far = is_beyond(-lowest.below(0, l), highest.below(0, l));
+        let others = is_halved && is_beyond(-least.below(0, l), most.below(0, l));
+        if if is_doubted { others && !is_far } else { others || is_far } {
+            limits[l] = Some(near);
+        }
+    }
+    limits
+}

@@ -1,0 +1,275 @@
+//! How far each fit of a group is trusted.
+
+use super::super::config::Config;
+use super::super::trust;
+use super::Call;
+use super::batch::{Batch, COLOURS, Eight, MAX_FIXED, NONE, only, plus};
+use super::fit::{Colours, Fits};
+use super::terms::{MAX_FITS, Terms};
+use crate::lanes::{self, LANES};
+use crate::linalg::{ldlt, packed_len, row, row_mut};
+use crate::real::Real;
+use crate::rows::row_at;
+use core::f32::consts::LOG2_E;
+
+/// What samples say within their pixels counts as much of what the pixels' spread says where it speaks for a fit, and all
+/// of it where it speaks against one. Stratified samples' means differ less than theirs tell.
+const WITHIN: f32 = 0.25;
+/// The most estimates to choose from: the plain mean's, and each fit's.
+pub(super) const MAX_CHOICES: usize = 1 + MAX_FITS;
+
+/// For the plain mean and each fit, a number.
+pub(super) type Each = [Eight; MAX_CHOICES];
+
+/// The estimates' spreads across pixels: sums of squares about their linear trend along the axes.
+///
+/// The signal's own spread is common to all candidates, so that the difference is the error's, however the samples are
+/// correlated; what the trend takes away is almost only signal.
+pub(super) struct Spreads {
+    /// Of each channel.
+    pub(super) sums: [Each; Config::MAX_CHANNELS],
+    /// The trends of each channel.
+    trends: [[[Eight; MAX_FIXED]; MAX_CHOICES]; Config::MAX_CHANNELS],
+    /// Pixels less the trend's coefficients, at least 0.
+    pub(super) freedom: Eight,
+    pub(super) fits: usize,
+    /// What the fits leave of the samples of each colour about their pixels' means; see [`Fits::within`].
+    within: [[Each; COLOURS]; Config::MAX_CHANNELS],
+    /// Samples of each colour less their pixels' means.
+    samples: [Eight; COLOURS],
+    taken: Colours,
+}
+
+impl Spreads {
+    /// Of pixels of the colours `taken`.
+    #[inline(always)]
+    pub(super) fn new(call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, fits: &Fits<'_>, taken: Colours) -> Self {
+        let (fixed, channels) = (terms.fixed(), call.config.channels);
+        let joined = |sum: &Eight| if batch.is_joined { [lanes::sum(sum); LANES] } else { *sum };
+        let mut factor = [NONE; packed_len(MAX_FIXED)];
+        for slot in (0..batch.slots).filter(|&slot| taken.has(slot)) {
+            let inside = batch.inside.get(slot).copied().unwrap_or(NONE);
+            let places = row_at(batch.places, fixed, slot);
+            for (j, place) in places.iter().enumerate() {
+                let place = lanes::zip(place, &inside, |place, inside| place * inside);
+                for (sum, other) in row_mut(&mut factor, j).iter_mut().zip(places) {
+                    lanes::add_product(sum, &place, other);
+                }
+            }
+        }
+        factor.iter_mut().for_each(|sum| *sum = joined(sum));
+        let mut freedom = factor[0];
+        ldlt::factor_each(&mut factor, fixed);
+        for j in 0..fixed {
+            let inverse = row(&factor, j).last().copied().unwrap_or(NONE);
+            freedom = lanes::zip(&freedom, &inverse, |freedom, inverse| {
+                Real::max(if inverse > 0.0 { freedom - 1.0 } else { freedom }, 0.0)
+            });
+        }
+        let mut spreads = Self {
+            sums: [[NONE; MAX_CHOICES]; Config::MAX_CHANNELS],
+            trends: [[[NONE; MAX_FIXED]; MAX_CHOICES]; Config::MAX_CHANNELS],
+            freedom,
+            fits: terms.ends.len(),
+            within: fits.within,
+            samples: [NONE; COLOURS],
+            taken,
+        };
+        for slot in 0..batch.slots {
+            let inside = batch.inside.get(slot).copied().unwrap_or(NONE);
+            spreads.samples[slot % COLOURS] = lanes::zip(&spreads.samples[slot % COLOURS], &inside, |sum, inside| {
+                sum + if call.n > 1 { inside } else { 0.0 }
+            });
+        }
+        spreads.samples.iter_mut().for_each(|sum| *sum = joined(sum));
+        for channel in 0..channels {
+            for fit in 0..=spreads.fits {
+                let mut square = NONE;
+                let mut trend = [NONE; MAX_FIXED];
+                for slot in (0..batch.slots).filter(|&slot| taken.has(slot)) {
+                    let estimate = estimate(batch, fits, channels, (slot, channel, fit));
+                    lanes::add_product(&mut square, &estimate, &estimate);
+                    for (sum, place) in trend.iter_mut().zip(row_at(batch.places, fixed, slot)) {
+                        lanes::add_product(sum, &estimate, place);
+                    }
+                }
+                trend.iter_mut().for_each(|sum| *sum = joined(sum));
+                ldlt::solve_each(&factor, trend.get_mut(..fixed).unwrap_or(&mut []));
+                if let Some(out) = spreads.trends.get_mut(channel).and_then(|trends| trends.get_mut(fit)) {
+                    *out = trend;
+                }
+                // The difference of the sums of squares would lose the digits that matter beside a strong trend.
+                let mut left = NONE;
+                for slot in (0..batch.slots).filter(|&slot| taken.has(slot)) {
+                    let rest = spreads.rest(batch, fits, channels, (slot, channel, fit));
+                    lanes::add_product(&mut left, &rest, &rest);
+                }
+                // What is left of a signal that is its trend is rounding noise.
+                let (left, square) = (joined(&left), joined(&square));
+                let sum = spreads.sums.get_mut(channel).and_then(|sums| sums.get_mut(fit));
+                for (l, sum) in sum.into_iter().flatten().enumerate() {
+                    let noise = square[l % LANES] * (f32::EPSILON * f32::EPSILON * 4096.0);
+                    let is_some = left[l % LANES] > noise && freedom[l % LANES] > 0.0;
+                    *sum = if is_some { left[l % LANES] } else { 0.0 };
+                }
+            }
+        }
+        spreads
+    }
+
+    /// What an estimate of a slot leaves of its trend.
+    #[inline(always)]
+    fn rest(
+        &self,
+        batch: &Batch<'_>,
+        fits: &Fits<'_>,
+        channels: usize,
+        (slot, channel, fit): (usize, usize, usize),
+    ) -> Eight {
+        let places = batch.places.len().checked_div(batch.slots).unwrap_or(0);
+        let trend = self.trends.get(channel).and_then(|trends| trends.get(fit)).into_iter().flatten();
+        let rest = estimate(batch, fits, channels, (slot, channel, fit));
+        let places = row_at(batch.places, places, slot);
+        let rest =
+            places.iter().zip(trend).fold(rest, |rest, (place, slope)| lanes::minus_product(rest, *place, *slope));
+        only(&batch.inside.get(slot).copied().unwrap_or(NONE), &rest)
+    }
+
+    /// What the samples of all colours but one say about a channel within their pixels, and how many they are.
+    #[inline(always)]
+    fn inside(&self, channel: usize, without: Option<usize>) -> (Each, Eight) {
+        let mut within = [NONE; MAX_CHOICES];
+        let mut count = NONE;
+        let colours = self.within.get(channel).into_iter().flatten().zip(&self.samples).enumerate();
+        for (_, (each, samples)) in colours.filter(|&(colour, _)| self.taken.has(colour) && Some(colour) != without) {
+            count = plus(&count, samples);
+            for (sum, value) in within.iter_mut().zip(each).take(1 + self.fits) {
+                *sum = plus(sum, value);
+            }
+        }
+        (within, count)
+    }
+
+    /// How a channel's correction is shared out, by what all pixels say.
+    #[inline(always)]
+    pub(super) fn shares(&self, channel: usize) -> Each {
+        let sums = self.sums.get(channel).copied().unwrap_or([NONE; MAX_CHOICES]);
+        let (within, samples) = self.inside(channel, None);
+        share(&sums, self.fits, &self.freedom, &within, &samples)
+    }
+
+    /// The same for the pixels of a slot, by what all others say.
+    #[inline(always)]
+    pub(super) fn shares_without(
+        &self,
+        batch: &Batch<'_>,
+        fits: &Fits<'_>,
+        channels: usize,
+        (slot, channel): (usize, usize),
+    ) -> Each {
+        let mut sums = self.sums.get(channel).copied().unwrap_or([NONE; MAX_CHOICES]);
+        for (fit, sum) in sums.iter_mut().enumerate().take(1 + self.fits) {
+            let rest = self.rest(batch, fits, channels, (slot, channel, fit));
+            *sum = lanes::zip(sum, &rest, |sum, rest| {
+                let others = sum - rest * rest;
+                if others > 0.0 { others } else { 0.0 }
+            });
+        }
+        let (within, samples) = self.inside(channel, Some(slot % COLOURS));
+        share(&sums, self.fits, &self.freedom, &within, &samples)
+    }
+
+    /// A mixture's spread relative to the plain mean's, by the samples within pixels where `inside`.
+    #[inline(always)]
+    pub(super) fn ratio(&self, channel: usize, shares: &Each, inside: bool) -> Eight {
+        let sums = if inside {
+            self.inside(channel, None).0
+        } else {
+            self.sums.get(channel).copied().unwrap_or([NONE; MAX_CHOICES])
+        };
+        let mixed = sums.iter().zip(shares).take(1 + self.fits);
+        let mixed = mixed.fold(NONE, |mixed, (sum, share)| lanes::plus_product(mixed, *sum, *share));
+        lanes::zip(&mixed, &sums[0], |mixed, plain| {
+            let ratio = mixed / plain.or_one();
+            if plain > 0.0 && ratio.is_finite() { ratio } else { 1.0 }
+        })
+    }
+}
+
+/// An estimate of a slot's pixels; 0 outside.
+#[inline(always)]
+fn estimate(batch: &Batch<'_>, fits: &Fits<'_>, channels: usize, (slot, channel, fit): (usize, usize, usize)) -> Eight {
+    let inside = batch.inside.get(slot).copied().unwrap_or(NONE);
+    let mean = batch.means.get(slot * channels + channel).copied().unwrap_or(NONE);
+    match fit.checked_sub(1) {
+        Some(fit) => {
+            let correction = fits.correction(channels, (slot, channel, fit));
+            only(&inside, &lanes::zip(&mean, &correction, |a, b| a + b))
+        }
+        None => only(&inside, &mean),
+    }
+}
+
+/// All trust in the last of `fits` fits.
+pub(super) fn last_only(fits: usize) -> Each {
+    let mut shares = [NONE; MAX_CHOICES];
+    if let Some(last) = shares.get_mut(fits) {
+        *last = [1.0; LANES];
+    }
+    shares
+}
+
+/// Trust by spreads, of the plain mean first: [`trust::weigh`] in each lane.
+#[inline(always)]
+fn share(spreads: &Each, fits: usize, freedom: &Eight, within: &Each, samples: &Eight) -> Each {
+    let [plain, spreads @ ..] = spreads;
+    let [noise, within @ ..] = within;
+    let [inverse, inverse_noise] = [plain, noise].map(|plain| plain.map(|plain| 1.0 / plain.or_one()));
+    let [power, power_within] = [freedom, samples].map(|count| count.map(|count| count * -trust::SHARPNESS as f32));
+    let has_samples = samples[0] > 0.0;
+    let mut shares = [NONE; MAX_CHOICES];
+    let [mean, rest @ ..] = &mut shares;
+    let rest = rest.get_mut(..fits).unwrap_or(&mut []);
+    let mut largest = NONE;
+    for ((share, spread), within) in rest.iter_mut().zip(spreads).zip(within) {
+        // What is no number is trusted least.
+        let limited = |ratio: f32| {
+            if ratio < 1e-30 {
+                1e-30
+            } else if ratio < 1e30 {
+                ratio
+            } else {
+                1e30
+            }
+        };
+        let ratio = lanes::zip(spread, &inverse, |spread, inverse| limited(spread * inverse));
+        *share = lanes::zip(&lanes::log2(&ratio), &power, |logarithm, power| logarithm * power);
+        if has_samples {
+            let ratio = lanes::zip(within, &inverse_noise, |within, inverse| limited(within * inverse));
+            let logarithm = lanes::log2(&ratio).map(|value| if value < 0.0 { WITHIN * value } else { value });
+            *share = lanes::plus_product(*share, logarithm, power_within);
+        }
+        largest = lanes::zip(&largest, share, |largest, share| if share > largest { share } else { largest });
+    }
+    let prior = Real::ln(trust::PRIOR as f32 * fits as f32) * LOG2_E;
+    *mean = lanes::zip(&largest, freedom, |largest, freedom| {
+        let caution = largest - freedom * freedom * (LOG2_E / trust::CAUTION as f32);
+        if caution > 0.0 { prior + caution } else { prior }
+    });
+    largest = lanes::zip(&largest, mean, |largest, mean| if mean > largest { mean } else { largest });
+    let mut total = NONE;
+    for share in [&mut *mean].into_iter().chain(rest.iter_mut()) {
+        *share = lanes::exp2(&lanes::zip(share, &largest, |share, largest| share - largest));
+        total = plus(&total, share);
+    }
+    // Without a spread, or noise within pixels, the mean is exact.
+    let varies =
+        lanes::zip(plain, noise, |plain, noise| if plain > 0.0 && (noise > 0.0 || !has_samples) { 1.0 } else { 0.0 });
+    let scale = lanes::zip(&varies, &total, |varies, total| varies / total.or_one());
+    let exact = varies.map(|varies| 1.0 - varies);
+    *mean = plus(&exact, &lanes::zip(mean, &scale, |share, scale| share * scale));
+    for share in rest {
+        *share = lanes::zip(share, &scale, |share, scale| share * scale);
+    }
+    shares
+}

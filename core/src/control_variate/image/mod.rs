@@ -1,0 +1,243 @@
+//! Fits shared by neighbouring pixels (4.3.6): each pixel is corrected by a fit to the other pixels' samples.
+//!
+//! The estimate is mean f_p - b' mean phi_p with b from all samples of a window but the pixel's own. It needs no more
+//! than one sample in each pixel, and keeps whatever stratification the samples have, within a pixel and across pixels,
+//! as far as b changes slowly. One sample is left out of its fit in closed form. With several in each pixel the pixels
+//! have four colours, as 2 x 2 squares do, and each colour is corrected by a fit to the other three.
+//!
+//! Three estimators decide which b:
+//!
+//! - [`Estimator::LeaveOneOut`], or any with a fixed ridge: one ridge fit with every column. Exactly unbiased, as b
+//!   never saw the pixel's own samples.
+//! - [`Estimator::Robust`]: fits of rising degree and the plain mean, weighted by the variance across the pixels of
+//!   other colours of their estimates. Those have seen the pixel's own samples: unbiased as the window grows.
+//! - [`Estimator::KFold`]: the same with two halves of the pixels, each weighted by what the other half's fits to
+//!   itself say. Exactly unbiased, at twice the time.
+//!
+//! The last two leave bright pixels out of fits that explain little (`bright`). What is left out for a pixel depends on
+//! its own samples in the robust estimator alone.
+//!
+//! "Exactly" is for pixels whose samples are independent of each other. A tile's are not; how little that does is
+//! measured in the tests.
+//!
+//! Groups of pixels, one for each surface of a window, are sorted by size, and eight are worked on side by side in the
+//! lanes of vector registers. All is computed in `f32`: sums are of a window's samples, and the ridge keeps condition
+//! numbers far from its end.
+
+mod batch;
+mod bright;
+mod choice;
+mod fit;
+mod groups;
+mod passes;
+mod pixels;
+mod sums;
+mod terms;
+
+pub use pixels::Image;
+
+use super::config::{Color, Config, Estimate, Estimator, NonFinite, Ridge};
+use super::samples::{Reader, Samples};
+use crate::arena::Arena;
+use crate::basis::{Basis, Shape};
+use crate::error::Error;
+use crate::lanes::LANES;
+use batch::batch_len;
+use core::ops::Deref;
+use fit::fits_len;
+use pixels::Windows;
+use sums::sums_len;
+use terms::Terms;
+
+/// Numbers of workspace that [`estimate_block`] needs for `pixels` pixels of `n` samples.
+///
+/// # Errors
+/// As for [`estimate_block`].
+pub fn block_workspace_len(config: &Config, pixels: usize, n: usize) -> Result<usize, Error> {
+    // More pixels than 32 bits count need more memory than there is.
+    u32::try_from(pixels).map_err(|_| Error::Memory)?;
+    image_workspace_len(config, &Image::unordered(pixels), n)
+}
+
+/// Numbers of workspace that [`estimate_image`] needs for `n` samples in each pixel.
+///
+/// # Errors
+/// As for [`estimate_image`]; [`Error::Memory`] if no memory could be large enough.
+pub fn image_workspace_len(config: &Config, image: &Image<'_>, n: usize) -> Result<usize, Error> {
+    check_supported(config)?;
+    let shape = config.checked_shape()?;
+    let windows = image.windows()?;
+    image.pixels()?;
+    Layout { config, image, windows, shape, n }.workspace_len().ok_or(Error::Memory)
+}
+
+/// Which samples count must not depend on the pixel, the fit is of the channels, and other estimators share no fits.
+fn check_supported(config: &Config) -> Result<(), Error> {
+    let estimator = matches!(config.estimator, Estimator::Robust | Estimator::LeaveOneOut | Estimator::KFold);
+    let supported = estimator && config.color == Color::PerChannel && config.non_finite == NonFinite::Error;
+    if supported { Ok(()) } else { Err(Error::Unsupported) }
+}
+
+/// Estimates the integral of each of `pixels` pixels that are alike, in no order: [`estimate_image`] for
+/// [`Image::unordered`].
+///
+/// # Errors
+/// As for [`estimate_image`].
+///
+/// ```
+/// use noisefloor::control_variate::{Config, Samples, block_workspace_len, estimate_block};
+///
+/// // 32 pixels, one sample of f = u in each: the others' samples say how f varies.
+/// let u: [f32; 32] = core::array::from_fn(|pixel| ((pixel * 13) % 32) as f32 / 32.0);
+/// let config = Config::new(1, 1, 1);
+/// let mut workspace = vec![0.0; block_workspace_len(&config, 32, 1)?];
+/// estimate_block(&config, Samples::new(&u, &u), 32, &mut workspace, |pixel, estimate| {
+///     assert!((estimate.mean[0] - 0.5).abs() < 0.05, "pixel {pixel}");
+/// })?;
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
+#[inline(always)]
+pub fn estimate_block(
+    config: &Config,
+    samples: Samples<'_>,
+    pixels: usize,
+    workspace: &mut [f32],
+    out: impl FnMut(usize, Estimate),
+) -> Result<(), Error> {
+    if pixels == 0 {
+        return Err(Error::NoSamples);
+    }
+    estimate_image(config, &Image::unordered(pixels), samples, workspace, out)
+}
+
+/// Estimates every pixel of an image from `samples.f.len() / (pixels channels)` samples in each, pixel after pixel.
+/// `out` is called once for each pixel in order, and only if all succeed.
+///
+/// # Errors
+/// As for [`estimate`](super::estimate); [`Error::Unsupported`] also for a luminance ratio, for skipping samples and
+/// for estimators other than the robust, leave-one-out and K-fold ones; [`Error::Range`] also for an image without
+/// pixels, for windows that [`Image`] does not allow, for negative factors and for arrays of the wrong length;
+/// [`Error::NotFinite`] for factors that are not finite.
+///
+/// ```
+/// use noisefloor::control_variate::{Config, Image, Samples, estimate_image, image_workspace_len};
+///
+/// // 8 x 8 pixels, one sample of f = u + x in each.
+/// let u: [f32; 64] = core::array::from_fn(|pixel| ((pixel * 29) % 64) as f32 / 64.0);
+/// let f: [f32; 64] = core::array::from_fn(|pixel| u[pixel] + (pixel % 8) as f32);
+/// let (config, image) = (Config::new(1, 1, 1), Image::new(8, 8));
+/// let mut workspace = vec![0.0; image_workspace_len(&config, &image, 1)?];
+/// let mut pixels = [0.0; 64];
+/// estimate_image(&config, &image, Samples::new(&u, &f), &mut workspace, |pixel, estimate| {
+///     pixels[pixel] = estimate.mean[0];
+/// })?;
+/// assert!((pixels[10] - 2.5).abs() < 0.05);
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
+#[inline(always)]
+pub fn estimate_image(
+    config: &Config,
+    image: &Image<'_>,
+    samples: Samples<'_>,
+    workspace: &mut [f32],
+    mut out: impl FnMut(usize, Estimate),
+) -> Result<(), Error> {
+    let shape = config.checked_shape()?;
+    let mut basis = Basis::empty();
+    basis.set(config.basis, shape)?;
+    check_supported(config)?;
+    let reader = Reader::new(config, samples)?;
+    let (windows, pixels) = (image.windows()?, image.pixels()?);
+    image.check(config)?;
+    let n = reader.len() / pixels.max(1);
+    if n == 0 || n * pixels != reader.len() {
+        return Err(Error::Range);
+    }
+    reader.check()?;
+    let layout = Layout { config, image, windows, shape, n };
+    if workspace.len() < layout.workspace_len().ok_or(Error::Memory)? {
+        return Err(Error::Memory);
+    }
+    Call { layout, basis: &basis, reader }.run(&mut Arena::new(workspace), &mut out)
+}
+
+/// What all groups of a call have in common.
+#[derive(Clone, Copy)]
+struct Layout<'a> {
+    config: &'a Config,
+    image: &'a Image<'a>,
+    windows: Windows,
+    shape: Shape,
+    /// Samples of a pixel.
+    n: usize,
+}
+
+/// A call, with its samples.
+struct Call<'a> {
+    layout: Layout<'a>,
+    basis: &'a Basis,
+    reader: Reader<'a>,
+}
+
+impl<'a> Deref for Call<'a> {
+    type Target = Layout<'a>;
+
+    fn deref(&self) -> &Layout<'a> {
+        &self.layout
+    }
+}
+
+impl Layout<'_> {
+    /// Whether there is one candidate, all of whose columns are used.
+    fn is_single_fit(&self) -> bool {
+        self.config.estimator == Estimator::LeaveOneOut || matches!(self.config.ridge, Ridge::Fixed(_))
+    }
+
+    /// In how many turns pixels are chosen for.
+    fn turns(&self) -> usize {
+        if self.has_halves() { 2 } else { 1 }
+    }
+
+    /// Whether halves of the pixels choose for each other.
+    fn has_halves(&self) -> bool {
+        self.config.estimator == Estimator::KFold && !self.is_single_fit()
+    }
+
+    /// Which columns fits to so many pixels have.
+    fn terms(&self, pixels: usize) -> Terms {
+        let samples = pixels.saturating_mul(self.n);
+        Terms::new(self.config, &self.shape, self.windows.axes(), samples, self.is_single_fit())
+    }
+
+    /// Whether the standard error is that of the group's estimates, instead of the pixel's plain mean times the root of
+    /// the gain: one sample has none, and stratified samples a smaller one than they seem to.
+    fn error_is_the_groups(&self) -> bool {
+        self.n == 1 || self.config.stratified
+    }
+
+    /// How many rows of windows are worked on before pixels are written, and how many rows of pixels those touch.
+    fn band(&self) -> [usize; 2] {
+        let [across, down] = self.windows.counts();
+        let rows = (self.windows_at_once() / across.max(1)).max(1).min(down);
+        let touched = (0..down.div_ceil(rows)).map(|band| {
+            let last = (band * rows + rows).min(down) - 1;
+            self.windows.top(last) - self.windows.top(band * rows)
+        });
+        // All but the last are alike.
+        let most = touched.take(2).fold(0, usize::max);
+        [rows, most + self.windows.extent[1]]
+    }
+
+    /// Numbers of workspace.
+    fn workspace_len(&self) -> Option<usize> {
+        let [width, _, frames] = self.windows.image;
+        let [_, rows] = self.band();
+        let channels = self.config.channels;
+        let sums = width.checked_mul(rows)?.checked_mul(frames)?.checked_mul(sums_len(channels))?;
+        let pixels = self.windows.pixels();
+        let slots = if self.is_joined() { pixels.div_ceil(LANES) } else { pixels };
+        let terms = self.terms(pixels);
+        let batch = batch_len(&terms, channels, slots)?.checked_add(fits_len(&terms, channels, slots)?)?;
+        sums.checked_add(self.groups_len()?)?.checked_add(batch)
+    }
+}

@@ -1,0 +1,203 @@
+//! Which fits are made to a group, and what becomes of them.
+
+use super::super::config::Config;
+use super::Call;
+use super::batch::Batch;
+use super::bright;
+use super::choice::{Each, Spreads, last_only};
+use super::fit::{Colours, Fits};
+use super::groups::{Group, Groups};
+use crate::arena::Arena;
+use crate::error::Error;
+use crate::lanes::{self, LANES};
+use crate::real::Real;
+use crate::rows::rows_mut;
+
+/// For each channel, how its correction is shared out.
+type Shares = [Each; Config::MAX_CHANNELS];
+
+impl Call<'_> {
+    /// Fits to all groups: first to all of their pixels, then, where some are too bright, to the others.
+    #[inline(always)]
+    pub(super) fn fit(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+        let later = if self.is_single_fit() { 0 } else { self.turns() };
+        for pass in 0..=later {
+            let turn = pass.checked_sub(1);
+            let mut place = 0;
+            loop {
+                let mut lanes = [Group::default(); LANES];
+                let mut used = 0;
+                let mut columns = 0;
+                // Eight, or fewer if the next have other columns.
+                while let Some(group) = groups.by_size(self, place).filter(|_| used < LANES) {
+                    let is_wanted = turn.is_none_or(|turn| groups.has_limits(self, &group, turn));
+                    let terms = if used == 0 || is_wanted { self.terms(group.len).columns() } else { columns };
+                    if is_wanted && used > 0 && terms != columns {
+                        break;
+                    }
+                    place += 1;
+                    if is_wanted {
+                        columns = terms;
+                        if self.is_joined() {
+                            lanes = [group; LANES];
+                        } else if let Some(lane) = lanes.get_mut(used) {
+                            *lane = group;
+                        }
+                        used += 1;
+                    }
+                }
+                if used == 0 {
+                    break;
+                }
+                self.batch(lanes, turn, groups, &mut arena.scratch())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Fits to eight groups. In a later `turn` only pixels within its limits are fitted to.
+    #[inline(always)]
+    fn batch(
+        &self,
+        lanes: [Group; LANES],
+        turn: Option<usize>,
+        groups: &mut Groups<'_>,
+        arena: &mut Arena<'_, f32>,
+    ) -> Result<(), Error> {
+        let channels = self.config.channels;
+        let [Group { len, .. }, ..] = lanes;
+        let terms = self.terms(len);
+        if terms.ends.is_empty() {
+            return Ok(());
+        }
+        let mut batch = Batch::new(self, groups, &terms, lanes, arena)?;
+        batch.survey(self, groups, &terms);
+        if let Some(turn) = turn {
+            batch.leave_out(channels, |group| groups.limits(self, group, turn));
+        }
+        batch.load(self, groups, &terms, arena)?;
+        let mut fits = Fits::new(self, &terms, batch.slots, arena)?;
+        let single = [last_only(terms.ends.len()); Config::MAX_CHANNELS];
+        let mut shares = [single; 2];
+        // Halves choose for each other, then fits to all correct; or fits to all do both.
+        let turns = self.turns();
+        for step in 0..if turns == 2 { 3 } else { 1 } {
+            let is_last = turns == 1 || step == 2;
+            if turn.is_some_and(|turn| !is_last && step != turn) {
+                continue;
+            }
+            let judges = if is_last { Colours::ALL } else { Colours::HALVES[1 - step] };
+            fits.correct(self, &terms, &batch, judges);
+            let spreads = Spreads::new(self, &terms, &batch, &fits, judges);
+            let chooses = !self.is_single_fit() && (turns == 1 || !is_last);
+            if let Some(shares) = shares.get_mut(step).filter(|_| chooses) {
+                *shares = core::array::from_fn(|channel| spreads.shares(channel));
+                if turn.is_none() {
+                    self.find_limits(groups, &batch, (step, judges), shares);
+                }
+            }
+            if is_last {
+                if turn.is_none() {
+                    self.tell(groups, &batch, &spreads, &shares);
+                }
+                self.put(groups, &batch, &fits, &spreads, turn, &shares);
+            }
+        }
+        Ok(())
+    }
+
+    /// What is told of the groups' errors. Bright pixels count: without them the error would be told too small where
+    /// every pixel has rare bright samples.
+    #[inline(always)]
+    fn tell(&self, groups: &mut Groups<'_>, batch: &Batch<'_>, spreads: &Spreads, shares: &[Shares; 2]) {
+        let channels = self.config.channels;
+        let by_groups = self.error_is_the_groups();
+        let mut ratios = [[0.0; LANES]; Config::MAX_CHANNELS];
+        for (channel, ratio) in ratios.iter_mut().enumerate().take(channels) {
+            for shares in shares.iter().take(self.turns()).filter_map(|shares| shares.get(channel)) {
+                let turn = spreads.ratio(channel, shares, !by_groups);
+                *ratio = lanes::zip(ratio, &turn, |sum, turn| sum + turn / self.turns() as f32);
+            }
+        }
+        for lane in (0..LANES).filter(|&lane| batch.lanes[lane].len > 0) {
+            let told = groups.told_mut(self, &batch.lanes[lane]);
+            let Some(([gain, has_error], errors)) = told.split_first_chunk_mut() else { continue };
+            // Without freedom there is no spread to tell the error from.
+            let is_known = !by_groups || spreads.freedom[lane] > 0.0;
+            *has_error = if is_known { 1.0 } else { 0.0 };
+            *gain = 0.0;
+            let channels_of = spreads.sums.iter().zip(&ratios).zip(&batch.units);
+            for (error, (([plain, ..], ratio), units)) in errors.iter_mut().zip(channels_of) {
+                *gain += ratio[lane] / channels as f32;
+                *error = if !by_groups {
+                    ratio[lane].sqrt()
+                } else if is_known {
+                    (ratio[lane] * plain[lane] / spreads.freedom[lane].or_one()).sqrt().scale(units.exponents[lane])
+                } else {
+                    0.0
+                };
+            }
+        }
+    }
+
+    /// Keeps the corrections of the pixels that are chosen for in a turn.
+    #[inline(always)]
+    fn put(
+        &self,
+        groups: &mut Groups<'_>,
+        batch: &Batch<'_>,
+        fits: &Fits<'_>,
+        spreads: &Spreads,
+        turn: Option<usize>,
+        shares: &[Shares; 2],
+    ) {
+        let channels = self.config.channels;
+        for slot in 0..batch.slots {
+            let half = if self.turns() == 1 { 0 } else { usize::from(Colours::HALVES[1].has(slot)) };
+            if turn.is_some_and(|turn| turn != half) {
+                continue;
+            }
+            for (channel, (shares, units)) in shares[half].iter().zip(&batch.units).enumerate().take(channels) {
+                let mut shares = *shares;
+                if self.turns() == 1 && !self.is_single_fit() {
+                    // Its own say would draw a pixel to where it is, which biases.
+                    shares = spreads.shares_without(batch, fits, channels, (slot, channel));
+                }
+                let mut sum = [0.0; LANES];
+                for (fit, share) in shares.iter().skip(1).enumerate().take(spreads.fits) {
+                    lanes::add_product(&mut sum, &fits.correction(channels, (slot, channel, fit)), share);
+                }
+                for lane in 0..LANES {
+                    let Some(index) = batch.member(lane, slot) else { continue };
+                    let at = (batch.lanes[lane].start + index) * channels + channel;
+                    if let Some(out) = groups.corrections.get_mut(at) {
+                        let value = if sum[lane].is_finite() { sum[lane] } else { 0.0 };
+                        // What is too large is no number, and found at the end.
+                        *out = value.scale(units.exponents[lane]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Finds the limits of the groups' values for a turn, where any is too far from those of the `judges`.
+    #[inline(always)]
+    fn find_limits(
+        &self,
+        groups: &mut Groups<'_>,
+        batch: &Batch<'_>,
+        (turn, judges): (usize, Colours),
+        shares: &Shares,
+    ) {
+        let channels = self.config.channels;
+        for (channel, shares) in shares.iter().enumerate().take(channels) {
+            let limits = bright::limits(batch, channels, channel, judges, &shares[0]);
+            for lane in (0..LANES).filter(|&lane| batch.lanes[lane].len > 0) {
+                let out = groups.limits_mut(self, &batch.lanes[lane], turn);
+                if let Some([lowest, highest]) = rows_mut(out, 2).nth(channel) {
+                    [*lowest, *highest] = limits[lane].unwrap_or([f32::NEG_INFINITY, f32::INFINITY]);
+                }
+            }
+        }
+    }
+}

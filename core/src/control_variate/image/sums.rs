@@ -1,0 +1,171 @@
+//! From the corrections of groups to the pixels' estimates.
+
+use super::super::config::Estimate;
+use super::super::result::{saturate, standard_error};
+use super::Call;
+use super::groups::Groups;
+use crate::arena::Arena;
+use crate::error::Error;
+use crate::real::Real;
+use crate::rows::{row_at, row_at_mut, rows, rows_mut};
+
+/// Sums of a pixel that are not a channel's: the weight of the groups that it was in, of those with an error, and their
+/// gain.
+const COMMON: usize = 3;
+/// The largest correction that the windows of a pixel may add up, 2^120.
+const MOST: f64 = (1_u128 << 120) as f64;
+
+/// The square of a likely correction is at most this many times the variance of the mean.
+const UNLIKELY: f64 = 4.0;
+
+/// Numbers that are summed for each pixel over the groups that it was in; of each channel the correction and what the
+/// standard error comes from.
+pub(super) fn sums_len(channels: usize) -> usize {
+    COMMON + 2 * channels
+}
+
+/// The sums of some rows of pixels: row y is row y modulo `rows`.
+struct Band<'a> {
+    sums: &'a mut [f32],
+    rows: usize,
+}
+
+impl Call<'_> {
+    /// All of it: windows some rows at a time, and pixels as soon as no later window has them.
+    #[inline(always)]
+    pub(super) fn run(&self, arena: &mut Arena<'_, f32>, out: &mut impl FnMut(usize, Estimate)) -> Result<(), Error> {
+        let [width, height, frames] = self.windows.image;
+        let [across, down] = self.windows.counts();
+        let [rows, touched] = self.band();
+        let sums = arena.take(width * touched * frames * sums_len(self.config.channels))?;
+        sums.iter_mut().for_each(|sum| *sum = 0.0);
+        let mut band = Band { sums, rows: touched };
+        let mut groups = self.groups(arena)?;
+        let has_fits = !self.terms(self.windows.pixels()).ends.is_empty();
+        let mut done = 0;
+        for row in (0..down).step_by(rows.max(1)) {
+            let last = (row + rows).min(down);
+            for first in (row * across..last * across).step_by(self.windows_at_once().max(1)) {
+                if !has_fits {
+                    break;
+                }
+                let end = (first + self.windows_at_once()).min(last * across);
+                self.divide(first, end, &mut groups);
+                self.fit(&mut groups, arena)?;
+                self.add(first, &groups, &mut band);
+            }
+            let end = if last < down { self.windows.top(last) } else { height };
+            for frame in 0..frames {
+                for y in done..end {
+                    self.write(frame, y, &mut band, out);
+                }
+            }
+            done = end;
+        }
+        Ok(())
+    }
+
+    /// Adds the groups' corrections to the sums of their pixels, in the order of the windows.
+    #[inline(always)]
+    fn add(&self, first: usize, groups: &Groups<'_>, band: &mut Band<'_>) {
+        let channels = self.config.channels;
+        let [width, ..] = self.windows.image;
+        // How near a pixel is to its window's centre: 1 there, falling linearly along x and y to almost 0.
+        let inverse = self.windows.extent.map(|extent| 1.0 / extent.max(1) as f32);
+        let hat = |at: usize, inverse: f32| 1.0 - Real::abs((2 * at + 1) as f32 * inverse - 1.0);
+        for group in groups.in_order(self) {
+            let Some(([gain, has_error], errors)) = groups.told(self, &group).split_first_chunk() else { continue };
+            let window = self.window(first + group.window);
+            let top = window.y.checked_rem(band.rows).unwrap_or(0);
+            for index in 0..group.len {
+                let place = groups.place(&group, index);
+                let [x, y, frame] = place.split();
+                let (mut at, mut near) = (index, 1.0);
+                if self.windows.is_ordered {
+                    let row = if top + y < band.rows { top + y } else { top + y - band.rows };
+                    at = (frame * band.rows + row) * width + window.x + x;
+                    near = hat(x, inverse[0]) * hat(y, inverse[1]);
+                } else if !self.is_joined() {
+                    at = x;
+                }
+                let sums = row_at_mut(band.sums, sums_len(channels), at);
+                let Some((common, each)) = sums.split_first_chunk_mut::<COMMON>() else { continue };
+                for (sum, value) in common.iter_mut().zip([1.0, *has_error, *gain]) {
+                    *sum += near * value;
+                }
+                let corrections = row_at(groups.corrections, channels, group.start + index);
+                let values = corrections.iter().zip(errors).enumerate();
+                for (each, (channel, (&correction, &error))) in rows_mut(each, 2).zip(values) {
+                    let (mut correction, mut error) = (f64::from(correction), f64::from(error));
+                    if !self.image.factors.is_empty() {
+                        let factor = self.factor(self.pixel(window, place, index), channel);
+                        correction *= factor;
+                        error *= if self.error_is_the_groups() { factor } else { 1.0 };
+                    }
+                    for (sum, value) in each.iter_mut().zip([correction, error]) {
+                        // What cannot be added up is no number, and found at the end.
+                        *sum += near * if libm::fabs(value) < MOST { value as f32 } else { f32::NAN };
+                    }
+                }
+            }
+        }
+    }
+
+    /// Writes a row of pixels, and empties its sums.
+    #[inline(always)]
+    fn write(&self, frame: usize, y: usize, band: &mut Band<'_>, out: &mut impl FnMut(usize, Estimate)) {
+        let [width, height, _] = self.windows.image;
+        let row = frame * band.rows + y.checked_rem(band.rows).unwrap_or(0);
+        for x in 0..width {
+            let sums = row_at_mut(band.sums, sums_len(self.config.channels), row * width + x);
+            let pixel = (frame * height + y) * width + x;
+            out(pixel, self.estimate(pixel, sums));
+        }
+        let sums = row_at_mut(band.sums, width * sums_len(self.config.channels), row);
+        sums.iter_mut().for_each(|sum| *sum = 0.0);
+    }
+
+    /// The estimate of a pixel.
+    #[inline(always)]
+    fn estimate(&self, pixel: usize, sums: &[f32]) -> Estimate {
+        let samples = u32::try_from(self.n).unwrap_or(u32::MAX);
+        let mut estimate = Estimate { mean: [0.0; 4], std_error: [0.0; 4], samples, gain: 1.0 };
+        let Some(([weight, error_weight, gain], each)) = sums.split_first_chunk() else { return estimate };
+        // Without a weight all sums are zero.
+        let inverse = 1.0 / f64::from(weight.or_one());
+        let error_inverse = 1.0 / f64::from(error_weight.or_one());
+        if *weight > 0.0 {
+            estimate.gain = (f64::from(*gain) * inverse) as f32;
+        }
+        let outputs = estimate.mean.iter_mut().zip(&mut estimate.std_error);
+        for (channel, ((mean, error), sums)) in outputs.zip(rows(each, 2)).enumerate() {
+            let &[correction, spread] = sums else { continue };
+            let (correction, spread) = (f64::from(correction) * inverse, f64::from(spread) * error_inverse);
+            let first = self.reader.value(pixel * self.n, channel);
+            let (mut total, mut square) = (0.0, 0.0);
+            for sample in pixel * self.n + 1..(pixel + 1) * self.n {
+                let value = self.reader.value(sample, channel) - first;
+                total += value;
+                square += value * value;
+            }
+            let n = self.n as f64;
+            let plain = if self.n > 1 { first + total / n } else { first };
+            // In no group there is no correction; nor is one that left the type's range.
+            *mean = saturate(if correction.is_finite() { plain + correction } else { plain });
+            let has_error = *error_weight > 0.0;
+            let told = if has_error && self.error_is_the_groups() {
+                spread
+            } else if self.n > 1 {
+                let variance = (square - total * total / n).max(0.0) / (n * (n - 1.0));
+                let ratio = if has_error { spread * spread } else { 1.0 };
+                // A correction that the pixel's own samples make unlikely is an error.
+                let moved = if correction.is_finite() { correction * correction } else { 0.0 };
+                libm::sqrt(ratio * variance + (moved - UNLIKELY * variance).max(0.0))
+            } else {
+                f64::INFINITY
+            };
+            *error = standard_error(told);
+        }
+        estimate
+    }
+}
