@@ -5,6 +5,7 @@
 //! order, so the width of the unit never shows in the result.
 
 use crate::real::Real;
+use core::hint::black_box;
 
 /// How many samples a panel holds.
 pub(crate) const LANES: usize = 8;
@@ -77,6 +78,15 @@ pub(crate) fn subtract_scaled<R: Real, const L: usize>(a: &mut Lanes<R, L>, s: R
     *a = out;
 }
 
+/// The lanes that are positive, elsewhere 1: what may be divided by.
+///
+/// Behind a black box: a compiler that knew where the ones come from would divide by zero there and drop the result,
+/// which hosts that trap that do not survive.
+#[inline(always)]
+pub(crate) fn divisor<R: Real, const L: usize>(a: &Lanes<R, L>) -> Lanes<R, L> {
+    black_box(a.map(Real::or_one))
+}
+
 /// The sum of the eight lanes, always as ((0+4)+(2+6)) + ((1+5)+(3+7)).
 #[inline(always)]
 pub(crate) fn sum<R: Real>(a: &Lanes<R>) -> R {
@@ -108,18 +118,16 @@ pub(crate) fn dot<R: Real>(a: &[R], b: &[R]) -> R {
 pub(crate) fn log2(x: &Lanes<f32>) -> Lanes<f32> {
     // x = m 2^e with m from sqrt(1/2) to sqrt(2), and ln m = 2 (t + t^3 / 3 + ...) with t = (m - 1) / (m + 1).
     const SMALLEST: u32 = 0x3f35_04f3;
-    const SERIES: [f32; 5] = [2.885_39, 0.961_796_7, 0.577_078, 0.412_198_6, 0.320_598_9];
-    let mut out = *x;
-    for l in 0..LANES {
-        let bits = out[l].to_bits().wrapping_sub(SMALLEST) as i32;
+    const TWICE: f32 = 2.0 * core::f32::consts::LOG2_E;
+    x.map(|x| {
+        let bits = x.to_bits().wrapping_sub(SMALLEST) as i32;
         let exponent = bits >> 23;
         let m = f32::from_bits(((bits & 0x7f_ffff) as u32).wrapping_add(SMALLEST));
         let t = (m - 1.0) / (m + 1.0);
         let square = t * t;
-        let [a, b, c, d, e] = SERIES;
-        out[l] = exponent as f32 + t * (a + square * (b + square * (c + square * (d + square * e))));
-    }
-    out
+        let series = 1.0 + square * (1.0 / 3.0 + square * (0.2 + square * (1.0 / 7.0 + square * (1.0 / 9.0))));
+        exponent as f32 + TWICE * t * series
+    })
 }
 
 /// 2 to the power of x lane by lane, for x from -126 to 126, what is beyond counted as that; within 3e-7 of it.
@@ -127,18 +135,34 @@ pub(crate) fn log2(x: &Lanes<f32>) -> Lanes<f32> {
 pub(crate) fn exp2(x: &Lanes<f32>) -> Lanes<f32> {
     // Adding this rounds to an integer, which is then in the low bits.
     const ROUND: f32 = 12_582_912.0;
-    const SERIES: [f32; 6] = [0.693_147_2, 0.240_226_5, 0.055_504_1, 0.009_618_13, 0.001_333_36, 0.000_154_04];
-    let mut out = *x;
-    for l in 0..LANES {
-        let x = out[l];
+    const LN_2: f32 = core::f32::consts::LN_2;
+    x.map(|x| {
         let x = if x > -126.0 { x } else { -126.0 };
         let x = if x < 126.0 { x } else { 126.0 };
         let rounded = x + ROUND;
-        let f = x - (rounded - ROUND);
-        let [a, b, c, d, e, g] = SERIES;
-        let fraction = 1.0 + f * (a + f * (b + f * (c + f * (d + f * (e + f * g)))));
+        // From -ln 2 / 2 to that: the series of the exponential function.
+        let f = (x - (rounded - ROUND)) * LN_2;
+        let series = 1.0 / 24.0 + f * (1.0 / 120.0 + f * (1.0 / 720.0));
+        let fraction = 1.0 + f * (1.0 + f * (0.5 + f * (1.0 / 6.0 + f * series)));
         let power = rounded.to_bits().wrapping_sub(ROUND.to_bits()).wrapping_add(127) << 23;
-        out[l] = fraction * f32::from_bits(power);
+        fraction * f32::from_bits(power)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{exp2, log2};
+
+    #[test]
+    fn powers_and_logarithms() {
+        for i in -1_260..=1_260 {
+            let x = i as f32 / 10.0 + 0.037;
+            let [power, ..] = exp2(&[x; 8]);
+            let exact = libm::exp2(f64::from(x.clamp(-126.0, 126.0)));
+            assert!((f64::from(power) / exact - 1.0).abs() < 3e-7, "2^{x}: {power}");
+            let [logarithm, ..] = log2(&[power; 8]);
+            let exact = libm::log2(f64::from(power));
+            assert!((f64::from(logarithm) - exact).abs() < 3e-7 * exact.abs().max(1.0), "log {power}: {logarithm}");
+        }
     }
-    out
 }

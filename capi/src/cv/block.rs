@@ -48,15 +48,19 @@ pub unsafe extern "C" fn nf_cv_block_workspace_size(config: *const nf_cv_config,
 }
 
 /// Estimates `pixels` integrals that are alike, from n samples of each: u and f hold pixel after pixel what
-/// nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to the other pixels'
-/// samples (4.3.6), even from one sample in each.
+/// nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to other pixels' samples
+/// (4.3.6), even from one sample in each. All is computed in float, whatever `precision` says.
 ///
 /// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance
-/// of their estimates across the pixels, whatever stratification the samples have; unbiased as the block grows.
-/// NF_CV_K_FOLD lets two halves of the pixels choose for each other, NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both
-/// exactly unbiased, if the pixels' samples are independent. NF_CV_K_FOLD leaves groups of 2 or 3 pixels at their mean;
-/// one fit to 2 to 12 pixels can be a fifth worse than the mean. Where fits explain little, NF_CV_ROBUST and
-/// NF_CV_K_FOLD leave pixels far brighter or darker than all others out of the fits to others.
+/// of their estimates across the other pixels and, from 2 samples on, by what they leave of the variance within those;
+/// unbiased as the block grows. NF_CV_K_FOLD lets two halves of the pixels choose for each other, NF_CV_LEAVE_ONE_OUT
+/// or a `ridge` is one fit: both exactly unbiased, if the pixels' samples are independent. Groups too small to choose,
+/// of up to 4 pixels, stay at their mean; one fit to 2 to 12 pixels can be a fifth worse than the mean. Where fits
+/// explain little, NF_CV_ROBUST and NF_CV_K_FOLD leave pixels far brighter or darker than all others out of the fits
+/// to others.
+///
+/// Of a texture one sample in each pixel cannot tell: say it by `surfaces` or `factors` of nf_cv_image. Several do:
+/// pixels whose samples are all alike stay as they are.
 ///
 /// With one sample, or `stratified`, std_error is the spread of the pixels' estimates about their linear trend: an
 /// upper bound where the signal varies otherwise.

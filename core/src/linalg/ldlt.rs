@@ -120,13 +120,10 @@ pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
             pivot = lanes::minus_product(pivot, *value, l);
             *value = l;
         }
-        *diagonal = lanes::zip(
-            &pivot,
-            diagonal,
-            |pivot, whole| {
-                if pivot > tolerance * whole { R::ONE / pivot } else { R::ZERO }
-            },
-        );
+        let inverse = lanes::divisor(&pivot).map(|pivot| R::ONE / pivot);
+        for l in 0..LANES {
+            diagonal[l] = if pivot[l] > tolerance * diagonal[l] { inverse[l] } else { R::ZERO };
+        }
     }
 }
 

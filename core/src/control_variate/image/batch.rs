@@ -436,18 +436,17 @@ impl<'a> Batch<'a> {
                 if self.sums.part(slot) != part {
                     continue;
                 }
-                let mut numbers = [None; LANES];
-                for lane in 0..LANES {
-                    numbers[lane] = self.pixel(call, groups, lane, slot).map(|(pixel, _)| pixel);
-                }
+                let number = |lane| self.pixel(call, groups, lane, slot).map(|(pixel, _)| pixel);
+                let numbers = [0, 1, 2, 3, 4, 5, 6, 7].map(number);
                 let inside = self.inside.get(slot).copied().unwrap_or(NONE);
                 let places = row_at(self.places, terms.fixed(), slot);
+                let pixels_of = Pixels { units: &self.units, terms, numbers, places };
                 let columns_of = row_at_mut(self.columns, width, slot);
                 let means = row_at_mut(self.means, channels, slot);
                 let mut first = [NONE; Config::MAX_CHANNELS];
                 for sample in 0..n {
                     let (columns, values) = samples.row();
-                    call.read(&self.units, terms, &numbers, places, sample, columns, values);
+                    call.read(&pixels_of, sample, columns, values);
                     if sample == 0 {
                         columns_of.iter_mut().zip(columns.iter()).for_each(|(sum, column)| *sum = *column);
                         first.iter_mut().zip(values.iter()).for_each(|(first, value)| *first = *value);
@@ -500,6 +499,15 @@ impl<'a> Batch<'a> {
     }
 }
 
+/// The pixels of a slot.
+struct Pixels<'a> {
+    units: &'a [Units; Config::MAX_CHANNELS],
+    terms: &'a Terms,
+    /// The image's numbers of them.
+    numbers: [Option<usize>; LANES],
+    places: &'a [Eight],
+}
+
 impl Call<'_> {
     /// A pixel's lowest and highest value, as fits see them.
     #[inline(always)]
@@ -531,21 +539,13 @@ impl Call<'_> {
 
     /// Writes a sample of eight pixels: its columns, and its values in units. Zero where there is no pixel.
     #[inline(always)]
-    fn read(
-        &self,
-        units: &[Units; Config::MAX_CHANNELS],
-        terms: &Terms,
-        pixels: &[Option<usize>; LANES],
-        places: &[Eight],
-        sample: usize,
-        columns: &mut [Eight],
-        values: &mut [Eight],
-    ) {
+    fn read(&self, pixels: &Pixels<'_>, sample: usize, columns: &mut [Eight], values: &mut [Eight]) {
+        let Pixels { units, terms, numbers, places } = pixels;
         let mut x = [NONE; MAX_DIMS];
         let mut h = [NONE; Config::MAX_CONTROLS];
         let mut is_full = true;
-        for lane in 0..LANES {
-            let Some(pixel) = pixels[lane] else {
+        for (lane, pixel) in numbers.iter().enumerate() {
+            let &Some(pixel) = pixel else {
                 is_full = false;
                 continue;
             };
@@ -555,20 +555,19 @@ impl Call<'_> {
                 self.reader.get(index).put(lane, &mut x, &mut h);
             }
             for (channel, value) in values.iter_mut().enumerate() {
-                value[lane] = self.value(pixel, index, channel);
+                value[lane % LANES] = self.value(pixel, index, channel);
             }
         }
         let one = places.first().copied().unwrap_or(NONE);
-        for (value, units) in values.iter_mut().zip(units) {
-            let mut out = only(&one, value);
-            for l in 0..LANES {
-                // Only what no fit is made to is far beyond the unit; its square fits too.
-                out[l] = Real::min(Real::max(out[l] * units.scales[l] - units.offsets[l], -MOST), MOST);
-            }
-            *value = only(&one, &out);
+        for (value, units) in values.iter_mut().zip(units.iter()) {
+            let scaled = lanes::zip(&only(&one, value), &units.scales, |value, scale| value * scale);
+            // Only what no fit is made to is far beyond the unit; its square fits too.
+            let moved =
+                lanes::zip(&scaled, &units.offsets, |value, offset| Real::min(Real::max(value - offset, -MOST), MOST));
+            *value = only(&one, &moved);
         }
         let (fixed, rest) = columns.split_at_mut_checked(terms.fixed()).unwrap_or_default();
-        for (out, place) in fixed.iter_mut().zip(places) {
+        for (out, place) in fixed.iter_mut().zip(places.iter()) {
             *out = *place;
         }
         let (functions, products) = rest.split_at_mut_checked(terms.functions).unwrap_or_default();

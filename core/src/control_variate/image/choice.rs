@@ -11,6 +11,7 @@ use crate::linalg::{ldlt, packed_len, row, row_mut};
 use crate::real::Real;
 use crate::rows::row_at;
 use core::f32::consts::LOG2_E;
+use core::hint::black_box;
 
 /// What samples say within their pixels counts as much of what the pixels' spread says where it speaks for a fit, and all
 /// of it where it speaks against one. Stratified samples' means differ less than theirs tell.
@@ -189,10 +190,13 @@ impl Spreads {
         };
         let mixed = sums.iter().zip(shares).take(1 + self.fits);
         let mixed = mixed.fold(NONE, |mixed, (sum, share)| lanes::plus_product(mixed, *sum, *share));
-        lanes::zip(&mixed, &sums[0], |mixed, plain| {
-            let ratio = mixed / plain.or_one();
-            if plain > 0.0 && ratio.is_finite() { ratio } else { 1.0 }
-        })
+        // Behind a black box, or compilers divide a lane or two, and what else their vector holds.
+        let mut ratio =
+            black_box(lanes::zip(&mixed, &lanes::divisor(&no_less(&sums[0])), |mixed, plain| mixed / plain));
+        for l in 0..LANES {
+            ratio[l] = if sums[0][l] > 0.0 && ratio[l].is_finite() { ratio[l] } else { 1.0 };
+        }
+        ratio
     }
 }
 
@@ -210,6 +214,12 @@ fn estimate(batch: &Batch<'_>, fits: &Fits<'_>, channels: usize, (slot, channel,
     }
 }
 
+/// Sums of squares, none below what is nothing beside the unit and yet has quotients that are numbers.
+#[inline(always)]
+fn no_less(sums: &Eight) -> Eight {
+    sums.map(|sum| Real::max(sum, 1e-24))
+}
+
 /// All trust in the last of `fits` fits.
 pub(super) fn last_only(fits: usize) -> Each {
     let mut shares = [NONE; MAX_CHOICES];
@@ -224,7 +234,7 @@ pub(super) fn last_only(fits: usize) -> Each {
 fn share(spreads: &Each, fits: usize, freedom: &Eight, within: &Each, samples: &Eight) -> Each {
     let [plain, spreads @ ..] = spreads;
     let [noise, within @ ..] = within;
-    let [inverse, inverse_noise] = [plain, noise].map(|plain| plain.map(|plain| 1.0 / plain.or_one()));
+    let [inverse, inverse_noise] = [plain, noise].map(|plain| lanes::divisor(&no_less(plain)).map(|plain| 1.0 / plain));
     let [power, power_within] = [freedom, samples].map(|count| count.map(|count| count * -trust::SHARPNESS as f32));
     let has_samples = samples[0] > 0.0;
     let mut shares = [NONE; MAX_CHOICES];
@@ -265,7 +275,7 @@ fn share(spreads: &Each, fits: usize, freedom: &Eight, within: &Each, samples: &
     // Without a spread, or noise within pixels, the mean is exact.
     let varies =
         lanes::zip(plain, noise, |plain, noise| if plain > 0.0 && (noise > 0.0 || !has_samples) { 1.0 } else { 0.0 });
-    let scale = lanes::zip(&varies, &total, |varies, total| varies / total.or_one());
+    let scale = lanes::zip(&varies, &lanes::divisor(&total), |varies, total| varies / total);
     let exact = varies.map(|varies| 1.0 - varies);
     *mean = plus(&exact, &lanes::zip(mean, &scale, |share, scale| share * scale));
     for share in rest {

@@ -150,9 +150,10 @@ impl<'a> Fits<'a> {
         let controls = terms.fixed()..terms.fixed() + call.config.controls;
         for (j, penalty) in self.penalties.iter().enumerate() {
             let Some(diagonal) = row_mut(system, j).last_mut() else { continue };
+            let divisor = if controls.contains(&j) { lanes::divisor(&count) } else { *diagonal };
             for l in 0..LANES {
                 // What a control function is measured in is its maker's choice.
-                let unit = if controls.contains(&j) { diagonal[l] / count[l].or_one() } else { 1.0 };
+                let unit = if controls.contains(&j) { diagonal[l] / divisor[l] } else { 1.0 };
                 diagonal[l] += strength * Real::max(count[l] - own, 0.0) * penalty * unit;
             }
         }
@@ -202,13 +203,19 @@ impl<'a> Fits<'a> {
                 let pivot = row(&trend, j).last().copied().unwrap_or(NONE);
                 apart = lanes::minus_product(apart, lanes::zip(value, &pivot, |value, pivot| value * pivot), *value);
             }
+            let samples = lanes::divisor(&pixels.map(|count| count * (n - 1.0)));
+            let freedom = pixels.map(|count| Real::max(count - fixed as f32, 0.0));
+            let per_freedom = lanes::zip(&apart, &lanes::divisor(&freedom), |apart, freedom| apart / freedom);
+            let (mut within, mut largest) = (NONE, NONE);
             for l in 0..LANES {
-                let within = Real::max(inside[l] - means[l], 0.0) / (Real::max(pixels[l], 1.0) * (n - 1.0));
-                let freedom = pixels[l] - fixed as f32;
-                let apart = apart[l] / Real::max(freedom, 1.0);
-                if freedom > 0.0 && apart > within {
-                    weight[l] = Real::min(weight[l], within / apart);
-                }
+                within[l] = Real::max(inside[l] - means[l], 0.0) / samples[l];
+                largest[l] = if freedom[l] > 0.0 { Real::max(per_freedom[l], within[l]) } else { within[l] };
+            }
+            let divisor = lanes::divisor(&largest);
+            for l in 0..LANES {
+                let share = within[l] / divisor[l];
+                // Where nothing varies, all of it.
+                weight[l] = Real::min(weight[l], if largest[l] > 0.0 { share } else { 1.0 });
             }
         }
         let (system, between) = (&mut *self.system.gram, &*self.between.gram);

@@ -36,7 +36,7 @@ impl Place {
 
     #[inline(always)]
     pub(super) fn read(number: f32) -> Self {
-        Self(number.to_bits() & (1 << (3 * Self::BITS)) - 1)
+        Self(number.to_bits() & ((1 << (3 * Self::BITS)) - 1))
     }
 }
 
@@ -106,7 +106,11 @@ impl Layout<'_> {
 
     /// The most groups.
     fn most_groups(&self) -> usize {
-        if self.is_joined() { 1 } else { self.windows_at_once() * (self.windows.pixels() / self.least()) }
+        if self.is_joined() {
+            1
+        } else {
+            self.windows_at_once() * self.windows.pixels().checked_div(self.least()).unwrap_or(0)
+        }
     }
 
     /// Numbers that the groups of all turns take.

@@ -218,7 +218,7 @@ impl Layout<'_> {
     /// How many rows of windows are worked on before pixels are written, and how many rows of pixels those touch.
     fn band(&self) -> [usize; 2] {
         let [across, down] = self.windows.counts();
-        let rows = (self.windows_at_once() / across.max(1)).max(1).min(down);
+        let rows = (self.windows_at_once() / across.max(1)).min(down).max(1);
         let touched = (0..down.div_ceil(rows)).map(|band| {
             let last = (band * rows + rows).min(down) - 1;
             self.windows.top(last) - self.windows.top(band * rows)
@@ -230,6 +230,9 @@ impl Layout<'_> {
 
     /// Numbers of workspace.
     fn workspace_len(&self) -> Option<usize> {
+        // More samples than 32 bits count need more memory than there is.
+        let pixels = self.windows.image.iter().try_fold(1_usize, |product, &extent| product.checked_mul(extent))?;
+        u32::try_from(pixels.checked_mul(self.n)?).ok()?;
         let [width, _, frames] = self.windows.image;
         let [_, rows] = self.band();
         let channels = self.config.channels;

@@ -12,6 +12,7 @@ use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::real::Real;
 use crate::rows::rows_mut;
+use core::hint::black_box;
 
 /// For each channel, how its correction is shared out.
 type Shares = [Each; Config::MAX_CHANNELS];
@@ -86,7 +87,7 @@ impl Call<'_> {
             if turn.is_some_and(|turn| !is_last && step != turn) {
                 continue;
             }
-            let judges = if is_last { Colours::ALL } else { Colours::HALVES[1 - step] };
+            let judges = if is_last { Colours::ALL } else { Colours::HALVES[(step + 1) % 2] };
             fits.correct(self, &terms, &batch, judges);
             let spreads = Spreads::new(self, &terms, &batch, &fits, judges);
             let chooses = !self.is_single_fit() && (turns == 1 || !is_last);
@@ -119,20 +120,22 @@ impl Call<'_> {
                 *ratio = lanes::zip(ratio, &turn, |sum, turn| sum + turn / self.turns() as f32);
             }
         }
-        for lane in (0..LANES).filter(|&lane| batch.lanes[lane].len > 0) {
-            let told = groups.told_mut(self, &batch.lanes[lane]);
+        let freedom = lanes::divisor(&spreads.freedom);
+        for (lane, group) in batch.lanes.iter().enumerate().filter(|(_, group)| group.len > 0) {
+            let told = groups.told_mut(self, group);
             let Some(([gain, has_error], errors)) = told.split_first_chunk_mut() else { continue };
             // Without freedom there is no spread to tell the error from.
-            let is_known = !by_groups || spreads.freedom[lane] > 0.0;
+            let is_known = !by_groups || spreads.freedom[lane % LANES] > 0.0;
             *has_error = if is_known { 1.0 } else { 0.0 };
             *gain = 0.0;
             let channels_of = spreads.sums.iter().zip(&ratios).zip(&batch.units);
             for (error, (([plain, ..], ratio), units)) in errors.iter_mut().zip(channels_of) {
-                *gain += ratio[lane] / channels as f32;
+                *gain += ratio[lane % LANES] / channels as f32;
+                let spread = black_box(ratio[lane % LANES] * plain[lane % LANES]) / freedom[lane % LANES];
                 *error = if !by_groups {
-                    ratio[lane].sqrt()
+                    ratio[lane % LANES].sqrt()
                 } else if is_known {
-                    (ratio[lane] * plain[lane] / spreads.freedom[lane].or_one()).sqrt().scale(units.exponents[lane])
+                    spread.sqrt().scale(units.exponents[lane % LANES])
                 } else {
                     0.0
                 };
@@ -157,7 +160,7 @@ impl Call<'_> {
             if turn.is_some_and(|turn| turn != half) {
                 continue;
             }
-            for (channel, (shares, units)) in shares[half].iter().zip(&batch.units).enumerate().take(channels) {
+            for (channel, (shares, units)) in shares[half % 2].iter().zip(&batch.units).enumerate().take(channels) {
                 let mut shares = *shares;
                 if self.turns() == 1 && !self.is_single_fit() {
                     // Its own say would draw a pixel to where it is, which biases.
@@ -167,13 +170,12 @@ impl Call<'_> {
                 for (fit, share) in shares.iter().skip(1).enumerate().take(spreads.fits) {
                     lanes::add_product(&mut sum, &fits.correction(channels, (slot, channel, fit)), share);
                 }
-                for lane in 0..LANES {
+                for (lane, (value, &exponent)) in sum.into_iter().zip(&units.exponents).enumerate() {
                     let Some(index) = batch.member(lane, slot) else { continue };
                     let at = (batch.lanes[lane].start + index) * channels + channel;
                     if let Some(out) = groups.corrections.get_mut(at) {
-                        let value = if sum[lane].is_finite() { sum[lane] } else { 0.0 };
                         // What is too large is no number, and found at the end.
-                        *out = value.scale(units.exponents[lane]);
+                        *out = if value.is_finite() { value.scale(exponent) } else { 0.0 };
                     }
                 }
             }
@@ -192,10 +194,10 @@ impl Call<'_> {
         let channels = self.config.channels;
         for (channel, shares) in shares.iter().enumerate().take(channels) {
             let limits = bright::limits(batch, channels, channel, judges, &shares[0]);
-            for lane in (0..LANES).filter(|&lane| batch.lanes[lane].len > 0) {
-                let out = groups.limits_mut(self, &batch.lanes[lane], turn);
+            for (lane, group) in batch.lanes.iter().enumerate().filter(|(_, group)| group.len > 0) {
+                let out = groups.limits_mut(self, group, turn);
                 if let Some([lowest, highest]) = rows_mut(out, 2).nth(channel) {
-                    [*lowest, *highest] = limits[lane].unwrap_or([f32::NEG_INFINITY, f32::INFINITY]);
+                    [*lowest, *highest] = limits[lane % LANES].unwrap_or([f32::NEG_INFINITY, f32::INFINITY]);
                 }
             }
         }

@@ -1,13 +1,14 @@
 //! From the corrections of groups to the pixels' estimates.
 
 use super::super::config::Estimate;
-use super::super::result::{saturate, standard_error};
+use super::super::result::{mean_divisor, saturate, standard_error};
 use super::Call;
 use super::groups::Groups;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::real::Real;
 use crate::rows::{row_at, row_at_mut, rows, rows_mut};
+use core::hint::black_box;
 
 /// Sums of a pixel that are not a channel's: the weight of the groups that it was in, of those with an error, and their
 /// gain.
@@ -71,7 +72,7 @@ impl Call<'_> {
         let channels = self.config.channels;
         let [width, ..] = self.windows.image;
         // How near a pixel is to its window's centre: 1 there, falling linearly along x and y to almost 0.
-        let inverse = self.windows.extent.map(|extent| 1.0 / extent.max(1) as f32);
+        let inverse = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
         let hat = |at: usize, inverse: f32| 1.0 - Real::abs((2 * at + 1) as f32 * inverse - 1.0);
         for group in groups.in_order(self) {
             let Some(([gain, has_error], errors)) = groups.told(self, &group).split_first_chunk() else { continue };
@@ -104,7 +105,7 @@ impl Call<'_> {
                     }
                     for (sum, value) in each.iter_mut().zip([correction, error]) {
                         // What cannot be added up is no number, and found at the end.
-                        *sum += near * if libm::fabs(value) < MOST { value as f32 } else { f32::NAN };
+                        *sum += near * (if libm::fabs(value) < MOST { value } else { f64::NAN }) as f32;
                     }
                 }
             }
@@ -132,8 +133,8 @@ impl Call<'_> {
         let mut estimate = Estimate { mean: [0.0; 4], std_error: [0.0; 4], samples, gain: 1.0 };
         let Some(([weight, error_weight, gain], each)) = sums.split_first_chunk() else { return estimate };
         // Without a weight all sums are zero.
-        let inverse = 1.0 / f64::from(weight.or_one());
-        let error_inverse = 1.0 / f64::from(error_weight.or_one());
+        let inverse = 1.0 / black_box(f64::from(weight.or_one()));
+        let error_inverse = 1.0 / black_box(f64::from(error_weight.or_one()));
         if *weight > 0.0 {
             estimate.gain = (f64::from(*gain) * inverse) as f32;
         }
@@ -156,7 +157,7 @@ impl Call<'_> {
             let told = if has_error && self.error_is_the_groups() {
                 spread
             } else if self.n > 1 {
-                let variance = (square - total * total / n).max(0.0) / (n * (n - 1.0));
+                let variance = (square - total * total / n).max(0.0) / mean_divisor(n);
                 let ratio = if has_error { spread * spread } else { 1.0 };
                 // A correction that the pixel's own samples make unlikely is an error.
                 let moved = if correction.is_finite() { correction * correction } else { 0.0 };
