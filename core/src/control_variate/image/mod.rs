@@ -3,14 +3,16 @@
 //! The estimate is mean f_p - b' mean phi_p with b from all samples of a window but the pixel's own. It needs no more
 //! than one sample in each pixel, and keeps whatever stratification the samples have, within a pixel and across pixels,
 //! as far as b changes slowly. One sample is left out of its fit in closed form. With several in each pixel the pixels
-//! have four colours, as 2 x 2 squares do, and each colour is corrected by a fit to the other three.
+//! have four colours, as 2 x 2 squares do, and each colour is corrected by a fit to the other three, in which a
+//! pixel's mean counts as far as noise, and not texture, sets it apart (`Fits::weigh_means`).
 //!
 //! Three estimators decide which b:
 //!
 //! - [`Estimator::LeaveOneOut`], or any with a fixed ridge: one ridge fit with every column. Exactly unbiased, as b
 //!   never saw the pixel's own samples.
-//! - [`Estimator::Robust`]: fits of rising degree and the plain mean, weighted by the variance across the pixels of
-//!   other colours of their estimates. Those have seen the pixel's own samples: unbiased as the window grows.
+//! - [`Estimator::Robust`]: fits of rising degree and the plain mean, weighted by the variance of their estimates across
+//!   the other pixels and, with several samples, by what they leave of the variance within those. These fits have seen
+//!   the pixel's own samples: unbiased as the window grows.
 //! - [`Estimator::KFold`]: the same with two halves of the pixels, each weighted by what the other half's fits to
 //!   itself say. Exactly unbiased, at twice the time.
 //!
