@@ -9,22 +9,22 @@ use noisefloor::real::Real;
 
 /// The estimates of an image's pixels.
 pub fn image(config: &Config, image: &Image<'_>, samples: Samples<'_>) -> Result<Vec<Estimate>, Error> {
-    image_of::<f64>(config, image, samples)
+    image_of(config, image, samples)
 }
 
 /// As [`image()`] in `f32`.
 pub fn image_narrow(config: &Config, image: &Image<'_>, samples: Samples<'_>) -> Result<Vec<Estimate>, Error> {
-    image_of::<f32>(config, image, samples)
+    image_of(config, image, samples)
 }
 
 /// The estimates of pixels in no order.
 pub fn block(config: &Config, pixels: usize, samples: Samples<'_>) -> Result<Vec<Estimate>, Error> {
-    block_of::<f64>(config, pixels, samples)
+    block_of(config, pixels, samples)
 }
 
 /// As [`block()`] in `f32`.
 pub fn block_narrow(config: &Config, pixels: usize, samples: Samples<'_>) -> Result<Vec<Estimate>, Error> {
-    block_of::<f32>(config, pixels, samples)
+    block_of(config, pixels, samples)
 }
 
 /// [`block()`] or [`block_narrow()`], as `R` is.
@@ -32,18 +32,18 @@ pub fn block_as<R: Real>(config: &Config, pixels: usize, samples: Samples<'_>) -
     if R::NARROW { block_narrow(config, pixels, samples) } else { block(config, pixels, samples) }
 }
 
-fn image_of<R: Real>(config: &Config, image: &Image<'_>, samples: Samples<'_>) -> Result<Vec<Estimate>, Error> {
+fn image_of(config: &Config, image: &Image<'_>, samples: Samples<'_>) -> Result<Vec<Estimate>, Error> {
     let pixels = image.width.saturating_mul(image.height).saturating_mul(image.frames.max(1));
     let n = samples.f.len().checked_div(pixels.saturating_mul(config.channels)).unwrap_or(0);
-    let mut workspace = vec![R::from_f64(f64::NAN); image_workspace_len::<R>(config, image, n)?];
+    let mut workspace = vec![f32::NAN; image_workspace_len(config, image, n)?];
     let mut out = Vec::new();
     let result = estimate_image(config, image, samples, &mut workspace, collect(&mut out));
     finish(result, out, pixels)
 }
 
-fn block_of<R: Real>(config: &Config, pixels: usize, samples: Samples<'_>) -> Result<Vec<Estimate>, Error> {
+fn block_of(config: &Config, pixels: usize, samples: Samples<'_>) -> Result<Vec<Estimate>, Error> {
     let n = samples.f.len().checked_div(pixels.saturating_mul(config.channels)).unwrap_or(0);
-    let mut workspace = vec![R::from_f64(f64::NAN); block_workspace_len::<R>(config, pixels, n)?];
+    let mut workspace = vec![f32::NAN; block_workspace_len(config, pixels, n)?];
     let mut out = Vec::new();
     let result = estimate_block(config, samples, pixels, &mut workspace, collect(&mut out));
     finish(result, out, pixels)

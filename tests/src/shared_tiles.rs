@@ -140,13 +140,13 @@ impl Method {
         match self {
             Self::Plain => scene.means(),
             Self::Image(order, window, stride) => {
-                let config = Config::new(2, order, 4);
+                let config = Config { stratified: true, ..Config::new(2, order, 4) };
                 let of = Image { window, stride, ..Image::new(SIZE, SIZE) };
                 let all = image(&config, &of, Samples::new(u, &scene.f)).unwrap();
                 all.iter().flat_map(means).collect()
             }
             Self::Blocks(order) => {
-                let config = Config::new(2, order, 4);
+                let config = Config { stratified: true, ..Config::new(2, order, 4) };
                 let mut out = vec![0.0; SIZE * SIZE * 4];
                 for first in (0..SIZE * SIZE).filter(|pixel| pixel % 8 == 0 && (pixel / SIZE).is_multiple_of(8)) {
                     let pixels: Vec<usize> = (0..64).map(|i| first + i / 8 * SIZE + i % 8).collect();

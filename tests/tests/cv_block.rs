@@ -172,10 +172,10 @@ fn errors() {
     let config = Config::new(1, 1, 1);
     let run = |config: &Config, u: &[f32], f: &[f32], pixels: usize, len: usize| {
         let never = |_, _| panic!("called on an error");
-        estimate_block(config, Samples::new(u, f), pixels, &mut vec![0.0; len], never)
+        estimate_block(config, Samples::new(u, f), pixels, &mut vec![0.0f32; len], never)
     };
     let (u, f) = ([0.5; 6], [1.0; 6]);
-    let len = block_workspace_len::<f64>(&config, 3, 2).unwrap();
+    let len = block_workspace_len(&config, 3, 2).unwrap();
     assert_eq!(run(&config, &u, &f, 4, 1000), Err(Error::Range));
     assert_eq!(run(&config, &u, &f, 7, 1000), Err(Error::Range));
     assert_eq!(run(&config, &u, &f, 0, 1000), Err(Error::NoSamples));
@@ -185,10 +185,10 @@ fn errors() {
     let skip = Config { non_finite: NonFinite::Skip, ..config };
     assert_eq!(run(&skip, &u, &f, 3, 1000), Err(Error::Unsupported));
     assert_eq!(run(&Config::new(0, 1, 1), &u, &f, 3, 1000), Err(Error::Range));
-    assert_eq!(block_workspace_len::<f64>(&config, usize::MAX, 2), Err(Error::Memory));
+    assert_eq!(block_workspace_len(&config, usize::MAX, 2), Err(Error::Memory));
     for estimator in [Estimator::LeastSquares, Estimator::GradientDescent, Estimator::Incremental] {
         let other = Config { estimator, ..config };
         assert_eq!(run(&other, &u, &f, 3, 1000), Err(Error::Unsupported));
-        assert_eq!(block_workspace_len::<f64>(&other, 3, 2), Err(Error::Unsupported));
+        assert_eq!(block_workspace_len(&other, 3, 2), Err(Error::Unsupported));
     }
 }

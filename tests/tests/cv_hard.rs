@@ -377,7 +377,7 @@ fn not_finite_is_an_error() {
                 }
             }
             let config = Config::new(2, 2, 1);
-            let mut workspace = vec![0.0; block_workspace_len::<f64>(&config, 3, 4).unwrap()];
+            let mut workspace = vec![0.0; block_workspace_len(&config, 3, 4).unwrap()];
             let called = |_, _| panic!("no estimate on an error");
             let result = estimate_block(&config, Samples::new(&u, &bad_f), 3, &mut workspace, called);
             assert_eq!(result, Err(Error::NotFinite));

@@ -281,7 +281,7 @@ fn unordered_limit() {
         }
     }
     let none = Image::unordered(0);
-    assert_eq!(image_workspace_len::<f64>(&config, &none, 1), Err(Error::Range));
+    assert_eq!(image_workspace_len(&config, &none, 1), Err(Error::Range));
 }
 
 #[test]
@@ -290,10 +290,10 @@ fn errors() {
     let (u, f) = ([0.5; 24], [1.0; 12]);
     let run = |config: &Config, image: Image<'_>, u: &[f32], f: &[f32], len: usize| {
         let never = |_, _| panic!("called on an error");
-        estimate_image(config, &image, Samples::new(u, f), &mut vec![f64::NAN; len], never)
+        estimate_image(config, &image, Samples::new(u, f), &mut vec![f32::NAN; len], never)
     };
     let of = Image::new(3, 2);
-    let len = image_workspace_len::<f64>(&config, &of, 2).unwrap();
+    let len = image_workspace_len(&config, &of, 2).unwrap();
     assert_eq!(run(&config, of, &u, &f, len - 1), Err(Error::Memory));
     assert_eq!(run(&config, Image::new(0, 2), &u, &f, 9999), Err(Error::Range));
     assert_eq!(run(&config, Image::new(3, 0), &u, &f, 9999), Err(Error::Range));
@@ -323,23 +323,23 @@ fn errors() {
     for estimator in [Estimator::LeastSquares, Estimator::GradientDescent, Estimator::Incremental] {
         let other = Config { estimator, ..config };
         assert_eq!(run(&other, of, &u, &f, 9999), Err(Error::Unsupported));
-        assert_eq!(image_workspace_len::<f64>(&other, &of, 2), Err(Error::Unsupported));
+        assert_eq!(image_workspace_len(&other, &of, 2), Err(Error::Unsupported));
     }
     assert_eq!(run(&Config { non_finite: NonFinite::Skip, ..config }, of, &u, &f, 9999), Err(Error::Unsupported));
     let luminance = Config { color: Color::LuminanceRatio, channels: 3, ..config };
-    assert_eq!(image_workspace_len::<f64>(&luminance, &of, 2), Err(Error::Unsupported));
+    assert_eq!(image_workspace_len(&luminance, &of, 2), Err(Error::Unsupported));
     for (window, frames, fits) in [(32, 1, true), (33, 1, false), (8, 16, true), (8, 17, false), (usize::MAX, 1, false)]
     {
         let large = Image { window, frames, ..Image::new(100, 100) };
-        assert_eq!(image_workspace_len::<f64>(&config, &large, 1).is_ok(), fits, "{window} {frames}");
+        assert_eq!(image_workspace_len(&config, &large, 1).is_ok(), fits, "{window} {frames}");
     }
     let all = Image { window: usize::MAX, stride: usize::MAX, ..Image::new(30, 30) };
-    assert!(image_workspace_len::<f64>(&config, &all, 1).is_ok());
+    assert!(image_workspace_len(&config, &all, 1).is_ok());
     for huge in [usize::MAX, usize::MAX / 2 + 1] {
-        assert!(image_workspace_len::<f64>(&config, &Image::new(huge, 8), 1).is_err());
-        assert!(image_workspace_len::<f64>(&config, &Image::new(8, huge), 1).is_err());
-        assert!(image_workspace_len::<f64>(&config, &Image { frames: huge, ..Image::new(8, 8) }, 1).is_err());
-        assert!(image_workspace_len::<f64>(&config, &Image::new(8, 8), huge).is_err());
+        assert!(image_workspace_len(&config, &Image::new(huge, 8), 1).is_err());
+        assert!(image_workspace_len(&config, &Image::new(8, huge), 1).is_err());
+        assert!(image_workspace_len(&config, &Image { frames: huge, ..Image::new(8, 8) }, 1).is_err());
+        assert!(image_workspace_len(&config, &Image::new(8, 8), huge).is_err());
     }
 }
 

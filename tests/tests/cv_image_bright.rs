@@ -58,7 +58,7 @@ fn one_bright_pixel() {
                     let light = if pixel == 27 { light } else { 1.0 };
                     [light * u[0], light * 0.5]
                 };
-                let ratio = ratio(Estimator::Robust, &of, n, 100, value, |pixel| pixel != 27);
+                let ratio = ratio(Estimator::Robust, &of, n, 400, value, |pixel| pixel != 27);
                 check(&format!("{what}, {n} samples, light {light:e}"), ratio, 0.9);
             }
         }
@@ -108,7 +108,7 @@ fn highlights() {
             let light = if is_in_highlight(pixel, side) { 1e3 } else { 1.0 };
             [light * u[0], light * 0.5]
         };
-        let ratio = ratio(Estimator::Robust, &of, n, 60, value, |pixel| !is_in_highlight(pixel, side));
+        let ratio = ratio(Estimator::Robust, &of, n, 400, value, |pixel| !is_in_highlight(pixel, side));
         check(&format!("{side} x {side}, {n} samples, surfaces {has_surface}"), ratio, limit);
     }
 }

@@ -167,11 +167,11 @@ fn knock<R: Real>(config: &Config, samples: Samples<'_>, rng: &mut SplitMix64) {
         }
     }
     let pixels = 1 + rng.below(4);
-    if let Ok(len) = block_workspace_len::<R>(config, pixels, n / pixels)
+    if let Ok(len) = block_workspace_len(config, pixels, n / pixels)
         && len < 1 << 20
     {
         let mut count = 0;
-        let result = estimate_block(config, samples, pixels, &mut vec![nan; len], |_, estimate| {
+        let result = estimate_block(config, samples, pixels, &mut vec![f32::NAN; len], |_, estimate| {
             count += 1;
             check(Ok(estimate)).unwrap();
         });

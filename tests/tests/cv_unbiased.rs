@@ -147,7 +147,7 @@ fn incremental_prefixes() {
 
 /// The estimates of every pixel of blocks of `pixels` pixels with `n` samples.
 fn blocks(config: &Config, integrand: &Integrand, pixels: usize, n: usize, repetitions: usize, seed: u64) -> Moments {
-    let mut workspace = vec![0.0; block_workspace_len::<f64>(config, pixels, n).unwrap()];
+    let mut workspace = vec![0.0; block_workspace_len(config, pixels, n).unwrap()];
     let mut moments = Moments::default();
     sets(integrand, pixels * n, repetitions, seed, |u, f| {
         // Estimates of one block are not independent; their mean is one observation.

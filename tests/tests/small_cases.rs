@@ -242,8 +242,8 @@ fn configurations() {
     assert_eq!(Basis::new(Family::Legendre, 2, 3, 0).unwrap().columns(), 9);
     assert!(Basis::new(Family::Sine, 3, 2, 0).is_ok() && Basis::new(Family::Sine, 16, 7, 0).is_err());
     assert!(Samples::new(&[0.1, 0.7, 0.5, 0.2], &[1.0, 3.0]).controls.is_empty());
-    assert!(block_workspace_len::<f64>(&Config::new(2, 2, 1), 64, 1).unwrap() > 64);
-    assert!(image_workspace_len::<f64>(&Config::new(2, 2, 1), &Image::new(8, 8), 1).unwrap() > 64);
+    assert!(block_workspace_len(&Config::new(2, 2, 1), 64, 1).unwrap() > 64);
+    assert!(image_workspace_len(&Config::new(2, 2, 1), &Image::new(8, 8), 1).unwrap() > 64);
 }
 
 #[test]

@@ -13,8 +13,8 @@ use crate::rows::row_at;
 use core::f32::consts::LOG2_E;
 use core::hint::black_box;
 
-/// What samples say within their pixels counts as much of what the pixels' spread says where it speaks for a fit, and all
-/// of it where it speaks against one. Stratified samples' means differ less than theirs tell.
+/// How much what independent samples say for a fit within their pixels counts, beside what the pixels' spread says. What
+/// they say against one counts whole.
 const WITHIN: f32 = 0.25;
 /// The most estimates to choose from: the plain mean's, and each fit's.
 pub(super) const MAX_CHOICES: usize = 1 + MAX_FITS;
@@ -36,8 +36,8 @@ pub(super) struct Spreads {
     pub(super) fits: usize,
     /// What the fits leave of the samples of each colour about their pixels' means; see [`Fits::within`].
     within: [[Each; COLOURS]; Config::MAX_CHANNELS],
-    /// Samples of each colour less their pixels' means.
-    samples: [Eight; COLOURS],
+    /// Pixels of each colour, if they have several samples.
+    pixels: [Eight; COLOURS],
     taken: Colours,
 }
 
@@ -73,16 +73,16 @@ impl Spreads {
             freedom,
             fits: terms.ends.len(),
             within: fits.within,
-            samples: [NONE; COLOURS],
+            pixels: [NONE; COLOURS],
             taken,
         };
         for slot in 0..batch.slots {
             let inside = batch.inside.get(slot).copied().unwrap_or(NONE);
-            spreads.samples[slot % COLOURS] = lanes::zip(&spreads.samples[slot % COLOURS], &inside, |sum, inside| {
+            spreads.pixels[slot % COLOURS] = lanes::zip(&spreads.pixels[slot % COLOURS], &inside, |sum, inside| {
                 sum + if call.n > 1 { inside } else { 0.0 }
             });
         }
-        spreads.samples.iter_mut().for_each(|sum| *sum = joined(sum));
+        spreads.pixels.iter_mut().for_each(|sum| *sum = joined(sum));
         for channel in 0..channels {
             for fit in 0..=spreads.fits {
                 let mut square = NONE;
@@ -136,14 +136,14 @@ impl Spreads {
         only(&batch.inside.get(slot).copied().unwrap_or(NONE), &rest)
     }
 
-    /// What the samples of all colours but one say about a channel within their pixels, and how many they are.
+    /// What the samples say about a channel within their pixels, and how many pixels.
     #[inline(always)]
-    fn inside(&self, channel: usize, without: Option<usize>) -> (Each, Eight) {
+    fn inside(&self, channel: usize) -> (Each, Eight) {
         let mut within = [NONE; MAX_CHOICES];
         let mut count = NONE;
-        let colours = self.within.get(channel).into_iter().flatten().zip(&self.samples).enumerate();
-        for (_, (each, samples)) in colours.filter(|&(colour, _)| self.taken.has(colour) && Some(colour) != without) {
-            count = plus(&count, samples);
+        let colours = self.within.get(channel).into_iter().flatten().zip(&self.pixels).enumerate();
+        for (_, (each, pixels)) in colours.filter(|&(colour, _)| self.taken.has(colour)) {
+            count = plus(&count, pixels);
             for (sum, value) in within.iter_mut().zip(each).take(1 + self.fits) {
                 *sum = plus(sum, value);
             }
@@ -151,40 +151,20 @@ impl Spreads {
         (within, count)
     }
 
-    /// How a channel's correction is shared out, by what all pixels say.
+    /// How a channel's correction is shared out.
     #[inline(always)]
-    pub(super) fn shares(&self, channel: usize) -> Each {
+    pub(super) fn shares(&self, channel: usize, is_stratified: bool) -> Each {
         let sums = self.sums.get(channel).copied().unwrap_or([NONE; MAX_CHOICES]);
-        let (within, samples) = self.inside(channel, None);
-        share(&sums, self.fits, &self.freedom, &within, &samples)
-    }
-
-    /// The same for the pixels of a slot, by what all others say.
-    #[inline(always)]
-    pub(super) fn shares_without(
-        &self,
-        batch: &Batch<'_>,
-        fits: &Fits<'_>,
-        channels: usize,
-        (slot, channel): (usize, usize),
-    ) -> Each {
-        let mut sums = self.sums.get(channel).copied().unwrap_or([NONE; MAX_CHOICES]);
-        for (fit, sum) in sums.iter_mut().enumerate().take(1 + self.fits) {
-            let rest = self.rest(batch, fits, channels, (slot, channel, fit));
-            *sum = lanes::zip(sum, &rest, |sum, rest| {
-                let others = sum - rest * rest;
-                if others > 0.0 { others } else { 0.0 }
-            });
-        }
-        let (within, samples) = self.inside(channel, Some(slot % COLOURS));
-        share(&sums, self.fits, &self.freedom, &within, &samples)
+        let (within, pixels) = self.inside(channel);
+        // Stratified samples' means differ by less than their variance within pixels tells: it may only warn.
+        share(&sums, self.fits, &self.freedom, &within, &pixels, if is_stratified { 0.0 } else { WITHIN })
     }
 
     /// A mixture's spread relative to the plain mean's, by the samples within pixels where `inside`.
     #[inline(always)]
     pub(super) fn ratio(&self, channel: usize, shares: &Each, inside: bool) -> Eight {
         let sums = if inside {
-            self.inside(channel, None).0
+            self.inside(channel).0
         } else {
             self.sums.get(channel).copied().unwrap_or([NONE; MAX_CHOICES])
         };
@@ -231,12 +211,12 @@ pub(super) fn last_only(fits: usize) -> Each {
 
 /// Trust by spreads, of the plain mean first: [`trust::weigh`] in each lane.
 #[inline(always)]
-fn share(spreads: &Each, fits: usize, freedom: &Eight, within: &Each, samples: &Eight) -> Each {
+fn share(spreads: &Each, fits: usize, freedom: &Eight, within: &Each, pixels: &Eight, part: f32) -> Each {
     let [plain, spreads @ ..] = spreads;
     let [noise, within @ ..] = within;
     let [inverse, inverse_noise] = [plain, noise].map(|plain| lanes::divisor(&no_less(plain)).map(|plain| 1.0 / plain));
-    let [power, power_within] = [freedom, samples].map(|count| count.map(|count| count * -trust::SHARPNESS as f32));
-    let has_samples = samples[0] > 0.0;
+    let [power, power_within] = [freedom, pixels].map(|count| count.map(|count| count * -trust::SHARPNESS as f32));
+    let has_samples = pixels[0] > 0.0;
     let mut shares = [NONE; MAX_CHOICES];
     let [mean, rest @ ..] = &mut shares;
     let rest = rest.get_mut(..fits).unwrap_or(&mut []);
@@ -256,7 +236,7 @@ fn share(spreads: &Each, fits: usize, freedom: &Eight, within: &Each, samples: &
         *share = lanes::zip(&lanes::log2(&ratio), &power, |logarithm, power| logarithm * power);
         if has_samples {
             let ratio = lanes::zip(within, &inverse_noise, |within, inverse| limited(within * inverse));
-            let logarithm = lanes::log2(&ratio).map(|value| if value < 0.0 { WITHIN * value } else { value });
+            let logarithm = lanes::log2(&ratio).map(|value| if value < 0.0 { part * value } else { value });
             *share = lanes::plus_product(*share, logarithm, power_within);
         }
         largest = lanes::zip(&largest, share, |largest, share| if share > largest { share } else { largest });

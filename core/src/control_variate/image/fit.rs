@@ -48,7 +48,7 @@ pub(super) struct Fits<'a> {
     /// For each slot, each candidate's corrections of the channels' means.
     corrections: &'a mut [Eight],
     /// How many candidates there are.
-    count: usize,
+    pub(super) count: usize,
     /// Of several samples in each pixel, what the fits leave of the samples' sums of squares about their pixel's mean: of
     /// each channel and colour, which they have not seen.
     pub(super) within: [[Each; COLOURS]; Config::MAX_CHANNELS],

@@ -92,7 +92,7 @@ impl Call<'_> {
             let spreads = Spreads::new(self, &terms, &batch, &fits, judges);
             let chooses = !self.is_single_fit() && (turns == 1 || !is_last);
             if let Some(shares) = shares.get_mut(step).filter(|_| chooses) {
-                *shares = core::array::from_fn(|channel| spreads.shares(channel));
+                *shares = core::array::from_fn(|channel| spreads.shares(channel, self.config.stratified));
                 if turn.is_none() {
                     self.find_limits(groups, &batch, (step, judges), shares);
                 }
@@ -101,7 +101,7 @@ impl Call<'_> {
                 if turn.is_none() {
                     self.tell(groups, &batch, &spreads, &shares);
                 }
-                self.put(groups, &batch, &fits, &spreads, turn, &shares);
+                self.put(groups, &batch, &fits, turn, &shares);
             }
         }
         Ok(())
@@ -150,7 +150,6 @@ impl Call<'_> {
         groups: &mut Groups<'_>,
         batch: &Batch<'_>,
         fits: &Fits<'_>,
-        spreads: &Spreads,
         turn: Option<usize>,
         shares: &[Shares; 2],
     ) {
@@ -161,13 +160,8 @@ impl Call<'_> {
                 continue;
             }
             for (channel, (shares, units)) in shares[half % 2].iter().zip(&batch.units).enumerate().take(channels) {
-                let mut shares = *shares;
-                if self.turns() == 1 && !self.is_single_fit() {
-                    // Its own say would draw a pixel to where it is, which biases.
-                    shares = spreads.shares_without(batch, fits, channels, (slot, channel));
-                }
                 let mut sum = [0.0; LANES];
-                for (fit, share) in shares.iter().skip(1).enumerate().take(spreads.fits) {
+                for (fit, share) in shares.iter().skip(1).enumerate().take(fits.count) {
                     lanes::add_product(&mut sum, &fits.correction(channels, (slot, channel, fit)), share);
                 }
                 for (lane, (value, &exponent)) in sum.into_iter().zip(&units.exponents).enumerate() {

@@ -10,6 +10,8 @@ use heapless::Vec;
 pub(super) const MAX_FITS: usize = MAX_ORDER + 2;
 /// The pixels' axes: x, y and frames.
 pub(super) const MAX_AXES: usize = 3;
+/// The highest degree of the functions whose coefficients may change across a group.
+const MOVING_DEGREE: usize = 2;
 /// No products that make more columns than this.
 const MOST_COLUMNS: usize = 192;
 /// Relative penalty of the values' trend along an axis: next to none.
@@ -42,11 +44,13 @@ impl Terms {
         if functions == 0 {
             return terms;
         }
-        let moving = shape.up_to_degree(1);
-        let columns = fixed + functions + axes * moving;
-        // Two samples to each column.
-        if axes > 0 && columns <= MOST_COLUMNS && 2 * columns <= samples {
-            terms.moving.1 = moving;
+        // As many degrees as leave two samples to each column.
+        for degree in 1..=MOVING_DEGREE.min(config.order.saturating_sub(1)).max(1) {
+            let moving = shape.up_to_degree(degree);
+            let columns = fixed + functions + axes * moving;
+            if axes > 0 && columns <= MOST_COLUMNS && 2 * columns <= samples {
+                terms.moving.1 = moving;
+            }
         }
         let mut end = |columns: usize| {
             if !all && terms.ends.last().is_none_or(|&last| last < columns) {
