@@ -138,11 +138,11 @@ fn run<R: Real>(input: &Input) {
         Ok(_) => {}
         Err(_) => assert!(control_variate::estimate(config, samples, &mut [nan; 256]).is_err()),
     }
-    if let Ok(len) = block_workspace_len::<R>(config, input.pixels, n.checked_div(input.pixels).unwrap_or(0))
+    if let Ok(len) = block_workspace_len(config, input.pixels, n.checked_div(input.pixels).unwrap_or(0))
         && len <= MOST
     {
         let mut count = 0;
-        let result = estimate_block(config, samples, input.pixels, &mut vec![nan; len], |_, estimate| {
+        let result = estimate_block(config, samples, input.pixels, &mut vec![f32::NAN; len], |_, estimate| {
             count += 1;
             check(Ok(estimate)).ok();
         });

@@ -3,41 +3,14 @@
 use crate::cv_support::*;
 use noisefloor::Error;
 use noisefloor::control_variate::{
-    Config, Estimate, Estimator, NonFinite, Ridge, Samples, block_workspace_len, estimate_block,
+    Config, Estimate, Estimator, NonFinite, Samples, block_workspace_len, estimate_block,
 };
-use noisefloor::real::Real;
-use noisefloor_tests::oracle::Regression;
 use noisefloor_tests::random::SplitMix64;
-use noisefloor_tests::shared::block_as;
+use noisefloor_tests::shared;
 use noisefloor_tests::statistics::rmse_ratio;
 
-fn block<R: Real>(config: &Config, u: &[f32], f: &[f32], pixels: usize) -> Result<Vec<Estimate>, Error> {
-    block_as::<R>(config, pixels, Samples::new(u, f))
-}
-
-/// A fixed ridge: pixel by pixel the mean of f - b'phi with b from the other pixels' samples, within 4e-7 of the
-/// largest value in `f64`, 1e-4 in `f32`.
-#[test]
-fn fixed_ridge_against_the_oracle() {
-    let mut rng = SplitMix64::new(1);
-    for (dims, order, pixels, n) in [(2, 2, 9, 1), (2, 2, 5, 4), (1, 3, 2, 3), (3, 2, 16, 2), (2, 1, 3, 1)] {
-        let u = points(pixels * n, dims, &mut rng);
-        let f = values(&u, dims, smooth);
-        let config = Config { ridge: Ridge::Fixed(0.05), ..Config::new(dims, order, 1) };
-        let design = design(&config, &wide(&u));
-        let all = [block::<f64>(&config, &u, &f, pixels).unwrap(), block::<f32>(&config, &u, &f, pixels).unwrap()];
-        for pixel in 0..pixels {
-            let own: Vec<usize> = (pixel * n..(pixel + 1) * n).collect();
-            let others: Vec<usize> = (0..pixels * n).filter(|i| !own.contains(i)).collect();
-            let values: Vec<f64> = others.iter().map(|&i| f64::from(f[i])).collect();
-            let fit = Regression::fit(&design.select(&others), &values, f64::from(0.05_f32) * others.len() as f64);
-            let expected = own.iter().map(|&i| f64::from(f[i]) - fit.control(&design.rows[i])).sum::<f64>() / n as f64;
-            for (estimates, tolerance) in all.iter().zip([4e-7, 1e-4]) {
-                let error = (f64::from(estimates[pixel].mean[0]) - expected).abs() / largest(&f);
-                assert!(error < tolerance, "{dims} {order} {pixels} {n}: {error:e}");
-            }
-        }
-    }
+fn block(config: &Config, u: &[f32], f: &[f32], pixels: usize) -> Result<Vec<Estimate>, Error> {
+    shared::block(config, pixels, Samples::new(u, f))
 }
 
 /// The integrands of a block: half-planes, then bumps, that move and scale from pixel to pixel.
@@ -77,8 +50,7 @@ fn shared_fits_beat_the_mean() {
                     truth.push(grid.sum::<f64>() / 4096.0);
                 }
                 seeds.next_u64();
-                for ((estimate, own), truth) in
-                    block::<f64>(&config, &u, &f, 64).unwrap().iter().zip(f.chunks(n)).zip(&truth)
+                for ((estimate, own), truth) in block(&config, &u, &f, 64).unwrap().iter().zip(f.chunks(n)).zip(&truth)
                 {
                     shared.push(f64::from(estimate.mean[0]) - truth);
                     plain.push(wide(own).iter().sum::<f64>() / n as f64 - truth);
@@ -100,7 +72,7 @@ fn shared_fits_of_noise_do_no_harm() {
         for _ in 0..300 {
             let u = points(64 * n, 2, &mut rng);
             let f: Vec<f32> = (0..64 * n).map(|_| rng.normal() as f32).collect();
-            for (estimate, own) in block::<f64>(&Config::new(2, 3, 1), &u, &f, 64).unwrap().iter().zip(f.chunks(n)) {
+            for (estimate, own) in block(&Config::new(2, 3, 1), &u, &f, 64).unwrap().iter().zip(f.chunks(n)) {
                 shared.push(f64::from(estimate.mean[0]));
                 plain.push(wide(own).iter().sum::<f64>() / n as f64);
             }
@@ -122,10 +94,7 @@ fn degenerate_blocks() {
                 let config = Config::new(2, order, 1);
                 for constant in [0.0, 1.0, -1e30, 16_777_215.0] {
                     let f = vec![constant; pixels * n];
-                    for estimate in [block::<f64>(&config, &u, &f, pixels), block::<f32>(&config, &u, &f, pixels)]
-                        .into_iter()
-                        .flat_map(Result::unwrap)
-                    {
+                    for estimate in block(&config, &u, &f, pixels).unwrap() {
                         assert_eq!((estimate.mean[0], estimate.gain), (constant, 1.0), "{pixels} {n} {order}");
                         assert!(is_sound(&estimate));
                     }
@@ -133,10 +102,7 @@ fn degenerate_blocks() {
                 let per_pixel: Vec<f32> = (0..pixels * n).map(|i| (i / n) as f32).collect();
                 let same_place = vec![0.3; 2 * pixels * n];
                 for (u, f) in [(&u, &per_pixel), (&same_place, &per_pixel), (&same_place, &values(&u, 2, smooth))] {
-                    for estimate in [block::<f64>(&config, u, f, pixels), block::<f32>(&config, u, f, pixels)]
-                        .into_iter()
-                        .flat_map(Result::unwrap)
-                    {
+                    for estimate in block(&config, u, f, pixels).unwrap() {
                         assert!(is_sound(&estimate), "{pixels} {n} {order}: {estimate:?}");
                     }
                 }
@@ -144,7 +110,7 @@ fn degenerate_blocks() {
                 if pixels == 1 {
                     let f = values(&u, 2, smooth);
                     let plain = batch::<f64>(&Config { order: 0, ..config }, &u, &f).unwrap();
-                    let estimate = block::<f64>(&config, &u, &f, 1).unwrap()[0];
+                    let estimate = block(&config, &u, &f, 1).unwrap()[0];
                     assert!((estimate.mean[0] - plain.mean[0]).abs() < 1e-6);
                 }
             }
@@ -152,17 +118,18 @@ fn degenerate_blocks() {
     }
 }
 
+/// Means weigh by the channel that is textured most: here all are textured alike, or not at all.
 #[test]
 fn channels_are_separate() {
     let mut rng = SplitMix64::new(5);
     let u = points(32, 2, &mut rng);
     let first = values(&u, 2, smooth);
-    let f: Vec<f32> = first.iter().flat_map(|&f| [f, -20.0 * f * f, 7.0]).collect();
-    let together = block::<f64>(&Config::new(2, 2, 3), &u, &f, 16).unwrap();
+    let f: Vec<f32> = first.iter().flat_map(|&f| [f, -20.0 * f, 7.0]).collect();
+    let together = block(&Config::new(2, 2, 3), &u, &f, 16).unwrap();
     for channel in 0..3 {
         let own: Vec<f32> = f.iter().skip(channel).step_by(3).copied().collect();
-        for (all, alone) in together.iter().zip(block::<f64>(&Config::new(2, 2, 1), &u, &own, 16).unwrap()) {
-            assert!((all.mean[channel] - alone.mean[0]).abs() <= 1e-6 * largest(&own) as f32);
+        for (all, alone) in together.iter().zip(block(&Config::new(2, 2, 1), &u, &own, 16).unwrap()) {
+            assert!((all.mean[channel] - alone.mean[0]).abs() <= 1e-5 * largest(&own) as f32);
         }
     }
 }

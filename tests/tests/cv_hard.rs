@@ -10,11 +10,10 @@ use noisefloor::control_variate::{
     self, Config, Estimate, Estimator, NonFinite, Optimizer, Regressor, Ridge, Samples, Solver, block_workspace_len,
     estimate_block,
 };
-use noisefloor::real::Real;
 use noisefloor_tests::ESTIMATORS;
 use noisefloor_tests::oracle::{Regression, RobustRule};
 use noisefloor_tests::random::SplitMix64;
-use noisefloor_tests::shared::block_as;
+use noisefloor_tests::shared;
 use noisefloor_tests::statistics::rmse_ratio;
 
 const F64: f64 = 4e-7;
@@ -52,8 +51,8 @@ fn every_estimate(config: &Config, u: &[f32], f: &[f32]) -> Vec<(String, Estimat
 }
 
 /// Estimates of a block of one row of pixels, of `n` samples each.
-fn block<R: Real>(config: &Config, u: &[f32], f: &[f32], n: usize) -> Vec<Estimate> {
-    block_as::<R>(config, f.len() / n / config.channels, Samples::new(u, f)).unwrap()
+fn block(config: &Config, u: &[f32], f: &[f32], n: usize) -> Vec<Estimate> {
+    shared::block(config, f.len() / n / config.channels, Samples::new(u, f)).unwrap()
 }
 
 /// Sets of positions that starve or mislead a fit.
@@ -93,7 +92,7 @@ fn everything_is_finite() {
                             assert!(is_sound(&estimate), "{what}, {n} {name} {family:?}: {estimate:?}");
                             assert_eq!(estimate.samples as usize, n);
                         }
-                        for estimate in [block::<f64>(&config, &u, &f, 1), block::<f32>(&config, &u, &f, 1)].concat() {
+                        for estimate in block(&config, &u, &f, 1) {
                             assert!(is_sound(&estimate), "block, {n} {name} {family:?}: {estimate:?}");
                         }
                     }
@@ -229,8 +228,8 @@ fn constants_are_exact() {
                 for order in [0, 2, 5] {
                     let config = Config::new(2, order, channels);
                     let mut all = every_estimate(&config, &u, &f);
-                    all.extend(block::<f64>(&config, &u, &f, 1).into_iter().map(|e| ("block f64".into(), e)));
-                    all.extend(block::<f32>(&config, &u, &f, n).into_iter().map(|e| ("block f32".into(), e)));
+                    all.extend(block(&config, &u, &f, 1).into_iter().map(|e| ("block".into(), e)));
+                    all.extend(block(&config, &u, &f, n).into_iter().map(|e| ("block of one".into(), e)));
                     for (what, estimate) in all {
                         for channel in 0..channels {
                             let is_exact = estimate.mean[channel].to_bits() == constant.to_bits();

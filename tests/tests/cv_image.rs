@@ -7,19 +7,10 @@ use noisefloor::control_variate::{
     Color, Config, Estimate, Estimator, Image, NonFinite, Ridge, Samples, estimate_image, image_workspace_len,
 };
 use noisefloor_tests::random::SplitMix64;
-use noisefloor_tests::shared::{block, block_narrow, image, image_narrow};
+use noisefloor_tests::shared::{block, image};
 use proptest::prelude::*;
 
 const SHARED: [Estimator; 3] = [Estimator::Robust, Estimator::LeaveOneOut, Estimator::KFold];
-/// An estimate in one of the two precisions.
-type Call = fn(&Config, &Image<'_>, Samples<'_>) -> Result<Vec<Estimate>, Error>;
-
-/// The same of pixels in no order.
-type BlockCall = fn(&Config, usize, Samples<'_>) -> Result<Vec<Estimate>, Error>;
-
-const BOTH: [Call; 2] = [image, image_narrow];
-const BLOCKS: [BlockCall; 2] = [block, block_narrow];
-
 /// Points of an image, and values that change across it.
 fn scene(pixels: usize, n: usize, channels: usize, rng: &mut SplitMix64) -> (Vec<f32>, Vec<f32>) {
     let u = points(pixels * n, 2, rng);
@@ -43,8 +34,8 @@ fn trivial_knowledge_changes_nothing() {
         let plain = Image { frames, ..Image::new(width, height) };
         for estimator in SHARED {
             let config = Config { estimator, ..Config::new(2, 2, 2) };
-            for call in BOTH {
-                let expected = call(&config, &plain, samples).unwrap();
+            {
+                let expected = image(&config, &plain, samples).unwrap();
                 for same in [
                     plain,
                     Image { window: 8, ..plain },
@@ -53,7 +44,7 @@ fn trivial_knowledge_changes_nothing() {
                     Image { factors: &ones, ..plain },
                     Image { factors: &zeros, surfaces: &surfaces, ..plain },
                 ] {
-                    assert_eq!(call(&config, &same, samples).unwrap(), expected, "{same:?}");
+                    assert_eq!(image(&config, &same, samples).unwrap(), expected, "{same:?}");
                 }
             }
         }
@@ -110,8 +101,8 @@ fn factors_are_demodulation() {
     }
 }
 
-/// Constant values are exact. Constant pixels of different values, of which the mean is exact, are not: what is left of
-/// the fits in the mixture adds noise, here at most .018 where the values are uniform in 0 to 1.
+/// Constant values are exact, and so are constant pixels of different values with several samples in each. Of one sample
+/// what is left of the fits in the mixture adds noise, here at most .018 where the values are uniform in 0 to 1.
 #[test]
 fn constants() {
     let mut rng = SplitMix64::new(4);
@@ -124,10 +115,8 @@ fn constants() {
                 let config = Config { estimator, ..Config::new(2, order, 1) };
                 for constant in [0.0, 1.0, -1e30, 1e-30, 16_777_215.0] {
                     let f = vec![constant; pixels * n];
-                    for call in BOTH {
-                        for estimate in call(&config, &of, Samples::new(&u, &f)).unwrap() {
-                            assert_eq!((estimate.mean[0], estimate.gain), (constant, 1.0), "{pixels} {n} {order}");
-                        }
+                    for estimate in image(&config, &of, Samples::new(&u, &f)).unwrap() {
+                        assert_eq!((estimate.mean[0], estimate.gain), (constant, 1.0), "{pixels} {n} {order}");
                     }
                 }
             }
@@ -137,12 +126,13 @@ fn constants() {
             let error: f64 = estimates.iter().zip(&levels).map(|(a, b)| f64::from(a.mean[0] - b).powi(2)).sum();
             let error = (error / pixels as f64).sqrt();
             println!("constant pixels, {width} x {height} x {frames}, {n} samples: {error:.4}");
-            assert!(error < 0.03, "{width} {height} {frames} {n}: {error}");
+            let limit = if n > 1 { 1e-7 } else { 0.03 };
+            assert!(error < limit, "{width} {height} {frames} {n}: {error}");
         }
     }
 }
 
-/// Values times 1e-30 to 1e30: the estimates scale, in both precisions.
+/// Values times 1e-30 to 1e30: the estimates scale.
 #[test]
 fn any_scale() {
     let mut rng = SplitMix64::new(5);
@@ -150,11 +140,12 @@ fn any_scale() {
         let (u, f) = scene(10 * 10, n, 1, &mut rng);
         for estimator in SHARED {
             let config = Config { estimator, ..Config::new(2, 3, 1) };
-            for (call, tolerance) in BOTH.into_iter().zip([[1e-6, 1e-4], [1e-4, 1e-2]]) {
-                let plain = call(&config, &Image::new(10, 10), Samples::new(&u, &f)).unwrap();
+            {
+                let tolerance = [1e-4, 1e-2];
+                let plain = image(&config, &Image::new(10, 10), Samples::new(&u, &f)).unwrap();
                 for scale in [1e-30, 1e-20, 1e-5, 1e10, 1e20, 1e30] {
                     let scaled: Vec<f32> = f.iter().map(|f| f * scale).collect();
-                    let estimates = call(&config, &Image::new(10, 10), Samples::new(&u, &scaled)).unwrap();
+                    let estimates = image(&config, &Image::new(10, 10), Samples::new(&u, &scaled)).unwrap();
                     for (a, b) in estimates.iter().zip(&plain) {
                         let error = f64::from((a.mean[0] / scale - b.mean[0]).abs()) / largest(&f);
                         assert!(error < tolerance[0], "{estimator:?} {scale:e} {n}: {error:e}");
@@ -168,23 +159,8 @@ fn any_scale() {
     }
 }
 
-/// `f32` estimates are within 1e-3 of the `f64` ones, relative to the largest value, of all orders and estimators.
-#[test]
-fn precisions_agree() {
-    let mut rng = SplitMix64::new(6);
-    for (order, n) in [(1, 1), (3, 1), (4, 1), (2, 2), (4, 4), (7, 2)] {
-        let (u, f) = scene(16 * 16, n, 1, &mut rng);
-        for estimator in SHARED {
-            let config = Config { estimator, ..Config::new(2, order, 1) };
-            let [wide, narrow] = BOTH.map(|call| call(&config, &Image::new(16, 16), Samples::new(&u, &f)).unwrap());
-            let error = wide.iter().zip(&narrow).map(|(a, b)| (a.mean[0] - b.mean[0]).abs()).fold(0.0, f32::max);
-            println!("{estimator:?}, order {order}, {n} samples: {error:e}");
-            assert!(f64::from(error) < 1e-3 * largest(&f), "{estimator:?} {order} {n}: {error:e}");
-        }
-    }
-}
-
-/// Channels are fitted together but each for itself.
+/// Channels are fitted together but each for itself, if textures set their pixels apart alike: means weigh by the channel
+/// that is textured most.
 #[test]
 fn channels_are_separate() {
     let mut rng = SplitMix64::new(7);
@@ -195,7 +171,7 @@ fn channels_are_separate() {
         let own: Vec<f32> = f.iter().skip(channel).step_by(3).copied().collect();
         let alone = image(&Config::new(2, 2, 1), &of, Samples::new(&u, &own)).unwrap();
         for (all, alone) in together.iter().zip(alone) {
-            assert!((all.mean[channel] - alone.mean[0]).abs() <= 1e-6 * largest(&own) as f32);
+            assert!((all.mean[channel] - alone.mean[0]).abs() <= 1e-5 * largest(&own) as f32);
         }
     }
 }
@@ -209,7 +185,7 @@ fn unordered_is_a_block() {
         let samples = Samples::new(&u, &f);
         for estimator in SHARED {
             let config = Config { estimator, ..Config::new(2, 2, 2) };
-            for (call, block) in BOTH.into_iter().zip(BLOCKS) {
+            {
                 let expected = block(&config, 12, samples).unwrap();
                 let of = Image::unordered(12);
                 for same in [
@@ -219,10 +195,10 @@ fn unordered_is_a_block() {
                     Image { width: 1, frames: 12, window: 1, ..of },
                     Image { window: 2, stride: 99, ..of },
                 ] {
-                    assert_eq!(call(&config, &same, samples).unwrap(), expected, "{same:?}");
+                    assert_eq!(image(&config, &same, samples).unwrap(), expected, "{same:?}");
                 }
                 // And places matter to pixels that have them.
-                assert!(call(&config, &Image::new(12, 1), samples).unwrap() != expected, "{estimator:?} {n}");
+                assert!(image(&config, &Image::new(12, 1), samples).unwrap() != expected, "{estimator:?} {n}");
             }
         }
     }
@@ -237,10 +213,10 @@ fn unordered_surfaces_are_blocks() {
         let surfaces: Vec<u32> = (0..40).map(|_| rng.below(4) as u32 * 1_000_000_007).collect();
         let factors: Vec<f32> = (0..80).map(|_| [0.0, 0.3, 1.0, 7.0][rng.below(4)]).collect();
         for factors in [&[][..], &factors] {
-            for (estimator, call) in SHARED.into_iter().flat_map(|estimator| BOTH.map(|call| (estimator, call))) {
+            for estimator in SHARED {
                 let config = Config { estimator, ..Config::new(2, 2, 2) };
                 let of = Image { surfaces: &surfaces, factors, width: 5, height: 2, frames: 4, ..Image::unordered(40) };
-                let all = call(&config, &of, Samples::new(&u, &f)).unwrap();
+                let all = image(&config, &of, Samples::new(&u, &f)).unwrap();
                 for surface in [0, 1, 2, 3].map(|surface| surface * 1_000_000_007) {
                     let own: Vec<usize> = (0..40).filter(|&pixel| surfaces[pixel] == surface).collect();
                     let take = |from: &[f32], each: usize| -> Vec<f32> {
@@ -249,7 +225,7 @@ fn unordered_surfaces_are_blocks() {
                     let (u, f) = (take(&u, 2 * n), take(&f, 2 * n));
                     let factors = if factors.is_empty() { vec![] } else { take(factors, 2) };
                     let alone = Image { factors: &factors, ..Image::unordered(own.len()) };
-                    let alone = call(&config, &alone, Samples::new(&u, &f)).unwrap();
+                    let alone = image(&config, &alone, Samples::new(&u, &f)).unwrap();
                     let together: Vec<Estimate> = own.iter().map(|&pixel| all[pixel]).collect();
                     assert_eq!(together, alone, "{estimator:?} {n} {surface}");
                 }
@@ -267,12 +243,10 @@ fn unordered_limit() {
         let (u, f) = scene(pixels, 1, 1, &mut rng);
         let samples = Samples::new(&u, &f);
         let surfaces: Vec<u32> = (0..pixels).map(|pixel| pixel as u32 % 3).collect();
-        for call in BOTH {
-            assert_eq!(call(&config, &Image::unordered(pixels), samples).unwrap().len(), pixels);
-            let of = Image { surfaces: &surfaces, ..Image::unordered(pixels) };
-            let result = call(&config, &of, samples);
-            assert_eq!(result.as_ref().err(), if fits { None } else { Some(&Error::Range) });
-        }
+        assert_eq!(image(&config, &Image::unordered(pixels), samples).unwrap().len(), pixels);
+        let of = Image { surfaces: &surfaces, ..Image::unordered(pixels) };
+        let result = image(&config, &of, samples);
+        assert_eq!(result.as_ref().err(), if fits { None } else { Some(&Error::Range) });
         if !fits {
             // With any workspace, and in rows too.
             let of = Image { surfaces: &surfaces, width: 205, height: 5, ..Image::unordered(pixels) };
@@ -393,12 +367,10 @@ proptest! {
             of.factors = &factors;
         }
         of.unordered = seed % 5 == 0;
-        for call in BOTH {
-            let estimates = call(&config, &of, Samples::new(&u, &f)).unwrap();
-            for estimate in &estimates {
-                prop_assert!(is_sound(estimate), "{estimate:?}");
-            }
-            prop_assert_eq!(&estimates, &call(&config, &of, Samples::new(&u, &f)).unwrap());
+        let estimates = image(&config, &of, Samples::new(&u, &f)).unwrap();
+        for estimate in &estimates {
+            prop_assert!(is_sound(estimate), "{estimate:?}");
         }
+        prop_assert_eq!(&estimates, &image(&config, &of, Samples::new(&u, &f)).unwrap());
     }
 }

@@ -120,7 +120,7 @@ impl Method {
             start.ns()
         } else {
             let image = Image { stride, ..Image::new(side, side) };
-            let mut workspace = vec![0.0f64; image_workspace_len::<f64>(&config, &image, n).context("no workspace")?];
+            let mut workspace = vec![0.0; image_workspace_len(&config, &image, n).context("no workspace")?];
             let start = Clock::now();
             estimate_image(&config, &image, samples, &mut workspace, |_, estimate| push(estimate)).context("shared")?;
             start.ns()
