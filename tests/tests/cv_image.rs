@@ -101,8 +101,8 @@ fn factors_are_demodulation() {
     }
 }
 
-/// Constant values are exact, and so are constant pixels of different values with several samples in each. Of one sample
-/// what is left of the fits in the mixture adds noise, here at most .018 where the values are uniform in 0 to 1.
+/// Constant values are exact, and so are constant pixels of different values with several samples in each. Of one
+/// sample what is left of the fits in the mixture adds noise, here at most .018 where the values are uniform in 0 to 1.
 #[test]
 fn constants() {
     let mut rng = SplitMix64::new(4);
@@ -159,8 +159,8 @@ fn any_scale() {
     }
 }
 
-/// Channels are fitted together but each for itself, if textures set their pixels apart alike: means weigh by the channel
-/// that is textured most.
+/// Channels are fitted together but each for itself, if textures set their pixels apart alike: means weigh by the
+/// channel that is textured most.
 #[test]
 fn channels_are_separate() {
     let mut rng = SplitMix64::new(7);

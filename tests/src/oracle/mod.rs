@@ -1,8 +1,8 @@
 //! The slow, obvious reference for the control-variate estimators: plain `f64`, textbook formulas, allocation
 //! everywhere.
 //!
-//! `linear` solves least squares, [`pixels`] fits to several samples of each of several pixels, `regression` fits and leaves samples out, `robust` mixes fits. Nothing here shares
-//! code with the library.
+//! `linear` solves least squares, [`pixels`] fits to several samples of each of several pixels, `regression` fits and
+//! leaves samples out, `robust` mixes fits. Nothing here shares code with the library.
 
 mod linear;
 pub mod pixels;

@@ -13,8 +13,8 @@ use crate::rows::row_at;
 use core::f32::consts::LOG2_E;
 use core::hint::black_box;
 
-/// How much what independent samples say for a fit within their pixels counts, beside what the pixels' spread says. What
-/// they say against one counts whole.
+/// How much what independent samples say for a fit within their pixels counts, beside what the pixels' spread says.
+/// What they say against one counts whole.
 const WITHIN: f32 = 0.25;
 /// The most estimates to choose from: the plain mean's, and each fit's.
 pub(super) const MAX_CHOICES: usize = 1 + MAX_FITS;

@@ -49,8 +49,8 @@ pub(super) struct Fits<'a> {
     corrections: &'a mut [Eight],
     /// How many candidates there are.
     pub(super) count: usize,
-    /// Of several samples in each pixel, what the fits leave of the samples' sums of squares about their pixel's mean: of
-    /// each channel and colour, which they have not seen.
+    /// Of several samples in each pixel, what the fits leave of the samples' sums of squares about their pixel's mean:
+    /// of each channel and colour, which they have not seen.
     pub(super) within: [[Each; COLOURS]; Config::MAX_CHANNELS],
     /// A, then its factors; for each channel what the fit is to, then D^-1 L^-1 times it.
     system: Total<'a>,
@@ -178,8 +178,8 @@ impl<'a> Fits<'a> {
     /// Several samples in each pixel: weighs what tells pixels apart by how far it is the samples' noise.
     ///
     /// With s the variance of samples within pixels and t that of the pixels' integrals about their linear trend, a
-    /// texture's say, a pixel's mean of n samples says s / (s + n t) of what as many samples about it say: least squares
-    /// for a random effect. Where samples are all alike, nothing is left to fit.
+    /// texture's say, a pixel's mean of n samples says s / (s + n t) of what as many samples about it say: least
+    /// squares for a random effect. Where samples are all alike, nothing is left to fit.
     #[inline(always)]
     fn weigh_means(&mut self, call: &Call<'_>, terms: &Terms) {
         let (width, fixed, channels) = (terms.columns(), terms.fixed(), call.config.channels);
