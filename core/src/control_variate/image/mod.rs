@@ -11,8 +11,8 @@
 //! - [`Estimator::LeaveOneOut`], or any with a fixed ridge: one ridge fit with every column. Exactly unbiased, as b
 //!   never saw the pixel's own samples.
 //! - [`Estimator::Robust`]: fits of rising degree and the plain mean, weighted by the variance of their estimates
-//!   across the other pixels and, with several samples, by what they leave of the variance within those. These fits
-//!   have seen the pixel's own samples: unbiased as the window grows.
+//!   across the pixels and, with several samples, by what they leave of the variance within pixels that they have not
+//!   seen. The choice has seen the pixel's own samples: unbiased as the window grows.
 //! - [`Estimator::KFold`]: the same with two halves of the pixels, each weighted by what the other half's fits to
 //!   itself say. Exactly unbiased, at twice the time.
 //!
