@@ -118,7 +118,8 @@ impl Case {
         let samples = |pixel: usize| (pixel * n..(pixel + 1) * n).map(move |sample| (sample, pixel));
         let all: Vec<(usize, usize)> = group.iter().flat_map(|&pixel| samples(pixel)).collect();
         let mean = samples(pixel).map(|(sample, pixel)| value(sample, pixel)).sum::<f64>() / n as f64;
-        if group.len() < 2 || (config.order == 0 && config.controls == 0) {
+        let fewest = if n == 1 { self.place(pixel).len() + 3 } else { 2 };
+        if group.len() < fewest || (config.order == 0 && config.controls == 0) {
             return mean * self.factor(pixel, channel);
         }
         let basis = design(&Config { controls: 0, ..*config }, &wide(&self.u));
@@ -200,7 +201,7 @@ impl Case {
     }
 
     fn check(&self, what: &str) {
-        self.check_within(what, 1e-4);
+        self.check_within(what, 1e-3);
     }
 }
 
@@ -261,12 +262,8 @@ fn slices_and_controls() {
                 Case::new(Config { order, ..base }, shape, n, &mut rng).with_controls(2).check("controls");
                 let both = Case::new(sliced, shape, n, &mut rng).with_controls(1);
                 let both = both.with_surfaces(2, &mut rng).with_factors(&mut rng);
-                // Two pixels of one sample and a function with next to no penalty leave `f32` no digits.
-                if n == 1 {
-                    both.check_within("everything", 0.5);
-                } else {
-                    both.check("everything");
-                }
+                // A control function has next to no penalty, which leaves few digits to one sample in each pixel.
+                both.check_within("everything", if n == 1 { 1e-2 } else { 1e-3 });
             }
             Case::new(Config { order: 0, ..base }, shape, n, &mut rng).with_controls(1).check("controls alone");
         }

@@ -112,7 +112,7 @@ proptest! {
     }
 
     /// shared_fits.md: but for the robust choice a pixel's own samples never shape its correction, and their order
-    /// never matters.
+    /// never matters, within the rounding of a fit in `f32`.
     #[test]
     fn a_pixel_does_not_see_itself(
         estimator in 0..3_usize,
@@ -140,13 +140,13 @@ proptest! {
         let mut other = f.clone();
         other[own.clone()].iter_mut().for_each(|f| *f = 3.0 * rng.uniform_f32() - 1.0);
         let (a, b) = (correction(&f), correction(&other));
-        prop_assert!((a - b).abs() < 1e-5, "{a} {b}");
+        prop_assert!((a - b).abs() < 3e-4, "{a} {b}");
 
         let (mut turned_u, mut turned_f) = (u.clone(), f.clone());
         turned_f[own.clone()].reverse();
         turned_u[2 * own.start..2 * own.end].as_chunks_mut::<2>().0.reverse();
         for (a, b) in call(&u, &f).iter().zip(call(&turned_u, &turned_f)) {
-            prop_assert!((a.mean[0] - b.mean[0]).abs() < 1e-5, "{:?} {:?}", a, b);
+            prop_assert!((a.mean[0] - b.mean[0]).abs() < 1e-4, "{:?} {:?}", a, b);
         }
     }
 }

@@ -99,9 +99,10 @@ impl Layout<'_> {
         Group { index: 0, window: 0, start: 0, len: self.windows.pixels() }
     }
 
-    /// The fewest pixels of a group for which a fit can do more than the mean.
+    /// The fewest pixels of a group for which a fit can do more than the mean. Of one sample in each, fewer would leave
+    /// no digits of what is left of them beside their trend.
     fn least(&self) -> usize {
-        if self.is_single_fit() { 2 } else { self.windows.axes() + 3 }
+        if self.is_single_fit() && self.n > 1 { 2 } else { self.windows.axes() + 3 }
     }
 
     /// The most groups.
