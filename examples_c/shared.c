@@ -10,7 +10,7 @@ static float u[2 * PIXELS], f[PIXELS];
 static uint32_t surfaces[PIXELS];
 static double exact[PIXELS];
 static nf_estimate estimates[PIXELS];
-static uint64_t workspace[1 << 15]; /* 256 KiB, 8-byte aligned */
+static uint64_t workspace[1 << 16]; /* 512 KiB, 8-byte aligned */
 
 /* What a renderer would trace: two surfaces, on each an integrand that changes slowly over the image. */
 static void render(void)
