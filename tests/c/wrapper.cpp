@@ -164,7 +164,7 @@ static void images()
     using nf::span;
     using nf::status;
     const nf::config config(2, 2);
-    std::array<std::uint64_t, 4096> workspace{};
+    std::array<std::uint64_t, 16384> workspace{};
     std::array<nf_estimate, 16> pixels{}, expected{};
     const nf::image image = nf::image(4, 4).with_window(4, 2);
     CHECK(image.width == 4 && image.height == 4 && image.frames == 1 && image.window == 4 && image.stride == 2);

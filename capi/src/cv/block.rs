@@ -53,11 +53,11 @@ pub unsafe extern "C" fn nf_cv_block_workspace_size(config: *const nf_cv_config,
 ///
 /// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance
 /// of their estimates across the pixels and, from 2 samples on, by what they leave of the variance within pixels that
-/// they have not seen; unbiased as the block grows. NF_CV_K_FOLD lets two halves of the pixels choose for each other, NF_CV_LEAVE_ONE_OUT
-/// or a `ridge` is one fit: both exactly unbiased, if the pixels' samples are independent. Groups of up to 4 pixels stay
-/// at their mean, but for one fit to several samples in each; one fit to 2 to 12 pixels can be a fifth worse than the
-/// mean. Where fits explain little, NF_CV_ROBUST and NF_CV_K_FOLD leave pixels far brighter or darker than all others out of the fits
-/// to others.
+/// they have not seen; unbiased as the block grows. NF_CV_K_FOLD lets two halves of the pixels choose for each other,
+/// NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both exactly unbiased, if the pixels' samples are independent. Groups
+/// of up to 4 pixels stay at their mean, but for one fit to several samples in each; one fit to 2 to 12 pixels can be a
+/// fifth worse than the mean. Where fits explain little, NF_CV_ROBUST and NF_CV_K_FOLD leave pixels far brighter or
+/// darker than all others out of the fits to others.
 ///
 /// Of a texture one sample in each pixel cannot tell: say it by `surfaces` or `factors` of nf_cv_image. Several do:
 /// pixels whose samples are all alike stay as they are.

@@ -121,8 +121,8 @@ pub struct Config {
     /// Whether the samples are stratified (a tile, Sobol points, a lattice) instead of independent. Of one pixel all
     /// estimators are then the mean but [`Estimator::LeastSquares`] and [`Estimator::GradientDescent`]: what corrects
     /// some samples by fits to others undoes what is even about all, and the errors that decide how far do not show it.
-    /// Fits shared by pixels correct all the same, take their standard errors from the pixels' spread, and trust it alone
-    /// where it speaks for a fit.
+    /// Fits shared by pixels correct all the same, take their standard errors from the pixels' spread, and trust it
+    /// alone where it speaks for a fit.
     pub stratified: bool,
     /// If above 1, the last coordinate picks one of this many equally likely alternatives (figure 4.15). Each takes a
     /// term: at most 136 less binomial(dims - 1 + order, order), the terms of the other coordinates, less `controls`.
