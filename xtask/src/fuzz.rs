@@ -3,9 +3,9 @@
 use crate::outcome::Outcome;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Output};
 
 /// Longer inputs are slower, and reach nothing more.
@@ -22,32 +22,15 @@ pub struct Options {
     #[arg(long)]
     target: Option<String>,
     /// What the targets are built with; `address` is slower, and finds what wrong `unsafe` code reads or writes
-    #[arg(long, value_enum, default_value_t = Sanitizer::None)]
-    sanitizer: Sanitizer,
+    #[arg(long, value_parser = ["none", "address"], default_value = "none")]
+    sanitizer: String,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum Sanitizer {
-    None,
-    Address,
-}
-
-impl Sanitizer {
-    /// As cargo-fuzz calls it.
-    fn name(self) -> &'static str {
-        match self {
-            Sanitizer::None => "none",
-            Sanitizer::Address => "address",
-        }
-    }
-
-    /// Where its programs are, so that the other's stay compiled.
-    fn folder(self) -> PathBuf {
+impl Options {
+    /// Where the sanitizer's programs are, so that the other's stay compiled.
+    fn folder(&self) -> PathBuf {
         let target = paths::root().join("fuzz/target");
-        match self {
-            Sanitizer::None => target,
-            Sanitizer::Address => target.join(self.name()),
-        }
+        if self.sanitizer == "none" { target } else { target.join(&self.sanitizer) }
     }
 }
 
@@ -108,12 +91,12 @@ pub fn replay() -> Result<Outcome> {
     build.args(["build", "--quiet", "--locked", "--manifest-path"]).arg(folder.join("Cargo.toml"));
     build.arg("--target-dir").arg(&target).env("CARGO_PROFILE_DEV_DEBUG", "false");
     run::check(build.env("RUSTFLAGS", "--cfg fuzzing -D warnings"))?;
-    for seeds in files(&folder.join("seeds"))? {
+    for seeds in paths::list("fuzz/seeds")? {
         let name = seeds.file_name().context("a folder of seeds has no name")?;
-        let mut inputs = files(&seeds)?;
+        let mut inputs = paths::list(&seeds)?;
         let regressions = folder.join("regressions").join(name);
         if regressions.is_dir() {
-            inputs.extend(files(&regressions)?);
+            inputs.extend(paths::list(&regressions)?);
         }
         let program = target.join("debug").join(name);
         let output = run::command(&program)
@@ -131,7 +114,7 @@ pub fn replay() -> Result<Outcome> {
 fn build(options: &Options) -> Result<()> {
     let target = options.target.as_deref();
     let mut build = cargo_fuzz();
-    build.args(["build", "--sanitizer", options.sanitizer.name(), "--target-dir"]).arg(options.sanitizer.folder());
+    build.args(["build", "--sanitizer", &options.sanitizer, "--target-dir"]).arg(options.folder());
     if target == Some(FSOT.0) {
         build.args(["--features", FSOT.1]);
     }
@@ -141,14 +124,14 @@ fn build(options: &Options) -> Result<()> {
 /// Runs one target on its regressions and then on new inputs; how many it executed, or what crashed it.
 fn fuzz(target: &str, options: &Options) -> Result<u64> {
     let folder = paths::root().join("fuzz");
-    let program = options.sanitizer.folder().join(host()?).join("release").join(target);
+    let program = options.folder().join(host()?).join("release").join(target);
     let regressions = folder.join("regressions").join(target);
     let corpus = folder.join("corpus").join(target);
     let seeds = folder.join("seeds").join(target);
     for path in [&regressions, &corpus] {
         fs::create_dir_all(path).with_context(|| format!("cannot create {}", path.display()))?;
     }
-    let known = files(&regressions)?;
+    let known = paths::list(&regressions)?;
     if !known.is_empty() {
         let output =
             run::command(&program).arg("-timeout=25").args(known).output().context("cannot start the fuzz target")?;
@@ -169,13 +152,6 @@ fn fuzz(target: &str, options: &Options) -> Result<u64> {
         0 => bail!("the fuzz target `{target}` ran no input in {} s", options.seconds),
         count => Ok(count),
     }
-}
-
-fn files(folder: &Path) -> Result<Vec<PathBuf>> {
-    let entries = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
-    let mut files = entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>()?;
-    files.sort();
-    Ok(files)
 }
 
 fn judge(output: &Output, what: &str) -> Result<()> {

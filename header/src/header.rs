@@ -1,11 +1,10 @@
 //! The generated C header: cbindgen reads `capi/`, this file arranges what it finds by service.
 
-mod banner;
-
-use crate::{paths, run};
+use crate::banner;
 use anyhow::{Context, Result, anyhow, bail};
 use std::fs;
 use std::path::Path;
+use xtask::paths;
 
 /// A chapter of the header and how its items' names begin, in the order in which they are printed.
 struct Chapter {
@@ -99,46 +98,17 @@ const CHAPTERS: [Chapter; 8] = [
 ];
 
 /// Rewrites `include/noisefloor.h` from the `capi` crate.
-pub fn write() -> Result<()> {
+pub(crate) fn write() -> Result<()> {
     let path = paths::header();
     fs::write(&path, generate()?).with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// Fails if the committed header is not what the sources generate.
-pub fn check_committed() -> Result<()> {
+pub(crate) fn check() -> Result<()> {
     let path = paths::header();
     let committed = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
     if committed != generate()? {
         bail!("{} is not what capi/ generates: run `cargo xtask header` and commit the result", path.display());
-    }
-    Ok(())
-}
-
-/// Compiles each header alone, with every warning an error, in every language standard it promises.
-pub fn check_compiles() -> Result<()> {
-    let output = paths::output();
-    fs::create_dir_all(&output).with_context(|| format!("cannot create {}", output.display()))?;
-    let strict = ["-Wconversion", "-Wshadow"];
-    for (header, variable, default, standard, options) in [
-        ("noisefloor.h", "CC", "cc", "c99", &strict[..]),
-        ("noisefloor.h", "CC", "cc", "c11", &strict[..]),
-        ("noisefloor.h", "CXX", "c++", "c++11", &strict[..]),
-        ("noisefloor.h", "CXX", "c++", "c++17", &strict[..]),
-        ("noisefloor.hpp", "CXX", "c++", "c++17", &strict[..]),
-        ("noisefloor.hpp", "CXX", "c++", "c++17", &["-Wconversion", "-fno-exceptions", "-fno-rtti"][..]),
-        ("noisefloor.hpp", "CXX", "c++", "c++20", &strict[..]),
-    ] {
-        let source = output.join(if variable == "CC" { "header_alone.c" } else { "header_alone.cpp" });
-        // Twice: the include guard is part of what is checked.
-        let text = format!("#include \"{header}\"\n#include \"{header}\"\nint main(void) {{ return 0; }}\n");
-        fs::write(&source, text).with_context(|| format!("cannot write {}", source.display()))?;
-        run::check(
-            run::compiler(variable, default)
-                .arg(format!("-std={standard}"))
-                .args(["-Wall", "-Wextra", "-pedantic", "-Werror", "-fsyntax-only", "-Iinclude"])
-                .args(options)
-                .arg(&source),
-        )?;
     }
     Ok(())
 }
@@ -198,7 +168,7 @@ impl Item {
             }
         }
         let (_, chapter, place) =
-            best.with_context(|| format!("xtask/src/header.rs has no chapter for `{name}`: add its prefix"))?;
+            best.with_context(|| format!("header/src/header.rs has no chapter for `{name}`: add its prefix"))?;
         let mut text = String::new();
         // Arguments on lines of their own stand below the first, whose line a `struct` left out makes shorter.
         let mut shorter = 0;

@@ -1,30 +1,19 @@
 //! capi/abi.txt: every function, type, layout and constant of the C ABI, so that no change of them goes unseen.
 
-mod header;
-mod layout;
-
-pub use header::Header;
-
-use crate::outcome::Outcome;
-use crate::paths;
+use crate::declarations::Header;
 use anyhow::{Context, Result, bail};
-use clap::Args;
 use std::fs;
 use std::path::PathBuf;
+use xtask::outcome::Outcome;
+use xtask::{c_tests, paths, run};
 
-#[derive(Args)]
-pub struct Options {
-    /// Allow what breaks programs without a new NF_ABI_VERSION: no release has had the present one yet
-    #[arg(long)]
-    unreleased: bool,
-}
-
-/// Rewrites capi/abi.txt, unless what it promised is gone and the version is as it was.
-pub fn write(options: &Options) -> Result<()> {
+/// Rewrites capi/abi.txt, unless what it promised is gone and the version is as it was. `unreleased` allows that too: no
+/// release has had the version yet.
+pub(crate) fn write(unreleased: bool) -> Result<()> {
     let (path, now) = (path(), current()?);
     let before = fs::read_to_string(&path).unwrap_or_default();
     let broken = gone(&before, &now);
-    if !broken.is_empty() && version_line(&before) == version_line(&now) && !options.unreleased {
+    if !broken.is_empty() && version_line(&before) == version_line(&now) && !unreleased {
         bail!(
             "programs built with the present header would break, and NF_ABI_VERSION is as before. Changed or \
              removed:\n  {}\n\
@@ -37,7 +26,7 @@ pub fn write(options: &Options) -> Result<()> {
 }
 
 /// Fails if the committed list is not what the header and the compiler say.
-pub fn check() -> Result<Outcome> {
+pub(crate) fn check() -> Result<Outcome> {
     if !cfg!(target_pointer_width = "64") {
         return Ok(Outcome::NotRun("capi/abi.txt is of targets with pointers of 64 bits".to_owned()));
     }
@@ -68,11 +57,38 @@ fn current() -> Result<String> {
          Do not edit.\n",
     );
     text += &format!("version {}\n", header.version()?);
-    for line in header.lines().iter().chain(&layout::measure(&header)?) {
+    for line in header.lines().iter().chain(&measure(&header)?) {
         text += line;
         text.push('\n');
     }
     Ok(text)
+}
+
+/// The list's lines of numbers' other names, and of structs and their fields.
+fn measure(header: &Header) -> Result<Vec<String>> {
+    let mut program = String::from("#include \"noisefloor.h\"\n#include <stdio.h>\nint main(void) {\n");
+    for (name, kind) in &header.typedefs {
+        program += &format!(
+            "printf(\"typedef {name}: size %zu, alignment %zu, %s, {kind}\\n\", sizeof({name}), \
+             (size_t)_Alignof({name}), \
+             ({name})-1 < 0 ? \"signed\" : \"unsigned\");\n"
+        );
+    }
+    for one in &header.structs {
+        let name = &one.name;
+        program += &format!(
+            "printf(\"struct {name}: size %zu, alignment %zu\\n\", sizeof({name}), (size_t)_Alignof({name}));\n"
+        );
+        for (kind, field) in &one.fields {
+            program += &format!("printf(\"  {name}.{field}: offset %zu, {kind}\\n\", offsetof({name}, {field}));\n");
+        }
+    }
+    program += "return 0;\n}\n";
+    let source = c_tests::output("layout.c")?;
+    fs::write(&source, program).with_context(|| format!("cannot write {}", source.display()))?;
+    let binary = c_tests::output("layout")?;
+    run::check(run::compiler("CC", "cc").args(["-std=c11", "-Iinclude"]).arg(source).arg("-o").arg(&binary))?;
+    Ok(run::read(&mut run::command(binary))?.lines().map(str::to_owned).collect())
 }
 
 /// The lines of one that the other has not. The version is no promise.

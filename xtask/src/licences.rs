@@ -1,13 +1,12 @@
 //! THIRD_PARTY.md: the packages of others, their licences, and whether ours allows them.
 
-use super::PUBLISHED;
 use crate::outcome::Outcome;
+use crate::release::PUBLISHED;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use spdx::{Expression, ParseMode};
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
 
 /// What may be in what we ship: nothing that asks more than that its notice be kept.
 const ALLOWED: [&str; 10] =
@@ -20,7 +19,7 @@ const INTRODUCTION: &str = "\
 
 Written by `cargo xtask licences`; do not edit. Licences are as their authors declare them, for all targets; the full
 texts come with each package's source. A test compares this file with Cargo.lock, and every licence with those that
-xtask/src/release/licences.rs allows.
+xtask/src/licences.rs allows.
 ";
 const STANDARD_LIBRARY: &str = "
 The C library also holds what it uses of Rust's `core` (MIT OR Apache-2.0) and compiler-builtins (MIT AND
@@ -32,22 +31,15 @@ type Packages = BTreeMap<(String, String), String>;
 
 /// Rewrites THIRD_PARTY.md.
 pub fn write() -> Result<()> {
-    let path = path();
-    fs::write(&path, current()?).with_context(|| format!("cannot write {}", path.display()))
+    fs::write(paths::root().join("THIRD_PARTY.md"), current()?).context("cannot write THIRD_PARTY.md")
 }
 
 /// Fails if the list is old or a licence is not allowed.
 pub fn check() -> Result<Outcome> {
-    let path = path();
-    let committed = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
-    if committed != current()? {
+    if paths::read("THIRD_PARTY.md")? != current()? {
         bail!("THIRD_PARTY.md is not what Cargo.lock says: run `cargo xtask licences` and commit the result");
     }
     Ok(Outcome::Passed)
-}
-
-fn path() -> PathBuf {
-    paths::root().join("THIRD_PARTY.md")
 }
 
 fn current() -> Result<String> {

@@ -4,7 +4,7 @@
 const WIDTH: usize = 118;
 
 /// The title, the guides in docs/, and every function's name and summary.
-pub(super) fn banner<'a>(
+pub(crate) fn banner<'a>(
     title: &str,
     guides: &str,
     functions: impl Iterator<Item = &'a (String, String)> + Clone,
@@ -47,7 +47,7 @@ fn lines(summary: &str, width: usize) -> Vec<String> {
 }
 
 /// The first sentence of a description: up to a colon, a semicolon, or a full stop, but for "et al. (2019)".
-pub(super) fn first_sentence(comment: &[&str]) -> String {
+pub(crate) fn first_sentence(comment: &[&str]) -> String {
     let lines = comment.iter().map(|line| line.trim_start_matches('/').trim()).take_while(|line| !line.is_empty());
     let text = lines.collect::<Vec<_>>().join(" ");
     let is_end = |&(at, mark): &(usize, &str)| {

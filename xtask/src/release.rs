@@ -1,6 +1,5 @@
-//! `cargo package`: what would be published is complete, and small enough for the registry.
+//! What must hold before a version is published: docs/releases.md.
 
-use super::PUBLISHED;
 use crate::outcome::Outcome;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
@@ -8,6 +7,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// The packages that are published, in the order in which they must be.
+pub const PUBLISHED: [&str; 3] = ["noisefloor", "noisefloor-capi", "noisefloor-fsot"];
 /// The registry's limit for a package, compressed.
 const LIMIT: u64 = 10 << 20;
 /// What cargo adds to our files, and what must be there whatever the folder holds.
@@ -15,18 +16,15 @@ const ADDED: [&str; 2] = ["Cargo.toml.orig", "Cargo.lock"];
 const NEEDED: [&str; 3] = ["LICENSE-MIT", "LICENSE-APACHE", "Cargo.toml"];
 
 /// Packs each published package without compiling it again; the tests have compiled the same files.
-pub fn check() -> Result<Outcome> {
+pub fn packages() -> Result<Outcome> {
     let mut package = run::cargo();
     package.args(["package", "--quiet", "--no-verify", "--allow-dirty", "--locked"]);
     run::read(package.args(PUBLISHED.iter().flat_map(|name| ["--package", name])))?;
-    let metadata = run::read(run::cargo().args(["metadata", "--no-deps", "--format-version", "1"]))?;
-    let metadata: serde_json::Value = serde_json::from_str(&metadata).context("cargo metadata wrote no JSON")?;
-    let packages = metadata["packages"].as_array().map_or(&[][..], Vec::as_slice);
-    for one in packages {
+    for one in &run::packages()? {
         let name = one["name"].as_str().context("a package without a name")?;
         let private = one["publish"].as_array().is_some_and(Vec::is_empty);
         if private == PUBLISHED.contains(&name) {
-            bail!("{name}: `publish` in its Cargo.toml says otherwise than xtask/src/release/mod.rs");
+            bail!("{name}: `publish` in its Cargo.toml says otherwise than xtask/src/release.rs");
         }
         if !private {
             check_one(name, one)?;
@@ -79,4 +77,55 @@ fn files(folder: &Path, below: &Path, found: &mut BTreeSet<PathBuf>) -> Result<(
         }
     }
     Ok(())
+}
+
+/// Texts that name the oldest Rust that compiles the project.
+const NAME_RUST: [&str; 2] = ["README.md", "docs/install.md"];
+
+/// The declared Rust version is what the texts say and compiles the libraries; CHANGELOG.md knows the project's
+/// version.
+pub fn versions() -> Result<Outcome> {
+    let packages = run::packages()?;
+    let core = packages.iter().find(|package| package["name"] == "noisefloor").context("there is no `noisefloor`")?;
+    let rust = core["rust_version"].as_str().context("`noisefloor` has no rust-version")?;
+    for package in &packages {
+        if package["rust_version"] != rust {
+            bail!("{} has the rust-version {}, `noisefloor` {rust}", package["name"], package["rust_version"]);
+        }
+    }
+    for name in NAME_RUST {
+        let text = paths::read(name)?;
+        let said: Vec<_> = text.split("Rust 1.").skip(1).map(minor).collect();
+        if said.is_empty() || said.iter().any(|minor| format!("1.{minor}") != rust) {
+            bail!("{name} says Rust 1.{}, Cargo.toml {rust}", said.join(" and 1."));
+        }
+    }
+    let version = core["version"].as_str().context("`noisefloor` has no version")?;
+    if !paths::read("CHANGELOG.md")?.lines().any(|line| line.split(' ').take(2).eq(["##", version])) {
+        bail!("CHANGELOG.md has no section `## {version}`, which is the version in Cargo.toml");
+    }
+    compiles(rust)
+}
+
+/// Compiles what is published with the declared version, if that is at hand.
+fn compiles(rust: &str) -> Result<Outcome> {
+    let version = run::read(run::command("rustc").arg("--version"))?;
+    if version.split_whitespace().nth(1).is_some_and(|version| version.starts_with(&format!("{rust}."))) {
+        println!("   this is Rust {rust}, so all tests are with the declared version");
+        return Ok(Outcome::Passed);
+    }
+    if run::read(run::command("rustup").args(["run", rust, "cargo", "--version"])).is_err() {
+        return Ok(Outcome::NotRun(format!(
+            "the texts agree, but Rust {rust} is not installed to compile with: `rustup toolchain install {rust}`"
+        )));
+    }
+    let mut check = run::command("rustup");
+    check.args(["run", rust, "cargo", "check", "--quiet", "--locked", "--package", "noisefloor", "--package"]);
+    run::check(check.args(["noisefloor-capi", "--target-dir"]).arg(paths::target().join("declared")))?;
+    Ok(Outcome::Passed)
+}
+
+/// The digits at the beginning.
+fn minor(text: &str) -> &str {
+    text.split(|c: char| !c.is_ascii_digit()).next().unwrap_or_default()
 }

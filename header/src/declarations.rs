@@ -1,41 +1,36 @@
 //! What the generated header declares. Its form is cbindgen's, so a few splits read it.
 
-use crate::paths;
 use anyhow::{Context, Result, bail};
 use std::fs;
+use xtask::paths;
 
 /// The end of the declarations: what follows only asserts.
 const ASSERTS: &str = "/* Layouts:";
 
 #[derive(Default)]
-pub struct Header {
-    functions: Vec<Function>,
+pub(crate) struct Header {
+    /// Result, name and types of parameters; their names bind nobody.
+    functions: Vec<String>,
     /// Type and name of what is data.
     objects: Vec<String>,
-    pub(super) structs: Vec<Struct>,
+    pub(crate) structs: Vec<Struct>,
     /// Name, and the number that it is.
-    pub(super) typedefs: Vec<(String, String)>,
+    pub(crate) typedefs: Vec<(String, String)>,
     opaque: Vec<String>,
     constants: Vec<(String, String)>,
     /// Everything from [`ASSERTS`] on.
     asserts: String,
 }
 
-struct Function {
-    name: String,
-    /// Result, name and types of parameters; their names bind nobody.
-    prototype: String,
-}
-
-pub(super) struct Struct {
-    pub(super) name: String,
+pub(crate) struct Struct {
+    pub(crate) name: String,
     /// Type with the array's length, and name.
-    pub(super) fields: Vec<(String, String)>,
+    pub(crate) fields: Vec<(String, String)>,
 }
 
 impl Header {
     /// Reads include/noisefloor.h.
-    pub fn committed() -> Result<Self> {
+    pub(crate) fn committed() -> Result<Self> {
         let path = paths::header();
         let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
         Self::parse(&text)
@@ -66,15 +61,9 @@ impl Header {
     }
 
     /// NF_ABI_VERSION.
-    pub fn version(&self) -> Result<&str> {
+    pub(crate) fn version(&self) -> Result<&str> {
         let version = self.constants.iter().find(|(name, _)| name == "NF_ABI_VERSION");
         version.map(|(_, value)| value.as_str()).context("the header has no NF_ABI_VERSION")
-    }
-
-    /// What a library exports: functions and data.
-    pub fn symbols(&self) -> impl Iterator<Item = &str> {
-        let objects = self.objects.iter().map(|object| object.rsplit(' ').next().unwrap_or_default());
-        self.functions.iter().map(|function| function.name.as_str()).chain(objects)
     }
 
     /// Keeps one declaration, up to its semicolon.
@@ -95,8 +84,7 @@ impl Header {
         }
         let parameters: Vec<_> =
             parameters.trim_end_matches(')').split(',').map(|one| without_name(one.trim())).collect();
-        let prototype = format!("{before}({})", parameters.join(", "));
-        self.functions.push(Function { name: name.to_owned(), prototype });
+        self.functions.push(format!("{before}({})", parameters.join(", ")));
         Ok(())
     }
 
@@ -120,8 +108,8 @@ impl Header {
     }
 
     /// The list's lines of functions, constants and opaque types, in the header's order.
-    pub(super) fn lines(&self) -> Vec<String> {
-        let functions = self.functions.iter().map(|function| format!("function {}", function.prototype));
+    pub(crate) fn lines(&self) -> Vec<String> {
+        let functions = self.functions.iter().map(|prototype| format!("function {prototype}"));
         let constants = self.constants.iter().filter(|(name, _)| name != "NF_ABI_VERSION");
         let constants = constants.map(|(name, value)| format!("constant {name} {value}"));
         let objects = self.objects.iter().map(|object| format!("object {object}"));
@@ -133,7 +121,7 @@ impl Header {
     }
 
     /// Fails unless the header asserts the size of every struct and of every other name of a number.
-    pub(super) fn check_asserts(&self) -> Result<()> {
+    pub(crate) fn check_asserts(&self) -> Result<()> {
         let structs = self.structs.iter().map(|one| &one.name);
         for name in structs.chain(self.typedefs.iter().map(|(name, _)| name)) {
             if !self.asserts.contains(&format!("sizeof({name}) == ")) {
@@ -184,7 +172,6 @@ mod tests {
     fn functions_constants_and_structs_are_read() {
         let header = Header::parse(TEXT).unwrap();
         assert_eq!(header.version().unwrap(), "3");
-        assert_eq!(header.symbols().collect::<Vec<_>>(), ["nf_m", "nf_f", "nf_v"]);
         let lines = [
             "function const char *nf_m(nf_status)",
             "function nf_s nf_f(const float *, size_t)",
