@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use xtask::outcome::Outcome;
 use xtask::{c_tests, paths, run};
 
-/// Rewrites capi/abi.txt, unless what it promised is gone and the version is as it was. `unreleased` allows that too: no
+/// Rewrites capi/abi.txt, unless what it promised is gone and the version is as it was; `unreleased` allows that: no
 /// release has had the version yet.
 pub(crate) fn write(unreleased: bool) -> Result<()> {
     let (path, now) = (path(), current()?);

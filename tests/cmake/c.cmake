@@ -1,4 +1,4 @@
-# tests/c: one program for each theme, as C99 and as C++17, where check.h includes noisefloor.hpp; and the headers alone.
+# tests/c: one program for each theme, as C99 and as C++17, where check.h includes noisefloor.hpp; the headers alone.
 if(TESTS_UNDER STREQUAL "tsan")
     return()
 endif()
@@ -48,7 +48,8 @@ function(header_alone name header language standard)
     string(REPLACE xx pp extension "${extension}")
     # Twice: the include guard is part of what is checked.
     set(source "${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.${extension}")
-    file(CONFIGURE OUTPUT "${source}" CONTENT "#include \"${header}\"\n#include \"${header}\"\nint main(void) { return 0; }\n")
+    set(include "#include \"${header}\"\n")
+    file(CONFIGURE OUTPUT "${source}" CONTENT "${include}${include}int main(void) { return 0; }\n")
     add_program(headers header_${name} "${source}" -Wconversion ${ARGN})
     set_target_properties(header_${name} PROPERTIES ${language}_STANDARD ${standard})
     add_check(headers ${name} header_${name})

@@ -1,5 +1,5 @@
-# Runs PROGRAM, which prints lines `NAME ... ERROR`; of each of the PAIRS, `LARGER:SMALLER,...`, the second's error must be
-# the smaller.
+# Runs PROGRAM, which prints lines `NAME ... ERROR`; of each of the PAIRS, `LARGER:SMALLER,...`, the second's error must
+# be the smaller.
 execute_process(COMMAND "${PROGRAM}" OUTPUT_VARIABLE text RESULT_VARIABLE status)
 message("${text}")
 if(NOT status EQUAL 0)

@@ -48,6 +48,9 @@ endforeach()
 add_program(shards shards ../examples_c/shards.c ${fast})
 add_check(shards shards shards)
 
+add_python(documents code_in_docs documents.py "${CMAKE_C_COMPILER}")
+add_custom_target(documents)
+
 # The library as its users have it: installed, or a part of their project.
 foreach(name IN ITEMS projects examples)
     add_check(installed_${name} ${name} sh "${CMAKE_CURRENT_SOURCE_DIR}/package/installed.sh" ${name}

@@ -1,4 +1,4 @@
-# The detectors of wrong memory and of data races: they find what breaks the rules, and nothing where the rules are kept.
+# The detectors of wrong memory and of data races: they find what breaks the rules, and nothing where these are kept.
 if(TESTS_UNDER STREQUAL "valgrind")
     add_executable(undefined valgrind/undefined.c)
     target_compile_options(undefined PRIVATE -O1)
@@ -17,7 +17,8 @@ elseif(TESTS_UNDER STREQUAL "tsan")
     add_library(tsan_memory OBJECT threads/tsan_memory.c)
     target_compile_options(tsan_memory PRIVATE -Wall -Wextra -pedantic -Werror -O1 -fno-builtin)
     set(under_objects tsan_memory)
-    add_check(tsan the_library_is_instrumented "${CMAKE_NM}" --plugin=/none --undefined-only "$<TARGET_FILE:noisefloor_static>")
+    add_check(tsan the_library_is_instrumented "${CMAKE_NM}" --plugin=/none --undefined-only
+        "$<TARGET_FILE:noisefloor_static>")
     set_tests_properties(tsan.the_library_is_instrumented PROPERTIES PASS_REGULAR_EXPRESSION __tsan_write8)
 
     add_program(tsan rules threads/rules.cpp -O1)
@@ -28,8 +29,8 @@ elseif(TESTS_UNDER STREQUAL "tsan")
 
     add_program(tsan pathtracer ../examples_c/pathtracer.cpp -O1)
     function(render name)
-        add_check(tsan pathtracer_${name} ${under} "$<TARGET_FILE:pathtracer>" --width 24 --height 24 --spp 16 --threads 3
-            --output "${CMAKE_CURRENT_BINARY_DIR}/${name}" ${ARGN})
+        add_check(tsan pathtracer_${name} ${under} "$<TARGET_FILE:pathtracer>"
+            --width 24 --height 24 --spp 16 --threads 3 --output "${CMAKE_CURRENT_BINARY_DIR}/${name}" ${ARGN})
     endfunction()
     render(random --accumulate 4 --sampler random --estimators mc,robust,k_fold,incremental)
     render(tile --accumulate 4 --sampler tile --estimators mc,robust,k_fold,incremental)

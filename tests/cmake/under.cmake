@@ -1,5 +1,5 @@
-# What programs run under: how they are compiled for it, what starts them (`under`), and whether that works here; if not,
-# `not_run` says why.
+# What programs run under: how they are compiled for it, what starts them (`under`), and whether that works here; if
+# not, `not_run` says why.
 set(not_run "")
 set(under "")
 set(under_objects "")
@@ -15,7 +15,8 @@ function(try_program flags source)
     if(name MATCHES "cpp$")
         set(compiler "${CMAKE_CXX_COMPILER}")
     endif()
-    execute_process(COMMAND "${compiler}" ${words} "${source}" -o "${program}" RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+    execute_process(COMMAND "${compiler}" ${words} "${source}" -o "${program}"
+        RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
     if(status EQUAL 0)
         execute_process(COMMAND ${under} "${program}" RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
     endif()
@@ -42,10 +43,11 @@ elseif(TESTS_UNDER STREQUAL "tsan")
         endif()
     endforeach()
     if(NOT status EQUAL 0)
-        set(not_run "this C++ compiler or this system cannot run programs with -fsanitize=thread; on 64-bit Linux gcc (Debian: libtsan2) and clang can")
+        string(CONCAT not_run "this C++ compiler or this system cannot run programs with -fsanitize=thread; on 64-bit "
+            "Linux gcc (Debian: libtsan2) and clang can")
     endif()
-    # The library is instrumented too. A stable compiler refuses sanitizers otherwise. The precompiled part of Rust's core
-    # is not instrumented, which it refuses too; nearly all that is used of it is inlined, and so is.
+    # The library is instrumented too. A stable compiler refuses sanitizers otherwise. The precompiled part of Rust's
+    # core is not instrumented, which it refuses too; nearly all that is used of it is inlined, and so is.
     execute_process(COMMAND rustc -vV OUTPUT_VARIABLE rustc)
     string(REGEX MATCH "host: ([^\n]+)" host "${rustc}")
     set(NOISEFLOOR_RUST_TARGET "${CMAKE_MATCH_1}" CACHE STRING "" FORCE)
@@ -67,7 +69,8 @@ elseif(TESTS_UNDER STREQUAL "valgrind")
     if(valgrind)
         try_program("-O1" "${comparisons}")
         if(NOT status EQUAL 0)
-            message(FATAL_ERROR "this processor compares with NaN in a way of its own: valgrind/comparisons.c exits with ${status}")
+            message(FATAL_ERROR
+                "this processor compares with NaN in a way of its own: valgrind/comparisons.c exits with ${status}")
         endif()
         set(under ${memcheck})
         try_program("-O1" "${comparisons}")

@@ -72,7 +72,8 @@ shared=$moved/lib/libnoisefloor.so
 version=$(sed -n 's/^version //p' "$root/capi/abi.txt")
 sed -n 's/^function [^(]*[ *]\(nf_[a-z0-9_]*\)(.*/\1/p; s/^object .* //p' "$root/capi/abi.txt" |
     sed "s/\$/@@NOISEFLOOR_$version/" | sort > "$work/wanted"
-nm --plugin=/none --dynamic --defined-only "$shared" | sed 's/.* //' | grep -vx "NOISEFLOOR_$version" | sort > "$work/found"
+nm --plugin=/none --dynamic --defined-only "$shared" | sed 's/.* //' |
+    grep -vx "NOISEFLOOR_$version" | sort > "$work/found"
 diff "$work/wanted" "$work/found" || fail "$shared exports (>) what the ABI has not, or lacks (<) what it has"
 readelf --dynamic --wide "$shared" | grep -q "Library soname: \[libnoisefloor\.so\.$version\]" ||
     fail "$shared has not the soname libnoisefloor.so.$version"

@@ -119,13 +119,14 @@ def check_table():
     error, other = squared_error(grid, reference), squared_error(tracer.values("mc"), reference)
     require(
         error <= 0.3 * other,
-        f"the squared error of a grid of points is {error}, that of random points {other}: the table is not used as it is",
+        f"the squared error of a grid of points is {error}, that of random points {other}: the table is not used as it "
+        "is",
     )
 
 
 def check_accumulation():
-    """However many threads accumulate passes, of however many samples, the picture is the same; the plain mean's is that
-    of a run without."""
+    """However many threads accumulate passes, of however many samples, the picture is the same; the plain mean's is
+    that of a run without."""
     say("accumulation")
     names = ["mc", "robust", "least_squares", "k_fold"]
     far = lambda a, b: any(abs(p - q) > 1e-5 * (1 + abs(p)) for p, q in zip(a, b))

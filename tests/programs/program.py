@@ -29,7 +29,8 @@ class Program:
 
     def start(self, *arguments):
         command = [str(self.path), *map(str, arguments)]
-        return subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
+        null = subprocess.DEVNULL
+        return subprocess.run(command, cwd=ROOT, stdin=null, capture_output=True, text=True, errors="replace")
 
     def run(self, *arguments):
         """Runs to the end; returns what the program writes to standard output."""

@@ -5,7 +5,6 @@ use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::fs;
-use std::path::PathBuf;
 use std::process::{Command, Output};
 
 /// Longer inputs are slower, and reach nothing more.
@@ -26,20 +25,14 @@ pub struct Options {
     sanitizer: String,
 }
 
-impl Options {
-    /// Where the sanitizer's programs are, so that the other's stay compiled.
-    fn folder(&self) -> PathBuf {
-        let target = paths::root().join("fuzz/target");
-        if self.sanitizer == "none" { target } else { target.join(&self.sanitizer) }
-    }
-}
-
 pub fn run(options: &Options) -> Result<()> {
     if options.seconds == 0 {
         bail!("--seconds 0 is for ever; at least 1");
     }
     let targets = targets(options.target.as_deref())?;
-    build(options)?;
+    // Instrumented, all at once.
+    let one = options.target.as_deref();
+    run::check(cargo_fuzz("build", options, one.unwrap_or_default()).args(one))?;
     let mut crashed = Vec::new();
     for target in &targets {
         match fuzz(target, options) {
@@ -59,8 +52,7 @@ pub fn run(options: &Options) -> Result<()> {
 
 /// Those that run: one that was asked for, or all that build quickly.
 fn targets(wanted: Option<&str>) -> Result<Vec<String>> {
-    let mut list = cargo_fuzz();
-    let output = list.arg("list").output().context("cannot start cargo")?;
+    let output = run::cargo().args(["fuzz", "list"]).output().context("cannot start cargo")?;
     if !output.status.success() {
         let said = String::from_utf8_lossy(&output.stderr);
         bail!(
@@ -76,11 +68,15 @@ fn targets(wanted: Option<&str>) -> Result<Vec<String>> {
     }
 }
 
-fn cargo_fuzz() -> Command {
-    let mut command = run::cargo();
+fn cargo_fuzz(command: &str, options: &Options, target: &str) -> Command {
+    let mut cargo = run::cargo();
+    // The sanitizer's programs have a folder, so that the other's stay compiled.
+    let folder = if options.sanitizer == "none" { "fuzz/target" } else { "fuzz/target/address" };
+    cargo.args(["fuzz", command, "--sanitizer", &options.sanitizer, "--target-dir"]).arg(paths::root().join(folder));
+    cargo.args((target == FSOT.0).then_some(["--features", FSOT.1]).into_iter().flatten());
     // A stable compiler refuses the flags of the instrumentation otherwise.
-    command.arg("fuzz").env("RUSTC_BOOTSTRAP", "1");
-    command
+    cargo.env("RUSTC_BOOTSTRAP", "1");
+    cargo
 }
 
 /// Builds all targets but `fsot_files`, not instrumented and not optimised, and runs the committed inputs through them:
@@ -110,41 +106,22 @@ pub fn replay() -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// Instrumented.
-fn build(options: &Options) -> Result<()> {
-    let target = options.target.as_deref();
-    let mut build = cargo_fuzz();
-    build.args(["build", "--sanitizer", &options.sanitizer, "--target-dir"]).arg(options.folder());
-    if target == Some(FSOT.0) {
-        build.args(["--features", FSOT.1]);
-    }
-    run::check(build.args(target))
-}
-
-/// Runs one target on its regressions and then on new inputs; how many it executed, or what crashed it.
+/// Runs one target on its regressions and seeds, and then on new inputs; how many it executed, or what crashed it.
 fn fuzz(target: &str, options: &Options) -> Result<u64> {
-    let folder = paths::root().join("fuzz");
-    let program = options.folder().join(host()?).join("release").join(target);
-    let regressions = folder.join("regressions").join(target);
-    let corpus = folder.join("corpus").join(target);
-    let seeds = folder.join("seeds").join(target);
+    let place = |kind: &str| paths::root().join("fuzz").join(kind).join(target);
+    let (regressions, corpus, seeds) = (place("regressions"), place("corpus"), place("seeds"));
     for path in [&regressions, &corpus] {
         fs::create_dir_all(path).with_context(|| format!("cannot create {}", path.display()))?;
     }
-    let known = paths::list(&regressions)?;
-    if !known.is_empty() {
-        let output =
-            run::command(&program).arg("-timeout=25").args(known).output().context("cannot start the fuzz target")?;
-        judge(&output, "an input that crashed it before crashes it again")?;
-    }
-    let mut command = run::command(&program);
+    // New inputs go to the first folder.
+    let mut command = cargo_fuzz("run", options, target);
+    command.arg(target).args([&corpus, &regressions]).args(seeds.is_dir().then_some(seeds)).arg("--");
     command.arg(format!("-max_total_time={}", options.seconds)).arg(format!("-max_len={MAX_BYTES}"));
     command.args(["-print_final_stats=1", "-timeout=25"]);
     // Files are named after what they hold, and the prefix is a folder only with the slash.
-    command.arg(format!("-artifact_prefix={}/", regressions.display())).arg(corpus);
-    command.args(seeds.is_dir().then_some(seeds));
+    command.arg(format!("-artifact_prefix={}/", regressions.display()));
     let output = command.output().context("cannot start the fuzz target")?;
-    judge(&output, "crashed")?;
+    judge(&output, "crashed, perhaps by an input that crashed it before")?;
     // Empty unless something crashed; then it stays, to be committed.
     fs::remove_dir(&regressions).ok();
     let count = executions(&String::from_utf8_lossy(&output.stderr));
@@ -167,12 +144,6 @@ fn judge(output: &Output, what: &str) -> Result<()> {
 /// What libFuzzer says at its end.
 fn executions(said: &str) -> Option<u64> {
     said.lines().find_map(|line| line.strip_prefix("stat::number_of_executed_units:")?.trim().parse().ok())
-}
-
-/// The triple that cargo and cargo-fuzz build for.
-pub fn host() -> Result<String> {
-    let version = run::read(run::command("rustc").arg("-vV"))?;
-    version.lines().find_map(|line| line.strip_prefix("host: ")).map(str::to_owned).context("rustc -vV names no host")
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 pub mod c_tests;
 pub mod embree;
-pub mod examples;
 pub mod fill;
 pub mod fuzz;
 pub mod install;
@@ -75,6 +74,23 @@ pub mod paths {
         let mut paths = list(folder)?;
         paths.retain(|path| path.extension().is_some_and(|found| found == extension));
         Ok(paths)
+    }
+}
+
+/// The programs of `examples_c`.
+pub mod examples {
+    use crate::run;
+    use std::path::Path;
+
+    /// Compiles `examples_c/SOURCE` with the library, as C99 or C++17 by its extension.
+    pub fn compile(source: &str, options: &[&str], archive: &Path, program: &Path) -> anyhow::Result<()> {
+        let (mut compiler, standard) = match source.ends_with(".c") {
+            true => (run::compiler("CC", "cc"), "-std=c99"),
+            false => (run::compiler("CXX", "c++"), "-std=c++17"),
+        };
+        let source = Path::new("examples_c").join(source);
+        compiler.arg(standard).args(options).arg(source).arg(archive).args(["-lm", "-o"]).arg(program);
+        run::check(&mut compiler)
     }
 }
 

@@ -1,8 +1,9 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
+use crate::c_tests::{self, PYTHON};
 use crate::outcome::Outcome;
-use crate::tools::Package;
-use crate::{c_tests, embree, examples, fuzz, instructions, library, licences, release, run, start, texts, tools};
+use crate::tools::{self, Package};
+use crate::{embree, fuzz, instructions, library, licences, release, run, start, texts};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -31,15 +32,13 @@ pub fn run(options: &Options) -> Result<()> {
         archive.clone().map_err(|error| anyhow::anyhow!("the C library could not be built: {error}"))
     };
     let mut steps = Steps { options, passed: 0, failed: Vec::new(), not_run: Vec::new(), left_out: 0 };
-    steps.cargo("formatting (cargo fmt --check)", &["fmt", "--all", "--check"]);
+    steps.cargo("formatting (cargo fmt --check)", &["fmt", "--all", "--check"], None);
     steps.run("lines of at most 120 columns", texts::columns);
     let clippy = ["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"];
-    steps.cargo("lints (cargo clippy, warnings are errors)", &clippy);
-    steps.run("include/noisefloor.h is what capi/ generates", || start::check("header", "header"));
-    steps.run("capi/abi.txt: functions, layouts and constants of the C ABI are as promised", || {
-        start::check("header", "abi")
-    });
-    steps.c("headers alone: C99, C11, C++11, C++17, C++20, every warning an error", "headers");
+    steps.cargo("lints (cargo clippy, warnings are errors)", &clippy, None);
+    steps.start("include/noisefloor.h is what capi/ generates", "header", "header");
+    steps.start("capi/abi.txt: functions, layouts and constants of the C ABI are as promised", "header", "abi");
+    steps.c("headers alone: C99, C11, C++11, C++17, C++20, every warning an error", "default", "headers", &[]);
     steps.run("the C library: no panic, no undefined symbol but mem*, only nf_* visible", || {
         library::check(&archive()?)?;
         Ok(Outcome::Passed)
@@ -47,88 +46,68 @@ pub fn run(options: &Options) -> Result<()> {
     // The benches have none.
     let mut test = vec!["test", "--profile", "suite", "--workspace", "--no-fail-fast", "--exclude", "noisefloor-bench"];
     test.extend(COMPILED_FAST.iter().flat_map(|name| ["--exclude", name]));
-    steps.cargo("Rust tests of the library (cargo test)", &test);
+    steps.cargo("Rust tests of the library (cargo test)", &test, None);
     // Their dependencies are compiled already, in the profile that compiles fast, not the one that runs fast.
     let mut test = vec!["test", "--profile", "xtask"];
     test.extend(COMPILED_FAST.iter().flat_map(|name| ["--package", name]));
-    steps.cargo("Rust tests of xtask, the header and the report (cargo test)", &test);
-    steps.run("Rust documentation, warnings are errors", || {
-        let mut doc = run::cargo();
-        doc.args(["doc", "--quiet", "--workspace", "--no-deps", "--document-private-items"]);
-        run::check(doc.env("RUSTDOCFLAGS", "-D warnings"))?;
-        Ok(Outcome::Passed)
-    });
+    steps.cargo("Rust tests of xtask, the header and the report (cargo test)", &test, None);
+    let doc = ["doc", "--quiet", "--workspace", "--no-deps", "--document-private-items"];
+    steps.cargo("Rust documentation, warnings are errors", &doc, Some(("RUSTDOCFLAGS", "-D warnings")));
     steps.run("each feature of the core alone, without std", each_feature);
     steps.run("fuzz targets: committed inputs", fuzz::replay);
-    steps.c("C tests as C99", "c99");
-    steps.run("C tests under the address and undefined-behaviour sanitizers", || c_tests::run("asan", "c99", &[]));
-    steps.run("C tests under valgrind: no wrong address, no undefined value, no leak", || {
-        c_tests::run("valgrind", "c99", &instructions::PACKAGES)
-    });
-    steps.run("threads under valgrind: an accumulator each is no race, a shared one is", || {
-        c_tests::run("valgrind", "threads", &instructions::PACKAGES)
-    });
-    steps.run("threads under ThreadSanitizer: the rules kept, each of them broken, and a renderer", || {
-        c_tests::run("tsan", "tsan", &[])
-    });
-    steps.c("C tests as C++17, including noisefloor.hpp", "cpp17");
-    steps.c("C++ wrapper, with and without exceptions", "wrapper");
-    steps.run(
-        "installed: CMake and pkg-config projects, C and C++, shared and static, either alone, part of another project",
-        || c_tests::run("default", "installed_projects", &[PKG_CONFIG]),
-    );
-    steps.c("installed: examples_c as a project of its own", "installed_examples");
-    steps.c("examples_c/integrate.c", "integrate");
-    steps.c("examples_c/image.cpp", "image");
-    steps.c("examples_c/shared.c", "shared");
-    steps.c("examples_c/shards.c: four processes", "shards");
-    steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
-        c_tests::run("default", "pathtracer", &[c_tests::PYTHON])
-    });
-    steps.c(
-        "parts of examples_c/pathtracer: intersections, lights, surfaces, the image plane, paths, MIS, the program",
-        "pathtracer_parts",
-    );
-    steps.run("tests/embree: Embree meets the same surfaces as the path tracer's own tree", || {
-        c_tests::run("default", "embree_agreement", &embree::packages())
-    });
-    steps.run("tests/embree: every scene, three samplers, 32 x 32 pixels", || {
-        c_tests::run("default", "embree_scenes", &[&embree::packages()[..], &[c_tests::PYTHON]].concat())
-    });
-    steps.run("tests/povray: POV-Ray's pictures as integrands, every estimator and sampler, 32 x 32 pixels", || {
-        start::check("report", "povray")
-    });
-    steps.run("cargo xtask report --quick: every number of the text is in the JSON", || {
-        start::check("report", "embree")
-    });
-    steps.run("examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces", || {
-        c_tests::run_twice("renderers", &[])
-    });
-    steps.run("examples_c/python: ctypes declarations, tests and a training loop", || {
-        c_tests::run("default", "python", &[c_tests::PYTHON])
-    });
-    steps.run(
-        "cargo xtask report --quick: tables, gradients, estimators, known integrands, samplers, point sets",
-        || start::check("report", "chapters"),
-    );
+    steps.c("C tests as C99", "default", "c99", &[]);
+    steps.c("C tests under the address and undefined-behaviour sanitizers", "asan", "c99", &[]);
+    let valgrind = instructions::PACKAGES;
+    steps.c("C tests under valgrind: no wrong address, no undefined value, no leak", "valgrind", "c99", &valgrind);
+    let heading = "threads under valgrind: an accumulator each is no race, a shared one is";
+    steps.c(heading, "valgrind", "threads", &valgrind);
+    let heading = "threads under ThreadSanitizer: the rules kept, each of them broken, and a renderer";
+    steps.c(heading, "tsan", "tsan", &[]);
+    steps.c("C tests as C++17, including noisefloor.hpp", "default", "cpp17", &[]);
+    steps.c("C++ wrapper, with and without exceptions", "default", "wrapper", &[]);
+    let heading = "installed: CMake and pkg-config projects, C and C++, shared and static, either alone, part of \
+                   another project";
+    steps.c(heading, "default", "installed_projects", &[PKG_CONFIG]);
+    steps.c("installed: examples_c as a project of its own", "default", "installed_examples", &[]);
+    steps.c("examples_c/integrate.c", "default", "integrate", &[]);
+    steps.c("examples_c/image.cpp", "default", "image", &[]);
+    steps.c("examples_c/shared.c", "default", "shared", &[]);
+    steps.c("examples_c/shards.c: four processes", "default", "shards", &[]);
+    let heading = "examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels";
+    steps.c(heading, "default", "pathtracer", &[PYTHON]);
+    let heading =
+        "parts of examples_c/pathtracer: intersections, lights, surfaces, the image plane, paths, MIS, the program";
+    steps.c(heading, "default", "pathtracer_parts", &[]);
+    let (rays, all) = (embree::packages(), [&embree::packages()[..], &[PYTHON]].concat());
+    let heading = "tests/embree: Embree meets the same surfaces as the path tracer's own tree";
+    steps.c(heading, "default", "embree_agreement", &rays);
+    steps.c("tests/embree: every scene, three samplers, 32 x 32 pixels", "default", "embree_scenes", &all);
+    let heading = "tests/povray: POV-Ray's pictures as integrands, every estimator and sampler, 32 x 32 pixels";
+    steps.start(heading, "report", "povray");
+    steps.start("cargo xtask report --quick: every number of the text is in the JSON", "report", "embree");
+    let heading = "examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces";
+    steps.run(heading, || c_tests::run_twice("renderers", &[]));
+    steps.c("examples_c/python: ctypes declarations, tests and a training loop", "default", "python", &[PYTHON]);
+    let heading = "cargo xtask report --quick: tables, gradients, estimators, known integrands, samplers, point sets";
+    steps.start(heading, "report", "chapters");
     steps.run("instruction counts: none above the committed report's by 3 %", || instructions::check(&archive()?));
     for (heading, label) in [
         ("examples_c/train_mlp.c: digits", "train_mlp"),
         ("examples_c/fit_polynomial.c: short runs", "fit_polynomial"),
         ("examples_c/fit_image.cpp: short runs", "fit_image"),
     ] {
-        steps.run(heading, || c_tests::run_twice(label, &[c_tests::PYTHON]));
+        steps.run(heading, || c_tests::run_twice(label, &[PYTHON]));
     }
-    steps.run("POV-Ray's patch: well formed, its licence stated, and our side of it compiles", || {
-        start::check("report", "patch")
-    });
+    let heading = "POV-Ray's patch: well formed, its licence stated, and our side of it compiles";
+    steps.start(heading, "report", "patch");
     steps.run("links between documents lead somewhere", texts::links);
-    steps.run("cargo package: every published package is complete and below the registry's limit", release::packages);
+    let heading = "cargo package: every published package is complete and below the registry's limit";
+    steps.run(heading, release::packages);
     steps.run("THIRD_PARTY.md: the licences of all dependencies, each allowed", licences::check);
     steps.run("versions: Rust's and the project's, as the texts say", release::versions);
     steps.run("sizes: product, tools, documents", texts::sizes);
-    steps.run("README.md opens with a part of examples_c/image.cpp", examples::readme);
-    steps.run("C code in docs/ that includes the header compiles", examples::documents);
+    steps.run("README.md opens with a part of examples_c/image.cpp", texts::readme);
+    steps.c("C code in docs/ that includes the header compiles", "default", "documents", &[PYTHON]);
     steps.finish(start)
 }
 
@@ -166,17 +145,22 @@ impl Steps<'_> {
         }
     }
 
-    /// A command of cargo's.
-    fn cargo(&mut self, heading: &'static str, arguments: &[&str]) {
+    /// A command of cargo's, with a variable of its environment.
+    fn cargo(&mut self, heading: &'static str, arguments: &[&str], variable: Option<(&str, &str)>) {
         self.run(heading, || {
-            run::check(run::cargo().args(arguments))?;
+            run::check(run::cargo().args(arguments).envs(variable))?;
             Ok(Outcome::Passed)
         });
     }
 
+    /// What `header` or `report` checks.
+    fn start(&mut self, heading: &'static str, folder: &str, step: &str) {
+        self.run(heading, || start::check(folder, step));
+    }
+
     /// The tests of tests/CMakeLists.txt that have this label.
-    fn c(&mut self, heading: &'static str, label: &str) {
-        self.run(heading, || c_tests::run("default", label, &[]));
+    fn c(&mut self, heading: &'static str, preset: &str, label: &str, needed: &[Package]) {
+        self.run(heading, || c_tests::run(preset, label, needed));
     }
 
     fn finish(self, start: Instant) -> Result<()> {

@@ -1,8 +1,9 @@
-//! What holds for all texts: lines no longer than a screen is wide, links that lead somewhere; and how much there is.
+//! What holds for all texts: lines no longer than a screen is wide, links that lead somewhere, code that is a
+//! program's; and how much there is.
 
 use crate::outcome::Outcome;
 use crate::{paths, run};
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -86,6 +87,26 @@ fn anchor(line: &str) -> Option<String> {
     let heading = line.starts_with('#').then(|| line.trim_start_matches('#').trim().to_lowercase())?;
     let kept = heading.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
     Some(kept.map(|c| if c == ' ' { '-' } else { c }).collect())
+}
+
+/// README.md's first block of code is a part of image.cpp, letter by letter, and the two commands that do all the
+/// set-up follow.
+pub fn readme() -> Result<Outcome> {
+    let (text, program) = (paths::read("README.md")?, paths::read("examples_c/image.cpp")?);
+    let part = program.split_once("    // README begin\n").and_then(|(_, rest)| rest.split_once("    // README end\n"));
+    let (part, _) = part.context("examples_c/image.cpp has no part between `README begin` and `README end`")?;
+    let part: String = part.lines().map(|line| format!("{}\n", line.strip_prefix("    ").unwrap_or(line))).collect();
+    let block = text.split_once("```cpp\n").and_then(|(before, rest)| (!before.contains("```")).then_some(rest));
+    let block = block.and_then(|rest| rest.split_once("```")).context("README.md does not open with a block of C++")?;
+    if block.0 != part {
+        bail!("README.md's first block of code is not the part of examples_c/image.cpp that it shows");
+    }
+    for command in ["\ncargo xtask demo ", "\ncargo xtask test "] {
+        if !block.1.contains(command) {
+            bail!("README.md does not say `{}`", command.trim());
+        }
+    }
+    Ok(Outcome::Passed)
 }
 
 /// Prints lines of Rust, words of the documents, and the report's size.

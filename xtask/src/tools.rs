@@ -35,8 +35,8 @@ pub fn ensure() -> Result<()> {
     Ok(())
 }
 
-/// A Debian package, and a file that it brings: if that is there, or a program of its name in another folder of the path,
-/// the package or an equal of it is installed.
+/// A Debian package, and a file that it brings: if that is there, or a program of its name in another folder of the
+/// path, the package or an equal of it is installed.
 #[derive(Clone, Copy)]
 pub struct Package {
     pub name: &'static str,
