@@ -1,4 +1,4 @@
-//! What `cargo xtask` is made of, for the header and the report too.
+//! What `cargo xtask` is made of, for the crates `release` and `report` too.
 
 pub mod c_tests;
 pub mod embree;
@@ -7,8 +7,6 @@ pub mod fuzz;
 pub mod install;
 pub mod instructions;
 pub mod library;
-pub mod licences;
-pub mod release;
 pub mod run;
 pub mod start;
 pub mod test;

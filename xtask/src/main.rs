@@ -63,14 +63,14 @@ fn main() -> ExitCode {
         Command::Povray(passed) => start::start("report", "povray", &passed.arguments),
         Command::Report(passed) => start::start("report", "report", &passed.arguments),
         Command::Targets(passed) => start::start("report", "targets", &passed.arguments),
-        Command::Header => start::start("header", "header", &[]),
+        Command::Header => start::start("release", "header", &[]),
         Command::Abi { unreleased } => {
-            start::start("header", "abi", unreleased.then(|| "--unreleased".into()).as_slice())
+            start::start("release", "abi", unreleased.then(|| "--unreleased".into()).as_slice())
         }
         Command::Fill => fill::run(),
         Command::Test(options) => test::run(&options),
         Command::Fuzz(options) => fuzz::run(&options),
-        Command::Licences => licences::write(),
+        Command::Licences => start::start("release", "licences", &[]),
         Command::Install(options) => install::run(&options),
         Command::Tiles(options) => tiles::run(&options),
         Command::Embree => embree::build().map(|path| println!("{}", path.display())),

@@ -1,4 +1,4 @@
-//! Starts the crates `header` and `report`, which stand apart because what they are made of takes long to compile.
+//! Starts the crates `release` and `report`, which stand apart because what they are made of takes long to compile.
 
 use crate::outcome::{NOT_RUN, Outcome};
 use crate::{paths, run};

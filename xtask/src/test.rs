@@ -3,7 +3,7 @@
 use crate::c_tests::{self, PYTHON};
 use crate::outcome::Outcome;
 use crate::tools::{self, Package};
-use crate::{embree, fuzz, instructions, library, licences, release, run, start, texts};
+use crate::{embree, fuzz, instructions, library, run, start, texts};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use std::time::Instant;
 
 const PKG_CONFIG: Package = Package { name: "pkg-config", file: "/usr/bin/pkg-config" };
 /// The packages that do not measure: their profile is `xtask`.
-const COMPILED_FAST: [&str; 3] = ["xtask", "noisefloor-header", "noisefloor-report"];
+const COMPILED_FAST: [&str; 3] = ["xtask", "noisefloor-release", "noisefloor-report"];
 
 #[derive(Args)]
 pub struct Options {
@@ -36,8 +36,8 @@ pub fn run(options: &Options) -> Result<()> {
     steps.run("lines of at most 120 columns", texts::columns);
     let clippy = ["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"];
     steps.cargo("lints (cargo clippy, warnings are errors)", &clippy, None);
-    steps.start("include/noisefloor.h is what capi/ generates", "header", "header");
-    steps.start("capi/abi.txt: functions, layouts and constants of the C ABI are as promised", "header", "abi");
+    steps.start("include/noisefloor.h is what capi/ generates", "release", "header");
+    steps.start("capi/abi.txt: functions, layouts and constants of the C ABI are as promised", "release", "abi");
     steps.c("headers alone: C99, C11, C++11, C++17, C++20, every warning an error", "default", "headers", &[]);
     steps.run("the C library: no panic, no undefined symbol but mem*, only nf_* visible", || {
         library::check(&archive()?)?;
@@ -50,7 +50,7 @@ pub fn run(options: &Options) -> Result<()> {
     // Their dependencies are compiled already, in the profile that compiles fast, not the one that runs fast.
     let mut test = vec!["test", "--profile", "xtask"];
     test.extend(COMPILED_FAST.iter().flat_map(|name| ["--package", name]));
-    steps.cargo("Rust tests of xtask, the header and the report (cargo test)", &test, None);
+    steps.cargo("Rust tests of xtask, release and the report (cargo test)", &test, None);
     let doc = ["doc", "--quiet", "--workspace", "--no-deps", "--document-private-items"];
     steps.cargo("Rust documentation, warnings are errors", &doc, Some(("RUSTDOCFLAGS", "-D warnings")));
     steps.run("each feature of the core alone, without std", each_feature);
@@ -102,9 +102,9 @@ pub fn run(options: &Options) -> Result<()> {
     steps.start(heading, "report", "patch");
     steps.run("links between documents lead somewhere", texts::links);
     let heading = "cargo package: every published package is complete and below the registry's limit";
-    steps.run(heading, release::packages);
-    steps.run("THIRD_PARTY.md: the licences of all dependencies, each allowed", licences::check);
-    steps.run("versions: Rust's and the project's, as the texts say", release::versions);
+    steps.start(heading, "release", "packages");
+    steps.start("THIRD_PARTY.md: the licences of all dependencies, each allowed", "release", "licences");
+    steps.start("versions: Rust's and the project's, as the texts say", "release", "versions");
     steps.run("sizes: product, tools, documents", texts::sizes);
     steps.run("README.md opens with a part of examples_c/image.cpp", texts::readme);
     steps.c("C code in docs/ that includes the header compiles", "default", "documents", &[PYTHON]);
@@ -153,7 +153,7 @@ impl Steps<'_> {
         });
     }
 
-    /// What `header` or `report` checks.
+    /// What `release` or `report` checks.
     fn start(&mut self, heading: &'static str, folder: &str, step: &str) {
         self.run(heading, || start::check(folder, step));
     }

@@ -1,12 +1,12 @@
 //! THIRD_PARTY.md: the packages of others, their licences, and whether ours allows them.
 
-use crate::outcome::Outcome;
-use crate::release::PUBLISHED;
-use crate::{paths, run};
+use crate::packages::PUBLISHED;
 use anyhow::{Context, Result, bail};
 use spdx::{Expression, ParseMode};
 use std::collections::BTreeMap;
 use std::fs;
+use xtask::outcome::Outcome;
+use xtask::{paths, run};
 
 /// What may be in what we ship: nothing that asks more than that its notice be kept.
 const ALLOWED: [&str; 10] =
@@ -19,7 +19,7 @@ const INTRODUCTION: &str = "\
 
 Written by `cargo xtask licences`; do not edit. Licences are as their authors declare them, for all targets; the full
 texts come with each package's source. A test compares this file with Cargo.lock, and every licence with those that
-xtask/src/licences.rs allows.
+release/src/licences.rs allows.
 ";
 const STANDARD_LIBRARY: &str = "
 The C library also holds what it uses of Rust's `core` (MIT OR Apache-2.0) and compiler-builtins (MIT AND
@@ -30,12 +30,12 @@ Apache-2.0 WITH LLVM-exception AND (MIT OR Apache-2.0)), of the compiler that bu
 type Packages = BTreeMap<(String, String), String>;
 
 /// Rewrites THIRD_PARTY.md.
-pub fn write() -> Result<()> {
+pub(crate) fn write() -> Result<()> {
     fs::write(paths::root().join("THIRD_PARTY.md"), current()?).context("cannot write THIRD_PARTY.md")
 }
 
 /// Fails if the list is old or a licence is not allowed.
-pub fn check() -> Result<Outcome> {
+pub(crate) fn check() -> Result<Outcome> {
     if paths::read("THIRD_PARTY.md")? != current()? {
         bail!("THIRD_PARTY.md is not what Cargo.lock says: run `cargo xtask licences` and commit the result");
     }

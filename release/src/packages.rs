@@ -1,14 +1,14 @@
-//! What must hold before a version is published: docs/releases.md.
+//! What would be published is complete, and versions are the same wherever they are said.
 
-use crate::outcome::Outcome;
-use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use xtask::outcome::Outcome;
+use xtask::{paths, run};
 
 /// The packages that are published, in the order in which they must be.
-pub const PUBLISHED: [&str; 3] = ["noisefloor", "noisefloor-capi", "noisefloor-fsot"];
+pub(crate) const PUBLISHED: [&str; 3] = ["noisefloor", "noisefloor-capi", "noisefloor-fsot"];
 /// The registry's limit for a package, compressed.
 const LIMIT: u64 = 10 << 20;
 /// What cargo adds to our files, and what must be there whatever the folder holds.
@@ -16,7 +16,7 @@ const ADDED: [&str; 2] = ["Cargo.toml.orig", "Cargo.lock"];
 const NEEDED: [&str; 3] = ["LICENSE-MIT", "LICENSE-APACHE", "Cargo.toml"];
 
 /// Packs each published package without compiling it again; the tests have compiled the same files.
-pub fn packages() -> Result<Outcome> {
+pub(crate) fn check() -> Result<Outcome> {
     let mut package = run::cargo();
     package.args(["package", "--quiet", "--no-verify", "--allow-dirty", "--locked"]);
     run::read(package.args(PUBLISHED.iter().flat_map(|name| ["--package", name])))?;
@@ -24,7 +24,7 @@ pub fn packages() -> Result<Outcome> {
         let name = one["name"].as_str().context("a package without a name")?;
         let private = one["publish"].as_array().is_some_and(Vec::is_empty);
         if private == PUBLISHED.contains(&name) {
-            bail!("{name}: `publish` in its Cargo.toml says otherwise than xtask/src/release.rs");
+            bail!("{name}: `publish` in its Cargo.toml says otherwise than release/src/packages.rs");
         }
         if !private {
             check_one(name, one)?;
@@ -84,7 +84,7 @@ const NAME_RUST: [&str; 2] = ["README.md", "docs/install.md"];
 
 /// The declared Rust version is what the texts say and compiles the libraries; CHANGELOG.md knows the project's
 /// version.
-pub fn versions() -> Result<Outcome> {
+pub(crate) fn versions() -> Result<Outcome> {
     let packages = run::packages()?;
     let core = packages.iter().find(|package| package["name"] == "noisefloor").context("there is no `noisefloor`")?;
     let rust = core["rust_version"].as_str().context("`noisefloor` has no rust-version")?;

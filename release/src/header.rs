@@ -168,7 +168,7 @@ impl Item {
             }
         }
         let (_, chapter, place) =
-            best.with_context(|| format!("header/src/header.rs has no chapter for `{name}`: add its prefix"))?;
+            best.with_context(|| format!("release/src/header.rs has no chapter for `{name}`: add its prefix"))?;
         let mut text = String::new();
         // Arguments on lines of their own stand below the first, whose line a `struct` left out makes shorter.
         let mut shorter = 0;

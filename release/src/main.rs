@@ -1,10 +1,12 @@
-//! What `cargo xtask header` and `abi` start: the C header, generated from `capi/`, and the list of what its ABI
-//! promises.
+//! What must hold before a version is published (docs/releases.md): the C header, generated from `capi/`, the list of
+//! what its ABI promises, packages, licences, versions. `cargo xtask header`, `abi` and `licences` start it.
 
 mod abi;
 mod banner;
 mod declarations;
 mod header;
+mod licences;
+mod packages;
 
 use anyhow::{Result, bail};
 use std::process::ExitCode;
@@ -30,9 +32,17 @@ fn run(arguments: &[&str]) -> Result<Outcome> {
         ["header"] => header::write()?,
         ["abi"] => abi::write(false)?,
         ["abi", "--unreleased"] => abi::write(true)?,
+        ["licences"] => licences::write()?,
         ["check", "header"] => header::check()?,
         ["check", "abi"] => return abi::check(),
-        _ => bail!("`{}`: it must be header, abi [--unreleased], check header or check abi", arguments.join(" ")),
+        ["check", "licences"] => return licences::check(),
+        ["check", "packages"] => return packages::check(),
+        ["check", "versions"] => return packages::versions(),
+        _ => bail!(
+            "`{}`: it must be header, abi [--unreleased] or licences; or check and header, abi, licences, packages or \
+             versions",
+            arguments.join(" ")
+        ),
     }
     Ok(Outcome::Passed)
 }
