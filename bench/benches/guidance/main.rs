@@ -17,7 +17,7 @@ use noisefloor_bench::Extent;
 use study::{COUNTS, DIMS};
 
 #[derive(Parser)]
-struct Options {
+struct Arguments {
     /// Only these dims
     #[arg(long, value_delimiter = ',', default_values_t = DIMS)]
     dims: Vec<usize>,
@@ -26,7 +26,7 @@ struct Options {
 }
 
 fn main() -> Result<()> {
-    let Options { dims, common } = Options::parse();
+    let Arguments { dims, common } = Arguments::parse();
     let bar = noisefloor_bench::bar(dims.len() * COUNTS.len())?;
     let mut cells = Vec::new();
     let extent = common.extent();
