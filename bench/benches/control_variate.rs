@@ -3,9 +3,6 @@
 //! Group names are `door/dims`D`order/method`, ids are sample counts. Throughput is in samples, so that criterion's
 //! "elem/s" is samples per second.
 
-// Without the archive the C accumulator is a type of no values.
-#![cfg_attr(not(archive), allow(unreachable_code, unused_variables))]
-
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
 use noisefloor::basis::Family;
 use noisefloor::control_variate::Regressor;
@@ -91,7 +88,7 @@ fn streaming(criterion: &mut Criterion) {
                     Door::C => {
                         accumulator!(criterion, name, dims, c_abi::Accumulator::new(method.c_config(dims, order)));
                     }
-                    Door::Rust => accumulator!(criterion, name, dims, Stream::new(&method.config(dims, order))),
+                    Door::Rust => accumulator!(criterion, name, dims, Stream::<f64>::new(&method.config(dims, order))),
                 }
             }
         }

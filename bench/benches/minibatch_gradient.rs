@@ -3,8 +3,6 @@
 //! finite, and sums over samples. Throughput is in bytes of the matrix, so that criterion's "GiB/s" compare. 64 samples
 //! x 100,000 parameters of f32 are 25.6 MB.
 
-#![cfg_attr(not(archive), allow(unreachable_code, unused_variables))]
-
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use noisefloor::minibatch::{Batch, Gradient, gradient_len, weights};
 use noisefloor::mis::Solver;

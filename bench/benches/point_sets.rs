@@ -16,30 +16,12 @@ use fsot::points::Points;
 use fsot::run::Optimization;
 use fsot::target::Uniform;
 use noisefloor::tile::{Builtin, Sampler};
+use noisefloor_bench::{Extent, Options};
 use noisefloor_tests::random::SplitMix64;
 use std::f64::consts::PI;
 use std::fmt::Write;
-use std::fs;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
-
-/// Optimises and measures point sets.
-#[derive(Parser)]
-struct Options {
-    /// Up to a thousand points: whether everything works.
-    #[arg(long, conflicts_with = "full")]
-    quick: bool,
-    /// A million points at draft quality, more seeds, and longer runs.
-    #[arg(long)]
-    full: bool,
-    /// Where points.csv goes.
-    #[arg(long, default_value_os_t = noisefloor_bench::output("point_sets"))]
-    output: PathBuf,
-    /// What cargo adds.
-    #[arg(long, hide = true)]
-    bench: bool,
-}
 
 /// Points of a million.
 const MILLION: usize = 1 << 20;
@@ -70,33 +52,34 @@ struct Run {
 }
 
 /// Scaling: draft quality, as many points as the time allows. Then the quality that longer runs reach.
-fn runs(options: &Options) -> Vec<Run> {
-    let more = |seeds: u64| if options.full { 4 * seeds } else { seeds };
-    let sizes: &[usize] = match () {
-        () if options.quick => &[256, 512, 1024],
-        () if options.full => &[256, 1024, 4096, 8192, 16_384, 65_536, 262_144],
-        () => &[256, 1024, 4096, 8192, 16_384, 65_536],
-    };
+fn runs(extent: Extent) -> Vec<Run> {
+    let (quick, full) = (extent == Extent::Quick, extent == Extent::Full);
+    let more = |seeds: u64| if full { 4 * seeds } else { seeds };
+    let sizes: &[usize] = extent.choose(
+        &[256, 512, 1024],
+        &[256, 1024, 4096, 8192, 16_384, 65_536],
+        &[256, 1024, 4096, 8192, 16_384, 65_536, 262_144],
+    );
     let mut runs = Vec::new();
     for colours in 1..=4 {
         // Draft quality takes steps for each class, up to eight.
         let most = match colours {
             1 => usize::MAX,
-            _ if options.full => 65_536,
+            _ if full => 65_536,
             _ => 16_384,
         };
         for &points in sizes.iter().filter(|&&points| points <= most) {
-            let seeds = if options.quick { 1 } else { more(if points <= 4096 { 4 } else { 2 }) };
+            let seeds = if quick { 1 } else { more(if points <= 4096 { 4 } else { 2 }) };
             runs.push(Run { study: "scaling", colours, points, quality: Quality::Draft, seeds });
         }
     }
     let single = |study, points, quality, seeds| Run { study, colours: 1, points, quality, seeds };
-    if options.quick {
+    if quick {
         runs.push(single("steps", 256, Quality::Iterations(64), 1));
         runs.push(single("standard", 256, Quality::Standard, 1));
         return runs;
     }
-    if options.full {
+    if full {
         runs.push(single("scaling", MILLION, Quality::Draft, 1));
     } else {
         runs.push(single("scaling", 262_144, Quality::Draft, 1));
@@ -117,12 +100,12 @@ fn runs(options: &Options) -> Vec<Run> {
 
 fn main() -> Result<()> {
     let options = Options::parse();
-    fs::create_dir_all(&options.output).with_context(|| format!("cannot create {}", options.output.display()))?;
+    let extent = options.extent();
     let mut out = "study,sampler,classes,points,steps,seed,threads,seconds,part,of_points,w2,bound,\
                    discrepancy,discrepancy_relative,neighbour,\
                    half_planes,gaussians,half_planes_relative,gaussians_relative\n"
         .to_owned();
-    let runs = runs(&options);
+    let runs = runs(extent);
     for run in &runs {
         eprintln!("{}: {} points, {} classes", run.study, run.points, (1 << run.colours) - 1);
         for seed in 0..run.seeds {
@@ -130,12 +113,12 @@ fn main() -> Result<()> {
         }
     }
     let mut sizes: Vec<(usize, u64)> =
-        runs.iter().map(|run| (run.points, peer_seeds(run.points, options.full))).collect();
+        runs.iter().map(|run| (run.points, peer_seeds(run.points, extent == Extent::Full))).collect();
     sizes.sort_unstable();
     sizes.dedup();
     for (points, seeds) in sizes {
         eprintln!("random and Sobol: {points} points");
-        for seed in 0..if options.quick { 1 } else { seeds } {
+        for seed in 0..extent.choose(1, seeds, seeds) {
             for (name, of) in [("random", random as fn(usize, u64) -> Result<Points>), ("Owen-Sobol", sobol)] {
                 let start = Instant::now();
                 let set = of(points, seed)?;
@@ -145,9 +128,7 @@ fn main() -> Result<()> {
             }
         }
     }
-    noisefloor_bench::write(&options.output.join("points.csv"), out)?;
-    println!("in {}", options.output.display());
-    Ok(())
+    options.write("point_sets", &[("points.csv", out)])
 }
 
 /// Rows of all points, and of the first colour's where there are several.

@@ -1,9 +1,6 @@
 //! Nanoseconds of a draw: constructing the pixel's sampler and drawing two numbers, through the Rust API and through
 //! the C ABI of the archive that ships. Pixels run over the image row by row; each figure is of one draw.
 
-// Without the archive the C tile is a type of no values.
-#![cfg_attr(not(archive), allow(unreachable_code, unused_variables))]
-
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
 use noisefloor::rng::Rng;
 use noisefloor::tile::{Header, Sampler, Shape, Tile, fill};

@@ -13,6 +13,16 @@ const SIZE: u32 = 128;
 
 const USAGE: &str = "usage: points heitz|openqmc-sobol-bn|openqmc-pmj-bn|openqmc-lattice-bn SAMPLES DIMS FILE";
 
+/// A number of one of OpenQMC's samplers.
+macro_rules! open_qmc {
+    ($sampler:ident) => {
+        |x, y, _, index, dim| {
+            let domain = $sampler::new(x as i32, y as i32, 0, index as i32).new_domain((dim / 4) as i32);
+            domain.draw_sample_f32::<4>()[dim as usize % 4]
+        }
+    };
+}
+
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [sampler, samples, dims, file] = arguments.as_slice() else { bail!(USAGE) };
@@ -24,18 +34,9 @@ fn main() -> Result<()> {
     }
     let draw: fn(u32, u32, u32, u32, u32) -> f32 = match sampler.as_str() {
         "heitz" => heitz,
-        "openqmc-sobol-bn" => |x, y, _, i, d| {
-            SobolBnSampler::new(x as i32, y as i32, 0, i as i32).new_domain((d / 4) as i32).draw_sample_f32::<4>()
-                [d as usize % 4]
-        },
-        "openqmc-pmj-bn" => |x, y, _, i, d| {
-            PmjBnSampler::new(x as i32, y as i32, 0, i as i32).new_domain((d / 4) as i32).draw_sample_f32::<4>()
-                [d as usize % 4]
-        },
-        "openqmc-lattice-bn" => |x, y, _, i, d| {
-            LatticeBnSampler::new(x as i32, y as i32, 0, i as i32).new_domain((d / 4) as i32).draw_sample_f32::<4>()
-                [d as usize % 4]
-        },
+        "openqmc-sobol-bn" => open_qmc!(SobolBnSampler),
+        "openqmc-pmj-bn" => open_qmc!(PmjBnSampler),
+        "openqmc-lattice-bn" => open_qmc!(LatticeBnSampler),
         other => bail!("there is no sampler `{other}`. {USAGE}"),
     };
     let mut bytes = format!("noisefloor-points {SIZE} {SIZE} {samples} {dims}\n").into_bytes();

@@ -122,7 +122,6 @@ impl Method {
     }
 
     /// Allocates what estimates from `n` samples need.
-    #[cfg_attr(not(archive), allow(unreachable_code))]
     pub fn prepare(&self, door: Door, dims: usize, order: usize, n: usize) -> Prepared {
         let (config, c_config) = (self.config(dims, order), self.c_config(dims, order));
         match (door, self.streaming, self.narrow) {
@@ -140,17 +139,17 @@ fn workspace<R: Real>(config: &Config, n: usize) -> Vec<R> {
 }
 
 /// A Rust accumulator with its workspace.
-pub struct Stream {
-    accumulator: Accumulator<f64, Vec<f64>>,
-    workspace: Vec<f64>,
+pub struct Stream<R = f64> {
+    accumulator: Accumulator<R, Vec<R>>,
+    workspace: Vec<R>,
 }
 
-impl Stream {
+impl<R: Real> Stream<R> {
     /// An empty accumulator.
     pub fn new(config: &Config) -> Self {
-        let len = |count: Result<usize, _>| vec![0.0; count.expect("a streaming configuration")];
-        let sums = len(Accumulator::<f64, Vec<f64>>::len(config));
-        let workspace = len(Accumulator::<f64, Vec<f64>>::workspace_len(config));
+        let len = |count: Result<usize, _>| vec![R::ZERO; count.expect("a streaming configuration")];
+        let sums = len(Accumulator::<R, Vec<R>>::len(config));
+        let workspace = len(Accumulator::<R, Vec<R>>::workspace_len(config));
         Self { accumulator: Accumulator::new(config, sums).expect("enough memory"), workspace }
     }
 

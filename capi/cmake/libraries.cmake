@@ -17,7 +17,7 @@ set(profile CARGO_PROFILE_RELEASE_PANIC=abort CARGO_PROFILE_RELEASE_LTO=fat CARG
     "CARGO_PROFILE_RELEASE_OPT_LEVEL=${NOISEFLOOR_OPT_LEVEL}")
 add_custom_command(
     OUTPUT "${object}"
-    COMMAND "${CMAKE_COMMAND}" -E env --unset=MAKEFLAGS --unset=CARGO_BUILD_TARGET ${profile} "${NOISEFLOOR_CARGO}" ${cargo_build} --quiet --release --locked --lib
+    COMMAND "${CMAKE_COMMAND}" -E env --unset=MAKEFLAGS --unset=CARGO_BUILD_TARGET ${profile} ${NOISEFLOOR_CARGO_ENVIRONMENT} "${NOISEFLOOR_CARGO}" ${cargo_build} --quiet --release --locked --lib
         --manifest-path "${CMAKE_CURRENT_SOURCE_DIR}/Cargo.toml" --target-dir "${NOISEFLOOR_CARGO_TARGET_DIR}"
     COMMAND "${CMAKE_COMMAND}" -E env "LD=${CMAKE_LINKER}" "NM=${CMAKE_NM}" "OBJCOPY=${CMAKE_OBJCOPY}"
         sh "${CMAKE_CURRENT_SOURCE_DIR}/cmake/one_object.sh" "${archive}" "${object}"

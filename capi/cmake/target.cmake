@@ -37,6 +37,7 @@ set(NOISEFLOOR_RUST_TARGET "${rust_target}" CACHE STRING "What cargo compiles fo
 set(NOISEFLOOR_OPT_LEVEL "${opt_level}" CACHE STRING "3: fast; s, z: small")
 option(NOISEFLOOR_DOUBLE "Control variates in double precision; without, only NF_PRECISION_F32" ON)
 set(NOISEFLOOR_CARGO_OPTIONS "" CACHE STRING "More options for cargo, separated by semicolons")
+set(NOISEFLOOR_CARGO_ENVIRONMENT "" CACHE STRING "More of cargo's environment, NAME=VALUE, separated by semicolons")
 if(CMAKE_CROSSCOMPILING AND NOT NOISEFLOOR_RUST_TARGET)
     message(FATAL_ERROR "noisefloor: no Rust target is known for ${CMAKE_SYSTEM_NAME} on `${CMAKE_SYSTEM_PROCESSOR}`: name it, for example "
         "-DNOISEFLOOR_RUST_TARGET=thumbv7em-none-eabihf (`rustc --print target-list` has all)")

@@ -118,6 +118,11 @@ pub fn geometric_mean(values: &[f64]) -> f64 {
     (values.iter().map(|v| v.ln()).sum::<f64>() / values.len() as f64).exp()
 }
 
+/// The root of the mean of squares.
+pub fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
+}
+
 /// The value at quantile 1/2.
 pub fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();

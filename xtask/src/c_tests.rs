@@ -1,117 +1,86 @@
-//! The C tests of `tests/c`: one program for each theme, compiled strictly, linked with the library, run.
+//! What tests the C library from outside, described by tests/CMakeLists.txt: built by CMake, run by CTest.
 
 use crate::outcome::Outcome;
+use crate::tools::{self, Package};
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
-
-/// What the sources are compiled as.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Language {
-    C99,
-    /// The same C files as C++, where `check.h` includes noisefloor.hpp.
-    Cpp17,
-}
 
 pub const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O1"];
-pub const SANITIZERS: [&str; 3] = ["-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=undefined"];
+pub const PYTHON: Package = Package { name: "python3", file: "/usr/bin/python3" };
+/// Debian's cmake does without make unless asked.
+const CMAKE: [Package; 2] =
+    [Package { name: "cmake", file: "/usr/bin/cmake" }, Package { name: "make", file: "/usr/bin/make" }];
 
-/// Compiles and runs every `tests/c/*.c`, with more compiler options.
-pub fn run(language: Language, options: &[&str], archive: &Path) -> Result<Outcome> {
-    let sources = sources()?;
-    check_coverage(&sources)?;
-    each(&sources, |source| {
-        let mut compiler = match language {
-            Language::C99 => run::compiler("CC", "cc"),
-            Language::Cpp17 => run::compiler("CXX", "c++"),
-        };
-        compiler.arg(if language == Language::C99 { "-std=c99" } else { "-std=c++17" }).args(STRICT).args(options);
-        compiler.args(["-Iinclude", "-Itests/c"]);
-        if language == Language::Cpp17 {
-            compiler.args(["-x", "c++"]).arg(source).args(["-x", "none"]);
-        } else {
-            compiler.arg(source);
-        }
-        let program = output("c_test")?;
-        run::check(compiler.arg(archive).args(["-lm", "-o"]).arg(&program))?;
-        run::check(&mut run::command(program))
-    })?;
+/// Builds and runs the tests with this label of a preset of tests/CMakePresets.json, which need these packages.
+pub fn run(preset: &str, label: &str, needed: &[Package]) -> Result<Outcome> {
+    if let Some(why) = build(preset, label, needed)? {
+        return Ok(Outcome::NotRun(why));
+    }
+    let mut test = run::command("ctest");
+    test.args(["--verbose", "--no-tests=error", "--label-regex", &format!("^{label}$"), "--test-dir"]);
+    let output = test.arg(folder(preset)).output().context("cannot start ctest")?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    // What the programs say follows the number of their test, and what ctest does with them too.
+    let said = text.lines().filter_map(|line| line.split_once(": ")).filter(|(number, line)| {
+        let is_ctest = ["Test command:", "Working Directory:", "Environment variables:", "Test timeout", " "];
+        number.parse::<u32>().is_ok() && !is_ctest.iter().any(|start| line.starts_with(start))
+    });
+    said.for_each(|(_, line)| println!("   {line}"));
+    if !output.status.success() {
+        let failed = text.split_once("The following tests").map_or(&text[..], |(_, list)| list);
+        bail!("{}{}", failed.trim(), String::from_utf8_lossy(&output.stderr));
+    }
+    // Not what the ctest of an installed project says.
+    let counts = text.lines().filter(|line| line.contains("tests passed") && !line.contains(": "));
+    counts.for_each(|line| println!("   {preset}: {line}"));
     Ok(Outcome::Passed)
 }
 
-/// The test programs, in order.
+/// As [`run()`], and what there is of it under the sanitizers, if the compiler has them.
+pub fn run_twice(label: &str, needed: &[Package]) -> Result<Outcome> {
+    let outcome = run("default", label, needed)?;
+    if let (Outcome::Passed, Outcome::NotRun(why)) = (&outcome, run("asan", label, needed)?) {
+        println!("   not under the sanitizers: {why}");
+    }
+    Ok(outcome)
+}
+
+/// Builds what a label needs, or says why it cannot run here.
+pub fn build(preset: &str, label: &str, needed: &[Package]) -> Result<Option<String>> {
+    if let Some(missing) = tools::packages(&[&CMAKE[..], needed].concat())? {
+        return Ok(Some(missing));
+    }
+    let mut configure = run::command("cmake");
+    configure.args(["-S", "tests", "--preset", preset, "-B"]).arg(folder(preset));
+    configure.arg(format!("-DNOISEFLOOR_CARGO={}", run::cargo().get_program().to_string_lossy()));
+    configure.arg(format!("-DNOISEFLOOR_CARGO_TARGET_DIR={}", paths::target().display()));
+    let output = configure.output().context("cannot start cmake")?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    if !output.status.success() {
+        bail!("tests/CMakeLists.txt, preset {preset}:\n{said}");
+    }
+    if let Some(why) = said.lines().find_map(|line| line.strip_prefix("NOT RUN: ")) {
+        return Ok(Some(why.to_owned()));
+    }
+    let mut build = run::command("cmake");
+    build.arg("--build").arg(folder(preset)).args(["--parallel", "2", "--target", label]);
+    run::read(&mut build).map(|_| None)
+}
+
+/// Where CMake puts what it makes for a preset.
+pub fn folder(preset: &str) -> PathBuf {
+    paths::output().join("tests").join(preset)
+}
+
+/// The test programs of tests/c, in order.
 pub fn sources() -> Result<Vec<PathBuf>> {
-    let mut sources = Vec::new();
-    for entry in fs::read_dir(paths::root().join("tests/c")).context("cannot read tests/c")? {
-        let path = entry.context("cannot read tests/c")?.path();
-        if path.extension().is_some_and(|extension| extension == "c") {
-            sources.push(path);
-        }
-    }
-    if sources.is_empty() {
-        bail!("tests/c holds no test");
-    }
+    let entries = fs::read_dir(paths::root().join("tests/c")).context("cannot read tests/c")?;
+    let mut sources = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>>>()?;
+    sources.retain(|path| path.extension().is_some_and(|extension| extension == "c"));
     sources.sort();
     Ok(sources)
-}
-
-/// Fails unless every function of the header is called somewhere.
-fn check_coverage(sources: &[PathBuf]) -> Result<()> {
-    let read = |path: &Path| fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()));
-    let header = read(&paths::header())?;
-    let code = header.lines().filter(|line| !line.trim_start().starts_with("//"));
-    let calls = |text: &str, name: &str| text.contains(&format!("{name}("));
-    let tests = sources.iter().map(|source| read(source)).collect::<Result<Vec<_>>>()?;
-    let mut missing = Vec::new();
-    for name in
-        code.filter_map(|line| line.split_once('(')).filter_map(|(before, _)| before.split([' ', '*']).next_back())
-    {
-        if name.starts_with("nf_") && !tests.iter().any(|text| calls(text, name)) {
-            missing.push(name);
-        }
-    }
-    if missing.is_empty() { Ok(()) } else { bail!("tests/c never calls {}", missing.join(", ")) }
-}
-
-/// As [`run()`], under the sanitizers, if the compiler has them.
-pub fn sanitized(language: Language, archive: &Path) -> Result<Outcome> {
-    if !has_sanitizers()? {
-        return Ok(Outcome::NotRun(
-            "the C compiler has no -fsanitize=address,undefined; gcc (Debian: libgcc-12-dev) and clang have".to_owned(),
-        ));
-    }
-    run(language, &SANITIZERS, archive)
-}
-
-/// Whether the C compiler has [`SANITIZERS`].
-pub fn has_sanitizers() -> Result<bool> {
-    let source = output("sanitizers.c")?;
-    fs::write(&source, "int main(void) { return 0; }\n")
-        .with_context(|| format!("cannot write {}", source.display()))?;
-    let program = output("sanitizers")?;
-    let mut compiler = run::compiler("CC", "cc");
-    compiler.args(SANITIZERS).arg(source).arg("-o").arg(&program).stdout(Stdio::null()).stderr(Stdio::null());
-    Ok(compiler.status().is_ok_and(|status| status.success())
-        && run::command(program).status().is_ok_and(|status| status.success()))
-}
-
-/// The test of noisefloor.hpp, where errors are thrown, where the caller turned that off, and where the compiler did.
-pub fn wrapper(archive: &Path) -> Result<Outcome> {
-    for options in [&[][..], &["-DNOISEFLOOR_NO_EXCEPTIONS"], &["-fno-exceptions", "-fno-rtti"]] {
-        let program = output("wrapper_test")?;
-        let mut compiler = run::compiler("CXX", "c++");
-        compiler
-            .arg("-std=c++17")
-            .args(STRICT)
-            .args(["-Wconversion", "-Wshadow", "-Iinclude", "-Itests/c"])
-            .args(options);
-        compiler.arg("tests/c/wrapper.cpp").arg(archive).arg("-o").arg(&program);
-        run::check(&mut compiler)?;
-        run::check(&mut run::command(program))?;
-    }
-    Ok(Outcome::Passed)
 }
 
 /// Where a program of a test goes.

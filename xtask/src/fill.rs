@@ -36,7 +36,7 @@ pub fn run() -> Result<()> {
 fn documents() -> Result<Vec<(PathBuf, String, String)>> {
     let root = paths::root();
     let mut all = vec![root.join("README.md"), root.join("examples_c/README.md")];
-    all.extend(paths::documents("docs")?);
+    all.extend(paths::of_kind("docs", "md")?);
     let filled = all.into_iter().map(|path| {
         let old = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
         let new = fill(&old, &|cell| measured(root, cell)).with_context(|| path.display().to_string())?;

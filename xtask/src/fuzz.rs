@@ -3,9 +3,8 @@
 use crate::outcome::Outcome;
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Longer inputs are slower, and reach nothing more.
@@ -22,33 +21,8 @@ pub struct Options {
     #[arg(long)]
     target: Option<String>,
     /// What the targets are built with; `address` is slower, and finds what wrong `unsafe` code reads or writes
-    #[arg(long, value_enum, default_value_t = Sanitizer::None)]
-    sanitizer: Sanitizer,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Sanitizer {
-    None,
-    Address,
-}
-
-impl Sanitizer {
-    /// As cargo-fuzz calls it.
-    fn name(self) -> &'static str {
-        match self {
-            Sanitizer::None => "none",
-            Sanitizer::Address => "address",
-        }
-    }
-
-    /// Where its programs are, so that the other's stay compiled.
-    fn folder(self) -> PathBuf {
-        let target = paths::root().join("fuzz/target");
-        match self {
-            Sanitizer::None => target,
-            Sanitizer::Address => target.join(self.name()),
-        }
-    }
+    #[arg(long, value_parser = ["none", "address"], default_value = "none")]
+    sanitizer: String,
 }
 
 pub fn run(options: &Options) -> Result<()> {
@@ -56,7 +30,9 @@ pub fn run(options: &Options) -> Result<()> {
         bail!("--seconds 0 is for ever; at least 1");
     }
     let targets = targets(options.target.as_deref())?;
-    build(options)?;
+    // Instrumented, all at once.
+    let one = options.target.as_deref();
+    run::check(cargo_fuzz("build", options, one.unwrap_or_default()).args(one))?;
     let mut crashed = Vec::new();
     for target in &targets {
         match fuzz(target, options) {
@@ -76,8 +52,7 @@ pub fn run(options: &Options) -> Result<()> {
 
 /// Those that run: one that was asked for, or all that build quickly.
 fn targets(wanted: Option<&str>) -> Result<Vec<String>> {
-    let mut list = cargo_fuzz();
-    let output = list.arg("list").output().context("cannot start cargo")?;
+    let output = run::cargo().args(["fuzz", "list"]).output().context("cannot start cargo")?;
     if !output.status.success() {
         let said = String::from_utf8_lossy(&output.stderr);
         bail!(
@@ -93,11 +68,15 @@ fn targets(wanted: Option<&str>) -> Result<Vec<String>> {
     }
 }
 
-fn cargo_fuzz() -> Command {
-    let mut command = run::cargo();
+fn cargo_fuzz(command: &str, options: &Options, target: &str) -> Command {
+    let mut cargo = run::cargo();
+    // The sanitizer's programs have a folder, so that the other's stay compiled.
+    let folder = if options.sanitizer == "none" { "fuzz/target" } else { "fuzz/target/address" };
+    cargo.args(["fuzz", command, "--sanitizer", &options.sanitizer, "--target-dir"]).arg(paths::root().join(folder));
+    cargo.args((target == FSOT.0).then_some(["--features", FSOT.1]).into_iter().flatten());
     // A stable compiler refuses the flags of the instrumentation otherwise.
-    command.arg("fuzz").env("RUSTC_BOOTSTRAP", "1");
-    command
+    cargo.env("RUSTC_BOOTSTRAP", "1");
+    cargo
 }
 
 /// Builds all targets but `fsot_files`, not instrumented and not optimised, and runs the committed inputs through them:
@@ -108,12 +87,12 @@ pub fn replay() -> Result<Outcome> {
     build.args(["build", "--quiet", "--locked", "--manifest-path"]).arg(folder.join("Cargo.toml"));
     build.arg("--target-dir").arg(&target).env("CARGO_PROFILE_DEV_DEBUG", "false");
     run::check(build.env("RUSTFLAGS", "--cfg fuzzing -D warnings"))?;
-    for seeds in files(&folder.join("seeds"))? {
+    for seeds in paths::list("fuzz/seeds")? {
         let name = seeds.file_name().context("a folder of seeds has no name")?;
-        let mut inputs = files(&seeds)?;
+        let mut inputs = paths::list(&seeds)?;
         let regressions = folder.join("regressions").join(name);
         if regressions.is_dir() {
-            inputs.extend(files(&regressions)?);
+            inputs.extend(paths::list(&regressions)?);
         }
         let program = target.join("debug").join(name);
         let output = run::command(&program)
@@ -127,41 +106,22 @@ pub fn replay() -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// Instrumented.
-fn build(options: &Options) -> Result<()> {
-    let target = options.target.as_deref();
-    let mut build = cargo_fuzz();
-    build.args(["build", "--sanitizer", options.sanitizer.name(), "--target-dir"]).arg(options.sanitizer.folder());
-    if target == Some(FSOT.0) {
-        build.args(["--features", FSOT.1]);
-    }
-    run::check(build.args(target))
-}
-
-/// Runs one target on its regressions and then on new inputs; how many it executed, or what crashed it.
+/// Runs one target on its regressions and seeds, and then on new inputs; how many it executed, or what crashed it.
 fn fuzz(target: &str, options: &Options) -> Result<u64> {
-    let folder = paths::root().join("fuzz");
-    let program = options.sanitizer.folder().join(host()?).join("release").join(target);
-    let regressions = folder.join("regressions").join(target);
-    let corpus = folder.join("corpus").join(target);
-    let seeds = folder.join("seeds").join(target);
+    let place = |kind: &str| paths::root().join("fuzz").join(kind).join(target);
+    let (regressions, corpus, seeds) = (place("regressions"), place("corpus"), place("seeds"));
     for path in [&regressions, &corpus] {
         fs::create_dir_all(path).with_context(|| format!("cannot create {}", path.display()))?;
     }
-    let known = files(&regressions)?;
-    if !known.is_empty() {
-        let output =
-            run::command(&program).arg("-timeout=25").args(known).output().context("cannot start the fuzz target")?;
-        judge(&output, "an input that crashed it before crashes it again")?;
-    }
-    let mut command = run::command(&program);
+    // New inputs go to the first folder.
+    let mut command = cargo_fuzz("run", options, target);
+    command.arg(target).args([&corpus, &regressions]).args(seeds.is_dir().then_some(seeds)).arg("--");
     command.arg(format!("-max_total_time={}", options.seconds)).arg(format!("-max_len={MAX_BYTES}"));
     command.args(["-print_final_stats=1", "-timeout=25"]);
     // Files are named after what they hold, and the prefix is a folder only with the slash.
-    command.arg(format!("-artifact_prefix={}/", regressions.display())).arg(corpus);
-    command.args(seeds.is_dir().then_some(seeds));
+    command.arg(format!("-artifact_prefix={}/", regressions.display()));
     let output = command.output().context("cannot start the fuzz target")?;
-    judge(&output, "crashed")?;
+    judge(&output, "crashed, perhaps by an input that crashed it before")?;
     // Empty unless something crashed; then it stays, to be committed.
     fs::remove_dir(&regressions).ok();
     let count = executions(&String::from_utf8_lossy(&output.stderr));
@@ -169,13 +129,6 @@ fn fuzz(target: &str, options: &Options) -> Result<u64> {
         0 => bail!("the fuzz target `{target}` ran no input in {} s", options.seconds),
         count => Ok(count),
     }
-}
-
-fn files(folder: &Path) -> Result<Vec<PathBuf>> {
-    let entries = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
-    let mut files = entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>()?;
-    files.sort();
-    Ok(files)
 }
 
 fn judge(output: &Output, what: &str) -> Result<()> {
@@ -191,12 +144,6 @@ fn judge(output: &Output, what: &str) -> Result<()> {
 /// What libFuzzer says at its end.
 fn executions(said: &str) -> Option<u64> {
     said.lines().find_map(|line| line.strip_prefix("stat::number_of_executed_units:")?.trim().parse().ok())
-}
-
-/// The triple that cargo and cargo-fuzz build for.
-pub fn host() -> Result<String> {
-    let version = run::read(run::command("rustc").arg("-vV"))?;
-    version.lines().find_map(|line| line.strip_prefix("host: ")).map(str::to_owned).context("rustc -vV names no host")
 }
 
 #[cfg(test)]

@@ -1,30 +1,116 @@
-//! What `cargo xtask` is made of, for the report too.
+//! What `cargo xtask` is made of, for the crates `release` and `report` too.
 
-pub mod abi;
 pub mod c_tests;
-pub mod columns;
 pub mod embree;
-pub mod examples;
 pub mod fill;
-pub mod fit;
 pub mod fuzz;
-pub mod header;
-pub mod house;
 pub mod install;
 pub mod instructions;
 pub mod library;
-pub mod links;
-pub mod outcome;
-pub mod path_tracer;
-pub mod paths;
-pub mod python;
-pub mod release;
-pub mod report;
 pub mod run;
+pub mod start;
 pub mod test;
-pub mod threads;
+pub mod texts;
 pub mod tiles;
 pub mod tools;
-pub mod train_mlp;
-pub mod trainer;
-pub mod valgrind;
+
+/// What became of a step of the tests.
+pub mod outcome {
+    /// What a step that did not fail says.
+    pub enum Outcome {
+        Passed,
+        /// Why it could not run.
+        NotRun(String),
+    }
+
+    /// The exit status of a program that is a step and cannot run here.
+    pub const NOT_RUN: u8 = 77;
+}
+
+/// Where things are.
+pub mod paths {
+    use anyhow::{Context, Result};
+    use std::path::{Path, PathBuf};
+
+    /// The workspace root.
+    pub fn root() -> &'static Path {
+        Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."))
+    }
+
+    /// A text, by its path from the workspace root.
+    pub fn read(name: impl AsRef<Path>) -> Result<String> {
+        let path = root().join(name);
+        std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
+    }
+
+    /// Cargo's target folder, wherever the user put it.
+    pub fn target() -> PathBuf {
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |dir| root().join(dir))
+    }
+
+    /// Where the C library and what is linked with it go.
+    pub fn output() -> PathBuf {
+        target().join("noisefloor")
+    }
+
+    /// The generated C header.
+    pub fn header() -> PathBuf {
+        root().join("include/noisefloor.h")
+    }
+
+    /// What is in a folder, in order.
+    pub fn list(folder: impl AsRef<Path>) -> Result<Vec<PathBuf>> {
+        let folder = root().join(folder);
+        let list = || std::fs::read_dir(&folder)?.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>();
+        let mut paths = list().with_context(|| format!("cannot read {}", folder.display()))?;
+        paths.sort();
+        Ok(paths)
+    }
+
+    /// The files of a folder whose names end so, in order.
+    pub fn of_kind(folder: &str, extension: &str) -> Result<Vec<PathBuf>> {
+        let mut paths = list(folder)?;
+        paths.retain(|path| path.extension().is_some_and(|found| found == extension));
+        Ok(paths)
+    }
+}
+
+/// The programs of `examples_c`.
+pub mod examples {
+    use crate::run;
+    use std::path::Path;
+
+    /// Compiles `examples_c/SOURCE` with the library, as C99 or C++17 by its extension.
+    pub fn compile(source: &str, options: &[&str], archive: &Path, program: &Path) -> anyhow::Result<()> {
+        let (mut compiler, standard) = match source.ends_with(".c") {
+            true => (run::compiler("CC", "cc"), "-std=c99"),
+            false => (run::compiler("CXX", "c++"), "-std=c++17"),
+        };
+        let source = Path::new("examples_c").join(source);
+        compiler.arg(standard).args(options).arg(source).arg(archive).args(["-lm", "-o"]).arg(program);
+        run::check(&mut compiler)
+    }
+}
+
+/// What the C ABI has.
+pub mod abi {
+    /// The names that capi/abi.txt lists.
+    pub struct Header(Vec<String>);
+
+    impl Header {
+        pub fn committed() -> anyhow::Result<Self> {
+            let text = super::paths::read("capi/abi.txt")?;
+            let names = text.lines().filter_map(|line| match line.split_once(' ')? {
+                ("function", rest) => rest.split('(').next()?.rsplit([' ', '*']).next(),
+                ("object", rest) => rest.rsplit(' ').next(),
+                _ => None,
+            });
+            Ok(Self(names.map(str::to_owned).collect()))
+        }
+
+        /// What a library exports: functions and data.
+        pub fn symbols(&self) -> impl Iterator<Item = &str> {
+            self.0.iter().map(String::as_str)
+        }
+    }
+}

@@ -23,10 +23,10 @@ pub fn build() -> Result<PathBuf> {
 /// `prefix`: nothing, or a target.
 pub fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<PathBuf> {
     let tool = |name: &str| format!("{prefix}{name}");
-    fs::create_dir_all(output).with_context(|| format!("cannot create {}", output.display()))?;
     // Complete or not at all, also while another program links the one in place or makes it too.
-    let scratch = tempfile::tempdir_in(output).with_context(|| format!("cannot write in {}", output.display()))?;
-    let (object, new) = (scratch.path().join("noisefloor.o"), scratch.path().join("libnoisefloor.a"));
+    let scratch = output.join(format!("scratch.{}", std::process::id()));
+    fs::create_dir_all(&scratch).with_context(|| format!("cannot create {}", scratch.display()))?;
+    let (object, new) = (scratch.join("noisefloor.o"), scratch.join("libnoisefloor.a"));
     run::check(
         run::command("sh")
             .args(["capi/cmake/one_object.sh".as_ref(), raw, &object])
@@ -38,10 +38,10 @@ pub fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<PathBuf> {
     // What links the library is not built anew where nothing has changed.
     let modified = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).ok();
     let is_newer = modified(&archive).is_some_and(|built| modified(raw).is_some_and(|raw| raw <= built));
-    if is_newer && fs::read(&archive).ok() == fs::read(&new).ok() {
-        return Ok(archive);
+    if !is_newer || fs::read(&archive).ok() != fs::read(&new).ok() {
+        fs::rename(&new, &archive).with_context(|| format!("cannot replace {}", archive.display()))?;
     }
-    fs::rename(&new, &archive).with_context(|| format!("cannot replace {}", archive.display()))?;
+    fs::remove_dir_all(&scratch).with_context(|| format!("cannot remove {}", scratch.display()))?;
     Ok(archive)
 }
 

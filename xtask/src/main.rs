@@ -37,14 +37,18 @@ enum Command {
     /// Regenerate include/noisefloor.h
     Header,
     /// Rewrite capi/abi.txt, the list of what the C ABI promises
-    Abi(abi::Options),
+    Abi {
+        /// Allow what breaks programs without a new NF_ABI_VERSION: no release has had the present one yet
+        #[arg(long)]
+        unreleased: bool,
+    },
     /// Rewrite THIRD_PARTY.md, the list of other people's packages and their licences
     Licences,
     /// Install headers, libraries, CMake package and pkg-config file
     Install(install::Options),
     /// Build target/noisefloor/libnoisefloor.a, the archive that C and C++ programs link
     Library,
-    /// Build target/noisefloor/embree_harness, the path tracer on Embree with the thesis's scenes
+    /// Build the path tracer on Embree with the thesis's scenes, and print where it is
     Embree,
     /// Build for other targets, run the C tests and a bare-metal program there under QEMU, and write
     /// docs/report/sizes.md
@@ -55,17 +59,19 @@ enum Command {
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
-        Command::Demo(passed) => report::start("demo", &passed.arguments),
-        Command::Povray(passed) => report::start("povray", &passed.arguments),
-        Command::Report(passed) => report::start("report", &passed.arguments),
+        Command::Demo(passed) => start::start("report", "demo", &passed.arguments),
+        Command::Povray(passed) => start::start("report", "povray", &passed.arguments),
+        Command::Report(passed) => start::start("report", "report", &passed.arguments),
+        Command::Targets(passed) => start::start("report", "targets", &passed.arguments),
+        Command::Header => start::start("release", "header", &[]),
+        Command::Abi { unreleased } => {
+            start::start("release", "abi", unreleased.then(|| "--unreleased".into()).as_slice())
+        }
         Command::Fill => fill::run(),
         Command::Test(options) => test::run(&options),
         Command::Fuzz(options) => fuzz::run(&options),
-        Command::Header => header::write(),
-        Command::Abi(options) => abi::write(&options),
-        Command::Licences => release::licences::write(),
+        Command::Licences => start::start("release", "licences", &[]),
         Command::Install(options) => install::run(&options),
-        Command::Targets(passed) => report::start("targets", &passed.arguments),
         Command::Tiles(options) => tiles::run(&options),
         Command::Embree => embree::build().map(|path| println!("{}", path.display())),
         Command::Library => library::build().map(|path| println!("{}", path.display())),

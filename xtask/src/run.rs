@@ -18,7 +18,7 @@ pub fn cargo() -> Command {
 
 /// The C or C++ compiler: `$CC` / `$CXX`, or the system's.
 pub fn compiler(variable: &str, default: &str) -> Command {
-    command(std::env::var_os(variable).unwrap_or_else(|| default.into()))
+    command(std::env::var_os(variable).filter(|name| !name.is_empty()).unwrap_or_else(|| default.into()))
 }
 
 /// Runs to the end; a failure is an error that shows the command line.
@@ -37,6 +37,13 @@ pub fn read(command: &mut Command) -> Result<String> {
         bail!("failed ({}): {}\n{}", output.status, line(command), String::from_utf8_lossy(&output.stderr));
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// What cargo says of the workspace's packages.
+pub fn packages() -> Result<Vec<serde_json::Value>> {
+    let metadata = read(cargo().args(["metadata", "--no-deps", "--format-version", "1"]))?;
+    let metadata: serde_json::Value = serde_json::from_str(&metadata).context("cargo metadata wrote no JSON")?;
+    Ok(metadata["packages"].as_array().context("cargo metadata names no packages")?.clone())
 }
 
 /// The files that git knows, from the workspace root; None where there is no repository.

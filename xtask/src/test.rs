@@ -1,14 +1,17 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
+use crate::c_tests::{self, PYTHON};
 use crate::outcome::Outcome;
-use crate::{
-    abi, c_tests, columns, embree, examples, fit, fuzz, header, house, install, instructions, library, links,
-    path_tracer, python, release, report, run, threads, tools, train_mlp, valgrind,
-};
+use crate::tools::{self, Package};
+use crate::{embree, fuzz, instructions, library, run, start, texts};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
+
+const PKG_CONFIG: Package = Package { name: "pkg-config", file: "/usr/bin/pkg-config" };
+/// The packages that do not measure: their profile is `xtask`.
+const COMPILED_FAST: [&str; 3] = ["xtask", "noisefloor-release", "noisefloor-report"];
 
 #[derive(Args)]
 pub struct Options {
@@ -29,117 +32,82 @@ pub fn run(options: &Options) -> Result<()> {
         archive.clone().map_err(|error| anyhow::anyhow!("the C library could not be built: {error}"))
     };
     let mut steps = Steps { options, passed: 0, failed: Vec::new(), not_run: Vec::new(), left_out: 0 };
-    steps.run("formatting (cargo fmt --check)", || {
-        run::check(run::cargo().args(["fmt", "--all", "--check"]))?;
-        Ok(Outcome::Passed)
-    });
-    steps.run("lines of at most 120 columns", columns::check);
-    steps.run("lints (cargo clippy, warnings are errors)", || {
-        let mut clippy = run::cargo();
-        clippy.args(["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"]);
-        run::check(&mut clippy)?;
-        Ok(Outcome::Passed)
-    });
-    steps.run("include/noisefloor.h is what capi/ generates", || {
-        header::check_committed()?;
-        Ok(Outcome::Passed)
-    });
-    steps.run("capi/abi.txt: functions, layouts and constants of the C ABI are as promised", abi::check);
-    steps.run("headers alone: C99, C11, C++11, C++17, C++20, every warning an error", || {
-        header::check_compiles()?;
-        Ok(Outcome::Passed)
-    });
+    steps.cargo("formatting (cargo fmt --check)", &["fmt", "--all", "--check"], None);
+    steps.run("lines of at most 120 columns", texts::columns);
+    let clippy = ["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"];
+    steps.cargo("lints (cargo clippy, warnings are errors)", &clippy, None);
+    steps.start("include/noisefloor.h is what capi/ generates", "release", "header");
+    steps.start("capi/abi.txt: functions, layouts and constants of the C ABI are as promised", "release", "abi");
+    steps.c("headers alone: C99, C11, C++11, C++17, C++20, every warning an error", "default", "headers", &[]);
     steps.run("the C library: no panic, no undefined symbol but mem*, only nf_* visible", || {
         library::check(&archive()?)?;
         Ok(Outcome::Passed)
     });
     // The benches have none.
-    steps.run("Rust tests of the library (cargo test)", || {
-        let mut test = run::cargo();
-        test.args(["test", "--profile", "suite", "--workspace", "--no-fail-fast"]);
-        test.args(["--exclude", "xtask", "--exclude", "noisefloor-report", "--exclude", "noisefloor-bench"]);
-        run::check(&mut test)?;
-        Ok(Outcome::Passed)
-    });
-    // Its dependencies are compiled already, in the profile that compiles fast, not the one that runs fast.
-    steps.run("Rust tests of xtask and the report (cargo test)", || {
-        let mut test = run::cargo();
-        test.args(["test", "--profile", "xtask", "--package", "xtask", "--package", "noisefloor-report"]);
-        run::check(&mut test)?;
-        Ok(Outcome::Passed)
-    });
-    steps.run("Rust documentation, warnings are errors", || {
-        let mut doc = run::cargo();
-        doc.args(["doc", "--quiet", "--workspace", "--no-deps", "--document-private-items"]);
-        run::check(doc.env("RUSTDOCFLAGS", "-D warnings"))?;
-        Ok(Outcome::Passed)
-    });
-    steps.run("each feature of the core alone, without std", || {
-        each_feature()?;
-        Ok(Outcome::Passed)
-    });
+    let mut test = vec!["test", "--profile", "suite", "--workspace", "--no-fail-fast", "--exclude", "noisefloor-bench"];
+    test.extend(COMPILED_FAST.iter().flat_map(|name| ["--exclude", name]));
+    steps.cargo("Rust tests of the library (cargo test)", &test, None);
+    // Their dependencies are compiled already, in the profile that compiles fast, not the one that runs fast.
+    let mut test = vec!["test", "--profile", "xtask"];
+    test.extend(COMPILED_FAST.iter().flat_map(|name| ["--package", name]));
+    steps.cargo("Rust tests of xtask, release and the report (cargo test)", &test, None);
+    let doc = ["doc", "--quiet", "--workspace", "--no-deps", "--document-private-items"];
+    steps.cargo("Rust documentation, warnings are errors", &doc, Some(("RUSTDOCFLAGS", "-D warnings")));
+    steps.run("each feature of the core alone, without std", each_feature);
     steps.run("fuzz targets: committed inputs", fuzz::replay);
-    steps.run("C tests as C99", || c_tests::run(c_tests::Language::C99, &[], &archive()?));
-    steps.run("C tests under the address and undefined-behaviour sanitizers", || {
-        c_tests::sanitized(c_tests::Language::C99, &archive()?)
-    });
-    steps.run("C tests under valgrind: no wrong address, no undefined value, no leak", || valgrind::run(&archive()?));
-    steps.run("threads under valgrind: an accumulator each is no race, a shared one is", || {
-        valgrind::threads(&archive()?)
-    });
-    steps.run("threads under ThreadSanitizer: the rules kept, each of them broken, and a renderer", threads::run);
-    steps
-        .run("C tests as C++17, including noisefloor.hpp", || c_tests::run(c_tests::Language::Cpp17, &[], &archive()?));
-    steps.run("C++ wrapper, with and without exceptions", || c_tests::wrapper(&archive()?));
-    steps.run(
-        "installed: CMake and pkg-config projects, C and C++, shared and static, either alone, part of another project",
-        install::test::projects,
-    );
-    steps.run("installed: examples_c as a project of its own", install::test::examples);
-    steps.run("examples_c/integrate.c", || examples::integrate(&archive()?, "integrate.c"));
-    steps.run("examples_c/image.cpp", || examples::integrate(&archive()?, "image.cpp"));
-    steps.run("examples_c/shared.c", || examples::integrate(&archive()?, "shared.c"));
-    steps.run("examples_c/shards.c: four processes", || examples::shards(&archive()?));
-    steps.run("examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels", || {
-        path_tracer::check(&archive()?)
-    });
-    steps.run(
-        "parts of examples_c/pathtracer: intersections, lights, surfaces, the image plane, paths, MIS, the program",
-        || path_tracer::parts(&archive()?),
-    );
-    steps.run("tests/embree: Embree meets the same surfaces as the path tracer's own tree", || {
-        embree::agreement(&archive()?)
-    });
-    steps.run("tests/embree: every scene, three samplers, 32 x 32 pixels", || embree::scenes(&archive()?));
-    steps.run("tests/povray: POV-Ray's pictures as integrands, every estimator and sampler, 32 x 32 pixels", || {
-        report::check("povray")
-    });
-    steps.run("cargo xtask report --quick: every number of the text is in the JSON", || report::check("embree"));
-    steps.run("examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces", || {
-        examples::renderers(&archive()?)
-    });
-    steps.run("examples_c/python: ctypes declarations, tests and a training loop", || python::run(&archive()?));
-    steps.run(
-        "cargo xtask report --quick: tables, gradients, estimators, known integrands, samplers, point sets",
-        || report::check("chapters"),
-    );
+    steps.c("C tests as C99", "default", "c99", &[]);
+    steps.c("C tests under the address and undefined-behaviour sanitizers", "asan", "c99", &[]);
+    let valgrind = instructions::PACKAGES;
+    steps.c("C tests under valgrind: no wrong address, no undefined value, no leak", "valgrind", "c99", &valgrind);
+    let heading = "threads under valgrind: an accumulator each is no race, a shared one is";
+    steps.c(heading, "valgrind", "threads", &valgrind);
+    let heading = "threads under ThreadSanitizer: the rules kept, each of them broken, and a renderer";
+    steps.c(heading, "tsan", "tsan", &[]);
+    steps.c("C tests as C++17, including noisefloor.hpp", "default", "cpp17", &[]);
+    steps.c("C++ wrapper, with and without exceptions", "default", "wrapper", &[]);
+    let heading = "installed: CMake and pkg-config projects, C and C++, shared and static, either alone, part of \
+                   another project";
+    steps.c(heading, "default", "installed_projects", &[PKG_CONFIG]);
+    steps.c("installed: examples_c as a project of its own", "default", "installed_examples", &[]);
+    steps.c("examples_c/integrate.c", "default", "integrate", &[]);
+    steps.c("examples_c/image.cpp", "default", "image", &[]);
+    steps.c("examples_c/shared.c", "default", "shared", &[]);
+    steps.c("examples_c/shards.c: four processes", "default", "shards", &[]);
+    let heading = "examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels";
+    steps.c(heading, "default", "pathtracer", &[PYTHON]);
+    let heading =
+        "parts of examples_c/pathtracer: intersections, lights, surfaces, the image plane, paths, MIS, the program";
+    steps.c(heading, "default", "pathtracer_parts", &[]);
+    let (rays, all) = (embree::packages(), [&embree::packages()[..], &[PYTHON]].concat());
+    let heading = "tests/embree: Embree meets the same surfaces as the path tracer's own tree";
+    steps.c(heading, "default", "embree_agreement", &rays);
+    steps.c("tests/embree: every scene, three samplers, 32 x 32 pixels", "default", "embree_scenes", &all);
+    let heading = "tests/povray: POV-Ray's pictures as integrands, every estimator and sampler, 32 x 32 pixels";
+    steps.start(heading, "report", "povray");
+    steps.start("cargo xtask report --quick: every number of the text is in the JSON", "report", "embree");
+    let heading = "examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces";
+    steps.run(heading, || c_tests::run_twice("renderers", &[]));
+    steps.c("examples_c/python: ctypes declarations, tests and a training loop", "default", "python", &[PYTHON]);
+    let heading = "cargo xtask report --quick: tables, gradients, estimators, known integrands, samplers, point sets";
+    steps.start(heading, "report", "chapters");
     steps.run("instruction counts: none above the committed report's by 3 %", || instructions::check(&archive()?));
-    steps.run("examples_c/train_mlp.c: digits", || train_mlp::digits(&archive()?));
-    steps.run("examples_c/fit_polynomial.c: short runs", || fit::polynomial(&archive()?));
-    steps.run("examples_c/fit_image.cpp: short runs", || fit::photograph(&archive()?));
-    steps.run("POV-Ray's patch: well formed, its licence stated, and our side of it compiles", || {
-        report::check("patch")
-    });
-    steps.run("links between documents lead somewhere", links::check);
-    steps.run(
-        "cargo package: every published package is complete and below the registry's limit",
-        release::package::check,
-    );
-    steps.run("THIRD_PARTY.md: the licences of all dependencies, each allowed", release::licences::check);
-    steps.run("versions: Rust's and the project's, as the texts say", release::versions::check);
-    steps.run("sizes: product, tools, documents", house::print);
-    steps.run("README.md opens with a part of examples_c/image.cpp", examples::readme);
-    steps.run("C code in docs/ that includes the header compiles", examples::documents);
+    for (heading, label) in [
+        ("examples_c/train_mlp.c: digits", "train_mlp"),
+        ("examples_c/fit_polynomial.c: short runs", "fit_polynomial"),
+        ("examples_c/fit_image.cpp: short runs", "fit_image"),
+    ] {
+        steps.run(heading, || c_tests::run_twice(label, &[PYTHON]));
+    }
+    let heading = "POV-Ray's patch: well formed, its licence stated, and our side of it compiles";
+    steps.start(heading, "report", "patch");
+    steps.run("links between documents lead somewhere", texts::links);
+    let heading = "cargo package: every published package is complete and below the registry's limit";
+    steps.start(heading, "release", "packages");
+    steps.start("THIRD_PARTY.md: the licences of all dependencies, each allowed", "release", "licences");
+    steps.start("versions: Rust's and the project's, as the texts say", "release", "versions");
+    steps.run("sizes: product, tools, documents", texts::sizes);
+    steps.run("README.md opens with a part of examples_c/image.cpp", texts::readme);
+    steps.c("C code in docs/ that includes the header compiles", "default", "documents", &[PYTHON]);
     steps.finish(start)
 }
 
@@ -177,6 +145,24 @@ impl Steps<'_> {
         }
     }
 
+    /// A command of cargo's, with a variable of its environment.
+    fn cargo(&mut self, heading: &'static str, arguments: &[&str], variable: Option<(&str, &str)>) {
+        self.run(heading, || {
+            run::check(run::cargo().args(arguments).envs(variable))?;
+            Ok(Outcome::Passed)
+        });
+    }
+
+    /// What `release` or `report` checks.
+    fn start(&mut self, heading: &'static str, folder: &str, step: &str) {
+        self.run(heading, || start::check(folder, step));
+    }
+
+    /// The tests of tests/CMakeLists.txt that have this label.
+    fn c(&mut self, heading: &'static str, preset: &str, label: &str, needed: &[Package]) {
+        self.run(heading, || c_tests::run(preset, label, needed));
+    }
+
     fn finish(self, start: Instant) -> Result<()> {
         println!("\ntotal {:.0} s", start.elapsed().as_secs_f64());
         if self.left_out > 0 {
@@ -203,10 +189,8 @@ impl Steps<'_> {
 }
 
 /// Builds the core with no feature, and with each alone.
-fn each_feature() -> Result<()> {
-    let metadata = run::read(run::cargo().args(["metadata", "--no-deps", "--format-version", "1"]))?;
-    let metadata: serde_json::Value = serde_json::from_str(&metadata).context("cargo metadata wrote no JSON")?;
-    let packages = metadata["packages"].as_array().map_or(&[][..], Vec::as_slice);
+fn each_feature() -> Result<Outcome> {
+    let packages = run::packages()?;
     let core = packages.iter().find(|package| package["name"] == "noisefloor").context("there is no `noisefloor`")?;
     let features = core["features"].as_object().context("`noisefloor` has no features")?;
     let names = features.keys().map(String::as_str).filter(|name| *name != "default");
@@ -216,5 +200,5 @@ fn each_feature() -> Result<()> {
         build.args(["build", "--quiet", "--package", "noisefloor", "--no-default-features", "--features", feature]);
         run::check(build.env("RUSTFLAGS", "-D warnings"))?;
     }
-    Ok(())
+    Ok(Outcome::Passed)
 }

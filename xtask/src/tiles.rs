@@ -3,9 +3,9 @@
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use serde::Deserialize;
+use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What `cargo xtask tiles` is asked for.
 #[derive(Args)]
@@ -20,82 +20,44 @@ pub struct Options {
     threads: Option<usize>,
 }
 
-#[derive(Deserialize)]
-struct Presets {
-    presets: Vec<String>,
-}
-
-#[derive(Deserialize)]
-struct Info {
-    bytes: u64,
-    sidecar: Option<Sidecar>,
-}
-
-/// Without the version, which need not change a tile.
-#[derive(Deserialize)]
-struct Sidecar {
-    command: String,
-    seed: u64,
-    kernel: String,
-    iterations: u64,
-    sha256: String,
-    quality: Quality,
-}
-
-#[derive(Deserialize)]
-struct Quality {
-    integrands: u64,
-    energy: Vec<Row>,
-    #[serde(default)]
-    marginal: Vec<Row>,
-    #[serde(default)]
-    temporal: Vec<Row>,
-}
-
-#[derive(Deserialize)]
-struct Row {
-    spp: u32,
-    axes: Option<[u32; 2]>,
-    alpha: Option<f64>,
-    filtered: [f64; 2],
-    perceptual: [f64; 2],
-    raw: [f64; 2],
-}
-
-impl Quality {
-    fn rows(&self) -> impl Iterator<Item = &Row> {
-        self.energy.iter().chain(&self.marginal).chain(&self.temporal)
-    }
-}
-
+/// What two sidecars must agree in. The version need not change a tile.
+const SAME: [&str; 6] = ["/command", "/seed", "/kernel", "/iterations", "/sha256", "/quality/integrands"];
+/// What says of a row which case was measured.
+const CASE: [&str; 3] = ["spp", "axes", "alpha"];
+const ENERGIES: [&str; 3] = ["filtered", "perceptual", "raw"];
 /// What a measured energy may differ by, relatively: its last digits depend on the Fourier transform.
 const TOLERANCE: f64 = 0.02;
 
 /// Makes the tiles, or checks them, and prints what they are worth.
 pub fn run(options: &Options) -> Result<()> {
-    let program = build()?;
-    let names = names(&program, &options.names)?;
-    let elsewhere = tempfile::tempdir().context("no temporary folder")?;
+    run::check(run::cargo().args(["build", "--quiet", "--profile", "fsot", "--package", "noisefloor-fsot"]))?;
+    let program = paths::target().join("fsot/fsot").with_extension(std::env::consts::EXE_EXTENSION);
+    let presets = info(&program, None)?["presets"].as_array().context("`fsot info --json` has no presets")?.clone();
+    let presets: Vec<_> = presets.iter().filter_map(Value::as_str).map(str::to_owned).collect();
+    if let Some(unknown) = options.names.iter().find(|name| !presets.contains(name)) {
+        bail!("there is no tile {unknown}; there are {}", presets.join(", "));
+    }
+    let names = if options.names.is_empty() { &presets } else { &options.names };
     let shipped = paths::root().join("core/tiles");
-    let folder = if options.check { elsewhere.path() } else { &shipped };
+    let folder = if options.check { paths::target().join("tiles") } else { shipped.clone() };
+    fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
     let mut table = String::from("half-spaces / Gaussians, error energy relative to white noise\n");
     let mut different = Vec::new();
-    for name in &names {
+    for name in names {
         let path = folder.join(format!("{name}.nft"));
         eprintln!("{name}");
         let mut command = run::command(&program);
         command.args(["tile", "--preset", name, "--quiet", "--out"]).arg(&path);
-        if let Some(threads) = options.threads {
-            command.arg("--threads").arg(threads.to_string());
-        }
+        command.args(options.threads.iter().flat_map(|threads| ["--threads".to_owned(), threads.to_string()]));
         run::check(&mut command)?;
-        let made = info(&program, &path)?;
-        describe(name, &made, &mut table);
+        let made = info(&program, Some(&path))?;
+        table += &format!("{name}, {} bytes\n", made["bytes"]);
+        rows(&made["sidecar"]).for_each(|row| table += &describe(row));
         if options.check {
             let shipped = shipped.join(format!("{name}.nft"));
             if fs::read(&shipped).ok() != Some(fs::read(&path)?) {
                 different.push(format!("{name}.nft"));
-            } else if !same(&info(&program, &shipped)?.sidecar, &made.sidecar) {
+            } else if !same(&info(&program, Some(&shipped))?["sidecar"], &made["sidecar"]) {
                 different.push(format!("{name}.toml"));
             }
         }
@@ -107,59 +69,61 @@ pub fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// The program, optimised.
-fn build() -> Result<PathBuf> {
-    run::check(run::cargo().args(["build", "--quiet", "--profile", "fsot", "--package", "noisefloor-fsot"]))?;
-    Ok(paths::target().join("fsot/fsot").with_extension(std::env::consts::EXE_EXTENSION))
-}
-
-fn names(program: &Path, wanted: &[String]) -> Result<Vec<String>> {
-    let list = run::read(run::command(program).args(["info", "--json"]))?;
-    let Presets { presets } = serde_json::from_str(&list).context("fsot info --json is not as expected")?;
-    if let Some(unknown) = wanted.iter().find(|name| !presets.contains(name)) {
-        bail!("there is no tile {unknown}; there are {}", presets.join(", "));
+/// What fsot says of its presets, or of a tile and its sidecar.
+fn info(program: &Path, tile: Option<&Path>) -> Result<Value> {
+    let json = run::read(run::command(program).args(["info", "--json"]).args(tile))?;
+    let info: Value = serde_json::from_str(&json).context("`fsot info --json` wrote no JSON")?;
+    if let Some(tile) = tile {
+        if !info["sidecar"].is_object() {
+            bail!("{} has no sidecar that describes it", tile.display());
+        }
+        let lacks = SAME.iter().find(|key| info["sidecar"].pointer(key).is_none_or(Value::is_null));
+        if let Some(key) = lacks.or(rows(&info["sidecar"]).next().is_none().then_some(&"/quality/energy")) {
+            bail!("`fsot info --json` is not as expected: it says no {key} of {}", tile.display());
+        }
     }
-    Ok(if wanted.is_empty() { presets } else { wanted.to_vec() })
+    Ok(info)
 }
 
-/// What a tile's file and its sidecar say.
-struct Made {
-    bytes: u64,
-    sidecar: Sidecar,
-}
-
-fn info(program: &Path, path: &Path) -> Result<Made> {
-    let json = run::read(run::command(program).args(["info", "--json"]).arg(path))?;
-    let Info { bytes, sidecar } = serde_json::from_str(&json).context("fsot info --json is not as expected")?;
-    let sidecar = sidecar.with_context(|| format!("{} has no sidecar that describes it", path.display()))?;
-    Ok(Made { bytes, sidecar })
+fn rows(sidecar: &Value) -> impl Iterator<Item = &Value> {
+    let tables = ["energy", "marginal", "temporal"].into_iter();
+    tables.flat_map(|table| sidecar["quality"][table].as_array().map_or(&[][..], Vec::as_slice))
 }
 
 /// Whether two sidecars say the same, but for the version and the last digits of what was measured.
-fn same(a: &Sidecar, b: &Sidecar) -> bool {
-    a.command == b.command
-        && a.seed == b.seed
-        && a.kernel == b.kernel
-        && a.sha256 == b.sha256
-        && a.iterations == b.iterations
-        && a.quality.integrands == b.quality.integrands
-        && a.quality.rows().count() == b.quality.rows().count()
-        && a.quality.rows().zip(b.quality.rows()).all(|(a, b)| close(a, b))
+fn same(a: &Value, b: &Value) -> bool {
+    SAME.iter().all(|key| a.pointer(key) == b.pointer(key))
+        && rows(a).count() == rows(b).count()
+        && rows(a).zip(rows(b)).all(|(a, b)| close(a, b))
 }
 
-fn close(a: &Row, b: &Row) -> bool {
-    let energies = |row: &Row| [row.filtered, row.perceptual, row.raw].concat();
-    (a.spp, a.axes, a.alpha) == (b.spp, b.axes, b.alpha)
-        && energies(a).iter().zip(energies(b)).all(|(a, b)| (a - b).abs() <= TOLERANCE * a.abs())
+fn close(a: &Value, b: &Value) -> bool {
+    let both = ENERGIES.iter().flat_map(|energy| [0, 1].map(|i| (a[energy][i].as_f64(), b[energy][i].as_f64())));
+    CASE.iter().all(|key| a[key] == b[key])
+        && both.into_iter().all(|pair| matches!(pair, (Some(a), Some(b)) if (a - b).abs() <= TOLERANCE * a.abs()))
 }
 
-fn describe(name: &str, made: &Made, table: &mut String) {
-    table.push_str(&format!("{name}, {} bytes\n", made.bytes));
-    for row in made.sidecar.quality.rows() {
-        let axes = row.axes.map_or(String::new(), |[a, b]| format!(", dims {a} and {b}"));
-        let alpha = row.alpha.map_or(String::new(), |alpha| format!(", after EMA {alpha}"));
-        let case = format!("{} spp{axes}{alpha}", row.spp);
-        let ([a, b], [c, d]) = (row.filtered, row.raw);
-        table.push_str(&format!("  {case:<28}filtered {a:<8} / {b:<10} raw {c:<8} / {d}\n"));
+fn describe(row: &Value) -> String {
+    let axes = row["axes"].as_array().map_or(String::new(), |axes| format!(", dims {} and {}", axes[0], axes[1]));
+    let alpha = row["alpha"].as_f64().map_or(String::new(), |alpha| format!(", after EMA {alpha}"));
+    let case = format!("{} spp{axes}{alpha}", row["spp"]);
+    let [[a, b], [c, d]] = ["filtered", "raw"].map(|energy| [0, 1].map(|i| row[energy][i].to_string()));
+    format!("  {case:<28}filtered {a:<8} / {b:<10} raw {c:<8} / {d}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{rows, same};
+    use serde_json::json;
+
+    #[test]
+    fn sidecars_differ_in_more_than_last_digits() {
+        let row =
+            |energy: f64| json!({"spp": 4, "filtered": [energy, 1.0], "perceptual": [1.0, 1.0], "raw": [1.0, 1.0]});
+        let sidecar = |seed: u32, energy: f64| json!({"seed": seed, "quality": {"energy": [row(energy)]}});
+        assert_eq!(rows(&sidecar(1, 0.5)).count(), 1);
+        assert!(same(&sidecar(1, 0.5), &sidecar(1, 0.505)));
+        assert!(!same(&sidecar(1, 0.5), &sidecar(1, 0.52)));
+        assert!(!same(&sidecar(1, 0.5), &sidecar(2, 0.5)));
     }
 }

@@ -3,17 +3,12 @@
 use crate::run;
 use anyhow::{Result, bail};
 use std::path::Path;
-use std::process::Stdio;
-
-/// A program and how it is asked for its version.
-struct Tool {
-    program: String,
-    arguments: &'static [&'static str],
-}
+use std::process::{Command, Stdio};
 
 /// Fails unless every tool is there; on Debian, as root, missing compilers are installed first.
 pub fn ensure() -> Result<()> {
-    let components: Vec<_> = ["fmt", "clippy"].into_iter().filter(|name| !works(&cargo_tool(name))).collect();
+    let components: Vec<_> =
+        ["fmt", "clippy"].into_iter().filter(|name| !works(run::cargo().args([name, "--version"]))).collect();
     if !components.is_empty() {
         bail!(
             "missing: cargo {}. The tests check formatting and lints: `rustup component add rustfmt clippy` (Debian's \
@@ -40,7 +35,8 @@ pub fn ensure() -> Result<()> {
     Ok(())
 }
 
-/// A Debian package, and a file that it brings: if that is there, the package or an equal of it is installed.
+/// A Debian package, and a file that it brings: if that is there, or a program of its name in another folder of the
+/// path, the package or an equal of it is installed.
 #[derive(Clone, Copy)]
 pub struct Package {
     pub name: &'static str,
@@ -50,7 +46,7 @@ pub struct Package {
 /// Installs those that are missing where that is allowed; otherwise returns what is missing and what to do.
 pub fn packages(wanted: &[Package]) -> Result<Option<String>> {
     let missing = |wanted: &[Package]| -> Vec<&str> {
-        wanted.iter().filter(|package| !Path::new(package.file).exists()).map(|package| package.name).collect()
+        wanted.iter().filter(|package| !is_there(package.file)).map(|package| package.name).collect()
     };
     let before = missing(wanted);
     if before.is_empty() {
@@ -68,6 +64,13 @@ pub fn packages(wanted: &[Package]) -> Result<Option<String>> {
     Ok(Some(format!("missing: {0}. On Debian: apt-get install {0}", before.join(" "))))
 }
 
+fn is_there(file: &str) -> bool {
+    let program = file.strip_prefix("/usr/bin/");
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    Path::new(file).exists()
+        || program.is_some_and(|program| std::env::split_paths(&path).any(|folder| folder.join(program).is_file()))
+}
+
 /// Debian's package manager is there and this user may use it.
 pub fn can_install() -> bool {
     Path::new("/etc/debian_version").exists() && is_root()
@@ -81,23 +84,15 @@ fn install(packages: &[&str]) -> Result<()> {
 }
 
 fn missing_compilers() -> Vec<String> {
-    let compiler = |variable: &str, default: &str| {
-        std::env::var(variable).ok().filter(|name| !name.is_empty()).unwrap_or_else(|| default.to_owned())
-    };
-    let names = [compiler("CC", "cc"), compiler("CXX", "c++")];
-    let binutils = ["ld", "ar", "nm", "objcopy"].map(str::to_owned);
-    let tools = names.into_iter().chain(binutils).map(|program| Tool { program, arguments: &["--version"] });
-    tools.filter(|tool| !works(tool)).map(|tool| tool.program).collect()
+    let compilers = [("CC", "cc"), ("CXX", "c++")].map(|(variable, default)| run::compiler(variable, default));
+    let binutils = ["ld", "ar", "nm", "objcopy"].map(run::command);
+    let mut missing: Vec<_> = compilers.into_iter().chain(binutils).collect();
+    missing.retain_mut(|program| !works(program.arg("--version")));
+    missing.iter().map(|program| program.get_program().to_string_lossy().into_owned()).collect()
 }
 
-fn cargo_tool(name: &str) -> Tool {
-    let arguments: &[&str] = if name == "fmt" { &["fmt", "--version"] } else { &["clippy", "--version"] };
-    Tool { program: run::cargo().get_program().to_string_lossy().into_owned(), arguments }
-}
-
-fn works(tool: &Tool) -> bool {
-    let mut command = run::command(&tool.program);
-    command.args(tool.arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+fn works(command: &mut Command) -> bool {
+    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command.status().is_ok_and(|status| status.success())
 }
 

@@ -1,14 +1,14 @@
 //! Samples beyond a tile's.
 
-use crate::size::Size;
 use anyhow::{Result, anyhow};
 use noisefloor::tile::Tile;
+use noisefloor_bench::Extent;
 use noisefloor_tests::continued::{Errors, TIMES, counts, kinds, measure, tiles};
 use noisefloor_tests::random::SplitMix64;
 use std::fmt::Write;
 
 /// Root mean square errors over the integrand's standard deviation, after multiples of the tile's samples.
-pub(crate) fn table(size: Size) -> Result<String> {
+pub(crate) fn table(size: Extent) -> Result<String> {
     let mut rng = SplitMix64::new(41);
     let count = size.of(48);
     let kinds = kinds(count, &mut rng);

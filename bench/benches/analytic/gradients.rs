@@ -1,8 +1,8 @@
 //! Minibatches' gradients: optimal MIS beside importance sampling.
 
-use crate::size::Size;
 use noisefloor::minibatch::importance::Split;
 use noisefloor::mis::{DEFAULT_RIDGE, Solver};
+use noisefloor_bench::Extent;
 use noisefloor_tests::gradients::{self, Classifier, Compared, Regression, compare};
 use noisefloor_tests::minibatch::Problem;
 use std::fmt::Write;
@@ -13,7 +13,7 @@ const SEEDS: u64 = 3;
 const BATCHES: usize = 4000;
 
 /// Squared errors over uniform sampling's, a row for each problem.
-pub(crate) fn polynomial(size: Size) -> String {
+pub(crate) fn polynomial(size: Extent) -> String {
     let mut text = "steps;seed;techniques;one;balance;plain;ridge\n".to_owned();
     for steps in [0, 30, 300] {
         for seed in 0..SEEDS {
@@ -31,7 +31,7 @@ pub(crate) fn polynomial(size: Size) -> String {
 }
 
 /// The same of a classifier of 5 classes.
-pub(crate) fn classifier(size: Size) -> String {
+pub(crate) fn classifier(size: Extent) -> String {
     let mut text = "steps;batch;one;balance;plain;ridge\n".to_owned();
     for steps in [20, 300] {
         let Classifier { uniform, one, signed } = Classifier::new(steps);
@@ -48,7 +48,7 @@ fn ratios(Compared { uniform, one, signed: [balance, plain, ridge] }: &Compared)
 }
 
 /// Bias and root mean squared error over the gradient's norm, where the gradient is nearly 0.
-pub(crate) fn bias(size: Size) -> String {
+pub(crate) fn bias(size: Extent) -> String {
     let problem = Regression::new(3, 300).problem(Split::Sign, 4, UNIFORM);
     let mut text = "batch;solver;bias;error\n".to_owned();
     for batch in [8, 32, 128] {

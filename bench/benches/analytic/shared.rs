@@ -1,8 +1,8 @@
 //! Fits shared by pixels: on tiles' samples, where they cannot help, and how biased they are.
 
-use crate::size::Size;
 use noisefloor::control_variate::{Config, Estimator};
 use noisefloor::tile::Builtin;
+use noisefloor_bench::Extent;
 use noisefloor_tests::shared_bias::{self, Bias, independent, of_tile};
 use noisefloor_tests::shared_hard::{self, COUNTS, SCENES};
 use noisefloor_tests::shared_tiles::{Method, Motion, quadruples, scores};
@@ -19,7 +19,7 @@ const METHODS: [(&str, Method); 5] = [
 ];
 
 /// Scores on the tiles, raw and blurred.
-pub(crate) fn tiles(size: Size) -> String {
+pub(crate) fn tiles(size: Extent) -> String {
     let settings: Vec<(Motion, usize)> =
         [Motion::None, Motion::Steep].into_iter().flat_map(|motion| [1, 4, 16].map(|spp| (motion, spp))).collect();
     let rows: Vec<String> = settings
@@ -46,7 +46,7 @@ pub(crate) fn tiles(size: Size) -> String {
 }
 
 /// RMSE ratios to the mean in scenes that fits should leave alone.
-pub(crate) fn hard(size: Size) -> String {
+pub(crate) fn hard(size: Extent) -> String {
     let cells: Vec<_> = SCENES
         .into_iter()
         .flat_map(|scene| COUNTS.map(|n| (scene, n)))
@@ -66,7 +66,7 @@ pub(crate) fn hard(size: Size) -> String {
 }
 
 /// Bias over the RMSE.
-pub(crate) fn bias(size: Size) -> String {
+pub(crate) fn bias(size: Extent) -> String {
     let mut text = "samples;n;estimator;window;typical;largest;chance\n".to_owned();
     let mut row = |samples: &str, n: usize, estimator: &str, window: usize, bias: &Bias| {
         let Bias { typical, largest, chance } = bias;

@@ -4,7 +4,7 @@ use crate::functions::Function;
 use noisefloor_bench::method::{INCREMENTAL, K_FOLD, MEAN};
 use noisefloor_bench::{Door, Method, Prepared};
 use noisefloor_tests::random::{SplitMix64, mix};
-use noisefloor_tests::statistics::{Ratio, median, rmse_ratio};
+use noisefloor_tests::statistics::{Ratio, median, rmse_ratio, root_mean_square};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -126,12 +126,11 @@ pub(crate) fn measure(function: &Function, settings: &[Setting], n: usize, seed:
     let mean = &tracks[0];
     let result = |track: &Track| {
         let same = &mean.errors[..track.errors.len()];
-        let square = same.iter().map(|error| error * error).sum::<f64>() / same.len() as f64;
         Result {
             setting: track.setting,
             terms: track.terms,
             repetitions: track.errors.len(),
-            mean_rmse: square.sqrt(),
+            mean_rmse: root_mean_square(same),
             ratio: rmse_ratio(&track.errors, same),
             ns: median(&track.ns),
             mean_ns: median(&mean.ns),

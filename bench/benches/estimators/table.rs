@@ -4,25 +4,15 @@ use crate::race::Result;
 use crate::{convergence, fits, grid};
 use noisefloor::recommend::{Method, Sampling, recommend};
 use std::fmt::Write;
-use std::path::Path;
 
-/// Writes all files, each whole or not at all.
-pub(crate) fn write(
-    folder: &Path,
-    cells: &[grid::Row],
-    points: &[convergence::Row],
-    fits: &[fits::Row],
-) -> anyhow::Result<()> {
-    let files = [
+/// All files.
+pub(crate) fn all(cells: &[grid::Row], points: &[convergence::Row], fits: &[fits::Row]) -> [(&'static str, String); 4] {
+    [
         ("grid.csv", grid(cells)),
         ("convergence.csv", convergence(points)),
         ("fits.csv", curves(fits)),
         ("recommended.csv", recommended()),
-    ];
-    for (name, text) in files {
-        noisefloor_bench::write(&folder.join(name), text)?;
-    }
-    Ok(())
+    ]
 }
 
 const MEASURED: &str = "estimator,basis,slices,order,terms,repetitions,rmse,ratio,half_width,ns,mean_ns,efficiency\n";

@@ -1,6 +1,6 @@
 //! What is best, and whether `recommend()` says so.
 
-use crate::report::{Summary, figure, summary};
+use crate::report::{Summary, summary};
 use crate::samplers::Source;
 use crate::study::{CHANNELS, Cell, Kind};
 use anyhow::{Result, anyhow};
@@ -157,27 +157,6 @@ fn estimator(cells: &[Cell], here: &[&Cell], says: &Recommendation, stratified: 
         best: choice(best),
         excess: excess(own.0, best.0, time(own.0, &own.1) / time(best.0, &best.1)),
     })
-}
-
-/// What `recommend()` says, and where another run's best is something else by more than its noise.
-pub(crate) fn markdown(all: &[Decision]) -> Result<String> {
-    let mut out = "### Recommended, and what was best\n\n\
-                   | dims | samples | neighbours | n | recommended | best | error x time, over the best's |\n\
-                   |---|---|---|---|---|---|---|\n"
-        .to_owned();
-    for decision in all {
-        let Decision { dims, n, samples, neighbours, recommended, best, excess: [excess, low, high] } = decision;
-        let text =
-            |of: &Choice| format!("{}: {}, {} ({})", of.name, figure(of.raw), figure(of.filtered), figure(of.worst));
-        let other = if best.name == recommended.name { "the same".to_owned() } else { text(best) };
-        writeln!(
-            out,
-            "| {dims} | {samples} | {neighbours} | {n} | {} | {other} | {excess:.2} [{low:.2}, {high:.2}] |",
-            text(recommended)
-        )?;
-    }
-    writeln!(out)?;
-    Ok(out)
 }
 
 pub(crate) fn csv(all: &[Decision]) -> Result<String> {

@@ -11,45 +11,27 @@ mod report;
 mod samplers;
 mod study;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Parser;
-use indicatif::{ProgressBar, ProgressStyle};
-use std::fs;
-use std::path::PathBuf;
-use study::{COUNTS, DIMS, Extent};
+use noisefloor_bench::Extent;
+use study::{COUNTS, DIMS};
 
-/// Measures errors and times of samplers and estimators, and prints tables.
 #[derive(Parser)]
-struct Options {
-    /// A quarter of the integrands, and at most 4 samples: whether everything works.
-    #[arg(long, conflicts_with = "full")]
-    quick: bool,
-    /// Four times the integrands, and the cells that take longest.
-    #[arg(long)]
-    full: bool,
-    /// Only these dims.
+struct Arguments {
+    /// Only these dims
     #[arg(long, value_delimiter = ',', default_values_t = DIMS)]
     dims: Vec<usize>,
-    /// Where tables.md, cells.csv and decisions.csv go.
-    #[arg(long, default_value_os_t = noisefloor_bench::output("guidance"))]
-    output: PathBuf,
-    /// What cargo adds.
-    #[arg(long, hide = true)]
-    bench: bool,
+    #[command(flatten)]
+    common: noisefloor_bench::Options,
 }
 
 fn main() -> Result<()> {
-    let options = Options::parse();
-    fs::create_dir_all(&options.output).with_context(|| format!("cannot create {}", options.output.display()))?;
-    let bar = ProgressBar::new((options.dims.len() * COUNTS.len()) as u64)
-        .with_style(ProgressStyle::with_template("{elapsed_precise} {wide_bar} {pos}/{len} {msg}")?);
+    let Arguments { dims, common } = Arguments::parse();
+    let bar = noisefloor_bench::bar(dims.len() * COUNTS.len())?;
     let mut cells = Vec::new();
-    let (extent, counts) = match (options.quick, options.full) {
-        (true, _) => (Extent::Quick, &COUNTS[..2]),
-        (_, true) => (Extent::Full, &COUNTS[..]),
-        _ => (Extent::Default, &COUNTS[..]),
-    };
-    for dims in options.dims {
+    let extent = common.extent();
+    let counts = if extent == Extent::Quick { &COUNTS[..2] } else { &COUNTS[..] };
+    for dims in dims {
         for &n in counts {
             bar.set_message(format!("{dims} dims, {n} samples"));
             study::measure(&mut cells, dims, n, extent)?;
@@ -61,18 +43,6 @@ fn main() -> Result<()> {
         }
     }
     bar.finish_and_clear();
-    let all = decisions::all(&cells)?;
-    let tables = report::markdown(&cells)? + &decisions::markdown(&all)?;
-    for (name, text) in
-        [("tables.md", &tables), ("cells.csv", &report::csv(&cells)?), ("decisions.csv", &decisions::csv(&all)?)]
-    {
-        let path = options.output.join(name);
-        let new = path.with_extension("new");
-        fs::write(&new, text)
-            .and_then(|()| fs::rename(&new, &path))
-            .with_context(|| format!("cannot write {}", path.display()))?;
-    }
-    print!("{tables}");
-    println!("\nin {}", options.output.display());
-    Ok(())
+    let decisions = decisions::csv(&decisions::all(&cells)?)?;
+    common.write("guidance", &[("cells.csv", report::csv(&cells)?), ("decisions.csv", decisions)])
 }

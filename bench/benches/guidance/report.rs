@@ -1,7 +1,6 @@
-//! The tables: Markdown to read, CSV to look further into.
+//! The table of all cells.
 
-use crate::samplers::Source;
-use crate::study::{CHANNELS, COUNTS, Cell, DIMS, Kind};
+use crate::study::{CHANNELS, Cell, Kind};
 use anyhow::Result;
 use noisefloor_tests::statistics::{geometric_mean, median};
 use std::fmt::Write;
@@ -42,89 +41,6 @@ pub(crate) fn summary(cell: &Cell, cells: &[Cell]) -> Summary {
         worst_filtered: worst(|errors| errors.filtered),
         ns: median(&times),
     }
-}
-
-/// Three significant digits without a leading zero.
-pub(crate) fn figure(value: f64) -> String {
-    let text = match value {
-        9.95.. => format!("{value:.0}"),
-        0.995.. => format!("{value:.1}"),
-        0.1.. => format!("{value:.2}"),
-        0.01.. => format!("{value:.3}"),
-        0.001.. => format!("{value:.4}"),
-        _ => return format!("{value:.0e}"),
-    };
-    text.strip_prefix('0').map_or(text.clone(), str::to_owned)
-}
-
-/// The dims that there are.
-fn measured(cells: &[Cell]) -> impl Iterator<Item = usize> {
-    DIMS.into_iter().filter(|&dims| cells.iter().any(|cell| cell.dims == dims))
-}
-
-pub(crate) fn markdown(cells: &[Cell]) -> Result<String> {
-    let mut out = String::new();
-    for dims in measured(cells) {
-        writeln!(out, "### {dims} dims\n")?;
-        writeln!(out, "| samples | estimator |{}", COUNTS.map(|n| format!(" n = {n} |")).concat())?;
-        writeln!(out, "|---|---|{}", "---|".repeat(COUNTS.len()))?;
-        rows(cells, dims, &mut out, |s| format!("{}, {} ({})", figure(s.raw), figure(s.filtered), figure(s.worst)))?;
-        writeln!(out)?;
-    }
-    writeln!(out, "### Nanoseconds per sample\n")?;
-    for dims in measured(cells) {
-        writeln!(out, "| {dims} dims | |{}", COUNTS.map(|n| format!(" n = {n} |")).concat())?;
-        writeln!(out, "|---|---|{}", "---|".repeat(COUNTS.len()))?;
-        let independent: Vec<&Cell> =
-            cells.iter().filter(|cell| cell.source == Source::Independent && cell.dims == dims).collect();
-        line("estimate", &independent, cells, dims, &mut out, |s| figure(s.ns))?;
-        for source in Source::ALL {
-            let here = |n: usize| {
-                let mut here = cells.iter().filter(|cell| (cell.dims, cell.n, cell.source) == (dims, n, source));
-                here.next().map_or(" – |".to_owned(), |cell| format!(" {} |", figure(median(&cell.draw_ns))))
-            };
-            if cells.iter().any(|cell| (cell.dims, cell.source) == (dims, source)) {
-                writeln!(out, "| drawing | {} |{}", source.name(), COUNTS.map(here).concat())?;
-            }
-        }
-        writeln!(out)?;
-    }
-    Ok(out)
-}
-
-fn rows(cells: &[Cell], dims: usize, out: &mut String, text: impl Fn(&Summary) -> String) -> Result<()> {
-    for source in Source::ALL {
-        let here: Vec<&Cell> = cells.iter().filter(|cell| cell.source == source && cell.dims == dims).collect();
-        line(source.name(), &here, cells, dims, out, &text)?;
-    }
-    Ok(())
-}
-
-/// A row for each method.
-fn line(
-    label: &str,
-    here: &[&Cell],
-    cells: &[Cell],
-    dims: usize,
-    out: &mut String,
-    text: impl Fn(&Summary) -> String,
-) -> Result<()> {
-    let mut methods = Vec::new();
-    for cell in here {
-        if !methods.contains(&cell.method) {
-            methods.push(cell.method);
-        }
-    }
-    // Where n = 1 has fewer methods, later ones are appended out of order.
-    methods.sort_by_key(|method| (method.kind as usize, method.regressed != dims, method.regressed, method.order));
-    for method in methods {
-        let of = |n: usize| {
-            let cell = here.iter().find(|cell| cell.n == n && cell.method == method);
-            cell.map_or(" – |".to_owned(), |cell| format!(" {} |", text(&summary(cell, cells))))
-        };
-        writeln!(out, "| {label} | {} |{}", method.name(dims), COUNTS.map(of).concat())?;
-    }
-    Ok(())
 }
 
 /// Every integrand.

@@ -6,6 +6,7 @@ use anyhow::{Context, Result};
 use noisefloor::control_variate::{
     Config, Estimate, Image, Samples, estimate, estimate_image, image_workspace_len, workspace_len,
 };
+use noisefloor_bench::Extent;
 use noisefloor_tests::random::{SplitMix64, mix};
 use rayon::prelude::*;
 use std::fs;
@@ -18,16 +19,6 @@ pub(crate) const CHANNELS: usize = 3;
 /// The filter's standard deviation, and where it is cut.
 const DEVIATION: f64 = 2.1;
 const RADIUS: usize = 5;
-
-/// How much is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Extent {
-    /// Two kinds of integrands: whether everything works.
-    Quick,
-    Default,
-    /// Four times the integrands, and the cells that take longest.
-    Full,
-}
 
 /// How samples become an estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

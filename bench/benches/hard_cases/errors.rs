@@ -7,7 +7,7 @@ use noisefloor::control_variate::{self as cv, Config, Estimator, Samples};
 use noisefloor::real::Real;
 use noisefloor_tests::random::{SplitMix64, mix};
 use noisefloor_tests::shared::block;
-use noisefloor_tests::statistics::{Ratio, rmse_ratio};
+use noisefloor_tests::statistics::{Ratio, rmse_ratio, root_mean_square};
 
 /// As the columns are called.
 pub(crate) const DEFAULT: &str = "default";
@@ -71,10 +71,6 @@ pub(crate) fn ratio(errors: &[f64], plain: &[f64]) -> Option<Ratio> {
     // Squares of the largest values would leave the range of `f64` in no case, those of the smallest ones do no harm.
     let usable = errors.len() == plain.len() && errors.iter().chain(plain).all(|error| error.is_finite());
     usable.then(|| rmse_ratio(errors, plain))
-}
-
-pub(crate) fn root_mean_square(values: &[f64]) -> f64 {
-    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
 /// A configuration with its workspace.

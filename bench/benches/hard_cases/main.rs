@@ -14,41 +14,20 @@ mod table;
 
 use anyhow::Result;
 use clap::Parser;
-use std::path::PathBuf;
+use noisefloor_bench::Options;
 use table::Tables;
-
-/// Measures every hard case and writes tables.
-#[derive(Parser)]
-struct Options {
-    /// Few repetitions: whether everything works, not the figures.
-    #[arg(long)]
-    quick: bool,
-    /// Eight times the repetitions.
-    #[arg(long, conflicts_with = "quick")]
-    full: bool,
-    /// Where errors.csv and outcomes.csv go; columns are divided by semicolons.
-    #[arg(long, default_value_os_t = noisefloor_bench::output("hard-cases"))]
-    output: PathBuf,
-    /// What cargo adds.
-    #[arg(long, hide = true)]
-    bench: bool,
-}
 
 fn main() -> Result<()> {
     let options = Options::parse();
-    let repetitions = match (options.quick, options.full) {
-        (true, _) => 32,
-        (_, true) => 32_000,
-        _ => 4000,
-    };
+    let extent = options.extent();
+    let repetitions = extent.choose(32, 4000, 32_000);
     let mut tables = Tables::default();
     errors::measure(&mut tables, repetitions);
     errors::shared(&mut tables, repetitions);
-    many::measure(&mut tables, if options.quick { 100_000 } else { 1_000_000 }, if options.full { 32 } else { 8 });
+    many::measure(&mut tables, extent.choose(100_000, 1_000_000, 1_000_000), extent.choose(8, 8, 32));
     mis::measure(&mut tables, repetitions);
     refused::measure(&mut tables);
-    minibatch::measure(&mut tables, if options.quick { 20_000 } else { 1_000_000 });
-    tables.write(&options.output)?;
-    println!("{} cases: {}", tables.len(), options.output.display());
-    Ok(())
+    minibatch::measure(&mut tables, extent.choose(20_000, 1_000_000, 1_000_000));
+    println!("{} cases", tables.len());
+    options.write("hard-cases", &[("errors.csv", tables.errors()), ("outcomes.csv", tables.outcomes())])
 }

@@ -1,10 +1,11 @@
 //! So many samples that sums lose digits: streams, in both precisions.
 
-use crate::errors::{DEFAULT, ratio, root_mean_square};
+use crate::errors::{DEFAULT, ratio};
 use crate::table::{ErrorRow, Tables};
-use noisefloor::control_variate::{Accumulator, Config, Estimator, Samples};
-use noisefloor::real::Real;
+use noisefloor::control_variate::{Config, Estimator};
+use noisefloor_bench::method::Stream;
 use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::statistics::root_mean_square;
 
 /// Added at once.
 const PART: usize = 1000;
@@ -51,28 +52,5 @@ pub(crate) fn measure(tables: &mut Tables, samples: usize, repetitions: usize) {
             plain_rmse: root_mean_square(&plain),
             ratios,
         });
-    }
-}
-
-/// An accumulator with its workspace.
-struct Stream<R> {
-    accumulator: Accumulator<R, Vec<R>>,
-    workspace: Vec<R>,
-}
-
-impl<R: Real> Stream<R> {
-    fn new(config: &Config) -> Self {
-        let memory = |len: Result<usize, _>| vec![R::ZERO; len.expect("a streaming configuration")];
-        let sums = memory(Accumulator::<R, Vec<R>>::len(config));
-        let workspace = memory(Accumulator::<R, Vec<R>>::workspace_len(config));
-        Self { accumulator: Accumulator::new(config, sums).expect("enough memory"), workspace }
-    }
-
-    fn add(&mut self, u: &[f32], f: &[f32]) {
-        self.accumulator.add(Samples::new(u, f)).expect("valid samples");
-    }
-
-    fn estimate(&mut self) -> f32 {
-        self.accumulator.estimate(&mut self.workspace).expect("samples were added").mean[0]
     }
 }

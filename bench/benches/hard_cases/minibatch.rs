@@ -1,6 +1,6 @@
 //! Tables of importances over forty orders of magnitude, and importances of logits that overflow.
 
-use crate::table::{OutcomeRow, Tables};
+use crate::table::Tables;
 use noisefloor::minibatch::table::{importance_len, sums_len};
 use noisefloor::minibatch::{Table, importance};
 use noisefloor::rng::Rng;
@@ -35,7 +35,7 @@ pub(crate) fn measure(tables: &mut Tables, items: usize) {
 }
 
 fn row(tables: &mut Tables, case: String, outcome: String, error: f64, plain: Option<(&'static str, f64)>) {
-    tables.outcome(OutcomeRow { group: GROUP, case, outcome, error: Some(error), plain });
+    tables.outcome(GROUP, case, outcome, Some(error), plain);
 }
 
 /// One item of importance 1, all others 0.
@@ -105,12 +105,8 @@ fn logits(tables: &mut Tables) {
         let square = |(k, p): (usize, &f32)| (p / sum - f32::from(u8::from(k == label))).powi(2);
         let naive = f64::from(powers.iter().enumerate().map(square).sum::<f32>().sqrt());
         let error = |value: f64| (value / expected - 1.0).abs();
-        tables.outcome(OutcomeRow {
-            group: "importance of cross-entropy",
-            case: case.to_owned(),
-            outcome: if value.is_finite() { "accepted".to_owned() } else { "NOT FINITE".to_owned() },
-            error: Some(error(value)),
-            plain: Some(("its formula in f32", error(naive))),
-        });
+        let outcome = if value.is_finite() { "accepted" } else { "NOT FINITE" };
+        let plain = Some(("its formula in f32", error(naive)));
+        tables.outcome("importance of cross-entropy", case, outcome, Some(error(value)), plain);
     }
 }

@@ -1,9 +1,10 @@
 //! Multiple importance sampling: techniques that the optimal weights can hardly tell apart.
 
-use crate::errors::{ratio, root_mean_square};
-use crate::table::{ErrorRow, OutcomeRow, Tables};
+use crate::errors::ratio;
+use crate::table::{ErrorRow, Tables};
 use noisefloor::mis::{self, OptimalMis, Solver};
 use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::statistics::root_mean_square;
 
 /// A density on the unit interval.
 #[derive(Clone, Copy)]
@@ -133,13 +134,9 @@ fn weights(tables: &mut Tables) {
             let total = library(power);
             let is_one = (total - 1.0).abs() <= 3.0 * f64::from(f32::EPSILON);
             let outcome = if is_one { "weights add up to 1" } else { "WEIGHTS DO NOT ADD UP TO 1" };
-            tables.outcome(OutcomeRow {
-                group: "MIS weights",
-                case: format!("{heuristic} heuristic, {name}"),
-                outcome: outcome.to_owned(),
-                error: Some((total - 1.0).abs()),
-                plain: Some(("its formula in f32", (naive[usize::from(power)] - 1.0).abs())),
-            });
+            let plain = Some(("its formula in f32", (naive[usize::from(power)] - 1.0).abs()));
+            let case = format!("{heuristic} heuristic, {name}");
+            tables.outcome("MIS weights", case, outcome, Some((total - 1.0).abs()), plain);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Inputs that are no numbers, out of range, damaged or at the end of the range: the answer of single calls.
 
-use crate::table::{OutcomeRow, Tables, status};
+use crate::table::{Tables, status};
 use glam::Vec2;
 use noisefloor::control_variate::{self as cv, Config, Estimate, Estimator, NonFinite, Optimizer, Samples};
 use noisefloor::tile::{Builtin, Tile};
@@ -34,7 +34,7 @@ pub(crate) fn measure(tables: &mut Tables) {
         values
     };
     let mut answer = |case: &str, outcome: String| {
-        tables.outcome(OutcomeRow { group: GROUP, case: case.to_owned(), outcome, error: None, plain: None });
+        tables.outcome(GROUP, case, outcome, None, None);
     };
     answer("a value is NaN", of_all(&config, &u, &with(&f, 5, f32::NAN)));
     answer("a value is infinite", of_all(&config, &u, &with(&f, 5, f32::INFINITY)));
@@ -75,13 +75,8 @@ fn exact(tables: &mut Tables, case: &str, config: &Config, u: &[f32], f: &[f32],
     let naive = finite.iter().fold(0.0_f32, |sum, &f| sum + f as f32) / finite.len() as f32;
     let plain = ((f64::from(naive) - expected) / expected).abs();
     let finite = estimates.iter().all(|value| value.is_finite());
-    tables.outcome(OutcomeRow {
-        group: GROUP,
-        case: case.to_owned(),
-        outcome: if finite { "accepted".to_owned() } else { "NOT FINITE".to_owned() },
-        error: Some(error),
-        plain: Some(("mean in f32", plain)),
-    });
+    let outcome = if finite { "accepted" } else { "NOT FINITE" };
+    tables.outcome(GROUP, case, outcome, Some(error), Some(("mean in f32", plain)));
 }
 
 /// Steps far too long, of any rule.
@@ -94,13 +89,8 @@ fn descent(tables: &mut Tables, config: &Config, u: &[f32], f: &[f32]) {
         }
     }
     let finite = rows.iter().filter(|&&finite| finite).count();
-    tables.outcome(OutcomeRow {
-        group: GROUP,
-        case: "gradient descent, steps of 3, 1e10 and 3.4e38, three rules".to_owned(),
-        outcome: format!("finite in {finite} of {}", rows.len()),
-        error: None,
-        plain: None,
-    });
+    let case = "gradient descent, steps of 3, 1e10 and 3.4e38, three rules";
+    tables.outcome(GROUP, case, format!("finite in {finite} of {}", rows.len()), None, None);
 }
 
 /// A tile's bytes, cut or changed.
@@ -120,13 +110,7 @@ fn damaged(tables: &mut Tables) {
             read(&bytes).is_err()
         })
         .count();
-    tables.outcome(OutcomeRow {
-        group: "tile",
-        case: "one bit is another".to_owned(),
-        outcome: format!("refused in {refused} of {PLACES}"),
-        error: None,
-        plain: None,
-    });
+    tables.outcome("tile", "one bit is another", format!("refused in {refused} of {PLACES}"), None, None);
 }
 
 /// Warps of what is no coordinate; weights of a point that no technique can draw.
@@ -138,19 +122,11 @@ fn edges(tables: &mut Tables) {
         ("cosine hemisphere at (1, 1)", Vec2::ONE),
     ] {
         let outcome = if length(u).is_finite() { "a unit vector" } else { "NOT FINITE" };
-        let error = Some((length(u) - 1.0).abs());
-        tables.outcome(OutcomeRow {
-            group: "warp",
-            case: case.to_owned(),
-            outcome: outcome.to_owned(),
-            error,
-            plain: None,
-        });
+        tables.outcome("warp", case, outcome, Some((length(u) - 1.0).abs()), None);
     }
     tables.refused("MIS weights", "a density is NaN", mis::balance(&[1.0, f32::NAN], &[1, 1], 0));
     tables.refused("MIS weights", "a density is negative", mis::balance(&[1.0, -1.0], &[1, 1], 0));
     let weight = mis::balance(&[0.0, 0.0], &[1, 1], 0);
     let outcome = weight.map_or_else(|error| status::<f32>(Err(error)), |weight| format!("weight {weight}"));
-    let (group, case) = ("MIS weights", "all densities 0".to_owned());
-    tables.outcome(OutcomeRow { group, case, outcome, error: None, plain: None });
+    tables.outcome("MIS weights", "all densities 0", outcome, None, None);
 }

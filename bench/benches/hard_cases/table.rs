@@ -1,10 +1,8 @@
 //! What was measured, as two tables: errors over many repetitions, and outcomes of single calls.
 
-use anyhow::Result;
 use noisefloor::Error;
 use noisefloor_tests::statistics::Ratio;
 use std::fmt::Write;
-use std::path::Path;
 
 /// A case of many repetitions.
 pub(crate) struct ErrorRow {
@@ -22,14 +20,14 @@ pub(crate) struct ErrorRow {
 }
 
 /// A single call, or a fixed number of them.
-pub(crate) struct OutcomeRow {
-    pub(crate) group: &'static str,
-    pub(crate) case: String,
-    pub(crate) outcome: String,
+struct OutcomeRow {
+    group: &'static str,
+    case: String,
+    outcome: String,
     /// Relative, or as the case says; None where a refusal is the outcome.
-    pub(crate) error: Option<f64>,
+    error: Option<f64>,
     /// What computes the same plainly, and its error.
-    pub(crate) plain: Option<(&'static str, f64)>,
+    plain: Option<(&'static str, f64)>,
 }
 
 /// Both tables, growing.
@@ -44,30 +42,29 @@ impl Tables {
         self.errors.push(row);
     }
 
-    pub(crate) fn outcome(&mut self, row: OutcomeRow) {
-        self.outcomes.push(row);
+    /// What a call answered, and its error.
+    pub(crate) fn outcome(
+        &mut self,
+        group: &'static str,
+        case: impl Into<String>,
+        outcome: impl Into<String>,
+        error: Option<f64>,
+        plain: Option<(&'static str, f64)>,
+    ) {
+        self.outcomes.push(OutcomeRow { group, case: case.into(), outcome: outcome.into(), error, plain });
     }
 
     /// A call that has no error to measure.
     pub(crate) fn refused<T>(&mut self, group: &'static str, case: impl Into<String>, result: Result<T, Error>) {
-        let outcome = status(result);
-        self.outcome(OutcomeRow { group, case: case.into(), outcome, error: None, plain: None });
+        self.outcome(group, case, status(result), None, None);
     }
 
     pub(crate) fn len(&self) -> usize {
         self.errors.len() + self.outcomes.len()
     }
 
-    /// Writes errors.csv and outcomes.csv, each whole or not at all.
-    pub(crate) fn write(&self, folder: &Path) -> Result<()> {
-        for (name, text) in [("errors.csv", self.errors()), ("outcomes.csv", self.outcomes())] {
-            noisefloor_bench::write(&folder.join(name), text)?;
-        }
-        Ok(())
-    }
-
     /// A row for each estimator.
-    fn errors(&self) -> String {
+    pub(crate) fn errors(&self) -> String {
         let mut out = "group;case;n;terms;repetitions;failed;plain_rmse;estimator;ratio;half_width\n".to_owned();
         for row in &self.errors {
             for (estimator, ratio) in &row.ratios {
@@ -82,7 +79,7 @@ impl Tables {
         out
     }
 
-    fn outcomes(&self) -> String {
+    pub(crate) fn outcomes(&self) -> String {
         let mut out = "group;case;outcome;error;plain;plain_error\n".to_owned();
         for OutcomeRow { group, case, outcome, error, plain } in &self.outcomes {
             let error = error.map_or(String::new(), |error| format!("{error:.3e}"));

@@ -2,9 +2,9 @@
 //! `cargo bench --package noisefloor-bench --bench minibatch_table`.
 //!
 //! All methods take turns, a chunk of steps at a time, so that a busy machine slows all alike. "Warm" steps follow each
-//! other at once; before each "cold" draw and update 64 MB are read, as a training step does. Prints medians; with
-//! `--output FOLDER` also writes every chunk's times (times.csv), the tables' sizes (items.csv) and what many updates
-//! did to them (drift.csv).
+//! other at once; before each "cold" draw and update 64 MB are read, as a training step does. Prints medians
+//! and writes every chunk's times (times.csv), the tables' sizes (items.csv) and what many updates did to them
+//! (drift.csv).
 
 mod drift;
 mod methods;
@@ -14,29 +14,12 @@ use anyhow::Result;
 use clap::Parser;
 use methods::{BATCH, Method};
 use noisefloor::rng::Rng;
-use noisefloor_bench::c_abi;
+use noisefloor_bench::{Extent, Options, c_abi};
 use std::fmt::Write as _;
-use std::path::PathBuf;
 use times::{Chunks, Memory, Times, median};
 
 /// Steps of a chunk: enough to bring a table of a million items into the caches.
 const STEPS: usize = 1000;
-
-#[derive(Parser)]
-struct Options {
-    /// Small tables and few chunks: whether everything works, not the figures
-    #[arg(long)]
-    quick: bool,
-    /// Four times the chunks, ten times the updates
-    #[arg(long, conflicts_with = "quick")]
-    full: bool,
-    /// Where CSV files go
-    #[arg(long, value_name = "FOLDER")]
-    output: Option<PathBuf>,
-    /// cargo passes it
-    #[arg(long, hide = true)]
-    bench: bool,
-}
 
 /// The CSV files.
 struct Tables {
@@ -51,7 +34,9 @@ fn main() -> Result<()> {
     if !c_abi::LINKED {
         println!("the C functions are skipped: run `cargo xtask library` first");
     }
-    let sizes: &[u32] = if options.quick { &[1000, 30_000] } else { &[1000, 10_000, 60_000, 1_000_000, 10_000_000] };
+    let extent = options.extent();
+    let all: &[u32] = &[1000, 10_000, 60_000, 1_000_000, 10_000_000];
+    let sizes = extent.choose(&[1000, 30_000][..], all, all);
     let mut tables = Tables {
         times: "items,cache,method,chunk,draw,update\n".to_owned(),
         items: "items,method,bytes,epsilon\n".to_owned(),
@@ -59,15 +44,9 @@ fn main() -> Result<()> {
     };
     let memory = Memory::new();
     for &items in sizes {
-        measure(&options, items, &memory, &mut tables)?;
+        measure(extent, items, &memory, &mut tables)?;
     }
-    let updates = if options.quick {
-        100_000
-    } else if options.full {
-        100_000_000
-    } else {
-        10_000_000
-    };
+    let updates = extent.choose(100_000, 10_000_000, 100_000_000);
     println!("\n{} items after {updates} updates", drift::ITEMS);
     for drift in drift::measure(updates) {
         let drift::Drift { method, changed, compared, risen, lost, error } = drift;
@@ -77,21 +56,17 @@ fn main() -> Result<()> {
         );
         writeln!(tables.drift, "{},{updates},{method},{changed},{compared},{risen},{lost},{error:e}", drift::ITEMS)?;
     }
-    if let Some(folder) = &options.output {
-        for (name, text) in [("times.csv", &tables.times), ("items.csv", &tables.items), ("drift.csv", &tables.drift)] {
-            noisefloor_bench::write(&folder.join(name), text)?;
-        }
-    }
-    Ok(())
+    let Tables { times, items, drift } = tables;
+    options.write("minibatch_table", &[("times.csv", times), ("items.csv", items), ("drift.csv", drift)])
 }
 
 /// One size.
-fn measure(options: &Options, items: u32, memory: &Memory, tables: &mut Tables) -> Result<()> {
+fn measure(extent: Extent, items: u32, memory: &Memory, tables: &mut Tables) -> Result<()> {
     let mut rng = Rng::seed(3);
     let q: Vec<f32> = (0..items).map(|_| libm::expf(4.0 * rng.uniform_f32() - 2.0)).collect();
     let mut methods = methods::updated(&q);
-    let mut steps = vec![if options.quick { 50 } else { STEPS }; methods.len()];
-    let repeat = if options.quick { 1 } else { 4 } * if options.full { 4 } else { 1 };
+    let mut steps = vec![extent.choose(50, STEPS, STEPS); methods.len()];
+    let repeat = extent.choose(1, 4, 16);
     println!("\n{items} items; ns of a draw / of an update, us of a step of {BATCH} of both");
     // A chunk of the alias table's is one to ten new tables.
     methods.push(methods::rebuilt(&q));

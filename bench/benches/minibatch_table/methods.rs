@@ -1,8 +1,5 @@
 //! The tables that are compared, each with its generator.
 
-// Without the archive the C table is a type of no values.
-#![cfg_attr(not(archive), allow(unreachable_code, unused_variables))]
-
 use noisefloor::minibatch::{Table, table};
 use noisefloor::rng::Rng;
 use noisefloor_bench::{c_abi, c_table};

@@ -8,45 +8,24 @@ mod sampler;
 mod sheet;
 mod speed;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Parser;
-use std::fs;
-use std::path::PathBuf;
+use noisefloor_bench::Options;
 
 /// Samples per pixel.
 const COUNTS: [usize; 4] = [1, 4, 16, 64];
-/// Measures errors and times of samplers.
-#[derive(Parser)]
-struct Options {
-    /// A few integrands, one and four samples: whether everything works.
-    #[arg(long, conflicts_with = "full")]
-    quick: bool,
-    /// Four times the integrands.
-    #[arg(long)]
-    full: bool,
-    /// Where energies.csv, draws.csv and the images go.
-    #[arg(long, default_value_os_t = noisefloor_bench::output("samplers"))]
-    output: PathBuf,
-    /// What cargo adds.
-    #[arg(long, hide = true)]
-    bench: bool,
-}
 
 fn main() -> Result<()> {
     let options = Options::parse();
-    fs::create_dir_all(&options.output).with_context(|| format!("cannot create {}", options.output.display()))?;
-    let counts = if options.quick { &COUNTS[..2] } else { &COUNTS[..] };
-    let share = if options.quick { 0.125 } else { f64::from(1 + 3 * u32::from(options.full)) };
-    let write = |name: &str, bytes: &[u8]| {
-        let path = options.output.join(name);
-        let new = path.with_extension("new");
-        fs::write(&new, bytes)
-            .and_then(|()| fs::rename(&new, &path))
-            .with_context(|| format!("cannot write {}", path.display()))
-    };
-    write("draws.csv", speed::csv(counts, if options.quick { 3 } else { 15 })?.as_bytes())?;
-    sheet::write(counts, if options.quick { 8 } else { 64 }, write)?;
+    let extent = options.extent();
+    let counts = &COUNTS[..extent.choose(2, 4, 4)];
+    // Of the integrands.
+    let share = extent.choose(0.125, 1.0, 4.0);
+    let folder = options.output.clone().unwrap_or_else(|| noisefloor_bench::output("samplers"));
+    let write = |name: &str, bytes: &[u8]| noisefloor_bench::write(&folder.join(name), bytes);
+    write("draws.csv", speed::csv(counts, extent.choose(3, 15, 15))?.as_bytes())?;
+    sheet::write(counts, extent.choose(8, 64, 64), write)?;
     write("energies.csv", quality::csv(counts, share)?.as_bytes())?;
-    println!("in {}", options.output.display());
+    println!("in {}", folder.display());
     Ok(())
 }

@@ -1,8 +1,5 @@
 //! Nanoseconds of a draw: constructing a pixel's sampler and drawing its numbers, pixels row by row.
 
-// Without the archive the C tile is a type of no values.
-#![cfg_attr(not(archive), allow(unreachable_code, unused_variables))]
-
 use crate::sampler::{DIMS, SIDE, Sampler, heitz, sobol};
 use anyhow::Result;
 use noisefloor::rng::Rng;

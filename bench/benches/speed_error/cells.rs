@@ -1,10 +1,10 @@
 //! One integrand, one degree, one sample count: errors and times of every estimator on the same samples.
 
 use noisefloor_bench::method::{LEAST_SQUARES, LEAVE_ONE_OUT, MEAN, METHODS, ROBUST};
-use noisefloor_bench::{Door, Method};
+use noisefloor_bench::{Door, Extent, Method};
 use noisefloor_tests::integrands::Integrand;
 use noisefloor_tests::random::{SplitMix64, mix};
-use noisefloor_tests::statistics::{self, Ratio, median, rmse_ratio};
+use noisefloor_tests::statistics::{self, Ratio, median, rmse_ratio, root_mean_square};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -83,51 +83,28 @@ impl Cell {
     }
 }
 
-/// How many repetitions.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Extent {
-    /// Whether everything works, not the figures.
-    Quick,
-    Normal,
-    Full,
+/// (chunks, repetitions in a chunk) of the mean and the robust estimator; others see every [`step`]-th chunk.
+fn chunks(extent: Extent, dims: usize, n: usize) -> (usize, usize) {
+    let (repetitions, size) = match (dims, n) {
+        (..=5, ..=16) => (8192, 32),
+        (..=5, 17..=32) => (2048, 32),
+        (..=5, 33..=64) => (1536, 32),
+        (..=5, _) => (1024, 32),
+        (_, ..=64) => (512, 8),
+        _ => (256, 8),
+    };
+    let chunks = repetitions / size;
+    (extent.choose((chunks / 64).max(2), chunks, 8 * chunks), size)
 }
 
-impl Extent {
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Quick => "quick",
-            Self::Normal => "normal",
-            Self::Full => "full",
-        }
-    }
-
-    /// (chunks, repetitions in a chunk) of the mean and the robust estimator; others see every [`Self::step`]-th chunk.
-    fn chunks(self, dims: usize, n: usize) -> (usize, usize) {
-        let (repetitions, size) = match (dims, n) {
-            (..=5, ..=16) => (8192, 32),
-            (..=5, 17..=32) => (2048, 32),
-            (..=5, 33..=64) => (1536, 32),
-            (..=5, _) => (1024, 32),
-            (_, ..=64) => (512, 8),
-            _ => (256, 8),
-        };
-        let chunks = match self {
-            Self::Quick => (repetitions / size / 64).max(2),
-            Self::Normal => repetitions / size,
-            Self::Full => repetitions / size * 8,
-        };
-        (chunks, size)
-    }
-
-    /// Which chunks a method sees: targets are the robust estimator's; what takes longest shows its time and about how
-    /// it errs, and the grid of `estimators` has it too.
-    fn step(self, method: &Method) -> usize {
-        match method.name {
-            name if name == MEAN.name || name == ROBUST.name => 1,
-            _ if method.narrow || self != Self::Normal => 4,
-            name if [LEAST_SQUARES.name, LEAVE_ONE_OUT.name].contains(&name) => 4,
-            _ => 16,
-        }
+/// Which chunks a method sees: targets are the robust estimator's; what takes longest shows its time and about how it
+/// errs, and the grid of `estimators` has it too.
+fn step(extent: Extent, method: &Method) -> usize {
+    match method.name {
+        name if name == MEAN.name || name == ROBUST.name => 1,
+        _ if method.narrow || extent != Extent::Default => 4,
+        name if [LEAST_SQUARES.name, LEAVE_ONE_OUT.name].contains(&name) => 4,
+        _ => 16,
     }
 }
 
@@ -174,13 +151,13 @@ pub(crate) fn measure(
         cells.extend(known.into_iter().map(|cell| Cell { degree, ..cell }));
         return;
     }
-    let (chunks, size) = extent.chunks(dims, n);
+    let (chunks, size) = chunks(extent, dims, n);
     let mut tracks: Vec<Track> = METHODS
         .iter()
         .map(|&method| Track {
             method,
             prepared: method.prepare(door, dims, order, n),
-            step: extent.step(&method),
+            step: step(extent, &method),
             errors: vec![],
             size,
             ns: vec![],
@@ -225,7 +202,7 @@ pub(crate) fn measure(
             n,
             method: track.method.name,
             repetitions: track.errors.len(),
-            mean_rmse: root_mean_square(mean.iter().copied()),
+            mean_rmse: root_mean_square(&mean),
             ratio: rmse_ratio(&track.errors, &mean),
             narrow: tracks.iter().find(wide).map(|wide| narrow(&track.errors, &wide.errors(track.step), &mean)),
             ns: median(&track.ns),
@@ -234,14 +211,10 @@ pub(crate) fn measure(
     }
 }
 
-fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len() as f64;
-    (values.map(|value| value * value).sum::<f64>() / count).sqrt()
-}
-
 fn narrow(narrow: &[f64], wide: &[f64], mean: &[f64]) -> Narrow {
-    let difference = root_mean_square(narrow.iter().zip(wide).map(|(narrow, wide)| narrow - wide));
-    Narrow { ratio: rmse_ratio(narrow, wide), difference: difference / root_mean_square(mean.iter().copied()) }
+    let differences: Vec<f64> = narrow.iter().zip(wide).map(|(narrow, wide)| narrow - wide).collect();
+    let difference = root_mean_square(&differences) / root_mean_square(mean);
+    Narrow { ratio: rmse_ratio(narrow, wide), difference }
 }
 
 /// The cell with the largest ratio.
@@ -251,12 +224,7 @@ pub(crate) fn worst<'a>(cells: impl Iterator<Item = &'a Cell>) -> Option<&'a Cel
 
 /// The geometric mean of independent ratios; the interval is that of the mean logarithm, to first order.
 pub(crate) fn geometric_mean<'a>(cells: impl Iterator<Item = &'a Cell>) -> Ratio {
-    mean_of(cells.map(|cell| cell.ratio))
-}
-
-/// As [`geometric_mean`].
-pub(crate) fn mean_of(ratios: impl Iterator<Item = Ratio>) -> Ratio {
-    let ratios: Vec<Ratio> = ratios.collect();
+    let ratios: Vec<Ratio> = cells.map(|cell| cell.ratio).collect();
     let value = statistics::geometric_mean(&ratios.iter().map(|ratio| ratio.value).collect::<Vec<_>>());
     let spread: f64 = ratios.iter().map(|ratio| (ratio.half_width / ratio.value).ln_1p().powi(2)).sum();
     Ratio { value, half_width: value * (spread.sqrt() / ratios.len() as f64).exp_m1() }

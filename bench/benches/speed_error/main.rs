@@ -1,10 +1,9 @@
 //! Error against speed, measured in one run: `cargo bench --package noisefloor-bench --bench speed_error`.
 //!
 //! Every estimator sees the same samples in turn, a chunk of repetitions at a time, so that a busy machine slows all of
-//! them alike; times are medians over the chunks. The report says what each figure means.
+//! them alike; times are medians over the chunks. bench/README.md says what each figure means.
 
 mod cells;
-mod machine;
 mod must_reach;
 mod peer;
 mod report;
@@ -12,30 +11,11 @@ mod run;
 mod speed;
 
 use anyhow::Result;
-use cells::{Extent, Set};
+use cells::Set;
 use clap::Parser;
-use indicatif::{ProgressBar, ProgressStyle};
-use noisefloor_bench::{Door, c_abi};
+use noisefloor_bench::{Door, Options, c_abi};
 use noisefloor_tests::integrands;
 use run::Run;
-use std::path::PathBuf;
-
-/// Measures error against speed and writes a report.
-#[derive(Parser)]
-struct Options {
-    /// Few repetitions: whether everything works, not the figures.
-    #[arg(long)]
-    quick: bool,
-    /// Eight times the repetitions.
-    #[arg(long, conflicts_with = "quick")]
-    full: bool,
-    /// Where report.md, must_reach.csv, cells.csv and speed.csv go.
-    #[arg(long, default_value_os_t = noisefloor_bench::output("bench-report"))]
-    output: PathBuf,
-    /// What cargo adds.
-    #[arg(long, hide = true)]
-    bench: bool,
-}
 
 fn main() -> Result<()> {
     let options = Options::parse();
@@ -44,12 +24,7 @@ fn main() -> Result<()> {
     if !c_abi::LINKED {
         println!("the figures are the Rust API's: for those of what ships, run `cargo xtask library` first");
     }
-    let mut machine = machine::Machine::now();
-    let extent = match (options.quick, options.full) {
-        (true, _) => Extent::Quick,
-        (false, true) => Extent::Full,
-        (false, false) => Extent::Normal,
-    };
+    let extent = options.extent();
     let sets = [
         (Set::Nine, integrands::nine()),
         (Set::HeldOut, integrands::held_out()),
@@ -59,8 +34,7 @@ fn main() -> Result<()> {
         sets.iter().flat_map(|(set, list)| list.iter().map(move |integrand| (*set, *integrand))).collect();
     let total =
         integrands.len() * cells::DEGREES.len() * cells::COUNTS.len() + speed::SIZES.len() * speed::COUNTS.len();
-    let bar = ProgressBar::new(total as u64)
-        .with_style(ProgressStyle::with_template("{elapsed_precise} {wide_bar} {pos}/{len} {msg}")?);
+    let bar = noisefloor_bench::bar(total)?;
     let mut speeds = Vec::new();
     for (dims, order) in speed::SIZES {
         for n in speed::COUNTS {
@@ -81,10 +55,9 @@ fn main() -> Result<()> {
         }
     }
     bar.finish_and_clear();
-    machine.finish();
-    let run = Run { extent, door, machine, cells, speeds, solves };
-    report::write(&run, &options.output)?;
+    let run = Run { door, cells, speeds, solves };
     print!("{}", must_reach::table(&run));
-    println!("\nreport: {}", options.output.join("report.md").display());
-    Ok(())
+    let (cells, speeds) = (report::cells(&run)?, report::speeds(&run)?);
+    let files = [("must_reach.csv", must_reach::csv(&run)), ("cells.csv", cells), ("speed.csv", speeds)];
+    options.write("bench-report", &files)
 }

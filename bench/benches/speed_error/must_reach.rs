@@ -4,7 +4,7 @@ use crate::cells::{Cell, Set, geometric_mean, worst};
 use crate::run::Run;
 use crate::speed::{PEERS, SOLVE, Speed};
 use noisefloor_bench::method::{LEAST_SQUARES, ROBUST};
-use noisefloor_tests::statistics::{Ratio, geometric_mean as geometric_mean_of};
+use noisefloor_tests::statistics::Ratio;
 use std::fmt::Write;
 
 /// What the robust estimator may exceed the mean's RMSE by.
@@ -42,11 +42,6 @@ fn find(run: &Run, dims: usize, n: usize, name: &str, door: &str) -> f64 {
         (speed.dims, speed.order, speed.n, speed.name.as_str(), speed.door) == (dims, 2, n, name, door)
     };
     run.speeds.iter().find(same).map_or(f64::NAN, |speed| speed.ns)
-}
-
-/// The geometric mean of the first peer's times over the quoted ones.
-pub(crate) fn pace(run: &Run) -> f64 {
-    geometric_mean_of(&QUOTED.map(|(dims, n, quoted)| find(run, dims, n, PEERS[0].0, "peer") / quoted))
 }
 
 /// What was to be reached, and what was measured.

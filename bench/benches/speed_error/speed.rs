@@ -1,12 +1,11 @@
 //! Times of single estimates, interleaved: every contestant once per round, medians over the rounds.
 
-use crate::cells::Extent;
 use crate::peer::{self, Peer, Solver};
 use nalgebra::{DMatrix, DVector};
 use noisefloor::basis::Family;
 use noisefloor::control_variate::Regressor;
-use noisefloor_bench::Door;
 use noisefloor_bench::method::{LEAST_SQUARES, MEAN, METHODS, ROBUST};
+use noisefloor_bench::{Door, Extent};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::statistics::median;
 use std::hint::black_box;
@@ -61,13 +60,7 @@ fn speed((name, door, mut times): (String, &'static str, Vec<f64>), dims: usize,
 pub(crate) fn estimates(door: Door, dims: usize, order: usize, n: usize, extent: Extent) -> Vec<Speed> {
     let large = dims > 3;
     let sets = if large { 512 / n } else { 4096 / n };
-    let rounds = match extent {
-        Extent::Quick => 3,
-        Extent::Normal if large => 7,
-        Extent::Normal => 41,
-        Extent::Full if large => 28,
-        Extent::Full => 164,
-    };
+    let rounds = if large { extent.choose(3, 7, 28) } else { extent.choose(3, 41, 164) };
     let mut rng = SplitMix64::new(n as u64);
     let pool: Vec<(Vec<f32>, Vec<f32>)> = (0..sets)
         .map(|_| {
@@ -128,6 +121,6 @@ pub(crate) fn solves(extent: Extent) -> Vec<Speed> {
         let call = move || drop(black_box(peer::solve(black_box(&matrix).clone(), black_box(&rhs), solver)));
         contestants.push((name.to_owned(), "peer", repeat(Box::new(call))));
     }
-    let rounds = if extent == Extent::Full { 401 } else { 101 };
+    let rounds = extent.choose(101, 101, 401);
     race(contestants, rounds, CALLS).into_iter().map(|times| speed(times, 2, 2, 64)).collect()
 }

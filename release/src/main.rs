@@ -1,0 +1,48 @@
+//! What must hold before a version is published (docs/releases.md): the C header, generated from `capi/`, the list of
+//! what its ABI promises, packages, licences, versions. `cargo xtask header`, `abi` and `licences` start it.
+
+mod abi;
+mod banner;
+mod declarations;
+mod header;
+mod licences;
+mod packages;
+
+use anyhow::{Result, bail};
+use std::process::ExitCode;
+use xtask::outcome::{NOT_RUN, Outcome};
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match run(&arguments.iter().map(String::as_str).collect::<Vec<_>>()) {
+        Ok(Outcome::Passed) => ExitCode::SUCCESS,
+        Ok(Outcome::NotRun(why)) => {
+            eprintln!("{why}");
+            ExitCode::from(NOT_RUN)
+        }
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &[&str]) -> Result<Outcome> {
+    match arguments {
+        ["header"] => header::write()?,
+        ["abi"] => abi::write(false)?,
+        ["abi", "--unreleased"] => abi::write(true)?,
+        ["licences"] => licences::write()?,
+        ["check", "header"] => header::check()?,
+        ["check", "abi"] => return abi::check(),
+        ["check", "licences"] => return licences::check(),
+        ["check", "packages"] => return packages::check(),
+        ["check", "versions"] => return packages::versions(),
+        _ => bail!(
+            "`{}`: it must be header, abi [--unreleased] or licences; or check and header, abi, licences, packages or \
+             versions",
+            arguments.join(" ")
+        ),
+    }
+    Ok(Outcome::Passed)
+}

@@ -1,0 +1,103 @@
+# The programs of examples_c, compiled as their reader would, and run; the path tracer's parts, and the path tracer on
+# Embree.
+if(TESTS_UNDER MATCHES "tsan|valgrind")
+    return()
+endif()
+if(TESTS_UNDER)
+    set(fast -O1)
+    set(fastest -O1)
+else()
+    set(fast -O2)
+    set(fastest -O3)
+endif()
+
+# A program that prints errors, of which in each pair the second must be the smaller: LARGER:SMALLER,...
+function(add_errors label program pairs)
+    add_check(${label} ${program} "${CMAKE_COMMAND}" "-DPROGRAM=$<TARGET_FILE:${program}>" "-DPAIRS=${pairs}"
+        -P "${CMAKE_CURRENT_SOURCE_DIR}/cmake/errors.cmake")
+endfunction()
+
+foreach(name IN ITEMS pbrt_sampler mitsuba_sampler)
+    add_program(renderers ${name} ../examples_c/renderers/${name}.cpp ${fast} -Wconversion -Wshadow)
+endforeach()
+add_errors(renderers pbrt_sampler independent:tile,tile:noisefloor)
+add_errors(renderers mitsuba_sampler independent:tile,mean:noisefloor)
+
+add_program(train_mlp train_mlp ../examples_c/train_mlp.c ${fast})
+add_program(fit_polynomial fit_polynomial ../examples_c/fit_polynomial.c ${fast})
+add_program(fit_image fit_image ../examples_c/fit_image.cpp ${fastest})
+foreach(name IN ITEMS train_mlp fit_polynomial fit_image)
+    add_python(${name} refusals ${name}.py "$<TARGET_FILE:${name}>" refusals)
+    # Under the sanitizers it is memory that is looked at, and slowly.
+    if(TESTS_UNDER)
+        add_python(${name} small ${name}.py "$<TARGET_FILE:${name}>" small)
+    else()
+        add_python(${name} results ${name}.py "$<TARGET_FILE:${name}>" results)
+    endif()
+endforeach()
+if(TESTS_UNDER)
+    return()
+endif()
+
+foreach(source IN ITEMS integrate.c image.cpp shared.c)
+    get_filename_component(name "${source}" NAME_WE)
+    add_program(${name} ${name} ../examples_c/${source} ${fast})
+    add_errors(${name} ${name} mean:noisefloor)
+endforeach()
+# Its processes check their estimates themselves.
+add_program(shards shards ../examples_c/shards.c ${fast})
+add_check(shards shards shards)
+
+add_python(documents code_in_docs documents.py "${CMAKE_C_COMPILER}")
+add_custom_target(documents)
+
+# The library as its users have it: installed, or a part of their project.
+foreach(name IN ITEMS projects examples)
+    add_check(installed_${name} ${name} sh "${CMAKE_CURRENT_SOURCE_DIR}/package/installed.sh" ${name}
+        "${CMAKE_CURRENT_BINARY_DIR}/installed" "${NOISEFLOOR_CARGO}" "${NOISEFLOOR_CARGO_TARGET_DIR}")
+    add_to(installed_${name} noisefloor noisefloor_static)
+endforeach()
+
+# noisefloor.py prints its declarations as C; a compiler that sees the header's beside them refuses those that differ.
+set(declarations "${CMAKE_CURRENT_BINARY_DIR}/python_declarations.c")
+set(folder "${root}/examples_c/python")
+add_custom_command(OUTPUT "${declarations}" COMMAND "${python}" -B "${folder}/noisefloor.py" > "${declarations}"
+    DEPENDS "${folder}/noisefloor.py" VERBATIM)
+add_library(python_declarations OBJECT "${declarations}")
+set_target_properties(python_declarations PROPERTIES C_STANDARD 11)
+target_compile_options(python_declarations PRIVATE -Wall -Wextra -pedantic -Werror)
+target_link_libraries(python_declarations PRIVATE noisefloor::noisefloor)
+add_to(python python_declarations noisefloor)
+add_check(python tests "${python}" -B -W error::SyntaxWarning test_noisefloor.py)
+add_check(python a_training_loop "${python}" -B -W error::SyntaxWarning train_digits.py 2 1)
+set_tests_properties(python.tests python.a_training_loop PROPERTIES WORKING_DIRECTORY "${folder}"
+    ENVIRONMENT "NOISEFLOOR_LIBRARY=$<TARGET_FILE:noisefloor>;PYTHONDONTWRITEBYTECODE=1")
+
+# The path tracer: what it lists, what it promises of its options, what it refuses; and its parts one by one.
+find_package(Threads REQUIRED)
+link_libraries(Threads::Threads)
+add_program(pathtracer pathtracer ../examples_c/pathtracer.cpp ${fast})
+add_python(pathtracer scenes_and_options path_tracer.py "$<TARGET_FILE:pathtracer>")
+foreach(name IN ITEMS intersection lights surfaces image_plane paths mis program)
+    add_program(pathtracer_parts part_${name} pathtracer/${name}.cpp ${fast})
+    add_check(pathtracer_parts ${name} part_${name})
+endforeach()
+
+# Embree 4 where somebody installed it, which Debian 12 has not as a package.
+find_path(embree_4 embree4/rtcore.h)
+find_path(embree_3 embree3/rtcore.h)
+find_path(assimp assimp/Importer.hpp)
+if(NOT assimp OR NOT (embree_3 OR embree_4))
+    message(STATUS "without tests/embree: libembree-dev or libassimp-dev is missing")
+    return()
+endif()
+add_program(embree_scenes embree_main embree/main.cpp ${fast})
+add_program(embree_agreement embree_agreement embree/agreement.cpp ${fast})
+foreach(program IN ITEMS main agreement)
+    target_include_directories(embree_${program} PRIVATE ../examples_c)
+    target_compile_definitions(embree_${program} PRIVATE "MESH_FOLDER=\"${CMAKE_CURRENT_SOURCE_DIR}/embree/meshes\"")
+    target_link_libraries(embree_${program} PRIVATE $<IF:$<BOOL:${embree_4}>,embree4,embree3> assimp)
+endforeach()
+set_target_properties(embree_main PROPERTIES OUTPUT_NAME embree_harness)
+add_check(embree_agreement every_scene embree_agreement)
+add_python(embree_scenes scenes embree.py "$<TARGET_FILE:embree_main>")

@@ -1,0 +1,181 @@
+//! What holds for all texts: lines no longer than a screen is wide, links that lead somewhere, code that is a
+//! program's; and how much there is.
+
+use crate::outcome::Outcome;
+use crate::{paths, run};
+use anyhow::{Context, Result, bail};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const WIDTH: usize = 120;
+const KINDS: [&str; 6] = ["rs", "c", "h", "hpp", "cpp", "md"];
+const APART: [&str; 3] = ["docs/report/", "THIRD_PARTY.md", "report/"];
+
+/// Checks the lines of every file that git knows.
+pub fn columns() -> Result<Outcome> {
+    let Some(files) = run::tracked() else {
+        return Ok(Outcome::NotRun("git does not know which files there are".to_owned()));
+    };
+    let of_a_kind = |name: &&String| name.rsplit_once('.').is_some_and(|(_, kind)| KINDS.contains(&kind));
+    let mut long = Vec::new();
+    for name in files.iter().filter(of_a_kind).filter(|name| !APART.iter().any(|apart| name.starts_with(apart))) {
+        let text = paths::read(name)?;
+        let is_document = name.ends_with(".md");
+        let is_long = |line: &str| if is_document { columns_of_text(line) } else { line.chars().count() } > WIDTH;
+        long.extend(text.lines().zip(1..).filter(|(line, _)| is_long(line)).map(|(_, at)| format!("{name}:{at}")));
+    }
+    if !long.is_empty() {
+        bail!("lines of more than {WIDTH} columns:\n   {}", long.join("\n   "));
+    }
+    Ok(Outcome::Passed)
+}
+
+/// The columns of a line of Markdown: 0 where it cannot be broken, and without the targets of links.
+fn columns_of_text(line: &str) -> usize {
+    let is_whole = ["|", "<", "!["].iter().any(|start| line.trim_start().starts_with(start));
+    let mut parts = line.split("](");
+    let first = parts.next().unwrap_or_default().chars().count();
+    let rest = parts.map(|part| 1 + part.split_once(')').map_or(part, |(_, text)| text).chars().count());
+    if is_whole { 0 } else { first + rest.sum::<usize>() }
+}
+
+/// Checks the links of README.md, CONTRIBUTING.md, and all of docs/ and examples_c/: each must lead to a file that
+/// exists, and to a heading in it.
+pub fn links() -> Result<Outcome> {
+    let root = paths::root();
+    let mut documents = vec![root.join("README.md"), root.join("CONTRIBUTING.md")];
+    for folder in ["docs", "docs/report", "examples_c"] {
+        documents.extend(paths::of_kind(folder, "md")?);
+    }
+    let (mut links, mut broken) = (0, Vec::new());
+    for document in &documents {
+        for link in links_of(&paths::read(document)?).filter(|link| !link.contains("://")) {
+            links += 1;
+            if !leads_somewhere(document, link)? {
+                broken.push(format!("{}: {link}", document.strip_prefix(root).unwrap_or(document).display()));
+            }
+        }
+    }
+    if !broken.is_empty() {
+        bail!("links to no file or no heading:\n   {}", broken.join("\n   "));
+    }
+    println!("   {links} links in {} documents", documents.len());
+    Ok(Outcome::Passed)
+}
+
+/// What stands between `](` and `)`.
+fn links_of(text: &str) -> impl Iterator<Item = &str> {
+    let after = text.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+    after.map(|(link, _)| link).filter(|link| !link.is_empty() && !link.contains(char::is_whitespace))
+}
+
+fn leads_somewhere(document: &Path, link: &str) -> Result<bool> {
+    let (file, heading) = link.split_once('#').map_or((link, None), |(file, heading)| (file, Some(heading)));
+    let folder = document.parent().unwrap_or(Path::new("."));
+    let target: PathBuf = if file.is_empty() { document.to_path_buf() } else { folder.join(file) };
+    let is_text = target.extension().is_some_and(|extension| extension == "md");
+    Ok(match heading {
+        _ if !target.exists() => false,
+        Some(heading) if is_text => paths::read(&target)?.lines().filter_map(anchor).any(|anchor| anchor == heading),
+        _ => true,
+    })
+}
+
+/// The name that a heading's line has in links: lower case, spaces as dashes, punctuation left out.
+fn anchor(line: &str) -> Option<String> {
+    let heading = line.starts_with('#').then(|| line.trim_start_matches('#').trim().to_lowercase())?;
+    let kept = heading.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+    Some(kept.map(|c| if c == ' ' { '-' } else { c }).collect())
+}
+
+/// README.md's first block of code is a part of image.cpp, letter by letter, and the two commands that do all the
+/// set-up follow.
+pub fn readme() -> Result<Outcome> {
+    let (text, program) = (paths::read("README.md")?, paths::read("examples_c/image.cpp")?);
+    let part = program.split_once("    // README begin\n").and_then(|(_, rest)| rest.split_once("    // README end\n"));
+    let (part, _) = part.context("examples_c/image.cpp has no part between `README begin` and `README end`")?;
+    let part: String = part.lines().map(|line| format!("{}\n", line.strip_prefix("    ").unwrap_or(line))).collect();
+    let block = text.split_once("```cpp\n").and_then(|(before, rest)| (!before.contains("```")).then_some(rest));
+    let block = block.and_then(|rest| rest.split_once("```")).context("README.md does not open with a block of C++")?;
+    if block.0 != part {
+        bail!("README.md's first block of code is not the part of examples_c/image.cpp that it shows");
+    }
+    for command in ["\ncargo xtask demo ", "\ncargo xtask test "] {
+        if !block.1.contains(command) {
+            bail!("README.md does not say `{}`", command.trim());
+        }
+    }
+    Ok(Outcome::Passed)
+}
+
+/// Prints lines of Rust, words of the documents, and the report's size.
+pub fn sizes() -> Result<Outcome> {
+    let Some(files) = run::tracked() else {
+        return Ok(Outcome::NotRun("git does not know which files there are".to_owned()));
+    };
+    let of = |prefix: &str, ending: &str| -> Vec<String> {
+        let wanted = files.iter().filter(|file| file.starts_with(prefix) && file.ends_with(ending));
+        wanted.filter_map(|file| fs::read_to_string(paths::root().join(file)).ok()).collect()
+    };
+    let lines = |texts: &[String]| texts.iter().map(|text| text.lines().count()).sum::<usize>();
+    let words = |texts: &[String]| texts.iter().map(|text| text.split_whitespace().count()).sum::<usize>();
+    for room in ["core/src/", "capi/src/", "fsot/", "tests/", "fuzz/", "bench/", "release/", "report/", "xtask/"] {
+        let texts = of(room, ".rs");
+        println!("   {room:<10} {:>6} lines of Rust in {} files", lines(&texts), texts.len());
+    }
+    let doctests = of("core/src/", ".rs").iter().map(|text| in_fences(text)).sum::<usize>();
+    println!("   core/src/  {doctests:>6} lines of doctests");
+    let readme = of("README.md", "");
+    let numbers = readme.iter().flat_map(|text| text.split(|c: char| !c.is_ascii_digit() && c != '.'));
+    let numbers = numbers.filter(|word| word.contains(|c: char| c.is_ascii_digit())).count();
+    println!("   README.md  {:>6} words, {numbers} numbers, {} lines", words(&readme), lines(&readme));
+    let report = of("docs/report/", ".md");
+    println!("   docs/      {:>6} words of guides", words(&of("docs/", ".md")) - words(&report));
+    let bytes = files.iter().filter(|file| file.starts_with("docs/report/"));
+    let bytes =
+        bytes.filter_map(|file| fs::metadata(paths::root().join(file)).ok()).map(|data| data.len()).sum::<u64>();
+    println!("   docs/report {:>5.1} MB", bytes as f64 / 1e6);
+    let tree =
+        run::read(run::cargo().args(["tree", "--package", "xtask", "--prefix", "none", "--edges", "normal,build"]))?;
+    let packages: BTreeSet<&str> = tree.lines().map(|line| line.trim_end_matches(" (*)")).collect();
+    println!("   xtask      {:>6} packages", packages.len());
+    Ok(Outcome::Passed)
+}
+
+/// Lines between fences of comments.
+fn in_fences(text: &str) -> usize {
+    let mut inside = false;
+    let comments = text.lines().map(str::trim_start).filter(|line| line.starts_with("///") || line.starts_with("//!"));
+    let counted = comments.filter(|line| {
+        let is_fence = line[3..].trim_start().starts_with("```");
+        inside ^= is_fence;
+        inside && !is_fence
+    });
+    counted.count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{anchor, columns_of_text, links_of};
+
+    #[test]
+    fn tables_and_the_targets_of_links_have_no_width() {
+        assert_eq!(columns_of_text("| a | b |") + columns_of_text("  <!-- a: b -->"), 0);
+        assert_eq!(columns_of_text("see [the guide](docs/guide.md), and [x](y)."), "see [the guide], and [x].".len());
+        assert_eq!(columns_of_text("τ = 2 π"), 7);
+    }
+
+    #[test]
+    fn headings_become_anchors() {
+        assert_eq!(anchor("## The `.nft` format, version 1").as_deref(), Some("the-nft-format-version-1"));
+        assert_eq!(anchor("### `NF_CV_ROBUST`, the default").as_deref(), Some("nf_cv_robust-the-default"));
+        assert_eq!(anchor("no heading"), None);
+    }
+
+    #[test]
+    fn links_are_found() {
+        let text = "a [b](c.md#d), `x](y z)` and ![e](f.png)";
+        assert_eq!(links_of(text).collect::<Vec<_>>(), ["c.md#d", "f.png"]);
+    }
+}
