@@ -276,6 +276,13 @@ typedef struct nf_cv_image {
     // either. For textures, where all samples of a pixel see one albedo: with defocus or motion blur they can raise
     // the error. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
     const float *factors;
+    // For each sample, as f, what it would be with nothing in the way (its unshadowed contribution), or NULL. Finite.
+    // Pixels are then also corrected by how far it is from `integrals`, as far as their neighbours follow it.
+    const float *known;
+    // With `known`, else NULL: `channels` numbers for each pixel, its exact integral over u: of a polygon light in
+    // closed form, for example. Finite and not negative; a pixel with 0 is not corrected by it. Where a pixel's samples
+    // see several points, the mean of theirs.
+    const float *integrals;
 } nf_cv_image;
 
 // Estimates an integral from n samples: u has n rows of `stride` floats (the last may end after `dims`), f has n rows
@@ -324,8 +331,11 @@ size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image 
 // As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of
 // the same window and surface share a fit. Fits also follow integrands that change across the window.
 //
-// NF_ERR_RANGE also for an image without pixels, for windows that nf_cv_image does not allow and for negative factors,
-// NF_ERR_NOT_FINITE for factors that are not finite.
+// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and to
+// what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD is then unsupported.
+//
+// NF_ERR_RANGE also for an image without pixels, for windows that nf_cv_image does not allow, for negative factors or
+// integrals and for `known` without `integrals`; NF_ERR_NOT_FINITE if any of the three is not finite.
 nf_status nf_cv_image_estimate(const nf_cv_config *config,
                                const nf_cv_image *image,
                                const float *u,
@@ -1297,7 +1307,7 @@ NF_ASSERT_LAYOUT(sizeof(nf_cv_config) == 76 && offsetof(nf_cv_config, ridge) == 
 NF_ASSERT_ALIGNED_AS(nf_cv_config, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_estimate) == 40 && offsetof(nf_estimate, samples) == 32);
 NF_ASSERT_ALIGNED_AS(nf_estimate, float);
-NF_ASSERT_LAYOUT(sizeof(nf_cv_image) == 24 + 2 * sizeof(void *) && offsetof(nf_cv_image, surfaces) == 24);
+NF_ASSERT_LAYOUT(sizeof(nf_cv_image) == 24 + 4 * sizeof(void *) && offsetof(nf_cv_image, surfaces) == 24);
 NF_ASSERT_LAYOUT(sizeof(nf_recommendation) == 100 && offsetof(nf_recommendation, config) == 24);
 NF_ASSERT_ALIGNED_AS(nf_recommendation, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_tile) == 2 * sizeof(void *) + 24 && offsetof(nf_tile, size) == 2 * sizeof(void *));

@@ -316,6 +316,18 @@ public:
         return copy;
     }
 
+    // What each sample would be with nothing in the way, as f, and config::channels integrals of it for each pixel.
+    image with_known(span<const float> values, span<const float> exact) const noexcept
+    {
+        image copy = *this;
+        copy.known = values.data();
+        copy.integrals = exact.data();
+        copy.known_ = values.size();
+        copy.integrals_ = exact.size();
+        copy.has_known_ = true;
+        return copy;
+    }
+
     // Pixels in no order: nf_cv_image::unordered.
     image without_places(bool value = true) const noexcept
     {
@@ -332,18 +344,21 @@ public:
             return 0;
         return width * rows * all_frames;
     }
-    // Whether the arrays are as long as they must be.
-    bool fits(const nf_cv_config &how) const noexcept
+    // Whether the arrays are as long as they must be beside so many numbers of f.
+    bool fits(const nf_cv_config &how, std::size_t values) const noexcept
     {
-        const bool divides = how.channels != 0 && factors_ % how.channels == 0;
-        const bool surfaces_fit = !has_surfaces_ || surfaces_ == pixels();
-        return surfaces_fit && (!has_factors_ || (divides && factors_ / how.channels == pixels()));
+        const std::size_t channels = how.channels;
+        const auto each = [&](std::size_t size) {
+            return channels != 0 && size % channels == 0 && size / channels == pixels();
+        };
+        return (!has_surfaces_ || surfaces_ == pixels()) && (!has_factors_ || each(factors_)) &&
+               (!has_known_ || (known_ == values && each(integrals_)));
     }
 
 private:
     // An array that was given but is empty is an error, not "none".
-    bool has_surfaces_ = false, has_factors_ = false;
-    std::size_t surfaces_ = 0, factors_ = 0;
+    bool has_surfaces_ = false, has_factors_ = false, has_known_ = false;
+    std::size_t surfaces_ = 0, factors_ = 0, known_ = 0, integrals_ = 0;
 };
 
 // Samples in caller arrays. The number of samples is f.size() / channels, and all lengths must agree with it.
@@ -424,7 +439,8 @@ inline returned<void> estimate_image(const nf_cv_config &how, const image &where
 {
     std::size_t n = 0;
     nf_status code = detail::count(how, what, n);
-    if (code == NF_OK && (out.empty() || out.size() != where.pixels() || n % out.size() != 0 || !where.fits(how)))
+    const bool divides = !out.empty() && out.size() == where.pixels() && n % out.size() == 0;
+    if (code == NF_OK && !(divides && where.fits(how, what.f.size())))
         code = NF_ERR_RANGE;
     if (code == NF_OK)
         code = nf_cv_image_estimate(&how, &where, what.u.data(), what.f.data(), n / out.size(), workspace.data(),

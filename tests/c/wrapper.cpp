@@ -173,7 +173,7 @@ static void images()
     CHECK(nf::image(UINT32_MAX, UINT32_MAX, UINT32_MAX).pixels() == 0 && nf::image(0, 4).pixels() == 0);
     CHECK(image.with_window(6).window == 6 && image.with_window(6).stride == 0);
     const nf_cv_image plain = {4, 4, 1, 4, 2, 0, nullptr, nullptr};
-    CHECK(image.unordered == 0 && image.without_places().unordered == 1 && !image.with_surfaces({}).fits(config));
+    CHECK(image.unordered == 0 && image.without_places().unordered == 1 && !image.with_surfaces({}).fits(config, 16));
     CHECK(config.image_workspace_size(image, 4) == nf_cv_image_workspace_size(&config, &plain, 4));
     CHECK(config.image_workspace_size(image, 4) > 0 && config.image_workspace_size(image, 4) <= sizeof workspace);
     CHECK(config.image_workspace_size(nf::image(4, 4, 200), 4) == 0);

@@ -37,6 +37,13 @@ pub struct nf_cv_image {
     /// either. For textures, where all samples of a pixel see one albedo: with defocus or motion blur they can raise
     /// the error. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
     pub factors: *const f32,
+    /// For each sample, as f, what it would be with nothing in the way (its unshadowed contribution), or NULL. Finite.
+    /// Pixels are then also corrected by how far it is from `integrals`, as far as their neighbours follow it.
+    pub known: *const f32,
+    /// With `known`, else NULL: `channels` numbers for each pixel, its exact integral over u: of a polygon light in
+    /// closed form, for example. Finite and not negative; a pixel with 0 is not corrected by it. Where a pixel's samples
+    /// see several points, the mean of theirs.
+    pub integrals: *const f32,
 }
 
 /// Bytes of workspace that nf_cv_block_estimate() needs; 0 as for nf_cv_workspace_size().
@@ -113,8 +120,11 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
 /// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of
 /// the same window and surface share a fit. Fits also follow integrands that change across the window.
 ///
-/// NF_ERR_RANGE also for an image without pixels, for windows that nf_cv_image does not allow and for negative factors,
-/// NF_ERR_NOT_FINITE for factors that are not finite.
+/// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and to
+/// what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD is then unsupported.
+///
+/// NF_ERR_RANGE also for an image without pixels, for windows that nf_cv_image does not allow, for negative factors or
+/// integrals and for `known` without `integrals`; NF_ERR_NOT_FINITE if any of the three is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_estimate(
     config: *const nf_cv_config,
@@ -148,6 +158,15 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
             // SAFETY: as above.
             image.factors = unsafe { convert::slice(given.factors, convert::product(pixels, core.channels)?)? };
         }
+        image.known = &[];
+        if !given.known.is_null() {
+            // SAFETY: as above.
+            image.known = unsafe { convert::slice(given.known, convert::product(total, core.channels)?)? };
+        }
+        if !given.integrals.is_null() {
+            // SAFETY: as above.
+            image.integrals = unsafe { convert::slice(given.integrals, convert::product(pixels, core.channels)?)? };
+        }
         // SAFETY: the caller's workspace, `bytes` long.
         unsafe { estimate(&core, &image, samples, n, (workspace, bytes), out) }
     })())
@@ -161,7 +180,7 @@ fn supported(config: &nf_cv_config) -> Result<Config, nf_status> {
     if core.controls > 0 { Err(NF_ERR_UNSUPPORTED) } else { Ok(core) }
 }
 
-/// The image without its arrays.
+/// The image without its arrays; of `known` only whether there is one, on which the workspace depends.
 fn core_image(image: &nf_cv_image) -> Result<Image<'static>, nf_status> {
     let [width, height, frames, window, stride] =
         [image.width, image.height, image.frames, image.window, image.stride].map(|value| value as usize);
@@ -170,7 +189,8 @@ fn core_image(image: &nf_cv_image) -> Result<Image<'static>, nf_status> {
         1 => true,
         _ => return Err(NF_ERR_RANGE),
     };
-    Ok(Image { frames, window, stride, unordered, ..Image::new(width, height) })
+    let known: &[f32] = if image.known.is_null() { &[] } else { &[0.0] };
+    Ok(Image { frames, window, stride, unordered, known, ..Image::new(width, height) })
 }
 
 /// Bytes, 0 for what is not supported or out of range.

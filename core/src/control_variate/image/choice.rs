@@ -3,8 +3,8 @@
 use super::super::config::Config;
 use super::super::trust;
 use super::Call;
-use super::batch::{Batch, COLOURS, Eight, MAX_FIXED, NONE, only, plus};
-use super::fit::{Colours, Fits};
+use super::batch::{Batch, COLOURS, Eight, MAX_FIXED, MAX_VALUES, NONE, only, plus};
+use super::fit::{Colours, Fits, OfFits};
 use super::terms::{MAX_FITS, Terms};
 use crate::lanes::{self, LANES};
 use crate::linalg::{ldlt, packed_len, row, row_mut};
@@ -16,10 +16,10 @@ use core::hint::black_box;
 /// How much what independent samples say for a fit within their pixels counts, beside what the pixels' spread says.
 /// What they say against one counts whole.
 const WITHIN: f32 = 0.25;
-/// The most estimates to choose from: the plain mean's, and each fit's.
-pub(super) const MAX_CHOICES: usize = 1 + MAX_FITS;
+/// The most estimates to choose from: the plain mean and that with each fit, then the same less what is known.
+pub(super) const MAX_CHOICES: usize = 2 * (1 + MAX_FITS);
 
-/// For the plain mean and each fit, a number.
+/// For each of them, a number.
 pub(super) type Each = [Eight; MAX_CHOICES];
 
 /// The estimates' spreads across pixels: sums of squares about their linear trend along the axes.
@@ -33,9 +33,9 @@ pub(super) struct Spreads {
     trends: [[[Eight; MAX_FIXED]; MAX_CHOICES]; Config::MAX_CHANNELS],
     /// Pixels less the trend's coefficients, at least 0.
     pub(super) freedom: Eight,
-    pub(super) fits: usize,
+    pub(super) choices: Choices,
     /// What the fits leave of the samples of each colour about their pixels' means; see [`Fits::within`].
-    within: [[Each; COLOURS]; Config::MAX_CHANNELS],
+    within: [[OfFits; COLOURS]; MAX_VALUES],
     /// Pixels of each colour, if they have several samples.
     pixels: [Eight; COLOURS],
     taken: Colours,
@@ -71,7 +71,7 @@ impl Spreads {
             sums: [[NONE; MAX_CHOICES]; Config::MAX_CHANNELS],
             trends: [[[NONE; MAX_FIXED]; MAX_CHOICES]; Config::MAX_CHANNELS],
             freedom,
-            fits: terms.ends.len(),
+            choices: Choices { fits: terms.ends.len(), channels, count: (1 + terms.ends.len()) * batch.values / channels.max(1) },
             within: fits.within,
             pixels: [NONE; COLOURS],
             taken,
@@ -84,11 +84,11 @@ impl Spreads {
         }
         spreads.pixels.iter_mut().for_each(|sum| *sum = joined(sum));
         for channel in 0..channels {
-            for fit in 0..=spreads.fits {
+            for choice in 0..spreads.choices.count {
                 let mut square = NONE;
                 let mut trend = [NONE; MAX_FIXED];
                 for slot in (0..batch.slots).filter(|&slot| taken.has(slot)) {
-                    let estimate = estimate(batch, fits, channels, (slot, channel, fit));
+                    let estimate = spreads.choices.estimate(batch, fits, (slot, channel, choice));
                     lanes::add_product(&mut square, &estimate, &estimate);
                     for (sum, place) in trend.iter_mut().zip(row_at(batch.places, fixed, slot)) {
                         lanes::add_product(sum, &estimate, place);
@@ -96,18 +96,18 @@ impl Spreads {
                 }
                 trend.iter_mut().for_each(|sum| *sum = joined(sum));
                 ldlt::solve_each(&factor, trend.get_mut(..fixed).unwrap_or(&mut []));
-                if let Some(out) = spreads.trends.get_mut(channel).and_then(|trends| trends.get_mut(fit)) {
+                if let Some(out) = spreads.trends.get_mut(channel).and_then(|trends| trends.get_mut(choice)) {
                     *out = trend;
                 }
                 // The difference of the sums of squares would lose the digits that matter beside a strong trend.
                 let mut left = NONE;
                 for slot in (0..batch.slots).filter(|&slot| taken.has(slot)) {
-                    let rest = spreads.rest(batch, fits, channels, (slot, channel, fit));
+                    let rest = spreads.rest(batch, fits, (slot, channel, choice));
                     lanes::add_product(&mut left, &rest, &rest);
                 }
                 // What is left of a signal that is its trend is rounding noise.
                 let (left, square) = (joined(&left), joined(&square));
-                let sum = spreads.sums.get_mut(channel).and_then(|sums| sums.get_mut(fit));
+                let sum = spreads.sums.get_mut(channel).and_then(|sums| sums.get_mut(choice));
                 for (l, sum) in sum.into_iter().flatten().enumerate() {
                     let noise = square[l % LANES] * (f32::EPSILON * f32::EPSILON * 4096.0);
                     let is_some = left[l % LANES] > noise && freedom[l % LANES] > 0.0;
@@ -120,16 +120,10 @@ impl Spreads {
 
     /// What an estimate of a slot leaves of its trend.
     #[inline(always)]
-    fn rest(
-        &self,
-        batch: &Batch<'_>,
-        fits: &Fits<'_>,
-        channels: usize,
-        (slot, channel, fit): (usize, usize, usize),
-    ) -> Eight {
+    fn rest(&self, batch: &Batch<'_>, fits: &Fits<'_>, (slot, channel, choice): (usize, usize, usize)) -> Eight {
         let places = batch.places.len().checked_div(batch.slots).unwrap_or(0);
-        let trend = self.trends.get(channel).and_then(|trends| trends.get(fit)).into_iter().flatten();
-        let rest = estimate(batch, fits, channels, (slot, channel, fit));
+        let trend = self.trends.get(channel).and_then(|trends| trends.get(choice)).into_iter().flatten();
+        let rest = self.choices.estimate(batch, fits, (slot, channel, choice));
         let places = row_at(batch.places, places, slot);
         let rest =
             places.iter().zip(trend).fold(rest, |rest, (place, slope)| lanes::minus_product(rest, *place, *slope));
@@ -141,11 +135,14 @@ impl Spreads {
     fn inside(&self, channel: usize) -> (Each, Eight) {
         let mut within = [NONE; MAX_CHOICES];
         let mut count = NONE;
-        let colours = self.within.get(channel).into_iter().flatten().zip(&self.pixels).enumerate();
-        for (_, (each, pixels)) in colours.filter(|&(colour, _)| self.taken.has(colour)) {
+        for (_, pixels) in self.pixels.iter().enumerate().filter(|&(colour, _)| self.taken.has(colour)) {
             count = plus(&count, pixels);
-            for (sum, value) in within.iter_mut().zip(each).take(1 + self.fits) {
-                *sum = plus(sum, value);
+        }
+        for (choice, sum) in within.iter_mut().enumerate().take(self.choices.count) {
+            let (value, fit) = self.choices.value_and_fit(channel, choice);
+            let colours = self.within.get(value).into_iter().flatten().enumerate();
+            for (_, each) in colours.filter(|&(colour, _)| self.taken.has(colour)) {
+                *sum = plus(sum, &each.get(fit).copied().unwrap_or(NONE));
             }
         }
         (within, count)
@@ -157,7 +154,7 @@ impl Spreads {
         let sums = self.sums.get(channel).copied().unwrap_or([NONE; MAX_CHOICES]);
         let (within, pixels) = self.inside(channel);
         // Stratified samples' means differ by less than their variance within pixels tells: it may only warn.
-        share(&sums, self.fits, &self.freedom, &within, &pixels, if is_stratified { 0.0 } else { WITHIN })
+        share(&sums, self.choices.count, &self.freedom, &within, &pixels, if is_stratified { 0.0 } else { WITHIN })
     }
 
     /// A mixture's spread relative to the plain mean's, by the samples within pixels where `inside`.
@@ -168,7 +165,7 @@ impl Spreads {
         } else {
             self.sums.get(channel).copied().unwrap_or([NONE; MAX_CHOICES])
         };
-        let mixed = sums.iter().zip(shares).take(1 + self.fits);
+        let mixed = sums.iter().zip(shares).take(self.choices.count);
         let mixed = mixed.fold(NONE, |mixed, (sum, share)| lanes::plus_product(mixed, *sum, *share));
         // Behind a black box, or compilers divide a lane or two, and what else their vector holds.
         let mut ratio =
@@ -180,17 +177,43 @@ impl Spreads {
     }
 }
 
-/// An estimate of a slot's pixels; 0 outside.
-#[inline(always)]
-fn estimate(batch: &Batch<'_>, fits: &Fits<'_>, channels: usize, (slot, channel, fit): (usize, usize, usize)) -> Eight {
-    let inside = batch.inside.get(slot).copied().unwrap_or(NONE);
-    let mean = batch.means.get(slot * channels + channel).copied().unwrap_or(NONE);
-    match fit.checked_sub(1) {
-        Some(fit) => {
-            let correction = fits.correction(channels, (slot, channel, fit));
-            only(&inside, &lanes::zip(&mean, &correction, |a, b| a + b))
+/// The estimates to choose from.
+#[derive(Clone, Copy)]
+pub(super) struct Choices {
+    channels: usize,
+    /// Candidates for each value.
+    fits: usize,
+    pub(super) count: usize,
+}
+
+impl Choices {
+    /// Which value of a sample a choice is of, and which fit it has: 0 for none.
+    #[inline(always)]
+    pub(super) fn value_and_fit(&self, channel: usize, choice: usize) -> (usize, usize) {
+        if choice <= self.fits { (channel, choice) } else { (self.channels + channel, choice - self.fits - 1) }
+    }
+
+    /// An estimate of a slot's pixels.
+    #[inline(always)]
+    fn of_all(
+        &self,
+        batch: &Batch<'_>,
+        fits: &Fits<'_>,
+        (slot, channel, choice): (usize, usize, usize),
+    ) -> Eight {
+        let (value, fit) = self.value_and_fit(channel, choice);
+        let mean = batch.means.get(slot * batch.values + value).copied().unwrap_or(NONE);
+        match fit.checked_sub(1) {
+            Some(fit) => plus(&mean, &fits.correction((slot, value, fit))),
+            None => mean,
         }
-        None => only(&inside, &mean),
+    }
+
+    /// The same; 0 outside.
+    #[inline(always)]
+    fn estimate(&self, batch: &Batch<'_>, fits: &Fits<'_>, at: (usize, usize, usize)) -> Eight {
+        let inside = batch.inside.get(at.0).copied().unwrap_or(NONE);
+        only(&inside, &self.of_all(batch, fits, at))
     }
 }
 
@@ -200,10 +223,10 @@ fn no_less(sums: &Eight) -> Eight {
     sums.map(|sum| Real::max(sum, 1e-24))
 }
 
-/// All trust in the last of `fits` fits.
-pub(super) fn last_only(fits: usize) -> Each {
+/// All trust in the last of `choices`.
+pub(super) fn last_only(choices: usize) -> Each {
     let mut shares = [NONE; MAX_CHOICES];
-    if let Some(last) = shares.get_mut(fits) {
+    if let Some(last) = choices.checked_sub(1).and_then(|last| shares.get_mut(last)) {
         *last = [1.0; LANES];
     }
     shares
@@ -211,7 +234,7 @@ pub(super) fn last_only(fits: usize) -> Each {
 
 /// Trust by spreads, of the plain mean first: [`trust::weigh`] in each lane.
 #[inline(always)]
-fn share(spreads: &Each, fits: usize, freedom: &Eight, within: &Each, pixels: &Eight, part: f32) -> Each {
+fn share(spreads: &Each, choices: usize, freedom: &Eight, within: &Each, pixels: &Eight, part: f32) -> Each {
     let [plain, spreads @ ..] = spreads;
     let [noise, within @ ..] = within;
     let [inverse, inverse_noise] = [plain, noise].map(|plain| lanes::divisor(&no_less(plain)).map(|plain| 1.0 / plain));
@@ -219,7 +242,7 @@ fn share(spreads: &Each, fits: usize, freedom: &Eight, within: &Each, pixels: &E
     let has_samples = pixels[0] > 0.0;
     let mut shares = [NONE; MAX_CHOICES];
     let [mean, rest @ ..] = &mut shares;
-    let rest = rest.get_mut(..fits).unwrap_or(&mut []);
+    let rest = rest.get_mut(..choices.saturating_sub(1)).unwrap_or(&mut []);
     let mut largest = NONE;
     for ((share, spread), within) in rest.iter_mut().zip(spreads).zip(within) {
         // What is no number is trusted least.
@@ -241,7 +264,7 @@ fn share(spreads: &Each, fits: usize, freedom: &Eight, within: &Each, pixels: &E
         }
         largest = lanes::zip(&largest, share, |largest, share| if share > largest { share } else { largest });
     }
-    let prior = Real::ln(trust::PRIOR as f32 * fits as f32) * LOG2_E;
+    let prior = Real::ln(trust::PRIOR as f32 * rest.len() as f32) * LOG2_E;
     *mean = lanes::zip(&largest, freedom, |largest, freedom| {
         let caution = largest - freedom * freedom * (LOG2_E / trust::CAUTION as f32);
         if caution > 0.0 { prior + caution } else { prior }

@@ -2,12 +2,11 @@
 //!
 //! One factorisation A = L D L' serves every candidate, as each is a prefix of the columns and so of L.
 
-use super::super::config::{Config, Ridge};
+use super::super::config::Ridge;
 use super::super::ridge;
 use super::Call;
-use super::batch::{AT_ONCE, Batch, COLOURS, Eight, MAX_FIXED, NONE, Total, only, products_len};
-use super::choice::{Each, MAX_CHOICES};
-use super::terms::Terms;
+use super::batch::{AT_ONCE, Batch, COLOURS, Eight, MAX_FIXED, MAX_VALUES, NONE, Total, only, products_len};
+use super::terms::{MAX_FITS, Terms};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
@@ -43,15 +42,19 @@ impl Colours {
     }
 }
 
+/// A number for no fit, and for each.
+pub(super) type OfFits = [Eight; 1 + MAX_FITS];
+
 /// Fits to the pixels of a batch.
 pub(super) struct Fits<'a> {
-    /// For each slot, each candidate's corrections of the channels' means.
+    /// For each slot, each candidate's corrections of the values' means.
     corrections: &'a mut [Eight],
     /// How many candidates there are.
     pub(super) count: usize,
+    values: usize,
     /// Of several samples in each pixel, what the fits leave of the samples' sums of squares about their pixel's mean:
-    /// of each channel and colour, which they have not seen.
-    pub(super) within: [[Each; COLOURS]; Config::MAX_CHANNELS],
+    /// of each value and colour, which they have not seen.
+    pub(super) within: [[OfFits; COLOURS]; MAX_VALUES],
     /// A, then its factors; for each channel what the fit is to, then D^-1 L^-1 times it.
     system: Total<'a>,
     /// Sums of the pixels' means.
@@ -68,22 +71,23 @@ pub(super) struct Fits<'a> {
 }
 
 /// Numbers that fits take for so many slots.
-pub(super) fn fits_len(terms: &Terms, channels: usize, slots: usize) -> Option<usize> {
+pub(super) fn fits_len(terms: &Terms, values: usize, slots: usize) -> Option<usize> {
     let columns = terms.columns();
-    let totals = products_len(columns, channels) + products_len(columns, 2 * channels);
+    let totals = products_len(columns, values) + products_len(columns, 2 * values);
     let once = totals + (MAX_FIXED + 2 + 2 * AT_ONCE) * columns;
-    slots.checked_mul(terms.ends.len() * channels)?.checked_add(once)?.checked_mul(LANES)?.checked_add(columns)
+    slots.checked_mul(terms.ends.len() * values)?.checked_add(once)?.checked_mul(LANES)?.checked_add(columns)
 }
 
 impl<'a> Fits<'a> {
     pub(super) fn new(call: &Call<'_>, terms: &Terms, slots: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        let (columns, channels) = (terms.columns(), call.config.channels);
+        let (columns, values) = (terms.columns(), call.values());
         let fits = Self {
-            corrections: arena.take_lanes(slots * terms.ends.len() * channels)?,
+            corrections: arena.take_lanes(slots * terms.ends.len() * values)?,
             count: terms.ends.len(),
-            within: [[[NONE; MAX_CHOICES]; COLOURS]; Config::MAX_CHANNELS],
-            system: Total::new(columns, channels, arena)?,
-            between: Total::new(columns, 2 * channels, arena)?,
+            values,
+            within: [[[NONE; 1 + MAX_FITS]; COLOURS]; MAX_VALUES],
+            system: Total::new(columns, values, arena)?,
+            between: Total::new(columns, 2 * values, arena)?,
             coefficients: arena.take_lanes(columns)?,
             pivots: arena.take_lanes(columns)?,
             units: arena.take_lanes(terms.fixed() * columns)?,
@@ -124,10 +128,10 @@ impl<'a> Fits<'a> {
         }
     }
 
-    /// A candidate's correction of a channel of a slot.
+    /// A candidate's correction of a value of a slot.
     #[inline(always)]
-    pub(super) fn correction(&self, channels: usize, (slot, channel, fit): (usize, usize, usize)) -> Eight {
-        self.corrections.get((slot * self.count + fit) * channels + channel).copied().unwrap_or(NONE)
+    pub(super) fn correction(&self, (slot, value, fit): (usize, usize, usize)) -> Eight {
+        self.corrections.get((slot * self.count + fit) * self.values + value).copied().unwrap_or(NONE)
     }
 
     /// The fit to all pixels of some colours.
@@ -182,19 +186,19 @@ impl<'a> Fits<'a> {
     /// squares for a random effect. Where samples are all alike, nothing is left to fit.
     #[inline(always)]
     fn weigh_means(&mut self, call: &Call<'_>, terms: &Terms) {
-        let (width, fixed, channels) = (terms.columns(), terms.fixed(), call.config.channels);
+        let (width, fixed, values) = (terms.columns(), terms.fixed(), self.values);
         let n = call.n as f32;
         let pixels = self.between.gram.first().copied().unwrap_or(NONE).map(|count| count / n);
         let mut trend = [NONE; packed_len(MAX_FIXED)];
         trend.iter_mut().zip(self.between.gram.iter()).take(packed_len(fixed)).for_each(|(out, sum)| *out = *sum);
         ldlt::factor_each(&mut trend, fixed);
         let mut weight = [1.0; LANES];
-        for channel in 0..channels {
+        for value in 0..values {
             let get = |squares: &[Eight], index: usize| squares.get(index).copied().unwrap_or(NONE);
-            let inside = get(self.system.squares, channel);
-            let (means, whole) = (get(self.between.squares, channel), get(self.between.squares, channels + channel));
+            let inside = get(self.system.squares, value);
+            let (means, whole) = (get(self.between.squares, value), get(self.between.squares, values + value));
             let mut explained = [NONE; MAX_FIXED];
-            let sides = row_at(self.between.sides, width, channels + channel);
+            let sides = row_at(self.between.sides, width, values + value);
             explained.iter_mut().zip(sides).take(fixed).for_each(|(out, side)| *out = *side);
             let explained = explained.get_mut(..fixed).unwrap_or(&mut []);
             ldlt::forward_each::<f32, 1>(&trend, 0, ldlt::one_each_mut(explained));
@@ -228,9 +232,9 @@ impl<'a> Fits<'a> {
                 }
             }
         }
-        for (channel, sides) in rows_mut(self.system.sides, width).enumerate() {
-            let means = row_at(self.between.sides, width, channel);
-            let whole = row_at(self.between.sides, width, channels + channel);
+        for (value, sides) in rows_mut(self.system.sides, width).enumerate() {
+            let means = row_at(self.between.sides, width, value);
+            let whole = row_at(self.between.sides, width, values + value);
             for (j, (out, (means, whole))) in sides.iter_mut().zip(means.iter().zip(whole)).enumerate() {
                 for l in 0..LANES {
                     let within = if j < fixed { 0.0 } else { out[l] - means[l] };
@@ -246,18 +250,18 @@ impl<'a> Fits<'a> {
         let (width, fixed) = (terms.columns(), terms.fixed());
         let samples = batch.sums.samples.part(colour);
         let pixels = batch.sums.pixels.part(colour);
-        for (channel, within) in self.within.iter_mut().enumerate().take(samples.squares.len()) {
+        for (value, within) in self.within.iter_mut().enumerate().take(samples.squares.len()) {
             let Some(within) = within.get_mut(colour) else { continue };
             let difference = |a: &[Eight], b: &[Eight], index: usize| {
                 let [a, b] = [a, b].map(|all| all.get(index).copied().unwrap_or(NONE));
                 lanes::zip(&a, &b, |a, b| a - b)
             };
-            let whole = difference(samples.squares, pixels.squares, channel).map(|whole| Real::max(whole, 0.0));
+            let whole = difference(samples.squares, pixels.squares, value).map(|whole| Real::max(whole, 0.0));
             within[0] = whole;
-            let [sides, means] = [samples.sides, pixels.sides].map(|sides| row_at(sides, width, channel));
+            let [sides, means] = [samples.sides, pixels.sides].map(|sides| row_at(sides, width, value));
             for (&end, out) in terms.ends.iter().zip(within.iter_mut().skip(1)) {
                 let coefficients = self.coefficients.get_mut(..end).unwrap_or(&mut []);
-                let solved = row_at(self.system.sides, width, channel);
+                let solved = row_at(self.system.sides, width, value);
                 coefficients.iter_mut().zip(solved).for_each(|(out, side)| *out = *side);
                 ldlt::backward_each(self.system.gram, coefficients);
                 let mut left = whole;
@@ -284,7 +288,7 @@ impl<'a> Fits<'a> {
     #[inline(always)]
     fn apply<const OWN: bool>(&mut self, terms: &Terms, batch: &Batch<'_>, slots: &[Option<usize>; AT_ONCE]) {
         let (width, fixed) = (terms.columns(), terms.fixed());
-        let channels = self.system.sides.len().checked_div(width).unwrap_or(0);
+        let values = self.values;
         for (s, slot) in slots.iter().enumerate() {
             let columns = slot.map_or(&[][..], |slot| row_at(batch.columns, width, slot));
             for (j, solved) in self.solved.iter_mut().enumerate() {
@@ -312,12 +316,12 @@ impl<'a> Fits<'a> {
             &*self.solved
         };
         let inside = slots.map(|slot| slot.and_then(|slot| batch.inside.get(slot)).copied().unwrap_or(NONE));
-        let mut residuals = [[NONE; AT_ONCE]; Config::MAX_CHANNELS];
+        let mut residuals = [[NONE; AT_ONCE]; MAX_VALUES];
         for (s, slot) in slots.iter().enumerate() {
-            let means = slot.map_or(&[][..], |slot| row_at(batch.means, channels, slot));
+            let means = slot.map_or(&[][..], |slot| row_at(batch.means, values, slot));
             residuals.iter_mut().zip(means).for_each(|(residual, mean)| residual[s] = *mean);
         }
-        let mut fitted = [[NONE; AT_ONCE]; Config::MAX_CHANNELS];
+        let mut fitted = [[NONE; AT_ONCE]; MAX_VALUES];
         let (mut leverage, mut reach) = ([NONE; AT_ONCE], [NONE; AT_ONCE]);
         let mut begin = if OWN { 0 } else { fixed };
         for (fit, &end) in terms.ends.iter().enumerate() {
@@ -336,8 +340,8 @@ impl<'a> Fits<'a> {
                     }
                 }
             }
-            for (channel, (residual, fitted)) in residuals.iter_mut().zip(&mut fitted).enumerate().take(channels) {
-                let sides = row_at(self.system.sides, width, channel).get(range.clone()).unwrap_or(&[]);
+            for (value, (residual, fitted)) in residuals.iter_mut().zip(&mut fitted).enumerate().take(values) {
+                let sides = row_at(self.system.sides, width, value).get(range.clone()).unwrap_or(&[]);
                 for ((z, moved), side) in solved.iter().zip(moved).zip(sides) {
                     for s in 0..AT_ONCE {
                         if OWN {
@@ -348,7 +352,7 @@ impl<'a> Fits<'a> {
                 }
                 for (s, slot) in slots.iter().enumerate() {
                     let Some(slot) = slot else { continue };
-                    let at = (slot * self.count + fit) * channels + channel;
+                    let at = (slot * self.count + fit) * values + value;
                     let Some(out) = self.corrections.get_mut(at) else { continue };
                     // A pixel that no fit is made to is corrected by the fit to all.
                     let own = if batch.leaves_out { only(&inside[s], &residual[s]) } else { residual[s] };

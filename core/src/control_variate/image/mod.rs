@@ -31,6 +31,7 @@ mod bright;
 mod choice;
 mod fit;
 mod groups;
+mod known;
 mod passes;
 mod pixels;
 mod sums;
@@ -47,6 +48,7 @@ use crate::lanes::LANES;
 use batch::batch_len;
 use core::ops::Deref;
 use fit::fits_len;
+use known::RELATIVE;
 use pixels::Windows;
 use sums::sums_len;
 use terms::Terms;
@@ -66,7 +68,7 @@ pub fn block_workspace_len(config: &Config, pixels: usize, n: usize) -> Result<u
 /// # Errors
 /// As for [`estimate_image`]; [`Error::Memory`] if no memory could be large enough.
 pub fn image_workspace_len(config: &Config, image: &Image<'_>, n: usize) -> Result<usize, Error> {
-    check_supported(config)?;
+    check_supported(config, image)?;
     let shape = config.checked_shape()?;
     let windows = image.windows()?;
     image.pixels()?;
@@ -74,9 +76,11 @@ pub fn image_workspace_len(config: &Config, image: &Image<'_>, n: usize) -> Resu
 }
 
 /// Which samples count must not depend on the pixel, the fit is of the channels, and other estimators share no fits.
-fn check_supported(config: &Config) -> Result<(), Error> {
+fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
     let estimator = matches!(config.estimator, Estimator::Robust | Estimator::LeaveOneOut | Estimator::KFold);
-    let supported = estimator && config.color == Color::PerChannel && config.non_finite == NonFinite::Error;
+    // Halves that choose for each other would have to know nothing of each other's samples.
+    let is_halved = config.estimator == Estimator::KFold && image.has_known();
+    let supported = estimator && !is_halved && config.color == Color::PerChannel && config.non_finite == NonFinite::Error;
     if supported { Ok(()) } else { Err(Error::Unsupported) }
 }
 
@@ -147,12 +151,15 @@ pub fn estimate_image(
     let shape = config.checked_shape()?;
     let mut basis = Basis::empty();
     basis.set(config.basis, shape)?;
-    check_supported(config)?;
+    check_supported(config, image)?;
     let reader = Reader::new(config, samples)?;
     let (windows, pixels) = (image.windows()?, image.pixels()?);
     image.check(config)?;
     let n = reader.len() / pixels.max(1);
     if n == 0 || n * pixels != reader.len() {
+        return Err(Error::Range);
+    }
+    if image.has_known() && image.known.len() != samples.f.len() {
         return Err(Error::Range);
     }
     reader.check()?;
@@ -195,6 +202,16 @@ impl Layout<'_> {
         self.config.estimator == Estimator::LeaveOneOut || matches!(self.config.ridge, Ridge::Fixed(_))
     }
 
+    /// Whether what is known alone corrects: a fit to values that depend on it has seen its own pixel.
+    fn is_known_alone(&self) -> bool {
+        self.image.has_known() && self.config.estimator == Estimator::LeaveOneOut
+    }
+
+    /// Values of a sample that fits are made to: of each channel f and, with something known, f less its part of that.
+    fn values(&self) -> usize {
+        if self.image.has_known() { 2 * self.config.channels } else { self.config.channels }
+    }
+
     /// In how many turns pixels are chosen for.
     fn turns(&self) -> usize {
         if self.has_halves() { 2 } else { 1 }
@@ -207,6 +224,9 @@ impl Layout<'_> {
 
     /// Which columns fits to so many pixels have.
     fn terms(&self, pixels: usize) -> Terms {
+        if self.is_known_alone() {
+            return Terms::without_fits(self.windows.axes());
+        }
         let samples = pixels.saturating_mul(self.n);
         Terms::new(self.config, &self.shape, self.windows.axes(), samples, self.is_single_fit())
     }
@@ -242,7 +262,9 @@ impl Layout<'_> {
         let pixels = self.windows.pixels();
         let slots = if self.is_joined() { pixels.div_ceil(LANES) } else { pixels };
         let terms = self.terms(pixels);
-        let batch = batch_len(&terms, channels, slots)?.checked_add(fits_len(&terms, channels, slots)?)?;
+        let known = if self.image.has_known() { (2 * channels + RELATIVE) * LANES } else { 0 };
+        let batch = batch_len(&terms, self.values(), slots)?.checked_add(fits_len(&terms, self.values(), slots)?)?;
+        let batch = slots.checked_mul(known)?.checked_add(batch)?;
         sums.checked_add(self.groups_len()?)?.checked_add(batch)
     }
 }

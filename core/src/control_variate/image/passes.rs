@@ -2,9 +2,9 @@
 
 use super::super::config::Config;
 use super::Call;
-use super::batch::Batch;
+use super::batch::{Batch, NONE};
 use super::bright;
-use super::choice::{Each, Spreads, last_only};
+use super::choice::{Choices, Each, Spreads, last_only};
 use super::fit::{Colours, Fits};
 use super::groups::{Group, Groups};
 use crate::arena::Arena;
@@ -68,7 +68,7 @@ impl Call<'_> {
         let channels = self.config.channels;
         let [Group { len, .. }, ..] = lanes;
         let terms = self.terms(len);
-        if terms.ends.is_empty() {
+        if terms.ends.is_empty() && !self.image.has_known() {
             return Ok(());
         }
         let mut batch = Batch::new(self, groups, &terms, lanes, arena)?;
@@ -76,9 +76,13 @@ impl Call<'_> {
         if let Some(turn) = turn {
             batch.leave_out(channels, |group| groups.limits(self, group, turn));
         }
+        if self.image.has_known() {
+            batch.relate(self, groups, arena)?;
+        }
         batch.load(self, groups, &terms, arena)?;
         let mut fits = Fits::new(self, &terms, batch.slots, arena)?;
-        let single = [last_only(terms.ends.len()); Config::MAX_CHANNELS];
+        let choices = (1 + terms.ends.len()) * self.values() / channels.max(1);
+        let single = [last_only(choices); Config::MAX_CHANNELS];
         let mut shares = [single; 2];
         // Halves choose for each other, then fits to all correct; or fits to all do both.
         let turns = self.turns();
@@ -101,7 +105,7 @@ impl Call<'_> {
                 if turn.is_none() {
                     self.tell(groups, &batch, &spreads, &shares);
                 }
-                self.put(groups, &batch, &fits, turn, &shares);
+                self.put(groups, &batch, &fits, turn, (spreads.choices, &shares));
             }
         }
         Ok(())
@@ -151,7 +155,7 @@ impl Call<'_> {
         batch: &Batch<'_>,
         fits: &Fits<'_>,
         turn: Option<usize>,
-        shares: &[Shares; 2],
+        (choices, shares): (Choices, &[Shares; 2]),
     ) {
         let channels = self.config.channels;
         for slot in 0..batch.slots {
@@ -161,8 +165,16 @@ impl Call<'_> {
             }
             for (channel, (shares, units)) in shares[half % 2].iter().zip(&batch.units).enumerate().take(channels) {
                 let mut sum = [0.0; LANES];
-                for (fit, share) in shares.iter().skip(1).enumerate().take(fits.count) {
-                    lanes::add_product(&mut sum, &fits.correction(channels, (slot, channel, fit)), share);
+                let mean = batch.means.get(slot * batch.values + channel).copied().unwrap_or(NONE);
+                for (choice, share) in shares.iter().enumerate().take(choices.count).skip(1) {
+                    let (value, fit) = choices.value_and_fit(channel, choice);
+                    if value != channel {
+                        let other = batch.means.get(slot * batch.values + value).copied().unwrap_or(NONE);
+                        lanes::add_product(&mut sum, &lanes::zip(&other, &mean, |other, mean| other - mean), share);
+                    }
+                    if let Some(fit) = fit.checked_sub(1) {
+                        lanes::add_product(&mut sum, &fits.correction((slot, value, fit)), share);
+                    }
                 }
                 for (lane, (value, &exponent)) in sum.into_iter().zip(&units.exponents).enumerate() {
                     let Some(index) = batch.member(lane, slot) else { continue };

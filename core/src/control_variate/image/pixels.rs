@@ -42,6 +42,13 @@ pub struct Image<'a> {
     /// either. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit. For
     /// textures where all samples of a pixel see one albedo: with defocus or motion blur they can raise the error.
     pub factors: &'a [f32],
+    /// For each sample, as `f`: what it would be with nothing in the way, its unshadowed contribution. Or empty. Finite,
+    /// and 0 where no light arrives anyway. Each pixel's estimate is then also corrected by how far these are from
+    /// `integrals`, as far as its neighbours' values follow theirs.
+    pub known: &'a [f32],
+    /// With `known`: for each pixel `channels` numbers, the exact integral of that over u. Finite and not negative; a
+    /// pixel with 0 is not corrected by it. Where a pixel's samples see several points, the mean of their integrals.
+    pub integrals: &'a [f32],
 }
 
 impl Image<'_> {
@@ -51,13 +58,18 @@ impl Image<'_> {
     /// An image of which nothing is known but its size.
     #[inline]
     pub const fn new(width: usize, height: usize) -> Self {
-        Self { width, height, frames: 1, unordered: false, window: 0, stride: 0, surfaces: &[], factors: &[] }
+        Self { width, height, frames: 1, unordered: false, window: 0, stride: 0, surfaces: &[], factors: &[], known: &[], integrals: &[] }
     }
 
     /// Pixels in no order.
     #[inline]
     pub const fn unordered(pixels: usize) -> Self {
         Self { unordered: true, ..Self::new(pixels, 1) }
+    }
+
+    /// Whether something is known of the samples.
+    pub(super) fn has_known(&self) -> bool {
+        !self.known.is_empty()
     }
 
     /// Where its windows lie.
@@ -98,10 +110,16 @@ impl Image<'_> {
         if !fits(self.surfaces.len(), 1) || !fits(self.factors.len(), config.channels) {
             return Err(Error::Range);
         }
-        if !self.factors.iter().all(|factor| factor.is_finite()) {
+        let has_known = !self.known.is_empty();
+        if has_known == self.integrals.is_empty() || !fits(self.integrals.len(), config.channels) {
+            return Err(Error::Range);
+        }
+        let values = [self.factors, self.known, self.integrals].into_iter().flatten();
+        if !values.into_iter().all(|value| value.is_finite()) {
             return Err(Error::NotFinite);
         }
-        if self.factors.iter().any(|&factor| factor < 0.0) { Err(Error::Range) } else { Ok(()) }
+        let is_negative = self.factors.iter().chain(self.integrals).any(|&value| value < 0.0);
+        if is_negative { Err(Error::Range) } else { Ok(()) }
     }
 }
 

@@ -42,7 +42,7 @@ impl Call<'_> {
         sums.iter_mut().for_each(|sum| *sum = 0.0);
         let mut band = Band { sums, rows: touched };
         let mut groups = self.groups(arena)?;
-        let has_fits = !self.terms(self.windows.pixels()).ends.is_empty();
+        let has_fits = self.image.has_known() || !self.terms(self.windows.pixels()).ends.is_empty();
         let mut done = 0;
         for row in (0..down).step_by(rows.max(1)) {
             let last = (row + rows).min(down);
