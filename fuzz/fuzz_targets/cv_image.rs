@@ -19,6 +19,8 @@ struct Input {
     unordered: bool,
     surfaces: Vec<u32>,
     factors: Vec<f32>,
+    known: Vec<f32>,
+    integrals: Vec<f32>,
     u: Vec<f32>,
     f: Vec<f32>,
     controls: Vec<f32>,
@@ -87,19 +89,26 @@ impl<'a> Arbitrary<'a> for Input {
         let len = |width: usize| (pixels * n).saturating_mul(width).min(1 << 15) + slack;
         let surfaces = if bool::arbitrary(bytes)? { pixels + slack } else { 0 };
         let surfaces = list(bytes, surfaces, |bytes| Ok(u32::from(u8::arbitrary(bytes)? % 4)))?;
-        let factors = if bool::arbitrary(bytes)? { pixels * config.channels.min(4) + slack } else { 0 };
+        let factors_len = pixels * config.channels.min(4) + slack;
+        let factors = if bool::arbitrary(bytes)? { factors_len } else { 0 };
         let finite = !rarely(bytes)?;
         let value = |bytes: &mut Unstructured<'a>| {
             let value = f32::arbitrary(bytes)?;
             Ok(if finite && !value.is_finite() { 1.0 } else { value })
         };
         let factors = list(bytes, factors, |bytes| value(bytes).map(|value| if finite { value.abs() } else { value }))?;
+        let has_known = bool::arbitrary(bytes)?;
+        let (known, integrals) = if has_known { (len(config.channels), factors_len) } else { (0, 0) };
+        let integrals =
+            list(bytes, integrals, |bytes| value(bytes).map(|value| if finite { value.abs() } else { value }))?;
         Ok(Self {
             config,
             shape,
             unordered: rarely(bytes)?,
             surfaces,
             factors,
+            known: list(bytes, known, value)?,
+            integrals,
             u: list(bytes, len(step), |bytes| {
                 Ok(if finite { f32::from(u16::arbitrary(bytes)?) / 65535.0 } else { f32::arbitrary(bytes)? })
             })?,
@@ -112,8 +121,9 @@ impl<'a> Arbitrary<'a> for Input {
 
 fn run(input: &Input) {
     let Input { config, shape: [width, height, frames, window, stride], unordered, .. } = *input;
-    let image =
-        Image { frames, window, stride, unordered, surfaces: &input.surfaces, factors: &input.factors, width, height };
+    let (surfaces, factors) = (&input.surfaces[..], &input.factors[..]);
+    let (known, integrals) = (&input.known[..], &input.integrals[..]);
+    let image = Image { frames, window, stride, unordered, surfaces, factors, known, integrals, width, height };
     let samples =
         Samples { u: &input.u, f: &input.f, controls: &input.controls, control_integrals: &input.control_integrals };
     let pixels = width.saturating_mul(height).saturating_mul(frames);

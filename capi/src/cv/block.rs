@@ -41,8 +41,8 @@ pub struct nf_cv_image {
     /// Pixels are then also corrected by how far it is from `integrals`, as far as their neighbours follow it.
     pub known: *const f32,
     /// With `known`, else NULL: `channels` numbers for each pixel, its exact integral over u: of a polygon light in
-    /// closed form, for example. Finite and not negative; a pixel with 0 is not corrected by it. Where a pixel's samples
-    /// see several points, the mean of theirs.
+    /// closed form, for example. Finite and not negative; a pixel with 0 is not corrected by it. Where a pixel's
+    /// samples see several points, the mean of theirs.
     pub integrals: *const f32,
 }
 
@@ -120,8 +120,8 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
 /// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of
 /// the same window and surface share a fit. Fits also follow integrands that change across the window.
 ///
-/// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and to
-/// what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD is then unsupported.
+/// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
+/// to what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD is then unsupported.
 ///
 /// NF_ERR_RANGE also for an image without pixels, for windows that nf_cv_image does not allow, for negative factors or
 /// integrals and for `known` without `integrals`; NF_ERR_NOT_FINITE if any of the three is not finite.

@@ -339,7 +339,13 @@ impl<'a> Batch<'a> {
 
     /// The image's number of a slot's pixel in a lane, and its column, row and frame in its window.
     #[inline(always)]
-    pub(super) fn pixel(&self, call: &Call<'_>, groups: &Groups<'_>, lane: usize, slot: usize) -> Option<(usize, [usize; 3])> {
+    pub(super) fn pixel(
+        &self,
+        call: &Call<'_>,
+        groups: &Groups<'_>,
+        lane: usize,
+        slot: usize,
+    ) -> Option<(usize, [usize; 3])> {
         let index = self.member(lane, slot)?;
         if self.is_joined {
             return Some((index, [0; 3]));

@@ -71,7 +71,11 @@ impl Spreads {
             sums: [[NONE; MAX_CHOICES]; Config::MAX_CHANNELS],
             trends: [[[NONE; MAX_FIXED]; MAX_CHOICES]; Config::MAX_CHANNELS],
             freedom,
-            choices: Choices { fits: terms.ends.len(), channels, count: (1 + terms.ends.len()) * batch.values / channels.max(1) },
+            choices: Choices {
+                fits: terms.ends.len(),
+                channels,
+                count: (1 + terms.ends.len()) * batch.values / channels.max(1),
+            },
             within: fits.within,
             pixels: [NONE; COLOURS],
             taken,
@@ -195,12 +199,7 @@ impl Choices {
 
     /// An estimate of a slot's pixels.
     #[inline(always)]
-    fn of_all(
-        &self,
-        batch: &Batch<'_>,
-        fits: &Fits<'_>,
-        (slot, channel, choice): (usize, usize, usize),
-    ) -> Eight {
+    fn of_all(&self, batch: &Batch<'_>, fits: &Fits<'_>, (slot, channel, choice): (usize, usize, usize)) -> Eight {
         let (value, fit) = self.value_and_fit(channel, choice);
         let mean = batch.means.get(slot * batch.values + value).copied().unwrap_or(NONE);
         match fit.checked_sub(1) {

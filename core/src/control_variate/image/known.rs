@@ -1,9 +1,9 @@
 //! How far pixels' values follow what is known of their samples, by the other pixels of their group.
 //!
-//! With a sample's unshadowed contribution a and A its integral over u, a pixel's mean f - beta (a - A) has the integral
-//! of f for every beta that has not seen the pixel. Of the others' means,
-//! beta = sum w (f - v A) (a - A) / sum w (a - A)^2 with w = 1 / A^2 and v = sum f / A over sum a / A, the share of the
-//! light that arrives: at least 0, at most v.
+//! With a sample's unshadowed contribution a and A its integral over u, a pixel's mean f - beta (a - A) has the
+//! integral of f for every beta that has not seen the pixel. Of the others' means, beta = sum w (f - v A) (a - A) / sum
+//! w (a - A)^2 with w = 1 / A^2 and v = sum f / A over sum a / A, the share of the light that arrives: at least 0, at
+//! most v.
 
 use super::Call;
 use super::batch::{Batch, Eight, NONE, only};

@@ -80,7 +80,8 @@ fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
     let estimator = matches!(config.estimator, Estimator::Robust | Estimator::LeaveOneOut | Estimator::KFold);
     // Halves that choose for each other would have to know nothing of each other's samples.
     let is_halved = config.estimator == Estimator::KFold && image.has_known();
-    let supported = estimator && !is_halved && config.color == Color::PerChannel && config.non_finite == NonFinite::Error;
+    let supported =
+        estimator && !is_halved && config.color == Color::PerChannel && config.non_finite == NonFinite::Error;
     if supported { Ok(()) } else { Err(Error::Unsupported) }
 }
 

@@ -42,9 +42,9 @@ pub struct Image<'a> {
     /// either. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit. For
     /// textures where all samples of a pixel see one albedo: with defocus or motion blur they can raise the error.
     pub factors: &'a [f32],
-    /// For each sample, as `f`: what it would be with nothing in the way, its unshadowed contribution. Or empty. Finite,
-    /// and 0 where no light arrives anyway. Each pixel's estimate is then also corrected by how far these are from
-    /// `integrals`, as far as its neighbours' values follow theirs.
+    /// For each sample, as `f`: what it would be with nothing in the way, its unshadowed contribution. Or empty.
+    /// Finite, and 0 where no light arrives anyway. Each pixel's estimate is then also corrected by how far these are
+    /// from `integrals`, as far as its neighbours' values follow theirs.
     pub known: &'a [f32],
     /// With `known`: for each pixel `channels` numbers, the exact integral of that over u. Finite and not negative; a
     /// pixel with 0 is not corrected by it. Where a pixel's samples see several points, the mean of their integrals.
@@ -58,7 +58,18 @@ impl Image<'_> {
     /// An image of which nothing is known but its size.
     #[inline]
     pub const fn new(width: usize, height: usize) -> Self {
-        Self { width, height, frames: 1, unordered: false, window: 0, stride: 0, surfaces: &[], factors: &[], known: &[], integrals: &[] }
+        Self {
+            width,
+            height,
+            frames: 1,
+            unordered: false,
+            window: 0,
+            stride: 0,
+            surfaces: &[],
+            factors: &[],
+            known: &[],
+            integrals: &[],
+        }
     }
 
     /// Pixels in no order.
