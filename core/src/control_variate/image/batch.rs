@@ -125,7 +125,7 @@ pub(super) fn batch_len(terms: &Terms, values: usize, slots: usize) -> Option<us
     let (columns, fixed) = (terms.columns(), terms.fixed());
     let each = fixed + 1 + 3 * values + columns;
     let products = products_len(columns, values) + products_len(columns, 2 * values);
-    let sums = COLOURS * products + AT_ONCE * (2 * columns + 3 * values);
+    let sums = COLOURS * products + AT_ONCE * (2 * columns + 3 * values) + values;
     slots.checked_mul(each)?.checked_add(sums)?.checked_mul(LANES)
 }
 
@@ -140,9 +140,6 @@ pub(super) fn only(mask: &Eight, value: &Eight) -> Eight {
 pub(super) fn plus(a: &Eight, b: &Eight) -> Eight {
     lanes::zip(a, b, |a, b| a + b)
 }
-
-/// The most values of a sample: see [`Layout::values`](super::Layout::values).
-pub(super) const MAX_VALUES: usize = 2 * Config::MAX_CHANNELS;
 
 /// 2 to the power of an exponent from -126 to 127.
 fn power_of_two(exponent: i32) -> f32 {
@@ -445,9 +442,11 @@ impl<'a> Batch<'a> {
     ) -> Result<(), Error> {
         let (width, n, count) = (terms.columns(), call.n, self.values);
         let channels = call.config.channels;
+        let mut position = Position { x: [NONE; MAX_DIMS], h: [NONE; Config::MAX_CONTROLS] };
         let mut arena = arena.scratch();
         let mut samples = Pending::new(width, count, &mut arena)?;
         let mut pixels = Pending::new(width, 2 * count, &mut arena)?;
+        let first = arena.take_lanes(count)?;
         self.set_units(channels);
         self.sums.samples.each().chain(self.sums.pixels.each()).for_each(|sum| *sum = NONE);
         for part in 0..self.sums.parts {
@@ -464,10 +463,9 @@ impl<'a> Batch<'a> {
                 let pixels_of = Pixels { units: &self.units, terms, numbers, places, coefficients, integrals };
                 let columns_of = row_at_mut(self.columns, width, slot);
                 let means = row_at_mut(self.means, count, slot);
-                let mut first = [NONE; MAX_VALUES];
                 for sample in 0..n {
                     let (columns, values) = samples.row();
-                    call.read(&pixels_of, sample, columns, values);
+                    call.read(&pixels_of, sample, &mut position, columns, values);
                     if sample == 0 {
                         columns_of.iter_mut().zip(columns.iter()).for_each(|(sum, column)| *sum = *column);
                         first.iter_mut().zip(values.iter()).for_each(|(first, value)| *first = *value);
@@ -476,7 +474,7 @@ impl<'a> Batch<'a> {
                     }
                     if n > 1 {
                         // Differences tell equal values from such as are nearly so.
-                        for ((value, first), sum) in values.iter_mut().zip(&first).zip(means.iter_mut()) {
+                        for ((value, first), sum) in values.iter_mut().zip(first.iter()).zip(means.iter_mut()) {
                             *value = lanes::zip(value, first, |value, first| value - first);
                             *sum = if sample == 0 { *value } else { plus(sum, value) };
                         }
@@ -494,7 +492,7 @@ impl<'a> Batch<'a> {
                     columns_of.iter_mut().chain(means.iter_mut()).for_each(|sum| *sum = sum.map(|sum| sum * inverse));
                     let (columns, values) = pixels.row();
                     let (differences, whole) = values.split_at_mut_checked(count).unwrap_or_default();
-                    let means = means.iter_mut().zip(&first);
+                    let means = means.iter_mut().zip(first.iter());
                     for ((mean, first), (difference, whole)) in means.zip(differences.iter_mut().zip(whole)) {
                         *difference = *mean;
                         *mean = plus(mean, first);
@@ -518,6 +516,12 @@ impl<'a> Batch<'a> {
         }
         Ok(())
     }
+}
+
+/// Where eight samples are, and their control functions: what is left of other samples where there is no pixel.
+struct Position {
+    x: [Eight; MAX_DIMS],
+    h: [Eight; Config::MAX_CONTROLS],
 }
 
 /// The pixels of a slot.
@@ -583,12 +587,18 @@ impl Call<'_> {
 
     /// Writes a sample of eight pixels: its columns, and its values in units. Zero where there is no pixel.
     #[inline(always)]
-    fn read(&self, pixels: &Pixels<'_>, sample: usize, columns: &mut [Eight], values: &mut [Eight]) {
+    fn read(
+        &self,
+        pixels: &Pixels<'_>,
+        sample: usize,
+        position: &mut Position,
+        columns: &mut [Eight],
+        values: &mut [Eight],
+    ) {
         let Pixels { units, terms, numbers, places, coefficients, integrals } = pixels;
         let channels = self.config.channels;
         let (inputs, rest) = values.split_at_mut_checked(channels).unwrap_or_default();
-        let mut x = [NONE; MAX_DIMS];
-        let mut h = [NONE; Config::MAX_CONTROLS];
+        let Position { x, h } = position;
         let mut is_full = true;
         for (lane, pixel) in numbers.iter().enumerate() {
             let &Some(pixel) = pixel else {
@@ -596,9 +606,9 @@ impl Call<'_> {
                 continue;
             };
             let index = pixel * self.n + sample;
-            self.reader.put_position(index, lane, &mut x);
+            self.reader.put_position(index, lane, x);
             if self.config.controls > 0 {
-                self.reader.get(index).put(lane, &mut x, &mut h);
+                self.reader.get(index).put(lane, x, h);
             }
             for (channel, value) in inputs.iter_mut().enumerate() {
                 value[lane % LANES] = self.value(pixel, index, channel);
@@ -623,7 +633,7 @@ impl Call<'_> {
             *out = *place;
         }
         let (functions, products) = rest.split_at_mut_checked(terms.functions).unwrap_or_default();
-        self.reader.columns(self.basis, &x, &h, functions);
+        self.reader.columns(self.basis, x, h, functions);
         if !is_full {
             functions.iter_mut().for_each(|column| *column = only(&one, column));
         }

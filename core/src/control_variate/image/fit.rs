@@ -5,14 +5,14 @@
 use super::super::config::Ridge;
 use super::super::ridge;
 use super::Call;
-use super::batch::{AT_ONCE, Batch, COLOURS, Eight, MAX_FIXED, MAX_VALUES, NONE, Total, only, products_len};
-use super::terms::{MAX_FITS, Terms};
+use super::batch::{AT_ONCE, Batch, COLOURS, Eight, MAX_FIXED, NONE, Total, only, products_len};
+use super::terms::Terms;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::{ldlt, packed_len, row, row_mut};
 use crate::real::Real;
-use crate::rows::{row_at, rows, rows_mut};
+use crate::rows::{row_at, row_at_mut, rows, rows_mut};
 
 /// Ridge strength per sample if the caller gives none.
 const STRENGTH: f64 = 0.003;
@@ -42,8 +42,10 @@ impl Colours {
     }
 }
 
-/// A number for no fit, and for each.
-pub(super) type OfFits = [Eight; 1 + MAX_FITS];
+/// Lanes of [`Fits::within`].
+fn within_len(terms: &Terms, values: usize, n: usize) -> usize {
+    if n > 1 { values * COLOURS * (1 + terms.ends.len()) } else { 0 }
+}
 
 /// Fits to the pixels of a batch.
 pub(super) struct Fits<'a> {
@@ -54,7 +56,9 @@ pub(super) struct Fits<'a> {
     values: usize,
     /// Of several samples in each pixel, what the fits leave of the samples' sums of squares about their pixel's mean:
     /// of each value and colour, which they have not seen.
-    pub(super) within: [[OfFits; COLOURS]; MAX_VALUES],
+    within: &'a mut [Eight],
+    /// Whether pixels have several samples.
+    pub(super) has_several: bool,
     /// A, then its factors; for each channel what the fit is to, then D^-1 L^-1 times it.
     system: Total<'a>,
     /// Sums of the pixels' means.
@@ -67,14 +71,17 @@ pub(super) struct Fits<'a> {
     /// L^-1 of four slots' columns, and the same without the fixed ones.
     solved: &'a mut [[Eight; AT_ONCE]],
     moved: &'a mut [[Eight; AT_ONCE]],
+    /// For each value and four slots, what the columns so far leave of it, and what they explain.
+    residuals: &'a mut [[Eight; AT_ONCE]],
+    fitted: &'a mut [[Eight; AT_ONCE]],
     penalties: &'a mut [f32],
 }
 
 /// Numbers that fits take for so many slots.
-pub(super) fn fits_len(terms: &Terms, values: usize, slots: usize) -> Option<usize> {
+pub(super) fn fits_len(terms: &Terms, values: usize, (slots, n): (usize, usize)) -> Option<usize> {
     let columns = terms.columns();
     let totals = products_len(columns, values) + products_len(columns, 2 * values);
-    let once = totals + (MAX_FIXED + 2 + 2 * AT_ONCE) * columns;
+    let once = totals + (MAX_FIXED + 2 + 2 * AT_ONCE) * columns + within_len(terms, values, n) + 2 * AT_ONCE * values;
     slots.checked_mul(terms.ends.len() * values)?.checked_add(once)?.checked_mul(LANES)?.checked_add(columns)
 }
 
@@ -85,7 +92,8 @@ impl<'a> Fits<'a> {
             corrections: arena.take_lanes(slots * terms.ends.len() * values)?,
             count: terms.ends.len(),
             values,
-            within: [[[NONE; 1 + MAX_FITS]; COLOURS]; MAX_VALUES],
+            within: arena.take_lanes(within_len(terms, values, call.n))?,
+            has_several: call.n > 1,
             system: Total::new(columns, values, arena)?,
             between: Total::new(columns, 2 * values, arena)?,
             coefficients: arena.take_lanes(columns)?,
@@ -93,6 +101,8 @@ impl<'a> Fits<'a> {
             units: arena.take_lanes(terms.fixed() * columns)?,
             solved: arena.take_lanes(AT_ONCE * columns)?.as_chunks_mut().0,
             moved: arena.take_lanes(AT_ONCE * columns)?.as_chunks_mut().0,
+            residuals: arena.take_lanes(AT_ONCE * values)?.as_chunks_mut().0,
+            fitted: arena.take_lanes(AT_ONCE * values)?.as_chunks_mut().0,
             penalties: arena.take(columns)?,
         };
         terms.penalties(call.config, call.basis, |_| 1.0, fits.penalties);
@@ -126,6 +136,12 @@ impl<'a> Fits<'a> {
                 }
             }
         }
+    }
+
+    /// What a fit, or without one the mean, leaves of the samples of a colour about their pixels' means.
+    #[inline(always)]
+    pub(super) fn within(&self, value: usize, colour: usize, fit: usize) -> Eight {
+        row_at(self.within, 1 + self.count, value * COLOURS + colour).get(fit).copied().unwrap_or(NONE)
     }
 
     /// A candidate's correction of a value of a slot.
@@ -250,14 +266,16 @@ impl<'a> Fits<'a> {
         let (width, fixed) = (terms.columns(), terms.fixed());
         let samples = batch.sums.samples.part(colour);
         let pixels = batch.sums.pixels.part(colour);
-        for (value, within) in self.within.iter_mut().enumerate().take(samples.squares.len()) {
-            let Some(within) = within.get_mut(colour) else { continue };
+        for value in 0..samples.squares.len() {
+            let within = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour);
             let difference = |a: &[Eight], b: &[Eight], index: usize| {
                 let [a, b] = [a, b].map(|all| all.get(index).copied().unwrap_or(NONE));
                 lanes::zip(&a, &b, |a, b| a - b)
             };
             let whole = difference(samples.squares, pixels.squares, value).map(|whole| Real::max(whole, 0.0));
-            within[0] = whole;
+            if let Some(out) = within.first_mut() {
+                *out = whole;
+            }
             let [sides, means] = [samples.sides, pixels.sides].map(|sides| row_at(sides, width, value));
             for (&end, out) in terms.ends.iter().zip(within.iter_mut().skip(1)) {
                 let coefficients = self.coefficients.get_mut(..end).unwrap_or(&mut []);
@@ -316,12 +334,13 @@ impl<'a> Fits<'a> {
             &*self.solved
         };
         let inside = slots.map(|slot| slot.and_then(|slot| batch.inside.get(slot)).copied().unwrap_or(NONE));
-        let mut residuals = [[NONE; AT_ONCE]; MAX_VALUES];
         for (s, slot) in slots.iter().enumerate() {
             let means = slot.map_or(&[][..], |slot| row_at(batch.means, values, slot));
-            residuals.iter_mut().zip(means).for_each(|(residual, mean)| residual[s] = *mean);
+            for (at, residual) in self.residuals.iter_mut().enumerate() {
+                residual[s] = means.get(at).copied().unwrap_or(NONE);
+            }
         }
-        let mut fitted = [[NONE; AT_ONCE]; MAX_VALUES];
+        self.fitted.iter_mut().for_each(|fitted| *fitted = [NONE; AT_ONCE]);
         let (mut leverage, mut reach) = ([NONE; AT_ONCE], [NONE; AT_ONCE]);
         let mut begin = if OWN { 0 } else { fixed };
         for (fit, &end) in terms.ends.iter().enumerate() {
@@ -340,7 +359,7 @@ impl<'a> Fits<'a> {
                     }
                 }
             }
-            for (value, (residual, fitted)) in residuals.iter_mut().zip(&mut fitted).enumerate().take(values) {
+            for (value, (residual, fitted)) in self.residuals.iter_mut().zip(self.fitted.iter_mut()).enumerate() {
                 let sides = row_at(self.system.sides, width, value).get(range.clone()).unwrap_or(&[]);
                 for ((z, moved), side) in solved.iter().zip(moved).zip(sides) {
                     for s in 0..AT_ONCE {

@@ -46,6 +46,7 @@ use crate::basis::{Basis, Shape};
 use crate::error::Error;
 use crate::lanes::LANES;
 use batch::batch_len;
+use choice::Choices;
 use core::ops::Deref;
 use fit::fits_len;
 use known::RELATIVE;
@@ -264,8 +265,9 @@ impl Layout<'_> {
         let slots = if self.is_joined() { pixels.div_ceil(LANES) } else { pixels };
         let terms = self.terms(pixels);
         let known = if self.image.has_known() { (2 * channels + RELATIVE) * LANES } else { 0 };
-        let batch = batch_len(&terms, self.values(), slots)?.checked_add(fits_len(&terms, self.values(), slots)?)?;
-        let batch = slots.checked_mul(known)?.checked_add(batch)?;
+        let batch = batch_len(&terms, self.values(), slots)?.checked_add(fits_len(&terms, self.values(), (slots, self.n))?)?;
+        let choices = Choices::new(self, &terms).len().checked_mul(LANES)?;
+        let batch = slots.checked_mul(known)?.checked_add(batch)?.checked_add(choices)?;
         sums.checked_add(self.groups_len()?)?.checked_add(batch)
     }
 }
