@@ -172,7 +172,10 @@ static void images()
           nf::image(2, 4, 2).pixels() == 16);
     CHECK(nf::image(UINT32_MAX, UINT32_MAX, UINT32_MAX).pixels() == 0 && nf::image(0, 4).pixels() == 0);
     CHECK(image.with_window(6).window == 6 && image.with_window(6).stride == 0);
-    const nf_cv_image plain = {4, 4, 1, 4, 2, 0, nullptr, nullptr, nullptr, nullptr};
+    nf_cv_image plain{};
+    plain.width = plain.height = plain.window = 4;
+    plain.frames = 1;
+    plain.stride = 2;
     CHECK(image.unordered == 0 && image.without_places().unordered == 1 && !image.with_surfaces({}).fits(config, 16));
     CHECK(config.image_workspace_size(image, 4) == nf_cv_image_workspace_size(&config, &plain, 4));
     CHECK(config.image_workspace_size(image, 4) > 0 && config.image_workspace_size(image, 4) <= sizeof workspace);
@@ -189,6 +192,13 @@ static void images()
     SUCCEED(nf::estimate_image(config, image.with_surfaces(surfaces).with_factors(factors), {u, f}, workspace, pixels));
     for (std::size_t pixel = 0; pixel < 16; ++pixel)
         CHECK(std::fabs(pixels[pixel].mean[0] - expected[pixel].mean[0]) < 1e-5f);
+
+    const nf_cv_rectangle row{0, 3, 4, 1}, all{0, 0, 4, 4};
+    SUCCEED(nf::estimate_image(config, image.with_parts(row, all), {u, f}, workspace, {pixels.data(), 4}));
+    CHECK(std::memcmp(pixels.data(), &expected[12], 4 * sizeof expected[0]) == 0);
+    CHECK(image.with_parts(row, all).estimates() == 4 && image.with_parts(row, row).pixels() == 4);
+    CHECK(CODE(nf::estimate_image(config, image.with_parts(row, all), {u, f}, workspace, pixels)) == status::range);
+    CHECK(value_of(image.with_parts(row, all).needed()).height == 4);
 
     // All of the light arrives: what is known is exact.
     const span<const float> exact(factors.data(), 16), known(f);

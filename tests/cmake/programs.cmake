@@ -39,10 +39,12 @@ if(TESTS_UNDER)
     return()
 endif()
 
-foreach(source IN ITEMS integrate.c image.cpp shared.c)
+find_package(Threads REQUIRED)
+foreach(source IN ITEMS integrate.c image.cpp shared.c strips.cpp)
     get_filename_component(name "${source}" NAME_WE)
     add_program(${name} ${name} ../examples_c/${source} ${fast})
     add_errors(${name} ${name} mean:noisefloor)
+    target_link_libraries(${name} PRIVATE Threads::Threads)
 endforeach()
 # Its processes check their estimates themselves.
 add_program(shards shards ../examples_c/shards.c ${fast})

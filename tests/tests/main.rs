@@ -13,6 +13,7 @@ mod cv_image_known;
 mod cv_image_mixture;
 mod cv_image_never_worse;
 mod cv_image_oracle;
+mod cv_image_parts;
 mod cv_image_texture;
 mod cv_image_tiles;
 mod cv_image_unbiased;

@@ -7,6 +7,7 @@ use super::super::config::Config;
 use super::Call;
 use super::fit::Colours;
 use super::groups::{Group, Groups};
+use super::pixels::Rectangle;
 use super::terms::{MAX_AXES, Terms};
 use crate::arena::Arena;
 use crate::basis::MAX_DIMS;
@@ -348,7 +349,7 @@ impl<'a> Batch<'a> {
             return Some((index, [0; 3]));
         }
         let [x, y, frame] = groups.place(&self.lanes[lane % LANES], index).split();
-        let [width, height, _] = call.windows.image;
+        let Rectangle { width, height, .. } = call.windows.given;
         Some((self.corners[lane % LANES] + (frame * height + y) * width + x, [x, y, frame]))
     }
 

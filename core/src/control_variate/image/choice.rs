@@ -239,12 +239,7 @@ fn no_less(sums: &Eight) -> Eight {
 
 /// Trust by spreads, of the plain mean first: [`trust::weigh`] in each lane.
 #[inline(always)]
-fn share(
-    spreads: &[Eight],
-    freedom: &Eight,
-    (within, pixels, part): (&[Eight], &Eight, f32),
-    shares: &mut [Eight],
-) {
+fn share(spreads: &[Eight], freedom: &Eight, (within, pixels, part): (&[Eight], &Eight, f32), shares: &mut [Eight]) {
     let ([plain, spreads @ ..], [noise, within @ ..], [mean, rest @ ..]) = (spreads, within, shares) else { return };
     let [inverse, inverse_noise] = [plain, noise].map(|plain| lanes::divisor(&no_less(plain)).map(|plain| 1.0 / plain));
     let [power, power_within] = [freedom, pixels].map(|count| count.map(|count| count * -trust::SHARPNESS as f32));

@@ -37,7 +37,7 @@ mod pixels;
 mod sums;
 mod terms;
 
-pub use pixels::Image;
+pub use pixels::{Image, Rectangle};
 
 use super::config::{Color, Config, Estimate, Estimator, NonFinite, Ridge};
 use super::samples::{Reader, Samples};
@@ -119,13 +119,14 @@ pub fn estimate_block(
 }
 
 /// Estimates every pixel of an image from `samples.f.len() / (pixels channels)` samples in each, pixel after pixel.
-/// `out` is called once for each pixel in order, and only if all succeed.
+/// `out` is called once for each pixel that is wanted, and only if all succeed.
 ///
 /// # Errors
-/// As for [`estimate`](super::estimate); [`Error::Unsupported`] also for a luminance ratio, for skipping samples and
-/// for estimators other than the robust, leave-one-out and K-fold ones; [`Error::Range`] also for an image without
-/// pixels, for windows that [`Image`] does not allow, for negative factors and for arrays of the wrong length;
-/// [`Error::NotFinite`] for factors that are not finite.
+/// As for [`estimate`](super::estimate); [`Error::Unsupported`] also for a luminance ratio, for skipping samples, for
+/// estimators other than the robust, leave-one-out and K-fold ones, and for the last if something is known;
+/// [`Error::Range`] also for an image without pixels, for windows and parts that [`Image`] does not allow, for negative
+/// factors or integrals and for arrays of the wrong length; [`Error::NotFinite`] for factors, for what is known and for
+/// integrals that are not finite.
 ///
 /// ```
 /// use noisefloor::control_variate::{Config, Image, Samples, estimate_image, image_workspace_len};
@@ -255,9 +256,8 @@ impl Layout<'_> {
     /// Numbers of workspace.
     fn workspace_len(&self) -> Option<usize> {
         // More samples than 32 bits count need more memory than there is.
-        let pixels = self.windows.image.iter().try_fold(1_usize, |product, &extent| product.checked_mul(extent))?;
-        u32::try_from(pixels.checked_mul(self.n)?).ok()?;
-        let [width, _, frames] = self.windows.image;
+        u32::try_from(self.image.pixels().ok()?.checked_mul(self.n)?).ok()?;
+        let (width, frames) = (self.windows.given.width, self.windows.frames());
         let [_, rows] = self.band();
         let channels = self.config.channels;
         let sums = width.checked_mul(rows)?.checked_mul(frames)?.checked_mul(sums_len(channels))?;
@@ -265,7 +265,8 @@ impl Layout<'_> {
         let slots = if self.is_joined() { pixels.div_ceil(LANES) } else { pixels };
         let terms = self.terms(pixels);
         let known = if self.image.has_known() { (2 * channels + RELATIVE) * LANES } else { 0 };
-        let batch = batch_len(&terms, self.values(), slots)?.checked_add(fits_len(&terms, self.values(), (slots, self.n))?)?;
+        let batch =
+            batch_len(&terms, self.values(), slots)?.checked_add(fits_len(&terms, self.values(), (slots, self.n))?)?;
         let choices = Choices::new(self, &terms).len().checked_mul(LANES)?;
         let batch = slots.checked_mul(known)?.checked_add(batch)?.checked_add(choices)?;
         sums.checked_add(self.groups_len()?)?.checked_add(batch)

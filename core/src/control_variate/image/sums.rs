@@ -4,6 +4,7 @@ use super::super::config::Estimate;
 use super::super::result::{mean_divisor, saturate, standard_error};
 use super::Call;
 use super::groups::Groups;
+use super::pixels::Rectangle;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::real::Real;
@@ -35,7 +36,8 @@ impl Call<'_> {
     /// All of it: windows some rows at a time, and pixels as soon as no later window has them.
     #[inline(always)]
     pub(super) fn run(&self, arena: &mut Arena<'_, f32>, out: &mut impl FnMut(usize, Estimate)) -> Result<(), Error> {
-        let [width, height, frames] = self.windows.image;
+        let (Rectangle { width, .. }, wanted) = (self.windows.given, self.windows.wanted);
+        let frames = self.windows.frames();
         let [across, down] = self.windows.counts();
         let [rows, touched] = self.band();
         let sums = arena.take(width * touched * frames * sums_len(self.config.channels))?;
@@ -43,7 +45,7 @@ impl Call<'_> {
         let mut band = Band { sums, rows: touched };
         let mut groups = self.groups(arena)?;
         let has_fits = self.image.has_known() || !self.terms(self.windows.pixels()).ends.is_empty();
-        let mut done = 0;
+        let mut done = self.windows.top(0);
         for row in (0..down).step_by(rows.max(1)) {
             let last = (row + rows).min(down);
             for first in (row * across..last * across).step_by(self.windows_at_once().max(1)) {
@@ -55,7 +57,7 @@ impl Call<'_> {
                 self.fit(&mut groups, arena)?;
                 self.add(first, &groups, &mut band);
             }
-            let end = if last < down { self.windows.top(last) } else { height };
+            let end = if last < down { self.windows.top(last) } else { wanted.y + wanted.height };
             for frame in 0..frames {
                 for y in done..end {
                     self.write(frame, y, &mut band, out);
@@ -70,7 +72,7 @@ impl Call<'_> {
     #[inline(always)]
     fn add(&self, first: usize, groups: &Groups<'_>, band: &mut Band<'_>) {
         let channels = self.config.channels;
-        let [width, ..] = self.windows.image;
+        let given = self.windows.given;
         // How near a pixel is to its window's centre: 1 there, falling linearly along x and y to almost 0.
         let inverse = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
         let hat = |at: usize, inverse: f32| 1.0 - Real::abs((2 * at + 1) as f32 * inverse - 1.0);
@@ -84,7 +86,7 @@ impl Call<'_> {
                 let (mut at, mut near) = (index, 1.0);
                 if self.windows.is_ordered {
                     let row = if top + y < band.rows { top + y } else { top + y - band.rows };
-                    at = (frame * band.rows + row) * width + window.x + x;
+                    at = (frame * band.rows + row) * given.width + window.x + x - given.x;
                     near = hat(x, inverse[0]) * hat(y, inverse[1]);
                 } else if !self.is_joined() {
                     at = x;
@@ -115,14 +117,17 @@ impl Call<'_> {
     /// Writes a row of pixels, and empties its sums.
     #[inline(always)]
     fn write(&self, frame: usize, y: usize, band: &mut Band<'_>, out: &mut impl FnMut(usize, Estimate)) {
-        let [width, height, _] = self.windows.image;
+        let (given, wanted) = (self.windows.given, self.windows.wanted);
         let row = frame * band.rows + y.checked_rem(band.rows).unwrap_or(0);
-        for x in 0..width {
-            let sums = row_at_mut(band.sums, sums_len(self.config.channels), row * width + x);
-            let pixel = (frame * height + y) * width + x;
-            out(pixel, self.estimate(pixel, sums));
+        if y >= wanted.y {
+            for x in 0..wanted.width {
+                let column = wanted.x - given.x + x;
+                let sums = row_at(band.sums, sums_len(self.config.channels), row * given.width + column);
+                let estimate = self.estimate(self.windows.number(wanted.x + x, y, frame), sums);
+                out((frame * wanted.height + y - wanted.y) * wanted.width + x, estimate);
+            }
         }
-        let sums = row_at_mut(band.sums, width * sums_len(self.config.channels), row);
+        let sums = row_at_mut(band.sums, given.width * sums_len(self.config.channels), row);
         sums.iter_mut().for_each(|sum| *sum = 0.0);
     }
 
