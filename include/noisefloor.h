@@ -489,18 +489,28 @@ typedef struct nf_recommendation {
     // of 1 sample, continued, has .81 to 1.4 times the error of Sobol points scrambled in each pixel that is given
     // here.
     float filtered_error;
+    // Nanoseconds that the method takes for each sample, of one channel without surfaces, on the machine of the
+    // report.
+    float cost;
+    // The cost of a sample, in nanoseconds, from which a fit pays at equal time, by what fits gain in rendered frames.
+    // Infinite if it never does; 0 where the mean is best at any cost.
+    float pays_from;
     // How to estimate. `channels` is 1: set your own. `stride` is all dims.
     nf_cv_config config;
 } nf_recommendation;
 
 // Which estimator, of which order, and which of the library's tiles to use for samples of `dims` coordinates and `spp`
 // of them per pixel, both at least 1. `sampling` is NF_SAMPLING_*; `can_share` is 1 if neighbouring pixels' samples
-// are at hand together and integrate similar functions, else 0. docs/choosing.md has the measurements that it rests
-// on.
+// are at hand together and integrate similar functions, else 0. `sample_cost` is what a sample costs to trace, in
+// nanoseconds: where a fit would take more time than its gain is worth, the plain mean is best. 0: errors at equal
+// samples decide alone. docs/choosing.md has the measurements that it rests on.
+//
+// NF_ERR_RANGE also for a negative cost, NF_ERR_NOT_FINITE for a NaN.
 nf_status nf_recommend(uint32_t dims,
                        uint32_t spp,
                        uint32_t sampling,
                        uint32_t can_share,
+                       float sample_cost,
                        nf_recommendation *out);
 
 /* ------------------------------------------------------------------------------------------------------------------
@@ -1335,7 +1345,7 @@ NF_ASSERT_ALIGNED_AS(nf_estimate, float);
 NF_ASSERT_LAYOUT(sizeof(nf_cv_image) == 24 + 4 * sizeof(void *) + 32 && offsetof(nf_cv_image, surfaces) == 24);
 NF_ASSERT_LAYOUT(sizeof(nf_cv_rectangle) == 16 && offsetof(nf_cv_rectangle, width) == 8);
 NF_ASSERT_ALIGNED_AS(nf_cv_rectangle, uint32_t);
-NF_ASSERT_LAYOUT(sizeof(nf_recommendation) == 100 && offsetof(nf_recommendation, config) == 24);
+NF_ASSERT_LAYOUT(sizeof(nf_recommendation) == 108 && offsetof(nf_recommendation, config) == 32);
 NF_ASSERT_ALIGNED_AS(nf_recommendation, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_tile) == 2 * sizeof(void *) + 24 && offsetof(nf_tile, size) == 2 * sizeof(void *));
 NF_ASSERT_ALIGNED_AS(nf_tile, void *);

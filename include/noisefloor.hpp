@@ -353,7 +353,10 @@ public:
     }
 
     // That the arrays hold, of all frames; 0 if that is more than a std::size_t counts.
-    std::size_t pixels() const noexcept { return given_all() ? count(width, height) : count(given.width, given.height); }
+    std::size_t pixels() const noexcept
+    {
+        return given_all() ? count(width, height) : count(given.width, given.height);
+    }
     // That are estimated, likewise.
     std::size_t estimates() const noexcept
     {
@@ -515,11 +518,14 @@ private:
 
 enum class sampling : std::uint32_t { independent = NF_SAMPLING_INDEPENDENT, stratified = NF_SAMPLING_STRATIFIED };
 
-// nf_recommend(): which estimator and which tile to use for `spp` samples per pixel of `dims` coordinates.
-inline returned<nf_recommendation> recommend(std::uint32_t dims, std::uint32_t spp, sampling kind, bool can_share)
+// nf_recommend(): which estimator and which tile to use for `spp` samples per pixel of `dims` coordinates, each of so
+// many nanoseconds; 0: whatever they cost.
+inline returned<nf_recommendation> recommend(std::uint32_t dims, std::uint32_t spp, sampling kind, bool can_share,
+                                             float sample_cost = 0.0f)
 {
     nf_recommendation out{};
-    const nf_status code = nf_recommend(dims, spp, static_cast<std::uint32_t>(kind), can_share ? 1u : 0u, &out);
+    const nf_status code =
+        nf_recommend(dims, spp, static_cast<std::uint32_t>(kind), can_share ? 1u : 0u, sample_cost, &out);
     return detail::finish(code, out);
 }
 
