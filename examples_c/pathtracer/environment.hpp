@@ -46,11 +46,38 @@ public:
     {
         float u, v;
         coordinates(direction, u, v);
-        float x = u * static_cast<float>(width_) - 0.5f, y = v * static_cast<float>(height_) - 0.5f;
-        float left = std::floor(x), top = std::floor(y), s = x - left, t = y - top;
-        int32_t i = static_cast<int32_t>(left), j = static_cast<int32_t>(top);
-        return (1 - t) * ((1 - s) * pixel(i, j) + s * pixel(i + 1, j)) +
-               t * ((1 - s) * pixel(i, j + 1) + s * pixel(i + 1, j + 1));
+        return interpolate(u, v);
+    }
+
+    uint32_t height() const { return height_; }
+
+    // A small part of the sphere, and the light from it: radiance times solid angle.
+    struct Part {
+        Vector direction;
+        Color light;
+    };
+
+    // How finely pixels are to be split so that sums over parts are as exact as integrals: to some 1e-5.
+    uint32_t split() const
+    {
+        return static_cast<uint32_t>(std::ceil(std::sqrt(262144.0 / (static_cast<double>(width_) * height_))));
+    }
+
+    // One row of parts, which split each pixel that often both ways.
+    void parts(uint32_t row, uint32_t split, std::vector<Part> &parts) const
+    {
+        const double pi64 = 3.14159265358979323846, rows = static_cast<double>(height_) * split;
+        const double columns = static_cast<double>(width_) * split, latitude = pi64 * (row + 0.5) / rows;
+        const double sine = std::sin(latitude), angle = 4 * pi64 / columns * sine * std::sin(pi64 / 2 / rows);
+        parts.resize(static_cast<size_t>(columns));
+        for (size_t i = 0; i < parts.size(); ++i) {
+            double at = (static_cast<double>(i) + 0.5) / columns;
+            parts[i].direction = {static_cast<float>(sine * std::sin(2 * pi64 * at)),
+                                  static_cast<float>(std::cos(latitude)),
+                                  static_cast<float>(sine * std::cos(2 * pi64 * at))};
+            parts[i].light = static_cast<float>(angle) *
+                             interpolate(static_cast<float>(at), static_cast<float>((row + 0.5) / rows));
+        }
     }
 
     // The density of `sample`, per solid angle.
@@ -75,6 +102,16 @@ public:
     }
 
 private:
+    // At u of the map's width and v of its height.
+    Color interpolate(float u, float v) const
+    {
+        float x = u * static_cast<float>(width_) - 0.5f, y = v * static_cast<float>(height_) - 0.5f;
+        float left = std::floor(x), top = std::floor(y), s = x - left, t = y - top;
+        int32_t i = static_cast<int32_t>(left), j = static_cast<int32_t>(top);
+        return (1 - t) * ((1 - s) * pixel(i, j) + s * pixel(i + 1, j)) +
+               t * ((1 - s) * pixel(i, j + 1) + s * pixel(i + 1, j + 1));
+    }
+
     Color pixel(int32_t x, int32_t y) const
     {
         int32_t width = static_cast<int32_t>(width_), row = std::min(std::max(y, 0), static_cast<int32_t>(height_) - 1);

@@ -4,6 +4,7 @@
 // All that samplers, estimators and the renderer know of what is rendered. SceneIntegrand is the path tracer's.
 #pragma once
 
+#include "vector.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -15,6 +16,12 @@ namespace demo {
 struct Domain {
     enum Kind : uint32_t { light, choice, direction, lens, time, footprint } kind; // choice: which light
     uint32_t bounce, dims;
+};
+
+// What a camera ray ended at, as far as light in closed form depends on it.
+struct Shown {
+    Vector point, normal; // unit, to the side that is seen
+    Color diffuse;        // how much of the light the diffuse term reflects to the camera; 0: nothing is known here
 };
 
 struct Integrand {
@@ -29,8 +36,16 @@ struct Integrand {
     // How many numbers a sample's value has: red, green and blue, unless estimators of another kind take more.
     virtual uint32_t values() const { return 3; }
     // The values of n samples of pixel (x, y): u[n * dims] -> f[n * values()]. n may be 0, if only the surface is asked
-    // for. *surface, unless null: a number for what the pixel shows. It does not depend on u.
-    virtual void evaluate(uint32_t x, uint32_t y, size_t n, const float *u, float *f, uint32_t *surface) const = 0;
+    // for. *surface, unless null: a number for what the pixel shows. It does not depend on u. *shown, unless null: for
+    // each camera ray what it ended at; of integrands that something is known of.
+    virtual void evaluate(uint32_t x, uint32_t y, size_t n, const float *u, float *f, uint32_t *surface,
+                          Shown *shown) const = 0;
+    // Whether something is known of the samples. The first call makes the tables that `known` needs.
+    virtual bool has_known() const { return false; }
+    // What n samples of a pixel would be with nothing in the way, as far as that is known, and its integral over u; of
+    // samples with camera rays of their own, the mean of their integrals. u and shown as for evaluate ->
+    // values[n * 3], integral[3].
+    virtual void known(size_t, const float *, const Shown *, float *, float *) const {}
 };
 
 inline uint32_t dims(const std::vector<Domain> &domains)

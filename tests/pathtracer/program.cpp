@@ -37,7 +37,7 @@ struct Ramp final : Integrand {
     std::vector<Domain> domains() const override { return {{Domain::light, 0, 2}}; }
     uint32_t lights() const override { return 1; }
     bool camera_ray_per_sample() const override { return false; }
-    void evaluate(uint32_t, uint32_t, size_t n, const float *u, float *f, uint32_t *) const override
+    void evaluate(uint32_t, uint32_t, size_t n, const float *u, float *f, uint32_t *, Shown *) const override
     {
         for (size_t i = 0; i < 3 * n; ++i)
             f[i] = u[i / 3 * 2];
