@@ -49,34 +49,26 @@ public:
         return interpolate(u, v);
     }
 
-    uint32_t height() const { return height_; }
-
     // A small part of the sphere, and the light from it: radiance times solid angle.
     struct Part {
         Vector direction;
         Color light;
     };
 
-    // How finely pixels are to be split so that sums over parts are as exact as integrals: to some 1e-5.
-    uint32_t split() const
+    // The whole sphere in rows of parts: each pixel is split as often as makes sums over parts nearly integrals.
+    uint32_t rows() const { return height_ * split(); }
+    void parts(uint32_t row, std::vector<Part> &parts) const
     {
-        return static_cast<uint32_t>(std::ceil(std::sqrt(262144.0 / (static_cast<double>(width_) * height_))));
-    }
-
-    // One row of parts, which split each pixel that often both ways.
-    void parts(uint32_t row, uint32_t split, std::vector<Part> &parts) const
-    {
-        const double pi64 = 3.14159265358979323846, rows = static_cast<double>(height_) * split;
-        const double columns = static_cast<double>(width_) * split, latitude = pi64 * (row + 0.5) / rows;
-        const double sine = std::sin(latitude), angle = 4 * pi64 / columns * sine * std::sin(pi64 / 2 / rows);
+        const double pi64 = 3.14159265358979323846, columns = static_cast<double>(width_) * split();
+        const double v = (row + 0.5) / rows(), sine = std::sin(pi64 * v);
+        const double area = 4 * pi64 / columns * sine * std::sin(pi64 / 2 / rows());
         parts.resize(static_cast<size_t>(columns));
         for (size_t i = 0; i < parts.size(); ++i) {
-            double at = (static_cast<double>(i) + 0.5) / columns;
-            parts[i].direction = {static_cast<float>(sine * std::sin(2 * pi64 * at)),
-                                  static_cast<float>(std::cos(latitude)),
-                                  static_cast<float>(sine * std::cos(2 * pi64 * at))};
-            parts[i].light = static_cast<float>(angle) *
-                             interpolate(static_cast<float>(at), static_cast<float>((row + 0.5) / rows));
+            double u = (static_cast<double>(i) + 0.5) / columns;
+            parts[i].direction = {static_cast<float>(sine * std::sin(2 * pi64 * u)),
+                                  static_cast<float>(std::cos(pi64 * v)),
+                                  static_cast<float>(sine * std::cos(2 * pi64 * u))};
+            parts[i].light = static_cast<float>(area) * interpolate(static_cast<float>(u), static_cast<float>(v));
         }
     }
 
@@ -102,6 +94,11 @@ public:
     }
 
 private:
+    uint32_t split() const
+    {
+        return static_cast<uint32_t>(std::ceil(std::sqrt(131072.0 / (static_cast<double>(width_) * height_))));
+    }
+
     // At u of the map's width and v of its height.
     Color interpolate(float u, float v) const
     {

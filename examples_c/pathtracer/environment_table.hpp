@@ -1,127 +1,136 @@
-// What an environment sends to a surface with nothing between, by the surface's normal. The integral is tabulated for
-// some normals, and that of others interpolated. Interpolating the cosine in the same way makes it exact: then both
-// speak of the same function, if not of quite the cosine, and the table may be coarse.
+// What an environment sends into a lobe with nothing between, by the lobe's axis. Its integral is tabulated for some
+// axes, and that of others interpolated. The lobe itself is interpolated likewise: then the two speak of the same
+// function exactly, if not of quite that lobe, and the table may be coarse.
 #pragma once
 
 #include "environment.hpp"
+#include "lobe.hpp"
 #include <array>
 
 namespace demo {
 
 class EnvironmentTable {
 public:
-    explicit EnvironmentTable(const Environment &map)
+    // For lobes of that width.
+    EnvironmentTable(const Environment &map, float width)
+        : width_(width), cells_(static_cast<uint32_t>(8 + std::min(5 / width, 56.0f)))
     {
-        for (uint32_t y = 0; y <= cells; ++y)
-            for (uint32_t x = 0; x <= cells; ++x)
-                normals_[y * (cells + 1) + x] = unfold(place(x), place(y));
+        for (uint32_t y = 0; y <= cells_; ++y)
+            for (uint32_t x = 0; x <= cells_; ++x)
+                axes_.push_back(unfold(place(x), place(y)));
         integrate(map);
     }
 
-    // Nearly max(0, dot(normal, direction)). Both unit.
-    float cosine(Vector normal, Vector direction) const
+    float width() const { return width_; }
+
+    // Nearly the lobe around an axis in a direction, both unit.
+    float density(Vector axis, Vector direction) const
     {
         float sum = 0;
-        for (const Corner &corner : corners(normal))
-            sum += corner.share * std::max(0.0f, dot(normals_[corner.index], direction));
+        for (const Corner &corner : corners(axis))
+            sum += corner.share * lobe_density(width_, dot(axes_[corner.index], direction));
         return sum;
     }
 
-    // The integral of radiance times `cosine` over all directions.
-    Color irradiance(Vector normal) const
+    // The integral of radiance times `density` over all directions.
+    Color integral(Vector axis) const
     {
         Color sum;
-        for (const Corner &corner : corners(normal))
-            sum += corner.share * irradiances_[corner.index];
+        for (const Corner &corner : corners(axis))
+            sum += corner.share * integrals_[corner.index];
         return sum;
     }
 
 private:
-    // Normals are the grid points of a square that is folded around an octahedron, whose faces are then blown up.
-    static constexpr uint32_t cells = 24, points = (cells + 1) * (cells + 1);
-    static constexpr size_t together = 8;
-    static constexpr size_t padded = (points + together - 1) / together * together;
-
-    // Of the cell that a normal is in.
+    // Axes go through the grid points of a square that is folded around an octahedron.
     struct Corner {
         size_t index;
         float share;
     };
 
-    static float place(uint32_t i) { return 2 * static_cast<float>(i) / cells - 1; }
+    float place(uint32_t i) const { return 2 * static_cast<float>(i) / static_cast<float>(cells_) - 1; }
+
+    // Folds the square's corners down, or back up.
+    static void fold(float &x, float &z)
+    {
+        float across = x;
+        x = std::copysign(1 - std::abs(z), x);
+        z = std::copysign(1 - std::abs(across), z);
+    }
 
     static Vector unfold(float x, float z)
     {
         float y = 1 - std::abs(x) - std::abs(z);
-        if (y < 0) {
-            float across = x;
-            x = std::copysign(1 - std::abs(z), x);
-            z = std::copysign(1 - std::abs(across), z);
-        }
+        if (y < 0)
+            fold(x, z);
         return normalize({x, y, z});
     }
 
-    static std::array<Corner, 4> corners(Vector normal)
+    // Of the cell that an axis goes through.
+    std::array<Corner, 4> corners(Vector axis) const
     {
-        float scale = 1 / (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
-        float x = normal.x * scale, z = normal.z * scale;
-        if (normal.y < 0) {
-            float across = x;
-            x = std::copysign(1 - std::abs(z), x);
-            z = std::copysign(1 - std::abs(across), z);
-        }
-        x = (x + 1) * (cells / 2.0f);
-        z = (z + 1) * (cells / 2.0f);
-        size_t column = std::min(static_cast<size_t>(std::max(x, 0.0f)), size_t{cells - 1});
-        size_t row = std::min(static_cast<size_t>(std::max(z, 0.0f)), size_t{cells - 1});
+        float scale = 1 / (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
+        float x = axis.x * scale, z = axis.z * scale;
+        if (axis.y < 0)
+            fold(x, z);
+        x = std::max(0.0f, (x + 1) / 2 * static_cast<float>(cells_));
+        z = std::max(0.0f, (z + 1) / 2 * static_cast<float>(cells_));
+        uint32_t column = std::min(static_cast<uint32_t>(x), cells_ - 1);
+        uint32_t row = std::min(static_cast<uint32_t>(z), cells_ - 1);
         float s = x - static_cast<float>(column), t = z - static_cast<float>(row);
-        size_t first = row * (cells + 1) + column;
-        return {{{first, (1 - s) * (1 - t)},
-                 {first + 1, s * (1 - t)},
-                 {first + cells + 1, (1 - s) * t},
-                 {first + cells + 2, s * t}}};
+        size_t first = size_t{row} * (cells_ + 1) + column, below = first + cells_ + 1;
+        return {
+            {{first, (1 - s) * (1 - t)}, {first + 1, s * (1 - t)}, {below, (1 - s) * t}, {below + 1, s * t}}};
     }
 
-    // Sums over the map's parts, row by row in float and of the rows in double. Some normals at once, each a lane.
+    // Some axes at once, a lane each. Sums over the map's parts row by row in float, of the rows in double.
     void integrate(const Environment &map)
     {
-        std::array<float, padded> x{}, y{}, z{};
-        for (size_t i = 0; i < points; ++i) {
-            x[i] = normals_[i].x;
-            y[i] = normals_[i].y;
-            z[i] = normals_[i].z;
+        constexpr size_t lanes = 8;
+        struct Group {
+            float x[lanes] = {}, y[lanes] = {}, z[lanes] = {};
+            double sums[3][lanes] = {};
+        };
+        std::vector<Group> groups((axes_.size() + lanes - 1) / lanes);
+        for (size_t i = 0; i < axes_.size(); ++i) {
+            groups[i / lanes].x[i % lanes] = axes_[i].x;
+            groups[i / lanes].y[i % lanes] = axes_[i].y;
+            groups[i / lanes].z[i % lanes] = axes_[i].z;
         }
-        std::vector<double> sums(3 * padded);
+        const float square = width_ * width_;
         std::vector<Environment::Part> parts;
-        const uint32_t split = map.split();
-        for (uint32_t row = 0; row < map.height() * split; ++row) {
-            map.parts(row, split, parts);
-            for (size_t first = 0; first < padded; first += together) {
-                float red[together] = {}, green[together] = {}, blue[together] = {};
+        for (uint32_t row = 0; row < map.rows(); ++row) {
+            map.parts(row, parts);
+            for (Group &group : groups) {
+                float sums[3][lanes] = {};
                 for (const Environment::Part &part : parts) {
-                    for (size_t l = 0; l < together; ++l) {
-                        float cosine = x[first + l] * part.direction.x + y[first + l] * part.direction.y +
-                                       z[first + l] * part.direction.z;
-                        cosine = cosine > 0 ? cosine : 0;
-                        red[l] += cosine * part.light.x;
-                        green[l] += cosine * part.light.y;
-                        blue[l] += cosine * part.light.z;
+                    for (size_t l = 0; l < lanes; ++l) {
+                        float cosine = group.x[l] * part.direction.x + group.y[l] * part.direction.y +
+                                       group.z[l] * part.direction.z;
+                        float spread = 1 - (1 - square) * cosine * cosine;
+                        float density = (cosine > 0 ? cosine : 0.0f) / (spread * spread);
+                        sums[0][l] += density * part.light.x;
+                        sums[1][l] += density * part.light.y;
+                        sums[2][l] += density * part.light.z;
                     }
                 }
-                for (size_t l = 0; l < together; ++l) {
-                    sums[3 * (first + l)] += red[l];
-                    sums[3 * (first + l) + 1] += green[l];
-                    sums[3 * (first + l) + 2] += blue[l];
-                }
+                for (size_t c = 0; c < 3; ++c)
+                    for (size_t l = 0; l < lanes; ++l)
+                        group.sums[c][l] += sums[c][l];
             }
         }
-        for (size_t i = 0; i < points; ++i)
-            irradiances_[i] = {static_cast<float>(sums[3 * i]), static_cast<float>(sums[3 * i + 1]),
-                               static_cast<float>(sums[3 * i + 2])};
+        for (size_t i = 0; i < axes_.size(); ++i) {
+            auto sum = [&](size_t c) {
+                return static_cast<float>(groups[i / lanes].sums[c][i % lanes]) * (square / pi);
+            };
+            integrals_.push_back({sum(0), sum(1), sum(2)});
+        }
     }
 
-    std::array<Vector, points> normals_;
-    std::array<Color, points> irradiances_;
+    float width_;
+    uint32_t cells_;
+    std::vector<Vector> axes_;
+    std::vector<Color> integrals_;
 };
 
 } // namespace demo

@@ -4,7 +4,6 @@
 // All that samplers, estimators and the renderer know of what is rendered. SceneIntegrand is the path tracer's.
 #pragma once
 
-#include "vector.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -18,11 +17,7 @@ struct Domain {
     uint32_t bounce, dims;
 };
 
-// What a camera ray ended at, as far as light in closed form depends on it.
-struct Shown {
-    Vector point, normal; // unit, to the side that is seen
-    Color diffuse;        // how much of the light the diffuse term reflects to the camera; 0: nothing is known here
-};
+struct Shown; // lobe.hpp: what a camera ray ended at
 
 struct Integrand {
     virtual ~Integrand() = default;

@@ -1,49 +1,86 @@
-// Direct light with nothing in its way, by the diffuse term alone: of each sample, and its exact integral over all
-// samples. Shadows, the glossy lobe and the geometric normal are what it leaves out.
+// Direct light with nothing in its way: of each sample, and its exact integral over all samples. Reflection is that of
+// lobes which light can be integrated over: the diffuse one, and one that stands for the glossy one. Geometric normals
+// do not count, and spheres are not seen in glossy lobes.
 #pragma once
 
 #include "environment_table.hpp"
-#include "integrand.hpp"
 #include "irradiance.hpp"
+#include "material.hpp"
 
 namespace demo {
 
 class KnownLight {
 public:
     // `lights` must outlive it.
-    explicit KnownLight(const std::vector<Light> &lights) : lights_(lights)
+    KnownLight(const std::vector<Light> &lights, const std::vector<Material> &materials) : lights_(lights)
     {
-        for (const Light &light : lights)
-            if (light.kind == Light::environment)
-                table_ = std::make_unique<EnvironmentTable>(*light.map);
+        for (const Light &light : lights) {
+            if (light.kind != Light::environment)
+                continue;
+            for (const Material &material : materials) {
+                tabulate(*light.map, 1);
+                if (!black(material.glossy))
+                    tabulate(*light.map, phong_width(material.exponent));
+            }
+        }
     }
 
-    // Of light number `picked`, which is one of so many, at u[2].
+    // Of u[2] on light number `picked`, which is one of as many as there are.
     Color sample(const Shown &shown, size_t picked, const float *u) const
     {
         const Light &light = lights_[picked];
         LightSample sample = sample_light(light, shown.point, u[0], u[1]);
         if (!(sample.pdf > 0))
             return {};
-        float cosine = light.kind == Light::environment ? table_->cosine(shown.normal, sample.direction)
-                                                        : std::max(0.0f, dot(shown.normal, sample.direction));
-        return shown.diffuse * sample.radiance * (cosine * static_cast<float>(lights_.size()) / (pi * sample.pdf));
+        Color reflected;
+        for (const Lobe &lobe : {shown.diffuse, shown.glossy})
+            if (!black(lobe.weight) && has_closed_form(light, lobe))
+                reflected += lobe.weight * density(light, lobe, sample.direction);
+        return reflected * sample.radiance * (static_cast<float>(lights_.size()) / sample.pdf);
     }
 
-    // The mean of `sample` over all u, every light as likely.
+    // The mean of `sample` over all u and lights.
     Color integral(const Shown &shown) const
     {
         Color sum;
-        for (const Light &light : lights_)
-            sum += light.kind == Light::environment
-                       ? table_->irradiance(shown.normal)
-                       : light.radiance * static_cast<float>(irradiance(light, shown.point, shown.normal));
-        return shown.diffuse * sum / pi;
+        for (const Lobe &lobe : {shown.diffuse, shown.glossy}) {
+            if (black(lobe.weight))
+                continue;
+            for (const Light &light : lights_) {
+                if (light.kind == Light::environment)
+                    sum += lobe.weight * table(lobe).integral(lobe.axis);
+                else if (has_closed_form(light, lobe))
+                    sum += lobe.weight * light.radiance * static_cast<float>(received(light, shown.point, lobe));
+            }
+        }
+        return sum;
     }
 
 private:
+    float density(const Light &light, const Lobe &lobe, Vector direction) const
+    {
+        return light.kind == Light::environment ? table(lobe).density(lobe.axis, direction)
+                                                : lobe_density(lobe.width, dot(lobe.axis, direction));
+    }
+
+    void tabulate(const Environment &map, float width)
+    {
+        for (const EnvironmentTable &table : tables_)
+            if (table.width() == width)
+                return;
+        tables_.emplace_back(map, width);
+    }
+
+    const EnvironmentTable &table(const Lobe &lobe) const
+    {
+        size_t i = 0;
+        while (tables_[i].width() != lobe.width)
+            ++i;
+        return tables_[i];
+    }
+
     const std::vector<Light> &lights_;
-    std::unique_ptr<EnvironmentTable> table_;
+    std::vector<EnvironmentTable> tables_; // of the environment, one for each width
 };
 
 } // namespace demo

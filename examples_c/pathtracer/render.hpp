@@ -3,6 +3,7 @@
 
 #include "estimators.hpp"
 #include "integrand.hpp"
+#include "lobe.hpp"
 #include "mis_estimators.hpp"
 #include "rendering.hpp"
 #include "samplers.hpp"

@@ -71,7 +71,7 @@ public:
     {
         if (layout_.bounces > 0)
             return false;
-        std::call_once(known_once_, [this] { known_ = std::make_unique<KnownLight>(scene_.lights); });
+        std::call_once(known_once_, [this] { known_ = std::make_unique<KnownLight>(scene_.lights, scene_.materials); });
         return true;
     }
 
@@ -80,10 +80,9 @@ public:
         Color sum;
         for (size_t i = 0; i < n; ++i, u += dims_, values += 3) {
             const Shown &at = shown[head_ > 0 ? i : 0];
-            const bool reflects = !black(at.diffuse);
-            if (reflects && (i == 0 || head_ > 0))
+            if (i == 0 || head_ > 0)
                 sum += known_->integral(at);
-            Color value = reflects ? known_->sample(at, choose(u + head_), u + head_) : Color{};
+            Color value = known_->sample(at, choose(u + head_), u + head_);
             values[0] = value.x;
             values[1] = value.y;
             values[2] = value.z;
@@ -220,7 +219,14 @@ protected:
         if (!view.found || material(view.hit).specular())
             return {};
         Shading s = shading(view.ray, view.hit);
-        return {leave(view.ray, view.hit, s, s.geometric), s.normal, view.throughput * s.material.diffuse};
+        Shown shown;
+        shown.point = leave(view.ray, view.hit, s, s.geometric);
+        shown.diffuse = {s.normal, 1, view.throughput * s.material.diffuse};
+        // A Phong lobe's integral, and the cosine in its middle for that of every direction.
+        float exponent = s.material.exponent, lobe = (exponent + 2) / (exponent + 1) * dot(s.normal, s.out);
+        shown.glossy = {reflect(s.out, s.normal), phong_width(exponent),
+                        view.throughput * s.material.glossy * std::max(0.0f, lobe)};
+        return shown;
     }
 
     // The light that reaches s.out from a point of a light, divided by the point's density.
