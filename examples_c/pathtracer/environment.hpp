@@ -59,12 +59,14 @@ public:
     uint32_t rows() const { return height_ * split(); }
     void parts(uint32_t row, std::vector<Part> &parts) const
     {
-        const double pi64 = 3.14159265358979323846, columns = static_cast<double>(width_) * split();
-        const double v = (row + 0.5) / rows(), sine = std::sin(pi64 * v);
-        const double area = 4 * pi64 / columns * sine * std::sin(pi64 / 2 / rows());
-        parts.resize(static_cast<size_t>(columns));
+        // At the poles half a cell may be left.
+        const bool half = split() / 2 % 2 == 1 && (row == 0 || row + 1 == rows());
+        const double v = (half ? row + 0.5 : place(row)) / rows();
+        const double pi64 = 3.14159265358979323846, sine = std::sin(pi64 * v);
+        parts.resize(size_t{width_} * split());
+        const double columns = static_cast<double>(parts.size()), area = 2 * pi64 * pi64 / columns / rows() * sine;
         for (size_t i = 0; i < parts.size(); ++i) {
-            double u = (static_cast<double>(i) + 0.5) / columns;
+            double u = place(i) / columns;
             parts[i].direction = {static_cast<float>(sine * std::sin(2 * pi64 * u)),
                                   static_cast<float>(std::cos(pi64 * v)),
                                   static_cast<float>(sine * std::cos(2 * pi64 * u))};
@@ -94,9 +96,19 @@ public:
     }
 
 private:
+    // 1, or even.
     uint32_t split() const
     {
-        return static_cast<uint32_t>(std::ceil(std::sqrt(131072.0 / (static_cast<double>(width_) * height_))));
+        double times = std::sqrt(65536.0 / (static_cast<double>(width_) * height_));
+        return std::max(1u, 2 * static_cast<uint32_t>(std::lround(times / 2)));
+    }
+
+    // Where of the i-th part light is looked up. Two parts together are a cell with its Gauss points; the kinks of the
+    // interpolation, in the middle of pixels, are between cells.
+    double place(size_t i) const
+    {
+        const bool first = i % 2 == split() / 2 % 2;
+        return static_cast<double>(i) + (split() == 1 ? 0.5 : first ? 0.5 - 0.0773503 : 0.5 + 0.0773503);
     }
 
     // At u of the map's width and v of its height.

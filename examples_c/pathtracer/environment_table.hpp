@@ -79,8 +79,7 @@ private:
         uint32_t row = std::min(static_cast<uint32_t>(z), cells_ - 1);
         float s = x - static_cast<float>(column), t = z - static_cast<float>(row);
         size_t first = size_t{row} * (cells_ + 1) + column, below = first + cells_ + 1;
-        return {
-            {{first, (1 - s) * (1 - t)}, {first + 1, s * (1 - t)}, {below, (1 - s) * t}, {below + 1, s * t}}};
+        return {{{first, (1 - s) * (1 - t)}, {first + 1, s * (1 - t)}, {below, (1 - s) * t}, {below + 1, s * t}}};
     }
 
     // Some axes at once, a lane each. Sums over the map's parts row by row in float, of the rows in double.
