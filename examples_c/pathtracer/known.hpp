@@ -4,8 +4,8 @@
 #pragma once
 
 #include "environment_table.hpp"
-#include "irradiance.hpp"
 #include "material.hpp"
+#include "mesh_outline.hpp"
 
 namespace demo {
 
@@ -15,6 +15,7 @@ public:
     KnownLight(const std::vector<Light> &lights, const std::vector<Material> &materials) : lights_(lights)
     {
         for (const Light &light : lights) {
+            outlines_.push_back(light.kind == Light::mesh ? std::make_unique<MeshOutline>(light) : nullptr);
             if (light.kind != Light::environment)
                 continue;
             for (const Material &material : materials) {
@@ -46,17 +47,24 @@ public:
         for (const Lobe &lobe : {shown.diffuse, shown.glossy}) {
             if (black(lobe.weight))
                 continue;
-            for (const Light &light : lights_) {
-                if (light.kind == Light::environment)
-                    sum += lobe.weight * table(lobe).integral(lobe.axis);
-                else if (has_closed_form(light, lobe))
-                    sum += lobe.weight * light.radiance * static_cast<float>(received(light, shown.point, lobe));
-            }
+            for (size_t i = 0; i < lights_.size(); ++i)
+                sum += lobe.weight * integral(i, shown.point, lobe);
         }
         return sum;
     }
 
 private:
+    Color integral(size_t number, Vector point, const Lobe &lobe) const
+    {
+        const Light &light = lights_[number];
+        if (light.kind == Light::environment)
+            return table(lobe).integral(lobe.axis);
+        if (!has_closed_form(light, lobe))
+            return {};
+        double part = outlines_[number] ? outlines_[number]->received(point, lobe) : received(light, point, lobe);
+        return light.radiance * static_cast<float>(part);
+    }
+
     float density(const Light &light, const Lobe &lobe, Vector direction) const
     {
         return light.kind == Light::environment ? table(lobe).density(lobe.axis, direction)
@@ -80,6 +88,7 @@ private:
     }
 
     const std::vector<Light> &lights_;
+    std::vector<std::unique_ptr<const MeshOutline>> outlines_; // of lights that are meshes
     std::vector<EnvironmentTable> tables_; // of the environment, one for each width
 };
 

@@ -122,6 +122,43 @@ void tiny_triangles()
     expect(worst < 2e-5, "a tiny triangle far away"); // of the point, for the largest
 }
 
+// A mesh by its outlines, and triangle by triangle: above the horizon, cut by it, right above, within.
+void meshes()
+{
+    Scene scene;
+    Builder builder(scene);
+    uint32_t material = builder.material({});
+    cube(builder, {-.2f, 1, -.3f}, .6f, material);
+    builder.parallelogram({-1.3f, 1.4f, -.2f}, {.5f, 0, 0}, {0, .1f, .5f}, material);
+    builder.shine(0, {1, 1, 1});
+    size_t first = builder.triangles();
+    builder.knot({0, 0, 0}, .138f, material);
+    builder.shine(first, {1, 1, 1});
+    Random random(6);
+    for (const Light &light : scene.lights) {
+        const MeshOutline outline(light);
+        int cut = 0;
+        double worst = 0;
+        for (int i = 0; i < 300; ++i) {
+            Vector from = point(random, 2);
+            Lobe lobe;
+            lobe.axis = direction(random);
+            lobe.width = i % 2 ? 1.0f : random(0.2f, 1);
+            double low = 1, high = -1;
+            for (const LightTriangle &t : light.triangles) {
+                low = std::min(low, dot(Vector64(t.origin) - from, lobe.axis));
+                high = std::max(high, dot(Vector64(t.origin) - from, lobe.axis));
+            }
+            cut += low < 0 && high > 0;
+            double expected = received(light, from, lobe), value = outline.received(from, lobe);
+            worst = std::max(worst, std::abs(value - expected) / (expected + 1e-3));
+        }
+        std::printf("   a mesh of %zu triangles: worst relative error %.2g\n", light.triangles.size(), worst);
+        expect(cut > 50, "too few meshes are cut by the horizon");
+        expect(worst < 1e-5, "a mesh by its outlines");
+    }
+}
+
 void spheres()
 {
     Random random(3);
@@ -309,6 +346,7 @@ int main()
     polygons();
     close_polygons();
     tiny_triangles();
+    meshes();
     spheres();
     environments();
     for (const LitScene &lit : known_scenes()) {
