@@ -74,7 +74,7 @@ double polygon_light(Vector first, Vector64 (&edges)[count], Vector shines, Vect
     Vector64 corner = Vector64(first) - from;
     if (!(dot(corner, shines) < 0))
         return 0;
-    if (lobe.width < 1) {
+    if (lobe.width != 1) {
         auto widen = [&](Vector64 &v) { v = v + (lobe.width - 1) * dot(axis, v) * axis; };
         widen(corner);
         for (Vector64 &edge : edges)

@@ -8,7 +8,7 @@ namespace demo {
 
 struct Lobe {
     Vector axis;     // unit
-    float width = 1; // 1: the cosine; less: narrower
+    float width = 1; // 1: the cosine; less: narrower; more: wider
     Color weight;    // how much of the light is reflected to the camera
 };
 
