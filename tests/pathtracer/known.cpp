@@ -242,6 +242,15 @@ std::vector<LitScene> known_scenes()
     moving.camera.aperture = 0.1f;
     moving.camera.focus = 4;
     Builder(moving).area_light({-.7f, 3, -.3f}, {1.1f, .2f, 0}, {.2f, -.1f, .9f}, {20, 30, 10});
+    // The sky is seen beside the floor: light that is not known, as much or as little as a lens lets through.
+    all.push_back({"lens and motion under the sky", {}});
+    Scene &outside = all.back().scene;
+    outside.layout.lens = outside.layout.time = outside.layout.choice = true;
+    outside.camera.aperture = 0.1f;
+    outside.camera.focus = 4;
+    Builder sky(outside);
+    sky.sphere_light({-1, 1.2f, -.4f}, .3f, {4, 3, 2});
+    sky.environment(constant_sky(.7f));
     for (LitScene &lit : all) {
         Builder builder(lit.scene);
         builder.parallelogram({-3, 0, 3}, {6, 0, 0}, {0, 0, -6},

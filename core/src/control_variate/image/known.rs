@@ -3,10 +3,10 @@
 //! With a sample's unshadowed contribution a and A its integral over u, a pixel's mean f - beta (a - A) has the
 //! integral of f for every beta that has not seen the pixel. Of the others' means, beta = sum w (f - v A) (a - A) / sum
 //! w (a - A)^2 with w = 1 / A^2 and v = sum f / A over sum a / A, the share of the light that arrives: at least 0, at
-//! most v.
+//! most v, and at most 1. Where more arrives than is known, v says little.
 
 use super::Call;
-use super::batch::{Batch, Eight, NONE, only};
+use super::batch::{Batch, Eight, NONE, only, plus};
 use super::groups::Groups;
 use crate::arena::Arena;
 use crate::error::Error;
@@ -18,77 +18,53 @@ use core::hint::black_box;
 const LEAST: f32 = 0.01;
 /// Values beyond so many integrals say nothing about others.
 const MOST: f32 = (1_u64 << 40) as f32;
-/// What others leave of a sum when a pixel is taken from it must be at least this of it.
-const ROUNDING: f32 = 1e-5;
+/// Numbers for each slot while the coefficients of a channel are computed.
+pub(super) const RELATIVE: usize = 2 * SUMS;
+const SUMS: usize = 5;
 
-/// Of a pixel, relative to its integral: its mean, what is known, how far that is from its integral.
-type Relative = [Eight; 3];
+/// Of some pixels, relative to their integrals, sums of: f; a; (a - A)^2; f (a - A); A (a - A).
+type Sums = [Eight; SUMS];
 
-/// Sums over pixels.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    mean: Eight,
-    known: Eight,
-    square: Eight,
-    mean_product: Eight,
-    integral_product: Eight,
+/// Of one pixel, by its f, its a and a - A.
+#[inline(always)]
+fn products([mean, known, apart]: &[Eight; 3]) -> Sums {
+    let times = |a: &Eight| lanes::zip(a, apart, |a, b| a * b);
+    let integral = lanes::zip(known, apart, |known, apart| known - apart);
+    [*mean, *known, times(apart), times(mean), times(&integral)]
 }
 
-impl Sums {
-    /// Those of one pixel.
-    #[inline(always)]
-    fn one([mean, known, apart]: &Relative) -> Self {
-        let product = |a: &Eight| lanes::zip(a, apart, |a, b| a * b);
-        let integral = lanes::zip(known, apart, |known, apart| known - apart);
-        Self {
-            mean: *mean,
-            known: *known,
-            square: product(apart),
-            mean_product: product(mean),
-            integral_product: product(&integral),
-        }
-    }
-
-    #[inline(always)]
-    fn zip(&self, other: &Self, f: impl Fn(f32, f32) -> f32) -> Self {
-        Self {
-            mean: lanes::zip(&self.mean, &other.mean, &f),
-            known: lanes::zip(&self.known, &other.known, &f),
-            square: lanes::zip(&self.square, &other.square, &f),
-            mean_product: lanes::zip(&self.mean_product, &other.mean_product, &f),
-            integral_product: lanes::zip(&self.integral_product, &other.integral_product, &f),
-        }
-    }
-
-    fn joined(&self) -> Self {
-        let join = |sum: &Eight| [lanes::sum(sum); LANES];
-        Self {
-            mean: join(&self.mean),
-            known: join(&self.known),
-            square: join(&self.square),
-            mean_product: join(&self.mean_product),
-            integral_product: join(&self.integral_product),
-        }
-    }
-
-    /// The coefficient by these pixels, of `all` less one.
-    #[inline(always)]
-    fn coefficient(&self, all: &Self) -> Eight {
-        let (known, square) = (lanes::divisor(&self.known), lanes::divisor(&self.square));
-        let mut coefficient = NONE;
-        for l in 0..LANES {
-            // Behind a black box, or compilers divide where nothing is, too.
-            let share = black_box(self.mean[l] / known[l]);
-            let slope = black_box((self.mean_product[l] - share * self.integral_product[l]) / square[l]);
-            let is_known = self.known[l] > all.known[l] * ROUNDING && self.square[l] > all.square[l] * ROUNDING;
-            coefficient[l] = if is_known { Real::max(Real::min(slope, share), 0.0) } else { 0.0 };
-        }
-        coefficient
-    }
+#[inline(always)]
+fn both(a: &Sums, b: &Sums) -> Sums {
+    let mut sums = *a;
+    sums.iter_mut().zip(b).for_each(|(sum, b)| *sum = plus(sum, b));
+    sums
 }
 
-/// Numbers for each slot and channel while coefficients are computed.
-pub(super) const RELATIVE: usize = 3;
+/// In each lane, the sum of the others.
+fn other_lanes(sum: &Eight) -> Eight {
+    let mut others = NONE;
+    for (l, out) in others.iter_mut().enumerate() {
+        for (_, value) in sum.iter().enumerate().filter(|&(lane, _)| lane != l) {
+            *out += value;
+        }
+    }
+    others
+}
+
+/// The coefficient by some pixels.
+#[inline(always)]
+fn coefficient([mean, known, square, mean_product, integral_product]: &Sums) -> Eight {
+    let [known_divisor, square_divisor] = [known, square].map(lanes::divisor);
+    let mut coefficient = NONE;
+    for l in 0..LANES {
+        // Behind a black box, or compilers divide where nothing is, too.
+        let share = black_box(mean[l] / known_divisor[l]);
+        let slope = black_box((mean_product[l] - share * integral_product[l]) / square_divisor[l]);
+        let is_known = known[l] > 0.0 && square[l] > 0.0;
+        coefficient[l] = if is_known { Real::max(Real::min(slope, Real::min(share, 1.0)), 0.0) } else { 0.0 };
+    }
+    coefficient
+}
 
 impl Batch<'_> {
     /// Computes the coefficient of each slot and channel.
@@ -101,7 +77,9 @@ impl Batch<'_> {
     ) -> Result<(), Error> {
         let channels = call.config.channels;
         let mut arena = arena.scratch();
-        let (relatives, _) = arena.take_lanes(RELATIVE * self.slots)?.as_chunks_mut::<RELATIVE>();
+        // Of each slot alone, and of all before it.
+        let own = arena.take_lanes(SUMS * self.slots)?.as_chunks_mut::<SUMS>().0;
+        let before = arena.take_lanes(SUMS * self.slots)?.as_chunks_mut::<SUMS>().0;
         let inverse = 1.0 / call.n as f32;
         for channel in 0..channels {
             let mut largest = NONE;
@@ -121,8 +99,8 @@ impl Batch<'_> {
             if self.is_joined {
                 largest = [largest.into_iter().fold(0.0, Real::max); LANES];
             }
-            let mut sums = Sums::default();
-            for (slot, relative) in relatives.iter_mut().enumerate() {
+            let mut all = [NONE; SUMS];
+            for (slot, (own, before)) in own.iter_mut().zip(before.iter_mut()).enumerate() {
                 let (mut mean, mut known) = (NONE, NONE);
                 for lane in 0..LANES {
                     let Some((pixel, _)) = self.pixel(call, groups, lane, slot) else { continue };
@@ -137,22 +115,23 @@ impl Batch<'_> {
                 let unit = lanes::divisor(&unit);
                 let over = |value: &Eight| lanes::zip(value, &unit, |value, unit| black_box(value / unit));
                 let apart = lanes::zip(&known, &integral, |known, integral| known - integral);
-                let all = [over(&mean), over(&known), over(&apart)];
+                let values = [over(&mean), over(&known), over(&apart)];
                 let mut counts = inside;
                 for l in 0..LANES {
-                    let is_usual = all.iter().all(|value| Real::abs(value[l]) < MOST);
+                    let is_usual = values.iter().all(|value| Real::abs(value[l]) < MOST);
                     counts[l] = if integral[l] > 0.0 && is_usual { inside[l] } else { 0.0 };
                 }
-                *relative = all.map(|value| only(&counts, &value));
-                sums = sums.zip(&Sums::one(relative), |sum, one| sum + one);
+                *own = products(&values.map(|value| only(&counts, &value)));
+                (*before, all) = (all, both(&all, own));
             }
-            let sums = if self.is_joined { sums.joined() } else { sums };
-            for (slot, relative) in relatives.iter().enumerate() {
-                let coefficient = sums.zip(&Sums::one(relative), |sum, one| sum - one).coefficient(&sums);
+            // Sums of all pixels but one, without a difference: that would hold digits of the one.
+            let mut others = if self.is_joined { all.map(|sum| other_lanes(&sum)) } else { [NONE; SUMS] };
+            for (slot, (own, before)) in own.iter().zip(before.iter()).enumerate().rev() {
                 let integral = self.integrals.get(slot * channels + channel).copied().unwrap_or(NONE);
                 if let Some(out) = self.coefficients.get_mut(slot * channels + channel) {
-                    *out = only(&integral, &coefficient);
+                    *out = only(&integral, &coefficient(&both(before, &others)));
                 }
+                others = both(&others, own);
             }
         }
         Ok(())
