@@ -15,7 +15,7 @@ use core::hint::black_box;
 /// gain.
 const COMMON: usize = 3;
 /// The largest correction that the windows of a pixel may add up, 2^120.
-const MOST: f64 = (1_u128 << 120) as f64;
+const MOST: f32 = (1_u128 << 120) as f32;
 
 /// The square of a likely correction is at most this many times the variance of the mean.
 const UNLIKELY: f64 = 4.0;
@@ -73,6 +73,7 @@ impl Call<'_> {
     fn add(&self, first: usize, groups: &Groups<'_>, band: &mut Band<'_>) {
         let channels = self.config.channels;
         let given = self.windows.given;
+        let has_factors = !self.image.factors.is_empty();
         // How near a pixel is to its window's centre: 1 there, falling linearly along x and y to almost 0.
         let inverse = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
         let hat = |at: usize, inverse: f32| 1.0 - Real::abs((2 * at + 1) as f32 * inverse - 1.0);
@@ -99,15 +100,18 @@ impl Call<'_> {
                 let corrections = row_at(groups.corrections, channels, group.start + index);
                 let values = corrections.iter().zip(errors).enumerate();
                 for (each, (channel, (&correction, &error))) in rows_mut(each, 2).zip(values) {
-                    let (mut correction, mut error) = (f64::from(correction), f64::from(error));
-                    if !self.image.factors.is_empty() {
+                    let mut both = [correction, error];
+                    if has_factors {
                         let factor = self.factor(self.pixel(window, place, index), channel);
-                        correction *= factor;
-                        error *= if self.error_is_the_groups() { factor } else { 1.0 };
+                        let factors = [factor, if self.error_is_the_groups() { factor } else { 1.0 }];
+                        let most = f64::from(f32::MAX);
+                        both.iter_mut().zip(factors).for_each(|(value, factor)| {
+                            *value = (f64::from(*value) * factor).clamp(-most, most) as f32;
+                        });
                     }
-                    for (sum, value) in each.iter_mut().zip([correction, error]) {
+                    for (sum, value) in each.iter_mut().zip(both) {
                         // What cannot be added up is no number, and found at the end.
-                        *sum += near * (if libm::fabs(value) < MOST { value } else { f64::NAN }) as f32;
+                        *sum += near * if Real::abs(value) < MOST { value } else { f32::NAN };
                     }
                 }
             }
@@ -148,21 +152,24 @@ impl Call<'_> {
             let &[correction, spread] = sums else { continue };
             let (correction, spread) = (f64::from(correction) * inverse, f64::from(spread) * error_inverse);
             let first = self.reader.value(pixel * self.n, channel);
-            let (mut total, mut square) = (0.0, 0.0);
-            for sample in pixel * self.n + 1..(pixel + 1) * self.n {
-                let value = self.reader.value(sample, channel) - first;
-                total += value;
-                square += value * value;
+            let (mut plain, mut variance) = (first, f64::INFINITY);
+            if self.n > 1 {
+                let (mut total, mut square) = (0.0, 0.0);
+                for sample in pixel * self.n + 1..(pixel + 1) * self.n {
+                    let value = self.reader.value(sample, channel) - first;
+                    total += value;
+                    square += value * value;
+                }
+                let n = self.n as f64;
+                plain += total / n;
+                variance = (square - total * total / n).max(0.0) / mean_divisor(n);
             }
-            let n = self.n as f64;
-            let plain = if self.n > 1 { first + total / n } else { first };
             // In no group there is no correction; nor is one that left the type's range.
             *mean = saturate(if correction.is_finite() { plain + correction } else { plain });
             let has_error = *error_weight > 0.0;
             let told = if has_error && self.error_is_the_groups() {
                 spread
             } else if self.n > 1 {
-                let variance = (square - total * total / n).max(0.0) / mean_divisor(n);
                 let ratio = if has_error { spread * spread } else { 1.0 };
                 // A correction that the pixel's own samples make unlikely is an error.
                 let moved = if correction.is_finite() { correction * correction } else { 0.0 };
