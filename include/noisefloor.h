@@ -97,6 +97,7 @@ const char *nf_status_message(nf_status status);
  *   nf_cv_estimate                       Estimates an integral from n samples
  *   nf_cv_estimate_with_controls         As nf_cv_estimate(), with `controls` functions h of known integral (4.18)
  *   nf_cv_gradient_descent               As nf_cv_estimate() with NF_CV_GRADIENT_DESCENT, which `estimator` must be
+ *   nf_cv_image_needed                   Writes which pixels must be given for those of `image->wanted`
  *   nf_cv_image_workspace_size           Bytes of workspace that nf_cv_image_estimate() needs for n samples in each
  *                                        pixel
  *   nf_cv_image_estimate                 As nf_cv_block_estimate() for every pixel of an image
@@ -249,6 +250,18 @@ typedef struct nf_estimate {
 // out of range or unsupported, or a size no memory has.
 size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
+// Some pixels of an image.
+typedef struct nf_cv_rectangle {
+    // The first column.
+    uint32_t x;
+    // The first row.
+    uint32_t y;
+    // Columns.
+    uint32_t width;
+    // Rows.
+    uint32_t height;
+} nf_cv_rectangle;
+
 // The pixels of an image, or of a part of one, and what is known of them. All zero but width and height: nothing.
 // Pixel (x, y) of frame t has the number (t height + y) width + x.
 typedef struct nf_cv_image {
@@ -276,6 +289,20 @@ typedef struct nf_cv_image {
     // either. For textures, where all samples of a pixel see one albedo: with defocus or motion blur they can raise
     // the error. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
     const float *factors;
+    // For each sample, as f, what it would be with nothing in the way (its unshadowed contribution), or NULL. Finite.
+    // Pixels are then also corrected by how far it is from `integrals`, as far as their neighbours follow it.
+    const float *known;
+    // With `known`, else NULL: `channels` numbers for each pixel, its exact integral over u: of a polygon light in
+    // closed form, for example. Finite and not negative; a pixel with 0 is not corrected by it. Where a pixel's
+    // samples see several points, the mean of theirs.
+    const float *integrals;
+    // The pixels that u, f and the arrays above hold, in all frames; all zero: all of the image. Numbers of pixels
+    // then count these alone.
+    nf_cv_rectangle given;
+    // The pixels to estimate, for which `out` has room; all zero: all that are given. Every window that has one of
+    // them must be given whole, see nf_cv_image_needed(). Parts that are estimated on their own, by threads for
+    // example, have the bits of the whole.
+    nf_cv_rectangle wanted;
 } nf_cv_image;
 
 // Estimates an integral from n samples: u has n rows of `stride` floats (the last may end after `dims`), f has n rows
@@ -317,6 +344,11 @@ nf_status nf_cv_gradient_descent(const nf_cv_config *config,
                                  size_t bytes,
                                  nf_estimate *out);
 
+// Writes which pixels must be given for those of `image->wanted`: its windows whole. Reads no array.
+//
+// NF_ERR_RANGE for windows that nf_cv_image does not allow and for `wanted` beyond the image.
+nf_status nf_cv_image_needed(const nf_cv_image *image, nf_cv_rectangle *out);
+
 // Bytes of workspace that nf_cv_image_estimate() needs for n samples in each pixel; 0 as for nf_cv_workspace_size(),
 // and for an image that is NULL, has no pixels, or has windows that nf_cv_image does not allow.
 size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image *image, size_t n);
@@ -324,8 +356,11 @@ size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image 
 // As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of
 // the same window and surface share a fit. Fits also follow integrands that change across the window.
 //
-// NF_ERR_RANGE also for an image without pixels, for windows that nf_cv_image does not allow and for negative factors,
-// NF_ERR_NOT_FINITE for factors that are not finite.
+// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
+// to what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD is then unsupported.
+//
+// NF_ERR_RANGE also for an image without pixels, for windows and parts that nf_cv_image does not allow, for negative
+// factors or integrals and for `known` without `integrals`; NF_ERR_NOT_FINITE if any of the three is not finite.
 nf_status nf_cv_image_estimate(const nf_cv_config *config,
                                const nf_cv_image *image,
                                const float *u,
@@ -454,18 +489,28 @@ typedef struct nf_recommendation {
     // of 1 sample, continued, has .81 to 1.4 times the error of Sobol points scrambled in each pixel that is given
     // here.
     float filtered_error;
+    // Nanoseconds that the method takes for each sample, of one channel without surfaces, on the machine of the
+    // report.
+    float cost;
+    // The cost of a sample, in nanoseconds, from which a fit pays at equal time, by what fits gain in rendered frames.
+    // Infinite if it never does; 0 where the mean is best at any cost.
+    float pays_from;
     // How to estimate. `channels` is 1: set your own. `stride` is all dims.
     nf_cv_config config;
 } nf_recommendation;
 
 // Which estimator, of which order, and which of the library's tiles to use for samples of `dims` coordinates and `spp`
 // of them per pixel, both at least 1. `sampling` is NF_SAMPLING_*; `can_share` is 1 if neighbouring pixels' samples
-// are at hand together and integrate similar functions, else 0. docs/choosing.md has the measurements that it rests
-// on.
+// are at hand together and integrate similar functions, else 0. `sample_cost` is what a sample costs to trace, in
+// nanoseconds: where a fit would take more time than its gain is worth, the plain mean is best. 0: errors at equal
+// samples decide alone. docs/choosing.md has the measurements that it rests on.
+//
+// NF_ERR_RANGE also for a negative cost, NF_ERR_NOT_FINITE for a NaN.
 nf_status nf_recommend(uint32_t dims,
                        uint32_t spp,
                        uint32_t sampling,
                        uint32_t can_share,
+                       float sample_cost,
                        nf_recommendation *out);
 
 /* ------------------------------------------------------------------------------------------------------------------
@@ -1297,8 +1342,10 @@ NF_ASSERT_LAYOUT(sizeof(nf_cv_config) == 76 && offsetof(nf_cv_config, ridge) == 
 NF_ASSERT_ALIGNED_AS(nf_cv_config, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_estimate) == 40 && offsetof(nf_estimate, samples) == 32);
 NF_ASSERT_ALIGNED_AS(nf_estimate, float);
-NF_ASSERT_LAYOUT(sizeof(nf_cv_image) == 24 + 2 * sizeof(void *) && offsetof(nf_cv_image, surfaces) == 24);
-NF_ASSERT_LAYOUT(sizeof(nf_recommendation) == 100 && offsetof(nf_recommendation, config) == 24);
+NF_ASSERT_LAYOUT(sizeof(nf_cv_image) == 24 + 4 * sizeof(void *) + 32 && offsetof(nf_cv_image, surfaces) == 24);
+NF_ASSERT_LAYOUT(sizeof(nf_cv_rectangle) == 16 && offsetof(nf_cv_rectangle, width) == 8);
+NF_ASSERT_ALIGNED_AS(nf_cv_rectangle, uint32_t);
+NF_ASSERT_LAYOUT(sizeof(nf_recommendation) == 108 && offsetof(nf_recommendation, config) == 32);
 NF_ASSERT_ALIGNED_AS(nf_recommendation, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_tile) == 2 * sizeof(void *) + 24 && offsetof(nf_tile, size) == 2 * sizeof(void *));
 NF_ASSERT_ALIGNED_AS(nf_tile, void *);

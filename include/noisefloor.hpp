@@ -316,6 +316,34 @@ public:
         return copy;
     }
 
+    // What each sample would be with nothing in the way, as f, and config::channels integrals of it for each pixel.
+    image with_known(span<const float> values, span<const float> exact) const noexcept
+    {
+        image copy = *this;
+        copy.known = values.data();
+        copy.integrals = exact.data();
+        copy.known_ = values.size();
+        copy.integrals_ = exact.size();
+        copy.has_known_ = true;
+        return copy;
+    }
+
+    // The pixels that are estimated, and those that the arrays hold: needed() says which are enough.
+    image with_parts(const nf_cv_rectangle &estimated, const nf_cv_rectangle &held) const noexcept
+    {
+        image copy = *this;
+        copy.wanted = estimated;
+        copy.given = held;
+        return copy;
+    }
+    // Whole windows.
+    returned<nf_cv_rectangle> needed() const
+    {
+        nf_cv_rectangle all{};
+        const nf_status code = nf_cv_image_needed(this, &all);
+        return detail::finish(code, all);
+    }
+
     // Pixels in no order: nf_cv_image::unordered.
     image without_places(bool value = true) const noexcept
     {
@@ -324,26 +352,41 @@ public:
         return copy;
     }
 
-    // Of all frames; 0 if that is more than a std::size_t counts.
+    // That the arrays hold, of all frames; 0 if that is more than a std::size_t counts.
     std::size_t pixels() const noexcept
     {
-        const std::size_t most = SIZE_MAX, rows = height, all_frames = frames == 0 ? 1 : frames;
-        if (rows == 0 || width > most / rows || width * rows > most / all_frames)
-            return 0;
-        return width * rows * all_frames;
+        return given_all() ? count(width, height) : count(given.width, given.height);
     }
-    // Whether the arrays are as long as they must be.
-    bool fits(const nf_cv_config &how) const noexcept
+    // That are estimated, likewise.
+    std::size_t estimates() const noexcept
     {
-        const bool divides = how.channels != 0 && factors_ % how.channels == 0;
-        const bool surfaces_fit = !has_surfaces_ || surfaces_ == pixels();
-        return surfaces_fit && (!has_factors_ || (divides && factors_ / how.channels == pixels()));
+        const bool all = wanted.x == 0 && wanted.y == 0 && wanted.width == 0 && wanted.height == 0;
+        return all ? pixels() : count(wanted.width, wanted.height);
+    }
+    // Whether the arrays are as long as they must be beside so many numbers of f.
+    bool fits(const nf_cv_config &how, std::size_t values) const noexcept
+    {
+        const std::size_t channels = how.channels;
+        const auto each = [&](std::size_t size) {
+            return channels != 0 && size % channels == 0 && size / channels == pixels();
+        };
+        return (!has_surfaces_ || surfaces_ == pixels()) && (!has_factors_ || each(factors_)) &&
+               (!has_known_ || (known_ == values && each(integrals_)));
     }
 
 private:
+    bool given_all() const noexcept { return given.x == 0 && given.y == 0 && given.width == 0 && given.height == 0; }
+    std::size_t count(std::size_t columns, std::size_t rows) const noexcept
+    {
+        const std::size_t most = SIZE_MAX, all_frames = frames == 0 ? 1 : frames;
+        if (rows == 0 || columns > most / rows || columns * rows > most / all_frames)
+            return 0;
+        return columns * rows * all_frames;
+    }
+
     // An array that was given but is empty is an error, not "none".
-    bool has_surfaces_ = false, has_factors_ = false;
-    std::size_t surfaces_ = 0, factors_ = 0;
+    bool has_surfaces_ = false, has_factors_ = false, has_known_ = false;
+    std::size_t surfaces_ = 0, factors_ = 0, known_ = 0, integrals_ = 0;
 };
 
 // Samples in caller arrays. The number of samples is f.size() / channels, and all lengths must agree with it.
@@ -418,16 +461,18 @@ inline returned<void> estimate_block(const nf_cv_config &how, const samples &wha
     return detail::finish(code);
 }
 
-// nf_cv_image_estimate(): one estimate for each pixel, as many as `out` has elements, from as many samples of each.
+// nf_cv_image_estimate(): one estimate for each wanted pixel, from as many samples of each.
 inline returned<void> estimate_image(const nf_cv_config &how, const image &where, const samples &what, memory workspace,
                                      span<nf_estimate> out)
 {
     std::size_t n = 0;
     nf_status code = detail::count(how, what, n);
-    if (code == NF_OK && (out.empty() || out.size() != where.pixels() || n % out.size() != 0 || !where.fits(how)))
+    const std::size_t pixels = where.pixels();
+    const bool divides = !out.empty() && out.size() == where.estimates() && pixels > 0 && n % pixels == 0;
+    if (code == NF_OK && !(divides && where.fits(how, what.f.size())))
         code = NF_ERR_RANGE;
     if (code == NF_OK)
-        code = nf_cv_image_estimate(&how, &where, what.u.data(), what.f.data(), n / out.size(), workspace.data(),
+        code = nf_cv_image_estimate(&how, &where, what.u.data(), what.f.data(), n / pixels, workspace.data(),
                                     workspace.bytes(), out.data());
     return detail::finish(code);
 }
@@ -473,11 +518,14 @@ private:
 
 enum class sampling : std::uint32_t { independent = NF_SAMPLING_INDEPENDENT, stratified = NF_SAMPLING_STRATIFIED };
 
-// nf_recommend(): which estimator and which tile to use for `spp` samples per pixel of `dims` coordinates.
-inline returned<nf_recommendation> recommend(std::uint32_t dims, std::uint32_t spp, sampling kind, bool can_share)
+// nf_recommend(): which estimator and which tile to use for `spp` samples per pixel of `dims` coordinates, each of so
+// many nanoseconds; 0: whatever they cost.
+inline returned<nf_recommendation> recommend(std::uint32_t dims, std::uint32_t spp, sampling kind, bool can_share,
+                                             float sample_cost = 0.0f)
 {
     nf_recommendation out{};
-    const nf_status code = nf_recommend(dims, spp, static_cast<std::uint32_t>(kind), can_share ? 1u : 0u, &out);
+    const nf_status code =
+        nf_recommend(dims, spp, static_cast<std::uint32_t>(kind), can_share ? 1u : 0u, sample_cost, &out);
     return detail::finish(code, out);
 }
 

@@ -41,20 +41,30 @@ pub struct nf_recommendation {
     /// of 1 sample, continued, has .81 to 1.4 times the error of Sobol points scrambled in each pixel that is given
     /// here.
     pub filtered_error: f32,
+    /// Nanoseconds that the method takes for each sample, of one channel without surfaces, on the machine of the
+    /// report.
+    pub cost: f32,
+    /// The cost of a sample, in nanoseconds, from which a fit pays at equal time, by what fits gain in rendered frames.
+    /// Infinite if it never does; 0 where the mean is best at any cost.
+    pub pays_from: f32,
     /// How to estimate. `channels` is 1: set your own. `stride` is all dims.
     pub config: nf_cv_config,
 }
 
 /// Which estimator, of which order, and which of the library's tiles to use for samples of `dims` coordinates and `spp`
 /// of them per pixel, both at least 1. `sampling` is NF_SAMPLING_*; `can_share` is 1 if neighbouring pixels' samples
-/// are at hand together and integrate similar functions, else 0. docs/choosing.md has the measurements that it rests
-/// on.
+/// are at hand together and integrate similar functions, else 0. `sample_cost` is what a sample costs to trace, in
+/// nanoseconds: where a fit would take more time than its gain is worth, the plain mean is best. 0: errors at equal
+/// samples decide alone. docs/choosing.md has the measurements that it rests on.
+///
+/// NF_ERR_RANGE also for a negative cost, NF_ERR_NOT_FINITE for a NaN.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_recommend(
     dims: u32,
     spp: u32,
     sampling: u32,
     can_share: u32,
+    sample_cost: f32,
     out: *mut nf_recommendation,
 ) -> nf_status {
     status((|| {
@@ -66,7 +76,7 @@ pub unsafe extern "C" fn nf_recommend(
         if can_share > 1 {
             return Err(NF_ERR_RANGE);
         }
-        let of = recommend(dims as usize, spp as usize, sampling, can_share == 1).map_err(status_of)?;
+        let of = recommend(dims as usize, spp as usize, sampling, can_share == 1, sample_cost).map_err(status_of)?;
         let config = nf_cv_config {
             dims: of.config.dims as u32,
             order: of.config.order as u32,
@@ -85,6 +95,8 @@ pub unsafe extern "C" fn nf_recommend(
             tile_dims: of.tile_dims as u32,
             error: of.error,
             filtered_error: of.filtered_error,
+            cost: of.cost,
+            pays_from: of.pays_from,
             config,
         };
         // SAFETY: the caller's pointer, checked there.

@@ -6,7 +6,7 @@
 //! use noisefloor::recommend::{Method, Sampling, recommend};
 //!
 //! // 4 samples per pixel of 2 dims, from a tile, whole images at a time.
-//! let best = recommend(2, 4, Sampling::Stratified, true)?;
+//! let best = recommend(2, 4, Sampling::Stratified, true, 0.0)?;
 //! assert_eq!(best.method, Method::Shared);
 //! assert_eq!((best.tile_samples, best.tile_dims), (4, 2));
 //! let config = noisefloor::control_variate::Config { channels: 3, ..best.config };
@@ -44,7 +44,7 @@ pub enum Method {
 /// use noisefloor::control_variate::Image;
 /// use noisefloor::recommend::{Sampling, recommend};
 ///
-/// let best = recommend(2, 4, Sampling::Stratified, true)?;
+/// let best = recommend(2, 4, Sampling::Stratified, true, 0.0)?;
 /// let image = Image { stride: best.image_stride, ..Image::new(640, 480) };
 /// assert!(best.error < 0.1 && image.stride == 8);
 /// # Ok::<(), noisefloor::Error>(())
@@ -75,23 +75,37 @@ pub struct Recommendation {
     /// on it is that of Sobol points scrambled in each pixel; the plain mean of the tile of 1 sample, continued, has
     /// .81 to 1.4 times this.
     pub filtered_error: f32,
+    /// Nanoseconds that the method takes for each sample, of one channel without surfaces, on the machine of the
+    /// report. Surfaces double it where few pixels share one.
+    pub cost: f32,
+    /// The cost of a sample, in nanoseconds, from which a fit pays at equal time: more samples of the plain mean would
+    /// lower the error less. By what fits gain in rendered frames, which is less than on the integrands of the study.
+    /// Infinite if it never does; 0 where the mean is best at any cost.
+    pub pays_from: f32,
 }
 
 /// What is best for samples of `dims` coordinates, `samples_per_pixel` of them, both at least 1. `can_share` says
 /// whether neighbouring pixels' samples are at hand together and integrate similar functions.
 ///
+/// `sample_cost` is what a sample costs to trace, in nanoseconds: where the method would take more time than its gain
+/// in rendered frames is worth, the plain mean is best. 0 or infinity: errors at equal samples decide alone.
+///
 /// What was measured are 1, 2, 4, 5, 8 and 15 dims with 1, 4, 16, 64 and 256 samples: dims are rounded up, samples
 /// down.
 ///
 /// # Errors
-/// [`Error::Range`] if `dims` or `samples_per_pixel` is 0.
+/// [`Error::Range`] if `dims` or `samples_per_pixel` is 0 or the cost negative, [`Error::NotFinite`] if that is NaN.
 pub fn recommend(
     dims: usize,
     samples_per_pixel: usize,
     sampling: Sampling,
     can_share: bool,
+    sample_cost: f32,
 ) -> Result<Recommendation, Error> {
-    if dims == 0 || samples_per_pixel == 0 {
+    if sample_cost.is_nan() {
+        return Err(Error::NotFinite);
+    }
+    if dims == 0 || samples_per_pixel == 0 || sample_cost < 0.0 {
         return Err(Error::Range);
     }
     let table = match (sampling, can_share) {
@@ -100,13 +114,26 @@ pub fn recommend(
         (Sampling::Stratified, false) => &STRATIFIED_ALONE,
         (Sampling::Stratified, true) => &STRATIFIED_SHARED,
     };
-    let Cell { method, order, image_stride, error, filtered_error } = cell(table, dims, samples_per_pixel);
+    let best = cell(table, dims, samples_per_pixel);
+    // Time is worth as much as samples: (sample + cost) ratio < sample.
+    let ratio = in_frames(best.method, sampling, samples_per_pixel);
+    let pays_from = match best.method {
+        Method::PlainMean => 0.0,
+        _ if ratio < 1.0 => best.cost * ratio / (1.0 - ratio),
+        _ => f32::INFINITY,
+    };
+    let is_too_dear = sample_cost > 0.0 && sample_cost < pays_from;
+    let mean = match sampling {
+        Sampling::Independent => plain(1.0, 1.0),
+        Sampling::Stratified => cell(&STRATIFIED_ALONE, dims, samples_per_pixel),
+    };
+    let Cell { method, order, image_stride, cost, error, filtered_error } = if is_too_dear { mean } else { best };
     let (tile_samples, tile_dims) = cell(&TILES, dims, samples_per_pixel);
     // 15 dims are the most of order 2.
     let regressed = dims.min(if order < 2 { MAX_DIMS } else { 15 });
     let config =
         Config { stride: dims, stratified: sampling == Sampling::Stratified, ..Config::new(regressed, order, 1) };
-    Ok(Recommendation { method, config, image_stride, tile_samples, tile_dims, error, filtered_error })
+    Ok(Recommendation { method, config, image_stride, tile_samples, tile_dims, error, filtered_error, cost, pays_from })
 }
 
 /// For 1, 4, 16, 64 and 256 samples.
@@ -140,26 +167,46 @@ struct Cell {
     method: Method,
     order: usize,
     image_stride: usize,
+    /// Nanoseconds a sample: instructions that callgrind counts of one channel without surfaces, 12 in a nanosecond.
+    cost: f32,
     error: f32,
     filtered_error: f32,
 }
 
 const fn plain(error: f32, filtered_error: f32) -> Cell {
-    Cell { method: Method::PlainMean, order: 0, image_stride: 8, error, filtered_error }
+    Cell { method: Method::PlainMean, order: 0, image_stride: 8, cost: 0.0, error, filtered_error }
 }
 
-const fn pixel(order: usize, error: f32, filtered_error: f32) -> Cell {
-    Cell { method: Method::PerPixel, order, image_stride: 8, error, filtered_error }
+const fn pixel(order: usize, cost: u16, error: f32, filtered_error: f32) -> Cell {
+    Cell { method: Method::PerPixel, order, image_stride: 8, cost: cost as f32, error, filtered_error }
 }
 
 /// Windows of 8 x 8 pixels, one beside the other.
-const fn blocks(order: usize, error: f32, filtered_error: f32) -> Cell {
-    Cell { method: Method::Shared, order, image_stride: 8, error, filtered_error }
+const fn blocks(order: usize, cost: u16, error: f32, filtered_error: f32) -> Cell {
+    Cell { method: Method::Shared, order, image_stride: 8, cost: cost as f32, error, filtered_error }
 }
 
 /// Windows that overlap by half.
-const fn windows(order: usize, error: f32, filtered_error: f32) -> Cell {
-    Cell { method: Method::Shared, order, image_stride: 4, error, filtered_error }
+const fn windows(order: usize, cost: u16, error: f32, filtered_error: f32) -> Cell {
+    Cell { method: Method::Shared, order, image_stride: 4, cost: cost as f32, error, filtered_error }
+}
+
+/// What a method leaves of the plain mean's squared error in rendered frames of direct light: geometric means over
+/// eight scenes of raw and filtered errors, of 1, 4 and 16 samples. More samples than that: as 16, but stratified ones
+/// leave a fit nothing.
+fn in_frames(method: Method, sampling: Sampling, samples: usize) -> f32 {
+    let of = |few: f32, some: f32, many: f32| match samples {
+        ..4 => few,
+        4..16 => some,
+        _ => many,
+    };
+    match (method, sampling) {
+        (Method::PlainMean, _) => 1.0,
+        (Method::PerPixel, Sampling::Independent) => 0.78,
+        (Method::Shared, Sampling::Independent) => of(0.78, 0.77, 0.78),
+        (Method::Shared, Sampling::Stratified) if samples < 64 => of(0.87, 0.94, 0.97),
+        _ => 1.0,
+    }
 }
 
 /// Independent samples of one pixel: a fit, as soon as there are several samples to a term. In 2 dims the order is 5
@@ -167,35 +214,35 @@ const fn windows(order: usize, error: f32, filtered_error: f32) -> Cell {
 /// (docs/choosing.md).
 #[rustfmt::skip]
 const INDEPENDENT_ALONE: Table<Cell> = [
-    [plain(1.0, 1.0),            plain(1.0, 0.92),           pixel(5, 0.049, 0.15),
-     pixel(7, 0.00036, 0.003),   pixel(7, 0.0001, 0.00086)],
-    [plain(1.0, 1.0),            plain(1.0, 1.0),            pixel(3, 0.27, 0.36),
-     pixel(5, 0.025, 0.042),     pixel(5, 0.011, 0.016)],
-    [plain(1.0, 0.99),           plain(0.99, 1.0),           pixel(3, 0.49, 0.58),
-     pixel(3, 0.16, 0.21),       pixel(3, 0.079, 0.11)],
-    [plain(1.0, 0.96),           plain(0.99, 0.91),          pixel(2, 0.61, 0.67),
-     pixel(2, 0.24, 0.29),       pixel(3, 0.094, 0.14)],
-    [plain(0.98, 0.98),          plain(1.0, 1.0),            pixel(2, 0.74, 0.75),
-     pixel(2, 0.39, 0.44),       pixel(2, 0.21, 0.22)],
-    [plain(0.94, 0.92),          plain(0.99, 0.94),          pixel(2, 0.89, 0.88),
-     pixel(1, 0.58, 0.59),       pixel(1, 0.47, 0.33)],
+    [plain(1.0, 1.0),               plain(1.0, 0.92),              pixel(5, 91, 0.049, 0.15),
+     pixel(7, 69, 0.00036, 0.003),  pixel(7, 52, 0.0001, 0.00086)],
+    [plain(1.0, 1.0),               plain(1.0, 1.0),               pixel(3, 169, 0.27, 0.36),
+     pixel(5, 237, 0.025, 0.042),   pixel(5, 169, 0.011, 0.016)],
+    [plain(1.0, 0.99),              plain(0.99, 1.0),              pixel(3, 602, 0.49, 0.58),
+     pixel(3, 547, 0.16, 0.21),     pixel(3, 370, 0.079, 0.11)],
+    [plain(1.0, 0.96),              plain(0.99, 0.91),             pixel(2, 488, 0.61, 0.67),
+     pixel(2, 240, 0.24, 0.29),     pixel(3, 817, 0.094, 0.14)],
+    [plain(0.98, 0.98),             plain(1.0, 1.0),               pixel(2, 684, 0.74, 0.75),
+     pixel(2, 853, 0.39, 0.44),     pixel(2, 557, 0.21, 0.22)],
+    [plain(0.94, 0.92),             plain(0.99, 0.94),             pixel(2, 1662, 0.89, 0.88),
+     pixel(1, 174, 0.58, 0.59),     pixel(1, 133, 0.47, 0.33)],
 ];
 
 /// Independent samples of an image.
 #[rustfmt::skip]
 const INDEPENDENT_SHARED: Table<Cell> = [
-    [blocks(5, 0.035, 0.06),     blocks(5, 0.033, 0.056),    blocks(5, 0.037, 0.064),
-     pixel(7, 0.00036, 0.003),   pixel(7, 0.0001, 0.00086)],
-    [blocks(3, 0.13, 0.17),      blocks(3, 0.11, 0.14),      blocks(3, 0.12, 0.15),
-     pixel(5, 0.025, 0.042),     pixel(5, 0.011, 0.016)],
-    [blocks(3, 0.22, 0.26),      blocks(3, 0.15, 0.18),      blocks(3, 0.14, 0.18),
-     pixel(3, 0.16, 0.21),       pixel(3, 0.079, 0.11)],
-    [blocks(2, 0.3, 0.31),       blocks(2, 0.23, 0.24),      blocks(2, 0.23, 0.25),
-     pixel(2, 0.24, 0.29),       pixel(3, 0.094, 0.14)],
-    [blocks(2, 0.39, 0.39),      blocks(2, 0.28, 0.29),      blocks(2, 0.27, 0.28),
-     blocks(2, 0.29, 0.3),       pixel(2, 0.21, 0.22)],
-    [blocks(1, 0.58, 0.57),      blocks(1, 0.51, 0.51),      blocks(1, 0.52, 0.58),
-     blocks(1, 0.54, 0.56),      pixel(1, 0.47, 0.33)],
+    [blocks(5, 136, 0.035, 0.06),   blocks(5, 60, 0.033, 0.056),   blocks(5, 33, 0.037, 0.064),
+     pixel(7, 69, 0.00036, 0.003),  pixel(7, 52, 0.0001, 0.00086)],
+    [blocks(3, 164, 0.13, 0.17),    blocks(3, 83, 0.11, 0.14),     blocks(3, 45, 0.12, 0.15),
+     pixel(5, 237, 0.025, 0.042),   pixel(5, 169, 0.011, 0.016)],
+    [blocks(3, 261, 0.22, 0.26),    blocks(3, 362, 0.15, 0.18),    blocks(3, 183, 0.14, 0.18),
+     pixel(3, 547, 0.16, 0.21),     pixel(3, 370, 0.079, 0.11)],
+    [blocks(2, 170, 0.3, 0.31),     blocks(2, 135, 0.23, 0.24),    blocks(2, 75, 0.23, 0.25),
+     pixel(2, 240, 0.24, 0.29),     pixel(3, 817, 0.094, 0.14)],
+    [blocks(2, 341, 0.39, 0.39),    blocks(2, 351, 0.28, 0.29),    blocks(2, 181, 0.27, 0.28),
+     blocks(2, 138, 0.29, 0.3),     pixel(2, 557, 0.21, 0.22)],
+    [blocks(1, 150, 0.58, 0.57),    blocks(1, 220, 0.51, 0.51),    blocks(1, 118, 0.52, 0.58),
+     blocks(1, 92, 0.54, 0.56),     pixel(1, 133, 0.47, 0.33)],
 ];
 
 /// Stratified samples of one pixel: leave-one-out errors do not see strata, and a fit may be many times worse.
@@ -203,35 +250,35 @@ const INDEPENDENT_SHARED: Table<Cell> = [
 /// for 5 and 8 dims and 1 sample, of the tile of 2 dims.
 #[rustfmt::skip]
 const STRATIFIED_ALONE: Table<Cell> = [
-    [plain(0.99, 0.039),         plain(0.17, 0.011),         plain(0.042, 0.0035),
-     plain(0.0017, 0.0024),      plain(0.00018, 0.00027)],
-    [plain(0.99, 0.045),         plain(0.2, 0.011),          plain(0.052, 0.0035),
-     plain(0.009, 0.012),        plain(0.0016, 0.0022)],
-    [plain(0.99, 0.08),          plain(0.36, 0.026),         plain(0.15, 0.085),
-     plain(0.028, 0.035),        plain(0.011, 0.014)],
-    [plain(0.98, 0.2),           plain(0.3, 0.14),           plain(0.15, 0.094),
-     plain(0.072, 0.097),        plain(0.046, 0.065)],
-    [plain(1.0, 0.24),           plain(0.33, 0.17),          plain(0.2, 0.14),
-     plain(0.14, 0.17),          plain(0.1, 0.12)],
-    [plain(1.0, 0.28),           plain(0.35, 0.19),          plain(0.23, 0.14),
-     plain(0.2, 0.2),            plain(0.16, 0.13)],
+    [plain(0.99, 0.039),            plain(0.17, 0.011),            plain(0.042, 0.0035),
+     plain(0.0017, 0.0024),         plain(0.00018, 0.00027)],
+    [plain(0.99, 0.045),            plain(0.2, 0.011),             plain(0.052, 0.0035),
+     plain(0.009, 0.012),           plain(0.0016, 0.0022)],
+    [plain(0.99, 0.08),             plain(0.36, 0.026),            plain(0.15, 0.085),
+     plain(0.028, 0.035),           plain(0.011, 0.014)],
+    [plain(0.98, 0.2),              plain(0.3, 0.14),              plain(0.15, 0.094),
+     plain(0.072, 0.097),           plain(0.046, 0.065)],
+    [plain(1.0, 0.24),              plain(0.33, 0.17),             plain(0.2, 0.14),
+     plain(0.14, 0.17),             plain(0.1, 0.12)],
+    [plain(1.0, 0.28),              plain(0.35, 0.19),             plain(0.23, 0.14),
+     plain(0.2, 0.2),               plain(0.16, 0.13)],
 ];
 
 /// Stratified samples of an image.
 #[rustfmt::skip]
 const STRATIFIED_SHARED: Table<Cell> = [
-    [blocks(5, 0.034, 0.03),     blocks(5, 0.019, 0.0096),   blocks(5, 0.011, 0.0038),
-     blocks(5, 0.0012, 0.0019),  blocks(5, 0.00014, 0.00023)],
-    [blocks(3, 0.13, 0.048),     blocks(3, 0.079, 0.011),    windows(3, 0.032, 0.0028),
-     blocks(3, 0.0073, 0.01),    blocks(3, 0.0015, 0.0019)],
-    [blocks(2, 0.25, 0.096),     blocks(2, 0.19, 0.028),     blocks(3, 0.073, 0.051),
-     plain(0.028, 0.035),        plain(0.011, 0.014)],
-    [blocks(2, 0.29, 0.19),      blocks(2, 0.18, 0.099),     blocks(2, 0.11, 0.075),
-     blocks(2, 0.058, 0.08),     blocks(2, 0.038, 0.053)],
-    [blocks(2, 0.39, 0.26),      blocks(2, 0.23, 0.14),      blocks(2, 0.15, 0.11),
-     blocks(2, 0.1, 0.12),       blocks(2, 0.078, 0.086)],
-    [blocks(1, 0.61, 0.32),      plain(0.35, 0.19),          plain(0.23, 0.14),
-     plain(0.2, 0.2),            plain(0.16, 0.13)],
+    [blocks(5, 136, 0.034, 0.03),   blocks(5, 59, 0.019, 0.0096),  blocks(5, 33, 0.011, 0.0038),
+     blocks(5, 27, 0.0012, 0.0019), blocks(5, 25, 0.00014, 0.00023)],
+    [blocks(3, 164, 0.13, 0.048),   blocks(3, 82, 0.079, 0.011),   windows(3, 146, 0.032, 0.0028),
+     blocks(3, 36, 0.0073, 0.01),   blocks(3, 33, 0.0015, 0.0019)],
+    [blocks(2, 180, 0.25, 0.096),   blocks(2, 98, 0.19, 0.028),    blocks(3, 182, 0.073, 0.051),
+     plain(0.028, 0.035),           plain(0.011, 0.014)],
+    [blocks(2, 170, 0.29, 0.19),    blocks(2, 134, 0.18, 0.099),   blocks(2, 75, 0.11, 0.075),
+     blocks(2, 60, 0.058, 0.08),    blocks(2, 56, 0.038, 0.053)],
+    [blocks(2, 341, 0.39, 0.26),    blocks(2, 350, 0.23, 0.14),    blocks(2, 181, 0.15, 0.11),
+     blocks(2, 138, 0.1, 0.12),     blocks(2, 128, 0.078, 0.086)],
+    [blocks(1, 150, 0.61, 0.32),    plain(0.35, 0.19),             plain(0.23, 0.14),
+     plain(0.2, 0.2),               plain(0.16, 0.13)],
 ];
 
 /// Samples and dims of the tile with the least error of the plain mean, √(raw filtered). From 64 samples on a tile of 1
@@ -257,7 +304,7 @@ mod tests {
         for dims in 1..=64 {
             for samples in 1..=4096 {
                 for (sampling, share) in BOTH.into_iter().flat_map(|sampling| [(sampling, false), (sampling, true)]) {
-                    let of = recommend(dims, samples, sampling, share).unwrap();
+                    let of = recommend(dims, samples, sampling, share, 0.0).unwrap();
                     let terms = of.config.terms().unwrap();
                     assert_eq!(terms == 1, of.method == Method::PlainMean);
                     assert!(of.config.dims <= dims);
@@ -270,14 +317,15 @@ mod tests {
             }
         }
         for samples in [1, usize::MAX] {
-            assert!(recommend(usize::MAX, samples, Sampling::Independent, true).unwrap().config.terms().is_ok());
+            assert!(recommend(usize::MAX, samples, Sampling::Independent, true, 0.0).unwrap().config.terms().is_ok());
         }
     }
 
     #[test]
     fn nothing_to_recommend() {
-        assert_eq!(recommend(0, 1, Sampling::Independent, true), Err(Error::Range));
-        assert_eq!(recommend(2, 0, Sampling::Stratified, false), Err(Error::Range));
+        let none = |dims, samples, cost| recommend(dims, samples, Sampling::Stratified, true, cost).unwrap_err();
+        assert_eq!([none(0, 1, 0.0), none(2, 0, 0.0), none(2, 1, -1.0)], [Error::Range; 3]);
+        assert_eq!(none(2, 1, f32::NAN), Error::NotFinite);
     }
 
     /// More information is never of less use, by error alone.
@@ -286,7 +334,7 @@ mod tests {
         for dims in [1, 2, 4, 5, 8, 15] {
             for samples in [4, 16, 64, 256] {
                 let error = |sampling, share| {
-                    let of = recommend(dims, samples, sampling, share).unwrap();
+                    let of = recommend(dims, samples, sampling, share, 0.0).unwrap();
                     libm::sqrtf(of.error * of.filtered_error)
                 };
                 for sampling in BOTH {
@@ -303,23 +351,53 @@ mod tests {
         }
     }
 
+    /// Below that cost the mean, from it on the fit; and the gain there just makes up for the time.
+    #[test]
+    fn dear_samples_pay() {
+        for dims in [1, 2, 4, 5, 8, 15] {
+            for samples in [1, 4, 16, 64, 256] {
+                for (sampling, share) in BOTH.into_iter().flat_map(|sampling| [(sampling, false), (sampling, true)]) {
+                    let of = |cost| recommend(dims, samples, sampling, share, cost).unwrap();
+                    let best = of(0.0);
+                    assert_eq!(best, of(f32::INFINITY));
+                    if best.method == Method::PlainMean {
+                        assert_eq!((best.cost, best.pays_from, of(1.0)), (0.0, 0.0, best));
+                        continue;
+                    }
+                    assert!(best.cost > 0.0);
+                    let ratio = in_frames(best.method, sampling, samples);
+                    if ratio < 1.0 {
+                        let from = best.pays_from;
+                        assert!(((from + best.cost) * ratio / from - 1.0).abs() < 1e-5, "{dims} {samples}");
+                        assert_eq!(of(from * 1.01), best);
+                        assert_eq!(of(from * 0.99).method, Method::PlainMean);
+                    } else {
+                        assert_eq!((best.pays_from, of(1e9).method), (f32::INFINITY, Method::PlainMean));
+                    }
+                    assert!(of(1.0).error >= best.error && of(1.0).config.order == 0);
+                    assert_eq!(of(1.0).pays_from, best.pays_from);
+                }
+            }
+        }
+    }
+
     #[test]
     fn examples() {
         // A fit to a pixel's own samples spoils their stratification.
         for samples in 1..=4096 {
-            let of = recommend(2, samples, Sampling::Stratified, false).unwrap();
+            let of = recommend(2, samples, Sampling::Stratified, false, 0.0).unwrap();
             assert_eq!(of.method, Method::PlainMean);
         }
         // One sample has nothing to be fitted to, but neighbours have.
-        assert_eq!(recommend(4, 1, Sampling::Independent, false).unwrap().method, Method::PlainMean);
-        assert_eq!(recommend(4, 1, Sampling::Independent, true).unwrap().method, Method::Shared);
+        assert_eq!(recommend(4, 1, Sampling::Independent, false, 0.0).unwrap().method, Method::PlainMean);
+        assert_eq!(recommend(4, 1, Sampling::Independent, true, 0.0).unwrap().method, Method::Shared);
         // Many samples bear more terms; in many dims there are too many of a high order.
-        let order = |dims, samples| recommend(dims, samples, Sampling::Independent, false).unwrap().config.order;
+        let order = |dims, samples| recommend(dims, samples, Sampling::Independent, false, 0.0).unwrap().config.order;
         assert_eq!([1, 2, 4, 5, 6].map(|dims| order(dims, 16)), [5, 3, 3, 2, 2]);
         assert_eq!([1, 2, 3, 4, 5, 6].map(|dims| order(dims, 64)), [7, 5, 3, 3, 2, 2]);
         assert_eq!([1, 2, 3, 4, 5, 6].map(|dims| order(dims, 256)), [7, 5, 3, 3, 3, 2]);
         // Tiles of as many samples; beyond 16, a sequence.
-        let tile = |samples| recommend(2, samples, Sampling::Stratified, true).unwrap().tile_samples;
+        let tile = |samples| recommend(2, samples, Sampling::Stratified, true, 0.0).unwrap().tile_samples;
         assert_eq!([1, 3, 4, 15, 16, 63, 64, 4096].map(tile), [1, 1, 4, 4, 16, 16, 1, 1]);
     }
 }

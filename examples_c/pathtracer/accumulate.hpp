@@ -86,7 +86,8 @@ private:
         times.drawing += seconds(start, stop);
         start = stop;
         for (uint32_t x = 0; x < options_.width; ++x)
-            integrand_.evaluate(x, y, count, u + size_t{x} * count * dims_, f + size_t{x} * count * 3, nullptr);
+            integrand_.evaluate(x, y, count, u + size_t{x} * count * dims_, f + size_t{x} * count * 3, nullptr,
+                                nullptr);
         stop = Clock::now();
         times.tracing += seconds(start, stop);
         for (size_t e = 0; e < accumulators_.size(); ++e) {

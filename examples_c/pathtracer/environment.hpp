@@ -46,11 +46,32 @@ public:
     {
         float u, v;
         coordinates(direction, u, v);
-        float x = u * static_cast<float>(width_) - 0.5f, y = v * static_cast<float>(height_) - 0.5f;
-        float left = std::floor(x), top = std::floor(y), s = x - left, t = y - top;
-        int32_t i = static_cast<int32_t>(left), j = static_cast<int32_t>(top);
-        return (1 - t) * ((1 - s) * pixel(i, j) + s * pixel(i + 1, j)) +
-               t * ((1 - s) * pixel(i, j + 1) + s * pixel(i + 1, j + 1));
+        return interpolate(u, v);
+    }
+
+    // A small part of the sphere, and the light from it: radiance times solid angle.
+    struct Part {
+        Vector direction;
+        Color light;
+    };
+
+    // The whole sphere in rows of parts: each pixel is split as often as makes sums over parts nearly integrals.
+    uint32_t rows() const { return height_ * split(); }
+    void parts(uint32_t row, std::vector<Part> &parts) const
+    {
+        // At the poles half a cell may be left.
+        const bool half = split() / 2 % 2 == 1 && (row == 0 || row + 1 == rows());
+        const double v = (half ? row + 0.5 : place(row)) / rows();
+        const double pi64 = 3.14159265358979323846, sine = std::sin(pi64 * v);
+        parts.resize(size_t{width_} * split());
+        const double columns = static_cast<double>(parts.size()), area = 2 * pi64 * pi64 / columns / rows() * sine;
+        for (size_t i = 0; i < parts.size(); ++i) {
+            double u = place(i) / columns;
+            parts[i].direction = {static_cast<float>(sine * std::sin(2 * pi64 * u)),
+                                  static_cast<float>(std::cos(pi64 * v)),
+                                  static_cast<float>(sine * std::cos(2 * pi64 * u))};
+            parts[i].light = static_cast<float>(area) * interpolate(static_cast<float>(u), static_cast<float>(v));
+        }
     }
 
     // The density of `sample`, per solid angle.
@@ -75,6 +96,31 @@ public:
     }
 
 private:
+    // 1, or even.
+    uint32_t split() const
+    {
+        double times = std::sqrt(65536.0 / (static_cast<double>(width_) * height_));
+        return std::max(1u, 2 * static_cast<uint32_t>(std::lround(times / 2)));
+    }
+
+    // Where of the i-th part light is looked up. Two parts together are a cell with its Gauss points; the kinks of the
+    // interpolation, in the middle of pixels, are between cells.
+    double place(size_t i) const
+    {
+        const bool first = i % 2 == split() / 2 % 2;
+        return static_cast<double>(i) + (split() == 1 ? 0.5 : first ? 0.5 - 0.0773503 : 0.5 + 0.0773503);
+    }
+
+    // At u of the map's width and v of its height.
+    Color interpolate(float u, float v) const
+    {
+        float x = u * static_cast<float>(width_) - 0.5f, y = v * static_cast<float>(height_) - 0.5f;
+        float left = std::floor(x), top = std::floor(y), s = x - left, t = y - top;
+        int32_t i = static_cast<int32_t>(left), j = static_cast<int32_t>(top);
+        return (1 - t) * ((1 - s) * pixel(i, j) + s * pixel(i + 1, j)) +
+               t * ((1 - s) * pixel(i, j + 1) + s * pixel(i + 1, j + 1));
+    }
+
     Color pixel(int32_t x, int32_t y) const
     {
         int32_t width = static_cast<int32_t>(width_), row = std::min(std::max(y, 0), static_cast<int32_t>(height_) - 1);

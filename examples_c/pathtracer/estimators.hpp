@@ -22,6 +22,8 @@ struct Samples {
     const uint32_t *surface; // [pixels], the same for pixels that show the same surface; for those who ask
     uint32_t width, height;
     size_t n; // of each pixel
+    // For those who ask: what is known of each sample, as f, and integrals[pixels * 3] of that.
+    const float *known = nullptr, *integrals = nullptr;
 
     size_t pixels() const { return size_t{width} * height; }
 };
@@ -32,6 +34,7 @@ struct Estimator {
     // means[pixels * 3]
     virtual void estimate(const Samples &samples, float *means) = 0;
     virtual bool needs_surfaces() const { return false; }
+    virtual bool needs_known() const { return false; }
 };
 
 // What looks at one pixel at a time.
@@ -128,14 +131,23 @@ private:
 // integrands are alike, so only pixels that show the same surface share them.
 class Shared final : public Estimator {
 public:
+    enum Kind {
+        told, // which pixels show the same surface
+        blind, // not told, in windows side by side, to show what that does
+        known, // told that, and what is known of the samples
+    };
+
     // For rectangles of at most `side` x `side` pixels. Windows do not reach beyond a rectangle, which should be large
-    // beside them: theirs are 8 x 8 pixels. `blind`: without surfaces, in windows side by side, to show what that does.
-    Shared(const nf_cv_config &config, uint32_t side, size_t n, bool blind)
-        : config_(config), blind_(blind), results_(size_t{side} * side)
+    // beside them: theirs are 8 x 8 pixels.
+    Shared(const nf_cv_config &config, uint32_t side, size_t n, Kind kind)
+        : config_(config), kind_(kind), results_(size_t{side} * side)
     {
         nf_cv_image image = {};
         image.width = image.height = side;
-        image.stride = blind ? 8 : 0;
+        image.stride = kind == blind ? 8 : 0;
+        const float any = 0; // it is not read: that there is something known takes memory
+        if (kind == known)
+            image.known = image.integrals = &any;
         workspace_ = memory(nf_cv_image_workspace_size(&config, &image, n));
     }
 
@@ -144,8 +156,12 @@ public:
         nf_cv_image image = {};
         image.width = s.width;
         image.height = s.height;
-        image.surfaces = blind_ ? nullptr : s.surface;
-        image.stride = blind_ ? 8 : 0;
+        image.surfaces = kind_ == blind ? nullptr : s.surface;
+        image.stride = kind_ == blind ? 8 : 0;
+        if (kind_ == known) {
+            image.known = s.known;
+            image.integrals = s.integrals;
+        }
         check(nf_cv_image_estimate(&config_, &image, s.u, s.f, s.n, workspace_.data(), 8 * workspace_.size(),
                                    results_.data()),
               "nf_cv_image_estimate");
@@ -153,11 +169,12 @@ public:
             std::copy_n(results_[p].mean, 3, means + 3 * p);
     }
 
-    bool needs_surfaces() const override { return !blind_; }
+    bool needs_surfaces() const override { return kind_ != blind; }
+    bool needs_known() const override { return kind_ == known; }
 
 private:
     nf_cv_config config_;
-    bool blind_;
+    Kind kind_;
     std::vector<uint64_t> workspace_;
     std::vector<nf_estimate> results_;
 };
@@ -188,6 +205,8 @@ inline const EstimatorName estimator_names[] = {
     {"shared", NF_CV_ROBUST, "each pixel against fits to its neighbours; suits every sampler"},
     {"shared_k_fold", NF_CV_K_FOLD, "the same, unbiased: halves of the neighbours choose fits for each other"},
     {"shared_blind", NF_CV_ROBUST, "shared, but not told which pixels show the same surface, in windows side by side"},
+    {"shared_known", NF_CV_ROBUST, "shared, told what direct light would be with nothing in its way"},
+    {"known", NF_CV_LEAVE_ONE_OUT, "each pixel against that alone, as far as its neighbours follow it; unbiased"},
     {"luminance", NF_CV_LEAST_SQUARES, "a fit to the luminance of all samples, which scales the plain mean",
      NF_COLOR_LUMINANCE_RATIO},
     {"robust_luminance", NF_CV_ROBUST, "the same with the default estimator", NF_COLOR_LUMINANCE_RATIO},
@@ -205,10 +224,13 @@ struct EstimatorSetup {
     const char *settings = "--regressed and --order set them"; // what a refusal says of dims and order
 };
 
+// Whether it needs what is known of the samples.
+inline bool needs_known(const std::string &name) { return name == "shared_known" || name == "known"; }
+
 // Whether it needs the samples of neighbouring pixels.
 inline bool shares(const std::string &name)
 {
-    return name == "shared" || name == "shared_k_fold" || name == "shared_blind";
+    return name == "shared" || name == "shared_k_fold" || name == "shared_blind" || needs_known(name);
 }
 
 // Throws if the name is unknown.
@@ -259,8 +281,12 @@ inline std::unique_ptr<Estimator> make_estimator(const std::string &name, const 
         return std::make_unique<PlainMean>(setup.dims);
     if (nf_cv_workspace_size(&config, setup.samples) == 0)
         throw std::runtime_error(refusal(name, config, setup));
-    if (shares(name))
-        return std::make_unique<Shared>(config, setup.side, setup.samples, name == "shared_blind");
+    if (shares(name)) {
+        const Shared::Kind kind = needs_known(name)        ? Shared::known
+                                  : name == "shared_blind" ? Shared::blind
+                                                           : Shared::told;
+        return std::make_unique<Shared>(config, setup.side, setup.samples, kind);
+    }
     if (name == "incremental")
         return std::make_unique<Streaming>(config);
     return std::make_unique<Regression>(config, setup.samples);

@@ -17,6 +17,8 @@ struct Domain {
     uint32_t bounce, dims;
 };
 
+struct Shown; // lobe.hpp: what a camera ray ended at
+
 struct Integrand {
     virtual ~Integrand() = default;
     // In the order of the sample vector.
@@ -29,8 +31,16 @@ struct Integrand {
     // How many numbers a sample's value has: red, green and blue, unless estimators of another kind take more.
     virtual uint32_t values() const { return 3; }
     // The values of n samples of pixel (x, y): u[n * dims] -> f[n * values()]. n may be 0, if only the surface is asked
-    // for. *surface, unless null: a number for what the pixel shows. It does not depend on u.
-    virtual void evaluate(uint32_t x, uint32_t y, size_t n, const float *u, float *f, uint32_t *surface) const = 0;
+    // for. *surface, unless null: a number for what the pixel shows. It does not depend on u. *shown, unless null: for
+    // each camera ray what it ended at; of integrands that something is known of.
+    virtual void evaluate(uint32_t x, uint32_t y, size_t n, const float *u, float *f, uint32_t *surface,
+                          Shown *shown) const = 0;
+    // Whether something is known of the samples. The first call makes the tables that `known` needs.
+    virtual bool has_known() const { return false; }
+    // What n samples of a pixel would be with nothing in the way, as far as that is known, and its integral over u; of
+    // samples with camera rays of their own, the mean of their integrals. u and shown as for evaluate ->
+    // values[n * 3], integral[3].
+    virtual void known(size_t, const float *, const Shown *, float *, float *) const {}
 };
 
 inline uint32_t dims(const std::vector<Domain> &domains)

@@ -61,7 +61,9 @@ public:
     uint32_t lights() const override { return 1; }
     uint32_t values() const override { return sizeof(TwoTechniques) / sizeof(float); }
 
-    void evaluate(uint32_t x, uint32_t y, size_t n, const float *u, float *f, uint32_t *surface) const override
+    bool has_known() const override { return false; } // of samples of two techniques
+
+    void evaluate(uint32_t x, uint32_t y, size_t n, const float *u, float *f, uint32_t *surface, Shown *) const override
     {
         const View view = center(x, y, surface);
         const Color emitted_light =

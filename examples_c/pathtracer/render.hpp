@@ -3,6 +3,7 @@
 
 #include "estimators.hpp"
 #include "integrand.hpp"
+#include "lobe.hpp"
 #include "mis_estimators.hpp"
 #include "rendering.hpp"
 #include "samplers.hpp"
@@ -40,7 +41,11 @@ public:
         while (side_ > (shared ? 8u : 1u) && size_t{side_} * side_ * options.spp > most)
             side_ /= 2;
         // Fails before any work if a name or a configuration is wrong.
-        make_estimators();
+        for (const auto &estimator : make_estimators())
+            needs_known_ |= estimator->needs_known();
+        if (needs_known_ && !integrand_.has_known())
+            throw std::runtime_error("`known` and `shared_known` are for direct light alone: of paths, of --mis and of "
+                                     "other integrands nothing is known");
     }
 
 private:
@@ -59,7 +64,12 @@ private:
     {
         const size_t n = options_.spp, pixels = size_t{side_} * side_;
         Buffers buffers{std::vector<float>(pixels * n * dims_), std::vector<float>(pixels * n * integrand_.values()),
-                        std::vector<float>(pixels * 3), std::vector<uint32_t>(pixels)};
+                        std::vector<float>(pixels * 3), std::vector<uint32_t>(pixels), {}, {}, {}};
+        if (needs_known_) {
+            buffers.shown.resize(pixels * rays());
+            buffers.known.resize(pixels * n * 3);
+            buffers.integrals.resize(pixels * 3);
+        }
         auto estimators = make_estimators();
         const uint64_t columns = (options_.width + side_ - 1) / side_, rows = (options_.height + side_ - 1) / side_;
         for (uint64_t i; (i = next_++) < columns * rows;) {
@@ -76,7 +86,12 @@ private:
     struct Buffers {
         std::vector<float> u, f, means;
         std::vector<uint32_t> surface;
+        std::vector<Shown> shown;
+        std::vector<float> known, integrals;
     };
+
+    // From the camera, for the samples of a pixel.
+    size_t rays() const { return integrand_.camera_ray_per_sample() ? options_.spp : 1; }
 
     void render(Rectangle b, std::vector<std::unique_ptr<Estimator>> &estimators, Times &times, Buffers &buffers)
     {
@@ -91,12 +106,14 @@ private:
         times.drawing += seconds(start, stop);
 
         // The number of a pixel's surface comes with its samples, or costs a ray: that is the estimator's who asks for
-        // it.
+        // it. So is the time for what is known.
         start = stop;
         const bool free_surface = !integrand_.camera_ray_per_sample();
         for (size_t p = 0; p < pixels; ++p) {
             uint32_t *surface = free_surface ? &buffers.surface[p] : nullptr;
-            integrand_.evaluate(column(p), row(p), n, &u[p * n * dims_], &f[p * n * integrand_.values()], surface);
+            Shown *shown = needs_known_ ? &buffers.shown[p * rays()] : nullptr;
+            integrand_.evaluate(column(p), row(p), n, &u[p * n * dims_], &f[p * n * integrand_.values()], surface,
+                                shown);
         }
         stop = Clock::now();
         times.tracing += seconds(start, stop);
@@ -105,8 +122,14 @@ private:
             start = Clock::now();
             if (estimators[e]->needs_surfaces() && !free_surface)
                 for (size_t p = 0; p < pixels; ++p)
-                    integrand_.evaluate(column(p), row(p), 0, nullptr, nullptr, &buffers.surface[p]);
-            estimators[e]->estimate({u.data(), f.data(), buffers.surface.data(), b.width, b.height, n}, means.data());
+                    integrand_.evaluate(column(p), row(p), 0, nullptr, nullptr, &buffers.surface[p], nullptr);
+            if (estimators[e]->needs_known())
+                for (size_t p = 0; p < pixels; ++p)
+                    integrand_.known(n, &u[p * n * dims_], &buffers.shown[p * rays()], &buffers.known[p * n * 3],
+                                     &buffers.integrals[p * 3]);
+            estimators[e]->estimate({u.data(), f.data(), buffers.surface.data(), b.width, b.height, n,
+                                     buffers.known.data(), buffers.integrals.data()},
+                                    means.data());
             stop = Clock::now();
             times.estimating[e] += seconds(start, stop);
             for (uint32_t y = 0; y < b.height; ++y)
@@ -119,6 +142,7 @@ private:
     const Sampler &sampler_;
     const uint32_t dims_; // of the sample vector
     uint32_t side_ = 1;   // of a bucket, in pixels
+    bool needs_known_ = false;
     std::atomic<uint64_t> next_{0}; // bucket
 };
 

@@ -3,8 +3,10 @@
 
 #include "filter.hpp"
 #include "hashed_stream.hpp"
+#include "known.hpp"
 #include "scene.hpp"
 #include <algorithm>
+#include <mutex>
 
 namespace demo {
 
@@ -43,20 +45,52 @@ public:
     uint32_t lights() const override { return layout_.choice ? static_cast<uint32_t>(scene_.lights.size()) : 1; }
     bool camera_ray_per_sample() const override { return head_ > 0; }
 
-    void evaluate(uint32_t x, uint32_t y, size_t n, const float *u, float *f, uint32_t *surface) const override
+    void evaluate(uint32_t x, uint32_t y, size_t n, const float *u, float *f, uint32_t *surface,
+                  Shown *shown) const override
     {
         float column = static_cast<float>(x) + 0.5f, row = static_cast<float>(y) + 0.5f;
         View view;
         if (surface || (n > 0 && head_ == 0))
             view = center(x, y, surface);
+        if (shown && head_ == 0)
+            *shown = show(view);
         for (size_t i = 0; i < n; ++i, u += dims_, f += 3) {
             if (head_ > 0)
                 view = look(camera_ray(column, row, u));
+            if (shown && head_ > 0)
+                shown[i] = show(view);
             Color value = view.throughput * radiance(view, u);
             f[0] = value.x;
             f[1] = value.y;
             f[2] = value.z;
         }
+    }
+
+    // Of direct light, where next event estimation is all there is.
+    bool has_known() const override
+    {
+        if (layout_.bounces > 0)
+            return false;
+        std::call_once(known_once_, [this] { known_ = std::make_unique<KnownLight>(scene_.lights, scene_.materials); });
+        return true;
+    }
+
+    void known(size_t n, const float *u, const Shown *shown, float *values, float *integral) const override
+    {
+        Color sum;
+        for (size_t i = 0; i < n; ++i, u += dims_, values += 3) {
+            const Shown &at = shown[head_ > 0 ? i : 0];
+            if (i == 0 || head_ > 0)
+                sum += known_->integral(at);
+            Color value = known_->sample(at, choose(u + head_), u + head_);
+            values[0] = value.x;
+            values[1] = value.y;
+            values[2] = value.z;
+        }
+        sum = sum / (head_ > 0 ? static_cast<float>(n) : 1.0f);
+        integral[0] = sum.x;
+        integral[1] = sum.y;
+        integral[2] = sum.z;
     }
 
 protected:
@@ -179,6 +213,22 @@ protected:
         return sum + choices_ * connect(s, from, sample, view.ray.time);
     }
 
+    // As `direct` sees it: light is drawn from the same point.
+    Shown show(const View &view) const
+    {
+        if (!view.found || material(view.hit).specular())
+            return {};
+        Shading s = shading(view.ray, view.hit);
+        Shown shown;
+        shown.point = leave(view.ray, view.hit, s, s.geometric);
+        shown.diffuse = {s.normal, 1, view.throughput * s.material.diffuse};
+        // A Phong lobe's integral, and the cosine in its middle for that of every direction.
+        float exponent = s.material.exponent, lobe = (exponent + 2) / (exponent + 1) * dot(s.normal, s.out);
+        shown.glossy = {reflect(s.out, s.normal), phong_width(exponent),
+                        view.throughput * s.material.glossy * std::max(0.0f, lobe)};
+        return shown;
+    }
+
     // The light that reaches s.out from a point of a light, divided by the point's density.
     Color connect(const Shading &s, Vector from, const LightSample &sample, float time) const
     {
@@ -272,6 +322,8 @@ private:
     float width_, height_, choices_ = 1;
     Filter filter_;
     uint32_t head_ = 0, dims_ = 0; // of the numbers before the first vertex's; of all
+    mutable std::once_flag known_once_; // only who asks for what is known waits for its tables
+    mutable std::unique_ptr<const KnownLight> known_;
 };
 
 } // namespace demo

@@ -131,6 +131,19 @@ fn shared(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
     let surfaces = source.array(pixels, |source| source.small(2))?;
     let channels = if config.channels > 4 { 0 } else { config.channels as usize };
     let factors = source.array(pixels * channels, |source| source.number().map(f32::abs))?;
+    let known = source.array(all * channels, Source::number)?;
+    let integrals = source.array(pixels * channels, |source| source.number().map(f32::abs))?;
+    let has_known = source.rarely(3)?;
+    let whole = nf_cv_rectangle { x: 0, y: 0, width, height };
+    // Now and then without the integrals.
+    let has_integrals = has_known != source.rarely(9)?;
+    let mut wanted = nf_cv_rectangle::default();
+    if source.rarely(3)? {
+        for part in [&mut wanted.x, &mut wanted.y, &mut wanted.width, &mut wanted.height] {
+            *part = source.small(4)?;
+        }
+    }
+    let is_part = wanted.x | wanted.y | wanted.width | wanted.height != 0;
     let image = nf_cv_image {
         width,
         height,
@@ -140,6 +153,10 @@ fn shared(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
         unordered: u32::from(source.rarely(4)?),
         surfaces: if source.any()? { surfaces.pointer() } else { null() },
         factors: if source.any()? { factors.pointer() } else { null() },
+        known: if has_known { known.pointer() } else { null() },
+        integrals: if has_integrals { integrals.pointer() } else { null() },
+        given: if source.any()? { whole } else { nf_cv_rectangle::default() },
+        wanted,
     };
     // SAFETY: as in `batch`.
     unsafe {
@@ -161,7 +178,9 @@ fn shared(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
             } else {
                 nf_cv_block_estimate(config, u, f, pixels, n, memory, size, to)
             };
-            out.iter().for_each(|out| check(status, out));
+            let part = wanted.width as usize * wanted.height as usize * frames.max(1) as usize;
+            let written = if is_image && is_part && status == NF_OK { part } else { pixels };
+            out.iter().take(written).for_each(|out| check(status, out));
         }
     }
     Ok(())

@@ -91,7 +91,8 @@ fn run(bytes: &[u8]) -> Result<()> {
         let mut advice = MaybeUninit::uninit();
         let [dims, spp, sampling, can_share] =
             [source.small(20)?, source.small(64)?, source.small(2)?, source.small(2)?];
-        if nf_recommend(dims, spp, sampling, can_share, advice.as_mut_ptr()) == NF_OK {
+        let sample_cost = source.number()?;
+        if nf_recommend(dims, spp, sampling, can_share, sample_cost, advice.as_mut_ptr()) == NF_OK {
             let advice = advice.assume_init();
             assert!(advice.error > 0.0 && advice.filtered_error > 0.0);
             assert!(nf_cv_terms(&advice.config) > 0, "a configuration that the library refuses");
@@ -117,7 +118,7 @@ fn defaults_work() {
     }
     let mut advice = MaybeUninit::uninit();
     // SAFETY: room for the answer.
-    assert_eq!(unsafe { nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, advice.as_mut_ptr()) }, NF_OK);
+    assert_eq!(unsafe { nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, 0.0, advice.as_mut_ptr()) }, NF_OK);
 }
 
 fuzz_target!(init: defaults_work(), |bytes: &[u8]| {

@@ -6,7 +6,7 @@ use libfuzzer_sys::fuzz_target;
 use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{
-    Color, Config, Estimator, Image, NonFinite, Ridge, Samples, estimate_image, image_workspace_len,
+    Color, Config, Estimator, Image, NonFinite, Rectangle, Ridge, Samples, estimate_image, image_workspace_len,
 };
 
 /// Workspaces beyond this many numbers are not allocated.
@@ -16,9 +16,12 @@ const MOST: usize = 1 << 22;
 struct Input {
     config: Config,
     shape: [usize; 5],
+    parts: [usize; 8],
     unordered: bool,
     surfaces: Vec<u32>,
     factors: Vec<f32>,
+    known: Vec<f32>,
+    integrals: Vec<f32>,
     u: Vec<f32>,
     f: Vec<f32>,
     controls: Vec<f32>,
@@ -80,26 +83,51 @@ impl<'a> Arbitrary<'a> for Input {
         let shape =
             [small(bytes, 12)?, small(bytes, 12)?, small(bytes, 3)?.max(1), small(bytes, 12)?, small(bytes, 8)?];
         let [width, height, frames, ..] = shape;
-        let pixels = width.saturating_mul(height).saturating_mul(frames).min(512);
+        // Mostly none, else a part of the image, what it needs or anything.
+        let mut parts = [0; 8];
+        if bool::arbitrary(bytes)? {
+            for part in &mut parts {
+                *part = small(bytes, 12)?;
+            }
+            if bool::arbitrary(bytes)? {
+                let [x, y, width, height, ..] = parts;
+                let wanted = Rectangle::new(x, y, width, height);
+                let [across, down, frames, window, stride] = shape;
+                let needed = Image { wanted, frames, window, stride, ..Image::new(across, down) }.needed();
+                let given = needed.unwrap_or_default();
+                parts[4..].copy_from_slice(&[given.x, given.y, given.width, given.height]);
+            }
+        }
+        let [.., part_width, part_height] = parts;
+        let (columns, rows) = if parts[4..] == [0; 4] { (width, height) } else { (part_width, part_height) };
+        let pixels = columns.saturating_mul(rows).saturating_mul(frames).min(512);
         let n = usize::from(u8::arbitrary(bytes)? % 6);
         let slack = usize::from(u8::arbitrary(bytes)? / 250);
         let step = if config.stride == 0 { config.dims } else { config.stride };
         let len = |width: usize| (pixels * n).saturating_mul(width).min(1 << 15) + slack;
         let surfaces = if bool::arbitrary(bytes)? { pixels + slack } else { 0 };
         let surfaces = list(bytes, surfaces, |bytes| Ok(u32::from(u8::arbitrary(bytes)? % 4)))?;
-        let factors = if bool::arbitrary(bytes)? { pixels * config.channels.min(4) + slack } else { 0 };
+        let factors_len = pixels * config.channels.min(4) + slack;
+        let factors = if bool::arbitrary(bytes)? { factors_len } else { 0 };
         let finite = !rarely(bytes)?;
         let value = |bytes: &mut Unstructured<'a>| {
             let value = f32::arbitrary(bytes)?;
             Ok(if finite && !value.is_finite() { 1.0 } else { value })
         };
         let factors = list(bytes, factors, |bytes| value(bytes).map(|value| if finite { value.abs() } else { value }))?;
+        let has_known = bool::arbitrary(bytes)?;
+        let (known, integrals) = if has_known { (len(config.channels), factors_len) } else { (0, 0) };
+        let integrals =
+            list(bytes, integrals, |bytes| value(bytes).map(|value| if finite { value.abs() } else { value }))?;
         Ok(Self {
             config,
             shape,
+            parts,
             unordered: rarely(bytes)?,
             surfaces,
             factors,
+            known: list(bytes, known, value)?,
+            integrals,
             u: list(bytes, len(step), |bytes| {
                 Ok(if finite { f32::from(u16::arbitrary(bytes)?) / 65535.0 } else { f32::arbitrary(bytes)? })
             })?,
@@ -112,11 +140,29 @@ impl<'a> Arbitrary<'a> for Input {
 
 fn run(input: &Input) {
     let Input { config, shape: [width, height, frames, window, stride], unordered, .. } = *input;
-    let image =
-        Image { frames, window, stride, unordered, surfaces: &input.surfaces, factors: &input.factors, width, height };
+    let (surfaces, factors) = (&input.surfaces[..], &input.factors[..]);
+    let (known, integrals) = (&input.known[..], &input.integrals[..]);
+    let [x, y, columns, rows, given_x, given_y, given_columns, given_rows] = input.parts;
+    let image = Image {
+        frames,
+        window,
+        stride,
+        unordered,
+        surfaces,
+        factors,
+        known,
+        integrals,
+        wanted: Rectangle::new(x, y, columns, rows),
+        given: Rectangle::new(given_x, given_y, given_columns, given_rows),
+        ..Image::new(width, height)
+    };
     let samples =
         Samples { u: &input.u, f: &input.f, controls: &input.controls, control_integrals: &input.control_integrals };
-    let pixels = width.saturating_mul(height).saturating_mul(frames);
+    let all = Rectangle::new(0, 0, width, height);
+    let or = |part: Rectangle, all| if part == Rectangle::default() { all } else { part };
+    let (given, wanted) = (or(image.given, all), or(image.wanted, or(image.given, all)));
+    let count = |of: Rectangle| of.width.saturating_mul(of.height).saturating_mul(frames);
+    let (pixels, estimates) = (count(given), count(wanted));
     let n = input.f.len().checked_div(config.channels).and_then(|total| total.checked_div(pixels)).unwrap_or(0);
     let nan = f32::NAN;
     let len = match image_workspace_len(&config, &image, n) {
@@ -139,7 +185,7 @@ fn run(input: &Input) {
             assert!(!estimate.gain.is_nan(), "{estimate:?}");
         });
         // Each pixel once, or none.
-        let expected = if result.is_ok() { pixels } else { 0 };
+        let expected = if result.is_ok() { estimates } else { 0 };
         assert_eq!((count, sum), (expected, expected * expected.saturating_sub(1) / 2));
         assert!(part < len || result != Err(Error::Memory));
     }

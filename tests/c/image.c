@@ -176,8 +176,102 @@ static void unordered(void)
     memory_free(&work);
 }
 
+#define REFUSED_BY(bytes, expected)                                                                                    \
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out), expected, out)
 #define REFUSED(expected)                                                                                              \
     CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), expected, out)
+
+/* Parts: what is refused, and the bits of the whole. */
+static void parts(void)
+{
+    nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
+    nf_cv_image image = make_image(WIDTH, HEIGHT);
+    nf_cv_rectangle needed = {9, 9, 9, 9};
+    nf_estimate out[PIXELS], whole[PIXELS];
+    memory work;
+    uint32_t x, y;
+    fill_pixels(1);
+    image.window = 4;
+    estimate(&config, &image, N, whole);
+    image.wanted.x = WIDTH - 1;
+    image.wanted.y = 1;
+    image.wanted.width = 1;
+    image.wanted.height = 2;
+    work = memory_new(nf_cv_image_workspace_size(&config, &image, N));
+    CHECK(work.bytes > 0);
+    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_OK);
+    for (y = 0; y < 2; ++y)
+        CHECK(memcmp(&out[y], &whole[(1 + y) * WIDTH + WIDTH - 1], sizeof out[y]) == 0);
+    CHECK_STATUS(nf_cv_image_needed(&image, &needed), NF_OK);
+    CHECK(needed.x + needed.width == WIDTH && needed.x == WIDTH - 4 && needed.y == 0);
+    image.given = needed;
+    CHECK(nf_cv_image_workspace_size(&config, &image, N) > 0);
+    ++image.given.x;
+    --image.given.width;
+    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_RANGE, out);
+    memset(&image.given, 0, sizeof image.given);
+    for (x = 0; x < 4; ++x) {
+        const uint32_t beyond[4][4] = {{WIDTH, 0, 1, 1}, {0, 0, 1, 0}, {0, 0, 0xffffffffu, 1}, {0xffffffffu, 1, 2, 1}};
+        memcpy(&image.wanted, beyond[x], sizeof image.wanted);
+        CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_RANGE, out);
+        CHECK_STATUS(nf_cv_image_needed(&image, &needed), NF_ERR_RANGE);
+    }
+    CHECK_STATUS(nf_cv_image_needed(NULL, &needed), NF_ERR_NULL);
+    CHECK_STATUS(nf_cv_image_needed(&image, NULL), NF_ERR_NULL);
+    CHECK_STATUS(nf_cv_image_needed((const nf_cv_image *)misaligned(&image), &needed), NF_ERR_ALIGNMENT);
+    memory_free(&work);
+}
+
+/* What is known of the samples: refused, and where a constant share of it arrives, exact. */
+static void known(void)
+{
+    static float values[PIXELS * N], integrals[PIXELS];
+    nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
+    nf_cv_image image = make_image(WIDTH, HEIGHT);
+    memory work;
+    size_t bytes, i;
+    nf_estimate out[PIXELS];
+    fill_pixels(1);
+    for (i = 0; i < PIXELS * N; ++i)
+        values[i] = 2.0f * f[i];
+    for (i = 0; i < PIXELS; ++i)
+        integrals[i] = 1.0f + (float)i;
+    bytes = nf_cv_image_workspace_size(&config, &image, N);
+    image.known = values;
+    image.integrals = integrals;
+    CHECK(nf_cv_image_workspace_size(&config, &image, N) > bytes);
+    bytes = nf_cv_image_workspace_size(&config, &image, N);
+    work = memory_new(bytes);
+    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out), NF_OK);
+    REFUSED_BY(bytes - 1, NF_ERR_MEMORY);
+    image.integrals = NULL;
+    REFUSED_BY(bytes, NF_ERR_RANGE);
+    image.integrals = (const float *)misaligned(integrals);
+    REFUSED_BY(bytes, NF_ERR_ALIGNMENT);
+    image.integrals = integrals;
+    image.known = (const float *)misaligned(values);
+    REFUSED_BY(bytes, NF_ERR_ALIGNMENT);
+    image.known = NULL;
+    REFUSED_BY(bytes, NF_ERR_RANGE);
+    image.known = values;
+    values[PIXELS * N - 1] = not_a_number();
+    REFUSED_BY(bytes, NF_ERR_NOT_FINITE);
+    values[PIXELS * N - 1] = 2.0f * f[PIXELS * N - 1];
+    integrals[PIXELS - 1] = -1.0f;
+    REFUSED_BY(bytes, NF_ERR_RANGE);
+    integrals[PIXELS - 1] = infinity_f();
+    REFUSED_BY(bytes, NF_ERR_NOT_FINITE);
+    integrals[PIXELS - 1] = (float)PIXELS;
+    config.estimator = NF_CV_K_FOLD;
+    REFUSED_BY(bytes, NF_ERR_UNSUPPORTED);
+    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    config.estimator = NF_CV_LEAVE_ONE_OUT;
+    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out), NF_OK);
+    for (i = 0; i < PIXELS; ++i)
+        CHECK(fabsf(out[i].mean[0] - 0.5f * integrals[i]) < 1e-5f * integrals[i]);
+    memory_free(&work);
+}
 
 static void errors(void)
 {
@@ -239,6 +333,7 @@ static void errors(void)
     factors[PIXELS - 1] = -0.0f;
     CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out), NF_OK);
     image.factors = NULL;
+    known();
 
     /* Sizes, windows, strides. */
     image = make_image(0, HEIGHT);
@@ -337,6 +432,7 @@ int main(void)
     defaults_and_trivial_knowledge();
     constant_pixels_are_exact();
     unordered();
+    parts();
     errors();
     return report("image");
 }

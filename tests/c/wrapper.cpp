@@ -172,8 +172,11 @@ static void images()
           nf::image(2, 4, 2).pixels() == 16);
     CHECK(nf::image(UINT32_MAX, UINT32_MAX, UINT32_MAX).pixels() == 0 && nf::image(0, 4).pixels() == 0);
     CHECK(image.with_window(6).window == 6 && image.with_window(6).stride == 0);
-    const nf_cv_image plain = {4, 4, 1, 4, 2, 0, nullptr, nullptr};
-    CHECK(image.unordered == 0 && image.without_places().unordered == 1 && !image.with_surfaces({}).fits(config));
+    nf_cv_image plain{};
+    plain.width = plain.height = plain.window = 4;
+    plain.frames = 1;
+    plain.stride = 2;
+    CHECK(image.unordered == 0 && image.without_places().unordered == 1 && !image.with_surfaces({}).fits(config, 16));
     CHECK(config.image_workspace_size(image, 4) == nf_cv_image_workspace_size(&config, &plain, 4));
     CHECK(config.image_workspace_size(image, 4) > 0 && config.image_workspace_size(image, 4) <= sizeof workspace);
     CHECK(config.image_workspace_size(nf::image(4, 4, 200), 4) == 0);
@@ -189,6 +192,24 @@ static void images()
     SUCCEED(nf::estimate_image(config, image.with_surfaces(surfaces).with_factors(factors), {u, f}, workspace, pixels));
     for (std::size_t pixel = 0; pixel < 16; ++pixel)
         CHECK(std::fabs(pixels[pixel].mean[0] - expected[pixel].mean[0]) < 1e-5f);
+
+    const nf_cv_rectangle row{0, 3, 4, 1}, all{0, 0, 4, 4};
+    SUCCEED(nf::estimate_image(config, image.with_parts(row, all), {u, f}, workspace, {pixels.data(), 4}));
+    CHECK(std::memcmp(pixels.data(), &expected[12], 4 * sizeof expected[0]) == 0);
+    CHECK(image.with_parts(row, all).estimates() == 4 && image.with_parts(row, row).pixels() == 4);
+    CHECK(CODE(nf::estimate_image(config, image.with_parts(row, all), {u, f}, workspace, pixels)) == status::range);
+    CHECK(value_of(image.with_parts(row, all).needed()).height == 4);
+
+    // All of the light arrives: what is known is exact.
+    const span<const float> exact(factors.data(), 16), known(f);
+    const nf::config alone = config.with(nf::estimator::leave_one_out);
+    SUCCEED(nf::estimate_image(alone, image.with_known(known, exact), {u, f}, workspace, pixels));
+    for (std::size_t pixel = 0; pixel < 16; ++pixel)
+        CHECK(std::fabs(pixels[pixel].mean[0] - 2.0f) < 1e-4f);
+    for (const auto &wrong : {image.with_known({}, exact), image.with_known(known, {}),
+                              image.with_known({f, n - 1}, exact),
+                              image.with_known(known, {factors.data(), 15})})
+        CHECK(CODE(nf::estimate_image(config, wrong, {u, f}, workspace, pixels)) == status::range);
 
     const span<const std::uint32_t> few(surfaces.data(), 15);
     CHECK(CODE(nf::estimate_image(config, image.with_surfaces(few), {u, f}, workspace, pixels)) == status::range);
@@ -398,10 +419,10 @@ static void minibatches()
 static void recommendations()
 {
     nf_recommendation expected;
-    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, &expected), NF_OK);
+    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, 0.0f, &expected), NF_OK);
     const nf_recommendation actual = value_of(nf::recommend(2, 4, nf::sampling::stratified, true));
     CHECK(actual.method == expected.method && actual.config.order == expected.config.order);
-    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_INDEPENDENT, 0, &expected), NF_OK);
+    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_INDEPENDENT, 0, 0.0f, &expected), NF_OK);
     CHECK(value_of(nf::recommend(2, 4, nf::sampling::independent, false)).method == expected.method);
     CHECK(CODE(nf::recommend(0, 4, nf::sampling::independent, false)) == nf::status::range);
 }

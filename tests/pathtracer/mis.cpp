@@ -91,7 +91,7 @@ void estimates(const LitScene &lit, bool several)
     };
     Estimate expected = render(size, 60000, [&](uint32_t x, uint32_t y) {
         draw();
-        direct.evaluate(x, y, 1, u.data(), f.data(), nullptr);
+        direct.evaluate(x, y, 1, u.data(), f.data(), nullptr, nullptr);
         return luminance({f[0], f[1], f[2]});
     });
     for (const MisEstimatorName &kind : mis_estimator_names) {
@@ -99,7 +99,7 @@ void estimates(const LitScene &lit, bool several)
         auto estimator = make_mis_estimator(kind.name, setup);
         Estimate actual = render(size, 1500, [&](uint32_t x, uint32_t y) {
             draw();
-            two.evaluate(x, y, pairs, u.data(), f.data(), nullptr);
+            two.evaluate(x, y, pairs, u.data(), f.data(), nullptr, nullptr);
             float mean[3];
             estimator->estimate({u.data(), f.data(), nullptr, 1, 1, pairs}, mean);
             return luminance({mean[0], mean[1], mean[2]});

@@ -26,7 +26,7 @@ Estimate render(const Scene &scene, uint32_t size, int samples, uint64_t seed)
             for (int i = 0; i < samples; i += 16) {
                 for (float &value : u)
                     value = random();
-                integrand.evaluate(x, y, 16, u.data(), f.data(), nullptr);
+                integrand.evaluate(x, y, 16, u.data(), f.data(), nullptr, nullptr);
                 for (int j = 0; j < 16; ++j)
                     mean.add(luminance({f[3 * j], f[3 * j + 1], f[3 * j + 2]}));
             }

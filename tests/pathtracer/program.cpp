@@ -37,7 +37,7 @@ struct Ramp final : Integrand {
     std::vector<Domain> domains() const override { return {{Domain::light, 0, 2}}; }
     uint32_t lights() const override { return 1; }
     bool camera_ray_per_sample() const override { return false; }
-    void evaluate(uint32_t, uint32_t, size_t n, const float *u, float *f, uint32_t *) const override
+    void evaluate(uint32_t, uint32_t, size_t n, const float *u, float *f, uint32_t *, Shown *) const override
     {
         for (size_t i = 0; i < 3 * n; ++i)
             f[i] = u[i / 3 * 2];
@@ -66,10 +66,29 @@ void refusals_come_first()
         options.estimators = {name};
         expect(refused(options).empty(), "an estimator that can be streamed is refused");
     }
-    for (const char *name : {"leave_one_out", "shared", "slices", "nonsense"}) {
+    for (const char *name : {"leave_one_out", "shared", "known", "slices", "nonsense"}) {
         options.estimators = {"mc", name};
         expect(refused(options).find(name) != std::string::npos,
                "what cannot be streamed is not refused by name before threads start");
+    }
+}
+
+// Of an integrand that says nothing of itself.
+void known_is_refused()
+{
+    const Ramp ramp;
+    Options options;
+    options.spp = 4;
+    const RandomSampler sampler({ramp.domains(), 2, options.spp, 0, 1});
+    for (const char *name : {"known", "shared_known"}) {
+        options.estimators = {name};
+        std::string said;
+        try {
+            Renderer renderer(ramp, sampler, options);
+        } catch (const std::exception &error) {
+            said = error.what();
+        }
+        expect(said.find(name) != std::string::npos, "what needs to know the light is not refused where it is unknown");
     }
 }
 
@@ -80,5 +99,6 @@ int main(int, char **argv)
     names_in_json();
     tables_are_read_once(std::string(argv[0]) + ".points");
     refusals_come_first();
+    known_is_refused();
     return finish();
 }

@@ -43,7 +43,8 @@ public:
 
     bool camera_ray_per_sample() const override { return false; }
 
-    void evaluate(uint32_t x, uint32_t y, size_t n, const float *u, float *f, uint32_t *surface) const override
+    void evaluate(uint32_t x, uint32_t y, size_t n, const float *u, float *f, uint32_t *surface,
+                  demo::Shown *) const override
     {
         if (surface)
             *surface = stack_.surface(x, y);

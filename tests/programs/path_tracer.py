@@ -37,6 +37,9 @@ def main():
         "--accumulate 6",
         "--accumulate 8 --estimators shared",
         "--accumulate 8 --estimators leave_one_out",
+        "--accumulate 8 --estimators known",
+        "--scene global --estimators known",
+        "--scene direct --bounces 1 --estimators shared_known",
         "--mis --spp 7",
         "--mis --scene lens",
         "--mis --estimators robust",
@@ -59,8 +62,10 @@ def listed(text, name):
 
 def check_scene(scene, estimators, samplers):
     """Every estimator and every sampler."""
-    # What slices need, a choice of lights, only those scenes have.
-    names = [name for name in estimators if name != "slices" or scene in ["lights", "global"]]
+    # What slices need, a choice of lights, only those scenes have; of paths nothing is known.
+    paths = scene == "global"
+    names = [name for name in estimators if name != "slices" or scene == "lights" or paths]
+    names = [name for name in names if "known" not in name or not paths]
     say(f"{scene}: {', '.join(names)}; {', '.join(samplers)}")
     tracer.render("--scene", scene, "--spp", 64, "--reference")
     expected = tracer.brightness("reference")

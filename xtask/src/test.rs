@@ -72,6 +72,7 @@ pub fn run(options: &Options) -> Result<()> {
     steps.c("examples_c/integrate.c", "default", "integrate", &[]);
     steps.c("examples_c/image.cpp", "default", "image", &[]);
     steps.c("examples_c/shared.c", "default", "shared", &[]);
+    steps.c("examples_c/strips.cpp: threads get the bits of one call", "default", "strips", &[]);
     steps.c("examples_c/shards.c: four processes", "default", "shards", &[]);
     let heading = "examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels";
     steps.c(heading, "default", "pathtracer", &[PYTHON]);

@@ -5,7 +5,7 @@ use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimat
 use crate::convert;
 use crate::dispatch;
 use crate::status::*;
-use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Samples};
+use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Rectangle, Samples};
 
 /// The pixels of an image, or of a part of one, and what is known of them. All zero but width and height: nothing.
 /// Pixel (x, y) of frame t has the number (t height + y) width + x.
@@ -37,6 +37,50 @@ pub struct nf_cv_image {
     /// either. For textures, where all samples of a pixel see one albedo: with defocus or motion blur they can raise
     /// the error. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
     pub factors: *const f32,
+    /// For each sample, as f, what it would be with nothing in the way (its unshadowed contribution), or NULL. Finite.
+    /// Pixels are then also corrected by how far it is from `integrals`, as far as their neighbours follow it.
+    pub known: *const f32,
+    /// With `known`, else NULL: `channels` numbers for each pixel, its exact integral over u: of a polygon light in
+    /// closed form, for example. Finite and not negative; a pixel with 0 is not corrected by it. Where a pixel's
+    /// samples see several points, the mean of theirs.
+    pub integrals: *const f32,
+    /// The pixels that u, f and the arrays above hold, in all frames; all zero: all of the image. Numbers of pixels
+    /// then count these alone.
+    pub given: nf_cv_rectangle,
+    /// The pixels to estimate, for which `out` has room; all zero: all that are given. Every window that has one of
+    /// them must be given whole, see nf_cv_image_needed(). Parts that are estimated on their own, by threads for
+    /// example, have the bits of the whole.
+    pub wanted: nf_cv_rectangle,
+}
+
+/// Some pixels of an image.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+#[allow(non_camel_case_types)]
+pub struct nf_cv_rectangle {
+    /// The first column.
+    pub x: u32,
+    /// The first row.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// Writes which pixels must be given for those of `image->wanted`: its windows whole. Reads no array.
+///
+/// NF_ERR_RANGE for windows that nf_cv_image does not allow and for `wanted` beyond the image.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_image_needed(image: *const nf_cv_image, out: *mut nf_cv_rectangle) -> nf_status {
+    status((|| {
+        // SAFETY: the caller's pointers, checked there.
+        let (image, out) = unsafe { (convert::reference(image)?, convert::room(out)?) };
+        let needed = core_image(image)?.needed().map_err(status_of)?;
+        let [x, y, width, height] = [needed.x, needed.y, needed.width, needed.height].map(|value| value as u32);
+        out.write(nf_cv_rectangle { x, y, width, height });
+        Ok(())
+    })())
 }
 
 /// Bytes of workspace that nf_cv_block_estimate() needs; 0 as for nf_cv_workspace_size().
@@ -113,8 +157,11 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
 /// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of
 /// the same window and surface share a fit. Fits also follow integrands that change across the window.
 ///
-/// NF_ERR_RANGE also for an image without pixels, for windows that nf_cv_image does not allow and for negative factors,
-/// NF_ERR_NOT_FINITE for factors that are not finite.
+/// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
+/// to what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD is then unsupported.
+///
+/// NF_ERR_RANGE also for an image without pixels, for windows and parts that nf_cv_image does not allow, for negative
+/// factors or integrals and for `known` without `integrals`; NF_ERR_NOT_FINITE if any of the three is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_estimate(
     config: *const nf_cv_config,
@@ -128,25 +175,42 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
 ) -> nf_status {
     status((|| {
         // SAFETY: the caller's pointers, checked there.
-        let (config, given) = unsafe { (convert::reference(config)?, convert::reference(image)?) };
+        let (config, of) = unsafe { (convert::reference(config)?, convert::reference(image)?) };
         let core = supported(config)?;
-        let mut image = core_image(given)?;
-        let pixels = convert::product(convert::product(image.width, image.height)?, image.frames.max(1))?;
-        if pixels == 0 {
+        let mut image = core_image(of)?;
+        let all = Rectangle::new(0, 0, image.width, image.height);
+        if [image.given, image.wanted] != [Rectangle::default(); 2] {
+            // Checked before arrays of that size are touched.
+            cv::image_workspace_len(&core, &image, n).map_err(status_of)?;
+        }
+        let given = if image.given == Rectangle::default() { all } else { image.given };
+        let wanted = if image.wanted == Rectangle::default() { given } else { image.wanted };
+        let count = |of: &Rectangle| convert::product(convert::product(of.width, of.height)?, image.frames.max(1));
+        let (pixels, estimates) = (count(&given)?, count(&wanted)?);
+        if pixels == 0 || estimates == 0 {
             return Err(NF_ERR_RANGE);
         }
         let total = convert::product(pixels, n)?;
         // SAFETY: the caller's arrays, of the lengths the header states.
         let (samples, out) = unsafe {
-            (samples(&core, u, f, core::ptr::null(), core::ptr::null(), total)?, convert::rooms(out, pixels)?)
+            (samples(&core, u, f, core::ptr::null(), core::ptr::null(), total)?, convert::rooms(out, estimates)?)
         };
-        if !given.surfaces.is_null() {
+        if !of.surfaces.is_null() {
             // SAFETY: as above.
-            image.surfaces = unsafe { convert::slice(given.surfaces, pixels)? };
+            image.surfaces = unsafe { convert::slice(of.surfaces, pixels)? };
         }
-        if !given.factors.is_null() {
+        if !of.factors.is_null() {
             // SAFETY: as above.
-            image.factors = unsafe { convert::slice(given.factors, convert::product(pixels, core.channels)?)? };
+            image.factors = unsafe { convert::slice(of.factors, convert::product(pixels, core.channels)?)? };
+        }
+        image.known = &[];
+        if !of.known.is_null() {
+            // SAFETY: as above.
+            image.known = unsafe { convert::slice(of.known, convert::product(total, core.channels)?)? };
+        }
+        if !of.integrals.is_null() {
+            // SAFETY: as above.
+            image.integrals = unsafe { convert::slice(of.integrals, convert::product(pixels, core.channels)?)? };
         }
         // SAFETY: the caller's workspace, `bytes` long.
         unsafe { estimate(&core, &image, samples, n, (workspace, bytes), out) }
@@ -161,7 +225,7 @@ fn supported(config: &nf_cv_config) -> Result<Config, nf_status> {
     if core.controls > 0 { Err(NF_ERR_UNSUPPORTED) } else { Ok(core) }
 }
 
-/// The image without its arrays.
+/// The image without its arrays; of `known` only whether there is one, on which the workspace depends.
 fn core_image(image: &nf_cv_image) -> Result<Image<'static>, nf_status> {
     let [width, height, frames, window, stride] =
         [image.width, image.height, image.frames, image.window, image.stride].map(|value| value as usize);
@@ -170,7 +234,13 @@ fn core_image(image: &nf_cv_image) -> Result<Image<'static>, nf_status> {
         1 => true,
         _ => return Err(NF_ERR_RANGE),
     };
-    Ok(Image { frames, window, stride, unordered, ..Image::new(width, height) })
+    let known: &[f32] = if image.known.is_null() { &[] } else { &[0.0] };
+    let rectangle = |of: &nf_cv_rectangle| {
+        let [x, y, width, height] = [of.x, of.y, of.width, of.height].map(|value| value as usize);
+        Rectangle::new(x, y, width, height)
+    };
+    let (given, wanted) = (rectangle(&image.given), rectangle(&image.wanted));
+    Ok(Image { frames, window, stride, unordered, known, given, wanted, ..Image::new(width, height) })
 }
 
 /// Bytes, 0 for what is not supported or out of range.

@@ -31,7 +31,7 @@ pub use accumulator::Accumulator;
 pub use batch::{estimate, workspace_len};
 pub use config::{Color, Config, Estimate, Estimator, NonFinite, Optimizer, Ridge, Solver};
 pub use gradient_descent::estimate_from as gradient_descent;
-pub use image::{Image, block_workspace_len, estimate_block, estimate_image, image_workspace_len};
+pub use image::{Image, Rectangle, block_workspace_len, estimate_block, estimate_image, image_workspace_len};
 pub use regressor::Regressor;
 pub use samples::Samples;
 pub use state::State;

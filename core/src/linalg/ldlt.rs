@@ -137,9 +137,10 @@ pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first:
         let (before, from_j) = x.split_at_mut_checked(j).unwrap_or((&mut [], &mut []));
         if let Some(value) = from_j.first_mut() {
             let mut sums = *value;
-            for (x, l) in before.iter().zip(row).skip(first) {
-                for (sum, x) in sums.iter_mut().zip(x) {
-                    *sum = lanes::minus_product(*sum, *x, *l);
+            let (before, row) = (before.get(first..).unwrap_or(&[]), row.get(first..).unwrap_or(&[]));
+            for (x, l) in before.iter().zip(row) {
+                for n in 0..N {
+                    sums[n] = lanes::minus_product(sums[n], x[n], *l);
                 }
             }
             *value = sums;

@@ -7,6 +7,7 @@ use super::super::config::Config;
 use super::Call;
 use super::fit::Colours;
 use super::groups::{Group, Groups};
+use super::pixels::Rectangle;
 use super::terms::{MAX_AXES, Terms};
 use crate::arena::Arena;
 use crate::basis::MAX_DIMS;
@@ -57,7 +58,12 @@ pub(super) struct Batch<'a> {
     pub(super) inside: &'a mut [Eight],
     /// For each slot and channel, the lowest and the highest value.
     pub(super) ranges: &'a mut [Eight],
-    /// For each slot and channel, the mean of its values in units.
+    /// For each slot and channel, the coefficient of what is known, and its integral.
+    pub(super) coefficients: &'a mut [Eight],
+    pub(super) integrals: &'a mut [Eight],
+    /// Values of a sample.
+    pub(super) values: usize,
+    /// For each slot and value, its mean in units.
     pub(super) means: &'a mut [Eight],
     /// For each slot the columns of its sample; of several, their means, without the fixed columns.
     pub(super) columns: &'a mut [Eight],
@@ -116,11 +122,11 @@ pub(super) fn products_len(columns: usize, values: usize) -> usize {
 }
 
 /// Numbers that a batch of so many slots takes.
-pub(super) fn batch_len(terms: &Terms, channels: usize, slots: usize) -> Option<usize> {
+pub(super) fn batch_len(terms: &Terms, values: usize, slots: usize) -> Option<usize> {
     let (columns, fixed) = (terms.columns(), terms.fixed());
-    let each = fixed + 1 + 3 * channels + columns;
-    let products = products_len(columns, channels) + products_len(columns, 2 * channels);
-    let sums = COLOURS * products + AT_ONCE * (2 * columns + 3 * channels);
+    let each = fixed + 1 + 3 * values + columns;
+    let products = products_len(columns, values) + products_len(columns, 2 * values);
+    let sums = COLOURS * products + AT_ONCE * (2 * columns + 3 * values) + values;
     slots.checked_mul(each)?.checked_add(sums)?.checked_mul(LANES)
 }
 
@@ -296,7 +302,8 @@ impl<'a> Batch<'a> {
     ) -> Result<Self, Error> {
         let [Group { len, .. }, ..] = lanes;
         let slots = if call.is_joined() { len.div_ceil(LANES) } else { len };
-        let (columns, channels) = (terms.columns(), call.config.channels);
+        let (columns, channels, values) = (terms.columns(), call.config.channels, call.values());
+        let known = if call.image.has_known() { slots * channels } else { 0 };
         let parts = if call.n > 1 { COLOURS } else { call.turns() };
         Ok(Self {
             lanes,
@@ -308,12 +315,15 @@ impl<'a> Batch<'a> {
             places: arena.take_lanes(slots * terms.fixed())?,
             inside: arena.take_lanes(slots)?,
             ranges: arena.take_lanes(slots * 2 * channels)?,
-            means: arena.take_lanes(slots * channels)?,
+            coefficients: arena.take_lanes(known)?,
+            integrals: arena.take_lanes(known)?,
+            values,
+            means: arena.take_lanes(slots * values)?,
             columns: arena.take_lanes(slots * columns)?,
             sums: Sums {
                 parts,
-                samples: Products::new(parts, columns, channels, arena)?,
-                pixels: Products::new(if call.n > 1 { parts } else { 0 }, columns, 2 * channels, arena)?,
+                samples: Products::new(parts, columns, values, arena)?,
+                pixels: Products::new(if call.n > 1 { parts } else { 0 }, columns, 2 * values, arena)?,
             },
         })
     }
@@ -327,13 +337,19 @@ impl<'a> Batch<'a> {
 
     /// The image's number of a slot's pixel in a lane, and its column, row and frame in its window.
     #[inline(always)]
-    fn pixel(&self, call: &Call<'_>, groups: &Groups<'_>, lane: usize, slot: usize) -> Option<(usize, [usize; 3])> {
+    pub(super) fn pixel(
+        &self,
+        call: &Call<'_>,
+        groups: &Groups<'_>,
+        lane: usize,
+        slot: usize,
+    ) -> Option<(usize, [usize; 3])> {
         let index = self.member(lane, slot)?;
         if self.is_joined {
             return Some((index, [0; 3]));
         }
         let [x, y, frame] = groups.place(&self.lanes[lane % LANES], index).split();
-        let [width, height, _] = call.windows.image;
+        let Rectangle { width, height, .. } = call.windows.given;
         Some((self.corners[lane % LANES] + (frame * height + y) * width + x, [x, y, frame]))
     }
 
@@ -425,10 +441,13 @@ impl<'a> Batch<'a> {
         terms: &Terms,
         arena: &mut Arena<'_, f32>,
     ) -> Result<(), Error> {
-        let (width, channels, n) = (terms.columns(), call.config.channels, call.n);
+        let (width, n, count) = (terms.columns(), call.n, self.values);
+        let channels = call.config.channels;
+        let mut position = Position { x: [NONE; MAX_DIMS], h: [NONE; Config::MAX_CONTROLS] };
         let mut arena = arena.scratch();
-        let mut samples = Pending::new(width, channels, &mut arena)?;
-        let mut pixels = Pending::new(width, 2 * channels, &mut arena)?;
+        let mut samples = Pending::new(width, count, &mut arena)?;
+        let mut pixels = Pending::new(width, 2 * count, &mut arena)?;
+        let first = arena.take_lanes(count)?;
         self.set_units(channels);
         self.sums.samples.each().chain(self.sums.pixels.each()).for_each(|sum| *sum = NONE);
         for part in 0..self.sums.parts {
@@ -440,13 +459,14 @@ impl<'a> Batch<'a> {
                 let numbers = [0, 1, 2, 3, 4, 5, 6, 7].map(number);
                 let inside = self.inside.get(slot).copied().unwrap_or(NONE);
                 let places = row_at(self.places, terms.fixed(), slot);
-                let pixels_of = Pixels { units: &self.units, terms, numbers, places };
+                let [coefficients, integrals] =
+                    [&*self.coefficients, &*self.integrals].map(|all| row_at(all, channels, slot));
+                let pixels_of = Pixels { units: &self.units, terms, numbers, places, coefficients, integrals };
                 let columns_of = row_at_mut(self.columns, width, slot);
-                let means = row_at_mut(self.means, channels, slot);
-                let mut first = [NONE; Config::MAX_CHANNELS];
+                let means = row_at_mut(self.means, count, slot);
                 for sample in 0..n {
                     let (columns, values) = samples.row();
-                    call.read(&pixels_of, sample, columns, values);
+                    call.read(&pixels_of, sample, &mut position, columns, values);
                     if sample == 0 {
                         columns_of.iter_mut().zip(columns.iter()).for_each(|(sum, column)| *sum = *column);
                         first.iter_mut().zip(values.iter()).for_each(|(first, value)| *first = *value);
@@ -455,7 +475,7 @@ impl<'a> Batch<'a> {
                     }
                     if n > 1 {
                         // Differences tell equal values from such as are nearly so.
-                        for ((value, first), sum) in values.iter_mut().zip(&first).zip(means.iter_mut()) {
+                        for ((value, first), sum) in values.iter_mut().zip(first.iter()).zip(means.iter_mut()) {
                             *value = lanes::zip(value, first, |value, first| value - first);
                             *sum = if sample == 0 { *value } else { plus(sum, value) };
                         }
@@ -472,8 +492,8 @@ impl<'a> Batch<'a> {
                     let root = Real::sqrt(n as f32);
                     columns_of.iter_mut().chain(means.iter_mut()).for_each(|sum| *sum = sum.map(|sum| sum * inverse));
                     let (columns, values) = pixels.row();
-                    let (differences, whole) = values.split_at_mut_checked(channels).unwrap_or_default();
-                    let means = means.iter_mut().zip(&first);
+                    let (differences, whole) = values.split_at_mut_checked(count).unwrap_or_default();
+                    let means = means.iter_mut().zip(first.iter());
                     for ((mean, first), (difference, whole)) in means.zip(differences.iter_mut().zip(whole)) {
                         *difference = *mean;
                         *mean = plus(mean, first);
@@ -499,6 +519,12 @@ impl<'a> Batch<'a> {
     }
 }
 
+/// Where eight samples are, and their control functions: what is left of other samples where there is no pixel.
+struct Position {
+    x: [Eight; MAX_DIMS],
+    h: [Eight; Config::MAX_CONTROLS],
+}
+
 /// The pixels of a slot.
 struct Pixels<'a> {
     units: &'a [Units; Config::MAX_CHANNELS],
@@ -506,6 +532,9 @@ struct Pixels<'a> {
     /// The image's numbers of them.
     numbers: [Option<usize>; LANES],
     places: &'a [Eight],
+    /// Of each channel, if something is known.
+    coefficients: &'a [Eight],
+    integrals: &'a [Eight],
 }
 
 impl Call<'_> {
@@ -522,12 +551,32 @@ impl Call<'_> {
 
     /// A channel of a sample, divided by its pixel's factor.
     #[inline(always)]
-    fn value(&self, pixel: usize, sample: usize, channel: usize) -> f32 {
+    pub(super) fn value(&self, pixel: usize, sample: usize, channel: usize) -> f32 {
+        self.over_factor(self.reader.input(sample, channel), pixel, channel)
+    }
+
+    /// What is known of it, divided likewise.
+    #[inline(always)]
+    pub(super) fn known(&self, pixel: usize, sample: usize, channel: usize) -> f32 {
+        let known = self.image.known.get(sample * self.config.channels + channel).copied().unwrap_or(0.0);
+        self.over_factor(known, pixel, channel)
+    }
+
+    /// The integral of what is known, divided likewise.
+    #[inline(always)]
+    pub(super) fn integral(&self, pixel: usize, channel: usize) -> f32 {
+        let integral = self.image.integrals.get(pixel * self.config.channels + channel).copied().unwrap_or(0.0);
+        self.over_factor(integral, pixel, channel)
+    }
+
+    /// Divides by a pixel's factor.
+    #[inline(always)]
+    fn over_factor(&self, value: f32, pixel: usize, channel: usize) -> f32 {
         if self.image.factors.is_empty() {
-            return self.reader.input(sample, channel);
+            return value;
         }
         let most = f64::from(f32::MAX);
-        (self.reader.value(sample, channel) / self.factor(pixel, channel)).clamp(-most, most) as f32
+        (f64::from(value) / self.factor(pixel, channel)).clamp(-most, most) as f32
     }
 
     /// What a pixel's values are divided by. Black says nothing about what it multiplies: 1.
@@ -539,10 +588,18 @@ impl Call<'_> {
 
     /// Writes a sample of eight pixels: its columns, and its values in units. Zero where there is no pixel.
     #[inline(always)]
-    fn read(&self, pixels: &Pixels<'_>, sample: usize, columns: &mut [Eight], values: &mut [Eight]) {
-        let Pixels { units, terms, numbers, places } = pixels;
-        let mut x = [NONE; MAX_DIMS];
-        let mut h = [NONE; Config::MAX_CONTROLS];
+    fn read(
+        &self,
+        pixels: &Pixels<'_>,
+        sample: usize,
+        position: &mut Position,
+        columns: &mut [Eight],
+        values: &mut [Eight],
+    ) {
+        let Pixels { units, terms, numbers, places, coefficients, integrals } = pixels;
+        let channels = self.config.channels;
+        let (inputs, rest) = values.split_at_mut_checked(channels).unwrap_or_default();
+        let Position { x, h } = position;
         let mut is_full = true;
         for (lane, pixel) in numbers.iter().enumerate() {
             let &Some(pixel) = pixel else {
@@ -550,16 +607,22 @@ impl Call<'_> {
                 continue;
             };
             let index = pixel * self.n + sample;
-            self.reader.put_position(index, lane, &mut x);
+            self.reader.put_position(index, lane, x);
             if self.config.controls > 0 {
-                self.reader.get(index).put(lane, &mut x, &mut h);
+                self.reader.get(index).put(lane, x, h);
             }
-            for (channel, value) in values.iter_mut().enumerate() {
+            for (channel, value) in inputs.iter_mut().enumerate() {
                 value[lane % LANES] = self.value(pixel, index, channel);
+            }
+            let known = coefficients.iter().zip(*integrals).zip(rest.iter_mut()).zip(inputs.iter());
+            for (channel, (((coefficient, integral), out), value)) in known.enumerate() {
+                let apart = self.known(pixel, index, channel) - integral[lane % LANES];
+                let left = value[lane % LANES] - coefficient[lane % LANES] * apart;
+                out[lane % LANES] = if left.is_finite() { left } else { value[lane % LANES] };
             }
         }
         let one = places.first().copied().unwrap_or(NONE);
-        for (value, units) in values.iter_mut().zip(units.iter()) {
+        for (value, units) in values.iter_mut().zip(units.iter().take(channels).cycle()) {
             let scaled = lanes::zip(&only(&one, value), &units.scales, |value, scale| value * scale);
             // Only what no fit is made to is far beyond the unit; its square fits too.
             let moved =
@@ -571,7 +634,7 @@ impl Call<'_> {
             *out = *place;
         }
         let (functions, products) = rest.split_at_mut_checked(terms.functions).unwrap_or_default();
-        self.reader.columns(self.basis, &x, &h, functions);
+        self.reader.columns(self.basis, x, h, functions);
         if !is_full {
             functions.iter_mut().for_each(|column| *column = only(&one, column));
         }

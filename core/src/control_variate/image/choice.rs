@@ -1,196 +1,233 @@
 //! How far each fit of a group is trusted.
 
-use super::super::config::Config;
 use super::super::trust;
-use super::Call;
+use super::Layout;
 use super::batch::{Batch, COLOURS, Eight, MAX_FIXED, NONE, only, plus};
 use super::fit::{Colours, Fits};
-use super::terms::{MAX_FITS, Terms};
+use super::terms::Terms;
+use crate::arena::Arena;
+use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::{ldlt, packed_len, row, row_mut};
 use crate::real::Real;
-use crate::rows::row_at;
+use crate::rows::{row_at, row_at_mut, rows, rows_mut};
 use core::f32::consts::LOG2_E;
 use core::hint::black_box;
 
 /// How much what independent samples say for a fit within their pixels counts, beside what the pixels' spread says.
 /// What they say against one counts whole.
 const WITHIN: f32 = 0.25;
-/// The most estimates to choose from: the plain mean's, and each fit's.
-pub(super) const MAX_CHOICES: usize = 1 + MAX_FITS;
 
-/// For the plain mean and each fit, a number.
-pub(super) type Each = [Eight; MAX_CHOICES];
+/// The estimates to choose from: the plain mean and that with each fit, then the same less what is known.
+#[derive(Clone, Copy)]
+pub(super) struct Choices {
+    channels: usize,
+    /// Candidates for each value.
+    fits: usize,
+    pub(super) count: usize,
+}
+
+impl Choices {
+    pub(super) fn new(layout: &Layout<'_>, terms: &Terms) -> Self {
+        let (channels, fits) = (layout.config.channels, terms.ends.len());
+        Self { channels, fits, count: (1 + fits) * (layout.values() / channels.max(1)) }
+    }
+
+    /// Lanes of workspace.
+    pub(super) fn len(&self) -> usize {
+        self.channels * self.count * (SPREADS + MAX_SHARES)
+    }
+
+    /// Which value of a sample a choice is of, and which fit it has: 0 for none.
+    #[inline(always)]
+    pub(super) fn value_and_fit(&self, channel: usize, choice: usize) -> (usize, usize) {
+        if choice <= self.fits { (channel, choice) } else { (self.channels + channel, choice - self.fits - 1) }
+    }
+
+    /// The slot, channel and choice of a place in a list of channels' choices.
+    #[inline(always)]
+    fn at(&self, slot: usize, index: usize) -> (usize, usize, usize) {
+        let channel = index.checked_div(self.count).unwrap_or(0);
+        (slot, channel, index - channel * self.count)
+    }
+
+    /// An estimate of a slot's pixels, wherever they are.
+    #[inline(always)]
+    fn estimate(&self, batch: &Batch<'_>, fits: &Fits<'_>, (slot, channel, choice): (usize, usize, usize)) -> Eight {
+        let (value, fit) = self.value_and_fit(channel, choice);
+        let mean = batch.means.get(slot * batch.values + value).copied().unwrap_or(NONE);
+        match fit.checked_sub(1) {
+            Some(fit) => plus(&mean, &fits.correction((slot, value, fit))),
+            None => mean,
+        }
+    }
+}
+
+/// Lanes of each choice of [`Spreads`].
+const SPREADS: usize = 3 + MAX_FIXED;
+/// How many shares of each choice are kept: those that either half, or all pixels, chose.
+const MAX_SHARES: usize = 2;
+
+/// How far each choice is trusted: of each turn, channel and choice.
+pub(super) struct Shares<'a> {
+    all: &'a mut [Eight],
+    choices: Choices,
+}
+
+impl<'a> Shares<'a> {
+    /// All trust in the last choice.
+    pub(super) fn last(choices: Choices, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+        let all = arena.take_lanes(MAX_SHARES * choices.channels * choices.count)?;
+        for shares in rows_mut(all, choices.count) {
+            shares.iter_mut().rev().enumerate().for_each(|(k, share)| *share = [if k == 0 { 1.0 } else { 0.0 }; LANES]);
+        }
+        Ok(Self { all, choices })
+    }
+
+    /// How a channel's correction is shared out.
+    #[inline(always)]
+    pub(super) fn of(&self, turn: usize, channel: usize) -> &[Eight] {
+        row_at(self.all, self.choices.count, turn * self.choices.channels + channel)
+    }
+
+    /// The same, to be written.
+    #[inline(always)]
+    fn of_mut(&mut self, turn: usize, channel: usize) -> &mut [Eight] {
+        row_at_mut(self.all, self.choices.count, turn * self.choices.channels + channel)
+    }
+}
 
 /// The estimates' spreads across pixels: sums of squares about their linear trend along the axes.
 ///
 /// The signal's own spread is common to all candidates, so that the difference is the error's, however the samples are
 /// correlated; what the trend takes away is almost only signal.
-pub(super) struct Spreads {
-    /// Of each channel.
-    pub(super) sums: [Each; Config::MAX_CHANNELS],
-    /// The trends of each channel.
-    trends: [[[Eight; MAX_FIXED]; MAX_CHOICES]; Config::MAX_CHANNELS],
+pub(super) struct Spreads<'a> {
+    /// Of each channel and choice.
+    sums: &'a mut [Eight],
+    /// Of each channel and choice, what it leaves of the samples of the colours about their pixels' means; see
+    /// [`Fits::within`].
+    within: &'a mut [Eight],
     /// Pixels less the trend's coefficients, at least 0.
     pub(super) freedom: Eight,
-    pub(super) fits: usize,
-    /// What the fits leave of the samples of each colour about their pixels' means; see [`Fits::within`].
-    within: [[Each; COLOURS]; Config::MAX_CHANNELS],
-    /// Pixels of each colour, if they have several samples.
-    pixels: [Eight; COLOURS],
-    taken: Colours,
+    /// Pixels of the colours, if they have several samples.
+    pixels: Eight,
+    choices: Choices,
 }
 
-impl Spreads {
+impl<'a> Spreads<'a> {
     /// Of pixels of the colours `taken`.
     #[inline(always)]
-    pub(super) fn new(call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, fits: &Fits<'_>, taken: Colours) -> Self {
-        let (fixed, channels) = (terms.fixed(), call.config.channels);
+    pub(super) fn new(
+        choices: Choices,
+        terms: &Terms,
+        batch: &Batch<'_>,
+        fits: &Fits<'_>,
+        taken: Colours,
+        arena: &mut Arena<'a, f32>,
+    ) -> Result<Self, Error> {
+        let fixed = terms.fixed();
         let joined = |sum: &Eight| if batch.is_joined { [lanes::sum(sum); LANES] } else { *sum };
+        let all = choices.channels * choices.count;
+        let [sums, within, squares] = [arena.take_lanes(all)?, arena.take_lanes(all)?, arena.take_lanes(all)?];
+        let trends = arena.take_lanes(all * fixed)?;
+        for sum in [&mut *sums, within, squares, trends].into_iter().flatten() {
+            *sum = NONE;
+        }
         let mut factor = [NONE; packed_len(MAX_FIXED)];
-        for slot in (0..batch.slots).filter(|&slot| taken.has(slot)) {
-            let inside = batch.inside.get(slot).copied().unwrap_or(NONE);
+        let slots = || batch.inside.iter().enumerate().filter(|&(slot, _)| taken.has(slot));
+        for (slot, inside) in slots() {
             let places = row_at(batch.places, fixed, slot);
             for (j, place) in places.iter().enumerate() {
-                let place = lanes::zip(place, &inside, |place, inside| place * inside);
+                let place = lanes::zip(place, inside, |place, inside| place * inside);
                 for (sum, other) in row_mut(&mut factor, j).iter_mut().zip(places) {
                     lanes::add_product(sum, &place, other);
                 }
             }
+            let of_choices = squares.iter_mut().zip(rows_mut(trends, fixed)).enumerate();
+            for (at, (square, trend)) in of_choices {
+                let estimate = only(inside, &choices.estimate(batch, fits, choices.at(slot, at)));
+                lanes::add_product(square, &estimate, &estimate);
+                for (sum, place) in trend.iter_mut().zip(places) {
+                    lanes::add_product(sum, &estimate, place);
+                }
+            }
         }
         factor.iter_mut().for_each(|sum| *sum = joined(sum));
-        let mut freedom = factor[0];
+        let pixels = factor[0];
         ldlt::factor_each(&mut factor, fixed);
+        let mut freedom = pixels;
         for j in 0..fixed {
             let inverse = row(&factor, j).last().copied().unwrap_or(NONE);
             freedom = lanes::zip(&freedom, &inverse, |freedom, inverse| {
                 Real::max(if inverse > 0.0 { freedom - 1.0 } else { freedom }, 0.0)
             });
         }
-        let mut spreads = Self {
-            sums: [[NONE; MAX_CHOICES]; Config::MAX_CHANNELS],
-            trends: [[[NONE; MAX_FIXED]; MAX_CHOICES]; Config::MAX_CHANNELS],
-            freedom,
-            fits: terms.ends.len(),
-            within: fits.within,
-            pixels: [NONE; COLOURS],
-            taken,
-        };
-        for slot in 0..batch.slots {
-            let inside = batch.inside.get(slot).copied().unwrap_or(NONE);
-            spreads.pixels[slot % COLOURS] = lanes::zip(&spreads.pixels[slot % COLOURS], &inside, |sum, inside| {
-                sum + if call.n > 1 { inside } else { 0.0 }
-            });
+        for trend in rows_mut(trends, fixed) {
+            trend.iter_mut().for_each(|sum| *sum = joined(sum));
+            ldlt::solve_each(&factor, trend);
         }
-        spreads.pixels.iter_mut().for_each(|sum| *sum = joined(sum));
-        for channel in 0..channels {
-            for fit in 0..=spreads.fits {
-                let mut square = NONE;
-                let mut trend = [NONE; MAX_FIXED];
-                for slot in (0..batch.slots).filter(|&slot| taken.has(slot)) {
-                    let estimate = estimate(batch, fits, channels, (slot, channel, fit));
-                    lanes::add_product(&mut square, &estimate, &estimate);
-                    for (sum, place) in trend.iter_mut().zip(row_at(batch.places, fixed, slot)) {
-                        lanes::add_product(sum, &estimate, place);
-                    }
-                }
-                trend.iter_mut().for_each(|sum| *sum = joined(sum));
-                ldlt::solve_each(&factor, trend.get_mut(..fixed).unwrap_or(&mut []));
-                if let Some(out) = spreads.trends.get_mut(channel).and_then(|trends| trends.get_mut(fit)) {
-                    *out = trend;
-                }
-                // The difference of the sums of squares would lose the digits that matter beside a strong trend.
-                let mut left = NONE;
-                for slot in (0..batch.slots).filter(|&slot| taken.has(slot)) {
-                    let rest = spreads.rest(batch, fits, channels, (slot, channel, fit));
-                    lanes::add_product(&mut left, &rest, &rest);
-                }
-                // What is left of a signal that is its trend is rounding noise.
-                let (left, square) = (joined(&left), joined(&square));
-                let sum = spreads.sums.get_mut(channel).and_then(|sums| sums.get_mut(fit));
-                for (l, sum) in sum.into_iter().flatten().enumerate() {
-                    let noise = square[l % LANES] * (f32::EPSILON * f32::EPSILON * 4096.0);
-                    let is_some = left[l % LANES] > noise && freedom[l % LANES] > 0.0;
-                    *sum = if is_some { left[l % LANES] } else { 0.0 };
+        // The difference of the sums of squares would lose the digits that matter beside a strong trend.
+        for (slot, inside) in slots() {
+            let places = row_at(batch.places, fixed, slot);
+            for (at, (sum, trend)) in sums.iter_mut().zip(rows(trends, fixed)).enumerate() {
+                let estimate = choices.estimate(batch, fits, choices.at(slot, at));
+                let rest = places.iter().zip(trend);
+                let rest = rest.fold(estimate, |rest, (place, slope)| lanes::minus_product(rest, *place, *slope));
+                let rest = only(inside, &rest);
+                lanes::add_product(sum, &rest, &rest);
+            }
+        }
+        for (sum, square) in sums.iter_mut().zip(squares) {
+            // What is left of a signal that is its trend is rounding noise.
+            let (left, square) = (joined(sum), joined(square));
+            for l in 0..LANES {
+                let noise = square[l] * (f32::EPSILON * f32::EPSILON * 4096.0);
+                sum[l] = if left[l] > noise && freedom[l] > 0.0 { left[l] } else { 0.0 };
+            }
+        }
+        let mut spreads = Self { sums, within, freedom, pixels: NONE, choices };
+        if fits.has_several {
+            spreads.pixels = pixels;
+            for (at, sum) in spreads.within.iter_mut().enumerate() {
+                let (_, channel, choice) = choices.at(0, at);
+                let (value, fit) = choices.value_and_fit(channel, choice);
+                for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
+                    *sum = plus(sum, &fits.within(value, colour, fit));
                 }
             }
         }
-        spreads
+        Ok(spreads)
     }
 
-    /// What an estimate of a slot leaves of its trend.
+    /// Chooses for a turn.
     #[inline(always)]
-    fn rest(
-        &self,
-        batch: &Batch<'_>,
-        fits: &Fits<'_>,
-        channels: usize,
-        (slot, channel, fit): (usize, usize, usize),
-    ) -> Eight {
-        let places = batch.places.len().checked_div(batch.slots).unwrap_or(0);
-        let trend = self.trends.get(channel).and_then(|trends| trends.get(fit)).into_iter().flatten();
-        let rest = estimate(batch, fits, channels, (slot, channel, fit));
-        let places = row_at(batch.places, places, slot);
-        let rest =
-            places.iter().zip(trend).fold(rest, |rest, (place, slope)| lanes::minus_product(rest, *place, *slope));
-        only(&batch.inside.get(slot).copied().unwrap_or(NONE), &rest)
-    }
-
-    /// What the samples say about a channel within their pixels, and how many pixels.
-    #[inline(always)]
-    fn inside(&self, channel: usize) -> (Each, Eight) {
-        let mut within = [NONE; MAX_CHOICES];
-        let mut count = NONE;
-        let colours = self.within.get(channel).into_iter().flatten().zip(&self.pixels).enumerate();
-        for (_, (each, pixels)) in colours.filter(|&(colour, _)| self.taken.has(colour)) {
-            count = plus(&count, pixels);
-            for (sum, value) in within.iter_mut().zip(each).take(1 + self.fits) {
-                *sum = plus(sum, value);
-            }
-        }
-        (within, count)
-    }
-
-    /// How a channel's correction is shared out.
-    #[inline(always)]
-    pub(super) fn shares(&self, channel: usize, is_stratified: bool) -> Each {
-        let sums = self.sums.get(channel).copied().unwrap_or([NONE; MAX_CHOICES]);
-        let (within, pixels) = self.inside(channel);
+    pub(super) fn choose(&self, turn: usize, is_stratified: bool, shares: &mut Shares<'_>) {
         // Stratified samples' means differ by less than their variance within pixels tells: it may only warn.
-        share(&sums, self.fits, &self.freedom, &within, &pixels, if is_stratified { 0.0 } else { WITHIN })
+        let part = if is_stratified { 0.0 } else { WITHIN };
+        for channel in 0..self.choices.channels {
+            let [sums, within] = [&*self.sums, &*self.within].map(|all| row_at(all, self.choices.count, channel));
+            share(sums, &self.freedom, (within, &self.pixels, part), shares.of_mut(turn, channel));
+        }
+    }
+
+    /// The plain mean's spread.
+    pub(super) fn plain(&self, channel: usize) -> Eight {
+        self.sums.get(channel * self.choices.count).copied().unwrap_or(NONE)
     }
 
     /// A mixture's spread relative to the plain mean's, by the samples within pixels where `inside`.
     #[inline(always)]
-    pub(super) fn ratio(&self, channel: usize, shares: &Each, inside: bool) -> Eight {
-        let sums = if inside {
-            self.inside(channel).0
-        } else {
-            self.sums.get(channel).copied().unwrap_or([NONE; MAX_CHOICES])
-        };
-        let mixed = sums.iter().zip(shares).take(1 + self.fits);
+    pub(super) fn ratio(&self, channel: usize, shares: &[Eight], inside: bool) -> Eight {
+        let sums = row_at(if inside { &*self.within } else { &*self.sums }, self.choices.count, channel);
+        let plain = sums.first().copied().unwrap_or(NONE);
+        let mixed = sums.iter().zip(shares);
         let mixed = mixed.fold(NONE, |mixed, (sum, share)| lanes::plus_product(mixed, *sum, *share));
         // Behind a black box, or compilers divide a lane or two, and what else their vector holds.
-        let mut ratio =
-            black_box(lanes::zip(&mixed, &lanes::divisor(&no_less(&sums[0])), |mixed, plain| mixed / plain));
+        let mut ratio = black_box(lanes::zip(&mixed, &lanes::divisor(&no_less(&plain)), |mixed, plain| mixed / plain));
         for l in 0..LANES {
-            ratio[l] = if sums[0][l] > 0.0 && ratio[l].is_finite() { ratio[l] } else { 1.0 };
+            ratio[l] = if plain[l] > 0.0 && ratio[l].is_finite() { ratio[l] } else { 1.0 };
         }
         ratio
-    }
-}
-
-/// An estimate of a slot's pixels; 0 outside.
-#[inline(always)]
-fn estimate(batch: &Batch<'_>, fits: &Fits<'_>, channels: usize, (slot, channel, fit): (usize, usize, usize)) -> Eight {
-    let inside = batch.inside.get(slot).copied().unwrap_or(NONE);
-    let mean = batch.means.get(slot * channels + channel).copied().unwrap_or(NONE);
-    match fit.checked_sub(1) {
-        Some(fit) => {
-            let correction = fits.correction(channels, (slot, channel, fit));
-            only(&inside, &lanes::zip(&mean, &correction, |a, b| a + b))
-        }
-        None => only(&inside, &mean),
     }
 }
 
@@ -200,26 +237,13 @@ fn no_less(sums: &Eight) -> Eight {
     sums.map(|sum| Real::max(sum, 1e-24))
 }
 
-/// All trust in the last of `fits` fits.
-pub(super) fn last_only(fits: usize) -> Each {
-    let mut shares = [NONE; MAX_CHOICES];
-    if let Some(last) = shares.get_mut(fits) {
-        *last = [1.0; LANES];
-    }
-    shares
-}
-
 /// Trust by spreads, of the plain mean first: [`trust::weigh`] in each lane.
 #[inline(always)]
-fn share(spreads: &Each, fits: usize, freedom: &Eight, within: &Each, pixels: &Eight, part: f32) -> Each {
-    let [plain, spreads @ ..] = spreads;
-    let [noise, within @ ..] = within;
+fn share(spreads: &[Eight], freedom: &Eight, (within, pixels, part): (&[Eight], &Eight, f32), shares: &mut [Eight]) {
+    let ([plain, spreads @ ..], [noise, within @ ..], [mean, rest @ ..]) = (spreads, within, shares) else { return };
     let [inverse, inverse_noise] = [plain, noise].map(|plain| lanes::divisor(&no_less(plain)).map(|plain| 1.0 / plain));
     let [power, power_within] = [freedom, pixels].map(|count| count.map(|count| count * -trust::SHARPNESS as f32));
     let has_samples = pixels[0] > 0.0;
-    let mut shares = [NONE; MAX_CHOICES];
-    let [mean, rest @ ..] = &mut shares;
-    let rest = rest.get_mut(..fits).unwrap_or(&mut []);
     let mut largest = NONE;
     for ((share, spread), within) in rest.iter_mut().zip(spreads).zip(within) {
         // What is no number is trusted least.
@@ -241,7 +265,7 @@ fn share(spreads: &Each, fits: usize, freedom: &Eight, within: &Each, pixels: &E
         }
         largest = lanes::zip(&largest, share, |largest, share| if share > largest { share } else { largest });
     }
-    let prior = Real::ln(trust::PRIOR as f32 * fits as f32) * LOG2_E;
+    let prior = Real::ln(trust::PRIOR as f32 * rest.len() as f32) * LOG2_E;
     *mean = lanes::zip(&largest, freedom, |largest, freedom| {
         let caution = largest - freedom * freedom * (LOG2_E / trust::CAUTION as f32);
         if caution > 0.0 { prior + caution } else { prior }
@@ -261,5 +285,4 @@ fn share(spreads: &Each, fits: usize, freedom: &Eight, within: &Each, pixels: &E
     for share in rest {
         *share = lanes::zip(share, &scale, |share, scale| share * scale);
     }
-    shares
 }

@@ -2,18 +2,17 @@
 //!
 //! One factorisation A = L D L' serves every candidate, as each is a prefix of the columns and so of L.
 
-use super::super::config::{Config, Ridge};
+use super::super::config::Ridge;
 use super::super::ridge;
 use super::Call;
 use super::batch::{AT_ONCE, Batch, COLOURS, Eight, MAX_FIXED, NONE, Total, only, products_len};
-use super::choice::{Each, MAX_CHOICES};
 use super::terms::Terms;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::{ldlt, packed_len, row, row_mut};
 use crate::real::Real;
-use crate::rows::{row_at, rows, rows_mut};
+use crate::rows::{row_at, row_at_mut, rows, rows_mut};
 
 /// Ridge strength per sample if the caller gives none.
 const STRENGTH: f64 = 0.003;
@@ -43,15 +42,23 @@ impl Colours {
     }
 }
 
+/// Lanes of [`Fits::within`].
+fn within_len(terms: &Terms, values: usize, n: usize) -> usize {
+    if n > 1 { values * COLOURS * (1 + terms.ends.len()) } else { 0 }
+}
+
 /// Fits to the pixels of a batch.
 pub(super) struct Fits<'a> {
-    /// For each slot, each candidate's corrections of the channels' means.
+    /// For each slot, each candidate's corrections of the values' means.
     corrections: &'a mut [Eight],
     /// How many candidates there are.
     pub(super) count: usize,
+    values: usize,
     /// Of several samples in each pixel, what the fits leave of the samples' sums of squares about their pixel's mean:
-    /// of each channel and colour, which they have not seen.
-    pub(super) within: [[Each; COLOURS]; Config::MAX_CHANNELS],
+    /// of each value and colour, which they have not seen.
+    within: &'a mut [Eight],
+    /// Whether pixels have several samples.
+    pub(super) has_several: bool,
     /// A, then its factors; for each channel what the fit is to, then D^-1 L^-1 times it.
     system: Total<'a>,
     /// Sums of the pixels' means.
@@ -64,31 +71,38 @@ pub(super) struct Fits<'a> {
     /// L^-1 of four slots' columns, and the same without the fixed ones.
     solved: &'a mut [[Eight; AT_ONCE]],
     moved: &'a mut [[Eight; AT_ONCE]],
+    /// For each value and four slots, what the columns so far leave of it, and what they explain.
+    residuals: &'a mut [[Eight; AT_ONCE]],
+    fitted: &'a mut [[Eight; AT_ONCE]],
     penalties: &'a mut [f32],
 }
 
 /// Numbers that fits take for so many slots.
-pub(super) fn fits_len(terms: &Terms, channels: usize, slots: usize) -> Option<usize> {
+pub(super) fn fits_len(terms: &Terms, values: usize, (slots, n): (usize, usize)) -> Option<usize> {
     let columns = terms.columns();
-    let totals = products_len(columns, channels) + products_len(columns, 2 * channels);
-    let once = totals + (MAX_FIXED + 2 + 2 * AT_ONCE) * columns;
-    slots.checked_mul(terms.ends.len() * channels)?.checked_add(once)?.checked_mul(LANES)?.checked_add(columns)
+    let totals = products_len(columns, values) + products_len(columns, 2 * values);
+    let once = totals + (MAX_FIXED + 2 + 2 * AT_ONCE) * columns + within_len(terms, values, n) + 2 * AT_ONCE * values;
+    slots.checked_mul(terms.ends.len() * values)?.checked_add(once)?.checked_mul(LANES)?.checked_add(columns)
 }
 
 impl<'a> Fits<'a> {
     pub(super) fn new(call: &Call<'_>, terms: &Terms, slots: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        let (columns, channels) = (terms.columns(), call.config.channels);
+        let (columns, values) = (terms.columns(), call.values());
         let fits = Self {
-            corrections: arena.take_lanes(slots * terms.ends.len() * channels)?,
+            corrections: arena.take_lanes(slots * terms.ends.len() * values)?,
             count: terms.ends.len(),
-            within: [[[NONE; MAX_CHOICES]; COLOURS]; Config::MAX_CHANNELS],
-            system: Total::new(columns, channels, arena)?,
-            between: Total::new(columns, 2 * channels, arena)?,
+            values,
+            within: arena.take_lanes(within_len(terms, values, call.n))?,
+            has_several: call.n > 1,
+            system: Total::new(columns, values, arena)?,
+            between: Total::new(columns, 2 * values, arena)?,
             coefficients: arena.take_lanes(columns)?,
             pivots: arena.take_lanes(columns)?,
             units: arena.take_lanes(terms.fixed() * columns)?,
             solved: arena.take_lanes(AT_ONCE * columns)?.as_chunks_mut().0,
             moved: arena.take_lanes(AT_ONCE * columns)?.as_chunks_mut().0,
+            residuals: arena.take_lanes(AT_ONCE * values)?.as_chunks_mut().0,
+            fitted: arena.take_lanes(AT_ONCE * values)?.as_chunks_mut().0,
             penalties: arena.take(columns)?,
         };
         terms.penalties(call.config, call.basis, |_| 1.0, fits.penalties);
@@ -124,10 +138,16 @@ impl<'a> Fits<'a> {
         }
     }
 
-    /// A candidate's correction of a channel of a slot.
+    /// What a fit, or without one the mean, leaves of the samples of a colour about their pixels' means.
     #[inline(always)]
-    pub(super) fn correction(&self, channels: usize, (slot, channel, fit): (usize, usize, usize)) -> Eight {
-        self.corrections.get((slot * self.count + fit) * channels + channel).copied().unwrap_or(NONE)
+    pub(super) fn within(&self, value: usize, colour: usize, fit: usize) -> Eight {
+        row_at(self.within, 1 + self.count, value * COLOURS + colour).get(fit).copied().unwrap_or(NONE)
+    }
+
+    /// A candidate's correction of a value of a slot.
+    #[inline(always)]
+    pub(super) fn correction(&self, (slot, value, fit): (usize, usize, usize)) -> Eight {
+        self.corrections.get((slot * self.count + fit) * self.values + value).copied().unwrap_or(NONE)
     }
 
     /// The fit to all pixels of some colours.
@@ -182,19 +202,19 @@ impl<'a> Fits<'a> {
     /// squares for a random effect. Where samples are all alike, nothing is left to fit.
     #[inline(always)]
     fn weigh_means(&mut self, call: &Call<'_>, terms: &Terms) {
-        let (width, fixed, channels) = (terms.columns(), terms.fixed(), call.config.channels);
+        let (width, fixed, values) = (terms.columns(), terms.fixed(), self.values);
         let n = call.n as f32;
         let pixels = self.between.gram.first().copied().unwrap_or(NONE).map(|count| count / n);
         let mut trend = [NONE; packed_len(MAX_FIXED)];
         trend.iter_mut().zip(self.between.gram.iter()).take(packed_len(fixed)).for_each(|(out, sum)| *out = *sum);
         ldlt::factor_each(&mut trend, fixed);
         let mut weight = [1.0; LANES];
-        for channel in 0..channels {
+        for value in 0..values {
             let get = |squares: &[Eight], index: usize| squares.get(index).copied().unwrap_or(NONE);
-            let inside = get(self.system.squares, channel);
-            let (means, whole) = (get(self.between.squares, channel), get(self.between.squares, channels + channel));
+            let inside = get(self.system.squares, value);
+            let (means, whole) = (get(self.between.squares, value), get(self.between.squares, values + value));
             let mut explained = [NONE; MAX_FIXED];
-            let sides = row_at(self.between.sides, width, channels + channel);
+            let sides = row_at(self.between.sides, width, values + value);
             explained.iter_mut().zip(sides).take(fixed).for_each(|(out, side)| *out = *side);
             let explained = explained.get_mut(..fixed).unwrap_or(&mut []);
             ldlt::forward_each::<f32, 1>(&trend, 0, ldlt::one_each_mut(explained));
@@ -228,9 +248,9 @@ impl<'a> Fits<'a> {
                 }
             }
         }
-        for (channel, sides) in rows_mut(self.system.sides, width).enumerate() {
-            let means = row_at(self.between.sides, width, channel);
-            let whole = row_at(self.between.sides, width, channels + channel);
+        for (value, sides) in rows_mut(self.system.sides, width).enumerate() {
+            let means = row_at(self.between.sides, width, value);
+            let whole = row_at(self.between.sides, width, values + value);
             for (j, (out, (means, whole))) in sides.iter_mut().zip(means.iter().zip(whole)).enumerate() {
                 for l in 0..LANES {
                     let within = if j < fixed { 0.0 } else { out[l] - means[l] };
@@ -246,18 +266,20 @@ impl<'a> Fits<'a> {
         let (width, fixed) = (terms.columns(), terms.fixed());
         let samples = batch.sums.samples.part(colour);
         let pixels = batch.sums.pixels.part(colour);
-        for (channel, within) in self.within.iter_mut().enumerate().take(samples.squares.len()) {
-            let Some(within) = within.get_mut(colour) else { continue };
+        for value in 0..samples.squares.len() {
+            let within = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour);
             let difference = |a: &[Eight], b: &[Eight], index: usize| {
                 let [a, b] = [a, b].map(|all| all.get(index).copied().unwrap_or(NONE));
                 lanes::zip(&a, &b, |a, b| a - b)
             };
-            let whole = difference(samples.squares, pixels.squares, channel).map(|whole| Real::max(whole, 0.0));
-            within[0] = whole;
-            let [sides, means] = [samples.sides, pixels.sides].map(|sides| row_at(sides, width, channel));
+            let whole = difference(samples.squares, pixels.squares, value).map(|whole| Real::max(whole, 0.0));
+            if let Some(out) = within.first_mut() {
+                *out = whole;
+            }
+            let [sides, means] = [samples.sides, pixels.sides].map(|sides| row_at(sides, width, value));
             for (&end, out) in terms.ends.iter().zip(within.iter_mut().skip(1)) {
                 let coefficients = self.coefficients.get_mut(..end).unwrap_or(&mut []);
-                let solved = row_at(self.system.sides, width, channel);
+                let solved = row_at(self.system.sides, width, value);
                 coefficients.iter_mut().zip(solved).for_each(|(out, side)| *out = *side);
                 ldlt::backward_each(self.system.gram, coefficients);
                 let mut left = whole;
@@ -284,7 +306,7 @@ impl<'a> Fits<'a> {
     #[inline(always)]
     fn apply<const OWN: bool>(&mut self, terms: &Terms, batch: &Batch<'_>, slots: &[Option<usize>; AT_ONCE]) {
         let (width, fixed) = (terms.columns(), terms.fixed());
-        let channels = self.system.sides.len().checked_div(width).unwrap_or(0);
+        let values = self.values;
         for (s, slot) in slots.iter().enumerate() {
             let columns = slot.map_or(&[][..], |slot| row_at(batch.columns, width, slot));
             for (j, solved) in self.solved.iter_mut().enumerate() {
@@ -312,12 +334,13 @@ impl<'a> Fits<'a> {
             &*self.solved
         };
         let inside = slots.map(|slot| slot.and_then(|slot| batch.inside.get(slot)).copied().unwrap_or(NONE));
-        let mut residuals = [[NONE; AT_ONCE]; Config::MAX_CHANNELS];
         for (s, slot) in slots.iter().enumerate() {
-            let means = slot.map_or(&[][..], |slot| row_at(batch.means, channels, slot));
-            residuals.iter_mut().zip(means).for_each(|(residual, mean)| residual[s] = *mean);
+            let means = slot.map_or(&[][..], |slot| row_at(batch.means, values, slot));
+            for (at, residual) in self.residuals.iter_mut().enumerate() {
+                residual[s] = means.get(at).copied().unwrap_or(NONE);
+            }
         }
-        let mut fitted = [[NONE; AT_ONCE]; Config::MAX_CHANNELS];
+        self.fitted.iter_mut().for_each(|fitted| *fitted = [NONE; AT_ONCE]);
         let (mut leverage, mut reach) = ([NONE; AT_ONCE], [NONE; AT_ONCE]);
         let mut begin = if OWN { 0 } else { fixed };
         for (fit, &end) in terms.ends.iter().enumerate() {
@@ -336,8 +359,8 @@ impl<'a> Fits<'a> {
                     }
                 }
             }
-            for (channel, (residual, fitted)) in residuals.iter_mut().zip(&mut fitted).enumerate().take(channels) {
-                let sides = row_at(self.system.sides, width, channel).get(range.clone()).unwrap_or(&[]);
+            for (value, (residual, fitted)) in self.residuals.iter_mut().zip(self.fitted.iter_mut()).enumerate() {
+                let sides = row_at(self.system.sides, width, value).get(range.clone()).unwrap_or(&[]);
                 for ((z, moved), side) in solved.iter().zip(moved).zip(sides) {
                     for s in 0..AT_ONCE {
                         if OWN {
@@ -348,7 +371,7 @@ impl<'a> Fits<'a> {
                 }
                 for (s, slot) in slots.iter().enumerate() {
                     let Some(slot) = slot else { continue };
-                    let at = (slot * self.count + fit) * channels + channel;
+                    let at = (slot * self.count + fit) * values + value;
                     let Some(out) = self.corrections.get_mut(at) else { continue };
                     // A pixel that no fit is made to is corrected by the fit to all.
                     let own = if batch.leaves_out { only(&inside[s], &residual[s]) } else { residual[s] };

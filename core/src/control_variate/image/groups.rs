@@ -159,15 +159,14 @@ impl Layout<'_> {
     /// The image's number of the first pixel of a group's window.
     pub(super) fn corner(&self, groups: &Groups<'_>, group: &Group) -> usize {
         let Window { x, y } = self.window(groups.first + group.window);
-        y * self.windows.image[0] + x
+        if self.is_joined() { 0 } else { self.windows.number(x, y, 0) }
     }
 
     /// The image's number of pixel `index` of a group, which is at `place` in its window.
     #[inline(always)]
     pub(super) fn pixel(&self, window: Window, place: Place, index: usize) -> usize {
         let [x, y, frame] = place.split();
-        let [width, height, _] = self.windows.image;
-        if self.is_joined() { index } else { (frame * height + window.y + y) * width + window.x + x }
+        if self.is_joined() { index } else { self.windows.number(window.x + x, window.y + y, frame) }
     }
 
     /// Divides windows `first` to before `end` into groups.

@@ -31,12 +31,13 @@ mod bright;
 mod choice;
 mod fit;
 mod groups;
+mod known;
 mod passes;
 mod pixels;
 mod sums;
 mod terms;
 
-pub use pixels::Image;
+pub use pixels::{Image, Rectangle};
 
 use super::config::{Color, Config, Estimate, Estimator, NonFinite, Ridge};
 use super::samples::{Reader, Samples};
@@ -45,8 +46,10 @@ use crate::basis::{Basis, Shape};
 use crate::error::Error;
 use crate::lanes::LANES;
 use batch::batch_len;
+use choice::Choices;
 use core::ops::Deref;
 use fit::fits_len;
+use known::RELATIVE;
 use pixels::Windows;
 use sums::sums_len;
 use terms::Terms;
@@ -66,7 +69,7 @@ pub fn block_workspace_len(config: &Config, pixels: usize, n: usize) -> Result<u
 /// # Errors
 /// As for [`estimate_image`]; [`Error::Memory`] if no memory could be large enough.
 pub fn image_workspace_len(config: &Config, image: &Image<'_>, n: usize) -> Result<usize, Error> {
-    check_supported(config)?;
+    check_supported(config, image)?;
     let shape = config.checked_shape()?;
     let windows = image.windows()?;
     image.pixels()?;
@@ -74,9 +77,12 @@ pub fn image_workspace_len(config: &Config, image: &Image<'_>, n: usize) -> Resu
 }
 
 /// Which samples count must not depend on the pixel, the fit is of the channels, and other estimators share no fits.
-fn check_supported(config: &Config) -> Result<(), Error> {
+fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
     let estimator = matches!(config.estimator, Estimator::Robust | Estimator::LeaveOneOut | Estimator::KFold);
-    let supported = estimator && config.color == Color::PerChannel && config.non_finite == NonFinite::Error;
+    // Halves that choose for each other would have to know nothing of each other's samples.
+    let is_halved = config.estimator == Estimator::KFold && image.has_known();
+    let supported =
+        estimator && !is_halved && config.color == Color::PerChannel && config.non_finite == NonFinite::Error;
     if supported { Ok(()) } else { Err(Error::Unsupported) }
 }
 
@@ -113,13 +119,14 @@ pub fn estimate_block(
 }
 
 /// Estimates every pixel of an image from `samples.f.len() / (pixels channels)` samples in each, pixel after pixel.
-/// `out` is called once for each pixel in order, and only if all succeed.
+/// `out` is called once for each pixel that is wanted, and only if all succeed.
 ///
 /// # Errors
-/// As for [`estimate`](super::estimate); [`Error::Unsupported`] also for a luminance ratio, for skipping samples and
-/// for estimators other than the robust, leave-one-out and K-fold ones; [`Error::Range`] also for an image without
-/// pixels, for windows that [`Image`] does not allow, for negative factors and for arrays of the wrong length;
-/// [`Error::NotFinite`] for factors that are not finite.
+/// As for [`estimate`](super::estimate); [`Error::Unsupported`] also for a luminance ratio, for skipping samples, for
+/// estimators other than the robust, leave-one-out and K-fold ones, and for the last if something is known;
+/// [`Error::Range`] also for an image without pixels, for windows and parts that [`Image`] does not allow, for negative
+/// factors or integrals and for arrays of the wrong length; [`Error::NotFinite`] for factors, for what is known and for
+/// integrals that are not finite.
 ///
 /// ```
 /// use noisefloor::control_variate::{Config, Image, Samples, estimate_image, image_workspace_len};
@@ -147,12 +154,15 @@ pub fn estimate_image(
     let shape = config.checked_shape()?;
     let mut basis = Basis::empty();
     basis.set(config.basis, shape)?;
-    check_supported(config)?;
+    check_supported(config, image)?;
     let reader = Reader::new(config, samples)?;
     let (windows, pixels) = (image.windows()?, image.pixels()?);
     image.check(config)?;
     let n = reader.len() / pixels.max(1);
     if n == 0 || n * pixels != reader.len() {
+        return Err(Error::Range);
+    }
+    if image.has_known() && image.known.len() != samples.f.len() {
         return Err(Error::Range);
     }
     reader.check()?;
@@ -195,6 +205,16 @@ impl Layout<'_> {
         self.config.estimator == Estimator::LeaveOneOut || matches!(self.config.ridge, Ridge::Fixed(_))
     }
 
+    /// Whether what is known alone corrects: a fit to values that depend on it has seen its own pixel.
+    fn is_known_alone(&self) -> bool {
+        self.image.has_known() && self.config.estimator == Estimator::LeaveOneOut
+    }
+
+    /// Values of a sample that fits are made to: of each channel f and, with something known, f less its part of that.
+    fn values(&self) -> usize {
+        if self.image.has_known() { 2 * self.config.channels } else { self.config.channels }
+    }
+
     /// In how many turns pixels are chosen for.
     fn turns(&self) -> usize {
         if self.has_halves() { 2 } else { 1 }
@@ -207,6 +227,9 @@ impl Layout<'_> {
 
     /// Which columns fits to so many pixels have.
     fn terms(&self, pixels: usize) -> Terms {
+        if self.is_known_alone() {
+            return Terms::without_fits(self.windows.axes());
+        }
         let samples = pixels.saturating_mul(self.n);
         Terms::new(self.config, &self.shape, self.windows.axes(), samples, self.is_single_fit())
     }
@@ -233,16 +256,19 @@ impl Layout<'_> {
     /// Numbers of workspace.
     fn workspace_len(&self) -> Option<usize> {
         // More samples than 32 bits count need more memory than there is.
-        let pixels = self.windows.image.iter().try_fold(1_usize, |product, &extent| product.checked_mul(extent))?;
-        u32::try_from(pixels.checked_mul(self.n)?).ok()?;
-        let [width, _, frames] = self.windows.image;
+        u32::try_from(self.image.pixels().ok()?.checked_mul(self.n)?).ok()?;
+        let (width, frames) = (self.windows.given.width, self.windows.frames());
         let [_, rows] = self.band();
         let channels = self.config.channels;
         let sums = width.checked_mul(rows)?.checked_mul(frames)?.checked_mul(sums_len(channels))?;
         let pixels = self.windows.pixels();
         let slots = if self.is_joined() { pixels.div_ceil(LANES) } else { pixels };
         let terms = self.terms(pixels);
-        let batch = batch_len(&terms, channels, slots)?.checked_add(fits_len(&terms, channels, slots)?)?;
+        let known = if self.image.has_known() { (2 * channels + RELATIVE) * LANES } else { 0 };
+        let batch =
+            batch_len(&terms, self.values(), slots)?.checked_add(fits_len(&terms, self.values(), (slots, self.n))?)?;
+        let choices = Choices::new(self, &terms).len().checked_mul(LANES)?;
+        let batch = slots.checked_mul(known)?.checked_add(batch)?.checked_add(choices)?;
         sums.checked_add(self.groups_len()?)?.checked_add(batch)
     }
 }

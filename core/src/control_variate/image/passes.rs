@@ -2,9 +2,9 @@
 
 use super::super::config::Config;
 use super::Call;
-use super::batch::Batch;
+use super::batch::{Batch, NONE};
 use super::bright;
-use super::choice::{Each, Spreads, last_only};
+use super::choice::{Choices, Shares, Spreads};
 use super::fit::{Colours, Fits};
 use super::groups::{Group, Groups};
 use crate::arena::Arena;
@@ -13,9 +13,6 @@ use crate::lanes::{self, LANES};
 use crate::real::Real;
 use crate::rows::rows_mut;
 use core::hint::black_box;
-
-/// For each channel, how its correction is shared out.
-type Shares = [Each; Config::MAX_CHANNELS];
 
 impl Call<'_> {
     /// Fits to all groups: first to all of their pixels, then, where some are too bright, to the others.
@@ -68,7 +65,7 @@ impl Call<'_> {
         let channels = self.config.channels;
         let [Group { len, .. }, ..] = lanes;
         let terms = self.terms(len);
-        if terms.ends.is_empty() {
+        if terms.ends.is_empty() && !self.image.has_known() {
             return Ok(());
         }
         let mut batch = Batch::new(self, groups, &terms, lanes, arena)?;
@@ -76,10 +73,13 @@ impl Call<'_> {
         if let Some(turn) = turn {
             batch.leave_out(channels, |group| groups.limits(self, group, turn));
         }
+        if self.image.has_known() {
+            batch.relate(self, groups, arena)?;
+        }
         batch.load(self, groups, &terms, arena)?;
         let mut fits = Fits::new(self, &terms, batch.slots, arena)?;
-        let single = [last_only(terms.ends.len()); Config::MAX_CHANNELS];
-        let mut shares = [single; 2];
+        let choices = Choices::new(self, &terms);
+        let mut shares = Shares::last(choices, arena)?;
         // Halves choose for each other, then fits to all correct; or fits to all do both.
         let turns = self.turns();
         for step in 0..if turns == 2 { 3 } else { 1 } {
@@ -89,19 +89,19 @@ impl Call<'_> {
             }
             let judges = if is_last { Colours::ALL } else { Colours::HALVES[(step + 1) % 2] };
             fits.correct(self, &terms, &batch, judges);
-            let spreads = Spreads::new(self, &terms, &batch, &fits, judges);
+            let spreads = Spreads::new(choices, &terms, &batch, &fits, judges, &mut arena.scratch())?;
             let chooses = !self.is_single_fit() && (turns == 1 || !is_last);
-            if let Some(shares) = shares.get_mut(step).filter(|_| chooses) {
-                *shares = core::array::from_fn(|channel| spreads.shares(channel, self.config.stratified));
+            if chooses {
+                spreads.choose(step, self.config.stratified, &mut shares);
                 if turn.is_none() {
-                    self.find_limits(groups, &batch, (step, judges), shares);
+                    self.find_limits(groups, &batch, (step, judges), &shares);
                 }
             }
             if is_last {
                 if turn.is_none() {
                     self.tell(groups, &batch, &spreads, &shares);
                 }
-                self.put(groups, &batch, &fits, turn, &shares);
+                self.put(groups, &batch, &fits, turn, (choices, &shares));
             }
         }
         Ok(())
@@ -110,13 +110,13 @@ impl Call<'_> {
     /// What is told of the groups' errors. Bright pixels count: without them the error would be told too small where
     /// every pixel has rare bright samples.
     #[inline(always)]
-    fn tell(&self, groups: &mut Groups<'_>, batch: &Batch<'_>, spreads: &Spreads, shares: &[Shares; 2]) {
+    fn tell(&self, groups: &mut Groups<'_>, batch: &Batch<'_>, spreads: &Spreads<'_>, shares: &Shares<'_>) {
         let channels = self.config.channels;
         let by_groups = self.error_is_the_groups();
         let mut ratios = [[0.0; LANES]; Config::MAX_CHANNELS];
         for (channel, ratio) in ratios.iter_mut().enumerate().take(channels) {
-            for shares in shares.iter().take(self.turns()).filter_map(|shares| shares.get(channel)) {
-                let turn = spreads.ratio(channel, shares, !by_groups);
+            for turn in 0..self.turns() {
+                let turn = spreads.ratio(channel, shares.of(turn, channel), !by_groups);
                 *ratio = lanes::zip(ratio, &turn, |sum, turn| sum + turn / self.turns() as f32);
             }
         }
@@ -128,8 +128,9 @@ impl Call<'_> {
             let is_known = !by_groups || spreads.freedom[lane % LANES] > 0.0;
             *has_error = if is_known { 1.0 } else { 0.0 };
             *gain = 0.0;
-            let channels_of = spreads.sums.iter().zip(&ratios).zip(&batch.units);
-            for (error, (([plain, ..], ratio), units)) in errors.iter_mut().zip(channels_of) {
+            let channels_of = ratios.iter().zip(&batch.units).enumerate();
+            for (error, (channel, (ratio, units))) in errors.iter_mut().zip(channels_of) {
+                let plain = spreads.plain(channel);
                 *gain += ratio[lane % LANES] / channels as f32;
                 let spread = black_box(ratio[lane % LANES] * plain[lane % LANES]) / freedom[lane % LANES];
                 *error = if !by_groups {
@@ -151,7 +152,7 @@ impl Call<'_> {
         batch: &Batch<'_>,
         fits: &Fits<'_>,
         turn: Option<usize>,
-        shares: &[Shares; 2],
+        (choices, shares): (Choices, &Shares<'_>),
     ) {
         let channels = self.config.channels;
         for slot in 0..batch.slots {
@@ -159,10 +160,19 @@ impl Call<'_> {
             if turn.is_some_and(|turn| turn != half) {
                 continue;
             }
-            for (channel, (shares, units)) in shares[half % 2].iter().zip(&batch.units).enumerate().take(channels) {
+            for (channel, units) in batch.units.iter().enumerate().take(channels) {
+                let shares = shares.of(half, channel);
                 let mut sum = [0.0; LANES];
-                for (fit, share) in shares.iter().skip(1).enumerate().take(fits.count) {
-                    lanes::add_product(&mut sum, &fits.correction(channels, (slot, channel, fit)), share);
+                let mean = batch.means.get(slot * batch.values + channel).copied().unwrap_or(NONE);
+                for (choice, share) in shares.iter().enumerate().skip(1) {
+                    let (value, fit) = choices.value_and_fit(channel, choice);
+                    if value != channel {
+                        let other = batch.means.get(slot * batch.values + value).copied().unwrap_or(NONE);
+                        lanes::add_product(&mut sum, &lanes::zip(&other, &mean, |other, mean| other - mean), share);
+                    }
+                    if let Some(fit) = fit.checked_sub(1) {
+                        lanes::add_product(&mut sum, &fits.correction((slot, value, fit)), share);
+                    }
                 }
                 for (lane, (value, &exponent)) in sum.into_iter().zip(&units.exponents).enumerate() {
                     let Some(index) = batch.member(lane, slot) else { continue };
@@ -183,11 +193,12 @@ impl Call<'_> {
         groups: &mut Groups<'_>,
         batch: &Batch<'_>,
         (turn, judges): (usize, Colours),
-        shares: &Shares,
+        shares: &Shares<'_>,
     ) {
         let channels = self.config.channels;
-        for (channel, shares) in shares.iter().enumerate().take(channels) {
-            let limits = bright::limits(batch, channels, channel, judges, &shares[0]);
+        for channel in 0..channels {
+            let trust = shares.of(turn, channel).first().copied().unwrap_or(NONE);
+            let limits = bright::limits(batch, channels, channel, judges, &trust);
             for (lane, group) in batch.lanes.iter().enumerate().filter(|(_, group)| group.len > 0) {
                 let out = groups.limits_mut(self, group, turn);
                 if let Some([lowest, highest]) = rows_mut(out, 2).nth(channel) {

@@ -8,6 +8,9 @@ use crate::error::Error;
 ///
 /// Pixel (x, y) of frame t has the number (t height + y) width + x.
 ///
+/// Parts of a picture can be estimated on their own, one on each thread: see `wanted`. Together they have the same bits
+/// as the whole.
+///
 /// ```
 /// use noisefloor::control_variate::Image;
 ///
@@ -42,6 +45,56 @@ pub struct Image<'a> {
     /// either. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit. For
     /// textures where all samples of a pixel see one albedo: with defocus or motion blur they can raise the error.
     pub factors: &'a [f32],
+    /// For each sample, as `f`: what it would be with nothing in the way, its unshadowed contribution. Or empty.
+    /// Finite, and 0 where no light arrives anyway. Each pixel's estimate is then also corrected by how far these are
+    /// from `integrals`, as far as its neighbours' values follow theirs.
+    pub known: &'a [f32],
+    /// With `known`: for each pixel `channels` numbers, the exact integral of that over u. Finite and not negative; a
+    /// pixel with 0 is not corrected by it. Where a pixel's samples see several points, the mean of their integrals.
+    pub integrals: &'a [f32],
+    /// The pixels that the arrays hold, in all frames; all, if it is empty. Numbers of pixels count these alone.
+    pub given: Rectangle,
+    /// The pixels that are estimated; all that are given, if it is empty. Every window that has one of them must be
+    /// given whole: [`Image::needed`].
+    pub wanted: Rectangle,
+}
+
+/// Pixels of a picture: those from column `x` on and from row `y` on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rectangle {
+    /// The first column.
+    pub x: usize,
+    /// The first row.
+    pub y: usize,
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+}
+
+impl Rectangle {
+    /// From the first column and row, of so many.
+    #[inline]
+    pub const fn new(x: usize, y: usize, width: usize, height: usize) -> Self {
+        Self { x, y, width, height }
+    }
+
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Whether it has pixels, all of them within another.
+    fn is_within(&self, other: &Self) -> bool {
+        let along = |[at, extent]: [usize; 2], [start, all]: [usize; 2]| {
+            extent > 0 && at.checked_sub(start).is_some_and(|before| before <= all && extent <= all - before)
+        };
+        along([self.x, self.width], [other.x, other.width]) && along([self.y, self.height], [other.y, other.height])
+    }
+
+    /// Pixels, if they can be counted.
+    fn pixels(&self) -> Option<usize> {
+        self.width.checked_mul(self.height)
+    }
 }
 
 impl Image<'_> {
@@ -51,7 +104,21 @@ impl Image<'_> {
     /// An image of which nothing is known but its size.
     #[inline]
     pub const fn new(width: usize, height: usize) -> Self {
-        Self { width, height, frames: 1, unordered: false, window: 0, stride: 0, surfaces: &[], factors: &[] }
+        let all = Rectangle::new(0, 0, 0, 0);
+        Self {
+            width,
+            height,
+            frames: 1,
+            unordered: false,
+            window: 0,
+            stride: 0,
+            surfaces: &[],
+            factors: &[],
+            known: &[],
+            integrals: &[],
+            given: all,
+            wanted: all,
+        }
     }
 
     /// Pixels in no order.
@@ -60,34 +127,75 @@ impl Image<'_> {
         Self { unordered: true, ..Self::new(pixels, 1) }
     }
 
+    /// Whether something is known of the samples.
+    pub(super) fn has_known(&self) -> bool {
+        !self.known.is_empty()
+    }
+
+    /// The pixels that must be given for those of `wanted`: whole windows. All of them without places.
+    ///
+    /// # Errors
+    /// [`Error::Range`] for windows that are not allowed, and if `wanted` has no pixels or some beyond the image.
+    ///
+    /// ```
+    /// use noisefloor::control_variate::{Image, Rectangle};
+    ///
+    /// // The second of four strips. Windows of 8 x 8 pixels begin at every fourth.
+    /// let image = Image { wanted: Rectangle::new(0, 16, 64, 16), ..Image::new(64, 64) };
+    /// assert_eq!(image.needed()?, Rectangle::new(0, 12, 64, 24));
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
+    pub fn needed(&self) -> Result<Rectangle, Error> {
+        Ok(Self { given: Rectangle::default(), ..*self }.windows()?.needed())
+    }
+
     /// Where its windows lie.
     pub(super) fn windows(&self) -> Result<Windows, Error> {
+        let all = Rectangle::new(0, 0, self.width, self.height);
         if self.unordered {
             let pixels = self.pixels()?;
             let fits = pixels > 0 && (self.surfaces.is_empty() || pixels <= Self::MAX_WINDOW);
-            let whole = [pixels, 1, 1];
-            let windows = Windows { extent: whole, stride: pixels, image: whole, is_ordered: false };
-            return if fits { Ok(windows) } else { Err(Error::Range) };
+            let is_whole = self.given.is_empty() && self.wanted.is_empty();
+            let extent = [pixels, 1, 1];
+            let (whole, one) = (Rectangle::new(0, 0, pixels, 1), Rectangle::new(0, 0, 1, 1));
+            let windows = Windows {
+                extent,
+                stride: pixels,
+                image: extent,
+                is_ordered: false,
+                given: whole,
+                wanted: whole,
+                used: one,
+            };
+            return if fits && is_whole { Ok(windows) } else { Err(Error::Range) };
         }
+        let given = if self.given.is_empty() { all } else { self.given };
+        let wanted = if self.wanted.is_empty() { given } else { self.wanted };
         let side = if self.window == 0 { 8 } else { self.window };
         let stride = if self.stride == 0 { side.div_ceil(2) } else { self.stride };
         let (width, height) = (side.min(self.width), side.min(self.height));
         let pixels = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(self.frames()));
         let fits = pixels.is_some_and(|pixels| (1..=Self::MAX_WINDOW).contains(&pixels));
-        if !fits || stride > side {
+        if !fits || stride > side || !given.is_within(&all) || !wanted.is_within(&given) {
             return Err(Error::Range);
         }
         let image = [self.width, self.height, self.frames()];
-        Ok(Windows { extent: [width, height, self.frames()], stride, image, is_ordered: true })
+        let extent = [width, height, self.frames()];
+        let mut windows =
+            Windows { extent, stride, image, is_ordered: true, given, wanted, used: Rectangle::default() };
+        windows.used = windows.with_pixels(&wanted);
+        if windows.needed().is_within(&given) { Ok(windows) } else { Err(Error::Range) }
     }
 
     pub(super) fn frames(&self) -> usize {
         self.frames.max(1)
     }
 
-    /// All pixels of all frames.
+    /// All pixels that are given, of all frames.
     pub(super) fn pixels(&self) -> Result<usize, Error> {
-        let pixels = self.width.checked_mul(self.height).and_then(|pixels| pixels.checked_mul(self.frames()));
+        let all = Rectangle::new(0, 0, self.width, self.height);
+        let given = if self.given.is_empty() { all } else { self.given };
+        let pixels = given.pixels().and_then(|pixels| pixels.checked_mul(self.frames()));
         pixels.filter(|&pixels| u32::try_from(pixels).is_ok()).ok_or(Error::Range)
     }
 
@@ -98,10 +206,16 @@ impl Image<'_> {
         if !fits(self.surfaces.len(), 1) || !fits(self.factors.len(), config.channels) {
             return Err(Error::Range);
         }
-        if !self.factors.iter().all(|factor| factor.is_finite()) {
+        let has_known = !self.known.is_empty();
+        if has_known == self.integrals.is_empty() || !fits(self.integrals.len(), config.channels) {
+            return Err(Error::Range);
+        }
+        let values = [self.factors, self.known, self.integrals].into_iter().flatten();
+        if !values.into_iter().all(|value| value.is_finite()) {
             return Err(Error::NotFinite);
         }
-        if self.factors.iter().any(|&factor| factor < 0.0) { Err(Error::Range) } else { Ok(()) }
+        let is_negative = self.factors.iter().chain(self.integrals).any(|&value| value < 0.0);
+        if is_negative { Err(Error::Range) } else { Ok(()) }
     }
 }
 
@@ -112,8 +226,14 @@ pub(super) struct Windows {
     pub(super) extent: [usize; MAX_AXES],
     stride: usize,
     /// Width, height and frames of the image.
-    pub(super) image: [usize; MAX_AXES],
+    image: [usize; MAX_AXES],
     pub(super) is_ordered: bool,
+    /// Pixels that the arrays hold.
+    pub(super) given: Rectangle,
+    /// Pixels that are estimated.
+    pub(super) wanted: Rectangle,
+    /// Columns and rows of windows that have any of those.
+    used: Rectangle,
 }
 
 /// A window's first pixel.
@@ -130,6 +250,10 @@ impl Windows {
         width * height * frames
     }
 
+    pub(super) fn frames(&self) -> usize {
+        self.image[2]
+    }
+
     /// The axes along which a window's pixels differ.
     pub(super) fn axes(&self) -> usize {
         if self.is_ordered { self.extent.into_iter().filter(|&extent| extent > 1).count() } else { 0 }
@@ -143,22 +267,60 @@ impl Windows {
         axes
     }
 
-    /// Windows in a row, and rows of windows.
+    /// Used windows in a row, and rows of them.
     pub(super) fn counts(&self) -> [usize; 2] {
-        let count = |extent: usize, window: usize| 1 + extent.saturating_sub(window).div_ceil(self.stride.max(1));
-        let [[width, height, _], [across, down, _]] = [self.image, self.extent];
-        [count(width, across), count(height, down)]
+        [self.used.width, self.used.height]
     }
 
-    /// The first row of pixels of a row of windows; the last ends where the image does.
+    /// Which of the windows along an axis have any of some pixels, as the first and how many; all, if pixels have no
+    /// places. Windows begin at every `stride` pixels, and the last ends where the image does.
+    fn with_any(&self, axis: usize, first: usize, pixels: usize) -> [usize; 2] {
+        let [image, window] = [self.image, self.extent].map(|extents| extents[axis % MAX_AXES]);
+        let last = image.saturating_sub(window);
+        let stride = self.stride.max(1);
+        let windows = 1 + last.div_ceil(stride);
+        // The first that ends beyond the first pixel: the image's last may begin less than a stride after the one
+        // before.
+        let begin = (first + 1).saturating_sub(window).div_ceil(stride).min(windows - 1);
+        let end = (first + pixels - 1) / stride + 1;
+        // The last begins where the image's end says.
+        let end = if first + pixels > last { windows } else { end.min(windows) };
+        [begin, end.saturating_sub(begin)]
+    }
+
+    fn with_pixels(&self, wanted: &Rectangle) -> Rectangle {
+        let [x, width] = self.with_any(0, wanted.x, wanted.width);
+        let [y, height] = self.with_any(1, wanted.y, wanted.height);
+        Rectangle { x, y, width, height }
+    }
+
+    /// The pixels of all windows that are used.
+    fn needed(&self) -> Rectangle {
+        if !self.is_ordered {
+            return self.given;
+        }
+        let [across, down] = self.counts();
+        let (first, last) = (self.window(0, 0), self.window(across.saturating_sub(1), down.saturating_sub(1)));
+        let [width, height, _] = self.extent;
+        Rectangle::new(first.x, first.y, last.x + width - first.x, last.y + height - first.y)
+    }
+
+    /// The first row of pixels of a row of used windows.
     pub(super) fn top(&self, row: usize) -> usize {
         let [[_, height, _], [_, down, _]] = [self.image, self.extent];
-        (row * self.stride).min(height.saturating_sub(down))
+        ((self.used.y + row) * self.stride).min(height.saturating_sub(down))
     }
 
-    /// A window, row by row.
+    /// A used window.
     pub(super) fn window(&self, column: usize, row: usize) -> Window {
         let [[width, ..], [across, ..]] = [self.image, self.extent];
-        Window { x: (column * self.stride).min(width.saturating_sub(across)), y: self.top(row) }
+        let x = ((self.used.x + column) * self.stride).min(width.saturating_sub(across));
+        Window { x, y: self.top(row) }
+    }
+
+    /// The number of a given pixel.
+    #[inline(always)]
+    pub(super) fn number(&self, x: usize, y: usize, frame: usize) -> usize {
+        (frame * self.given.height + y - self.given.y) * self.given.width + x - self.given.x
     }
 }

@@ -4,6 +4,7 @@ use super::super::config::Estimate;
 use super::super::result::{mean_divisor, saturate, standard_error};
 use super::Call;
 use super::groups::Groups;
+use super::pixels::Rectangle;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::real::Real;
@@ -14,7 +15,7 @@ use core::hint::black_box;
 /// gain.
 const COMMON: usize = 3;
 /// The largest correction that the windows of a pixel may add up, 2^120.
-const MOST: f64 = (1_u128 << 120) as f64;
+const MOST: f32 = (1_u128 << 120) as f32;
 
 /// The square of a likely correction is at most this many times the variance of the mean.
 const UNLIKELY: f64 = 4.0;
@@ -35,15 +36,16 @@ impl Call<'_> {
     /// All of it: windows some rows at a time, and pixels as soon as no later window has them.
     #[inline(always)]
     pub(super) fn run(&self, arena: &mut Arena<'_, f32>, out: &mut impl FnMut(usize, Estimate)) -> Result<(), Error> {
-        let [width, height, frames] = self.windows.image;
+        let (Rectangle { width, .. }, wanted) = (self.windows.given, self.windows.wanted);
+        let frames = self.windows.frames();
         let [across, down] = self.windows.counts();
         let [rows, touched] = self.band();
         let sums = arena.take(width * touched * frames * sums_len(self.config.channels))?;
         sums.iter_mut().for_each(|sum| *sum = 0.0);
         let mut band = Band { sums, rows: touched };
         let mut groups = self.groups(arena)?;
-        let has_fits = !self.terms(self.windows.pixels()).ends.is_empty();
-        let mut done = 0;
+        let has_fits = self.image.has_known() || !self.terms(self.windows.pixels()).ends.is_empty();
+        let mut done = self.windows.top(0);
         for row in (0..down).step_by(rows.max(1)) {
             let last = (row + rows).min(down);
             for first in (row * across..last * across).step_by(self.windows_at_once().max(1)) {
@@ -55,7 +57,7 @@ impl Call<'_> {
                 self.fit(&mut groups, arena)?;
                 self.add(first, &groups, &mut band);
             }
-            let end = if last < down { self.windows.top(last) } else { height };
+            let end = if last < down { self.windows.top(last) } else { wanted.y + wanted.height };
             for frame in 0..frames {
                 for y in done..end {
                     self.write(frame, y, &mut band, out);
@@ -70,7 +72,8 @@ impl Call<'_> {
     #[inline(always)]
     fn add(&self, first: usize, groups: &Groups<'_>, band: &mut Band<'_>) {
         let channels = self.config.channels;
-        let [width, ..] = self.windows.image;
+        let given = self.windows.given;
+        let has_factors = !self.image.factors.is_empty();
         // How near a pixel is to its window's centre: 1 there, falling linearly along x and y to almost 0.
         let inverse = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
         let hat = |at: usize, inverse: f32| 1.0 - Real::abs((2 * at + 1) as f32 * inverse - 1.0);
@@ -84,7 +87,7 @@ impl Call<'_> {
                 let (mut at, mut near) = (index, 1.0);
                 if self.windows.is_ordered {
                     let row = if top + y < band.rows { top + y } else { top + y - band.rows };
-                    at = (frame * band.rows + row) * width + window.x + x;
+                    at = (frame * band.rows + row) * given.width + window.x + x - given.x;
                     near = hat(x, inverse[0]) * hat(y, inverse[1]);
                 } else if !self.is_joined() {
                     at = x;
@@ -97,15 +100,18 @@ impl Call<'_> {
                 let corrections = row_at(groups.corrections, channels, group.start + index);
                 let values = corrections.iter().zip(errors).enumerate();
                 for (each, (channel, (&correction, &error))) in rows_mut(each, 2).zip(values) {
-                    let (mut correction, mut error) = (f64::from(correction), f64::from(error));
-                    if !self.image.factors.is_empty() {
+                    let mut both = [correction, error];
+                    if has_factors {
                         let factor = self.factor(self.pixel(window, place, index), channel);
-                        correction *= factor;
-                        error *= if self.error_is_the_groups() { factor } else { 1.0 };
+                        let factors = [factor, if self.error_is_the_groups() { factor } else { 1.0 }];
+                        let most = f64::from(f32::MAX);
+                        both.iter_mut().zip(factors).for_each(|(value, factor)| {
+                            *value = (f64::from(*value) * factor).clamp(-most, most) as f32;
+                        });
                     }
-                    for (sum, value) in each.iter_mut().zip([correction, error]) {
+                    for (sum, value) in each.iter_mut().zip(both) {
                         // What cannot be added up is no number, and found at the end.
-                        *sum += near * (if libm::fabs(value) < MOST { value } else { f64::NAN }) as f32;
+                        *sum += near * if Real::abs(value) < MOST { value } else { f32::NAN };
                     }
                 }
             }
@@ -115,14 +121,17 @@ impl Call<'_> {
     /// Writes a row of pixels, and empties its sums.
     #[inline(always)]
     fn write(&self, frame: usize, y: usize, band: &mut Band<'_>, out: &mut impl FnMut(usize, Estimate)) {
-        let [width, height, _] = self.windows.image;
+        let (given, wanted) = (self.windows.given, self.windows.wanted);
         let row = frame * band.rows + y.checked_rem(band.rows).unwrap_or(0);
-        for x in 0..width {
-            let sums = row_at_mut(band.sums, sums_len(self.config.channels), row * width + x);
-            let pixel = (frame * height + y) * width + x;
-            out(pixel, self.estimate(pixel, sums));
+        if y >= wanted.y {
+            for x in 0..wanted.width {
+                let column = wanted.x - given.x + x;
+                let sums = row_at(band.sums, sums_len(self.config.channels), row * given.width + column);
+                let estimate = self.estimate(self.windows.number(wanted.x + x, y, frame), sums);
+                out((frame * wanted.height + y - wanted.y) * wanted.width + x, estimate);
+            }
         }
-        let sums = row_at_mut(band.sums, width * sums_len(self.config.channels), row);
+        let sums = row_at_mut(band.sums, given.width * sums_len(self.config.channels), row);
         sums.iter_mut().for_each(|sum| *sum = 0.0);
     }
 
@@ -143,21 +152,24 @@ impl Call<'_> {
             let &[correction, spread] = sums else { continue };
             let (correction, spread) = (f64::from(correction) * inverse, f64::from(spread) * error_inverse);
             let first = self.reader.value(pixel * self.n, channel);
-            let (mut total, mut square) = (0.0, 0.0);
-            for sample in pixel * self.n + 1..(pixel + 1) * self.n {
-                let value = self.reader.value(sample, channel) - first;
-                total += value;
-                square += value * value;
+            let (mut plain, mut variance) = (first, f64::INFINITY);
+            if self.n > 1 {
+                let (mut total, mut square) = (0.0, 0.0);
+                for sample in pixel * self.n + 1..(pixel + 1) * self.n {
+                    let value = self.reader.value(sample, channel) - first;
+                    total += value;
+                    square += value * value;
+                }
+                let n = self.n as f64;
+                plain += total / n;
+                variance = (square - total * total / n).max(0.0) / mean_divisor(n);
             }
-            let n = self.n as f64;
-            let plain = if self.n > 1 { first + total / n } else { first };
             // In no group there is no correction; nor is one that left the type's range.
             *mean = saturate(if correction.is_finite() { plain + correction } else { plain });
             let has_error = *error_weight > 0.0;
             let told = if has_error && self.error_is_the_groups() {
                 spread
             } else if self.n > 1 {
-                let variance = (square - total * total / n).max(0.0) / mean_divisor(n);
                 let ratio = if has_error { spread * spread } else { 1.0 };
                 // A correction that the pixel's own samples make unlikely is an error.
                 let moved = if correction.is_finite() { correction * correction } else { 0.0 };

@@ -69,6 +69,11 @@ impl Terms {
         terms
     }
 
+    /// The constant and the axes alone: no candidates.
+    pub(super) fn without_fits(axes: usize) -> Self {
+        Self { axes, ..Self::default() }
+    }
+
     /// The constant and the axes.
     #[inline(always)]
     pub(super) fn fixed(&self) -> usize {

@@ -5,6 +5,7 @@ mod bases;
 mod comparison;
 mod direct;
 mod environment;
+mod frames;
 mod indirect;
 mod lights;
 mod luminance;
@@ -44,6 +45,7 @@ pub(crate) const SECTIONS: &[Entry] = &[
     (12, solvers::write),
     (4, luminance::write),
     (74, samplers::write),
+    (70, frames::write),
     (15, reconstruction::write),
     (55, animation::write),
     (20, overhead::write),

@@ -1,0 +1,139 @@
+//! How far pixels' values follow what is known of their samples, by the other pixels of their group.
+//!
+//! With a sample's unshadowed contribution a and A its integral over u, a pixel's mean f - beta (a - A) has the
+//! integral of f for every beta that has not seen the pixel. Of the others' means, beta = sum w (f - v A) (a - A) / sum
+//! w (a - A)^2 with w = 1 / A^2 and v = sum f / A over sum a / A, the share of the light that arrives: at least 0, at
+//! most v, and at most 1. Where more arrives than is known, v says little.
+
+use super::Call;
+use super::batch::{Batch, Eight, NONE, only, plus};
+use super::groups::Groups;
+use crate::arena::Arena;
+use crate::error::Error;
+use crate::lanes::{self, LANES};
+use crate::real::Real;
+use core::hint::black_box;
+
+/// Integrals count as at least this much of the group's largest: what else arrives would decide where they are small.
+const LEAST: f32 = 0.01;
+/// Values beyond so many integrals say nothing about others.
+const MOST: f32 = (1_u64 << 40) as f32;
+/// Numbers for each slot while the coefficients of a channel are computed.
+pub(super) const RELATIVE: usize = 2 * SUMS;
+const SUMS: usize = 5;
+
+/// Of some pixels, relative to their integrals, sums of: f; a; (a - A)^2; f (a - A); A (a - A).
+type Sums = [Eight; SUMS];
+
+/// Of one pixel, by its f, its a and a - A.
+#[inline(always)]
+fn products([mean, known, apart]: &[Eight; 3]) -> Sums {
+    let times = |a: &Eight| lanes::zip(a, apart, |a, b| a * b);
+    let integral = lanes::zip(known, apart, |known, apart| known - apart);
+    [*mean, *known, times(apart), times(mean), times(&integral)]
+}
+
+#[inline(always)]
+fn both(a: &Sums, b: &Sums) -> Sums {
+    let mut sums = *a;
+    sums.iter_mut().zip(b).for_each(|(sum, b)| *sum = plus(sum, b));
+    sums
+}
+
+/// In each lane, the sum of the others.
+fn other_lanes(sum: &Eight) -> Eight {
+    let mut others = NONE;
+    for (l, out) in others.iter_mut().enumerate() {
+        for (_, value) in sum.iter().enumerate().filter(|&(lane, _)| lane != l) {
+            *out += value;
+        }
+    }
+    others
+}
+
+/// The coefficient by some pixels.
+#[inline(always)]
+fn coefficient([mean, known, square, mean_product, integral_product]: &Sums) -> Eight {
+    let [known_divisor, square_divisor] = [known, square].map(lanes::divisor);
+    let mut coefficient = NONE;
+    for l in 0..LANES {
+        // Behind a black box, or compilers divide where nothing is, too.
+        let share = black_box(mean[l] / known_divisor[l]);
+        let slope = black_box((mean_product[l] - share * integral_product[l]) / square_divisor[l]);
+        let is_known = known[l] > 0.0 && square[l] > 0.0;
+        coefficient[l] = if is_known { Real::max(Real::min(slope, Real::min(share, 1.0)), 0.0) } else { 0.0 };
+    }
+    coefficient
+}
+
+impl Batch<'_> {
+    /// Computes the coefficient of each slot and channel.
+    #[inline(always)]
+    pub(super) fn relate(
+        &mut self,
+        call: &Call<'_>,
+        groups: &Groups<'_>,
+        arena: &mut Arena<'_, f32>,
+    ) -> Result<(), Error> {
+        let channels = call.config.channels;
+        let mut arena = arena.scratch();
+        // Of each slot alone, and of all before it.
+        let own = arena.take_lanes(SUMS * self.slots)?.as_chunks_mut::<SUMS>().0;
+        let before = arena.take_lanes(SUMS * self.slots)?.as_chunks_mut::<SUMS>().0;
+        let inverse = 1.0 / call.n as f32;
+        for channel in 0..channels {
+            let mut largest = NONE;
+            for slot in 0..self.slots {
+                let mut integral = NONE;
+                for (lane, integral) in integral.iter_mut().enumerate() {
+                    if let Some((pixel, _)) = self.pixel(call, groups, lane, slot) {
+                        *integral = call.integral(pixel, channel);
+                    }
+                }
+                let inside = self.inside.get(slot).copied().unwrap_or(NONE);
+                largest = lanes::zip(&largest, &only(&inside, &integral), Real::max);
+                if let Some(out) = self.integrals.get_mut(slot * channels + channel) {
+                    *out = integral;
+                }
+            }
+            if self.is_joined {
+                largest = [largest.into_iter().fold(0.0, Real::max); LANES];
+            }
+            let mut all = [NONE; SUMS];
+            for (slot, (own, before)) in own.iter_mut().zip(before.iter_mut()).enumerate() {
+                let (mut mean, mut known) = (NONE, NONE);
+                for lane in 0..LANES {
+                    let Some((pixel, _)) = self.pixel(call, groups, lane, slot) else { continue };
+                    for sample in pixel * call.n..(pixel + 1) * call.n {
+                        mean[lane] += call.value(pixel, sample, channel) * inverse;
+                        known[lane] += call.known(pixel, sample, channel) * inverse;
+                    }
+                }
+                let integral = self.integrals.get(slot * channels + channel).copied().unwrap_or(NONE);
+                let inside = self.inside.get(slot).copied().unwrap_or(NONE);
+                let unit = lanes::zip(&integral, &largest, |integral, largest| Real::max(integral, largest * LEAST));
+                let unit = lanes::divisor(&unit);
+                let over = |value: &Eight| lanes::zip(value, &unit, |value, unit| black_box(value / unit));
+                let apart = lanes::zip(&known, &integral, |known, integral| known - integral);
+                let values = [over(&mean), over(&known), over(&apart)];
+                let mut counts = inside;
+                for l in 0..LANES {
+                    let is_usual = values.iter().all(|value| Real::abs(value[l]) < MOST);
+                    counts[l] = if integral[l] > 0.0 && is_usual { inside[l] } else { 0.0 };
+                }
+                *own = products(&values.map(|value| only(&counts, &value)));
+                (*before, all) = (all, both(&all, own));
+            }
+            // Sums of all pixels but one, without a difference: that would hold digits of the one.
+            let mut others = if self.is_joined { all.map(|sum| other_lanes(&sum)) } else { [NONE; SUMS] };
+            for (slot, (own, before)) in own.iter().zip(before.iter()).enumerate().rev() {
+                let integral = self.integrals.get(slot * channels + channel).copied().unwrap_or(NONE);
+                if let Some(out) = self.coefficients.get_mut(slot * channels + channel) {
+                    *out = only(&integral, &coefficient(&both(before, &others)));
+                }
+                others = both(&others, own);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,179 @@
+//! Parts of an image that are estimated on their own have the bits of the whole.
+
+use crate::cv_support::points;
+use noisefloor::Error;
+use noisefloor::control_variate::{
+    Config, Estimate, Estimator, Image, Rectangle, Samples, estimate_image, image_workspace_len,
+};
+use noisefloor_tests::random::SplitMix64;
+
+/// The arrays of some pixels of an image.
+struct Arrays {
+    u: Vec<f32>,
+    f: Vec<f32>,
+    surfaces: Vec<u32>,
+    factors: Vec<f32>,
+    known: Vec<f32>,
+    integrals: Vec<f32>,
+}
+
+struct Picture {
+    width: usize,
+    height: usize,
+    frames: usize,
+    n: usize,
+    has_known: bool,
+    arrays: Arrays,
+}
+
+impl Picture {
+    fn new([width, height, frames]: [usize; 3], n: usize, has_known: bool, rng: &mut SplitMix64) -> Self {
+        let pixels = width * height * frames;
+        let u = points(pixels * n, 2, rng);
+        let mut f = vec![];
+        for (i, u) in u.chunks(2).enumerate() {
+            let at = (i / n % width) as f32 + 0.5 * (i / n / width) as f32;
+            f.push(if u[0] + u[1] < 0.1 * at { 1.0 + u[1] } else { 0.0 });
+            f.push(u[0] * u[0] * at + if rng.below(97) == 0 { 900.0 } else { 0.0 });
+        }
+        let known = u.chunks(2).flat_map(|u| [1.0 + u[1], u[0]]).collect();
+        let arrays = Arrays {
+            u,
+            f,
+            surfaces: (0..pixels).map(|pixel| (pixel % width / 5 + rng.below(2)) as u32).collect(),
+            factors: (0..2 * pixels).map(|_| 0.5 + rng.uniform_f32()).collect(),
+            known,
+            integrals: (0..pixels).flat_map(|_| [1.5, 0.5]).collect(),
+        };
+        Self { width, height, frames, n, has_known, arrays }
+    }
+
+    /// The arrays of a part.
+    fn cut(&self, of: &Rectangle) -> Arrays {
+        let mut pixels = vec![];
+        for frame in 0..self.frames {
+            for y in of.y..of.y + of.height {
+                pixels.extend((of.x..of.x + of.width).map(|x| (frame * self.height + y) * self.width + x));
+            }
+        }
+        let all = &self.arrays;
+        let each = |values: &[f32], width: usize| -> Vec<f32> {
+            pixels.iter().flat_map(|&pixel| values[pixel * width..(pixel + 1) * width].iter().copied()).collect()
+        };
+        Arrays {
+            u: each(&all.u, 2 * self.n),
+            f: each(&all.f, 2 * self.n),
+            surfaces: pixels.iter().map(|&pixel| all.surfaces[pixel]).collect(),
+            factors: each(&all.factors, 2),
+            known: each(&all.known, 2 * self.n),
+            integrals: each(&all.integrals, 2),
+        }
+    }
+
+    fn image<'a>(&self, arrays: &'a Arrays, base: &Image<'a>) -> Image<'a> {
+        let known = |values: &'a [f32]| if self.has_known { values } else { &[] };
+        Image {
+            width: self.width,
+            height: self.height,
+            frames: self.frames,
+            surfaces: &arrays.surfaces,
+            factors: &arrays.factors,
+            known: known(&arrays.known),
+            integrals: known(&arrays.integrals),
+            ..*base
+        }
+    }
+}
+
+fn estimates(config: &Config, image: &Image<'_>, arrays: &Arrays, n: usize) -> Result<Vec<Estimate>, Error> {
+    let mut workspace = vec![f32::NAN; image_workspace_len(config, image, n)?];
+    let mut out = vec![];
+    estimate_image(config, image, Samples::new(&arrays.u, &arrays.f), &mut workspace, |index, estimate| {
+        if out.len() <= index {
+            out.resize(index + 1, None);
+        }
+        assert!(out[index].replace(estimate).is_none(), "pixel {index} twice");
+    })?;
+    Ok(out.into_iter().map(|estimate| estimate.expect("every pixel")).collect())
+}
+
+fn same(a: &Estimate, b: &Estimate) -> bool {
+    let bits = |e: &Estimate| [e.mean, e.std_error, [e.gain; 4]].map(|values| values.map(f32::to_bits));
+    bits(a) == bits(b) && a.samples == b.samples
+}
+
+/// Rectangles at random, of all arrays and of no more than is needed.
+#[test]
+fn parts_have_the_bits_of_the_whole() {
+    let mut rng = SplitMix64::new(1);
+    let windows = [(0, 0), (8, 8), (5, 3), (7, 1), (4, 3), (16, 9)];
+    for (case, shape) in [[37, 29, 1], [9, 40, 1], [16, 16, 2], [6, 5, 1]].into_iter().enumerate() {
+        for (window, stride) in windows {
+            for n in [1, 3] {
+                let picture = Picture::new(shape, n, case % 2 == 0, &mut rng);
+                let estimator = if case == 3 { Estimator::KFold } else { Estimator::Robust };
+                let config = Config { estimator, ..Config::new(2, 2, 2) };
+                let base = Image { window, stride, ..Image::new(shape[0], shape[1]) };
+                let whole = picture.image(&picture.arrays, &base);
+                let expected = estimates(&config, &whole, &picture.arrays, n).unwrap();
+                for _ in 0..6 {
+                    let [x, y] = [rng.below(shape[0]), rng.below(shape[1])];
+                    let wanted = Rectangle::new(x, y, 1 + rng.below(shape[0] - x), 1 + rng.below(shape[1] - y));
+                    let of = Image { wanted, ..whole };
+                    let from_all = estimates(&config, &of, &picture.arrays, n).unwrap();
+                    let given = of.needed().unwrap();
+                    let arrays = picture.cut(&given);
+                    let alone = Image { given, wanted, ..picture.image(&arrays, &base) };
+                    let from_needed = estimates(&config, &alone, &arrays, n).unwrap();
+                    assert_eq!(from_all.len(), wanted.width * wanted.height * shape[2]);
+                    assert_eq!(from_needed.len(), from_all.len());
+                    for (i, (a, b)) in from_all.iter().zip(&from_needed).enumerate() {
+                        let [column, row] = [i % wanted.width, i / wanted.width];
+                        let [row, frame] = [row % wanted.height, row / wanted.height];
+                        let pixel = (frame * shape[1] + wanted.y + row) * shape[0] + wanted.x + column;
+                        assert!(same(a, &expected[pixel]), "{shape:?} {window} {stride} {n} {wanted:?} {i}");
+                        assert!(same(b, &expected[pixel]), "{shape:?} {window} {stride} {n} {given:?} {i}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// One column or row less than is needed is refused, as is what lies beyond the image.
+#[test]
+fn no_less_than_needed() {
+    let config = Config::new(2, 2, 1);
+    let base = Image { width: 64, height: 48, ..Image::new(64, 48) };
+    let fails = |image: &Image<'_>| image_workspace_len(&config, image, 1) == Err(Error::Range);
+    let wanted = Rectangle::new(18, 17, 10, 9);
+    let of = Image { wanted, ..base };
+    // Windows of 8 begin at every fourth pixel: from 12 to before 32.
+    let needed = of.needed().unwrap();
+    assert_eq!(needed, Rectangle::new(12, 12, 20, 20));
+    assert!(!fails(&Image { given: needed, ..of }));
+    let Rectangle { x, y, width, height } = needed;
+    for given in [
+        Rectangle::new(x + 1, y, width - 1, height),
+        Rectangle::new(x, y + 1, width, height - 1),
+        Rectangle::new(x, y, width - 1, height),
+        Rectangle::new(x, y, width, height - 1),
+        Rectangle::new(x, y, 65 - x, height),
+        Rectangle::new(x, y, width, usize::MAX),
+        Rectangle::new(usize::MAX, y, width, height),
+        Rectangle::new(x, y, 0, height),
+    ] {
+        assert!(fails(&Image { given, ..of }), "{given:?}");
+    }
+    for wanted in [
+        Rectangle::new(60, 0, 5, 5),
+        Rectangle::new(0, 48, 5, 1),
+        Rectangle::new(0, 0, usize::MAX, 1),
+        Rectangle::new(0, 0, 1, 0),
+    ] {
+        assert!(fails(&Image { wanted, ..base }), "{wanted:?}");
+        assert!(Image { wanted, ..base }.needed().is_err(), "{wanted:?}");
+    }
+    // Pixels without places have no parts.
+    assert!(fails(&Image { wanted, ..Image::unordered(100) }));
+}
