@@ -85,7 +85,7 @@ pub fn run(options: &Options) -> Result<()> {
     steps.c("tests/embree: every scene, three samplers, 32 x 32 pixels", "default", "embree_scenes", &all);
     let heading = "tests/povray: POV-Ray's pictures as integrands, every estimator and sampler, 32 x 32 pixels";
     steps.start(heading, "report", "povray");
-    steps.start("cargo xtask report --quick: every number of the text is in the JSON", "report", "embree");
+    steps.start("cargo xtask report --quick: the path tracer on Embree", "report", "embree");
     let heading = "examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces";
     steps.run(heading, || c_tests::run_twice("renderers", &[]));
     steps.c("examples_c/python: ctypes declarations, tests and a training loop", "default", "python", &[PYTHON]);

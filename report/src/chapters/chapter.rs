@@ -1,8 +1,8 @@
-//! A chapter of the report: what is written as Markdown, and the same figures as JSON.
+//! A chapter of the report, as data: tables, figures that its text quotes, settings. Its text is a template.
 
 use super::figure::Figure;
-use super::targets::Judged;
-use crate::measure::markdown;
+use super::template;
+use anyhow::Result;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -47,21 +47,13 @@ impl<T: Into<Cell>> From<Option<T>> for Cell {
     }
 }
 
-impl Cell {
-    fn text(&self) -> String {
-        match self {
-            Self::Word(word) => word.clone(),
-            Self::Figure(figure) => figure.text.clone(),
-            Self::Missing => "-".to_owned(),
-        }
-    }
-}
-
 #[derive(Serialize)]
 struct Table {
     name: &'static str,
     section: String,
     columns: Vec<String>,
+    /// What stands in so many columns is aligned left.
+    words: usize,
     rows: Vec<Vec<Cell>>,
 }
 
@@ -76,70 +68,37 @@ pub(crate) fn headings(words: &[&str], more: impl IntoIterator<Item = String>) -
     words.iter().map(|&word| word.to_owned()).chain(more).collect()
 }
 
-/// Grows as the chapter is written, from the top down.
 #[derive(Default)]
 pub(crate) struct Chapter {
-    text: String,
+    title: String,
     section: String,
-    sections: Vec<String>,
     tables: Vec<Table>,
     quoted: BTreeMap<String, Figure>,
     settings: BTreeMap<String, Value>,
-    targets: Vec<Judged>,
 }
 
 impl Chapter {
     pub(crate) fn new(title: &str) -> Self {
-        Self {
-            text: format!("# {title}\n"),
-            section: title.to_owned(),
-            sections: vec![title.to_owned()],
-            ..Self::default()
-        }
+        Self { title: title.to_owned(), section: title.to_owned(), ..Self::default() }
     }
 
-    /// What was written elsewhere follows.
-    pub(crate) fn append(&mut self, mut other: Self) {
-        self.text += &other.text;
-        self.section = other.section;
-        self.sections.append(&mut other.sections);
-        self.tables.append(&mut other.tables);
-        self.quoted.append(&mut other.quoted);
-        self.settings.append(&mut other.settings);
-        self.targets.append(&mut other.targets);
-    }
-
-    /// A heading; `source` names the figures of the thesis that the section stands beside.
+    /// The tables that follow stand below this heading; `source` names the figures of the thesis beside them.
     pub(crate) fn section(&mut self, title: &str, source: &str) {
-        let heading = if source.is_empty() { title.to_owned() } else { format!("{title} ({source})") };
-        self.text += &format!("\n## {heading}\n");
-        self.section.clone_from(&heading);
-        self.sections.push(heading);
+        self.section = if source.is_empty() { title.to_owned() } else { format!("{title} ({source})") };
     }
 
-    /// A paragraph. Its numbers come from [`Self::quote`] and [`Self::setting`].
-    pub(crate) fn paragraph(&mut self, text: &str) {
-        self.text += &format!("\n{}\n", wrap(text));
+    pub(crate) fn current_section(&self) -> &str {
+        &self.section
     }
 
-    pub(crate) fn list<T: AsRef<str>>(&mut self, points: &[T]) {
-        self.text.push('\n');
-        for point in points {
-            self.text += &format!("- {}\n", wrap(point.as_ref()).replace('\n', "\n  "));
-        }
-    }
-
-    /// Records a figure that the text quotes, and returns how it is written.
-    pub(crate) fn quote(&mut self, name: impl Into<String>, figure: Figure) -> String {
-        let text = figure.text.clone();
+    /// A figure that the text quotes.
+    pub(crate) fn quote(&mut self, name: impl Into<String>, figure: Figure) {
         self.quoted.insert(name.into(), figure);
-        text
     }
 
-    /// Records a number that was chosen, not measured, and returns it.
-    pub(crate) fn setting<T: Into<Value> + Clone>(&mut self, name: impl Into<String>, value: T) -> T {
-        self.settings.insert(name.into(), value.clone().into());
-        value
+    /// What was chosen, not measured.
+    pub(crate) fn setting(&mut self, name: impl Into<String>, value: impl Into<Value>) {
+        self.settings.insert(name.into(), value.into());
     }
 
     /// `columns`: their headings; what stands in the first `words` of them is aligned left.
@@ -150,89 +109,15 @@ impl Chapter {
         words: usize,
         rows: Vec<Vec<Cell>>,
     ) {
-        let columns: Vec<&str> = columns.iter().map(AsRef::as_ref).collect();
-        let cells = rows.iter().map(|row| row.iter().map(Cell::text).collect());
-        let words: Vec<usize> = (0..words).collect();
-        self.text += &format!("\n{}", markdown::lines(&columns, &words, cells.collect()));
-        let columns = columns.into_iter().map(str::to_owned).collect();
-        self.tables.push(Table { name, section: self.section.clone(), columns, rows });
-    }
-
-    pub(crate) fn picture(&mut self, file: &str, description: &str) {
-        self.text += &format!("\n![{description}]({file})\n");
-    }
-
-    /// Headings so far.
-    pub(crate) fn sections(&self) -> &[String] {
-        &self.sections
-    }
-
-    /// What the index is told.
-    pub(crate) fn hand_over(&mut self, mut targets: Vec<Judged>) {
-        self.targets.append(&mut targets);
-    }
-
-    pub(crate) fn markdown(&self) -> &str {
-        &self.text
+        let columns = columns.iter().map(|column| column.as_ref().to_owned()).collect();
+        self.tables.push(Table { name, section: self.section.clone(), columns, words, rows });
     }
 
     pub(crate) fn json(&self) -> Value {
-        json!({
-            "title": self.sections.first(),
-            "targets": self.targets,
-            "sections": self.sections,
-            "settings": self.settings,
-            "quoted": self.quoted,
-            "tables": self.tables,
-        })
-    }
-}
-
-/// Columns of a line of text.
-const WIDTH: usize = 140;
-
-/// Breaks lines between words.
-fn wrap(text: &str) -> String {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if line.is_empty() => line.push_str(word),
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= WIDTH => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines.join("\n")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::chapters::figure::Unit;
-
-    #[test]
-    fn what_is_written_is_in_the_json_too() {
-        let mut chapter = Chapter::new("Title");
-        chapter.section("Direct light", "figure 4.4");
-        let spp = chapter.setting("spp", 64);
-        let worst = chapter.quote("worst ratio", Figure::exact(0.5, Unit::Ratio));
-        chapter.paragraph(&format!("At {spp} samples the worst ratio is {worst}."));
-        chapter.table("direct", &["scene", "ratio"], 1, vec![row!["dining", Figure::exact(0.25, Unit::Ratio)]]);
-        assert!(chapter.markdown().contains("\n## Direct light (figure 4.4)\n"));
-        assert!(chapter.markdown().contains("At 64 samples the worst ratio is 0.500."));
-        assert!(chapter.markdown().contains("| dining | 0.250 |"));
-        let json = chapter.json();
-        assert_eq!(json["quoted"]["worst ratio"]["value"], 0.5);
-        assert_eq!(json["settings"]["spp"], 64);
-        assert_eq!(json["tables"][0]["rows"][0][1]["text"], "0.250");
+        json!({ "title": self.title, "settings": self.settings, "quoted": self.quoted, "tables": self.tables })
     }
 
-    #[test]
-    fn long_lines_are_broken_between_words() {
-        let text = wrap(&"word ".repeat(100));
-        assert!(text.lines().all(|line| line.len() <= WIDTH && !line.ends_with(' ')));
-        assert_eq!(text.split_whitespace().count(), 100);
+    pub(crate) fn render(&self, template: &str, exists: &dyn Fn(&str) -> bool) -> Result<String> {
+        template::fill(template, &self.json(), exists)
     }
 }

@@ -1,4 +1,4 @@
-//! A measured figure: its value, its confidence interval and its unit, as text and as JSON.
+//! A measured figure: its value, and its confidence interval, as text and as JSON.
 
 use super::statistics::Estimate;
 use serde::Serialize;
@@ -32,25 +32,6 @@ pub(crate) enum Unit {
 }
 
 impl Unit {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Ratio => "ratio",
-            Self::RelMseE3 => "1e-3 relMSE",
-            Self::Percent => "percent",
-            Self::Nanoseconds => "nanoseconds per sample",
-            Self::Microseconds => "microseconds per step",
-            Self::PerItem => "nanoseconds per item",
-            Self::BytesPerItem => "bytes per item",
-            Self::Instructions => "instructions",
-            Self::Scientific => "number",
-            Self::Seconds => "seconds",
-            Self::Count => "count",
-            Self::Number => "number",
-            Self::Sigmas => "standard deviations",
-            Self::Error => "error",
-        }
-    }
-
     pub(crate) fn text(self, value: f64) -> String {
         match self {
             _ if value.is_nan() => "-".to_owned(),
@@ -82,21 +63,18 @@ fn significant(value: f64, digits: i32) -> String {
 pub(crate) struct Figure {
     /// As it is written, with its interval.
     pub(crate) text: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) value: Option<f64>,
     /// Ends of the 95 % confidence interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) interval: Option<[f64; 2]>,
-    pub(crate) unit: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) seeds: Option<usize>,
 }
 
 impl Figure {
     /// With its confidence interval, if there were enough seeds for one.
     pub(crate) fn new(estimate: Estimate, unit: Unit) -> Self {
-        let Estimate { value, low, high, seeds } = estimate;
+        let Estimate { value, low, high, .. } = estimate;
         let mut figure = Self::exact(value, unit);
-        figure.seeds = Some(seeds);
         if estimate.has_interval() {
             figure.interval = Some([low, high]);
             figure.text = format!("{} [{}, {}]", figure.text, unit.text(low), unit.text(high));
@@ -112,7 +90,7 @@ impl Figure {
     /// Without an interval: a count, or the largest of several figures.
     pub(crate) fn exact(value: f64, unit: Unit) -> Self {
         let value_or_none = Some(value).filter(|value| value.is_finite());
-        Self { text: unit.text(value), value: value_or_none, interval: None, unit: unit.name(), seeds: None }
+        Self { text: unit.text(value), value: value_or_none, interval: None }
     }
 }
 

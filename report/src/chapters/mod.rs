@@ -3,7 +3,6 @@
 
 mod analytic;
 pub(crate) mod chapter;
-pub(crate) mod check;
 mod clock;
 mod control_variates;
 mod embree;
@@ -12,17 +11,14 @@ mod gradients;
 mod hard_cases;
 mod index;
 mod instructions;
-mod json;
+pub(crate) mod json;
 mod machine;
-mod measured;
 mod measurement;
 mod minibatch_tables;
 mod outcome;
-pub(crate) mod pictures;
 pub(crate) mod pixels;
 mod plan;
 mod points;
-mod povray;
 mod program;
 mod run;
 mod samplers;
@@ -31,6 +27,7 @@ mod sign_flips;
 pub(crate) mod statistics;
 mod tables;
 pub(crate) mod targets;
+pub(crate) mod template;
 
 use crate::measure::interrupt::Interrupted;
 use crate::measure::output::Output;
@@ -40,10 +37,9 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clock::Clock;
 use plan::Plan;
-use std::cell::Cell;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-pub(crate) use run::{check_quick, run};
+pub(crate) use run::{check_quick, run, write_chapter};
 
 /// A chapter of the report: NAME.md, NAME.json and pictures.
 struct Entry {
@@ -57,7 +53,7 @@ struct Entry {
     programs: &'static [&'static str],
     /// Where a `--full` run measures other things: a chapter of its own, which other runs leave as it is.
     full: Option<Full>,
-    write: fn(&Report) -> Result<()>,
+    write: fn(&Report) -> Result<Chapter>,
 }
 
 /// What `--full` writes instead of a chapter.
@@ -68,7 +64,12 @@ struct Full {
     description: &'static str,
 }
 
-const fn entry(name: &'static str, seconds: u64, description: &'static str, write: fn(&Report) -> Result<()>) -> Entry {
+const fn entry(
+    name: &'static str,
+    seconds: u64,
+    description: &'static str,
+    write: fn(&Report) -> Result<Chapter>,
+) -> Entry {
     Entry { name, seconds, description, programs: &[], full: None, write }
 }
 
@@ -138,10 +139,9 @@ const CHAPTERS: &[Entry] = &[
     .runs(&["samplers", "guidance"]),
     entry("points", 65, "Seconds against quality of point sets, 256 to a million points", points::write)
         .runs(&["point_sets"]),
-    entry("povray", 115, "The same on integrands that unmodified POV-Ray renders", povray::write),
 ];
 
-#[derive(Args)]
+#[derive(Args, Default)]
 pub(crate) struct Options {
     /// Tiny images and few seeds, for tests: whether everything works, not the figures
     #[arg(long)]
@@ -152,16 +152,22 @@ pub(crate) struct Options {
     /// These chapters instead of all, separated by commas; the others stay as they are, in the index too
     #[arg(long, value_name = "CHAPTER", value_delimiter = ',', value_parser = names())]
     only: Vec<String>,
-    /// Where everything goes, the large pictures to DIR.pictures [default: docs/report, and target/report]
+    /// Where everything goes [default: docs/report]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write texts anew from what a run of the same size measured before (target/report/measured); tables and gradients
-    /// keep it, other chapters are measured
-    #[arg(long)]
-    reuse: bool,
+    /// Only write the texts anew, from the JSON files that are there
+    #[arg(long, conflicts_with_all = ["quick", "full", "only"])]
+    render: bool,
     /// A program with the Embree harness's command line, instead of the one that is built
     #[arg(long, value_name = "FILE", hide = true)]
     program: Option<PathBuf>,
+}
+
+impl Options {
+    /// The trainers alone, for the demo.
+    pub(crate) fn gradients(quick: bool, folder: &Path) -> Self {
+        Self { quick, only: vec!["gradients".to_owned()], out: Some(folder.to_owned()), ..Self::default() }
+    }
 }
 
 /// The chapters that can be asked for.
@@ -178,15 +184,9 @@ pub(crate) struct Report<'a> {
     pub(crate) plan: Plan,
     pub(crate) program: Option<PathBuf>,
     pub(crate) interrupted: Interrupted,
-    /// Markdown, JSON, plots, small pictures.
+    /// Markdown, JSON, plots.
     pub(crate) output: &'a Output,
-    /// EXR and full pictures.
-    pub(crate) large: &'a Output,
     clock: Clock,
-    /// What was measured before may be taken as it is.
-    pub(crate) reuse: bool,
-    /// The chapter took some of it.
-    reused: Cell<bool>,
 }
 
 impl Report<'_> {
@@ -200,11 +200,5 @@ impl Report<'_> {
     /// To be called once everything is compiled: a chapter's time is counted from here.
     pub(crate) fn compiled(&self) {
         self.clock.restart();
-    }
-
-    /// Writes NAME.md and NAME.json.
-    pub(crate) fn write(&self, chapter: &Chapter) -> Result<()> {
-        self.output.write_text(&format!("{}.md", self.name), chapter.markdown())?;
-        self.output.write_text(&format!("{}.json", self.name), &json::written(&chapter.json()))
     }
 }

@@ -3,7 +3,6 @@
 use super::chapter::{Cell, Chapter, row};
 use super::figure::{Figure, Unit};
 use super::statistics::Estimate;
-use serde::{Deserialize, Serialize};
 
 /// Which side of a bound is right.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -25,51 +24,7 @@ struct Target {
 
 /// Collected as the sections measure.
 #[derive(Default)]
-pub(crate) struct Targets {
-    all: Vec<Target>,
-    reasons: Vec<Reason>,
-}
-
-/// The likely reason why a statement's bound is missed.
-struct Reason {
-    /// The statement's beginning and end.
-    statement: [&'static str; 2],
-    /// The end of the place's name, if it is the reason in some places only.
-    place: Option<&'static str>,
-    text: &'static str,
-}
-
-impl Reason {
-    /// For a list item: nothing, unless it is about this statement and one of the places where it is missed.
-    fn said_of(&self, statement: &str, missed: &[&Target]) -> Option<String> {
-        let [beginning, end] = self.statement;
-        let is_meant = statement.starts_with(beginning) && statement.ends_with(end);
-        let text = self.text;
-        match self.place {
-            None if is_meant => Some(format!(". Likely: {text}")),
-            Some(place) if is_meant && missed.iter().any(|target| target.scene.ends_with(place)) => {
-                Some(format!(". Likely, as for {place}: {text}"))
-            }
-            _ => None,
-        }
-    }
-}
-
-/// A statement as the chapter's JSON and the index have it: its worst place stands for it.
-#[derive(Serialize, Deserialize)]
-pub(crate) struct Judged {
-    pub(crate) statement: String,
-    /// In words.
-    pub(crate) bound: String,
-    /// In so many of `of` places the whole interval keeps the bound; in so many the value does.
-    pub(crate) reached: usize,
-    pub(crate) by_value: usize,
-    pub(crate) of: usize,
-    /// Where it is worst, what was measured there, and whether that is enough.
-    pub(crate) place: String,
-    pub(crate) measured: String,
-    pub(crate) verdict: String,
-}
+pub(crate) struct Targets(Vec<Target>);
 
 impl Target {
     fn keeps(&self, value: f64) -> bool {
@@ -111,6 +66,10 @@ impl Target {
     }
 }
 
+fn count(count: usize) -> Figure {
+    Figure::exact(count as f64, Unit::Count)
+}
+
 impl Targets {
     /// The figure shall be `bound` at most.
     pub(crate) fn at_most(&mut self, statement: &str, scene: &str, estimate: Estimate, unit: Unit, bound: f64) {
@@ -129,23 +88,13 @@ impl Targets {
 
     fn push(&mut self, statement: &str, scene: &str, estimate: Estimate, unit: Unit, (side, bound): (Side, f64)) {
         let (statement, scene) = (statement.to_owned(), scene.to_owned());
-        self.all.push(Target { statement, scene, estimate, unit, side, bound });
-    }
-
-    /// Said where a target that begins and ends like this is missed.
-    pub(crate) fn reason(&mut self, statement: [&'static str; 2], reason: &'static str) {
-        self.reasons.push(Reason { statement, place: None, text: reason });
-    }
-
-    /// The same, only where it is missed at a place whose name ends so.
-    pub(crate) fn reason_at(&mut self, statement: [&'static str; 2], place: &'static str, reason: &'static str) {
-        self.reasons.push(Reason { statement, place: Some(place), text: reason });
+        self.0.push(Target { statement, scene, estimate, unit, side, bound });
     }
 
     /// Targets of the same statement, in the order in which they were measured.
     fn groups(&self) -> Vec<Vec<&Target>> {
         let mut groups: Vec<Vec<&Target>> = Vec::new();
-        for target in &self.all {
+        for target in &self.0 {
             match groups.iter_mut().find(|group| group[0].statement == target.statement) {
                 Some(group) => group.push(target),
                 None => groups.push(vec![target]),
@@ -154,82 +103,40 @@ impl Targets {
         groups
     }
 
-    /// One row for each statement, and what was missed. The chapter hands the same to the index.
-    pub(crate) fn write_summary(&self, chapter: &mut Chapter) {
+    /// One row for each statement, its worst place standing for it; then every place that misses it. The index reads
+    /// the first table.
+    pub(crate) fn write(&self, chapter: &mut Chapter) {
         chapter.section("What was to be reached", "");
         let groups = self.groups();
-        let judged: Vec<Judged> = groups.iter().map(|group| judge(group)).collect();
-        let mut count = |name: &str, of: fn(&Judged) -> bool| {
-            let count = judged.iter().filter(|one| of(one)).count();
-            chapter.quote(name, Figure::exact(count as f64, Unit::Count))
-        };
-        let reached = count("targets reached everywhere", |one| one.reached == one.of);
-        let by_value = count("targets reached everywhere by the value", |one| one.by_value == one.of);
-        let all = count("targets", |_| true);
-        let percent = chapter.setting("confidence of verdicts, percent", 95);
-        chapter.paragraph(&format!(
-            "Reached everywhere: {reached} of {all}; by the value alone: {by_value}. A target is reached where the whole {percent} % interval of the figure \
-             keeps the bound, and missed where the whole interval misses it; in between it is open, and counts as not reached. A figure without an interval \
-             is judged as it is. The worst place stands for each."
-        ));
-        let rows = groups.iter().zip(&judged).map(|(group, one)| -> Vec<Cell> {
-            let count = |count: usize| Figure::exact(count as f64, Unit::Count);
+        let all = |of: fn(&Target) -> bool| groups.iter().filter(|group| group.iter().all(|one| of(one))).count();
+        chapter.quote("targets", count(groups.len()));
+        chapter.quote("targets reached everywhere", count(all(Target::is_reached)));
+        chapter.quote("targets reached everywhere by the value", count(all(|one| one.keeps(one.estimate.value))));
+        let row = |group: &Vec<&Target>| -> Vec<Cell> {
+            let worst = worst(group);
             row![
-                one.statement.clone(),
-                one.bound.clone(),
-                count(one.reached),
-                count(one.by_value),
-                count(one.of),
-                one.place.clone(),
-                Figure::new(worst(group).estimate, worst(group).unit),
-                one.verdict.clone()
+                worst.statement.clone(),
+                worst.bound_text(),
+                count(group.iter().filter(|target| target.is_reached()).count()),
+                count(group.iter().filter(|target| target.keeps(target.estimate.value)).count()),
+                count(group.len()),
+                worst.scene.clone(),
+                Figure::new(worst.estimate, worst.unit),
+                worst.verdict()
             ]
-        });
+        };
         let columns =
             ["target", "bound", "reached", "by value", "of", "worst place", "measured there", "verdict there"];
-        chapter.table("targets", &columns, 2, rows.collect());
-        self.write_misses(chapter, &groups);
-        chapter.hand_over(judged);
-    }
-
-    fn write_misses(&self, chapter: &mut Chapter, groups: &[Vec<&Target>]) {
-        let mut points = Vec::new();
-        for group in groups {
-            let missed: Vec<_> = group.iter().copied().filter(|target| !target.is_reached()).collect();
-            if missed.is_empty() {
-                continue;
-            }
-            let scenes = missed.iter().map(|target| {
-                let figure = Figure::brief(target.estimate, target.unit);
-                let name = format!("{}: {}", target.statement, target.scene);
-                chapter.setting(format!("place: {}", target.scene), target.scene.as_str());
-                format!("{} {}", target.scene, chapter.quote(name, figure))
-            });
-            let scenes = scenes.collect::<Vec<_>>().join(", ");
-            let statement = &group[0].statement;
-            chapter.setting(format!("statement: {statement}"), statement.as_str());
-            let reason = self.reasons.iter().find_map(|reason| reason.said_of(statement, &missed)).unwrap_or_default();
-            points.push(format!("{statement}: {scenes}{reason}"));
+        chapter.table("targets", &columns, 2, groups.iter().map(row).collect());
+        let missed = groups.iter().flatten().filter(|target| !target.is_reached());
+        let row = |one: &&Target| -> Vec<Cell> {
+            let figure = Figure::new(one.estimate, one.unit);
+            row![one.statement.clone(), one.scene.clone(), figure, one.bound_text(), one.verdict()]
+        };
+        let rows: Vec<Vec<Cell>> = missed.map(row).collect();
+        if !rows.is_empty() {
+            chapter.table("targets missed", &["target", "place", "measured", "bound", "verdict"], 2, rows);
         }
-        if !points.is_empty() {
-            chapter.paragraph("Missed or open, with the figure, and the likely reason where there is one:");
-            chapter.list(&points);
-        }
-    }
-
-    /// Every scene.
-    pub(crate) fn write_all(&self, chapter: &mut Chapter) {
-        chapter.section("What was to be reached, scene by scene", "");
-        let rows = self.all.iter().map(|target| -> Vec<Cell> {
-            row![
-                target.statement.clone(),
-                target.scene.clone(),
-                Figure::new(target.estimate, target.unit),
-                target.bound_text(),
-                target.verdict()
-            ]
-        });
-        chapter.table("targets by scene", &["target", "scene", "measured", "bound", "verdict"], 2, rows.collect());
     }
 }
 
@@ -237,85 +144,49 @@ fn worst<'a>(group: &[&'a Target]) -> &'a Target {
     group.iter().max_by(|a, b| a.excess().total_cmp(&b.excess())).unwrap_or(&group[0])
 }
 
-fn judge(group: &[&Target]) -> Judged {
-    let worst = worst(group);
-    Judged {
-        statement: worst.statement.clone(),
-        bound: worst.bound_text(),
-        reached: group.iter().filter(|target| target.is_reached()).count(),
-        by_value: group.iter().filter(|target| target.keeps(target.estimate.value)).count(),
-        of: group.len(),
-        place: worst.scene.clone(),
-        measured: Figure::new(worst.estimate, worst.unit).text,
-        verdict: worst.verdict().to_owned(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn exact(value: f64) -> Estimate {
+    fn estimate(value: f64) -> Estimate {
         Estimate { value, low: value - 0.1, high: value + 0.1, seeds: 8 }
     }
 
     #[test]
     fn the_worst_scene_stands_for_a_statement_and_misses_are_said() {
         let mut targets = Targets::default();
-        targets.at_most("error", "kitchen", exact(0.3), Unit::Ratio, 0.5);
-        targets.at_most("error", "garden", exact(0.7), Unit::Ratio, 0.5);
-        targets.below("strictly", "garden", exact(0.45), Unit::Ratio, 0.5);
-        targets.at_most("time", "garden", exact(0.35), Unit::Ratio, 0.5);
-        targets.reason(["err", "or"], "Leaves.");
+        targets.at_most("error", "kitchen", estimate(0.3), Unit::Ratio, 0.5);
+        targets.at_most("error", "garden", estimate(0.7), Unit::Ratio, 0.5);
+        targets.below("strictly", "garden", estimate(0.45), Unit::Ratio, 0.5);
+        targets.at_most("time", "garden", estimate(0.35), Unit::Ratio, 0.5);
         let mut chapter = Chapter::new("Title");
-        targets.write_summary(&mut chapter);
-        targets.write_all(&mut chapter);
-        let text = chapter.markdown();
-        assert!(text.contains("Reached everywhere: 1 of 3; by the value alone: 2."), "{text}");
-        assert!(text.contains("- error: garden 0.700. Likely: Leaves."), "{text}");
-        assert!(text.contains("open: the value keeps the bound") && text.contains("NOT REACHED"), "{text}");
-        assert_eq!(text.matches("kitchen").count(), 1, "only in the table of all scenes");
+        targets.write(&mut chapter);
         let json = chapter.json();
-        assert_eq!(json["targets"][0]["place"], "garden");
-        assert_eq!(json["targets"][0]["bound"], "at most 0.500");
-        assert_eq!((json["targets"][0]["reached"].as_u64(), json["targets"][0]["of"].as_u64()), (Some(1), Some(2)));
-    }
-
-    #[test]
-    fn a_reason_of_one_place_is_said_where_that_place_misses() {
-        let text = |eye: f64| {
-            let mut targets = Targets::default();
-            targets.at_most("error", "garden, average", exact(0.7), Unit::Ratio, 0.5);
-            targets.at_most("error", "garden, eye", exact(eye), Unit::Ratio, 0.5);
-            targets.reason_at(["error", ""], "eye", "Leaves.");
-            let mut chapter = Chapter::new("Title");
-            targets.write_summary(&mut chapter);
-            chapter.markdown().to_owned()
-        };
-        let missed = text(0.8);
-        assert!(missed.contains("garden, average 0.700, garden, eye 0.800. Likely, as for eye: Leaves."), "{missed}");
-        let kept = text(0.2);
-        assert!(kept.contains("- error: garden, average 0.700\n") && !kept.contains("Leaves"), "{kept}");
+        let quoted = ["targets", "targets reached everywhere", "targets reached everywhere by the value"];
+        assert_eq!(quoted.map(|name| json["quoted"][name]["value"].as_f64()), [Some(3.0), Some(1.0), Some(2.0)]);
+        let [all, missed] = [0, 1].map(|table| &json["tables"][table]["rows"]);
+        assert_eq!([&all[0][1], &all[0][5], &all[0][7]], ["at most 0.500", "garden", "NOT REACHED"]);
+        assert_eq!([2, 3, 4].map(|at| all[0][at]["text"].as_str()), [Some("1"), Some("1"), Some("2")]);
+        assert_eq!([&missed[0][1], &missed[1][0]], ["garden", "strictly"]);
+        assert_eq!(missed[0][2]["text"], "0.700 [0.600, 0.800]");
+        assert!(missed[2].is_null());
     }
 
     #[test]
     fn a_verdict_goes_by_the_whole_interval_on_either_side() {
         let mut targets = Targets::default();
         for value in [0.3, 0.45, 0.55, 0.7] {
-            targets.at_most("low", "", exact(value), Unit::Ratio, 0.5);
+            targets.at_most("low", "", estimate(value), Unit::Ratio, 0.5);
         }
         for value in [0.7, 0.55, 0.45, 0.3] {
-            targets.at_least("high", "", exact(value), Unit::Ratio, 0.5);
+            targets.at_least("high", "", estimate(value), Unit::Ratio, 0.5);
         }
         let verdicts: Vec<&str> =
-            targets.all.iter().map(|target| target.verdict().split(':').next().unwrap_or("")).collect();
+            targets.0.iter().map(|target| target.verdict().split(':').next().unwrap_or("")).collect();
         assert_eq!(verdicts, ["reached", "open", "open", "NOT REACHED"].repeat(2));
-        let reached: Vec<bool> = targets.all.iter().map(Target::is_reached).collect();
+        let reached: Vec<bool> = targets.0.iter().map(Target::is_reached).collect();
         assert_eq!(reached, [true, false, false, false].repeat(2));
-        assert_eq!(
-            judge(&targets.groups()[1]).measured,
-            "0.300 [0.200, 0.400]",
-            "the lowest is worst where much is good"
-        );
+        let lowest = worst(&targets.groups()[1]).estimate.value;
+        assert_eq!(lowest, 0.3, "the lowest is worst where much is good");
     }
 }

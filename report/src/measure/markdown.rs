@@ -1,15 +1,7 @@
 //! Tables as Markdown, aligned as plain text too, and as CSV.
 
-/// `words`: the columns that are words and aligned left; columns of numbers are aligned right.
-pub(crate) fn table<const N: usize>(
-    headings: &[&str; N],
-    words: &[usize],
-    rows: impl IntoIterator<Item = [String; N]>,
-) -> String {
-    lines(headings, words, rows.into_iter().map(Vec::from).collect())
-}
-
-/// As [`table`], for any number of columns; a row that is too short ends early.
+/// `words`: the columns that are words and aligned left; columns of numbers are aligned right. A row that is too short
+/// ends early.
 pub(crate) fn lines(headings: &[&str], words: &[usize], rows: Vec<Vec<String>>) -> String {
     let length = |cell: &str| cell.chars().count();
     let width = |(column, heading): (usize, &&str)| {
@@ -31,21 +23,14 @@ pub(crate) fn lines(headings: &[&str], words: &[usize], rows: Vec<Vec<String>>) 
     text
 }
 
-/// No cell may contain a comma or a quote.
-pub(crate) fn csv<const N: usize>(columns: &[&str; N], rows: impl IntoIterator<Item = [String; N]>) -> String {
-    let mut text = columns.join(",") + "\n";
-    text.extend(rows.into_iter().map(|cells| cells.join(",") + "\n"));
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn lines_are_equally_long() {
-        let rows = [["mean".to_owned(), "1.25".to_owned()], ["control variate".to_owned(), "0".to_owned()]];
-        let text = table(&["estimator", "ratio"], &[0], rows);
+        let rows = [["mean", "1.25"], ["control variate", "0"]].map(|row| row.map(str::to_owned).to_vec());
+        let text = lines(&["estimator", "ratio"], &[0], rows.to_vec());
         assert_eq!(text.lines().count(), 4);
         assert!(text.lines().all(|line| line.len() == "| control variate | ratio |".len()));
         assert_eq!(text.lines().nth(1), Some("| --------------- | ----: |"));

@@ -51,12 +51,6 @@ impl Reference {
             values.map(|((i, half), d)| (i - half) / d.sqrt()).collect()
         })
     }
-
-    /// |I - R| / sqrt(R^2 + epsilon) of each pixel, row after row: its square is the pixel's part of the relMSE.
-    pub(crate) fn error_map(&self, image: &Rgb32FImage) -> Vec<f64> {
-        let pairs = image.pixels().zip(self.image.pixels()).zip(&self.denominators);
-        pairs.map(|((i, r), d)| (luminance(i) - luminance(r)).abs() / d.sqrt()).collect()
-    }
 }
 
 /// The middle value; of an even number of values, the mean of the two in the middle.
@@ -83,7 +77,6 @@ mod tests {
         let reference = Reference::new(&flat(2.0), &flat(2.0));
         assert!((reference.rel_mse(&flat(3.0)) - 1.0 / (4.0 + 0.04)).abs() < 1e-6);
         assert!(reference.rel_mse(&flat(2.0)).abs() < 1e-12);
-        assert!((reference.error_map(&flat(3.0))[5].powi(2) - 1.0 / 4.04).abs() < 1e-6);
     }
 
     #[test]

@@ -1,13 +1,11 @@
 //! What the demo and the report share: running a renderer, reading its images, judging them, and showing the outcome.
 
-pub(crate) mod error_sheet;
 pub(crate) mod filter;
 pub(crate) mod image;
 pub(crate) mod interrupt;
 pub(crate) mod markdown;
 pub(crate) mod metric;
 pub(crate) mod output;
-pub(crate) mod panels;
 pub(crate) mod part;
 pub(crate) mod plot;
 pub(crate) mod progress;
@@ -17,7 +15,5 @@ pub(crate) mod runs;
 pub(crate) mod samplers;
 pub(crate) mod score;
 pub(crate) mod side_by_side;
-pub(crate) mod spectrum;
-pub(crate) mod spectrum_sheet;
 pub(crate) mod table;
 pub(crate) mod text;

@@ -54,11 +54,6 @@ impl Output {
         Ok(names)
     }
 
-    /// What was written.
-    pub(crate) fn read_text(&self, name: &str) -> Result<String> {
-        fs::read_to_string(self.pending.path().join(name)).with_context(|| format!("{name} was not written"))
-    }
-
     /// Moves the files to where they belong, replacing those of an earlier run.
     pub(crate) fn commit(self) -> Result<()> {
         commit_together([self])

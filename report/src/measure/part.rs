@@ -1,11 +1,10 @@
 //! A part of the images, enlarged: as it looks, and how it errs.
 
 use super::score::signed_errors;
-use super::spectrum::Spectra;
 use crate::measure::image::{exposure, tone_map};
 use crate::measure::metric::Reference;
 use image::imageops::{FilterType, crop_imm, resize};
-use image::{Luma, Rgb, Rgb32FImage, RgbImage};
+use image::{Rgb, Rgb32FImage, RgbImage};
 
 /// The part of the images that is shown, each pixel as a square of `zoom` pixels.
 pub(crate) struct Part<'a> {
@@ -59,13 +58,5 @@ impl<'a> Part<'a> {
             (127.5 * (1.0 + (error / scale).clamp(-1.0, 1.0))).round() as u8
         };
         self.enlarge(&RgbImage::from_fn(self.width, self.height, |x, y| Rgb([grey(x, y); 3])))
-    }
-
-    pub(crate) fn spectra(&self, image: &Rgb32FImage) -> RgbImage {
-        let spectra = Spectra::new(&self.values(image), self.width as usize).picture();
-        self.enlarge(&RgbImage::from_fn(spectra.width(), spectra.height(), |x, y| {
-            let Luma([grey]) = *spectra.get_pixel(x, y);
-            Rgb([grey; 3])
-        }))
     }
 }

@@ -22,8 +22,6 @@ pub(crate) struct Timing {
     #[serde(default)]
     pub(crate) dims: u32,
     pub(crate) total_seconds: f64,
-    /// Making the sample points.
-    pub(crate) drawing_ns_per_sample: f64,
     /// Making the points and tracing them.
     pub(crate) sampling_ns_per_sample: f64,
     pub(crate) estimating_ns_per_sample: f64,

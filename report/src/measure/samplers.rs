@@ -27,16 +27,6 @@ impl Choice {
         }
     }
 
-    /// In names of files.
-    pub(crate) fn slug(self) -> String {
-        match self {
-            Self::Random => "random".to_owned(),
-            Self::Sobol => "sobol".to_owned(),
-            Self::Tile(dims) => format!("tile{dims}d"),
-            Self::Progressive => "progressive".to_owned(),
-        }
-    }
-
     /// None if there is no such tile.
     pub(crate) fn sampler(self, spp: u32, tiles: &Tiles) -> Option<Sampler<'_>> {
         let find = |name: &str| tiles.find(name).map(Sampler::Tile);

@@ -1,7 +1,6 @@
-//! How an image errs: how much, how much of it the eye sees, and at which frequencies.
+//! How an image errs: how much, and how much of it the eye sees.
 
 use super::filter::gaussian;
-use super::spectrum::Spectra;
 use crate::measure::metric::Reference;
 use image::Rgb32FImage;
 
@@ -12,24 +11,16 @@ pub(crate) struct Score {
     pub(crate) raw: f64,
     /// relMSE of the image as it is seen: the errors are filtered, then squared.
     pub(crate) filtered: f64,
-    /// Power of the errors at low frequencies, relative to white noise.
-    pub(crate) low: f64,
 }
 
 impl Score {
     pub(crate) fn new(image: &Rgb32FImage, reference: &Reference) -> Self {
         let [raw, filtered] = errors(image, reference);
-        let low = Spectra::new(&signed_errors(image, reference), image.width() as usize).low();
-        Self { raw, filtered, low }
-    }
-
-    pub(crate) fn mean(scores: &[Self]) -> Self {
-        let mean = |of: fn(&Self) -> f64| scores.iter().map(of).sum::<f64>() / scores.len().max(1) as f64;
-        Self { raw: mean(|score| score.raw), filtered: mean(|score| score.filtered), low: mean(|score| score.low) }
+        Self { raw, filtered }
     }
 }
 
-/// [`Score::raw`] and [`Score::filtered`] alone: spectra take longer.
+/// [`Score::raw`] and [`Score::filtered`].
 pub(crate) fn errors(image: &Rgb32FImage, reference: &Reference) -> [f64; 2] {
     let [a, b] = limited_errors(image, reference);
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / a.len().max(1) as f64;

@@ -8,10 +8,6 @@ pub(crate) const LINE: u32 = 20;
 
 const SIZE: RasterHeight = RasterHeight::Size16;
 
-pub(crate) fn width(text: &str) -> u32 {
-    (text.chars().count() * get_raster_width(FontWeight::Regular, SIZE)) as u32
-}
-
 /// "1 sample per pixel", "4 samples per pixel".
 pub(crate) fn samples_per_pixel(spp: u32) -> String {
     format!("{spp} {} per pixel", if spp == 1 { "sample" } else { "samples" })

@@ -58,38 +58,6 @@ pub(crate) fn limit(significance: f64, tests: usize) -> f64 {
     normal_quantile(0.5 * significance / tests as f64)
 }
 
-/// Errors of each pixel over several renderings.
-pub(crate) struct Moments {
-    /// The mean squared relative error.
-    pub(crate) squares: Vec<f64>,
-    means: Vec<f64>,
-    count: f64,
-}
-
-impl Moments {
-    /// The root of the mean squared bias, without what chance adds to it, over the root of the mean squared error.
-    pub(crate) fn bias_over_error(&self) -> f64 {
-        let pairs = self.squares.iter().zip(&self.means);
-        // A mean of n errors varies by a part in n - 1 of what they spread.
-        let bias: f64 = pairs.map(|(square, mean)| mean * mean - (square - mean * mean) / (self.count - 1.0)).sum();
-        (bias.max(0.0) / self.squares.iter().sum::<f64>()).sqrt()
-    }
-}
-
-pub(crate) fn moments(images: &[Rgb32FImage], reference: &Reference) -> Moments {
-    let pixels = reference.image.width() as usize * reference.image.height() as usize;
-    let (mut squares, mut means) = (vec![0.0; pixels], vec![0.0; pixels]);
-    let count = images.len() as f64;
-    for image in images {
-        let [errors, _] = reference.relative_errors(image);
-        for ((error, square), mean) in errors.iter().zip(&mut squares).zip(&mut means) {
-            *square += error * error / count;
-            *mean += error / count;
-        }
-    }
-    Moments { squares, means, count }
-}
-
 /// The mean relative error over all pixels of all images.
 pub(crate) fn brightness(images: &[Rgb32FImage], reference: &Reference) -> f64 {
     let errors: Vec<f64> = images.iter().flat_map(|image| reference.relative_errors(image)[0].clone()).collect();
@@ -128,18 +96,6 @@ mod tests {
         assert_eq!(largest(&images(|_| 1.0, 0.0), &reference).deviations, 0.0);
         assert!(largest(&images(|_| 1.01, 0.0), &reference).deviations > limit);
     }
-
-    #[test]
-    fn bias_over_error_of_a_planted_bias() {
-        let flat = Rgb32FImage::from_pixel(16, 16, Rgb([1.0; 3]));
-        let reference = Reference::new(&flat, &flat);
-        // Bias .1, spread .5 / sqrt(3).
-        let expected = 0.1 / (0.01 + 0.25_f64 / 3.0).sqrt();
-        let actual = moments(&images(|_| 1.1, 0.5), &reference).bias_over_error();
-        assert!((actual - expected).abs() < 0.03, "{actual} {expected}");
-        assert!(moments(&images(|_| 1.0, 0.5), &reference).bias_over_error() < 0.05);
-    }
-
     #[test]
     fn student_as_normal() {
         // t = 2.262157 with 9 degrees of freedom has the probability of 1.959964.

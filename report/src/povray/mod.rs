@@ -12,8 +12,6 @@ pub(crate) mod test;
 
 use xtask::tools::Package;
 
-pub(crate) use frames::version;
-
 /// What renders the scenes.
 pub(crate) const PACKAGES: [Package; 2] = [
     Package { name: "povray", file: "/usr/bin/povray" },

@@ -4,7 +4,7 @@ use super::{scenes::Scene, stack};
 use crate::measure::image::read_pfm;
 use crate::measure::interrupt::Interrupted;
 use crate::measure::metric::Reference;
-use crate::measure::renderer::{Job, Renderer, Sampler, Timing, images, threads};
+use crate::measure::renderer::{Job, Renderer, Sampler, images, threads};
 use crate::measure::side_by_side;
 use anyhow::{Context, Result, bail};
 use image::Rgb32FImage;
@@ -69,10 +69,9 @@ pub(crate) struct Request<'a> {
     pub(crate) seeds: u32,
 }
 
-/// One estimator's renderings, and how long they took, seed by seed.
+/// One estimator's renderings, seed by seed.
 pub(crate) struct Renderings {
     pub(crate) images: Vec<Rgb32FImage>,
-    pub(crate) timings: Vec<Timing>,
 }
 
 impl Oracle {
@@ -112,12 +111,11 @@ impl Oracle {
             .map(|[from, to]| Job { seed: 1 + u64::from(from), seeds: to - from, ..job })
             .map(|job| (job, folder.path().join(format!("picture-{}", job.seed))))
             .collect();
-        let timings = side_by_side::render(&self.renderer, &runs, view.size, RUNS, &ProgressBar::hidden())?.concat();
+        side_by_side::render(&self.renderer, &runs, view.size, RUNS, &ProgressBar::hidden())?;
         let one = |name: &str| -> Result<Renderings> {
             let files = runs.iter().flat_map(|(job, prefix)| images(prefix, name, job.seed, job.seeds));
             let images = files.map(|file| read_pfm(&file)).collect::<Result<_>>()?;
-            let timings = timings.iter().filter(|timing| timing.estimator == name).cloned().collect();
-            Ok(Renderings { images, timings })
+            Ok(Renderings { images })
         };
         estimators.iter().map(|name| one(name)).collect()
     }

@@ -30,9 +30,7 @@ pub(crate) struct Scene {
     pub(crate) name: &'static str,
     pub(crate) shows: &'static str,
     pub(crate) axes: &'static [Decision],
-    /// Cells along each axis for `--full`, for the report, and for the tests.
-    pub(crate) full: &'static [u32],
-    pub(crate) report: &'static [u32],
+    /// Cells along each axis.
     pub(crate) small: &'static [u32],
 }
 
@@ -63,40 +61,30 @@ pub(crate) const SCENES: [Scene; 5] = [
         name: "area",
         shows: "chessmen under a window; the light (2 dims)",
         axes: &[Light, Light],
-        full: &[32, 32],
-        report: &[20, 20],
         small: &[16, 16],
     },
     Scene {
         name: "focus",
         shows: "marbles through a wide lens; the lens (2 dims)",
         axes: &[Lens, Lens],
-        full: &[32, 32],
-        report: &[20, 20],
         small: &[16, 16],
     },
     Scene {
         name: "focus_area",
         shows: "fruit through a lens, under a panel; the lens and the light (4 dims)",
         axes: &[Lens, Lens, Light, Light],
-        full: &[8, 8, 8, 8],
-        report: &[5, 5, 5, 5],
         small: &[4, 4, 4, 4],
     },
     Scene {
         name: "lights",
         shows: "a hall with eight panels; the light and which (3 dims)",
         axes: &[Light, Light, Choice],
-        full: &[16, 16, 8],
-        report: &[10, 10, 8],
         small: &[6, 6, 8],
     },
     Scene {
         name: "motion",
         shows: "a windmill and a ball; time and the light (3 dims)",
         axes: &[Time, Light, Light],
-        full: &[16, 16, 16],
-        report: &[10, 10, 10],
         small: &[6, 6, 6],
     },
 ];
@@ -110,8 +98,6 @@ mod tests {
         for scene in SCENES {
             // stack.inc knows four.
             assert!(scene.axes.len() <= 4);
-            assert_eq!(scene.axes.len(), scene.full.len());
-            assert_eq!(scene.axes.len(), scene.report.len());
             assert_eq!(scene.axes.len(), scene.small.len());
         }
     }

@@ -77,7 +77,7 @@ mod tests {
             scene,
             method,
             spp: 16,
-            scores: vec![Score { raw: 1.1e-3, filtered: 3.1e-5, low: 1.0 }],
+            scores: vec![Score { raw: 1.1e-3, filtered: 3.1e-5 }],
             cpu_seconds: vec![1.0],
             image: image.clone(),
         };

@@ -8,12 +8,7 @@ use anyhow::{Context, Result};
 pub(super) fn write(chapter: &mut Chapter, table: &Table) -> Result<()> {
     chapter.section("Samples beyond a tile's", "");
     let first = table.rows().next().context("the program has measured no tile")?;
-    let count = chapter.setting("integrands of each kind", first.number::<u32>("count")?);
-    let pixels = chapter.setting("pixels", 256);
-    chapter.paragraph(&format!(
-        "Root mean square error over {pixels} pixels and {count} integrands, relative to the integrand's standard deviation, after multiples of the tile's samples: tiles \
-         of independent (noise) or jittered samples, the hardest for the sequence to join, and shipped ones.",
-    ));
+    chapter.setting("integrands of each kind", first.number::<u32>("count")?);
     let times = table.distinct("times")?;
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     let mut last = None;

@@ -12,17 +12,6 @@ const SOLVERS: [&str; 3] = ["balance", "plain", "ridge"];
 
 pub(super) fn polynomial(chapter: &mut Chapter, table: &Table) -> Result<()> {
     chapter.section("Optimal MIS gradients", "");
-    let (part, points, batch) = (
-        chapter.setting("uniform fraction of every table", 0.2),
-        chapter.setting("points of the polynomial", 2000),
-        chapter.setting("batch of the polynomial", 32),
-    );
-    let (order, problems) = (chapter.setting("order of the polynomial", 6), chapter.setting("problems", 3));
-    chapter.paragraph(&format!(
-        "Squared error of the gradient over uniform sampling's at the same state, a fraction of {part} uniform in every table. First a regression by a polynomial of order \
-         {order}, {points} points, batches of {batch}, after steps of gradient descent; tables from the derivative by the coefficients, one of \
-         norms (importance sampling) or one of each sign; mean of {problems} problems.",
-    ));
     let steps = table.distinct("steps")?;
     let mean = |heading: &str, keys: &[(&str, &str)]| -> Result<Cell> {
         let values: Vec<f64> =
@@ -50,10 +39,6 @@ pub(super) fn polynomial(chapter: &mut Chapter, table: &Table) -> Result<()> {
 }
 
 pub(super) fn classifier(chapter: &mut Chapter, table: &Table) -> Result<()> {
-    let (classes, weights, items) =
-        (chapter.setting("classes", 5), chapter.setting("weights", 30), chapter.setting("items", 1000));
-    chapter
-        .paragraph(&format!("The same of a linear classifier of {classes} classes, {weights} weights, {items} items."));
     let names = [
         ("one", ONE.to_owned()),
         ("balance", "10 signed tables, balance".to_owned()),
@@ -76,11 +61,6 @@ pub(super) fn classifier(chapter: &mut Chapter, table: &Table) -> Result<()> {
 }
 
 pub(super) fn bias(chapter: &mut Chapter, table: &Table) -> Result<()> {
-    let (tables, steps) =
-        (chapter.setting("tables of the bias", 4), chapter.setting("steps before the bias is measured", 300));
-    chapter.paragraph(&format!(
-        "Bias, and root mean squared error, over the gradient's norm: a polynomial after {steps} steps, where the exact gradient is nearly zero, {tables} signed tables.",
-    ));
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     for batch in table.distinct("batch")? {
         let mut cells = row![format!("batch {batch}")];

@@ -10,17 +10,13 @@ use super::{Report, program};
 use crate::measure::table::Table;
 use anyhow::Result;
 
-pub(super) fn write(report: &Report) -> Result<()> {
+pub(super) fn write(report: &Report) -> Result<Chapter> {
     let [program] = report.build()?;
     let folder = tempfile::tempdir()?;
     program::measure(report, &program, folder.path())?;
     let read = |name: &str| Table::read(&folder.path().join(name), ';');
     let mut targets = Targets::default();
     let mut chapter = Chapter::new("Known integrands and gradients");
-    chapter.paragraph(
-        "Measured by `cargo bench --package noisefloor-bench --bench analytic`, through the Rust API. Errors alone, no times, and fixed seeds: the \
-         same build gives the same figures, on a busy machine too.",
-    );
     shared::tiles(&mut chapter, &mut targets, &read("tiles.csv")?)?;
     shared::hard(&mut chapter, &mut targets, &read("hard.csv")?)?;
     shared::bias(&mut chapter, &read("bias.csv")?)?;
@@ -28,6 +24,6 @@ pub(super) fn write(report: &Report) -> Result<()> {
     gradients::polynomial(&mut chapter, &read("polynomial.csv")?)?;
     gradients::classifier(&mut chapter, &read("classifier.csv")?)?;
     gradients::bias(&mut chapter, &read("gradient_bias.csv")?)?;
-    targets.write_summary(&mut chapter);
-    report.write(&chapter)
+    targets.write(&mut chapter);
+    Ok(chapter)
 }

@@ -17,17 +17,9 @@ const NAMES: [&str; 4] = ["half-planes", "bumps", "half-planes, filtered", "bump
 
 pub(super) fn tiles(chapter: &mut Chapter, targets: &mut Targets, table: &Table) -> Result<()> {
     chapter.section("Shared fits on a tile's samples", "");
-    let deviation = chapter.setting("the filter's standard deviation, pixels", 2.1);
-    let pixels = chapter.setting("pixels over which integrands move and scale", 32);
     let count = |samples: &str| table.find(&[("samples", samples)])?.number::<u32>("count");
-    let few = chapter.setting("half-planes, and bumps", count("1")?);
-    let many = chapter.setting("the same at 16 samples", count("16")?);
-    let most = chapter.setting("samples of the tiles with fewer integrands", 16);
-    chapter.paragraph(&format!(
-        "Mean squared errors relative to independent samples without a fit: of {few} half-planes and {few} Gaussian bumps ({many} each at {most} samples), on the \
-         samples of the shipped tile of as many samples in each pixel, raw and filtered by a Gaussian of {deviation} pixels. Integrands are the same in \
-         every pixel, or move back and forth and scale by half along {pixels} pixels. Windows overlap by half unless they lie side by side.",
-    ));
+    chapter.setting("half-planes, and bumps", count("1")?);
+    chapter.setting("the same at 16 samples", count("16")?);
     let methods = table.distinct("method")?;
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     for integrands in table.distinct("integrands")? {
@@ -58,10 +50,7 @@ pub(super) fn tiles(chapter: &mut Chapter, targets: &mut Targets, table: &Table)
 
 pub(super) fn hard(chapter: &mut Chapter, targets: &mut Targets, table: &Table) -> Result<()> {
     chapter.section("Shared fits where neighbours have little to share", "");
-    let side = chapter.setting("pixels on a side of a scene", 12);
-    let confidence = chapter.setting("confidence, percent", 95);
     let mut rows: Vec<Vec<Cell>> = Vec::new();
-    let mut said = Vec::new();
     let counts = table.distinct("n")?;
     for of in table.distinct("of")? {
         let mut worst = (Estimate::exact(0.0), String::new());
@@ -82,15 +71,8 @@ pub(super) fn hard(chapter: &mut Chapter, targets: &mut Targets, table: &Table) 
             rows.push(cells);
         }
         chapter.setting(format!("worst place, {of}s"), worst.1.as_str());
-        let ratio = chapter.quote(format!("worst ratio, {of}s"), Figure::new(worst.0, Unit::Ratio));
-        said.push(format!("{of}s {ratio} ({})", worst.1));
+        chapter.quote(format!("worst ratio, {of}s"), Figure::new(worst.0, Unit::Ratio));
     }
-    chapter.paragraph(&format!(
-        "RMSE over that of the plain means of the same samples, which are independent: the default, order 3, {side} x {side} pixels, which share fits as an image, or \
-         in no order, as a block. Intervals of {confidence} % are in the JSON. With the highest upper end: {}.",
-        said.join("; ")
-    ));
-    chapter.setting("order of the fits", 3);
     let columns = headings(&["scene", "as"], counts.iter().map(|n| format!("n = {n}")));
     chapter.table("hard scenes", &columns, 2, rows);
     Ok(())
@@ -98,13 +80,6 @@ pub(super) fn hard(chapter: &mut Chapter, targets: &mut Targets, table: &Table) 
 
 pub(super) fn bias(chapter: &mut Chapter, table: &Table) -> Result<()> {
     chapter.section("The bias of shared fits", "");
-    let (count, side) =
-        (chapter.setting("integrands of the bias", 24), chapter.setting("window of a tile's samples", 8));
-    chapter.paragraph(&format!(
-        "Over the RMSE, root mean square over {count} half-planes and bumps and the largest of them, without what chance adds, which stands beside them; order 3, one \
-         window. Independent samples: leave-one-out and K-fold are exactly unbiased. A tile's samples, {side} x {side} of its pixels with all values shifted \
-         at random, are not independent, so that no estimator is.",
-    ));
     let rows: Vec<Vec<Cell>> = table
         .rows()
         .map(|row| {

@@ -1,22 +1,16 @@
 //! Tables: bases and orders of every estimator; every integrand by the recommended setting.
 
 use super::cells::{BASES, Cells, DEFAULT, ESTIMATORS, MEAN, Setting, Summary};
-use crate::chapters::Report;
 use crate::chapters::chapter::{self, Chapter, row};
 use crate::chapters::figure::{Figure, Unit};
-use anyhow::Result;
 
 const ORDERS: [usize; 4] = [1, 2, 3, 5];
 /// Up to so many dims all of these orders have at most as many terms as the library admits.
 const DIMS: usize = 3;
 
-pub(super) fn write(_: &Report, chapter: &mut Chapter, cells: &Cells) -> Result<()> {
+pub(super) fn write(chapter: &mut Chapter, cells: &Cells) {
     chapter.section("Estimators, bases, orders", "");
-    let dims = chapter.setting("dims of the table of estimators, at most", DIMS);
-    chapter.paragraph(&format!(
-        "Over all integrands of up to {dims} dims, among them the adversarial ones: the geometric mean of the error over MC's, behind the semicolon the worst integrand's. \
-         Bases of the same order have the same number of functions."
-    ));
+    chapter.setting("dims of the table of estimators, at most", DIMS);
     for &n in &cells.counts {
         let all = cells.summaries(|dims| dims <= DIMS, n);
         let mut rows = Vec::new();
@@ -34,7 +28,6 @@ pub(super) fn write(_: &Report, chapter: &mut Chapter, cells: &Cells) -> Result<
         chapter.table("estimators, bases, orders", &columns, 3, rows);
     }
     integrands(chapter, cells);
-    Ok(())
 }
 
 fn cell(summary: Option<&Summary>) -> chapter::Cell {
@@ -47,10 +40,6 @@ fn cell(summary: Option<&Summary>) -> chapter::Cell {
 /// Each integrand: the recommended setting, and the one of least error.
 fn integrands(chapter: &mut Chapter, cells: &Cells) {
     chapter.section("Each integrand", "");
-    chapter.paragraph(
-        "By the recommended setting: its error, its time, and how many nanoseconds a sample must cost for it to beat the mean in the same time (none where the error is \
-         not below MC's). Beside it the setting of least error of all in the grid, known only afterwards, with its error and time.",
-    );
     let mut rows = Vec::new();
     for mean in cells.all.iter().filter(|cell| cell.setting.estimator == MEAN) {
         let here: Vec<_> =

@@ -7,11 +7,6 @@ use anyhow::Result;
 
 pub(super) fn write(chapter: &mut Chapter, table: &Table) -> Result<()> {
     chapter.section("f32 against f64", "");
-    chapter.paragraph(
-        "`NF_PRECISION_F32` is for targets without an f64 unit. Over all integrands and sample counts of the benchmark `speed_error`, on the same samples: the geometric \
-         mean and the worst of its RMSE over the f64 path's (without integrands that f64 integrates exactly), the largest root mean square difference of the two \
-         estimates over MC's error, and its time over the other's, geometric mean and largest.",
-    );
     let mut rows = Vec::new();
     for method in ["robust", "least squares"] {
         for degree in ["2", "3"] {

@@ -17,7 +17,5 @@ pub(super) fn collect(targets: &mut Targets, table: &Table) -> Result<()> {
         let note = if note.is_empty() { "all" } else { note };
         targets.at_most(row.word("target")?, note, estimate, unit, row.number("bound")?);
     }
-    let reason = "the quoted times are of another machine; the shares of the re-implemented Algorithm 1, timed in the same run, stand beside.";
-    targets.reason(["", "ns"], reason);
     Ok(())
 }

@@ -1,15 +1,15 @@
 //! train_mlp.c: test error against steps and time, and the variance of the gradient (figures 6.2, 6.4 and 6.11).
 
+use super::Context;
+use super::mlp::{self, BATCH, HIDDEN, Plan};
+use super::mnist;
 use super::summary::Summary;
-use super::{Context, Written};
+use super::trainer::Program;
+use super::trainer::Written;
 use crate::chapters::chapter::Chapter;
 use crate::chapters::figure::Unit;
-use crate::chapters::measured::read;
 use crate::chapters::statistics::Estimate;
 use crate::chapters::targets::Targets;
-use crate::demo::training::data;
-use crate::demo::training::mlp::{self, BATCH, HIDDEN, Plan};
-use crate::demo::training::program::Program;
 use crate::measure::table::Table;
 use anyhow::{Context as _, Result};
 use std::path::PathBuf;
@@ -28,7 +28,7 @@ pub(super) struct Trainer {
 impl Trainer {
     pub(super) fn new(context: &Context) -> Result<Self> {
         let program = Program::compile("train_mlp.c", &context.archive)?;
-        let mnist = (context.sizes() != "quick").then(data::mnist).and_then(|mnist| {
+        let mnist = (context.sizes() != "quick").then(mnist::folder).and_then(|mnist| {
             mnist.inspect_err(|error| println!("without MNIST, which could not be had: {error:#}")).ok()
         });
         Ok(Self { program, mnist })
@@ -61,24 +61,20 @@ impl Trainer {
         chapter: &mut Chapter,
         targets: &mut Targets,
     ) -> Result<()> {
-        let (seeds, epochs, [first, second]) = (plan.seeds.to_string(), plan.epochs.to_string(), HIDDEN);
+        let (epochs, [first, second]) = (plan.epochs.to_string(), HIDDEN);
         let Written { csv, summary } = context.run(&self.program, name, &plan.runs()?)?;
         let summary = Summary::parse(&summary)?;
         chapter.section(&format!("Test error, {}", plan.name), "figures 6.4 and 6.11");
         chapter.setting(format!("{name}: rate"), plan.rate);
-        let batch = chapter.setting(format!("{name}: batch"), BATCH);
-        let hidden = chapter.setting(format!("{name}: hidden"), format!("{first}-{second}"));
+        chapter.setting(format!("{name}: batch"), BATCH);
+        chapter.setting(format!("{name}: hidden"), format!("{first}-{second}"));
         chapter.setting(format!("{name}: epochs"), plan.epochs);
         chapter.setting(format!("{name}: seeds"), plan.seeds);
-        chapter.paragraph(&format!(
-            "A multilayer perceptron with hidden layers of {hidden}, batches of {batch}, Adam at a constant rate of {}, {seeds} seeds, {epochs} epochs.",
-            plan.rate
-        ));
         summary.write(chapter, name, 2);
         let rows = Table::parse(&csv, name, ',')?;
         for (file, column, label) in [(name, "step", "steps"), (time, "seconds", "seconds of training")] {
             let plot = mlp::error_plot(plan, &rows, column, label)?;
-            context.plot(chapter, file, &plot, &format!("test error against {label}, {}", plan.name))?;
+            context.plot(file, &plot)?;
         }
         for mode in ["importance", "adaptive"] {
             // Its two columns of differences have the same name; the second is that at equal time.
@@ -106,27 +102,18 @@ impl Trainer {
     ) -> Result<()> {
         let epochs = plan.variance_epochs.to_string();
         context.bar.set_message(format!("gradients: {name}"));
-        let csv = context.measured.text(&format!("{name}.csv"), || {
-            let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
-            let path = scratch.path().join("variance.csv");
-            self.program.run(&plan.variance(&path)?, &context.report.interrupted, |_| ())?;
-            read(&path)
-        })?;
+        let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
+        let path = scratch.path().join("variance.csv");
+        self.program.run(&plan.variance(&path)?, &context.report.interrupted, |_| ())?;
         context.bar.inc(1);
-        let rows = Table::parse(&csv, name, ',')?;
+        let rows = Table::read(&path, ',')?;
         chapter.section(&format!("Variance of the gradient, {}", plan.name), "figure 6.2");
         let [batches, draws] = mlp::drawn(&rows)?;
-        let batches = chapter.setting(format!("{name}: batches"), batches);
-        let draws = chapter.setting(format!("{name}: draws of a batch"), draws);
-        chapter.paragraph(&format!(
-            "One network, trained uniformly; at each epoch the variance of the gradient's estimate over that of uniform draws, at the same states. Fresh \
-             unless said otherwise: importances of the network as it is. As kept: those that a table has after such a training. Ratios of one table are \
-             exact; those of balance and omis are mean squared distances to the exact gradient, bias included, over {batches} batches of {draws} draws."
-        ));
+        chapter.setting(format!("{name}: batches"), batches);
+        chapter.setting(format!("{name}: draws of a batch"), draws);
         let summary = Summary::parse(&mlp::variance_table(plan, &rows)?)?;
         summary.write(chapter, name, 1);
-        let description = format!("variance over uniform's against epochs, {}", plan.name);
-        context.plot(chapter, picture, &mlp::variance_plot(plan, &rows)?, &description)?;
+        context.plot(picture, &mlp::variance_plot(plan, &rows)?)?;
         if plan.variance_epochs < LATE {
             return Ok(());
         }

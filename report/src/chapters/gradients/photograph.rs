@@ -1,13 +1,13 @@
 //! fit_image.cpp: a photograph learned by a network (figure 6.13).
 
 use super::Context;
+use super::image_plot;
 use super::summary::Summary;
+use super::trainer::Program;
 use crate::chapters::chapter::Chapter;
 use crate::chapters::figure::Unit;
 use crate::chapters::statistics::Estimate;
 use crate::chapters::targets::Targets;
-use crate::demo::training::photograph;
-use crate::demo::training::program::Program;
 use anyhow::Result;
 
 /// The column with the mean of each parameter's ratio.
@@ -22,20 +22,12 @@ pub(super) fn write(context: &Context, chapter: &mut Chapter, targets: &mut Targ
     let strata_errors = context.run(&program, "photograph variance strata", &[&all[..], &["--stratified"]].concat())?;
 
     chapter.section("A photograph", "figure 6.13");
-    chapter.paragraph(
-        "A network with sines learns the colours of a photograph from the place; several seeds. 3 tables: one for each channel; 6: one for each channel and sign.",
-    );
-    chapter.setting("photograph: tables", "3 6");
     Summary::parse(&losses.summary)?.write(chapter, "photograph", 1);
-    chapter.paragraph("One draw in each stratum:");
     Summary::parse(&strata.summary)?.write(chapter, "photograph strata", 1);
-    let plot = photograph::loss_plot(&losses.csv, &strata.csv, "step", "steps")?;
-    context.plot(chapter, "photograph", &plot, "peak signal-to-noise ratio against steps")?;
-    chapter
-        .paragraph("Mean squared errors of the gradient's estimate over those of uniform draws, at the same states:");
+    let plot = image_plot::loss_plot(&losses.csv, &strata.csv, "step", "steps")?;
+    context.plot("photograph", &plot)?;
     let variance = Summary::parse(&errors.summary)?;
     variance.write(chapter, "photograph variance", 2);
-    chapter.paragraph("The same, one draw in each stratum:");
     Summary::parse(&strata_errors.summary)?.write(chapter, "photograph variance strata", 2);
     for step in ["1000", "2000", "3000", "4000"] {
         let column = variance.columns.get(ERROR).map_or("", String::as_str);

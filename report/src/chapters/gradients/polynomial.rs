@@ -1,13 +1,13 @@
 //! fit_polynomial.c: loss at the end, and errors of the gradient by coefficient (figure 6.10).
 
 use super::Context;
+use super::polynomial_plots;
 use super::summary::Summary;
+use super::trainer::Program;
 use crate::chapters::chapter::Chapter;
 use crate::chapters::figure::Unit;
 use crate::chapters::statistics::Estimate;
 use crate::chapters::targets::Targets;
-use crate::demo::training::polynomial;
-use crate::demo::training::program::Program;
 use anyhow::Result;
 
 pub(super) fn write(context: &Context, program: &Program, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
@@ -18,32 +18,15 @@ pub(super) fn write(context: &Context, program: &Program, chapter: &mut Chapter,
     let errors = context.run(program, "polynomial variance", &[&small[..], &["--variance"]].concat())?;
 
     chapter.section("A polynomial of order 6", "figure 6.10");
-    for (name, value) in
-        [("problems", seeds), ("steps", steps), ("batches", batches), ("batch", "32"), ("rate", ".003")]
-    {
+    for (name, value) in [("problems", seeds), ("steps", steps), ("batches", batches)] {
         chapter.setting(format!("polynomial: {name}"), value);
     }
-    let (order, range, beta) =
-        (chapter.setting("polynomial: order", 6), chapter.setting("polynomial: x up to", 2), 0.7);
-    chapter.setting("polynomial: beta", beta);
-    chapter.setting("polynomial: tables", "2 4");
-    chapter.paragraph(&format!(
-        "Points of a random polynomial of order {order} on [-{range}, {range}]; its coefficients learned from another random start by Adam, batches of 32, {steps} \
-         steps; {seeds} problems. is: one table; 2 and 4: so many tables; omis4-beta: momentum {beta} in the estimate. \"Problem by problem\" is the \
-         geometric mean of the ratios to the exact gradient's loss."
-    ));
     let losses = Summary::parse(&trained.summary)?;
     losses.write(chapter, "polynomial", 1);
-    let description = "mean loss over the exact gradient's, against steps";
-    context.plot(chapter, "polynomial", &polynomial::ratio_plot(&trained.csv)?, description)?;
-    chapter.paragraph(&format!(
-        "Mean squared error of the gradient's estimate over that of uniform draws, each coefficient's, at the same states on the exact gradient's way, \
-         tables as the method's own batches have left them, {batches} batches:"
-    ));
+    context.plot("polynomial", &polynomial_plots::ratio_plot(&trained.csv)?)?;
     let variance = Summary::parse(&errors.summary)?;
     variance.write(chapter, "polynomial variance", 2);
-    let description = "error over uniform's, by coefficient, at the end";
-    context.plot(chapter, "polynomial-variance", &polynomial::error_plot(&errors.csv)?, description)?;
+    context.plot("polynomial-variance", &polynomial_plots::error_plot(&errors.csv)?)?;
 
     let place = format!("{seeds} problems, step {steps}");
     if let Some((ratio, _)) = losses.number(&["omis4"], "over exact") {

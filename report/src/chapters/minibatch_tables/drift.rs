@@ -22,10 +22,6 @@ pub(super) fn memory(rows: &Table, chapter: &mut Chapter, targets: &mut Targets)
         }
         cells.push(row![items as u32, method, Figure::exact(bytes / items, Unit::BytesPerItem), epsilon]);
     }
-    chapter.paragraph(
-        "`nf_table`: what `nf_table_size` asks for. The alias table: what it holds, and the weights from which the next one is made. The last column is \
-         the time, per item of the table, to add a constant to all importances.",
-    );
     chapter.table("memory", &["items", "method", "bytes per item", "ns per item to add epsilon"], 2, cells);
     Ok(())
 }
@@ -37,15 +33,8 @@ pub(super) fn write(rows: &Table, chapter: &mut Chapter, targets: &mut Targets) 
     let (items, updates) = (number("items")?, number("updates")?);
     let count = |value: f64| Figure::exact(value, Unit::Count);
     if let (Some(&items), Some(&updates)) = (items.first(), updates.first()) {
-        let items = chapter.quote("drift: items", count(items));
-        let updates = chapter.quote("drift: updates", count(updates));
-        let one = chapter.setting("drift: one item in so many is set to 0", 8);
-        chapter.paragraph(&format!(
-            "{updates} updates of random ones of {items} items, one in {one} of them to nothing, without a uniform mixture. Changed: numbers that are not \
-             those of a table newly made of the same importances: of `nf_table` the sums that it keeps, of the tree the weights that it gives \
-             back. Risen: items of no importance that can be drawn. Lost: others that cannot. The error is that of an item's probability, relative, \
-             the largest, against the importances in f64."
-        ));
+        chapter.quote("drift: items", count(items));
+        chapter.quote("drift: updates", count(updates));
     }
     let [changed, compared, risen, lost, error] = ["changed", "compared", "risen", "lost", "error"].map(number);
     let (changed, compared, risen, lost, error) = (changed?, compared?, risen?, lost?, error?);

@@ -5,8 +5,6 @@ use crate::chapters::chapter::{Cell, Chapter, row};
 use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::statistics::Estimate;
 use crate::chapters::targets::Targets;
-use crate::measure::output::Output;
-use crate::measure::plot::{Axis, Plot, Series};
 use crate::measure::table::Table;
 use anyhow::{Context, Result};
 
@@ -75,7 +73,7 @@ impl Times {
         ours.filter_map(|ours| Some((ours, self.find(PEER, ours.items, ours.cache)?)))
     }
 
-    pub(super) fn write(&self, chapter: &mut Chapter, targets: &mut Targets, output: &Output) -> Result<()> {
+    pub(super) fn write(&self, chapter: &mut Chapter, targets: &mut Targets) {
         chapter.section("Time of draws and updates", "section 6.1");
         let rows = self.0.iter().map(|row| -> Vec<Cell> {
             let ratio = self.find(PEER, row.items, row.cache).filter(|_| row.method != PEER);
@@ -100,21 +98,9 @@ impl Times {
             let ratio = Figure::new(Estimate::ratio(&row.step(), &ours.step()), Unit::Ratio);
             Some(row![row.items, row.method.clone(), ratio])
         });
-        chapter.paragraph("How many times as long as `nf_table` the others take for a step, warm:");
         chapter.table("times as long", &["items", "method", "step / `nf_table`'s"], 2, others.collect());
 
-        self.plot("tables-draw.svg", "time of a draw", "ns per draw", |row| row.draw.clone(), output)?;
-        chapter.picture(
-            "tables-draw.svg",
-            "nanoseconds of a draw against the number of items, warm (solid) and cold (dashed)",
-        );
-        self.plot("tables-step.svg", "time of a step: 64 draws, 64 updates", "us per step", Row::step, output)?;
-        chapter.picture(
-            "tables-step.svg",
-            "microseconds of a step against the number of items, warm (solid) and cold (dashed)",
-        );
         self.judge(targets);
-        Ok(())
     }
 
     fn judge(&self, targets: &mut Targets) {
@@ -139,41 +125,5 @@ impl Times {
             let statement = format!("A step's time: WeightedTreeIndex's over `nf_table`'s, {kind}");
             targets.at_least(&statement, &ours.place(), ratio, Unit::Ratio, bound);
         }
-    }
-
-    fn plot(
-        &self,
-        file: &str,
-        title: &str,
-        label: &str,
-        values: impl Fn(&Row) -> Vec<f64>,
-        output: &Output,
-    ) -> Result<()> {
-        let mut methods: Vec<&str> = Vec::new();
-        for row in &self.0 {
-            if !methods.contains(&row.method.as_str()) {
-                methods.push(&row.method);
-            }
-        }
-        let mut series = Vec::new();
-        for (colour, method) in methods.into_iter().enumerate() {
-            for cache in CACHES {
-                let rows = || self.0.iter().filter(|row| row.method == method && row.cache == cache);
-                if rows().next().is_none() {
-                    continue;
-                }
-                let at = |row: &Row| (f64::from(row.items), Estimate::median(&values(row)));
-                series.push(Series {
-                    name: format!("{method}, {cache}"),
-                    points: rows().map(|row| (at(row).0, at(row).1.value)).collect(),
-                    band: rows().map(|row| (at(row).0, at(row).1.low, at(row).1.high)).collect(),
-                    dashed: cache == "cold",
-                    colour: Some(colour),
-                });
-            }
-        }
-        let x = Axis { label: "items", logarithmic: true, range: None };
-        let y = Axis { label, logarithmic: true, range: None };
-        output.write_text(file, &Plot { title, x, y, series: &series }.svg()?)
     }
 }

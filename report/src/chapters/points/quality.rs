@@ -5,8 +5,6 @@ use crate::chapters::chapter::{Cell, Chapter, row};
 use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::statistics::Estimate;
 use crate::chapters::targets::Targets;
-use crate::measure::output::Output;
-use crate::measure::plot::{Axis, Plot, Series};
 use anyhow::Result;
 
 /// Study, sampler and name of what is compared.
@@ -18,18 +16,12 @@ const COMPARED: [(&str, &str, &str); 5] = [
     ("peer", "random", "random"),
 ];
 
-pub(super) fn write(output: &Output, sets: &Sets, chapter: &mut Chapter) -> Result<()> {
+pub(super) fn write(sets: &Sets, chapter: &mut Chapter) -> Result<()> {
     chapter.section("Quality against points", "");
-    chapter.paragraph(
-        "One class. Root mean square errors and L2 star discrepancy are over what as many random points have on average; W2 and its bound are in \
-         thousandths.",
-    );
     let mut rows = Vec::new();
-    let mut series = Vec::new();
     let mut sizes = sets.distinct(&[("study", "peer")], "points")?;
     sizes.sort_by_key(|size| size.parse::<u64>().unwrap_or(0));
     for (study, sampler, name) in COMPARED {
-        let mut points = Vec::new();
         for size in &sizes {
             let wanted = [("study", study), ("sampler", sampler), ("classes", "1"), ("points", size.as_str())];
             let cell = |column| -> Result<Cell> {
@@ -39,8 +31,9 @@ pub(super) fn write(output: &Output, sets: &Sets, chapter: &mut Chapter) -> Resu
                 let of = sets.mean(&wanted, column)?.map(|of| Figure::exact(1e3 * of.value, Unit::Number));
                 Ok(of.into())
             };
-            let Some(error) = sets.mean(&wanted, "gaussians")? else { continue };
-            points.push((size.parse()?, error.value));
+            if sets.mean(&wanted, "gaussians")?.is_none() {
+                continue;
+            }
             rows.push(row![
                 name,
                 size.as_str(),
@@ -52,18 +45,11 @@ pub(super) fn write(output: &Output, sets: &Sets, chapter: &mut Chapter) -> Resu
                 cell("neighbour")?,
             ]);
         }
-        // One size is no line.
-        if points.len() > 1 {
-            series.push(Series { name: name.to_owned(), points, ..Series::default() });
-        }
     }
-    chapter.setting("exponent of the discrepancy's norm", 2);
     let columns =
         ["points are", "points", "half-planes", "Gaussians", "L2 star", "W2", "W2's bound", "nearest neighbour"];
     chapter.table("quality", &columns, 1, rows);
     compare(sets, chapter)?;
-    output.write_text("points-quality.svg", &plot("points", &series)?)?;
-    chapter.picture("points-quality.svg", "error of Gaussian bumps against points");
     Ok(())
 }
 
@@ -71,43 +57,31 @@ pub(super) fn write(output: &Output, sets: &Sets, chapter: &mut Chapter) -> Resu
 fn compare(sets: &Sets, chapter: &mut Chapter) -> Result<()> {
     let sizes = sets.distinct(&[("study", "standard")], "points")?;
     let Some(points) = sizes.last() else { return Ok(()) };
-    let mut over = |what: &str, column: &str| -> Result<String> {
+    let mut over = |what: &str, column: &str| -> Result<()> {
         let own = sets.mean(&[("study", "standard"), ("points", points)], column)?;
         let sobol = sets.mean(&[("sampler", "Owen-Sobol"), ("points", points)], column)?;
         let ratio = own.zip(sobol).map_or(f64::NAN, |(own, sobol)| own.value / sobol.value);
-        Ok(chapter.quote(format!("{what}, standard quality over Owen-Sobol"), Figure::exact(ratio, Unit::Ratio)))
+        chapter.quote(format!("{what}, standard quality over Owen-Sobol"), Figure::exact(ratio, Unit::Ratio));
+        Ok(())
     };
-    let (half_planes, gaussians) = (over("half-planes", "half_planes")?, over("Gaussians", "gaussians")?);
-    let discrepancy = over("L2 star discrepancy", "discrepancy")?;
-    let points = chapter.setting("points of sets of standard quality", points.parse::<u64>()?);
-    let text = format!(
-        "Standard quality over Owen-scrambled Sobol points, {points} of each: {half_planes} times the error of half-planes, {gaussians} times that of \
-         Gaussian bumps, {discrepancy} times the star discrepancy."
-    );
-    chapter.paragraph(&text);
+    over("half-planes", "half_planes")?;
+    over("Gaussians", "gaussians")?;
+    over("L2 star discrepancy", "discrepancy")?;
+    chapter.setting("points of sets of standard quality", points.parse::<u64>()?);
     Ok(())
 }
 
 /// The same size, longer and longer.
-pub(super) fn steps(output: &Output, sets: &Sets, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
+pub(super) fn steps(sets: &Sets, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
     chapter.section("Quality against seconds", "");
-    chapter.paragraph(
-        "More steps, one class. A step is sixteen slices. Errors are over random points'; the discrepancy rises again where points \
-         begin to crystallise.",
-    );
     let mut rows = Vec::new();
-    let mut series = Vec::new();
     for points in sets.distinct(&[("study", "steps")], "points")? {
-        let mut line = Vec::new();
         for steps in sets.distinct(&[("study", "steps"), ("points", &points)], "steps")? {
             let wanted = [("study", "steps"), ("points", points.as_str()), ("steps", steps.as_str())];
             let cell = |column| -> Result<Cell> {
                 Ok(sets.mean(&wanted, column)?.map(|of| Figure::brief(of, Unit::Number)).into())
             };
             let seconds = sets.mean(&wanted, "seconds")?;
-            if let (Some(seconds), Some(error)) = (seconds, sets.mean(&wanted, "gaussians")?) {
-                line.push((seconds.value, error.value));
-            }
             rows.push(row![
                 points.as_str(),
                 steps.as_str(),
@@ -118,19 +92,10 @@ pub(super) fn steps(output: &Output, sets: &Sets, chapter: &mut Chapter, targets
                 cell("neighbour")?,
             ]);
         }
-        series.push(Series { name: format!("{points} points"), points: line, ..Series::default() });
     }
     let columns = ["points", "steps", "seconds", "half-planes", "Gaussians", "L2 star", "nearest neighbour"];
     chapter.table("steps", &columns, 0, rows);
-    output.write_text("points-steps.svg", &plot("seconds", &series)?)?;
-    chapter.picture("points-steps.svg", "error of Gaussian bumps against seconds");
     judge(sets, targets)
-}
-
-fn plot(x: &str, series: &[Series]) -> Result<String> {
-    let axis = |label| Axis { label, logarithmic: true, range: None };
-    let y = axis("root mean square error");
-    Plot { title: "Gaussian bumps", x: axis(x), y, series }.svg()
 }
 
 /// The bounds are those of a prototype that was written to try the method: its time of a slice on one core, and the

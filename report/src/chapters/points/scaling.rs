@@ -4,20 +4,11 @@ use super::Sets;
 use crate::chapters::chapter::{Cell, Chapter, row};
 use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::statistics::{Estimate, student};
-use crate::measure::output::Output;
-use crate::measure::plot::{Axis, Plot, Series};
 use anyhow::Result;
 
-pub(super) fn write(output: &Output, sets: &Sets, chapter: &mut Chapter) -> Result<()> {
+pub(super) fn write(sets: &Sets, chapter: &mut Chapter) -> Result<()> {
     chapter.section("Seconds against points", "");
-    chapter.paragraph(
-        "Draft quality. Its steps grow with the logarithm of the points up to 8,192, and stay the same beyond, where points are optimised in \
-         windows; more classes take more steps, up to eight times. The last row is a million points, with fewer steps than draft quality has \
-         unless the report was made with `--full`. Colour: the figures of the first colour's points alone.",
-    );
-    chapter.setting("points up to which no windows are used", "8,192");
     let mut rows = Vec::new();
-    let mut series = Vec::new();
     let mut fits = Vec::new();
     for classes in sets.distinct(&[("sampler", "optimised")], "classes")? {
         let mut points = Vec::new();
@@ -48,7 +39,6 @@ pub(super) fn write(output: &Output, sets: &Sets, chapter: &mut Chapter) -> Resu
         if points.len() > 2 {
             fits.push((classes.clone(), slope(&points), points.len()));
         }
-        series.push(Series { name: format!("{classes} classes"), points, ..Series::default() });
     }
     let columns = [
         "classes",
@@ -60,13 +50,6 @@ pub(super) fn write(output: &Output, sets: &Sets, chapter: &mut Chapter) -> Resu
         "colour: nearest neighbour",
     ];
     chapter.table("scaling", &columns, 0, rows);
-    output.write_text("points-seconds.svg", &plot(&series)?)?;
-    chapter.picture("points-seconds.svg", "seconds against points, by classes");
-    chapter.paragraph(
-        "The exponent a of seconds ~ points^a, fitted to the logarithms of the rows above but those of other qualities; the interval is of the \
-         fit (Student's, of its residuals). What is above 1 comes from small sets, whose steps grow; what is below from fixed costs.",
-    );
-    chapter.setting("linear", 1);
     let rows = fits
         .into_iter()
         .map(|(classes, slope, sizes)| row![classes, sizes.to_string(), Figure::new(slope, Unit::Ratio)]);
@@ -85,11 +68,6 @@ fn slope(points: &[(f64, f64)]) -> Estimate {
     let residuals: f64 = logs.iter().map(|log| (log.1 - y - value * (log.0 - x)).powi(2)).sum();
     let half = student(count - 2.0) * (residuals / (count - 2.0) / spread).sqrt();
     Estimate { value, low: value - half, high: value + half, seeds: logs.len() }
-}
-
-fn plot(series: &[Series]) -> Result<String> {
-    let axis = |label| Axis { label, logarithmic: true, range: None };
-    Plot { title: "Draft quality", x: axis("points"), y: axis("seconds"), series }.svg()
 }
 
 #[cfg(test)]

@@ -13,12 +13,6 @@ pub(super) fn two_digits(value: f64) -> String {
 
 pub(super) fn write(table: &Table, chapter: &mut Chapter) -> Result<()> {
     chapter.section("What is recommended", "");
-    chapter.paragraph(
-        "What `recommend()` (in C `nf_recommend()`) says for so many dims and samples, stratified or independent, each pixel alone or with its \
-         neighbours at hand: the kind of samples, then the estimators with the errors of this run, raw and filtered. From 64 samples on the \
-         estimators were measured on Sobol points, which the tile of one sample, continued, stands for.",
-    );
-    chapter.setting("samples from which estimators are measured on Sobol points", 64);
     let counts = table.distinct("n")?;
     let headings: Vec<String> = counts.iter().map(|n| format!("n = {n}")).collect();
     let columns: Vec<&str> =
@@ -65,16 +59,11 @@ fn other(table: &Table, chapter: &mut Chapter) -> Result<()> {
             excess
         ]);
     }
-    let all = chapter.quote("decisions", Figure::exact(f64::from(count), Unit::Count));
-    let others = chapter.quote("decisions where another was better", Figure::exact(rows.len() as f64, Unit::Count));
+    chapter.quote("decisions", Figure::exact(f64::from(count), Unit::Count));
+    chapter.quote("decisions where another was better", Figure::exact(rows.len() as f64, Unit::Count));
     let largest = table.rows().map(|row| row.number::<f64>("excess")).collect::<Result<Vec<_>>>()?;
     let largest = largest.into_iter().fold(1.0, f64::max);
-    let largest = chapter.quote("largest excess of a recommendation", Figure::exact(largest, Unit::Ratio));
-    chapter.paragraph(&format!(
-        "Of {all} decisions, {others} had another that was better by more than its noise (the interval is of the integrands); the largest \
-         excess of any, noise included, is {largest}. Excess: error times time of what is recommended over that of the best, where the \
-         error is the geometric mean of raw and filtered, and a sample costs a microsecond for each of its dims beside the estimate's time."
-    ));
+    chapter.quote("largest excess of a recommendation", Figure::exact(largest, Unit::Ratio));
     if !rows.is_empty() {
         let columns = ["dims", "n", "samples", "neighbours", "recommended", "better", "excess"];
         chapter.table("better than recommended", &columns, 6, rows);

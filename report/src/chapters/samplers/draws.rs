@@ -14,21 +14,13 @@ const DOORS: [&str; 3] = ["Rust", "C ABI", "C ABI by pixel"];
 
 pub(super) fn write(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
     chapter.section("Nanoseconds of a draw", "");
-    let rounds = chapter.setting("rounds", table.distinct("round")?.len());
-    chapter.paragraph(&format!(
-        "One draw is constructing the sampler of a pixel and its last sample, and drawing all numbers of it; pixels row by row, coordinates \
-         opaque to the compiler. Median of {rounds} rounds, in which the samplers take turns. Rust: compiled into the program for any x86-64; \
-         C ABI: calls into the archive that ships; by pixel: one call of `nf_sampler_fill` for all samples of a pixel, divided by their \
-         number. Beyond a tile's own samples a draw computes a scrambled sequence. What is random is a running generator, without pixel \
-         and index."
-    ));
+    chapter.setting("rounds", table.distinct("round")?.len());
     let counts = table.distinct("spp")?;
     let times = |dims: &str, spp: &str, sampler: &str, door: &str| -> Result<Vec<f64>> {
         let wanted = [("dims", dims), ("spp", spp), ("sampler", sampler), ("door", door)];
         table.rows().filter(|row| row.has(&wanted)).map(|row| row.number("ns")).collect()
     };
     for dims in table.distinct("dims")? {
-        chapter.paragraph(&format!("{dims} numbers:"));
         let headings: Vec<String> = counts.iter().map(|spp| format!("{spp} spp")).collect();
         let columns: Vec<&str> =
             ["sampler", "through"].into_iter().chain(headings.iter().map(String::as_str)).collect();

@@ -4,14 +4,11 @@ use super::Section;
 use crate::chapters::chapter::row;
 use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::measurement::{BASELINE, Experiment, View};
-use crate::chapters::pictures::write_small;
 use crate::chapters::statistics::Estimate;
 use crate::measure::metric::Reference;
 use crate::measure::renderer::Sampler;
 use crate::measure::samplers::{Choice, Tiles};
 use crate::measure::score;
-use crate::measure::spectrum_sheet::{self, Cell as Panel, Row};
-use crate::measure::text;
 use anyhow::Result;
 use image::Rgb32FImage;
 
@@ -67,26 +64,10 @@ fn filtered(frames: &[&Rgb32FImage], weights: &[f64]) -> Rgb32FImage {
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Animation", "figures 5.23 and 5.24");
     let plan = section.measurement.plan;
-    let size = section.chapter.setting("pixels on a side of the animation", plan.tile_size / 2);
-    let alpha = section.chapter.setting("weight of the newest frame", ALPHA);
-    let seeds = section.chapter.setting("seeds of the animation", plan.animation_seeds);
-    let chosen = section.chapter.setting("samples per pixel of the tile whose settings were chosen", CHOSEN);
-    let [first, second] = SCENES;
-    let rate = section.chapter.setting("frames per second", 60);
-    section.chapter.paragraph(&format!(
-        "Frames as they follow each other, filtered along time, then over the image: relMSE times a thousand of the last frame as it is \
-         seen, and over random's of the same seeds; {seeds} seeds. Moving average: weight {alpha} for the newest frame, as in temporal anti-aliasing; eye: the kernel of Mantiuk et al. at {rate} frames \
-         per second. The shifted tile is optimised over the image alone and shifted anew in every frame. {size} x {size} pixels."
-    ));
-    section.chapter.paragraph(&format!(
-        "`{first}`: camera, turntable and a ball move. The temporal tile of {chosen} samples had its settings chosen on this animation, with other \
-         seeds, so that its figures there are flattering. `{second}`: the camera draws nearer to a table; nothing was chosen by it."
-    ));
-    section.targets.reason_at(
-        ["temporal tile", "4 spp"],
-        "eye",
-        "The temporal tiles were optimised for the moving average, not for the eye.",
-    );
+    section.chapter.setting("pixels on a side of the animation", plan.tile_size / 2);
+    section.chapter.setting("weight of the newest frame", ALPHA);
+    section.chapter.setting("seeds of the animation", plan.animation_seeds);
+    section.chapter.setting("samples per pixel of the tile whose settings were chosen", CHOSEN);
     let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
     let mut rows = Vec::new();
     let sizes = plan.some(&TEMPORAL).iter().zip(plan.animation);
@@ -127,20 +108,9 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
                 }
             }
         }
-        if scene == first {
-            write_sheet(section, &seen(&references, &eye(references.len())), &all, spp)?;
-        }
     }
     let columns = ["scene", "samples", "frame", "filter", "sampler", "relMSE x 1000", "over random"];
     section.chapter.table("animation", &columns, 5, rows);
-    for &(spp, _) in plan.some(&TEMPORAL) {
-        let description = format!(
-            "`{first}`: the last frame filtered along time, {}: image, errors, spectra",
-            text::samples_per_pixel(spp)
-        );
-        section.chapter.setting(format!("samples per pixel of the animation, {spp}"), spp);
-        section.chapter.picture(&format!("animation-{spp}spp.png"), &description);
-    }
     Ok(())
 }
 
@@ -156,8 +126,6 @@ fn references(section: &Section, scene: &'static str, last: u32) -> Result<Vec<s
 struct Measured {
     /// Of each kernel and seed: relMSE of what is seen, filtered over the image too.
     errors: Vec<Vec<f64>>,
-    /// As the eye sees it, the first seed.
-    image: Rgb32FImage,
 }
 
 fn measure(
@@ -175,22 +143,17 @@ fn measure(
         section.measurement.render_all(&experiments)?.into_iter().flatten().map(|renderings| renderings.images);
     let (frames, count): (Vec<_>, _) = (frames.collect(), references.len());
     let mut errors = Vec::new();
-    let mut image = None;
     for (_, kernel) in KERNELS {
         let weights = kernel(count);
         let reference = seen(references, &weights);
         let each = (0..seeds as usize).map(|seed| {
             let sequence: Vec<&Rgb32FImage> = frames.iter().map(|images| &images[seed]).collect();
             let seen = filtered(&sequence, &weights);
-            let [_, error] = score::errors(&seen, &reference);
-            if seed == 0 {
-                image = Some(seen);
-            }
-            error
+            score::errors(&seen, &reference)[1]
         });
         errors.push(each.collect());
     }
-    Ok(Measured { errors, image: image.unwrap_or_default() })
+    Ok(Measured { errors })
 }
 
 /// The references filtered along time.
@@ -200,19 +163,6 @@ fn seen(references: &[std::rc::Rc<Reference>], weights: &[f64]) -> Reference {
         filtered(&frames, weights)
     });
     Reference::new(&a, &b)
-}
-
-/// `reference`: as the eye sees it, as the images are; the last frame alone would show what moves as an error of all
-/// samplers.
-fn write_sheet(section: &Section, reference: &Reference, all: &[(&str, Measured)], spp: u32) -> Result<()> {
-    let names: Vec<String> = all.iter().map(|(label, _)| (*label).to_owned()).collect();
-    let cells = all.iter().map(|(_, measured)| {
-        let error = measured.errors[1].first().copied().unwrap_or(f64::NAN);
-        Some(Panel { image: &measured.image, caption: format!("filtered {error:.2e}") })
-    });
-    let rows = [Row { name: text::samples_per_pixel(spp), cells: cells.collect() }];
-    let picture = spectrum_sheet::draw("The last frame as the eye sees it", &names, &rows, [0.25, 0.25], reference);
-    write_small(section.output, &format!("animation-{spp}spp.png"), &picture)
 }
 
 #[cfg(test)]

@@ -14,10 +14,8 @@ const BASES: [&str; 4] = ["legendre", "step", "gaussian", "sine"];
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Bases", "figure 4.14");
     let plan = section.measurement.plan;
-    let spp = section.chapter.setting("samples per pixel of the bases", plan.middle());
-    section.chapter.paragraph(&format!(
-        "Order 2 and bases of as many functions; {spp} samples per pixel, ratios to MC of the same samples."
-    ));
+    let spp = plan.middle();
+    section.chapter.setting("samples per pixel of the bases", spp);
     let mut rows = Vec::new();
     for &scene in plan.some(&SCENES) {
         let view = View::new(scene, plan.size);

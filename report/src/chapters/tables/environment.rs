@@ -10,9 +10,6 @@ const SCENES: [&str; 2] = ["dragon", "chopper"];
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Environment maps", "figure 4.10");
     let plan = section.measurement.plan;
-    section.chapter.paragraph(
-        "`dragon`: an object under a high-frequency map; `chopper`: glossy objects under a low-frequency one. Order 2, ratios to MC.",
-    );
     let mut rows = Vec::new();
     for &scene in plan.some(&SCENES) {
         for &spp in plan.spp {

@@ -19,13 +19,6 @@ const METHODS: [(&str, &str); 3] =
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Shared fits at equal time", "");
     let plan = section.measurement.plan;
-    let order = section.chapter.setting("order of shared fits at equal time", 3);
-    section.chapter.paragraph(&format!(
-        "`nf_cv_image_estimate()` of order {order}, overlapping windows, over the plain mean of the same samples: squared \
-         errors, raw and filtered; raw errors at the same time; what it adds to a sample; and the cost of a sample from \
-         which it pays, cost x ratio / (1 - ratio). Known light: each sample's unshadowed value and its integral in closed \
-         form (`known`); alone, it is unbiased."
-    ));
     let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
     let names = METHODS.map(|(name, _)| name);
     let estimators = [BASELINE, names[0], names[1], names[2]];
@@ -36,7 +29,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
                 let Some(sampler) = choice.sampler(spp, &tiles) else { continue };
                 let view = View::new(scene, plan.tile_size);
                 let experiment =
-                    Experiment { sampler, seeds: plan.seeds, order, ..Experiment::new(view, spp, &estimators) };
+                    Experiment { sampler, seeds: plan.seeds, order: 3, ..Experiment::new(view, spp, &estimators) };
                 let outcome = section.measurement.run(&experiment)?;
                 for (name, label) in METHODS {
                     rows.push(one(&outcome, name, row![scene, spp, choice.label(), label])?);

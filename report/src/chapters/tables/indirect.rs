@@ -5,9 +5,7 @@ use super::comparison::{ratios, seeds, thousandfold};
 use crate::chapters::chapter::{Cell, row};
 use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::measurement::{BASELINE, DEFAULT, Experiment, LEAST_SQUARES, Outcome, View};
-use crate::chapters::pictures::write_small;
 use crate::chapters::statistics::Estimate;
-use crate::measure::error_sheet::{self, Column};
 use anyhow::Result;
 
 const SCENE: &str = "duck";
@@ -19,13 +17,8 @@ const SHORTER: [&[&str]; 2] = [&["--bounces", "1"], &["--bounces", "2"]];
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Global illumination", "figures 4.7 and 4.8");
     let plan = section.measurement.plan;
-    let spp = section.chapter.setting("samples per pixel, 15 dims", plan.many);
-    let size = section.chapter.setting("pixels on a side of duck", view(section).size);
-    let dims = section.chapter.setting("dims of duck", 15);
-    section.chapter.paragraph(&format!(
-        "`duck`, three bounces: {dims} dims, {spp} samples per pixel, {size} x {size} pixels. The upper part is lit directly, \
-         the lower part only indirectly."
-    ));
+    section.chapter.setting("samples per pixel, 15 dims", plan.many);
+    section.chapter.setting("pixels on a side of duck", view(section).size);
     let orders = orders(section, view(section))?;
     let mut rows = vec![row![
         "MC",
@@ -47,9 +40,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     }
     let columns =
         ["estimator", "order", "relMSE x 1000", "ratio to MC", "upper half", "lower half", "ratio, same time"];
-    section.chapter.setting("relMSE is shown times", 1000);
     section.chapter.table("indirect", &columns, 2, rows);
-    write_sheet(section, &orders)?;
     write_lengths(section, &orders)
 }
 
@@ -69,32 +60,9 @@ fn parts(outcome: &Outcome, estimator: &str) -> Result<[Figure; 2]> {
     Ok([0, 1].map(|half| Figure::new(Estimate::ratio(&own[half], &plain[half]), Unit::Ratio)))
 }
 
-fn write_sheet(section: &mut Section, orders: &[Outcome; 2]) -> Result<()> {
-    let reference = &orders[0].reference;
-    let column = |title: &str, outcome: &Outcome, estimator: &str| -> Result<Column> {
-        let image = outcome.of(estimator)?.images[0].clone();
-        let caption = format!("relMSE {:.2e}", reference.rel_mse(&image));
-        Ok(Column { title: title.to_owned(), cells: vec![(image, caption)] })
-    };
-    let columns = [
-        column("MC", &orders[0], BASELINE)?,
-        column("default, O1", &orders[0], DEFAULT)?,
-        column("default, O2", &orders[1], DEFAULT)?,
-        column("least squares, O2", &orders[1], LEAST_SQUARES)?,
-    ];
-    let rows = [format!("left: {} samples", section.measurement.plan.many)];
-    let picture = error_sheet::draw("duck: three bounces, the same samples", &rows, &columns, reference);
-    write_small(section.output, "indirect-duck.png", &picture)?;
-    section.chapter.picture("indirect-duck.png", "The duck's box with each estimator, and the errors");
-    Ok(())
-}
-
 /// Figure 4.8.
 fn write_lengths(section: &mut Section, longest: &[Outcome; 2]) -> Result<()> {
     let plan = section.measurement.plan;
-    section.chapter.paragraph(
-        "Paths of one, two and three bounces (figure 4.8), order 2 and 1, ratios to MC of the same samples:",
-    );
     let mut rows = Vec::new();
     for (options, bounces) in plan.some(&SHORTER).iter().zip(1_u32..) {
         let view = View { options, ..view(section) };
@@ -103,8 +71,6 @@ fn write_lengths(section: &mut Section, longest: &[Outcome; 2]) -> Result<()> {
     rows.push(length_row(3, longest)?);
     let columns =
         ["bounces", "dims", "MC, relMSE x 1000", "O1 default", "O1 least squares", "O2 default", "O2 least squares"];
-    section.chapter.setting("an order", 1);
-    section.chapter.setting("another order", 2);
     section.chapter.table("path lengths", &columns, 1, rows);
     Ok(())
 }

@@ -6,7 +6,6 @@ use crate::chapters::chapter::row;
 use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::measurement::{BASELINE, DEFAULT, Experiment, LEAST_SQUARES, Outcome, View};
 use crate::chapters::statistics::Estimate;
-use crate::measure::plot::{Axis, Plot, Series};
 use anyhow::Result;
 
 const SCENES: [(&str, u32); 4] = [("plane_1", 1), ("plane_4", 4), ("plane_16", 16), ("plane_64", 64)];
@@ -16,17 +15,9 @@ const SLICES: &str = "slices";
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Many lights", "figure 4.15");
     let plan = section.measurement.plan;
-    let spp = section.chapter.setting("samples per pixel of many lights", 2 * plan.many);
-    let size = section.chapter.setting("pixels on a side of many lights", plan.small * 3 / 4);
-    section.chapter.paragraph(&format!(
-        "1 to 64 lights over a plane, one picked at random, {spp} samples per pixel, {size} x {size} pixels: ratios to MC of the same samples. \
-         `slices`: the default, told which number picks the light.",
-    ));
-    section.chapter.setting("lights, from", 1);
-    section.chapter.setting("lights, to", 64);
-    let names = ["O1", "O2", "O3", "default, O2", "default with slices, O2"];
-    let mut series: Vec<Series> =
-        names.iter().map(|name| Series { name: (*name).to_owned(), ..Series::default() }).collect();
+    let (spp, size) = (2 * plan.many, plan.small * 3 / 4);
+    section.chapter.setting("samples per pixel of many lights", spp);
+    section.chapter.setting("pixels on a side of many lights", size);
     let mut rows = Vec::new();
     for &(scene, lights) in plan.some(&SCENES) {
         let estimators: &[&str] = match lights {
@@ -49,11 +40,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
         values.push(Some(ratio(&orders[1], DEFAULT)?));
         values.push(if lights > 1 { Some(ratio(&orders[1], SLICES)?) } else { None });
         let mut cells = row![lights, thousandfold(&orders[0], BASELINE)?];
-        for (value, series) in values.into_iter().zip(&mut series) {
-            if let Some(value) = value {
-                series.points.push((f64::from(lights), value.value));
-                series.band.push((f64::from(lights), value.low, value.high));
-            }
+        for value in values {
             cells.push(value.map(|value| Figure::new(value, Unit::Ratio)).into());
         }
         rows.push(cells);
@@ -61,10 +48,5 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     let columns =
         ["lights", "MC, relMSE x 1000", "least squares, O1", "O2", "O3", "default, O2", "default with slices, O2"];
     section.chapter.table("many lights", &columns, 0, rows);
-    let x = Axis { label: "lights", logarithmic: true, range: None };
-    let y = Axis { label: "relMSE over MC's", logarithmic: false, range: None };
-    let plot = Plot { title: "Many lights, one picked at random (figure 4.15 c)", x, y, series: &series };
-    section.output.write_text("lights.svg", &plot.svg()?)?;
-    section.chapter.picture("lights.svg", "Error over MC's against the number of lights");
     Ok(())
 }

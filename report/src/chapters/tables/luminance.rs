@@ -13,11 +13,8 @@ const LUMINANCE: [&str; 2] = ["luminance", "robust_luminance"];
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Luminance or channels", "section 4.3");
     let plan = section.measurement.plan;
-    let spp = section.chapter.setting("samples per pixel, luminance", plan.middle());
-    section.chapter.paragraph(&format!(
-        "Order 2, {spp} samples per pixel. Luminance: the fit is to the samples' luminance, and the plain mean's colour is scaled to its \
-         estimate, as the thesis does; channels: each is fitted by itself. relMSE is of luminance."
-    ));
+    let spp = plan.middle();
+    section.chapter.setting("samples per pixel, luminance", spp);
     let [thesis, luminance] = LUMINANCE;
     let estimators = [BASELINE, thesis, LEAST_SQUARES, luminance, DEFAULT];
     let mut rows = Vec::new();

@@ -4,10 +4,8 @@ use super::Section;
 use super::comparison::{seeds, thousandfold};
 use crate::chapters::chapter::row;
 use crate::chapters::figure::{Figure, Unit};
-use crate::chapters::measurement::{Experiment, Outcome, View};
-use crate::chapters::pictures::write_small;
+use crate::chapters::measurement::{Experiment, View};
 use crate::chapters::statistics::Estimate;
-use crate::measure::error_sheet::{self, Column};
 use anyhow::Result;
 
 const SCENES: [&str; 3] = ["veach", "chopper", "dining"];
@@ -23,13 +21,8 @@ const ESTIMATORS: [(&str, &str); 4] = [
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Multiple importance sampling", "figure 4.9");
     let plan = section.measurement.plan;
-    let spp = section.chapter.setting("samples per pixel with MIS", plan.middle());
-    let techniques = section.chapter.setting("techniques", 2);
-    section.chapter.paragraph(&format!(
-        "Direct light by {techniques} techniques, light and direction sampling, {spp} samples, a half of each; order {techniques}. Regression is of each \
-         technique's weighted samples by themselves. Optimal weights: Kondapaneni et al. 2019, solved with a ridge. Medians of relMSE first, \
-         then ratios to the balance heuristic."
-    ));
+    let spp = plan.middle();
+    section.chapter.setting("samples per pixel with MIS", spp);
     let names = ESTIMATORS.map(|(name, _)| name);
     let mut rows = Vec::new();
     for &scene in plan.some(&SCENES) {
@@ -45,9 +38,6 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
             cells.push(Figure::new(Estimate::ratio(&outcome.errors(name)?, &balance), Unit::Ratio).into());
         }
         rows.push(cells);
-        if scene == SCENES[0] {
-            write_sheet(section, &outcome)?;
-        }
     }
     let columns = [
         "scene",
@@ -60,18 +50,5 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
         "ratio: optimal, regression",
     ];
     section.chapter.table("mis", &columns, 1, rows);
-    section.chapter.picture("mis-veach.png", "Glossy plates by each combination, and the errors");
     Ok(())
-}
-
-fn write_sheet(section: &Section, outcome: &Outcome) -> Result<()> {
-    let column = |&(name, label): &(&str, &str)| -> Result<Column> {
-        let image = outcome.of(name)?.images[0].clone();
-        let caption = format!("relMSE {:.2e}", outcome.reference.rel_mse(&image));
-        Ok(Column { title: label.to_owned(), cells: vec![(image, caption)] })
-    };
-    let columns = ESTIMATORS.iter().map(column).collect::<Result<Vec<_>>>()?;
-    let rows = [format!("left: {} samples", section.measurement.plan.middle())];
-    let picture = error_sheet::draw("veach: two techniques", &rows, &columns, &outcome.reference);
-    write_small(section.output, "mis-veach.png", &picture)
 }

@@ -21,7 +21,6 @@ mod unbiased;
 use super::chapter::Chapter;
 use super::measurement::Measurement;
 pub(crate) use super::targets;
-use crate::measure::output::Output;
 use anyhow::Result;
 use targets::Targets;
 
@@ -30,8 +29,6 @@ pub(crate) struct Section<'a> {
     pub(crate) measurement: &'a Measurement<'a>,
     pub(crate) chapter: &'a mut Chapter,
     pub(crate) targets: &'a mut Targets,
-    pub(crate) output: &'a Output,
-    pub(crate) large: &'a Output,
 }
 
 /// Roughly the seconds that a section takes, and what writes it.

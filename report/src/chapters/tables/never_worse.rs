@@ -12,15 +12,6 @@ use anyhow::{Result, bail};
 use image::Rgb32FImage;
 
 pub(super) fn write(section: &mut Section) -> Result<()> {
-    section.targets.reason(
-        ["default over MC, one light", ""],
-        "What remains is the visibility of the light, a step that polynomials follow roughly: where penumbras fill the image, or the \
-         environment varies faster than that, the gain is small.",
-    );
-    section.targets.reason(
-        ["share of pixels beyond", ""],
-        "Pixels whose few bright samples carry the integral: leave-one-out errors do not see what was not sampled.",
-    );
     write_images(section)?;
     write_pixels(section)
 }
@@ -46,13 +37,7 @@ fn order(scene: &Scene) -> u32 {
 fn write_images(section: &mut Section) -> Result<()> {
     section.chapter.section("The default against plain Monte Carlo, every scene", "");
     let plan = section.measurement.plan;
-    let [one, two] = [section.chapter.setting("order at many dims", 1), section.chapter.setting("order else", 2)];
-    let names = LARGE.map(|name| format!("`{name}`")).join(", ");
-    let size = section.chapter.setting("pixels on a side, every scene", plan.small);
-    section.chapter.paragraph(&format!(
-        "{size} x {size} pixels, but in {names}, whose images are those of earlier sections. relMSE of the default over MC's, the same samples; order {two}, at more than eight dims order {one}. Least squares beside it shows what \
-         the default guards against."
-    ));
+    section.chapter.setting("pixels on a side, every scene", plan.small);
     let mut rows = Vec::new();
     for scene in plan.some(SCENES) {
         let size = if LARGE.contains(&scene.name) { plan.size } else { plan.small };
@@ -73,7 +58,7 @@ fn write_images(section: &mut Section) -> Result<()> {
             // The bounds were set for 16 and 64 samples.
             if scene.one_light && spp <= 64 {
                 let bound = if spp >= 64 { 0.4 } else { 0.6 };
-                let statement = format!("default over MC, one light, order {two}, {spp} spp");
+                let statement = format!("default over MC, one light, order 2, {spp} spp");
                 section.targets.at_most(&statement, scene.name, ratio, Unit::Ratio, bound);
             }
             cells.push(Figure::new(ratio, Unit::Ratio).into());
@@ -90,24 +75,16 @@ fn write_images(section: &mut Section) -> Result<()> {
 fn write_pixels(section: &mut Section) -> Result<()> {
     section.chapter.section("The default against plain Monte Carlo, pixel by pixel", "");
     let plan = section.measurement.plan;
-    let spp = section.chapter.setting("samples per pixel of the pixels' ratios", 16);
-    let size = section.chapter.setting("pixels on a side of the pixels' ratios", pixels_size(section));
-    let seeds = section.chapter.setting("seeds of the pixels' ratios", plan.pixel_seeds);
-    let limit = section.chapter.setting("a pixel's ratio that is too much", TOO_MUCH);
-    let confidence = section.chapter.setting("confidence, percent", 95);
-    let batches = section.chapter.setting("batches of seeds", batches(section));
-    let percent = section.chapter.setting("significance of a pixel's test, percent", 100.0 * SIGNIFICANCE);
-    section.chapter.paragraph(&format!(
-        "Mean squared error of each pixel over {seeds} seeds, {spp} samples per pixel, {size} x {size} pixels; the share of pixels where \
-         the default's is more than {limit} times MC's. Measured ratios are noisy, so three figures: pixels beyond it as measured (too many), pixels beyond it \
-         in both halves of the seeds, and pixels where a one-sided test over {batches} batches of seeds says so at a level of {percent} % each (too few). \
-         The first has a {confidence} % interval, from the bootstrap over the batches. A pixel without noise, where neither has an error, does not count; \
-         where only the plain mean has none, the pixel counts as beyond."
-    ));
+    let (spp, seeds) = (16, plan.pixel_seeds);
+    section.chapter.setting("pixels on a side of the pixels' ratios", pixels_size(section));
+    section.chapter.setting("seeds of the pixels' ratios", plan.pixel_seeds);
+    section.chapter.setting("a pixel's ratio that is too much", TOO_MUCH);
+    section.chapter.setting("batches of seeds", batches(section));
+    section.chapter.setting("significance of a pixel's test, percent", 100.0 * SIGNIFICANCE);
     let mut rows = Vec::new();
     for scene in plan.some(SCENES) {
         let shares = shares(section, scene, spp)?;
-        let statement = format!("share of pixels beyond {limit} as measured, {spp} spp, percent");
+        let statement = format!("share of pixels beyond {TOO_MUCH} as measured, {spp} spp, percent");
         let [low, high] = shares.interval();
         let raw = Estimate { value: shares.raw, low, high, seeds: seeds as usize };
         section.targets.at_most(&statement, scene.name, raw, Unit::Percent, 1.0);

@@ -16,15 +16,6 @@ const RAYS: [(&str, &[&str]); 2] = [(EACH, &["--filter", "box"]), ("one", &[])];
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Overhead", "section 4.3.5, computation time");
     let plan = section.measurement.plan;
-    let order = section.chapter.setting("order of the overhead", 2);
-    section.chapter.paragraph(&format!(
-        "Time of each estimator, less the plain mean's, as a part of the plain mean's whole frame time (drawing points, tracing, adding up); order \
-         {order}, three channels. Camera rays of a pixel: many is one for each sample; the pixel's footprint is two more dims then, which are regressed too."
-    ));
-    section.targets.reason(
-        ["overhead", ""],
-        "Time of a fit does not depend on the scene, that of a sample does: a direct-light sample of these scenes costs less than a production renderer's.",
-    );
     let mut rows = Vec::new();
     for &scene in plan.some(&SCENES) {
         for (rays, options) in RAYS {
@@ -48,9 +39,8 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
                     cells.push(Figure::new(part, Unit::Percent).into());
                     if rays == EACH && *estimator != SHARED && spp == plan.middle() {
                         let label = if *estimator == DEFAULT { "default" } else { "least squares" };
-                        let statement = format!(
-                            "overhead of the {label}, order {order}, {spp} spp, a camera ray per sample, percent"
-                        );
+                        let statement =
+                            format!("overhead of the {label}, order 2, {spp} spp, a camera ray per sample, percent");
                         section.targets.at_most(&statement, scene, part, Unit::Percent, 10.0);
                     }
                 }

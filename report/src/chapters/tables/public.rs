@@ -48,9 +48,4 @@ impl Public {
         };
         SAMPLERS.iter().map(|(name, _)| file(name)).collect()
     }
-
-    pub(super) fn description(&self) -> &'static str {
-        "Heitz 2019: the tables of E. Heitz et al. (\"A Low-Discrepancy Sampler that Distributes Monte Carlo Errors as a Blue Noise in \
-         Screen Space\") from the crate `blue-noise-sampler`; OpenQMC: its three samplers with blue noise, from the crate `openqmc-rs`."
-    }
 }

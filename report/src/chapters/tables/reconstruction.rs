@@ -18,12 +18,6 @@ const FILTERS: [(&str, &[&str]); 2] = [("box", &["--filter", "box"]), ("Gaussian
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Box and Gaussian reconstruction", "figure 5.22");
     let plan = section.measurement.plan;
-    let deviation = section.chapter.setting("Gaussian reconstruction's standard deviation, pixels", 0.5);
-    section.chapter.paragraph(&format!(
-        "Each pixel integrates over its footprint too, two more dims: uniform in the pixel, or by a Gaussian of standard deviation \
-         {deviation} pixels. Every pixel has its own samples (none are splatted), so the optimal tile is the same for both. Errors over random \
-         samples', unfiltered and filtered."
-    ));
     let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
     let mut rows = Vec::new();
     for &scene in plan.some(&SCENES) {

@@ -5,14 +5,11 @@ use super::public::Public;
 use crate::chapters::chapter::{Cell, headings, row};
 use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::measurement::{BASELINE, Experiment, Outcome, SHARED, View};
-use crate::chapters::pictures::write_small;
 use crate::chapters::scenes;
 use crate::chapters::statistics::Estimate;
 use crate::measure::renderer::Sampler;
 use crate::measure::samplers::{Choice, Tiles};
 use crate::measure::score;
-use crate::measure::spectrum_sheet::{self, Cell as Panel, Row};
-use crate::measure::text;
 use anyhow::Result;
 use std::path::Path;
 
@@ -23,9 +20,6 @@ const OWN: [Choice; 4] = [Choice::Random, Choice::Sobol, Choice::Tile(2), Choice
 const RANDOM: usize = 0;
 const SOBOL: usize = 1;
 const TILE: usize = 2;
-/// Scenes whose pictures are shown, and at how many samples: figures 5.19 and 5.20.
-const SHOWN: [(&str, u32); 3] = [("dining", 1), ("microcity", 4), ("lens", 1)];
-
 /// One sampler's errors, a number for each seed.
 pub(super) struct Errors {
     pub(super) raw: Vec<f64>,
@@ -69,7 +63,6 @@ struct Measured {
     scene: &'static str,
     spp: u32,
     /// In the order of the columns; None: there is no such sampler.
-    samplers: Vec<Option<Outcome>>,
     alone: Vec<Option<Errors>>,
     limits: Limits,
     shared: Vec<Option<Errors>>,
@@ -84,25 +77,17 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     for &scene in plan.some(&SCENES) {
         for &spp in plan.some(&SPP) {
             let one = measure(section, &tiles, &public, scene, spp)?;
-            if SHOWN.contains(&(scene, spp)) {
-                write_sheet(section, &public, &one)?;
-            }
-            all.push(Measured { samplers: Vec::new(), ..one });
+            all.push(one);
         }
     }
-    explain(section, &public);
+    section.chapter.setting("relative errors are limited to", score::LIMIT);
+    section.chapter.setting("filter's standard deviation, pixels", crate::measure::filter::SIGMA);
     let names = OWN.iter().skip(1).map(|choice| choice.label()).chain(public.labels());
     let columns = headings(&["scene", "samples", "random, relMSE x 1000"], names);
-    section.chapter.paragraph("Unfiltered: the random samples' relMSE, and the others' over it.");
     let raw = all.iter().map(|one| error_row(one, |errors| &errors.raw)).collect();
     section.chapter.table("samplers, raw", &columns, 1, raw);
-    section.chapter.paragraph("Filtered as the eye does, the same:");
     let filtered = all.iter().map(|one| error_row(one, |errors| &errors.filtered)).collect();
     section.chapter.table("samplers, filtered", &columns, 1, filtered);
-    for (scene, _) in SHOWN.iter().filter(|(scene, _)| plan.some(&SCENES).contains(scene)) {
-        let description = format!("{scene}: images, errors and their spectra in squares, by sampler");
-        section.chapter.picture(&format!("samplers-{scene}.png"), &description);
-    }
     write_limits(section, &all);
     write_shared(section, &all);
     aim(section, &all);
@@ -139,17 +124,7 @@ fn measure(section: &Section, tiles: &Tiles, public: &Public, scene: &'static st
     };
     let (alone, shared) = (errors(BASELINE)?, errors(SHARED)?);
     let limits = Limits::new(&samplers)?;
-    Ok(Measured { scene, spp, samplers, alone, limits, shared })
-}
-
-fn explain(section: &mut Section, public: &Public) {
-    let limit = section.chapter.setting("relative errors are limited to", crate::measure::score::LIMIT);
-    let sigma = section.chapter.setting("filter's standard deviation, pixels", crate::measure::filter::SIGMA);
-    section.chapter.paragraph(&format!(
-        "Plain means. Filtered: errors are filtered by a Gaussian of standard deviation {sigma} pixels, then squared. Relative errors beyond \
-         {limit} count as {limit}: one highlight in a dark pixel would otherwise decide. Seeds shift tiles and tables over the image. {}",
-        public.description()
-    ));
+    Ok(Measured { scene, spp, alone, limits, shared })
 }
 
 fn error_row(one: &Measured, of: fn(&Errors) -> &Vec<f64>) -> Vec<Cell> {
@@ -168,10 +143,6 @@ fn error_row(one: &Measured, of: fn(&Errors) -> &Vec<f64>) -> Vec<Cell> {
 
 /// Whether limited errors tell another story.
 fn write_limits(section: &mut Section, all: &[Measured]) {
-    section.chapter.paragraph(
-        "What the limit does: per cent of the pixels whose error it cuts, and the unfiltered errors of the tile over those of the Sobol points, with it and \
-         without. Without it a few pixels with rare highlights decide, so that intervals widen; where no pixel is cut, both are the same.",
-    );
     let rows = all.iter().map(|one| -> Vec<Cell> {
         let percent = one.limits.percent.map(|share| share.map(|share| Figure::new(share, Unit::Percent)));
         let limited = one.alone[TILE].as_ref().zip(one.alone[SOBOL].as_ref());
@@ -188,10 +159,6 @@ fn write_limits(section: &mut Section, all: &[Measured]) {
 /// Shared fits over the same sampler's plain mean.
 fn write_shared(section: &mut Section, all: &[Measured]) {
     section.chapter.section("Shared fits", "section 4.3.6, multi-pixel regression");
-    section.chapter.paragraph(
-        "Errors of `nf_cv_image_estimate()`, order 2, over those of the plain mean of the same samples. \
-         Told which number picks a light; pixels that show the same surface share fits.",
-    );
     let mut rows = Vec::new();
     for one in all {
         let mut cells = row![one.scene, one.spp];
@@ -211,17 +178,6 @@ fn write_shared(section: &mut Section, all: &[Measured]) {
 
 fn aim(section: &mut Section, all: &[Measured]) {
     let targets = &mut *section.targets;
-    targets.reason(
-        ["tile over Owen-Sobol, filtered", ""],
-        "A tile is optimised for integrands that neighbours share: fine texture, edges and shadow borders that differ from pixel to \
-         pixel leave white noise; of a decision's three numbers only two are optimised.",
-    );
-    targets.reason(["tile over Owen-Sobol, raw", ""], "The tile weighs the image's error against the pixel's own.");
-    targets.reason(
-        ["shared fits over the tile alone", ""],
-        "Polynomials explain what varies smoothly with the sample: a visible edge of an occluder, a high-frequency environment or a thin highlight \
-         stays; with several samples the tile has already removed what is smooth.",
-    );
     let ratio = |own: &Option<Errors>, other: &Option<Errors>, of: fn(&Errors) -> &Vec<f64>| {
         own.as_ref().zip(other.as_ref()).map(|(own, other)| Estimate::ratio(of(own), of(other)))
     };
@@ -265,31 +221,4 @@ fn aim(section: &mut Section, all: &[Measured]) {
             );
         }
     }
-}
-
-/// Figures 5.19 and 5.20.
-fn write_sheet(section: &Section, public: &Public, one: &Measured) -> Result<()> {
-    let mut names = Vec::new();
-    let mut cells = Vec::new();
-    let labels: Vec<String> = OWN.iter().map(|choice| choice.label()).chain(public.labels()).collect();
-    let Some(random) = &one.samplers[RANDOM] else { return Ok(()) };
-    let reference = &random.reference;
-    for (index, (outcome, label)) in one.samplers.iter().zip(labels).enumerate() {
-        let Some(outcome) = outcome else { continue };
-        let estimators: &[&str] = if index == TILE { &[BASELINE, SHARED] } else { &[BASELINE] };
-        for estimator in estimators {
-            let image = &outcome.of(estimator)?.images[0];
-            let [raw, filtered] = score::errors(image, reference);
-            names.push(if *estimator == SHARED { format!("{label}, shared fits") } else { label.clone() });
-            let caption = format!("raw {raw:.1e} filtered {filtered:.1e}");
-            let name =
-                format!("{}-{}spp-{}", one.scene, one.spp, names[names.len() - 1].replace([' ', ',', '(', ')'], "-"));
-            section.large.write_image(&name, image, reference)?;
-            cells.push(Some(Panel { image, caption }));
-        }
-    }
-    let title = format!("{}: the image, its errors, their spectra", one.scene);
-    let rows = [Row { name: text::samples_per_pixel(one.spp), cells }];
-    let picture = spectrum_sheet::draw(&title, &names, &rows, [0.25, 0.35], reference);
-    write_small(section.output, &format!("samplers-{}.png", one.scene), &picture)
 }

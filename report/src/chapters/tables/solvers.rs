@@ -24,9 +24,6 @@ fn time(outcome: &Outcome, estimator: &str) -> Result<Figure> {
 fn write_descent(section: &mut Section) -> Result<()> {
     section.chapter.section("Direct solution against gradient descent", "figure 4.16");
     let plan = section.measurement.plan;
-    section.chapter.paragraph(
-        "`bathroom`: relMSE over MC's of the same samples, and the estimator's own time in nanoseconds per sample. Direct: least squares.",
-    );
     let mut rows = Vec::new();
     for &spp in plan.some(&[32, plan.many]) {
         for &order in plan.some(&[2, 5, 7]) {
@@ -53,10 +50,7 @@ fn write_incremental(section: &mut Section) -> Result<()> {
     let view = View::new(SCENE, plan.small);
     let estimators = [BASELINE, DESCENT, INCREMENTAL, LEAST_SQUARES];
     let outcome = section.measurement.run(&seeds(section, Experiment::new(view, plan.many, &estimators)))?;
-    let spp = section.chapter.setting("samples per pixel of the incremental estimate", plan.many);
-    section.chapter.paragraph(&format!(
-        "`bathroom`, order 2, {spp} samples per pixel. Incremental: each sample against the fit to those before it, eight at a time."
-    ));
+    section.chapter.setting("samples per pixel of the incremental estimate", plan.many);
     let labels = [
         (BASELINE, "MC"),
         (DESCENT, "gradient descent"),

@@ -132,7 +132,6 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
         "median z",
         "mean z",
     ];
-    section.chapter.setting("power of z", 2);
     section.chapter.table("unbiased", &columns, 1, rows);
     Ok(())
 }
@@ -153,23 +152,11 @@ fn tests<'a>(scene: &'static str, spps: &[u32], tiles: &'a Tiles) -> Vec<Test<'a
 
 fn explain(section: &mut Section) {
     let plan = section.measurement.plan;
-    let frames = section.chapter.setting("frames of the test of biases", plan.frames / BATCHES * BATCHES);
-    let size = section.chapter.setting("pixels on a side of the test of biases", size(section));
-    let percent = section.chapter.setting("significance of the test of biases, percent", 100.0 * SIGNIFICANCE);
-    let lit = section.chapter.setting("frames with light, at least", LIT.min(plan.frames / 4));
-    let batches = section.chapter.setting("batches of the test of biases", BATCHES);
-    section.chapter.paragraph(&format!(
-        "The mean of {frames} independent frames, {size} x {size} pixels, against the reference: for each pixel and channel its distance in \
-         standard deviations, z. Two tests of each image, each with an equal part of {percent} % for the whole table (Bonferroni, so that dependence does no harm): the \
-         largest z, of either sign, over all numbers; and the mean of z^2, in which a bias spread over many pixels shows before it shows in the largest. Neighbours \
-         share fits, so what chance allows that mean is found by flipping the signs of the deviations of {batches} batches of frames in every way, which keeps the \
-         dependence between pixels (a randomisation test). The plain mean of the same samples, unbiased by construction, shows how the tests behave. \
-         Pixels that hardly any frame lights do not count, as z is then far from normal: the plain mean's n mean^2 / variance, about the number of frames \
-         with light, must be {lit} at least. The reference's own error, which all batches share, is part of the \
-         standard deviation, and of what chance allows. Shared fits choose how much to correct from the samples that \
-         they correct, which leaves a bias that many frames can show; K-fold, where halves of the neighbours choose for each other, has none where pixels are \
-         independent. A scrambled tile's are not."
-    ));
+    section.chapter.setting("frames of the test of biases", plan.frames / BATCHES * BATCHES);
+    section.chapter.setting("pixels on a side of the test of biases", size(section));
+    section.chapter.setting("significance of the test of biases, percent", 100.0 * SIGNIFICANCE);
+    section.chapter.setting("frames with light, at least", LIT.min(plan.frames / 4));
+    section.chapter.setting("batches of the test of biases", BATCHES);
 }
 
 fn values(image: &Rgb32FImage) -> Vec<f64> {

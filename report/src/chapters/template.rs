@@ -1,0 +1,180 @@
+//! Texts: report/templates/CHAPTER.md, whose holes are filled from the chapter's JSON.
+//!
+//! - `{{table NAME}}`, on a line of its own: the next table of this name in the section of the heading above it.
+//! - `{{NAME}}`: a figure that was quoted, a setting, or the JSON's own NAME.
+//! - `{{targets}}`, on a line of its own: templates/targets.md.
+//!
+//! What a run did not measure is left out: a paragraph or an item with a hole that nothing fills, a picture that is not
+//! there, a section none of whose tables are. A table that no hole shows is an error.
+
+use crate::measure::markdown;
+use anyhow::{Context, Result, bail};
+use serde_json::Value;
+use std::fs;
+use xtask::paths;
+
+/// The text of a chapter; `exists` says which pictures there are.
+pub(crate) fn chapter(name: &str, json: &Value, exists: &dyn Fn(&str) -> bool) -> Result<String> {
+    // A long run is told in the same words.
+    let template = format!("\n\n{}\n", read(name.trim_end_matches("_full"))?);
+    let template = template.replace("\n\n{{targets}}\n", &format!("\n\n{}", read("targets")?));
+    let text = fill(&template, json, exists);
+    text.with_context(|| format!("report/templates/{name}.md"))
+}
+
+fn read(name: &str) -> Result<String> {
+    let path = paths::root().join(format!("report/templates/{name}.md"));
+    fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
+}
+
+/// Blocks that stand below one heading.
+#[derive(Default)]
+struct Section {
+    blocks: Vec<String>,
+    wanted: usize,
+    found: usize,
+}
+
+pub(crate) fn fill(template: &str, json: &Value, exists: &dyn Fn(&str) -> bool) -> Result<String> {
+    let mut tables: Vec<&Value> = list(&json["tables"]).iter().collect();
+    let (mut heading, mut sections) = (String::new(), vec![Section::default()]);
+    for block in template.trim().split("\n\n").map(str::trim) {
+        let name = block.strip_prefix("{{table ").and_then(|rest| rest.strip_suffix("}}"));
+        let filled: Vec<String> = items(block).into_iter().filter_map(|item| holes(item, json)).collect();
+        let filled = filled.iter().map(|text| wrap(text)).collect::<Vec<_>>().join("\n");
+        if block.starts_with('#') {
+            sections.push(Section::default());
+            filled.trim_start_matches('#').trim().clone_into(&mut heading);
+        }
+        let Some(section) = sections.last_mut() else { continue };
+        if let Some(name) = name {
+            section.wanted += 1;
+            let is_here = |table: &&Value| table["name"] == name && table["section"] == heading.as_str();
+            if let Some(at) = tables.iter().position(is_here) {
+                section.found += 1;
+                section.blocks.push(table(tables.remove(at)));
+            }
+        } else if picture(&filled).is_none_or(exists) && !filled.is_empty() {
+            section.blocks.push(filled);
+        }
+    }
+    if let Some(table) = tables.first() {
+        bail!("no hole shows the table {} of the section {}", table["name"], table["section"]);
+    }
+    sections.retain(|section| section.wanted == 0 || section.found > 0);
+    let blocks: Vec<String> = sections.into_iter().flat_map(|section| section.blocks).collect();
+    Ok(blocks.join("\n\n") + "\n")
+}
+
+/// The items of a list, or the whole block.
+fn items(block: &str) -> Vec<&str> {
+    if !block.starts_with("- ") {
+        return vec![block];
+    }
+    let starts = block.match_indices("\n- ").map(|(at, _)| at);
+    let ends: Vec<usize> = starts.chain([block.len()]).collect();
+    let begins = [0].into_iter().chain(ends.iter().map(|end| end + 1));
+    begins.zip(&ends).map(|(begin, &end)| &block[begin..end]).collect()
+}
+
+/// Columns of a line of text.
+const WIDTH: usize = 120;
+
+/// Breaks lines between words, but before none that would begin a list.
+fn wrap(text: &str) -> String {
+    let indent = if text.starts_with("- ") { "  " } else { "" };
+    let (mut out, mut column) = (String::new(), 0);
+    let mut words = text.split_whitespace().peekable();
+    while let Some(word) = words.next() {
+        let mut unit = word.to_owned();
+        let begins_list =
+            |word: &&str| matches!(*word, "-" | "+" | "*") || word.trim_end_matches('.').parse::<u32>().is_ok();
+        while let Some(next) = words.next_if(begins_list) {
+            unit += &format!(" {next}");
+        }
+        let length = unit.chars().count();
+        if column > 0 && column + 1 + length > WIDTH {
+            out += &format!("\n{indent}");
+            column = indent.len();
+        } else if column > 0 {
+            out.push(' ');
+            column += 1;
+        }
+        out += &unit;
+        column += length;
+    }
+    out
+}
+
+fn picture(block: &str) -> Option<&str> {
+    block.strip_prefix("![")?.rsplit_once("](")?.1.strip_suffix(')')
+}
+
+/// The text with its holes filled; none if one cannot be.
+fn holes(text: &str, json: &Value) -> Option<String> {
+    let (mut out, mut rest) = (String::new(), text);
+    while let Some((before, behind)) = rest.split_once("{{") {
+        let (name, after) = behind.split_once("}}")?;
+        // A name may be broken between lines.
+        let name = name.split_whitespace().collect::<Vec<_>>().join(" ");
+        let known = [&json["quoted"][&name], &json["settings"][&name], &json["run"][&name], &json[&name]];
+        out += before;
+        out += &known.into_iter().find_map(word)?;
+        rest = after;
+    }
+    Some(out + rest)
+}
+
+fn word(value: &Value) -> Option<String> {
+    match value {
+        Value::String(text) => Some(text.clone()),
+        Value::Number(number) => number.as_f64().map(|number| number.to_string()),
+        Value::Object(figure) => word(figure.get("text")?),
+        _ => None,
+    }
+}
+
+fn table(table: &Value) -> String {
+    let text = |cell: &Value| word(cell).unwrap_or_else(|| "-".to_owned());
+    let columns: Vec<String> = list(&table["columns"]).iter().map(text).collect();
+    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let words: Vec<usize> = (0..table["words"].as_u64().unwrap_or(1) as usize).collect();
+    let rows = list(&table["rows"]).iter().map(|row| list(row).iter().map(text).collect()).collect();
+    markdown::lines(&columns, &words, rows).trim_end().to_owned()
+}
+
+pub(crate) fn list(json: &Value) -> &[Value] {
+    json.as_array().map_or(&[], Vec::as_slice)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn holes_are_filled_and_what_was_not_measured_is_left_out() {
+        let cell = json!({"text": "0.250 [0.2, 0.3]", "value": 0.25});
+        let table = |section| json!({"name": "t", "section": section, "columns": ["a", "b"], "rows": [["x", cell]]});
+        let json = json!({"title": "T", "settings": {"spp": 64}, "tables": [table("Two"), table("One")]});
+        let template = "# {{title}}\n\nAt {{spp}}.\n\n- {{none}}\n- {{spp}} too\n\n## One\n\n{{table t}}\n\n{{table t}}\n\n\
+                        ## None\n\nText.\n\n{{table t}}\n\n## Two\n\n{{table t}}\n\n![x](no.svg)\n\n![x](a.svg)";
+        let text = fill(template, &json, &|file| file == "a.svg").expect("a text");
+        let shown = "| a |                b |\n| - | ---------------: |\n| x | 0.250 [0.2, 0.3] |";
+        let expected = format!("# T\n\nAt 64.\n\n- 64 too\n\n## One\n\n{shown}\n\n## Two\n\n{shown}\n\n![x](a.svg)\n");
+        assert_eq!(text, expected);
+        assert!(fill("# T\n\n## One\n\n{{table t}}", &json, &|_| true).is_err(), "a table that is not shown");
+    }
+
+    #[test]
+    fn committed_texts_are_those_of_the_committed_figures() {
+        let folder = paths::root().join("docs/report");
+        for path in paths::of_kind("docs/report", "json").expect("the report is committed") {
+            let name = path.file_stem().expect("a name").to_string_lossy();
+            let json = serde_json::from_str(&fs::read_to_string(&path).expect("readable")).expect("JSON");
+            let text = chapter(&name, &json, &|file| folder.join(file).exists()).expect("a text");
+            let committed = fs::read_to_string(path.with_extension("md")).expect("readable");
+            assert!(committed == text, "{name}.md is not current: `cargo xtask report --render` writes it");
+        }
+    }
+}

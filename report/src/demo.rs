@@ -1,0 +1,192 @@
+//! `cargo xtask demo`: the path tracer with every sampler, with and without fits, as a picture and a table; then the
+//! trainers, as the report's chapter of gradients.
+
+use crate::chapters::{self, chapter::Chapter, chapter::row, figure::Figure, figure::Unit};
+use crate::measure::filter::SIGMA;
+use crate::measure::metric::Reference;
+use crate::measure::output::Output;
+use crate::measure::part::Part;
+use crate::measure::renderer::{Job, Renderer, Sampler};
+use crate::measure::runs::{Runs, SEED};
+use crate::measure::samplers::{Choice, Tiles};
+use crate::measure::score::Score;
+use crate::measure::{interrupt, progress, text};
+use anyhow::{Context, Result};
+use clap::Args;
+use image::imageops::replace;
+use image::{Rgb, Rgb32FImage, RgbImage};
+use std::path::PathBuf;
+use xtask::paths;
+
+#[derive(Args)]
+pub(crate) struct Options {
+    /// Small images, few seeds
+    #[arg(long)]
+    quick: bool,
+    /// Tiles NAME.nft of a folder, before those of the library of the same name
+    #[arg(long, value_name = "DIR")]
+    tiles: Option<PathBuf>,
+    /// Where everything goes [default: target/demo]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// A scene of the path tracer: its name, what is integrated, the order of the fits, a sample's nanoseconds, roughly.
+const SCENES: [(&str, &str, u32, f64); 5] = [
+    ("direct", "the light's surface (2 dims)", 2, 300.0),
+    ("lens", "the lens and the light's surface (4 dims)", 2, 800.0),
+    ("motion", "time and the light's surface (3 dims)", 2, 600.0),
+    ("lights", "six lights' surfaces and their choice (3 dims)", 2, 350.0),
+    ("global", "three bounces (15 dims)", 1, 2900.0),
+];
+const SPP: [u32; 3] = [1, 4, 16];
+const SAMPLERS: [Choice; 4] = [Choice::Random, Choice::Sobol, Choice::Tile(2), Choice::Progressive];
+const ESTIMATORS: [&str; 3] = ["mc", "robust", "shared"];
+
+/// What was rendered of one scene.
+struct Rendered {
+    spp: u32,
+    choice: Choice,
+    estimator: &'static str,
+    image: Rgb32FImage,
+    score: Score,
+    nanoseconds: f64,
+}
+
+pub(crate) fn run(options: &Options) -> Result<()> {
+    let folder = options.out.clone().unwrap_or_else(|| paths::target().join("demo"));
+    let folder = std::path::absolute(&folder).with_context(|| format!("{} is no folder", folder.display()))?;
+    let interrupted = interrupt::catch()?;
+    println!("building the library and the path tracer");
+    let renderer = Renderer::build(interrupted.clone())?;
+    let output = Output::new(&folder)?;
+    scenes(options, &renderer, &output)?;
+    interrupt::check(&interrupted)?;
+    output.commit()?;
+    println!("{}\n", folder.join("shared.png").display());
+    chapters::run(&chapters::Options::gradients(options.quick, &folder))?;
+    println!("pictures and tables: {}", folder.join("index.html").display());
+    Ok(())
+}
+
+fn scenes(options: &Options, renderer: &Renderer, output: &Output) -> Result<()> {
+    let (size, reference_spp) = if options.quick { (128, 30) } else { (256, 100) };
+    let work = |spp: u32, cost: f64| (f64::from(size * size * spp) * cost * 1e-3) as u64 + 1;
+    let each = |cost| {
+        let renderings = SPP.iter().map(|&spp| SAMPLERS.len() as u64 * work(spp, cost + 2000.0));
+        2 * work(reference_spp, cost) + renderings.sum::<u64>()
+    };
+    let bar = progress::bar(SCENES.iter().map(|(.., cost)| each(*cost)).sum())?;
+    let runs = Runs::new(renderer, &bar, size)?;
+    let tiles = Tiles::new(renderer.tiles()?, options.tiles.as_deref())?;
+    let mut chapter = Chapter::new("Samplers and fits in a path tracer");
+    let mut rows = Vec::new();
+    for (scene, domain, order, cost) in SCENES {
+        let reference = runs.reference(scene, reference_spp, work(reference_spp, cost))?;
+        let mut all = Vec::new();
+        for (spp, choice) in SPP.into_iter().flat_map(|spp| SAMPLERS.map(|choice| (spp, choice))) {
+            let Some(sampler) = choice.sampler(spp, &tiles) else { continue };
+            runs.say(format!("{scene}: {}", text::samples_per_pixel(spp)));
+            all.extend(render(&runs, &reference, (scene, order, work(spp, cost + 2000.0)), (spp, choice, sampler))?);
+        }
+        for one in &all {
+            let [raw, filtered] = ratios(one, &all).map(|ratio| Figure::exact(ratio, Unit::Ratio));
+            let time = Figure::exact(one.nanoseconds, Unit::Nanoseconds);
+            rows.push(row![scene, domain, one.spp, one.choice.label(), one.estimator, raw, filtered, time]);
+        }
+        if scene == SCENES[0].0 {
+            output.write_picture("shared.png", &draw(&all, &reference))?;
+        }
+    }
+    bar.finish_and_clear();
+    let columns =
+        ["scene", "integral over", "spp", "sampler", "estimator", "error over random's", "filtered", "ns per sample"];
+    chapter.table("demo", &columns, 2, rows);
+    let table = chapter.render(include_str!("../templates/demo.md"), &|_| true)?;
+    output.write_text("demo.md", &table)?;
+    println!("{table}");
+    let link = |file: &str| format!("<p><a href=\"{file}\">{file}</a></p>\n");
+    let html = "<!doctype html><meta charset=\"utf-8\"><title>noisefloor: demo</title>\n".to_owned()
+        + "<p>Samplers and shared fits at equal samples: each image with its error below</p>\n"
+        + "<img src=\"shared.png\">\n<p>Test error of small digits against seconds of training</p>\n"
+        + "<img src=\"gradients-digits-time.svg\">\n"
+        + &["demo.md", "gradients.md"].map(link).concat();
+    output.write_text("index.html", &html)
+}
+
+fn render(
+    runs: &Runs,
+    reference: &Reference,
+    (scene, order, work): (&str, u32, u64),
+    (spp, choice, sampler): (u32, Choice, Sampler),
+) -> Result<Vec<Rendered>> {
+    let (estimators, options) = (&ESTIMATORS, &[]);
+    let timings =
+        runs.render(&Job { scene, spp, order, seed: SEED, seeds: 1, frame: 0, sampler, estimators, options, work })?;
+    let one = |estimator: &'static str| {
+        let image = runs.image(scene, estimator)?;
+        let timing = timings.iter().find(|timing| timing.estimator == estimator);
+        let timing = timing.context("the path tracer printed no times")?;
+        let nanoseconds = timing.sampling_ns_per_sample + timing.estimating_ns_per_sample;
+        Ok(Rendered { spp, choice, estimator, score: Score::new(&image, reference), image, nanoseconds })
+    };
+    ESTIMATORS.into_iter().map(one).collect()
+}
+
+/// Raw and filtered errors over those of the plain mean of as many random samples.
+fn ratios(one: &Rendered, all: &[Rendered]) -> [f64; 2] {
+    let is_plain =
+        |other: &&Rendered| (other.spp, other.choice, other.estimator) == (one.spp, Choice::Random, ESTIMATORS[0]);
+    let plain = all.iter().find(is_plain).map_or(Score { raw: f64::NAN, filtered: f64::NAN }, |plain| plain.score);
+    [one.score.raw / plain.raw, one.score.filtered / plain.filtered]
+}
+
+const GAP: u32 = 8;
+const BACKGROUND: Rgb<u8> = Rgb([24, 24, 28]);
+/// Of the image: the part's size in pixels, its corner, how much it is enlarged.
+const PART: [u32; 2] = [108, 80];
+const CORNER: [f64; 2] = [0.17, 0.49];
+const ZOOM: u32 = 2;
+const COLUMNS: [(Choice, &str, &str); 4] = [
+    (Choice::Random, ESTIMATORS[0], "random"),
+    (Choice::Sobol, ESTIMATORS[0], "Owen-scrambled Sobol"),
+    (Choice::Tile(2), ESTIMATORS[0], "tile"),
+    (Choice::Tile(2), ESTIMATORS[2], "tile, shared fits"),
+];
+
+/// Parts of a scene's images, each above its errors.
+fn draw(all: &[Rendered], reference: &Reference) -> RgbImage {
+    let part = Part::new(CORNER, PART, ZOOM, reference);
+    let [width, height] = PART.map(|size| size * ZOOM);
+    let row_height = text::LINE + 2 * (height + GAP / 2) + text::LINE + GAP;
+    let top = GAP + 2 * text::LINE;
+    let size = [GAP + (width + GAP) * COLUMNS.len() as u32, top + row_height * SPP.len() as u32];
+    let mut picture = RgbImage::from_pixel(size[0], size[1], BACKGROUND);
+    let title = format!(
+        "Squared errors over those of as many random samples: raw, and as seen through a Gaussian of {SIGMA} pixels"
+    );
+    text::draw(&mut picture, GAP, GAP / 2, &title);
+    let left = |index: usize| GAP + (width + GAP) * index as u32;
+    for (index, (_, _, name)) in COLUMNS.iter().enumerate() {
+        text::draw(&mut picture, left(index), GAP / 2 + text::LINE, name);
+    }
+    for (spp, y) in SPP.into_iter().zip((top..).step_by(row_height as usize)) {
+        let find = |(choice, estimator, _): (Choice, &str, &str)| {
+            all.iter().find(|one| (one.spp, one.choice, one.estimator) == (spp, choice, estimator))
+        };
+        let cells = COLUMNS.map(find);
+        let scale = cells[0].map_or(1.0, |one| part.error_scale(&one.image));
+        let samples = text::samples_per_pixel(spp);
+        text::draw(&mut picture, GAP, y, &format!("{samples}; below, errors from -{scale:.2} to {scale:.2}"));
+        let [images, errors] = [y + text::LINE, y + text::LINE + height + GAP / 2];
+        for (index, one) in cells.into_iter().enumerate() {
+            let Some(one) = one else { continue };
+            let x = left(index);
+            replace(&mut picture, &part.image(&one.image), x.into(), images.into());
+            replace(&mut picture, &part.errors(&one.image, scale), x.into(), errors.into());
+            let [raw, filtered] = ratios(one, all);
+            text::draw(&mut picture, x, errors + height + 1, &format!("raw {raw:.2} filtered {filtered:.2}"));
+        }
+    }
+    picture
+}
