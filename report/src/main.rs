@@ -1,4 +1,5 @@
-//! What `cargo xtask demo`, `report`, `povray` and `targets` start: they measure, and make tables, plots and pictures of it.
+//! What `cargo xtask demo`, `report`, `povray` and `targets` start: they measure, and make tables, plots and pictures
+//! of it.
 
 mod chapters;
 mod check;

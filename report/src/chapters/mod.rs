@@ -111,7 +111,7 @@ const CHAPTERS: &[Entry] = &[
     entry(
         "control_variates",
         80,
-        "Every estimator, basis and order: error against time, convergence, f32 against f64",
+        "Every estimator, basis and order: error against time, f32 against f64",
         control_variates::write,
     )
     .runs(&["speed_error", "estimators"]),

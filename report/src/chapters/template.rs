@@ -157,7 +157,8 @@ mod tests {
         let cell = json!({"text": "0.250 [0.2, 0.3]", "value": 0.25});
         let table = |section| json!({"name": "t", "section": section, "columns": ["a", "b"], "rows": [["x", cell]]});
         let json = json!({"title": "T", "settings": {"spp": 64}, "tables": [table("Two"), table("One")]});
-        let template = "# {{title}}\n\nAt {{spp}}.\n\n- {{none}}\n- {{spp}} too\n\n## One\n\n{{table t}}\n\n{{table t}}\n\n\
+        let template = "# {{title}}\n\nAt {{spp}}.\n\n- {{none}}\n- {{spp}} too\n\n## One\n\n{{table t}}\n\n\
+                        {{table t}}\n\n\
                         ## None\n\nText.\n\n{{table t}}\n\n## Two\n\n{{table t}}\n\n![x](no.svg)\n\n![x](a.svg)";
         let text = fill(template, &json, &|file| file == "a.svg").expect("a text");
         let shown = "| a |                b |\n| - | ---------------: |\n| x | 0.250 [0.2, 0.3] |";

@@ -59,7 +59,8 @@ fn gather(frames: impl Iterator<Item = Result<Vec<u16>>>, count: usize, size: u3
         if let Some(at) = frame.iter().position(|&value| value == WHITE) {
             let pixel = at / 3;
             bail!(
-                "frame {} is clipped: its pixel ({}, {}) is {WHITE}, which stands for all that is brighter too; dim the scene's lights",
+                "frame {} is clipped: its pixel ({}, {}) is {WHITE}, which stands for all that is brighter too; \
+                 dim the scene's lights",
                 number + 1,
                 pixel % size as usize,
                 pixel / size as usize

@@ -78,7 +78,8 @@ fn points_make_the_light(renderer: &Renderer) -> Result<f64> {
     let allowed = 1.1;
     if difference > allowed {
         bail!(
-            "the area light differs from the mean of {CELLS} point lights by {difference}/65535, more than {allowed}/65535"
+            "the area light differs from the mean of {CELLS} point lights by {difference}/65535, more than \
+             {allowed}/65535"
         );
     }
     // A comparison of black pictures would not fail.

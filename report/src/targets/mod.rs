@@ -104,8 +104,8 @@ fn c_tests_there(binutils: &str, emulator: &str, archive: &Path) -> Result<Strin
     let mut options = Vec::new();
     if binutils.starts_with("s390x") && !multiplies(binutils, emulator)? {
         println!(
-            "   NOT RUN: two checks of importance.c. This {emulator} multiplies single precision into double wrongly (MDEBR; \
-             mended in QEMU 8.1)"
+            "   NOT RUN: two checks of importance.c. This {emulator} multiplies single precision into double wrongly \
+             (MDEBR; mended in QEMU 8.1)"
         );
         options.push("-DMDEBR_IS_WRONG");
     }

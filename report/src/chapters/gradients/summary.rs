@@ -40,7 +40,8 @@ mod tests {
 
     #[test]
     fn a_table_is_read() {
-        let text = "said before\n| n | mode | error |\n| ---: | --- | ---: |\n| 5 | a | 2.5 +- 0.1 |\n| 10 | a | -1 |\nafter\n";
+        let text = "said before\n| n | mode | error |\n| ---: | --- | ---: |\n| 5 | a | 2.5 +- 0.1 |\n| 10 | a | -1 |\n\
+                    after\n";
         let summary = Summary::parse(text).expect("a table");
         assert_eq!(summary.columns, ["n", "mode", "error"]);
         assert_eq!(summary.number(&["5", "a"], "error"), Some((2.5, 0.1)));
