@@ -4,7 +4,7 @@ use super::filter::gaussian;
 use crate::measure::metric::Reference;
 use image::Rgb32FImage;
 
-/// An image's errors; or, by [`Score::mean`], those of several.
+/// An image's errors.
 #[derive(Clone, Copy)]
 pub(crate) struct Score {
     /// relMSE, errors beyond [`LIMIT`] limited.
