@@ -290,16 +290,17 @@ typedef struct nf_cv_image {
     // the error. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
     const float *factors;
     // For each sample, as f, what it would be with nothing in the way (its unshadowed contribution), or NULL. Finite.
-    // Pixels are then also corrected by how far it is from `integrals`, as far as their neighbours follow it.
+    // Pixels are then also corrected by how far it is from `known_integrals`, as far as their neighbours follow it.
     const float *known;
-    // With `known`, else NULL: `channels` numbers for each pixel, its exact integral over u: of a polygon light in
+    // With `known`, else NULL: `channels` numbers for each pixel, its exact integrals over u: of a polygon light in
     // closed form, for example. Finite and not negative; a pixel with 0 is not corrected by it. Where a pixel's
     // samples see several points, the mean of theirs.
-    const float *integrals;
+    const float *known_integrals;
     // The pixels that u, f and the arrays above hold, in all frames; all zero: all of the image. Numbers of pixels
     // then count these alone.
     nf_cv_rectangle given;
-    // The pixels to estimate, for which `out` has room; all zero: all that are given. Every window that has one of
+    // The pixels to estimate, for which `out` has room; all zero: all that are given. A part without pixels is
+    // refused, but at the origin, where it is all zero. Every window that has one of
     // them must be given whole, see nf_cv_image_needed(). Parts that are estimated on their own, by threads for
     // example, have the bits of the whole.
     nf_cv_rectangle wanted;
@@ -344,23 +345,25 @@ nf_status nf_cv_gradient_descent(const nf_cv_config *config,
                                  size_t bytes,
                                  nf_estimate *out);
 
-// Writes which pixels must be given for those of `image->wanted`: its windows whole. Reads no array.
+// Writes which pixels must be given for those of `image->wanted`: its windows whole; all zero, and so all, where pixels
+// have no places. Reads no array. `out` may be `&image->given`.
 //
 // NF_ERR_RANGE for windows that nf_cv_image does not allow and for `wanted` beyond the image.
 nf_status nf_cv_image_needed(const nf_cv_image *image, nf_cv_rectangle *out);
 
 // Bytes of workspace that nf_cv_image_estimate() needs for n samples in each pixel; 0 as for nf_cv_workspace_size(),
-// and for an image that is NULL, has no pixels, or has windows that nf_cv_image does not allow.
+// and for an image that is NULL, has no pixels, or has windows that nf_cv_image does not allow. With `known` it is
+// more.
 size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image *image, size_t n);
 
 // As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of
 // the same window and surface share a fit. Fits also follow integrands that change across the window.
 //
-// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
+// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone and is the only one that is exactly unbiased; NF_CV_ROBUST chooses among fits to f and
 // to what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD is then unsupported.
 //
 // NF_ERR_RANGE also for an image without pixels, for windows and parts that nf_cv_image does not allow, for negative
-// factors or integrals and for `known` without `integrals`; NF_ERR_NOT_FINITE if any of the three is not finite.
+// factors or integrals and for `known` without `known_integrals`; NF_ERR_NOT_FINITE if any of the three is not finite.
 nf_status nf_cv_image_estimate(const nf_cv_config *config,
                                const nf_cv_image *image,
                                const float *u,
@@ -489,11 +492,12 @@ typedef struct nf_recommendation {
     // of 1 sample, continued, has .81 to 1.4 times the error of Sobol points scrambled in each pixel that is given
     // here.
     float filtered_error;
-    // Nanoseconds that the method takes for each sample, of one channel without surfaces, on the machine of the
-    // report.
+    // Nanoseconds that the method takes for each sample on the machine of the report: of NF_METHOD_SHARED in rendered
+    // frames of three channels with surfaces, of NF_METHOD_PER_PIXEL for one channel.
     float cost;
-    // The cost of a sample, in nanoseconds, from which a fit pays at equal time, by what fits gain in rendered frames.
-    // Infinite if it never does; 0 where the mean is best at any cost.
+    // The cost of a sample, in nanoseconds, from which a fit pays: below it more samples of the plain mean, in the
+    // same time, would lower the error further. Of NF_METHOD_SHARED the median over eight rendered frames. Infinite if
+    // no fit pays at any cost.
     float pays_from;
     // How to estimate. `channels` is 1: set your own. `stride` is all dims.
     nf_cv_config config;
@@ -502,10 +506,10 @@ typedef struct nf_recommendation {
 // Which estimator, of which order, and which of the library's tiles to use for samples of `dims` coordinates and `spp`
 // of them per pixel, both at least 1. `sampling` is NF_SAMPLING_*; `can_share` is 1 if neighbouring pixels' samples
 // are at hand together and integrate similar functions, else 0. `sample_cost` is what a sample costs to trace, in
-// nanoseconds: where a fit would take more time than its gain is worth, the plain mean is best. 0: errors at equal
-// samples decide alone. docs/choosing.md has the measurements that it rests on.
+// nanoseconds: below `pays_from` the plain mean is best. INFINITY compares errors at equal samples. docs/choosing.md
+// has the measurements that it rests on.
 //
-// NF_ERR_RANGE also for a negative cost, NF_ERR_NOT_FINITE for a NaN.
+// NF_ERR_RANGE also for a cost that is not above 0, NF_ERR_NOT_FINITE for a NaN.
 nf_status nf_recommend(uint32_t dims,
                        uint32_t spp,
                        uint32_t sampling,

@@ -14,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -317,26 +318,26 @@ public:
     }
 
     // What each sample would be with nothing in the way, as f, and config::channels integrals of it for each pixel.
-    image with_known(span<const float> values, span<const float> exact) const noexcept
+    image with_known(span<const float> known_values, span<const float> integrals) const noexcept
     {
         image copy = *this;
-        copy.known = values.data();
-        copy.integrals = exact.data();
-        copy.known_ = values.size();
-        copy.integrals_ = exact.size();
+        copy.known = known_values.data();
+        copy.known_integrals = integrals.data();
+        copy.known_ = known_values.size();
+        copy.known_integrals_ = integrals.size();
         copy.has_known_ = true;
         return copy;
     }
 
-    // The pixels that are estimated, and those that the arrays hold: needed() says which are enough.
-    image with_parts(const nf_cv_rectangle &estimated, const nf_cv_rectangle &held) const noexcept
+    // nf_cv_image::wanted and nf_cv_image::given: the pixels to estimate, and those that the arrays hold.
+    image with_parts(const nf_cv_rectangle &wanted_pixels, const nf_cv_rectangle &given_pixels) const noexcept
     {
         image copy = *this;
-        copy.wanted = estimated;
-        copy.given = held;
+        copy.wanted = wanted_pixels;
+        copy.given = given_pixels;
         return copy;
     }
-    // Whole windows.
+    // Which pixels must be given for those that are wanted: whole windows.
     returned<nf_cv_rectangle> needed() const
     {
         nf_cv_rectangle all{};
@@ -355,13 +356,12 @@ public:
     // That the arrays hold, of all frames; 0 if that is more than a std::size_t counts.
     std::size_t pixels() const noexcept
     {
-        return given_all() ? count(width, height) : count(given.width, given.height);
+        return is_empty(given) ? count(width, height) : count(given.width, given.height);
     }
     // That are estimated, likewise.
     std::size_t estimates() const noexcept
     {
-        const bool all = wanted.x == 0 && wanted.y == 0 && wanted.width == 0 && wanted.height == 0;
-        return all ? pixels() : count(wanted.width, wanted.height);
+        return is_empty(wanted) ? pixels() : count(wanted.width, wanted.height);
     }
     // Whether the arrays are as long as they must be beside so many numbers of f.
     bool fits(const nf_cv_config &how, std::size_t values) const noexcept
@@ -371,11 +371,14 @@ public:
             return channels != 0 && size % channels == 0 && size / channels == pixels();
         };
         return (!has_surfaces_ || surfaces_ == pixels()) && (!has_factors_ || each(factors_)) &&
-               (!has_known_ || (known_ == values && each(integrals_)));
+               (!has_known_ || (known_ == values && each(known_integrals_)));
     }
 
 private:
-    bool given_all() const noexcept { return given.x == 0 && given.y == 0 && given.width == 0 && given.height == 0; }
+    static bool is_empty(const nf_cv_rectangle &of) noexcept
+    {
+        return of.x == 0 && of.y == 0 && of.width == 0 && of.height == 0;
+    }
     std::size_t count(std::size_t columns, std::size_t rows) const noexcept
     {
         const std::size_t most = SIZE_MAX, all_frames = frames == 0 ? 1 : frames;
@@ -386,7 +389,7 @@ private:
 
     // An array that was given but is empty is an error, not "none".
     bool has_surfaces_ = false, has_factors_ = false, has_known_ = false;
-    std::size_t surfaces_ = 0, factors_ = 0, known_ = 0, integrals_ = 0;
+    std::size_t surfaces_ = 0, factors_ = 0, known_ = 0, known_integrals_ = 0;
 };
 
 // Samples in caller arrays. The number of samples is f.size() / channels, and all lengths must agree with it.
@@ -519,9 +522,9 @@ private:
 enum class sampling : std::uint32_t { independent = NF_SAMPLING_INDEPENDENT, stratified = NF_SAMPLING_STRATIFIED };
 
 // nf_recommend(): which estimator and which tile to use for `spp` samples per pixel of `dims` coordinates, each of so
-// many nanoseconds; 0: whatever they cost.
+// many nanoseconds; infinity compares errors at equal samples.
 inline returned<nf_recommendation> recommend(std::uint32_t dims, std::uint32_t spp, sampling kind, bool can_share,
-                                             float sample_cost = 0.0f)
+                                             float sample_cost = std::numeric_limits<float>::infinity())
 {
     nf_recommendation out{};
     const nf_status code =

@@ -41,11 +41,12 @@ pub struct nf_recommendation {
     /// of 1 sample, continued, has .81 to 1.4 times the error of Sobol points scrambled in each pixel that is given
     /// here.
     pub filtered_error: f32,
-    /// Nanoseconds that the method takes for each sample, of one channel without surfaces, on the machine of the
-    /// report.
+    /// Nanoseconds that the method takes for each sample on the machine of the report: of NF_METHOD_SHARED in rendered
+    /// frames of three channels with surfaces, of NF_METHOD_PER_PIXEL for one channel.
     pub cost: f32,
-    /// The cost of a sample, in nanoseconds, from which a fit pays at equal time, by what fits gain in rendered frames.
-    /// Infinite if it never does; 0 where the mean is best at any cost.
+    /// The cost of a sample, in nanoseconds, from which a fit pays: below it more samples of the plain mean, in the
+    /// same time, would lower the error further. Of NF_METHOD_SHARED the median over eight rendered frames. Infinite if
+    /// no fit pays at any cost.
     pub pays_from: f32,
     /// How to estimate. `channels` is 1: set your own. `stride` is all dims.
     pub config: nf_cv_config,
@@ -54,10 +55,10 @@ pub struct nf_recommendation {
 /// Which estimator, of which order, and which of the library's tiles to use for samples of `dims` coordinates and `spp`
 /// of them per pixel, both at least 1. `sampling` is NF_SAMPLING_*; `can_share` is 1 if neighbouring pixels' samples
 /// are at hand together and integrate similar functions, else 0. `sample_cost` is what a sample costs to trace, in
-/// nanoseconds: where a fit would take more time than its gain is worth, the plain mean is best. 0: errors at equal
-/// samples decide alone. docs/choosing.md has the measurements that it rests on.
+/// nanoseconds: below `pays_from` the plain mean is best. INFINITY compares errors at equal samples. docs/choosing.md
+/// has the measurements that it rests on.
 ///
-/// NF_ERR_RANGE also for a negative cost, NF_ERR_NOT_FINITE for a NaN.
+/// NF_ERR_RANGE also for a cost that is not above 0, NF_ERR_NOT_FINITE for a NaN.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_recommend(
     dims: u32,

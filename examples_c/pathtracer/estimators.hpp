@@ -147,7 +147,7 @@ public:
         image.stride = kind == blind ? 8 : 0;
         const float any = 0; // it is not read: that there is something known takes memory
         if (kind == known)
-            image.known = image.integrals = &any;
+            image.known = image.known_integrals = &any;
         workspace_ = memory(nf_cv_image_workspace_size(&config, &image, n));
     }
 
@@ -160,7 +160,7 @@ public:
         image.stride = kind_ == blind ? 8 : 0;
         if (kind_ == known) {
             image.known = s.known;
-            image.integrals = s.integrals;
+            image.known_integrals = s.integrals;
         }
         check(nf_cv_image_estimate(&config_, &image, s.u, s.f, s.n, workspace_.data(), 8 * workspace_.size(),
                                    results_.data()),

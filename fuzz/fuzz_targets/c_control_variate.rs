@@ -154,7 +154,7 @@ fn shared(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
         surfaces: if source.any()? { surfaces.pointer() } else { null() },
         factors: if source.any()? { factors.pointer() } else { null() },
         known: if has_known { known.pointer() } else { null() },
-        integrals: if has_integrals { integrals.pointer() } else { null() },
+        known_integrals: if has_integrals { integrals.pointer() } else { null() },
         given: if source.any()? { whole } else { nf_cv_rectangle::default() },
         wanted,
     };

@@ -118,7 +118,7 @@ fn defaults_work() {
     }
     let mut advice = MaybeUninit::uninit();
     // SAFETY: room for the answer.
-    assert_eq!(unsafe { nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, 0.0, advice.as_mut_ptr()) }, NF_OK);
+    assert_eq!(unsafe { nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, f32::INFINITY, advice.as_mut_ptr()) }, NF_OK);
 }
 
 fuzz_target!(init: defaults_work(), |bytes: &[u8]| {

@@ -151,7 +151,7 @@ fn run(input: &Input) {
         surfaces,
         factors,
         known,
-        integrals,
+        known_integrals: integrals,
         wanted: Rectangle::new(x, y, columns, rows),
         given: Rectangle::new(given_x, given_y, given_columns, given_rows),
         ..Image::new(width, height)

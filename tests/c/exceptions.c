@@ -113,11 +113,11 @@ static void control_variates(void)
 
 static void images(void)
 {
-    static float u[2 * 256 * 4], f[256 * 4 * 3], factors[256 * 3];
+    static float u[2 * 256 * 4], f[256 * 4 * 3], factors[256 * 3], known[256 * 4 * 3], integrals[256 * 3];
     static uint32_t surfaces[256];
     static nf_estimate out[256];
     int turn;
-    for (turn = 0; turn < 360; ++turn) {
+    for (turn = 0; turn < 720; ++turn) {
         const int kind = turn % KINDS;
         const size_t n = 1 + below(4);
         nf_cv_config config = make_config(2, 1 + below(3), 1 + 2 * below(2), (uint32_t)turn / KINDS % 6);
@@ -137,6 +137,13 @@ static void images(void)
             factors[i] = below(4) ? powf(10.0f, 30.0f * nf_rng_uniform(&rng) - 15.0f) : 0.0f;
         image.surfaces = below(2) ? surfaces : NULL;
         image.factors = below(2) ? factors : NULL;
+        fill_values(below(KINDS), u, 2, known, 256 * n, config.channels);
+        for (i = 0; i < 256 * 3; ++i)
+            integrals[i] = below(4) ? fabsf(known[i]) : 0.0f;
+        if (below(2)) {
+            image.known = known;
+            image.known_integrals = integrals;
+        }
         work = memory_new(nf_cv_image_workspace_size(&config, &image, n));
         feclearexcept(FE_ALL_EXCEPT);
         nf_cv_image_estimate(&config, &image, u, f, n, work.start, work.bytes, out);

@@ -12,7 +12,7 @@ static void every_recommendation_can_be_used(void)
             for (sampling = 0; sampling < 2; ++sampling)
                 for (share = 0; share < 2; ++share) {
                     nf_recommendation out;
-                    CHECK_STATUS(nf_recommend(dims[j], counts[i], sampling, share, 0.0f, &out), NF_OK);
+                    CHECK_STATUS(nf_recommend(dims[j], counts[i], sampling, share, INFINITY, &out), NF_OK);
                     CHECK(out.method <= (share ? NF_METHOD_SHARED : NF_METHOD_PER_PIXEL));
                     CHECK(nf_cv_terms(&out.config) > 0);
                     CHECK(out.config.dims <= dims[j] && out.config.channels == 1);
@@ -41,7 +41,7 @@ static void shared_estimates_follow(void)
     image.width = image.height = 4;
     image.window = 4;
     image.stride = 4;
-    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_INDEPENDENT, 1, 0.0f, &out), NF_OK);
+    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_INDEPENDENT, 1, INFINITY, &out), NF_OK);
     CHECK(out.method == NF_METHOD_SHARED);
     work = memory_new(nf_cv_image_workspace_size(&out.config, &image, 4));
     CHECK_STATUS(nf_cv_image_estimate(&out.config, &image, u, f, 4, work.start, work.bytes, estimates), NF_OK);
@@ -66,20 +66,23 @@ static void cost_of_samples(void)
     CHECK(out.method == NF_METHOD_SHARED && out.cost > 0.0f && from > 0.0f);
     CHECK_STATUS(nf_recommend(2, 1, NF_SAMPLING_STRATIFIED, 1, 0.9f * from, &out), NF_OK);
     CHECK(out.method == NF_METHOD_PLAIN_MEAN && out.cost == 0.0f && out.pays_from == from);
+    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 0, 1e6f, &out), NF_OK);
+    CHECK(out.method == NF_METHOD_PLAIN_MEAN && out.pays_from == INFINITY);
 }
 
 static void errors(void)
 {
     nf_recommendation out;
-    CHECK_REFUSED(nf_recommend(0, 4, NF_SAMPLING_INDEPENDENT, 1, 0.0f, &out), NF_ERR_RANGE, out);
-    CHECK_REFUSED(nf_recommend(2, 0, NF_SAMPLING_INDEPENDENT, 1, 0.0f, &out), NF_ERR_RANGE, out);
-    CHECK_REFUSED(nf_recommend(2, 4, 2, 1, 0.0f, &out), NF_ERR_RANGE, out);
-    CHECK_REFUSED(nf_recommend(2, 4, UINT32_MAX, 1, 0.0f, &out), NF_ERR_RANGE, out);
-    CHECK_REFUSED(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 2, 0.0f, &out), NF_ERR_RANGE, out);
+    CHECK_REFUSED(nf_recommend(0, 4, NF_SAMPLING_INDEPENDENT, 1, INFINITY, &out), NF_ERR_RANGE, out);
+    CHECK_REFUSED(nf_recommend(2, 0, NF_SAMPLING_INDEPENDENT, 1, INFINITY, &out), NF_ERR_RANGE, out);
+    CHECK_REFUSED(nf_recommend(2, 4, 2, 1, INFINITY, &out), NF_ERR_RANGE, out);
+    CHECK_REFUSED(nf_recommend(2, 4, UINT32_MAX, 1, INFINITY, &out), NF_ERR_RANGE, out);
+    CHECK_REFUSED(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 2, INFINITY, &out), NF_ERR_RANGE, out);
+    CHECK_REFUSED(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, 0.0f, &out), NF_ERR_RANGE, out);
     CHECK_REFUSED(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, -1.0f, &out), NF_ERR_RANGE, out);
     CHECK_REFUSED(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, not_a_number(), &out), NF_ERR_NOT_FINITE, out);
-    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, 0.0f, NULL), NF_ERR_NULL);
-    CHECK_REFUSED(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, 0.0f, (nf_recommendation *)misaligned(&out)),
+    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, INFINITY, NULL), NF_ERR_NULL);
+    CHECK_REFUSED(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, INFINITY, (nf_recommendation *)misaligned(&out)),
                   NF_ERR_ALIGNMENT, out);
 }
 

@@ -419,10 +419,10 @@ static void minibatches()
 static void recommendations()
 {
     nf_recommendation expected;
-    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, 0.0f, &expected), NF_OK);
+    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_STRATIFIED, 1, INFINITY, &expected), NF_OK);
     const nf_recommendation actual = value_of(nf::recommend(2, 4, nf::sampling::stratified, true));
     CHECK(actual.method == expected.method && actual.config.order == expected.config.order);
-    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_INDEPENDENT, 0, 0.0f, &expected), NF_OK);
+    CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_INDEPENDENT, 0, INFINITY, &expected), NF_OK);
     CHECK(value_of(nf::recommend(2, 4, nf::sampling::independent, false)).method == expected.method);
     CHECK(CODE(nf::recommend(0, 4, nf::sampling::independent, false)) == nf::status::range);
 }

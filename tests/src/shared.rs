@@ -8,10 +8,10 @@ use noisefloor::control_variate::{
 
 /// The estimates of an image's pixels.
 pub fn image(config: &Config, image: &Image<'_>, samples: Samples<'_>) -> Result<Vec<Estimate>, Error> {
-    let pixels = image.width.saturating_mul(image.height).saturating_mul(image.frames.max(1));
+    let [pixels, estimated] = image.counts()?;
     let n = samples.f.len().checked_div(pixels.saturating_mul(config.channels)).unwrap_or(0);
     let mut workspace = vec![f32::NAN; image_workspace_len(config, image, n)?];
-    let mut out = vec![None; pixels];
+    let mut out = vec![None; estimated];
     let result = estimate_image(config, image, samples, &mut workspace, put(&mut out));
     finish(result, out)
 }

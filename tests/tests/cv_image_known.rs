@@ -17,6 +17,8 @@ struct Frame {
     f: Vec<f32>,
     known: Vec<f32>,
     integrals: Vec<f32>,
+    surfaces: Vec<u32>,
+    factors: Vec<f32>,
 }
 
 /// What arrives from a point of the light, panes of 8 x 6, if nothing is in the way: its integral over u is 1.
@@ -52,7 +54,11 @@ fn truth(pixel: usize) -> f64 {
 
 impl Frame {
     fn new(n: usize, rng: &mut SplitMix64) -> Self {
-        let u = points(PIXELS * n, 2, rng);
+        Self::of(PIXELS, n, rng)
+    }
+
+    fn of(pixels: usize, n: usize, rng: &mut SplitMix64) -> Self {
+        let u = points(pixels * n, 2, rng);
         let (mut f, mut known) = (vec![], vec![]);
         for (sample, u) in u.chunks(2).enumerate() {
             let pixel = sample / n;
@@ -62,12 +68,19 @@ impl Frame {
             known.push(unshadowed as f32);
             f.push(if x + slope * y < edge { unshadowed as f32 } else { 0.0 });
         }
-        let integrals = (0..PIXELS).map(|pixel| albedo(pixel) as f32).collect();
-        Self { n, u, f, known, integrals }
+        let integrals = (0..pixels).map(|pixel| albedo(pixel) as f32).collect();
+        Self { n, u, f, known, integrals, surfaces: vec![], factors: vec![] }
     }
 
     fn image(&self) -> Image<'_> {
-        Image { stride: WIDTH, known: &self.known, integrals: &self.integrals, ..Image::new(WIDTH, WIDTH) }
+        Image {
+            stride: WIDTH,
+            surfaces: &self.surfaces,
+            factors: &self.factors,
+            known: &self.known,
+            known_integrals: &self.integrals,
+            ..Image::new(WIDTH, WIDTH)
+        }
     }
 
     fn samples(&self) -> Samples<'_> {
@@ -83,25 +96,33 @@ impl Frame {
         values[pixel * self.n..(pixel + 1) * self.n].iter().map(|&value| f64::from(value)).sum::<f64>() / self.n as f64
     }
 
-    /// The coefficient of a pixel by all others, as the documentation defines it.
+    /// The coefficient of a pixel by the others that share its fit, as the documentation defines it.
     fn coefficient(&self, pixel: usize) -> f64 {
-        let others: Vec<[f64; 3]> = (0..PIXELS)
-            .filter(|&other| other != pixel && self.integrals[other] > 0.0)
+        let surface = |pixel: usize| self.surfaces.get(pixel);
+        let factor = |pixel: usize| self.factors.get(pixel).map_or(1.0, |&factor| f64::from(factor));
+        let integral = |pixel: usize| f64::from(self.integrals[pixel]) / factor(pixel);
+        let group = || (0..self.integrals.len()).filter(|&other| surface(other) == surface(pixel));
+        let largest = group().map(integral).fold(0.0, f64::max);
+        let others: Vec<[f64; 3]> = group()
+            .filter(|&other| other != pixel && integral(other) > 0.0)
             .map(|other| {
-                let integral = f64::from(self.integrals[other]);
-                [self.mean(&self.f, other) / integral, self.mean(&self.known, other) / integral, 1.0]
+                let unit = factor(other) * integral(other).max(0.01 * largest);
+                [self.mean(&self.f, other), self.mean(&self.known, other), f64::from(self.integrals[other])]
+                    .map(|value| value / unit)
             })
+            .filter(|values| values.iter().all(|value| value.abs() < f64::from(1 << 20)))
             .collect();
         let sum = |f: &dyn Fn(&[f64; 3]) -> f64| others.iter().map(f).sum::<f64>();
         let share = sum(&|[mean, ..]| *mean) / sum(&|[_, known, _]| *known);
-        let apart = |known: &f64| known - 1.0;
-        let slope = sum(&|[mean, known, _]| (mean - share) * apart(known)) / sum(&|[_, known, _]| apart(known).powi(2));
-        if self.integrals[pixel] > 0.0 { slope.min(share).max(0.0) } else { 0.0 }
+        let slope = sum(&|[mean, known, integral]| (mean - share * integral) * (known - integral))
+            / sum(&|[_, known, integral]| (known - integral).powi(2));
+        let arrives = self.integrals[pixel] > 0.0 && sum(&|[_, known, _]| *known) > 1e-6;
+        if arrives { slope.min(share).clamp(0.0, 1.0) } else { 0.0 }
     }
 
     /// The samples less what is known of them.
     fn rest(&self) -> Vec<f32> {
-        let coefficients: Vec<f64> = (0..PIXELS).map(|pixel| self.coefficient(pixel)).collect();
+        let coefficients: Vec<f64> = (0..self.integrals.len()).map(|pixel| self.coefficient(pixel)).collect();
         let rest = |(i, &f): (usize, &f32)| {
             let apart = f64::from(self.known[i]) - f64::from(self.integrals[i / self.n]);
             (f64::from(f) - coefficients[i / self.n] * apart) as f32
@@ -132,12 +153,60 @@ fn the_definition() {
         }
         // What tells pixels apart is weighed by the one that it says least of, f or the rest: here both are channels.
         let config = Config { ridge: Ridge::Fixed(0.05), ..Config::new(2, 3, 1) };
-        let blind = Image { known: &[], integrals: &[], ..frame.image() };
+        let blind = Image { known: &[], known_integrals: &[], ..frame.image() };
         let both: Vec<f32> = rest.iter().zip(&frame.f).flat_map(|(&rest, &f)| [rest, f]).collect();
         let both = Samples::new(&frame.u, &both);
         let expected = image(&Config { channels: 2, ..config }, &blind, both).unwrap();
         for (mean, expected) in frame.means(&config, &frame.image()).iter().zip(expected) {
             assert!((mean - f64::from(expected.mean[0])).abs() < 1e-5, "{n}: {mean} for {}", expected.mean[0]);
+        }
+    }
+}
+
+/// The coefficient's bounds: more arrives than is known, integrals of very different size, other signs; of groups of
+/// all kinds.
+#[test]
+fn the_definition_in_hard_cases() {
+    let mut rng = SplitMix64::new(6);
+    for case in 0..48 {
+        let (kind, n) = (case % 4, [1, 3][case / 4 % 2]);
+        let is_ordered = kind < 2;
+        let pixels = [PIXELS, PIXELS, PIXELS, 100][kind];
+        let mut frame = Frame::of(pixels, n, &mut rng);
+        match case / 8 {
+            // The share of the light that arrives is above 1.
+            0 => frame.f.iter_mut().for_each(|f| *f *= 5.0),
+            // Integrals from 1 to 1/1000, below the floor too.
+            1 => {
+                for pixel in 0..pixels {
+                    let scale = 0.1_f32.powi(rng.below(4) as i32);
+                    frame.integrals[pixel] *= scale;
+                    let samples = pixel * n..(pixel + 1) * n;
+                    frame.f[samples.clone()].iter_mut().for_each(|f| *f *= scale);
+                    frame.known[samples].iter_mut().for_each(|known| *known *= scale);
+                }
+            }
+            // A value that says nothing about others.
+            2 => frame.known[3 * n] = 1e8,
+            // Both signs, all of one and none.
+            3 => frame.known.iter_mut().for_each(|known| *known -= 0.75),
+            4 => frame.f.iter_mut().for_each(|f| *f = -*f),
+            _ => frame.known.fill(0.0),
+        }
+        if kind == 1 {
+            frame.surfaces = (0..pixels).map(|pixel| (pixel % 3) as u32).collect();
+            frame.factors = (0..pixels).map(|_| 0.25 + rng.uniform_f32()).collect();
+        }
+        let of = if is_ordered {
+            frame.image()
+        } else {
+            Image { unordered: true, width: pixels, height: 1, stride: 0, ..frame.image() }
+        };
+        let rest = frame.rest();
+        for (pixel, mean) in frame.means(&alone(1), &of).iter().enumerate() {
+            let expected = frame.mean(&rest, pixel);
+            let size = frame.mean(&frame.known, pixel).abs().max(expected.abs()).max(1.0);
+            assert!((mean - expected).abs() < 1e-5 * size, "case {case}, pixel {pixel}: {mean} for {expected}");
         }
     }
 }
@@ -174,7 +243,7 @@ fn unbiased_alone() {
             errors[0].add(all);
             errors[1..].iter_mut().zip(some).for_each(|(moments, error)| moments.add(error));
             let integrals: Vec<f32> = frame.integrals.iter().map(|integral| 1.05 * integral).collect();
-            let means = frame.means(&alone(1), &Image { integrals: &integrals, ..frame.image() });
+            let means = frame.means(&alone(1), &Image { known_integrals: &integrals, ..frame.image() });
             biased.add(means.iter().zip(&truth).map(|(mean, truth)| mean - truth).sum::<f64>() / PIXELS as f64);
         }
         largest = errors.iter().map(|moments| moments.z(0.0).abs()).fold(largest, f64::max);
@@ -196,11 +265,11 @@ fn squared_errors() {
             let frame = Frame::new(n, &mut rng);
             let error = |means: &[f64]| means.iter().zip(&truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
             plain += error(&(0..PIXELS).map(|pixel| frame.mean(&frame.f, pixel)).collect::<Vec<_>>());
-            blind += error(&frame.means(&config, &Image { known: &[], integrals: &[], ..frame.image() }));
+            blind += error(&frame.means(&config, &Image { known: &[], known_integrals: &[], ..frame.image() }));
             known += error(&frame.means(&config, &frame.image()));
             let noise: Vec<f32> = frame.known.iter().map(|_| 2.0 * rng.uniform_f32()).collect();
             let ones = vec![1.0; PIXELS];
-            useless += error(&frame.means(&config, &Image { known: &noise, integrals: &ones, ..frame.image() }));
+            useless += error(&frame.means(&config, &Image { known: &noise, known_integrals: &ones, ..frame.image() }));
         }
         let [blind_ratio, ratio, useless_ratio] = [blind / plain, known / blind, useless / blind];
         println!("{n} spp: fits {blind_ratio:.3}, known {ratio:.3} of that, noise {useless_ratio:.3} of that");
@@ -222,12 +291,14 @@ fn scales_and_channels() {
             f: scaled(&frame.f),
             known: scaled(&frame.known),
             integrals: scaled(&frame.integrals),
+            surfaces: vec![],
+            factors: vec![],
         };
         let others = other.means(&config, &other.image());
         assert!(means.iter().zip(&others).all(|(mean, other)| mean * 1024.0 == *other));
         let [f, known] = [&frame.f, &frame.known].map(|all| all.iter().flat_map(|&x| [x, 2.0 * x]).collect::<Vec<_>>());
         let integrals: Vec<f32> = frame.integrals.iter().flat_map(|&x| [x, 2.0 * x]).collect();
-        let of = Image { known: &known, integrals: &integrals, ..frame.image() };
+        let of = Image { known: &known, known_integrals: &integrals, ..frame.image() };
         let colours = image(&Config { channels: 2, ..config }, &of, Samples::new(&frame.u, &f)).unwrap();
         for (mean, colour) in means.iter().zip(colours) {
             let [first, second, ..] = colour.mean.map(f64::from);
@@ -242,7 +313,7 @@ fn bad_input() {
     let frame = Frame::new(2, &mut rng);
     let config = Config::new(2, 2, 1);
     let check = |known: &[f32], integrals: &[f32], expected: Error| {
-        let of = Image { known, integrals, ..frame.image() };
+        let of = Image { known, known_integrals: integrals, ..frame.image() };
         assert_eq!(image(&config, &of, frame.samples()).unwrap_err(), expected, "{} {}", known.len(), integrals.len());
     };
     check(&frame.known, &[], Error::Range);

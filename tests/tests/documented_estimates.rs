@@ -76,7 +76,7 @@ proptest! {
         let sampling = if stratified { Sampling::Stratified } else { Sampling::Independent };
         let measured = [1, 2, 4, 5, 8, 15].into_iter().find(|&measured| measured >= dims).unwrap();
         let fewer = [256, 64, 16, 4, 1].into_iter().find(|&fewer| fewer <= samples).unwrap();
-        let of = |dims, samples| recommend(dims, samples, sampling, can_share, 0.0).unwrap();
+        let of = |dims, samples| recommend(dims, samples, sampling, can_share, f32::INFINITY).unwrap();
         let (here, there) = (of(dims, samples), of(measured, fewer));
         prop_assert_eq!(here.config.dims, dims);
         let config = Config { dims, stride: here.config.stride, ..there.config };

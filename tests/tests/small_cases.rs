@@ -24,11 +24,11 @@ fn errors_say_what_was_wrong() {
 
 #[test]
 fn recommendations() {
-    let method = |samples, sampling, share| recommend(2, samples, sampling, share, 0.0).unwrap().method;
+    let method = |samples, sampling, share| recommend(2, samples, sampling, share, f32::INFINITY).unwrap().method;
     assert_eq!(method(64, Sampling::Independent, false), Method::PerPixel);
     assert_eq!(method(64, Sampling::Stratified, false), Method::PlainMean);
     assert_eq!(method(4, Sampling::Stratified, true), Method::Shared);
-    let filtered = |sampling| recommend(2, 16, sampling, true, 0.0).unwrap().filtered_error;
+    let filtered = |sampling| recommend(2, 16, sampling, true, f32::INFINITY).unwrap().filtered_error;
     assert!(filtered(Sampling::Stratified) < filtered(Sampling::Independent));
 }
 

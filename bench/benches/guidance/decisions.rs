@@ -83,7 +83,8 @@ pub(crate) fn all(cells: &[Cell]) -> Result<Vec<Decision>> {
     let mut all = Vec::new();
     for (dims, n) in places {
         let here: Vec<&Cell> = cells.iter().filter(|cell| (cell.dims, cell.n) == (dims, n)).collect();
-        let says = |sampling, share| recommend(dims, n, sampling, share, 0.0).map_err(|error| anyhow!("{error}"));
+        let says =
+            |sampling, share| recommend(dims, n, sampling, share, f32::INFINITY).map_err(|error| anyhow!("{error}"));
         all.extend(samples(cells, &here, &says(Sampling::Stratified, false)?));
         for stratified in [false, true] {
             for share in [false, true] {

@@ -38,16 +38,17 @@ pub struct nf_cv_image {
     /// the error. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
     pub factors: *const f32,
     /// For each sample, as f, what it would be with nothing in the way (its unshadowed contribution), or NULL. Finite.
-    /// Pixels are then also corrected by how far it is from `integrals`, as far as their neighbours follow it.
+    /// Pixels are then also corrected by how far it is from `known_integrals`, as far as their neighbours follow it.
     pub known: *const f32,
-    /// With `known`, else NULL: `channels` numbers for each pixel, its exact integral over u: of a polygon light in
+    /// With `known`, else NULL: `channels` numbers for each pixel, its exact integrals over u: of a polygon light in
     /// closed form, for example. Finite and not negative; a pixel with 0 is not corrected by it. Where a pixel's
     /// samples see several points, the mean of theirs.
-    pub integrals: *const f32,
+    pub known_integrals: *const f32,
     /// The pixels that u, f and the arrays above hold, in all frames; all zero: all of the image. Numbers of pixels
     /// then count these alone.
     pub given: nf_cv_rectangle,
-    /// The pixels to estimate, for which `out` has room; all zero: all that are given. Every window that has one of
+    /// The pixels to estimate, for which `out` has room; all zero: all that are given. A part without pixels is
+    /// refused, but at the origin, where it is all zero. Every window that has one of
     /// them must be given whole, see nf_cv_image_needed(). Parts that are estimated on their own, by threads for
     /// example, have the bits of the whole.
     pub wanted: nf_cv_rectangle,
@@ -68,15 +69,16 @@ pub struct nf_cv_rectangle {
     pub height: u32,
 }
 
-/// Writes which pixels must be given for those of `image->wanted`: its windows whole. Reads no array.
+/// Writes which pixels must be given for those of `image->wanted`: its windows whole; all zero, and so all, where pixels
+/// have no places. Reads no array. `out` may be `&image->given`.
 ///
 /// NF_ERR_RANGE for windows that nf_cv_image does not allow and for `wanted` beyond the image.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_needed(image: *const nf_cv_image, out: *mut nf_cv_rectangle) -> nf_status {
     status((|| {
-        // SAFETY: the caller's pointers, checked there.
-        let (image, out) = unsafe { (convert::reference(image)?, convert::room(out)?) };
-        let needed = core_image(image)?.needed().map_err(status_of)?;
+        // SAFETY: the caller's pointers, checked there. A copy, as `out` may be a part of the image.
+        let (image, out) = unsafe { (*convert::reference(image)?, convert::room(out)?) };
+        let needed = core_image(&image)?.needed().map_err(status_of)?;
         let [x, y, width, height] = [needed.x, needed.y, needed.width, needed.height].map(|value| value as u32);
         out.write(nf_cv_rectangle { x, y, width, height });
         Ok(())
@@ -137,7 +139,8 @@ pub unsafe extern "C" fn nf_cv_block_estimate(
 }
 
 /// Bytes of workspace that nf_cv_image_estimate() needs for n samples in each pixel; 0 as for nf_cv_workspace_size(),
-/// and for an image that is NULL, has no pixels, or has windows that nf_cv_image does not allow.
+/// and for an image that is NULL, has no pixels, or has windows that nf_cv_image does not allow. With `known` it is
+/// more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_workspace_size(
     config: *const nf_cv_config,
@@ -157,11 +160,11 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
 /// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of
 /// the same window and surface share a fit. Fits also follow integrands that change across the window.
 ///
-/// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
+/// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone and is the only one that is exactly unbiased; NF_CV_ROBUST chooses among fits to f and
 /// to what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD is then unsupported.
 ///
 /// NF_ERR_RANGE also for an image without pixels, for windows and parts that nf_cv_image does not allow, for negative
-/// factors or integrals and for `known` without `integrals`; NF_ERR_NOT_FINITE if any of the three is not finite.
+/// factors or integrals and for `known` without `known_integrals`; NF_ERR_NOT_FINITE if any of the three is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_estimate(
     config: *const nf_cv_config,
@@ -178,18 +181,7 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
         let (config, of) = unsafe { (convert::reference(config)?, convert::reference(image)?) };
         let core = supported(config)?;
         let mut image = core_image(of)?;
-        let all = Rectangle::new(0, 0, image.width, image.height);
-        if [image.given, image.wanted] != [Rectangle::default(); 2] {
-            // Checked before arrays of that size are touched.
-            cv::image_workspace_len(&core, &image, n).map_err(status_of)?;
-        }
-        let given = if image.given == Rectangle::default() { all } else { image.given };
-        let wanted = if image.wanted == Rectangle::default() { given } else { image.wanted };
-        let count = |of: &Rectangle| convert::product(convert::product(of.width, of.height)?, image.frames.max(1));
-        let (pixels, estimates) = (count(&given)?, count(&wanted)?);
-        if pixels == 0 || estimates == 0 {
-            return Err(NF_ERR_RANGE);
-        }
+        let [pixels, estimates] = image.counts().map_err(status_of)?;
         let total = convert::product(pixels, n)?;
         // SAFETY: the caller's arrays, of the lengths the header states.
         let (samples, out) = unsafe {
@@ -208,9 +200,10 @@ pub unsafe extern "C" fn nf_cv_image_estimate(
             // SAFETY: as above.
             image.known = unsafe { convert::slice(of.known, convert::product(total, core.channels)?)? };
         }
-        if !of.integrals.is_null() {
+        if !of.known_integrals.is_null() {
             // SAFETY: as above.
-            image.integrals = unsafe { convert::slice(of.integrals, convert::product(pixels, core.channels)?)? };
+            image.known_integrals =
+                unsafe { convert::slice(of.known_integrals, convert::product(pixels, core.channels)?)? };
         }
         // SAFETY: the caller's workspace, `bytes` long.
         unsafe { estimate(&core, &image, samples, n, (workspace, bytes), out) }

@@ -3,6 +3,7 @@
 
 #include "estimators.hpp"
 #include "settings.hpp"
+#include <cmath>
 
 namespace noisefloor_povray {
 
@@ -41,7 +42,7 @@ inline std::unique_ptr<demo::Estimator> make_estimator(const Settings &settings,
     if (name == "recommended" || order == 0) {
         nf_recommendation advice;
         uint32_t sampling = stratified(settings) ? NF_SAMPLING_STRATIFIED : NF_SAMPLING_INDEPENDENT;
-        demo::check(nf_recommend(dims, samples, sampling, side > 1, 0, &advice), "nf_recommend");
+        demo::check(nf_recommend(dims, samples, sampling, side > 1, INFINITY, &advice), "nf_recommend");
         static const char *const methods[] = {"mc", "robust", "shared"}; // NF_METHOD_*
         if (name == "recommended")
             name = methods[advice.method];

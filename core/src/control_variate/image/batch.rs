@@ -4,11 +4,12 @@
 //! pixels of a colour are corrected by fits to the other three.
 
 use super::super::config::Config;
-use super::Call;
 use super::fit::Colours;
 use super::groups::{Group, Groups};
+use super::known::RELATIVE;
 use super::pixels::Rectangle;
 use super::terms::{MAX_AXES, Terms};
+use super::{Call, Layout};
 use crate::arena::Arena;
 use crate::basis::MAX_DIMS;
 use crate::error::Error;
@@ -29,8 +30,9 @@ pub(super) const AT_ONCE: usize = 4;
 pub(super) const MAX_FIXED: usize = 1 + MAX_AXES;
 /// Uniform coordinates from -1 to 1 times this have unit variance.
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
-/// The largest value of a pixel that no fit is made to, in units of the largest that one is made to.
-const MOST: f32 = (1_u64 << 56) as f32;
+/// The largest value of a pixel that no fit is made to, in units of the largest that one is made to, is 2 to the power
+/// of this.
+const MOST: i32 = 56;
 
 /// What the lanes' values of a channel are divided by, and what is subtracted then.
 #[derive(Clone, Copy)]
@@ -39,6 +41,8 @@ pub(super) struct Units {
     pub(super) exponents: [i32; LANES],
     scales: Eight,
     offsets: Eight,
+    /// The largest values, not yet divided.
+    limits: Eight,
 }
 
 /// Eight groups, or eight parts of one.
@@ -122,9 +126,11 @@ pub(super) fn products_len(columns: usize, values: usize) -> usize {
 }
 
 /// Numbers that a batch of so many slots takes.
-pub(super) fn batch_len(terms: &Terms, values: usize, slots: usize) -> Option<usize> {
+pub(super) fn batch_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
     let (columns, fixed) = (terms.columns(), terms.fixed());
-    let each = fixed + 1 + 3 * values + columns;
+    let (channels, values) = (layout.config.channels, layout.values());
+    let known = if layout.image.has_known() { 2 * channels + RELATIVE } else { 0 };
+    let each = fixed + 1 + 2 * channels + values + columns + known;
     let products = products_len(columns, values) + products_len(columns, 2 * values);
     let sums = COLOURS * products + AT_ONCE * (2 * columns + 3 * values) + values;
     slots.checked_mul(each)?.checked_add(sums)?.checked_mul(LANES)
@@ -310,7 +316,7 @@ impl<'a> Batch<'a> {
             corners: lanes.map(|group| call.corner(groups, &group)),
             is_joined: call.is_joined(),
             slots,
-            units: [Units { exponents: [0; LANES], scales: NONE, offsets: NONE }; Config::MAX_CHANNELS],
+            units: [Units { exponents: [0; LANES], scales: NONE, offsets: NONE, limits: NONE }; Config::MAX_CHANNELS],
             leaves_out: false,
             places: arena.take_lanes(slots * terms.fixed())?,
             inside: arena.take_lanes(slots)?,
@@ -427,6 +433,7 @@ impl<'a> Batch<'a> {
             for l in 0..LANES {
                 units.exponents[l] = Real::exponent(largest[l]).clamp(-126, 126);
                 units.scales[l] = power_of_two(-units.exponents[l]);
+                units.limits[l] = power_of_two(units.exponents[l] + MOST);
                 units.offsets[l] = if first[l] < f32::INFINITY { first[l] * units.scales[l] } else { 0.0 };
             }
         }
@@ -565,7 +572,7 @@ impl Call<'_> {
     /// The integral of what is known, divided likewise.
     #[inline(always)]
     pub(super) fn integral(&self, pixel: usize, channel: usize) -> f32 {
-        let integral = self.image.integrals.get(pixel * self.config.channels + channel).copied().unwrap_or(0.0);
+        let integral = self.image.known_integrals.get(pixel * self.config.channels + channel).copied().unwrap_or(0.0);
         self.over_factor(integral, pixel, channel)
     }
 
@@ -618,16 +625,15 @@ impl Call<'_> {
             for (channel, (((coefficient, integral), out), value)) in known.enumerate() {
                 let apart = self.known(pixel, index, channel) - integral[lane % LANES];
                 let left = value[lane % LANES] - coefficient[lane % LANES] * apart;
-                out[lane % LANES] = if left.is_finite() { left } else { value[lane % LANES] };
+                out[lane % LANES] = left;
             }
         }
         let one = places.first().copied().unwrap_or(NONE);
         for (value, units) in values.iter_mut().zip(units.iter().take(channels).cycle()) {
-            let scaled = lanes::zip(&only(&one, value), &units.scales, |value, scale| value * scale);
-            // Only what no fit is made to is far beyond the unit; its square fits too.
-            let moved =
-                lanes::zip(&scaled, &units.offsets, |value, offset| Real::min(Real::max(value - offset, -MOST), MOST));
-            *value = only(&one, &moved);
+            // Only what no fit is made to, or is known of it, is far beyond the unit; its square fits too.
+            let limited = lanes::zip(value, &units.limits, |value, most| Real::min(Real::max(value, -most), most));
+            let scaled = lanes::zip(&only(&one, &limited), &units.scales, |value, scale| value * scale);
+            *value = only(&one, &lanes::zip(&scaled, &units.offsets, |value, offset| value - offset));
         }
         let (fixed, rest) = columns.split_at_mut_checked(terms.fixed()).unwrap_or_default();
         for (out, place) in fixed.iter_mut().zip(places.iter()) {

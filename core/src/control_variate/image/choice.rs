@@ -44,16 +44,16 @@ impl Choices {
         if choice <= self.fits { (channel, choice) } else { (self.channels + channel, choice - self.fits - 1) }
     }
 
-    /// The slot, channel and choice of a place in a list of channels' choices.
+    /// The channel and choice of each place in a list of channels' choices.
     #[inline(always)]
-    fn at(&self, slot: usize, index: usize) -> (usize, usize, usize) {
-        let channel = index.checked_div(self.count).unwrap_or(0);
-        (slot, channel, index - channel * self.count)
+    fn each(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let count = self.count;
+        (0..self.channels).flat_map(move |channel| (0..count).map(move |choice| (channel, choice)))
     }
 
     /// An estimate of a slot's pixels, wherever they are.
     #[inline(always)]
-    fn estimate(&self, batch: &Batch<'_>, fits: &Fits<'_>, (slot, channel, choice): (usize, usize, usize)) -> Eight {
+    fn estimate(&self, batch: &Batch<'_>, fits: &Fits<'_>, slot: usize, (channel, choice): (usize, usize)) -> Eight {
         let (value, fit) = self.value_and_fit(channel, choice);
         let mean = batch.means.get(slot * batch.values + value).copied().unwrap_or(NONE);
         match fit.checked_sub(1) {
@@ -109,8 +109,10 @@ pub(super) struct Spreads<'a> {
     within: &'a mut [Eight],
     /// Pixels less the trend's coefficients, at least 0.
     pub(super) freedom: Eight,
-    /// Pixels of the colours, if they have several samples.
+    /// Pixels of the colours.
     pixels: Eight,
+    /// Whether they have several samples.
+    has_several: bool,
     choices: Choices,
 }
 
@@ -143,9 +145,8 @@ impl<'a> Spreads<'a> {
                     lanes::add_product(sum, &place, other);
                 }
             }
-            let of_choices = squares.iter_mut().zip(rows_mut(trends, fixed)).enumerate();
-            for (at, (square, trend)) in of_choices {
-                let estimate = only(inside, &choices.estimate(batch, fits, choices.at(slot, at)));
+            for ((square, trend), at) in squares.iter_mut().zip(rows_mut(trends, fixed)).zip(choices.each()) {
+                let estimate = only(inside, &choices.estimate(batch, fits, slot, at));
                 lanes::add_product(square, &estimate, &estimate);
                 for (sum, place) in trend.iter_mut().zip(places) {
                     lanes::add_product(sum, &estimate, place);
@@ -169,8 +170,8 @@ impl<'a> Spreads<'a> {
         // The difference of the sums of squares would lose the digits that matter beside a strong trend.
         for (slot, inside) in slots() {
             let places = row_at(batch.places, fixed, slot);
-            for (at, (sum, trend)) in sums.iter_mut().zip(rows(trends, fixed)).enumerate() {
-                let estimate = choices.estimate(batch, fits, choices.at(slot, at));
+            for ((sum, trend), at) in sums.iter_mut().zip(rows(trends, fixed)).zip(choices.each()) {
+                let estimate = choices.estimate(batch, fits, slot, at);
                 let rest = places.iter().zip(trend);
                 let rest = rest.fold(estimate, |rest, (place, slope)| lanes::minus_product(rest, *place, *slope));
                 let rest = only(inside, &rest);
@@ -185,18 +186,16 @@ impl<'a> Spreads<'a> {
                 sum[l] = if left[l] > noise && freedom[l] > 0.0 { left[l] } else { 0.0 };
             }
         }
-        let mut spreads = Self { sums, within, freedom, pixels: NONE, choices };
-        if fits.has_several {
-            spreads.pixels = pixels;
-            for (at, sum) in spreads.within.iter_mut().enumerate() {
-                let (_, channel, choice) = choices.at(0, at);
+        let has_several = fits.has_several;
+        if has_several {
+            for (sum, (channel, choice)) in within.iter_mut().zip(choices.each()) {
                 let (value, fit) = choices.value_and_fit(channel, choice);
                 for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
                     *sum = plus(sum, &fits.within(value, colour, fit));
                 }
             }
         }
-        Ok(spreads)
+        Ok(Self { sums, within, freedom, pixels, has_several, choices })
     }
 
     /// Chooses for a turn.
@@ -206,7 +205,8 @@ impl<'a> Spreads<'a> {
         let part = if is_stratified { 0.0 } else { WITHIN };
         for channel in 0..self.choices.channels {
             let [sums, within] = [&*self.sums, &*self.within].map(|all| row_at(all, self.choices.count, channel));
-            share(sums, &self.freedom, (within, &self.pixels, part), shares.of_mut(turn, channel));
+            let within = Within { sums: within, pixels: &self.pixels, part, has_several: self.has_several };
+            share(sums, &self.freedom, &within, shares.of_mut(turn, channel));
         }
     }
 
@@ -222,10 +222,12 @@ impl<'a> Spreads<'a> {
         let plain = sums.first().copied().unwrap_or(NONE);
         let mixed = sums.iter().zip(shares);
         let mixed = mixed.fold(NONE, |mixed, (sum, share)| lanes::plus_product(mixed, *sum, *share));
+        let least = no_less(&plain);
+        let mixed = lanes::zip(&mixed, &no_more(&least), Real::min);
         // Behind a black box, or compilers divide a lane or two, and what else their vector holds.
-        let mut ratio = black_box(lanes::zip(&mixed, &lanes::divisor(&no_less(&plain)), |mixed, plain| mixed / plain));
+        let mut ratio = black_box(lanes::zip(&mixed, &lanes::divisor(&least), |mixed, plain| mixed / plain));
         for l in 0..LANES {
-            ratio[l] = if plain[l] > 0.0 && ratio[l].is_finite() { ratio[l] } else { 1.0 };
+            ratio[l] = if plain[l] > 0.0 { ratio[l] } else { 1.0 };
         }
         ratio
     }
@@ -237,29 +239,41 @@ fn no_less(sums: &Eight) -> Eight {
     sums.map(|sum| Real::max(sum, 1e-24))
 }
 
+/// What samples within pixels say.
+struct Within<'a> {
+    /// What each choice leaves of them.
+    sums: &'a [Eight],
+    pixels: &'a Eight,
+    /// How much it counts where it speaks for a fit.
+    part: f32,
+    has_several: bool,
+}
+
+/// What is told of a sum of squares beside one of those; of what is no number, too.
+#[inline(always)]
+fn no_more(sums: &Eight) -> Eight {
+    sums.map(|sum| Real::min(sum, 1e7) * 1e30)
+}
+
 /// Trust by spreads, of the plain mean first: [`trust::weigh`] in each lane.
 #[inline(always)]
-fn share(spreads: &[Eight], freedom: &Eight, (within, pixels, part): (&[Eight], &Eight, f32), shares: &mut [Eight]) {
+fn share(spreads: &[Eight], freedom: &Eight, within: &Within<'_>, shares: &mut [Eight]) {
+    let &Within { sums: within, pixels, part, has_several } = within;
     let ([plain, spreads @ ..], [noise, within @ ..], [mean, rest @ ..]) = (spreads, within, shares) else { return };
-    let [inverse, inverse_noise] = [plain, noise].map(|plain| lanes::divisor(&no_less(plain)).map(|plain| 1.0 / plain));
+    let [least, least_noise] = [plain, noise].map(no_less);
+    let [inverse, inverse_noise] = [least, least_noise].map(|least| lanes::divisor(&least).map(|least| 1.0 / least));
+    let [most, most_noise] = [least, least_noise].map(|least| no_more(&least));
     let [power, power_within] = [freedom, pixels].map(|count| count.map(|count| count * -trust::SHARPNESS as f32));
-    let has_samples = pixels[0] > 0.0;
     let mut largest = NONE;
     for ((share, spread), within) in rest.iter_mut().zip(spreads).zip(within) {
-        // What is no number is trusted least.
-        let limited = |ratio: f32| {
-            if ratio < 1e-30 {
-                1e-30
-            } else if ratio < 1e30 {
-                ratio
-            } else {
-                1e30
-            }
+        let over = |sum: &Eight, most: &Eight, inverse: &Eight| {
+            let told = lanes::zip(sum, most, Real::min);
+            lanes::zip(&told, inverse, |told, inverse| Real::max(told * inverse, 1e-30))
         };
-        let ratio = lanes::zip(spread, &inverse, |spread, inverse| limited(spread * inverse));
+        let ratio = over(spread, &most, &inverse);
         *share = lanes::zip(&lanes::log2(&ratio), &power, |logarithm, power| logarithm * power);
-        if has_samples {
-            let ratio = lanes::zip(within, &inverse_noise, |within, inverse| limited(within * inverse));
+        if has_several {
+            let ratio = over(within, &most_noise, &inverse_noise);
             let logarithm = lanes::log2(&ratio).map(|value| if value < 0.0 { part * value } else { value });
             *share = lanes::plus_product(*share, logarithm, power_within);
         }
@@ -278,7 +292,7 @@ fn share(spreads: &[Eight], freedom: &Eight, (within, pixels, part): (&[Eight], 
     }
     // Without a spread, or noise within pixels, the mean is exact.
     let varies =
-        lanes::zip(plain, noise, |plain, noise| if plain > 0.0 && (noise > 0.0 || !has_samples) { 1.0 } else { 0.0 });
+        lanes::zip(plain, noise, |plain, noise| if plain > 0.0 && (noise > 0.0 || !has_several) { 1.0 } else { 0.0 });
     let scale = lanes::zip(&varies, &lanes::divisor(&total), |varies, total| varies / total);
     let exact = varies.map(|varies| 1.0 - varies);
     *mean = plus(&exact, &lanes::zip(mean, &scale, |share, scale| share * scale));

@@ -4,9 +4,9 @@
 
 use super::super::config::Ridge;
 use super::super::ridge;
-use super::Call;
 use super::batch::{AT_ONCE, Batch, COLOURS, Eight, MAX_FIXED, NONE, Total, only, products_len};
 use super::terms::Terms;
+use super::{Call, Layout};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
@@ -78,8 +78,8 @@ pub(super) struct Fits<'a> {
 }
 
 /// Numbers that fits take for so many slots.
-pub(super) fn fits_len(terms: &Terms, values: usize, (slots, n): (usize, usize)) -> Option<usize> {
-    let columns = terms.columns();
+pub(super) fn fits_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
+    let (columns, values, n) = (terms.columns(), layout.values(), layout.n);
     let totals = products_len(columns, values) + products_len(columns, 2 * values);
     let once = totals + (MAX_FIXED + 2 + 2 * AT_ONCE) * columns + within_len(terms, values, n) + 2 * AT_ONCE * values;
     slots.checked_mul(terms.ends.len() * values)?.checked_add(once)?.checked_mul(LANES)?.checked_add(columns)
@@ -235,7 +235,7 @@ impl<'a> Fits<'a> {
             for l in 0..LANES {
                 let share = within[l] / divisor[l];
                 // Where nothing varies, all of it.
-                weight[l] = Real::min(weight[l], if largest[l] > 0.0 { share } else { 1.0 });
+                weight[l] = if largest[l] > 0.0 { Real::min(share, weight[l]) } else { weight[l] };
             }
         }
         let (system, between) = (&mut *self.system.gram, &*self.between.gram);

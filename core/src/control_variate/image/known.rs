@@ -17,7 +17,9 @@ use core::hint::black_box;
 /// Integrals count as at least this much of the group's largest: what else arrives would decide where they are small.
 const LEAST: f32 = 0.01;
 /// Values beyond so many integrals say nothing about others.
-const MOST: f32 = (1_u64 << 40) as f32;
+const MOST: f32 = (1_u64 << 20) as f32;
+/// The least sum of known values, relative to integrals, that something can follow.
+const FAINT: f32 = 1.0 / MOST;
 /// Numbers for each slot while the coefficients of a channel are computed.
 pub(super) const RELATIVE: usize = 2 * SUMS;
 const SUMS: usize = 5;
@@ -54,14 +56,15 @@ fn other_lanes(sum: &Eight) -> Eight {
 /// The coefficient by some pixels.
 #[inline(always)]
 fn coefficient([mean, known, square, mean_product, integral_product]: &Sums) -> Eight {
-    let [known_divisor, square_divisor] = [known, square].map(lanes::divisor);
+    let known_divisor = lanes::divisor(&known.map(|known| Real::max(known, FAINT)));
+    let square_divisor = lanes::divisor(&square.map(|square| Real::max(square, FAINT * FAINT)));
     let mut coefficient = NONE;
     for l in 0..LANES {
         // Behind a black box, or compilers divide where nothing is, too.
         let share = black_box(mean[l] / known_divisor[l]);
         let slope = black_box((mean_product[l] - share * integral_product[l]) / square_divisor[l]);
-        let is_known = known[l] > 0.0 && square[l] > 0.0;
-        coefficient[l] = if is_known { Real::max(Real::min(slope, Real::min(share, 1.0)), 0.0) } else { 0.0 };
+        let follows = known[l] > FAINT && square[l] > FAINT * FAINT && slope > 0.0;
+        coefficient[l] = if follows { Real::min(slope, Real::max(Real::min(share, 1.0), 0.0)) } else { 0.0 };
     }
     coefficient
 }

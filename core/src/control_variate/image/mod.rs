@@ -9,7 +9,7 @@
 //! Three estimators decide which b:
 //!
 //! - [`Estimator::LeaveOneOut`], or any with a fixed ridge: one ridge fit with every column. Exactly unbiased, as b
-//!   never saw the pixel's own samples.
+//!   never saw the pixel's own samples. With [`Image::known`] only the first is: it then fits nothing else.
 //! - [`Estimator::Robust`]: fits of rising degree and the plain mean, weighted by the variance of their estimates
 //!   across the pixels and, with several samples, by what they leave of the variance within pixels that they have not
 //!   seen. The choice has seen the pixel's own samples: unbiased as the window grows.
@@ -49,7 +49,6 @@ use batch::batch_len;
 use choice::Choices;
 use core::ops::Deref;
 use fit::fits_len;
-use known::RELATIVE;
 use pixels::Windows;
 use sums::sums_len;
 use terms::Terms;
@@ -264,11 +263,8 @@ impl Layout<'_> {
         let pixels = self.windows.pixels();
         let slots = if self.is_joined() { pixels.div_ceil(LANES) } else { pixels };
         let terms = self.terms(pixels);
-        let known = if self.image.has_known() { (2 * channels + RELATIVE) * LANES } else { 0 };
-        let batch =
-            batch_len(&terms, self.values(), slots)?.checked_add(fits_len(&terms, self.values(), (slots, self.n))?)?;
+        let batch = batch_len(self, &terms, slots)?.checked_add(fits_len(self, &terms, slots)?)?;
         let choices = Choices::new(self, &terms).len().checked_mul(LANES)?;
-        let batch = slots.checked_mul(known)?.checked_add(batch)?.checked_add(choices)?;
-        sums.checked_add(self.groups_len()?)?.checked_add(batch)
+        sums.checked_add(self.groups_len()?)?.checked_add(batch)?.checked_add(choices)
     }
 }

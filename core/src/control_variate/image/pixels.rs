@@ -47,14 +47,14 @@ pub struct Image<'a> {
     pub factors: &'a [f32],
     /// For each sample, as `f`: what it would be with nothing in the way, its unshadowed contribution. Or empty.
     /// Finite, and 0 where no light arrives anyway. Each pixel's estimate is then also corrected by how far these are
-    /// from `integrals`, as far as its neighbours' values follow theirs.
+    /// from `known_integrals`, as far as its neighbours' values follow theirs.
     pub known: &'a [f32],
-    /// With `known`: for each pixel `channels` numbers, the exact integral of that over u. Finite and not negative; a
+    /// With `known`: for each pixel `channels` numbers, the exact integrals of that over u. Finite and not negative; a
     /// pixel with 0 is not corrected by it. Where a pixel's samples see several points, the mean of their integrals.
-    pub integrals: &'a [f32],
-    /// The pixels that the arrays hold, in all frames; all, if it is empty. Numbers of pixels count these alone.
+    pub known_integrals: &'a [f32],
+    /// The pixels that the arrays hold, in all frames; all, if all four numbers are 0. Numbers of pixels count these alone.
     pub given: Rectangle,
-    /// The pixels that are estimated; all that are given, if it is empty. Every window that has one of them must be
+    /// The pixels that are estimated; all that are given, if all four numbers are 0. Every window that has one of them must be
     /// given whole: [`Image::needed`].
     pub wanted: Rectangle,
 }
@@ -115,7 +115,7 @@ impl Image<'_> {
             surfaces: &[],
             factors: &[],
             known: &[],
-            integrals: &[],
+            known_integrals: &[],
             given: all,
             wanted: all,
         }
@@ -127,12 +127,22 @@ impl Image<'_> {
         Self { unordered: true, ..Self::new(pixels, 1) }
     }
 
+    /// How many pixels the arrays hold, and how many are estimated, in all frames.
+    ///
+    /// # Errors
+    /// [`Error::Range`] for an image without pixels and for windows and parts that are not allowed.
+    pub fn counts(&self) -> Result<[usize; 2], Error> {
+        let windows = self.windows()?;
+        let estimated = windows.wanted.pixels().and_then(|pixels| pixels.checked_mul(windows.frames()));
+        Ok([self.pixels()?, estimated.ok_or(Error::Range)?])
+    }
+
     /// Whether something is known of the samples.
     pub(super) fn has_known(&self) -> bool {
         !self.known.is_empty()
     }
 
-    /// The pixels that must be given for those of `wanted`: whole windows. All of them without places.
+    /// The pixels that must be given for those of `wanted`: whole windows. Empty for pixels without places: all.
     ///
     /// # Errors
     /// [`Error::Range`] for windows that are not allowed, and if `wanted` has no pixels or some beyond the image.
@@ -146,7 +156,8 @@ impl Image<'_> {
     /// # Ok::<(), noisefloor::Error>(())
     /// ```
     pub fn needed(&self) -> Result<Rectangle, Error> {
-        Ok(Self { given: Rectangle::default(), ..*self }.windows()?.needed())
+        let windows = Self { given: Rectangle::default(), ..*self }.windows()?;
+        Ok(if windows.is_ordered { windows.needed() } else { Rectangle::default() })
     }
 
     /// Where its windows lie.
@@ -207,14 +218,14 @@ impl Image<'_> {
             return Err(Error::Range);
         }
         let has_known = !self.known.is_empty();
-        if has_known == self.integrals.is_empty() || !fits(self.integrals.len(), config.channels) {
+        if has_known == self.known_integrals.is_empty() || !fits(self.known_integrals.len(), config.channels) {
             return Err(Error::Range);
         }
-        let values = [self.factors, self.known, self.integrals].into_iter().flatten();
+        let values = [self.factors, self.known, self.known_integrals].into_iter().flatten();
         if !values.into_iter().all(|value| value.is_finite()) {
             return Err(Error::NotFinite);
         }
-        let is_negative = self.factors.iter().chain(self.integrals).any(|&value| value < 0.0);
+        let is_negative = self.factors.iter().chain(self.known_integrals).any(|&value| value < 0.0);
         if is_negative { Err(Error::Range) } else { Ok(()) }
     }
 }
@@ -296,9 +307,6 @@ impl Windows {
 
     /// The pixels of all windows that are used.
     fn needed(&self) -> Rectangle {
-        if !self.is_ordered {
-            return self.given;
-        }
         let [across, down] = self.counts();
         let (first, last) = (self.window(0, 0), self.window(across.saturating_sub(1), down.saturating_sub(1)));
         let [width, height, _] = self.extent;
