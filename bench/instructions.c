@@ -113,43 +113,43 @@ static void prepare_tile_16(void) { check(nf_tile_builtin(NF_TILE_128_16SPP_2D, 
 static void call_draw(void)
 {
     for (uint32_t i = 0; i < 64; ++i)
-        nf_sampler_draw(nf_sampler_pixel(&tile, i, 3 * i, 0, i % 4), 2, out);
+        nf_tile_sampler_draw(nf_tile_sampler_pixel(&tile, i, 3 * i, 0, i % 4), 2, out);
 }
 
 static void call_domain(void)
 {
     for (uint32_t i = 0; i < 64; ++i)
-        nf_sampler_draw(nf_sampler_domain(nf_sampler_pixel(&tile, i, 3 * i, 0, i % 4), 7), 2, out);
+        nf_tile_sampler_draw(nf_tile_sampler_domain(nf_tile_sampler_pixel(&tile, i, 3 * i, 0, i % 4), 7), 2, out);
 }
 
 static void call_draw_4(void)
 {
     for (uint32_t i = 0; i < 64; ++i)
-        nf_sampler_draw(nf_sampler_pixel(&tile, i, 3 * i, 0, i % tile.spp), 4, out);
+        nf_tile_sampler_draw(nf_tile_sampler_pixel(&tile, i, 3 * i, 0, i % tile.spp), 4, out);
 }
 
 static void call_two_domains(void)
 {
     for (uint32_t i = 0; i < 64; ++i) {
-        nf_sampler pixel = nf_sampler_pixel(&tile, i, 3 * i, 0, i % 16);
-        nf_sampler_draw(nf_sampler_domain(pixel, 0), 2, out);
-        nf_sampler_draw(nf_sampler_domain(pixel, 1), 2, out + 2);
+        nf_tile_sampler pixel = nf_tile_sampler_pixel(&tile, i, 3 * i, 0, i % 16);
+        nf_tile_sampler_draw(nf_tile_sampler_domain(pixel, 0), 2, out);
+        nf_tile_sampler_draw(nf_tile_sampler_domain(pixel, 1), 2, out + 2);
     }
 }
 
 static void call_fill_pixels(void)
 {
-    nf_sampler pixel = nf_sampler_pixel(&tile, 0, 0, 0, 0);
-    nf_sampler both[2] = {nf_sampler_domain(pixel, 0), nf_sampler_domain(pixel, 1)};
+    nf_tile_sampler pixel = nf_tile_sampler_pixel(&tile, 0, 0, 0, 0);
+    nf_tile_sampler both[2] = {nf_tile_sampler_domain(pixel, 0), nf_tile_sampler_domain(pixel, 1)};
     uint32_t dims[2] = {2, 2};
-    check(nf_sampler_fill(both, dims, 2, 4, 8, 16, out, 4 * 4 * 8 * 16), "nf_sampler_fill");
+    check(nf_tile_sampler_fill(both, dims, 2, 4, 8, 16, out, 4 * 4 * 8 * 16), "nf_tile_sampler_fill");
 }
 
 static void call_fill(void)
 {
-    nf_sampler pixel = nf_sampler_pixel(&tile, 0, 0, 0, 0);
+    nf_tile_sampler pixel = nf_tile_sampler_pixel(&tile, 0, 0, 0, 0);
     uint32_t dims = 2;
-    check(nf_sampler_fill(&pixel, &dims, 1, FILL, FILL, 1, out, 2 * FILL * FILL), "nf_sampler_fill");
+    check(nf_tile_sampler_fill(&pixel, &dims, 1, FILL, FILL, 1, out, 2 * FILL * FILL), "nf_tile_sampler_fill");
 }
 
 static void prepare_table(void)
@@ -210,13 +210,13 @@ static const struct {
     {"nf_cv_accumulator_add", prepare_accumulator, call_accumulator, 20, 64, "sample"},
     {"nf_cv_image_estimate", prepare_image, call_image, 1, SAMPLES, "sample"},
     {"nf_cv_image_estimate bright pixel", prepare_bright_image, call_image, 1, SAMPLES, "sample"},
-    {"nf_sampler_draw", prepare_tile, call_draw, 100, 64, "draw"},
-    {"nf_sampler_draw domain", prepare_tile, call_domain, 100, 64, "draw"},
-    {"nf_sampler_draw 4 of 4 dims", prepare_tile_4, call_draw_4, 100, 64, "sample"},
-    {"nf_sampler_draw 4 of 2 dims", prepare_tile_16, call_draw_4, 100, 64, "sample"},
-    {"nf_sampler_draw two domains", prepare_tile_16, call_two_domains, 100, 64, "sample"},
-    {"nf_sampler_fill", prepare_tile, call_fill, 10, FILL * FILL, "draw"},
-    {"nf_sampler_fill two domains", prepare_tile_16, call_fill_pixels, 10, 4 * 8 * 16, "sample"},
+    {"nf_tile_sampler_draw", prepare_tile, call_draw, 100, 64, "draw"},
+    {"nf_tile_sampler_draw domain", prepare_tile, call_domain, 100, 64, "draw"},
+    {"nf_tile_sampler_draw 4 of 4 dims", prepare_tile_4, call_draw_4, 100, 64, "sample"},
+    {"nf_tile_sampler_draw 4 of 2 dims", prepare_tile_16, call_draw_4, 100, 64, "sample"},
+    {"nf_tile_sampler_draw two domains", prepare_tile_16, call_two_domains, 100, 64, "sample"},
+    {"nf_tile_sampler_fill", prepare_tile, call_fill, 10, FILL * FILL, "draw"},
+    {"nf_tile_sampler_fill two domains", prepare_tile_16, call_fill_pixels, 10, 4 * 8 * 16, "sample"},
     {"nf_table_draw", prepare_table, call_table_draw, 100, BATCH, "draw"},
     {"nf_table_update", prepare_table, call_table_update, 100, BATCH, "update"},
     {"nf_mis_balance", nothing, call_balance, 100, BATCH, "weight"},

@@ -56,8 +56,8 @@ static std::vector<nf_estimate> estimate(std::vector<float> &f)
     std::vector<nf_estimate> out(pixels);
     // README begin
     std::vector<float> u(pixels * dims);                // u[pixel][dim]: a tile of 1 sample and 2 dims
-    nf_sampler first = nf_sampler_pixel(&nf_tile_128_1spp_2d, 0, 0, 0, 0);
-    check(nf_sampler_fill(&first, &dims, 1, width, height, samples, u.data(), u.size()));
+    nf_tile_sampler first = nf_tile_sampler_pixel(&nf_tile_128_1spp_2d, 0, 0, 0, 0);
+    check(nf_tile_sampler_fill(&first, &dims, 1, width, height, samples, u.data(), u.size()));
     for (uint32_t i = 0; i < pixels; ++i) {
         f[i] = radiance(i, &u[dims * i]);               // yours: the sample's value / pdf
         surfaces[i] = surface_at(i);                    // yours: pixels with the same number share fits

@@ -33,8 +33,8 @@ static nf_status estimate(void)
     nf_status status = nf_tile_builtin(NF_TILE_128_1SPP_2D, &tile);
     if (status != NF_OK)
         return status;
-    nf_sampler sampler = nf_sampler_pixel(&tile, 0, 0, 0, 0);
-    status = nf_sampler_fill(&sampler, &dims, 1, SIZE, SIZE, 1, u, 2 * PIXELS);
+    nf_tile_sampler sampler = nf_tile_sampler_pixel(&tile, 0, 0, 0, 0);
+    status = nf_tile_sampler_fill(&sampler, &dims, 1, SIZE, SIZE, 1, u, 2 * PIXELS);
     if (status != NF_OK)
         return status;
     render();

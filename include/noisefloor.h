@@ -735,17 +735,24 @@ nf_status nf_omis_reset(nf_omis *omis);
 nf_status nf_omis_merge(nf_omis *omis, const nf_omis *other);
 
 /* ------------------------------------------------------------------------------------------------------------------
- * Tiles and samplers: sample points whose error is spread over the image where it shows least
+ * Samplers and tiles: sample points whose error is spread over the image where it shows least
  * Guides, in docs/: tiles.md, renderer.md
  *
- *   nf_tile_builtin      One of the tiles that come with the library, by number
- *   nf_tile_from_bytes   The tile of an .nft file's bytes, all of them checked
- *   nf_sampler_pixel     Sample `index` of pixel (x, y) in `frame`, any values of each
- *   nf_sampler_domain    The child domain of a key, any value
- *   nf_sampler_scramble  An independent version of the sampler for each seed but 0
- *   nf_sampler_draw      Writes the first `dims` coordinates, 1..4, of the sampler's point to u[dims]
- *   nf_sampler_fill_len  How many numbers nf_sampler_fill writes
- *   nf_sampler_fill      Draws for many pixels and samples at once, for renderers that work on whole images
+ *   nf_tile_builtin           One of the tiles that come with the library, by number
+ *   nf_tile_from_bytes        The tile of an .nft file's bytes, all of them checked
+ *   nf_sampler_pixel          Sample `index` of pixel (x, y) in `frame`, any values of each
+ *   nf_sampler_white          As nf_sampler_pixel(), but neighbours know nothing of each other
+ *   nf_sampler_domain         The child domain of a key, any value
+ *   nf_sampler_scramble       An independent version of the sampler for each seed but 0
+ *   nf_sampler_draw           Writes `dims` numbers, 1..4, to u[dims]
+ *   nf_sampler_fill_len       How many numbers nf_sampler_fill writes
+ *   nf_sampler_fill           Draws for many pixels and samples at once, for renderers that work on whole images
+ *   nf_tile_sampler_pixel     Sample `index` of pixel (x, y) in `frame`, any values of each
+ *   nf_tile_sampler_domain    The child domain of a key, any value
+ *   nf_tile_sampler_scramble  An independent version of the sampler for each seed but 0
+ *   nf_tile_sampler_draw      Writes the first `dims` coordinates, 1..4, of the sampler's point to u[dims]
+ *   nf_tile_sampler_fill_len  How many numbers nf_tile_sampler_fill writes
+ *   nf_tile_sampler_fill      Draws for many pixels and samples at once, for renderers that work on whole images
  * ------------------------------------------------------------------------------------------------------------------ */
 
 // nf_tile_builtin: 128 x 128 pixels, 1 sample, 2 dims.
@@ -836,37 +843,36 @@ nf_status nf_tile_builtin(uint32_t id, nf_tile *out);
 // NF_ERR_LENGTH: truncated, or followed by other bytes; NF_ERR_CORRUPT: damaged.
 nf_status nf_tile_from_bytes(const void *bytes, size_t len, nf_tile *out);
 
-// One sample of one pixel: a small struct, passed and copied by value. Drawing does not change it.
+// One sample of one pixel, of the default sampler: a small struct, passed and copied by value. Drawing does not change
+// it, and there is nothing to set up.
 //
 // A sampler stands for a point of a cube with as many dimensions as are asked for. There are no dimension counters:
 // each decision of a path (lens, light, bounce, ...) has a domain, a child of the sampler by a key of its own. A
-// domain's numbers depend on nothing but tile, pixel, frame, index and the keys that led to it, so that any sample can
-// be drawn in any order, on any thread, and at any time. Made by nf_sampler_pixel; the fields are not to be written.
+// domain's numbers depend on nothing but pixel, frame, index and the keys that led to it, so that any sample can be
+// drawn in any order, on any thread, and at any time. Made by nf_sampler_pixel; the fields are not to be written.
 typedef struct nf_sampler {
-    // The tile; it must outlive the sampler and stay where it is.
-    const nf_tile *tile;
     // The domain: 0 is the root.
     uint32_t domain;
     // The sample of the pixel.
     uint32_t index;
-    // The pixel's column, modulo the tile's size.
+    // The pixel's column, its last 16 bits.
     uint16_t x;
-    // The pixel's row, modulo the tile's size.
+    // The pixel's row, likewise.
     uint16_t y;
-    // The frame, modulo the tile's frames.
-    uint16_t frame;
-    // 1 after nf_sampler_scramble, otherwise 0.
-    uint16_t scrambled;
+    // Whether it is scrambled, or white.
+    uint32_t flags;
 } nf_sampler;
 
-// Sample `index` of pixel (x, y) in `frame`, any values of each: pixels repeat with the tile's size.
+// Sample `index` of pixel (x, y) in `frame`, any values of each.
 //
-// The first tile->spp samples are the tile's. Those that follow continue with a scrambled Sobol sequence in their
-// place; none is repeated. Frames 0 to tile->frames - 1 are the tile's; each later run of them is the tile at another
-// place, unrelated to it. For an image that is refined over time leave the frame and count the index.
-//
-// tile: it must outlive the sampler and stay where it is. All draws of a sampler without a tile, NULL, are 0.
-nf_sampler nf_sampler_pixel(const nf_tile *tile, uint32_t x, uint32_t y, uint32_t frame, uint32_t index);
+// The samples of a pixel are one sequence, best at powers of two: take any number, and stop where you like. Each frame
+// is unrelated to the others. Where frames are averaged, by a viewer or by TAA, leave the frame 0 and let the index
+// count on.
+nf_sampler nf_sampler_pixel(uint32_t x, uint32_t y, uint32_t frame, uint32_t index);
+
+// As nf_sampler_pixel(), but neighbours know nothing of each other: the error is that of each pixel, white over the
+// image. For denoisers that were made for white noise.
+nf_sampler nf_sampler_white(uint32_t x, uint32_t y, uint32_t frame, uint32_t index);
 
 // The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent.
 // Keys mean something only among the children of one parent: a bounce's light may have the same key as the next
@@ -875,19 +881,16 @@ nf_sampler nf_sampler_domain(nf_sampler sampler, uint32_t key);
 
 // An independent version of the sampler for each seed but 0; seed 0 changes nothing.
 //
-// It is the tile at another place, with all values of a dimension shifted, modulo 1, by a hash of seed and domain.
-// Over random seeds every value is uniform, so an estimate is unbiased, as far as a hash of 32 bits is random (the
-// tile's own values are fixed, and an estimate from them is what it is). The shift costs quality: where good images
-// are wanted, and not exact unbiasedness, take another frame instead. Children of a scrambled sampler are scrambled.
+// All values of a dimension are shifted, modulo 1, by a hash of seed and domain. Over random seeds every value is
+// uniform, so that estimates are unbiased, as far as a hash of 32 bits is random. The shift costs quality: where good
+// images are wanted, and not exact unbiasedness, take another frame instead. Children of a scrambled sampler are
+// scrambled.
 nf_sampler nf_sampler_scramble(nf_sampler sampler, uint32_t seed);
 
-// Writes the first `dims` coordinates, 1..4, of the sampler's point to u[dims]: each in [0, 1), a multiple of 2^-24.
+// Writes `dims` numbers, 1..4, to u[dims]: each in [0, 1), a multiple of 2^-24.
 //
-// Up to tile->dims they are optimised together, and more come from other places of the tile; fewer are the first of
-// those. If the tile has at least two dims and spp, and is not progressive, each further number of its samples is
-// stratified, and the third of a tile of two dims with those two: draw a choice, or a time, after the two numbers that
-// it goes with. Two further numbers that belong together are better drawn from a domain of their own. Writes nothing
-// if dims is out of range or u is NULL.
+// The first two are optimised together, across pixels too; all four are stratified together. Fewer are the first of
+// those. More come from a domain of their own. Writes nothing if dims is out of range or u is NULL.
 void nf_sampler_draw(nf_sampler sampler, uint32_t dims, float *u);
 
 // How many numbers nf_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
@@ -910,6 +913,89 @@ nf_status nf_sampler_fill(const nf_sampler *samplers,
                           uint32_t samples,
                           float *u,
                           size_t len);
+
+// One sample of one pixel: a small struct, passed and copied by value. Drawing does not change it.
+//
+// A sampler stands for a point of a cube with as many dimensions as are asked for. There are no dimension counters:
+// each decision of a path (lens, light, bounce, ...) has a domain, a child of the sampler by a key of its own. A
+// domain's numbers depend on nothing but tile, pixel, frame, index and the keys that led to it, so that any sample can
+// be drawn in any order, on any thread, and at any time. Made by nf_tile_sampler_pixel; the fields are not to be written.
+typedef struct nf_tile_sampler {
+    // The tile; it must outlive the sampler and stay where it is.
+    const nf_tile *tile;
+    // The domain: 0 is the root.
+    uint32_t domain;
+    // The sample of the pixel.
+    uint32_t index;
+    // The pixel's column, modulo the tile's size.
+    uint16_t x;
+    // The pixel's row, modulo the tile's size.
+    uint16_t y;
+    // The frame, modulo the tile's frames.
+    uint16_t frame;
+    // 1 after nf_tile_sampler_scramble, otherwise 0.
+    uint16_t scrambled;
+} nf_tile_sampler;
+
+// Sample `index` of pixel (x, y) in `frame`, any values of each: pixels repeat with the tile's size.
+//
+// The first tile->spp samples are the tile's. Those that follow continue with a scrambled Sobol sequence in their
+// place; none is repeated. Frames 0 to tile->frames - 1 are the tile's; each later run of them is the tile at another
+// place, unrelated to it. For an image that is refined over time leave the frame and count the index.
+//
+// tile: it must outlive the sampler and stay where it is. All draws of a sampler without a tile, NULL, are 0.
+nf_tile_sampler nf_tile_sampler_pixel(const nf_tile *tile,
+                                      uint32_t x,
+                                      uint32_t y,
+                                      uint32_t frame,
+                                      uint32_t index);
+
+// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent.
+// Keys mean something only among the children of one parent: a bounce's light may have the same key as the next
+// bounce's.
+nf_tile_sampler nf_tile_sampler_domain(nf_tile_sampler sampler, uint32_t key);
+
+// An independent version of the sampler for each seed but 0; seed 0 changes nothing.
+//
+// It is the tile at another place, with all values of a dimension shifted, modulo 1, by a hash of seed and domain.
+// Over random seeds every value is uniform, so an estimate is unbiased, as far as a hash of 32 bits is random (the
+// tile's own values are fixed, and an estimate from them is what it is). The shift costs quality: where good images
+// are wanted, and not exact unbiasedness, take another frame instead. Children of a scrambled sampler are scrambled.
+nf_tile_sampler nf_tile_sampler_scramble(nf_tile_sampler sampler, uint32_t seed);
+
+// Writes the first `dims` coordinates, 1..4, of the sampler's point to u[dims]: each in [0, 1), a multiple of 2^-24.
+//
+// Up to tile->dims they are optimised together, and more come from other places of the tile; fewer are the first of
+// those. If the tile has at least two dims and spp, and is not progressive, each further number of its samples is
+// stratified, and the third of a tile of two dims with those two: draw a choice, or a time, after the two numbers that
+// it goes with. Two further numbers that belong together are better drawn from a domain of their own. Writes nothing
+// if dims is out of range or u is NULL.
+void nf_tile_sampler_draw(nf_tile_sampler sampler, uint32_t dims, float *u);
+
+// How many numbers nf_tile_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
+// 1..4, or memory has not that many.
+size_t nf_tile_sampler_fill_len(const uint32_t *dims,
+                                size_t domains,
+                                uint32_t width,
+                                uint32_t height,
+                                uint32_t samples);
+
+// Draws for many pixels and samples at once, for renderers that work on whole images. The same bits as single draws.
+//
+// samplers[domains]: one for each domain, all at the first pixel and the first sample. dims[domains]: how many numbers
+// to draw from each, 1..4. width, height: how many pixels, to the right and down. samples: how many samples of each,
+// by ascending index. u[height][width][samples][sum of dims]: what the samplers draw there, one after the other; len
+// numbers are there, at least nf_tile_sampler_fill_len.
+//
+// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: dims, or sizes that memory cannot have; NF_ERR_MEMORY: len.
+nf_status nf_tile_sampler_fill(const nf_tile_sampler *samplers,
+                               const uint32_t *dims,
+                               size_t domains,
+                               uint32_t width,
+                               uint32_t height,
+                               uint32_t samples,
+                               float *u,
+                               size_t len);
 
 /* ------------------------------------------------------------------------------------------------------------------
  * Random numbers
@@ -1353,8 +1439,10 @@ NF_ASSERT_LAYOUT(sizeof(nf_recommendation) == 108 && offsetof(nf_recommendation,
 NF_ASSERT_ALIGNED_AS(nf_recommendation, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_tile) == 2 * sizeof(void *) + 24 && offsetof(nf_tile, size) == 2 * sizeof(void *));
 NF_ASSERT_ALIGNED_AS(nf_tile, void *);
-NF_ASSERT_LAYOUT(sizeof(nf_sampler) == sizeof(void *) + 16 && offsetof(nf_sampler, domain) == sizeof(void *));
-NF_ASSERT_ALIGNED_AS(nf_sampler, void *);
+NF_ASSERT_LAYOUT(sizeof(nf_tile_sampler) == sizeof(void *) + 16 && offsetof(nf_tile_sampler, domain) == sizeof(void *));
+NF_ASSERT_ALIGNED_AS(nf_tile_sampler, void *);
+NF_ASSERT_LAYOUT(sizeof(nf_sampler) == 16 && offsetof(nf_sampler, x) == 8);
+NF_ASSERT_ALIGNED_AS(nf_sampler, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_rng) == 16 && offsetof(nf_rng, increment) == 8);
 NF_ASSERT_ALIGNED_AS(nf_rng, uint64_t);
 NF_ASSERT_LAYOUT(sizeof(nf_table) == 2 * sizeof(void *) + 24 && offsetof(nf_table, items) == 2 * sizeof(void *) + 8);

@@ -673,7 +673,7 @@ private:
     std::uint32_t techniques_ = 0, integrals_ = 0;
 };
 
-// ---- Tiles and samplers ----
+// ---- Samplers and tiles ----
 
 // nf_tile: a view of sample points. The C fields remain accessible.
 struct tile : nf_tile {
@@ -695,33 +695,36 @@ struct tile : nf_tile {
     static returned<tile> from_bytes(span<const unsigned char> bytes) { return from_bytes(bytes.data(), bytes.size()); }
 };
 
-// nf_sampler: one sample of one pixel, by value. `sampler(tile, x, y, frame, index).domain(3).draw<2>()`.
+// nf_sampler: one sample of one pixel of the default sampler, by value. `sampler(x, y, frame, index).domain(3).draw<2>()`.
 class sampler {
 public:
-    // The tile must outlive the sampler and stay where it is.
-    sampler(const nf_tile &from, std::uint32_t x, std::uint32_t y, std::uint32_t frame, std::uint32_t index) noexcept
-        : state_(nf_sampler_pixel(&from, x, y, frame, index))
+    sampler(std::uint32_t x, std::uint32_t y, std::uint32_t frame, std::uint32_t index) noexcept
+        : state_(nf_sampler_pixel(x, y, frame, index))
     {
     }
-    sampler(nf_tile &&, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t) = delete;
     explicit sampler(const nf_sampler &state) noexcept : state_(state) {}
+    // For denoisers: white over the image.
+    static sampler white(std::uint32_t x, std::uint32_t y, std::uint32_t frame, std::uint32_t index) noexcept
+    {
+        return sampler(nf_sampler_white(x, y, frame, index));
+    }
 
     [[nodiscard]] sampler domain(std::uint32_t key) const noexcept { return sampler(nf_sampler_domain(state_, key)); }
     [[nodiscard]] sampler scramble(std::uint32_t seed) const noexcept
     {
         return sampler(nf_sampler_scramble(state_, seed));
     }
-    // The first N coordinates.
+    // N numbers.
     template <std::uint32_t N> [[nodiscard]] std::array<float, N> draw() const noexcept
     {
-        static_assert(N >= 1 && N <= 4, "a domain has 1 to 4 dimensions");
+        static_assert(N >= 1 && N <= 4, "a domain has 1 to 4 numbers");
         std::array<float, N> u{};
         nf_sampler_draw(state_, N, u.data());
         return u;
     }
-    // The first coordinate.
+    // One number.
     [[nodiscard]] float draw() const noexcept { return draw<1>()[0]; }
-    // As many coordinates as `u` holds, at most 4; more stay as they are.
+    // As many numbers as `u` holds, at most 4; more stay as they are.
     void draw(span<float> u) const noexcept
     {
         nf_sampler_draw(state_, u.size() < 4 ? static_cast<std::uint32_t>(u.size()) : 4u, u.data());
@@ -740,6 +743,57 @@ inline returned<void> fill(span<const nf_sampler> samplers, span<const std::uint
     return detail::finish(samplers.size() != dims.size() ? NF_ERR_RANGE
                                                          : nf_sampler_fill(samplers.data(), dims.data(), dims.size(),
                                                                            width, height, samples, u.data(), u.size()));
+}
+
+// nf_tile_sampler: one sample of one pixel, by value. `tile_sampler(tile, x, y, frame, index).domain(3).draw<2>()`.
+class tile_sampler {
+public:
+    // The tile must outlive the sampler and stay where it is.
+    tile_sampler(const nf_tile &from, std::uint32_t x, std::uint32_t y, std::uint32_t frame, std::uint32_t index) noexcept
+        : state_(nf_tile_sampler_pixel(&from, x, y, frame, index))
+    {
+    }
+    tile_sampler(nf_tile &&, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t) = delete;
+    explicit tile_sampler(const nf_tile_sampler &state) noexcept : state_(state) {}
+
+    [[nodiscard]] tile_sampler domain(std::uint32_t key) const noexcept
+    {
+        return tile_sampler(nf_tile_sampler_domain(state_, key));
+    }
+    [[nodiscard]] tile_sampler scramble(std::uint32_t seed) const noexcept
+    {
+        return tile_sampler(nf_tile_sampler_scramble(state_, seed));
+    }
+    // The first N coordinates.
+    template <std::uint32_t N> [[nodiscard]] std::array<float, N> draw() const noexcept
+    {
+        static_assert(N >= 1 && N <= 4, "a domain has 1 to 4 dimensions");
+        std::array<float, N> u{};
+        nf_tile_sampler_draw(state_, N, u.data());
+        return u;
+    }
+    // The first coordinate.
+    [[nodiscard]] float draw() const noexcept { return draw<1>()[0]; }
+    // As many coordinates as `u` holds, at most 4; more stay as they are.
+    void draw(span<float> u) const noexcept
+    {
+        nf_tile_sampler_draw(state_, u.size() < 4 ? static_cast<std::uint32_t>(u.size()) : 4u, u.data());
+    }
+    const nf_tile_sampler &state() const noexcept { return state_; }
+
+private:
+    nf_tile_sampler state_;
+};
+
+// nf_tile_sampler_fill(), likewise.
+inline returned<void> fill(span<const nf_tile_sampler> samplers, span<const std::uint32_t> dims, std::uint32_t width,
+                           std::uint32_t height, std::uint32_t samples, span<float> u)
+{
+    const nf_status code = samplers.size() != dims.size()
+                               ? NF_ERR_RANGE
+                               : nf_tile_sampler_fill(samplers.data(), dims.data(), dims.size(), width, height, samples,
+                                                      u.data(), u.size());
+    return detail::finish(code);
 }
 
 // ---- Random numbers ----

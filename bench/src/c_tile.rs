@@ -1,4 +1,4 @@
-//! `nf_tile` and `nf_sampler`, called as a C program calls them, from the archive that ships.
+//! `nf_tile` and `nf_tile_sampler`, called as a C program calls them, from the archive that ships.
 
 use std::ffi::c_void;
 
@@ -16,7 +16,7 @@ pub struct Tile {
     progressive: u32,
 }
 
-/// `nf_sampler`.
+/// `nf_tile_sampler`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 struct Sampler {
@@ -31,10 +31,10 @@ struct Sampler {
 
 c_functions! {
     fn nf_tile_from_bytes(bytes: *const c_void, len: usize, out: *mut Tile) -> i32;
-    fn nf_sampler_pixel(tile: *const Tile, x: u32, y: u32, frame: u32, index: u32) -> Sampler;
-    fn nf_sampler_domain(sampler: Sampler, key: u32) -> Sampler;
-    fn nf_sampler_draw(sampler: Sampler, dims: u32, u: *mut f32);
-    fn nf_sampler_fill(
+    fn nf_tile_sampler_pixel(tile: *const Tile, x: u32, y: u32, frame: u32, index: u32) -> Sampler;
+    fn nf_tile_sampler_domain(sampler: Sampler, key: u32) -> Sampler;
+    fn nf_tile_sampler_draw(sampler: Sampler, dims: u32, u: *mut f32);
+    fn nf_tile_sampler_fill(
         samplers: *const Sampler,
         dims: *const u32,
         domains: usize,
@@ -63,7 +63,7 @@ impl Tile {
     pub fn root(&self, x: u32, y: u32, index: u32) -> f32 {
         let mut u = [0.0; 2];
         // SAFETY: the tile lives, and there is room for two numbers.
-        unsafe { nf_sampler_draw(nf_sampler_pixel(self, x, y, 0, index), 2, u.as_mut_ptr()) };
+        unsafe { nf_tile_sampler_draw(nf_tile_sampler_pixel(self, x, y, 0, index), 2, u.as_mut_ptr()) };
         u[0] + u[1]
     }
 
@@ -72,7 +72,7 @@ impl Tile {
     pub fn root4(&self, x: u32, y: u32, index: u32) -> f32 {
         let mut u = [0.0; 4];
         // SAFETY: the tile lives, and there is room for four numbers.
-        unsafe { nf_sampler_draw(nf_sampler_pixel(self, x, y, 0, index), 4, u.as_mut_ptr()) };
+        unsafe { nf_tile_sampler_draw(nf_tile_sampler_pixel(self, x, y, 0, index), 4, u.as_mut_ptr()) };
         (u[0] + u[1]) + (u[2] + u[3])
     }
 
@@ -87,8 +87,8 @@ impl Tile {
         let mut u = [0.0; 2];
         // SAFETY: as above.
         unsafe {
-            let pixel = nf_sampler_pixel(self, x, y, 0, index);
-            nf_sampler_draw(nf_sampler_domain(pixel, key), 2, u.as_mut_ptr());
+            let pixel = nf_tile_sampler_pixel(self, x, y, 0, index);
+            nf_tile_sampler_draw(nf_tile_sampler_domain(pixel, key), 2, u.as_mut_ptr());
         }
         u[0] + u[1]
     }
@@ -100,9 +100,9 @@ impl Tile {
         let (first, second) = u.split_at_mut(2);
         // SAFETY: as above.
         unsafe {
-            let pixel = nf_sampler_pixel(self, x, y, 0, index);
-            nf_sampler_draw(nf_sampler_domain(pixel, 0), 2, first.as_mut_ptr());
-            nf_sampler_draw(nf_sampler_domain(pixel, 1), 2, second.as_mut_ptr());
+            let pixel = nf_tile_sampler_pixel(self, x, y, 0, index);
+            nf_tile_sampler_draw(nf_tile_sampler_domain(pixel, 0), 2, first.as_mut_ptr());
+            nf_tile_sampler_draw(nf_tile_sampler_domain(pixel, 1), 2, second.as_mut_ptr());
         }
         (u[0] + u[1]) + (u[2] + u[3])
     }
@@ -113,12 +113,12 @@ impl Tile {
     pub fn samples(&self, x: u32, y: u32, samples: u32, dims: u32, u: &mut [f32]) -> f32 {
         // SAFETY: as above; the length is that of `u`.
         let status = unsafe {
-            let pixel = nf_sampler_pixel(self, x, y, 0, 0);
+            let pixel = nf_tile_sampler_pixel(self, x, y, 0, 0);
             if dims <= self.dims {
-                nf_sampler_fill(&pixel, &dims, 1, 1, 1, samples, u.as_mut_ptr(), u.len())
+                nf_tile_sampler_fill(&pixel, &dims, 1, 1, 1, samples, u.as_mut_ptr(), u.len())
             } else {
-                let both = [nf_sampler_domain(pixel, 0), nf_sampler_domain(pixel, 1)];
-                nf_sampler_fill(both.as_ptr(), [2, 2].as_ptr(), 2, 1, 1, samples, u.as_mut_ptr(), u.len())
+                let both = [nf_tile_sampler_domain(pixel, 0), nf_tile_sampler_domain(pixel, 1)];
+                nf_tile_sampler_fill(both.as_ptr(), [2, 2].as_ptr(), 2, 1, 1, samples, u.as_mut_ptr(), u.len())
             }
         };
         assert_eq!(status, 0);
@@ -129,8 +129,8 @@ impl Tile {
     pub fn fill(&self, width: u32, height: u32, samples: u32, u: &mut [f32]) {
         // SAFETY: the tile lives; the length is that of `u`.
         let status = unsafe {
-            let pixel = nf_sampler_pixel(self, 0, 0, 0, 0);
-            nf_sampler_fill(&pixel, &2, 1, width, height, samples, u.as_mut_ptr(), u.len())
+            let pixel = nf_tile_sampler_pixel(self, 0, 0, 0, 0);
+            nf_tile_sampler_fill(&pixel, &2, 1, width, height, samples, u.as_mut_ptr(), u.len())
         };
         assert_eq!(status, 0);
     }

@@ -46,6 +46,8 @@ mod checksum;
 #[cfg(feature = "control-variate")]
 pub mod control_variate;
 pub mod error;
+#[cfg(any(feature = "sampler", feature = "tile"))]
+mod hash;
 #[cfg(feature = "control-variate")]
 mod lanes;
 #[cfg(feature = "control-variate")]
@@ -61,6 +63,8 @@ pub mod recommend;
 pub mod rng;
 #[cfg(feature = "control-variate")]
 mod rows;
+#[cfg(feature = "sampler")]
+pub mod sampler;
 #[cfg(feature = "tile")]
 pub mod tile;
 #[cfg(feature = "warp")]

@@ -68,8 +68,8 @@ static void tile(void)
         return;
     platform_stack_paint();
     for (i = 0; i < SAMPLES; ++i)
-        nf_sampler_draw(nf_sampler_domain(nf_sampler_pixel(&tile, 3, 5, 0, i), 7), 2, u + 2 * i);
-    line("nf_sampler_draw", NF_OK, bits(u[0]), bits(u[2 * SAMPLES - 1]));
+        nf_tile_sampler_draw(nf_tile_sampler_domain(nf_tile_sampler_pixel(&tile, 3, 5, 0, i), 7), 2, u + 2 * i);
+    line("nf_tile_sampler_draw", NF_OK, bits(u[0]), bits(u[2 * SAMPLES - 1]));
     for (i = 0; i < SAMPLES; ++i)
         f[i] = u[2 * i] * u[2 * i] + 2.0f * u[2 * i + 1];
 }

@@ -48,11 +48,11 @@ function tile() {
     const pixel = structure(), domain = structure();
     paint();
     for (let i = 0; i < SAMPLES; ++i) {
-        nf.nf_sampler_pixel(pixel, tile, 3, 5, 0, i);
-        nf.nf_sampler_domain(domain, pixel, 7);
-        nf.nf_sampler_draw(domain, 2, u + 8 * i);
+        nf.nf_tile_sampler_pixel(pixel, tile, 3, 5, 0, i);
+        nf.nf_tile_sampler_domain(domain, pixel, 7);
+        nf.nf_tile_sampler_draw(domain, 2, u + 8 * i);
     }
-    line("nf_sampler_draw", 0, words[u / 4], words[u / 4 + 2 * SAMPLES - 1]);
+    line("nf_tile_sampler_draw", 0, words[u / 4], words[u / 4 + 2 * SAMPLES - 1]);
     const round = Math.fround;
     for (let i = 0; i < SAMPLES; ++i) {
         const x = floats[u / 4 + 2 * i], y = floats[u / 4 + 2 * i + 1];

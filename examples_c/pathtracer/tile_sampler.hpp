@@ -139,13 +139,13 @@ public:
     void range(uint32_t x, uint32_t y, uint32_t first, uint32_t count, float *u) const override
     {
         for (uint32_t i = first; i < first + count; ++i) {
-            nf_sampler sampler = nf_sampler_pixel(&tile_->view(), x, y, frame_, i);
-            sampler = nf_sampler_scramble(sampler, scramble_);
+            nf_tile_sampler sampler = nf_tile_sampler_pixel(&tile_->view(), x, y, frame_, i);
+            sampler = nf_tile_sampler_scramble(sampler, scramble_);
             for (const Group &g : groups_) {
                 // A tree of domains: the bounce, and in it the decision. Keys are all that tells them apart: nothing is
                 // counted, and a path that takes another turn does not disturb what the others draw.
-                nf_sampler bounce = nf_sampler_domain(sampler, g.first.bounce);
-                nf_sampler_draw(nf_sampler_domain(bounce, g.first.kind), g.dims, u);
+                nf_tile_sampler bounce = nf_tile_sampler_domain(sampler, g.first.bounce);
+                nf_tile_sampler_draw(nf_tile_sampler_domain(bounce, g.first.kind), g.dims, u);
                 // The two numbers that belong together are drawn first, wherever they go.
                 if (g.dims == 3 && g.first.dims == 1)
                     std::rotate(u, u + 2, u + 3);

@@ -20,10 +20,10 @@ std::vector<Float> shared_fits(const Film &film, const TileSampler &sampler)
     const auto n = static_cast<uint32_t>(sampler.SamplesPerPixel());
 
     // For each sample the point on the light, then the choice: a number that picks one of several is the last.
-    const nf_sampler domains[] = {sampler.Request({0, 0}, light_dimension), sampler.Request({0, 0}, choice_dimension)};
+    const nf_tile_sampler domains[] = {sampler.Request({0, 0}, light_dimension), sampler.Request({0, 0}, choice_dimension)};
     const uint32_t dims[] = {2, 1};
-    std::vector<Float> u(nf_sampler_fill_len(dims, 2, width, height, n));
-    room::check(nf_sampler_fill(domains, dims, 2, width, height, n, u.data(), u.size()), "nf_sampler_fill");
+    std::vector<Float> u(nf_tile_sampler_fill_len(dims, 2, width, height, n));
+    room::check(nf_tile_sampler_fill(domains, dims, 2, width, height, n, u.data(), u.size()), "nf_tile_sampler_fill");
 
     nf_cv_config config;
     nf_cv_config_default(&config);

@@ -18,7 +18,7 @@ public:
 
     void StartPixelSample(Point2i p, int sampleIndex, int dim)
     {
-        pixel_ = nf_sampler_pixel(tile_, static_cast<uint32_t>(p.x), static_cast<uint32_t>(p.y), frame_,
+        pixel_ = nf_tile_sampler_pixel(tile_, static_cast<uint32_t>(p.x), static_cast<uint32_t>(p.y), frame_,
                                   static_cast<uint32_t>(sampleIndex));
         dimension_ = static_cast<uint32_t>(dim);
     }
@@ -27,14 +27,14 @@ public:
     Float Get1D()
     {
         Float u;
-        nf_sampler_draw(nf_sampler_domain(pixel_, dimension_), 1, &u);
+        nf_tile_sampler_draw(nf_tile_sampler_domain(pixel_, dimension_), 1, &u);
         dimension_ += 1;
         return u;
     }
     Point2f Get2D()
     {
         Float u[2];
-        nf_sampler_draw(nf_sampler_domain(pixel_, dimension_), 2, u);
+        nf_tile_sampler_draw(nf_tile_sampler_domain(pixel_, dimension_), 2, u);
         dimension_ += 2;
         return {u[0], u[1]};
     }
@@ -42,7 +42,7 @@ public:
     Point2f GetPixel2D()
     {
         Float u[2];
-        nf_sampler_draw(pixel_, 2, u);
+        nf_tile_sampler_draw(pixel_, 2, u);
         return {u[0], u[1]};
     }
 
@@ -50,17 +50,17 @@ public:
     std::vector<TileSampler> Clone(int n) const { return std::vector<TileSampler>(static_cast<size_t>(n), *this); }
 
     // What the request at a count of dimensions was, or will be, answered with.
-    nf_sampler Request(Point2i p, uint32_t dimension) const
+    nf_tile_sampler Request(Point2i p, uint32_t dimension) const
     {
-        return nf_sampler_domain(
-            nf_sampler_pixel(tile_, static_cast<uint32_t>(p.x), static_cast<uint32_t>(p.y), frame_, 0), dimension);
+        return nf_tile_sampler_domain(
+            nf_tile_sampler_pixel(tile_, static_cast<uint32_t>(p.x), static_cast<uint32_t>(p.y), frame_, 0), dimension);
     }
 
 private:
     const nf_tile *tile_;
     int samplesPerPixel_;
     uint32_t frame_;
-    nf_sampler pixel_{};
+    nf_tile_sampler pixel_{};
     uint32_t dimension_ = 0;
 };
 

@@ -46,30 +46,30 @@ fn draw(source: &mut Source<'_>, tile: Option<&nf_tile>) -> Result<()> {
     let [x, y, frame, index, key, seed] = [0; 6].map(|_| source.any::<u32>().unwrap_or(1));
     // SAFETY: the tile lives on; arrays have the lengths that the header asks for.
     unsafe {
-        let root = nf_sampler_pixel(view, x, y, frame, index);
-        let child = nf_sampler_domain(nf_sampler_scramble(root, seed), key);
+        let root = nf_tile_sampler_pixel(view, x, y, frame, index);
+        let child = nf_tile_sampler_domain(nf_tile_sampler_scramble(root, seed), key);
         for sampler in [root, child] {
             let mut all = [-1.0; 4];
-            nf_sampler_draw(sampler, 4, all.as_mut_ptr());
+            nf_tile_sampler_draw(sampler, 4, all.as_mut_ptr());
             assert!(all.iter().all(|u| (0.0..1.0).contains(u)), "{all:?}");
             for dims in [0, 1, 2, 3, 5, seed] {
                 let mut u = [-1.0; 4];
-                nf_sampler_draw(sampler, if dims == 4 { 0 } else { dims }, u.as_mut_ptr());
+                nf_tile_sampler_draw(sampler, if dims == 4 { 0 } else { dims }, u.as_mut_ptr());
                 let drawn = if dims <= 4 && dims != 4 { dims as usize } else { 0 };
                 assert!(u[..drawn] == all[..drawn] && u[drawn..].iter().all(|&u| u == -1.0), "{dims}: {u:?}");
             }
-            nf_sampler_draw(sampler, 2, null_mut());
+            nf_tile_sampler_draw(sampler, 2, null_mut());
         }
         let dims = source.array(2, |source| source.small(5))?;
         let (width, height, samples) = (source.small(5)?, source.small(5)?, source.small(3)?);
         let samplers = [root, child];
-        let len = nf_sampler_fill_len(dims.pointer(), 2, width, height, samples);
+        let len = nf_tile_sampler_fill_len(dims.pointer(), 2, width, height, samples);
         if len < 1 << 12 {
             let room = if source.rarely(16)? { len / 2 } else { len };
             let mut u = source.array(room, |_| Ok(-1.0_f32))?;
             let count = u.values.len();
             let to = u.pointer_mut();
-            let status = nf_sampler_fill(samplers.as_ptr(), dims.pointer(), 2, width, height, samples, to, count);
+            let status = nf_tile_sampler_fill(samplers.as_ptr(), dims.pointer(), 2, width, height, samples, to, count);
             let is_written = |u: &f32| (0.0..1.0).contains(u) == (status == NF_OK);
             assert!(count > len || u.values.iter().all(is_written), "{status}");
         }
@@ -110,10 +110,10 @@ fn defaults_work() {
         // SAFETY: the tile outlives its samplers; arrays have the lengths that the header asks for.
         unsafe {
             assert_eq!(nf_tile_builtin(id, tile.as_mut_ptr()), NF_OK, "tile {id}");
-            let sampler = nf_sampler_pixel(tile.as_ptr(), 1, 2, 0, 0);
-            nf_sampler_draw(sampler, 2, u.as_mut_ptr());
+            let sampler = nf_tile_sampler_pixel(tile.as_ptr(), 1, 2, 0, 0);
+            nf_tile_sampler_draw(sampler, 2, u.as_mut_ptr());
             assert!(u.iter().all(|u| (0.0..1.0).contains(u)), "tile {id}: {u:?}");
-            assert_eq!(nf_sampler_fill(&sampler, &2, 1, 1, 1, 1, u.as_mut_ptr(), 2), NF_OK);
+            assert_eq!(nf_tile_sampler_fill(&sampler, &2, 1, 1, 1, 1, u.as_mut_ptr(), 2), NF_OK);
         }
     }
     let mut advice = MaybeUninit::uninit();

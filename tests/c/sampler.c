@@ -1,21 +1,21 @@
-/* The sampler: by value, what it draws, its batch form, and what bad arguments do. */
-#include "tile_file.h"
+/* The default sampler: by value, what it draws, its batch form, and what bad arguments do. */
+#include "check.h"
 
 static int same(const float *a, const float *b, size_t n) { return memcmp(a, b, n * sizeof *a) == 0; }
 
-static void draws(const nf_tile *tile)
+static void draws(void)
 {
     uint32_t i, d, k;
-    for (i = 0; i < 2000; ++i) {
+    for (i = 0; i < 4000; ++i) {
         float all[4], few[5];
-        nf_sampler s = nf_sampler_pixel(tile, i % 23, i / 23, i % 3, i % 11), copy;
+        nf_sampler s = (i % 7 == 0 ? nf_sampler_white : nf_sampler_pixel)(i % 23, i / 23, i % 3, i % 11 << i % 32), copy;
         if (i % 4 == 1)
             s = nf_sampler_domain(s, i);
         if (i % 4 == 2)
             s = nf_sampler_domain(nf_sampler_domain(s, 1), i);
         if (i % 5 == 0)
             s = nf_sampler_scramble(s, i + 1);
-        CHECK(sizeof s <= 32);
+        CHECK(sizeof s == 16);
         copy = s;
         nf_sampler_draw(s, 4, all);
         CHECK(memcmp(&s, &copy, sizeof s) == 0);
@@ -26,76 +26,61 @@ static void draws(const nf_tile *tile)
             CHECK(is_poisoned(few + d, (5 - d) * sizeof *few));
         }
         for (k = 0; k < 4; ++k)
-            CHECK(all[k] >= 0.0f && all[k] < 1.0f);
+            CHECK(all[k] >= 0.0f && all[k] < 1.0f && all[k] * 16777216.0f == floorf(all[k] * 16777216.0f));
     }
 }
 
-static void places(const nf_tile *tile)
+/* Whether two samplers draw the same. */
+static int equal(nf_sampler a, nf_sampler b)
 {
-    float a[3], b[3];
-    nf_sampler s = nf_sampler_pixel(tile, 3, 5, 0, 1);
-    nf_sampler_draw(s, 3, a);
-    nf_sampler_draw(nf_sampler_pixel(tile, 3 + 8, UINT32_MAX - 2, 0, 1), 3, b);
-    CHECK(same(a, b, 3));
-    nf_sampler_draw(nf_sampler_pixel(tile, 3, 5, 1, 1), 3, b);
-    CHECK(!same(a, b, 3));
-    nf_sampler_draw(nf_sampler_pixel(tile, 3, 5, 0, 5), 3, b);
-    CHECK(!same(a, b, 3));
-    nf_sampler_draw(nf_sampler_domain(s, 0), 3, b);
-    CHECK(!same(a, b, 3));
-    nf_sampler_draw(nf_sampler_scramble(s, 1), 3, b);
-    CHECK(!same(a, b, 3));
-    nf_sampler_draw(nf_sampler_scramble(s, 0), 3, b);
-    CHECK(same(a, b, 3));
-    /* Keys of a parent and of its child are not the same domain, in either order. */
-    nf_sampler_draw(nf_sampler_domain(nf_sampler_domain(s, 1), 2), 3, a);
-    nf_sampler_draw(nf_sampler_domain(nf_sampler_domain(s, 2), 1), 3, b);
-    CHECK(!same(a, b, 3));
+    float u[2][3];
+    nf_sampler_draw(a, 3, u[0]);
+    nf_sampler_draw(b, 3, u[1]);
+    return same(u[0], u[1], 3);
 }
 
-static void nothing(const nf_tile *tile)
+static void places(void)
+{
+    const nf_sampler s = nf_sampler_pixel(3, 5, 0, 1);
+    CHECK(equal(s, nf_sampler_pixel(3 + 32, UINT32_MAX - 26, 0, 1))); /* pixels repeat every 32 */
+    CHECK(!equal(s, nf_sampler_pixel(4, 5, 0, 1)));
+    CHECK(!equal(s, nf_sampler_pixel(3, 5, 1, 1)));
+    CHECK(!equal(s, nf_sampler_pixel(3, 5, 0, 5)));
+    CHECK(!equal(s, nf_sampler_white(3, 5, 0, 1)));
+    CHECK(!equal(s, nf_sampler_domain(s, 0)));
+    CHECK(!equal(s, nf_sampler_scramble(s, 1)));
+    CHECK(equal(s, nf_sampler_scramble(s, 0)));
+    /* Keys of a parent and of its child are not the same domain, in either order. */
+    CHECK(!equal(nf_sampler_domain(nf_sampler_domain(s, 1), 2), nf_sampler_domain(nf_sampler_domain(s, 2), 1)));
+}
+
+static void nothing(void)
 {
     float u[4];
-    unsigned char room[sizeof(nf_tile) + 8];
-    nf_tile zero;
-    nf_sampler none[4], s = nf_sampler_pixel(tile, 1, 2, 3, 4);
-    size_t i;
-    memset(&zero, 0, sizeof zero);
-    memset(&none[0], 0, sizeof none[0]);
-    none[1] = nf_sampler_pixel(NULL, 1, 2, 3, 4);
-    none[2] = nf_sampler_pixel(&zero, 1, 2, 3, 4);
-    memcpy(room + 1, tile, sizeof *tile);
-    none[3] = nf_sampler_pixel((const nf_tile *)misaligned(room), 1, 2, 0, 0);
-    for (i = 0; i < 4; ++i) {
-        poison(u, sizeof u);
-        nf_sampler_draw(none[i], 4, u);
-        CHECK(u[0] == 0.0f && u[1] == 0.0f && u[2] == 0.0f && u[3] == 0.0f);
-        poison(u, sizeof u);
-        nf_sampler_draw(nf_sampler_scramble(nf_sampler_domain(none[i], 3), 0), 2, u);
-        CHECK(u[0] == 0.0f && u[1] == 0.0f && is_poisoned(u + 2, 2 * sizeof *u));
-    }
+    const nf_sampler s = nf_sampler_pixel(1, 2, 3, 4);
     poison(u, sizeof u);
     nf_sampler_draw(s, 0, u);
     nf_sampler_draw(s, 5, u);
     nf_sampler_draw(s, UINT32_MAX, u);
-    CHECK(is_poisoned(u, sizeof u));
     nf_sampler_draw(s, 2, NULL);
-    nf_sampler_draw(s, 4, NULL);
     nf_sampler_draw(s, 2, (float *)misaligned(u));
-    nf_sampler_draw(s, 3, (float *)misaligned(u));
     CHECK(is_poisoned(u, sizeof u));
 }
 
-static void fill(const nf_tile *tile)
+#define WIDTH 5
+#define HEIGHT 3
+#define SAMPLES 6
+#define EACH 7
+#define COUNT (WIDTH * HEIGHT * SAMPLES * EACH)
+
+static void fill(void)
 {
-    static const uint32_t dims[3] = {2, 4, 1};
-    enum { WIDTH = 11, HEIGHT = 3, SAMPLES = 6, EACH = 7, COUNT = WIDTH * HEIGHT * SAMPLES * EACH };
-    memory room = memory_new(COUNT * sizeof(float));
-    float *u = (float *)room.start;
+    static float u[COUNT];
+    static const uint32_t dims[3] = {2, 4, 1}, bad[3] = {2, 5, 1};
     nf_sampler s[3];
-    uint32_t x, y, i, bad[3] = {2, 5, 1};
+    uint32_t x, y, i;
     size_t at = 0;
-    s[0] = nf_sampler_pixel(tile, 6, 7, 1, 2);
+    s[0] = nf_sampler_pixel(6, 7, 1, 2);
     s[1] = nf_sampler_domain(s[0], 4);
     s[2] = nf_sampler_domain(nf_sampler_scramble(s[0], 5), 6);
     CHECK(nf_sampler_fill_len(dims, 3, WIDTH, HEIGHT, SAMPLES) == COUNT);
@@ -103,7 +88,7 @@ static void fill(const nf_tile *tile)
     for (y = 0; y < HEIGHT; ++y)
         for (x = 0; x < WIDTH; ++x)
             for (i = 0; i < SAMPLES; ++i) {
-                nf_sampler here = nf_sampler_pixel(tile, 6 + x, 7 + y, 1, 2 + i);
+                const nf_sampler here = nf_sampler_pixel(6 + x, 7 + y, 1, 2 + i);
                 float single[EACH];
                 nf_sampler_draw(here, 2, single);
                 nf_sampler_draw(nf_sampler_domain(here, 4), 4, single + 2);
@@ -112,46 +97,27 @@ static void fill(const nf_tile *tile)
                 at += EACH;
             }
 
-    poison(u, room.bytes);
+    poison(u, sizeof u);
     CHECK_STATUS(nf_sampler_fill(NULL, dims, 3, 1, 1, 1, u, COUNT), NF_ERR_NULL);
     CHECK_STATUS(nf_sampler_fill(s, NULL, 3, 1, 1, 1, u, COUNT), NF_ERR_NULL);
     CHECK_STATUS(nf_sampler_fill(s, dims, 3, 1, 1, 1, NULL, COUNT), NF_ERR_NULL);
-    CHECK_STATUS(nf_sampler_fill((const nf_sampler *)misaligned(s), dims, 3, 1, 1, 1, u, COUNT), NF_ERR_ALIGNMENT);
-    CHECK_STATUS(nf_sampler_fill(s, (const uint32_t *)misaligned(bad), 2, 1, 1, 1, u, COUNT), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_sampler_fill((const nf_sampler *)misaligned(s), dims, 2, 1, 1, 1, u, COUNT), NF_ERR_ALIGNMENT);
     CHECK_STATUS(nf_sampler_fill(s, dims, 3, 1, 1, 1, (float *)misaligned(u), COUNT - 1), NF_ERR_ALIGNMENT);
     CHECK_STATUS(nf_sampler_fill(s, bad, 3, 1, 1, 1, u, COUNT), NF_ERR_RANGE);
     CHECK_STATUS(nf_sampler_fill(s, dims, 3, UINT32_MAX, UINT32_MAX, UINT32_MAX, u, SIZE_MAX), NF_ERR_RANGE);
     CHECK_STATUS(nf_sampler_fill(s, dims, 3, WIDTH, HEIGHT, SAMPLES, u, COUNT - 1), NF_ERR_MEMORY);
     CHECK_STATUS(nf_sampler_fill(NULL, NULL, 0, 0xffff, 0xffff, 1, NULL, 0), NF_OK); /* nothing to draw, at once */
-    CHECK(is_poisoned(u, room.bytes));
-    CHECK(nf_sampler_fill_len(bad, 3, 1, 1, 1) == 0);
-    CHECK(nf_sampler_fill_len(NULL, 3, 1, 1, 1) == 0);
-    CHECK(nf_sampler_fill_len(dims, 3, UINT32_MAX, UINT32_MAX, UINT32_MAX) == 0);
-    CHECK(nf_sampler_fill_len(dims, 3, 0, 1, 1) == 0);
     CHECK_STATUS(nf_sampler_fill(s, dims, 3, 0, 9, 9, NULL, 0), NF_OK);
-    CHECK_STATUS(nf_sampler_fill(NULL, NULL, 0, 9, 9, 9, NULL, 0), NF_OK);
-
-    /* Samplers without a tile draw zeros here too. */
-    s[1].tile = NULL;
-    CHECK_STATUS(nf_sampler_fill(s, dims, 3, 1, 1, 1, u, EACH), NF_OK);
-    CHECK(u[2] == 0.0f && u[5] == 0.0f && u[0] != 0.0f);
-    memory_free(&room);
+    CHECK(is_poisoned(u, sizeof u));
+    CHECK(nf_sampler_fill_len(bad, 3, 1, 1, 1) == 0 && nf_sampler_fill_len(NULL, 3, 1, 1, 1) == 0);
+    CHECK(nf_sampler_fill_len(dims, 3, UINT32_MAX, UINT32_MAX, UINT32_MAX) == 0);
 }
 
 int main(void)
 {
-    static const char *const names[] = {"plain.nft", "progressive.nft", "single.nft"};
-    size_t i;
-    for (i = 0; i < 3; ++i) {
-        memory file = tile_file(names[i]);
-        nf_tile tile;
-        CHECK_STATUS(nf_tile_from_bytes(file.start, file.bytes, &tile), NF_OK);
-        draws(&tile);
-        if (i == 0)
-            places(&tile);
-        nothing(&tile);
-        fill(&tile);
-        memory_free(&file);
-    }
+    draws();
+    places();
+    nothing();
+    fill();
     return report("sampler");
 }

@@ -54,9 +54,9 @@ static void layouts(void)
     CHECK(offsetof(nf_rng, increment) == 8);
     CHECK(sizeof(nf_tile) == 2 * sizeof(void *) + 24);
     CHECK(offsetof(nf_tile, size) == 2 * sizeof(void *));
-    CHECK(sizeof(nf_sampler) == sizeof(void *) + 16);
-    CHECK(offsetof(nf_sampler, domain) == sizeof(void *));
-    CHECK(offsetof(nf_sampler, x) == sizeof(void *) + 8);
+    CHECK(sizeof(nf_tile_sampler) == sizeof(void *) + 16);
+    CHECK(offsetof(nf_tile_sampler, domain) == sizeof(void *));
+    CHECK(offsetof(nf_tile_sampler, x) == sizeof(void *) + 8);
 }
 
 /* Zero is the default of every choice, and signs survive in expressions. */

@@ -93,8 +93,8 @@ static void from_bytes(void)
     CHECK_STATUS(nf_tile_from_bytes(misaligned(odd.start), file.bytes, &again), NF_OK);
     for (i = 0; i < 16; ++i) {
         float a[3], b[3];
-        nf_sampler_draw(nf_sampler_pixel(&tile, (uint32_t)i, 3, 0, (uint32_t)i), 3, a);
-        nf_sampler_draw(nf_sampler_pixel(&again, (uint32_t)i, 3, 0, (uint32_t)i), 3, b);
+        nf_tile_sampler_draw(nf_tile_sampler_pixel(&tile, (uint32_t)i, 3, 0, (uint32_t)i), 3, a);
+        nf_tile_sampler_draw(nf_tile_sampler_pixel(&again, (uint32_t)i, 3, 0, (uint32_t)i), 3, b);
         CHECK(memcmp(a, b, sizeof a) == 0);
     }
     memory_free(&odd);

@@ -297,14 +297,11 @@ static void mis()
     SUCCEED(omis.reset());
 }
 
-static void tiles()
+static void samplers()
 {
-    const std::size_t before = allocations;
-    const nf::tile tile = value_of(nf::tile::builtin(NF_TILE_64_1SPP_2D));
-    CHECK(tile.size == 64 && tile.spp == 1 && tile.dims == 2);
-    const nf::sampler pixel(tile, 3, 70, 0, 0), child = pixel.domain(7).scramble(9);
+    const nf::sampler pixel(3, 70, 0, 5), child = pixel.domain(7).scramble(9);
     float expected[4];
-    nf_sampler_draw(nf_sampler_pixel(&tile, 3, 70, 0, 0), 4, expected);
+    nf_sampler_draw(nf_sampler_pixel(3, 70, 0, 5), 4, expected);
     const std::array<float, 4> four = pixel.draw<4>();
     CHECK(std::memcmp(four.data(), expected, sizeof expected) == 0);
     CHECK(pixel.draw<2>()[1] == expected[1] && pixel.draw() == expected[0]);
@@ -313,10 +310,38 @@ static void tiles()
     CHECK(drawn[3] == expected[3] && drawn[4] == 0.0f);
     nf_sampler_draw(nf_sampler_scramble(nf_sampler_domain(pixel.state(), 7), 9), 3, expected);
     CHECK(child.draw<3>()[2] == expected[2]);
-    static_assert(!std::is_constructible_v<nf::sampler, nf::tile, unsigned, unsigned, unsigned, unsigned>,
-                  "a temporary tile ends first");
+    nf_sampler_draw(nf_sampler_white(3, 70, 1, 5), 1, expected);
+    CHECK(nf::sampler::white(3, 70, 1, 5).draw() == expected[0]);
 
     const nf_sampler both[2] = {pixel.state(), child.state()};
+    const std::uint32_t dims[2] = {2, 3};
+    std::array<float, 2 * 2 * 3 * 5> block{};
+    SUCCEED(nf::fill(both, dims, 2, 2, 3, block));
+    CHECK(block[0] == four[0] && block[2] == child.draw());
+    CHECK(CODE(nf::fill(both, nf::span<const std::uint32_t>(dims, 1), 2, 2, 3, block)) == nf::status::range);
+    CHECK(CODE(nf::fill(both, dims, 2, 2, 4, block)) == nf::status::memory);
+}
+
+static void tiles()
+{
+    const std::size_t before = allocations;
+    const nf::tile tile = value_of(nf::tile::builtin(NF_TILE_64_1SPP_2D));
+    CHECK(tile.size == 64 && tile.spp == 1 && tile.dims == 2);
+    const nf::tile_sampler pixel(tile, 3, 70, 0, 0), child = pixel.domain(7).scramble(9);
+    float expected[4];
+    nf_tile_sampler_draw(nf_tile_sampler_pixel(&tile, 3, 70, 0, 0), 4, expected);
+    const std::array<float, 4> four = pixel.draw<4>();
+    CHECK(std::memcmp(four.data(), expected, sizeof expected) == 0);
+    CHECK(pixel.draw<2>()[1] == expected[1] && pixel.draw() == expected[0]);
+    std::array<float, 6> drawn{};
+    pixel.draw(drawn);
+    CHECK(drawn[3] == expected[3] && drawn[4] == 0.0f);
+    nf_tile_sampler_draw(nf_tile_sampler_scramble(nf_tile_sampler_domain(pixel.state(), 7), 9), 3, expected);
+    CHECK(child.draw<3>()[2] == expected[2]);
+    static_assert(!std::is_constructible_v<nf::tile_sampler, nf::tile, unsigned, unsigned, unsigned, unsigned>,
+                  "a temporary tile ends first");
+
+    const nf_tile_sampler both[2] = {pixel.state(), child.state()};
     const std::uint32_t dims[2] = {2, 3};
     std::array<float, 2 * 2 * 3 * 5> block{};
     SUCCEED(nf::fill(both, dims, 2, 2, 3, block));
@@ -329,7 +354,7 @@ static void tiles()
     CHECK(CODE(nf::tile::from_bytes(text)) == nf::status::foreign);
     CHECK(CODE(nf::tile::from_bytes("\x8eNFT\r\n\x1a\n", 8)) == nf::status::length);
     CHECK(CODE(nf::tile::from_bytes(nullptr, 8)) == nf::status::null);
-    CHECK(nf::sampler(nf_sampler{}).draw() == 0.0f);
+    CHECK(nf::tile_sampler(nf_tile_sampler{}).draw() == 0.0f);
 }
 
 static void random_numbers()
@@ -438,6 +463,7 @@ int main()
     images();
     accumulators();
     mis();
+    samplers();
     tiles();
     random_numbers();
     minibatches();

@@ -44,6 +44,7 @@ mod mis_statistics;
 mod mis_support;
 mod mis_weight;
 mod rng;
+mod sampler;
 mod small_cases;
 mod table_support;
 mod tile_continued;

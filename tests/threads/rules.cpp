@@ -79,7 +79,7 @@ bool render(bool shared)
             float u[2 * samples], f[samples];
             for (std::uint32_t i = 0; i < samples; ++i) {
                 // All threads read the same nf_tile.
-                nf_sampler_draw(nf_sampler_domain(nf_sampler_pixel(&blue, tile, 0, 0, i), 1), 2, u + 2 * i);
+                nf_tile_sampler_draw(nf_tile_sampler_domain(nf_tile_sampler_pixel(&blue, tile, 0, 0, i), 1), 2, u + 2 * i);
                 f[i] = u[2 * i] + u[2 * i + 1];
             }
             check(nf_cv_accumulator_add(accumulators[shared ? 0 : tile].state, u, f, samples), "nf_cv_accumulator_add");
@@ -144,7 +144,7 @@ void remake_tile()
             if (thread == 0)
                 check(nf_tile_builtin(NF_TILE_64_1SPP_2D, &tile), "nf_tile_builtin");
             else
-                nf_sampler_draw(nf_sampler_pixel(&tile, i, thread, 0, 0), 2, u);
+                nf_tile_sampler_draw(nf_tile_sampler_pixel(&tile, i, thread, 0, 0), 2, u);
     });
 }
 

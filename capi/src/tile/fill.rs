@@ -1,15 +1,15 @@
 //! Many pixels and samples in one call.
 
-use super::sampler::{nf_sampler, state};
+use super::sampler::{nf_tile_sampler, state};
 use super::view::core_view;
 use crate::convert;
 use crate::status::*;
 use noisefloor_core::tile::Sampler;
 
-/// How many numbers nf_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
+/// How many numbers nf_tile_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
 /// 1..4, or memory has not that many.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_sampler_fill_len(
+pub unsafe extern "C" fn nf_tile_sampler_fill_len(
     dims: *const u32,
     domains: usize,
     width: u32,
@@ -18,7 +18,7 @@ pub unsafe extern "C" fn nf_sampler_fill_len(
 ) -> usize {
     // SAFETY: the caller passes `domains` numbers.
     let Ok(dims) = (unsafe { convert::slice(dims, domains) }) else { return 0 };
-    len(dims, width, height, samples).unwrap_or(0)
+    fill_len(dims, width, height, samples).unwrap_or(0)
 }
 
 /// Draws for many pixels and samples at once, for renderers that work on whole images. The same bits as single draws.
@@ -26,12 +26,12 @@ pub unsafe extern "C" fn nf_sampler_fill_len(
 /// samplers[domains]: one for each domain, all at the first pixel and the first sample. dims[domains]: how many numbers
 /// to draw from each, 1..4. width, height: how many pixels, to the right and down. samples: how many samples of each,
 /// by ascending index. u[height][width][samples][sum of dims]: what the samplers draw there, one after the other; len
-/// numbers are there, at least nf_sampler_fill_len.
+/// numbers are there, at least nf_tile_sampler_fill_len.
 ///
 /// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: dims, or sizes that memory cannot have; NF_ERR_MEMORY: len.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_sampler_fill(
-    samplers: *const nf_sampler,
+pub unsafe extern "C" fn nf_tile_sampler_fill(
+    samplers: *const nf_tile_sampler,
     dims: *const u32,
     domains: usize,
     width: u32,
@@ -43,7 +43,7 @@ pub unsafe extern "C" fn nf_sampler_fill(
     status((|| {
         // SAFETY: the caller passes `domains` samplers and numbers.
         let (samplers, dims) = unsafe { (convert::slice(samplers, domains)?, convert::slice(dims, domains)?) };
-        let needed = self::len(dims, width, height, samples).ok_or(NF_ERR_RANGE)?;
+        let needed = fill_len(dims, width, height, samples).ok_or(NF_ERR_RANGE)?;
         // Without domains or samples, as many places as there may be have nothing to draw.
         if needed == 0 {
             return Ok(());
@@ -58,7 +58,7 @@ pub unsafe extern "C" fn nf_sampler_fill(
         let places = (0..height).flat_map(|y| (0..width).map(move |x| (y, x)));
         for (mut pixel, (y, x)) in pixels.zip(places) {
             for (sampler, &dims) in samplers.iter().zip(dims) {
-                // SAFETY: the caller passes samplers whose tiles, checked by nf_sampler_pixel, are NULL or live.
+                // SAFETY: the caller passes samplers whose tiles, checked by nf_tile_sampler_pixel, are NULL or live.
                 unsafe { samples_of(sampler, x, y, dims as usize, sample, pixel) };
                 pixel = pixel.get_mut(dims as usize..).unwrap_or_default();
             }
@@ -72,7 +72,7 @@ pub unsafe extern "C" fn nf_sampler_fill(
 /// # Safety
 /// The sampler's tile must be NULL or live.
 #[inline(always)]
-unsafe fn samples_of(sampler: &nf_sampler, x: u32, y: u32, dims: usize, stride: usize, u: &mut [f32]) {
+unsafe fn samples_of(sampler: &nf_tile_sampler, x: u32, y: u32, dims: usize, stride: usize, u: &mut [f32]) {
     // SAFETY: passed on to the caller.
     match unsafe { core_view(sampler.tile) } {
         Some(tile) => Sampler::resume(&tile, state(sampler)).moved(x, y, 0).draw_samples(dims, stride, u),
@@ -80,7 +80,8 @@ unsafe fn samples_of(sampler: &nf_sampler, x: u32, y: u32, dims: usize, stride: 
     }
 }
 
-fn len(dims: &[u32], width: u32, height: u32, samples: u32) -> Option<usize> {
+/// How many numbers that are, if memory can have as many.
+pub(crate) fn fill_len(dims: &[u32], width: u32, height: u32, samples: u32) -> Option<usize> {
     let mut sum = 0_usize;
     for &dims in dims {
         sum = if (1..=4).contains(&dims) { sum.checked_add(dims as usize)? } else { return None };

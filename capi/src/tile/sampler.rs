@@ -9,11 +9,11 @@ use noisefloor_core::tile::{Sampler, State};
 /// A sampler stands for a point of a cube with as many dimensions as are asked for. There are no dimension counters:
 /// each decision of a path (lens, light, bounce, ...) has a domain, a child of the sampler by a key of its own. A
 /// domain's numbers depend on nothing but tile, pixel, frame, index and the keys that led to it, so that any sample can
-/// be drawn in any order, on any thread, and at any time. Made by nf_sampler_pixel; the fields are not to be written.
+/// be drawn in any order, on any thread, and at any time. Made by nf_tile_sampler_pixel; the fields are not to be written.
 #[repr(C)]
 #[allow(non_camel_case_types)]
 #[derive(Clone, Copy)]
-pub struct nf_sampler {
+pub struct nf_tile_sampler {
     /// The tile; it must outlive the sampler and stay where it is.
     pub tile: *const nf_tile,
     /// The domain: 0 is the root.
@@ -26,7 +26,7 @@ pub struct nf_sampler {
     pub y: u16,
     /// The frame, modulo the tile's frames.
     pub frame: u16,
-    /// 1 after nf_sampler_scramble, otherwise 0.
+    /// 1 after nf_tile_sampler_scramble, otherwise 0.
     pub scrambled: u16,
 }
 
@@ -38,7 +38,13 @@ pub struct nf_sampler {
 ///
 /// tile: it must outlive the sampler and stay where it is. All draws of a sampler without a tile, NULL, are 0.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_sampler_pixel(tile: *const nf_tile, x: u32, y: u32, frame: u32, index: u32) -> nf_sampler {
+pub unsafe extern "C" fn nf_tile_sampler_pixel(
+    tile: *const nf_tile,
+    x: u32,
+    y: u32,
+    frame: u32,
+    index: u32,
+) -> nf_tile_sampler {
     // Draws trust the pointer: one that they cannot use is none.
     let tile = if tile.is_aligned() { tile } else { core::ptr::null() };
     if frame != 0 {
@@ -49,10 +55,10 @@ pub unsafe extern "C" fn nf_sampler_pixel(tile: *const nf_tile, x: u32, y: u32, 
     sampler(tile, state.unwrap_or_default())
 }
 
-/// nf_sampler_pixel of a frame other than the first: apart, so that the first is fast.
+/// nf_tile_sampler_pixel of a frame other than the first: apart, so that the first is fast.
 #[inline(never)]
-fn later(tile: *const nf_tile, x: u32, y: u32, frame: u32, index: u32) -> nf_sampler {
-    // SAFETY: as in nf_sampler_pixel.
+fn later(tile: *const nf_tile, x: u32, y: u32, frame: u32, index: u32) -> nf_tile_sampler {
+    // SAFETY: as in nf_tile_sampler_pixel.
     let state = unsafe { core_view(tile) }.map(|view| State::pixel(&view, x, y, frame, index));
     sampler(tile, state.unwrap_or_default())
 }
@@ -61,7 +67,7 @@ fn later(tile: *const nf_tile, x: u32, y: u32, frame: u32, index: u32) -> nf_sam
 /// Keys mean something only among the children of one parent: a bounce's light may have the same key as the next
 /// bounce's.
 #[unsafe(no_mangle)]
-pub extern "C" fn nf_sampler_domain(sampler: nf_sampler, key: u32) -> nf_sampler {
+pub extern "C" fn nf_tile_sampler_domain(sampler: nf_tile_sampler, key: u32) -> nf_tile_sampler {
     self::sampler(sampler.tile, state(&sampler).domain(key))
 }
 
@@ -72,7 +78,7 @@ pub extern "C" fn nf_sampler_domain(sampler: nf_sampler, key: u32) -> nf_sampler
 /// tile's own values are fixed, and an estimate from them is what it is). The shift costs quality: where good images
 /// are wanted, and not exact unbiasedness, take another frame instead. Children of a scrambled sampler are scrambled.
 #[unsafe(no_mangle)]
-pub extern "C" fn nf_sampler_scramble(sampler: nf_sampler, seed: u32) -> nf_sampler {
+pub extern "C" fn nf_tile_sampler_scramble(sampler: nf_tile_sampler, seed: u32) -> nf_tile_sampler {
     self::sampler(sampler.tile, state(&sampler).scramble(seed))
 }
 
@@ -84,14 +90,14 @@ pub extern "C" fn nf_sampler_scramble(sampler: nf_sampler, seed: u32) -> nf_samp
 /// it goes with. Two further numbers that belong together are better drawn from a domain of their own. Writes nothing
 /// if dims is out of range or u is NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_sampler_draw(sampler: nf_sampler, dims: u32, u: *mut f32) {
+pub unsafe extern "C" fn nf_tile_sampler_draw(sampler: nf_tile_sampler, dims: u32, u: *mut f32) {
     // SAFETY: passed on to the caller.
     unsafe {
         // What is drawn most often, and fast: two stored values of the root's first frame. Apart from all else, so that
         // it needs few registers.
         if dims == 2 {
             let root = (sampler.domain, sampler.frame, sampler.scrambled) == (0, 0, 0);
-            if !root || !stored::<2>(&nf_sampler { domain: 0, frame: 0, scrambled: 0, ..sampler }, u) {
+            if !root || !stored::<2>(&nf_tile_sampler { domain: 0, frame: 0, scrambled: 0, ..sampler }, u) {
                 draw::<2>(&sampler, u);
             }
             return;
@@ -105,12 +111,12 @@ pub unsafe extern "C" fn nf_sampler_draw(sampler: nf_sampler, dims: u32, u: *mut
     }
 }
 
-/// nf_sampler_draw of N numbers.
+/// nf_tile_sampler_draw of N numbers.
 ///
 /// # Safety
 /// As for [`stored`].
 #[inline(never)]
-unsafe fn draw<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
+unsafe fn draw<const N: usize>(sampler: &nf_tile_sampler, u: *mut f32) {
     // SAFETY: passed on to the caller.
     unsafe {
         if !stored::<N>(sampler, u) {
@@ -124,7 +130,7 @@ unsafe fn draw<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
 /// # Safety
 /// `u` must be NULL or have room for N numbers; the sampler's tile must be NULL or live.
 #[inline(always)]
-unsafe fn stored<const N: usize>(sampler: &nf_sampler, u: *mut f32) -> bool {
+unsafe fn stored<const N: usize>(sampler: &nf_tile_sampler, u: *mut f32) -> bool {
     // SAFETY: passed on to the caller.
     let Some(tile) = (unsafe { core_view(sampler.tile) }) else { return false };
     // SAFETY: passed on to the caller.
@@ -150,12 +156,12 @@ fn put<const N: usize>(u: &mut convert::Room<[f32; N]>, drawn: [f32; N]) -> bool
     true
 }
 
-/// nf_sampler_draw of all others: apart, so that those need few registers.
+/// nf_tile_sampler_draw of all others: apart, so that those need few registers.
 ///
 /// # Safety
 /// As for [`stored`].
 #[inline(never)]
-unsafe fn computed<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
+unsafe fn computed<const N: usize>(sampler: &nf_tile_sampler, u: *mut f32) {
     // SAFETY: passed on to the caller.
     let Ok(u) = (unsafe { convert::room(u.cast::<[f32; N]>()) }) else { return };
     // SAFETY: passed on to the caller.
@@ -166,8 +172,8 @@ unsafe fn computed<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
 }
 
 #[inline(always)]
-pub(crate) fn state(sampler: &nf_sampler) -> State {
-    let nf_sampler { domain, index, x, y, frame, scrambled, .. } = *sampler;
+pub(crate) fn state(sampler: &nf_tile_sampler) -> State {
+    let nf_tile_sampler { domain, index, x, y, frame, scrambled, .. } = *sampler;
     State { domain, index, x, y, frame, scrambled }
 }
 
@@ -177,12 +183,12 @@ pub(crate) fn state(sampler: &nf_sampler) -> State {
 /// but has to wait for several to reach the cache: 15 ns where the struct was written field by field.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn sampler(tile: *const nf_tile, State { domain, index, x, y, frame, scrambled }: State) -> nf_sampler {
+fn sampler(tile: *const nf_tile, State { domain, index, x, y, frame, scrambled }: State) -> nf_tile_sampler {
     use core::arch::x86_64::{_mm_set_epi64x, _mm_storeu_si128};
-    const _: () = assert!(size_of::<nf_sampler>() == 24 && core::mem::offset_of!(nf_sampler, x) == 16);
+    const _: () = assert!(size_of::<nf_tile_sampler>() == 24 && core::mem::offset_of!(nf_tile_sampler, x) == 16);
     let first = u64::from(domain) | u64::from(index) << 32;
     let last = u64::from(x) | u64::from(y) << 16 | u64::from(frame) << 32 | u64::from(scrambled) << 48;
-    let mut out = core::mem::MaybeUninit::<nf_sampler>::uninit();
+    let mut out = core::mem::MaybeUninit::<nf_tile_sampler>::uninit();
     // SAFETY: every x86-64 has SSE2. The two stores write all 24 bytes: pointer, domain and index, then four 16-bit
     // numbers.
     unsafe {
@@ -195,6 +201,6 @@ fn sampler(tile: *const nf_tile, State { domain, index, x, y, frame, scrambled }
 /// The struct.
 #[cfg(not(target_arch = "x86_64"))]
 #[inline(always)]
-fn sampler(tile: *const nf_tile, State { domain, index, x, y, frame, scrambled }: State) -> nf_sampler {
-    nf_sampler { tile, domain, index, x, y, frame, scrambled }
+fn sampler(tile: *const nf_tile, State { domain, index, x, y, frame, scrambled }: State) -> nf_tile_sampler {
+    nf_tile_sampler { tile, domain, index, x, y, frame, scrambled }
 }

@@ -1,10 +1,10 @@
 //! A sample that is more than stored values: scrambled, beyond the tile's samples, or of more dimensions than it has.
 
-use super::hash::{GOLDEN, child, mix};
 use super::sampler::State;
 use super::sequence;
 use super::site::Site;
 use super::view::{Shape, Tile};
+use crate::hash::{GOLDEN, child, mix};
 
 /// Keeps domains of further dimensions apart from those of keys.
 const DIMENSIONS: u32 = 0x6469_6d73;

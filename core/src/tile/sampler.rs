@@ -1,9 +1,9 @@
 //! The sampler: one sample of one pixel, and the domains below it.
 
-use super::hash::child;
 use super::point::point;
 use super::site::Site;
 use super::view::{Tile, unit};
+use crate::hash::child;
 
 /// A sample's place, without its tile. Any value of the fields is valid; [`Sampler`] says what they mean.
 ///

@@ -1,7 +1,7 @@
 //! What follows a tile's samples: a Sobol sequence, shuffled and scrambled for each domain.
 
-use super::hash::{GOLDEN, mix};
 use super::view::MAX_DIMS;
+use crate::hash::{GOLDEN, mix};
 
 /// Moves a pixel's first sample to where its sample `index`, at least 1, belongs.
 ///

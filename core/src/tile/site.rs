@@ -1,9 +1,10 @@
 //! Where a domain finds a pixel in the tile: what all samples of the pixel share.
 
-use super::hash::{mix, permute, permute_few, permute_octave, permute_octave_few};
+use super::hash::{permute, permute_few, permute_octave, permute_octave_few};
 use super::net;
 use super::sampler::State;
 use super::view::{Shape, Tile};
+use crate::hash::mix;
 
 /// A pixel's place in a domain. Its samples cost little once it is known.
 #[derive(Clone, Copy)]

@@ -1,0 +1,152 @@
+//! The default sampler, by value.
+
+use crate::convert;
+use crate::status::*;
+use noisefloor_core::sampler::{self as core, Sampler};
+
+/// One sample of one pixel, of the default sampler: a small struct, passed and copied by value. Drawing does not change
+/// it, and there is nothing to set up.
+///
+/// A sampler stands for a point of a cube with as many dimensions as are asked for. There are no dimension counters:
+/// each decision of a path (lens, light, bounce, ...) has a domain, a child of the sampler by a key of its own. A
+/// domain's numbers depend on nothing but pixel, frame, index and the keys that led to it, so that any sample can be
+/// drawn in any order, on any thread, and at any time. Made by nf_sampler_pixel; the fields are not to be written.
+#[repr(C)]
+#[allow(non_camel_case_types)]
+#[derive(Clone, Copy)]
+pub struct nf_sampler {
+    /// The domain: 0 is the root.
+    pub domain: u32,
+    /// The sample of the pixel.
+    pub index: u32,
+    /// The pixel's column, its last 16 bits.
+    pub x: u16,
+    /// The pixel's row, likewise.
+    pub y: u16,
+    /// Whether it is scrambled, or white.
+    pub flags: u32,
+}
+
+/// Sample `index` of pixel (x, y) in `frame`, any values of each.
+///
+/// The samples of a pixel are one sequence, best at powers of two: take any number, and stop where you like. Each frame
+/// is unrelated to the others. Where frames are averaged, by a viewer or by TAA, leave the frame 0 and let the index
+/// count on.
+#[unsafe(no_mangle)]
+pub extern "C" fn nf_sampler_pixel(x: u32, y: u32, frame: u32, index: u32) -> nf_sampler {
+    of(Sampler::pixel(x, y, frame, index))
+}
+
+/// As nf_sampler_pixel(), but neighbours know nothing of each other: the error is that of each pixel, white over the
+/// image. For denoisers that were made for white noise.
+#[unsafe(no_mangle)]
+pub extern "C" fn nf_sampler_white(x: u32, y: u32, frame: u32, index: u32) -> nf_sampler {
+    of(Sampler::white(x, y, frame, index))
+}
+
+/// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent.
+/// Keys mean something only among the children of one parent: a bounce's light may have the same key as the next
+/// bounce's.
+#[unsafe(no_mangle)]
+pub extern "C" fn nf_sampler_domain(sampler: nf_sampler, key: u32) -> nf_sampler {
+    of(to(&sampler).domain(key))
+}
+
+/// An independent version of the sampler for each seed but 0; seed 0 changes nothing.
+///
+/// All values of a dimension are shifted, modulo 1, by a hash of seed and domain. Over random seeds every value is
+/// uniform, so that estimates are unbiased, as far as a hash of 32 bits is random. The shift costs quality: where good
+/// images are wanted, and not exact unbiasedness, take another frame instead. Children of a scrambled sampler are
+/// scrambled.
+#[unsafe(no_mangle)]
+pub extern "C" fn nf_sampler_scramble(sampler: nf_sampler, seed: u32) -> nf_sampler {
+    of(to(&sampler).scramble(seed))
+}
+
+/// Writes `dims` numbers, 1..4, to u[dims]: each in [0, 1), a multiple of 2^-24.
+///
+/// The first two are optimised together, across pixels too; all four are stratified together. Fewer are the first of
+/// those. More come from a domain of their own. Writes nothing if dims is out of range or u is NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_sampler_draw(sampler: nf_sampler, dims: u32, u: *mut f32) {
+    // SAFETY: passed on to the caller.
+    unsafe {
+        match dims {
+            1 => draw::<1>(&sampler, u),
+            2 => draw::<2>(&sampler, u),
+            3 => draw::<3>(&sampler, u),
+            4 => draw::<4>(&sampler, u),
+            _ => {}
+        }
+    }
+}
+
+/// # Safety
+/// `u` must be NULL or have room for N numbers.
+#[inline(always)]
+unsafe fn draw<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
+    // SAFETY: passed on to the caller.
+    if let Ok(u) = unsafe { convert::room(u.cast::<[f32; N]>()) } {
+        u.write(to(sampler).draw());
+    }
+}
+
+/// How many numbers nf_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
+/// 1..4, or memory has not that many.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_sampler_fill_len(
+    dims: *const u32,
+    domains: usize,
+    width: u32,
+    height: u32,
+    samples: u32,
+) -> usize {
+    // SAFETY: the caller passes `domains` numbers.
+    let Ok(dims) = (unsafe { convert::slice(dims, domains) }) else { return 0 };
+    crate::tile::fill_len(dims, width, height, samples).unwrap_or(0)
+}
+
+/// Draws for many pixels and samples at once, for renderers that work on whole images. The same bits as single draws.
+///
+/// samplers[domains]: one for each domain, all at the first pixel and the first sample. dims[domains]: how many numbers
+/// to draw from each, 1..4. width, height: how many pixels, to the right and down. samples: how many samples of each,
+/// by ascending index. u[height][width][samples][sum of dims]: what the samplers draw there, one after the other; len
+/// numbers are there, at least nf_sampler_fill_len.
+///
+/// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: dims, or sizes that memory cannot have; NF_ERR_MEMORY: len.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_sampler_fill(
+    samplers: *const nf_sampler,
+    dims: *const u32,
+    domains: usize,
+    width: u32,
+    height: u32,
+    samples: u32,
+    u: *mut f32,
+    len: usize,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes `domains` samplers and numbers.
+        let (samplers, dims) = unsafe { (convert::slice(samplers, domains)?, convert::slice(dims, domains)?) };
+        let needed = crate::tile::fill_len(dims, width, height, samples).ok_or(NF_ERR_RANGE)?;
+        // Without domains or samples, as many places as there may be have nothing to draw.
+        if needed == 0 {
+            return Ok(());
+        }
+        if len < needed {
+            return Err(NF_ERR_MEMORY);
+        }
+        // SAFETY: the caller passes room for `len` numbers, which are no fewer.
+        let u = unsafe { convert::outputs(u, needed) }?;
+        let domains = || samplers.iter().map(to).zip(dims.iter().map(|&dims| dims as usize));
+        core::fill(domains, width as usize, height as usize, samples as usize, u).map_err(status_of)
+    })())
+}
+
+fn to(&nf_sampler { domain, index, x, y, flags }: &nf_sampler) -> Sampler {
+    Sampler { domain, index, x, y, flags }
+}
+
+fn of(Sampler { domain, index, x, y, flags }: Sampler) -> nf_sampler {
+    nf_sampler { domain, index, x, y, flags }
+}

@@ -1,0 +1,146 @@
+//! The default sampler: numbers for any pixel, sample and decision of a path, whose error is the least visible.
+//!
+//! One table serves any number of samples. Each pixel has a sequence of its own, of which the first 1, 2, 4, ... points
+//! are (0, m, 2)-nets; neighbours' sequences are so arranged that a filter, a denoiser or the eye removes most of the
+//! error that remains (chapter 5). There is nothing to choose and no state to keep: any sample can be had in any order.
+//!
+//! - [`Sampler`]: one sample of one pixel. Each decision of a path (lens, light, bounce) has a *domain*, a child of the
+//!   sampler by a key of its own.
+//! - [`fill()`]: many pixels and samples at once, the same bits.
+//! - [`table`]: the table, for ports to GPUs.
+//!
+//! `docs/sampling.md` has a renderer's loop, animation and denoisers.
+//!
+//! ```
+//! use noisefloor::sampler::Sampler;
+//!
+//! let sampler = Sampler::pixel(10, 20, 0, 0);
+//! let [x, y] = sampler.draw();                 // where in the pixel
+//! let [a, b] = sampler.domain(1).draw();       // where on the lens
+//! let bounce = sampler.domain(2).domain(0);    // the first bounce, and below it its own decisions
+//! let [c, d, e] = bounce.domain(7).draw();
+//! assert!([x, y, a, b, c, d, e].iter().all(|u| (0.0..1.0).contains(u)));
+//! ```
+
+mod fill;
+mod net;
+pub mod table;
+
+pub use fill::fill;
+
+use crate::hash::{GOLDEN, child, mix};
+
+/// One sample of one pixel: 16 bytes, to be copied freely. Drawing does not change it. Any value of the fields is valid.
+///
+/// A sampler stands for a point of a cube with as many dimensions as are asked for, by domain: each decision of a path
+/// has its own, [`domain`](Sampler::domain) with a key of its own. A domain's numbers depend on nothing but pixel,
+/// frame, index and the keys, so samples can be had in any order and on any thread.
+///
+/// ```
+/// use noisefloor::sampler::Sampler;
+///
+/// let sampler = Sampler::pixel(10, 20, 0, 3);
+/// let [a, b, c] = sampler.domain(7).draw(); // a decision, as many numbers as it needs
+/// assert!([a, b, c].iter().all(|u| (0.0..1.0).contains(u)));
+/// assert_eq!(Sampler::pixel(10, 20, 0, 0).moved(0, 0, 3), sampler);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Sampler {
+    /// The domain: 0 is the root, others are hashes of the keys that led there.
+    pub domain: u32,
+    /// The sample of the pixel.
+    pub index: u32,
+    /// The pixel's column, its last 16 bits.
+    pub x: u16,
+    /// The pixel's row, likewise.
+    pub y: u16,
+    /// 1 if scrambled, 2 if white; other bits mean nothing.
+    pub flags: u32,
+}
+
+/// Keep domains of frames and of scrambles apart from those of keys.
+const FRAMES: u32 = 0x6672_616d;
+const SCRAMBLE: u32 = 0x7363_7261;
+/// Values are shifted by hashes of the domain.
+const SCRAMBLED: u32 = 1;
+/// Pixels are anywhere in the table.
+const HASHED: u32 = 2;
+
+impl Sampler {
+    /// Sample `index` of pixel (x, y) in `frame`, any values of each: pixels repeat every [`table::SIZE`].
+    ///
+    /// The samples of a pixel are one sequence, best at powers of two; take any number, and stop where you like. Each
+    /// frame is the table at another place, unrelated to the others. Where frames are averaged, by a viewer or by TAA,
+    /// leave the frame 0 and let the index count on.
+    #[inline(always)]
+    pub const fn pixel(x: u32, y: u32, frame: u32, index: u32) -> Sampler {
+        let domain = if frame == 0 { 0 } else { child(FRAMES, frame) };
+        Sampler { domain, index, x: x as u16, y: y as u16, flags: 0 }
+    }
+
+    /// The same, but neighbours know nothing of each other: the error is that of each pixel, white over the image. For
+    /// denoisers that were made for white noise.
+    #[inline(always)]
+    pub const fn white(x: u32, y: u32, frame: u32, index: u32) -> Sampler {
+        Sampler { flags: HASHED, ..Sampler::pixel(x, y, frame, index) }
+    }
+
+    /// The child domain of a key. Children of different keys are unrelated to each other and to their parent; keys mean
+    /// something only among children of one parent.
+    #[inline(always)]
+    #[must_use]
+    pub const fn domain(self, key: u32) -> Sampler {
+        Sampler { domain: child(self.domain, key), ..self }
+    }
+
+    /// An independent version for each seed but 0; seed 0 changes nothing.
+    ///
+    /// It is the table at another place, with all values of each dimension shifted, modulo 1, by a hash of seed and
+    /// domain. Over random seeds every value is uniform, so estimates are unbiased, as far as a hash of 32 bits is
+    /// random. The shift costs quality: where good images are wanted, and not exact unbiasedness, take another frame
+    /// instead. Children of a scrambled sampler are scrambled.
+    #[inline(always)]
+    #[must_use]
+    pub const fn scramble(self, seed: u32) -> Sampler {
+        if seed == 0 {
+            return self;
+        }
+        Sampler { domain: child(self.domain ^ SCRAMBLE, seed), flags: self.flags | SCRAMBLED, ..self }
+    }
+
+    /// The same domain of the pixel `x` columns to the right and `y` rows down, and of the sample `index` further.
+    #[inline(always)]
+    #[must_use]
+    pub const fn moved(self, x: u32, y: u32, index: u32) -> Sampler {
+        let (x, y) = ((self.x as u32).wrapping_add(x) as u16, (self.y as u32).wrapping_add(y) as u16);
+        Sampler { x, y, index: self.index.wrapping_add(index), ..self }
+    }
+
+    /// N numbers, 1 to 4, of this domain; each in [0, 1), a multiple of 2^-24.
+    ///
+    /// The first two are optimised together. All four are stratified together, as a net is, as far as that is possible;
+    /// across pixels the last two are as good as the first, but with these they are not arranged.
+    #[inline(always)]
+    pub fn draw<const N: usize>(&self) -> [f32; N] {
+        const { assert!(0 < N && N <= 4, "a domain has 1 to 4 numbers") };
+        let mut fixed = net::point::<N>(self);
+        if self.flags & SCRAMBLED != 0 {
+            for (number, value) in (1..).zip(&mut fixed) {
+                *value = value.wrapping_add(mix(self.domain.wrapping_add(GOLDEN.wrapping_mul(number))));
+            }
+        }
+        fixed.map(|value| (value >> 8) as f32 * (1.0 / 16_777_216.0))
+    }
+
+    /// As [`draw`](Sampler::draw), as many numbers as `u` has room for, at most 4; more stay as they are.
+    #[inline]
+    pub fn draw_into(&self, u: &mut [f32]) {
+        match u {
+            [a] => [*a] = self.draw(),
+            [a, b] => [*a, *b] = self.draw(),
+            [a, b, c] => [*a, *b, *c] = self.draw(),
+            [a, b, c, d, ..] => [*a, *b, *c, *d] = self.draw(),
+            [] => {}
+        }
+    }
+}

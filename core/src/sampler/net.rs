@@ -1,0 +1,107 @@
+//! From a sample's number to its point.
+//!
+//! A pixel's sequence is Sobol's first two dimensions, each digit exclusive-or a bit that depends on the digits before
+//! it (A. Owen, "Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995). The table holds the first digits' bits, a
+//! hash makes those that follow.
+
+use super::table::{BITS, SIZE, TABLE};
+use super::{HASHED, Sampler};
+use crate::hash::{GOLDEN, mix};
+
+/// How the finer digits of each axis depend on the leading eight.
+const FINE: [u32; 2] = [0x21f0_aaad, 0x735a_2d97];
+
+/// The point in 32-bit fixed point.
+#[inline(always)]
+pub(super) fn point<const N: usize>(sampler: &Sampler) -> [u32; N] {
+    let Sampler { domain, index, x, y, flags } = *sampler;
+    let (mut x, mut y) = (u32::from(x), u32::from(y));
+    let mut first = index.reverse_bits();
+    if flags & HASHED != 0 {
+        let at = mix(x | y << 16);
+        (x, y) = (at & 0xffff, at >> 16);
+    }
+    if domain != 0 {
+        first = reorder(first, domain, x, y);
+        (x, y) = place(domain, x, y);
+    }
+    let [a, b] = pair(x, y, first);
+    if N < 3 {
+        return [a, b, 0, 0].first_chunk().copied().unwrap_or([0; N]);
+    }
+    let other = domain.wrapping_mul(GOLDEN).wrapping_add(0x632b_e5ab);
+    let [c, d] = pair(x.wrapping_add(other >> 7), y.wrapping_add(other >> 19), second(first));
+    [a, b, c, d].first_chunk().copied().unwrap_or([0; N])
+}
+
+/// Where in the table a domain's pixel is: at another place, and mirrored and transposed or not, which keeps neighbours
+/// neighbours.
+#[inline(always)]
+const fn place(domain: u32, x: u32, y: u32) -> (u32, u32) {
+    let (x, y) = if domain >> 31 == 0 { (x, y) } else { (y, x) };
+    let (across, down) = ((domain >> 30 & 1).wrapping_neg(), (domain >> 29 & 1).wrapping_neg());
+    ((x ^ across).wrapping_add(domain), (y ^ down).wrapping_add(domain >> 8))
+}
+
+/// Another order of a pixel's samples in each domain, of reversed numbers: a random one of those that keep the first 1,
+/// 2, 4, ... samples together, and each half of what follows them, and so on. Without it a sample's numbers in two
+/// domains would be the same function of its number in all pixels.
+///
+/// Each digit is exclusive-or a function of the digits after it, as both steps take bits upwards only.
+#[inline(always)]
+const fn reorder(first: u32, domain: u32, x: u32, y: u32) -> u32 {
+    let mut random = domain.wrapping_add(x.wrapping_mul(0x2c1b_3c6d)).wrapping_add(y.wrapping_mul(0x297a_2d39));
+    random = (random ^ random >> 15).wrapping_mul(0x735a_2d97);
+    random ^= random >> 15;
+    let first = first ^ first.wrapping_mul(random << 1);
+    first.wrapping_mul(random >> 15 | 1)
+}
+
+/// The point of a place, by the reversed number.
+#[inline(always)]
+fn pair(x: u32, y: u32, first: u32) -> [u32; 2] {
+    let pixel = (y & (SIZE - 1)) * SIZE + (x & (SIZE - 1));
+    let mut point = [first, pascal(first)];
+    for (axis, value) in point.iter_mut().enumerate() {
+        let offsets = TABLE[(pixel << BITS | *value >> (32 - BITS)) as usize];
+        let coarse = *value ^ u32::from_le_bytes([0, 0, offsets[2 * axis], offsets[2 * axis + 1]]);
+        *value = coarse ^ (pixel << 8 | coarse >> 24).wrapping_mul(FINE[axis]) >> 8;
+    }
+    point
+}
+
+/// Sobol's second dimension, by the first: Pascal's matrix modulo 2.
+#[inline(always)]
+const fn pascal(first: u32) -> u32 {
+    let mut second = first ^ first << 16;
+    second ^= (second & 0x00ff_00ff) << 8;
+    second ^= (second & 0x0f0f_0f0f) << 4;
+    second ^= (second & 0x3333_3333) << 2;
+    second ^ (second & 0x5555_5555) << 1
+}
+
+/// The reversed number at which the third and the fourth number are drawn: the first nine digits times a matrix, unit
+/// triangular, found by search: of points in four dimensions the first 4 to 512 are (t, m, 4)-nets with t from 1 to 3.
+#[inline(always)]
+fn second(first: u32) -> u32 {
+    first & 0x007f_ffff | u32::from(SECOND[(first >> 23) as usize]) << 16
+}
+
+/// The first nine digits, in the upper bits, by those of the first two numbers.
+static SECOND: [u16; 512] = {
+    // Column k holds which of the index' bits bit k adds to.
+    let columns = [1_u32, 2, 5, 11, 22, 63, 93, 141, 348];
+    let mut all = [0; 512];
+    let mut digits = 0;
+    while digits < 512 {
+        let (mut sum, mut k) = (0, 0);
+        while k < 9 {
+            // Digit 0, the uppermost, is bit 0 of the index.
+            sum ^= columns[k] * (digits >> (8 - k) & 1);
+            k += 1;
+        }
+        all[digits as usize] = (sum.reverse_bits() >> 16) as u16;
+        digits += 1;
+    }
+    all
+};

@@ -1,0 +1,157 @@
+/* The sampler of a tile: by value, what it draws, its batch form, and what bad arguments do. */
+#include "tile_file.h"
+
+static int same(const float *a, const float *b, size_t n) { return memcmp(a, b, n * sizeof *a) == 0; }
+
+static void draws(const nf_tile *tile)
+{
+    uint32_t i, d, k;
+    for (i = 0; i < 2000; ++i) {
+        float all[4], few[5];
+        nf_tile_sampler s = nf_tile_sampler_pixel(tile, i % 23, i / 23, i % 3, i % 11), copy;
+        if (i % 4 == 1)
+            s = nf_tile_sampler_domain(s, i);
+        if (i % 4 == 2)
+            s = nf_tile_sampler_domain(nf_tile_sampler_domain(s, 1), i);
+        if (i % 5 == 0)
+            s = nf_tile_sampler_scramble(s, i + 1);
+        CHECK(sizeof s <= 32);
+        copy = s;
+        nf_tile_sampler_draw(s, 4, all);
+        CHECK(memcmp(&s, &copy, sizeof s) == 0);
+        for (d = 1; d <= 4; ++d) {
+            poison(few, sizeof few);
+            nf_tile_sampler_draw(copy, d, few);
+            CHECK(same(few, all, d));
+            CHECK(is_poisoned(few + d, (5 - d) * sizeof *few));
+        }
+        for (k = 0; k < 4; ++k)
+            CHECK(all[k] >= 0.0f && all[k] < 1.0f);
+    }
+}
+
+static void places(const nf_tile *tile)
+{
+    float a[3], b[3];
+    nf_tile_sampler s = nf_tile_sampler_pixel(tile, 3, 5, 0, 1);
+    nf_tile_sampler_draw(s, 3, a);
+    nf_tile_sampler_draw(nf_tile_sampler_pixel(tile, 3 + 8, UINT32_MAX - 2, 0, 1), 3, b);
+    CHECK(same(a, b, 3));
+    nf_tile_sampler_draw(nf_tile_sampler_pixel(tile, 3, 5, 1, 1), 3, b);
+    CHECK(!same(a, b, 3));
+    nf_tile_sampler_draw(nf_tile_sampler_pixel(tile, 3, 5, 0, 5), 3, b);
+    CHECK(!same(a, b, 3));
+    nf_tile_sampler_draw(nf_tile_sampler_domain(s, 0), 3, b);
+    CHECK(!same(a, b, 3));
+    nf_tile_sampler_draw(nf_tile_sampler_scramble(s, 1), 3, b);
+    CHECK(!same(a, b, 3));
+    nf_tile_sampler_draw(nf_tile_sampler_scramble(s, 0), 3, b);
+    CHECK(same(a, b, 3));
+    /* Keys of a parent and of its child are not the same domain, in either order. */
+    nf_tile_sampler_draw(nf_tile_sampler_domain(nf_tile_sampler_domain(s, 1), 2), 3, a);
+    nf_tile_sampler_draw(nf_tile_sampler_domain(nf_tile_sampler_domain(s, 2), 1), 3, b);
+    CHECK(!same(a, b, 3));
+}
+
+static void nothing(const nf_tile *tile)
+{
+    float u[4];
+    unsigned char room[sizeof(nf_tile) + 8];
+    nf_tile zero;
+    nf_tile_sampler none[4], s = nf_tile_sampler_pixel(tile, 1, 2, 3, 4);
+    size_t i;
+    memset(&zero, 0, sizeof zero);
+    memset(&none[0], 0, sizeof none[0]);
+    none[1] = nf_tile_sampler_pixel(NULL, 1, 2, 3, 4);
+    none[2] = nf_tile_sampler_pixel(&zero, 1, 2, 3, 4);
+    memcpy(room + 1, tile, sizeof *tile);
+    none[3] = nf_tile_sampler_pixel((const nf_tile *)misaligned(room), 1, 2, 0, 0);
+    for (i = 0; i < 4; ++i) {
+        poison(u, sizeof u);
+        nf_tile_sampler_draw(none[i], 4, u);
+        CHECK(u[0] == 0.0f && u[1] == 0.0f && u[2] == 0.0f && u[3] == 0.0f);
+        poison(u, sizeof u);
+        nf_tile_sampler_draw(nf_tile_sampler_scramble(nf_tile_sampler_domain(none[i], 3), 0), 2, u);
+        CHECK(u[0] == 0.0f && u[1] == 0.0f && is_poisoned(u + 2, 2 * sizeof *u));
+    }
+    poison(u, sizeof u);
+    nf_tile_sampler_draw(s, 0, u);
+    nf_tile_sampler_draw(s, 5, u);
+    nf_tile_sampler_draw(s, UINT32_MAX, u);
+    CHECK(is_poisoned(u, sizeof u));
+    nf_tile_sampler_draw(s, 2, NULL);
+    nf_tile_sampler_draw(s, 4, NULL);
+    nf_tile_sampler_draw(s, 2, (float *)misaligned(u));
+    nf_tile_sampler_draw(s, 3, (float *)misaligned(u));
+    CHECK(is_poisoned(u, sizeof u));
+}
+
+static void fill(const nf_tile *tile)
+{
+    static const uint32_t dims[3] = {2, 4, 1};
+    enum { WIDTH = 11, HEIGHT = 3, SAMPLES = 6, EACH = 7, COUNT = WIDTH * HEIGHT * SAMPLES * EACH };
+    memory room = memory_new(COUNT * sizeof(float));
+    float *u = (float *)room.start;
+    nf_tile_sampler s[3];
+    uint32_t x, y, i, bad[3] = {2, 5, 1};
+    size_t at = 0;
+    s[0] = nf_tile_sampler_pixel(tile, 6, 7, 1, 2);
+    s[1] = nf_tile_sampler_domain(s[0], 4);
+    s[2] = nf_tile_sampler_domain(nf_tile_sampler_scramble(s[0], 5), 6);
+    CHECK(nf_tile_sampler_fill_len(dims, 3, WIDTH, HEIGHT, SAMPLES) == COUNT);
+    CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, WIDTH, HEIGHT, SAMPLES, u, COUNT), NF_OK);
+    for (y = 0; y < HEIGHT; ++y)
+        for (x = 0; x < WIDTH; ++x)
+            for (i = 0; i < SAMPLES; ++i) {
+                nf_tile_sampler here = nf_tile_sampler_pixel(tile, 6 + x, 7 + y, 1, 2 + i);
+                float single[EACH];
+                nf_tile_sampler_draw(here, 2, single);
+                nf_tile_sampler_draw(nf_tile_sampler_domain(here, 4), 4, single + 2);
+                nf_tile_sampler_draw(nf_tile_sampler_domain(nf_tile_sampler_scramble(here, 5), 6), 1, single + 6);
+                CHECK(same(single, u + at, EACH));
+                at += EACH;
+            }
+
+    poison(u, room.bytes);
+    CHECK_STATUS(nf_tile_sampler_fill(NULL, dims, 3, 1, 1, 1, u, COUNT), NF_ERR_NULL);
+    CHECK_STATUS(nf_tile_sampler_fill(s, NULL, 3, 1, 1, 1, u, COUNT), NF_ERR_NULL);
+    CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, 1, 1, 1, NULL, COUNT), NF_ERR_NULL);
+    CHECK_STATUS(nf_tile_sampler_fill((const nf_tile_sampler *)misaligned(s), dims, 3, 1, 1, 1, u, COUNT), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_tile_sampler_fill(s, (const uint32_t *)misaligned(bad), 2, 1, 1, 1, u, COUNT), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, 1, 1, 1, (float *)misaligned(u), COUNT - 1), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_tile_sampler_fill(s, bad, 3, 1, 1, 1, u, COUNT), NF_ERR_RANGE);
+    CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, UINT32_MAX, UINT32_MAX, UINT32_MAX, u, SIZE_MAX), NF_ERR_RANGE);
+    CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, WIDTH, HEIGHT, SAMPLES, u, COUNT - 1), NF_ERR_MEMORY);
+    CHECK_STATUS(nf_tile_sampler_fill(NULL, NULL, 0, 0xffff, 0xffff, 1, NULL, 0), NF_OK); /* nothing to draw, at once */
+    CHECK(is_poisoned(u, room.bytes));
+    CHECK(nf_tile_sampler_fill_len(bad, 3, 1, 1, 1) == 0);
+    CHECK(nf_tile_sampler_fill_len(NULL, 3, 1, 1, 1) == 0);
+    CHECK(nf_tile_sampler_fill_len(dims, 3, UINT32_MAX, UINT32_MAX, UINT32_MAX) == 0);
+    CHECK(nf_tile_sampler_fill_len(dims, 3, 0, 1, 1) == 0);
+    CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, 0, 9, 9, NULL, 0), NF_OK);
+    CHECK_STATUS(nf_tile_sampler_fill(NULL, NULL, 0, 9, 9, 9, NULL, 0), NF_OK);
+
+    /* Samplers without a tile draw zeros here too. */
+    s[1].tile = NULL;
+    CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, 1, 1, 1, u, EACH), NF_OK);
+    CHECK(u[2] == 0.0f && u[5] == 0.0f && u[0] != 0.0f);
+    memory_free(&room);
+}
+
+int main(void)
+{
+    static const char *const names[] = {"plain.nft", "progressive.nft", "single.nft"};
+    size_t i;
+    for (i = 0; i < 3; ++i) {
+        memory file = tile_file(names[i]);
+        nf_tile tile;
+        CHECK_STATUS(nf_tile_from_bytes(file.start, file.bytes, &tile), NF_OK);
+        draws(&tile);
+        if (i == 0)
+            places(&tile);
+        nothing(&tile);
+        fill(&tile);
+        memory_free(&file);
+    }
+    return report("tile_sampler");
+}

@@ -1,0 +1,236 @@
+//! The default sampler: its points are nets, its domains are unrelated, and what is unbiased over what.
+//!
+//! Seeds are fixed. Each test states the probability that it fails by chance.
+
+use noisefloor::Error;
+use noisefloor::sampler::{Sampler, fill, table};
+use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::statistics::Moments;
+use proptest::prelude::*;
+
+const PIXELS: u32 = table::SIZE * table::SIZE;
+
+fn root(pixel: u32) -> Sampler {
+    Sampler::pixel(pixel % table::SIZE, pixel / table::SIZE, 0, 0)
+}
+
+/// The root, siblings, and chains with equal keys at each step.
+fn domains(root: Sampler, count: u32) -> Vec<Sampler> {
+    let half = count / 2;
+    let siblings = (0..half).map(|key| root.domain(key));
+    let chain = (0..half).scan(root, |parent, _| {
+        *parent = parent.domain(0);
+        Some(parent.domain(1))
+    });
+    siblings.chain(chain).collect()
+}
+
+/// Whether each elementary interval, of 2^cut[k] parts along axis k, has one of the points of which there are as many.
+fn is_stratified<const N: usize>(points: &[[f32; N]], cut: [u32; N]) -> bool {
+    let mut seen = vec![false; points.len()];
+    for point in points {
+        let cells = point.iter().zip(cut).map(|(u, bits)| ((u * (1 << bits) as f32) as usize, bits));
+        let at = cells.fold(0, |sum, (cell, bits)| sum << bits | cell);
+        if std::mem::replace(&mut seen[at], true) {
+            return false;
+        }
+    }
+    true
+}
+
+/// The first 2^m points, and every later run of as many, are (0, m, 2)-nets: of all pixels, in the root, a domain and a
+/// white one.
+#[test]
+fn runs_are_nets() {
+    for pixel in 0..PIXELS {
+        let Sampler { x, y, .. } = root(pixel);
+        let white = Sampler::white(x.into(), y.into(), 0, 0).domain(pixel);
+        for sampler in [root(pixel), root(pixel).domain(pixel), white] {
+            for m in [0, 1, 2, 3, 4, 6, 9] {
+                let n = 1 << m;
+                for first in [0, n, 5 * n] {
+                    let points: Vec<[f32; 2]> = (first..first + n).map(|i| sampler.moved(0, 0, i).draw()).collect();
+                    let nets = (0..=m).all(|a| is_stratified(&points, [a, m - a]));
+                    assert!(nets, "{sampler:?}, {n} points from {first}");
+                }
+            }
+        }
+    }
+}
+
+/// All four numbers are nets together, of a t that grows slowly: of 2^m points those intervals of 2^(t - m) that count.
+#[test]
+fn four_numbers_are_nets() {
+    // Of 4 to 512 points.
+    let strengths = [1, 1, 1, 2, 2, 2, 3, 3];
+    for pixel in (0..PIXELS).step_by(61) {
+        for sampler in [root(pixel), root(pixel).domain(3)] {
+            for (m, t) in (2..).zip(strengths) {
+                let points: Vec<[f32; 4]> = (0..1 << m).map(|i| sampler.moved(0, 0, i).draw()).collect();
+                let cuts = (0..6_u32.pow(4)).map(|k| [k % 6, k / 6 % 6, k / 36 % 6, k / 216]);
+                for cut in cuts.filter(|cut| cut.iter().sum::<u32>() == m - t) {
+                    // Each interval has 2^t points.
+                    let mut counts = vec![0; 1 << (m - t)];
+                    for point in &points {
+                        let cells = point.iter().zip(cut).map(|(u, bits)| ((u * (1 << bits) as f32) as usize, bits));
+                        counts[cells.fold(0, |sum, (cell, bits)| sum << bits | cell)] += 1;
+                    }
+                    assert!(counts.iter().all(|&count| count == 1 << t), "{sampler:?}, 2^{m}, {cut:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Products of centred numbers, and of their signs, of all pairs of 64 domains over the pixels of the table. Between two
+/// domains neighbours' products hardly differ less than others', so that the deviates' variance is near 1; two domains
+/// at the same place of the table, which one pair in 8,192 has, would fail. Of 16,128 normal deviates the largest is
+/// beyond 6.5 with probability 1e-6.
+#[test]
+fn domains_are_uncorrelated() {
+    for n in [1, 4] {
+        let scale = (f64::from(PIXELS) / f64::from(n)).sqrt();
+        let mut columns: Vec<Vec<[f64; 4]>> = vec![vec![]; 64];
+        for pixel in 0..PIXELS {
+            for index in 0..n {
+                for (column, domain) in columns.iter_mut().zip(domains(root(pixel).moved(0, 0, index), 64)) {
+                    let [a, b]: [f64; 2] = domain.draw().map(|u: f32| f64::from(u) - 0.5);
+                    column.push([a * 12_f64.sqrt(), b * 12_f64.sqrt(), a.signum(), b.signum()]);
+                }
+            }
+        }
+        let mut squares = Moments::default();
+        for (i, a) in columns.iter().enumerate() {
+            for (j, b) in columns[..i].iter().enumerate() {
+                for (p, q) in [(0, 0), (0, 1), (1, 0), (1, 1), (2, 2), (2, 3), (3, 2), (3, 3)] {
+                    let mean = a.iter().zip(b).map(|(a, b)| a[p] * b[q]).sum::<f64>() / f64::from(n * PIXELS);
+                    let z = mean * scale * f64::from(n);
+                    // Pairs of samples on either side of the middle have products of one sign.
+                    let z = if n == 1 { z } else { z / 2_f64.sqrt() };
+                    assert!(z.abs() < 6.5, "{n}: domains {i} and {j}, {p} {q}: {z}");
+                    squares.add(z * z);
+                }
+            }
+        }
+        println!("{n}: variance {:.3}", squares.mean());
+        assert!(squares.mean() < 1.5, "{n}: {}", squares.mean());
+    }
+}
+
+/// Over seeds every value is uniform: the means of four integrands, of 1 and 4 samples. |z| < 4.75 by chance with
+/// probability 2e-6, of 32 deviates.
+#[test]
+fn unbiased_over_scrambles() {
+    let integrands: [(fn([f32; 4]) -> f64, f64); 4] = [
+        (|[x, y, ..]| f64::from(x * x * y), 1.0 / 6.0),
+        (|[x, y, ..]| f64::from(u8::from(x + y < 0.7)), 0.245),
+        (|[x, _, z, w]| f64::from(u8::from(x < 0.25)) * f64::from(z * w), 0.0625),
+        (|[_, y, z, _]| f64::from(y * z), 0.25),
+    ];
+    for sampler in [root(77), root(77).domain(5), root(900), Sampler::white(3, 4, 1, 0)] {
+        for n in [1, 4] {
+            let mut means = [Moments::default(); 4];
+            for seed in 1..=40_000 {
+                let points = (0..n).map(|i| sampler.scramble(seed).moved(0, 0, i).draw::<4>());
+                let points: Vec<[f32; 4]> = points.collect();
+                for (moments, (f, _)) in means.iter_mut().zip(&integrands) {
+                    moments.add(points.iter().map(|&u| f(u)).sum::<f64>() / f64::from(n));
+                }
+            }
+            for (k, (moments, (_, truth))) in means.iter().zip(integrands).enumerate() {
+                assert!(moments.z(truth).abs() < 4.75, "{n}, integrand {k}: {}", moments.z(truth));
+            }
+        }
+    }
+}
+
+/// As many values as uniform numbers would have lie near each border, over the table, of the first 1, 4 and 16 samples:
+/// no part of the square is avoided.
+#[test]
+fn borders_are_sampled() {
+    for n in [1, 4, 16] {
+        for axis in 0..2 {
+            for near in [|u: f32| u < 1.0 / 64.0, |u: f32| u >= 63.0 / 64.0] {
+                let all = (0..PIXELS).flat_map(|pixel| (0..n).map(move |i| root(pixel).moved(0, 0, i).draw::<2>()));
+                let count = all.filter(|u| near(u[axis])).count() as f64;
+                let density = count * 64.0 / f64::from(n * PIXELS);
+                assert!((0.9..=1.1).contains(&density), "{n} samples, axis {axis}: {density}");
+            }
+        }
+    }
+}
+
+/// Neighbours' values differ more than those of pixels at random; white samplers' do not. Of one sample, the mean square
+/// of differences between pixels beside each other, over 1/6.
+#[test]
+fn neighbours_differ() {
+    let spread = |make: fn(u32, u32, u32, u32) -> Sampler| {
+        let mut moments = Moments::default();
+        for (x, y) in (0..table::SIZE).flat_map(|y| (0..table::SIZE).map(move |x| (x, y))) {
+            let at = |x, y| make(x, y, 0, 0).draw::<2>();
+            for other in [at(x + 1, y), at(x, y + 1)] {
+                at(x, y).iter().zip(other).for_each(|(a, b)| moments.add(6.0 * f64::from((a - b).powi(2))));
+            }
+        }
+        moments
+    };
+    let (blue, white) = (spread(Sampler::pixel), spread(Sampler::white));
+    println!("blue {:.3}, white {:.3}", blue.mean(), white.mean());
+    assert!(blue.mean() > 1.15, "{}", blue.mean());
+    assert!(white.z(1.0).abs() < 4.75, "{}", white.mean());
+}
+
+/// Bits that never change.
+#[test]
+fn pinned_values() {
+    let bits = |sampler: Sampler| sampler.draw::<4>().map(|u| (u * 16_777_216.0) as u32);
+    let mut hash = 0_u64;
+    let mut rng = SplitMix64::new(1);
+    for _ in 0..10_000 {
+        let mut word = || rng.next_u64() as u32;
+        let sampler = Sampler::pixel(word(), word(), word() % 2, word() >> (word() % 32)).scramble(word() % 2);
+        let sampler = if word().is_multiple_of(2) { sampler } else { sampler.domain(word()) };
+        for value in bits(sampler) {
+            hash = (hash ^ u64::from(value)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+    assert_eq!(bits(Sampler::pixel(0, 0, 0, 0)), PINNED);
+    assert_eq!(hash, PINNED_HASH);
+}
+
+const PINNED: [u32; 4] = [0; 4];
+const PINNED_HASH: u64 = 0;
+
+#[test]
+fn filled_at_once() {
+    let samplers = [(root(5).domain(1), 2), (Sampler::white(7, 8, 9, 10).scramble(3), 3)];
+    let mut u = vec![-1.0; 4 * 3 * 5 * 5 + 1];
+    fill(|| samplers, 4, 3, 5, &mut u).unwrap();
+    assert_eq!(u.pop(), Some(-1.0));
+    for (at, drawn) in u.chunks(5).enumerate() {
+        let [x, y, sample] = [at / 5 % 4, at / 20, at % 5].map(|value| value as u32);
+        let [a, b] = samplers.map(|(sampler, _)| sampler.moved(x, y, sample));
+        assert_eq!(drawn, [&a.draw::<2>()[..], &b.draw::<3>()].concat());
+    }
+    assert_eq!(fill(|| samplers, 4, 3, 5, &mut u[1..]), Err(Error::Memory));
+    assert_eq!(fill(|| [(root(0), 5)], 1, 1, 1, &mut u), Err(Error::Range));
+    assert_eq!(fill(|| [(root(0), 0)], 1, 1, 1, &mut u), Err(Error::Range));
+    assert_eq!(fill(|| samplers, usize::MAX, 3, 5, &mut u), Err(Error::Range));
+    assert_eq!(fill(|| [], usize::MAX, usize::MAX, 1, &mut u), Err(Error::Range));
+    assert_eq!(fill(|| samplers, 0, 3, 5, &mut []), Ok(()));
+}
+
+proptest! {
+    /// Whatever the fields: values in [0, 1), the first of more numbers are those of fewer.
+    #[test]
+    fn anything_goes(domain: u32, index: u32, x: u16, y: u16, flags: u32, key: u32, seed: u32, moved: [u32; 3]) {
+        let [across, down, further] = moved;
+        let sampler = Sampler { domain, index, x, y, flags }.domain(key).scramble(seed).moved(across, down, further);
+        let [a, b, c, d] = sampler.draw();
+        prop_assert!([a, b, c, d].iter().all(|u| (0.0..1.0).contains(u)));
+        prop_assert_eq!([sampler.draw::<1>()[0], sampler.draw::<2>()[1], sampler.draw::<3>()[2]], [a, b, c]);
+        let mut few = [9.0; 3];
+        sampler.draw_into(&mut few);
+        prop_assert_eq!(few, [a, b, c]);
+    }
+}
