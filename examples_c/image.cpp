@@ -1,4 +1,4 @@
-// An image of soft direct light, one sample of a tile in each pixel: by that sample alone, and by fits that pixels
+// An image of soft direct light, one sample in each pixel: by that sample alone, and by fits that pixels
 // share. It prints the error of both. "Tracing" is a formula: a square light above a plane, a wall beside it.
 #include "noisefloor.h"
 #include <algorithm>
@@ -55,16 +55,16 @@ static std::vector<nf_estimate> estimate(std::vector<float> &f)
     std::vector<uint32_t> surfaces(pixels);
     std::vector<nf_estimate> out(pixels);
     // README begin
-    std::vector<float> u(pixels * dims);                // u[pixel][dim]: a tile of 1 sample and 2 dims
-    nf_tile_sampler first = nf_tile_sampler_pixel(&nf_tile_128_1spp_2d, 0, 0, 0, 0);
-    check(nf_tile_sampler_fill(&first, &dims, 1, width, height, samples, u.data(), u.size()));
+    std::vector<float> u(pixels * dims);                // u[pixel][dim]
+    nf_sampler first = nf_sampler_pixel(0, 0, 0, 0);    // column, row, frame, sample
+    check(nf_sampler_fill(&first, &dims, 1, width, height, samples, u.data(), u.size()));
     for (uint32_t i = 0; i < pixels; ++i) {
         f[i] = radiance(i, &u[dims * i]);               // yours: the sample's value / pdf
         surfaces[i] = surface_at(i);                    // yours: pixels with the same number share fits
     }
     nf_cv_config config;
     nf_cv_config_default(&config);                      // 2 dims, order 2, 1 channel
-    config.stratified = 1;                              // a tile's samples are
+    config.stratified = 1;                              // this sampler's samples are
     nf_cv_image image = {};
     image.width = width, image.height = height, image.surfaces = surfaces.data();
     std::vector<uint64_t> memory(nf_cv_image_workspace_size(&config, &image, samples) / 8 + 1);

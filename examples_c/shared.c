@@ -1,4 +1,4 @@
-/* An image of 64 x 64 integrals, one sample of a tile in each pixel: by that sample alone, and by fits that pixels
+/* An image of 64 x 64 integrals, one sample in each pixel: by that sample alone, and by fits that pixels
  * share. */
 #include "noisefloor.h"
 #include <math.h>
@@ -29,19 +29,15 @@ static void render(void)
 static nf_status estimate(void)
 {
     const uint32_t dims = 2;
-    nf_tile tile;
-    nf_status status = nf_tile_builtin(NF_TILE_128_1SPP_2D, &tile);
-    if (status != NF_OK)
-        return status;
-    nf_tile_sampler sampler = nf_tile_sampler_pixel(&tile, 0, 0, 0, 0);
-    status = nf_tile_sampler_fill(&sampler, &dims, 1, SIZE, SIZE, 1, u, 2 * PIXELS);
+    const nf_sampler sampler = nf_sampler_pixel(0, 0, 0, 0); /* column, row, frame, sample */
+    nf_status status = nf_sampler_fill(&sampler, &dims, 1, SIZE, SIZE, 1, u, 2 * PIXELS);
     if (status != NF_OK)
         return status;
     render();
 
     nf_cv_config config;
     nf_cv_config_default(&config); /* 2 dimensions, order 2, 1 channel, the robust choice of fits */
-    config.stratified = 1; /* the tile's samples are; order and stride for other samples: nf_recommend() */
+    config.stratified = 1; /* this sampler's are; order and stride for other samples: nf_recommend() */
     nf_cv_image image = {0};
     image.width = SIZE;
     image.height = SIZE;

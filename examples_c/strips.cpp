@@ -33,9 +33,9 @@ static double exact(uint32_t x, uint32_t y)
 int main()
 {
     std::vector<float> u(2 * width * height), f(width * height);
-    nf_tile_sampler first = nf_tile_sampler_pixel(&nf_tile_128_1spp_2d, 0, 0, 0, 0);
+    nf_sampler first = nf_sampler_pixel(0, 0, 0, 0);
     const uint32_t dims = 2;
-    if (nf_tile_sampler_fill(&first, &dims, 1, width, height, 1, u.data(), u.size()) != NF_OK)
+    if (nf_sampler_fill(&first, &dims, 1, width, height, 1, u.data(), u.size()) != NF_OK)
         return 1;
 
     const nf::config config = nf::config(2, 3).with_stratified_samples();

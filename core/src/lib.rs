@@ -6,7 +6,8 @@
 //!   is usually far below the mean's and never noticeably above it (chapter 4).
 //! - [`recommend`](mod@recommend): which estimator and which tile to use, from measurements.
 //! - [`mis`]: weights for multiple importance sampling, the variance-minimising ones included (section 2.2.2).
-//! - [`tile`]: sample points whose error over the image is the least visible (chapter 5).
+//! - [`sampler`]: numbers for a renderer, whose error over the image is the least visible (chapter 5).
+//! - [`tile`]: the same from tables of your own, or made for one number of samples.
 //! - [`warp`]: from primary sample space to the shapes that a scene needs (section 2.2.1).
 //! - [`minibatch`]: minibatches drawn in proportion to importance, and gradients of least variance from them (chapter
 //!   6).

@@ -1,5 +1,4 @@
-// Where sample points come from. To see how a renderer draws from noisefloor's tiles, read TileSampler in
-// tile_sampler.hpp.
+// Where sample points come from. To see how a renderer draws from noisefloor, read DefaultSampler in tile_sampler.hpp.
 #pragma once
 
 #include "integrand.hpp"

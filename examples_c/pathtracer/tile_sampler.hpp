@@ -1,4 +1,4 @@
-// Sample points from noisefloor's tiles: how a renderer draws, and where tiles come from.
+// Sample points from noisefloor's samplers: how a renderer draws, and where tiles come from.
 #pragma once
 
 #include "noisefloor.h"
@@ -120,6 +120,46 @@ inline std::string default_tile(uint32_t samples)
     return best->name;
 }
 
+inline nf_sampler child(nf_sampler s, uint32_t key) { return nf_sampler_domain(s, key); }
+inline nf_tile_sampler child(nf_tile_sampler s, uint32_t key) { return nf_tile_sampler_domain(s, key); }
+inline void draw(nf_sampler s, uint32_t dims, float *u) { nf_sampler_draw(s, dims, u); }
+inline void draw(nf_tile_sampler s, uint32_t dims, float *u) { nf_tile_sampler_draw(s, dims, u); }
+
+// The numbers of one sample: a tree of domains, the bounce, and in it the decision. Keys are all that tells them apart:
+// nothing is counted, and a path that takes another turn does not disturb what the others draw.
+template <class S> void draw_groups(const S &sampler, const std::vector<Group> &groups, float *u)
+{
+    for (const Group &g : groups) {
+        draw(child(child(sampler, g.first.bounce), g.first.kind), g.dims, u);
+        // The two numbers that belong together are drawn first, wherever they go.
+        if (g.dims == 3 && g.first.dims == 1)
+            std::rotate(u, u + 2, u + 3);
+        u += g.dims;
+    }
+}
+
+// The library's own: nothing to choose. Another seed is another frame.
+class DefaultSampler final : public Sampler {
+public:
+    explicit DefaultSampler(const SamplerSetup &setup)
+        : setup_(setup), frame_(setup.frame + static_cast<uint32_t>(setup.seed - 1) * 4096),
+          scramble_(setup.scramble ? static_cast<uint32_t>(mix(setup.seed)) | 1 : 0), groups_(group(setup.domains, 4))
+    {
+    }
+
+    void points(uint32_t x, uint32_t y, float *u) const override { range(x, y, 0, setup_.samples, u); }
+    void range(uint32_t x, uint32_t y, uint32_t first, uint32_t count, float *u) const override
+    {
+        for (uint32_t i = first; i < first + count; ++i, u += setup_.dims)
+            draw_groups(nf_sampler_scramble(nf_sampler_pixel(x, y, frame_, i), scramble_), groups_, u);
+    }
+
+private:
+    SamplerSetup setup_;
+    uint32_t frame_, scramble_;
+    std::vector<Group> groups_;
+};
+
 class TileSampler final : public Sampler {
 public:
     TileSampler(std::shared_ptr<const LoadedTile> tile, const SamplerSetup &setup)
@@ -138,19 +178,9 @@ public:
     void points(uint32_t x, uint32_t y, float *u) const override { range(x, y, 0, setup_.samples, u); }
     void range(uint32_t x, uint32_t y, uint32_t first, uint32_t count, float *u) const override
     {
-        for (uint32_t i = first; i < first + count; ++i) {
-            nf_tile_sampler sampler = nf_tile_sampler_pixel(&tile_->view(), x, y, frame_, i);
-            sampler = nf_tile_sampler_scramble(sampler, scramble_);
-            for (const Group &g : groups_) {
-                // A tree of domains: the bounce, and in it the decision. Keys are all that tells them apart: nothing is
-                // counted, and a path that takes another turn does not disturb what the others draw.
-                nf_tile_sampler bounce = nf_tile_sampler_domain(sampler, g.first.bounce);
-                nf_tile_sampler_draw(nf_tile_sampler_domain(bounce, g.first.kind), g.dims, u);
-                // The two numbers that belong together are drawn first, wherever they go.
-                if (g.dims == 3 && g.first.dims == 1)
-                    std::rotate(u, u + 2, u + 3);
-                u += g.dims;
-            }
+        for (uint32_t i = first; i < first + count; ++i, u += setup_.dims) {
+            const nf_tile_sampler sampler = nf_tile_sampler_pixel(&tile_->view(), x, y, frame_, i);
+            draw_groups(nf_tile_sampler_scramble(sampler, scramble_), groups_, u);
         }
     }
 
@@ -162,7 +192,7 @@ private:
         groups_; // what one draw makes: domains that fit into the tile's dimensions are optimised together
 };
 
-inline const char *const sampler_names[] = {"random", "sobol", "tile", "table"};
+inline const char *const sampler_names[] = {"default", "random", "sobol", "tile", "table"};
 
 // Makes samplers of one kind: for each seed, for each domain. A file is read once, however many there are.
 class SamplerFactory {
@@ -181,6 +211,8 @@ public:
     // Throws if the points that there are do not suffice.
     std::unique_ptr<Sampler> make(const SamplerSetup &setup) const
     {
+        if (name_ == "default")
+            return std::make_unique<DefaultSampler>(setup);
         if (name_ == "random")
             return std::make_unique<RandomSampler>(setup);
         if (name_ == "sobol")
