@@ -77,11 +77,34 @@ fn draw(source: &mut Source<'_>, tile: Option<&nf_tile>) -> Result<()> {
     Ok(())
 }
 
+/// The default sampler, from any bytes.
+fn draw_default(source: &mut Source<'_>) -> Result<()> {
+    let [domain, index, flags, key, seed] = [source.any()?, source.any()?, source.any()?, source.any()?, source.any()?];
+    let sampler = nf_sampler { domain, index, x: source.any()?, y: source.any()?, flags };
+    let dims = [source.small(5)?, source.small(5)?];
+    // SAFETY: arrays have the lengths that the header asks for.
+    unsafe {
+        let samplers = [sampler, nf_sampler_scramble(nf_sampler_domain(sampler, key), seed)];
+        let mut all = [-1.0_f32; 4];
+        nf_sampler_draw(samplers[1], dims[1], all.as_mut_ptr());
+        let drawn = if dims[1] <= 4 { dims[1] as usize } else { 0 };
+        assert!(all.iter().enumerate().all(|(k, u)| (0.0..1.0).contains(u) == (k < drawn)));
+        let (width, height, samples) = (source.small(5)?, source.small(5)?, source.small(3)?);
+        let len = nf_sampler_fill_len(dims.as_ptr(), 2, width, height, samples);
+        let mut u = vec![-1.0_f32; if source.rarely(16)? { len / 2 } else { len }];
+        let (to, count) = (u.as_mut_ptr(), u.len());
+        let status = nf_sampler_fill(samplers.as_ptr(), dims.as_ptr(), 2, width, height, samples, to, count);
+        assert!(u.iter().all(|u| (0.0..1.0).contains(u) == (status == NF_OK)), "{status}");
+    }
+    Ok(())
+}
+
 fn run(bytes: &[u8]) -> Result<()> {
     let mut source = Source(Unstructured::new(bytes));
     let mut memory = Vec::new();
     let tile = tile(&mut source, &mut memory)?;
     draw(&mut source, tile.as_ref())?;
+    draw_default(&mut source)?;
     let mut rng = nf_rng { state: source.any()?, increment: source.any()? };
     // SAFETY: references are valid pointers, and messages are static strings.
     unsafe {
