@@ -745,6 +745,7 @@ nf_status nf_omis_merge(nf_omis *omis, const nf_omis *other);
  *   nf_sampler_domain         The child domain of a key, any value
  *   nf_sampler_scramble       An independent version of the sampler for each seed but 0
  *   nf_sampler_draw           Writes `dims` numbers, 1..4, to u[dims]
+ *   nf_sampler_table          The table that all draws look into, 65,536 numbers, for copies on other devices
  *   nf_sampler_fill_len       How many numbers nf_sampler_fill writes
  *   nf_sampler_fill           Draws for many pixels and samples at once, for renderers that work on whole images
  *   nf_tile_sampler_pixel     Sample `index` of pixel (x, y) in `frame`, any values of each
@@ -892,6 +893,9 @@ nf_sampler nf_sampler_scramble(nf_sampler sampler, uint32_t seed);
 // The first two are optimised together, across pixels too; all four are stratified together. Fewer are the first of
 // those. More come from a domain of their own. Writes nothing if dims is out of range or u is NULL.
 void nf_sampler_draw(nf_sampler sampler, uint32_t dims, float *u);
+
+// The table that all draws look into, 65,536 numbers, for copies on other devices: see noisefloor_sampler.h.
+const uint32_t *nf_sampler_table(void);
 
 // How many numbers nf_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
 // 1..4, or memory has not that many.

@@ -9,7 +9,7 @@ set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/noisefloor")
 set(pkgconfig_dir "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
 # They are links in the repository, which install() would copy as such.
-foreach(header IN ITEMS noisefloor.h noisefloor.hpp)
+foreach(header IN ITEMS noisefloor.h noisefloor.hpp noisefloor_sampler.h)
     file(REAL_PATH "include/${header}" header)
     install(FILES "${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 endforeach()

@@ -91,6 +91,12 @@ unsafe fn draw<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
     }
 }
 
+/// The table that all draws look into, 65,536 numbers, for copies on other devices: see noisefloor_sampler.h.
+#[unsafe(no_mangle)]
+pub extern "C" fn nf_sampler_table() -> *const u32 {
+    core::table::TABLE.as_ptr()
+}
+
 /// How many numbers nf_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
 /// 1..4, or memory has not that many.
 #[unsafe(no_mangle)]

@@ -72,6 +72,7 @@ const CHAPTERS: [Chapter; 8] = [
             "nf_sampler_domain",
             "nf_sampler_scramble",
             "nf_sampler_draw",
+            "nf_sampler_table",
             "nf_sampler_fill",
             "nf_tile_sampler",
             "nf_tile_sampler_pixel",

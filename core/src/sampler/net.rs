@@ -61,13 +61,10 @@ const fn reorder(first: u32, domain: u32, x: u32, y: u32) -> u32 {
 #[inline(always)]
 fn pair(x: u32, y: u32, first: u32) -> [u32; 2] {
     let pixel = (y & (SIZE - 1)) * SIZE + (x & (SIZE - 1));
-    let mut point = [first, pascal(first)];
-    for (axis, value) in point.iter_mut().enumerate() {
-        let offsets = TABLE[(pixel << BITS | *value >> (32 - BITS)) as usize];
-        let coarse = *value ^ u32::from_le_bytes([0, 0, offsets[2 * axis], offsets[2 * axis + 1]]);
-        *value = coarse ^ (pixel << 8 | coarse >> 24).wrapping_mul(FINE[axis]) >> 8;
-    }
-    point
+    let second = pascal(first);
+    let entry = |value: u32| TABLE[(pixel << BITS | value >> (32 - BITS)) as usize];
+    let fine = |value: u32, factor: u32| value ^ (pixel << 8 | value >> 24).wrapping_mul(factor) >> 8;
+    [fine(first ^ entry(first) << 16, FINE[0]), fine(second ^ (entry(second) & 0xffff_0000), FINE[1])]
 }
 
 /// Sobol's second dimension, by the first: Pascal's matrix modulo 2.

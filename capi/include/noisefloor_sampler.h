@@ -1,0 +1,1 @@
+../../include/noisefloor_sampler.h

@@ -1,0 +1,251 @@
+/* noisefloor's default sampler as one source, for C99, C++, CUDA, HIP, OpenCL C, GLSL, HLSL and Metal: the bits of
+ * nf_sampler_draw(), inlined, without a library call. MIT OR Apache-2.0.
+ *
+ * Before it is included, say how an entry of the table is read; the table is nf_sampler_table(), 65,536 numbers of 32
+ * bits, as an array, a buffer or a texture:
+ *
+ *     #define NOISEFLOOR_TABLE(i) table[i]
+ *     #include "noisefloor_sampler.h"
+ *
+ *     nfs s = nfs_domain(nfs_pixel(x, y, 0u, index), LIGHT);
+ *     nfs_floats u = nfs_draw2(s);      // u.x, u.y in [0, 1)
+ *
+ * Functions and arguments are those of noisefloor.h. State is 16 bytes. GLSL needs version 400 or ES 310.
+ */
+#ifndef NOISEFLOOR_SAMPLER_H
+#define NOISEFLOOR_SAMPLER_H
+
+#if defined(__HLSL_VERSION) || defined(__hlsl_dx_compiler)
+#define NFS_HLSL
+#elif defined(GL_core_profile) || defined(GL_compatibility_profile) || defined(GL_es_profile) || defined(VULKAN)
+#define NFS_GLSL
+#endif
+
+#if defined(NFS_HLSL)
+#define NFS_FUNCTION
+#define NFS_REVERSE(a) reversebits(a)
+#define NFS_FLOAT(a) float(a)
+typedef uint nfs_uint;
+#elif defined(NFS_GLSL)
+#define NFS_FUNCTION
+#define NFS_REVERSE(a) bitfieldReverse(a)
+#define NFS_FLOAT(a) float(a)
+#define nfs_uint uint
+#elif defined(__METAL_VERSION__)
+#define NFS_FUNCTION static inline
+#define NFS_REVERSE(a) metal::reverse_bits(a)
+#define NFS_FLOAT(a) float(a)
+typedef uint nfs_uint;
+#elif defined(__OPENCL_VERSION__)
+#define NFS_FUNCTION static inline
+#define NFS_FLOAT(a) (float)(a)
+typedef uint nfs_uint;
+#elif defined(__CUDACC__) || defined(__HIPCC__)
+#define NFS_FUNCTION static inline __host__ __device__
+#define NFS_FLOAT(a) (float)(a)
+#if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__)
+#define NFS_REVERSE(a) __brev(a)
+#endif
+typedef unsigned int nfs_uint;
+#else
+#include <stdint.h>
+#define NFS_FUNCTION static inline
+#define NFS_FLOAT(a) (float)(a)
+#if defined(__clang__)
+#define NFS_REVERSE(a) __builtin_bitreverse32(a)
+#endif
+typedef uint32_t nfs_uint;
+#endif
+
+/* One sample of one pixel. */
+struct nfs {
+    nfs_uint domain; /* 0 is the root */
+    nfs_uint index;
+    nfs_uint place;  /* the pixel's column, its row from bit 16 on */
+    nfs_uint flags;  /* 1: scrambled, 2: white */
+};
+
+/* What is drawn. */
+struct nfs_floats {
+    float x, y, z, w;
+};
+
+struct nfs_point {
+    nfs_uint x, y;
+};
+
+#if !defined(__cplusplus) && !defined(NFS_HLSL) && !defined(NFS_GLSL)
+typedef struct nfs nfs;
+typedef struct nfs_floats nfs_floats;
+typedef struct nfs_point nfs_point;
+#endif
+
+NFS_FUNCTION nfs_uint nfs_mix(nfs_uint h)
+{
+    h = (h ^ (h >> 16)) * 0x85ebca6bu;
+    h = (h ^ (h >> 13)) * 0xc2b2ae35u;
+    return h ^ (h >> 16);
+}
+
+NFS_FUNCTION nfs_uint nfs_child(nfs_uint domain, nfs_uint key)
+{
+    nfs_uint h = nfs_mix((key + 0x9e3779b9u) ^ (domain * 0x2c9277b5u));
+    return h == 0u ? 1u : h;
+}
+
+NFS_FUNCTION nfs_uint nfs_reverse(nfs_uint a)
+{
+#if defined(NFS_REVERSE)
+    return NFS_REVERSE(a);
+#else
+    a = (a << 16) | (a >> 16);
+    a = ((a & 0x00ff00ffu) << 8) | ((a >> 8) & 0x00ff00ffu);
+    a = ((a & 0x0f0f0f0fu) << 4) | ((a >> 4) & 0x0f0f0f0fu);
+    a = ((a & 0x33333333u) << 2) | ((a >> 2) & 0x33333333u);
+    return ((a & 0x55555555u) << 1) | ((a >> 1) & 0x55555555u);
+#endif
+}
+
+/* nf_sampler_pixel() */
+NFS_FUNCTION nfs nfs_pixel(nfs_uint x, nfs_uint y, nfs_uint frame, nfs_uint index)
+{
+    nfs s;
+    s.domain = frame == 0u ? 0u : nfs_child(0x6672616du, frame);
+    s.index = index;
+    s.place = (x & 0xffffu) | (y << 16);
+    s.flags = 0u;
+    return s;
+}
+
+/* nf_sampler_white() */
+NFS_FUNCTION nfs nfs_white(nfs_uint x, nfs_uint y, nfs_uint frame, nfs_uint index)
+{
+    nfs s = nfs_pixel(x, y, frame, index);
+    s.flags = 2u;
+    return s;
+}
+
+/* nf_sampler_domain() */
+NFS_FUNCTION nfs nfs_domain(nfs s, nfs_uint key)
+{
+    s.domain = nfs_child(s.domain, key);
+    return s;
+}
+
+/* nf_sampler_scramble() */
+NFS_FUNCTION nfs nfs_scramble(nfs s, nfs_uint seed)
+{
+    if (seed != 0u) {
+        s.domain = nfs_child(s.domain ^ 0x73637261u, seed);
+        s.flags |= 1u;
+    }
+    return s;
+}
+
+/* The table's pixel. */
+NFS_FUNCTION nfs_point nfs_place(nfs s)
+{
+    nfs_uint at = (s.flags & 2u) != 0u ? nfs_mix(s.place) : s.place;
+    nfs_point p;
+    p.x = at & 0xffffu;
+    p.y = at >> 16;
+    return p;
+}
+
+/* The point of a place, of a number whose bits are reversed. */
+NFS_FUNCTION nfs_point nfs_pair(nfs_uint x, nfs_uint y, nfs_uint first)
+{
+    nfs_uint pixel = ((y & 31u) << 5) | (x & 31u);
+    nfs_uint second = first ^ (first << 16);
+    nfs_point p;
+    second ^= (second & 0x00ff00ffu) << 8;
+    second ^= (second & 0x0f0f0f0fu) << 4;
+    second ^= (second & 0x33333333u) << 2;
+    second ^= (second & 0x55555555u) << 1;
+    p.x = first ^ (NOISEFLOOR_TABLE((pixel << 6) | (first >> 26)) << 16);
+    p.y = second ^ (NOISEFLOOR_TABLE((pixel << 6) | (second >> 26)) & 0xffff0000u);
+    p.x ^= (((pixel << 8) | (p.x >> 24)) * 0x21f0aaadu) >> 8;
+    p.y ^= (((pixel << 8) | (p.y >> 24)) * 0x735a2d97u) >> 8;
+    return p;
+}
+
+/* Values' shift modulo 1. */
+NFS_FUNCTION float nfs_unit(nfs s, nfs_uint value, nfs_uint number)
+{
+    if ((s.flags & 1u) != 0u)
+        value += nfs_mix(s.domain + 0x9e3779b9u * number);
+    return NFS_FLOAT(value >> 8) * (1.0f / 16777216.0f);
+}
+
+/* The domain's order of the samples: of the index' reversed bits. */
+NFS_FUNCTION nfs_uint nfs_order(nfs s, nfs_point at)
+{
+    nfs_uint first = nfs_reverse(s.index);
+    if (s.domain != 0u) {
+        nfs_uint h = s.domain + at.x * 0x2c1b3c6du + at.y * 0x297a2d39u;
+        h = (h ^ (h >> 15)) * 0x735a2d97u;
+        h ^= h >> 15;
+        first ^= first * (h << 1);
+        first *= (h >> 15) | 1u;
+    }
+    return first;
+}
+
+/* Where in the table the domain's pixel is. */
+NFS_FUNCTION nfs_point nfs_move(nfs s, nfs_point at)
+{
+    nfs_point p = at;
+    if (s.domain != 0u) {
+        if ((s.domain & 0x80000000u) != 0u) {
+            p.x = at.y;
+            p.y = at.x;
+        }
+        p.x = ((s.domain & 0x40000000u) != 0u ? ~p.x : p.x) + s.domain;
+        p.y = ((s.domain & 0x20000000u) != 0u ? ~p.y : p.y) + (s.domain >> 8);
+    }
+    return p;
+}
+
+/* nf_sampler_draw() of 1 or 2 numbers: x and y. */
+NFS_FUNCTION nfs_floats nfs_draw2(nfs s)
+{
+    nfs_point at = nfs_place(s);
+    nfs_uint first = nfs_order(s, at);
+    nfs_point p;
+    nfs_floats u;
+    at = nfs_move(s, at);
+    p = nfs_pair(at.x, at.y, first);
+    u.x = nfs_unit(s, p.x, 1u);
+    u.y = nfs_unit(s, p.y, 2u);
+    u.z = 0.0f;
+    u.w = 0.0f;
+    return u;
+}
+
+/* A column of the matrix, if bit k of the index is set. */
+#define NFS_COLUMN(k, column) ((0u - ((first >> (31 - (k))) & 1u)) & column)
+
+/* nf_sampler_draw() of 3 or 4 numbers. */
+NFS_FUNCTION nfs_floats nfs_draw4(nfs s)
+{
+    nfs_point at = nfs_place(s);
+    nfs_uint first = nfs_order(s, at), other = s.domain * 0x9e3779b9u + 0x632be5abu;
+    nfs_point p;
+    nfs_floats u;
+    at = nfs_move(s, at);
+    p = nfs_pair(at.x, at.y, first);
+    u.x = nfs_unit(s, p.x, 1u);
+    u.y = nfs_unit(s, p.y, 2u);
+    first = (first & 0x007fffffu) ^ NFS_COLUMN(0, 0x80000000u) ^ NFS_COLUMN(1, 0x40000000u) ^
+            NFS_COLUMN(2, 0xa0000000u) ^ NFS_COLUMN(3, 0xd0000000u) ^ NFS_COLUMN(4, 0x68000000u) ^
+            NFS_COLUMN(5, 0xfc000000u) ^ NFS_COLUMN(6, 0x72000000u) ^ NFS_COLUMN(7, 0xab000000u) ^
+            NFS_COLUMN(8, 0xcb800000u);
+    p = nfs_pair(at.x + (other >> 7), at.y + (other >> 19), first);
+    u.z = nfs_unit(s, p.x, 3u);
+    u.w = nfs_unit(s, p.y, 4u);
+    return u;
+}
+
+#undef NFS_COLUMN
+
+#endif
