@@ -10,6 +10,10 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 const PKG_CONFIG: Package = Package { name: "pkg-config", file: "/usr/bin/pkg-config" };
+const SHADERS: [Package; 2] = [
+    Package { name: "glslang-tools", file: "/usr/bin/glslangValidator" },
+    Package { name: "spirv-tools", file: "/usr/bin/spirv-val" },
+];
 /// The packages that do not measure: their profile is `xtask`.
 const COMPILED_FAST: [&str; 3] = ["xtask", "noisefloor-release", "noisefloor-report"];
 
@@ -64,6 +68,7 @@ pub fn run(options: &Options) -> Result<()> {
     let heading = "threads under ThreadSanitizer: the rules kept, each of them broken, and a renderer";
     steps.c(heading, "tsan", "tsan", &[]);
     steps.c("C tests as C++17, including noisefloor.hpp", "default", "cpp17", &[]);
+    steps.c("noisefloor_sampler.h in GLSL and HLSL", "default", "shaders", &SHADERS);
     steps.c("C++ wrapper, with and without exceptions", "default", "wrapper", &[]);
     let heading = "installed: CMake and pkg-config projects, C and C++, shared and static, either alone, part of \
                    another project";
