@@ -71,9 +71,19 @@ pub extern "C" fn nf_sampler_scramble(sampler: nf_sampler, seed: u32) -> nf_samp
 pub unsafe extern "C" fn nf_sampler_draw(sampler: nf_sampler, dims: u32, u: *mut f32) {
     // SAFETY: passed on to the caller.
     unsafe {
+        // What is drawn most often, apart from all else, so that it needs few registers.
+        if dims == 2 { draw::<2>(&sampler, u) } else { others(sampler, dims, u) }
+    }
+}
+
+/// # Safety
+/// As for [`draw`].
+#[inline(never)]
+unsafe fn others(sampler: nf_sampler, dims: u32, u: *mut f32) {
+    // SAFETY: passed on to the caller.
+    unsafe {
         match dims {
             1 => draw::<1>(&sampler, u),
-            2 => draw::<2>(&sampler, u),
             3 => draw::<3>(&sampler, u),
             4 => draw::<4>(&sampler, u),
             _ => {}
