@@ -10,6 +10,9 @@
  *     nfs s = nfs_domain(nfs_pixel(x, y, 0u, index), LIGHT);
  *     nfs_floats u = nfs_draw2(s);      // u.x, u.y in [0, 1)
  *
+ * In OpenCL C and Metal, which have no global buffers, there is nothing to define, and the table is the last argument
+ * of a draw: nfs_draw2(s, table), `global` or `device`.
+ *
  * Functions and arguments are those of noisefloor.h. State is 16 bytes. GLSL needs version 400 or ES 310.
  */
 #ifndef NOISEFLOOR_SAMPLER_H
@@ -35,10 +38,12 @@ typedef uint nfs_uint;
 #define NFS_FUNCTION static inline
 #define NFS_REVERSE(a) metal::reverse_bits(a)
 #define NFS_FLOAT(a) float(a)
+#define NFS_BUFFER device const uint
 typedef uint nfs_uint;
 #elif defined(__OPENCL_VERSION__)
 #define NFS_FUNCTION static inline
 #define NFS_FLOAT(a) (float)(a)
+#define NFS_BUFFER __global const uint
 typedef uint nfs_uint;
 #elif defined(__CUDACC__) || defined(__HIPCC__)
 #define NFS_FUNCTION static inline __host__ __device__
@@ -55,6 +60,15 @@ typedef unsigned int nfs_uint;
 #define NFS_REVERSE(a) __builtin_bitreverse32(a)
 #endif
 typedef uint32_t nfs_uint;
+#endif
+
+#if defined(NFS_BUFFER)
+#define NFS_TABLE , NFS_BUFFER *table
+#define NFS_GIVEN , table
+#define NOISEFLOOR_TABLE(i) table[i]
+#else
+#define NFS_TABLE
+#define NFS_GIVEN
 #endif
 
 /* One sample of one pixel. */
@@ -153,7 +167,7 @@ NFS_FUNCTION nfs_point nfs_place(nfs s)
 }
 
 /* The point of a place, of a number whose bits are reversed. */
-NFS_FUNCTION nfs_point nfs_pair(nfs_uint x, nfs_uint y, nfs_uint first)
+NFS_FUNCTION nfs_point nfs_pair(nfs_uint x, nfs_uint y, nfs_uint first NFS_TABLE)
 {
     nfs_uint pixel = ((y & 31u) << 5) | (x & 31u);
     nfs_uint second = first ^ (first << 16);
@@ -207,14 +221,14 @@ NFS_FUNCTION nfs_point nfs_move(nfs s, nfs_point at)
 }
 
 /* nf_sampler_draw() of 1 or 2 numbers: x and y. */
-NFS_FUNCTION nfs_floats nfs_draw2(nfs s)
+NFS_FUNCTION nfs_floats nfs_draw2(nfs s NFS_TABLE)
 {
     nfs_point at = nfs_place(s);
     nfs_uint first = nfs_order(s, at);
     nfs_point p;
     nfs_floats u;
     at = nfs_move(s, at);
-    p = nfs_pair(at.x, at.y, first);
+    p = nfs_pair(at.x, at.y, first NFS_GIVEN);
     u.x = nfs_unit(s, p.x, 1u);
     u.y = nfs_unit(s, p.y, 2u);
     u.z = 0.0f;
@@ -226,21 +240,21 @@ NFS_FUNCTION nfs_floats nfs_draw2(nfs s)
 #define NFS_COLUMN(k, column) ((0u - ((first >> (31 - (k))) & 1u)) & column)
 
 /* nf_sampler_draw() of 3 or 4 numbers. */
-NFS_FUNCTION nfs_floats nfs_draw4(nfs s)
+NFS_FUNCTION nfs_floats nfs_draw4(nfs s NFS_TABLE)
 {
     nfs_point at = nfs_place(s);
     nfs_uint first = nfs_order(s, at), other = s.domain * 0x9e3779b9u + 0x632be5abu;
     nfs_point p;
     nfs_floats u;
     at = nfs_move(s, at);
-    p = nfs_pair(at.x, at.y, first);
+    p = nfs_pair(at.x, at.y, first NFS_GIVEN);
     u.x = nfs_unit(s, p.x, 1u);
     u.y = nfs_unit(s, p.y, 2u);
     first = (first & 0x007fffffu) ^ NFS_COLUMN(0, 0x80000000u) ^ NFS_COLUMN(1, 0x40000000u) ^
             NFS_COLUMN(2, 0xa0000000u) ^ NFS_COLUMN(3, 0xd0000000u) ^ NFS_COLUMN(4, 0x68000000u) ^
             NFS_COLUMN(5, 0xfc000000u) ^ NFS_COLUMN(6, 0x72000000u) ^ NFS_COLUMN(7, 0xab000000u) ^
             NFS_COLUMN(8, 0xcb800000u);
-    p = nfs_pair(at.x + (other >> 7), at.y + (other >> 19), first);
+    p = nfs_pair(at.x + (other >> 7), at.y + (other >> 19), first NFS_GIVEN);
     u.z = nfs_unit(s, p.x, 3u);
     u.w = nfs_unit(s, p.y, 4u);
     return u;

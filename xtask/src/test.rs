@@ -10,9 +10,14 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 const PKG_CONFIG: Package = Package { name: "pkg-config", file: "/usr/bin/pkg-config" };
-const SHADERS: [Package; 2] = [
+/// Devices in software, and what programs for them are made with.
+const DEVICES: [Package; 6] = [
     Package { name: "glslang-tools", file: "/usr/bin/glslangValidator" },
-    Package { name: "spirv-tools", file: "/usr/bin/spirv-val" },
+    Package { name: "libvulkan-dev", file: "/usr/include/vulkan/vulkan.h" },
+    Package { name: "mesa-vulkan-drivers", file: "/usr/share/doc/mesa-vulkan-drivers/copyright" },
+    Package { name: "opencl-c-headers", file: "/usr/include/CL/cl.h" },
+    Package { name: "ocl-icd-opencl-dev", file: "/usr/share/doc/ocl-icd-opencl-dev/copyright" },
+    Package { name: "pocl-opencl-icd", file: "/etc/OpenCL/vendors/pocl.icd" },
 ];
 /// The packages that do not measure: their profile is `xtask`.
 const COMPILED_FAST: [&str; 3] = ["xtask", "noisefloor-release", "noisefloor-report"];
@@ -68,7 +73,12 @@ pub fn run(options: &Options) -> Result<()> {
     let heading = "threads under ThreadSanitizer: the rules kept, each of them broken, and a renderer";
     steps.c(heading, "tsan", "tsan", &[]);
     steps.c("C tests as C++17, including noisefloor.hpp", "default", "cpp17", &[]);
-    steps.c("noisefloor_sampler.h in GLSL and HLSL", "default", "shaders", &SHADERS);
+    steps.c(
+        "noisefloor_sampler.h on devices: GLSL, HLSL and OpenCL C draw the bits of the library",
+        "default",
+        "gpu",
+        &DEVICES,
+    );
     steps.c("C++ wrapper, with and without exceptions", "default", "wrapper", &[]);
     let heading = "installed: CMake and pkg-config projects, C and C++, shared and static, either alone, part of \
                    another project";

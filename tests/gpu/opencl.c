@@ -1,0 +1,106 @@
+/* noisefloor_sampler.h on every OpenCL device that is there: the bits of the library, and draws per second. */
+#define CL_TARGET_OPENCL_VERSION 120
+#include "expected.h"
+#include <CL/cl.h>
+
+/* As in expected.h. */
+#define SAMPLER                                                                                                        \
+    "nfs sampler(uint i) {\n"                                                                                          \
+    "    uint a = nfs_mix(i), b = nfs_mix(i ^ 0x5bd1e995u);\n"                                                         \
+    "    nfs s = nfs_pixel(a, b, i % 3u, b >> (a & 31u));\n"                                                           \
+    "    s.flags = i & 2u;\n"                                                                                          \
+    "    for (uint k = 0; k < i % 4u; ++k) s = nfs_domain(s, a ^ k);\n"                                                \
+    "    return nfs_scramble(s, i % 5u);\n"                                                                            \
+    "}\n"
+
+static const char *const source =
+    "#include \"noisefloor_sampler.h\"\n" SAMPLER
+    "kernel void draws(global const uint *table, global float4 *out, uint first) {\n"
+    "    nfs s = sampler(first + get_global_id(0));\n"
+    "    nfs_floats four = nfs_draw4(s, table), two = nfs_draw2(s, table);\n"
+    "    out[2 * get_global_id(0)] = (float4)(four.x, four.y, four.z, four.w);\n"
+    "    out[2 * get_global_id(0) + 1] = (float4)(two.x, two.y, 0, 0);\n"
+    "}\n";
+
+static void check(cl_int status, const char *what)
+{
+    if (status != CL_SUCCESS)
+        failed(what, (int)status);
+}
+
+/* How many of the draws differ. */
+static size_t draw_on(cl_device_id device, const char *include)
+{
+    char name[256] = "", options[1024], log[4096] = "";
+    cl_int status;
+    cl_context context = clCreateContext(NULL, 1, &device, NULL, NULL, &status);
+    cl_command_queue queue;
+    cl_program program;
+    cl_kernel kernel;
+    cl_mem table, out;
+    float *drawn = (float *)malloc(BYTES);
+    size_t different = 0;
+    uint32_t round;
+    double time = 0.0;
+    check(status, "context");
+    clGetDeviceInfo(device, CL_DEVICE_NAME, sizeof name, name, NULL);
+    queue = clCreateCommandQueue(context, device, 0, &status);
+    check(status, "queue");
+    program = clCreateProgramWithSource(context, 1, (const char **)&source, NULL, &status);
+    snprintf(options, sizeof options, "-I%s", include);
+    status = clBuildProgram(program, 1, &device, options, NULL, NULL);
+    if (status != CL_SUCCESS) {
+        clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, sizeof log, log, NULL);
+        fprintf(stderr, "%s\n", log);
+    }
+    check(status, "program");
+    kernel = clCreateKernel(program, "draws", &status);
+    check(status, "kernel");
+    table = clCreateBuffer(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, 65536 * sizeof(uint32_t),
+                           (void *)nf_sampler_table(), &status);
+    check(status, "table");
+    out = clCreateBuffer(context, CL_MEM_WRITE_ONLY, BYTES, NULL, &status);
+    check(status, "buffer");
+    for (round = 0; round < ROUNDS; ++round) {
+        const cl_uint first = round * AT_ONCE;
+        const size_t count = AT_ONCE;
+        double start;
+        check(clSetKernelArg(kernel, 0, sizeof table, &table), "argument");
+        check(clSetKernelArg(kernel, 1, sizeof out, &out), "argument");
+        check(clSetKernelArg(kernel, 2, sizeof first, &first), "argument");
+        start = seconds();
+        check(clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &count, NULL, 0, NULL, NULL), "run");
+        check(clFinish(queue), "run");
+        time += round > 0 ? seconds() - start : 0.0; /* the first compiles */
+        check(clEnqueueReadBuffer(queue, out, CL_TRUE, 0, BYTES, drawn, 0, NULL, NULL), "read");
+        different += differences(first, drawn);
+    }
+    report_device(name, "OpenCL C", different, time);
+    clReleaseMemObject(table);
+    clReleaseMemObject(out);
+    clReleaseKernel(kernel);
+    clReleaseProgram(program);
+    clReleaseCommandQueue(queue);
+    clReleaseContext(context);
+    free(drawn);
+    return different;
+}
+
+int main(int argc, char **argv)
+{
+    cl_platform_id platforms[8];
+    cl_uint platform_count = 0, p, devices = 0;
+    size_t different = 0;
+    check(clGetPlatformIDs(8, platforms, &platform_count), "platforms");
+    for (p = 0; p < platform_count && p < 8; ++p) {
+        cl_device_id all[8];
+        cl_uint count = 0, d;
+        if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, 8, all, &count) != CL_SUCCESS)
+            continue;
+        for (d = 0; d < count && d < 8; ++d, ++devices)
+            different += draw_on(all[d], argc > 1 ? argv[1] : "include");
+    }
+    if (devices == 0)
+        fprintf(stderr, "no OpenCL device\n");
+    return devices == 0 || different > 0;
+}
