@@ -1,5 +1,5 @@
-// noisefloor in a renderer like Mitsuba 3: a sampler from a tile, and an accumulator for each pixel. docs/renderer.md.
-#include "mitsuba_tile_sampler.hpp"
+// noisefloor in a renderer like Mitsuba 3: its sampler, and an accumulator for each pixel. docs/renderer.md.
+#include "mitsuba_noisefloor_sampler.hpp"
 #include <cstdio>
 #include <exception>
 
@@ -67,7 +67,7 @@ private:
 };
 
 // What estimators are told after rendering must be what was drawn.
-void check_numbers(TileSampler &sampler)
+void check_numbers(NoisefloorSampler &sampler)
 {
     const std::vector<Float> all = sampler.numbers(0, emitter_dimension, 2, sampler.sample_count());
     for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
@@ -85,11 +85,7 @@ void check_numbers(TileSampler &sampler)
 void run()
 {
     const uint32_t spp = 16, passes = 4;
-    nf_tile tile, continued;
-    room::check(nf_tile_builtin(NF_TILE_128_16SPP_2D, &tile), "the tile of 16 samples");
-    room::check(nf_tile_builtin(NF_TILE_128_1SPP_2D, &continued), "the tile of 1 sample");
-
-    TileSampler many(&continued, 256, film_size);
+    NoisefloorSampler many(256, film_size);
     const std::vector<Float> reference = plain_means(many);
     const auto report = [&](const char *name, const std::vector<Float> &image) {
         std::printf("%-16s %.5f\n", name, room::root_mean_squared_error(image, reference));
@@ -98,9 +94,9 @@ void run()
     std::printf("root mean squared errors\n%u samples per pixel\n", spp);
     IndependentSampler independent(spp);
     report("independent", plain_means(independent));
-    TileSampler sampler(&tile, spp, film_size);
+    NoisefloorSampler sampler(spp, film_size);
     check_numbers(sampler);
-    report("tile", plain_means(sampler));
+    report("sampler", plain_means(sampler));
 
     std::printf("%u samples per pixel, in %u passes\n", spp * passes, passes);
     RecordingSampler recorder(independent.fork());

@@ -1,6 +1,6 @@
-// noisefloor in a renderer like pbrt-v4: a sampler from a tile, and fits shared by pixels after rendering.
+// noisefloor in a renderer like pbrt-v4: its sampler, and fits shared by pixels after rendering.
 // docs/renderer.md.
-#include "pbrt_tile_sampler.hpp"
+#include "pbrt_noisefloor_sampler.hpp"
 #include <cstdio>
 #include <exception>
 
@@ -12,18 +12,19 @@ using namespace pbrt;
 // and 3.
 constexpr uint32_t choice_dimension = 4, light_dimension = 5;
 
-// The estimates of all pixels. The integrator did not keep its numbers: a tile gives them again.
-std::vector<Float> shared_fits(const Film &film, const TileSampler &sampler)
+// The estimates of all pixels. The integrator did not keep its numbers: the sampler gives them again.
+std::vector<Float> shared_fits(const Film &film, const NoisefloorSampler &sampler)
 {
     const auto width = static_cast<uint32_t>(film.FullResolution().x),
                height = static_cast<uint32_t>(film.FullResolution().y);
     const auto n = static_cast<uint32_t>(sampler.SamplesPerPixel());
 
     // For each sample the point on the light, then the choice: a number that picks one of several is the last.
-    const nf_tile_sampler domains[] = {sampler.Request({0, 0}, light_dimension), sampler.Request({0, 0}, choice_dimension)};
+    const nf_sampler domains[] = {sampler.Request({0, 0}, light_dimension),
+                                  sampler.Request({0, 0}, choice_dimension)};
     const uint32_t dims[] = {2, 1};
-    std::vector<Float> u(nf_tile_sampler_fill_len(dims, 2, width, height, n));
-    room::check(nf_tile_sampler_fill(domains, dims, 2, width, height, n, u.data(), u.size()), "nf_tile_sampler_fill");
+    std::vector<Float> u(nf_sampler_fill_len(dims, 2, width, height, n));
+    room::check(nf_sampler_fill(domains, dims, 2, width, height, n, u.data(), u.size()), "nf_sampler_fill");
 
     nf_cv_config config;
     nf_cv_config_default(&config);
@@ -52,20 +53,17 @@ void run()
 {
     const Point2i resolution{64, 64};
     const int spp = 4;
-    nf_tile tile, continued;
-    room::check(nf_tile_builtin(NF_TILE_128_4SPP_2D, &tile), "the tile of 4 samples");
-    room::check(nf_tile_builtin(NF_TILE_128_1SPP_2D, &continued), "the tile of 1 sample");
 
-    const std::vector<Float> reference = room::means(Render(resolution, TileSampler(&continued, 256)).Values(), 256);
+    const std::vector<Float> reference = room::means(Render(resolution, NoisefloorSampler(256)).Values(), 256);
     const auto report = [&](const char *name, const std::vector<Float> &image) {
         std::printf("%-12s %.5f\n", name, room::root_mean_squared_error(image, reference));
     };
     std::printf("root mean squared errors, %d samples per pixel\n", spp);
     report("independent", room::means(Render(resolution, IndependentSampler(spp)).Values(), spp));
 
-    const TileSampler sampler(&tile, spp);
+    const NoisefloorSampler sampler(spp);
     const Film film = Render(resolution, sampler.Clone(1).front());
-    report("tile", room::means(film.Values(), spp));
+    report("sampler", room::means(film.Values(), spp));
     report("noisefloor", shared_fits(film, sampler));
 }
 

@@ -1,4 +1,4 @@
-// Samplers for Mitsuba 3's scalar variants: one that draws from a tile, and one that remembers what another gave.
+// Samplers for Mitsuba 3's scalar variants: one that draws from noisefloor, and one that remembers what another gave.
 #pragma once
 
 #include "mitsuba_interface.hpp"
@@ -8,15 +8,13 @@ namespace mitsuba {
 
 // Mitsuba tells a sampler no pixel, only a seed. Here seed = frame * pixels + y * width + x, as render_block can form
 // it.
-class TileSampler : public Sampler {
+class NoisefloorSampler : public Sampler {
 public:
-    // The tile must outlive the sampler and stay where it is.
-    TileSampler(const nf_tile *tile, uint32_t sample_count, Point2u film_size)
-        : Sampler(sample_count), m_tile(tile), m_film_size(film_size)
+    NoisefloorSampler(uint32_t sample_count, Point2u film_size) : Sampler(sample_count), m_film_size(film_size)
     {
     }
-    ref<Sampler> fork() override { return std::make_shared<TileSampler>(m_tile, m_sample_count, m_film_size); }
-    ref<Sampler> clone() override { return std::make_shared<TileSampler>(*this); }
+    ref<Sampler> fork() override { return std::make_shared<NoisefloorSampler>(m_sample_count, m_film_size); }
+    ref<Sampler> clone() override { return std::make_shared<NoisefloorSampler>(*this); }
 
     void seed(uint32_t seed, uint32_t) override
     {
@@ -30,14 +28,14 @@ public:
     Float next_1d(Mask) override
     {
         Float u;
-        nf_tile_sampler_draw(nf_tile_sampler_domain(m_sample, m_dimension), 1, &u);
+        nf_sampler_draw(nf_sampler_domain(m_sample, m_dimension), 1, &u);
         m_dimension += 1;
         return u;
     }
     Point2f next_2d(Mask) override
     {
         Float u[2];
-        nf_tile_sampler_draw(nf_tile_sampler_domain(m_sample, m_dimension), 2, u);
+        nf_sampler_draw(nf_sampler_domain(m_sample, m_dimension), 2, u);
         m_dimension += 2;
         return {u[0], u[1]};
     }
@@ -46,10 +44,10 @@ public:
     // by sample within a pixel, pixel by pixel along the rows.
     std::vector<Float> numbers(uint32_t frame, uint32_t dimension, uint32_t dims, uint32_t samples) const
     {
-        const nf_tile_sampler first = nf_tile_sampler_domain(nf_tile_sampler_pixel(m_tile, 0, 0, frame, 0), dimension);
-        std::vector<Float> u(nf_tile_sampler_fill_len(&dims, 1, m_film_size.x, m_film_size.y, samples));
-        room::check(nf_tile_sampler_fill(&first, &dims, 1, m_film_size.x, m_film_size.y, samples, u.data(), u.size()),
-                    "nf_tile_sampler_fill");
+        const nf_sampler first = nf_sampler_domain(nf_sampler_pixel(0, 0, frame, 0), dimension);
+        std::vector<Float> u(nf_sampler_fill_len(&dims, 1, m_film_size.x, m_film_size.y, samples));
+        room::check(nf_sampler_fill(&first, &dims, 1, m_film_size.x, m_film_size.y, samples, u.data(), u.size()),
+                    "nf_sampler_fill");
         return u;
     }
 
@@ -57,14 +55,13 @@ private:
     void start(uint32_t index)
     {
         m_index = index;
-        m_sample = nf_tile_sampler_pixel(m_tile, m_x, m_y, m_frame, index);
+        m_sample = nf_sampler_pixel(m_x, m_y, m_frame, index);
         m_dimension = 0;
     }
 
-    const nf_tile *m_tile;
     Point2u m_film_size;
     uint32_t m_frame = 0, m_x = 0, m_y = 0, m_index = 0, m_dimension = 0;
-    nf_tile_sampler m_sample{};
+    nf_sampler m_sample{};
 };
 
 // Passes another sampler's numbers on, and keeps the first of each sample: for samplers that cannot be asked again.
