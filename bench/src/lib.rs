@@ -19,7 +19,6 @@ macro_rules! c_functions {
 }
 
 pub mod c_abi;
-pub mod c_gradient;
 pub mod c_table;
 pub mod c_tile;
 pub mod method;

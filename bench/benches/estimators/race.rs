@@ -4,7 +4,7 @@ use crate::functions::Function;
 use noisefloor_bench::method::{INCREMENTAL, K_FOLD, MEAN};
 use noisefloor_bench::{Door, Method, Prepared};
 use noisefloor_tests::random::{SplitMix64, mix};
-use noisefloor_tests::statistics::{Ratio, median, rmse_ratio, root_mean_square};
+use noisefloor_tests::statistics::{Ratio, median, rmse_ratio};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -28,20 +28,12 @@ impl Setting {
 /// What was measured of a setting.
 pub(crate) struct Result {
     pub(crate) setting: Setting,
-    pub(crate) terms: usize,
     pub(crate) repetitions: usize,
-    pub(crate) mean_rmse: f64,
     /// RMSE over the plain mean's of the same samples, 95 % interval.
     pub(crate) ratio: Ratio,
     /// Nanoseconds per sample, the integrand not counted: the median over the chunks.
     pub(crate) ns: f64,
     pub(crate) mean_ns: f64,
-}
-
-impl Result {
-    pub(crate) fn rmse(&self) -> f64 {
-        self.ratio.value * self.mean_rmse
-    }
 }
 
 /// Estimates that follow each other without another setting between.
@@ -76,7 +68,6 @@ impl Effort {
 
 struct Track {
     setting: Setting,
-    terms: usize,
     chunks: usize,
     prepared: Prepared,
     errors: Vec<f64>,
@@ -95,7 +86,6 @@ pub(crate) fn measure(function: &Function, settings: &[Setting], n: usize, seed:
             let prepared = setting.method.prepare(door, dims, setting.order, n);
             Some(Track {
                 setting,
-                terms,
                 chunks: effort.chunks(n, terms, &setting.method),
                 prepared,
                 errors: vec![],
@@ -128,9 +118,7 @@ pub(crate) fn measure(function: &Function, settings: &[Setting], n: usize, seed:
         let same = &mean.errors[..track.errors.len()];
         Result {
             setting: track.setting,
-            terms: track.terms,
             repetitions: track.errors.len(),
-            mean_rmse: root_mean_square(same),
             ratio: rmse_ratio(&track.errors, same),
             ns: median(&track.ns),
             mean_ns: median(&mean.ns),

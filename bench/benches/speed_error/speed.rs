@@ -28,8 +28,6 @@ pub(crate) struct Speed {
     pub(crate) n: usize,
     /// Nanoseconds per sample, or per call for a solution: the median over the rounds.
     pub(crate) ns: f64,
-    /// The quartiles.
-    pub(crate) quartiles: [f64; 2],
 }
 
 type Estimate = Box<dyn FnMut(&[f32], &[f32]) -> f32>;
@@ -50,10 +48,8 @@ fn race(mut contestants: Vec<Contestant<'_>>, rounds: usize, units: usize) -> Ve
     contestants.into_iter().zip(times).map(|((name, door, _), times)| (name, door, times)).collect()
 }
 
-fn speed((name, door, mut times): (String, &'static str, Vec<f64>), dims: usize, order: usize, n: usize) -> Speed {
-    times.sort_by(f64::total_cmp);
-    let at = |quarter: usize| times[(times.len() - 1) * quarter / 4];
-    Speed { name, door, dims, order, n, ns: median(&times), quartiles: [at(1), at(3)] }
+fn speed((name, door, times): (String, &'static str, Vec<f64>), dims: usize, order: usize, n: usize) -> Speed {
+    Speed { name, door, dims, order, n, ns: median(&times) }
 }
 
 /// All methods through the shipped door, the main ones through the Rust API too, and the peers.
