@@ -14,7 +14,7 @@ mod table;
 use anyhow::Result;
 use clap::Parser;
 use grid::Row;
-use noisefloor_bench::{Door, Extent, Options, c_abi};
+use noisefloor_bench::{Extent, Options, c_abi};
 use race::Effort;
 use std::time::Instant;
 
@@ -23,7 +23,7 @@ const AGAIN: u64 = 1000;
 
 fn main() -> Result<()> {
     let options = Options::parse();
-    println!("through the {}; libnoisefloor.a is {}", Door::shipped().name(), c_abi::STATE);
+    println!("libnoisefloor.a is {}", c_abi::STATE);
     let functions = grid::functions();
     let extent = options.extent();
     let counts = &grid::COUNTS[..extent.choose(1, grid::COUNTS.len(), grid::COUNTS.len())];

@@ -2,7 +2,7 @@
 
 use crate::functions::Function;
 use noisefloor_bench::method::{INCREMENTAL, K_FOLD, MEAN};
-use noisefloor_bench::{Door, Method, Prepared};
+use noisefloor_bench::{Method, Prepared};
 use noisefloor_tests::random::{SplitMix64, mix};
 use noisefloor_tests::statistics::{Ratio, median, rmse_ratio};
 use std::hint::black_box;
@@ -77,13 +77,12 @@ struct Track {
 /// Measures settings that the function's dims admit; others are left out. The plain mean comes first.
 pub(crate) fn measure(function: &Function, settings: &[Setting], n: usize, seed: u64, effort: Effort) -> Vec<Result> {
     let dims = function.dims;
-    let door = Door::shipped();
     let mut tracks: Vec<Track> = [Setting::mean()]
         .iter()
         .chain(settings)
         .filter_map(|&setting| {
             let terms = setting.terms(dims)?;
-            let prepared = setting.method.prepare(door, dims, setting.order, n);
+            let prepared = setting.method.prepare(dims, setting.order, n);
             Some(Track {
                 setting,
                 chunks: effort.chunks(n, terms, &setting.method),

@@ -1,7 +1,7 @@
 //! One integrand, one degree, one sample count: errors and times of every estimator on the same samples.
 
 use noisefloor_bench::method::{LEAST_SQUARES, LEAVE_ONE_OUT, MEAN, METHODS, ROBUST};
-use noisefloor_bench::{Door, Extent, Method};
+use noisefloor_bench::{Extent, Method};
 use noisefloor_tests::integrands::Integrand;
 use noisefloor_tests::random::{SplitMix64, mix};
 use noisefloor_tests::statistics::{self, Ratio, median, rmse_ratio, root_mean_square};
@@ -113,7 +113,6 @@ impl Track {
 #[allow(clippy::too_many_arguments, reason = "one value for each axis of the table")]
 pub(crate) fn measure(
     cells: &mut Vec<Cell>,
-    door: Door,
     set: Set,
     integrand: &Integrand,
     seed: u64,
@@ -134,7 +133,7 @@ pub(crate) fn measure(
         .iter()
         .map(|&method| Track {
             method,
-            prepared: method.prepare(door, dims, order, n),
+            prepared: method.prepare(dims, order, n),
             step: step(extent, &method),
             errors: vec![],
             size,

@@ -1,6 +1,6 @@
 //! The cells as comma-separated values: what the report compares of `f32` and `f64`.
 
-use crate::run::Run;
+use crate::Run;
 use anyhow::Result;
 use std::fmt::Write;
 
