@@ -115,8 +115,7 @@ const CHAPTERS: &[Entry] = &[
         control_variates::write,
     )
     .runs(&["speed_error", "estimators"]),
-    entry("hard_cases", 8, "Few, degenerate and extreme samples, and what is refused", hard_cases::write)
-        .runs(&["hard_cases"]),
+    entry("hard_cases", 8, "Few, degenerate and extreme samples", hard_cases::write).runs(&["hard_cases"]),
     entry(
         "analytic",
         30,
