@@ -1,7 +1,7 @@
 //! Running POV-Ray, stock or patched, and reading its pictures.
 
+use super::startup;
 use crate::measure::interrupt::{self, Interrupted};
-use crate::povray::startup;
 use anyhow::{Context, Result, bail};
 use image::Rgb32FImage;
 use std::fs;

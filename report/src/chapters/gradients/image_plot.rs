@@ -1,6 +1,6 @@
 //! fit_image.cpp: a photograph learned by a network (figure 6.13): losses, errors of the gradient, and pictures.
 
-use crate::measure::plot::{Axis, Plot, Series};
+use crate::measure::plot::{Plot, Series};
 use crate::measure::table::Table;
 use anyhow::Result;
 
@@ -19,7 +19,12 @@ pub(super) fn loss_plot(csv: &str, strata: &str, column: &str, label: &str) -> R
         }
     }
     let series: Vec<Series> = series;
-    let x = Axis { label, logarithmic: false, range: None };
-    let y = Axis { label: "PSNR, dB", logarithmic: false, range: None };
-    Plot { title: "A photograph, batches of 256 pixels, Adam", x, y, series: &series }.svg()
+    Plot {
+        title: "A photograph, batches of 256 pixels, Adam",
+        x: label,
+        y: "PSNR, dB",
+        logarithmic: false,
+        series: &series,
+    }
+    .svg()
 }

@@ -1,6 +1,6 @@
 //! fit_polynomial.c: loss against steps, and errors of the gradient by coefficient (figure 6.10).
 
-use crate::measure::plot::{Axis, Plot, Series};
+use crate::measure::plot::{Plot, Series};
 use crate::measure::table::Table;
 use anyhow::Result;
 
@@ -26,9 +26,14 @@ pub(super) fn ratio_plot(csv: &str) -> Result<String> {
     for (point, exact) in series.iter_mut().flat_map(|series| series.points.iter_mut().zip(&exact)) {
         point.1 /= exact.1;
     }
-    let x = Axis { label: "steps", logarithmic: false, range: None };
-    let y = Axis { label: "mean loss / the exact gradient's", logarithmic: false, range: None };
-    Plot { title: "Polynomial of order 6, batches of 32, Adam", x, y, series: &series }.svg()
+    Plot {
+        title: "Polynomial of order 6, batches of 32, Adam",
+        x: "steps",
+        y: "mean loss / the exact gradient's",
+        logarithmic: false,
+        series: &series,
+    }
+    .svg()
 }
 
 /// At the last state.
@@ -42,7 +47,12 @@ pub(super) fn error_plot(csv: &str) -> Result<String> {
     };
     let series: Vec<Series> = rows.distinct("method")?.into_iter().map(line).collect::<Result<_>>()?;
     let title = format!("Error of the gradient's estimate, step {last}");
-    let x = Axis { label: "power whose coefficient it is", logarithmic: false, range: None };
-    let y = Axis { label: "mean squared error / uniform's", logarithmic: true, range: None };
-    Plot { title: &title, x, y, series: &series }.svg()
+    Plot {
+        title: &title,
+        x: "power whose coefficient it is",
+        y: "mean squared error / uniform's",
+        logarithmic: true,
+        series: &series,
+    }
+    .svg()
 }
