@@ -10,7 +10,7 @@ use crate::measure::renderer::{Job, Renderer, Sampler};
 use crate::measure::runs::{Runs, SEED};
 use crate::measure::samplers::{Choice, Tiles};
 use crate::measure::score::Score;
-use crate::measure::{interrupt, progress, text};
+use crate::measure::{progress, text};
 use anyhow::{Context, Result};
 use clap::Args;
 use image::imageops::replace;
@@ -56,12 +56,10 @@ struct Rendered {
 pub(crate) fn run(options: &Options) -> Result<()> {
     let folder = options.out.clone().unwrap_or_else(|| paths::target().join("demo"));
     let folder = std::path::absolute(&folder).with_context(|| format!("{} is no folder", folder.display()))?;
-    let interrupted = interrupt::catch()?;
     println!("building the library and the path tracer");
-    let renderer = Renderer::build(interrupted.clone())?;
+    let renderer = Renderer::build()?;
     let output = Output::new(&folder)?;
     scenes(options, &renderer, &output)?;
-    interrupt::check(&interrupted)?;
     output.commit()?;
     println!("{}\n", folder.join("shared.png").display());
     chapters::run(&chapters::Options::gradients(options.quick, &folder))?;

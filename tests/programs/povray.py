@@ -120,7 +120,7 @@ def unbiased(view):
             found = max(map(deviate, [*sums, [sum(image) for image in zip(*sums)]]))
             what = f"{name} ({model}): {found:.2f} standard errors from the exact mean at most; limit {limit:.2f}"
             require(found <= limit, f"{view.name}: {what}")
-            say(f"   {what}")
+            say(what)
 
 
 def everything(view, axes):
@@ -138,7 +138,7 @@ def default_is_no_worse(view):
     for spp in [16, 64]:
         plain, default = ([mean_square(one) for one in each] for each in view.errors(["mc", "robust"], spp, 16))
         value, low, high = ratio(default, plain)
-        say(f"   {spp} spp: relMSE of the default over the mean's {value:.3f} [{low:.3f}, {high:.3f}]")
+        say(f"{spp} spp: relMSE of the default over the mean's {value:.3f} [{low:.3f}, {high:.3f}]")
         require(high <= 1.01, f"{view.name}, {spp} spp: the default is worse than the plain mean")
 
 
@@ -148,7 +148,7 @@ def tile_is_blue(view, dims):
         named = ["--tile", f"128_{spp}SPP_4D"] if dims > 2 and spp <= 4 else []
         [tile], [random] = (view.errors(["mc"], spp, 64, sampler) for sampler in [("tile", *named), ("random",)])
         value, low, high = ratio(*(list(map(view.filtered, images)) for images in (tile, random)))
-        say(f"   {spp} spp: filtered error of the tile over random's {value:.3f} [{low:.3f}, {high:.3f}]")
+        say(f"{spp} spp: filtered error of the tile over random's {value:.3f} [{low:.3f}, {high:.3f}]")
         require(high < 1, f"{view.name}, {spp} spp: the tile's filtered error is not below random's")
 
 

@@ -29,7 +29,6 @@ mod tables;
 pub(crate) mod targets;
 pub(crate) mod template;
 
-use crate::measure::interrupt::Interrupted;
 use crate::measure::output::Output;
 use anyhow::{Result, anyhow};
 use chapter::Chapter;
@@ -182,7 +181,6 @@ pub(crate) struct Report<'a> {
     programs: &'static [&'static str],
     pub(crate) plan: Plan,
     pub(crate) program: Option<PathBuf>,
-    pub(crate) interrupted: Interrupted,
     /// Markdown, JSON, plots.
     pub(crate) output: &'a Output,
     clock: Clock,

@@ -9,7 +9,6 @@ mod scenes;
 mod sheet;
 mod startup;
 
-use crate::measure::interrupt;
 use crate::measure::output::Output;
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -65,9 +64,8 @@ pub(crate) fn run(options: &Options) -> Result<()> {
             bail!("--spp {spp} is no square number from 4 to 1024: POV-Ray's area lights are square grids of samples");
         }
     }
-    let interrupted = interrupt::catch()?;
     let programs = render::Programs { stock: PathBuf::from("/usr/bin/povray"), patched: build()? };
-    let renderer = render::Renderer::new(&programs, &folder(), options.width, options.height(), &interrupted)?;
+    let renderer = render::Renderer::new(&programs, &folder(), options.width, options.height())?;
     let checks = checks::run(&renderer)?;
     if options.check {
         return Ok(());

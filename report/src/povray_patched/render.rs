@@ -1,7 +1,6 @@
 //! Running POV-Ray, stock or patched, and reading its pictures.
 
 use super::startup;
-use crate::measure::interrupt::{self, Interrupted};
 use anyhow::{Context, Result, bail};
 use image::Rgb32FImage;
 use std::fs;
@@ -34,7 +33,6 @@ pub(crate) struct Renderer<'a> {
     scratch: TempDir,
     pub(crate) width: u32,
     pub(crate) height: u32,
-    interrupted: &'a Interrupted,
 }
 
 /// A linear picture and what it took.
@@ -45,15 +43,9 @@ pub(crate) struct Picture {
 }
 
 impl<'a> Renderer<'a> {
-    pub(crate) fn new(
-        programs: &'a Programs,
-        folder: &Path,
-        width: u32,
-        height: u32,
-        interrupted: &'a Interrupted,
-    ) -> Result<Self> {
+    pub(crate) fn new(programs: &'a Programs, folder: &Path, width: u32, height: u32) -> Result<Self> {
         let scratch = tempfile::tempdir_in(folder).context("cannot create a temporary folder")?;
-        Ok(Self { programs, scratch, width, height, interrupted })
+        Ok(Self { programs, scratch, width, height })
     }
 
     /// A file for scenes to be rendered or included.
@@ -130,7 +122,6 @@ impl<'a> Renderer<'a> {
             let output = command
                 .output()
                 .with_context(|| format!("cannot start {}: Debian's package is `povray`", program.display()))?;
-            interrupt::check(self.interrupted)?;
             Ok((output.status, String::from_utf8_lossy(&output.stderr).into_owned()))
         })?;
         if !status.success() {

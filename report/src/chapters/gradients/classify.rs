@@ -104,7 +104,7 @@ impl Trainer {
         context.bar.set_message(format!("gradients: {name}"));
         let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
         let path = scratch.path().join("variance.csv");
-        self.program.run(&plan.variance(&path)?, &context.report.interrupted, |_| ())?;
+        self.program.run(&plan.variance(&path)?)?;
         context.bar.inc(1);
         let rows = Table::read(&path, ',')?;
         chapter.section(&format!("Variance of the gradient, {}", plan.name), "figure 6.2");

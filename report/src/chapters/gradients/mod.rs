@@ -42,7 +42,7 @@ impl Context<'_> {
     /// Runs a trainer.
     fn run(&self, program: &Program, name: &str, arguments: &[impl AsRef<OsStr>]) -> Result<Written> {
         self.bar.set_message(format!("gradients: {name}"));
-        let written = program.run(arguments, &self.report.interrupted, |_| ())?;
+        let written = program.run(arguments)?;
         self.bar.inc(1);
         Ok(written)
     }
