@@ -14,10 +14,7 @@ use anyhow::Result;
 const SECOND: u64 = 1000;
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
-    let program = match &report.program {
-        Some(program) => program.clone(),
-        None => xtask::embree::build()?,
-    };
+    let program = xtask::embree::build()?;
     super::tables::public::build()?;
     report.compiled();
     let renderer = Renderer::new(program);

@@ -156,9 +156,6 @@ pub(crate) struct Options {
     /// Only write the texts anew, from the JSON files that are there
     #[arg(long, conflicts_with_all = ["quick", "full", "only"])]
     render: bool,
-    /// A program with the Embree harness's command line, instead of the one that is built
-    #[arg(long, value_name = "FILE", hide = true)]
-    program: Option<PathBuf>,
 }
 
 impl Options {
@@ -180,7 +177,6 @@ pub(crate) struct Report<'a> {
     /// Bench targets that it runs.
     programs: &'static [&'static str],
     pub(crate) plan: Plan,
-    pub(crate) program: Option<PathBuf>,
     /// Markdown, JSON, plots.
     pub(crate) output: &'a Output,
     clock: Clock,

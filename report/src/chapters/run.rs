@@ -58,14 +58,7 @@ fn write(entry: &Entry, options: &Options, folder: &Path, machine: &Machine) -> 
     let date = machine::date();
     let plan = Plan::new(options.quick, options.full);
     let (name, description) = entry.chapter(&plan);
-    let report = Report {
-        name,
-        programs: entry.programs,
-        plan,
-        program: options.program.clone(),
-        output: &output,
-        clock: Clock::start(),
-    };
+    let report = Report { name, programs: entry.programs, plan, output: &output, clock: Clock::start() };
     let mut chapter = (entry.write)(&report)?.json();
     let facts = Facts {
         name: name.to_owned(),

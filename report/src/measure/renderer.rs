@@ -1,6 +1,7 @@
 //! Compiling and running the path tracer, or another program that has its command line.
 
 use super::running;
+use super::samplers::Tiles;
 use anyhow::{Context, Result};
 use indicatif::ProgressBar;
 use serde::Deserialize;
@@ -85,16 +86,11 @@ impl Renderer {
         Self { program }
     }
 
-    /// What `--help` prints.
-    pub(crate) fn help(&self) -> Result<String> {
-        run::read(run::command(&self.program).arg("--help"))
-    }
-
     /// The names of the tiles that the library carries.
-    pub(crate) fn tiles(&self) -> Result<Vec<String>> {
-        let help = self.help()?;
+    pub(crate) fn tiles(&self) -> Result<Tiles> {
+        let help = run::read(run::command(&self.program).arg("--help"))?;
         let line = help.lines().find_map(|line| line.strip_prefix("tiles:")).unwrap_or_default();
-        Ok(line.split_whitespace().map(str::to_owned).collect())
+        Ok(Tiles(line.split_whitespace().map(str::to_owned).collect()))
     }
 
     /// Renders `size` x `size` pixels to the files of [`images`], with as many threads as there are cores.

@@ -7,7 +7,6 @@ mod render;
 mod report;
 mod scenes;
 mod sheet;
-mod startup;
 
 use crate::measure::output::Output;
 use anyhow::{Context, Result, bail};

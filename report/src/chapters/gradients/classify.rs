@@ -2,7 +2,6 @@
 
 use super::Context;
 use super::mlp::{self, BATCH, HIDDEN, Plan};
-use super::mnist;
 use super::summary::Summary;
 use super::trainer::Program;
 use super::trainer::Written;
@@ -13,6 +12,7 @@ use crate::chapters::targets::Targets;
 use crate::measure::table::Table;
 use anyhow::{Context as _, Result};
 use std::path::PathBuf;
+use xtask::{paths, run};
 
 /// In every form of the report: small, and with many seeds.
 const DIGITS: &str = "examples_c/data/digits";
@@ -25,10 +25,17 @@ pub(super) struct Trainer {
     mnist: Option<PathBuf>,
 }
 
+/// The folder with MNIST's four files.
+fn mnist() -> Result<PathBuf> {
+    let folder = paths::target().join("data/mnist");
+    run::check(run::command("sh").arg("report/mnist.sh").arg(&folder))?;
+    Ok(folder)
+}
+
 impl Trainer {
     pub(super) fn new(context: &Context) -> Result<Self> {
         let program = Program::compile("train_mlp.c", &context.archive)?;
-        let mnist = (context.sizes() != "quick").then(mnist::folder).and_then(|mnist| {
+        let mnist = (context.sizes() != "quick").then(mnist).and_then(|mnist| {
             mnist.inspect_err(|error| println!("without MNIST, which could not be had: {error:#}")).ok()
         });
         Ok(Self { program, mnist })

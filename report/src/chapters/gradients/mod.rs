@@ -4,7 +4,6 @@ mod classify;
 mod curves;
 mod image_plot;
 mod mlp;
-mod mnist;
 mod photograph;
 mod polynomial;
 mod polynomial_plots;
