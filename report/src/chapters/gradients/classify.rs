@@ -14,6 +14,7 @@ use anyhow::{Context as _, Result};
 use std::path::PathBuf;
 use xtask::{paths, run};
 
+const MNIST: &str = "MNIST";
 /// In every form of the report: small, and with many seeds.
 const DIGITS: &str = "examples_c/data/digits";
 /// The first epoch that is late in training: a run that ends before it is not judged by its variance.
@@ -49,22 +50,22 @@ impl Trainer {
         };
         if let Some(folder) = &self.mnist {
             let (seeds, epochs, variance_epochs) = mnist;
-            let plan = Plan { name: "MNIST", data: folder.clone(), seeds, epochs, rate: "0.0005", variance_epochs };
-            self.train(context, &plan, ["mnist", "mnist-time"], chapter, targets)?;
-            self.variance(context, &plan, ("mnist variance", "mnist-variance"), chapter, targets)?;
+            let plan = Plan { name: MNIST, data: folder.clone(), seeds, epochs, rate: "0.0005", variance_epochs };
+            self.train(context, &plan, "mnist", chapter, targets)?;
+            self.variance(context, &plan, "mnist variance", chapter, targets)?;
         }
         let (seeds, epochs) = digits;
         let data = PathBuf::from(DIGITS);
         let plan = Plan { name: "small digits", data, seeds, epochs, rate: "0.001", variance_epochs: epochs };
-        self.train(context, &plan, ["digits", "digits-time"], chapter, targets)?;
-        self.variance(context, &plan, ("digits variance", "digits-variance"), chapter, targets)
+        self.train(context, &plan, "digits", chapter, targets)?;
+        self.variance(context, &plan, "digits variance", chapter, targets)
     }
 
     fn train(
         &self,
         context: &Context,
         plan: &Plan,
-        [name, time]: [&'static str; 2],
+        name: &'static str,
         chapter: &mut Chapter,
         targets: &mut Targets,
     ) -> Result<()> {
@@ -79,10 +80,7 @@ impl Trainer {
         chapter.setting(format!("{name}: seeds"), plan.seeds);
         summary.write(chapter, name, 2);
         let rows = Table::parse(&csv, name, ',')?;
-        for (file, column, label) in [(name, "step", "steps"), (time, "seconds", "seconds of training")] {
-            let plot = mlp::error_plot(plan, &rows, column, label)?;
-            context.plot(file, &plot)?;
-        }
+        context.plot(&format!("{name}-time"), &mlp::error_plot(plan, &rows)?)?;
         for mode in ["importance", "adaptive"] {
             // Its two columns of differences have the same name; the second is that at equal time.
             let difference = summary.columns.iter().rposition(|column| column == "minus uniform's");
@@ -103,7 +101,7 @@ impl Trainer {
         &self,
         context: &Context,
         plan: &Plan,
-        (name, picture): (&'static str, &str),
+        name: &'static str,
         chapter: &mut Chapter,
         targets: &mut Targets,
     ) -> Result<()> {
@@ -120,7 +118,9 @@ impl Trainer {
         chapter.setting(format!("{name}: draws of a batch"), draws);
         let summary = Summary::parse(&mlp::variance_table(plan, &rows)?)?;
         summary.write(chapter, name, 1);
-        context.plot(picture, &mlp::variance_plot(plan, &rows)?)?;
+        if plan.name == MNIST {
+            context.plot("mnist-variance", &mlp::variance_plot(plan, &rows)?)?;
+        }
         if plan.variance_epochs < LATE {
             return Ok(());
         }

@@ -50,8 +50,8 @@ fn text(path: &Path) -> Result<&str> {
     path.to_str().with_context(|| format!("{} is not Unicode", path.display()))
 }
 
-pub(super) fn error_plot(plan: &Plan, rows: &Table, column: &str, label: &str) -> Result<String> {
-    let line = |mode: &&str| rows.only("mode", mode)?.line(mode, "epoch", column, ("test_error", 100.0));
+pub(super) fn error_plot(plan: &Plan, rows: &Table) -> Result<String> {
+    let line = |mode: &&str| rows.only("mode", mode)?.line(mode, "epoch", "seconds", ("test_error", 100.0));
     let mut series: Vec<Series> = MODES.iter().map(line).collect::<Result<_>>()?;
     for line in &mut series {
         // The untrained network, wrong nine times in ten, would take up most of the picture.
@@ -59,7 +59,7 @@ pub(super) fn error_plot(plan: &Plan, rows: &Table, column: &str, label: &str) -
         line.band.retain(|&(at, ..)| at > 0.0);
     }
     let title = format!("{}, rate {}: mean of {} seeds, 95 % confidence intervals", plan.name, plan.rate, plan.seeds);
-    Plot { title: &title, x: label, y: "test error, %", logarithmic: true, series: &series }.svg()
+    Plot { title: &title, x: "seconds of training", y: "test error, %", logarithmic: true, series: &series }.svg()
 }
 
 /// (method, uniform fraction, name, colour): those with a uniform fraction are dashed.

@@ -6,7 +6,6 @@ mod image_plot;
 mod mlp;
 mod photograph;
 mod polynomial;
-mod polynomial_plots;
 mod summary;
 mod trainer;
 
