@@ -1,7 +1,7 @@
 //! Samplers beside each other: `cargo bench --package noisefloor-bench --bench samplers`.
 //!
-//! Errors of an image's pixels, raw and filtered, over those of independent samples, and nanoseconds of a draw: what the
-//! report's chapter on samplers shows.
+//! Errors of an image's pixels, raw and filtered, over those of independent samples, and nanoseconds of a draw: what
+//! the report's chapter on samplers shows.
 
 mod quality;
 mod sampler;

@@ -32,7 +32,8 @@ pub(crate) struct Speed {
 type Estimate = Box<dyn FnMut(&[f32], &[f32]) -> f32>;
 type Contestant<'a> = (&'static str, Box<dyn FnMut() + 'a>);
 
-/// Nanoseconds of each contestant's calls, divided by `units`, the median over the rounds; the first round warms up and does not count.
+/// Nanoseconds of each contestant's calls, divided by `units`: the median over the rounds, of which the first warms up
+/// and does not count.
 fn race(mut contestants: Vec<Contestant<'_>>, rounds: usize, units: usize) -> Vec<(&'static str, f64)> {
     let mut times = vec![Vec::with_capacity(rounds); contestants.len()];
     for round in 0..=rounds {
