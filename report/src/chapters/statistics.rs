@@ -73,13 +73,6 @@ impl Estimate {
         Self { value, low: value - half, high: value + half, seeds: values.len() }
     }
 
-    /// The geometric mean of a / b, pair by pair, with Student's interval of its logarithm.
-    pub(crate) fn mean_ratio(a: &[f64], b: &[f64]) -> Self {
-        let Self { value, low, high, seeds } =
-            Self::mean(&a.iter().zip(b).map(|(a, b)| (a / b).ln()).collect::<Vec<_>>());
-        Self { value: value.exp(), low: low.exp(), high: high.exp(), seeds }
-    }
-
     /// Of a / b, pair by pair: both of a pair had the same seed.
     pub(crate) fn ratio(a: &[f64], b: &[f64]) -> Self {
         Self::median(&a.iter().zip(b).map(|(a, b)| a / b).collect::<Vec<_>>())
@@ -162,8 +155,6 @@ mod tests {
         }
         let mean = Estimate::mean(&[1.0, 2.0, 3.0]);
         assert!(mean.value == 2.0 && (mean.high - 2.0 - 4.302_652_729_911_275 / 3.0_f64.sqrt()).abs() < 1e-9);
-        let ratio = Estimate::mean_ratio(&[2.0, 8.0], &[1.0, 1.0]);
-        assert!((ratio.value - 4.0).abs() < 1e-12 && ratio.low < 2.0 && ratio.high > 8.0);
     }
 
     #[test]

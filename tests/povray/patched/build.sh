@@ -44,6 +44,7 @@ if [ ! -e "$source" ]; then
     cd "$folder"/unpacked/*/
     grep -q '^povray (1:3\.7\.0\.10-' debian/changelog || fail "the patch is for 1:3.7.0.10, and this is $(pwd)"
     mv "$(pwd)" "$source"
+    rm -rf "$folder/unpacked"
 fi
 
 # Whether a patch fits is known before anything is changed.

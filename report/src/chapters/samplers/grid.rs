@@ -119,10 +119,9 @@ fn of(table: &Table, dims: &str, n: &str, source: &str, wanted: &Method) -> Resu
     // Of few pixels: first the mean of what is alike, then the logarithm.
     let alike =
         |all: &[f64]| all.chunks(channels).map(|of| of.iter().sum::<f64>() / of.len() as f64).collect::<Vec<_>>();
-    let ones = vec![1.0; rows.len()];
     Ok(Some(Of {
-        raw: Estimate::mean_ratio(&raw, &ones),
-        filtered: Estimate::mean_ratio(&alike(&filtered), &ones),
+        raw: Estimate::geometric_mean(&raw),
+        filtered: Estimate::geometric_mean(&alike(&filtered)),
         worst: first.number("worst")?,
         ns: first.number("ns")?,
         draw_ns: first.number("draw_ns")?,
