@@ -1,13 +1,13 @@
-//! Nanoseconds per sample of every estimator, through the C ABI of the archive that ships and through the Rust API.
+//! Nanoseconds per sample of every estimator, through the C ABI of the archive that ships.
 //!
-//! Group names are `door/dims`D`order/method`, ids are sample counts. Throughput is in samples, so that criterion's
+//! Group names are `dims`D`order/method`, ids are sample counts. Throughput is in samples, so that criterion's
 //! "elem/s" is samples per second.
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
 use noisefloor::basis::Family;
 use noisefloor::control_variate::Regressor;
-use noisefloor_bench::method::{LEAST_SQUARES, METHODS, ROBUST, Stream};
-use noisefloor_bench::{Door, c_abi};
+use noisefloor_bench::c_abi;
+use noisefloor_bench::method::{LEAST_SQUARES, METHODS, ROBUST};
 use noisefloor_tests::random::SplitMix64;
 use std::hint::black_box;
 use std::time::Duration;
@@ -24,14 +24,6 @@ fn samples(dims: usize, n: usize) -> (Vec<f32>, Vec<f32>) {
     (u, f)
 }
 
-fn doors() -> Vec<Door> {
-    if c_abi::LINKED {
-        return vec![Door::C, Door::Rust];
-    }
-    println!("libnoisefloor.a is missing, so its C functions are skipped: run `cargo xtask library`");
-    vec![Door::Rust]
-}
-
 fn group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, WallTime> {
     let mut group = criterion.benchmark_group(name);
     group.sample_size(20).warm_up_time(Duration::from_millis(100)).measurement_time(Duration::from_millis(400));
@@ -40,58 +32,44 @@ fn group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, Wal
 
 /// A whole estimate: all of what a pixel costs after its samples.
 fn estimates(criterion: &mut Criterion) {
-    for door in doors() {
-        for (dims, order) in SIZES {
-            for method in METHODS.iter().filter(|method| !method.streaming) {
-                let mut group = group(criterion, &format!("{}/{dims}D{order}/{}", door.name(), method.name));
-                for n in COUNTS {
-                    let (u, f) = samples(dims, n);
-                    let mut prepared = method.prepare(door, dims, order, n);
-                    group.throughput(Throughput::Elements(n as u64));
-                    group.bench_function(n.to_string(), |bencher| {
-                        bencher.iter(|| prepared.estimate(black_box(&u), black_box(&f)));
-                    });
-                }
+    for (dims, order) in SIZES {
+        for method in METHODS.iter().filter(|method| !method.streaming) {
+            let mut group = group(criterion, &format!("{dims}D{order}/{}", method.name));
+            for n in COUNTS {
+                let (u, f) = samples(dims, n);
+                let mut prepared = method.prepare(dims, order, n);
+                group.throughput(Throughput::Elements(n as u64));
+                group.bench_function(n.to_string(), |bencher| {
+                    bencher.iter(|| prepared.estimate(black_box(&u), black_box(&f)));
+                });
             }
         }
     }
 }
 
 /// An accumulator's calls, each alone: adding one sample, 64 samples in one call, estimating, merging.
-macro_rules! accumulator {
-    ($criterion:expr, $name:expr, $dims:expr, $new:expr) => {{
-        let (u, f) = samples($dims, 64);
-        let (mut accumulator, mut other) = ($new, $new);
-        accumulator.add(&u, &f);
-        other.add(&u, &f);
-        let mut group = group($criterion, &$name);
+fn streaming(criterion: &mut Criterion) {
+    for ((dims, order), method) in
+        SIZES.into_iter().flat_map(|size| [ROBUST, LEAST_SQUARES].map(|method| (size, method)))
+    {
+        let (u, f) = samples(dims, 64);
+        let new = || {
+            let mut new = c_abi::Accumulator::new(method.c_config(dims, order));
+            new.add(&u, &f);
+            new
+        };
+        let (mut accumulator, other) = (new(), new());
+        let mut group = group(criterion, &format!("{dims}D{order}/{} accumulator", method.name));
         group.throughput(Throughput::Elements(1));
         group.bench_function("add 1", |bencher| {
-            bencher.iter(|| accumulator.add(black_box(&u[..$dims]), black_box(&f[..1])));
+            bencher.iter(|| accumulator.add(black_box(&u[..dims]), black_box(&f[..1])));
         });
         group.throughput(Throughput::Elements(64));
         group.bench_function("add 64", |bencher| bencher.iter(|| accumulator.add(black_box(&u), black_box(&f))));
         group.throughput(Throughput::Elements(1));
-        accumulator.reset();
-        accumulator.add(&u, &f);
+        let mut accumulator = new();
         group.bench_function("estimate", |bencher| bencher.iter(|| black_box(&mut accumulator).estimate()));
         group.bench_function("merge", |bencher| bencher.iter(|| accumulator.merge(black_box(&other))));
-    }};
-}
-
-fn streaming(criterion: &mut Criterion) {
-    for door in doors() {
-        for (dims, order) in SIZES {
-            for method in [ROBUST, LEAST_SQUARES] {
-                let name = format!("{}/{dims}D{order}/{} accumulator", door.name(), method.name);
-                match door {
-                    Door::C => {
-                        accumulator!(criterion, name, dims, c_abi::Accumulator::new(method.c_config(dims, order)));
-                    }
-                    Door::Rust => accumulator!(criterion, name, dims, Stream::<f64>::new(&method.config(dims, order))),
-                }
-            }
-        }
     }
 }
 
@@ -113,12 +91,9 @@ fn solve(criterion: &mut Criterion) {
     bench::<3, 10>(&mut group);
 }
 
-/// Fits that the pixels of 32 x 32 share, through the C ABI: blocks of 8 x 8 in no order, windows of 8 x 8 side by
+/// Fits that the pixels of 32 x 32 share: blocks of 8 x 8 in no order, windows of 8 x 8 side by
 /// side, and overlapping by half.
 fn shared(criterion: &mut Criterion) {
-    if !c_abi::LINKED {
-        return;
-    }
     const SIDE: usize = 32;
     for (order, channels) in [(2, 1), (2, 3), (3, 1), (3, 3)] {
         for (name, stride) in [("block", 0), ("image, stride 8", 8), ("image, stride 4", 4)] {

@@ -6,7 +6,12 @@
 
 use anyhow::{Context, Result, bail};
 use openqmc::{LatticeBnSampler, PmjBnSampler, SobolBnSampler};
+use sampler::heitz;
 use std::path::Path;
+
+#[allow(dead_code, reason = "the bench `samplers` draws from more")]
+#[path = "../benches/samplers/sampler.rs"]
+mod sampler;
 
 /// Pixels on a side: the tables' own period is 128 (Heitz) or 64 (OpenQMC, whose pixels differ beyond).
 const SIZE: u32 = 128;
@@ -51,24 +56,4 @@ fn main() -> Result<()> {
         }
     }
     noisefloor_bench::write(Path::new(file), &bytes)
-}
-
-/// E. Heitz et al. 2019, with the tables that were optimised for so many samples or, of those, the next more.
-fn heitz(x: u32, y: u32, samples: u32, index: u32, dim: u32) -> f32 {
-    use blue_noise_sampler::{spp1, spp2, spp4, spp8, spp16, spp32, spp64, spp128, spp256};
-    let (sobol, ranking, scrambling) = match samples {
-        1 => (spp1::SOBOL, spp1::RANKING_TILE, spp1::SCRAMBLING_TILE),
-        2 => (spp2::SOBOL, spp2::RANKING_TILE, spp2::SCRAMBLING_TILE),
-        3..=4 => (spp4::SOBOL, spp4::RANKING_TILE, spp4::SCRAMBLING_TILE),
-        5..=8 => (spp8::SOBOL, spp8::RANKING_TILE, spp8::SCRAMBLING_TILE),
-        9..=16 => (spp16::SOBOL, spp16::RANKING_TILE, spp16::SCRAMBLING_TILE),
-        17..=32 => (spp32::SOBOL, spp32::RANKING_TILE, spp32::SCRAMBLING_TILE),
-        33..=64 => (spp64::SOBOL, spp64::RANKING_TILE, spp64::SCRAMBLING_TILE),
-        65..=128 => (spp128::SOBOL, spp128::RANKING_TILE, spp128::SCRAMBLING_TILE),
-        _ => (spp256::SOBOL, spp256::RANKING_TILE, spp256::SCRAMBLING_TILE),
-    };
-    let (dim, pixel) = (dim as usize, ((x & 127) + (y & 127) * 128) as usize);
-    let ranked = index as usize ^ ranking.get(dim % 8 + pixel * 8).map_or(0, |&rank| rank as usize);
-    let value = sobol[dim + ranked * 256] ^ scrambling[dim % 8 + pixel * 8];
-    (0.5 + value as f32) / 256.0
 }

@@ -81,18 +81,6 @@ impl Tile {
         self.dims
     }
 
-    /// The sum of two numbers of a child domain.
-    #[inline]
-    pub fn child(&self, x: u32, y: u32, index: u32, key: u32) -> f32 {
-        let mut u = [0.0; 2];
-        // SAFETY: as above.
-        unsafe {
-            let pixel = nf_tile_sampler_pixel(self, x, y, 0, index);
-            nf_tile_sampler_draw(nf_tile_sampler_domain(pixel, key), 2, u.as_mut_ptr());
-        }
-        u[0] + u[1]
-    }
-
     /// The sum of four numbers, two of each of two child domains.
     #[inline]
     pub fn children(&self, x: u32, y: u32, index: u32) -> f32 {
@@ -123,15 +111,5 @@ impl Tile {
         };
         assert_eq!(status, 0);
         u.last_chunk().map_or(0.0, |[a, b]: &[f32; 2]| a + b)
-    }
-
-    /// Two numbers for each pixel and sample.
-    pub fn fill(&self, width: u32, height: u32, samples: u32, u: &mut [f32]) {
-        // SAFETY: the tile lives; the length is that of `u`.
-        let status = unsafe {
-            let pixel = nf_tile_sampler_pixel(self, 0, 0, 0, 0);
-            nf_tile_sampler_fill(&pixel, &2, 1, width, height, samples, u.as_mut_ptr(), u.len())
-        };
-        assert_eq!(status, 0);
     }
 }

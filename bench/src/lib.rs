@@ -1,4 +1,4 @@
-//! What the benchmarks share: the two doors to the library, how its estimators are configured, their command line, and
+//! What the benchmarks share: the C functions, how its estimators are configured, their command line, and
 //! where results go.
 
 /// Declares functions of the archive. Where there is none they stand for nothing, and `c_abi::LINKED` says so.
@@ -19,7 +19,6 @@ macro_rules! c_functions {
 }
 
 pub mod c_abi;
-pub mod c_gradient;
 pub mod c_table;
 pub mod c_tile;
 pub mod method;
@@ -27,7 +26,7 @@ pub mod method;
 use anyhow::{Context, Result};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-pub use method::{Door, Method, Prepared};
+pub use method::{Method, Prepared};
 use std::fs;
 use std::path::{Path, PathBuf};
 

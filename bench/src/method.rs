@@ -1,33 +1,9 @@
-//! An estimator with its configuration, ready to be timed through either door.
+//! An estimator with its configuration, ready to be timed through the C functions.
 
 use crate::c_abi;
 use noisefloor::basis::Family;
-use noisefloor::control_variate::{self as cv, Accumulator, Config, Estimator, Samples};
+use noisefloor::control_variate::{Accumulator, Config, Estimator, Samples};
 use noisefloor::real::Real;
-
-/// How the library is called.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Door {
-    /// The C functions of the archive that ships.
-    C,
-    /// The Rust API, compiled into the benchmark.
-    Rust,
-}
-
-impl Door {
-    /// The C functions, or the Rust API where the archive is missing.
-    pub fn shipped() -> Self {
-        if c_abi::LINKED { Self::C } else { Self::Rust }
-    }
-
-    /// What a table calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::C => "C ABI",
-            Self::Rust => "Rust",
-        }
-    }
-}
 
 /// An estimator as it is compared.
 #[derive(Clone, Copy, Debug)]
@@ -122,24 +98,17 @@ impl Method {
     }
 
     /// Allocates what estimates from `n` samples need.
-    pub fn prepare(&self, door: Door, dims: usize, order: usize, n: usize) -> Prepared {
-        let (config, c_config) = (self.config(dims, order), self.c_config(dims, order));
-        match (door, self.streaming, self.narrow) {
-            (Door::C, false, _) => Prepared::C(c_abi::Batch::new(c_config, n)),
-            (Door::C, true, _) => Prepared::CStream(c_abi::Accumulator::new(c_config), dims),
-            (Door::Rust, false, true) => Prepared::Narrow(config, workspace::<f32>(&config, n)),
-            (Door::Rust, false, false) => Prepared::Wide(config, workspace::<f64>(&config, n)),
-            (Door::Rust, true, _) => Prepared::Stream(Box::new(Stream::new(&config)), dims),
+    pub fn prepare(&self, dims: usize, order: usize, n: usize) -> Prepared {
+        let config = self.c_config(dims, order);
+        match self.streaming {
+            false => Prepared::Batch(c_abi::Batch::new(config, n)),
+            true => Prepared::Stream(c_abi::Accumulator::new(config), dims),
         }
     }
 }
 
-fn workspace<R: Real>(config: &Config, n: usize) -> Vec<R> {
-    vec![R::ZERO; cv::workspace_len::<R>(config, n).expect("a valid configuration")]
-}
-
 /// A Rust accumulator with its workspace.
-pub struct Stream<R = f64> {
+pub struct Stream<R> {
     accumulator: Accumulator<R, Vec<R>>,
     workspace: Vec<R>,
 }
@@ -158,30 +127,18 @@ impl<R: Real> Stream<R> {
         self.accumulator.add(Samples::new(u, f)).expect("valid samples");
     }
 
-    /// Adds another accumulator's samples.
-    pub fn merge(&mut self, other: &Self) {
-        self.accumulator.merge(&other.accumulator).expect("equal configurations");
-    }
-
     /// The estimate so far.
     pub fn estimate(&mut self) -> f32 {
         self.accumulator.estimate(&mut self.workspace).expect("samples were added").mean[0]
     }
-
-    /// Forgets all samples.
-    pub fn reset(&mut self) {
-        self.accumulator.reset();
-    }
 }
 
 /// A method with its memory: estimating allocates nothing.
-#[allow(missing_docs, reason = "one for each way to call")]
 pub enum Prepared {
-    C(c_abi::Batch),
-    CStream(c_abi::Accumulator, usize),
-    Narrow(Config, Vec<f32>),
-    Wide(Config, Vec<f64>),
-    Stream(Box<Stream>, usize),
+    /// All samples in a call.
+    Batch(c_abi::Batch),
+    /// One sample a call, of so many dims.
+    Stream(c_abi::Accumulator, usize),
 }
 
 impl Prepared {
@@ -189,27 +146,14 @@ impl Prepared {
     #[inline]
     pub fn estimate(&mut self, u: &[f32], f: &[f32]) -> f32 {
         match self {
-            Self::C(batch) => batch.estimate(u, f),
-            Self::CStream(accumulator, dims) => {
+            Self::Batch(batch) => batch.estimate(u, f),
+            Self::Stream(accumulator, dims) => {
                 accumulator.reset();
                 for (u, f) in u.chunks_exact(*dims).zip(f.chunks_exact(1)) {
                     accumulator.add(u, f);
                 }
                 accumulator.estimate()
             }
-            Self::Narrow(config, workspace) => batch(config, u, f, workspace),
-            Self::Wide(config, workspace) => batch(config, u, f, workspace),
-            Self::Stream(stream, dims) => {
-                stream.reset();
-                for (u, f) in u.chunks_exact(*dims).zip(f.chunks_exact(1)) {
-                    stream.add(u, f);
-                }
-                stream.estimate()
-            }
         }
     }
-}
-
-fn batch<R: Real>(config: &Config, u: &[f32], f: &[f32], workspace: &mut [R]) -> f32 {
-    cv::estimate(config, Samples::new(u, f), workspace).expect("valid samples").mean[0]
 }

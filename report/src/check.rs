@@ -1,11 +1,11 @@
 //! The steps of `cargo xtask test` that run what is here.
 
-use crate::{chapters, povray, povray_patched};
+use crate::chapters;
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 use std::process::ExitCode;
+use xtask::embree;
 use xtask::outcome::{NOT_RUN, Outcome};
-use xtask::{embree, library};
 
 #[derive(Args)]
 pub(crate) struct Options {
@@ -18,10 +18,6 @@ enum Step {
     Chapters,
     /// A quick chapter of the path tracer on Embree.
     Embree,
-    /// POV-Ray's pictures as integrands.
-    Povray,
-    /// The patch of POV-Ray.
-    Patch,
 }
 
 const CHAPTERS: [&str; 7] = ["tables", "gradients", "control_variates", "hard_cases", "analytic", "samplers", "points"];
@@ -45,7 +41,5 @@ fn step(step: Step) -> Result<Outcome> {
     match step {
         Step::Chapters => chapters::check_quick(&CHAPTERS).map(|()| Outcome::Passed),
         Step::Embree => embree::report(|| chapters::check_quick(&["embree"])),
-        Step::Povray => povray::test::run(&library::build()?),
-        Step::Patch => povray_patched::check_patch(&library::build()?),
     }
 }

@@ -8,9 +8,9 @@ use crate::measure::output::Output;
 use crate::measure::part::Part;
 use crate::measure::renderer::{Job, Renderer, Sampler};
 use crate::measure::runs::{Runs, SEED};
-use crate::measure::samplers::{Choice, Tiles};
+use crate::measure::samplers::Choice;
 use crate::measure::score::Score;
-use crate::measure::{interrupt, progress, text};
+use crate::measure::{progress, text};
 use anyhow::{Context, Result};
 use clap::Args;
 use image::imageops::replace;
@@ -23,9 +23,6 @@ pub(crate) struct Options {
     /// Small images, few seeds
     #[arg(long)]
     quick: bool,
-    /// Tiles NAME.nft of a folder, before those of the library of the same name
-    #[arg(long, value_name = "DIR")]
-    tiles: Option<PathBuf>,
     /// Where everything goes [default: target/demo]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -56,12 +53,10 @@ struct Rendered {
 pub(crate) fn run(options: &Options) -> Result<()> {
     let folder = options.out.clone().unwrap_or_else(|| paths::target().join("demo"));
     let folder = std::path::absolute(&folder).with_context(|| format!("{} is no folder", folder.display()))?;
-    let interrupted = interrupt::catch()?;
     println!("building the library and the path tracer");
-    let renderer = Renderer::build(interrupted.clone())?;
+    let renderer = Renderer::build()?;
     let output = Output::new(&folder)?;
     scenes(options, &renderer, &output)?;
-    interrupt::check(&interrupted)?;
     output.commit()?;
     println!("{}\n", folder.join("shared.png").display());
     chapters::run(&chapters::Options::gradients(options.quick, &folder))?;
@@ -78,7 +73,7 @@ fn scenes(options: &Options, renderer: &Renderer, output: &Output) -> Result<()>
     };
     let bar = progress::bar(SCENES.iter().map(|(.., cost)| each(*cost)).sum())?;
     let runs = Runs::new(renderer, &bar, size)?;
-    let tiles = Tiles::new(renderer.tiles()?, options.tiles.as_deref())?;
+    let tiles = renderer.tiles()?;
     let mut chapter = Chapter::new("Samplers and fits in a path tracer");
     let mut rows = Vec::new();
     for (scene, domain, order, cost) in SCENES {

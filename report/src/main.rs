@@ -5,7 +5,6 @@ mod chapters;
 mod check;
 mod demo;
 mod measure;
-mod povray;
 mod povray_patched;
 mod targets;
 

@@ -85,6 +85,14 @@ foreach(name IN ITEMS intersection lights known surfaces image_plane paths mis p
     add_check(pathtracer_parts ${name} part_${name})
 endforeach()
 
+# The path tracer's samplers and estimators on pictures of POV-Ray's; and our side of its patch.
+add_program(povray povray_oracle povray/oracle.cpp ${fast})
+add_python(povray scenes povray.py "$<TARGET_FILE:povray_oracle>" "${NOISEFLOOR_CARGO_TARGET_DIR}/povray")
+add_program(povray_patch povray_begin povray/patched/begin.cpp)
+target_sources(povray_begin PRIVATE povray/patched/bridge.cpp)
+target_include_directories(povray_begin PRIVATE ../examples_c/pathtracer)
+add_python(povray_patch patch povray_patch.py "$<TARGET_FILE:povray_begin>")
+
 # Embree 4 where somebody installed it, which Debian 12 has not as a package.
 find_path(embree_4 embree4/rtcore.h)
 find_path(embree_3 embree3/rtcore.h)

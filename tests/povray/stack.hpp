@@ -1,5 +1,5 @@
-// A stack of pictures: one of a scene for every cell of a grid over the unit cube of samples. `cargo xtask` renders
-// them with POV-Ray and writes them as files: lines of text, then numbers, little-endian.
+// A stack of pictures: one of a scene for every cell of a grid over the unit cube of samples. Files, which
+// tests/programs/povray_stack.py has POV-Ray render and writes, are lines of text, then numbers, little-endian.
 //
 //   noisefloor-stack 1
 //   size 128 128                       width and height

@@ -117,11 +117,14 @@ fn domains_are_uncorrelated() {
     }
 }
 
+/// A function of four numbers, and its integral.
+type Integrand = (fn([f32; 4]) -> f64, f64);
+
 /// Over seeds every value is uniform: the means of four integrands, of 1 and 4 samples. |z| < 4.75 by chance with
 /// probability 2e-6, of 32 deviates.
 #[test]
 fn unbiased_over_scrambles() {
-    let integrands: [(fn([f32; 4]) -> f64, f64); 4] = [
+    let integrands: [Integrand; 4] = [
         (|[x, y, ..]| f64::from(x * x * y), 1.0 / 6.0),
         (|[x, y, ..]| f64::from(u8::from(x + y < 0.7)), 0.245),
         (|[x, _, z, w]| f64::from(u8::from(x < 0.25)) * f64::from(z * w), 0.0625),

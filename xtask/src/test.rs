@@ -19,6 +19,10 @@ const DEVICES: [Package; 6] = [
     Package { name: "ocl-icd-opencl-dev", file: "/usr/share/doc/ocl-icd-opencl-dev/copyright" },
     Package { name: "pocl-opencl-icd", file: "/etc/OpenCL/vendors/pocl.icd" },
 ];
+const POVRAY: [Package; 2] = [
+    Package { name: "povray", file: "/usr/bin/povray" },
+    Package { name: "povray-includes", file: "/usr/share/povray-3.7/include/woods.inc" },
+];
 /// The packages that do not measure: their profile is `xtask`.
 const COMPILED_FAST: [&str; 3] = ["xtask", "noisefloor-release", "noisefloor-report"];
 
@@ -99,7 +103,7 @@ pub fn run(options: &Options) -> Result<()> {
     steps.c(heading, "default", "embree_agreement", &rays);
     steps.c("tests/embree: every scene, three samplers, 32 x 32 pixels", "default", "embree_scenes", &all);
     let heading = "tests/povray: POV-Ray's pictures as integrands, every estimator and sampler, 32 x 32 pixels";
-    steps.start(heading, "report", "povray");
+    steps.c(heading, "default", "povray", &[PYTHON, POVRAY[0], POVRAY[1]]);
     steps.start("cargo xtask report --quick: the path tracer on Embree", "report", "embree");
     let heading = "examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces";
     steps.run(heading, || c_tests::run_twice("renderers", &[]));
@@ -115,7 +119,7 @@ pub fn run(options: &Options) -> Result<()> {
         steps.run(heading, || c_tests::run_twice(label, &[PYTHON]));
     }
     let heading = "POV-Ray's patch: well formed, its licence stated, and our side of it compiles";
-    steps.start(heading, "report", "patch");
+    steps.c(heading, "default", "povray_patch", &[PYTHON]);
     steps.run("links between documents lead somewhere", texts::links);
     let heading = "cargo package: every published package is complete and below the registry's limit";
     steps.start(heading, "release", "packages");

@@ -38,6 +38,6 @@ pub(crate) fn measure_again(rows: &mut [Row], open: &[usize], function: &Functio
     // The plain mean comes first.
     for (&index, again) in open.iter().zip(&results[1..]) {
         let result = &mut rows[index].result;
-        (result.ratio, result.repetitions, result.mean_rmse) = (again.ratio, again.repetitions, again.mean_rmse);
+        (result.ratio, result.repetitions) = (again.ratio, again.repetitions);
     }
 }

@@ -1,4 +1,4 @@
-//! Every estimator, basis and order on every integrand, and the convergence plots of chapter 4:
+//! Every estimator, basis and order on every integrand:
 //! `cargo bench --package noisefloor-bench --bench estimators`.
 //!
 //! Settings take turns on the same samples, eight estimates at a time, so that a busy machine slows all alike. Seeds
@@ -6,8 +6,6 @@
 //! are measured again, longer.
 
 mod again;
-mod convergence;
-mod fits;
 mod functions;
 mod grid;
 mod race;
@@ -16,36 +14,30 @@ mod table;
 use anyhow::Result;
 use clap::Parser;
 use grid::Row;
-use noisefloor_bench::{Door, Extent, Options, c_abi};
+use noisefloor_bench::{Extent, Options, c_abi};
 use race::Effort;
 use std::time::Instant;
 
 /// Seeds of what is measured again begin here.
 const AGAIN: u64 = 1000;
 
-fn effort(extent: Extent, budget: f64, repetitions: [usize; 2]) -> Effort {
-    let factor = extent.choose(1, 1, 8);
-    let repetitions = if extent == Extent::Quick { [8, 16] } else { repetitions.map(|bound| bound * factor) };
-    Effort { budget: extent.choose(budget / 100.0, budget, 8.0 * budget), repetitions, by_estimator: false }
-}
-
 fn main() -> Result<()> {
     let options = Options::parse();
-    println!("through the {}; libnoisefloor.a is {}", Door::shipped().name(), c_abi::STATE);
+    println!("libnoisefloor.a is {}", c_abi::STATE);
     let functions = grid::functions();
     let extent = options.extent();
     let counts = &grid::COUNTS[..extent.choose(1, grid::COUNTS.len(), grid::COUNTS.len())];
-    let total = functions.len() * counts.len() + convergence::steps();
-    let bar = noisefloor_bench::bar(total)?;
+    let bar = noisefloor_bench::bar(functions.len() * counts.len())?;
     // Without this two thirds of the time were the incremental estimator's.
     let by_estimator = extent != Extent::Full;
-    let first_look = Effort { by_estimator, ..effort(extent, 8e5, [16, 512]) };
+    let (budget, repetitions) = extent.choose((8e3, [8, 16]), (8e5, [16, 512]), (6.4e6, [128, 4096]));
+    let first_look = Effort { budget, repetitions, by_estimator };
     let start = Instant::now();
     let mut cells = Vec::new();
-    for (seed, (set, function)) in functions.iter().enumerate() {
+    for (seed, function) in functions.iter().enumerate() {
         for &n in counts {
             bar.set_message(format!("{}, n = {n}", function.name));
-            cells.extend(grid::rows(set, function, seed as u64, n, first_look));
+            cells.extend(grid::rows(function, seed as u64, n, first_look));
             bar.inc(1);
         }
     }
@@ -64,24 +56,12 @@ fn main() -> Result<()> {
     for group in groups {
         let Row { integrand, n, .. } = &cells[group[0]];
         bar.set_message(format!("{integrand}, n = {n}, again"));
-        let (seed, (_, function)) = (0..).zip(&functions).find(|(_, (_, f))| &f.name == integrand).expect("a function");
+        let (seed, function) = (0..).zip(&functions).find(|(_, f)| &f.name == integrand).expect("a function");
         again::measure_again(&mut cells, &group, function, AGAIN + seed, second_look);
         bar.inc(group.len() as u64);
     }
-    let grid = start.elapsed().as_secs_f64();
-    let points = convergence::rows(effort(extent, 1e7, [24, 1024]), |figure| {
-        bar.set_message(format!("figure {figure}"));
-        bar.inc(1);
-    });
     bar.finish_and_clear();
-    let all = start.elapsed().as_secs_f64();
-    println!(
-        "{} settings {first:.0} s, {} of them again {:.0} s, {} points of plots {:.0} s",
-        cells.len(),
-        open.len(),
-        grid - first,
-        points.len(),
-        all - grid
-    );
-    options.write("estimators", &table::all(&cells, &points, &fits::rows()))
+    let again = start.elapsed().as_secs_f64() - first;
+    println!("{} settings {first:.0} s, {} of them again {again:.0} s", cells.len(), open.len());
+    options.write("estimators", &table::all(&cells))
 }

@@ -2,9 +2,9 @@
 
 use crate::functions::Function;
 use noisefloor_bench::method::{INCREMENTAL, K_FOLD, MEAN};
-use noisefloor_bench::{Door, Method, Prepared};
+use noisefloor_bench::{Method, Prepared};
 use noisefloor_tests::random::{SplitMix64, mix};
-use noisefloor_tests::statistics::{Ratio, median, rmse_ratio, root_mean_square};
+use noisefloor_tests::statistics::{Ratio, median, rmse_ratio};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -28,20 +28,12 @@ impl Setting {
 /// What was measured of a setting.
 pub(crate) struct Result {
     pub(crate) setting: Setting,
-    pub(crate) terms: usize,
     pub(crate) repetitions: usize,
-    pub(crate) mean_rmse: f64,
     /// RMSE over the plain mean's of the same samples, 95 % interval.
     pub(crate) ratio: Ratio,
     /// Nanoseconds per sample, the integrand not counted: the median over the chunks.
     pub(crate) ns: f64,
     pub(crate) mean_ns: f64,
-}
-
-impl Result {
-    pub(crate) fn rmse(&self) -> f64 {
-        self.ratio.value * self.mean_rmse
-    }
 }
 
 /// Estimates that follow each other without another setting between.
@@ -76,7 +68,6 @@ impl Effort {
 
 struct Track {
     setting: Setting,
-    terms: usize,
     chunks: usize,
     prepared: Prepared,
     errors: Vec<f64>,
@@ -86,16 +77,14 @@ struct Track {
 /// Measures settings that the function's dims admit; others are left out. The plain mean comes first.
 pub(crate) fn measure(function: &Function, settings: &[Setting], n: usize, seed: u64, effort: Effort) -> Vec<Result> {
     let dims = function.dims;
-    let door = Door::shipped();
     let mut tracks: Vec<Track> = [Setting::mean()]
         .iter()
         .chain(settings)
         .filter_map(|&setting| {
             let terms = setting.terms(dims)?;
-            let prepared = setting.method.prepare(door, dims, setting.order, n);
+            let prepared = setting.method.prepare(dims, setting.order, n);
             Some(Track {
                 setting,
-                terms,
                 chunks: effort.chunks(n, terms, &setting.method),
                 prepared,
                 errors: vec![],
@@ -128,9 +117,7 @@ pub(crate) fn measure(function: &Function, settings: &[Setting], n: usize, seed:
         let same = &mean.errors[..track.errors.len()];
         Result {
             setting: track.setting,
-            terms: track.terms,
             repetitions: track.errors.len(),
-            mean_rmse: root_mean_square(same),
             ratio: rmse_ratio(&track.errors, same),
             ns: median(&track.ns),
             mean_ns: median(&mean.ns),

@@ -1,7 +1,7 @@
 //! Errors of control variates over many repetitions, beside the plain mean's of the same samples.
 
 use crate::draws::{Case, cases};
-use crate::table::{ErrorRow, Tables};
+use crate::table::ErrorRow;
 use noisefloor::Error;
 use noisefloor::control_variate::{self as cv, Config, Estimator, Samples};
 use noisefloor::real::Real;
@@ -15,10 +15,10 @@ const NARROW: &str = "default, f32";
 const LEAST_SQUARES: &str = "least squares";
 const K_FOLD: &str = "4-fold";
 
-pub(crate) fn measure(tables: &mut Tables, repetitions: usize) {
+pub(crate) fn measure(rows: &mut Vec<ErrorRow>, repetitions: usize) {
     for (index, case) in cases().iter().enumerate() {
         for &n in &case.counts {
-            tables.error(row(case, n, repetitions, index as u64));
+            rows.push(row(case, n, repetitions, index as u64));
         }
     }
 }
@@ -90,7 +90,7 @@ impl<R: Real> Batch<R> {
 }
 
 /// Fits that the 64 pixels of a block share, where there is nothing to share.
-pub(crate) fn shared(tables: &mut Tables, repetitions: usize) {
+pub(crate) fn shared(rows: &mut Vec<ErrorRow>, repetitions: usize) {
     const PIXELS: usize = 64;
     const BRIGHT: usize = 27;
     type Value = fn(usize, &[f32], &mut SplitMix64) -> [f64; 2];
@@ -134,7 +134,7 @@ pub(crate) fn shared(tables: &mut Tables, repetitions: usize) {
                 plain.push(root_mean_square(&own));
                 errors.push(root_mean_square(&shared));
             }
-            tables.error(ErrorRow {
+            rows.push(ErrorRow {
                 group: "shared fits",
                 case: name.to_owned(),
                 n,

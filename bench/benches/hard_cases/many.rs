@@ -1,7 +1,7 @@
 //! So many samples that sums lose digits: streams, in both precisions.
 
 use crate::errors::{DEFAULT, ratio};
-use crate::table::{ErrorRow, Tables};
+use crate::table::ErrorRow;
 use noisefloor::control_variate::{Config, Estimator};
 use noisefloor_bench::method::Stream;
 use noisefloor_tests::random::SplitMix64;
@@ -10,7 +10,7 @@ use noisefloor_tests::statistics::root_mean_square;
 /// Added at once.
 const PART: usize = 1000;
 
-pub(crate) fn measure(tables: &mut Tables, samples: usize, repetitions: usize) {
+pub(crate) fn measure(rows: &mut Vec<ErrorRow>, samples: usize, repetitions: usize) {
     let exact = (1.0 - (-1.0_f64).exp()).powi(2);
     for offset in [0.0, 1e4] {
         let (mut plain, mut naive, mut errors) = (vec![], vec![], [const { vec![] }; 4]);
@@ -42,7 +42,7 @@ pub(crate) fn measure(tables: &mut Tables, samples: usize, repetitions: usize) {
         let names = [DEFAULT, "default, f32", "least squares", "least squares, f32"];
         let mut ratios: Vec<_> = names.into_iter().zip(errors.iter().map(|errors| ratio(errors, &plain))).collect();
         ratios.push(("mean, f32", ratio(&naive, &plain)));
-        tables.error(ErrorRow {
+        rows.push(ErrorRow {
             group: "streams",
             case: if offset == 0.0 { "exp 2D".to_owned() } else { format!("exp 2D plus {offset:e}") },
             n: samples,

@@ -1,7 +1,7 @@
 //! Multiple importance sampling: techniques that the optimal weights can hardly tell apart.
 
 use crate::errors::ratio;
-use crate::table::{ErrorRow, Tables};
+use crate::table::ErrorRow;
 use noisefloor::mis::{self, OptimalMis, Solver};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::statistics::root_mean_square;
@@ -44,7 +44,7 @@ struct Case {
     scale: f64,
 }
 
-pub(crate) fn measure(tables: &mut Tables, repetitions: usize) {
+pub(crate) fn measure(rows: &mut Vec<ErrorRow>, repetitions: usize) {
     let linear = |slopes: &[f64]| slopes.iter().map(|&slope| Density::Linear(slope)).collect::<Vec<_>>();
     let many: Vec<f64> = (0..16).map(|j| f64::from(j) / 16.0).collect();
     let cases = [
@@ -64,9 +64,8 @@ pub(crate) fn measure(tables: &mut Tables, repetitions: usize) {
         Case { name: "densities times 1e30", techniques: linear(&[0.0, -0.9]), rounds: 16, scale: 1e30 },
     ];
     for (seed, case) in cases.iter().enumerate() {
-        tables.error(row(case, repetitions, seed as u64));
+        rows.push(row(case, repetitions, seed as u64));
     }
-    weights(tables);
 }
 
 /// exp(-2 x), whose integral the techniques share.
@@ -108,35 +107,5 @@ fn row(case: &Case, repetitions: usize, seed: u64) -> ErrorRow {
         failed,
         plain_rmse: root_mean_square(&balance),
         ratios: names.into_iter().zip(errors.iter().map(|errors| ratio(errors, &balance))).collect(),
-    }
-}
-
-/// Weights of densities that overflow when squared or added: their sum's distance from 1, beside plain `f32`
-/// arithmetic.
-fn weights(tables: &mut Tables) {
-    let cases: [(&str, [f32; 3]); 4] = [
-        ("densities 1e-38, 1 and 1e38", [1e-38, 1.0, 1e38]),
-        ("densities of 3e38 each", [3e38; 3]),
-        ("densities of 1e-42 each", [1e-42; 3]),
-        ("one density infinite", [1.0, f32::INFINITY, 2.0]),
-    ];
-    for (name, pdf) in cases {
-        let sum = |weight: &dyn Fn(usize) -> f32| (0..3).map(|j| f64::from(weight(j))).sum::<f64>();
-        let library = |power: bool| {
-            sum(&|j| {
-                let weight = if power { mis::power(&pdf, &[1; 3], j, 2.0) } else { mis::balance(&pdf, &[1; 3], j) };
-                weight.unwrap_or(f32::NAN)
-            })
-        };
-        let squares = pdf.map(|p| p * p);
-        let naive = [sum(&|j| pdf[j] / pdf.iter().sum::<f32>()), sum(&|j| squares[j] / squares.iter().sum::<f32>())];
-        for (power, heuristic) in [(false, "balance"), (true, "power")] {
-            let total = library(power);
-            let is_one = (total - 1.0).abs() <= 3.0 * f64::from(f32::EPSILON);
-            let outcome = if is_one { "weights add up to 1" } else { "WEIGHTS DO NOT ADD UP TO 1" };
-            let plain = Some(("its formula in f32", (naive[usize::from(power)] - 1.0).abs()));
-            let case = format!("{heuristic} heuristic, {name}");
-            tables.outcome("MIS weights", case, outcome, Some((total - 1.0).abs()), plain);
-        }
     }
 }

@@ -1,11 +1,10 @@
 //! Samplers beside each other: `cargo bench --package noisefloor-bench --bench samplers`.
 //!
-//! Errors of an image's pixels, raw and filtered, over those of independent samples; nanoseconds of a draw; images of
-//! an error and its mean spectrum. What the report's chapter on samplers shows, as CSV and PFM.
+//! Errors of an image's pixels, raw and filtered, over those of independent samples, and nanoseconds of a draw: what
+//! the report's chapter on samplers shows.
 
 mod quality;
 mod sampler;
-mod sheet;
 mod speed;
 
 use anyhow::Result;
@@ -21,11 +20,6 @@ fn main() -> Result<()> {
     let counts = &COUNTS[..extent.choose(2, 4, 4)];
     // Of the integrands.
     let share = extent.choose(0.125, 1.0, 4.0);
-    let folder = options.output.clone().unwrap_or_else(|| noisefloor_bench::output("samplers"));
-    let write = |name: &str, bytes: &[u8]| noisefloor_bench::write(&folder.join(name), bytes);
-    write("draws.csv", speed::csv(counts, extent.choose(3, 15, 15))?.as_bytes())?;
-    sheet::write(counts, extent.choose(8, 64, 64), write)?;
-    write("energies.csv", quality::csv(counts, share)?.as_bytes())?;
-    println!("in {}", folder.display());
-    Ok(())
+    let draws = speed::csv(counts, extent.choose(3, 15, 15))?;
+    options.write("samplers", &[("draws.csv", draws), ("energies.csv", quality::csv(counts, share)?)])
 }

@@ -1,7 +1,7 @@
 //! One integrand, one degree, one sample count: errors and times of every estimator on the same samples.
 
 use noisefloor_bench::method::{LEAST_SQUARES, LEAVE_ONE_OUT, MEAN, METHODS, ROBUST};
-use noisefloor_bench::{Door, Extent, Method};
+use noisefloor_bench::{Extent, Method};
 use noisefloor_tests::integrands::Integrand;
 use noisefloor_tests::random::{SplitMix64, mix};
 use noisefloor_tests::statistics::{self, Ratio, median, rmse_ratio, root_mean_square};
@@ -39,22 +39,17 @@ impl Set {
 pub(crate) struct Cell {
     pub(crate) set: Set,
     pub(crate) integrand: &'static str,
-    pub(crate) dims: usize,
     /// The degree asked for, and the one that the limit of terms leaves.
     pub(crate) degree: usize,
     pub(crate) order: usize,
     pub(crate) n: usize,
     pub(crate) method: &'static str,
-    pub(crate) repetitions: usize,
-    /// The mean's RMSE on the same samples.
-    pub(crate) mean_rmse: f64,
     /// RMSE over the mean's, 95 % interval.
     pub(crate) ratio: Ratio,
     /// For an `f32` method, how it differs from its `f64` twin on the same samples.
     pub(crate) narrow: Option<Narrow>,
-    /// Nanoseconds per sample, and the mean's.
+    /// Nanoseconds per sample.
     pub(crate) ns: f64,
-    pub(crate) mean_ns: f64,
 }
 
 /// What `f32` changes.
@@ -64,23 +59,6 @@ pub(crate) struct Narrow {
     pub(crate) ratio: Ratio,
     /// The root mean square of the difference between the two estimates, over the plain mean's RMSE.
     pub(crate) difference: f64,
-}
-
-impl Cell {
-    pub(crate) fn rmse(&self) -> f64 {
-        self.ratio.value * self.mean_rmse
-    }
-
-    /// 1 / (MSE x time of an estimate in seconds), samples for free.
-    pub(crate) fn efficiency(&self) -> f64 {
-        1e9 / (self.rmse().powi(2) * self.ns * self.n as f64)
-    }
-
-    /// Nanoseconds that a sample must cost for this method to be as efficient as the mean; more, and it is better.
-    pub(crate) fn break_even(&self) -> f64 {
-        let square = self.ratio.value.powi(2);
-        if square < 1.0 { ((square * self.ns - self.mean_ns) / (1.0 - square)).max(0.0) } else { f64::INFINITY }
-    }
 }
 
 /// (chunks, repetitions in a chunk) of the mean and the robust estimator; others see every [`step`]-th chunk.
@@ -135,7 +113,6 @@ impl Track {
 #[allow(clippy::too_many_arguments, reason = "one value for each axis of the table")]
 pub(crate) fn measure(
     cells: &mut Vec<Cell>,
-    door: Door,
     set: Set,
     integrand: &Integrand,
     seed: u64,
@@ -156,7 +133,7 @@ pub(crate) fn measure(
         .iter()
         .map(|&method| Track {
             method,
-            prepared: method.prepare(door, dims, order, n),
+            prepared: method.prepare(dims, order, n),
             step: step(extent, &method),
             errors: vec![],
             size,
@@ -196,17 +173,13 @@ pub(crate) fn measure(
         cells.push(Cell {
             set,
             integrand: integrand.name,
-            dims,
             degree,
             order,
             n,
             method: track.method.name,
-            repetitions: track.errors.len(),
-            mean_rmse: root_mean_square(&mean),
             ratio: rmse_ratio(&track.errors, &mean),
             narrow: tracks.iter().find(wide).map(|wide| narrow(&track.errors, &wide.errors(track.step), &mean)),
             ns: median(&track.ns),
-            mean_ns: median(&tracks[0].ns),
         });
     }
 }

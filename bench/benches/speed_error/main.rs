@@ -7,23 +7,26 @@ mod cells;
 mod must_reach;
 mod peer;
 mod report;
-mod run;
 mod speed;
 
 use anyhow::Result;
-use cells::Set;
+use cells::{Cell, Set};
 use clap::Parser;
-use noisefloor_bench::{Door, Options, c_abi};
+use noisefloor_bench::{Options, c_abi};
 use noisefloor_tests::integrands;
-use run::Run;
+use speed::Speed;
+
+/// All that a run measures.
+struct Run {
+    cells: Vec<Cell>,
+    speeds: Vec<Speed>,
+    /// Nanoseconds of a solution.
+    solves: Vec<(&'static str, f64)>,
+}
 
 fn main() -> Result<()> {
     let options = Options::parse();
-    let door = Door::shipped();
-    println!("through the {}; libnoisefloor.a is {}", door.name(), c_abi::STATE);
-    if !c_abi::LINKED {
-        println!("the figures are the Rust API's: for those of what ships, run `cargo xtask library` first");
-    }
+    println!("libnoisefloor.a is {}", c_abi::STATE);
     let extent = options.extent();
     let sets = [
         (Set::Nine, integrands::nine()),
@@ -39,7 +42,7 @@ fn main() -> Result<()> {
     for (dims, order) in speed::SIZES {
         for n in speed::COUNTS {
             bar.set_message(format!("speed, {dims}D, n = {n}"));
-            speeds.extend(speed::estimates(door, dims, order, n, extent));
+            speeds.extend(speed::estimates(dims, order, n, extent));
             bar.inc(1);
         }
     }
@@ -49,15 +52,13 @@ fn main() -> Result<()> {
         for degree in cells::DEGREES {
             for n in cells::COUNTS {
                 bar.set_message(format!("{}, order {degree}, n = {n}", integrand.name));
-                cells::measure(&mut cells, door, *set, integrand, index as u64, degree, n, extent);
+                cells::measure(&mut cells, *set, integrand, index as u64, degree, n, extent);
                 bar.inc(1);
             }
         }
     }
     bar.finish_and_clear();
-    let run = Run { door, cells, speeds, solves };
+    let run = Run { cells, speeds, solves };
     print!("{}", must_reach::table(&run));
-    let (cells, speeds) = (report::cells(&run)?, report::speeds(&run)?);
-    let files = [("must_reach.csv", must_reach::csv(&run)), ("cells.csv", cells), ("speed.csv", speeds)];
-    options.write("bench-report", &files)
+    options.write("bench-report", &[("must_reach.csv", must_reach::csv(&run)), ("cells.csv", report::cells(&run)?)])
 }

@@ -1,7 +1,7 @@
 //! The targets and whether they are met.
 
+use crate::Run;
 use crate::cells::{Cell, Set, geometric_mean, worst};
-use crate::run::Run;
 use crate::speed::{PEERS, SOLVE, Speed};
 use noisefloor_bench::method::{LEAST_SQUARES, ROBUST};
 use noisefloor_tests::statistics::Ratio;
@@ -37,10 +37,8 @@ fn time_verdict(ns: f64, bound: f64) -> &'static str {
 }
 
 /// Nanoseconds per sample at order 2.
-fn find(run: &Run, dims: usize, n: usize, name: &str, door: &str) -> f64 {
-    let same = |speed: &&Speed| {
-        (speed.dims, speed.order, speed.n, speed.name.as_str(), speed.door) == (dims, 2, n, name, door)
-    };
+fn find(run: &Run, dims: usize, n: usize, name: &str) -> f64 {
+    let same = |speed: &&Speed| (speed.dims, speed.order, speed.n, speed.name) == (dims, 2, n, name);
     run.speeds.iter().find(same).map_or(f64::NAN, |speed| speed.ns)
 }
 
@@ -107,14 +105,14 @@ fn targets(run: &Run) -> Vec<Target> {
     };
     for (name, share) in SHARES {
         for (dims, n, quoted) in QUOTED {
-            let ns = find(run, dims, n, name, run.door.name());
-            let peer = PEERS.map(|(name, _)| ns / find(run, dims, n, name, "peer"));
+            let ns = find(run, dims, n, name);
+            let peer = PEERS.map(|(name, _)| ns / find(run, dims, n, name));
             let note = format!("{:.2} of QR, {:.2} of Cholesky", peer[0], peer[1]);
             let target = format!("{name}, {dims}D order 2, n = {n}: per sample, {share} of {quoted} ns");
             times(target, ns, note, share * quoted);
         }
     }
-    let solve = |name: &str| run.solves.iter().find(|speed| speed.name == name).map_or(f64::NAN, |speed| speed.ns);
+    let solve = |name: &str| run.solves.iter().find(|solve| solve.0 == name).map_or(f64::NAN, |solve| solve.1);
     let note = format!("QR {:.0}, Cholesky {:.0}", solve(PEERS[0].0), solve(PEERS[1].0));
     times("solution of 6 unknowns, all of `Regressor::estimate`".to_owned(), solve(SOLVE), note, SOLVE_BOUND);
     all

@@ -4,8 +4,8 @@ use crate::peer::{self, Peer, Solver};
 use nalgebra::{DMatrix, DVector};
 use noisefloor::basis::Family;
 use noisefloor::control_variate::Regressor;
-use noisefloor_bench::method::{LEAST_SQUARES, MEAN, METHODS, ROBUST};
-use noisefloor_bench::{Door, Extent};
+use noisefloor_bench::Extent;
+use noisefloor_bench::method::METHODS;
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::statistics::median;
 use std::hint::black_box;
@@ -21,25 +21,23 @@ pub(crate) const PEERS: [(&str, Solver); 2] =
 
 /// A contestant's time.
 pub(crate) struct Speed {
-    pub(crate) name: String,
-    pub(crate) door: &'static str,
+    pub(crate) name: &'static str,
     pub(crate) dims: usize,
     pub(crate) order: usize,
     pub(crate) n: usize,
-    /// Nanoseconds per sample, or per call for a solution: the median over the rounds.
+    /// Nanoseconds per sample: the median over the rounds.
     pub(crate) ns: f64,
-    /// The quartiles.
-    pub(crate) quartiles: [f64; 2],
 }
 
 type Estimate = Box<dyn FnMut(&[f32], &[f32]) -> f32>;
-type Contestant<'a> = (String, &'static str, Box<dyn FnMut() + 'a>);
+type Contestant<'a> = (&'static str, Box<dyn FnMut() + 'a>);
 
-/// Nanoseconds of each contestant's calls, divided by `units`; the first round warms up and does not count.
-fn race(mut contestants: Vec<Contestant<'_>>, rounds: usize, units: usize) -> Vec<(String, &'static str, Vec<f64>)> {
+/// Nanoseconds of each contestant's calls, divided by `units`: the median over the rounds, of which the first warms up
+/// and does not count.
+fn race(mut contestants: Vec<Contestant<'_>>, rounds: usize, units: usize) -> Vec<(&'static str, f64)> {
     let mut times = vec![Vec::with_capacity(rounds); contestants.len()];
     for round in 0..=rounds {
-        for ((_, _, call), times) in contestants.iter_mut().zip(&mut times) {
+        for ((_, call), times) in contestants.iter_mut().zip(&mut times) {
             let start = Instant::now();
             call();
             if round > 0 {
@@ -47,17 +45,11 @@ fn race(mut contestants: Vec<Contestant<'_>>, rounds: usize, units: usize) -> Ve
             }
         }
     }
-    contestants.into_iter().zip(times).map(|((name, door, _), times)| (name, door, times)).collect()
+    contestants.into_iter().zip(times).map(|((name, _), times)| (name, median(&times))).collect()
 }
 
-fn speed((name, door, mut times): (String, &'static str, Vec<f64>), dims: usize, order: usize, n: usize) -> Speed {
-    times.sort_by(f64::total_cmp);
-    let at = |quarter: usize| times[(times.len() - 1) * quarter / 4];
-    Speed { name, door, dims, order, n, ns: median(&times), quartiles: [at(1), at(3)] }
-}
-
-/// All methods through the shipped door, the main ones through the Rust API too, and the peers.
-pub(crate) fn estimates(door: Door, dims: usize, order: usize, n: usize, extent: Extent) -> Vec<Speed> {
+/// All methods, and the peers.
+pub(crate) fn estimates(dims: usize, order: usize, n: usize, extent: Extent) -> Vec<Speed> {
     let large = dims > 3;
     let sets = if large { 512 / n } else { 4096 / n };
     let rounds = if large { extent.choose(3, 7, 28) } else { extent.choose(3, 41, 164) };
@@ -71,35 +63,33 @@ pub(crate) fn estimates(door: Door, dims: usize, order: usize, n: usize, extent:
         .collect();
     let pool = &pool;
     let mut contestants: Vec<Contestant<'_>> = Vec::new();
-    let mut enter = |name: &str, door: &'static str, mut estimate: Estimate| {
+    let mut enter = |name: &'static str, mut estimate: Estimate| {
         let call = move || {
             for (u, f) in pool {
                 black_box(estimate(black_box(u), black_box(f)));
             }
         };
-        contestants.push((name.to_owned(), door, Box::new(call)));
+        contestants.push((name, Box::new(call)));
     };
-    let rust = [MEAN, ROBUST, LEAST_SQUARES].map(|method| (Door::Rust, method));
-    let shipped = METHODS.map(|method| (door, method));
-    for (entered, method) in shipped.into_iter().chain(rust.into_iter().filter(|_| door == Door::C)) {
-        let mut prepared = method.prepare(entered, dims, order, n);
-        enter(method.name, entered.name(), Box::new(move |u, f| prepared.estimate(u, f)));
+    for method in METHODS {
+        let mut prepared = method.prepare(dims, order, n);
+        enter(method.name, Box::new(move |u, f| prepared.estimate(u, f)));
     }
     for (name, solver) in PEERS.into_iter().filter(|_| !large) {
         let peer = Peer::new(dims, order, solver);
-        enter(name, "peer", Box::new(move |u, f| peer.estimate(u, f)));
+        enter(name, Box::new(move |u, f| peer.estimate(u, f)));
     }
-    race(contestants, rounds, sets * n).into_iter().map(|times| speed(times, dims, order, n)).collect()
+    race(contestants, rounds, sets * n).into_iter().map(|(name, ns)| Speed { name, dims, order, n, ns }).collect()
 }
 
 /// What a solution of 6 unknowns is called in the library.
 pub(crate) const SOLVE: &str = "Regressor::estimate";
 
-/// One solution of a system of 6 unknowns (2 dims, order 2), its sums being there.
+/// Nanoseconds of a solution of a system of 6 unknowns (2 dims, order 2), its sums being there.
 ///
 /// The library's is the whole of `Regressor::estimate`: ridge, L D L', solution, standard error, and an `Estimate` made
 /// of it. The peers' is their decomposition and solution alone, matrices copied and allocated.
-pub(crate) fn solves(extent: Extent) -> Vec<Speed> {
+pub(crate) fn solves(extent: Extent) -> Vec<(&'static str, f64)> {
     const CALLS: usize = 500;
     let mut regressor = Regressor::<2, 6, 1>::new(Family::Legendre, 2).expect("6 terms");
     let mut rng = SplitMix64::new(6);
@@ -115,12 +105,12 @@ pub(crate) fn solves(extent: Extent) -> Vec<Speed> {
     let library = move || {
         let _ = black_box(black_box(&regressor).estimate(black_box(1e-9)));
     };
-    let mut contestants: Vec<Contestant<'_>> = vec![(SOLVE.to_owned(), "Rust", repeat(Box::new(library)))];
+    let mut contestants: Vec<Contestant<'_>> = vec![(SOLVE, repeat(Box::new(library)))];
     for (name, solver) in PEERS {
         let (matrix, rhs) = (matrix.clone(), rhs.clone());
         let call = move || drop(black_box(peer::solve(black_box(&matrix).clone(), black_box(&rhs), solver)));
-        contestants.push((name.to_owned(), "peer", repeat(Box::new(call))));
+        contestants.push((name, repeat(Box::new(call))));
     }
     let rounds = extent.choose(101, 101, 401);
-    race(contestants, rounds, CALLS).into_iter().map(|times| speed(times, 2, 2, 64)).collect()
+    race(contestants, rounds, CALLS)
 }

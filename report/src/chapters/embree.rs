@@ -6,7 +6,6 @@ use super::clock::Clock;
 use super::measurement::Measurement;
 use super::tables::{SECTIONS, Section};
 use super::targets::Targets;
-use crate::measure::interrupt;
 use crate::measure::progress;
 use crate::measure::renderer::{Renderer, threads};
 use anyhow::Result;
@@ -15,13 +14,10 @@ use anyhow::Result;
 const SECOND: u64 = 1000;
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
-    let program = match &report.program {
-        Some(program) => program.clone(),
-        None => xtask::embree::build()?,
-    };
+    let program = xtask::embree::build()?;
     super::tables::public::build()?;
     report.compiled();
-    let renderer = Renderer::new(program, report.interrupted.clone());
+    let renderer = Renderer::new(program);
     let bar = progress::bar(SECTIONS.iter().map(|(seconds, _)| seconds * SECOND).sum())?;
     let measurement = Measurement::new(report.plan, &renderer, &bar)?;
     let mut chapter = Chapter::new("Control variates and tiles in an Embree path tracer");
@@ -34,7 +30,6 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
         let (clock, end) = (Clock::start(), start + seconds * SECOND);
         measurement.begin_section(start, end);
         section(&mut Section { measurement: &measurement, chapter: &mut chapter, targets: &mut targets })?;
-        interrupt::check(&report.interrupted)?;
         // Where there is no terminal, and so no bar, this alone tells how far it is.
         bar.suspend(|| println!("   {}: {:.0} s", chapter.current_section(), clock.seconds()));
         start = end;

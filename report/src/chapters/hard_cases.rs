@@ -38,14 +38,12 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let folder = tempfile::tempdir()?;
     program::measure(report, &program, folder.path())?;
     let errors = Table::read(&folder.path().join("errors.csv"), ';')?;
-    let outcomes = Table::read(&folder.path().join("outcomes.csv"), ';')?;
     let cases = cases(&errors)?;
     let mut chapter = Chapter::new("Numerical hard cases");
     targets(&mut chapter, &cases)?;
     for group in GROUPS {
         write_group(&mut chapter, group, &cases)?;
     }
-    write_outcomes(&mut chapter, &outcomes)?;
     Ok(chapter)
 }
 
@@ -152,31 +150,6 @@ fn write_group(chapter: &mut Chapter, (group, title): (&'static str, &str), case
             chapter.quote(name, Figure::exact(ratio.value, Unit::Ratio));
         }
     }
-    Ok(())
-}
-
-fn write_outcomes(chapter: &mut Chapter, outcomes: &Table) -> Result<()> {
-    chapter.section("Single calls", "");
-    let mut rows = Vec::new();
-    for row in outcomes.rows() {
-        let figure = |value: Option<f64>| value.map(|value| Figure::exact(value, Unit::Error));
-        let plain = row.word("plain")?;
-        let plain_error: Cell = match row.optional("plain_error")? {
-            Some(error) if error.is_finite() => figure(Some(error)).into(),
-            Some(error) => (if error.is_nan() { "NaN" } else { "infinite" }).into(),
-            None => Cell::Missing,
-        };
-        rows.push(row![
-            row.word("group")?,
-            row.word("case")?,
-            row.word("outcome")?,
-            figure(row.optional("error")?),
-            if plain.is_empty() { "-" } else { plain },
-            plain_error,
-        ]);
-    }
-    let columns = ["service", "case", "outcome", "error", "plainly", "its error"];
-    chapter.table("single calls", &columns, 3, rows);
     Ok(())
 }
 

@@ -131,7 +131,6 @@ fn targets(index: &mut Chapter, all: &[Summary]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chapters::plan::Plan;
     use crate::chapters::statistics::Estimate;
     use crate::chapters::targets::Targets;
     use serde_json::json;
@@ -151,14 +150,6 @@ mod tests {
             "date": "2000-01-01", "other_work": 0.314, "machine": machine
         });
         json
-    }
-
-    #[test]
-    fn a_full_run_of_other_things_stands_beside_the_default_one() {
-        let entry = CHAPTERS.iter().find(|entry| entry.name == "gradients").expect("a chapter");
-        let names = [[true, false], [false, false], [false, true]]
-            .map(|[quick, full]| entry.chapter(&Plan::new(quick, full)).0);
-        assert_eq!(names, ["gradients", "gradients", "gradients_full"]);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::plan::Plan;
 use super::scenes;
 use crate::measure::image::read_pfm;
 use crate::measure::metric::Reference;
-use crate::measure::renderer::{Job, Renderer, Sampler, Timing, images, threads};
+use crate::measure::renderer::{Job, Renderer, Sampler, Timing, images};
 use crate::measure::side_by_side;
 use anyhow::{Context, Result};
 use image::Rgb32FImage;
@@ -244,7 +244,7 @@ impl<'a> Measurement<'a> {
             job.work = job.work.min(left);
             left -= job.work;
         }
-        side_by_side::render(self.renderer, &runs, size, threads(), self.bar)
+        side_by_side::render(self.renderer, &runs, size, self.bar)
     }
 
     /// What a run has left.

@@ -29,7 +29,6 @@ mod tables;
 pub(crate) mod targets;
 pub(crate) mod template;
 
-use crate::measure::interrupt::Interrupted;
 use crate::measure::output::Output;
 use anyhow::{Result, anyhow};
 use chapter::Chapter;
@@ -115,8 +114,7 @@ const CHAPTERS: &[Entry] = &[
         control_variates::write,
     )
     .runs(&["speed_error", "estimators"]),
-    entry("hard_cases", 8, "Few, degenerate and extreme samples, and what is refused", hard_cases::write)
-        .runs(&["hard_cases"]),
+    entry("hard_cases", 8, "Few, degenerate and extreme samples", hard_cases::write).runs(&["hard_cases"]),
     entry(
         "analytic",
         30,
@@ -158,9 +156,6 @@ pub(crate) struct Options {
     /// Only write the texts anew, from the JSON files that are there
     #[arg(long, conflicts_with_all = ["quick", "full", "only"])]
     render: bool,
-    /// A program with the Embree harness's command line, instead of the one that is built
-    #[arg(long, value_name = "FILE", hide = true)]
-    program: Option<PathBuf>,
 }
 
 impl Options {
@@ -182,8 +177,6 @@ pub(crate) struct Report<'a> {
     /// Bench targets that it runs.
     programs: &'static [&'static str],
     pub(crate) plan: Plan,
-    pub(crate) program: Option<PathBuf>,
-    pub(crate) interrupted: Interrupted,
     /// Markdown, JSON, plots.
     pub(crate) output: &'a Output,
     clock: Clock,

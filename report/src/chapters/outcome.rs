@@ -3,10 +3,11 @@
 use super::measurement::BASELINE;
 use super::statistics::Estimate;
 use crate::measure::metric::Reference;
-use crate::measure::renderer::{Timing, threads};
+use crate::measure::renderer::Timing;
 use crate::measure::score;
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result};
 use image::Rgb32FImage;
+use rayon::prelude::*;
 use std::rc::Rc;
 
 /// What one estimator made.
@@ -37,15 +38,8 @@ impl Outcome {
 
     /// Raw and filtered errors of each seed, highlights limited: on all threads, since images of samplers are large.
     pub(crate) fn seen(&self, estimator: &str) -> Result<Vec<[f64; 2]>> {
-        let (images, reference) = (&self.of(estimator)?.images, &*self.reference);
-        let each = images.len().div_ceil(threads() as usize).max(1);
-        std::thread::scope(|scope| {
-            let one = |image| score::errors(image, reference);
-            let parts: Vec<_> =
-                images.chunks(each).map(|part| scope.spawn(move || part.iter().map(one).collect::<Vec<_>>())).collect();
-            let joined = parts.into_iter().map(|part| part.join().map_err(|_| anyhow!("measuring an image panicked")));
-            Ok(joined.collect::<Result<Vec<_>>>()?.concat())
-        })
+        let reference = &*self.reference;
+        Ok(self.of(estimator)?.images.par_iter().map(|image| score::errors(image, reference)).collect())
     }
 
     /// relMSE over the plain mean's, of the same samples.

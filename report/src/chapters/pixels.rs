@@ -1,6 +1,6 @@
 //! One estimator against another, pixel by pixel: how many pixels are served worse, and how sure that is.
 
-use super::statistics::{Random, normal_quantile, student, student_quantile};
+use super::statistics::{Random, student, student_quantile};
 
 /// Ratios of mean squared errors beyond it are too many.
 pub(crate) const TOO_MUCH: f64 = 1.2;
@@ -97,7 +97,7 @@ fn is_sure(batches: &[Batch], pixel: usize) -> bool {
     let excess: Vec<f64> = batches.iter().map(|[plain, own]| own[pixel] - TOO_MUCH * plain[pixel]).collect();
     let n = excess.len() as f64;
     let mean = excess.iter().sum::<f64>() / n;
-    let limit = student_quantile(normal_quantile(SIGNIFICANCE), (n - 1.0).max(1.0));
+    let limit = student_quantile(SIGNIFICANCE, (n - 1.0).max(1.0));
     mean > limit * deviation(&excess) / n.sqrt() && mean > 0.0
 }
 

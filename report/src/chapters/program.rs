@@ -33,5 +33,5 @@ pub(super) fn measure(report: &Report, program: &Path, folder: &Path) -> Result<
     let mut command = run::command(program);
     command.arg("--output").arg(folder).args(report.plan.option());
     // Its output is for people; what is needed is in the tables.
-    running::run(command, &report.interrupted, |_| Ok(())).map(|_| ())
+    running::run(command, |_| Ok(())).map(|_| ())
 }

@@ -5,14 +5,12 @@ use super::index::{self, Facts};
 use super::machine::{self, Machine};
 use super::plan::Plan;
 use super::{CHAPTERS, Entry, Options, Report, json, program, template};
-use crate::measure::interrupt::{self, Interrupted};
 use crate::measure::output::Output;
 use crate::measure::progress;
 use anyhow::{Context, Result, bail};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 use xtask::paths;
 
@@ -23,7 +21,6 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     if options.render {
         return render(&folder);
     }
-    let interrupted = interrupt::catch()?;
     let wanted: Vec<&Entry> = CHAPTERS
         .iter()
         .filter(|entry| options.only.is_empty() || options.only.iter().any(|o| o == entry.name))
@@ -39,12 +36,8 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let (mut written, mut failed) = (Vec::new(), Vec::new());
     for (number, entry) in (1..).zip(&wanted) {
         bar.set_message(format!("chapter {number} of {}: {}", wanted.len(), entry.name));
-        match write(entry, options, &folder, &machine, &interrupted) {
+        match write(entry, options, &folder, &machine) {
             Ok(()) => written.push(entry.name),
-            Err(_) if interrupted.load(Ordering::Relaxed) => {
-                bar.finish_and_clear();
-                bail!("interrupted in chapter {}; written before: {}", entry.name, written.join(", "));
-            }
             // The others do not depend on it.
             Err(error) => failed.push(format!("{}: {error:#}", entry.name)),
         }
@@ -60,22 +53,13 @@ pub(crate) fn run(options: &Options) -> Result<()> {
 }
 
 /// One chapter and the index, both or neither.
-fn write(entry: &Entry, options: &Options, folder: &Path, machine: &Machine, interrupted: &Interrupted) -> Result<()> {
+fn write(entry: &Entry, options: &Options, folder: &Path, machine: &Machine) -> Result<()> {
     let output = Output::new(folder)?;
     let date = machine::date();
     let plan = Plan::new(options.quick, options.full);
     let (name, description) = entry.chapter(&plan);
-    let report = Report {
-        name,
-        programs: entry.programs,
-        plan,
-        program: options.program.clone(),
-        interrupted: interrupted.clone(),
-        output: &output,
-        clock: Clock::start(),
-    };
+    let report = Report { name, programs: entry.programs, plan, output: &output, clock: Clock::start() };
     let mut chapter = (entry.write)(&report)?.json();
-    interrupt::check(interrupted)?;
     let facts = Facts {
         name: name.to_owned(),
         description: description.to_owned(),

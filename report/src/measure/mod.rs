@@ -2,7 +2,6 @@
 
 pub(crate) mod filter;
 pub(crate) mod image;
-pub(crate) mod interrupt;
 pub(crate) mod markdown;
 pub(crate) mod metric;
 pub(crate) mod output;

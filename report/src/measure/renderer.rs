@@ -1,7 +1,7 @@
 //! Compiling and running the path tracer, or another program that has its command line.
 
-use super::interrupt::{self, Interrupted};
 use super::running;
+use super::samplers::Tiles;
 use anyhow::{Context, Result};
 use indicatif::ProgressBar;
 use serde::Deserialize;
@@ -11,7 +11,6 @@ use xtask::{library, paths, run};
 /// The compiled program.
 pub(crate) struct Renderer {
     program: PathBuf,
-    interrupted: Interrupted,
 }
 
 /// One line of the program's output: how long one estimator took, in seconds summed over the threads.
@@ -72,31 +71,26 @@ pub(crate) fn images(prefix: &Path, estimator: &str, first: u64, seeds: u32) -> 
 }
 
 impl Renderer {
-    /// Builds the library and the program that links it. Once `interrupted` is set, nothing is rendered any more.
-    pub(crate) fn build(interrupted: Interrupted) -> Result<Self> {
+    /// Builds the library and the program that links it.
+    pub(crate) fn build() -> Result<Self> {
         let archive = library::build()?;
         let program = paths::output().join("pathtracer");
         let mut compiler = run::compiler("CXX", "c++");
         compiler.args(["-O2", "-std=c++17", "-Wall", "-Wextra", "-Iinclude", "examples_c/pathtracer.cpp"]);
         run::check(compiler.arg(&archive).args(["-pthread", "-o"]).arg(&program))?;
-        Ok(Self::new(program, interrupted))
+        Ok(Self::new(program))
     }
 
     /// Runs a program that is there already.
-    pub(crate) fn new(program: PathBuf, interrupted: Interrupted) -> Self {
-        Self { program, interrupted }
-    }
-
-    /// What `--help` prints.
-    pub(crate) fn help(&self) -> Result<String> {
-        run::read(run::command(&self.program).arg("--help"))
+    pub(crate) fn new(program: PathBuf) -> Self {
+        Self { program }
     }
 
     /// The names of the tiles that the library carries.
-    pub(crate) fn tiles(&self) -> Result<Vec<String>> {
-        let help = self.help()?;
+    pub(crate) fn tiles(&self) -> Result<Tiles> {
+        let help = run::read(run::command(&self.program).arg("--help"))?;
         let line = help.lines().find_map(|line| line.strip_prefix("tiles:")).unwrap_or_default();
-        Ok(line.split_whitespace().map(str::to_owned).collect())
+        Ok(Tiles(line.split_whitespace().map(str::to_owned).collect()))
     }
 
     /// Renders `size` x `size` pixels to the files of [`images`], with as many threads as there are cores.
@@ -136,7 +130,7 @@ impl Renderer {
         }
         let start = bar.position();
         let mut timings = Vec::new();
-        let rendered = running::run(command, &self.interrupted, |line| {
+        let rendered = running::run(command, |line| {
             if let Some(part) = line.strip_prefix("progress ") {
                 let part: f64 = part.parse().with_context(|| format!("the path tracer said `{line}`"))?;
                 bar.set_position(start + (part * job.work as f64) as u64);
@@ -145,7 +139,6 @@ impl Renderer {
             }
             Ok(())
         });
-        interrupt::check(&self.interrupted)?;
         rendered.with_context(|| format!("rendering `{}` failed", job.scene))?;
         bar.set_position(start + job.work);
         Ok(timings)

@@ -125,19 +125,4 @@ mod tests {
         assert!(error.to_string().contains("t.csv: `2.5e-1` in column `x`"), "{error}");
         Ok(())
     }
-
-    #[test]
-    fn damage_is_said() {
-        let error =
-            |text: &str| Table::parse(text, "t.csv", ',').err().map_or(String::new(), |error| error.to_string());
-        assert!(error("a,b\n1,2\n1\n").contains("t.csv, line 3: 1 cells under 2 headings"));
-        assert!(error("").contains("empty"));
-        let table = Table::parse("a,b\n", "t.csv", ',').expect("no row is a table too");
-        assert!(
-            table.distinct("c").is_err()
-                && table.only("c", "").is_err()
-                && table.words("c").is_err()
-                && table.numbers("c").is_err()
-        );
-    }
 }

@@ -5,7 +5,6 @@ use super::checks::sampling;
 use super::render::{Renderer, Settings};
 use super::scenes::{Kind, SCENES, Scene};
 use crate::measure::metric::Reference;
-use crate::measure::output::Output;
 use crate::measure::progress;
 use crate::measure::score::Score;
 use anyhow::Result;
@@ -160,18 +159,5 @@ fn series(
 impl Measured {
     pub(crate) fn find(&self, scene: usize, method: usize, spp: u32) -> Option<&Series> {
         self.series.iter().find(|s| s.scene == scene && s.method == method && s.spp == spp)
-    }
-
-    /// Every first picture and the references, as EXR and PNG.
-    pub(crate) fn write_pictures(&self, output: &Output) -> Result<()> {
-        for (scene, reference) in SCENES.iter().zip(&self.references) {
-            output.write_image(&format!("{}.reference", scene.name), &reference.image, reference)?;
-        }
-        for series in &self.series {
-            let method = METHODS[series.method].name.replace(", ", "_");
-            let name = format!("{}.{}.{method}", SCENES[series.scene].name, series.spp);
-            output.write_image(&name, &series.image, &self.references[series.scene])?;
-        }
-        Ok(())
     }
 }

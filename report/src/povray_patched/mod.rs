@@ -1,26 +1,19 @@
 //! `cargo xtask povray`: POV-Ray, built from Debian's source package with a patch that draws its samples from
 //! noisefloor; checked, and compared with POV-Ray as it is.
 
-mod apt;
-mod build;
 mod checks;
 mod measure;
-mod patch;
-mod refusals;
 mod render;
 mod report;
 mod scenes;
 mod sheet;
 
-use crate::measure::interrupt;
 use crate::measure::output::Output;
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
-use xtask::paths;
-
-pub(crate) use patch::check as check_patch;
+use xtask::{library, paths, run, tools};
 
 #[derive(Args)]
 pub(crate) struct Options {
@@ -40,9 +33,9 @@ pub(crate) struct Options {
     #[arg(long)]
     check: bool,
     /// Write docs/report/povray_patched.md, .json and .png
-    #[arg(long)]
+    #[arg(long, conflicts_with = "out")]
     report: bool,
-    /// Where everything else goes [default: target/povray/pictures]
+    /// Where they go otherwise [default: target/povray/pictures]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -70,33 +63,37 @@ pub(crate) fn run(options: &Options) -> Result<()> {
             bail!("--spp {spp} is no square number from 4 to 1024: POV-Ray's area lights are square grids of samples");
         }
     }
-    let interrupted = interrupt::catch()?;
-    let programs = render::Programs { stock: PathBuf::from("/usr/bin/povray"), patched: build::build()? };
-    let renderer = render::Renderer::new(&programs, &folder(), options.width, options.height(), &interrupted)?;
+    let programs = render::Programs { stock: PathBuf::from("/usr/bin/povray"), patched: build()? };
+    let renderer = render::Renderer::new(&programs, &folder(), options.width, options.height())?;
     let checks = checks::run(&renderer)?;
     if options.check {
         return Ok(());
     }
     let measured = measure::run(&renderer, options)?;
-    let out = options.out.clone().unwrap_or_else(|| folder().join("pictures"));
-    let out = std::path::absolute(&out).with_context(|| format!("{} is no folder", out.display()))?;
-    write(&out, |output| {
-        measured.write_pictures(output)?;
-        report::write(output, options, &checks, &measured)
-    })?;
+    let pictures = || options.out.clone().unwrap_or_else(|| folder().join("pictures"));
+    let out = if options.report { paths::root().join("docs/report") } else { pictures() };
+    let output = Output::new(&std::path::absolute(&out).with_context(|| format!("{} is no folder", out.display()))?)?;
+    report::write(&output, options, &checks, &measured)?;
+    output.commit()?;
     println!("{}", out.display());
-    if options.report {
-        let docs = paths::root().join("docs/report");
-        write(&docs, |output| report::write(output, options, &checks, &measured))?;
-        println!("{}", docs.join("povray_patched.md").display());
-    }
     println!("{:.0} s", start.elapsed().as_secs_f64());
     Ok(())
 }
 
-/// Writes all files or none.
-fn write(folder: &Path, fill: impl FnOnce(&Output) -> Result<()>) -> Result<()> {
-    let output = Output::new(folder)?;
-    fill(&output)?;
-    output.commit()
+/// Builds what has changed since it was last called, and returns the program.
+fn build() -> Result<PathBuf> {
+    let packages = [
+        tools::Package { name: "povray", file: "/usr/bin/povray" },
+        tools::Package { name: "povray-includes", file: "/usr/share/povray-3.7/include/colors.inc" },
+        tools::Package { name: "dpkg-dev", file: "/usr/bin/dpkg-source" },
+        tools::Package { name: "patch", file: "/usr/bin/patch" },
+        tools::Package { name: "make", file: "/usr/bin/make" },
+    ];
+    if let Some(missing) = tools::packages(&packages)? {
+        bail!(missing);
+    }
+    println!("building the C library");
+    let archive = library::build()?;
+    run::check(run::command("sh").arg(ours().join("build.sh")).arg(folder()).arg(archive))?;
+    Ok(folder().join("source/unix/povray"))
 }

@@ -1,7 +1,5 @@
 //! Running POV-Ray, stock or patched, and reading its pictures.
 
-use crate::measure::interrupt::{self, Interrupted};
-use crate::povray::startup;
 use anyhow::{Context, Result, bail};
 use image::Rgb32FImage;
 use std::fs;
@@ -34,7 +32,6 @@ pub(crate) struct Renderer<'a> {
     scratch: TempDir,
     pub(crate) width: u32,
     pub(crate) height: u32,
-    interrupted: &'a Interrupted,
 }
 
 /// A linear picture and what it took.
@@ -45,15 +42,9 @@ pub(crate) struct Picture {
 }
 
 impl<'a> Renderer<'a> {
-    pub(crate) fn new(
-        programs: &'a Programs,
-        folder: &Path,
-        width: u32,
-        height: u32,
-        interrupted: &'a Interrupted,
-    ) -> Result<Self> {
+    pub(crate) fn new(programs: &'a Programs, folder: &Path, width: u32, height: u32) -> Result<Self> {
         let scratch = tempfile::tempdir_in(folder).context("cannot create a temporary folder")?;
-        Ok(Self { programs, scratch, width, height, interrupted })
+        Ok(Self { programs, scratch, width, height })
     }
 
     /// A file for scenes to be rendered or included.
@@ -126,13 +117,18 @@ impl<'a> Renderer<'a> {
             let name = if name.is_empty() { "NOISEFLOOR".to_owned() } else { format!("NOISEFLOOR_{name}") };
             command.env(name, value);
         }
-        let (status, text) = startup::retry(scene, || {
-            let output = command
-                .output()
-                .with_context(|| format!("cannot start {}: Debian's package is `povray`", program.display()))?;
-            interrupt::check(self.interrupted)?;
+        let mut run = || -> Result<_> {
+            let output = command.output();
+            let output = output.with_context(|| format!("cannot start {}", program.display()))?;
             Ok((output.status, String::from_utf8_lossy(&output.stderr).into_owned()))
-        })?;
+        };
+        let (mut status, mut text) = run()?;
+        // A busy machine may start POV-Ray's threads so late that it gives up before it begins.
+        for _ in 0..3 {
+            if text.contains("Timed out waiting for worker thread startup") {
+                (status, text) = run()?;
+            }
+        }
         if !status.success() {
             let tail: Vec<&str> = text.lines().rev().take(12).collect();
             let tail: Vec<&str> = tail.into_iter().rev().collect();

@@ -60,36 +60,3 @@ pub(crate) fn draw(measured: &Measured, spp: u32) -> RgbImage {
     }
     picture
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::measure::metric::Reference;
-    use crate::measure::score::Score;
-    use crate::povray_patched::measure::Series;
-    use image::Rgb32FImage;
-
-    #[test]
-    fn every_row_is_named() {
-        let image = Rgb32FImage::from_fn(160, 120, |x, y| Rgb([x as f32 / 160.0, y as f32 / 120.0, 0.5]));
-        let references = SCENES.iter().map(|_| Reference::new(&image, &image)).collect();
-        let one = |scene, method| Series {
-            scene,
-            method,
-            spp: 16,
-            scores: vec![Score { raw: 1.1e-3, filtered: 3.1e-5 }],
-            cpu_seconds: vec![1.0],
-            image: image.clone(),
-        };
-        let pairs = (0..SCENES.len()).flat_map(|scene| (0..METHODS.len()).map(move |method| (scene, method)));
-        let series = pairs.map(|(scene, method)| one(scene, method)).collect();
-        let picture = draw(&Measured { references, series, models: Vec::new() }, 16);
-        let row = (picture.height() - GAP - text::LINE) / SCENES.len() as u32;
-        for index in 0..SCENES.len() as u32 {
-            let top = GAP + text::LINE + index * row;
-            let is_named =
-                (top..top + text::LINE).any(|y| (0..picture.width()).any(|x| picture.get_pixel(x, y).0[0] > 200));
-            assert!(is_named, "row {index} has no name");
-        }
-    }
-}

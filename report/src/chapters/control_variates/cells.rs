@@ -3,7 +3,6 @@
 use crate::chapters::statistics::Estimate;
 use crate::measure::table::{Row, Table};
 use anyhow::Result;
-use std::fmt::Write;
 
 /// What an estimate is made with.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -47,8 +46,6 @@ pub(super) struct Cell {
     pub(super) ratio: Estimate,
     pub(super) ns: f64,
     pub(super) mean_ns: f64,
-    /// Per second and squared unit, samples for free.
-    efficiency: String,
 }
 
 /// Ratios below it count as it in means: a polynomial that is integrated exactly would otherwise decide.
@@ -64,7 +61,6 @@ impl Cell {
             ratio: ratio(row)?,
             ns: row.number("ns")?,
             mean_ns: row.number("mean_ns")?,
-            efficiency: row.word("efficiency")?.to_owned(),
         })
     }
 
@@ -172,20 +168,6 @@ impl Cells {
             .filter_map(|(setting, cells)| Summary::new(setting, &cells))
             .collect()
     }
-
-    /// Every cell, for other programs.
-    pub(super) fn csv(&self) -> String {
-        let mut out = "integrand,dims,n,estimator,basis,order,ratio,half_width,ns,efficiency\n".to_owned();
-        for cell in &self.all {
-            let Cell {
-                integrand, dims, n, setting: Setting { estimator, basis, order }, ratio, ns, efficiency, ..
-            } = cell;
-            let half = ratio.high - ratio.value;
-            let _ = write!(out, "{integrand},{dims},{n},{estimator},{basis},{order},");
-            let _ = writeln!(out, "{:.3e},{half:.1e},{ns:.0},{efficiency}", ratio.value);
-        }
-        out
-    }
 }
 
 #[cfg(test)]
@@ -201,7 +183,6 @@ mod tests {
             ratio: Estimate::of_logarithm(value, above, 27),
             ns: 20.0,
             mean_ns: 5.0,
-            efficiency: String::new(),
         }
     }
 

@@ -37,6 +37,5 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     frontier::write(&mut chapter, &cells);
     grid::write(&mut chapter, &cells);
     precision::write(&mut chapter, &read("cells.csv")?)?;
-    report.output.write_text("control_variates.csv", &cells.csv())?;
     Ok(chapter)
 }

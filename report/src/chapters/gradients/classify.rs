@@ -2,7 +2,6 @@
 
 use super::Context;
 use super::mlp::{self, BATCH, HIDDEN, Plan};
-use super::mnist;
 use super::summary::Summary;
 use super::trainer::Program;
 use super::trainer::Written;
@@ -13,7 +12,9 @@ use crate::chapters::targets::Targets;
 use crate::measure::table::Table;
 use anyhow::{Context as _, Result};
 use std::path::PathBuf;
+use xtask::{paths, run};
 
+const MNIST: &str = "MNIST";
 /// In every form of the report: small, and with many seeds.
 const DIGITS: &str = "examples_c/data/digits";
 /// The first epoch that is late in training: a run that ends before it is not judged by its variance.
@@ -25,10 +26,17 @@ pub(super) struct Trainer {
     mnist: Option<PathBuf>,
 }
 
+/// The folder with MNIST's four files.
+fn mnist() -> Result<PathBuf> {
+    let folder = paths::target().join("data/mnist");
+    run::check(run::command("sh").arg("report/mnist.sh").arg(&folder))?;
+    Ok(folder)
+}
+
 impl Trainer {
     pub(super) fn new(context: &Context) -> Result<Self> {
         let program = Program::compile("train_mlp.c", &context.archive)?;
-        let mnist = (context.sizes() != "quick").then(mnist::folder).and_then(|mnist| {
+        let mnist = (context.sizes() != "quick").then(mnist).and_then(|mnist| {
             mnist.inspect_err(|error| println!("without MNIST, which could not be had: {error:#}")).ok()
         });
         Ok(Self { program, mnist })
@@ -42,22 +50,22 @@ impl Trainer {
         };
         if let Some(folder) = &self.mnist {
             let (seeds, epochs, variance_epochs) = mnist;
-            let plan = Plan { name: "MNIST", data: folder.clone(), seeds, epochs, rate: "0.0005", variance_epochs };
-            self.train(context, &plan, ["mnist", "mnist-time"], chapter, targets)?;
-            self.variance(context, &plan, ("mnist variance", "mnist-variance"), chapter, targets)?;
+            let plan = Plan { name: MNIST, data: folder.clone(), seeds, epochs, rate: "0.0005", variance_epochs };
+            self.train(context, &plan, "mnist", chapter, targets)?;
+            self.variance(context, &plan, "mnist variance", chapter, targets)?;
         }
         let (seeds, epochs) = digits;
         let data = PathBuf::from(DIGITS);
         let plan = Plan { name: "small digits", data, seeds, epochs, rate: "0.001", variance_epochs: epochs };
-        self.train(context, &plan, ["digits", "digits-time"], chapter, targets)?;
-        self.variance(context, &plan, ("digits variance", "digits-variance"), chapter, targets)
+        self.train(context, &plan, "digits", chapter, targets)?;
+        self.variance(context, &plan, "digits variance", chapter, targets)
     }
 
     fn train(
         &self,
         context: &Context,
         plan: &Plan,
-        [name, time]: [&'static str; 2],
+        name: &'static str,
         chapter: &mut Chapter,
         targets: &mut Targets,
     ) -> Result<()> {
@@ -72,10 +80,7 @@ impl Trainer {
         chapter.setting(format!("{name}: seeds"), plan.seeds);
         summary.write(chapter, name, 2);
         let rows = Table::parse(&csv, name, ',')?;
-        for (file, column, label) in [(name, "step", "steps"), (time, "seconds", "seconds of training")] {
-            let plot = mlp::error_plot(plan, &rows, column, label)?;
-            context.plot(file, &plot)?;
-        }
+        context.plot(&format!("{name}-time"), &mlp::error_plot(plan, &rows)?)?;
         for mode in ["importance", "adaptive"] {
             // Its two columns of differences have the same name; the second is that at equal time.
             let difference = summary.columns.iter().rposition(|column| column == "minus uniform's");
@@ -96,7 +101,7 @@ impl Trainer {
         &self,
         context: &Context,
         plan: &Plan,
-        (name, picture): (&'static str, &str),
+        name: &'static str,
         chapter: &mut Chapter,
         targets: &mut Targets,
     ) -> Result<()> {
@@ -104,7 +109,7 @@ impl Trainer {
         context.bar.set_message(format!("gradients: {name}"));
         let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
         let path = scratch.path().join("variance.csv");
-        self.program.run(&plan.variance(&path)?, &context.report.interrupted, |_| ())?;
+        self.program.run(&plan.variance(&path)?)?;
         context.bar.inc(1);
         let rows = Table::read(&path, ',')?;
         chapter.section(&format!("Variance of the gradient, {}", plan.name), "figure 6.2");
@@ -113,7 +118,9 @@ impl Trainer {
         chapter.setting(format!("{name}: draws of a batch"), draws);
         let summary = Summary::parse(&mlp::variance_table(plan, &rows)?)?;
         summary.write(chapter, name, 1);
-        context.plot(picture, &mlp::variance_plot(plan, &rows)?)?;
+        if plan.name == MNIST {
+            context.plot("mnist-variance", &mlp::variance_plot(plan, &rows)?)?;
+        }
         if plan.variance_epochs < LATE {
             return Ok(());
         }

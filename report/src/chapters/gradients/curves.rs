@@ -21,21 +21,3 @@ impl Table {
         Ok(series)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn seeds_are_averaged() {
-        let text = "mode,seed,step,y\na,1,0,1\nb,1,0,5\na,1,7,2\na,2,0,3\na,2,7,4\n";
-        let rows = Table::parse(text, "t.csv", ',').expect("a table");
-        assert_eq!(rows.distinct("mode").expect("a column"), ["a", "b"]);
-        let line = rows.only("mode", "a").and_then(|rows| rows.line("a", "step", "step", ("y", 10.0))).expect("a line");
-        assert_eq!(line.points, [(0.0, 20.0), (7.0, 30.0)]);
-        // Two values 1 from the mean: a standard error of 1.
-        assert!((line.band[0].2 - line.points[0].1 - 127.06).abs() < 1e-9);
-        let alone = rows.only("mode", "b").and_then(|rows| rows.line("b", "step", "step", ("y", 1.0))).expect("a line");
-        assert!(alone.band.is_empty());
-    }
-}

@@ -1,6 +1,6 @@
 //! train_mlp.c: test error against steps and time, and the variance of the gradient (figures 6.2, 6.4 and 6.11).
 
-use crate::measure::plot::{Axis, Plot, Series};
+use crate::measure::plot::{Plot, Series};
 use crate::measure::table::Table;
 use anyhow::{Context, Result};
 use std::collections::BTreeSet;
@@ -50,8 +50,8 @@ fn text(path: &Path) -> Result<&str> {
     path.to_str().with_context(|| format!("{} is not Unicode", path.display()))
 }
 
-pub(super) fn error_plot(plan: &Plan, rows: &Table, column: &str, label: &str) -> Result<String> {
-    let line = |mode: &&str| rows.only("mode", mode)?.line(mode, "epoch", column, ("test_error", 100.0));
+pub(super) fn error_plot(plan: &Plan, rows: &Table) -> Result<String> {
+    let line = |mode: &&str| rows.only("mode", mode)?.line(mode, "epoch", "seconds", ("test_error", 100.0));
     let mut series: Vec<Series> = MODES.iter().map(line).collect::<Result<_>>()?;
     for line in &mut series {
         // The untrained network, wrong nine times in ten, would take up most of the picture.
@@ -59,9 +59,7 @@ pub(super) fn error_plot(plan: &Plan, rows: &Table, column: &str, label: &str) -
         line.band.retain(|&(at, ..)| at > 0.0);
     }
     let title = format!("{}, rate {}: mean of {} seeds, 95 % confidence intervals", plan.name, plan.rate, plan.seeds);
-    let x = Axis { label, logarithmic: false, range: None };
-    let y = Axis { label: "test error, %", logarithmic: true, range: None };
-    Plot { title: &title, x, y, series: &series }.svg()
+    Plot { title: &title, x: "seconds of training", y: "test error, %", logarithmic: true, series: &series }.svg()
 }
 
 /// (method, uniform fraction, name, colour): those with a uniform fraction are dashed.
@@ -90,9 +88,7 @@ pub(super) fn variance_plot(plan: &Plan, rows: &Table) -> Result<String> {
     let series: Vec<Series> = METHODS.iter().map(line).collect::<Result<_>>()?;
     let title =
         format!("{}, rate {}: variance of the gradient estimate, one network trained uniformly", plan.name, plan.rate);
-    let x = Axis { label: "epoch", logarithmic: false, range: None };
-    let y = Axis { label: "variance / uniform's", logarithmic: true, range: None };
-    Plot { title: &title, x, y, series: &series }.svg()
+    Plot { title: &title, x: "epoch", y: "variance / uniform's", logarithmic: true, series: &series }.svg()
 }
 
 /// How many batches the trainer drew to measure what has no exact ratio, and of how many items each.

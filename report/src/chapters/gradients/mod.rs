@@ -4,10 +4,8 @@ mod classify;
 mod curves;
 mod image_plot;
 mod mlp;
-mod mnist;
 mod photograph;
 mod polynomial;
-mod polynomial_plots;
 mod summary;
 mod trainer;
 
@@ -42,7 +40,7 @@ impl Context<'_> {
     /// Runs a trainer.
     fn run(&self, program: &Program, name: &str, arguments: &[impl AsRef<OsStr>]) -> Result<Written> {
         self.bar.set_message(format!("gradients: {name}"));
-        let written = program.run(arguments, &self.report.interrupted, |_| ())?;
+        let written = program.run(arguments)?;
         self.bar.inc(1);
         Ok(written)
     }

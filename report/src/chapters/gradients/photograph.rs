@@ -24,7 +24,7 @@ pub(super) fn write(context: &Context, chapter: &mut Chapter, targets: &mut Targ
     chapter.section("A photograph", "figure 6.13");
     Summary::parse(&losses.summary)?.write(chapter, "photograph", 1);
     Summary::parse(&strata.summary)?.write(chapter, "photograph strata", 1);
-    let plot = image_plot::loss_plot(&losses.csv, &strata.csv, "step", "steps")?;
+    let plot = image_plot::loss_plot(&losses.csv, &strata.csv)?;
     context.plot("photograph", &plot)?;
     let variance = Summary::parse(&errors.summary)?;
     variance.write(chapter, "photograph variance", 2);

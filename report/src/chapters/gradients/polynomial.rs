@@ -1,7 +1,6 @@
 //! fit_polynomial.c: loss at the end, and errors of the gradient by coefficient (figure 6.10).
 
 use super::Context;
-use super::polynomial_plots;
 use super::summary::Summary;
 use super::trainer::Program;
 use crate::chapters::chapter::Chapter;
@@ -23,10 +22,8 @@ pub(super) fn write(context: &Context, program: &Program, chapter: &mut Chapter,
     }
     let losses = Summary::parse(&trained.summary)?;
     losses.write(chapter, "polynomial", 1);
-    context.plot("polynomial", &polynomial_plots::ratio_plot(&trained.csv)?)?;
     let variance = Summary::parse(&errors.summary)?;
     variance.write(chapter, "polynomial variance", 2);
-    context.plot("polynomial-variance", &polynomial_plots::error_plot(&errors.csv)?)?;
 
     let place = format!("{seeds} problems, step {steps}");
     if let Some((ratio, _)) = losses.number(&["omis4"], "over exact") {

@@ -33,20 +33,3 @@ impl Summary {
         chapter.table(name, &self.columns, words, rows.collect());
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_table_is_read() {
-        let text = "said before\n| n | mode | error |\n| ---: | --- | ---: |\n| 5 | a | 2.5 +- 0.1 |\n| 10 | a | -1 |\n\
-                    after\n";
-        let summary = Summary::parse(text).expect("a table");
-        assert_eq!(summary.columns, ["n", "mode", "error"]);
-        assert_eq!(summary.number(&["5", "a"], "error"), Some((2.5, 0.1)));
-        assert_eq!(summary.number(&["10"], "error"), Some((-1.0, 0.0)));
-        assert_eq!(summary.number(&["7"], "error"), None);
-        assert!(Summary::parse("nothing").is_err());
-    }
-}

@@ -4,7 +4,6 @@ use crate::measure::running;
 use anyhow::{Context, Result};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 use xtask::{examples, paths, run};
 
 /// What a run wrote.
@@ -31,20 +30,13 @@ impl Program {
         Ok(Self { path })
     }
 
-    /// Runs to the end. `line` sees each line of standard output as it comes, for progress.
-    pub(super) fn run(
-        &self,
-        arguments: &[impl AsRef<OsStr>],
-        interrupted: &AtomicBool,
-        mut line: impl FnMut(&str),
-    ) -> Result<Written> {
+    /// Runs to the end.
+    pub(super) fn run(&self, arguments: &[impl AsRef<OsStr>]) -> Result<Written> {
         let mut command = run::command(&self.path);
         command.args(arguments);
         let mut csv = String::new();
-        let summary = running::run(command, interrupted, |text| {
-            line(text);
-            csv += text;
-            csv.push('\n');
+        let summary = running::run(command, |text| {
+            csv += &format!("{text}\n");
             Ok(())
         })?;
         Ok(Written { csv, summary })

@@ -3,10 +3,8 @@
 use super::decisions::two_digits;
 use crate::chapters::chapter::{Cell, Chapter, row};
 use crate::chapters::statistics::Estimate;
-use crate::measure::output::Output;
 use crate::measure::table::{Row, Table};
 use anyhow::Result;
-use std::fmt::Write;
 
 /// An estimator as the program's table names it: kind, coordinates regressed, order.
 type Method = (String, u32, u32);
@@ -21,10 +19,8 @@ struct Of {
     draw_ns: f64,
 }
 
-pub(super) fn write(output: &Output, table: &Table, chapter: &mut Chapter) -> Result<()> {
+pub(super) fn write(table: &Table, chapter: &mut Chapter) -> Result<()> {
     introduce(table, chapter)?;
-    let mut csv =
-        "dims,n,samples,estimator,raw,raw_low,raw_high,filtered,filtered_low,filtered_high,worst,ns\n".to_owned();
     for dims in table.distinct("dims")? {
         chapter.section(&format!("Samplers and estimators, {dims} dims"), "");
         let (mut rows, mut times) = (Vec::new(), Vec::new());
@@ -43,11 +39,6 @@ pub(super) fn write(output: &Output, table: &Table, chapter: &mut Chapter) -> Re
                     let text = [of.raw.value, of.filtered.value, of.worst].map(two_digits);
                     cells.push(format!("{}, {} ({})", text[0], text[1], text[2]).into());
                     time.push(two_digits(of.ns).into());
-                    write!(csv, "{dims},{n},{source},{}", name.replace(',', ";"))?;
-                    for Estimate { value, low, high, .. } in [of.raw, of.filtered] {
-                        write!(csv, ",{value:.4e},{low:.4e},{high:.4e}")?;
-                    }
-                    writeln!(csv, ",{:.3},{:.1}", of.worst, of.ns)?;
                 }
                 if source == "independent" {
                     times.push(time);
@@ -70,7 +61,7 @@ pub(super) fn write(output: &Output, table: &Table, chapter: &mut Chapter) -> Re
         chapter.table("grid", &columns(["samples", "estimator"]), 2, rows);
         chapter.table("times", &columns(["of", ""]), 2, times);
     }
-    output.write_text("samplers-grid.csv", &csv)
+    Ok(())
 }
 
 fn introduce(table: &Table, chapter: &mut Chapter) -> Result<()> {
@@ -128,10 +119,9 @@ fn of(table: &Table, dims: &str, n: &str, source: &str, wanted: &Method) -> Resu
     // Of few pixels: first the mean of what is alike, then the logarithm.
     let alike =
         |all: &[f64]| all.chunks(channels).map(|of| of.iter().sum::<f64>() / of.len() as f64).collect::<Vec<_>>();
-    let ones = vec![1.0; rows.len()];
     Ok(Some(Of {
-        raw: Estimate::mean_ratio(&raw, &ones),
-        filtered: Estimate::mean_ratio(&alike(&filtered), &ones),
+        raw: Estimate::geometric_mean(&raw),
+        filtered: Estimate::geometric_mean(&alike(&filtered)),
         worst: first.number("worst")?,
         ns: first.number("ns")?,
         draw_ns: first.number("draw_ns")?,

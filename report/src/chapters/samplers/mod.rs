@@ -27,7 +27,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     errors::write(&energies, &mut chapter, &mut targets)?;
     draws::write(&times, &mut chapter, &mut targets)?;
     decisions::write(&decisions, &mut chapter)?;
-    grid::write(report.output, &cells, &mut chapter)?;
+    grid::write(&cells, &mut chapter)?;
     targets.write(&mut chapter);
     Ok(chapter)
 }

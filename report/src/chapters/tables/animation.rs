@@ -7,7 +7,7 @@ use crate::chapters::measurement::{BASELINE, Experiment, View};
 use crate::chapters::statistics::Estimate;
 use crate::measure::metric::Reference;
 use crate::measure::renderer::Sampler;
-use crate::measure::samplers::{Choice, Tiles};
+use crate::measure::samplers::Choice;
 use crate::measure::score;
 use anyhow::Result;
 use image::Rgb32FImage;
@@ -68,7 +68,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.setting("weight of the newest frame", ALPHA);
     section.chapter.setting("seeds of the animation", plan.animation_seeds);
     section.chapter.setting("samples per pixel of the tile whose settings were chosen", CHOSEN);
-    let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
+    let tiles = section.measurement.renderer.tiles()?;
     let mut rows = Vec::new();
     let sizes = plan.some(&TEMPORAL).iter().zip(plan.animation);
     for (scene, (&(spp, temporal), last)) in

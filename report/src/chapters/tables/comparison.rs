@@ -1,9 +1,8 @@
 //! Several ways to estimate, on several scenes: rows that the sections have in common.
 
 use super::Section;
-use crate::chapters::chapter::{Cell, row};
 use crate::chapters::figure::{Figure, Unit};
-use crate::chapters::measurement::{BASELINE, Experiment, Outcome};
+use crate::chapters::measurement::{Experiment, Outcome};
 use crate::chapters::statistics::Estimate;
 use anyhow::Result;
 
@@ -17,15 +16,6 @@ pub(super) fn thousandfold(outcome: &Outcome, estimator: &str) -> Result<Figure>
 pub(super) fn ratios(outcome: &Outcome, estimator: &str) -> Result<[Figure; 2]> {
     let both = [outcome.ratio(estimator)?, outcome.equal_time(estimator)?];
     Ok(both.map(|ratio| Figure::new(ratio, Unit::Ratio)))
-}
-
-/// One row: the scene, the samples, the plain mean's relMSE, then both ratios of each of `estimators`.
-pub(super) fn ratio_row(experiment: &Experiment, outcome: &Outcome, estimators: &[&str]) -> Result<Vec<Cell>> {
-    let mut cells = row![experiment.view.scene, experiment.spp, thousandfold(outcome, BASELINE)?];
-    for estimator in estimators {
-        cells.extend(ratios(outcome, estimator)?.map(Cell::from));
-    }
-    Ok(cells)
 }
 
 /// As many seeds as everything is measured with.

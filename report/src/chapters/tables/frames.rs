@@ -6,7 +6,7 @@ use crate::chapters::chapter::{Cell, row};
 use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::measurement::{BASELINE, Experiment, Outcome, SHARED, View};
 use crate::chapters::statistics::Estimate;
-use crate::measure::samplers::{Choice, Tiles};
+use crate::measure::samplers::Choice;
 use anyhow::Result;
 
 const SCENES: [&str; 8] = ["dining", "chopper", "dragon", "microcity", "animation", "killeroos", "bathroom", "lens"];
@@ -19,7 +19,7 @@ const METHODS: [(&str, &str); 3] =
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Shared fits at equal time", "");
     let plan = section.measurement.plan;
-    let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
+    let tiles = section.measurement.renderer.tiles()?;
     let names = METHODS.map(|(name, _)| name);
     let estimators = [BASELINE, names[0], names[1], names[2]];
     let mut rows = Vec::new();

@@ -4,7 +4,6 @@ mod animation;
 mod bases;
 mod comparison;
 mod direct;
-mod environment;
 mod frames;
 mod indirect;
 mod lights;
@@ -39,7 +38,6 @@ pub(crate) const SECTIONS: &[Entry] = &[
     (22, direct::write),
     (9, indirect::write),
     (14, mis::write),
-    (6, environment::write),
     (9, bases::write),
     (16, lights::write),
     (12, solvers::write),

@@ -6,7 +6,7 @@ use crate::chapters::chapter::row;
 use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::measurement::{BASELINE, Experiment, Outcome, View};
 use crate::chapters::statistics::Estimate;
-use crate::measure::samplers::{Choice, Tiles};
+use crate::measure::samplers::Choice;
 use anyhow::{Result, bail};
 
 const SCENES: [&str; 2] = ["dining", "microcity"];
@@ -18,7 +18,7 @@ const FILTERS: [(&str, &[&str]); 2] = [("box", &["--filter", "box"]), ("Gaussian
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Box and Gaussian reconstruction", "figure 5.22");
     let plan = section.measurement.plan;
-    let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
+    let tiles = section.measurement.renderer.tiles()?;
     let mut rows = Vec::new();
     for &scene in plan.some(&SCENES) {
         for &(filter, options) in plan.some(&FILTERS) {

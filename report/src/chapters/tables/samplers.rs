@@ -71,7 +71,7 @@ struct Measured {
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Samplers", "figures 5.19 and 5.20");
     let plan = section.measurement.plan;
-    let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
+    let tiles = section.measurement.renderer.tiles()?;
     let public = Public::new(section.measurement);
     let mut all = Vec::new();
     for &scene in plan.some(&SCENES) {

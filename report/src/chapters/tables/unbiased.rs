@@ -63,7 +63,7 @@ struct Test<'a> {
 pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.section("Are shared fits unbiased?", "");
     let plan = section.measurement.plan;
-    let tiles = Tiles::new(section.measurement.renderer.tiles()?, None)?;
+    let tiles = section.measurement.renderer.tiles()?;
     let tests: Vec<Test> = plan.some(&SCENES).iter().flat_map(|&scene| tests(scene, plan.some(&SPP), &tiles)).collect();
     // Of two estimators, the largest z and the mean of z^2.
     let level = SIGNIFICANCE / (4 * tests.len()) as f64;
