@@ -345,8 +345,8 @@ nf_status nf_cv_gradient_descent(const nf_cv_config *config,
                                  size_t bytes,
                                  nf_estimate *out);
 
-// Writes which pixels must be given for those of `image->wanted`: its windows whole; all zero, and so all, where pixels
-// have no places. Reads no array. `out` may be `&image->given`.
+// Writes which pixels must be given for those of `image->wanted`: its windows whole; all zero, and so all, where
+// pixels have no places. Reads no array. `out` may be `&image->given`.
 //
 // NF_ERR_RANGE for windows that nf_cv_image does not allow and for `wanted` beyond the image.
 nf_status nf_cv_image_needed(const nf_cv_image *image, nf_cv_rectangle *out);
@@ -359,8 +359,9 @@ size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image 
 // As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of
 // the same window and surface share a fit. Fits also follow integrands that change across the window.
 //
-// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone and is the only one that is exactly unbiased; NF_CV_ROBUST chooses among fits to f and
-// to what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD is then unsupported.
+// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone and is the only one that is exactly unbiased; NF_CV_ROBUST
+// chooses among fits to f and to what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD
+// is then unsupported.
 //
 // NF_ERR_RANGE also for an image without pixels, for windows and parts that nf_cv_image does not allow, for negative
 // factors or integrals and for `known` without `known_integrals`; NF_ERR_NOT_FINITE if any of the three is not finite.
@@ -923,7 +924,8 @@ nf_status nf_sampler_fill(const nf_sampler *samplers,
 // A sampler stands for a point of a cube with as many dimensions as are asked for. There are no dimension counters:
 // each decision of a path (lens, light, bounce, ...) has a domain, a child of the sampler by a key of its own. A
 // domain's numbers depend on nothing but tile, pixel, frame, index and the keys that led to it, so that any sample can
-// be drawn in any order, on any thread, and at any time. Made by nf_tile_sampler_pixel; the fields are not to be written.
+// be drawn in any order, on any thread, and at any time. Made by nf_tile_sampler_pixel; the fields are not to be
+// written.
 typedef struct nf_tile_sampler {
     // The tile; it must outlive the sampler and stay where it is.
     const nf_tile *tile;
@@ -976,8 +978,8 @@ nf_tile_sampler nf_tile_sampler_scramble(nf_tile_sampler sampler, uint32_t seed)
 // if dims is out of range or u is NULL.
 void nf_tile_sampler_draw(nf_tile_sampler sampler, uint32_t dims, float *u);
 
-// How many numbers nf_tile_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
-// 1..4, or memory has not that many.
+// How many numbers nf_tile_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is
+// outside 1..4, or memory has not that many.
 size_t nf_tile_sampler_fill_len(const uint32_t *dims,
                                 size_t domains,
                                 uint32_t width,

@@ -695,7 +695,7 @@ struct tile : nf_tile {
     static returned<tile> from_bytes(span<const unsigned char> bytes) { return from_bytes(bytes.data(), bytes.size()); }
 };
 
-// nf_sampler: one sample of one pixel of the default sampler, by value. `sampler(x, y, frame, index).domain(3).draw<2>()`.
+// nf_sampler: one sample of one pixel of the default sampler. `sampler(x, y, frame, index).domain(3).draw<2>()`.
 class sampler {
 public:
     sampler(std::uint32_t x, std::uint32_t y, std::uint32_t frame, std::uint32_t index) noexcept
@@ -749,7 +749,8 @@ inline returned<void> fill(span<const nf_sampler> samplers, span<const std::uint
 class tile_sampler {
 public:
     // The tile must outlive the sampler and stay where it is.
-    tile_sampler(const nf_tile &from, std::uint32_t x, std::uint32_t y, std::uint32_t frame, std::uint32_t index) noexcept
+    tile_sampler(const nf_tile &from, std::uint32_t x, std::uint32_t y, std::uint32_t frame,
+                 std::uint32_t index) noexcept
         : state_(nf_tile_sampler_pixel(&from, x, y, frame, index))
     {
     }

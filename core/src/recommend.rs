@@ -75,8 +75,8 @@ pub struct Recommendation {
     /// on it is that of Sobol points scrambled in each pixel; the plain mean of the tile of 1 sample, continued, has
     /// .81 to 1.4 times this.
     pub filtered_error: f32,
-    /// Nanoseconds that the method takes for each sample on the machine of the report: of [`Method::Shared`] in rendered
-    /// frames of three channels with surfaces, of [`Method::PerPixel`] for one channel.
+    /// Nanoseconds that the method takes for each sample on the machine of the report: of [`Method::Shared`] in
+    /// rendered frames of three channels with surfaces, of [`Method::PerPixel`] for one channel.
     pub cost: f32,
     /// The cost of a sample, in nanoseconds, from which a fit pays: below it more samples of the plain mean, in the
     /// same time, would lower the error further. Of [`Method::Shared`] the median over eight rendered frames, where

@@ -8,7 +8,8 @@ static void draws(void)
     uint32_t i, d, k;
     for (i = 0; i < 4000; ++i) {
         float all[4], few[5];
-        nf_sampler s = (i % 7 == 0 ? nf_sampler_white : nf_sampler_pixel)(i % 23, i / 23, i % 3, i % 11 << i % 32), copy;
+        const uint32_t index = i % 11 << i % 32;
+        nf_sampler s = (i % 7 == 0 ? nf_sampler_white : nf_sampler_pixel)(i % 23, i / 23, i % 3, index), copy;
         if (i % 4 == 1)
             s = nf_sampler_domain(s, i);
         if (i % 4 == 2)

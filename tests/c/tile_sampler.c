@@ -116,7 +116,8 @@ static void fill(const nf_tile *tile)
     CHECK_STATUS(nf_tile_sampler_fill(NULL, dims, 3, 1, 1, 1, u, COUNT), NF_ERR_NULL);
     CHECK_STATUS(nf_tile_sampler_fill(s, NULL, 3, 1, 1, 1, u, COUNT), NF_ERR_NULL);
     CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, 1, 1, 1, NULL, COUNT), NF_ERR_NULL);
-    CHECK_STATUS(nf_tile_sampler_fill((const nf_tile_sampler *)misaligned(s), dims, 3, 1, 1, 1, u, COUNT), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_tile_sampler_fill((const nf_tile_sampler *)misaligned(s), dims, 3, 1, 1, 1, u, COUNT),
+                 NF_ERR_ALIGNMENT);
     CHECK_STATUS(nf_tile_sampler_fill(s, (const uint32_t *)misaligned(bad), 2, 1, 1, 1, u, COUNT), NF_ERR_ALIGNMENT);
     CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, 1, 1, 1, (float *)misaligned(u), COUNT - 1), NF_ERR_ALIGNMENT);
     CHECK_STATUS(nf_tile_sampler_fill(s, bad, 3, 1, 1, 1, u, COUNT), NF_ERR_RANGE);

@@ -82,10 +82,10 @@ fn four_numbers_are_nets() {
     }
 }
 
-/// Products of centred numbers, and of their signs, of all pairs of 64 domains over the pixels of the table. Between two
-/// domains neighbours' products hardly differ less than others', so that the deviates' variance is near 1; two domains
-/// at the same place of the table, which one pair in 8,192 has, would fail. Of 16,128 normal deviates the largest is
-/// beyond 6.5 with probability 1e-6.
+/// Products of centred numbers, and of their signs, of all pairs of 64 domains over the pixels of the table. Between
+/// two domains neighbours' products hardly differ less than others', so that the deviates' variance is near 1; two
+/// domains at the same place of the table, which one pair in 8,192 has, would fail. Of 16,128 normal deviates the
+/// largest is beyond 6.5 with probability 1e-6.
 #[test]
 fn domains_are_uncorrelated() {
     for n in [1, 4] {
@@ -163,8 +163,8 @@ fn borders_are_sampled() {
     }
 }
 
-/// Neighbours' values differ more than those of pixels at random; white samplers' do not. Of one sample, the mean square
-/// of differences between pixels beside each other, over 1/6.
+/// Neighbours' values differ more than those of pixels at random; white samplers' do not. Of one sample, the mean
+/// square of differences between pixels beside each other, over 1/6.
 #[test]
 fn neighbours_differ() {
     let spread = |make: fn(u32, u32, u32, u32) -> Sampler| {

@@ -79,7 +79,8 @@ bool render(bool shared)
             float u[2 * samples], f[samples];
             for (std::uint32_t i = 0; i < samples; ++i) {
                 // All threads read the same nf_tile.
-                nf_tile_sampler_draw(nf_tile_sampler_domain(nf_tile_sampler_pixel(&blue, tile, 0, 0, i), 1), 2, u + 2 * i);
+                const nf_tile_sampler pixel = nf_tile_sampler_pixel(&blue, tile, 0, 0, i);
+                nf_tile_sampler_draw(nf_tile_sampler_domain(pixel, 1), 2, u + 2 * i);
                 f[i] = u[2 * i] + u[2 * i + 1];
             }
             check(nf_cv_accumulator_add(accumulators[shared ? 0 : tile].state, u, f, samples), "nf_cv_accumulator_add");

@@ -69,8 +69,8 @@ pub struct nf_cv_rectangle {
     pub height: u32,
 }
 
-/// Writes which pixels must be given for those of `image->wanted`: its windows whole; all zero, and so all, where pixels
-/// have no places. Reads no array. `out` may be `&image->given`.
+/// Writes which pixels must be given for those of `image->wanted`: its windows whole; all zero, and so all, where
+/// pixels have no places. Reads no array. `out` may be `&image->given`.
 ///
 /// NF_ERR_RANGE for windows that nf_cv_image does not allow and for `wanted` beyond the image.
 #[unsafe(no_mangle)]
@@ -160,8 +160,9 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
 /// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of
 /// the same window and surface share a fit. Fits also follow integrands that change across the window.
 ///
-/// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone and is the only one that is exactly unbiased; NF_CV_ROBUST chooses among fits to f and
-/// to what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD is then unsupported.
+/// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone and is the only one that is exactly unbiased; NF_CV_ROBUST
+/// chooses among fits to f and to what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD
+/// is then unsupported.
 ///
 /// NF_ERR_RANGE also for an image without pixels, for windows and parts that nf_cv_image does not allow, for negative
 /// factors or integrals and for `known` without `known_integrals`; NF_ERR_NOT_FINITE if any of the three is not finite.

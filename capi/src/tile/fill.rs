@@ -6,8 +6,8 @@ use crate::convert;
 use crate::status::*;
 use noisefloor_core::tile::Sampler;
 
-/// How many numbers nf_tile_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
-/// 1..4, or memory has not that many.
+/// How many numbers nf_tile_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is
+/// outside 1..4, or memory has not that many.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_tile_sampler_fill_len(
     dims: *const u32,

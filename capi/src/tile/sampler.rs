@@ -9,7 +9,8 @@ use noisefloor_core::tile::{Sampler, State};
 /// A sampler stands for a point of a cube with as many dimensions as are asked for. There are no dimension counters:
 /// each decision of a path (lens, light, bounce, ...) has a domain, a child of the sampler by a key of its own. A
 /// domain's numbers depend on nothing but tile, pixel, frame, index and the keys that led to it, so that any sample can
-/// be drawn in any order, on any thread, and at any time. Made by nf_tile_sampler_pixel; the fields are not to be written.
+/// be drawn in any order, on any thread, and at any time. Made by nf_tile_sampler_pixel; the fields are not to be
+/// written.
 #[repr(C)]
 #[allow(non_camel_case_types)]
 #[derive(Clone, Copy)]

@@ -30,7 +30,8 @@ pub use fill::fill;
 
 use crate::hash::{GOLDEN, child, mix};
 
-/// One sample of one pixel: 16 bytes, to be copied freely. Drawing does not change it. Any value of the fields is valid.
+/// One sample of one pixel: 16 bytes, to be copied freely. Drawing does not change it. Any value of the fields is
+/// valid.
 ///
 /// A sampler stands for a point of a cube with as many dimensions as are asked for, by domain: each decision of a path
 /// has its own, [`domain`](Sampler::domain) with a key of its own. A domain's numbers depend on nothing but pixel,

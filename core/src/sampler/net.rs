@@ -77,9 +77,9 @@ const fn pascal(first: u32) -> u32 {
     second ^ (second & 0x5555_5555) << 1
 }
 
-/// The reversed number at which the third and the fourth number are drawn: the first nine digits times a unit triangular
-/// matrix. Found by search: of points in four dimensions the first 4 to 512 are (t, m, 4)-nets, t from 1 to 3, and of
-/// such matrices this one has the best projections on two of the four.
+/// The reversed number at which the third and the fourth number are drawn: the first nine digits times a unit
+/// triangular matrix. Found by search: of points in four dimensions the first 4 to 512 are (t, m, 4)-nets, t from 1 to
+/// 3, and of such matrices this one has the best projections on two of the four.
 #[inline(always)]
 fn second(first: u32) -> u32 {
     first & 0x007f_ffff | u32::from(SECOND[(first >> 23) as usize]) << 16
