@@ -24,6 +24,9 @@ static float u[2 * SAMPLES], f[SAMPLES], weight[BATCH], importance[BATCH], out[2
 static uint32_t item[BATCH], technique[BATCH];
 static float pdf[BATCH * TECHNIQUES], gradient[BATCH * PARAMETERS], mean[PARAMETERS];
 static nf_estimate estimates[SIDE * SIDE];
+static const uint32_t *entries;
+#define NOISEFLOOR_TABLE(i) entries[i]
+#include "noisefloor_sampler.h"
 static nf_table table;
 static nf_tile tile;
 static nf_cv_config config;
@@ -104,6 +107,42 @@ static void prepare_bright_image(void)
 static void call_image(void)
 {
     check(nf_cv_image_estimate(&config, &image, u, f, SPP, workspace, bytes, estimates), "nf_cv_image_estimate");
+}
+
+static void call_sampler(void)
+{
+    for (uint32_t i = 0; i < 64; ++i)
+        nf_sampler_draw(nf_sampler_pixel(i, 3 * i, 0, i % 4), 2, out);
+}
+
+static void call_sampler_domain(void)
+{
+    for (uint32_t i = 0; i < 64; ++i)
+        nf_sampler_draw(nf_sampler_domain(nf_sampler_pixel(i, 3 * i, 0, i % 4), 7), 2, out);
+}
+
+static void call_sampler_4(void)
+{
+    for (uint32_t i = 0; i < 64; ++i)
+        nf_sampler_draw(nf_sampler_domain(nf_sampler_pixel(i, 3 * i, 0, 64 + i), 7), 4, out);
+}
+
+static void prepare_inlined(void) { entries = nf_sampler_table(); }
+
+static void call_inlined(void)
+{
+    for (uint32_t i = 0; i < 64; ++i) {
+        const nfs_floats drawn = nfs_draw2(nfs_pixel(i, 3 * i, 0, i % 4));
+        out[i % 2] = drawn.x + drawn.y;
+    }
+}
+
+static void call_inlined_4(void)
+{
+    for (uint32_t i = 0; i < 64; ++i) {
+        const nfs_floats drawn = nfs_draw4(nfs_domain(nfs_pixel(i, 3 * i, 0, 64 + i), i));
+        out[i % 2] = drawn.x + drawn.y + drawn.z + drawn.w;
+    }
 }
 
 static void prepare_tile(void) { check(nf_tile_builtin(NF_TILE_128_4SPP_2D, &tile), "nf_tile_builtin"); }
@@ -210,6 +249,11 @@ static const struct {
     {"nf_cv_accumulator_add", prepare_accumulator, call_accumulator, 20, 64, "sample"},
     {"nf_cv_image_estimate", prepare_image, call_image, 1, SAMPLES, "sample"},
     {"nf_cv_image_estimate bright pixel", prepare_bright_image, call_image, 1, SAMPLES, "sample"},
+    {"nf_sampler_draw", nothing, call_sampler, 100, 64, "draw"},
+    {"nf_sampler_draw domain", nothing, call_sampler_domain, 100, 64, "draw"},
+    {"nf_sampler_draw 4 domain", nothing, call_sampler_4, 100, 64, "draw"},
+    {"nfs_draw2", prepare_inlined, call_inlined, 100, 64, "draw"},
+    {"nfs_draw4 domain", prepare_inlined, call_inlined_4, 100, 64, "draw"},
     {"nf_tile_sampler_draw", prepare_tile, call_draw, 100, 64, "draw"},
     {"nf_tile_sampler_draw domain", prepare_tile, call_domain, 100, 64, "draw"},
     {"nf_tile_sampler_draw 4 of 4 dims", prepare_tile_4, call_draw_4, 100, 64, "sample"},
