@@ -49,6 +49,8 @@ pub(crate) struct Job<'a> {
 /// Where the sample points come from.
 #[derive(Clone, Copy)]
 pub(crate) enum Sampler<'a> {
+    /// The library's own.
+    Default,
     Random,
     Sobol,
     /// A built-in tile's name, or a file.
@@ -113,6 +115,7 @@ impl Renderer {
         command.args(["--spp", &job.spp.to_string(), "--order", &job.order.to_string()]);
         command.args(["--seed", &job.seed.to_string(), "--frame", &job.frame.to_string()]);
         match job.sampler {
+            Sampler::Default => command.args(["--sampler", "default"]),
             Sampler::Random => command.args(["--sampler", "random"]),
             Sampler::Sobol => command.args(["--sampler", "sobol"]),
             Sampler::Tile(tile) => command.args(["--sampler", "tile", "--tile", tile]),

@@ -5,6 +5,8 @@ use super::renderer::Sampler;
 /// A sampler that is compared.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Choice {
+    /// The library's own.
+    Default,
     Random,
     Sobol,
     /// The tile of so many dimensions that has as many samples as are drawn, or the next fewer.
@@ -17,6 +19,7 @@ impl Choice {
     /// In headings and tables.
     pub(crate) fn label(self) -> String {
         match self {
+            Self::Default => "default".to_owned(),
             Self::Random => "random".to_owned(),
             Self::Sobol => "Owen-Sobol".to_owned(),
             Self::Tile(dims) => format!("tile {dims}D"),
@@ -28,6 +31,7 @@ impl Choice {
     pub(crate) fn sampler(self, spp: u32, tiles: &Tiles) -> Option<Sampler<'_>> {
         let find = |name: &str| tiles.find(name).map(Sampler::Tile);
         match self {
+            Self::Default => Some(Sampler::Default),
             Self::Random => Some(Sampler::Random),
             Self::Sobol => Some(Sampler::Sobol),
             Self::Tile(dims) => {

@@ -16,7 +16,7 @@ use std::path::Path;
 const SCENES: [&str; 7] = ["dining", "dragon", "chopper", "microcity", "killeroos", "bathroom", "lens"];
 const SPP: [u32; 3] = [1, 4, 16];
 /// The library's samplers and what they are compared with first.
-const OWN: [Choice; 4] = [Choice::Random, Choice::Sobol, Choice::Tile(2), Choice::Tile(4)];
+const OWN: [Choice; 5] = [Choice::Random, Choice::Sobol, Choice::Tile(2), Choice::Tile(4), Choice::Default];
 const RANDOM: usize = 0;
 const SOBOL: usize = 1;
 const TILE: usize = 2;
