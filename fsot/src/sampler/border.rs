@@ -7,7 +7,7 @@ pub(crate) const BINS: usize = 128;
 /// Numbers of a state: `[octave][axis][bin]`.
 pub(crate) const STATE: usize = OCTAVES * 2 * BINS;
 /// How much of a deviation is added to what is remembered of it, each sweep.
-const MEMORY: f32 = 0.05;
+const MEMORY: f32 = 0.01;
 
 /// Counts, and what a point pays for being in a bin: the bin's surplus now, and a sum over the past that removes what
 /// the surplus alone would leave.
@@ -42,13 +42,14 @@ impl Border {
         (0.25 * at(low) + 0.5 * at(bin) + 0.25 * at(high)) / self.means[octave] - 1.0
     }
 
-    /// The least density within 1/64 of a border, relative to a uniform one.
-    pub(crate) fn least(&self, octave: usize) -> f32 {
+    /// The least and the greatest density within 1/64 of a border, relative to a uniform one.
+    pub(crate) fn extremes(&self, octave: usize) -> [f32; 2] {
         let near = BINS / 64;
-        let sum = |start: usize| self.counts[start..start + near].iter().sum::<i32>() as f32;
         let axis = |axis: usize| (octave * 2 + axis) * BINS;
         let ends = [axis(0), axis(0) + BINS - near, axis(1), axis(1) + BINS - near];
-        ends.into_iter().map(sum).fold(f32::MAX, f32::min) / (near as f32 * self.means[octave])
+        let counts = ends.map(|start| self.counts[start..start + near].iter().sum::<i32>() as f32);
+        let uniform = near as f32 * self.means[octave];
+        [counts.into_iter().fold(f32::MAX, f32::min) / uniform, counts.into_iter().fold(0.0, f32::max) / uniform]
     }
 
     /// Remembers the surplus.
@@ -65,9 +66,15 @@ impl Border {
     pub(crate) fn price(&self, octave: usize, axis: usize, bin: usize) -> f32 {
         self.surplus(octave, axis, bin) + self.past[(octave * 2 + axis) * BINS + bin]
     }
+
+    /// What a point more in a bin adds to the surplus of that bin, and of those beside it.
+    pub(crate) fn share(&self, octave: usize) -> [f32; 2] {
+        [0.5, 0.25].map(|share| share / self.means[octave])
+    }
 }
 
-fn bin(coordinate: u16) -> usize {
+/// The bin of a coordinate.
+pub(crate) fn bin(coordinate: u16) -> usize {
     usize::from(coordinate) * BINS >> 16
 }
 

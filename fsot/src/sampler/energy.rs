@@ -52,7 +52,6 @@ pub(crate) struct Groups {
     /// The offset of each point.
     pub(crate) offset: [[usize; POINTS]; 2],
     bits: u32,
-    points: usize,
     /// `[axis][depth][prefix]`
     groups: [Vec<Vec<Vec<u8>>>; 2],
 }
@@ -70,12 +69,7 @@ impl Groups {
         let depths = |axis: usize| -> Vec<Vec<Vec<u8>>> {
             (0..=bits).map(|depth| (0..1 << depth).map(|prefix| members(axis, depth, prefix)).collect()).collect()
         };
-        Groups { net, offset, bits, points, groups: [depths(0), depths(1)] }
-    }
-
-    /// How many points there are.
-    pub(crate) fn points(&self) -> usize {
-        self.points
+        Groups { net, offset, bits, groups: [depths(0), depths(1)] }
     }
 
     /// The points whose bit at a depth is one with that of `point`.

@@ -8,9 +8,11 @@ pub mod optimizer;
 mod pixels;
 mod power;
 pub mod problem;
+pub mod sidecar;
 pub mod table;
 mod visit;
 
 pub use optimizer::SamplerOptimizer;
 pub use problem::SamplerProblem;
+pub use sidecar::SamplerSidecar;
 pub use table::SamplerTable;

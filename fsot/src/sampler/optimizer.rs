@@ -1,7 +1,7 @@
 //! Descent over the pixels of a nested-net tile, some that do not see each other at a time.
 
 use super::basis::{Basis, SPECTRUM, Spectrum};
-use super::border::{BINS, Border, STATE};
+use super::border::{BINS, Border, STATE, bin};
 use super::energy::{Energy, Groups, POINTS, Places};
 use super::pixels::{REACH, Weights};
 use super::power::power;
@@ -9,6 +9,7 @@ use super::problem::{OCTAVES, SamplerProblem};
 use super::table::SamplerTable;
 use super::visit::{Offsets, Prices, Rules, Surroundings, places, visit};
 use crate::error::Result;
+use crate::memory;
 use crate::random::stream;
 use crate::run::Optimization;
 use rayon::prelude::*;
@@ -52,8 +53,8 @@ pub struct SamplerReport {
     pub raw: [f32; OCTAVES],
     /// The energy of pixels together.
     pub filtered: [f32; OCTAVES],
-    /// The least density, relative to a uniform one, within 1/64 of a border.
-    pub border: [f32; OCTAVES],
+    /// The least and the greatest density of an axis within 1/64 of a border, relative to a uniform one.
+    pub border: [[f32; 2]; OCTAVES],
     /// Arrangements taken by a visit.
     pub taken: f32,
 }
@@ -69,11 +70,12 @@ impl SamplerOptimizer {
     /// Starts from random offsets.
     ///
     /// # Errors
-    /// The problem is not valid.
+    /// The problem is not valid, or needs more memory than there is.
     pub fn new(problem: SamplerProblem) -> Result<SamplerOptimizer> {
         problem.validate()?;
         let pixels = problem.size * problem.size;
         let weights = Weights::new();
+        memory::check((pixels * (2 * size_of::<Errors>() + 2 * size_of::<Offsets>() + size_of::<Places>())) as u64)?;
         let mut rng = stream(problem.seed, 0, START_STREAM);
         let bits = problem.bits;
         let mut start = || {
@@ -112,6 +114,25 @@ impl SamplerOptimizer {
     /// What the last step saw.
     pub fn report(&self) -> &SamplerReport {
         &self.report
+    }
+
+    /// What there is now, of all octaves.
+    pub fn measure(&mut self) -> SamplerReport {
+        let energy = Energy::new(&self.basis, &[1.0; OCTAVES]);
+        let groups = Groups::new(&self.problem, energy.points);
+        let all = self.survey(&energy, &groups);
+        self.look(&energy, &self.fields(&energy, &all), &all)
+    }
+
+    /// Where all points lie; counts them.
+    fn survey(&mut self, energy: &Energy, groups: &Groups) -> Vec<Places> {
+        let place = |(number, offsets): (usize, &Offsets)| places(groups, offsets, number as u32);
+        let all: Vec<Places> = self.offsets.iter().enumerate().map(place).collect();
+        self.border.clear();
+        for places in &all {
+            self.count(energy, places, 1);
+        }
+        all
     }
 
     /// The table as it is now.
@@ -184,9 +205,9 @@ impl SamplerOptimizer {
         Fields { errors, around, total }
     }
 
-    fn surroundings(&self, energy: &Energy, fields: &Fields, pixel: usize, prices: &Prices) -> Surroundings {
+    fn surroundings(&self, energy: &Energy, fields: &Fields, pixel: usize, prices: Prices) -> Surroundings {
         let mut sum = [0.0; SPECTRUM];
-        let mut surroundings = Surroundings { fields: [[0.0; SPECTRUM]; OCTAVES], prices: *prices };
+        let mut surroundings = Surroundings { fields: [[0.0; SPECTRUM]; OCTAVES], prices };
         for &octave in energy.octaves.iter().rev() {
             let factor = 2.0 * energy.weights[octave] / (1u32 << octave) as f32;
             let (own, around) = (&fields.errors[pixel][octave], &fields.around[pixel][octave]);
@@ -204,7 +225,7 @@ impl SamplerOptimizer {
         let mut sum = [[0.0; BINS]; 2];
         let mut prices = [[[0.0; BINS]; 2]; OCTAVES];
         for &octave in energy.octaves.iter().rev() {
-            let factor = self.problem.border * self.basis.total * energy.weights[octave] / (1u32 << octave) as f32;
+            let factor = self.factor(energy, octave);
             for (axis, sum) in sum.iter_mut().enumerate() {
                 for (bin, sum) in sum.iter_mut().enumerate() {
                     *sum += factor * self.border.price(octave, axis, bin);
@@ -213,6 +234,39 @@ impl SamplerOptimizer {
             prices[octave] = sum;
         }
         prices
+    }
+
+    /// Prices without what a pixel's own points add to them.
+    fn without(&self, energy: &Energy, prices: &Prices, own: &Places) -> Prices {
+        let mut prices = *prices;
+        let mut sums = [[0.0f32; 2]; OCTAVES];
+        let mut sum = [0.0; 2];
+        for &octave in energy.octaves.iter().rev() {
+            let factor = self.factor(energy, octave);
+            let share = self.border.share(octave);
+            sum = [sum[0] + factor * share[0], sum[1] + factor * share[1]];
+            sums[octave] = sum;
+        }
+        for point in 0..energy.points {
+            let first = energy.first[point];
+            for axis in 0..2 {
+                let place = bin(own[axis][point]);
+                // In an octave's prices are those of all longer ones; a point is in its own and these.
+                for &octave in &energy.octaves {
+                    let [own, beside] = sums[octave.max(first)];
+                    let prices = &mut prices[octave][axis];
+                    prices[place] -= own;
+                    prices[place.saturating_sub(1)] -= beside;
+                    prices[(place + 1).min(BINS - 1)] -= beside;
+                }
+            }
+        }
+        prices
+    }
+
+    /// What a relative surplus of an octave costs a point.
+    fn factor(&self, energy: &Energy, octave: usize) -> f32 {
+        self.problem.border * self.basis.total * energy.weights[octave] / (1u32 << octave) as f32
     }
 
     fn count(&mut self, energy: &Energy, places: &Places, change: i32) {
@@ -248,7 +302,8 @@ impl SamplerOptimizer {
                     temperature,
                     candidates: self.problem.candidates,
                 };
-                let around = self.surroundings(energy, fields, *pixel, &prices);
+                let prices = self.without(energy, &prices, &all[*pixel]);
+                let around = self.surroundings(energy, fields, *pixel, prices);
                 let mut rng = stream(self.problem.seed, number, *pixel as u64);
                 let (offsets, taken) = visit(&rules, &around, *pixel as u32, self.offsets[*pixel], &mut rng);
                 let places = places(groups, &offsets, *pixel as u32);
@@ -307,7 +362,7 @@ impl SamplerOptimizer {
             let white = f64::from(self.basis.total) / count as f64;
             report.raw[octave] = (raw / white) as f32;
             report.filtered[octave] = (together / white) as f32;
-            report.border[octave] = self.border.least(octave);
+            report.border[octave] = self.border.extremes(octave);
         }
         report
     }
@@ -340,12 +395,7 @@ impl Optimization for SamplerOptimizer {
         let (weights, temperature) = self.problem.stage(self.iteration);
         let energy = Energy::new(&self.basis, &weights);
         let groups = Groups::new(&self.problem, energy.points);
-        let place = |(number, offsets): (usize, &Offsets)| places(&groups, offsets, number as u32);
-        let mut all: Vec<Places> = self.offsets.iter().enumerate().map(place).collect();
-        self.border.clear();
-        for places in &all {
-            self.count(&energy, places, 1);
-        }
+        let mut all = self.survey(&energy, &groups);
         let mut fields = self.fields(&energy, &all);
         let mut report = self.look(&energy, &fields, &all);
         let mut taken = 0;

@@ -10,7 +10,7 @@ const SIDE: usize = REACH + 1;
 const LEAST: f64 = 0.003;
 
 /// What pairs of pixels count where a pixel with itself counts 1, for each product of cosines: the squares of Gaussian
-/// filters of 2.1 and 1 pixels, and a tenth for no filter, times the correlation of two pixels' integrands.
+/// filters of 2.1 pixels and, for less, of one, times the correlation of two pixels' integrands.
 pub(crate) struct Weights {
     /// `[distance along y][along x]`; none if too little.
     weights: Vec<Option<Box<Spectrum>>>,
@@ -21,7 +21,7 @@ impl Weights {
         let weights = (0..SIDE * SIDE).map(|place| {
             let square = ((place / SIDE).pow(2) + (place % SIDE).pow(2)) as f64;
             let filter = |sigma: f64| libm::exp(-square / (4.0 * sigma * sigma));
-            let filtered = (filter(2.1) + filter(1.0)) / 2.1;
+            let filtered = (filter(2.1) + 0.3 * filter(1.0)) / 1.3;
             let weight = |mode: usize| (filtered * correlation(mode, libm::sqrt(square))) as f32;
             let seen = square > 0.0 && filtered * correlation(MODES, libm::sqrt(square)) > LEAST;
             seen.then(|| Box::new(std::array::from_fn::<f32, SPECTRUM, _>(weight)))
@@ -51,6 +51,6 @@ impl Weights {
 fn correlation(mode: usize, distance: f64) -> f64 {
     let (x, y) = (mode / MODES, mode % MODES);
     let square = (x * x + y * y) as f64;
-    let (rate, power) = if square <= 1.0 { (0.24, 0.84) } else { (0.38 * libm::pow(square, 0.325), 0.97) };
+    let (rate, power) = if square <= 1.0 { (0.27, 0.92) } else { (0.4 * libm::pow(square, 0.275), 1.0) };
     1.0 / (1.0 + rate * libm::pow(distance, power))
 }

@@ -1,6 +1,7 @@
 //! What a nested-net tile is optimised for.
 
 use crate::error::{Error, Result};
+use crate::optimize::Quality;
 
 /// Octaves of samples that are looked at: the first 1, 2, 4, ... 64.
 pub const OCTAVES: usize = 7;
@@ -8,7 +9,7 @@ pub const OCTAVES: usize = 7;
 /// An optimisation of a nested-net tile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SamplerProblem {
-    /// Pixels along each side: 16, 32, 64 or 128.
+    /// Pixels along each side: 32, 64 or 128.
     pub size: usize,
     /// Each pixel has 2^bits offsets for each axis, 1 to 6.
     pub bits: u32,
@@ -35,13 +36,13 @@ impl Default for SamplerProblem {
         SamplerProblem {
             size: 32,
             bits: 6,
-            weights: [3.2, 1.8, 2.0, 1.3, 1.8, 0.5, 1.3],
-            exponent: 0.7,
+            weights: [3.0, 2.0, 2.0, 1.2, 2.0, 0.3, 0.7],
+            exponent: 0.6,
             mean: 0.05,
-            border: 0.8,
+            border: 0.3,
             heat: 1.0,
             candidates: 256,
-            iterations: 64,
+            iterations: iterations(Quality::Standard),
             seed: 1,
         }
     }
@@ -61,8 +62,18 @@ struct Stage {
 const STAGES: [Stage; 3] = [
     Stage { end: 0.2, octaves: 3, temperatures: [0.15, 0.02] },
     Stage { end: 0.45, octaves: 5, temperatures: [0.02, 0.004] },
-    Stage { end: 1.0, octaves: OCTAVES, temperatures: [0.004, 0.000_06] },
+    Stage { end: 1.0, octaves: OCTAVES, temperatures: [0.004, 0.000_01] },
 ];
+
+/// The steps of an optimisation: minutes, a quarter of an hour, or one of one core's time.
+pub fn iterations(quality: Quality) -> u64 {
+    match quality {
+        Quality::Draft => 16,
+        Quality::Standard => 128,
+        Quality::High => 560,
+        Quality::Iterations(iterations) => iterations,
+    }
+}
 
 impl SamplerProblem {
     /// Says what is not possible.
@@ -73,7 +84,7 @@ impl SamplerProblem {
         let wrong = |what: &str| Err(Error::Input(what.to_owned()));
         let amount = |value: f32, most: f32| (0.0..=most).contains(&value);
         match () {
-            () if ![16, 32, 64, 128].contains(&self.size) => wrong("the size of a sampler must be 16, 32, 64 or 128"),
+            () if ![32, 64, 128].contains(&self.size) => wrong("the size of a sampler must be 32, 64 or 128"),
             () if !(1..=6).contains(&self.bits) => wrong("the bits of a sampler must be 1 to 6"),
             () if !self.weights.iter().all(|w| amount(*w, 1e3)) || self.weights[0] == 0.0 => {
                 wrong("weights must be 0 to 1000, and the first more than 0")
@@ -82,6 +93,7 @@ impl SamplerProblem {
             () if !amount(self.mean, 10.0) || !amount(self.border, 100.0) => wrong("mean or border is out of range"),
             () if !amount(self.heat, 100.0) => wrong("the heat must be 0 to 100"),
             () if !(1..=1 << 20).contains(&self.candidates) => wrong("candidates must be 1 to 1048576"),
+            () if self.iterations > 1 << 40 => wrong("there are too many steps"),
             () => Ok(()),
         }
     }
