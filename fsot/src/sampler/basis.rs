@@ -127,8 +127,7 @@ fn energies(half: f64) -> Spectrum {
     let waves: Vec<Vec<f64>> = (0..MODES).map(|k| (0..STEPS).map(|i| correlation(k, lag(i))).collect()).collect();
     let mut rows = vec![0.0; STEPS * MODES];
     for y in 0..STEPS {
-        let powers: Vec<f64> =
-            (0..STEPS).map(|x| libm::pow(lag(x) * lag(x) + lag(y) * lag(y), half)).collect();
+        let powers: Vec<f64> = (0..STEPS).map(|x| libm::pow(lag(x) * lag(x) + lag(y) * lag(y), half)).collect();
         for (k, wave) in waves.iter().enumerate() {
             rows[k * STEPS + y] = wave.iter().zip(&powers).map(|(a, b)| a * b).sum();
         }

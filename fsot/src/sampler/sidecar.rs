@@ -61,7 +61,12 @@ impl SamplerOctave {
 
 impl SamplerSidecar {
     /// Of a table.
-    pub fn new(command: String, problem: &SamplerProblem, table: &SamplerTable, report: &SamplerReport) -> SamplerSidecar {
+    pub fn new(
+        command: String,
+        problem: &SamplerProblem,
+        table: &SamplerTable,
+        report: &SamplerReport,
+    ) -> SamplerSidecar {
         SamplerSidecar {
             command,
             version: env!("CARGO_PKG_VERSION").to_owned(),

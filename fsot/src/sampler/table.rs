@@ -71,7 +71,8 @@ impl SamplerTable {
                 bytes.len()
             )));
         }
-        let offsets = bytes.chunks_exact(4).map(|b| [u16::from_le_bytes([b[0], b[1]]), u16::from_le_bytes([b[2], b[3]])]);
+        let offsets =
+            bytes.chunks_exact(4).map(|b| [u16::from_le_bytes([b[0], b[1]]), u16::from_le_bytes([b[2], b[3]])]);
         Ok(SamplerTable { size, bits, offsets: offsets.collect() })
     }
 }

@@ -68,7 +68,13 @@ fn place(groups: &Groups, offsets: &Offsets, number: u32, axis: usize, point: us
 }
 
 /// Visits pixel `number`; its offsets afterwards, and how many arrangements were taken.
-pub(crate) fn visit(rules: &Rules, around: &Surroundings, number: u32, offsets: Offsets, rng: &mut Rng) -> (Offsets, u32) {
+pub(crate) fn visit(
+    rules: &Rules,
+    around: &Surroundings,
+    number: u32,
+    offsets: Offsets,
+    rng: &mut Rng,
+) -> (Offsets, u32) {
     let mut pixel = Pixel::new(rules, around, number, offsets);
     let mut taken = 0;
     for _ in 0..rules.candidates {
@@ -164,9 +170,7 @@ impl<'a> Pixel<'a> {
 
     /// Takes new offsets that move these points if that is better, or not much worse.
     fn decide(&mut self, axis: usize, members: &[u8], offsets: &Offsets, rng: &mut Rng) -> bool {
-        let moved = |point: usize| {
-            [0, 1].map(|axis| place(self.rules.groups, offsets, self.number, axis, point))
-        };
+        let moved = |point: usize| [0, 1].map(|axis| place(self.rules.groups, offsets, self.number, axis, point));
         let allowed = self.rules.temperature * exponential(rng);
         if let [point] = members {
             let point = usize::from(*point);
