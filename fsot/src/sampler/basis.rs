@@ -51,7 +51,7 @@ impl Basis {
     }
 
     fn cosines(&self, coordinate: u16) -> &[f32; MODES] {
-        &self.cosines[usize::from(coordinate) * PLACES >> 16]
+        &self.cosines[(usize::from(coordinate) * PLACES) >> 16]
     }
 
     /// Adds a point's cosines to a spectrum.

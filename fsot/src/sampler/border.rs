@@ -75,7 +75,7 @@ impl Border {
 
 /// The bin of a coordinate.
 pub(crate) fn bin(coordinate: u16) -> usize {
-    usize::from(coordinate) * BINS >> 16
+    (usize::from(coordinate) * BINS) >> 16
 }
 
 /// Between the middles of two bins.

@@ -270,9 +270,9 @@ impl SamplerOptimizer {
     }
 
     fn count(&mut self, energy: &Energy, places: &Places, change: i32) {
-        for point in 0..energy.points {
-            for axis in 0..2 {
-                self.border.count(energy.first[point], axis, places[axis][point], change);
+        for (axis, places) in places.iter().enumerate() {
+            for (place, first) in places[..energy.points].iter().zip(energy.first) {
+                self.border.count(first, axis, *place, change);
             }
         }
     }

@@ -1,5 +1,7 @@
 //! The kernel of the energy: minus the distance of two points to a power.
 
+use std::f32::consts::LN_2;
+
 /// Numbers that are worked on side by side.
 pub(crate) const LANES: usize = 8;
 
@@ -12,13 +14,13 @@ pub(crate) fn power(squared: f32, half: f32) -> f32 {
     let mantissa = f32::from_bits((bits & 0x007f_ffff).wrapping_add(0x3f35_04f3)) - 1.0;
     let quotient = mantissa / (mantissa + 2.0);
     let square = quotient * quotient;
-    let logarithm = exponent + quotient * (2.885_390_1 + square * (0.961_796_7 + square * 0.598_978_65));
+    let logarithm = exponent + quotient * (2.885_39 + square * (0.961_796_7 + square * 0.598_978_65));
     let wanted = logarithm * half;
     // Rounded by a number whose last bit is 1.
     let rounded = wanted + 12_582_912.0;
     let whole = rounded.to_bits().wrapping_sub(0x4b40_0000);
     let rest = wanted - (rounded - 12_582_912.0);
-    let value = 1.0 + rest * (0.693_147_2 + rest * (0.240_226_5 + rest * (0.055_504_1 + rest * 0.009_618_13)));
+    let value = 1.0 + rest * (LN_2 + rest * (0.240_226_5 + rest * (0.055_504_1 + rest * 0.009_618_13)));
     f32::from_bits(value.to_bits().wrapping_add(whole << 23))
 }
 

@@ -135,7 +135,7 @@ impl<'a> Pixel<'a> {
         // Every octave gets the same attention.
         let random = rng.next_u32();
         let octaves = &rules.energy.octaves;
-        let octave = octaves[(random & 0xffff) as usize * octaves.len() >> 16];
+        let octave = octaves[((random & 0xffff) as usize * octaves.len()) >> 16];
         let start = octaves.iter().rev().find(|other| **other < octave).map_or(0, |other| 1usize << other);
         let point = start + ((rng.next_u32() as u64 * ((1 << octave) - start) as u64) >> 32) as usize;
         let axis = (random >> 16 & 1) as usize;
@@ -155,7 +155,7 @@ impl<'a> Pixel<'a> {
             }
             return self.decide(axis, groups.members(axis, depth, point), &offsets, rng);
         }
-        let depth = bits + ((random >> 20) * 6 >> 12);
+        let depth = bits + (((random >> 20) * 6) >> 12);
         let mask = |random: u32| ((0x8000u32 >> depth) | (random & (0x7fffu32 >> depth))) as u16;
         let random = rng.next_u32();
         offsets[axis][groups.offset[axis][point]] ^= mask(random);
@@ -236,5 +236,5 @@ fn exponential(rng: &mut Rng) -> f32 {
     let bits = uniform.to_bits();
     let mantissa = f32::from_bits((bits & 0x007f_ffff) | 0x3f80_0000);
     let exponent = (bits >> 23) as f32 - 127.0;
-    -0.693_147_2 * (exponent + (mantissa - 1.0) * (1.35 - 0.35 * (mantissa - 1.0)))
+    -std::f32::consts::LN_2 * (exponent + (mantissa - 1.0) * (1.35 - 0.35 * (mantissa - 1.0)))
 }
