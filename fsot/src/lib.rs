@@ -19,6 +19,7 @@ pub mod points;
 pub mod random;
 pub mod read;
 pub mod run;
+pub mod sampler;
 pub mod stipple;
 pub mod target;
 pub mod tile;

@@ -29,6 +29,7 @@ mod points_edge;
 mod points_invariance;
 mod points_quality;
 mod points_targets;
+mod sampler;
 mod stipple_cli;
 mod stipple_library;
 mod tile_kernels;

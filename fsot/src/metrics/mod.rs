@@ -13,6 +13,7 @@ pub mod neighbours;
 mod plane;
 pub mod projection;
 pub mod report;
+pub mod scenes;
 pub mod spectrum;
 pub mod text;
 pub mod tile;

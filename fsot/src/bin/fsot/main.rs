@@ -13,7 +13,9 @@ mod names;
 mod pictures;
 mod place;
 mod points;
+mod sampler;
 mod say;
+mod scenes;
 mod spectrum;
 mod stipple;
 mod tile;
@@ -44,6 +46,8 @@ enum Command {
     Stipple(stipple::Args),
     /// Make a tile of samples for the pixels of a renderer
     Tile(tile::Args),
+    /// Make the table of a sampler that is good at any number of samples
+    Sampler(sampler::Args),
     /// Print how good point sets and tiles are
     Measure(measure::Args),
     /// Draw spectra and error curves
@@ -64,6 +68,7 @@ fn main() -> ExitCode {
         Command::Place(args) => place::run(&args),
         Command::Stipple(args) => stipple::run(&args),
         Command::Tile(args) => tile::run(&args),
+        Command::Sampler(args) => sampler::run(&args),
         Command::Measure(args) => measure::run(&args),
         Command::Spectrum(args) => spectrum::run(&args),
         Command::Export(args) => export::run(&args),

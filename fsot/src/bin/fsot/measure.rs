@@ -2,6 +2,7 @@
 
 use crate::common::{Report, Threads};
 use crate::names;
+use crate::scenes;
 use fsot::counted::counted;
 use fsot::error::{Error, Result};
 use fsot::export::nft::TileFile;
@@ -20,8 +21,11 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// Point sets (text, CSV or JSON) and tiles (.nft)
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required_unless_present = "scenes", value_name = "FILE")]
     files: Vec<PathBuf>,
+    /// Judge samplers (tables .bin, tiles .nft, files of points) in this folder's tables of rendered scenes
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["prefix", "size", "quick"])]
+    scenes: Option<PathBuf>,
     /// Print the error against the number of points taken from the start, averaged over the files
     #[arg(long)]
     prefix: bool,
@@ -135,6 +139,10 @@ pub(crate) fn in_file(path: &Path) -> impl Fn(Error) -> Error + '_ {
 
 /// Reads every file before it measures the first, so that a wrong name costs no time.
 pub(crate) fn run(args: &Args) -> Result<()> {
+    if let Some(folder) = &args.scenes {
+        let (text, json) = args.threads.install(|| scenes::run(folder, &args.files))??;
+        return args.report.print(&text, &json);
+    }
     args.plot.iter().try_for_each(|path| names::picture(path, &["png", "svg"]))?;
     output::check(args.plot.as_deref())?;
     let contents: Vec<Content> = args.files.iter().map(|path| args.tile.read(path)).collect::<Result<_>>()?;

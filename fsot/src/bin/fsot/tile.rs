@@ -221,7 +221,7 @@ fn command(args: &Args, problem: &TileProblem) -> String {
 }
 
 /// A file's name as a word of a shell, and not an option.
-fn quoted(name: &str) -> String {
+pub(crate) fn quoted(name: &str) -> String {
     let name = if name.starts_with('-') { format!("./{name}") } else { name.to_owned() };
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-+/=:@%,".contains(c);
     if !name.is_empty() && name.chars().all(plain) { name } else { format!("'{}'", name.replace('\'', r"'\''")) }

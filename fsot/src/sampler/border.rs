@@ -1,0 +1,86 @@
+//! The marginals of all pixels' points: what keeps each uniform, up to the borders of the unit square.
+
+use super::problem::OCTAVES;
+
+/// Bins of a marginal.
+pub(crate) const BINS: usize = 128;
+/// Numbers of a state: `[octave][axis][bin]`.
+pub(crate) const STATE: usize = OCTAVES * 2 * BINS;
+/// How much of a deviation is added to what is remembered of it, each sweep.
+const MEMORY: f32 = 0.01;
+
+/// Counts, and what a point pays for being in a bin: the bin's surplus now, and a sum over the past that removes what
+/// the surplus alone would leave.
+#[derive(Clone)]
+pub(crate) struct Border {
+    counts: Vec<i32>,
+    means: [f32; OCTAVES],
+    pub(crate) past: Vec<f32>,
+}
+
+impl Border {
+    pub(crate) fn new(pixels: usize) -> Border {
+        let means = std::array::from_fn(|octave| ((pixels << octave) as f32) / BINS as f32);
+        Border { counts: vec![0; STATE], means, past: vec![0.0; STATE] }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.counts.fill(0);
+    }
+
+    /// Counts a coordinate of a point whose octaves are these and all longer ones; `change` is 1, or -1 to forget it.
+    pub(crate) fn count(&mut self, octave: usize, axis: usize, coordinate: u16, change: i32) {
+        for octave in octave..OCTAVES {
+            self.counts[(octave * 2 + axis) * BINS + bin(coordinate)] += change;
+        }
+    }
+
+    /// The surplus of a bin of an octave, relative to its mean.
+    pub(crate) fn surplus(&self, octave: usize, axis: usize, bin: usize) -> f32 {
+        let at = |bin: usize| self.counts[(octave * 2 + axis) * BINS + bin] as f32;
+        let (low, high) = (bin.saturating_sub(1), (bin + 1).min(BINS - 1));
+        (0.25 * at(low) + 0.5 * at(bin) + 0.25 * at(high)) / self.means[octave] - 1.0
+    }
+
+    /// The least and the greatest density within 1/64 of a border, relative to a uniform one.
+    pub(crate) fn extremes(&self, octave: usize) -> [f32; 2] {
+        let near = BINS / 64;
+        let axis = |axis: usize| (octave * 2 + axis) * BINS;
+        let ends = [axis(0), axis(0) + BINS - near, axis(1), axis(1) + BINS - near];
+        let counts = ends.map(|start| self.counts[start..start + near].iter().sum::<i32>() as f32);
+        let uniform = near as f32 * self.means[octave];
+        [counts.into_iter().fold(f32::MAX, f32::min) / uniform, counts.into_iter().fold(0.0, f32::max) / uniform]
+    }
+
+    /// Remembers the surplus.
+    pub(crate) fn remember(&mut self, octaves: &[usize]) {
+        for &octave in octaves {
+            for i in 0..2 * BINS {
+                let surplus = self.surplus(octave, i / BINS, i % BINS);
+                self.past[octave * 2 * BINS + i] += MEMORY * surplus;
+            }
+        }
+    }
+
+    /// What an octave's points pay in each bin.
+    pub(crate) fn price(&self, octave: usize, axis: usize, bin: usize) -> f32 {
+        self.surplus(octave, axis, bin) + self.past[(octave * 2 + axis) * BINS + bin]
+    }
+
+    /// What a point more in a bin adds to the surplus of that bin, and of those beside it.
+    pub(crate) fn share(&self, octave: usize) -> [f32; 2] {
+        [0.5, 0.25].map(|share| share / self.means[octave])
+    }
+}
+
+/// The bin of a coordinate.
+pub(crate) fn bin(coordinate: u16) -> usize {
+    (usize::from(coordinate) * BINS) >> 16
+}
+
+/// Between the middles of two bins.
+pub(crate) fn between(prices: &[f32; BINS], coordinate: f32) -> f32 {
+    let place = (coordinate * BINS as f32 - 0.5).clamp(0.0, (BINS - 1) as f32);
+    let low = (place as usize).min(BINS - 2);
+    prices[low] + (place - low as f32) * (prices[low + 1] - prices[low])
+}

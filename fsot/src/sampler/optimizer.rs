@@ -1,0 +1,437 @@
+//! Descent over the pixels of a nested-net tile, some that do not see each other at a time.
+
+use super::basis::{Basis, SPECTRUM, Spectrum};
+use super::border::{BINS, Border, STATE, bin};
+use super::energy::{Energy, Groups, POINTS, Places};
+use super::pixels::{REACH, Weights};
+use super::power::power;
+use super::problem::{OCTAVES, SamplerProblem};
+use super::table::SamplerTable;
+use super::visit::{Offsets, Prices, Rules, Surroundings, places, visit};
+use crate::error::Result;
+use crate::memory;
+use crate::random::stream;
+use crate::run::Optimization;
+use rayon::prelude::*;
+
+/// Visits of every pixel in a step.
+pub const SWEEPS: usize = 16;
+
+/// Pixels this far apart along an axis do not see each other.
+const APART: usize = 2 * REACH;
+
+/// Streams of random numbers that are not those of a pixel.
+const START_STREAM: u64 = u64::MAX;
+const ORDER_STREAM: u64 = u64::MAX - 1;
+
+/// The errors of a pixel's octaves.
+type Errors = [Spectrum; OCTAVES];
+
+/// Optimises a nested-net tile.
+///
+/// Pixels are visited in groups whose members do not see each other, and sums are in the order of pixels: the result
+/// does not depend on the number of threads.
+pub struct SamplerOptimizer {
+    problem: SamplerProblem,
+    basis: Basis,
+    weights: Weights,
+    /// The pixels that one sees, relative to it.
+    neighbours: Vec<(i32, i32)>,
+    iteration: u64,
+    offsets: Vec<Offsets>,
+    border: Border,
+    /// What a checkpoint holds: offsets, then what the border remembers.
+    coordinates: Vec<f32>,
+    /// What the last step saw.
+    report: SamplerReport,
+}
+
+/// What a step saw: for each octave, relative to independent samples.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SamplerReport {
+    /// The energy of pixels alone.
+    pub raw: [f32; OCTAVES],
+    /// The energy of pixels together.
+    pub filtered: [f32; OCTAVES],
+    /// The least and the greatest density of an axis within 1/64 of a border, relative to a uniform one.
+    pub border: [[f32; 2]; OCTAVES],
+    /// Arrangements taken by a visit.
+    pub taken: f32,
+}
+
+/// Sums over pixels of a step.
+struct Fields {
+    errors: Vec<Errors>,
+    around: Vec<Errors>,
+    total: Errors,
+}
+
+impl SamplerOptimizer {
+    /// Starts from random offsets.
+    ///
+    /// # Errors
+    /// The problem is not valid, or needs more memory than there is.
+    pub fn new(problem: SamplerProblem) -> Result<SamplerOptimizer> {
+        problem.validate()?;
+        let pixels = problem.size * problem.size;
+        let weights = Weights::new();
+        memory::check((pixels * (2 * size_of::<Errors>() + 2 * size_of::<Offsets>() + size_of::<Places>())) as u64)?;
+        let mut rng = stream(problem.seed, 0, START_STREAM);
+        let bits = problem.bits;
+        let mut start = || {
+            let mut offsets: Offsets = [[0; POINTS]; 2];
+            for offsets in &mut offsets {
+                for depth in 0..bits {
+                    for group in offsets[..1 << bits].chunks_mut(1 << (bits - depth)) {
+                        let bit = if rng.next_u32() & 1 == 0 { 0 } else { 0x8000 >> depth };
+                        group.iter_mut().for_each(|offset| *offset ^= bit);
+                    }
+                }
+                offsets[..1 << bits].iter_mut().for_each(|offset| *offset ^= rng.next_u32() as u16 & (0xffff >> bits));
+            }
+            offsets
+        };
+        let mut optimizer = SamplerOptimizer {
+            basis: Basis::new(problem.exponent),
+            neighbours: weights.neighbours(),
+            weights,
+            iteration: 0,
+            offsets: (0..pixels).map(|_| start()).collect(),
+            border: Border::new(pixels),
+            coordinates: vec![0.0; (pixels << (bits + 1)) + STATE],
+            report: SamplerReport::default(),
+            problem,
+        };
+        optimizer.store();
+        Ok(optimizer)
+    }
+
+    /// What is being optimised.
+    pub fn problem(&self) -> &SamplerProblem {
+        &self.problem
+    }
+
+    /// What the last step saw.
+    pub fn report(&self) -> &SamplerReport {
+        &self.report
+    }
+
+    /// What there is now, of all octaves.
+    pub fn measure(&mut self) -> SamplerReport {
+        let energy = Energy::new(&self.basis, &[1.0; OCTAVES]);
+        let groups = Groups::new(&self.problem, energy.points);
+        let all = self.survey(&energy, &groups);
+        self.look(&energy, &self.fields(&energy, &all), &all)
+    }
+
+    /// Where all points lie; counts them.
+    fn survey(&mut self, energy: &Energy, groups: &Groups) -> Vec<Places> {
+        let place = |(number, offsets): (usize, &Offsets)| places(groups, offsets, number as u32);
+        let all: Vec<Places> = self.offsets.iter().enumerate().map(place).collect();
+        self.border.clear();
+        for places in &all {
+            self.count(energy, places, 1);
+        }
+        all
+    }
+
+    /// The table as it is now.
+    pub fn table(&self) -> SamplerTable {
+        let count = 1 << self.problem.bits;
+        let texel = |offsets: &Offsets, i: usize| [offsets[0][i], offsets[1][i]];
+        let offsets = self.offsets.iter().flat_map(|offsets| (0..count).map(move |i| texel(offsets, i))).collect();
+        SamplerTable { size: self.problem.size, bits: self.problem.bits, offsets }
+    }
+
+    fn store(&mut self) {
+        let count = 1 << self.problem.bits;
+        let values = self.offsets.iter().flat_map(|offsets| offsets.iter().flat_map(move |axis| &axis[..count]));
+        let values = values.map(|value| f32::from(*value)).chain(self.border.past.iter().copied());
+        self.coordinates.iter_mut().zip(values).for_each(|(to, value)| *to = value);
+    }
+
+    /// The errors of a pixel's octaves.
+    fn errors(&self, energy: &Energy, places: &Places) -> Errors {
+        let mut errors = [[0.0; SPECTRUM]; OCTAVES];
+        let mut sum = [0.0; SPECTRUM];
+        let mut point = 0;
+        for &octave in &energy.octaves {
+            while point < 1 << octave {
+                self.basis.add(places[0][point], places[1][point], &mut sum);
+                point += 1;
+            }
+            let share = 1.0 / (1u32 << octave) as f32;
+            errors[octave].iter_mut().zip(&sum).for_each(|(error, sum)| *error = share * sum);
+            errors[octave][0] = 0.0;
+        }
+        errors
+    }
+
+    /// What pixels' changes add to the errors around one.
+    fn add_around(&self, pixel: usize, changes: &[(usize, Errors)], octaves: &[usize], around: &mut Errors) {
+        let size = self.problem.size as i32;
+        let half = size / 2;
+        let (x, y) = (pixel as i32 % size, pixel as i32 / size);
+        for (other, change) in changes {
+            let wrapped = |d: i32| (d + half).rem_euclid(size) - half;
+            let (dx, dy) = (wrapped(x - *other as i32 % size), wrapped(y - *other as i32 / size));
+            let Some(weights) = self.weights.at(dx, dy) else { continue };
+            for &octave in octaves {
+                add_weighed(&mut around[octave], weights, &change[octave]);
+            }
+        }
+    }
+
+    fn fields(&self, energy: &Energy, places: &[Places]) -> Fields {
+        let errors: Vec<Errors> = places.par_iter().map(|places| self.errors(energy, places)).collect();
+        let size = self.problem.size as i32;
+        let around = (0..places.len()).into_par_iter().map(|pixel| {
+            let (x, y) = (pixel as i32 % size, pixel as i32 / size);
+            let mut around = [[0.0; SPECTRUM]; OCTAVES];
+            for &(dx, dy) in &self.neighbours {
+                let Some(weights) = self.weights.at(dx, dy) else { continue };
+                let other = (y + dy).rem_euclid(size) * size + (x + dx).rem_euclid(size);
+                for &octave in &energy.octaves {
+                    add_weighed(&mut around[octave], weights, &errors[other as usize][octave]);
+                }
+            }
+            around
+        });
+        let around = around.collect();
+        let mut total = [[0.0; SPECTRUM]; OCTAVES];
+        for errors in &errors {
+            add(&mut total, errors);
+        }
+        Fields { errors, around, total }
+    }
+
+    fn surroundings(&self, energy: &Energy, fields: &Fields, pixel: usize, prices: Prices) -> Surroundings {
+        let mut sum = [0.0; SPECTRUM];
+        let mut surroundings = Surroundings { fields: [[0.0; SPECTRUM]; OCTAVES], prices };
+        for &octave in energy.octaves.iter().rev() {
+            let factor = 2.0 * energy.weights[octave] / (1u32 << octave) as f32;
+            let (own, around) = (&fields.errors[pixel][octave], &fields.around[pixel][octave]);
+            for mode in 0..SPECTRUM {
+                let elsewhere = around[mode] + self.problem.mean * (fields.total[octave][mode] - own[mode]);
+                sum[mode] += factor * self.basis.energies[mode] * elsewhere;
+            }
+            surroundings.fields[octave] = sum;
+        }
+        surroundings
+    }
+
+    /// What the marginals ask of the points of each first octave.
+    fn prices(&self, energy: &Energy) -> Prices {
+        let mut sum = [[0.0; BINS]; 2];
+        let mut prices = [[[0.0; BINS]; 2]; OCTAVES];
+        for &octave in energy.octaves.iter().rev() {
+            let factor = self.factor(energy, octave);
+            for (axis, sum) in sum.iter_mut().enumerate() {
+                for (bin, sum) in sum.iter_mut().enumerate() {
+                    *sum += factor * self.border.price(octave, axis, bin);
+                }
+            }
+            prices[octave] = sum;
+        }
+        prices
+    }
+
+    /// Prices without what a pixel's own points add to them.
+    fn without(&self, energy: &Energy, prices: &Prices, own: &Places) -> Prices {
+        let mut prices = *prices;
+        let mut sums = [[0.0f32; 2]; OCTAVES];
+        let mut sum = [0.0; 2];
+        for &octave in energy.octaves.iter().rev() {
+            let factor = self.factor(energy, octave);
+            let share = self.border.share(octave);
+            sum = [sum[0] + factor * share[0], sum[1] + factor * share[1]];
+            sums[octave] = sum;
+        }
+        for point in 0..energy.points {
+            let first = energy.first[point];
+            for axis in 0..2 {
+                let place = bin(own[axis][point]);
+                // In an octave's prices are those of all longer ones; a point is in its own and these.
+                for &octave in &energy.octaves {
+                    let [own, beside] = sums[octave.max(first)];
+                    let prices = &mut prices[octave][axis];
+                    prices[place] -= own;
+                    prices[place.saturating_sub(1)] -= beside;
+                    prices[(place + 1).min(BINS - 1)] -= beside;
+                }
+            }
+        }
+        prices
+    }
+
+    /// What a relative surplus of an octave costs a point.
+    fn factor(&self, energy: &Energy, octave: usize) -> f32 {
+        self.problem.border * self.basis.total * energy.weights[octave] / (1u32 << octave) as f32
+    }
+
+    fn count(&mut self, energy: &Energy, places: &Places, change: i32) {
+        for (axis, places) in places.iter().enumerate() {
+            for (place, first) in places[..energy.points].iter().zip(energy.first) {
+                self.border.count(first, axis, *place, change);
+            }
+        }
+    }
+
+    fn sweep(&mut self, sweep: usize, rules: (&Energy, &Groups, f32), fields: &mut Fields, all: &mut [Places]) -> u64 {
+        let (energy, groups, temperature) = rules;
+        let number = self.iteration * SWEEPS as u64 + sweep as u64;
+        let mut rng = stream(self.problem.seed, number, ORDER_STREAM);
+        let mut order: Vec<usize> = (0..APART * APART).collect();
+        for last in (1..order.len()).rev() {
+            order.swap(last, rng.below(last as u32 + 1) as usize);
+        }
+        let size = self.problem.size;
+        let mut taken = 0;
+        for place in order {
+            let (row, column) = (place / APART, place % APART);
+            let rows = (row..size).step_by(APART);
+            let pixels: Vec<usize> =
+                rows.flat_map(|row| (column..size).step_by(APART).map(move |column| row * size + column)).collect();
+            let prices = self.prices(energy);
+            let look = |pixel: &usize| {
+                let rules = Rules {
+                    basis: &self.basis,
+                    energy,
+                    groups,
+                    bits: self.problem.bits,
+                    temperature,
+                    candidates: self.problem.candidates,
+                };
+                let prices = self.without(energy, &prices, &all[*pixel]);
+                let around = self.surroundings(energy, fields, *pixel, prices);
+                let mut rng = stream(self.problem.seed, number, *pixel as u64);
+                let (offsets, taken) = visit(&rules, &around, *pixel as u32, self.offsets[*pixel], &mut rng);
+                let places = places(groups, &offsets, *pixel as u32);
+                let mut change = self.errors(energy, &places);
+                subtract(&mut change, &fields.errors[*pixel]);
+                (offsets, places, change, taken)
+            };
+            let found: Vec<_> = pixels.par_iter().map(look).collect();
+            let mut changes = Vec::new();
+            for (pixel, (offsets, places, change, number)) in pixels.into_iter().zip(found) {
+                if number == 0 {
+                    continue;
+                }
+                taken += u64::from(number);
+                let old = std::mem::replace(&mut all[pixel], places);
+                self.count(energy, &old, -1);
+                self.count(energy, &places, 1);
+                self.offsets[pixel] = offsets;
+                add(&mut fields.errors[pixel], &change);
+                add(&mut fields.total, &change);
+                changes.push((pixel, change));
+            }
+            let around = fields.around.par_iter_mut().enumerate().with_min_len(64);
+            around.for_each(|(pixel, around)| self.add_around(pixel, &changes, &energy.octaves, around));
+        }
+        self.border.remember(&energy.octaves);
+        taken
+    }
+
+    /// What there is at the beginning of a step.
+    fn look(&self, energy: &Energy, fields: &Fields, all: &[Places]) -> SamplerReport {
+        let mut report = SamplerReport::default();
+        for &octave in &energy.octaves {
+            let count = 1usize << octave;
+            let own = |places: &Places| {
+                let at = |axis: usize, i: usize| (f32::from(places[axis][i]) + 0.5) / 65536.0;
+                let (mut alone, mut apart) = (0.0, 0.0);
+                for i in 0..count {
+                    alone += self.basis.mean_at(at(0, i), at(1, i));
+                    for j in 0..i {
+                        let (dx, dy) = (at(0, i) - at(0, j), at(1, i) - at(1, j));
+                        apart += 2.0 * power(dx * dx + dy * dy, self.basis.half);
+                    }
+                }
+                let share = 1.0 / count as f32;
+                2.0 * share * alone - share * share * apart - self.basis.total
+            };
+            let owns: Vec<f32> = all.par_iter().map(own).collect();
+            let raw = owns.iter().map(|own| f64::from(*own)).sum::<f64>() / all.len() as f64;
+            let cross = |pixel: usize| -> f64 {
+                let (own, around) = (&fields.errors[pixel][octave], &fields.around[pixel][octave]);
+                let terms = own.iter().zip(around).zip(&self.basis.energies);
+                terms.map(|((own, around), energy)| f64::from(own * around * energy)).sum()
+            };
+            let together = raw + (0..all.len()).map(cross).sum::<f64>() / all.len() as f64;
+            let white = f64::from(self.basis.total) / count as f64;
+            report.raw[octave] = (raw / white) as f32;
+            report.filtered[octave] = (together / white) as f32;
+            report.border[octave] = self.border.extremes(octave);
+        }
+        report
+    }
+}
+
+fn add_weighed(sum: &mut Spectrum, weights: &Spectrum, errors: &Spectrum) {
+    for ((sum, weight), error) in sum.iter_mut().zip(weights).zip(errors) {
+        *sum += weight * error;
+    }
+}
+
+fn add(sum: &mut Errors, errors: &Errors) {
+    sum.iter_mut().flatten().zip(errors.iter().flatten()).for_each(|(sum, error)| *sum += error);
+}
+
+fn subtract(sum: &mut Errors, errors: &Errors) {
+    sum.iter_mut().flatten().zip(errors.iter().flatten()).for_each(|(sum, error)| *sum -= error);
+}
+
+impl Optimization for SamplerOptimizer {
+    fn iterations(&self) -> u64 {
+        self.problem.iterations
+    }
+
+    fn iteration(&self) -> u64 {
+        self.iteration
+    }
+
+    fn step(&mut self) -> f64 {
+        let (weights, temperature) = self.problem.stage(self.iteration);
+        let energy = Energy::new(&self.basis, &weights);
+        let groups = Groups::new(&self.problem, energy.points);
+        let mut all = self.survey(&energy, &groups);
+        let mut fields = self.fields(&energy, &all);
+        let mut report = self.look(&energy, &fields, &all);
+        let mut taken = 0;
+        for sweep in 0..SWEEPS {
+            taken += self.sweep(sweep, (&energy, &groups, temperature), &mut fields, &mut all);
+        }
+        report.taken = taken as f32 / (SWEEPS * all.len()) as f32;
+        self.report = report;
+        self.iteration += 1;
+        self.store();
+        let sum: f32 = energy.octaves.iter().map(|octave| weights[*octave] * report.filtered[*octave]).sum();
+        f64::from(sum / energy.octaves.iter().map(|octave| weights[*octave]).sum::<f32>())
+    }
+
+    fn coordinates(&self) -> &[f32] {
+        &self.coordinates
+    }
+
+    fn restore(&mut self, iteration: u64, coordinates: &[f32]) -> bool {
+        let (offsets, past) = coordinates.split_at(coordinates.len().saturating_sub(STATE));
+        let whole = |value: &f32| (0.0..65536.0).contains(value) && value.fract() == 0.0;
+        let good = iteration <= self.problem.iterations
+            && coordinates.len() == self.coordinates.len()
+            && offsets.iter().all(whole)
+            && past.iter().all(|value| value.is_finite());
+        if good {
+            let count = 1 << self.problem.bits;
+            for (pixel, values) in self.offsets.iter_mut().zip(offsets.chunks_exact(2 * count)) {
+                for (axis, values) in pixel.iter_mut().zip(values.chunks_exact(count)) {
+                    axis.iter_mut().zip(values).for_each(|(offset, value)| *offset = *value as u16);
+                }
+            }
+            self.border.past.copy_from_slice(past);
+            self.iteration = iteration;
+            self.coordinates.copy_from_slice(coordinates);
+        }
+        good
+    }
+}

@@ -1,0 +1,116 @@
+//! What a nested-net tile is optimised for.
+
+use crate::error::{Error, Result};
+use crate::optimize::Quality;
+
+/// Octaves of samples that are looked at: the first 1, 2, 4, ... 64.
+pub const OCTAVES: usize = 7;
+
+/// An optimisation of a nested-net tile.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SamplerProblem {
+    /// Pixels along each side: 32, 64 or 128.
+    pub size: usize,
+    /// Each pixel has 2^bits offsets for each axis, 1 to 6.
+    pub bits: u32,
+    /// The weight of the first 1, 2, 4, ... 64 samples' energies; that of n samples counts n^1.5 times it.
+    pub weights: [f32; OCTAVES],
+    /// The energy of two points is minus their distance to this power.
+    pub exponent: f32,
+    /// The share of a pixel's energy with the sum of all others', at any distance.
+    pub mean: f32,
+    /// How much a marginal counts that is not uniform.
+    pub border: f32,
+    /// A factor of all temperatures.
+    pub heat: f32,
+    /// Arrangements that a visit of a pixel tries.
+    pub candidates: usize,
+    /// Steps: visits of every pixel [`SWEEPS`](super::optimizer::SWEEPS) times.
+    pub iterations: u64,
+    /// Seeds everything.
+    pub seed: u64,
+}
+
+impl Default for SamplerProblem {
+    fn default() -> SamplerProblem {
+        SamplerProblem {
+            size: 32,
+            bits: 6,
+            weights: [3.0, 2.0, 2.0, 1.2, 2.0, 0.3, 0.7],
+            exponent: 0.6,
+            mean: 0.05,
+            border: 0.3,
+            heat: 1.0,
+            candidates: 256,
+            iterations: iterations(Quality::Standard),
+            seed: 1,
+        }
+    }
+}
+
+/// A part of the steps.
+struct Stage {
+    /// Where it ends.
+    end: f64,
+    /// How many octaves it looks at, from the first.
+    octaves: usize,
+    /// The temperature at its start and at its end.
+    temperatures: [f64; 2],
+}
+
+/// Short octaves freeze first, and their steps are cheap.
+const STAGES: [Stage; 3] = [
+    Stage { end: 0.2, octaves: 3, temperatures: [0.15, 0.02] },
+    Stage { end: 0.45, octaves: 5, temperatures: [0.02, 0.004] },
+    Stage { end: 1.0, octaves: OCTAVES, temperatures: [0.004, 0.000_01] },
+];
+
+/// The steps of an optimisation: minutes, a quarter of an hour, or one of one core's time.
+pub fn iterations(quality: Quality) -> u64 {
+    match quality {
+        Quality::Draft => 16,
+        Quality::Standard => 128,
+        Quality::High => 560,
+        Quality::Iterations(iterations) => iterations,
+    }
+}
+
+impl SamplerProblem {
+    /// Says what is not possible.
+    ///
+    /// # Errors
+    /// A field is out of its range.
+    pub fn validate(&self) -> Result<()> {
+        let wrong = |what: &str| Err(Error::Input(what.to_owned()));
+        let amount = |value: f32, most: f32| (0.0..=most).contains(&value);
+        match () {
+            () if ![32, 64, 128].contains(&self.size) => wrong("the size of a sampler must be 32, 64 or 128"),
+            () if !(1..=6).contains(&self.bits) => wrong("the bits of a sampler must be 1 to 6"),
+            () if !self.weights.iter().all(|w| amount(*w, 1e3)) || self.weights[0] == 0.0 => {
+                wrong("weights must be 0 to 1000, and the first more than 0")
+            }
+            () if !(0.1..=1.5).contains(&self.exponent) => wrong("the exponent must be .1 to 1.5"),
+            () if !amount(self.mean, 10.0) || !amount(self.border, 100.0) => wrong("mean or border is out of range"),
+            () if !amount(self.heat, 100.0) => wrong("the heat must be 0 to 100"),
+            () if !(1..=1 << 20).contains(&self.candidates) => wrong("candidates must be 1 to 1048576"),
+            () if self.iterations > 1 << 40 => wrong("there are too many steps"),
+            () => Ok(()),
+        }
+    }
+
+    /// The octaves' weights at a step, and the temperature.
+    pub(crate) fn stage(&self, iteration: u64) -> ([f32; OCTAVES], f32) {
+        let part = (iteration as f64 + 0.5) / self.iterations.max(1) as f64;
+        let mut begin = 0.0;
+        for Stage { end, octaves, temperatures: [hot, cold] } in STAGES {
+            if part < end {
+                let mut weights = self.weights;
+                weights[octaves..].fill(0.0);
+                let along = (part - begin) / (end - begin);
+                return (weights, (f64::from(self.heat) * hot * libm::pow(cold / hot, along)) as f32);
+            }
+            begin = end;
+        }
+        (self.weights, 0.0)
+    }
+}

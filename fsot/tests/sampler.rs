@@ -1,0 +1,178 @@
+//! Nested-net tiles: their nets, marginals and determinism.
+
+use crate::cli_support::Place;
+use fsot::run::Optimization;
+use fsot::sampler::{SamplerOptimizer, SamplerProblem, SamplerTable, sidecar, table};
+use std::path::Path;
+
+fn small() -> SamplerProblem {
+    SamplerProblem { candidates: 6, iterations: 3, ..SamplerProblem::default() }
+}
+
+fn made(problem: SamplerProblem) -> SamplerTable {
+    let mut optimizer = SamplerOptimizer::new(problem).unwrap();
+    while optimizer.iteration() < optimizer.iterations() {
+        optimizer.step();
+    }
+    optimizer.table()
+}
+
+fn on(threads: usize, problem: &SamplerProblem) -> SamplerTable {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| made(problem.clone()))
+}
+
+/// Every elementary interval of 2^m cells has one of the first 2^m points, and of every further 2^m.
+fn assert_nets(table: &SamplerTable, pixels: impl Iterator<Item = usize>) {
+    for pixel in pixels {
+        for m in 0..=8u32 {
+            for block in 0..(if m < 5 { 4 } else { 1 }) {
+                for along_x in 0..=m {
+                    let mut seen = vec![false; 1 << m];
+                    for i in 0..1 << m {
+                        let [x, y] = table.point(pixel, block << m | i).map(u64::from);
+                        let cell = (x >> (32 - along_x) << (m - along_x)) | y >> (32 - (m - along_x));
+                        assert!(!std::mem::replace(&mut seen[cell as usize], true), "pixel {pixel}, 2^{m}, {along_x}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_prefix_of_every_pixel_is_a_net_whatever_the_offsets() {
+    let table = made(SamplerProblem { candidates: 2, iterations: 2, bits: 4, size: 64, ..small() });
+    assert_nets(&table, (0..64 * 64).step_by(31));
+    let start = SamplerOptimizer::new(SamplerProblem { bits: 1, ..small() }).unwrap().table();
+    assert_nets(&start, (0..32 * 32).step_by(31));
+}
+
+/// The same points as those of the matrices, column by column.
+#[test]
+fn the_net_is_sobols() {
+    for i in [0u32, 1, 2, 3, 5, 77, 1023, 0x1234_5678, u32::MAX] {
+        let (mut column, mut second) = (1u32 << 31, 0);
+        for bit in 0..32 {
+            second ^= if i >> bit & 1 == 1 { column } else { 0 };
+            column ^= column >> 1;
+        }
+        assert_eq!(table::net(i), [i.reverse_bits(), second]);
+    }
+}
+
+#[test]
+fn threads_and_interruptions_do_not_show() {
+    let problem = small();
+    let expected = on(1, &problem);
+    assert_eq!(on(2, &problem), expected);
+    let mut first = SamplerOptimizer::new(problem.clone()).unwrap();
+    for _ in 0..2 {
+        first.step();
+    }
+    let mut second = SamplerOptimizer::new(problem.clone()).unwrap();
+    assert!(second.restore(first.iteration(), first.coordinates()));
+    while second.iteration() < second.iterations() {
+        second.step();
+    }
+    assert_eq!(second.table(), expected);
+    assert_ne!(made(SamplerProblem { seed: 2, ..problem }), expected);
+}
+
+#[test]
+fn a_state_of_another_problem_is_refused() {
+    let mut optimizer = SamplerOptimizer::new(small()).unwrap();
+    let state = optimizer.coordinates().to_vec();
+    let before = optimizer.table();
+    let mut wrong = state.clone();
+    wrong[0] = 0.5;
+    assert!(!optimizer.restore(1, &wrong) && !optimizer.restore(1, &state[1..]) && !optimizer.restore(7, &state));
+    assert_eq!(optimizer.table(), before);
+}
+
+#[test]
+fn problems_that_are_none_are_refused() {
+    let bad = [
+        SamplerProblem { size: 16, ..small() },
+        SamplerProblem { bits: 0, ..small() },
+        SamplerProblem { bits: 7, ..small() },
+        SamplerProblem { exponent: 2.0, ..small() },
+        SamplerProblem { border: f32::NAN, ..small() },
+        SamplerProblem { weights: [0.0; 7], ..small() },
+        SamplerProblem { candidates: 0, ..small() },
+    ];
+    for problem in bad {
+        assert!(SamplerOptimizer::new(problem).is_err());
+    }
+}
+
+#[test]
+fn the_energies_fall() {
+    let mut optimizer = SamplerOptimizer::new(SamplerProblem { candidates: 12, ..small() }).unwrap();
+    let before = optimizer.measure();
+    while optimizer.iteration() < optimizer.iterations() {
+        optimizer.step();
+    }
+    let after = optimizer.measure();
+    for (before, after) in before.filtered.iter().zip(&after.filtered) {
+        assert!(*after < 0.97 * before, "{after} of {before}");
+    }
+}
+
+/// The density of each axis within 1/64 of each border, over the tile, after `count` samples.
+fn borders(table: &SamplerTable, count: u32) -> [f64; 4] {
+    let pixels = table.size * table.size;
+    let mut near = [0.0; 4];
+    for pixel in 0..pixels {
+        for i in 0..count {
+            for (axis, value) in table.point(pixel, i).into_iter().enumerate() {
+                near[2 * axis] += f64::from(value >> 26 == 0);
+                near[2 * axis + 1] += f64::from(value >> 26 == 63);
+            }
+        }
+    }
+    near.map(|sum| sum * 64.0 / (pixels as f64 * f64::from(count)))
+}
+
+#[test]
+fn the_shipped_sampler_is_nets_of_uniform_marginals() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/tiles/nested_32.bin");
+    let table = sidecar::read(&path).unwrap();
+    assert_nets(&table, (0..table.size * table.size).step_by(17));
+    for count in [1, 4, 16] {
+        let near = borders(&table, count);
+        assert!(near.iter().all(|density| (0.9..=1.1).contains(density)), "{count} samples: {near:?}");
+    }
+}
+
+#[test]
+fn the_command_writes_a_table_and_its_sidecar() {
+    let place = Place::new();
+    let text = place.succeed("sampler --iterations 1 --bits 1 --out s.bin");
+    assert!(text.contains("border") && text.contains("1 step"), "{text}");
+    let table = sidecar::read(&place.path("s.bin")).unwrap();
+    assert_eq!((table.size, table.bits, table.offsets.len()), (32, 1, 2048));
+    assert_eq!(table.bytes(), place.read("s.bin"));
+    assert_eq!(place.names(), ["s.bin", "s.toml"]);
+    let sidecar = String::from_utf8(place.read("s.toml")).unwrap();
+    assert!(sidecar.contains("command = \"fsot sampler --size 32 --bits 1 "), "{sidecar}");
+    place.refuse("sampler --weights 1,2 --out t.bin", "--weights has 2 numbers");
+    place.refuse("sampler --size 33 --out t.bin", "32, 64 or 128");
+    place.refuse("measure --scenes . s.bin", "no tables of scenes");
+    place.write("s.bin", [0; 8]);
+    place.refuse("measure --scenes . s.bin", "its sha256 differs");
+}
+
+/// A small scene is read and measured; one that is cut short is refused.
+#[test]
+fn scenes_are_measured() {
+    let place = Place::new();
+    place.succeed("sampler --iterations 1 --bits 1 --out s.bin");
+    let mut bytes = b"noisefloor-scene 8 8 4\n".to_vec();
+    bytes.extend((0..8 * 8 * 16).flat_map(|i| ((i % 16) as f32).to_le_bytes()));
+    place.write("ramp.table", &bytes);
+    let text = place.succeed("measure --scenes . s.bin");
+    assert!(text.contains("Owen") && text.contains("ramp") && text.contains("sigma 2.1"), "{text}");
+    place.write("cut.table", &bytes[..bytes.len() - 1]);
+    place.refuse("measure --scenes . s.bin", "cut.table is no table of a scene");
+}
