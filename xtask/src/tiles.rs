@@ -20,6 +20,8 @@ pub struct Options {
     threads: Option<usize>,
 }
 
+/// The table of the default sampler.
+const SAMPLER: &str = "nested_32";
 /// What two sidecars must agree in. The version need not change a tile.
 const SAME: [&str; 6] = ["/command", "/seed", "/kernel", "/iterations", "/sha256", "/quality/integrands"];
 /// What says of a row which case was measured.
@@ -33,7 +35,8 @@ pub fn run(options: &Options) -> Result<()> {
     run::check(run::cargo().args(["build", "--quiet", "--profile", "fsot", "--package", "noisefloor-fsot"]))?;
     let program = paths::target().join("fsot/fsot").with_extension(std::env::consts::EXE_EXTENSION);
     let presets = info(&program, None)?["presets"].as_array().context("`fsot info --json` has no presets")?.clone();
-    let presets: Vec<_> = presets.iter().filter_map(Value::as_str).map(str::to_owned).collect();
+    let presets = presets.iter().filter_map(Value::as_str).chain([SAMPLER]);
+    let presets: Vec<_> = presets.map(str::to_owned).collect();
     if let Some(unknown) = options.names.iter().find(|name| !presets.contains(name)) {
         bail!("there is no tile {unknown}; there are {}", presets.join(", "));
     }
@@ -44,8 +47,12 @@ pub fn run(options: &Options) -> Result<()> {
     let mut table = String::from("half-spaces / Gaussians, error energy relative to white noise\n");
     let mut different = Vec::new();
     for name in names {
-        let path = folder.join(format!("{name}.nft"));
         eprintln!("{name}");
+        if name == SAMPLER {
+            different.extend(sampler(&program, &shipped, &folder, options)?);
+            continue;
+        }
+        let path = folder.join(format!("{name}.nft"));
         let mut command = run::command(&program);
         command.args(["tile", "--preset", name, "--quiet", "--out"]).arg(&path);
         command.args(options.threads.iter().flat_map(|threads| ["--threads".to_owned(), threads.to_string()]));
@@ -67,6 +74,20 @@ pub fn run(options: &Options) -> Result<()> {
         bail!("not what is made now: {}. `cargo xtask tiles` writes them anew", different.join(", "));
     }
     Ok(())
+}
+
+/// Makes the table of the default sampler by its sidecar's command; its file, if it differs from the one that ships.
+fn sampler(program: &Path, shipped: &Path, folder: &Path, options: &Options) -> Result<Option<String>> {
+    let [file, sidecar] = ["bin", "toml"].map(|ending| format!("{SAMPLER}.{ending}"));
+    let text = fs::read_to_string(shipped.join(&sidecar)).with_context(|| format!("cannot read {sidecar}"))?;
+    let command = text.lines().find_map(|line| line.strip_prefix("command = \"fsot ")?.strip_suffix('"'));
+    let arguments = command.with_context(|| format!("{sidecar} has no command"))?.split_whitespace();
+    let mut make = run::command(program);
+    make.args(arguments.filter(|argument| *argument != file)).arg(folder.join(&file)).arg("--quiet");
+    make.args(options.threads.iter().flat_map(|threads| ["--threads".to_owned(), threads.to_string()]));
+    run::check(&mut make)?;
+    let is_same = fs::read(shipped.join(&file)).ok() == Some(fs::read(folder.join(&file))?);
+    Ok((options.check && !is_same).then_some(file))
 }
 
 /// What fsot says of its presets, or of a tile and its sidecar.

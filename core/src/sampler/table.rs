@@ -9,7 +9,7 @@ pub const ENTRIES: usize = ((SIZE * SIZE) << BITS) as usize;
 
 /// For each pixel, row by row, and each value of the leading bits of a coordinate: in the low half what the first
 /// coordinate's leading 16 bits are exclusive-or, in the high half what the second's are. Made by `fsot sampler`.
-pub static TABLE: [u32; ENTRIES] = entries(include_bytes!("../../tiles/sampler.bin"));
+pub static TABLE: [u32; ENTRIES] = entries(include_bytes!("../../tiles/nested_32.bin"));
 
 const fn entries(bytes: &[u8; 4 * ENTRIES]) -> [u32; ENTRIES] {
     let (chunks, _) = bytes.as_chunks();
