@@ -50,6 +50,8 @@ fn every_preset_is_shipped_and_nothing_else() {
     let mut presets = presets::NAMES.to_vec();
     presets.sort();
     assert_eq!(names("nft"), presets);
+    presets.push("nested_32");
+    presets.sort();
     assert_eq!(names("toml"), presets);
 }
 

@@ -41,15 +41,6 @@ fn steps(points: usize, classes: Vec<class::Class>, quality: Quality) -> u64 {
     Optimizer::new(problem).unwrap().iterations()
 }
 
-#[test]
-fn the_manual_says_how_many_steps_points_take() {
-    for row in table(&document("fsot.md"), "| points | draft | standard | high |") {
-        for (cell, quality) in row[1..].iter().zip(QUALITIES) {
-            assert_eq!(number(cell), steps(number(&row[0]) as usize, class::single(2), quality), "{row:?}");
-        }
-    }
-}
-
 /// "170 K log2 n": for K objectives and n points.
 #[test]
 fn the_formulas_of_steps_are_those_of_the_code() {

@@ -12,7 +12,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 /// Places of the image in the plane of samples that errors are averaged over.
-const PLACES: usize = 4;
+const PLACES: usize = 24;
 /// Widths of the Gaussian filters, in pixels; 0 is none.
 const FILTERS: [f64; 3] = [2.1, 1.0, 0.0];
 /// The most that a table's side or cells may be.
