@@ -24,8 +24,8 @@ pub(crate) fn power(squared: f32, half: f32) -> f32 {
     f32::from_bits(value.to_bits().wrapping_add(whole << 23))
 }
 
-/// sum_j weights[j] power(distance of (x, y) to point j): minus the energies of a point with others. `into` gets the
-/// terms.
+/// The sum over points j of weight j times power(distance of (x, y) to point j): minus the energies of a point with
+/// others. `into` gets the terms.
 #[inline]
 pub(crate) fn terms(x: f32, y: f32, xs: &[f32], ys: &[f32], weights: &[f32], half: f32, into: &mut [f32]) -> f32 {
     let mut sums = [0.0f32; LANES];
