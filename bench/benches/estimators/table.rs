@@ -27,7 +27,7 @@ fn recommended() -> String {
     let mut out = "dims,n,order\n".to_owned();
     for dims in 1..=16 {
         for n in grid::COUNTS {
-            let best = recommend(dims, n, Sampling::Independent, false, 0.0).expect("at least one of each");
+            let best = recommend(dims, n, Sampling::Independent, false, f32::INFINITY).expect("at least one of each");
             let order = if best.method == Method::PlainMean { 0 } else { best.config.order };
             let _ = writeln!(out, "{dims},{n},{order}");
         }
