@@ -66,7 +66,8 @@ impl Sampler {
             Self::Progressive => return Ok(Some(Builtin::Size128Spp16Dims2Progressive)),
             _ => return Ok(None),
         }
-        let best = recommend(dims, spp, Sampling::Stratified, false, f32::INFINITY).map_err(|error| anyhow!("{error}"))?;
+        let best =
+            recommend(dims, spp, Sampling::Stratified, false, f32::INFINITY).map_err(|error| anyhow!("{error}"))?;
         let is_it = |builtin: &Builtin| {
             builtin.tile().is_ok_and(|tile| {
                 let shape = tile.shape();
