@@ -494,7 +494,8 @@ typedef struct nf_recommendation {
     // here.
     float filtered_error;
     // Nanoseconds that the method takes for each sample on the machine of the report: of NF_METHOD_SHARED in rendered
-    // frames of three channels with surfaces, of NF_METHOD_PER_PIXEL for one channel.
+    // frames of three channels with surfaces, in windows side by side, of NF_METHOD_PER_PIXEL for one channel. Windows
+    // that overlap by half take three times as long, and pay from twice `pays_from` on.
     float cost;
     // The cost of a sample, in nanoseconds, from which a fit pays: below it more samples of the plain mean, in the
     // same time, would lower the error further. Of NF_METHOD_SHARED the median over eight rendered frames. Infinite if

@@ -76,7 +76,8 @@ pub struct Recommendation {
     /// .81 to 1.4 times this.
     pub filtered_error: f32,
     /// Nanoseconds that the method takes for each sample on the machine of the report: of [`Method::Shared`] in
-    /// rendered frames of three channels with surfaces, of [`Method::PerPixel`] for one channel.
+    /// rendered frames of three channels with surfaces, in windows side by side, of [`Method::PerPixel`] for one
+    /// channel. Windows that overlap by half take three times as long, and pay from twice `pays_from` on.
     pub cost: f32,
     /// The cost of a sample, in nanoseconds, from which a fit pays: below it more samples of the plain mean, in the
     /// same time, would lower the error further. Of [`Method::Shared`] the median over eight rendered frames, where
@@ -191,15 +192,15 @@ const fn windows(order: usize, cost: u16, error: f32, filtered_error: f32) -> Ce
 impl Cell {
     /// What it takes for each sample, and the cost of a sample from which it pays, in nanoseconds.
     ///
-    /// Shared fits of 2 dims in rendered frames of three channels, overlapping windows and surfaces: medians of eight
-    /// scenes, if more samples lower the mean's squared error as 1 / N, of stratified ones as 1 / N^1.5. Other dims by
-    /// their cost. Of one pixel's fits: they leave .78 in those frames.
+    /// Shared fits of 2 dims in rendered frames of three channels, with surfaces, in windows side by side: medians of
+    /// eight scenes, if more samples lower the mean's squared error as 1 / N, of stratified ones as 1 / N^1.5. Other
+    /// dims by their cost. Of one pixel's fits: they leave .78 in those frames.
     fn time(&self, sampling: Sampling, samples: usize) -> (f32, f32) {
         let (unit, cost, independent, stratified) = match samples {
-            ..4 => (164.0, 806.0, 2504.0, 4244.0),
-            4..16 => (83.0, 450.0, 1768.0, 15575.0),
-            16..64 => (45.0, 204.0, 906.0, 45540.0),
-            _ => (45.0, 204.0, 906.0, f32::INFINITY),
+            ..4 => (164.0, 280.0, 1540.0, 2580.0),
+            4..16 => (83.0, 166.0, 968.0, 5420.0),
+            16..64 => (45.0, 62.0, 313.0, 43800.0),
+            _ => (45.0, 62.0, 313.0, f32::INFINITY),
         };
         let scale = self.cost / unit;
         match (self.method, sampling) {
