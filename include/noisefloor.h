@@ -754,8 +754,8 @@ nf_status nf_omis_merge(nf_omis *omis, const nf_omis *other);
  *   nf_tile_sampler_domain    The child domain of a key, any value
  *   nf_tile_sampler_scramble  An independent version of the sampler for each seed but 0
  *   nf_tile_sampler_draw      Writes the first `dims` coordinates, 1..4, of the sampler's point to u[dims]
- *   nf_tile_sampler_fill_len  How many numbers nf_tile_sampler_fill writes
- *   nf_tile_sampler_fill      Draws for many pixels and samples at once, for renderers that work on whole images
+ *   nf_tile_sampler_fill_len  As nf_sampler_fill_len()
+ *   nf_tile_sampler_fill      As nf_sampler_fill(), of tiles' samplers
  * ------------------------------------------------------------------------------------------------------------------ */
 
 // nf_tile_builtin: 128 x 128 pixels, 1 sample, 2 dims.
@@ -979,22 +979,14 @@ nf_tile_sampler nf_tile_sampler_scramble(nf_tile_sampler sampler, uint32_t seed)
 // if dims is out of range or u is NULL.
 void nf_tile_sampler_draw(nf_tile_sampler sampler, uint32_t dims, float *u);
 
-// How many numbers nf_tile_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is
-// outside 1..4, or memory has not that many.
+// As nf_sampler_fill_len().
 size_t nf_tile_sampler_fill_len(const uint32_t *dims,
                                 size_t domains,
                                 uint32_t width,
                                 uint32_t height,
                                 uint32_t samples);
 
-// Draws for many pixels and samples at once, for renderers that work on whole images. The same bits as single draws.
-//
-// samplers[domains]: one for each domain, all at the first pixel and the first sample. dims[domains]: how many numbers
-// to draw from each, 1..4. width, height: how many pixels, to the right and down. samples: how many samples of each,
-// by ascending index. u[height][width][samples][sum of dims]: what the samplers draw there, one after the other; len
-// numbers are there, at least nf_tile_sampler_fill_len.
-//
-// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: dims, or sizes that memory cannot have; NF_ERR_MEMORY: len.
+// As nf_sampler_fill(), of tiles' samplers. Those without a tile draw zeros.
 nf_status nf_tile_sampler_fill(const nf_tile_sampler *samplers,
                                const uint32_t *dims,
                                size_t domains,

@@ -12,6 +12,7 @@ mod avx2;
 mod convert;
 mod cv;
 mod dispatch;
+mod fill;
 mod gradient;
 mod importance;
 mod magic;

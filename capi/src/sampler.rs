@@ -1,8 +1,8 @@
 //! The default sampler, by value.
 
-use crate::convert;
 use crate::status::*;
-use noisefloor_core::sampler::{self as core, Sampler};
+use crate::{convert, fill};
+use noisefloor_core::sampler::{Sampler, table};
 
 /// One sample of one pixel, of the default sampler: a small struct, passed and copied by value. Drawing does not change
 /// it, and there is nothing to set up.
@@ -104,7 +104,7 @@ unsafe fn draw<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
 /// The table that all draws look into, 65,536 numbers, for copies on other devices: see noisefloor_sampler.h.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_sampler_table() -> *const u32 {
-    core::table::TABLE.as_ptr()
+    table::TABLE.as_ptr()
 }
 
 /// How many numbers nf_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
@@ -118,8 +118,7 @@ pub unsafe extern "C" fn nf_sampler_fill_len(
     samples: u32,
 ) -> usize {
     // SAFETY: the caller passes `domains` numbers.
-    let Ok(dims) = (unsafe { convert::slice(dims, domains) }) else { return 0 };
-    crate::tile::fill_len(dims, width, height, samples).unwrap_or(0)
+    unsafe { fill::len(dims, domains, [width, height, samples]) }
 }
 
 /// Draws for many pixels and samples at once, for renderers that work on whole images. The same bits as single draws.
@@ -141,22 +140,11 @@ pub unsafe extern "C" fn nf_sampler_fill(
     u: *mut f32,
     len: usize,
 ) -> nf_status {
-    status((|| {
-        // SAFETY: the caller passes `domains` samplers and numbers.
-        let (samplers, dims) = unsafe { (convert::slice(samplers, domains)?, convert::slice(dims, domains)?) };
-        let needed = crate::tile::fill_len(dims, width, height, samples).ok_or(NF_ERR_RANGE)?;
-        // Without domains or samples, as many places as there may be have nothing to draw.
-        if needed == 0 {
-            return Ok(());
-        }
-        if len < needed {
-            return Err(NF_ERR_MEMORY);
-        }
-        // SAFETY: the caller passes room for `len` numbers, which are no fewer.
-        let u = unsafe { convert::outputs(u, needed) }?;
-        let domains = || samplers.iter().map(to).zip(dims.iter().map(|&dims| dims as usize));
-        core::fill(domains, width as usize, height as usize, samples as usize, u).map_err(status_of)
-    })())
+    let draw = |sampler: &nf_sampler, [x, y]: [u32; 2], dims, stride, u: &mut [f32]| {
+        to(sampler).moved(x, y, 0).draw_samples(dims, stride, u);
+    };
+    // SAFETY: the caller's arrays, of the lengths that are stated.
+    status(unsafe { fill::fill((samplers, dims, domains), [width, height, samples], (u, len), draw) })
 }
 
 fn to(&nf_sampler { domain, index, x, y, flags }: &nf_sampler) -> Sampler {

@@ -57,6 +57,8 @@ mod linalg;
 pub mod minibatch;
 #[cfg(feature = "mis")]
 pub mod mis;
+#[cfg(any(feature = "sampler", feature = "tile"))]
+mod pixels;
 #[cfg(any(feature = "control-variate", feature = "mis"))]
 pub mod real;
 #[cfg(feature = "control-variate")]

@@ -117,14 +117,15 @@ pub fn recommend(
         (Sampling::Stratified, true) => &STRATIFIED_SHARED,
     };
     let best = cell(table, dims, samples_per_pixel);
-    let (cost, pays_from) = best.time(sampling, samples_per_pixel);
+    let (_, pays_from) = best.time(sampling, samples_per_pixel);
     let is_too_dear = best.method != Method::PlainMean && sample_cost < pays_from;
     let mean = match sampling {
         Sampling::Independent => plain(1.0, 1.0),
         Sampling::Stratified => cell(&STRATIFIED_ALONE, dims, samples_per_pixel),
     };
-    let Cell { method, order, image_stride, error, filtered_error, .. } = if is_too_dear { mean } else { best };
-    let cost = if method == Method::PlainMean { 0.0 } else { cost };
+    let chosen = if is_too_dear { mean } else { best };
+    let (cost, _) = chosen.time(sampling, samples_per_pixel);
+    let Cell { method, order, image_stride, error, filtered_error, .. } = chosen;
     let (tile_samples, tile_dims) = cell(&TILES, dims, samples_per_pixel);
     // 15 dims are the most of order 2.
     let regressed = dims.min(if order < 2 { MAX_DIMS } else { 15 });

@@ -145,7 +145,7 @@ public:
     {
         nf_cv_image image = {};
         image.width = image.height = side;
-        image.stride = kind == blind || kind == blocks ? 8 : 0;
+        image.stride = stride();
         const float any = 0; // it is not read: that there is something known takes memory
         if (kind == known)
             image.known = image.known_integrals = &any;
@@ -158,7 +158,7 @@ public:
         image.width = s.width;
         image.height = s.height;
         image.surfaces = kind_ == blind ? nullptr : s.surface;
-        image.stride = kind_ == blind || kind_ == blocks ? 8 : 0;
+        image.stride = stride();
         if (kind_ == known) {
             image.known = s.known;
             image.known_integrals = s.integrals;
@@ -174,6 +174,8 @@ public:
     bool needs_known() const override { return kind_ == known; }
 
 private:
+    uint32_t stride() const { return kind_ == blind || kind_ == blocks ? 8 : 0; }
+
     nf_cv_config config_;
     Kind kind_;
     std::vector<uint64_t> workspace_;

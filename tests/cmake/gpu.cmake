@@ -14,7 +14,7 @@ function(add_device_program name library)
     set_target_properties(gpu_${name} PROPERTIES C_STANDARD 11)
 endfunction()
 add_device_program(opencl OpenCL::OpenCL)
-add_check(gpu opencl gpu_opencl include)
+add_check(gpu opencl gpu_opencl)
 
 # The same draws in GLSL and in HLSL.
 set(vulkan "")
@@ -23,8 +23,8 @@ foreach(shader IN ITEMS "GLSL sampler.comp -V" "HLSL sampler.hlsl -D -V -S comp 
     string(REPLACE " " ";" arguments "${shader}")
     list(POP_FRONT arguments language source)
     set(spirv "${CMAKE_CURRENT_BINARY_DIR}/${source}.spv")
-    add_custom_command(OUTPUT "${spirv}" DEPENDS gpu/${source} ../include/noisefloor_sampler.h
-        COMMAND "${glslang}" ${arguments} "-I${root}/include" -o "${spirv}" "${root}/tests/gpu/${source}" VERBATIM)
+    add_custom_command(OUTPUT "${spirv}" DEPENDS gpu/${source} gpu/sampler_of.h ../include/noisefloor_sampler.h
+        COMMAND "${glslang}" ${arguments} "-I${root}/include" "-I${root}/tests/gpu" -o "${spirv}" "${root}/tests/gpu/${source}" VERBATIM)
     list(APPEND shaders "${spirv}")
     list(APPEND vulkan ${language} "${spirv}")
 endforeach()

@@ -1,22 +1,16 @@
-/* noisefloor_sampler.h on every OpenCL device that is there: the bits of the library, and draws per second. */
+/* noisefloor_sampler.h on every OpenCL device that is there: the bits of the library, and draws per second.
+ *
+ *   opencl [OPTIONS of the compiler]
+ */
 #define CL_TARGET_OPENCL_VERSION 120
 #include "expected.h"
 #include <CL/cl.h>
 
-/* As in expected.h. */
-#define SAMPLER                                                                                                        \
-    "nfs sampler(uint i) {\n"                                                                                          \
-    "    uint a = nfs_mix(i), b = nfs_mix(i ^ 0x5bd1e995u);\n"                                                         \
-    "    nfs s = nfs_pixel(a, b, i % 3u, b >> (a & 31u));\n"                                                           \
-    "    s.flags = i & 2u;\n"                                                                                          \
-    "    for (uint k = 0; k < i % 4u; ++k) s = nfs_domain(s, a ^ k);\n"                                                \
-    "    return nfs_scramble(s, i % 5u);\n"                                                                            \
-    "}\n"
-
 static const char *const source =
-    "#include \"noisefloor_sampler.h\"\n" SAMPLER
+    "#include \"noisefloor_sampler.h\"\n"
+    "#include \"sampler_of.h\"\n"
     "kernel void draws(global const uint *table, global float4 *out, uint first) {\n"
-    "    nfs s = sampler(first + get_global_id(0));\n"
+    "    nfs s = sampler_of(first + get_global_id(0));\n"
     "    nfs_floats four = nfs_draw4(s, table), two = nfs_draw2(s, table);\n"
     "    out[2 * get_global_id(0)] = (float4)(four.x, four.y, four.z, four.w);\n"
     "    out[2 * get_global_id(0) + 1] = (float4)(two.x, two.y, 0, 0);\n"
@@ -29,9 +23,9 @@ static void check(cl_int status, const char *what)
 }
 
 /* How many of the draws differ. */
-static size_t draw_on(cl_device_id device, const char *include)
+static size_t draw_on(cl_device_id device, const char *options)
 {
-    char name[256] = "", options[1024], log[4096] = "";
+    char name[256] = "", log[4096] = "";
     cl_int status;
     cl_context context = clCreateContext(NULL, 1, &device, NULL, NULL, &status);
     cl_command_queue queue;
@@ -47,7 +41,6 @@ static size_t draw_on(cl_device_id device, const char *include)
     queue = clCreateCommandQueue(context, device, 0, &status);
     check(status, "queue");
     program = clCreateProgramWithSource(context, 1, (const char **)&source, NULL, &status);
-    snprintf(options, sizeof options, "-I%s", include);
     status = clBuildProgram(program, 1, &device, options, NULL, NULL);
     if (status != CL_SUCCESS) {
         clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, sizeof log, log, NULL);
@@ -98,7 +91,7 @@ int main(int argc, char **argv)
         if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, 8, all, &count) != CL_SUCCESS)
             continue;
         for (d = 0; d < count && d < 8; ++d, ++devices)
-            different += draw_on(all[d], argc > 1 ? argv[1] : "include");
+            different += draw_on(all[d], argc > 1 ? argv[1] : "-Iinclude -Itests/gpu");
     }
     if (devices == 0)
         fprintf(stderr, "no OpenCL device\n");

@@ -1,5 +1,5 @@
 #version 450
-// noisefloor_sampler.h in GLSL: the draws that expected.h has.
+// noisefloor_sampler.h in GLSL: the draws of expected.h.
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Table { uint table[]; };
@@ -8,16 +8,11 @@ layout(push_constant) uniform Push { uint first; };
 
 #define NOISEFLOOR_TABLE(i) table[i]
 #include "noisefloor_sampler.h"
+#include "sampler_of.h"
 
 void main()
 {
-    uint i = first + gl_GlobalInvocationID.x;
-    uint a = nfs_mix(i), b = nfs_mix(i ^ 0x5bd1e995u);
-    nfs s = nfs_pixel(a, b, i % 3u, b >> (a & 31u));
-    s.flags = i & 2u;
-    for (uint k = 0u; k < i % 4u; ++k)
-        s = nfs_domain(s, a ^ k);
-    s = nfs_scramble(s, i % 5u);
+    nfs s = sampler_of(first + gl_GlobalInvocationID.x);
     nfs_floats four = nfs_draw4(s), two = nfs_draw2(s);
     numbers[2u * gl_GlobalInvocationID.x] = vec4(four.x, four.y, four.z, four.w);
     numbers[2u * gl_GlobalInvocationID.x + 1u] = vec4(two.x, two.y, 0.0, 0.0);

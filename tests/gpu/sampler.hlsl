@@ -1,4 +1,4 @@
-// noisefloor_sampler.h in HLSL: the draws that expected.h has.
+// noisefloor_sampler.h in HLSL: the draws of expected.h.
 [[vk::binding(0)]] StructuredBuffer<uint> table;
 [[vk::binding(1)]] RWStructuredBuffer<float4> numbers;
 struct Push {
@@ -9,16 +9,11 @@ struct Push {
 #define NFS_HLSL // DXC says so itself
 #define NOISEFLOOR_TABLE(i) table[i]
 #include "noisefloor_sampler.h"
+#include "sampler_of.h"
 
 [numthreads(64, 1, 1)] void main(uint3 id : SV_DispatchThreadID)
 {
-    uint i = push.first + id.x;
-    uint a = nfs_mix(i), b = nfs_mix(i ^ 0x5bd1e995u);
-    nfs s = nfs_pixel(a, b, i % 3u, b >> (a & 31u));
-    s.flags = i & 2u;
-    for (uint k = 0u; k < i % 4u; ++k)
-        s = nfs_domain(s, a ^ k);
-    s = nfs_scramble(s, i % 5u);
+    nfs s = sampler_of(push.first + id.x);
     nfs_floats four = nfs_draw4(s), two = nfs_draw2(s);
     numbers[2u * id.x] = float4(four.x, four.y, four.z, four.w);
     numbers[2u * id.x + 1u] = float4(two.x, two.y, 0.0, 0.0);

@@ -25,17 +25,14 @@ fn domains(root: Sampler, count: u32) -> Vec<Sampler> {
     siblings.chain(chain).collect()
 }
 
-/// Whether each elementary interval, of 2^cut[k] parts along axis k, has one of the points of which there are as many.
-fn is_stratified<const N: usize>(points: &[[f32; N]], cut: [u32; N]) -> bool {
-    let mut seen = vec![false; points.len()];
+/// Whether each elementary interval, of 2^cut[k] parts along axis k, has as many of the points as any other.
+fn is_even<const N: usize>(points: &[[f32; N]], cut: [u32; N]) -> bool {
+    let mut counts = vec![0; 1 << cut.iter().sum::<u32>()];
     for point in points {
         let cells = point.iter().zip(cut).map(|(u, bits)| ((u * (1 << bits) as f32) as usize, bits));
-        let at = cells.fold(0, |sum, (cell, bits)| sum << bits | cell);
-        if std::mem::replace(&mut seen[at], true) {
-            return false;
-        }
+        counts[cells.fold(0, |sum, (cell, bits)| sum << bits | cell)] += 1;
     }
-    true
+    counts.iter().all(|count| count * counts.len() == points.len())
 }
 
 /// The first 2^m points, and every later run of as many, are (0, m, 2)-nets: of all pixels, in the root, a domain and a
@@ -50,7 +47,7 @@ fn runs_are_nets() {
                 let n = 1 << m;
                 for first in [0, n, 5 * n] {
                     let points: Vec<[f32; 2]> = (first..first + n).map(|i| sampler.moved(0, 0, i).draw()).collect();
-                    let nets = (0..=m).all(|a| is_stratified(&points, [a, m - a]));
+                    let nets = (0..=m).all(|a| is_even(&points, [a, m - a]));
                     assert!(nets, "{sampler:?}, {n} points from {first}");
                 }
             }
@@ -69,13 +66,7 @@ fn four_numbers_are_nets() {
                 let points: Vec<[f32; 4]> = (0..1 << m).map(|i| sampler.moved(0, 0, i).draw()).collect();
                 let cuts = (0..6_u32.pow(4)).map(|k| [k % 6, k / 6 % 6, k / 36 % 6, k / 216]);
                 for cut in cuts.filter(|cut| cut.iter().sum::<u32>() == m - t) {
-                    // Each interval has 2^t points.
-                    let mut counts = vec![0; 1 << (m - t)];
-                    for point in &points {
-                        let cells = point.iter().zip(cut).map(|(u, bits)| ((u * (1 << bits) as f32) as usize, bits));
-                        counts[cells.fold(0, |sum, (cell, bits)| sum << bits | cell)] += 1;
-                    }
-                    assert!(counts.iter().all(|&count| count == 1 << t), "{sampler:?}, 2^{m}, {cut:?}");
+                    assert!(is_even(&points, cut), "{sampler:?}, 2^{m}, {cut:?}");
                 }
             }
         }
@@ -208,19 +199,19 @@ const PINNED_HASH: u64 = 1_163_471_203_703_790_533;
 fn filled_at_once() {
     let samplers = [(root(5).domain(1), 2), (Sampler::white(7, 8, 9, 10).scramble(3), 3)];
     let mut u = vec![-1.0; 4 * 3 * 5 * 5 + 1];
-    fill(|| samplers, 4, 3, 5, &mut u).unwrap();
+    fill(&samplers, 4, 3, 5, &mut u).unwrap();
     assert_eq!(u.pop(), Some(-1.0));
     for (at, drawn) in u.chunks(5).enumerate() {
         let [x, y, sample] = [at / 5 % 4, at / 20, at % 5].map(|value| value as u32);
         let [a, b] = samplers.map(|(sampler, _)| sampler.moved(x, y, sample));
         assert_eq!(drawn, [&a.draw::<2>()[..], &b.draw::<3>()].concat());
     }
-    assert_eq!(fill(|| samplers, 4, 3, 5, &mut u[1..]), Err(Error::Memory));
-    assert_eq!(fill(|| [(root(0), 5)], 1, 1, 1, &mut u), Err(Error::Range));
-    assert_eq!(fill(|| [(root(0), 0)], 1, 1, 1, &mut u), Err(Error::Range));
-    assert_eq!(fill(|| samplers, usize::MAX, 3, 5, &mut u), Err(Error::Range));
-    assert_eq!(fill(|| [], usize::MAX, usize::MAX, 1, &mut u), Err(Error::Range));
-    assert_eq!(fill(|| samplers, 0, 3, 5, &mut []), Ok(()));
+    assert_eq!(fill(&samplers, 4, 3, 5, &mut u[1..]), Err(Error::Memory));
+    assert_eq!(fill(&[(root(0), 5)], 1, 1, 1, &mut u), Err(Error::Range));
+    assert_eq!(fill(&[(root(0), 0)], 1, 1, 1, &mut u), Err(Error::Range));
+    assert_eq!(fill(&samplers, usize::MAX, 3, 5, &mut u), Err(Error::Range));
+    assert_eq!(fill(&[], usize::MAX, usize::MAX, 1, &mut u), Err(Error::Range));
+    assert_eq!(fill(&samplers, 0, 3, 5, &mut []), Ok(()));
 }
 
 proptest! {

@@ -133,6 +133,17 @@ impl Sampler {
         fixed.map(|value| (value >> 8) as f32 * (1.0 / 16_777_216.0))
     }
 
+    /// Draws `dims` numbers, 1 to 4, of this sample and of those that follow it: sample k's to `u[k * stride..]`, for as
+    /// many samples as `u` has room for. Draws nothing for other `dims`; a stride of less than `dims` is `dims`.
+    #[inline]
+    pub fn draw_samples(&self, dims: usize, stride: usize, u: &mut [f32]) {
+        if (1..=4).contains(&dims) {
+            for (k, u) in (0..).zip(u.chunks_mut(stride.max(dims))) {
+                self.moved(0, 0, k).draw_into(u.get_mut(..dims).unwrap_or_default());
+            }
+        }
+    }
+
     /// As [`draw`](Sampler::draw), as many numbers as `u` has room for, at most 4; more stay as they are.
     #[inline]
     pub fn draw_into(&self, u: &mut [f32]) {

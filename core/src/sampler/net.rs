@@ -4,12 +4,9 @@
 //! it (A. Owen, "Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995). The table holds the first digits' bits, a
 //! hash makes those that follow.
 
-use super::table::{BITS, SIZE, TABLE};
+use super::table::{BITS, SIZE, TABLE, fine, pascal};
 use super::{HASHED, Sampler};
 use crate::hash::{GOLDEN, mix};
-
-/// How the finer digits of each axis depend on the leading eight.
-const FINE: [u32; 2] = [0x21f0_aaad, 0x735a_2d97];
 
 /// The point in 32-bit fixed point.
 #[inline(always)]
@@ -63,18 +60,7 @@ fn pair(x: u32, y: u32, first: u32) -> [u32; 2] {
     let pixel = (y & (SIZE - 1)) * SIZE + (x & (SIZE - 1));
     let second = pascal(first);
     let entry = |value: u32| TABLE[(pixel << BITS | value >> (32 - BITS)) as usize];
-    let fine = |value: u32, factor: u32| value ^ (pixel << 8 | value >> 24).wrapping_mul(factor) >> 8;
-    [fine(first ^ entry(first) << 16, FINE[0]), fine(second ^ (entry(second) & 0xffff_0000), FINE[1])]
-}
-
-/// Sobol's second dimension, by the first: Pascal's matrix modulo 2.
-#[inline(always)]
-const fn pascal(first: u32) -> u32 {
-    let mut second = first ^ first << 16;
-    second ^= (second & 0x00ff_00ff) << 8;
-    second ^= (second & 0x0f0f_0f0f) << 4;
-    second ^= (second & 0x3333_3333) << 2;
-    second ^ (second & 0x5555_5555) << 1
+    [fine(first ^ entry(first) << 16, pixel, 0), fine(second ^ (entry(second) & 0xffff_0000), pixel, 1)]
 }
 
 /// The reversed number at which the third and the fourth number are drawn: the first nine digits times a unit

@@ -11,6 +11,34 @@ pub const ENTRIES: usize = ((SIZE * SIZE) << BITS) as usize;
 /// coordinate's leading 16 bits are exclusive-or, in the high half what the second's are. Made by `fsot sampler`.
 pub static TABLE: [u32; ENTRIES] = entries(include_bytes!("../../tiles/nested_32.bin"));
 
+/// Sobol's first two dimensions at an index: its reversed bits, and Pascal's matrix modulo 2 times these.
+#[inline(always)]
+pub const fn net(index: u32) -> [u32; 2] {
+    let first = index.reverse_bits();
+    [first, pascal(first)]
+}
+
+/// The second of these by the first.
+#[inline(always)]
+pub(super) const fn pascal(first: u32) -> u32 {
+    let mut second = first ^ first << 16;
+    second ^= (second & 0x00ff_00ff) << 8;
+    second ^= (second & 0x0f0f_0f0f) << 4;
+    second ^= (second & 0x3333_3333) << 2;
+    second ^ (second & 0x5555_5555) << 1
+}
+
+/// How the finer digits of each axis depend on the leading eight.
+const FINE: [u32; 2] = [0x21f0_aaad, 0x735a_2d97];
+
+/// A coordinate with its offset, whose 24 bits below the leading 8 are exclusive-or a hash of these, of the pixel (row
+/// times side plus column) and of the axis, 0 or 1: without it, all points that share an offset would share their finer
+/// digits.
+#[inline(always)]
+pub const fn fine(value: u32, pixel: u32, axis: usize) -> u32 {
+    value ^ (pixel << 8 | value >> 24).wrapping_mul(FINE[axis & 1]) >> 8
+}
+
 const fn entries(bytes: &[u8; 4 * ENTRIES]) -> [u32; ENTRIES] {
     let (chunks, _) = bytes.as_chunks();
     let (mut all, mut i) = ([0; ENTRIES], 0);

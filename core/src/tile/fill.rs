@@ -1,12 +1,11 @@
 //! Many pixels and samples at once, for renderers that work on whole images.
 
 use super::sampler::Sampler;
-use crate::Error;
+use crate::{Error, pixels};
 
 /// How many numbers [`fill`] writes; `None` for more than memory holds.
 pub fn fill_len(domains: &[(Sampler<'_>, usize)], width: usize, height: usize, samples: usize) -> Option<usize> {
-    let dims = domains.iter().try_fold(0_usize, |sum, &(_, dims)| sum.checked_add(dims))?;
-    width.checked_mul(height)?.checked_mul(samples)?.checked_mul(dims)
+    pixels::len(domains.iter().map(|&(_, dims)| dims), width, height, samples)
 }
 
 /// Draws for `width x height` pixels, `samples` samples of each, in several domains: the same bits as single draws.
@@ -37,23 +36,7 @@ pub fn fill(
     samples: usize,
     u: &mut [f32],
 ) -> Result<(), Error> {
-    if domains.iter().any(|&(_, dims)| !(1..=4).contains(&dims)) {
-        return Err(Error::Range);
-    }
-    let len = fill_len(domains, width, height, samples).ok_or(Error::Range)?;
-    // Without domains or samples, as many places as there may be have nothing to draw.
-    if len == 0 {
-        return Ok(());
-    }
-    let u = u.get_mut(..len).ok_or(Error::Memory)?;
-    let sample = domains.iter().fold(0_usize, |sum, &(_, dims)| sum.wrapping_add(dims));
-    let pixels = u.chunks_exact_mut(sample.wrapping_mul(samples).max(1));
-    let places = (0..height).flat_map(|y| (0..width).map(move |x| (y, x)));
-    for (mut pixel, (y, x)) in pixels.zip(places) {
-        for &(sampler, dims) in domains {
-            sampler.moved(x as u32, y as u32, 0).draw_samples(dims, sample, pixel);
-            pixel = pixel.get_mut(dims..).unwrap_or_default();
-        }
-    }
-    Ok(())
+    pixels::fill(domains, [width, height, samples], u, |sampler, [x, y], dims, stride, u| {
+        sampler.moved(x, y, 0).draw_samples(dims, stride, u);
+    })
 }

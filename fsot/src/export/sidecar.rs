@@ -104,9 +104,7 @@ impl Sidecar {
     /// # Errors
     /// Never, but for a value that TOML has no place for.
     pub fn encode(&self) -> Result<Vec<u8>> {
-        toml::to_string(self)
-            .map(String::into_bytes)
-            .map_err(|error| Error::Input(format!("cannot write the sidecar: {error}")))
+        encode(self)
     }
 
     /// Reads the sidecar of a tile; none if there is no such file.
@@ -130,7 +128,14 @@ impl Sidecar {
     }
 }
 
+/// The content of a sidecar's file.
+pub(crate) fn encode(sidecar: &impl Serialize) -> Result<Vec<u8>> {
+    toml::to_string(sidecar)
+        .map(String::into_bytes)
+        .map_err(|error| Error::Input(format!("cannot write the sidecar: {error}")))
+}
+
 /// To 4 significant digits, so that the last bits of a measurement do not show.
-fn rounded(value: f64) -> f64 {
+pub(crate) fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }

@@ -24,6 +24,8 @@ pub struct SceneTable {
     height: usize,
     cells: usize,
     values: Vec<f32>,
+    /// Each pixel's value, and the variance of one sample.
+    moments: Vec<(f64, f64)>,
 }
 
 /// The samples of a plane of pixels that repeats.
@@ -73,7 +75,13 @@ impl SceneTable {
             return Err(refuse());
         }
         let values = bytes.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
-        Ok(SceneTable { width, height, cells, values })
+        Ok(SceneTable::new([width, height], cells, values))
+    }
+
+    fn new([width, height]: [usize; 2], cells: usize, values: Vec<f32>) -> SceneTable {
+        let mut table = SceneTable { width, height, cells, values, moments: Vec::new() };
+        table.moments = (0..width * height).into_par_iter().map(|pixel| table.moments_of(pixel)).collect();
+        table
     }
 
     fn pixel(&self, pixel: usize) -> &[f32] {
@@ -92,8 +100,7 @@ impl SceneTable {
         (1.0 - b) * along(values) + b * along(&values[self.cells..])
     }
 
-    /// Each pixel's value, and the variance of one sample.
-    fn moments(&self, pixel: usize) -> (f64, f64) {
+    fn moments_of(&self, pixel: usize) -> (f64, f64) {
         let values = self.pixel(pixel);
         let mean = values.iter().map(|value| f64::from(*value)).sum::<f64>() / values.len() as f64;
         let fine = 2 * self.cells;
@@ -113,12 +120,11 @@ impl SceneTable {
         if counts.iter().any(|count| !(1..=plane.samples).contains(count)) {
             return Err(Error::Input(format!("a pixel has {} samples, and more are asked for", plane.samples)));
         }
-        let pixels = self.width * self.height;
-        let moments: Vec<(f64, f64)> = (0..pixels).into_par_iter().map(|pixel| self.moments(pixel)).collect();
-        let average = moments.iter().map(|(mean, _)| mean).sum::<f64>() / pixels as f64;
+        let moments = &self.moments;
+        let average = moments.iter().map(|(mean, _)| mean).sum::<f64>() / moments.len() as f64;
         let scale: Vec<f64> = moments.iter().map(|(mean, _)| 1.0 / (mean * mean + 0.01 * average * average)).collect();
         let white: Vec<f64> = moments.iter().zip(&scale).map(|((_, variance), scale)| variance * scale).collect();
-        let images = self.images(plane, counts, &moments, &scale);
+        let images = self.images(plane, counts, &scale);
         let mut rows: Vec<SceneError> =
             counts.iter().map(|&spp| SceneError { spp, wide: 0.0, narrow: 0.0, raw: 0.0 }).collect();
         for (number, sigma) in FILTERS.into_iter().enumerate() {
@@ -136,7 +142,7 @@ impl SceneTable {
     }
 
     /// Relative errors: `[count][place][pixel]`.
-    fn images(&self, plane: &Plane, counts: &[usize], moments: &[(f64, f64)], scale: &[f64]) -> Vec<Vec<f64>> {
+    fn images(&self, plane: &Plane, counts: &[usize], scale: &[f64]) -> Vec<Vec<f64>> {
         let mut rng = stream(11, 0, 0);
         let mut shift = || rng.below(plane.size as u32) as usize;
         let shifts: Vec<(usize, usize)> = (0..PLACES).map(|_| (shift(), shift())).collect();
@@ -150,7 +156,7 @@ impl SceneTable {
                 for (i, point) in points.iter().enumerate() {
                     sum += f64::from(self.at(pixel, *point));
                     for (number, _) in counts.iter().enumerate().filter(|(_, count)| **count == i + 1) {
-                        let error = sum / (i + 1) as f64 - moments[pixel].0;
+                        let error = sum / (i + 1) as f64 - self.moments[pixel].0;
                         errors[number * PLACES + place] = error * libm::sqrt(scale[pixel]);
                     }
                 }
@@ -199,7 +205,7 @@ mod tests {
         let (side, cells) = (24, 16);
         let value = |i: usize| ((i % cells) as f32 + (i / cells) as f32 + 1.0) / cells as f32;
         let values = (0..side * side).flat_map(|_| (0..cells * cells).map(value)).collect();
-        let table = SceneTable { width: side, height: side, cells, values };
+        let table = SceneTable::new([side; 2], cells, values);
         let middle = Plane { size: 1, samples: 1, points: vec![[0.5, 0.5]] };
         assert!(table.errors(&middle, &[1]).unwrap()[0].raw < 1e-9);
         let mut rng = stream(1, 2, 3);

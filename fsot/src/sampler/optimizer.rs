@@ -305,18 +305,18 @@ impl SamplerOptimizer {
                 let prices = self.without(energy, &prices, &all[*pixel]);
                 let around = self.surroundings(energy, fields, *pixel, prices);
                 let mut rng = stream(self.problem.seed, number, *pixel as u64);
-                let (offsets, taken) = visit(&rules, &around, *pixel as u32, self.offsets[*pixel], &mut rng);
-                let places = places(groups, &offsets, *pixel as u32);
-                let mut change = self.errors(energy, &places);
-                subtract(&mut change, &fields.errors[*pixel]);
-                (offsets, places, change, taken)
+                let before = (self.offsets[*pixel], all[*pixel]);
+                let (offsets, places, taken) = visit(&rules, &around, *pixel as u32, before, &mut rng);
+                (taken > 0).then(|| {
+                    let mut change = self.errors(energy, &places);
+                    subtract(&mut change, &fields.errors[*pixel]);
+                    (offsets, places, change, taken)
+                })
             };
             let found: Vec<_> = pixels.par_iter().map(look).collect();
             let mut changes = Vec::new();
-            for (pixel, (offsets, places, change, number)) in pixels.into_iter().zip(found) {
-                if number == 0 {
-                    continue;
-                }
+            for (pixel, found) in pixels.into_iter().zip(found) {
+                let Some((offsets, places, change, number)) = found else { continue };
                 taken += u64::from(number);
                 let old = std::mem::replace(&mut all[pixel], places);
                 self.count(energy, &old, -1);

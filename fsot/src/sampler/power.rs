@@ -25,35 +25,34 @@ pub(crate) fn power(squared: f32, half: f32) -> f32 {
 }
 
 /// The sum over points j of weight j times power(distance of (x, y) to point j): minus the energies of a point with
-/// others. `into` gets the terms.
-#[inline]
-pub(crate) fn terms(x: f32, y: f32, xs: &[f32], ys: &[f32], weights: &[f32], half: f32, into: &mut [f32]) -> f32 {
+/// others. `take` is told the terms, eight by eight.
+#[inline(always)]
+fn each([x, y]: [f32; 2], [xs, ys, weights]: [&[f32]; 3], half: f32, mut take: impl FnMut(usize, [f32; LANES])) -> f32 {
     let mut sums = [0.0f32; LANES];
-    let (xs, ys) = (xs.as_chunks::<LANES>().0, ys.as_chunks::<LANES>().0);
-    let (weights, into) = (weights.as_chunks::<LANES>().0, into.as_chunks_mut::<LANES>().0);
-    for (((xs, ys), weights), into) in xs.iter().zip(ys).zip(weights).zip(into) {
+    let [xs, ys, weights] = [xs, ys, weights].map(|all| all.as_chunks::<LANES>().0);
+    for (chunk, ((xs, ys), weights)) in xs.iter().zip(ys).zip(weights).enumerate() {
+        let mut terms = [0.0; LANES];
         for lane in 0..LANES {
             let (dx, dy) = (xs[lane] - x, ys[lane] - y);
-            let term = weights[lane] * power(dx * dx + dy * dy, half);
-            into[lane] = term;
-            sums[lane] += term;
+            terms[lane] = weights[lane] * power(dx * dx + dy * dy, half);
+            sums[lane] += terms[lane];
         }
+        take(chunk, terms);
     }
     total(&sums)
 }
 
-/// As [`terms`], without the terms.
+/// That sum; `into` gets the terms.
 #[inline]
-pub(crate) fn sum(x: f32, y: f32, xs: &[f32], ys: &[f32], weights: &[f32], half: f32) -> f32 {
-    let mut sums = [0.0f32; LANES];
-    let (xs, ys, weights) = (xs.as_chunks::<LANES>().0, ys.as_chunks::<LANES>().0, weights.as_chunks::<LANES>().0);
-    for ((xs, ys), weights) in xs.iter().zip(ys).zip(weights) {
-        for lane in 0..LANES {
-            let (dx, dy) = (xs[lane] - x, ys[lane] - y);
-            sums[lane] += weights[lane] * power(dx * dx + dy * dy, half);
-        }
-    }
-    total(&sums)
+pub(crate) fn terms(at: [f32; 2], points: [&[f32]; 3], half: f32, into: &mut [f32]) -> f32 {
+    let into = into.as_chunks_mut::<LANES>().0;
+    each(at, points, half, |chunk, terms| into[chunk] = terms)
+}
+
+/// That sum.
+#[inline]
+pub(crate) fn sum(at: [f32; 2], points: [&[f32]; 3], half: f32) -> f32 {
+    each(at, points, half, |_, _| ())
 }
 
 #[inline(always)]

@@ -5,6 +5,7 @@ use super::problem::SamplerProblem;
 use super::table::SamplerTable;
 use crate::checkpoint::digest;
 use crate::error::{Error, Result};
+use crate::export::sidecar;
 use crate::read;
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -47,7 +48,7 @@ pub struct SamplerOctave {
 impl SamplerOctave {
     /// All octaves of a report, to 4 digits.
     pub fn all(report: &SamplerReport) -> Vec<SamplerOctave> {
-        let rounded = |value: f32| format!("{value:.3e}").parse().unwrap_or(f64::from(value));
+        let rounded = |value: f32| sidecar::rounded(f64::from(value));
         let octaves = report.filtered.iter().zip(&report.raw).zip(&report.border).enumerate();
         let row = |(octave, ((filtered, raw), border)): (usize, ((&f32, &f32), &[f32; 2]))| SamplerOctave {
             spp: 1 << octave,
@@ -89,9 +90,7 @@ impl SamplerSidecar {
     /// # Errors
     /// Never, but for a value that TOML has no place for.
     pub fn encode(&self) -> Result<Vec<u8>> {
-        toml::to_string(self)
-            .map(String::into_bytes)
-            .map_err(|error| Error::Input(format!("cannot write the sidecar: {error}")))
+        sidecar::encode(self)
     }
 }
 

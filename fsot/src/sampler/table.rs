@@ -5,12 +5,10 @@
 //! a (0, m, 2)-net for every m, and the sequence does not end. The first `bits` digits' bits are stored.
 
 use crate::error::{Error, Result};
+pub use noisefloor::sampler::table::{fine, net};
 
 /// Bits of a stored coordinate's offset.
 pub const OFFSET_BITS: u32 = 16;
-
-/// The factor of [`fine`] for each axis.
-pub const FINE: [u32; 2] = [0x21f0_aaad, 0x735a_2d97];
 
 /// The offsets of all pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,24 +19,6 @@ pub struct SamplerTable {
     pub bits: u32,
     /// `[y][x][offset][axis]`
     pub offsets: Vec<[u16; 2]>,
-}
-
-/// Sobol's first two dimensions at an index: its reversed bits, and Pascal's matrix times these.
-pub fn net(index: u32) -> [u32; 2] {
-    let first = index.reverse_bits();
-    let mut second = first ^ (first << 16);
-    second ^= (second & 0x00ff_00ff) << 8;
-    second ^= (second & 0x0f0f_0f0f) << 4;
-    second ^= (second & 0x3333_3333) << 2;
-    second ^= (second & 0x5555_5555) << 1;
-    [first, second]
-}
-
-/// Xors the 24 bits below the leading 8 with a hash of these, the pixel (row * size + column) and the axis: without it,
-/// all points that share an offset would share their finer digits.
-#[inline]
-pub fn fine(value: u32, pixel: u32, axis: usize) -> u32 {
-    value ^ (((pixel << 8) | (value >> 24)).wrapping_mul(FINE[axis]) >> 8)
 }
 
 impl SamplerTable {

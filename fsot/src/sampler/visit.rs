@@ -67,25 +67,29 @@ fn place(groups: &Groups, offsets: &Offsets, number: u32, axis: usize, point: us
     (fine(groups.net[axis][point] ^ (offset << OFFSET_BITS), number, axis) >> 16) as u16
 }
 
-/// Visits pixel `number`; its offsets afterwards, and how many arrangements were taken.
+/// Visits pixel `number`; its offsets and points afterwards, and how many arrangements were taken.
 pub(crate) fn visit(
     rules: &Rules,
     around: &Surroundings,
     number: u32,
-    offsets: Offsets,
+    (offsets, places): (Offsets, Places),
     rng: &mut Rng,
-) -> (Offsets, u32) {
-    let mut pixel = Pixel::new(rules, around, number, offsets);
+) -> (Offsets, Places, u32) {
+    let mut pixel = Pixel::new(rules, around, number, (offsets, places));
     let mut taken = 0;
     for _ in 0..rules.candidates {
         taken += u32::from(pixel.attempt(rng));
     }
-    (pixel.offsets, taken)
+    (pixel.offsets, pixel.places, taken)
 }
 
 impl<'a> Pixel<'a> {
-    fn new(rules: &'a Rules<'a>, around: &'a Surroundings, number: u32, offsets: Offsets) -> Pixel<'a> {
-        let places = places(rules.groups, &offsets, number);
+    fn new(
+        rules: &'a Rules<'a>,
+        around: &'a Surroundings,
+        number: u32,
+        (offsets, places): (Offsets, Places),
+    ) -> Pixel<'a> {
         let mut means = [0.0; OCTAVES];
         for (first, mean) in means.iter_mut().enumerate() {
             let octaves = rules.energy.octaves.iter().filter(|octave| **octave >= first);
@@ -121,12 +125,12 @@ impl<'a> Pixel<'a> {
     fn terms(&self, point: usize, x: f32, y: f32, xs: &[f32], ys: &[f32], into: &mut [f32; POINTS]) -> f32 {
         let padded = self.rules.energy.points.next_multiple_of(LANES);
         let weights = &self.rules.energy.pairs[point][..padded];
-        terms(x, y, &xs[..padded], &ys[..padded], weights, self.rules.basis.half, &mut into[..padded])
+        terms([x, y], [&xs[..padded], &ys[..padded], weights], self.rules.basis.half, &mut into[..padded])
     }
 
     fn weighed(&self, weights: &[f32; POINTS], x: f32, y: f32, xs: &[f32; POINTS], ys: &[f32; POINTS]) -> f32 {
         let padded = self.rules.energy.points.next_multiple_of(LANES);
-        sum(x, y, &xs[..padded], &ys[..padded], &weights[..padded], self.rules.basis.half)
+        sum([x, y], [&xs[..padded], &ys[..padded], &weights[..padded]], self.rules.basis.half)
     }
 
     /// Tries one arrangement; whether it was taken.

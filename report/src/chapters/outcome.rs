@@ -48,7 +48,7 @@ impl Outcome {
     }
 
     /// Total time over the plain mean's, seed by seed.
-    fn time_ratios(&self, estimator: &str) -> Result<Vec<f64>> {
+    pub(crate) fn time_ratios(&self, estimator: &str) -> Result<Vec<f64>> {
         let (own, plain) = (self.of(estimator)?, self.of(BASELINE)?);
         let pairs = own.timings.iter().zip(&plain.timings);
         Ok(pairs.map(|(own, plain)| own.total_seconds / plain.total_seconds).collect())

@@ -29,7 +29,7 @@ const SERVICES: [Service; 11] = [
     Service { name: "optimal MIS", functions: &["nf_omis_"], except: &["nf_omis_weights"] },
     Service {
         name: "tiles and samplers, without built-in tiles",
-        functions: &["nf_tile_", "nf_tile_sampler_"],
+        functions: &["nf_tile_"],
         except: &["nf_tile_builtin"],
     },
     Service { name: "random numbers", functions: &["nf_rng_"], except: &[] },

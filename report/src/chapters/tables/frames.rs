@@ -60,11 +60,11 @@ fn one(outcome: &Outcome, name: &str, mut cells: Vec<Cell>) -> Result<Vec<Cell>>
     let [own, plain] = [Errors::new(outcome, name)?, Errors::new(outcome, BASELINE)?];
     let raw = Estimate::ratio(&own.raw, &plain.raw);
     let (of, mean) = (outcome.of(name)?, outcome.of(BASELINE)?);
-    let pairs = || of.timings.iter().zip(&mean.timings);
-    let added = pairs().map(|(own, mean)| own.estimating_ns_per_sample - mean.estimating_ns_per_sample);
+    let pairs = of.timings.iter().zip(&mean.timings);
+    let added = pairs.map(|(own, mean)| own.estimating_ns_per_sample - mean.estimating_ns_per_sample);
     let added = Estimate::median(&added.collect::<Vec<_>>());
     let errors = own.raw.iter().zip(&plain.raw).map(|(own, plain)| own / plain);
-    let same_time = errors.zip(pairs()).map(|(error, (own, mean))| error * own.total_seconds / mean.total_seconds);
+    let same_time = errors.zip(outcome.time_ratios(name)?).map(|(error, time)| error * time);
     let same_time = Estimate::median(&same_time.collect::<Vec<_>>());
     let from = if raw.value < 1.0 { added.value * raw.value / (1.0 - raw.value) } else { f64::INFINITY };
     cells.extend(row![
