@@ -20,7 +20,7 @@ enum Step {
     Embree,
 }
 
-const CHAPTERS: [&str; 7] = ["tables", "gradients", "control_variates", "hard_cases", "analytic", "samplers", "points"];
+const CHAPTERS: [&str; 6] = ["tables", "gradients", "control_variates", "analytic", "samplers", "points"];
 
 /// Ends with 0, with [`NOT_RUN`] and a reason on standard error, or with an error.
 pub(crate) fn run(options: &Options) -> ExitCode {

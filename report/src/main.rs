@@ -1,11 +1,9 @@
-//! What `cargo xtask demo`, `report`, `povray` and `targets` start: they measure, and make tables, plots and pictures
-//! of it.
+//! What `cargo xtask demo`, `report` and `targets` start: they measure, and make tables, plots and pictures of it.
 
 mod chapters;
 mod check;
 mod demo;
 mod measure;
-mod povray_patched;
 mod targets;
 
 use clap::{Parser, Subcommand};
@@ -22,8 +20,6 @@ struct Arguments {
 enum Command {
     /// Render with every estimator: pictures and a table in target/demo
     Demo(demo::Options),
-    /// Build POV-Ray with our patch, check it, and compare it with POV-Ray as it is
-    Povray(povray_patched::Options),
     /// Measure errors and times of everything, and write docs/report: chapters with their tables, plots and pictures
     Report(chapters::Options),
     /// Build for other targets, run the C tests and a bare-metal program there under QEMU, and write
@@ -37,7 +33,6 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Demo(options) => demo::run(&options),
-        Command::Povray(options) => povray_patched::run(&options),
         Command::Report(options) => chapters::run(&options),
         Command::Targets(options) => targets::run(&options),
         Command::Check(options) => return check::run(&options),

@@ -5,9 +5,8 @@ use crate::tools::{self, Package};
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-pub const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O1"];
 pub const PYTHON: Package = Package { name: "python3", file: "/usr/bin/python3" };
 /// Debian's cmake does without make unless asked.
 const CMAKE: [Package; 2] =
@@ -74,30 +73,9 @@ pub fn folder(preset: &str) -> PathBuf {
     paths::output().join("tests").join(preset)
 }
 
-/// The test programs of tests/c, in order.
-pub fn sources() -> Result<Vec<PathBuf>> {
-    let entries = fs::read_dir(paths::root().join("tests/c")).context("cannot read tests/c")?;
-    let mut sources = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>>>()?;
-    sources.retain(|path| path.extension().is_some_and(|extension| extension == "c"));
-    sources.sort();
-    Ok(sources)
-}
-
 /// Where a program of a test goes.
 pub fn output(name: &str) -> Result<PathBuf> {
     let folder = paths::output().join("test");
     fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
     Ok(folder.join(name))
-}
-
-/// All of them, even if some fail; the error names those.
-pub fn each(sources: &[PathBuf], mut action: impl FnMut(&Path) -> Result<()>) -> Result<()> {
-    let mut failures = Vec::new();
-    for source in sources {
-        if let Err(error) = action(source) {
-            println!("{error:#}");
-            failures.push(source.file_name().unwrap_or(source.as_os_str()).to_string_lossy());
-        }
-    }
-    if failures.is_empty() { Ok(()) } else { bail!("{} of {}: {}", failures.len(), sources.len(), failures.join(", ")) }
 }

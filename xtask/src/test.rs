@@ -3,7 +3,7 @@
 use crate::c_tests::{self, PYTHON};
 use crate::outcome::Outcome;
 use crate::tools::{self, Package};
-use crate::{embree, fuzz, instructions, library, run, start, texts};
+use crate::{embree, fuzz, instructions, library, povray, run, start, texts};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -18,10 +18,6 @@ const DEVICES: [Package; 6] = [
     Package { name: "opencl-c-headers", file: "/usr/include/CL/cl.h" },
     Package { name: "ocl-icd-opencl-dev", file: "/usr/share/doc/ocl-icd-opencl-dev/copyright" },
     Package { name: "pocl-opencl-icd", file: "/etc/OpenCL/vendors/pocl.icd" },
-];
-const POVRAY: [Package; 2] = [
-    Package { name: "povray", file: "/usr/bin/povray" },
-    Package { name: "povray-includes", file: "/usr/share/povray-3.7/include/woods.inc" },
 ];
 /// The packages that do not measure: their profile is `xtask`.
 const COMPILED_FAST: [&str; 3] = ["xtask", "noisefloor-release", "noisefloor-report"];
@@ -103,7 +99,7 @@ pub fn run(options: &Options) -> Result<()> {
     steps.c(heading, "default", "embree_agreement", &rays);
     steps.c("tests/embree: every scene, three samplers, 32 x 32 pixels", "default", "embree_scenes", &all);
     let heading = "tests/povray: POV-Ray's pictures as integrands, every estimator and sampler, 32 x 32 pixels";
-    steps.c(heading, "default", "povray", &[PYTHON, POVRAY[0], POVRAY[1]]);
+    steps.c(heading, "default", "povray", &povray::PACKAGES);
     steps.start("cargo xtask report --quick: the path tracer on Embree", "report", "embree");
     let heading = "examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces";
     steps.run(heading, || c_tests::run_twice("renderers", &[]));

@@ -38,10 +38,7 @@ struct Summary {
 }
 
 /// What other commands write into the same folder: its file, what it is, the command.
-const BESIDE: [(&str, &str, &str); 2] = [
-    ("povray_patched.md", "POV-Ray with our patch beside POV-Ray as it is", "povray --report"),
-    ("sizes.md", "Code size and stack on other targets", "targets"),
-];
+const BESIDE: (&str, &str, &str) = ("sizes.md", "Code size and stack on other targets", "targets");
 
 /// The index of the chapters in `folder`, and of one that has just been written and is not there yet.
 pub(super) fn write(folder: &Path, new: Option<(&str, &Value)>) -> Result<String> {
@@ -60,8 +57,9 @@ pub(super) fn write(folder: &Path, new: Option<(&str, &Value)>) -> Result<String
     chapters(&mut index, &all);
     machines(&mut index, &all);
     targets(&mut index, &all);
-    for (file, what, command) in BESIDE.iter().filter(|(file, ..)| folder.join(file).exists()) {
-        index.setting(*file, format!("[{what}]({file}), written by `cargo xtask {command}`, when asked for."));
+    let (file, what, command) = BESIDE;
+    if folder.join(file).exists() {
+        index.setting(file, format!("[{what}]({file}), written by `cargo xtask {command}`, when asked for."));
     }
     template::chapter("index", &index.json(), &|_| true)
 }
@@ -164,9 +162,9 @@ mod tests {
         assert!(text.contains("1 of 2 targets are reached everywhere"), "{text}");
         assert!(text.contains("NOT REACHED") && text.contains("| `--quick` | 2000-01-01 | "), "{text}");
         assert_eq!(text.matches("Processor 9").count(), 1, "one machine is described once");
-        assert!(!text.contains("povray_patched.md"), "what is not there is not linked");
-        fs::write(folder.path().join("povray_patched.md"), "").expect("writable");
+        assert!(!text.contains("sizes.md"), "what is not there is not linked");
+        fs::write(folder.path().join("sizes.md"), "").expect("writable");
         let text = write(folder.path(), Some(("embree", &written))).expect("an index");
-        assert!(text.contains("(povray_patched.md)"), "{text}");
+        assert!(text.contains("(sizes.md)"), "{text}");
     }
 }

@@ -8,7 +8,6 @@ mod control_variates;
 mod embree;
 pub(crate) mod figure;
 mod gradients;
-mod hard_cases;
 mod index;
 mod instructions;
 pub(crate) mod json;
@@ -114,7 +113,6 @@ const CHAPTERS: &[Entry] = &[
         control_variates::write,
     )
     .runs(&["speed_error", "estimators"]),
-    entry("hard_cases", 8, "Few, degenerate and extreme samples", hard_cases::write).runs(&["hard_cases"]),
     entry(
         "analytic",
         30,

@@ -17,9 +17,6 @@ pub(crate) struct Renderer {
 #[derive(Deserialize, Clone)]
 pub(crate) struct Timing {
     pub(crate) estimator: String,
-    /// Numbers of a sample.
-    #[serde(default)]
-    pub(crate) dims: u32,
     pub(crate) total_seconds: f64,
     /// Making the points and tracing them.
     pub(crate) sampling_ns_per_sample: f64,

@@ -33,13 +33,6 @@ pub(crate) fn errors(image: &Rgb32FImage, reference: &Reference) -> [f64; 2] {
 /// otherwise outweigh all other pixels, and whether a frame has one is chance.
 pub(crate) const LIMIT: f64 = 5.0;
 
-/// The share of the pixels whose error is limited.
-pub(crate) fn limited(image: &Rgb32FImage, reference: &Reference) -> f64 {
-    let [a, b] = reference.relative_errors(image);
-    let beyond = average(&a, &b).into_iter().filter(|error| error.abs() > LIMIT).count();
-    beyond as f64 / a.len().max(1) as f64
-}
-
 /// [`Reference::relative_errors`], limited.
 fn limited_errors(image: &Rgb32FImage, reference: &Reference) -> [Vec<f64>; 2] {
     reference.relative_errors(image).map(|errors| errors.into_iter().map(|error| error.clamp(-LIMIT, LIMIT)).collect())

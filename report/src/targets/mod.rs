@@ -15,7 +15,6 @@ use clap::Args;
 use platform::{PLATFORMS, Platform};
 use sizes::Size;
 use std::path::Path;
-use std::process::Command;
 use xtask::tools::Package;
 use xtask::{c_tests, library, paths, run, tools};
 
@@ -98,9 +97,11 @@ fn there(platform: &Platform, raw: &Path) -> Result<(bare_metal::Told, String)> 
     Ok((told, ran))
 }
 
+const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O1"];
+
 /// Compiles and runs every C test; they read the same pinned vectors as on this machine.
 fn c_tests_there(binutils: &str, emulator: &str, archive: &Path) -> Result<String> {
-    let sources = c_tests::sources()?;
+    let sources = paths::of_kind("tests/c", "c")?;
     let mut options = Vec::new();
     if binutils.starts_with("s390x") && !multiplies(binutils, emulator)? {
         println!(
@@ -109,17 +110,16 @@ fn c_tests_there(binutils: &str, emulator: &str, archive: &Path) -> Result<Strin
         );
         options.push("-DMDEBR_IS_WRONG");
     }
-    c_tests::each(&sources, |source| {
+    for source in &sources {
         let program = c_tests::output(&format!("{binutils}c_test"))?;
         let mut compiler = run::command(format!("{binutils}gcc"));
         // The tests' own arithmetic, from which they know what to expect, must be in float and not fused. Of s390x, C99
         // makes it double.
         compiler.args(["-std=c99", "-static", "-ffp-contract=off", "-fexcess-precision=fast"]);
-        compiler.args(["-Iinclude", "-Itests/c"]).args(c_tests::STRICT).args(&options);
+        compiler.args(["-Iinclude", "-Itests/c"]).args(STRICT).args(&options);
         run::check(compiler.arg(source).arg(archive).args(["-lm", "-o"]).arg(&program))?;
-        let mut test: Command = run::command(emulator);
-        run::check(test.arg(&program))
-    })?;
+        run::check(run::command(emulator).arg(&program))?;
+    }
     println!("   {} C tests passed under {emulator}", sources.len());
     let less = if options.is_empty() { "" } else { " without two checks, which this emulator computes wrongly" };
     Ok(format!("{} C tests{less}", sources.len()))

@@ -1,4 +1,4 @@
-//! Global illumination: figures 4.7 and 4.8.
+//! Global illumination: figure 4.7.
 
 use super::Section;
 use super::comparison::{ratios, seeds, thousandfold};
@@ -11,11 +11,8 @@ use anyhow::Result;
 const SCENE: &str = "duck";
 const ESTIMATORS: [&str; 3] = [BASELINE, DEFAULT, LEAST_SQUARES];
 
-/// Shorter paths than the scene's, as the program is told.
-const SHORTER: [&[&str]; 2] = [&["--bounces", "1"], &["--bounces", "2"]];
-
 pub(super) fn write(section: &mut Section) -> Result<()> {
-    section.chapter.section("Global illumination", "figures 4.7 and 4.8");
+    section.chapter.section("Global illumination", "figure 4.7");
     let plan = section.measurement.plan;
     section.chapter.setting("samples per pixel, 15 dims", plan.many);
     section.chapter.setting("pixels on a side of duck", view(section).size);
@@ -41,7 +38,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     let columns =
         ["estimator", "order", "relMSE x 1000", "ratio to MC", "upper half", "lower half", "ratio, same time"];
     section.chapter.table("indirect", &columns, 2, rows);
-    write_lengths(section, &orders)
+    Ok(())
 }
 
 /// Ratios in the upper and in the lower half of the image.
@@ -58,32 +55,6 @@ fn parts(outcome: &Outcome, estimator: &str) -> Result<[Figure; 2]> {
     };
     let (own, plain) = (halves(estimator)?, halves(BASELINE)?);
     Ok([0, 1].map(|half| Figure::new(Estimate::ratio(&own[half], &plain[half]), Unit::Ratio)))
-}
-
-/// Figure 4.8.
-fn write_lengths(section: &mut Section, longest: &[Outcome; 2]) -> Result<()> {
-    let plan = section.measurement.plan;
-    let mut rows = Vec::new();
-    for (options, bounces) in plan.some(&SHORTER).iter().zip(1_u32..) {
-        let view = View { options, ..view(section) };
-        rows.push(length_row(bounces, &orders(section, view)?)?);
-    }
-    rows.push(length_row(3, longest)?);
-    let columns =
-        ["bounces", "dims", "MC, relMSE x 1000", "O1 default", "O1 least squares", "O2 default", "O2 least squares"];
-    section.chapter.table("path lengths", &columns, 1, rows);
-    Ok(())
-}
-
-fn length_row(bounces: u32, orders: &[Outcome; 2]) -> Result<Vec<Cell>> {
-    let dims = orders[0].of(BASELINE)?.timings.first().map_or(0, |timing| timing.dims);
-    let mut cells = row![bounces, dims, thousandfold(&orders[0], BASELINE)?];
-    for outcome in orders {
-        for estimator in [DEFAULT, LEAST_SQUARES] {
-            cells.push(Figure::new(outcome.ratio(estimator)?, Unit::Ratio).into());
-        }
-    }
-    Ok(cells)
 }
 
 /// Smaller than others: order 2 has 136 terms here.

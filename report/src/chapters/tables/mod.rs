@@ -7,12 +7,10 @@ mod direct;
 mod frames;
 mod indirect;
 mod lights;
-mod luminance;
 mod mis;
 mod never_worse;
 mod overhead;
 pub(super) mod public;
-mod reconstruction;
 mod samplers;
 mod solvers;
 mod unbiased;
@@ -36,15 +34,13 @@ type Entry = (u64, fn(&mut Section) -> Result<()>);
 /// In the order of the thesis.
 pub(crate) const SECTIONS: &[Entry] = &[
     (22, direct::write),
-    (9, indirect::write),
+    (5, indirect::write),
     (14, mis::write),
     (9, bases::write),
     (16, lights::write),
-    (12, solvers::write),
-    (4, luminance::write),
+    (8, solvers::write),
     (74, samplers::write),
     (70, frames::write),
-    (15, reconstruction::write),
     (55, animation::write),
     (20, overhead::write),
     (34, never_worse::write),

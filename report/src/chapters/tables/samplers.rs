@@ -33,38 +33,12 @@ impl Errors {
     }
 }
 
-/// What limiting relative errors does.
-struct Limits {
-    /// Per cent of the pixels that are limited: random samples, and the tile.
-    percent: [Option<Estimate>; 2],
-    /// The tile's relMSE over the Sobol points', not limited.
-    unlimited: Option<Estimate>,
-}
-
-impl Limits {
-    fn new(samplers: &[Option<Outcome>]) -> Result<Self> {
-        let percent = |index: usize| -> Result<Option<Estimate>> {
-            let Some(outcome) = &samplers[index] else { return Ok(None) };
-            let images = &outcome.of(BASELINE)?.images;
-            let shares: Vec<f64> =
-                images.iter().map(|image| 100.0 * score::limited(image, &outcome.reference)).collect();
-            Ok(Some(Estimate::median(&shares)))
-        };
-        let unlimited = match (&samplers[TILE], &samplers[SOBOL]) {
-            (Some(tile), Some(sobol)) => Some(Estimate::ratio(&tile.errors(BASELINE)?, &sobol.errors(BASELINE)?)),
-            _ => None,
-        };
-        Ok(Self { percent: [percent(RANDOM)?, percent(TILE)?], unlimited })
-    }
-}
-
 /// One scene at one number of samples.
 struct Measured {
     scene: &'static str,
     spp: u32,
     /// In the order of the columns; None: there is no such sampler.
     alone: Vec<Option<Errors>>,
-    limits: Limits,
     shared: Vec<Option<Errors>>,
 }
 
@@ -88,7 +62,6 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
     section.chapter.table("samplers, raw", &columns, 1, raw);
     let filtered = all.iter().map(|one| error_row(one, |errors| &errors.filtered)).collect();
     section.chapter.table("samplers, filtered", &columns, 1, filtered);
-    write_limits(section, &all);
     write_shared(section, &all);
     aim(section, &all);
     Ok(())
@@ -123,8 +96,7 @@ fn measure(section: &Section, tiles: &Tiles, public: &Public, scene: &'static st
         each.collect()
     };
     let (alone, shared) = (errors(BASELINE)?, errors(SHARED)?);
-    let limits = Limits::new(&samplers)?;
-    Ok(Measured { scene, spp, alone, limits, shared })
+    Ok(Measured { scene, spp, alone, shared })
 }
 
 fn error_row(one: &Measured, of: fn(&Errors) -> &Vec<f64>) -> Vec<Cell> {
@@ -139,21 +111,6 @@ fn error_row(one: &Measured, of: fn(&Errors) -> &Vec<f64>) -> Vec<Cell> {
         cells.push(ratio.map(|ratio| Figure::new(ratio, Unit::Ratio)).into());
     }
     cells
-}
-
-/// Whether limited errors tell another story.
-fn write_limits(section: &mut Section, all: &[Measured]) {
-    let rows = all.iter().map(|one| -> Vec<Cell> {
-        let percent = one.limits.percent.map(|share| share.map(|share| Figure::new(share, Unit::Percent)));
-        let limited = one.alone[TILE].as_ref().zip(one.alone[SOBOL].as_ref());
-        let limited = limited.map(|(tile, sobol)| Figure::new(Estimate::ratio(&tile.raw, &sobol.raw), Unit::Ratio));
-        let unlimited = one.limits.unlimited.map(|ratio| Figure::new(ratio, Unit::Ratio));
-        let [random, tile] = percent;
-        row![one.scene, one.spp, random, tile, limited, unlimited]
-    });
-    let columns =
-        ["scene", "samples", "random: cut, %", "tile 2D: cut, %", "tile over Owen-Sobol, limited", "not limited"];
-    section.chapter.table("samplers, limit", &columns, 1, rows.collect());
 }
 
 /// Shared fits over the same sampler's plain mean.
