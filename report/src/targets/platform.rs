@@ -31,8 +31,9 @@ impl Platform {
 
 /// A compiler with the source of Rust's core, which every target is built from.
 pub(crate) const COMPILER: [Package; 3] = [
-    Package { name: "rustc-web", file: "/usr/bin/rustc" },
-    Package { name: "cargo-web", file: "/usr/bin/cargo" },
+    // Not their programs: those of rustup, in another folder, would stand for them.
+    Package { name: "rustc-web", file: "/usr/share/doc/rustc-web" },
+    Package { name: "cargo-web", file: "/usr/share/doc/cargo-web" },
     Package { name: "rust-web-src", file: "/usr/share/doc/rust-web-src" },
 ];
 
