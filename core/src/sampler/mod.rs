@@ -133,8 +133,8 @@ impl Sampler {
         fixed.map(|value| (value >> 8) as f32 * (1.0 / 16_777_216.0))
     }
 
-    /// Draws `dims` numbers, 1 to 4, of this sample and of those that follow it: sample k's to `u[k * stride..]`, for as
-    /// many samples as `u` has room for. Draws nothing for other `dims`; a stride of less than `dims` is `dims`.
+    /// Draws `dims` numbers, 1 to 4, of this sample and of those that follow it: sample k's to `u[k * stride..]`, for
+    /// as many samples as `u` has room for. Draws nothing for other `dims`; a stride of less than `dims` is `dims`.
     #[inline]
     pub fn draw_samples(&self, dims: usize, stride: usize, u: &mut [f32]) {
         if (1..=4).contains(&dims) {
