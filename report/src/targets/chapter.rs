@@ -54,7 +54,6 @@ fn services(chapter: &mut Chapter, all: &[Findings]) {
     };
     chapter.section("Instructions", "");
     chapter.table("text", &headings, 1, table(|size| size.text));
-    families(chapter, all);
     chapter.section("Constants", "");
     chapter.table("rodata", &headings, 1, table(|size| size.rodata));
     let stateless = all.iter().flat_map(|findings| &findings.sizes).all(|size| size.data == 0);
@@ -64,19 +63,6 @@ fn services(chapter: &mut Chapter, all: &[Findings]) {
         chapter.section("Variables", "");
         chapter.table("variables", &headings, 1, table(|size| size.data));
     }
-}
-
-fn families(chapter: &mut Chapter, all: &[Findings]) {
-    chapter.section("Of which families of estimators take", "");
-    let known: Vec<&Findings> = all.iter().filter(|findings| !findings.families.is_empty()).collect();
-    let names: Vec<&str> = known.iter().map(|findings| findings.platform.name).collect();
-    let headings: Vec<&str> = [&["family"], &names[..]].concat();
-    let parts = known.first().map_or(0, |first| first.families.len());
-    let row = |at: usize| {
-        let name = known.first().map_or("", |first| first.families[at].0);
-        std::iter::once(Cell::from(name)).chain(known.iter().map(|findings| bytes(findings.families[at].1))).collect()
-    };
-    chapter.table("families", &headings, 1, (0..parts).map(row).collect());
 }
 
 fn example(chapter: &mut Chapter, all: &[Findings]) {

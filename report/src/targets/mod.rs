@@ -5,7 +5,6 @@ mod bare_metal;
 mod build;
 mod chapter;
 mod consumer;
-mod families;
 mod platform;
 mod sizes;
 mod wasm;
@@ -29,8 +28,6 @@ pub(crate) struct Options {
 struct Findings {
     platform: &'static Platform,
     sizes: Vec<Size>,
-    /// Of a program that calls nf_cv_estimate.
-    families: families::Parts,
     /// What examples_c/bare_metal told.
     program: bare_metal::Told,
     /// What ran, in words.
@@ -64,14 +61,14 @@ pub(crate) fn run(options: &Options) -> Result<()> {
 /// Builds, runs what can be run, and measures.
 fn one(platform: &'static Platform) -> Result<Findings> {
     let raw = build::archive(platform)?;
-    let (sizes, families) = (sizes::measure(platform, &raw)?, families::measure(platform, &raw)?);
+    let sizes = sizes::measure(platform, &raw)?;
     let (program, ran) = there(platform, &raw)?;
     let version = run::read(run::command(platform.emulator).arg("--version"))?;
     // QEMU says much more in parentheses and further lines.
     let version = version.lines().next().unwrap_or_default().split(" (").next().unwrap_or_default();
     let emulator = format!("`{}`: {version}", platform.emulator);
     println!("   ran on {emulator}");
-    Ok(Findings { platform, sizes, families, program, ran, emulator })
+    Ok(Findings { platform, sizes, program, ran, emulator })
 }
 
 /// Runs what can be run there, and says what that was.

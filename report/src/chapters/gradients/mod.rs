@@ -2,7 +2,6 @@
 
 mod classify;
 mod curves;
-mod image_plot;
 mod mlp;
 mod photograph;
 mod polynomial;

@@ -1,7 +1,6 @@
 //! fit_image.cpp: a photograph learned by a network (figure 6.13).
 
 use super::Context;
-use super::image_plot;
 use super::summary::Summary;
 use super::trainer::Program;
 use crate::chapters::chapter::Chapter;
@@ -24,8 +23,6 @@ pub(super) fn write(context: &Context, chapter: &mut Chapter, targets: &mut Targ
     chapter.section("A photograph", "figure 6.13");
     Summary::parse(&losses.summary)?.write(chapter, "photograph", 1);
     Summary::parse(&strata.summary)?.write(chapter, "photograph strata", 1);
-    let plot = image_plot::loss_plot(&losses.csv, &strata.csv)?;
-    context.plot("photograph", &plot)?;
     let variance = Summary::parse(&errors.summary)?;
     variance.write(chapter, "photograph variance", 2);
     Summary::parse(&strata_errors.summary)?.write(chapter, "photograph variance strata", 2);

@@ -6,7 +6,7 @@ use crate::measure::table::{Row, Table};
 use anyhow::Result;
 
 /// Two digits are what the figures hold.
-pub(super) fn two_digits(value: f64) -> String {
+fn two_digits(value: f64) -> String {
     let before = if value > 0.0 { value.log10().floor() as i32 } else { 0 };
     format!("{value:.*}", (1 - before).max(0) as usize)
 }

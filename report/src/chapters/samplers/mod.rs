@@ -3,7 +3,6 @@
 mod decisions;
 mod draws;
 mod errors;
-mod grid;
 
 use super::Report;
 use super::chapter::Chapter;
@@ -19,15 +18,13 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
         program::measure(report, program, folder.path())?;
     }
     let read = |name: &str| Table::read(&folder.path().join(name), ',');
-    let (energies, times) = (read("energies.csv")?, read("draws.csv")?);
-    let (cells, decisions) = (read("cells.csv")?, read("decisions.csv")?);
+    let (energies, times, decisions) = (read("energies.csv")?, read("draws.csv")?, read("decisions.csv")?);
 
     let mut targets = Targets::default();
     let mut chapter = Chapter::new("Samplers, alone and with estimators");
     errors::write(&energies, &mut chapter, &mut targets)?;
     draws::write(&times, &mut chapter, &mut targets)?;
     decisions::write(&decisions, &mut chapter)?;
-    grid::write(&cells, &mut chapter)?;
     targets.write(&mut chapter);
     Ok(chapter)
 }
