@@ -1,24 +1,26 @@
 //! Starts the crates `release` and `report`, which stand apart because what they are made of takes long to compile.
 
 use crate::outcome::{NOT_RUN, Outcome};
-use crate::{paths, run};
+use crate::{paths, run, tools};
 use anyhow::{Context, Result, bail};
 use std::ffi::OsString;
 use std::process::{Command, Stdio};
 
 fn program(folder: &str) -> Command {
     let mut program = run::cargo();
-    program.args(["run", "--quiet", "--profile", "xtask", "--manifest-path"]);
-    program.arg(paths::root().join(folder).join("Cargo.toml")).arg("--");
+    program.args(["run", "--profile", "xtask", "--manifest-path"]);
+    program.arg(paths::root().join(folder).join("Cargo.toml"));
     program
 }
 
 /// Runs `cargo xtask COMMAND ARGUMENTS` in this process's place: its errors, its exit status and what an interruption
 /// does are its own.
 pub fn start(folder: &str, command: &str, arguments: &[OsString]) -> Result<()> {
+    // Before a minute of compiling.
+    tools::compilers()?;
     println!("building {folder}/ (about a minute, once)");
     let mut program = program(folder);
-    program.arg(command).args(arguments);
+    program.arg("--").arg(command).args(arguments);
     // What the arguments name is where this process was started.
     program.current_dir(std::env::current_dir()?);
     #[cfg(unix)]
@@ -29,7 +31,8 @@ pub fn start(folder: &str, command: &str, arguments: &[OsString]) -> Result<()> 
 
 /// Runs a step of the tests.
 pub fn check(folder: &str, step: &str) -> Result<Outcome> {
-    let output = program(folder).args(["check", step]).stderr(Stdio::piped()).spawn()?.wait_with_output()?;
+    let output =
+        program(folder).args(["--quiet", "--", "check", step]).stderr(Stdio::piped()).spawn()?.wait_with_output()?;
     let errors = String::from_utf8_lossy(&output.stderr);
     if output.status.code() == Some(NOT_RUN.into()) {
         return Ok(Outcome::NotRun(errors.lines().last().unwrap_or_default().to_owned()));

@@ -16,6 +16,11 @@ pub fn ensure() -> Result<()> {
             components.join(", cargo ")
         );
     }
+    compilers()
+}
+
+/// Fails unless there are C and C++ compilers and binutils; on Debian, as root, missing ones are installed first.
+pub fn compilers() -> Result<()> {
     let missing = missing_compilers();
     if missing.is_empty() {
         return Ok(());
@@ -27,7 +32,7 @@ pub fn ensure() -> Result<()> {
     let missing = missing_compilers();
     if !missing.is_empty() {
         bail!(
-            "missing: {}. The C and C++ tests need a C99 and a C++17 compiler and binutils (Debian: apt-get install \
+            "missing: {}. What is compiled needs a C99 and a C++17 compiler and binutils (Debian: apt-get install \
              gcc g++ libc6-dev binutils); $CC and $CXX name other compilers",
             missing.join(", ")
         );

@@ -113,6 +113,29 @@ impl Chapter {
         self.tables.push(Table { name, section: self.section.clone(), columns, words, rows });
     }
 
+    /// A table with a row for each of `down` and a column for each of `across`; the words of a row stand under `words`.
+    /// A row without any cell is left out.
+    pub(crate) fn grid<D, A>(
+        &mut self,
+        name: &'static str,
+        words: &[&str],
+        down: impl IntoIterator<Item = (Vec<Cell>, D)>,
+        across: &[(String, A)],
+        cell: impl Fn(&D, &A) -> Result<Cell>,
+    ) -> Result<()> {
+        let mut rows = Vec::new();
+        for (mut cells, of) in down {
+            for (_, at) in across {
+                cells.push(cell(&of, at)?);
+            }
+            if cells[words.len()..].iter().any(|cell| !matches!(cell, Cell::Missing)) {
+                rows.push(cells);
+            }
+        }
+        self.table(name, &headings(words, across.iter().map(|(heading, _)| heading.clone())), words.len(), rows);
+        Ok(())
+    }
+
     pub(crate) fn json(&self) -> Value {
         json!({ "title": self.title, "settings": self.settings, "quoted": self.quoted, "tables": self.tables })
     }

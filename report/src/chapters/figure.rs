@@ -87,6 +87,16 @@ impl Figure {
         Self { text: unit.text(estimate.value), ..Self::new(estimate, unit) }
     }
 
+    /// The median of a figure that was measured several times; none of one that never was.
+    pub(crate) fn median(values: &[f64], unit: Unit) -> Option<Self> {
+        (!values.is_empty()).then(|| Self::new(Estimate::median(values), unit))
+    }
+
+    /// The mean, as [`Figure::brief`].
+    pub(crate) fn mean(values: &[f64], unit: Unit) -> Option<Self> {
+        (!values.is_empty()).then(|| Self::brief(Estimate::mean(values), unit))
+    }
+
     /// Without an interval: a count, or the largest of several figures.
     pub(crate) fn exact(value: f64, unit: Unit) -> Self {
         let value_or_none = Some(value).filter(|value| value.is_finite());

@@ -15,7 +15,7 @@ pub(super) fn build(names: &[&str], plan: &Plan) -> Result<Vec<PathBuf>> {
     // The programs link it, so that what ships is what is measured.
     library::build()?;
     let mut cargo = run::cargo();
-    cargo.args(["build", "--quiet", "--profile", plan.profile(), "--package", "noisefloor-bench"]);
+    cargo.args(["build", "--profile", plan.profile(), "--package", "noisefloor-bench"]);
     names.iter().for_each(|name| _ = cargo.args(["--bench", name]));
     let messages = run::read(cargo.args(["--message-format", "json-render-diagnostics"]).stderr(Stdio::inherit()))?;
     let artifacts: Vec<Value> = messages.lines().filter_map(|line| serde_json::from_str(line).ok()).collect();

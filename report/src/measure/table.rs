@@ -66,6 +66,16 @@ impl Table {
         self.rows().map(|row| row.number(heading)).collect()
     }
 
+    /// The numbers of a column in the rows with these cells under these headings.
+    pub(crate) fn numbers_of(&self, heading: &str, wanted: &[(&str, &str)]) -> Result<Vec<f64>> {
+        self.rows().filter(|row| row.has(wanted)).map(|row| row.number(heading)).collect()
+    }
+
+    /// The different cells of a column, each with its words in the heading of a table.
+    pub(crate) fn headings(&self, heading: &str, words: impl Fn(&str) -> String) -> Result<Vec<(String, &str)>> {
+        Ok(self.distinct(heading)?.into_iter().map(|word| (words(word), word)).collect())
+    }
+
     /// The different cells of a column, in the order in which they come.
     pub(crate) fn distinct(&self, heading: &str) -> Result<Vec<&str>> {
         let mut words = Vec::new();

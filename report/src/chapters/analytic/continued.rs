@@ -1,6 +1,6 @@
 //! Samples beyond a tile's.
 
-use crate::chapters::chapter::{Cell, Chapter, headings};
+use crate::chapters::chapter::{Cell, Chapter};
 use crate::chapters::figure::{Figure, Unit};
 use crate::measure::table::Table;
 use anyhow::{Context, Result};
@@ -9,23 +9,18 @@ pub(super) fn write(chapter: &mut Chapter, table: &Table) -> Result<()> {
     chapter.section("Samples beyond a tile's", "");
     let first = table.rows().next().context("the program has measured no tile")?;
     chapter.setting("integrands of each kind", first.number::<u32>("count")?);
-    let times = table.distinct("times")?;
-    let mut rows: Vec<Vec<Cell>> = Vec::new();
-    let mut last = None;
+    const KEYS: [&str; 4] = ["spp", "tile", "integrands", "samples"];
+    let mut kinds: Vec<[&str; 4]> = Vec::new();
     for row in table.rows() {
-        let key = [row.word("spp")?, row.word("tile")?, row.word("integrands")?, row.word("samples")?];
-        if last != Some(key) {
-            rows.push(key.map(Cell::from).to_vec());
-            last = Some(key);
-        }
-        if let Some(cells) = rows.last_mut() {
-            cells.push(Figure::exact(row.number("error")?, Unit::Number).into());
-        }
+        let [spp, tile, integrands, samples] = KEYS.map(|key| row.word(key));
+        let kind = [spp?, tile?, integrands?, samples?];
+        kinds.extend((!kinds.contains(&kind)).then_some(kind));
     }
-    // As many as there are of few samples.
-    rows.iter_mut().for_each(|row| row.resize(4 + times.len(), Cell::Missing));
-    let times = times.iter().map(|times| format!("n / spp = {times}"));
-    let columns = headings(&["spp", "tile", "integrands", "samples"], times);
-    chapter.table("continued tiles", &columns, 4, rows);
-    Ok(())
+    let times = table.headings("times", |times| format!("n / spp = {times}"))?;
+    let down = kinds.into_iter().map(|kind| (kind.map(Cell::from).to_vec(), kind));
+    chapter.grid("continued tiles", &KEYS, down, &times, |[spp, tile, integrands, samples], times| {
+        let wanted =
+            [("spp", *spp), ("tile", tile), ("integrands", integrands), ("samples", samples), ("times", times)];
+        Ok(Figure::mean(&table.numbers_of("error", &wanted)?, Unit::Number).into())
+    })
 }

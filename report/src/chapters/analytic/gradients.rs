@@ -1,8 +1,7 @@
 //! Gradients of minibatches: optimal MIS beside importance sampling.
 
-use crate::chapters::chapter::{Cell, Chapter, headings, row};
+use crate::chapters::chapter::{Cell, Chapter, row};
 use crate::chapters::figure::{Figure, Unit};
-use crate::chapters::statistics::Estimate;
 use crate::measure::table::Table;
 use anyhow::{Context, Result};
 
@@ -12,67 +11,42 @@ const SOLVERS: [&str; 3] = ["balance", "plain", "ridge"];
 
 pub(super) fn polynomial(chapter: &mut Chapter, table: &Table) -> Result<()> {
     chapter.section("Optimal MIS gradients", "");
-    let steps = table.distinct("steps")?;
-    let mean = |heading: &str, keys: &[(&str, &str)]| -> Result<Cell> {
-        let values: Vec<f64> =
-            table.rows().filter(|row| row.has(keys)).map(|row| row.number(heading)).collect::<Result<_>>()?;
-        Ok(Figure::brief(Estimate::mean(&values), Unit::Number).into())
-    };
-    let techniques = table.distinct("techniques")?;
-    let first = *techniques.first().context("the program has measured no techniques")?;
-    let mut rows: Vec<Vec<Cell>> = vec![row![ONE]];
-    for &step in &steps {
-        rows[0].push(mean("one", &[("steps", step), ("techniques", first)])?);
-    }
-    for &count in &techniques {
-        for solver in SOLVERS {
-            let mut cells = row![format!("{count} signed tables, {solver}")];
-            for &step in &steps {
-                cells.push(mean(solver, &[("steps", step), ("techniques", count)])?);
-            }
-            rows.push(cells);
-        }
-    }
-    let columns = headings(&["tables"], steps.iter().map(|step| format!("{step} steps")));
-    chapter.table("polynomial", &columns, 1, rows);
-    Ok(())
+    let counts = table.distinct("techniques")?;
+    let first = *counts.first().context("the program has measured no techniques")?;
+    let several = counts.iter().flat_map(|count| SOLVERS.map(|solver| (*count, solver)));
+    let several = several.map(|(count, solver)| (row![format!("{count} signed tables, {solver}")], (count, solver)));
+    let down = [(row![ONE], (first, "one"))].into_iter().chain(several);
+    let steps = table.headings("steps", |steps| format!("{steps} steps"))?;
+    chapter.grid("polynomial", &["tables"], down, &steps, |(count, solver), steps| {
+        let values = table.numbers_of(solver, &[("steps", steps), ("techniques", count)])?;
+        Ok(Figure::mean(&values, Unit::Number).into())
+    })
 }
 
 pub(super) fn classifier(chapter: &mut Chapter, table: &Table) -> Result<()> {
-    let names = [
-        ("one", ONE.to_owned()),
-        ("balance", "10 signed tables, balance".to_owned()),
-        ("plain", "10 signed tables, plain".to_owned()),
-        ("ridge", "10 signed tables, ridge".to_owned()),
-    ];
-    let mut columns = vec!["tables".to_owned()];
-    let mut rows: Vec<Vec<Cell>> = names.iter().map(|(_, name)| row![name.clone()]).collect();
-    for batch in table.distinct("batch")? {
-        for steps in table.distinct("steps")? {
-            columns.push(format!("batch {batch}, {steps} steps"));
-            let found = table.find(&[("batch", batch), ("steps", steps)])?;
-            for ((heading, _), cells) in names.iter().zip(&mut rows) {
-                cells.push(Figure::exact(found.number(heading)?, Unit::Number).into());
-            }
-        }
-    }
-    chapter.table("classifier", &columns, 1, rows);
-    Ok(())
+    let several = SOLVERS.map(|solver| (row![format!("10 signed tables, {solver}")], solver));
+    let down = [(row![ONE], "one")].into_iter().chain(several);
+    let steps = table.distinct("steps")?;
+    let across: Vec<_> = table
+        .distinct("batch")?
+        .into_iter()
+        .flat_map(|batch| steps.iter().map(move |steps| (format!("batch {batch}, {steps} steps"), (batch, *steps))))
+        .collect();
+    chapter.grid("classifier", &["tables"], down, &across, |solver, (batch, steps)| {
+        let found = table.find(&[("batch", batch), ("steps", steps)])?;
+        Ok(Figure::exact(found.number(solver)?, Unit::Number).into())
+    })
 }
 
 pub(super) fn bias(chapter: &mut Chapter, table: &Table) -> Result<()> {
-    let mut rows: Vec<Vec<Cell>> = Vec::new();
-    for batch in table.distinct("batch")? {
-        let mut cells = row![format!("batch {batch}")];
-        for solver in ["ridge", "plain"] {
-            let found = table.find(&[("batch", batch), ("solver", solver)])?;
-            for heading in ["bias", "error"] {
-                cells.push(Figure::exact(found.number(heading)?, Unit::Number).into());
-            }
-        }
-        rows.push(cells);
-    }
-    let columns = ["batch", "ridge: bias", "ridge: RMS error", "plain: bias", "plain: RMS error"];
-    chapter.table("gradient bias", &columns, 1, rows);
-    Ok(())
+    let down = table.distinct("batch")?.into_iter().map(|batch| (row![format!("batch {batch}")], batch));
+    let what = [("bias", "bias"), ("RMS error", "error")];
+    let across: Vec<(String, _)> = ["ridge", "plain"]
+        .into_iter()
+        .flat_map(|solver| what.map(|(words, heading)| (format!("{solver}: {words}"), (solver, heading))))
+        .collect();
+    chapter.grid("gradient bias", &["batch"], down, &across, |batch, (solver, heading)| -> Result<Cell> {
+        let found = table.find(&[("batch", batch), ("solver", solver)])?;
+        Ok(Figure::exact(found.number(heading)?, Unit::Number).into())
+    })
 }

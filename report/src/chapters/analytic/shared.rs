@@ -20,22 +20,18 @@ pub(super) fn tiles(chapter: &mut Chapter, targets: &mut Targets, table: &Table)
     let count = |samples: &str| table.find(&[("samples", samples)])?.number::<u32>("count");
     chapter.setting("half-planes, and bumps", count("1")?);
     chapter.setting("the same at 16 samples", count("16")?);
-    let methods = table.distinct("method")?;
-    let mut rows: Vec<Vec<Cell>> = Vec::new();
-    for integrands in table.distinct("integrands")? {
-        for samples in table.distinct("samples")? {
-            for (error, name) in ERRORS.into_iter().zip(NAMES) {
-                let mut cells = row![samples, integrands, name];
-                for &method in &methods {
-                    let keys = [("samples", samples), ("integrands", integrands), ("method", method)];
-                    cells.push(Figure::exact(table.find(&keys)?.number(error)?, Unit::Number).into());
-                }
-                rows.push(cells);
-            }
-        }
-    }
-    let columns = [&["samples", "integrands", "error"][..], &methods].concat();
-    chapter.table("shared fits on tiles", &columns, 3, rows);
+    let methods = table.headings("method", str::to_owned)?;
+    let (integrands, samples) = (table.distinct("integrands")?, table.distinct("samples")?);
+    let kinds = integrands.iter().flat_map(|of| samples.iter().map(move |samples| (*of, *samples)));
+    let each = kinds.flat_map(|(of, samples)| {
+        let errors = ERRORS.into_iter().zip(NAMES);
+        errors.map(move |(error, name)| (row![samples, of, name], (of, samples, error)))
+    });
+    chapter.grid("shared fits on tiles", &["samples", "integrands", "error"], each, &methods, |of, method| {
+        let (integrands, samples, error) = of;
+        let found = table.find(&[("samples", *samples), ("integrands", integrands), ("method", method)])?;
+        Ok(Figure::exact(found.number(error)?, Unit::Number).into())
+    })?;
     for (samples, bounds) in GAINS {
         for ((error, name), bound) in ERRORS.into_iter().zip(NAMES).zip(bounds) {
             let keys = [("samples", samples), ("integrands", "the same everywhere"), ("method", "8 x 8, order 4")];

@@ -13,26 +13,26 @@ fn two_digits(value: f64) -> String {
 
 pub(super) fn write(table: &Table, chapter: &mut Chapter) -> Result<()> {
     chapter.section("What is recommended", "");
-    let counts = table.distinct("n")?;
-    let headings: Vec<String> = counts.iter().map(|n| format!("n = {n}")).collect();
-    let columns: Vec<&str> =
-        ["dims", "samples", "neighbours"].into_iter().chain(headings.iter().map(String::as_str)).collect();
-    let mut rows = Vec::new();
-    for dims in table.distinct("dims")? {
-        for (samples, neighbours) in table.kinds()? {
-            let mut cells: Vec<Cell> = row![dims, samples.as_str(), neighbours.as_str()];
-            for n in &counts {
-                let wanted = [("dims", dims), ("samples", &samples), ("neighbours", &neighbours), ("n", n)];
-                cells.push(match table.rows().find(|row| row.has(&wanted)) {
-                    Some(row) if neighbours.is_empty() => name(row, "recommended")?.into(),
-                    Some(row) => choice(row, "recommended", ["raw", "filtered"])?.into(),
-                    None => Cell::Missing,
-                });
-            }
-            rows.push(cells);
-        }
-    }
-    chapter.table("recommended", &columns, 3, rows);
+    let counts = table.headings("n", |n| format!("n = {n}"))?;
+    let (dims, kinds) = (table.distinct("dims")?, table.kinds()?);
+    let of = |dims| {
+        kinds.iter().map(move |(samples, near)| (row![dims, samples.as_str(), near.as_str()], (dims, samples, near)))
+    };
+    chapter.grid(
+        "recommended",
+        &["dims", "samples", "neighbours"],
+        dims.into_iter().flat_map(of),
+        &counts,
+        |of, n| {
+            let (dims, samples, neighbours) = of;
+            let wanted = [("dims", *dims), ("samples", samples), ("neighbours", neighbours), ("n", n)];
+            Ok(match table.rows().find(|row| row.has(&wanted)) {
+                Some(row) if neighbours.is_empty() => name(row, "recommended")?.into(),
+                Some(row) => choice(row, "recommended", ["raw", "filtered"])?.into(),
+                None => Cell::Missing,
+            })
+        },
+    )?;
     other(table, chapter)
 }
 

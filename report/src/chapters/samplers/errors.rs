@@ -1,6 +1,6 @@
 //! Errors of samplers alone, by number of samples, raw and through three filters.
 
-use crate::chapters::chapter::{Cell, Chapter, row};
+use crate::chapters::chapter::{Chapter, row};
 use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::statistics::Estimate;
 use crate::chapters::targets::Targets;
@@ -33,28 +33,21 @@ const WANTED: &[(&str, &str, &str, &str, usize, f64)] = &[
     ("4", "4", "tile", "g2", 0, 0.14),
 ];
 
-/// What is measured of one sampler.
-struct Energies<'a>(&'a Table);
-
-impl Energies<'_> {
-    /// One value for each batch; empty where the sampler does not exist.
-    fn batches(&self, dims: &str, spp: &str, sampler: &str, kernel: &str, family: &str) -> Result<Vec<f64>> {
-        let wanted = [("dims", dims), ("spp", spp), ("sampler", sampler), ("family", family)];
-        self.0.rows().filter(|row| row.has(&wanted)).map(|row| row.number(kernel)).collect()
-    }
+/// One value for each batch; empty where the sampler does not exist.
+fn batches(table: &Table, dims: &str, spp: &str, sampler: &str, kernel: &str, family: &str) -> Result<Vec<f64>> {
+    table.numbers_of(kernel, &[("dims", dims), ("spp", spp), ("sampler", sampler), ("family", family)])
 }
 
 pub(super) fn write(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
-    let energies = Energies(table);
     introduce(table, chapter)?;
     for dims in table.distinct("dims")? {
         chapter.section(&format!("Samplers alone, {dims} dims"), "");
         for kernel in KERNELS {
-            errors(&energies, table, dims, kernel, chapter)?;
+            errors(table, dims, kernel, chapter)?;
         }
     }
     for &(dims, spp, sampler, kernel, family, bound) in WANTED {
-        let values = energies.batches(dims, spp, sampler, kernel, FAMILIES[family])?;
+        let values = batches(table, dims, spp, sampler, kernel, FAMILIES[family])?;
         if values.is_empty() {
             continue;
         }
@@ -75,25 +68,12 @@ fn introduce(table: &Table, chapter: &mut Chapter) -> Result<()> {
     Ok(())
 }
 
-fn errors(energies: &Energies, table: &Table, dims: &str, kernel: &str, chapter: &mut Chapter) -> Result<()> {
+fn errors(table: &Table, dims: &str, kernel: &str, chapter: &mut Chapter) -> Result<()> {
     let counts = table.distinct("spp")?;
-    let headings: Vec<String> =
-        FAMILIES.iter().flat_map(|family| counts.iter().map(move |spp| format!("{family}, {spp} spp"))).collect();
-    let columns: Vec<&str> = ["sampler"].into_iter().chain(headings.iter().map(String::as_str)).collect();
-    let mut rows = Vec::new();
-    for sampler in table.distinct("sampler")? {
-        let mut cells: Vec<Cell> = row![sampler];
-        for (family, spp) in FAMILIES.iter().flat_map(|family| counts.iter().map(move |spp| (family, spp))) {
-            let values = energies.batches(dims, spp, sampler, kernel, family)?;
-            cells.push(match values.is_empty() {
-                true => Cell::Missing,
-                false => Figure::brief(Estimate::mean(&values), Unit::Number).into(),
-            });
-        }
-        if cells[1..].iter().any(|cell| matches!(cell, Cell::Figure(_))) {
-            rows.push(cells);
-        }
-    }
-    chapter.table("errors", &columns, 1, rows);
-    Ok(())
+    let pairs = FAMILIES.iter().flat_map(|family| counts.iter().map(move |spp| (*family, *spp)));
+    let across: Vec<_> = pairs.map(|(family, spp)| (format!("{family}, {spp} spp"), (family, spp))).collect();
+    let down = table.distinct("sampler")?.into_iter().map(|sampler| (row![sampler], sampler));
+    chapter.grid("errors", &["sampler"], down, &across, |sampler, (family, spp)| {
+        Ok(Figure::mean(&batches(table, dims, spp, sampler, kernel, family)?, Unit::Number).into())
+    })
 }
