@@ -15,7 +15,7 @@ const RISC_V_32: (&str, &str) = ("LDEMULATION", "elf32lriscv");
 ///
 /// capi/cmake/one_object.sh, which the CMake build uses too, says why cargo's own archive is not the one.
 pub fn build() -> Result<PathBuf> {
-    run::check(run::cargo().args(["build", "--release", "--package", "noisefloor-capi"]))?;
+    run::compile(run::cargo().args(["build", "--release", "--package", "noisefloor-capi"]))?;
     one_object(&paths::target().join("release/libnoisefloor.a"), &paths::output(), "")
 }
 

@@ -59,7 +59,12 @@ enum Command {
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
-        Command::Demo(passed) => start::start("report", "demo", &passed.arguments),
+        Command::Demo(passed) => {
+            println!(
+                "a path tracer with every sampler and fits, then small trainers: pictures and tables in target/demo"
+            );
+            start::start("report", "demo", &passed.arguments)
+        }
         Command::Povray => povray::run(),
         Command::Report(passed) => start::start("report", "report", &passed.arguments),
         Command::Targets(passed) => start::start("report", "targets", &passed.arguments),

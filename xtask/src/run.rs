@@ -3,6 +3,8 @@
 use anyhow::{Context, Result, bail};
 use std::ffi::OsStr;
 use std::process::Command;
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// A command that runs in the workspace root.
 pub fn command(program: impl AsRef<OsStr>) -> Command {
@@ -24,6 +26,27 @@ pub fn compiler(variable: &str, default: &str) -> Command {
 /// Runs to the end; a failure is an error that shows the command line.
 pub fn check(command: &mut Command) -> Result<()> {
     let status = command.status().with_context(|| missing(command))?;
+    if !status.success() {
+        bail!("failed ({status}): {}", line(command));
+    }
+    Ok(())
+}
+
+/// As [`check`], and says every ten seconds that a compiler is still at work.
+pub fn compile(command: &mut Command) -> Result<()> {
+    let (mut child, start) = (command.spawn().with_context(|| missing(command))?, Instant::now());
+    let mut said = 0;
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break status;
+        }
+        thread::sleep(Duration::from_millis(20));
+        let tens = start.elapsed().as_secs() / 10;
+        if tens > said {
+            println!("   compiling for {} s", 10 * tens);
+            said = tens;
+        }
+    };
     if !status.success() {
         bail!("failed ({status}): {}", line(command));
     }

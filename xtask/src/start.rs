@@ -6,9 +6,9 @@ use anyhow::{Context, Result, bail};
 use std::ffi::OsString;
 use std::process::{Command, Stdio};
 
-fn program(folder: &str) -> Command {
+fn program(cargo: &str, folder: &str) -> Command {
     let mut program = run::cargo();
-    program.args(["run", "--profile", "xtask", "--manifest-path"]);
+    program.args([cargo, "--profile", "xtask", "--manifest-path"]);
     program.arg(paths::root().join(folder).join("Cargo.toml"));
     program
 }
@@ -19,8 +19,9 @@ pub fn start(folder: &str, command: &str, arguments: &[OsString]) -> Result<()> 
     // Before a minute of compiling.
     tools::compilers()?;
     println!("building {folder}/ (about a minute, once)");
-    let mut program = program(folder);
-    program.arg("--").arg(command).args(arguments);
+    run::compile(&mut program("build", folder))?;
+    let mut program = program("run", folder);
+    program.args(["--quiet", "--"]).arg(command).args(arguments);
     // What the arguments name is where this process was started.
     program.current_dir(std::env::current_dir()?);
     #[cfg(unix)]
@@ -31,8 +32,11 @@ pub fn start(folder: &str, command: &str, arguments: &[OsString]) -> Result<()> 
 
 /// Runs a step of the tests.
 pub fn check(folder: &str, step: &str) -> Result<Outcome> {
-    let output =
-        program(folder).args(["--quiet", "--", "check", step]).stderr(Stdio::piped()).spawn()?.wait_with_output()?;
+    let output = program("run", folder)
+        .args(["--quiet", "--", "check", step])
+        .stderr(Stdio::piped())
+        .spawn()?
+        .wait_with_output()?;
     let errors = String::from_utf8_lossy(&output.stderr);
     if output.status.code() == Some(NOT_RUN.into()) {
         return Ok(Outcome::NotRun(errors.lines().last().unwrap_or_default().to_owned()));

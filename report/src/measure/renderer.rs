@@ -76,7 +76,7 @@ impl Renderer {
         let program = paths::output().join("pathtracer");
         let mut compiler = run::compiler("CXX", "c++");
         compiler.args(["-O2", "-std=c++17", "-Wall", "-Wextra", "-Iinclude", "examples_c/pathtracer.cpp"]);
-        run::check(compiler.arg(&archive).args(["-pthread", "-o"]).arg(&program))?;
+        run::compile(compiler.arg(&archive).args(["-pthread", "-o"]).arg(&program))?;
         Ok(Self::new(program))
     }
 
