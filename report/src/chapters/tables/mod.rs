@@ -1,18 +1,12 @@
-//! The sections of the Embree chapter: one file for each comparison, in the layout of the thesis's figure.
+//! The sections of the Embree chapter, in the layouts of the thesis's figures.
 
 mod animation;
-mod bases;
-mod comparison;
-mod direct;
+mod estimators;
 mod frames;
-mod indirect;
-mod lights;
-mod mis;
 mod never_worse;
 mod overhead;
 pub(super) mod public;
 mod samplers;
-mod solvers;
 mod unbiased;
 
 use super::chapter::Chapter;
@@ -33,12 +27,12 @@ type Entry = (u64, fn(&mut Section) -> Result<()>);
 
 /// In the order of the thesis.
 pub(crate) const SECTIONS: &[Entry] = &[
-    (22, direct::write),
-    (5, indirect::write),
-    (14, mis::write),
-    (9, bases::write),
-    (16, lights::write),
-    (8, solvers::write),
+    (22, estimators::direct),
+    (5, estimators::indirect),
+    (14, estimators::mis),
+    (9, estimators::bases),
+    (16, estimators::lights),
+    (8, estimators::solvers),
     (74, samplers::write),
     (70, frames::write),
     (55, animation::write),

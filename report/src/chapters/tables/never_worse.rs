@@ -1,7 +1,7 @@
 //! Is the default ever worse than plain Monte Carlo? Over whole images, and pixel by pixel.
 
 use super::Section;
-use super::comparison::seeds;
+use super::estimators::seeds;
 use crate::chapters::chapter::{headings, row};
 use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::measurement::{BASELINE, DEFAULT, Experiment, View};
