@@ -1,5 +1,6 @@
 //! What must hold before a version is published (CONTRIBUTING.md, "Releases"): the C header, generated from `capi/`,
-//! the list of what its ABI promises, packages, licences, versions. `cargo xtask header`, `abi` and `licences` start it.
+//! the list of what its ABI promises, packages, licences, versions. `cargo xtask header`, `abi` and `licences` start
+//! it.
 
 mod abi;
 mod banner;
