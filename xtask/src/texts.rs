@@ -124,6 +124,9 @@ pub fn sizes() -> Result<Outcome> {
         let texts = of(room, ".rs");
         println!("   {room:<10} {:>6} lines of Rust in {} files", lines(&texts), texts.len());
     }
+    let sum = |rooms: &[&str]| rooms.iter().map(|room| lines(&of(room, ".rs"))).sum::<usize>() as f64;
+    let tools = sum(&["bench/", "release/", "report/", "xtask/"]) / sum(&["core/src/", "capi/src/"]);
+    println!("   bench/, release/, report/ and xtask/ are {tools:.2} of core/ and capi/");
     let doctests = of("core/src/", ".rs").iter().map(|text| in_fences(text)).sum::<usize>();
     println!("   core/src/  {doctests:>6} lines of doctests");
     let readme = of("README.md", "");
