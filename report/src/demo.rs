@@ -15,7 +15,8 @@ use anyhow::{Context, Result};
 use clap::Args;
 use image::imageops::replace;
 use image::{Rgb, Rgb32FImage, RgbImage};
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 use xtask::paths;
 
 #[derive(Args)]
@@ -58,8 +59,10 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let output = Output::new(&folder)?;
     scenes(options, &renderer, &output)?;
     output.commit()?;
+    index(&folder)?;
     println!("{}\n", folder.join("shared.png").display());
     chapters::run(&chapters::Options::gradients(options.quick, &folder))?;
+    index(&folder)?;
     println!("pictures and tables: {}", folder.join("index.html").display());
     Ok(())
 }
@@ -100,13 +103,25 @@ fn scenes(options: &Options, renderer: &Renderer, output: &Output) -> Result<()>
     let table = chapter.render(include_str!("../templates/demo.md"), &|_| true)?;
     output.write_text("demo.md", &table)?;
     println!("{table}");
-    let link = |file: &str| format!("<p><a href=\"{file}\">{file}</a></p>\n");
+    Ok(())
+}
+
+/// What `index.html` shows, if it is there already.
+const PICTURES: [(&str, &str); 3] = [
+    ("shared.png", "Samplers and shared fits at equal samples: each image with its error below"),
+    ("gradients-digits-time.svg", "Test error of small digits against seconds of training"),
+    ("gradients-mnist-time.svg", "Test error of MNIST against seconds of training"),
+];
+const TABLES: [&str; 2] = ["demo.md", "gradients.md"];
+
+fn index(folder: &Path) -> Result<()> {
+    let there = |file: &&str| folder.join(file).exists();
+    let pictures = PICTURES.into_iter().filter(|(file, _)| there(file));
+    let pictures = pictures.map(|(file, words)| format!("<p>{words}</p>\n<img src=\"{file}\">\n"));
+    let tables = TABLES.into_iter().filter(there).map(|file| format!("<p><a href=\"{file}\">{file}</a></p>\n"));
     let html = "<!doctype html><meta charset=\"utf-8\"><title>noisefloor: demo</title>\n".to_owned()
-        + "<p>Samplers and shared fits at equal samples: each image with its error below</p>\n"
-        + "<img src=\"shared.png\">\n<p>Test error of small digits against seconds of training</p>\n"
-        + "<img src=\"gradients-digits-time.svg\">\n"
-        + &["demo.md", "gradients.md"].map(link).concat();
-    output.write_text("index.html", &html)
+        + &pictures.chain(tables).collect::<String>();
+    fs::write(folder.join("index.html"), html).context("cannot write index.html")
 }
 
 fn render(
