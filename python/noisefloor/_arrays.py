@@ -27,7 +27,7 @@ def floats(name, value):
     if view.dtype.kind not in "fiub":
         raise TypeError(f"{name} holds {view.dtype}: real numbers are expected")
     with numpy.errstate(over="ignore"):
-        return numpy.ascontiguousarray(view, numpy.float32)
+        return numpy.asarray(view, numpy.float32, order="C")
 
 
 def integers(name, value, most):
@@ -38,7 +38,7 @@ def integers(name, value, most):
             raise TypeError(f"{name} holds {view.dtype}: integers are expected")
         view = view.astype(numpy.int64)
     check(name, view, (view >= 0) & (view <= most), f"0 to {most}")
-    return numpy.ascontiguousarray(view, numpy.uint32)
+    return numpy.asarray(view, numpy.uint32, order="C")
 
 
 def integer(name, value, least, most):

@@ -118,7 +118,6 @@ CONSTANTS = dict(
     NF_METHOD_PLAIN_MEAN=0,
     NF_METHOD_PER_PIXEL=1,
     NF_METHOD_SHARED=2,
-    NF_NODES_SIGN=1,
     NF_OMIS_RIDGE=0,
     NF_MIS_MAX_TECHNIQUES=16,
 )
@@ -163,7 +162,6 @@ nf_status nf_table_save(const nf_table *, void *, size_t);
 uint32_t nf_table_saved_items(const void *, size_t);
 nf_status nf_table_load(nf_table *, void *, size_t, const void *, size_t);
 uint32_t nf_shuffle(uint64_t, uint32_t, uint32_t);
-nf_status nf_importance_nodes(const float *, uint32_t, uint32_t, uint32_t, float *);
 nf_status nf_omis_weights(uint32_t, float, uint32_t, uint32_t, const float *, const uint32_t *, uint32_t, float *);
 """
 

@@ -120,7 +120,7 @@ class Table:
             index = _arrays.array("index", index)
         if type(importance) is not numpy.ndarray:
             importance = _arrays.array("importance", importance)
-        if index.dtype.char not in "lL":
+        if index.dtype.char != "l":
             index = _arrays.integers("index", index, self._n - 1).astype(numpy.int64)
         if importance.dtype.char != "f":
             importance = _arrays.floats("importance", importance)
