@@ -2,5 +2,5 @@
 
 import hypothesis
 
-hypothesis.settings.register_profile("suite", deadline=None, derandomize=True, max_examples=60, print_blob=False)
+hypothesis.settings.register_profile("suite", deadline=None, derandomize=True, max_examples=60, database=None)
 hypothesis.settings.load_profile("suite")
