@@ -86,13 +86,12 @@ class QMCEngine:
     """The same points as a sequence, with the methods of the engines of `scipy.stats.qmc`.
 
     Args:
-        d: dims, at least 1. The first four are stratified together, further ones by fours among themselves: in more
-            dims `scipy.stats.qmc.Sobol` is the better engine.
+        d: dims, 1 to 4. In 2 it is as good as `scipy.stats.qmc.Sobol`; in more that is the better engine.
         seed: 0 to 2**32 - 1; sequences of different seeds are unrelated. None: another one each time.
     """
 
     def __init__(self, d, *, seed=None):
-        self.d = _arrays.integer("d", d, 1, LAST)
+        self.d = _arrays.integer("d", d, 1, 4)
         self.seed = secrets.randbits(32) if seed is None else _arrays.integer("seed", seed, 0, LAST)
         self.num_generated = 0
         self._sampler = Sampler(frame=self.seed, white=True)

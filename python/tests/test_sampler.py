@@ -70,7 +70,7 @@ def test_engines_are_unbiased_over_seeds():
         (lambda: noisefloor.Sampler().image(0, 1, 1), "width is 0: it must be 1 to"),
         (lambda: noisefloor.Sampler().image(1, 1, 1, 0), "dims is 0"),
         (lambda: noisefloor.Sampler().pixel(1, 1, 1.0), "samples is 1.0: an integer"),
-        (lambda: noisefloor.QMCEngine(0), "d is 0"),
+        (lambda: noisefloor.QMCEngine(5), "d is 5: it must be 1 to 4"),
         (lambda: noisefloor.QMCEngine(1).random(-1), "n is -1"),
     ],
 )
