@@ -343,7 +343,8 @@ static void many_integrals(void)
             poison(out, sizeof out);
             saved = u[(N - 1) * stride + 1];
             u[(N - 1) * stride + 1] = 1.5f;
-            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out), NF_ERR_RANGE);
+            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
+                         NF_ERR_RANGE);
             u[(N - 1) * stride + 1] = saved;
             f[N - 1] = infinity_f();
             CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
