@@ -1,7 +1,7 @@
-"""Trains a classifier of 8 x 8 digits with minibatches drawn uniformly and by importance, and prints what it gets wrong.
+"""Trains a classifier of 8 x 8 digits with minibatches drawn uniformly and by importance, and prints its test errors.
 
-    pip install ./python torch
-    python examples_c/python/train_digits.py [EPOCHS [SEEDS]]
+pip install ./python torch
+python examples_c/python/train_digits.py [EPOCHS [SEEDS]]
 """
 
 import pathlib
@@ -47,7 +47,9 @@ def train(data, sampler, epochs, seed):
 def main(epochs=15, seeds=5):
     """Means over the seeds."""
     data, (images, labels) = load("train"), load("t10k").tensors
-    print(f"{len(data)} digits, {epochs} epochs of batches of {BATCH}, {seeds} seeds\nmethod      test error %  test loss")
+    print(
+        f"{len(data)} digits, {epochs} epochs of batches of {BATCH}, {seeds} seeds\nmethod      test error %  test loss"
+    )
     for method in ("uniform", "importance"):
         logits = []
         for seed in range(seeds):

@@ -146,8 +146,15 @@ def main(repetitions=256):
         cells = [[ratio for ratio in ratios[name, n].values() if not math.isnan(ratio)] for n in SAMPLES]
         print(f"| {name} |", " | ".join(f"{math.exp(numpy.log(cell).mean()):.3f}" for cell in cells), "|")
     for dims in (2, 4):
-        cells = [[value for problem, value in ratios["scipy Sobol", n].items() if problem.endswith(str(dims))] for n in SAMPLES]
-        print(f"| scipy Sobol, {dims} dims |", " | ".join(f"{math.exp(numpy.log(cell).mean()):.3f}" for cell in cells), "|")
+        cells = [
+            [value for problem, value in ratios["scipy Sobol", n].items() if problem.endswith(str(dims))]
+            for n in SAMPLES
+        ]
+        print(
+            f"| scipy Sobol, {dims} dims |",
+            " | ".join(f"{math.exp(numpy.log(cell).mean()):.3f}" for cell in cells),
+            "|",
+        )
     worst = [max((value, problem) for (problem, m), value in to_sobol.items() if m == n) for n in SAMPLES]
     print("worst of the fit over Sobol's mean:", *(f"{value:.3f} ({problem})" for value, problem in worst))
 

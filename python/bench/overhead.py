@@ -1,6 +1,6 @@
 """What the package adds to the C library's calls, in microseconds of processor time: medians of 7 runs in turns.
 
-    python python/bench/overhead.py
+python python/bench/overhead.py
 """
 
 import ctypes
@@ -73,4 +73,6 @@ if __name__ == "__main__":
         times = minibatches(items)
         print(f"draw and update of {BATCH}, {items} items:", {name: round(time, 1) for name, time in times.items()})
     times = integrals()
-    print("100,000 integrals of 16 samples over C's time:", {name: round(t / times["C"], 2) for name, t in times.items()})
+    print(
+        "100,000 integrals of 16 samples over C's time:", {name: round(t / times["C"], 2) for name, t in times.items()}
+    )

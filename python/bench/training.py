@@ -92,7 +92,11 @@ def main(seeds=6):
     """Prints a table for each task."""
     torch.set_num_threads(1)
     for name, x, y, test_x, test_y, classes in tasks():
-        print(f"\n{name}: {len(x)} items, {seeds} seeds\n\n| rate | mode |", " | ".join(MEASURES), "|\n|---|---|---|---|---|")
+        print(
+            f"\n{name}: {len(x)} items, {seeds} seeds\n\n| rate | mode |",
+            " | ".join(MEASURES),
+            "|\n|---|---|---|---|---|",
+        )
         for rate, cosine in ((0.0005, False), (0.002, True)):
             found = {}
             for seed in range(seeds):

@@ -1,6 +1,8 @@
 """Estimates of integrals from samples, with less error than their mean."""
 
-from typing import NamedTuple, Union
+from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy
 
@@ -19,21 +21,30 @@ class Estimate(NamedTuple):
         gain: estimated variance relative to the plain mean's, without that axis; 1 is no gain.
     """
 
-    mean: Union[numpy.ndarray, float]
-    std_error: Union[numpy.ndarray, float]
-    gain: Union[numpy.ndarray, float]
+    mean: numpy.ndarray | float
+    std_error: numpy.ndarray | float
+    gain: numpy.ndarray | float
 
 
 def estimate(
-    u, f, *, order=2, estimator="robust", basis="legendre", dims=None, slices=1, stratified=False, channels=False
-):
+    u: Any,
+    f: Any,
+    *,
+    order: int = 2,
+    estimator: str = "robust",
+    basis: str = "legendre",
+    dims: int | None = None,
+    slices: int = 1,
+    stratified: bool = False,
+    channels: bool = False,
+) -> Estimate:
     """Estimates the integral of f over the unit cube from n samples, or many integrals from n samples of each.
 
     The samples' values may also be divided by a density: u are then the uniform numbers that made the point.
 
     Args:
         u: shape (..., n, d), 0 to 1: the coordinates of each sample.
-        f: shape (..., n), finite; with `channels` (..., n, c) of 1 to 4 channels. Leading dimensions broadcast with u's.
+        f: shape (..., n), finite; with `channels` (..., n, c), 1 to 4 of them. Leading dimensions broadcast with u's.
         order: largest total degree of the polynomials, 0 to 7; 0 is the plain mean. At most 136 terms.
         estimator: "robust", never noticeably worse than the mean; "least_squares", for many samples per term, and for
             Sobol points; "leave_one_out" and "k_fold", exactly unbiased; "gradient_descent"; "incremental".
@@ -50,7 +61,9 @@ def estimate(
     u, f = _arrays.floats("u", u), _arrays.floats("f", f)
     values = 1 if channels else 0
     if u.ndim < 2 or f.ndim < 1 + values:
-        raise ValueError(f"u has the shape {u.shape} and f {f.shape}: (..., n, d) and (..., n{', c' * values}) are needed")
+        raise ValueError(
+            f"u has the shape {u.shape} and f {f.shape}: (..., n, d) and (..., n{', c' * values}) are needed"
+        )
     n, d = u.shape[-2:]
     own = f.shape[f.ndim - 1 - values :]
     if own[0] != n:
@@ -77,22 +90,22 @@ def estimate(
 
 
 def image_estimate(
-    u,
-    f,
+    u: Any,
+    f: Any,
     *,
-    surfaces=None,
-    factors=None,
-    known=None,
-    known_integrals=None,
-    order=2,
-    estimator="robust",
-    dims=None,
-    slices=1,
-    stratified=False,
-    channels=False,
-    window=8,
-    stride=None,
-):
+    surfaces: Any = None,
+    factors: Any = None,
+    known: Any = None,
+    known_integrals: Any = None,
+    order: int = 2,
+    estimator: str = "robust",
+    dims: int | None = None,
+    slices: int = 1,
+    stratified: bool = False,
+    channels: bool = False,
+    window: int = 8,
+    stride: int | None = None,
+) -> Estimate:
     """Estimates every pixel of an image, by fits that neighbouring pixels share. One sample in each pixel is enough.
 
     Args:

@@ -1,5 +1,7 @@
 """Which estimator to use."""
 
+from __future__ import annotations
+
 import math
 from typing import NamedTuple
 
@@ -23,14 +25,16 @@ class Recommendation(NamedTuple):
     order: int
     estimator: str
     stratified: bool
-    image_stride: object
+    image_stride: int | None
     error: float
     filtered_error: float
     cost: float
     pays_from: float
 
 
-def recommend(dims, samples, *, stratified=False, can_share=False, sample_cost=math.inf):
+def recommend(
+    dims: int, samples: int, *, stratified: bool = False, can_share: bool = False, sample_cost: float = math.inf
+) -> Recommendation:
     """Which estimator to use.
 
     Args:

@@ -1,5 +1,7 @@
 """Points whose error is small in each pixel, and arranged so that it vanishes across pixels."""
 
+from __future__ import annotations
+
 import secrets
 
 import numpy
@@ -22,7 +24,7 @@ class Sampler:
         white: whether neighbouring pixels know nothing of each other, for denoisers that expect that.
     """
 
-    def __init__(self, *, frame=0, seed=0, white=False):
+    def __init__(self, *, frame: int = 0, seed: int = 0, white: bool = False) -> None:
         self._frame = _arrays.integer("frame", frame, 0, LAST)
         self._seed = _arrays.integer("seed", seed, 0, LAST)
         self._white, self._keys = bool(white), ()
@@ -31,13 +33,15 @@ class Sampler:
         keys = "".join(f".domain({key})" for key in self._keys)
         return f"Sampler(frame={self._frame}, seed={self._seed}, white={self._white}){keys}"
 
-    def domain(self, key):
+    def domain(self, key: int) -> Sampler:
         """The sampler of another decision, a child of this one; key: 0 to 2**32 - 1."""
         child = Sampler(frame=self._frame, seed=self._seed, white=self._white)
         child._keys = self._keys + (_arrays.integer("key", key, 0, LAST),)
         return child
 
-    def image(self, width, height, samples, dims=2, *, x=0, y=0, first=0):
+    def image(
+        self, width: int, height: int, samples: int, dims: int = 2, *, x: int = 0, y: int = 0, first: int = 0
+    ) -> numpy.ndarray:
         """Numbers for many pixels.
 
         Args:
@@ -54,9 +58,7 @@ class Sampler:
             for name, value in (("width", width), ("height", height), ("samples", samples), ("dims", dims))
         ]
         width, height, samples, dims = sizes
-        place = [
-            _arrays.integer(name, value, 0, LAST) for name, value in (("x", x), ("y", y), ("first", first))
-        ]
+        place = [_arrays.integer(name, value, 0, LAST) for name, value in (("x", x), ("y", y), ("first", first))]
         groups = -(-dims // 4)
         samplers, parts = (_c.Sampler * groups)(), (_c.u32 * groups)()
         for group in range(groups):
@@ -70,7 +72,7 @@ class Sampler:
             raise ValueError(f"{_c.message(status)}: {width} x {height} pixels, {samples} samples, {dims} dims")
         return u
 
-    def pixel(self, x, y, samples, dims=2, *, first=0):
+    def pixel(self, x: int, y: int, samples: int, dims: int = 2, *, first: int = 0) -> numpy.ndarray:
         """The numbers of one pixel's samples, float32 of shape (samples, dims); arguments as for `image`."""
         return self.image(1, 1, samples, dims, x=x, y=y, first=first)[0, 0]
 
@@ -90,13 +92,13 @@ class QMCEngine:
         seed: 0 to 2**32 - 1; sequences of different seeds are unrelated. None: another one each time.
     """
 
-    def __init__(self, d, *, seed=None):
+    def __init__(self, d: int, *, seed: int | None = None) -> None:
         self.d = _arrays.integer("d", d, 1, 4)
         self.seed = secrets.randbits(32) if seed is None else _arrays.integer("seed", seed, 0, LAST)
         self.num_generated = 0
         self._sampler = Sampler(frame=self.seed, white=True)
 
-    def random(self, n=1):
+    def random(self, n: int = 1) -> numpy.ndarray:
         """The next n points, float64 of shape (n, d), at least 0 and below 1; best where n is a power of two."""
         n = _arrays.integer("n", n, 0, LAST - self.num_generated)
         if n == 0:
@@ -106,12 +108,12 @@ class QMCEngine:
         self.num_generated += n
         return points.astype(numpy.float64)
 
-    def fast_forward(self, n):
+    def fast_forward(self, n: int) -> QMCEngine:
         """Leaves n points out."""
         self.num_generated += _arrays.integer("n", n, 0, LAST - self.num_generated)
         return self
 
-    def reset(self):
+    def reset(self) -> QMCEngine:
         """Starts again."""
         self.num_generated = 0
         return self

@@ -1,6 +1,10 @@
 """Minibatches drawn in proportion to importance."""
 
+from __future__ import annotations
+
 import threading
+from collections.abc import Mapping
+from typing import Any
 
 import numpy
 
@@ -26,7 +30,7 @@ class Table:
         seed: of the table's own random numbers, 0 to 2**64 - 1.
     """
 
-    def __init__(self, n, *, importance=None, uniform_fraction=0.2, seed=0):
+    def __init__(self, n: int, *, importance: Any = None, uniform_fraction: float = 0.2, seed: int = 0) -> None:
         n = _arrays.integer("n", n, 1, _c.MAX_ITEMS)
         fraction = _arrays.number("uniform_fraction", uniform_fraction, 0, 1)
         seed = _arrays.integer("seed", seed, 0, 2**64 - 1)
@@ -51,24 +55,24 @@ class Table:
         self._index, self._value = numpy.empty(ROOM, numpy.uint32), numpy.empty(ROOM, numpy.float32)
         self._index_at, self._value_at = _c.data(self._index), _c.data(self._value)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return self._n
 
     def __repr__(self):
         return f"Table({self._n}, uniform_fraction={self.uniform_fraction:.6g})"
 
     @property
-    def uniform_fraction(self):
+    def uniform_fraction(self) -> float:
         """The part of draws that are uniform, 0 to 1; may be set."""
         return self._table.uniform_fraction
 
     @uniform_fraction.setter
-    def uniform_fraction(self, value):
+    def uniform_fraction(self, value: float) -> None:
         value = _arrays.number("uniform_fraction", value, 0, 1)
         with self._lock:
             _c.table_set_uniform_fraction(self._at, value)
 
-    def draw(self, batch, method="iid"):
+    def draw(self, batch: int, method: str = "iid") -> tuple[numpy.ndarray, numpy.ndarray]:
         """Draws items in proportion to importance.
 
         Args:
@@ -98,17 +102,17 @@ class Table:
                 status = draw(self._at, self._rng_at, batch, self._index_at, self._value_at)
                 if not status:
                     return self._index[:batch].astype(numpy.int64), self._value[:batch].copy()
-        self._refuse_draw(status, batch, method)
+        raise self._draw_error(status, batch, method)
 
-    def _refuse_draw(self, status, batch, method):
+    def _draw_error(self, status, batch, method):
         if method == "distinct" and batch > self._n:
-            raise ValueError(f"batch is {batch}: a distinct draw takes 0 to {self._n}, as many as there are items")
-        raise ValueError(
+            return ValueError(f"batch is {batch}: a distinct draw takes 0 to {self._n}, as many as there are items")
+        return ValueError(
             f"{_c.message(status)}: too few items have an importance above 0, and uniform_fraction is "
             f"{self.uniform_fraction:.6g}"
         )
 
-    def update(self, index, importance, momentum=0.3):
+    def update(self, index: Any, importance: Any, momentum: float = 0.3) -> None:
         """Sets the importance of items: q = momentum q + (1 - momentum) importance.
 
         Args:
@@ -145,7 +149,7 @@ class Table:
             _arrays.check_positive("importance", importance)
             raise ValueError(_c.message(status))
 
-    def probabilities(self, index=None):
+    def probabilities(self, index: Any = None) -> numpy.ndarray:
         """The probability of drawing each of these items, float32, of index's shape; of all items for None."""
         if index is None:
             index = numpy.arange(self._n, dtype=numpy.uint32)
@@ -154,10 +158,10 @@ class Table:
         with self._lock:
             status = _c.table_probabilities(self._at, _c.data(index), index.size, 1, _c.data(p))
         if status:
-            self._refuse_draw(status, 0, None)
+            raise self._draw_error(status, 0, None)
         return p
 
-    def state_dict(self):
+    def state_dict(self) -> dict[str, Any]:
         """All that decides what is drawn next: "table", uint8 of shape (bytes,), and "rng", two ints. The same bytes on
         every machine."""
         with self._lock:
@@ -167,7 +171,7 @@ class Table:
         assert not status, _c.message(status)
         return {"table": saved, "rng": rng}
 
-    def load_state_dict(self, state):
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Becomes the table that `state_dict` saw, of as many items."""
         saved = numpy.ascontiguousarray(_arrays.array("table", state["table"]), numpy.uint8)
         items = _c.table_saved_items(_c.data(saved), saved.nbytes)
@@ -175,9 +179,7 @@ class Table:
             raise ValueError(f"the state has {items} items, this table {self._n}")
         first, second = (_arrays.integer("rng", number, 0, 2**64 - 1) for number in state["rng"])
         with self._lock:
-            status = _c.table_load(
-                self._at, _c.data(self._memory), self._memory.nbytes, _c.data(saved), saved.nbytes
-            )
+            status = _c.table_load(self._at, _c.data(self._memory), self._memory.nbytes, _c.data(saved), saved.nbytes)
             if status:
                 raise ValueError(f"the state's table, {saved.nbytes} bytes: {_c.message(status)}")
             self._rng.state, self._rng.increment = first, second

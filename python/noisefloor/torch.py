@@ -1,6 +1,10 @@
 """Minibatches by importance for PyTorch's data loaders."""
 
+from __future__ import annotations
+
 from collections import deque
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy
 import torch
@@ -49,18 +53,18 @@ class ImportanceBatchSampler(Sampler):
 
     def __init__(
         self,
-        n,
-        batch_size,
+        n: int,
+        batch_size: int,
         *,
-        steps=None,
-        warmup="epoch",
-        uniform_fraction=0.2,
-        momentum=0.3,
-        techniques=1,
-        weighted=True,
-        seed=0,
-        process_group=None,
-    ):
+        steps: int | None = None,
+        warmup: str | None = "epoch",
+        uniform_fraction: float = 0.2,
+        momentum: float = 0.3,
+        techniques: int = 1,
+        weighted: bool = True,
+        seed: int = 0,
+        process_group: Any = None,
+    ) -> None:
         distributed = torch.distributed.is_available() and torch.distributed.is_initialized()
         self._group = process_group
         self._rank = torch.distributed.get_rank(process_group) if distributed else 0
@@ -87,10 +91,10 @@ class ImportanceBatchSampler(Sampler):
         self._drawn = self._step = 0
         self._ahead, self._replay, self._last, self._resumed = deque(), deque(), None, False
 
-    def __len__(self):
+    def __len__(self) -> int:
         return self._steps
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[list[int]]:
         """The batches of an epoch, or what is left of it after `load_state_dict`: a list of indices for each."""
         if not self._resumed:
             self._step = 0
@@ -142,11 +146,13 @@ class ImportanceBatchSampler(Sampler):
             raise ValueError(_c.message(status))
         return index, weight
 
-    def batch(self):
+    def batch(self) -> tuple[torch.Tensor, torch.Tensor]:
         """Index and weight, int64 and float32 tensors of shape (batch_size,), of the batch that the loader has just
         handed over; once for each batch. The mean of weight times loss estimates the mean loss over all items."""
         if not self._ahead:
-            raise RuntimeError("batch() is for each batch of the loader, once: there is none that it was not called for")
+            raise RuntimeError(
+                "batch() is for each batch of the loader, once: there is none that it was not called for"
+            )
         self._last = self._ahead.popleft()
         if not self._ahead and not self._replay and self._step >= self._steps:
             self.epoch += 1
@@ -159,7 +165,7 @@ class ImportanceBatchSampler(Sampler):
         return torch.from_numpy(self._last[part][self._rank :: self._processes].copy())
 
     @torch.no_grad()
-    def update(self, importance, index=None):
+    def update(self, importance: Any, index: Any = None) -> None:
         """Says how large each item's gradient was, of `batch`'s items or of these.
 
         Args:
@@ -200,7 +206,7 @@ class ImportanceBatchSampler(Sampler):
         return torch.stack(parts, 1).flatten(0, 1).cpu()
 
     @torch.no_grad()
-    def update_from(self, logits, *, reduction="mean", scale=1.0):
+    def update_from(self, logits: torch.Tensor, *, reduction: str = "mean", scale: float = 1.0) -> None:
         """As `update`, by the norm of each item's derivative of the loss by its outputs. After the backward pass, with
         `logits.retain_grad()` before it.
 
@@ -217,7 +223,8 @@ class ImportanceBatchSampler(Sampler):
         count = _arrays.one_of("reduction", reduction, {"mean": len(weight), "sum": 1})
         gradient = logits.grad.float().flatten(1) * (count / scale) / weight[:, None]
         if len(self._tables) == 1:
-            return self._learn(gradient.norm(dim=1))
+            self._learn(gradient.norm(dim=1))
+            return
         groups = len(self._tables) // 2
         if gradient.shape[1] < groups:
             raise ValueError(f"techniques is {2 * groups}: {gradient.shape[1]} outputs allow {2 * gradient.shape[1]}")
@@ -226,9 +233,9 @@ class ImportanceBatchSampler(Sampler):
         parts = [sign[:, group::groups].norm(dim=1) for group in range(groups) for sign in signs]
         importance = torch.stack(parts, 1)
         importance[weight.abs() < LEAST_WEIGHT] = float("nan")
-        return self._learn(importance, skip=True)
+        self._learn(importance, skip=True)
 
-    def state_dict(self):
+    def state_dict(self) -> dict[str, Any]:
         """All that decides the batches to come, those that workers were asked for included: tensors and numbers, which
         `torch.load` reads with `weights_only=True`. After `update`, not between `batch` and it."""
         ahead = [*self._ahead, *self._replay]
@@ -245,7 +252,7 @@ class ImportanceBatchSampler(Sampler):
             "ahead": [(torch.from_numpy(index), torch.from_numpy(weight), first) for index, weight, first in ahead],
         }
 
-    def load_state_dict(self, state):
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Goes on where `state_dict` was called: the next `iter` gives what was left of the epoch."""
         mine = {"n": self._n, "whole_batch": self._whole, "tables": len(self._tables)}
         its = {"n": state["n"], "whole_batch": state["whole_batch"], "tables": len(state["tables"])}
@@ -265,7 +272,7 @@ class ImportanceBatchSampler(Sampler):
 WARMUPS = {"epoch": True, None: False}
 
 
-def cross_entropy_importance(logits, target):
+def cross_entropy_importance(logits: torch.Tensor, target: torch.Tensor) -> torch.Tensor:
     """The norm of the cross-entropy loss's derivative by the logits, || softmax - onehot ||, without a backward pass.
 
     Args:

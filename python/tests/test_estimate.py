@@ -249,7 +249,10 @@ def test_recommendations():
     noisefloor.estimate(u, smooth(u), order=best.order, estimator=best.estimator, stratified=best.stratified)
     assert noisefloor.recommend(2, 1, stratified=True, can_share=True).method == "shared"
     assert noisefloor.recommend(2, 16, sample_cost=1e-3).method == "plain_mean"
-    for options, said in (({"sample_cost": 0}, "sample_cost is 0.0"), ({"sample_cost": math.nan}, "sample_cost is nan")):
+    for options, said in (
+        ({"sample_cost": 0}, "sample_cost is 0.0"),
+        ({"sample_cost": math.nan}, "sample_cost is nan"),
+    ):
         with pytest.raises(ValueError, match=said):
             noisefloor.recommend(2, 16, **options)
     with pytest.raises(ValueError, match="dims is 0"):

@@ -68,7 +68,9 @@ def test_batches_of_all_sizes(batch):
 
 @hypothesis.given(
     arrays.arrays(
-        strategies.sampled_from([numpy.float16, numpy.float32, numpy.float64, numpy.int32, numpy.uint8, numpy.dtype(">f4")]),
+        strategies.sampled_from(
+            [numpy.float16, numpy.float32, numpy.float64, numpy.int32, numpy.uint8, numpy.dtype(">f4")]
+        ),
         strategies.integers(1, 70),
         elements=strategies.integers(0, 100),
     ),
@@ -158,7 +160,10 @@ def test_arrays_of_anybody():
         (lambda t: t.probabilities([10]), r"index\[0\] is 10"),
         (lambda t: setattr(t, "uniform_fraction", 2), "uniform_fraction is 2.0"),
         (lambda t: t.load_state_dict(noisefloor.Table(9).state_dict()), "the state has 9 items, this table 10"),
-        (lambda t: t.load_state_dict({"table": numpy.zeros(300, numpy.uint8), "rng": (0, 0)}), "300 bytes: the bytes are not"),
+        (
+            lambda t: t.load_state_dict({"table": numpy.zeros(300, numpy.uint8), "rng": (0, 0)}),
+            "300 bytes: the bytes are not",
+        ),
         (lambda t: noisefloor.Table(0), "n is 0: it must be 1 to 4294967295"),
         (lambda t: noisefloor.Table(2**32), "n is 4294967296"),
         (lambda t: noisefloor.Table("7"), "n is '7': an integer"),

@@ -191,9 +191,7 @@ def test_replicas_stay_the_same_and_share_each_batch(tmp_path, world, workers):
     context = torch.multiprocessing.get_context("spawn")
     results = context.Queue()
     file = str(tmp_path / "meeting")
-    processes = [
-        context.Process(target=_replica, args=(rank, world, file, results, workers)) for rank in range(world)
-    ]
+    processes = [context.Process(target=_replica, args=(rank, world, file, results, workers)) for rank in range(world)]
     for process in processes:
         process.start()
     found = sorted(results.get(timeout=120) for _ in processes)

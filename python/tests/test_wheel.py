@@ -13,7 +13,9 @@ from noisefloor.__main__ import PLACES
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 WHEEL = os.environ.get("NOISEFLOOR_WHEEL")
-needs_wheel = pytest.mark.skipif(not WHEEL, reason="NOISEFLOOR_WHEEL does not name the wheel: `cargo xtask test python`")
+needs_wheel = pytest.mark.skipif(
+    not WHEEL, reason="NOISEFLOOR_WHEEL does not name the wheel: `cargo xtask test python`"
+)
 
 
 def run(*command, **options):

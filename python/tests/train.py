@@ -1,6 +1,6 @@
 """A training run that can be killed at any time and goes on where it was: test_torch.py starts it.
 
-    python train.py CHECKPOINT WORKERS [TECHNIQUES]
+python train.py CHECKPOINT WORKERS [TECHNIQUES]
 """
 
 import hashlib
