@@ -1,15 +1,15 @@
 """Errors of integration over Genz's families and options, over the plain mean's of as many random samples: geometric
 means of the ratios of root mean squared errors over independent repetitions.
 
-    python python/bench/integration.py [REPETITIONS]      needs scipy; with vegas installed, that too
+    python python/bench/integration.py      needs scipy; with vegas installed, that too
 """
 
 import itertools
 import math
-import sys
 import warnings
 
 import numpy
+import output
 from scipy import special, stats
 
 import noisefloor
@@ -110,9 +110,9 @@ def methods():
     named = {
         "random": of(random),
         "random, robust": of(random, "robust"),
-        "scipy Halton": of(halton),
-        "scipy Sobol": of(sobol),
-        "scipy Sobol, least squares": of(sobol, "least_squares"),
+        "Halton": of(halton),
+        "Sobol, mean": of(sobol),
+        "Sobol, least squares": of(sobol, "least_squares"),
     }
     for dims in (2, 4):
         named[f"QMCEngine, {dims} dims"] = of(engine, None, dims)
@@ -125,39 +125,36 @@ def methods():
     return named
 
 
-def main(repetitions=256):
-    """Prints each problem's ratios, the table, and the worst of Sobol's fit."""
+def main():
+    """Writes the geometric means, and how much worse than Sobol's mean the fit was at worst."""
+    options = output.arguments(__doc__)
+    repetitions = 8 if options.quick else 256
     warnings.filterwarnings("ignore")
     named, ratios, to_sobol = methods(), {}, {}
     for problem, dims, function, exact in problems():
         for n in SAMPLES:
-            found = {}
+            errors = {}
             for name, estimate in named.items():
                 runs = range(repetitions if name != "vegas" else min(repetitions, 32))
-                found[name] = numpy.array([estimate(function, dims, n, seed) for seed in runs]) - exact
-            errors = {name: math.sqrt((values**2).mean()) for name, values in found.items()}
+                found = numpy.array([estimate(function, dims, n, seed) for seed in runs]) - exact
+                errors[name] = math.sqrt((found**2).mean())
             for name, error in errors.items():
                 ratios.setdefault((name, n), {})[problem] = error / errors["random"]
-            to_sobol[problem, n] = errors["scipy Sobol, least squares"] / errors["scipy Sobol"]
-            print(f"{problem:18} {n:5}", *(f"{error / errors['random']:8.4f}" for error in errors.values()), end="")
-            print(f" | fit over Sobol's mean {to_sobol[problem, n]:.3f}", flush=True)
-    print("\n| error over that of random samples |", " | ".join(map(str, SAMPLES)), "|")
+            to_sobol.setdefault(n, []).append(errors["Sobol, least squares"] / errors["Sobol, mean"])
+    rows = []
+
+    def add(name, cells):
+        means = (numpy.exp(numpy.log([ratio for ratio in cell if not math.isnan(ratio)]).mean()) for cell in cells)
+        rows.append([name, *(f"{mean:.3f}" for mean in means)])
+
     for name in named:
-        cells = [[ratio for ratio in ratios[name, n].values() if not math.isnan(ratio)] for n in SAMPLES]
-        print(f"| {name} |", " | ".join(f"{math.exp(numpy.log(cell).mean()):.3f}" for cell in cells), "|")
+        add(name, [ratios[name, n].values() for n in SAMPLES])
     for dims in (2, 4):
-        cells = [
-            [value for problem, value in ratios["scipy Sobol", n].items() if problem.endswith(str(dims))]
-            for n in SAMPLES
-        ]
-        print(
-            f"| scipy Sobol, {dims} dims |",
-            " | ".join(f"{math.exp(numpy.log(cell).mean()):.3f}" for cell in cells),
-            "|",
-        )
-    worst = [max((value, problem) for (problem, m), value in to_sobol.items() if m == n) for n in SAMPLES]
-    print("worst of the fit over Sobol's mean:", *(f"{value:.3f} ({problem})" for value, problem in worst))
+        cells = [[value for at, value in ratios["Sobol, mean", n].items() if at.endswith(str(dims))] for n in SAMPLES]
+        add(f"Sobol, {dims} dims", cells)
+    rows.append(["worst of least squares over Sobol", *(f"{max(to_sobol[n]):.3f}" for n in SAMPLES)])
+    output.write(options, "integration", ["points and estimate", *map(str, SAMPLES)], rows)
 
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:2]))
+    main()

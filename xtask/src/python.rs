@@ -5,6 +5,7 @@ use crate::tools::{self, Package};
 use crate::{c_tests, paths, run};
 use anyhow::{Context, Result};
 use std::fs;
+use std::path::PathBuf;
 
 const PACKAGES: [Package; 8] = [
     c_tests::PYTHON,
@@ -17,16 +18,33 @@ const PACKAGES: [Package; 8] = [
     Package { name: "make", file: "/usr/bin/make" },
 ];
 
-/// Builds the wheel, installs it, and runs python/tests.
+/// What a report trains on.
+pub const FASHION: Package =
+    Package { name: "dataset-fashion-mnist", file: "/usr/share/datasets/fashion-mnist/train-images-idx3-ubyte.gz" };
+
+/// Runs python/tests with the package installed.
 pub fn test() -> Result<Outcome> {
-    if let Some(missing) = tools::packages(&PACKAGES)? {
-        return Ok(Outcome::NotRun(missing));
+    let python = match environment(&[])? {
+        Ok(python) => python,
+        Err(missing) => return Ok(Outcome::NotRun(missing)),
+    };
+    let wheel = wheel()?;
+    let mut test = run::command("timeout");
+    test.arg("600").arg(&python).args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "python/tests"]);
+    run::check(test.env("NOISEFLOOR_WHEEL", &wheel).env("PYTHONDONTWRITEBYTECODE", "1"))?;
+    Ok(Outcome::Passed)
+}
+
+/// A Python in which the package is installed from a new wheel, beside Debian's packages, `more` among them; or what is
+/// missing.
+pub fn environment(more: &[Package]) -> Result<Result<PathBuf, String>> {
+    if let Some(missing) = tools::packages(&[&PACKAGES, more].concat())? {
+        return Ok(Err(missing));
     }
-    let (environment, wheels) = (paths::output().join("venv"), paths::output().join("wheel"));
-    let python = environment.join("bin/python");
+    let folder = paths::output().join("venv");
+    let python = folder.join("bin/python");
     // Debian's Python: another does not see Debian's packages.
-    let debians = "/usr/bin/python3";
-    run::read(run::command(debians).args(["-m", "venv", "--system-site-packages"]).arg(&environment))?;
+    run::read(run::command("/usr/bin/python3").args(["-m", "venv", "--system-site-packages"]).arg(&folder))?;
     let pip = |arguments: &[&str]| {
         let mut command = run::command(&python);
         command.args(["-m", "pip", "--disable-pip-version-check", "--quiet"]).args(arguments);
@@ -37,19 +55,24 @@ pub fn test() -> Result<Outcome> {
     if run::read(run::command(&python).args(["-c", "import scikit_build_core"])).is_err()
         && let Err(error) = run::read(&mut pip(&["install", "scikit-build-core"]))
     {
-        return Ok(Outcome::NotRun(format!("scikit-build-core, which builds the wheel, is not to be had: {error:#}")));
+        return Ok(Err(format!("scikit-build-core, which builds the wheel, is not to be had: {error:#}")));
     }
-    if wheels.exists() {
-        fs::remove_dir_all(&wheels).with_context(|| format!("cannot remove {}", wheels.display()))?;
+    if wheels().exists() {
+        fs::remove_dir_all(wheels()).with_context(|| format!("cannot remove {}", wheels().display()))?;
     }
     let cargo = format!("cmake.define.NOISEFLOOR_CARGO={}", run::cargo().get_program().to_string_lossy());
     let target = format!("cmake.define.NOISEFLOOR_CARGO_TARGET_DIR={}", paths::target().display());
     let mut build = pip(&["wheel", "./python", "--no-deps", "--no-build-isolation"]);
-    run::read(build.args(["--config-settings", &cargo, "--config-settings", &target, "--wheel-dir"]).arg(&wheels))?;
-    let wheel = paths::list(&wheels)?.pop().context("pip made no wheel")?;
-    run::read(pip(&["install", "--no-deps", "--force-reinstall"]).arg(&wheel))?;
-    let mut test = run::command("timeout");
-    test.arg("600").arg(&python).args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "python/tests"]);
-    run::check(test.env("NOISEFLOOR_WHEEL", &wheel).env("PYTHONDONTWRITEBYTECODE", "1"))?;
-    Ok(Outcome::Passed)
+    build.args(["--config-settings", &cargo, "--config-settings", &target, "--wheel-dir"]);
+    run::read(build.arg(wheels()))?;
+    run::read(pip(&["install", "--no-deps", "--force-reinstall"]).arg(wheel()?))?;
+    Ok(Ok(python))
+}
+
+fn wheels() -> PathBuf {
+    paths::output().join("wheel")
+}
+
+fn wheel() -> Result<PathBuf> {
+    paths::list(wheels())?.pop().context("pip made no wheel")
 }
