@@ -131,7 +131,7 @@ def main():
         rows.append([f"{items:,} items", *(f"{times[name]:.1f}" if name in times else "refused" for name in names)])
     output.write(options, "draws", ["table of", *names], rows)
     rows = []
-    for batch in (32, 128, 512):
+    for batch in (32,) if options.quick else (32, 128, 512):
         times = steps(batch, runs)
         share = 100 * times["sampling"] / (times["uniform"] + times["sampling"])
         rows.append([str(batch), f"{times['uniform']:.0f}", f"{times['sampling']:.0f}", f"{share:.1f}"])

@@ -91,7 +91,7 @@ def judge(model, x, y):
 def main():
     """Writes a row for each task, schedule and mode."""
     options = output.arguments(__doc__)
-    items, epochs, seeds = (1000, 1, 2) if options.quick else (10_000, 10, 6)
+    items, epochs, seeds = (500, 1, 2) if options.quick else (10_000, 10, 6)
     torch.set_num_threads(1)
     rows = []
     for name, x, y, test_x, test_y, classes in tasks(items):

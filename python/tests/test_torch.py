@@ -186,7 +186,7 @@ def _replica(rank, world, file, results, workers):
     os._exit(0)
 
 
-@pytest.mark.parametrize("world, workers", [(2, 0), (2, 1)])
+@pytest.mark.parametrize("world, workers", [(2, 0), (2, 1), (4, 0)])
 def test_replicas_stay_the_same_and_share_each_batch(tmp_path, world, workers):
     context = torch.multiprocessing.get_context("spawn")
     results = context.Queue()
