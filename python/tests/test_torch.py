@@ -1,7 +1,9 @@
 """The batch sampler: in data loaders, killed and resumed, and in several processes."""
 
+import copy
 import io
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -85,6 +87,21 @@ def test_a_loaded_state_goes_on_with_the_same_batches(workers, stop):
     while resumed.epoch < 2:
         seen += run(resumed, workers)
     assert equal(seen, expected)
+
+
+def test_copies_give_the_same_batches():
+    sampler = ImportanceBatchSampler(100, 10, seed=2)
+    run(sampler)
+    copies = [copy.deepcopy(sampler), pickle.loads(pickle.dumps(sampler))]
+    expected = run(sampler)
+    assert all(equal(run(other), expected) for other in copies)
+
+
+def test_spawned_workers_give_the_same_batches():
+    data = TensorDataset(torch.arange(100))
+    sampler, alone = ImportanceBatchSampler(100, 10, seed=2), ImportanceBatchSampler(100, 10, seed=2)
+    loader = DataLoader(data, batch_sampler=sampler, num_workers=1, multiprocessing_context="spawn")
+    assert [items.tolist() for (items,) in loader] == [index.tolist() for index, _ in run(alone)]
 
 
 def test_leaving_an_epoch_begins_another():
