@@ -101,6 +101,7 @@ const char *nf_status_message(nf_status status);
  *   nf_cv_image_workspace_size           Bytes of workspace that nf_cv_image_estimate() needs for n samples in each
  *                                        pixel
  *   nf_cv_image_estimate                 As nf_cv_block_estimate() for every pixel of an image
+ *   nf_cv_estimate_many                  As nf_cv_estimate() for each of `integrals` integrals, n samples of each
  *   nf_cv_block_workspace_size           Bytes of workspace that nf_cv_block_estimate() needs
  *   nf_cv_block_estimate                 Estimates `pixels` integrals that are alike, from n samples of each
  *   nf_cv_accumulator_size               Bytes that an accumulator needs
@@ -373,6 +374,20 @@ nf_status nf_cv_image_estimate(const nf_cv_config *config,
                                void *workspace,
                                size_t bytes,
                                nf_estimate *out);
+
+// As nf_cv_estimate() for each of `integrals` integrals, n samples of each: u and f hold integral after integral, out
+// one estimate for each, with the bits of single calls. The workspace is that of one. For interpreters and others
+// whose calls are dear.
+//
+// NF_ERR_UNSUPPORTED also for `controls` and NF_NONFINITE_SKIP; else as nf_cv_estimate().
+nf_status nf_cv_estimate_many(const nf_cv_config *config,
+                              const float *u,
+                              const float *f,
+                              size_t n,
+                              size_t integrals,
+                              void *workspace,
+                              size_t bytes,
+                              nf_estimate *out);
 
 // Bytes of workspace that nf_cv_block_estimate() needs; 0 as for nf_cv_workspace_size().
 size_t nf_cv_block_workspace_size(const nf_cv_config *config, size_t pixels, size_t n);

@@ -1,59 +1,65 @@
-"""Trains a classifier of digits with minibatches drawn uniformly and by importance (Algorithms 3 and 4).
+"""Trains a classifier of 8 x 8 digits with minibatches drawn uniformly and by importance, and prints its test errors.
 
-    NOISEFLOOR_LIBRARY=libnoisefloor.so python3 train_digits.py [EPOCHS [SEEDS]]
+pip install ./python torch
+python examples_c/python/train_digits.py [EPOCHS [SEEDS]]
 """
 
-import ctypes
+import pathlib
 import sys
 
-import digits
-import noisefloor
+import numpy
+import torch
+from torch.nn.functional import cross_entropy
+from torch.utils.data import BatchSampler, DataLoader, RandomSampler, TensorDataset
 
-BATCH, RATE = 32, 0.05
+from noisefloor.torch import ImportanceBatchSampler
 
-
-def batches(library, items, epoch, seed, table):
-    """Indices and weights of an epoch's minibatches: the first epoch sees every item once, whatever the method."""
-    for first in range(0, items, BATCH):
-        batch = min(BATCH, items - first)
-        if table is None or epoch == 0:
-            order = [library.nf_shuffle(seed * 1000 + epoch, items, first + k) for k in range(batch)]
-            yield (ctypes.c_uint32 * batch)(*order), (ctypes.c_float * batch)(*[1.0] * batch)
-        else:
-            yield table.draw(batch)
+DATA = pathlib.Path(__file__).parent.parent / "data" / "digits"
+BATCH, RATE = 32, 0.003
 
 
-def train(library, model, images, labels, epochs, seed, by_importance):
-    """Runs `epochs` epochs; the calls to noisefloor are `draw` above and `update` below."""
-    table = noisefloor.Table(library, len(labels), seed) if by_importance else None
-    for epoch in range(epochs):
-        for index, weight in batches(library, len(labels), epoch, seed, table):
-            importance = model.importances(library, [images[i] for i in index], [labels[i] for i in index])
-            model.step(weight, RATE)
-            if table is not None:
-                table.update(index, importance, 0.0 if epoch == 0 else 0.3)
+def load(part):
+    """Images and labels of a part, "train" or "t10k", from IDX files: 16 and 8 bytes of header, then bytes."""
+    read = lambda name, header: numpy.fromfile(DATA / f"{part}-{name}-ubyte", numpy.uint8)[header:]
+    images = torch.from_numpy(read("images-idx3", 16).reshape(-1, 64).astype(numpy.float32) / 240)
+    return TensorDataset(images, torch.from_numpy(read("labels-idx1", 8).astype(numpy.int64)))
 
 
-def main(epochs=6, seeds=3):
-    """A table of losses and errors: means over the seeds."""
-    library = noisefloor.load()
-    name, model_class = digits.model_class()
-    images, labels = digits.load("train")
-    test = digits.load("t10k")
-    print(f"{name}, {len(labels)} digits, {epochs} epochs of batches of {BATCH}, {seeds} seeds")
-    print("method      training loss  test error %")
+def train(data, sampler, epochs, seed):
+    """The loop of any classifier; the calls to noisefloor are `batch` and `update_from`."""
+    torch.manual_seed(seed)
+    model = torch.nn.Sequential(torch.nn.Linear(64, 32), torch.nn.ReLU(), torch.nn.Linear(32, 10))
+    optimizer = torch.optim.Adam(model.parameters(), RATE)
+    for _ in range(epochs):
+        for images, labels in DataLoader(data, batch_sampler=sampler):
+            by_importance = isinstance(sampler, ImportanceBatchSampler)
+            index, weight = sampler.batch() if by_importance else (None, 1)
+            logits = model(images)
+            logits.retain_grad()
+            optimizer.zero_grad()
+            (weight * cross_entropy(logits, labels, reduction="none")).mean().backward()
+            optimizer.step()
+            if by_importance:
+                sampler.update_from(logits)
+    return model
+
+
+def main(epochs=15, seeds=5):
+    """Means over the seeds."""
+    data, (images, labels) = load("train"), load("t10k").tensors
+    print(
+        f"{len(data)} digits, {epochs} epochs of batches of {BATCH}, {seeds} seeds\nmethod      test error %  test loss"
+    )
     for method in ("uniform", "importance"):
-        loss = error = 0.0
-        for seed in range(1, seeds + 1):
-            model = model_class(len(images[0]), 10, seed)
-            train(library, model, images, labels, epochs, seed, method == "importance")
-            loss += model.errors(images, labels)[1] / seeds
-            error += 100 * model.errors(*test)[0] / seeds
-        print(f"{method:10}  {loss:13.5f}  {error:12.2f}")
+        logits = []
+        for seed in range(seeds):
+            uniform = BatchSampler(RandomSampler(data), BATCH, drop_last=False)
+            sampler = uniform if method == "uniform" else ImportanceBatchSampler(len(data), BATCH, seed=seed)
+            logits.append(train(data, sampler, epochs, seed)(images).detach())
+        error = 100 * torch.stack([(z.argmax(1) != labels).float().mean() for z in logits]).mean()
+        loss = torch.stack([cross_entropy(z, labels) for z in logits]).mean()
+        print(f"{method:10}  {error:12.2f}  {loss:9.4f}")
 
 
 if __name__ == "__main__":
-    try:
-        main(*map(int, sys.argv[1:3]))
-    except (OSError, ValueError) as error:
-        sys.exit(f"train_digits: {error}")
+    main(*map(int, sys.argv[1:3]))

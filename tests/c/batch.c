@@ -317,6 +317,60 @@ static void controls(void)
     memory_free(&work);
 }
 
+/* Many integrals have the bits of single calls; where one is refused, none is written. */
+static void many_integrals(void)
+{
+    enum { INTEGRALS = 8, EACH = N / INTEGRALS };
+    uint32_t estimator, stride;
+    nf_estimate out[INTEGRALS + 1], one;
+    for (estimator = 0; estimator < estimators; ++estimator)
+        for (stride = 2; stride < 5; ++stride) {
+            nf_cv_config config = make_config(2, 1, 1, estimator);
+            memory work;
+            float saved;
+            size_t i;
+            config.stride = stride;
+            fill_linear(f, u, N, stride, 1);
+            work = memory_new(nf_cv_workspace_size(&config, EACH));
+            poison(out, sizeof out);
+            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out), NF_OK);
+            CHECK(is_poisoned(&out[INTEGRALS], sizeof *out) && memory_is_intact(&work));
+            for (i = 0; i < INTEGRALS; ++i) {
+                CHECK_STATUS(nf_cv_estimate(&config, u + i * EACH * stride, f + i * EACH, EACH, work.start, work.bytes,
+                                            &one), NF_OK);
+                CHECK(memcmp(&one, &out[i], sizeof one) == 0);
+            }
+            poison(out, sizeof out);
+            saved = u[(N - 1) * stride + 1];
+            u[(N - 1) * stride + 1] = 1.5f;
+            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
+                         NF_ERR_RANGE);
+            u[(N - 1) * stride + 1] = saved;
+            f[N - 1] = infinity_f();
+            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
+                         NF_ERR_NOT_FINITE);
+            config.nonfinite = NF_NONFINITE_SKIP;
+            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
+                         NF_ERR_UNSUPPORTED);
+            config.nonfinite = NF_NONFINITE_ERROR;
+            config.controls = 1;
+            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
+                         NF_ERR_UNSUPPORTED);
+            config.controls = 0;
+            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, SIZE_MAX / 2, work.start, work.bytes, out),
+                         NF_ERR_RANGE);
+            CHECK_STATUS(nf_cv_estimate_many(NULL, u, f, EACH, 1, work.start, work.bytes, out), NF_ERR_NULL);
+            CHECK_STATUS(nf_cv_estimate_many(&config, NULL, f, EACH, 1, work.start, work.bytes, out), NF_ERR_NULL);
+            CHECK_STATUS(nf_cv_estimate_many(&config, u, NULL, EACH, 1, work.start, work.bytes, out), NF_ERR_NULL);
+            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, 1, work.start, work.bytes, NULL), NF_ERR_NULL);
+            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, 0, 1, work.start, work.bytes, out), NF_ERR_NO_SAMPLES);
+            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, 1, work.start, work.bytes - 1, out), NF_ERR_MEMORY);
+            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, 0, work.start, work.bytes, out), NF_OK);
+            CHECK(is_poisoned(out, sizeof out));
+            memory_free(&work);
+        }
+}
+
 static void warm_starts(void)
 {
     nf_cv_config config = make_config(2, 2, 2, NF_CV_GRADIENT_DESCENT);
@@ -379,6 +433,7 @@ int main(void)
     }
     combinations();
     controls();
+    many_integrals();
     warm_starts();
     CHECK(nf_cv_workspace_size(NULL, N) == 0);
     return report("batch");

@@ -60,21 +60,6 @@ foreach(name IN ITEMS projects examples)
     add_to(installed_${name} noisefloor noisefloor_static)
 endforeach()
 
-# noisefloor.py prints its declarations as C; a compiler that sees the header's beside them refuses those that differ.
-set(declarations "${CMAKE_CURRENT_BINARY_DIR}/python_declarations.c")
-set(folder "${root}/examples_c/python")
-add_custom_command(OUTPUT "${declarations}" COMMAND "${python}" -B "${folder}/noisefloor.py" > "${declarations}"
-    DEPENDS "${folder}/noisefloor.py" VERBATIM)
-add_library(python_declarations OBJECT "${declarations}")
-set_target_properties(python_declarations PROPERTIES C_STANDARD 11)
-target_compile_options(python_declarations PRIVATE -Wall -Wextra -pedantic -Werror)
-target_link_libraries(python_declarations PRIVATE noisefloor::noisefloor)
-add_to(python python_declarations noisefloor)
-add_check(python tests "${python}" -B -W error::SyntaxWarning test_noisefloor.py)
-add_check(python a_training_loop "${python}" -B -W error::SyntaxWarning train_digits.py 2 1)
-set_tests_properties(python.tests python.a_training_loop PROPERTIES WORKING_DIRECTORY "${folder}"
-    ENVIRONMENT "NOISEFLOOR_LIBRARY=$<TARGET_FILE:noisefloor>;PYTHONDONTWRITEBYTECODE=1")
-
 # The path tracer: what it lists, what it promises of its options, what it refuses; and its parts one by one.
 find_package(Threads REQUIRED)
 link_libraries(Threads::Threads)

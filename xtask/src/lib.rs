@@ -8,6 +8,7 @@ pub mod install;
 pub mod instructions;
 pub mod library;
 pub mod povray;
+pub mod python;
 pub mod run;
 pub mod start;
 pub mod test;

@@ -3,7 +3,7 @@
 use crate::c_tests::{self, PYTHON};
 use crate::outcome::Outcome;
 use crate::tools::{self, Package};
-use crate::{embree, fuzz, instructions, library, povray, run, start, texts};
+use crate::{embree, fuzz, instructions, library, povray, python, run, start, texts};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -103,7 +103,7 @@ pub fn run(options: &Options) -> Result<()> {
     steps.start("cargo xtask report --quick: the path tracer on Embree", "report", "embree");
     let heading = "examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces";
     steps.run(heading, || c_tests::run_twice("renderers", &[]));
-    steps.c("examples_c/python: ctypes declarations, tests and a training loop", "default", "python", &[PYTHON]);
+    steps.run("python: the wheel, its tests with NumPy and PyTorch, docs/python.md, examples_c/python", python::test);
     let heading = "cargo xtask report --quick: tables, gradients, estimators, known integrands, samplers, point sets";
     steps.start(heading, "report", "chapters");
     steps.run("instruction counts: none above the committed report's by 3 %", || instructions::check(&archive()?));

@@ -19,6 +19,7 @@ pub(crate) mod pixels;
 mod plan;
 mod points;
 mod program;
+mod python;
 mod run;
 mod samplers;
 mod scenes;
@@ -133,6 +134,7 @@ const CHAPTERS: &[Entry] = &[
         samplers::write,
     )
     .runs(&["samplers", "guidance"]),
+    entry("python", 420, "The Python package: overhead, PyTorch's sampling, integration, training", python::write),
     entry("points", 65, "Seconds against quality of point sets, 256 to a million points", points::write)
         .runs(&["point_sets"]),
 ];

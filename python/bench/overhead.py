@@ -1,0 +1,145 @@
+"""Times of minibatches and integrals: the C library's calls, the package around them, PyTorch's ways to draw.
+
+    python python/bench/overhead.py      needs torch
+
+Microseconds of processor time, medians of 7 runs in turns.
+"""
+
+import ctypes
+import statistics
+import time
+
+import numpy
+import output
+import torch
+from torch.nn.functional import cross_entropy
+
+import noisefloor
+from noisefloor import _c
+from noisefloor.torch import ImportanceBatchSampler
+
+BATCH, FRACTION = 128, 0.2
+
+
+def time_of(calls, repeats, runs):
+    """The median over runs of the time of one call, for each of some functions; runs take turns."""
+    times = {name: [] for name in calls}
+    for _ in range(runs):
+        for name, call in calls.items():
+            call()
+            start = time.process_time()
+            for _ in range(repeats[name]):
+                call()
+            times[name].append((time.process_time() - start) / repeats[name] * 1e6)
+    return {name: statistics.median(values) for name, values in times.items()}
+
+
+def draws(items, runs):
+    """Draw and update of a batch."""
+    generator = numpy.random.default_rng(1)
+    values = generator.random(items, numpy.float32) + 0.01
+    table = noisefloor.Table(items, importance=values, seed=1)
+    importance = generator.random(BATCH, numpy.float32)
+    index, weight = numpy.empty(BATCH, numpy.uint32), numpy.empty(BATCH, numpy.float32)
+    at = _c.data(index), _c.data(weight), _c.data(importance)
+
+    def raw():
+        _c.table_draw(table._at, table._rng_at, BATCH, at[0], at[1])
+        _c.table_update(table._at, at[0], at[2], BATCH, 0.3)
+
+    def package():
+        index, _ = table.draw(BATCH)
+        table.update(index, importance)
+
+    q, new = torch.from_numpy(values), torch.from_numpy(importance)
+
+    def multinomial():
+        p = q * ((1 - FRACTION) / q.sum()) + FRACTION / items
+        index = torch.multinomial(p, BATCH, replacement=True)
+        _ = 1 / (items * p[index])
+        q[index] = 0.3 * q[index] + 0.7 * new
+
+    calls = {"C calls": raw, "package": package}
+    # It takes no more categories.
+    if items <= 2**24:
+        calls["torch.multinomial"] = multinomial
+    repeats = {"C calls": 2000, "package": 2000, "torch.multinomial": max(2, 4_000_000 // items)}
+    return time_of(calls, repeats, runs)
+
+
+def steps(batch, runs):
+    """A step of training, and what drawing by importance adds to it: a network of 784-256-256-10."""
+    torch.manual_seed(1)
+    items = 60_000
+    layers = [torch.nn.Linear(784, 256), torch.nn.ReLU(), torch.nn.Linear(256, 256), torch.nn.ReLU()]
+    model = torch.nn.Sequential(*layers, torch.nn.Linear(256, 10))
+    optimizer = torch.optim.AdamW(model.parameters())
+    x, y = torch.rand(items, 784), torch.randint(0, 10, (items,))
+    sampler = ImportanceBatchSampler(items, batch, warmup=None, steps=10**9)
+    batches = iter(sampler)
+
+    def step(index, weight):
+        logits = model(x[index])
+        logits.retain_grad()
+        losses = cross_entropy(logits, y[index], reduction="none")
+        optimizer.zero_grad()
+        (losses.mean() if weight is None else (weight * losses).mean()).backward()
+        optimizer.step()
+        return logits
+
+    def uniform():
+        step(torch.randint(items, (batch,)), None)
+
+    logits = step(torch.arange(batch), torch.ones(batch))
+
+    def sampling():
+        next(batches)
+        sampler.batch()
+        sampler.update_from(logits)
+
+    return time_of({"uniform": uniform, "sampling": sampling}, {"uniform": 100, "sampling": 500}, runs)
+
+
+def integrals(runs, count=100_000, n=16, dims=2):
+    """Many integrals of few samples: the library's one call, and the package's."""
+    generator = numpy.random.default_rng(1)
+    u = generator.random((count, n, dims), numpy.float32)
+    f = numpy.exp(u.sum(-1))
+    config = _c.default_config()
+    config.dims = dims
+    workspace = _c.workspace(_c.cv_workspace_size(ctypes.addressof(config), n))
+    out = numpy.empty(count, _c.ESTIMATE)
+    at = ctypes.addressof(config), _c.data(u), _c.data(f), n, count, _c.data(workspace), workspace.nbytes, _c.data(out)
+    u64, f64 = u.astype(numpy.float64), f.astype(numpy.float64)
+    calls = {
+        "C call": lambda: _c.cv_estimate_many(*at),
+        "package, float32": lambda: noisefloor.estimate(u, f),
+        "package, float64": lambda: noisefloor.estimate(u64, f64),
+    }
+    return time_of(calls, dict.fromkeys(calls, 1), runs)
+
+
+def main():
+    """Writes the tables."""
+    options = output.arguments(__doc__)
+    torch.set_num_threads(1)
+    runs = 1 if options.quick else 7
+    names = "C calls", "package", "torch.multinomial"
+    rows = []
+    for items in (20_000,) if options.quick else (20_000, 1_000_000, 10_000_000, 100_000_000):
+        times = draws(items, runs)
+        rows.append([f"{items:,} items", *(f"{times[name]:.1f}" if name in times else "refused" for name in names)])
+    output.write(options, "draws", ["table of", *names], rows)
+    rows = []
+    for batch in (32,) if options.quick else (32, 128, 512):
+        times = steps(batch, runs)
+        share = 100 * times["sampling"] / (times["uniform"] + times["sampling"])
+        rows.append([str(batch), f"{times['uniform']:.0f}", f"{times['sampling']:.0f}", f"{share:.1f}"])
+    output.write(options, "steps", ["batch", "uniform step", "sampling", "share %"], rows)
+    times = integrals(runs)
+    rows = [[name, f"{value / 1000:.1f}", f"{value / times['C call']:.2f}"] for name, value in times.items()]
+    output.write(options, "integrals", ["call", "milliseconds", "over C"], rows)
+
+
+if __name__ == "__main__":
+    main()

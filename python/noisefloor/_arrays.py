@@ -1,0 +1,95 @@
+"""Arrays of anybody's, made into those that the library reads, and refusals that name what is wrong."""
+
+import numpy
+
+
+def array(name, value):
+    """NumPy's view of a NumPy, PyTorch or JAX array, of anything with a buffer, DLPack or an array interface, or a copy
+    of numbers in lists. Tensors on other devices are copied."""
+    if isinstance(value, numpy.ndarray):
+        return value
+    if type(value).__module__.partition(".")[0] == "torch":
+        value = value.detach().cpu()
+        # NumPy has no bfloat16.
+        value = value.float() if value.is_floating_point() and value.element_size() < 4 else value
+        return value.numpy()
+    if not hasattr(value, "__array__") and hasattr(value, "__dlpack__"):
+        return numpy.from_dlpack(value)
+    try:
+        return numpy.asarray(value)
+    except ValueError as error:
+        raise ValueError(f"{name} is no array of numbers: {error}") from None
+
+
+def floats(name, value):
+    """float32 numbers, row after row. What is beyond float32 becomes infinite, which the library refuses."""
+    view = array(name, value)
+    if view.dtype.kind not in "fiub":
+        raise TypeError(f"{name} holds {view.dtype}: real numbers are expected")
+    with numpy.errstate(over="ignore"):
+        return numpy.asarray(view, numpy.float32, order="C")
+
+
+def integers(name, value, most):
+    """uint32 numbers from 0 to most, row after row."""
+    view = array(name, value)
+    if view.dtype.kind not in "iu":
+        if view.size:
+            raise TypeError(f"{name} holds {view.dtype}: integers are expected")
+        view = view.astype(numpy.int64)
+    check(name, view, (view >= 0) & (view <= most), f"0 to {most}")
+    return numpy.asarray(view, numpy.uint32, order="C")
+
+
+def integer(name, value, least, most):
+    """An int from least to most."""
+    try:
+        number = value.__index__()
+    except (AttributeError, TypeError):
+        raise TypeError(f"{name} is {value!r}: an integer is expected") from None
+    if not least <= number <= most:
+        raise ValueError(f"{name} is {number}: it must be {least} to {most}")
+    return number
+
+
+def number(name, value, least, most):
+    """A float from least to most."""
+    try:
+        result = float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} is {value!r}: a number is expected") from None
+    if not least <= result <= most:
+        raise ValueError(f"{name} is {result}: it must be {least} to {most}")
+    return result
+
+
+def one_of(name, value, choices):
+    """What a name stands for."""
+    try:
+        return choices[value]
+    except (KeyError, TypeError):
+        raise ValueError(f"{name} is {value!r}: it must be one of {', '.join(map(repr, choices))}") from None
+
+
+def check(name, values, good, allowed):
+    """Refuses the first element that is not good."""
+    if not numpy.all(good):
+        at = numpy.unravel_index(numpy.argmin(good), values.shape)
+        element = f"[{', '.join(map(str, at))}]" if at else ""
+        raise ValueError(f"{name}{element} is {values[at]}: it must be {allowed}")
+
+
+def check_shape(name, values, expected, meaning):
+    """Refuses an array of another shape."""
+    if values.shape != expected:
+        raise ValueError(f"{name} has the shape {values.shape}: it must be {expected}, {meaning}")
+
+
+def check_finite(name, values):
+    """Refuses NaN and infinity."""
+    check(name, values, numpy.isfinite(values), "finite, and within float32's range")
+
+
+def check_positive(name, values):
+    """Refuses what is no finite number of at least 0."""
+    check(name, values, numpy.isfinite(values) & (values >= 0), "at least 0 and finite, within float32's range")

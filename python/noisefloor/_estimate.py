@@ -1,0 +1,215 @@
+"""Estimates of integrals from samples, with less error than their mean."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy
+
+from . import _arrays, _c
+
+#: Estimates made in one call: the interpreter sees an interrupt between two.
+CHUNK = 1 << 15
+
+
+class Estimate(NamedTuple):
+    """Estimates of integrals, with their leading dimensions: arrays of float32, or floats of a single integral.
+
+    Attributes:
+        mean: the integral; a last axis for the channels, if there are channels.
+        std_error: the mean's standard error, of the same shape; infinite where one sample is all there is.
+        gain: estimated variance relative to the plain mean's, without that axis; 1 is no gain.
+    """
+
+    mean: numpy.ndarray | float
+    std_error: numpy.ndarray | float
+    gain: numpy.ndarray | float
+
+
+def estimate(
+    u: Any,
+    f: Any,
+    *,
+    order: int = 2,
+    estimator: str = "robust",
+    basis: str = "legendre",
+    dims: int | None = None,
+    slices: int = 1,
+    stratified: bool = False,
+    channels: bool = False,
+) -> Estimate:
+    """Estimates the integral of f over the unit cube from n samples, or many integrals from n samples of each.
+
+    The samples' values may also be divided by a density: u are then the uniform numbers that made the point.
+
+    Args:
+        u: shape (..., n, d), 0 to 1: the coordinates of each sample.
+        f: shape (..., n), finite; with `channels` (..., n, c), 1 to 4 of them. Leading dimensions broadcast with u's.
+        order: largest total degree of the polynomials, 0 to 7; 0 is the plain mean. At most 136 terms.
+        estimator: "robust", never noticeably worse than the mean; "least_squares", for many samples per term, and for
+            Sobol points; "leave_one_out" and "k_fold", exactly unbiased; "gradient_descent"; "incremental".
+        basis: "legendre", "step", "sine" or "gaussian".
+        dims: how many of the coordinates are regressed, the first 1 to 16; None: all.
+        slices: above 1, the last of them picks one of so many equally likely alternatives.
+        stratified: whether the points are (Sobol's, a lattice's, `Sampler`'s). All but "least_squares" and
+            "gradient_descent" are then their plain mean.
+        channels: whether f's last axis holds the values of a sample.
+
+    Returns:
+        An `Estimate` with u's and f's leading dimensions. All is computed from float32.
+    """
+    u, f = _arrays.floats("u", u), _arrays.floats("f", f)
+    values = 1 if channels else 0
+    if u.ndim < 2 or f.ndim < 1 + values:
+        raise ValueError(
+            f"u has the shape {u.shape} and f {f.shape}: (..., n, d) and (..., n{', c' * values}) are needed"
+        )
+    n, d = u.shape[-2:]
+    own = f.shape[f.ndim - 1 - values :]
+    if own[0] != n:
+        raise ValueError(f"u has {n} samples and f {own[0]}, in the shapes {u.shape} and {f.shape}")
+    if n == 0:
+        raise ValueError(f"u has the shape {u.shape}: there are no samples")
+    config = configure(order, estimator, basis, d, dims, slices, stratified, own[1] if channels else 1)
+    try:
+        leading = numpy.broadcast_shapes(u.shape[:-2], f.shape[: f.ndim - 1 - values])
+    except ValueError:
+        raise ValueError(f"the leading dimensions of u {u.shape} and f {f.shape} do not broadcast") from None
+    u = numpy.ascontiguousarray(numpy.broadcast_to(u, leading + (n, d)))
+    f = numpy.ascontiguousarray(numpy.broadcast_to(f, leading + own))
+    out = numpy.empty(leading, _c.ESTIMATE)
+    workspace = _c.workspace(_c.cv_workspace_size(_c.address(config), n))
+    steps = 4 * n * d, 4 * n * config.channels, _c.ESTIMATE.itemsize
+    for first in range(0, out.size, CHUNK):
+        some = min(CHUNK, out.size - first)
+        at = [_c.data(array) + first * step for array, step in zip((u, f, out), steps)]
+        status = _c.cv_estimate_many(_c.address(config), *at[:2], n, some, _c.data(workspace), workspace.nbytes, at[2])
+        if status:
+            _refuse(status, u, f, config)
+    return _result(out, channels, config.channels)
+
+
+def image_estimate(
+    u: Any,
+    f: Any,
+    *,
+    surfaces: Any = None,
+    factors: Any = None,
+    known: Any = None,
+    known_integrals: Any = None,
+    order: int = 2,
+    estimator: str = "robust",
+    dims: int | None = None,
+    slices: int = 1,
+    stratified: bool = False,
+    channels: bool = False,
+    window: int = 8,
+    stride: int | None = None,
+) -> Estimate:
+    """Estimates every pixel of an image, by fits that neighbouring pixels share. One sample in each pixel is enough.
+
+    Args:
+        u: shape (height, width, n, d), 0 to 1, as for `estimate`, or (frames, height, width, n, d).
+        f: shape (height, width, n), or with `channels` (height, width, n, c); frames as u.
+        surfaces: integers of shape (height, width): only pixels with the same number share fits.
+        factors: shape (height, width), with `channels` (height, width, c), at least 0: what a pixel's values are
+            proportional to, an albedo say.
+        known: of f's shape: what each sample would be with nothing in the way.
+        known_integrals: of `factors`' shape, at least 0: the exact integrals of that.
+        order, estimator, dims, slices, channels: as for `estimate`; "robust", "leave_one_out" or "k_fold".
+        stratified: whether each pixel's points are, `Sampler`'s say.
+        window: width and height of the windows that share a fit, 1 to 32 pixels.
+        stride: pixels from one window to the next; None: half of a window.
+
+    Returns:
+        An `Estimate`, of shape (height, width), with `channels` of (height, width, c); frames as u.
+    """
+    u, f = _arrays.floats("u", u), _arrays.floats("f", f)
+    values = 1 if channels else 0
+    if u.ndim not in (4, 5) or 0 in u.shape:
+        raise ValueError(f"u has the shape {u.shape}: (height, width, n, d) or (frames, height, width, n, d) is needed")
+    *pixels, n, d = u.shape
+    if f.shape[: len(pixels) + 1] != u.shape[:-1] or f.ndim != u.ndim - 1 + values:
+        raise ValueError(f"f has the shape {f.shape}: with this u it must be {u.shape[:-1] + ('c',) * values}")
+    own = f.shape[u.ndim - 1 :]
+    config = configure(order, estimator, "legendre", d, dims, slices, stratified, *own)
+    image = _c.Image(width=pixels[-1], height=pixels[-2], frames=pixels[0] if len(pixels) == 3 else 1)
+    image.window = _arrays.integer("window", window, 1, 32)
+    image.stride = 0 if stride is None else _arrays.integer("stride", stride, 1, window)
+    kept = []
+
+    def give(name, array, shape):
+        _arrays.check_shape(name, array, tuple(shape), "as u and f say")
+        setattr(image, name, _c.data(array))
+        kept.append(array)
+
+    if surfaces is not None:
+        give("surfaces", _arrays.integers("surfaces", surfaces, 2**32 - 1), pixels)
+    for name, array, shape in (
+        ("factors", factors, (*pixels, *own)),
+        ("known", known, f.shape),
+        ("known_integrals", known_integrals, (*pixels, *own)),
+    ):
+        if array is not None:
+            array = _arrays.floats(name, array)
+            (_arrays.check_finite if name == "known" else _arrays.check_positive)(name, array)
+            give(name, array, shape)
+    if (known is None) != (known_integrals is None):
+        raise ValueError("known and known_integrals belong together: one of them is None")
+    out = numpy.empty(pixels, _c.ESTIMATE)
+    workspace = _c.workspace(_c.cv_image_workspace_size(_c.address(config), _c.address(image), n))
+    status = _c.cv_image_estimate(
+        _c.address(config),
+        _c.address(image),
+        *(_c.data(array) for array in (u, f)),
+        n,
+        _c.data(workspace),
+        workspace.nbytes,
+        _c.data(out),
+    )
+    if status:
+        _refuse(status, u, f, config)
+    return _result(out, channels, config.channels)
+
+
+def configure(order, estimator, basis, d, dims, slices, stratified, channels=1):
+    """The library's configuration, each field refused by its name."""
+    config = _c.default_config()
+    config.estimator = _arrays.one_of("estimator", estimator, _c.ESTIMATORS)
+    config.basis = _arrays.one_of("basis", basis, _c.BASES)
+    config.order = _arrays.integer("order", order, 0, _c.MAX_ORDER)
+    config.slices = _arrays.integer("slices", slices, 1, 2**32 - 1)
+    config.stratified = bool(stratified)
+    if dims is None and not 1 <= d <= _c.MAX_DIMS:
+        raise ValueError(f"u has {d} coordinates: 1 to {_c.MAX_DIMS} can be regressed; `dims` says how many of them")
+    config.dims = d if dims is None else _arrays.integer("dims", dims, 1, min(d, _c.MAX_DIMS))
+    config.stride = d
+    config.channels = _arrays.integer("the number of f's channels", channels, 1, _c.MAX_CHANNELS)
+    if not _c.cv_terms(_c.address(config)):
+        raise ValueError(
+            f"order {order} in {config.dims} dims with {slices} slices has more than {_c.MAX_TERMS} terms: lower the "
+            "order, or regress fewer dims"
+        )
+    return config
+
+
+def _refuse(status, u, f, config):
+    """Says what the library refused."""
+    seen = u[..., : config.dims]
+    _arrays.check("u", seen, (seen >= 0) & (seen <= 1), "0 to 1")
+    _arrays.check_finite("f", f)
+    names = {number: name for name, number in _c.ESTIMATORS.items()}
+    raise ValueError(
+        f"{_c.message(status)}: estimator {names[config.estimator]!r}, order {config.order}, {config.dims} dims, "
+        f"{config.slices} slices, samples of the shapes {u.shape} and {f.shape}"
+    )
+
+
+def _result(out, channels, count):
+    """What the library wrote, as arrays or floats."""
+    if channels:
+        mean, std_error = (out[name][..., :count].copy() for name in ("mean", "std_error"))
+    else:
+        mean, std_error = (out[name][..., 0].copy() for name in ("mean", "std_error"))
+    parts = mean, std_error, out["gain"].copy()
+    return Estimate(*(part if part.ndim else float(part) for part in parts))

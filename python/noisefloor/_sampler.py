@@ -1,0 +1,119 @@
+"""Points whose error is small in each pixel, and arranged so that it vanishes across pixels."""
+
+from __future__ import annotations
+
+import secrets
+
+import numpy
+
+from . import _arrays, _c
+
+LAST = 2**32 - 1
+
+
+class Sampler:
+    """The random numbers of a renderer: for any pixel and sample, in any order, with the least visible error.
+
+    The samples of a pixel are one sequence without end, best at 1, 2, 4, 8, ... samples. Each decision of a path (lens,
+    light, ...) has a domain of its own, unrelated to others.
+
+    Args:
+        frame: 0 to 2**32 - 1; frames are unrelated. For frames that are averaged leave it, and let `first` count on.
+        seed: 0 to 2**32 - 1; each but 0 shifts all numbers, so that estimates are unbiased over seeds, at some cost of
+            quality.
+        white: whether neighbouring pixels know nothing of each other, for denoisers that expect that.
+    """
+
+    def __init__(self, *, frame: int = 0, seed: int = 0, white: bool = False) -> None:
+        self._frame = _arrays.integer("frame", frame, 0, LAST)
+        self._seed = _arrays.integer("seed", seed, 0, LAST)
+        self._white, self._keys = bool(white), ()
+
+    def __repr__(self):
+        keys = "".join(f".domain({key})" for key in self._keys)
+        return f"Sampler(frame={self._frame}, seed={self._seed}, white={self._white}){keys}"
+
+    def domain(self, key: int) -> Sampler:
+        """The sampler of another decision, a child of this one; key: 0 to 2**32 - 1."""
+        child = Sampler(frame=self._frame, seed=self._seed, white=self._white)
+        child._keys = self._keys + (_arrays.integer("key", key, 0, LAST),)
+        return child
+
+    def image(
+        self, width: int, height: int, samples: int, dims: int = 2, *, x: int = 0, y: int = 0, first: int = 0
+    ) -> numpy.ndarray:
+        """Numbers for many pixels.
+
+        Args:
+            width, height: how many pixels, from column x and row y on.
+            samples: of each pixel, from number `first` on.
+            dims: numbers of each sample, at least 1. The first four are stratified together, the first two arranged
+                across pixels. Further ones come by fours from the domains with the keys 1, 2, ...
+
+        Returns:
+            float32 of shape (height, width, samples, dims), at least 0 and below 1.
+        """
+        sizes = [
+            _arrays.integer(name, value, 1, LAST)
+            for name, value in (("width", width), ("height", height), ("samples", samples), ("dims", dims))
+        ]
+        width, height, samples, dims = sizes
+        place = [_arrays.integer(name, value, 0, LAST) for name, value in (("x", x), ("y", y), ("first", first))]
+        groups = -(-dims // 4)
+        samplers, parts = (_c.Sampler * groups)(), (_c.u32 * groups)()
+        for group in range(groups):
+            keys = self._keys + ((group,) if group else ())
+            samplers[group], parts[group] = self._at(*place, keys), min(4, dims - 4 * group)
+        u = numpy.empty((height, width, samples, dims), numpy.float32)
+        status = _c.sampler_fill(
+            _c.address(samplers), _c.address(parts), groups, width, height, samples, _c.data(u), u.size
+        )
+        if status:
+            raise ValueError(f"{_c.message(status)}: {width} x {height} pixels, {samples} samples, {dims} dims")
+        return u
+
+    def pixel(self, x: int, y: int, samples: int, dims: int = 2, *, first: int = 0) -> numpy.ndarray:
+        """The numbers of one pixel's samples, float32 of shape (samples, dims); arguments as for `image`."""
+        return self.image(1, 1, samples, dims, x=x, y=y, first=first)[0, 0]
+
+    def _at(self, x, y, index, keys):
+        make = _c.sampler_white if self._white else _c.sampler_pixel
+        sampler = _c.sampler_scramble(make(x, y, self._frame, index), self._seed)
+        for key in keys:
+            sampler = _c.sampler_domain(sampler, key)
+        return sampler
+
+
+class QMCEngine:
+    """The same points as a sequence, with the methods of the engines of `scipy.stats.qmc`.
+
+    Args:
+        d: dims, 1 to 4. In 2 it is as good as `scipy.stats.qmc.Sobol`; in more that is the better engine.
+        seed: 0 to 2**32 - 1; sequences of different seeds are unrelated. None: another one each time.
+    """
+
+    def __init__(self, d: int, *, seed: int | None = None) -> None:
+        self.d = _arrays.integer("d", d, 1, 4)
+        self.seed = secrets.randbits(32) if seed is None else _arrays.integer("seed", seed, 0, LAST)
+        self.num_generated = 0
+        self._sampler = Sampler(frame=self.seed, white=True)
+
+    def random(self, n: int = 1) -> numpy.ndarray:
+        """The next n points, float64 of shape (n, d), at least 0 and below 1; best where n is a power of two."""
+        n = _arrays.integer("n", n, 0, LAST - self.num_generated)
+        if n == 0:
+            return numpy.empty((0, self.d))
+        x, y = self.seed & 0xFFFF, self.seed >> 16
+        points = self._sampler.pixel(x, y, n, self.d, first=self.num_generated)
+        self.num_generated += n
+        return points.astype(numpy.float64)
+
+    def fast_forward(self, n: int) -> QMCEngine:
+        """Leaves n points out."""
+        self.num_generated += _arrays.integer("n", n, 0, LAST - self.num_generated)
+        return self
+
+    def reset(self) -> QMCEngine:
+        """Starts again."""
+        self.num_generated = 0
+        return self

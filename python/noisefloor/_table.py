@@ -1,0 +1,192 @@
+"""Minibatches drawn in proportion to importance."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from typing import Any
+
+import numpy
+
+from . import _arrays, _c
+
+#: Larger batches, which take longer anyway, have arrays of their own.
+ROOM = 4096
+
+
+class Table:
+    """The importances of a data set's items, from which minibatches are drawn.
+
+    Item i is drawn with probability p_i = (1 - d) q_i / sum(q) + d / n, where q_i is its importance and d the uniform
+    fraction. Its weight is 1 / (n p_i): the mean of weight times gradient estimates the gradient of the mean loss
+    without bias. A draw and an update take time of O(log n). 4.6 bytes per item.
+
+    Any number of threads may use one table. Tables can be pickled and copied; a copy draws the same minibatches.
+
+    Args:
+        n: how many items, 1 to 2**32 - 1.
+        importance: shape (n,), finite, at least 0 and not all 0; None makes all 1.
+        uniform_fraction: the part of draws that are uniform, 0 to 1. No weight is above 1 / uniform_fraction.
+        seed: of the table's own random numbers, 0 to 2**64 - 1.
+    """
+
+    def __init__(self, n: int, *, importance: Any = None, uniform_fraction: float = 0.2, seed: int = 0) -> None:
+        n = _arrays.integer("n", n, 1, _c.MAX_ITEMS)
+        fraction = _arrays.number("uniform_fraction", uniform_fraction, 0, 1)
+        seed = _arrays.integer("seed", seed, 0, 2**64 - 1)
+        if importance is not None:
+            importance = _arrays.floats("importance", importance)
+            _arrays.check_shape("importance", importance, (n,), "a number for each item")
+        self._prepare(n)
+        status = _c.table_init(self._at, _c.data(self._memory), self._memory.nbytes, n, _c.data(importance))
+        if status:
+            _arrays.check_positive("importance", importance)
+            raise ValueError(f"importance: {_c.message(status)}: all {n} are 0")
+        _c.table_set_uniform_fraction(self._at, fraction)
+        _c.rng_seed(self._rng_at, seed)
+
+    def _prepare(self, n):
+        """Memory for n items, and none yet for batches."""
+        self._n = n
+        self._table, self._rng, self._lock = _c.Table(), _c.Rng(), threading.Lock()
+        self._at, self._rng_at = _c.address(self._table), _c.address(self._rng)
+        self._memory = _c.workspace(_c.table_size(n))
+        # Where the library reads and writes batches, so that their addresses need not be asked for each time.
+        self._index, self._value = numpy.empty(ROOM, numpy.uint32), numpy.empty(ROOM, numpy.float32)
+        self._index_at, self._value_at = _c.data(self._index), _c.data(self._value)
+
+    def __len__(self) -> int:
+        return self._n
+
+    def __repr__(self):
+        return f"Table({self._n}, uniform_fraction={self.uniform_fraction:.6g})"
+
+    @property
+    def uniform_fraction(self) -> float:
+        """The part of draws that are uniform, 0 to 1; may be set."""
+        return self._table.uniform_fraction
+
+    @uniform_fraction.setter
+    def uniform_fraction(self, value: float) -> None:
+        value = _arrays.number("uniform_fraction", value, 0, 1)
+        with self._lock:
+            _c.table_set_uniform_fraction(self._at, value)
+
+    def draw(self, batch: int, method: str = "iid") -> tuple[numpy.ndarray, numpy.ndarray]:
+        """Draws items in proportion to importance.
+
+        Args:
+            batch: how many, 0 to 2**32 - 1.
+            method: "iid", independently and with replacement; "stratified", one from each of `batch` equal parts of the
+                probabilities, in the order of the data set: use the batch as a whole; "distinct", without replacement,
+                at most n.
+
+        Returns:
+            index, int64, and weight, float32, both of shape (batch,): the mean of weight times gradient estimates the
+            gradient of the mean loss over all items.
+        """
+        try:
+            draw = _c.DRAWS[method]
+        except (KeyError, TypeError):
+            draw = _arrays.one_of("method", method, _c.DRAWS)
+        if type(batch) is not int or not 0 <= batch <= ROOM:
+            batch = _arrays.integer("batch", batch, 0, self._n if method == "distinct" else _c.MAX_ITEMS)
+        if batch > ROOM:
+            index, weight = numpy.empty(batch, numpy.uint32), numpy.empty(batch, numpy.float32)
+            with self._lock:
+                status = draw(self._at, self._rng_at, batch, _c.data(index), _c.data(weight))
+            if not status:
+                return index.astype(numpy.int64), weight
+        else:
+            with self._lock:
+                status = draw(self._at, self._rng_at, batch, self._index_at, self._value_at)
+                if not status:
+                    return self._index[:batch].astype(numpy.int64), self._value[:batch].copy()
+        raise self._draw_error(status, batch, method)
+
+    def _draw_error(self, status, batch, method):
+        if method == "distinct" and batch > self._n:
+            return ValueError(f"batch is {batch}: a distinct draw takes 0 to {self._n}, as many as there are items")
+        return ValueError(
+            f"{_c.message(status)}: too few items have an importance above 0, and uniform_fraction is "
+            f"{self.uniform_fraction:.6g}"
+        )
+
+    def update(self, index: Any, importance: Any, momentum: float = 0.3) -> None:
+        """Sets the importance of items: q = momentum q + (1 - momentum) importance.
+
+        Args:
+            index: integers of shape (batch,), 0 to n - 1. An item that comes twice is changed twice.
+            importance: shape (batch,), finite and at least 0: the norm of each item's gradient, say. Only ratios count.
+            momentum: 0 to 1. 0 forgets the old value.
+        """
+        if type(index) is not numpy.ndarray:
+            index = _arrays.array("index", index)
+        if type(importance) is not numpy.ndarray:
+            importance = _arrays.array("importance", importance)
+        if index.dtype.char != "l":
+            index = _arrays.integers("index", index, self._n - 1).astype(numpy.int64)
+        if importance.dtype.char != "f":
+            importance = _arrays.floats("importance", importance)
+        batch = index.size
+        if importance.shape != index.shape or index.ndim != 1:
+            _arrays.check_shape("index", index, (batch,), "one item after the other")
+            _arrays.check_shape("importance", importance, (batch,), "a number for each index")
+        if type(momentum) is not float or not 0 <= momentum <= 1:
+            momentum = _arrays.number("momentum", momentum, 0, 1)
+        # What is no number of 32 bits would become another item's.
+        is_plain = 0 < batch <= ROOM and not numpy.bitwise_or.reduce(index) >> 32
+        if is_plain:
+            with self._lock:
+                numpy.copyto(self._index[:batch], index, "unsafe")
+                numpy.copyto(self._value[:batch], importance, "unsafe")
+                if not _c.table_update(self._at, self._index_at, self._value_at, batch, momentum):
+                    return
+        index, importance = _arrays.integers("index", index, self._n - 1), _arrays.floats("importance", importance)
+        with self._lock:
+            status = _c.table_update(self._at, _c.data(index), _c.data(importance), batch, momentum)
+        if status:
+            _arrays.check_positive("importance", importance)
+            raise ValueError(_c.message(status))
+
+    def probabilities(self, index: Any = None) -> numpy.ndarray:
+        """The probability of drawing each of these items, float32, of index's shape; of all items for None."""
+        if index is None:
+            index = numpy.arange(self._n, dtype=numpy.uint32)
+        index = _arrays.integers("index", index, self._n - 1)
+        p = numpy.empty(index.shape, numpy.float32)
+        with self._lock:
+            status = _c.table_probabilities(self._at, _c.data(index), index.size, 1, _c.data(p))
+        if status:
+            raise self._draw_error(status, 0, None)
+        return p
+
+    def state_dict(self) -> dict[str, Any]:
+        """All that decides what is drawn next: "table", uint8 of shape (bytes,), and "rng", two ints. The same bytes on
+        every machine."""
+        with self._lock:
+            saved = numpy.empty(_c.table_saved_size(self._at), numpy.uint8)
+            status = _c.table_save(self._at, _c.data(saved), saved.nbytes)
+            rng = (self._rng.state, self._rng.increment)
+        assert not status, _c.message(status)
+        return {"table": saved, "rng": rng}
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Becomes the table that `state_dict` saw, of as many items."""
+        saved = numpy.ascontiguousarray(_arrays.array("table", state["table"]), numpy.uint8)
+        items = _c.table_saved_items(_c.data(saved), saved.nbytes)
+        if items not in (0, self._n):
+            raise ValueError(f"the state has {items} items, this table {self._n}")
+        first, second = (_arrays.integer("rng", number, 0, 2**64 - 1) for number in state["rng"])
+        with self._lock:
+            status = _c.table_load(self._at, _c.data(self._memory), self._memory.nbytes, _c.data(saved), saved.nbytes)
+            if status:
+                raise ValueError(f"the state's table, {saved.nbytes} bytes: {_c.message(status)}")
+            self._rng.state, self._rng.increment = first, second
+
+    def __getstate__(self):
+        return {"n": self._n, **self.state_dict()}
+
+    def __setstate__(self, state):
+        self._prepare(state["n"])
+        self.load_state_dict(state)

@@ -1,0 +1,288 @@
+"""Minibatches by importance for PyTorch's data loaders."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy
+import torch
+import torch.distributed
+from torch.utils.data import Sampler
+
+from . import _arrays, _c
+from ._table import Table
+
+#: Weights nearer to 0, which optimal MIS may give, hide the gradient: such items keep their importance.
+LEAST_WEIGHT = 1e-3
+
+
+class ImportanceBatchSampler(Sampler):
+    """Batches of indices, drawn in proportion to what `update` was told: `DataLoader(data, batch_sampler=sampler)`.
+
+    A step of training:
+
+        for x, y in loader:
+            index, weight = sampler.batch()          # of the batch that the loader has just handed over
+            logits = model(x)
+            logits.retain_grad()
+            (weight * cross_entropy(logits, y, reduction="none")).mean().backward()
+            optimizer.step()
+            sampler.update_from(logits)              # how large each item's gradient was
+
+    The first epoch visits every item once, with weights of 1. Later ones draw with replacement.
+
+    In data-parallel training every process makes the same sampler and gets its part of each batch; what `update` is
+    told is gathered, so that all have the same table. Gradients are averaged over processes, as
+    `DistributedDataParallel` does.
+
+    Args:
+        n: how many items the data set has, 1 to 2**32 - 1.
+        batch_size: items in a batch, of each process.
+        steps: batches in an epoch; None: n / batch_size / processes, rounded up.
+        warmup: "epoch": each item once before any is drawn by importance; None: importances begin as 1.
+        uniform_fraction: the part of draws that are uniform, 0 to 1; no weight is above 1 / uniform_fraction.
+        momentum: 0 to 1: of an item's importance, from one visit to the next.
+        techniques: 1 to 16 tables; more than 1 is optimal multiple importance sampling of the output's derivatives.
+            Even, and at most twice as many as outputs. Weights are then slightly biased and may be negative.
+        weighted: False gives weights of 1: adaptive sampling, which is biased towards difficult items.
+        seed: 0 to 2**63 - 1, the same in all processes.
+        process_group: which processes share batches. None: all, where torch.distributed is initialised.
+    """
+
+    def __init__(
+        self,
+        n: int,
+        batch_size: int,
+        *,
+        steps: int | None = None,
+        warmup: str | None = "epoch",
+        uniform_fraction: float = 0.2,
+        momentum: float = 0.3,
+        techniques: int = 1,
+        weighted: bool = True,
+        seed: int = 0,
+        process_group: Any = None,
+    ) -> None:
+        distributed = torch.distributed.is_available() and torch.distributed.is_initialized()
+        self._group = process_group
+        self._rank = torch.distributed.get_rank(process_group) if distributed else 0
+        self._processes = torch.distributed.get_world_size(process_group) if distributed else 1
+        self._n = _arrays.integer("n", n, 1, _c.MAX_ITEMS)
+        self.batch_size = _arrays.integer("batch_size", batch_size, 1, _c.MAX_ITEMS // self._processes)
+        self._whole = self.batch_size * self._processes
+        steps = -(-self._n // self._whole) if steps is None else steps
+        self._steps = _arrays.integer("steps", steps, 1, 2**63 - 1)
+        self._momentum = _arrays.number("momentum", momentum, 0, 1)
+        self._weighted = bool(weighted)
+        self._seed = _arrays.integer("seed", seed, 0, 2**63 - 1)
+        techniques = _arrays.integer("techniques", techniques, 1, _c.CONSTANTS["NF_MIS_MAX_TECHNIQUES"])
+        if techniques > 1 and (techniques % 2 or self._whole % techniques):
+            raise ValueError(
+                f"techniques is {techniques}: it must be 1, or even and a divisor of the whole batch, {self._whole}"
+            )
+        self._warmup = -(-self._n // self._whole) if _arrays.one_of("warmup", warmup, WARMUPS) else 0
+        # Neighbouring seeds are unrelated.
+        self._tables = [
+            Table(self._n, uniform_fraction=uniform_fraction, seed=self._seed + j) for j in range(techniques)
+        ]
+        self.epoch = 0
+        self._drawn = self._step = 0
+        self._ahead, self._replay, self._last, self._resumed = deque(), deque(), None, False
+
+    def __len__(self) -> int:
+        return self._steps
+
+    def __iter__(self) -> Iterator[list[int]]:
+        """The batches of an epoch, or what is left of it after `load_state_dict`: a list of indices for each."""
+        if not self._resumed:
+            self._step = 0
+            self._replay.clear()
+        self._resumed = False
+        self._ahead.clear()
+        while self._replay or self._step < self._steps:
+            batch = self._replay.popleft() if self._replay else self._draw()
+            self._ahead.append(batch)
+            yield batch[0][self._rank :: self._processes].tolist()
+
+    def _draw(self):
+        """Indices and weights of the next batch of all processes, and whether it is the first visit of its items."""
+        first = self._drawn < self._warmup
+        if first:
+            places = range(self._drawn * self._whole, (self._drawn + 1) * self._whole)
+            # After the last item the permutation starts again.
+            index = numpy.array([_c.shuffle(self._seed, self._n, place % self._n) for place in places])
+            weight = numpy.ones(self._whole, numpy.float32)
+        elif len(self._tables) == 1:
+            index, weight = self._tables[0].draw(self._whole)
+        else:
+            index, weight = self._draw_techniques()
+        if not self._weighted:
+            weight = numpy.ones(self._whole, numpy.float32)
+        self._drawn += 1
+        self._step += 1
+        return index, weight, first
+
+    def _draw_techniques(self):
+        """As many items from each table, with the weights of optimal MIS."""
+        techniques = len(self._tables)
+        each = self._whole // techniques
+        index = numpy.concatenate([table.draw(each)[0] for table in self._tables])
+        pdf = numpy.ascontiguousarray(numpy.stack([table.probabilities(index) for table in self._tables], 1))
+        technique = numpy.repeat(numpy.arange(techniques, dtype=numpy.uint32), each)
+        weight = numpy.empty(self._whole, numpy.float32)
+        status = _c.omis_weights(
+            _c.CONSTANTS["NF_OMIS_RIDGE"],
+            0,
+            techniques,
+            self._n,
+            _c.data(pdf),
+            _c.data(technique),
+            self._whole,
+            _c.data(weight),
+        )
+        if status:
+            raise ValueError(_c.message(status))
+        return index, weight
+
+    def batch(self) -> tuple[torch.Tensor, torch.Tensor]:
+        """Index and weight, int64 and float32 tensors of shape (batch_size,), of the batch that the loader has just
+        handed over; once for each batch. The mean of weight times loss estimates the mean loss over all items."""
+        if not self._ahead:
+            raise RuntimeError(
+                "batch() is for each batch of the loader, once: there is none that it was not called for"
+            )
+        self._last = self._ahead.popleft()
+        if not self._ahead and not self._replay and self._step >= self._steps:
+            self.epoch += 1
+        return self._own(0), self._own(1)
+
+    def _own(self, part):
+        """This process's part of the last batch."""
+        if self._last is None:
+            raise RuntimeError("there is no batch yet: call batch() first")
+        return torch.from_numpy(self._last[part][self._rank :: self._processes].copy())
+
+    @torch.no_grad()
+    def update(self, importance: Any, index: Any = None) -> None:
+        """Says how large each item's gradient was, of `batch`'s items or of these.
+
+        Args:
+            importance: shape (batch_size,), finite, at least 0; with several techniques (batch_size, techniques). Only
+                ratios count.
+            index: integers of shape (batch_size,); None: the items of the last `batch`. As many in every process.
+        """
+        self._learn(importance, index)
+
+    def _learn(self, importance, index=None, skip=False):
+        """`update`; skip: leaves out items that are NaN for a table."""
+        first = self._last is not None and self._last[2] and index is None
+        own = self._own(0) if index is None else torch.as_tensor(index)
+        importance = torch.as_tensor(importance).detach().float()
+        techniques = len(self._tables)
+        shape = own.shape if techniques == 1 else own.shape + (techniques,)
+        if importance.shape != shape or own.dim() != 1:
+            raise ValueError(f"importance has the shape {tuple(importance.shape)}: it must be {tuple(shape)}")
+        if index is None:
+            index = torch.from_numpy(self._last[0])
+        else:
+            index = self._gather(own)
+        importance = self._gather(importance).reshape(len(index), techniques)
+        known = ~torch.isnan(importance).any(1) if skip else slice(None)
+        index, importance = index[known].numpy(), importance[known].numpy()
+        for j, table in enumerate(self._tables):
+            table.update(index, importance[:, j], 0.0 if first else self._momentum)
+
+    def _gather(self, own):
+        """The parts of all processes, in the order of the whole batch, on the CPU."""
+        if self._processes == 1:
+            return own.cpu()
+        own = own.contiguous()
+        if torch.distributed.get_backend(self._group) == "gloo":
+            own = own.cpu()
+        parts = [torch.empty_like(own) for _ in range(self._processes)]
+        torch.distributed.all_gather(parts, own, group=self._group)
+        return torch.stack(parts, 1).flatten(0, 1).cpu()
+
+    @torch.no_grad()
+    def update_from(self, logits: torch.Tensor, *, reduction: str = "mean", scale: float = 1.0) -> None:
+        """As `update`, by the norm of each item's derivative of the loss by its outputs. After the backward pass, with
+        `logits.retain_grad()` before it.
+
+        Args:
+            logits: the model's outputs, (batch_size, ...), any loss's.
+            reduction: "mean" or "sum": how the weighted losses of the batch were added up.
+            scale: what the loss was multiplied by besides, by a GradScaler say.
+        """
+        if logits.grad is None:
+            raise ValueError("logits.grad is None: call logits.retain_grad() before the backward pass")
+        weight = self._own(1).to(logits.device)
+        if len(logits) != len(weight):
+            raise ValueError(f"logits has the shape {tuple(logits.shape)}: the last batch has {len(weight)} items")
+        count = _arrays.one_of("reduction", reduction, {"mean": len(weight), "sum": 1})
+        gradient = logits.grad.float().flatten(1) * (count / scale) / weight[:, None]
+        if len(self._tables) == 1:
+            self._learn(gradient.norm(dim=1))
+            return
+        groups = len(self._tables) // 2
+        if gradient.shape[1] < groups:
+            raise ValueError(f"techniques is {2 * groups}: {gradient.shape[1]} outputs allow {2 * gradient.shape[1]}")
+        # The norms of the positive and of the negative part of every group of outputs (6.2.3).
+        signs = gradient.clamp(min=0), (-gradient).clamp(min=0)
+        parts = [sign[:, group::groups].norm(dim=1) for group in range(groups) for sign in signs]
+        importance = torch.stack(parts, 1)
+        importance[weight.abs() < LEAST_WEIGHT] = float("nan")
+        self._learn(importance, skip=True)
+
+    def state_dict(self) -> dict[str, Any]:
+        """All that decides the batches to come, those that workers were asked for included: tensors and numbers, which
+        `torch.load` reads with `weights_only=True`. After `update`, not between `batch` and it."""
+        ahead = [*self._ahead, *self._replay]
+        tables = [table.state_dict() for table in self._tables]
+        return {
+            "n": self._n,
+            "whole_batch": self._whole,
+            "seed": self._seed,
+            "tables": [torch.from_numpy(table["table"]) for table in tables],
+            "rng": [list(table["rng"]) for table in tables],
+            "epoch": self.epoch,
+            "drawn": self._drawn,
+            "step": self._step,
+            "ahead": [(torch.from_numpy(index), torch.from_numpy(weight), first) for index, weight, first in ahead],
+        }
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Goes on where `state_dict` was called: the next `iter` gives what was left of the epoch."""
+        mine = {"n": self._n, "whole_batch": self._whole, "tables": len(self._tables)}
+        its = {"n": state["n"], "whole_batch": state["whole_batch"], "tables": len(state["tables"])}
+        if mine != its:
+            raise ValueError(f"the state is another sampler's: it has {its}, this one {mine}")
+        for table, saved, rng in zip(self._tables, state["tables"], state["rng"]):
+            table.load_state_dict({"table": saved, "rng": rng})
+        self.epoch, self._drawn, self._step = state["epoch"], state["drawn"], state["step"]
+        self._seed = state["seed"]
+        self._ahead.clear()
+        self._replay = deque((index.numpy(), weight.numpy(), first) for index, weight, first in state["ahead"])
+        self._last = None
+        # At the end of an epoch the next begins.
+        self._resumed = bool(self._replay) or self._step < self._steps
+
+
+WARMUPS = {"epoch": True, None: False}
+
+
+def cross_entropy_importance(logits: torch.Tensor, target: torch.Tensor) -> torch.Tensor:
+    """The norm of the cross-entropy loss's derivative by the logits, || softmax - onehot ||, without a backward pass.
+
+    Args:
+        logits: shape (batch, classes).
+        target: int64 of shape (batch,), 0 to classes - 1.
+
+    Returns:
+        float32 of shape (batch,), 0 to 1.4143.
+    """
+    with torch.no_grad():
+        derivative = torch.softmax(logits.float(), 1)
+        derivative[torch.arange(len(target), device=target.device), target] -= 1
+        return derivative.norm(dim=1)

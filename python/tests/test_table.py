@@ -1,0 +1,274 @@
+"""Tables: what they draw, what they refuse, and that they survive copies, processes and threads."""
+
+import copy
+import math
+import multiprocessing
+import pickle
+import threading
+
+import hypothesis
+import numpy
+import pytest
+from hypothesis import strategies
+from hypothesis.extra import numpy as arrays
+
+import noisefloor
+
+METHODS = "iid", "stratified", "distinct"
+
+
+def same(a, b, batch=50):
+    """Whether two tables draw alike."""
+    return all(numpy.array_equal(x, y) for x, y in zip(a.draw(batch), b.draw(batch)))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_weighted_mean_is_unbiased(method):
+    """z of the mean over 2,000 batches; two-sided, one false alarm in 150,000 seeds, and the seed is fixed."""
+    generator = numpy.random.default_rng(3)
+    value, importance = generator.random(200) * 10, generator.random(200)
+    table = noisefloor.Table(200, importance=importance, seed=5)
+    batches = [table.draw(32, method) for _ in range(2000)]
+    means = [numpy.mean(value[index] * weight) for index, weight in batches]
+    z = (numpy.mean(means) - value.mean()) / (numpy.std(means) / math.sqrt(len(means)))
+    assert abs(z) < 4.5
+    assert all(index.dtype == numpy.int64 and weight.dtype == numpy.float32 for index, weight in batches)
+
+
+def test_distinct_items_are_distinct():
+    index, _ = noisefloor.Table(40, seed=1).draw(40, "distinct")
+    assert sorted(index) == list(range(40))
+
+
+def test_probabilities_follow_importance():
+    table = noisefloor.Table(4, importance=[1, 2, 3, 4])
+    expected = 0.8 * numpy.arange(1, 5) / 10 + 0.05
+    assert numpy.allclose(table.probabilities(), expected)
+    index, weight = table.draw(20)
+    assert numpy.allclose(weight, 1 / (4 * expected[index]))
+    table.update([0, 0], [3.0, 3.0], 0.5)
+    assert numpy.allclose(table.probabilities([[0], [3]]), 0.8 * numpy.array([[2.5], [4]]) / 11.5 + 0.05)
+    table.uniform_fraction = 1
+    assert numpy.allclose(table.probabilities(), 0.25)
+    assert len(table) == 4 and repr(table) == "Table(4, uniform_fraction=1)"
+
+
+@pytest.mark.parametrize("batch", [0, 1, 4096, 4097, 20000])
+def test_batches_of_all_sizes(batch):
+    table, again = noisefloor.Table(30000, seed=2), noisefloor.Table(30000, seed=2)
+    for method in METHODS:
+        index, weight = table.draw(batch, method)
+        assert index.shape == weight.shape == (batch,)
+        parts = again.draw(batch, method)
+        assert numpy.array_equal(parts[0], index)
+        table.update(index, weight)
+        again.update(index, weight)
+    assert same(table, again)
+
+
+@hypothesis.given(
+    arrays.arrays(
+        strategies.sampled_from(
+            [numpy.float16, numpy.float32, numpy.float64, numpy.int32, numpy.uint8, numpy.dtype(">f4")]
+        ),
+        strategies.integers(1, 70),
+        elements=strategies.integers(0, 100),
+    ),
+    strategies.sampled_from([numpy.int8, numpy.uint16, numpy.int32, numpy.int64, numpy.uint64, numpy.dtype(">i8")]),
+    strategies.integers(-3, 3).filter(bool),
+)
+def test_any_type_and_stride_is_the_same_update(importance, kind, step):
+    plain, table = noisefloor.Table(100), noisefloor.Table(100)
+    index = numpy.arange(len(importance), dtype=kind)
+    plain.update(index[::step].astype(numpy.int64), importance[::step].astype(numpy.float32))
+    table.update(index[::step], importance[::step])
+    assert same(plain, table)
+
+
+@hypothesis.given(
+    arrays.arrays(numpy.float64, 10, elements=strategies.floats(allow_nan=True, allow_infinity=True)),
+    arrays.arrays(numpy.int64, 10),
+)
+def test_what_is_refused_changes_nothing(importance, index):
+    table, before = noisefloor.Table(100, seed=4), noisefloor.Table(100, seed=4)
+    good = (index >= 0).all() and (index < 100).all()
+    with numpy.errstate(over="ignore"):
+        narrow = importance.astype(numpy.float32)
+    good = good and numpy.isfinite(narrow).all() and (narrow >= 0).all()
+    if good:
+        table.update(index, importance)
+    else:
+        with pytest.raises(ValueError, match=r"(index|importance)\[\d\] is .*: it must be "):
+            table.update(index, importance)
+        assert same(table, before)
+
+
+class OnlyDLPack:
+    """An array that says no more than the protocol."""
+
+    def __init__(self, array):
+        self._array = array
+
+    def __dlpack__(self, **options):
+        return self._array.__dlpack__(**options)
+
+    def __dlpack_device__(self):
+        return self._array.__dlpack_device__()
+
+
+def test_arrays_of_anybody():
+    plain = noisefloor.Table(100, seed=7)
+    index, weight = plain.draw(10)
+    others = [
+        (index.tolist(), weight.tolist()),
+        (memoryview(index), memoryview(weight)),
+        (OnlyDLPack(index), OnlyDLPack(weight)),
+    ]
+    for name, make in (("torch", "from_numpy"), ("jax.numpy", "asarray")):
+        try:
+            module = __import__(name, fromlist=["x"])
+        except ImportError:
+            continue
+        others.append((getattr(module, make)(index), getattr(module, make)(weight)))
+    plain.update(index, weight)
+    for other_index, other_weight in others:
+        table = noisefloor.Table(100, importance=None, seed=7)
+        table.draw(10)
+        table.update(other_index, other_weight)
+        assert numpy.array_equal(table.probabilities(), plain.probabilities())
+
+
+@pytest.mark.parametrize(
+    "call, said",
+    [
+        (lambda t: t.update([10], [1.0]), r"index\[0\] is 10: it must be 0 to 9"),
+        (lambda t: t.update([2**32 + 1], [1.0]), r"index\[0\] is 4294967297: it must be 0 to 9"),
+        (lambda t: t.update([1, -1], [1.0, 1.0]), r"index\[1\] is -1"),
+        (lambda t: t.update([1.5], [1.0]), "index holds float64: integers"),
+        (lambda t: t.update([1], [1j]), "importance holds complex128: real numbers"),
+        (lambda t: t.update([1], ["a"]), "importance holds <U1"),
+        (lambda t: t.update([1, 2], [1.0]), r"importance has the shape \(1,\): it must be \(2,\)"),
+        (lambda t: t.update([[1]], [[1.0]]), r"index has the shape \(1, 1\)"),
+        (lambda t: t.update([1], [1.0], 1.5), r"momentum is 1.5: it must be 0 to 1"),
+        (lambda t: t.update([1], [1.0], math.nan), "momentum is nan"),
+        (lambda t: t.draw(-1), "batch is -1: it must be 0 to"),
+        (lambda t: t.draw(2.0), "batch is 2.0: an integer"),
+        (lambda t: t.draw(11, "distinct"), "batch is 11: a distinct draw takes 0 to 10"),
+        (lambda t: t.draw(5000, "distinct"), "batch is 5000: it must be 0 to 10"),
+        (lambda t: t.draw(1, "alias"), "method is 'alias': it must be one of 'iid', "),
+        (lambda t: t.draw(1, []), r"method is \[\]"),
+        (lambda t: t.probabilities([10]), r"index\[0\] is 10"),
+        (lambda t: setattr(t, "uniform_fraction", 2), "uniform_fraction is 2.0"),
+        (lambda t: t.load_state_dict(noisefloor.Table(9).state_dict()), "the state has 9 items, this table 10"),
+        (
+            lambda t: t.load_state_dict({"table": numpy.zeros(300, numpy.uint8), "rng": (0, 0)}),
+            "300 bytes: the bytes are not",
+        ),
+        (lambda t: noisefloor.Table(0), "n is 0: it must be 1 to 4294967295"),
+        (lambda t: noisefloor.Table(2**32), "n is 4294967296"),
+        (lambda t: noisefloor.Table("7"), "n is '7': an integer"),
+        (lambda t: noisefloor.Table(3, importance=[1, 2]), r"importance has the shape \(2,\): it must be \(3,\)"),
+        (lambda t: noisefloor.Table(3, importance=[0, 0, 0]), "all 3 are 0"),
+        (lambda t: noisefloor.Table(3, importance=[1, -2, 0]), r"importance\[1\] is -2.0: it must be at least 0"),
+        (lambda t: noisefloor.Table(3, seed=-1), "seed is -1"),
+        (lambda t: noisefloor.Table(1, importance=numpy.float64(1)), r"importance has the shape \(\)"),
+    ],
+)
+def test_refusals_name_argument_value_and_range(call, said):
+    with pytest.raises((ValueError, TypeError), match=said):
+        call(noisefloor.Table(10, seed=1))
+
+
+def test_without_importance_nothing_can_be_drawn():
+    table = noisefloor.Table(3, uniform_fraction=0)
+    table.update([0, 1, 2], [0.0, 0.0, 0.0], 0.0)
+    for call in (lambda: table.draw(1), table.probabilities):
+        with pytest.raises(ValueError, match="uniform_fraction is 0"):
+            call()
+
+
+def test_copies_draw_the_same():
+    table = noisefloor.Table(300, importance=numpy.arange(300), uniform_fraction=0.1, seed=9)
+    table.update(*table.draw(20))
+    fresh = noisefloor.Table(300)
+    fresh.load_state_dict(table.state_dict())
+    copies = [fresh, copy.deepcopy(table), copy.copy(table), pickle.loads(pickle.dumps(table))]
+    expected = table.draw(40)
+    for other in copies:
+        assert all(numpy.array_equal(a, b) for a, b in zip(expected, other.draw(40)))
+        other.update([0], [5.0])
+    assert table.probabilities([0]) < copies[0].probabilities([0])
+
+
+def _draw_elsewhere(table, results):
+    results.put((table.draw(30), table.draw(5000)[0].sum()))
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_other_processes_draw_the_same(method):
+    table = noisefloor.Table(1000, importance=numpy.arange(1000), seed=9)
+    context = multiprocessing.get_context(method)
+    results = context.Queue()
+    processes = [context.Process(target=_draw_elsewhere, args=(table, results)) for _ in range(2)]
+    for process in processes:
+        process.start()
+    found = [results.get(timeout=60) for _ in processes]
+    for process in processes:
+        process.join()
+    expected = table.draw(30), table.draw(5000)[0].sum()
+    for draw, total in found:
+        assert numpy.array_equal(draw[0], expected[0][0]) and numpy.array_equal(draw[1], expected[0][1])
+        assert total == expected[1]
+
+
+def test_threads_share_a_table():
+    """Every thread's batch is a whole one of the table's, and none is drawn twice."""
+    table, alone = noisefloor.Table(500, importance=numpy.arange(500), seed=3), None
+    alone = copy.deepcopy(table)
+    found, lock = [], threading.Lock()
+
+    def work():
+        for _ in range(300):
+            index, weight = table.draw(16)
+            with lock:
+                found.append((*index, *weight))
+
+    threads = [threading.Thread(target=work) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    expected = [alone.draw(16) for _ in found]
+    assert sorted(found) == sorted((*index, *weight) for index, weight in expected)
+
+
+def test_a_million_calls_take_no_memory():
+    def pages():
+        with open("/proc/self/statm", encoding="ascii") as file:
+            return int(file.read().split()[1])
+
+    table, importance = noisefloor.Table(1000, seed=1), numpy.ones(1, numpy.float32)
+
+    def work(calls):
+        for _ in range(calls // 2):
+            index, _ = table.draw(1)
+            table.update(index, importance)
+
+    work(100_000)
+    before = pages()
+    work(900_000)
+    for _ in range(200):
+        copied = pickle.loads(pickle.dumps(noisefloor.Table(100_000)))
+        copied.draw(5000)
+        with pytest.raises(ValueError):
+            copied.update([-1], [1.0])
+    assert (pages() - before) * 4096 < 4e6
+
+
+def test_a_hundred_million_bits_of_index_are_reached():
+    """A table of 20 million items: the last is drawn once it is all that matters."""
+    items = 20_000_000
+    table = noisefloor.Table(items, uniform_fraction=0)
+    table.update([items - 1], [1e12], 0.0)
+    index, weight = table.draw(100)
+    assert (index == items - 1).mean() > 0.99 and weight.min() > 0

@@ -1,0 +1,250 @@
+"""The batch sampler: in data loaders, killed and resumed, and in several processes."""
+
+import copy
+import io
+import os
+import pickle
+import signal
+import subprocess
+import sys
+
+import numpy
+import pytest
+
+torch = pytest.importorskip("torch")
+
+import train  # noqa: E402
+from torch.utils.data import DataLoader, TensorDataset  # noqa: E402
+
+import noisefloor  # noqa: E402
+from noisefloor.torch import ImportanceBatchSampler, cross_entropy_importance  # noqa: E402
+
+PROGRAM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "train.py")
+
+
+def run(sampler, workers=0, stop=None):
+    """What the loader gives in an epoch; each item is its own number, whose square is its importance."""
+    data, seen = TensorDataset(torch.arange(sampler._n)), []
+    for (items,) in DataLoader(data, batch_sampler=sampler, num_workers=workers):
+        index, weight = sampler.batch()
+        assert torch.equal(index, items)
+        sampler.update(items.float() ** 2)
+        seen.append((index, weight))
+        if len(seen) == stop:
+            break
+    return seen
+
+
+def equal(a, b):
+    """Whether batches are the same, weights included."""
+    return len(a) == len(b) and all(torch.equal(x, y) for p, q in zip(a, b) for x, y in zip(p, q))
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_the_first_epoch_visits_all_items_and_later_ones_the_important(workers):
+    sampler = ImportanceBatchSampler(500, 32, seed=1)
+    first = run(sampler, workers)
+    assert len(first) == len(sampler) == 16 and sampler.epoch == 1
+    assert set(torch.cat([index for index, _ in first]).tolist()) == set(range(500))
+    assert all((weight == 1).all() for _, weight in first)
+    later = [run(sampler, workers) for _ in range(4)][-1]
+    index, weight = (torch.cat(parts) for parts in zip(*later))
+    assert sampler.epoch == 5
+    assert index.float().mean() > 300 and weight.max() <= 5
+    # Two-sided, one false alarm in 150,000 seeds, and the seed is fixed.
+    value = weight * index
+    assert abs(value.mean() - 249.5) < 4.5 * value.std() / len(value) ** 0.5
+
+
+def test_without_warmup_or_weights_and_with_other_steps():
+    sampler = ImportanceBatchSampler(100, 10, warmup=None, steps=3)
+    batches = run(sampler)
+    assert len(batches) == 3 and sampler.epoch == 1
+    table = noisefloor.Table(100)
+    assert numpy.array_equal(batches[0][0].numpy(), table.draw(10)[0])
+    sampler = ImportanceBatchSampler(100, 10, steps=25, weighted=False)
+    assert all((weight == 1).all() for _, weight in run(sampler))
+    # 10 batches of warm-up, though the epoch has 25.
+    assert set(torch.cat([index for index, _ in run(ImportanceBatchSampler(100, 10, steps=25))[:10]]).tolist()) == set(
+        range(100)
+    )
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+@pytest.mark.parametrize("stop", [1, 9, 16, 21, 32])
+def test_a_loaded_state_goes_on_with_the_same_batches(workers, stop):
+    whole = ImportanceBatchSampler(500, 32, seed=4)
+    expected = run(whole, workers) + run(whole, workers)
+    sampler = ImportanceBatchSampler(500, 32, seed=4)
+    seen = run(sampler, workers, stop)
+    seen += run(sampler, workers, stop - 16) if stop > 16 else []
+    file = io.BytesIO()
+    torch.save(sampler.state_dict(), file)
+    file.seek(0)
+    resumed = ImportanceBatchSampler(500, 32, seed=77)
+    resumed.load_state_dict(torch.load(file, weights_only=True))
+    assert resumed.epoch == stop // 16
+    while resumed.epoch < 2:
+        seen += run(resumed, workers)
+    assert equal(seen, expected)
+
+
+def test_copies_give_the_same_batches():
+    sampler = ImportanceBatchSampler(100, 10, seed=2)
+    run(sampler)
+    copies = [copy.deepcopy(sampler), pickle.loads(pickle.dumps(sampler))]
+    expected = run(sampler)
+    assert all(equal(run(other), expected) for other in copies)
+
+
+def test_spawned_workers_give_the_same_batches():
+    data = TensorDataset(torch.arange(100))
+    sampler, alone = ImportanceBatchSampler(100, 10, seed=2), ImportanceBatchSampler(100, 10, seed=2)
+    loader = DataLoader(data, batch_sampler=sampler, num_workers=1, multiprocessing_context="spawn")
+    assert [items.tolist() for (items,) in loader] == [index.tolist() for index, _ in run(alone)]
+
+
+def test_leaving_an_epoch_begins_another():
+    sampler = ImportanceBatchSampler(64, 8)
+    run(sampler, 2, stop=3)
+    assert len(run(sampler, 2)) == 8 and sampler.epoch == 1
+    with pytest.raises(RuntimeError, match="there is none that it was not called for"):
+        sampler.batch()
+
+
+def finish(arguments, kill_after=None):
+    """Runs train.py; kills it after so many steps. Returns its last line."""
+    process = subprocess.Popen([sys.executable, PROGRAM, *arguments], stdout=subprocess.PIPE, text=True)
+    line, steps = "", 0
+    for line in process.stdout:
+        steps += line == "step\n"
+        if steps == kill_after:
+            process.send_signal(signal.SIGKILL)
+            break
+    process.stdout.close()
+    process.wait()
+    assert kill_after or process.returncode == 0
+    return line
+
+
+@pytest.mark.parametrize("workers, techniques", [("0", "1"), ("2", "1"), ("0", "2")])
+def test_killed_runs_end_as_others_do(tmp_path, workers, techniques):
+    """kill -9 in the first epoch, at its end, and in the third: the same network and tables to the bit."""
+    expected = finish([str(tmp_path / "whole"), workers, techniques])
+    killed = [str(tmp_path / "killed"), workers, techniques]
+    for steps in (7, 25, 50):
+        finish(killed, steps)
+    assert finish(killed) == expected and len(expected) == 65
+
+
+def importances(reduction, techniques=1, scale=1.0):
+    """A step's logits and labels, and what the table then holds."""
+    sampler = ImportanceBatchSampler(200, 20, warmup=None, uniform_fraction=1, techniques=techniques, momentum=0)
+    for (items,) in DataLoader(TensorDataset(torch.arange(200)), batch_sampler=sampler):
+        index, weight = sampler.batch()
+        torch.manual_seed(1)
+        logits = torch.randn(20, 10, requires_grad=True)
+        target = items % 10
+        losses = weight * torch.nn.functional.cross_entropy(logits, target, reduction="none")
+        (scale * getattr(losses, reduction)()).backward()
+        sampler.update_from(logits, reduction=reduction, scale=scale)
+        break
+    return sampler, index, logits, target
+
+
+@pytest.mark.parametrize("reduction", ["mean", "sum"])
+def test_gradients_of_logits_are_the_softmaxs(reduction):
+    sampler, index, logits, target = importances(reduction, scale=8.0)
+    norms = cross_entropy_importance(logits, target)
+    derivative = torch.softmax(logits, 1) - torch.nn.functional.one_hot(target, 10)
+    assert torch.allclose(norms, derivative.norm(dim=1), rtol=1e-5)
+    table = noisefloor.Table(200, uniform_fraction=0)
+    table.update(index, norms, 0.0)
+    sampler._tables[0].uniform_fraction = 0
+    assert numpy.allclose(sampler._tables[0].probabilities(), table.probabilities(), rtol=1e-4)
+
+
+def test_several_techniques_weigh_and_learn():
+    sampler, index, logits, target = importances("mean", techniques=4)
+    derivative = (torch.softmax(logits, 1) - torch.nn.functional.one_hot(target, 10)).detach()
+    for j, table in enumerate(sampler._tables):
+        part = (derivative if j % 2 == 0 else -derivative).clamp(min=0)[:, j // 2 :: 2].norm(dim=1)
+        other = noisefloor.Table(200, uniform_fraction=0)
+        other.update(index, part, 0.0)
+        table.uniform_fraction = 0
+        assert numpy.allclose(table.probabilities(), other.probabilities(), rtol=1e-4)
+    sampler = ImportanceBatchSampler(300, 32, techniques=4, seed=2)
+    model = train.network(outputs=10)
+    optimizer = torch.optim.SGD(model.parameters(), 0.05)
+    data, means = TensorDataset(torch.randn(300, 8), torch.arange(300) % 10), []
+    for _ in range(3):
+        for x, y in DataLoader(data, batch_sampler=sampler):
+            weight = sampler.batch()[1]
+            train.step(model, optimizer, sampler, x, y, weight)
+            means.append(weight.mean())
+    assert abs(torch.stack(means[10:]).mean() - 1) < 0.1
+
+
+def _replica(rank, world, file, results, workers):
+    torch.distributed.init_process_group("gloo", f"file://{file}", rank=rank, world_size=world)
+    model = torch.nn.parallel.DistributedDataParallel(train.network())
+    sampler = ImportanceBatchSampler(train.ITEMS, train.BATCH // world, seed=6)
+    optimizer, seen = torch.optim.SGD(model.parameters(), 0.1), []
+    for _ in range(2):
+        for x, y in DataLoader(train.data(), batch_sampler=sampler, num_workers=workers):
+            index, weight = sampler.batch()
+            seen.append(index.tolist())
+            train.step(model, optimizer, sampler, x, y, weight)
+    results.put((rank, train.digest(model.module, sampler), seen))
+    results.close()
+    results.join_thread()
+    torch.distributed.barrier()
+    # What PyTorch 1.13 does at its end can wait for ever for a process that has ended.
+    os._exit(0)
+
+
+@pytest.mark.parametrize("world, workers", [(2, 0), (2, 1), (4, 0)])
+def test_replicas_stay_the_same_and_share_each_batch(tmp_path, world, workers):
+    context = torch.multiprocessing.get_context("spawn")
+    results = context.Queue()
+    file = str(tmp_path / "meeting")
+    processes = [context.Process(target=_replica, args=(rank, world, file, results, workers)) for rank in range(world)]
+    for process in processes:
+        process.start()
+    found = sorted(results.get(timeout=120) for _ in processes)
+    for process in processes:
+        process.join(60)
+        process.kill()
+    assert len({digest for _, digest, _ in found}) == 1
+    alone = ImportanceBatchSampler(train.ITEMS, train.BATCH, seed=6)
+    first = [index for index, _ in run(alone)]
+    shared = [torch.tensor(parts).T.flatten() for parts in zip(*(seen for _, _, seen in found))]
+    assert equal([[batch] for batch in first], [[batch] for batch in shared[: len(first)]])
+
+
+@pytest.mark.parametrize(
+    "call, said",
+    [
+        (lambda s: ImportanceBatchSampler(0, 1), "n is 0: it must be 1 to"),
+        (lambda s: ImportanceBatchSampler(10, 0), "batch_size is 0"),
+        (lambda s: ImportanceBatchSampler(10, 2, warmup="step"), "warmup is 'step': it must be one of 'epoch', None"),
+        (lambda s: ImportanceBatchSampler(10, 6, techniques=4), "techniques is 4: it must be 1, or even and a divisor"),
+        (lambda s: ImportanceBatchSampler(10, 6, momentum=2), "momentum is 2.0"),
+        (lambda s: s.update(torch.ones(3)), r"importance has the shape \(3,\): it must be \(2,\)"),
+        (lambda s: s.update(torch.tensor([1.0, float("nan")])), r"importance\[1\] is nan"),
+        (lambda s: s.update(torch.ones(2), [10, 1]), r"index\[0\] is 10: it must be 0 to 9"),
+        (lambda s: s.update_from(torch.ones(2, 3)), "call logits.retain_grad"),
+        (lambda s: s.load_state_dict(ImportanceBatchSampler(9, 2).state_dict()), "another sampler's: it has .*'n': 9"),
+    ],
+)
+def test_refusals_name_argument_value_and_range(call, said):
+    sampler = ImportanceBatchSampler(10, 2)
+    next(iter(sampler))
+    sampler.batch()
+    with pytest.raises(ValueError, match=said):
+        call(sampler)
+
+
+def test_what_comes_first_is_said():
+    with pytest.raises(RuntimeError, match=r"call batch\(\) first"):
+        ImportanceBatchSampler(10, 2).update(torch.ones(2))

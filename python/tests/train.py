@@ -1,0 +1,74 @@
+"""A training run that can be killed at any time and goes on where it was: test_torch.py starts it.
+
+python train.py CHECKPOINT WORKERS [TECHNIQUES]
+"""
+
+import hashlib
+import os
+import sys
+
+import torch
+from torch.utils.data import DataLoader, TensorDataset
+
+from noisefloor.torch import ImportanceBatchSampler
+
+ITEMS, BATCH, EPOCHS = 1000, 32, 3
+
+
+def data():
+    """A problem of two classes."""
+    generator = torch.Generator().manual_seed(1)
+    x = torch.randn(ITEMS, 8, generator=generator)
+    return TensorDataset(x, (x[:, 0] * x[:, 1] > 0).long())
+
+
+def step(model, optimizer, sampler, x, y, weight):
+    """One step, and what it says to the sampler."""
+    logits = model(x)
+    logits.retain_grad()
+    loss = (weight * torch.nn.functional.cross_entropy(logits, y, reduction="none")).mean()
+    optimizer.zero_grad()
+    loss.backward()
+    optimizer.step()
+    sampler.update_from(logits)
+
+
+def digest(model, sampler):
+    """Of all that training has changed."""
+    tensors = [*model.state_dict().values(), *sampler.state_dict()["tables"]]
+    return hashlib.sha256(b"".join(tensor.numpy().tobytes() for tensor in tensors)).hexdigest()
+
+
+def network(width=16, outputs=2):
+    """A small model, the same each time."""
+    torch.set_num_threads(1)
+    torch.manual_seed(0)
+    return torch.nn.Sequential(torch.nn.Linear(8, width), torch.nn.ReLU(), torch.nn.Linear(width, outputs))
+
+
+def main(checkpoint, workers, techniques=1):
+    """Trains, and prints each step once its checkpoint is whole; at the end the digest."""
+    model = network()
+    optimizer = torch.optim.Adam(model.parameters(), 1e-2)
+    sampler = ImportanceBatchSampler(ITEMS, BATCH, seed=3, techniques=techniques)
+    groups = optimizer.state_dict()["param_groups"]
+    if os.path.exists(checkpoint):
+        state = torch.load(checkpoint, weights_only=True)
+        model.load_state_dict(state["model"])
+        optimizer.load_state_dict({"state": state["optimizer"], "param_groups": groups})
+        sampler.load_state_dict(state["sampler"])
+    loader = DataLoader(data(), batch_sampler=sampler, num_workers=workers)
+    for _ in range(sampler.epoch, EPOCHS):
+        for x, y in loader:
+            _, weight = sampler.batch()
+            step(model, optimizer, sampler, x, y, weight)
+            # Without numbers that are no tensors, which PyTorch 1.13 does not read with weights_only.
+            state = {"model": model.state_dict(), "optimizer": optimizer.state_dict()["state"]}
+            torch.save({**state, "sampler": sampler.state_dict()}, checkpoint + ".new")
+            os.replace(checkpoint + ".new", checkpoint)
+            print("step", flush=True)
+    print(digest(model, sampler))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]), *map(int, sys.argv[3:]))

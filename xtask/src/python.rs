@@ -1,0 +1,78 @@
+//! `python/`: the wheel, and its tests in an environment of their own.
+
+use crate::outcome::Outcome;
+use crate::tools::{self, Package};
+use crate::{c_tests, paths, run};
+use anyhow::{Context, Result};
+use std::fs;
+use std::path::PathBuf;
+
+const PACKAGES: [Package; 8] = [
+    c_tests::PYTHON,
+    Package { name: "python3-venv", file: "/usr/share/doc/python3-venv" },
+    Package { name: "python3-pytest", file: "/usr/lib/python3/dist-packages/pytest/__init__.py" },
+    Package { name: "python3-hypothesis", file: "/usr/lib/python3/dist-packages/hypothesis/__init__.py" },
+    Package { name: "python3-scipy", file: "/usr/lib/python3/dist-packages/scipy/__init__.py" },
+    Package { name: "python3-torch", file: "/usr/lib/python3/dist-packages/torch/__init__.py" },
+    Package { name: "cmake", file: "/usr/bin/cmake" },
+    Package { name: "make", file: "/usr/bin/make" },
+];
+
+/// What a report trains on.
+pub const FASHION: Package =
+    Package { name: "dataset-fashion-mnist", file: "/usr/share/datasets/fashion-mnist/train-images-idx3-ubyte.gz" };
+
+/// Runs python/tests with the package installed.
+pub fn test() -> Result<Outcome> {
+    let python = match environment(&[])? {
+        Ok(python) => python,
+        Err(missing) => return Ok(Outcome::NotRun(missing)),
+    };
+    let wheel = wheel()?;
+    let mut test = run::command("timeout");
+    test.arg("600").arg(&python).args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "python/tests"]);
+    run::check(test.env("NOISEFLOOR_WHEEL", &wheel).env("PYTHONDONTWRITEBYTECODE", "1"))?;
+    Ok(Outcome::Passed)
+}
+
+/// A Python in which the package is installed from a new wheel, beside Debian's packages, `more` among them; or what is
+/// missing.
+pub fn environment(more: &[Package]) -> Result<Result<PathBuf, String>> {
+    if let Some(missing) = tools::packages(&[&PACKAGES, more].concat())? {
+        return Ok(Err(missing));
+    }
+    let folder = paths::output().join("venv");
+    let python = folder.join("bin/python");
+    // Debian's Python: another does not see Debian's packages.
+    run::read(run::command("/usr/bin/python3").args(["-m", "venv", "--system-site-packages"]).arg(&folder))?;
+    let pip = |arguments: &[&str]| {
+        let mut command = run::command(&python);
+        command.args(["-m", "pip", "--disable-pip-version-check", "--quiet"]).args(arguments);
+        // So that a second build has the same bytes.
+        command.env("SOURCE_DATE_EPOCH", "1700000000");
+        command
+    };
+    if run::read(run::command(&python).args(["-c", "import scikit_build_core"])).is_err()
+        && let Err(error) = run::read(&mut pip(&["install", "scikit-build-core"]))
+    {
+        return Ok(Err(format!("scikit-build-core, which builds the wheel, is not to be had: {error:#}")));
+    }
+    if wheels().exists() {
+        fs::remove_dir_all(wheels()).with_context(|| format!("cannot remove {}", wheels().display()))?;
+    }
+    let cargo = format!("cmake.define.NOISEFLOOR_CARGO={}", run::cargo().get_program().to_string_lossy());
+    let target = format!("cmake.define.NOISEFLOOR_CARGO_TARGET_DIR={}", paths::target().display());
+    let mut build = pip(&["wheel", "./python", "--no-deps", "--no-build-isolation"]);
+    build.args(["--config-settings", &cargo, "--config-settings", &target, "--wheel-dir"]);
+    run::read(build.arg(wheels()))?;
+    run::read(pip(&["install", "--no-deps", "--force-reinstall"]).arg(wheel()?))?;
+    Ok(Ok(python))
+}
+
+fn wheels() -> PathBuf {
+    paths::output().join("wheel")
+}
+
+fn wheel() -> Result<PathBuf> {
+    paths::list(wheels())?.pop().context("pip made no wheel")
+}
