@@ -7,6 +7,7 @@ pub mod fuzz;
 pub mod install;
 pub mod instructions;
 pub mod library;
+pub mod mitsuba;
 pub mod run;
 pub mod start;
 pub mod test;

@@ -3,7 +3,7 @@
 use crate::c_tests::{self, PYTHON};
 use crate::outcome::Outcome;
 use crate::tools::{self, Package};
-use crate::{embree, fuzz, instructions, library, run, start, texts};
+use crate::{embree, fuzz, instructions, library, mitsuba, run, start, texts};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -107,6 +107,11 @@ pub fn run(options: &Options) -> Result<()> {
     steps.start("cargo xtask report --quick: the path tracer on Embree", "report", "embree");
     let heading = "examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces";
     steps.run(heading, || c_tests::run_twice("renderers", &[]));
+    let heading = "integrations/mitsuba: Mitsuba 3 from the package index draws the library's bits";
+    steps.run(heading, || {
+        archive()?;
+        mitsuba::test()
+    });
     steps.c("examples_c/python: ctypes declarations, tests and a training loop", "default", "python", &[PYTHON]);
     let heading = "cargo xtask report --quick: tables, gradients, estimators, known integrands, samplers, point sets";
     steps.start(heading, "report", "chapters");
