@@ -15,6 +15,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use image::imageops::replace;
 use image::{Rgb, Rgb32FImage, RgbImage};
+use std::fs;
 use std::path::PathBuf;
 use xtask::paths;
 
@@ -58,6 +59,14 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let output = Output::new(&folder)?;
     scenes(options, &renderer, &output)?;
     output.commit()?;
+    match xtask::playground::build()? {
+        Ok(page) if page != folder.join("playground.html") => {
+            fs::copy(&page, folder.join("playground.html"))
+                .with_context(|| format!("cannot copy {}", page.display()))?;
+        }
+        Ok(_) => {}
+        Err(why) => println!("without the page to play with: {why}"),
+    }
     println!("{}\n", folder.join("shared.png").display());
     chapters::run(&chapters::Options::gradients(options.quick, &folder))?;
     println!("pictures and tables: {}", folder.join("index.html").display());
@@ -105,7 +114,8 @@ fn scenes(options: &Options, renderer: &Renderer, output: &Output) -> Result<()>
         + "<p>Samplers and shared fits at equal samples: each image with its error below</p>\n"
         + "<img src=\"shared.png\">\n<p>Test error of small digits against seconds of training</p>\n"
         + "<img src=\"gradients-digits-time.svg\">\n"
-        + &["demo.md", "gradients.md"].map(link).concat();
+        + &["demo.md", "gradients.md"].map(link).concat()
+        + "<p><a href=\"playground.html\">A page to play with</a></p>\n";
     output.write_text("index.html", &html)
 }
 

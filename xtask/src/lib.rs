@@ -8,6 +8,7 @@ pub mod install;
 pub mod instructions;
 pub mod library;
 pub mod mitsuba;
+pub mod playground;
 pub mod run;
 pub mod start;
 pub mod test;

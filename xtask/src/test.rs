@@ -3,7 +3,7 @@
 use crate::c_tests::{self, PYTHON};
 use crate::outcome::Outcome;
 use crate::tools::{self, Package};
-use crate::{embree, fuzz, instructions, library, mitsuba, run, start, texts};
+use crate::{embree, fuzz, instructions, library, mitsuba, playground, run, start, texts};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -112,6 +112,8 @@ pub fn run(options: &Options) -> Result<()> {
         archive()?;
         mitsuba::test()
     });
+    let heading = "docs/playground in headless Chromium: small, fast, and the numbers of the native library";
+    steps.run(heading, playground::test);
     steps.c("examples_c/python: ctypes declarations, tests and a training loop", "default", "python", &[PYTHON]);
     let heading = "cargo xtask report --quick: tables, gradients, estimators, known integrands, samplers, point sets";
     steps.start(heading, "report", "chapters");
