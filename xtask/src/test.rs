@@ -11,7 +11,11 @@ use std::time::Instant;
 
 const PKG_CONFIG: Package = Package { name: "pkg-config", file: "/usr/bin/pkg-config" };
 /// Devices in software, and what programs for them are made with.
-const DEVICES: [Package; 6] = [
+const DEVICES: [Package; 10] = [
+    PYTHON,
+    Package { name: "clang", file: "/usr/bin/clang" },
+    Package { name: "spirv-cross", file: "/usr/bin/spirv-cross" },
+    Package { name: "spirv-tools", file: "/usr/bin/spirv-opt" },
     Package { name: "glslang-tools", file: "/usr/bin/glslangValidator" },
     Package { name: "libvulkan-dev", file: "/usr/include/vulkan/vulkan.h" },
     Package { name: "mesa-vulkan-drivers", file: "/usr/share/doc/mesa-vulkan-drivers/copyright" },
@@ -78,7 +82,7 @@ pub fn run(options: &Options) -> Result<()> {
     steps.c(heading, "tsan", "tsan", &[]);
     steps.c("C tests as C++17, including noisefloor.hpp", "default", "cpp17", &[]);
     steps.c(
-        "noisefloor_sampler.h on devices: GLSL, HLSL and OpenCL C draw the bits of the library",
+        "noisefloor_sampler.h on devices: GLSL, HLSL, OpenCL C, CUDA and HIP draw the bits of the library",
         "default",
         "gpu",
         &DEVICES,
