@@ -1,5 +1,5 @@
-/* The sampler that each device makes of a number, after noisefloor_sampler.h: of all kinds. expected.h makes the same by
- * the library.
+/* The sampler that each device makes of a number, after noisefloor_sampler.h: of all kinds. expected.h makes the same
+ * by the library.
  */
 NFS_FUNCTION nfs sampler_of(nfs_uint i)
 {
