@@ -59,6 +59,13 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let output = Output::new(&folder)?;
     scenes(options, &renderer, &output)?;
     output.commit()?;
+    match xtask::playground::build()? {
+        Ok(page) if page != folder.join(PAGE) => {
+            fs::copy(&page, folder.join(PAGE)).with_context(|| format!("cannot copy {}", page.display()))?;
+        }
+        Ok(_) => {}
+        Err(why) => println!("without the page to play with: {why}"),
+    }
     index(&folder)?;
     println!("{}\n", folder.join("shared.png").display());
     chapters::run(&chapters::Options::gradients(options.quick, &folder))?;
@@ -113,14 +120,16 @@ const PICTURES: [(&str, &str); 3] = [
     ("gradients-mnist-time.svg", "Test error of MNIST against seconds of training"),
 ];
 const TABLES: [&str; 2] = ["demo.md", "gradients.md"];
+const PAGE: &str = "playground.html";
 
 fn index(folder: &Path) -> Result<()> {
     let there = |file: &&str| folder.join(file).exists();
     let pictures = PICTURES.into_iter().filter(|(file, _)| there(file));
     let pictures = pictures.map(|(file, words)| format!("<p>{words}</p>\n<img src=\"{file}\">\n"));
     let tables = TABLES.into_iter().filter(there).map(|file| format!("<p><a href=\"{file}\">{file}</a></p>\n"));
+    let page = Some(PAGE).filter(there).map(|file| format!("<p><a href=\"{file}\">A page to play with</a></p>\n"));
     let html = "<!doctype html><meta charset=\"utf-8\"><title>noisefloor: demo</title>\n".to_owned()
-        + &pictures.chain(tables).collect::<String>();
+        + &pictures.chain(tables).chain(page).collect::<String>();
     fs::write(folder.join("index.html"), html).context("cannot write index.html")
 }
 

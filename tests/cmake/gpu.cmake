@@ -32,3 +32,28 @@ add_device_program(vulkan Vulkan::Vulkan)
 add_custom_target(gpu_shaders DEPENDS ${shaders})
 add_to(gpu gpu_shaders)
 add_check(gpu vulkan gpu_vulkan ${vulkan})
+
+# CUDA and HIP, of which clang compiles the host's side without the vendors' headers.
+find_program(clang clang)
+if(clang)
+    foreach(language IN ITEMS cuda hip)
+        set(object "${CMAKE_CURRENT_BINARY_DIR}/gpu_${language}.o")
+        add_custom_command(OUTPUT "${object}" DEPENDS gpu/host.cu gpu/expected.h gpu/sampler_of.h ../include/noisefloor_sampler.h
+            COMMAND "${clang}" -x ${language} --cuda-host-only -nocudainc -nocudalib -nogpuinc -nogpulib -O2 -Wall -Wextra
+                -Werror -Wno-unused-function -Wno-unknown-cuda-version "-I${root}/include" -c "${root}/tests/gpu/host.cu"
+                -o "${object}" VERBATIM)
+        add_executable(gpu_${language} "${object}")
+        set_target_properties(gpu_${language} PROPERTIES LINKER_LANGUAGE C)
+        target_link_libraries(gpu_${language} PRIVATE noisefloor::noisefloor_static m)
+        add_to(gpu gpu_${language})
+        add_check(gpu ${language} gpu_${language})
+    endforeach()
+endif()
+
+# Operations of a draw, and Metal.
+find_program(spirv_cross spirv-cross)
+find_program(spirv_opt spirv-opt)
+if(spirv_cross AND spirv_opt)
+    add_python(gpu operations spirv.py "${glslang}" "${root}/include" "${CMAKE_CURRENT_SOURCE_DIR}/gpu/count.comp"
+        "${CMAKE_CURRENT_BINARY_DIR}/spirv")
+endif()

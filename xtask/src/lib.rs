@@ -7,6 +7,8 @@ pub mod fuzz;
 pub mod install;
 pub mod instructions;
 pub mod library;
+pub mod mitsuba;
+pub mod playground;
 pub mod povray;
 pub mod python;
 pub mod run;

@@ -48,6 +48,8 @@ enum Command {
     Install(install::Options),
     /// Build target/noisefloor/libnoisefloor.a, the archive that C and C++ programs link
     Library,
+    /// Build the page to play with, target/demo/playground.html
+    Playground,
     /// Build the path tracer on Embree with the thesis's scenes, and print where it is
     Embree,
     /// Build for other targets, run the C tests and a bare-metal program there under QEMU, and write
@@ -79,6 +81,7 @@ fn main() -> ExitCode {
         Command::Install(options) => install::run(&options),
         Command::Tiles(options) => tiles::run(&options),
         Command::Embree => embree::build().map(|path| println!("{}", path.display())),
+        Command::Playground => playground::run(),
         Command::Library => library::build().map(|path| println!("{}", path.display())),
     };
     match result {

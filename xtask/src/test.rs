@@ -3,7 +3,7 @@
 use crate::c_tests::{self, PYTHON};
 use crate::outcome::Outcome;
 use crate::tools::{self, Package};
-use crate::{embree, fuzz, instructions, library, povray, python, run, start, texts};
+use crate::{embree, fuzz, instructions, library, mitsuba, playground, povray, python, run, start, texts};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -11,7 +11,11 @@ use std::time::Instant;
 
 const PKG_CONFIG: Package = Package { name: "pkg-config", file: "/usr/bin/pkg-config" };
 /// Devices in software, and what programs for them are made with.
-const DEVICES: [Package; 6] = [
+const DEVICES: [Package; 10] = [
+    PYTHON,
+    Package { name: "clang", file: "/usr/bin/clang" },
+    Package { name: "spirv-cross", file: "/usr/bin/spirv-cross" },
+    Package { name: "spirv-tools", file: "/usr/bin/spirv-opt" },
     Package { name: "glslang-tools", file: "/usr/bin/glslangValidator" },
     Package { name: "libvulkan-dev", file: "/usr/include/vulkan/vulkan.h" },
     Package { name: "mesa-vulkan-drivers", file: "/usr/share/doc/mesa-vulkan-drivers/copyright" },
@@ -74,7 +78,7 @@ pub fn run(options: &Options) -> Result<()> {
     steps.c(heading, "tsan", "tsan", &[]);
     steps.c("C tests as C++17, including noisefloor.hpp", "default", "cpp17", &[]);
     steps.c(
-        "noisefloor_sampler.h on devices: GLSL, HLSL and OpenCL C draw the bits of the library",
+        "noisefloor_sampler.h on devices: GLSL, HLSL, OpenCL C, CUDA and HIP draw the bits of the library",
         "default",
         "gpu",
         &DEVICES,
@@ -103,6 +107,13 @@ pub fn run(options: &Options) -> Result<()> {
     steps.start("cargo xtask report --quick: the path tracer on Embree", "report", "embree");
     let heading = "examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces";
     steps.run(heading, || c_tests::run_twice("renderers", &[]));
+    let heading = "integrations/mitsuba: Mitsuba 3 from the package index draws the library's bits";
+    steps.run(heading, || {
+        archive()?;
+        mitsuba::test()
+    });
+    let heading = "docs/playground in headless Chromium: small, fast, and the numbers of the native library";
+    steps.run(heading, playground::test);
     steps.run("python: the wheel, its tests with NumPy and PyTorch, docs/python.md, examples_c/python", python::test);
     let heading = "cargo xtask report --quick: tables, gradients, estimators, known integrands, samplers, point sets";
     steps.start(heading, "report", "chapters");

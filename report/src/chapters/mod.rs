@@ -14,6 +14,7 @@ pub(crate) mod json;
 mod machine;
 mod measurement;
 mod minibatch_tables;
+mod mitsuba;
 mod outcome;
 pub(crate) mod pixels;
 mod plan;
@@ -127,6 +128,7 @@ const CHAPTERS: &[Entry] = &[
         "Estimators and samplers in a path tracer on Embree, scenes after the thesis's",
         embree::write,
     ),
+    entry("mitsuba", 900, "Samplers in Mitsuba 3, before and after a denoiser, and its gradients", mitsuba::write),
     entry(
         "samplers",
         95,

@@ -1,0 +1,176 @@
+"""What the report's chapter is made of: errors.csv, gradients.csv, times.csv and pictures.png in a folder.
+
+python3 measure.py FOLDER [--size 128] [--seeds 32] [--many 8] [--reference 4096] [--frames 1024] [--rounds 15]
+"""
+
+import argparse
+import time
+
+import numpy as np
+import drjit as dr
+import mitsuba as mi
+
+mi.set_variant("llvm_ad_rgb")
+mi.set_log_level(mi.LogLevel.Error)
+import mitsuba_oidn
+import noisefloor_mitsuba
+import scenes
+
+SAMPLERS = {
+    name: {"type": name} for name in ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
+} | {"noisefloor": {"type": "noisefloor"}, "noisefloor, white": {"type": "noisefloor", "white": True}}
+SPP = 1, 4, 16, 64
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+SIGMA, LIMIT = 2.1, 5.0
+# Seeds of pictures count from here, those of references from 0.
+FIRST = 1000
+
+
+def load(make, sampler, size, **integrator):
+    scene = make()
+    film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}, "pixel_format": "rgb"}
+    scene["sensor"] = {**scene["sensor"], "film": film, "sampler": sampler}
+    scene["integrator"] = {**scene["integrator"], **integrator}
+    return noisefloor_mitsuba.prepare(mi.load_dict(scene))
+
+
+def render(scene, spp, seed):
+    return np.array(mi.render(scene, spp=spp, seed=seed), np.float64)
+
+
+def takes(scene, spp):
+    """Some samplers round up, and others' samples would then not be as many."""
+    sampler = scene.sensors()[0].sampler().clone()
+    sampler.set_sample_count(spp)
+    return sampler.sample_count() == spp
+
+
+def features(make, size):
+    """Albedo and normals without noise, the same for all."""
+    path = make()["integrator"]
+    aov = {"type": "aov", "aovs": "albedo:albedo,normal:sh_normal", "inner": path}
+    scene = make()
+    scene["integrator"] = aov
+    film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}, "pixel_format": "rgb"}
+    scene["sensor"] = {**scene["sensor"], "film": film, "sampler": {"type": "multijitter"}}
+    found = np.array(mi.render(mi.load_dict(scene), spp=256), np.float32)
+    return found[:, :, 3:6].copy(), found[:, :, 6:9].copy()
+
+
+def gaussian(image):
+    radius = int(4 * SIGMA)
+    kernel = np.exp(-0.5 * (np.arange(-radius, radius + 1) / SIGMA) ** 2)
+    kernel /= kernel.sum()
+    for axis in (0, 1):
+        pad = [(radius, radius) if a == axis else (0, 0) for a in range(2)]
+        image = np.apply_along_axis(np.convolve, axis, np.pad(image, pad, "symmetric"), kernel, "valid")
+    return image
+
+
+def errors(image, denoised, halves):
+    """relMSE, as embree.md has it: raw, filtered, denoised."""
+    a, b = (half @ LUMINANCE for half in halves)
+    mean = (a + b) / 2
+    scale = np.sqrt(mean**2 + 0.01 * mean.mean() ** 2)
+
+    def limited(one):
+        return np.clip(one / scale, -LIMIT, LIMIT)
+
+    def error(to_a, to_b):
+        return (to_a * to_b).mean()
+
+    raw = [limited(image @ LUMINANCE - half) for half in (a, b)]
+    clean = [limited(denoised @ LUMINANCE - half) for half in (a, b)]
+    return error(*raw), error(*map(gaussian, raw)), error(*clean)
+
+
+def measure_errors(options, out, pictures):
+    out.write("scene;spp;sampler;seed;raw;filtered;denoised\n")
+    for name, make in scenes.SCENES.items():
+        plain = load(make, {"type": "independent"}, options.size)
+        halves = []
+        for half in range(2):
+            parts = [render(plain, 256, 1 + half * 10000 + k) for k in range(max(options.reference // 512, 1))]
+            halves.append(np.mean(parts, 0))
+        albedo, normal = features(make, options.size)
+        # One pixel of an environment may have no normal.
+        albedo, normal = (np.ascontiguousarray(np.nan_to_num(a), np.float32) for a in (albedo, normal))
+        loaded = {sampler: load(make, dict(plugin), options.size) for sampler, plugin in SAMPLERS.items()}
+        row = [np.mean(halves, 0)]
+        for spp in SPP:
+            for sampler, scene in loaded.items():
+                if not takes(scene, spp):
+                    continue
+                for seed in range(options.seeds if spp < 64 else options.many):
+                    image = render(scene, spp, FIRST + seed)
+                    colour = np.ascontiguousarray(image, np.float32)
+                    clean = mitsuba_oidn.denoise(colour, albedo=albedo, normal=normal, hdr=True, clean_aux=True)
+                    clean = np.array(clean)
+                    figures = errors(image, clean.reshape(image.shape), halves)
+                    cells = [name, spp, sampler, seed, *(f"{f:.6g}" for f in figures)]
+                    out.write(";".join(map(str, cells)) + "\n")
+                    if spp == 4 and seed == 0 and sampler in ("independent", "multijitter", "noisefloor"):
+                        row += [image, clean.reshape(image.shape)]
+        pictures.append(np.concatenate(row, 1))
+        print(name, "measured", flush=True)
+
+
+def measure_gradients(options, out):
+    """Derivatives by two parameters of a weighted mean of the picture, as an optimiser's step has them."""
+    out.write("parameter;spp;sampler;frame;gradient\n")
+    size, keys = 64, ("red.reflectance.value", "white.reflectance.value", "light.emitter.radiance.value")
+    y, x = np.mgrid[0:size, 0:size] / size
+    weight = mi.TensorXf((1 + np.sin(9 * x + 5 * y) * np.cos(7 * y))[:, :, None].repeat(3, 2).astype(np.float32))
+    jobs = [(s, n, max(options.frames // n, 8)) for n in (1, 4, 16) for s in SAMPLERS if s != "orthogonal"]
+    for sampler, spp, frames in [*jobs, ("reference", 256, max(options.frames // 16, 8))]:
+        plugin = SAMPLERS["independent" if sampler == "reference" else sampler]
+        scene = load(scenes.cornell, dict(plugin), size, type="prb", max_depth=6)
+        if not takes(scene, spp):
+            continue
+        parameters = mi.traverse(scene)
+        for frame in range(frames):
+            for key in keys:
+                dr.enable_grad(parameters[key])
+            picture = mi.render(scene, parameters, spp=spp, seed=FIRST + frame + 100000 * (sampler == "reference"))
+            dr.backward(dr.mean(picture * weight, axis=None))
+            for key in keys:
+                value = float(np.array(dr.grad(parameters[key])).mean())
+                out.write(f"{key.split('.')[0]};{spp};{sampler};{frame};{value:.9g}\n")
+                dr.disable_grad(parameters[key])
+                dr.set_grad(parameters[key], 0)
+
+
+def measure_times(options, out, spp=16):
+    """By turns, so that other work on the machine is shared alike."""
+    out.write("scene;sampler;round;seconds\n")
+    for name, make in scenes.SCENES.items():
+        loaded = {sampler: load(make, dict(plugin), options.size) for sampler, plugin in SAMPLERS.items()}
+        loaded = {sampler: scene for sampler, scene in loaded.items() if takes(scene, spp)}
+        for turn in range(-1, options.rounds):
+            for sampler, scene in loaded.items():
+                start = time.perf_counter()
+                dr.eval(mi.render(scene, spp=spp, seed=turn + 1))
+                dr.sync_thread()
+                if turn >= 0:  # the first compiles
+                    out.write(f"{name};{sampler};{turn};{time.perf_counter() - start:.6g}\n")
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("folder")
+    for option, default in (("size", 128), ("seeds", 32), ("many", 8), ("reference", 4096), ("frames", 1024), ("rounds", 15)):
+        parser.add_argument(f"--{option}", type=int, default=default)
+    options = parser.parse_args()
+    noisefloor_mitsuba.register()
+    pictures = []
+    with open(f"{options.folder}/times.csv", "w") as out:
+        measure_times(options, out)
+    with open(f"{options.folder}/gradients.csv", "w") as out:
+        measure_gradients(options, out)
+    print("gradients measured", flush=True)
+    with open(f"{options.folder}/errors.csv", "w") as out:
+        measure_errors(options, out, pictures)
+    mi.util.write_bitmap(f"{options.folder}/pictures.png", np.concatenate(pictures, 0).astype(np.float32))
+
+
+main()

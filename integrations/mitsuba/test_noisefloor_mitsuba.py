@@ -1,0 +1,227 @@
+"""Tests of noisefloor_mitsuba with the Mitsuba that is installed; $NOISEFLOOR_VARIANTS names others than the default."""
+
+import ctypes
+import os
+import unittest
+
+import numpy as np
+import drjit as dr
+import mitsuba as mi
+
+VARIANTS = os.environ.get("NOISEFLOOR_VARIANTS", "llvm_ad_rgb,llvm_ad_spectral,scalar_rgb").split(",")
+mi.set_variant(VARIANTS[0])
+mi.set_log_level(mi.LogLevel.Error)
+import noisefloor_mitsuba as nf
+
+# Of a z-test; there are fewer than twenty, on fixed seeds.
+LIMIT = 4.5
+
+
+def fill(keys, width, height, samples, frame=0, first=0, white=False):
+    """nf_sampler_fill: [pixels, samples, 2 numbers for each key]."""
+    library = nf.library()
+    pixel = (library.nf_sampler_white if white else library.nf_sampler_pixel)(0, 0, frame, first)
+    samplers = (type(pixel) * len(keys))(*[library.nf_sampler_domain(pixel, key) for key in keys])
+    u = np.full((width * height, samples, 2 * len(keys)), -1, np.float32)
+    u32, size = ctypes.c_uint32, ctypes.c_size_t
+    call = library.nf_sampler_fill
+    call.argtypes = [ctypes.c_void_p, ctypes.c_void_p, size, u32, u32, u32, ctypes.c_void_p, size]
+    dims = (u32 * len(keys))(*[2] * len(keys))
+    assert call(samplers, dims, len(keys), width, height, samples, u.ctypes.data, u.size) == 0
+    return u
+
+
+def sampler(width, height=0, **more):
+    return mi.load_dict({"type": "noisefloor", "width": width, "height": height or width, **more})
+
+
+def box(kind="noisefloor", width=32, height=32, rfilter="box", integrator="path", sample_border=False, **more):
+    """The Cornell box that Mitsuba has."""
+    scene = mi.cornell_box()
+    film = scene["sensor"]["film"]
+    film.update(width=width, height=height, rfilter={"type": rfilter}, sample_border=sample_border)
+    scene["sensor"]["sampler"] = {"type": kind, "sample_count": 4}
+    scene["integrator"] = {"type": integrator, "max_depth": 6, **more}
+    return nf.prepare(mi.load_dict(scene))
+
+
+def pictures(scene, frames, spp):
+    return np.array([np.array(mi.render(scene, spp=spp, seed=7 + k)) for k in range(frames)])
+
+
+def z_of_means(a, b):
+    """Of two sets of independent numbers."""
+    spread = np.var(a, ddof=1) / len(a) + np.var(b, ddof=1) / len(b)
+    return (np.mean(a) - np.mean(b)) / np.sqrt(spread)
+
+
+class Recorded(unittest.TestCase):
+    """A variant of Dr.Jit."""
+
+    def setUp(self):
+        mi.set_variant(VARIANTS[0])
+        nf.register()
+
+    def test_the_librarys_bits(self):
+        width, height = 150, 90
+        for samples, frame, white in ((1, 0, False), (1, 3, True), (4, 0xFFFFFFFF, False), (64, 9, False)):
+            one = sampler(width, height, sample_count=samples, white=white)
+            one.seed(frame, width * height * samples)
+            drawn = np.array([np.array(one.next_2d()) for _ in range(5)])  # [request, number, wave]
+            expected = fill([0, 2, 4, 6, 8], width, height, samples, frame, 0, white).reshape(-1, 5, 2)
+            np.testing.assert_array_equal(drawn, expected.transpose(1, 2, 0))
+            one.advance()
+            expected = fill([0, 1], width, height, samples, frame, samples, white).reshape(-1, 2, 2)
+            np.testing.assert_array_equal(np.array(one.next_1d()), expected[:, 0, 0])
+            np.testing.assert_array_equal(np.array(one.next_2d()), expected[:, 1].T)
+
+    def test_large_indices_and_the_root(self):
+        index = np.random.default_rng(1).integers(0, 2**32, 2048, np.uint32)
+        domain = np.random.default_rng(2).integers(0, 2**32, 2048, np.uint32)
+        domain[:64] = 0
+        u = nf.draw2(mi.UInt32(domain), mi.UInt32(17), mi.UInt32(40001), dr.brev(mi.UInt32(index)))
+        for k, (d, i) in enumerate(zip(domain, index)):
+            value = (ctypes.c_float * 2)()
+            nf.library().nf_sampler_draw(nf._State(int(d), int(i), 17, 40001, 0), 2, value)
+            self.assertEqual([u[0][k], u[1][k]], list(value))
+
+    def test_numbers_of_every_turn_of_a_recorded_loop_differ(self):
+        one = sampler(16, sample_count=2)
+        one.seed(5, 16 * 16 * 2)
+        count, turns = 16 * 16 * 2, 6
+        found = dr.zeros(mi.Float, turns * count)
+
+        def turn(k, one):
+            dr.scatter(found, one.next_1d(), k * count + dr.arange(mi.UInt32, count))
+            return k + 1, one
+
+        with dr.scoped_set_flag(dr.JitFlag.SymbolicLoops, True):
+            dr.while_loop((mi.UInt32(0), one), lambda k, one: k < turns, turn)
+        expected = fill(range(turns), 16, 16, 2, 5).reshape(count, turns, 2)[:, :, 0].T
+        np.testing.assert_array_equal(np.array(found).reshape(turns, count), expected)
+        self.assertEqual(len(np.unique(expected, axis=0)), turns)
+
+    def test_new_seeds_compile_nothing(self):
+        scene = box()
+
+        def kernels(seed):
+            dr.kernel_history_clear()
+            dr.eval(mi.render(scene, spp=4, seed=seed))
+            return {entry["hash"] for entry in dr.kernel_history([dr.KernelType.JIT])}
+
+        with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
+            first = kernels(1)
+            self.assertTrue(first)
+            for seed in (0, 2, 3, 2**31):
+                self.assertLessEqual(kernels(seed), first)
+
+    def test_clones_share_nothing(self):
+        one = sampler(8, sample_count=4)
+        one.seed(3, 8 * 8 * 4)
+        one.next_2d()
+        other = one.clone()
+        a = np.array([np.array(one.next_1d()) for _ in range(3)])
+        b = np.array([np.array(other.next_1d()) for _ in range(3)])
+        np.testing.assert_array_equal(a, b)
+        indices = lambda it: {getattr(it, n).index for n in ("x", "y", "index", "base")}
+        dr.eval(one.x, one.y, one.index, one.base)
+        other.advance()
+        self.assertEqual((other.wavefront_size(), other.sample_count()), (one.wavefront_size(), 4))
+        np.testing.assert_array_equal(np.array(one.next_1d()), fill([5], 8, 8, 4, 3).reshape(-1, 2)[:, 0])
+        fork = one.fork()
+        fork.seed(4, 8 * 8 * 4)
+        np.testing.assert_array_equal(np.array(fork.next_1d()), fill([0], 8, 8, 4, 4).reshape(-1, 2)[:, 0])
+        self.assertEqual(len(indices(one) - indices(fork)), 4)
+
+    def test_memory_is_freed_by_a_seed_of_one_number(self):
+        one = sampler(64, sample_count=4)
+        one.seed(3, 64 * 64 * 4)
+        one.seed(0, 1)
+        self.assertEqual([len(a) for a in (one.x, one.y, one.index)], [1, 1, 1])
+
+    def test_an_unknown_width_is_refused(self):
+        for width in (0, 7):
+            with self.assertRaisesRegex(ValueError, f"for {width} x 8 pixels, and 256 samples.*prepare"):
+                sampler(width, 8, sample_count=4).seed(0, 64 * 4)
+        scene = mi.cornell_box()
+        scene["sensor"]["film"].update(width=32, height=32)
+        scene["sensor"]["sampler"] = {"type": "noisefloor"}
+        with self.assertRaises(RuntimeError) as refused:
+            mi.render(mi.load_dict(scene), spp=4)
+        self.assertIn("for 0 x 0 pixels, and 4096 samples", str(refused.exception.__cause__))
+
+    def test_films_of_any_shape_and_filter(self):
+        # What a pixel sees is what its own numbers say, so the picture must not depend on who draws them.
+        for options in ({"width": 48, "height": 20}, {"width": 20, "height": 48, "rfilter": "gaussian"},
+                        {"width": 24, "height": 24, "rfilter": "gaussian", "sample_border": True}):  # fmt: skip
+            scene = box(**options)
+            sensor = scene.sensors()[0]
+            self.assertGreaterEqual(sensor.sampler().size[0], options["width"])
+            ours, theirs = (pictures(s, 12, 4).mean((1, 2, 3)) for s in (scene, box("independent", **options)))
+            self.assertLess(abs(z_of_means(ours, theirs)), LIMIT)
+
+    def test_neighbours_errors_cancel(self):
+        # Had a wrong width mixed the pixels up, errors would be white, and filtering would gain nothing more.
+        scene, plain = box(width=48, height=40), box("independent", width=48, height=40)
+        reference = pictures(plain, 8, 512).mean(0)
+
+        def error(scene):
+            frames = pictures(scene, 8, 4) - reference
+            blocks = frames.reshape(8, 10, 4, 12, 4, 3).mean((2, 4))
+            return (blocks**2).mean()
+
+        self.assertLess(error(scene), 0.6 * error(plain))
+
+    def test_passes_continue_the_sequence(self):
+        whole = mi.render(box(), spp=16, seed=2)
+        passes = mi.render(box(samples_per_pass=4), spp=16, seed=2)
+        np.testing.assert_allclose(np.array(passes), np.array(whole), rtol=1e-4, atol=1e-5)
+
+    def test_gradients_are_unbiased(self):
+        keys = "white.reflectance.value", "light.emitter.radiance.value"
+        sets = {}
+        for kind, frames, spp in (("noisefloor", 48, 1), ("independent", 48, 16)):
+            scene = box(kind, 24, 24, integrator="prb")
+            parameters = mi.traverse(scene)
+            found = []
+            for frame in range(frames):
+                for key in keys:
+                    dr.enable_grad(parameters[key])
+                parameters.update()
+                dr.backward(dr.mean(mi.render(scene, parameters, spp=spp, seed=1 + frame), axis=None))
+                found.append([np.array(dr.grad(parameters[key])).mean() for key in keys])
+                for key in keys:
+                    dr.disable_grad(parameters[key])
+                    dr.set_grad(parameters[key], 0)
+            sets[kind] = np.array(found)
+        for k in range(len(keys)):
+            self.assertGreater(abs(sets["independent"][:, k].mean()), 0)
+            self.assertLess(abs(z_of_means(sets["noisefloor"][:, k], sets["independent"][:, k])), LIMIT)
+
+
+class OtherVariants(unittest.TestCase):
+    def test_pictures_are_those_of_other_samplers(self):
+        for variant in VARIANTS[1:]:
+            mi.set_variant(variant)
+            nf.register()
+            scene, plain = (box(kind, 16, 12) for kind in ("noisefloor", "independent"))
+            ours, theirs = (pictures(s, 12, 4).mean((1, 2, 3)) for s in (scene, plain))
+            self.assertLess(abs(z_of_means(ours, theirs)), LIMIT)
+
+    def test_scalar_draws_are_the_librarys(self):
+        mi.set_variant("scalar_rgb")
+        nf.register()
+        one = mi.load_dict({"type": "noisefloor", "sample_count": 2})
+        one.seed(70000)
+        one.next_1d()
+        one.advance()
+        one.next_1d()
+        expected, library = (ctypes.c_float * 2)(), nf.library()
+        library.nf_sampler_draw(library.nf_sampler_domain(library.nf_sampler_white(4464, 1, 0, 1), 1), 2, expected)
+        other = one.clone()
+        self.assertEqual(list(one.next_2d()), list(expected))
+        self.assertEqual(list(other.next_2d()), list(expected))
+
+
+if __name__ == "__main__":
+    unittest.main()

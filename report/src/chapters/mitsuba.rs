@@ -1,0 +1,205 @@
+//! The chapter of Mitsuba 3, which integrations/mitsuba/measure.py measures.
+
+use super::Report;
+use super::chapter::{Cell, Chapter, headings, row};
+use super::figure::{Figure, Unit};
+use super::statistics::Estimate;
+use super::targets::Targets;
+use crate::measure::running;
+use crate::measure::table::Table;
+use anyhow::{Context, Result, anyhow};
+use std::path::PathBuf;
+use xtask::mitsuba;
+
+const PLAIN: &str = "independent";
+const DEFAULT: &str = "noisefloor";
+/// For denoisers, as docs/choosing.md recommends.
+const DENOISED: &str = "noisefloor";
+const MEASURES: [(&str, &str); 3] = [("raw", "Raw"), ("filtered", "Filtered"), ("denoised", "After OIDN")];
+
+pub(super) fn write(report: &Report) -> Result<Chapter> {
+    // What was measured before, by hand: it takes a quarter of an hour.
+    let measured = std::env::var_os("NOISEFLOOR_MITSUBA").map(PathBuf::from);
+    let scratch = tempfile::tempdir()?;
+    let folder = measured.clone().unwrap_or_else(|| scratch.path().to_owned());
+    if measured.is_none() {
+        xtask::library::build()?;
+        let python = mitsuba::python()?.map_err(|why| anyhow!("{why}"))?;
+        report.compiled();
+        let mut command = mitsuba::command(python);
+        command.arg("integrations/mitsuba/measure.py").arg(&folder);
+        if report.plan.option() == Some("--quick") {
+            command.args("--size 32 --seeds 3 --many 2 --reference 512 --frames 16 --rounds 3".split(' '));
+        }
+        running::run(command, |_| Ok(()))?;
+    }
+    let errors = Table::read(&folder.join("errors.csv"), ';')?;
+    let gradients = Table::read(&folder.join("gradients.csv"), ';')?;
+    let picture = image::open(folder.join("pictures.png")).context("measure.py wrote no picture")?;
+    report.output.write_picture("mitsuba.png", &picture.to_rgb8())?;
+    let mut chapter = Chapter::new("Samplers in Mitsuba 3");
+    let mut targets = Targets::default();
+    chapter.setting("seeds", errors.only("spp", "1")?.distinct("seed")?.len());
+    chapter.setting("seeds of 64 samples", errors.only("spp", "64")?.distinct("seed")?.len());
+    for (measure, title) in MEASURES {
+        chapter.section(title, "");
+        ratios(&errors, measure, &mut chapter, &mut targets)?;
+    }
+    chapter.section("Time", "");
+    times(&Table::read(&folder.join("times.csv"), ';')?, &mut chapter, &mut targets)?;
+    chapter.section("Gradients", "");
+    derivatives(&gradients, &mut chapter, &mut targets)?;
+    targets.write(&mut chapter);
+    Ok(chapter)
+}
+
+/// The cells of a column, seed by seed.
+fn of(table: &Table, scene: &str, spp: &str, sampler: &str, column: &str) -> Result<Vec<f64>> {
+    let wanted = [("scene", scene), ("spp", spp), ("sampler", sampler)];
+    table.rows().filter(|row| row.has(&wanted)).map(|row| row.number(column)).collect()
+}
+
+/// Over the mean of independent's: a ratio of means, whose interval is that of the numerator's mean over seeds.
+fn over(own: &[f64], plain: &[f64]) -> Estimate {
+    let mean = plain.iter().sum::<f64>() / plain.len() as f64;
+    Estimate::mean(&own.iter().map(|value| value / mean).collect::<Vec<_>>())
+}
+
+fn ratios(table: &Table, measure: &'static str, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
+    let (scenes, counts) = (table.distinct("scene")?, table.distinct("spp")?);
+    let samplers: Vec<&str> = table.distinct("sampler")?.into_iter().filter(|&name| name != PLAIN).collect();
+    let mut rows = Vec::new();
+    for &spp in &counts {
+        let mut worst_of_all: Vec<Vec<f64>> = Vec::new();
+        for &scene in &scenes {
+            let plain = of(table, scene, spp, PLAIN, measure)?;
+            let mut cells: Vec<Cell> = row![scene, spp, Figure::exact(Estimate::mean(&plain).value, Unit::Error)];
+            let mut best: Option<(f64, Vec<f64>)> = None;
+            for &sampler in &samplers {
+                let own = of(table, scene, spp, sampler, measure)?;
+                if own.is_empty() {
+                    cells.push(Cell::Missing);
+                    continue;
+                }
+                let ratio = over(&own, &plain);
+                cells.push(Figure::new(ratio, Unit::Ratio).into());
+                if !sampler.starts_with(DEFAULT) && best.as_ref().is_none_or(|(value, _)| ratio.value < *value) {
+                    best = Some((ratio.value, own));
+                }
+            }
+            rows.push(cells);
+            // Independent samples are one of Mitsuba's samplers, too.
+            let best = best.filter(|(value, _)| *value < 1.0).map_or(plain, |(_, own)| own);
+            let own = of(table, scene, spp, if measure == "denoised" { DENOISED } else { DEFAULT }, measure)?;
+            let mean = best.iter().sum::<f64>() / best.len() as f64;
+            worst_of_all.push(own.iter().map(|value| value / mean).collect());
+            let (ratio, place) = (over(&own, &best), format!("{scene}, {spp} spp"));
+            let bound = match (measure, spp) {
+                ("filtered", "64") => 1.05,
+                ("filtered", _) => 0.85,
+                ("raw", "64") => 1.05,
+                ("raw", _) => 1.15,
+                _ => 1.05,
+            };
+            let statement = format!("{measure} error over the best Mitsuba sampler's, {bound} at most");
+            targets.at_most(&statement, &place, ratio, Unit::Ratio, bound);
+        }
+        let seeds = worst_of_all.iter().map(Vec::len).min().unwrap_or(0);
+        let mean = |seed: usize| {
+            let logarithms = worst_of_all.iter().map(|ratios| ratios[seed].max(1e-9).ln());
+            (logarithms.sum::<f64>() / worst_of_all.len() as f64).exp()
+        };
+        let all = Estimate::mean(&(0..seeds).map(mean).collect::<Vec<_>>());
+        let place = format!("{spp} spp");
+        match measure {
+            "raw" => targets.at_most("raw error over the best's, geometric mean", &place, all, Unit::Ratio, 1.03),
+            "denoised" => {
+                targets.below("error after OIDN over the best's, geometric mean", &place, all, Unit::Ratio, 1.0)
+            }
+            _ => {}
+        }
+    }
+    let columns = headings(&["scene", "spp", PLAIN], samplers.iter().map(|&name| name.to_owned()));
+    chapter.table(measure, &columns, 2, rows);
+    Ok(())
+}
+
+fn times(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
+    let samplers: Vec<&str> = table.distinct("sampler")?.into_iter().filter(|&name| name != PLAIN).collect();
+    let mut rows = Vec::new();
+    for scene in table.distinct("scene")? {
+        let seconds = |sampler: &str| -> Result<Vec<f64>> {
+            let wanted = [("scene", scene), ("sampler", sampler)];
+            table.rows().filter(|row| row.has(&wanted)).map(|row| row.number("seconds")).collect()
+        };
+        let mut cells: Vec<Cell> = row![scene];
+        for &sampler in &samplers {
+            let ratio = Estimate::ratio(&seconds(sampler)?, &seconds(PLAIN)?);
+            cells.push(Figure::new(ratio, Unit::Ratio).into());
+            if sampler == DEFAULT {
+                targets.at_most("time of an LLVM frame over independent's", scene, ratio, Unit::Ratio, 1.05);
+            }
+        }
+        rows.push(cells);
+    }
+    chapter.table("times", &headings(&["scene"], samplers.iter().map(|&name| name.to_owned())), 1, rows);
+    Ok(())
+}
+
+/// Mean and standard deviation.
+fn moments(values: &[f64]) -> (f64, f64) {
+    let (count, mean) = (values.len() as f64, values.iter().sum::<f64>() / values.len() as f64);
+    (mean, (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt())
+}
+
+fn derivatives(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
+    let column = |parameter: &str, spp: &str, sampler: &str| -> Result<Vec<f64>> {
+        let wanted = [("parameter", parameter), ("spp", spp), ("sampler", sampler)];
+        table.rows().filter(|row| row.has(&wanted)).map(|row| row.number("gradient")).collect()
+    };
+    let mut rows = Vec::new();
+    for spp in table.distinct("spp")?.into_iter().filter(|&spp| spp != "256") {
+        for parameter in table.distinct("parameter")? {
+            let reference = column(parameter, "256", "reference")?;
+            let (exact, spread) = moments(&reference);
+            let reference_error = spread / (reference.len() as f64).sqrt();
+            let (_, plain) = moments(&column(parameter, spp, PLAIN)?);
+            for sampler in table.distinct("sampler")?.into_iter().filter(|&name| name != "reference") {
+                let found = column(parameter, spp, sampler)?;
+                if found.is_empty() {
+                    continue;
+                }
+                let (mean, spread) = moments(&found);
+                let error = (spread * spread / found.len() as f64 + reference_error * reference_error).sqrt();
+                let percent = 100.0 / exact.abs();
+                let (bias, half) = ((mean - exact) * percent, 1.96 * error * percent);
+                let seeds = found.len();
+                let bias = Estimate { value: bias, low: bias - half, high: bias + half, seeds };
+                // Of the ratio of two deviations of normal numbers.
+                let ratio = spread / plain;
+                let half = 1.96 * ratio / (seeds as f64 - 1.0).sqrt();
+                let ratio = Estimate { value: ratio, low: ratio - half, high: ratio + half, seeds };
+                rows.push(row![
+                    parameter,
+                    spp,
+                    sampler,
+                    Figure::new(ratio, Unit::Ratio),
+                    Figure::new(bias, Unit::Percent)
+                ]);
+                if sampler == DEFAULT && spp == "1" {
+                    let size = Estimate {
+                        value: bias.value.abs(),
+                        low: if bias.low * bias.high < 0.0 { 0.0 } else { bias.low.abs().min(bias.high.abs()) },
+                        high: bias.low.abs().max(bias.high.abs()),
+                        seeds,
+                    };
+                    targets.at_most("gradient: spread over independent's", parameter, ratio, Unit::Ratio, 0.75);
+                    targets.below("gradient: bias, per cent", parameter, size, Unit::Percent, 0.1);
+                }
+            }
+        }
+    }
+    let columns = ["parameter", "spp", "sampler", "spread over independent's", "bias, %"];
+    chapter.table("gradients", &columns, 3, rows);
+    Ok(())
+}

@@ -1,0 +1,95 @@
+//! `cargo xtask playground`: the page to play with, one file with its WebAssembly module inside.
+
+use crate::c_tests::PYTHON;
+use crate::outcome::Outcome;
+use crate::tools::{self, Package};
+use crate::{paths, run};
+use anyhow::{Context, Result, bail};
+use std::fs;
+use std::path::PathBuf;
+
+/// Debian's compiler: rustup's has only the targets that its user installed.
+const COMPILER: [Package; 4] = [
+    Package { name: "rustc-web", file: "/usr/bin/rustc" },
+    Package { name: "cargo-web", file: "/usr/bin/cargo" },
+    Package { name: "rust-web-src", file: "/usr/share/doc/rust-web-src" },
+    Package { name: "lld-19", file: "/usr/bin/wasm-ld-19" },
+];
+const BROWSER: [Package; 2] = [Package { name: "chromium", file: "/usr/bin/chromium" }, PYTHON];
+const MANIFEST: &str = "docs/playground/Cargo.toml";
+
+/// Makes target/demo/playground.html, or says why it cannot be made here.
+pub fn build() -> Result<Result<PathBuf, String>> {
+    if let Some(missing) = tools::packages(&COMPILER)? {
+        return Ok(Err(missing));
+    }
+    let (target, triple) = (folder(), "wasm32-unknown-unknown");
+    let mut cargo = run::command(COMPILER[1].file);
+    // What rustup's cargo set for us is not for Debian's.
+    cargo.env("RUSTC_BOOTSTRAP", "1").env("RUSTC", COMPILER[0].file).env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO");
+    cargo.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", COMPILER[3].file);
+    cargo.args(["rustc", "--quiet", "--release", "--lib", "--crate-type", "cdylib", "--manifest-path", MANIFEST]);
+    run::check(cargo.args(["-Z", "build-std=core", "--target", triple, "--target-dir"]).arg(&target))?;
+    let module = target.join(triple).join("release/noisefloor_playground.wasm");
+    let bytes = fs::read(&module).with_context(|| format!("cannot read {}", module.display()))?;
+    let (place, page) = ("const embedded = \"", paths::read("docs/playground/page.html")?);
+    if page.matches(place).count() != 1 {
+        bail!("docs/playground/page.html has no one place `{place}` for the module");
+    }
+    let folder = paths::target().join("demo");
+    fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    let out = folder.join("playground.html");
+    fs::write(&out, page.replace(place, &(place.to_owned() + &base64(&bytes))))
+        .with_context(|| format!("cannot write {}", out.display()))?;
+    Ok(Ok(out))
+}
+
+pub fn run() -> Result<()> {
+    match build()? {
+        Ok(page) => println!("{}", page.display()),
+        Err(why) => bail!("{why}"),
+    }
+    Ok(())
+}
+
+/// The page in headless Chromium, beside the same program compiled for this machine.
+pub fn test() -> Result<Outcome> {
+    if let Some(missing) = tools::packages(&BROWSER)? {
+        return Ok(Outcome::NotRun(missing));
+    }
+    let page = match build()? {
+        Ok(page) => page,
+        Err(why) => return Ok(Outcome::NotRun(why)),
+    };
+    let mut cargo = run::cargo();
+    cargo.args(["build", "--quiet", "--release", "--manifest-path", MANIFEST, "--target-dir"]);
+    run::check(cargo.arg(folder()))?;
+    let mut python = run::command("python3");
+    python.args(["-B", "tests/programs/playground.py"]).arg(page).arg(folder().join("release/numbers"));
+    run::check(python.arg(paths::target().join("demo/playground.png")))?;
+    Ok(Outcome::Passed)
+}
+
+fn folder() -> PathBuf {
+    paths::target().join("playground")
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let group = |three: &[u8]| -> [char; 4] {
+        let number = (0..3).fold(0, |sum, k| sum << 8 | usize::from(three.get(k).copied().unwrap_or(0)));
+        let digit = |k: usize| if k > three.len() { '=' } else { DIGITS[number >> (18 - 6 * k) & 63] as char };
+        [digit(0), digit(1), digit(2), digit(3)]
+    };
+    bytes.chunks(3).flat_map(group).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn base64_of_rfc_4648() {
+        for (bytes, text) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+            assert_eq!(super::base64(bytes.as_bytes()), text);
+        }
+    }
+}
