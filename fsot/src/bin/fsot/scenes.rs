@@ -3,7 +3,7 @@
 use crate::measure::in_file;
 use fsot::error::{Error, Result};
 use fsot::export::nft::TileFile;
-use fsot::metrics::scenes::{Plane, SceneError, SceneTable};
+use fsot::metrics::scenes::{self, Count, Energies, Frames, PLACES, Plane, SceneTable};
 use fsot::random::stream;
 use fsot::sampler::{sidecar, table};
 use noisefloor::tile::Shape;
@@ -12,18 +12,30 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Pixels and samples of Owen-scrambled points.
-const OWEN: (usize, usize) = (128, 256);
+/// Pixels and samples of independent and of Owen-scrambled points.
+const PEERS: (usize, usize) = (128, 256);
 /// The first line of a file of points begins so.
 const POINTS: &str = "noisefloor-points ";
 /// One number of 24 bits in [0, 1).
 const UNIT: f32 = 1.0 / 16_777_216.0;
 
-/// A sampler and its errors: `[scene][count]`.
+/// How frames are averaged, and the samples that they need.
+const FRAMES: [(&str, Frames); 3] =
+    [("frames", Frames::Still), ("moving", Frames::Moving), ("clamped", Frames::Clamped)];
+const FRAMES_OF: usize = 64;
+/// Two-sided 95 % of Student's t with as many degrees of freedom as places less one.
+const STUDENT: f64 = 2.0687;
+
+/// A sampler and its errors.
 struct Judged {
     name: String,
     plane: Plane,
-    errors: Vec<Vec<SceneError>>,
+    /// What the columns stand for.
+    columns: Vec<String>,
+    /// `[scene][column]`
+    errors: Vec<Vec<Energies>>,
+    /// Sums of logarithms over scenes: `[count - 1][place]`
+    raw: Vec<[f64; PLACES]>,
 }
 
 /// Judges the samplers in all tables of a folder.
@@ -31,10 +43,13 @@ struct Judged {
 /// # Errors
 /// A file cannot be read, or is none of a sampler; there is no table.
 pub(crate) fn run(folder: &Path, files: &[PathBuf]) -> Result<(String, Value)> {
-    let mut judged = vec![Judged { name: "Owen-scrambled Sobol'".to_owned(), plane: owen(), errors: Vec::new() }];
+    let (size, samples) = PEERS;
+    let mut judged = vec![
+        Judged::new("independent".to_owned(), scenes::white(size, samples)),
+        Judged::new("Owen-scrambled Sobol'".to_owned(), owen()),
+    ];
     for path in files {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        judged.push(Judged { name, plane: plane(path)?, errors: Vec::new() });
+        judged.push(Judged::new(path.file_stem().unwrap_or_default().to_string_lossy().into_owned(), plane(path)?));
     }
     let entries = fs::read_dir(folder).map_err(Error::io(folder))?;
     let paths = entries.map(|entry| entry.map(|entry| entry.path()).map_err(Error::io(folder)));
@@ -46,50 +61,115 @@ pub(crate) fn run(folder: &Path, files: &[PathBuf]) -> Result<(String, Value)> {
     }
     for path in &paths {
         let table = SceneTable::read(path)?;
-        for sampler in &mut judged {
-            let counts: Vec<usize> = (0..9).map(|k| 1 << k).filter(|count| *count <= sampler.plane.samples).collect();
-            sampler.errors.push(table.errors(&sampler.plane, &counts)?);
-        }
+        judged.iter_mut().try_for_each(|sampler| sampler.judge(&table))?;
     }
     let scene = |path: &PathBuf| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(describe(&paths.iter().map(scene).collect::<Vec<_>>(), &judged))
 }
 
+impl Judged {
+    fn new(name: String, plane: Plane) -> Judged {
+        let counts = counts(plane.samples).into_iter().map(|count| match count {
+            Count::All(count) => count.to_string(),
+            Count::Adapted => "adapted".to_owned(),
+            Count::Mixed => "mixed".to_owned(),
+        });
+        let frames = FRAMES.iter().filter(|_| plane.samples >= FRAMES_OF).map(|(name, _)| (*name).to_owned());
+        let columns = counts.chain(frames).collect();
+        let raw = vec![[0.0; PLACES]; plane.samples];
+        Judged { name, plane, columns, errors: Vec::new(), raw }
+    }
+
+    fn judge(&mut self, table: &SceneTable) -> Result<()> {
+        let mut errors = table.errors(&self.plane, &counts(self.plane.samples))?;
+        if self.plane.samples >= FRAMES_OF {
+            for (_, way) in FRAMES {
+                errors.push(table.frames(&self.plane, way)?);
+            }
+        }
+        self.errors.push(errors);
+        for (sums, energies) in self.raw.iter_mut().zip(table.raw(&self.plane)) {
+            sums.iter_mut().zip(energies).for_each(|(sum, energy)| *sum += libm::log(energy.max(1e-300)));
+        }
+        Ok(())
+    }
+
+    /// The geometric mean over the scenes, of a column.
+    fn mean(&self, column: &str, energy: fn(&Energies) -> f64) -> Option<f64> {
+        let column = self.columns.iter().position(|name| name == column)?;
+        let logs: f64 = self.errors.iter().map(|row| libm::log(energy(&row[column]).max(1e-300))).sum();
+        Some(libm::exp(logs / self.errors.len() as f64))
+    }
+
+    /// Raw over that of others, of n samples, with half its interval of 95 %: geometric means over scenes and places.
+    fn beside(&self, others: &Judged) -> Vec<(f64, f64)> {
+        let scenes = self.errors.len() as f64;
+        let ratio = |(own, other): (&[f64; PLACES], &[f64; PLACES])| {
+            let logs: [f64; PLACES] = std::array::from_fn(|place| (own[place] - other[place]) / scenes);
+            let mean = logs.iter().sum::<f64>() / PLACES as f64;
+            let squares: f64 = logs.iter().map(|log| (log - mean) * (log - mean)).sum();
+            let error = libm::sqrt(squares / (PLACES * (PLACES - 1)) as f64);
+            (libm::exp(mean), libm::exp(mean) * error * STUDENT)
+        };
+        self.raw.iter().zip(&others.raw).map(ratio).collect()
+    }
+}
+
+/// The numbers of samples that a plane is judged at.
+fn counts(samples: usize) -> Vec<Count> {
+    let powers = (0..9).map(|k| 1 << k).filter(|count| *count <= samples).map(Count::All);
+    powers.chain([Count::Adapted, Count::Mixed].into_iter().filter(|_| samples >= 8)).collect()
+}
+
 fn describe(scenes: &[String], judged: &[Judged]) -> (String, Value) {
+    let columns = &judged[0].columns;
     let mut text = String::from("energies relative to independent samples, geometric mean over the scenes\n");
-    let mut line = |name: &str, what: &str, values: Vec<f64>| {
-        let values: String = values.iter().map(|value| format!(" {value:6.3}")).collect();
-        writeln!(text, "{name:<22} {what:<12}{values}").unwrap_or(());
+    write!(text, "{:<22} {:<12}", "", "samples").unwrap_or(());
+    columns.iter().for_each(|column| write!(text, "{column:>8}").unwrap_or(()));
+    text.push('\n');
+    let mut line = |sampler: &Judged, what: &str, value: &dyn Fn(&str) -> Option<f64>| {
+        let value = |column: &String| value(column).map_or_else(String::new, |value| format!("{value:.3}"));
+        let values: String = columns.iter().map(|column| format!("{:>8}", value(column))).collect();
+        writeln!(text, "{:<22} {what:<12}{}", sampler.name, values.trim_end()).unwrap_or(());
     };
-    let counts = (0..9).map(|k| f64::from(1 << k)).collect();
-    line("", "samples", counts);
-    type Energy = (&'static str, fn(&SceneError) -> f64);
+    type Energy = (&'static str, fn(&Energies) -> f64);
     let energies: [Energy; 3] = [("sigma 2.1", |e| e.wide), ("sigma 1", |e| e.narrow), ("raw", |e| e.raw)];
     for (what, energy) in energies {
         for sampler in judged {
-            let counts = 0..sampler.errors.first().map_or(0, Vec::len);
-            let mean = |i: usize| {
-                let logs = sampler.errors.iter().map(|rows| libm::log(energy(&rows[i]).max(1e-300)));
-                libm::exp(logs.sum::<f64>() / scenes.len() as f64)
-            };
-            line(&sampler.name, what, counts.map(mean).collect());
+            line(sampler, what, &|column| sampler.mean(column, energy));
         }
     }
     for (number, scene) in scenes.iter().enumerate() {
-        for sampler in judged {
-            line(&sampler.name, scene, sampler.errors[number].iter().map(|row| row.wide).collect());
+        for sampler in &judged[1..] {
+            let column = |name: &str| sampler.columns.iter().position(|column| column == name);
+            line(sampler, scene, &|name| Some(sampler.errors[number][column(name)?].wide));
+        }
+    }
+    let owen = &judged[1];
+    for sampler in &judged[2..] {
+        let ratios = sampler.beside(owen);
+        let worst = (1..).zip(&ratios).max_by(|a, b| a.1.0.total_cmp(&b.1.0));
+        if let Some((count, (ratio, half))) = worst {
+            let most = ratios.len();
+            let name = &sampler.name;
+            let what = format!("{ratio:.3} +- {half:.3} of {}'s at {count}", owen.name);
+            writeln!(text, "{name:<22} raw, worst of 1 to {most} samples: {what}").unwrap_or(());
         }
     }
     let one = |sampler: &Judged| {
-        let rows = scenes.iter().zip(&sampler.errors).map(|(scene, rows)| json!({ "scene": scene, "errors": rows }));
-        json!({ "sampler": sampler.name, "scenes": rows.collect::<Vec<_>>() })
+        let row = |errors: &Vec<Energies>| -> Value {
+            sampler.columns.iter().zip(errors).map(|(column, energies)| (column.clone(), json!(energies))).collect()
+        };
+        let rows: Value =
+            scenes.iter().zip(&sampler.errors).map(|(scene, errors)| (scene.clone(), row(errors))).collect();
+        json!({ "sampler": sampler.name, "scenes": rows, "raw over Owen": sampler.beside(owen) })
     };
     (text, json!({ "samplers": judged.iter().map(one).collect::<Vec<_>>() }))
 }
 
 /// Sobol's first two dimensions, each pixel's digits scrambled by random trees.
 fn owen() -> Plane {
-    let (size, samples) = OWEN;
+    let (size, samples) = PEERS;
     let scrambled = |value: u32, seed: u32| -> u32 {
         // Each bit depends on those before it: a hash of these, of which one bit is taken.
         (0..32).fold(0, |sum, bit| {
