@@ -3,7 +3,6 @@
 use fsot::class;
 use fsot::optimize::{Domain, Optimizer, Problem, Quality};
 use fsot::run::Optimization;
-use fsot::tile::presets;
 use std::fs;
 use std::path::Path;
 
@@ -51,14 +50,5 @@ fn the_formulas_of_steps_are_those_of_the_code() {
             assert_eq!(base * log, steps(points, class::single(2), quality), "{row:?}");
             assert_eq!(base * log * 3, steps(points, class::two_colors(2), quality), "{row:?}");
         }
-    }
-}
-
-#[test]
-fn the_steps_of_shipped_tiles_are_those_of_their_presets() {
-    let rows = table(&document("fsot_tiles.md"), "| | | steps | filtered | raw |");
-    for name in presets::NAMES {
-        let row = rows.iter().find(|row| row[0] == name).unwrap_or_else(|| panic!("{name} is not in the table"));
-        assert_eq!(number(&row[2]), presets::preset(name).unwrap().iterations, "{name}");
     }
 }

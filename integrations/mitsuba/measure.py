@@ -158,7 +158,8 @@ def measure_times(options, out, spp=16):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("folder")
-    for option, default in (("size", 128), ("seeds", 32), ("many", 8), ("reference", 4096), ("frames", 1024), ("rounds", 15)):
+    defaults = {"size": 128, "seeds": 32, "many": 8, "reference": 4096, "frames": 1024, "rounds": 15}
+    for option, default in defaults.items():
         parser.add_argument(f"--{option}", type=int, default=default)
     options = parser.parse_args()
     noisefloor_mitsuba.register()

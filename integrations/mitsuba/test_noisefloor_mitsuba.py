@@ -1,4 +1,4 @@
-"""Tests of noisefloor_mitsuba with the Mitsuba that is installed; $NOISEFLOOR_VARIANTS names others than the default."""
+"""Tests of noisefloor_mitsuba with the installed Mitsuba; $NOISEFLOOR_VARIANTS names others than the default."""
 
 import ctypes
 import os

@@ -2,8 +2,8 @@
 //
 //     embree_tables FOLDER [SCENE...]
 //
-// Without names: the scenes that samplers are made by. `duck`, `plane_1`, `plane_16` and `veach` are written if they are
-// named: no sampler was made with these in mind.
+// Without names: the scenes that samplers are made by. `duck`, `plane_1`, `plane_16` and `veach` are written if they
+// are named: no sampler was made with these in mind.
 //
 // FOLDER/SCENE.table: a line `noisefloor-scene WIDTH HEIGHT CELLS`, then for each pixel, row by row, the luminance in
 // the middle of CELLS x CELLS cells of the unit square, row by row, little-endian f32.

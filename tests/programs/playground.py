@@ -89,7 +89,8 @@ def main():
             browser.wait(f"measured !== undefined && JSON.stringify(settings()) === JSON.stringify({wanted})")
             found = browser.value("JSON.parse(measured)")
             line = subprocess.check_output([numbers, *map(str, (samples, sampler, fits, 0, blur))], text=True).split()
-            assert found["errors"] == [float(line[0]), float(line[1])] and found["fitted"] == int(line[2]), (found, line)
+            assert found["errors"] == [float(line[0]), float(line[1])], (found, line)
+            assert found["fitted"] == int(line[2]), (found, line)
             if sampler == 2:
                 assert found["errors"][0] < found["errors"][1], found
         browser.value("location.hash = '#samples=4&sampler=2&fits=0&moving=0&blur=2.1'")

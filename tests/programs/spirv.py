@@ -9,7 +9,8 @@ import sys
 from pathlib import Path
 
 INTEGER = re.compile(
-    r"= Op(I(Add|Sub|Mul|Equal|NotEqual)|Bitwise\w+|Shift\w+|Not|BitReverse|BitField\w+|Select|U(Div|Mod|LessThan)\w*)\b"
+    r"= Op(I(Add|Sub|Mul|Equal|NotEqual)|Bitwise\w+|Shift\w+|Not|BitReverse|BitField\w+"
+    r"|Select|U(Div|Mod|LessThan)\w*)\b"
 )
 
 
