@@ -26,10 +26,16 @@ SIGMA, LIMIT = 2.1, 5.0
 FIRST = 1000
 
 
-def load(make, sampler, size, **integrator):
+def described(make, sampler, size):
+    """A scene, seen by this sampler."""
     scene = make()
     film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}, "pixel_format": "rgb"}
     scene["sensor"] = {**scene["sensor"], "film": film, "sampler": sampler}
+    return scene
+
+
+def load(make, sampler, size, **integrator):
+    scene = described(make, sampler, size)
     scene["integrator"] = {**scene["integrator"], **integrator}
     return noisefloor_mitsuba.prepare(mi.load_dict(scene))
 
@@ -47,12 +53,8 @@ def takes(scene, spp):
 
 def features(make, size):
     """Albedo and normals without noise, the same for all."""
-    path = make()["integrator"]
-    aov = {"type": "aov", "aovs": "albedo:albedo,normal:sh_normal", "inner": path}
-    scene = make()
-    scene["integrator"] = aov
-    film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}, "pixel_format": "rgb"}
-    scene["sensor"] = {**scene["sensor"], "film": film, "sampler": {"type": "multijitter"}}
+    scene = described(make, {"type": "multijitter"}, size)
+    scene["integrator"] = {"type": "aov", "aovs": "albedo:albedo,normal:sh_normal", "inner": scene["integrator"]}
     found = np.array(mi.render(mi.load_dict(scene), spp=256), np.float32)
     return found[:, :, 3:6].copy(), found[:, :, 6:9].copy()
 

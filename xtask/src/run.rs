@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, bail};
 use std::ffi::OsStr;
-use std::process::Command;
+use std::process::{Command, ExitStatus};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -26,10 +26,7 @@ pub fn compiler(variable: &str, default: &str) -> Command {
 /// Runs to the end; a failure is an error that shows the command line.
 pub fn check(command: &mut Command) -> Result<()> {
     let status = command.status().with_context(|| missing(command))?;
-    if !status.success() {
-        bail!("failed ({status}): {}", line(command));
-    }
-    Ok(())
+    judge(status, command)
 }
 
 /// As [`check`], and says every ten seconds that a compiler is still at work.
@@ -47,6 +44,10 @@ pub fn compile(command: &mut Command) -> Result<()> {
             said = tens;
         }
     };
+    judge(status, command)
+}
+
+fn judge(status: ExitStatus, command: &Command) -> Result<()> {
     if !status.success() {
         bail!("failed ({status}): {}", line(command));
     }

@@ -1,6 +1,6 @@
 //! Frames of one sample each, averaged over time.
 
-use super::{Energies, PLACES, Plane, SceneTable, places};
+use super::{Energies, Plane, SceneTable, places};
 use crate::error::Result;
 use rayon::prelude::*;
 
@@ -35,7 +35,6 @@ impl SceneTable {
         let error = |(pixel, average): (usize, &f64)| self.error(pixel, *average, &scale);
         let images: Vec<Vec<f64>> =
             averages.iter().flatten().map(|average| average.iter().enumerate().map(error).collect()).collect();
-        debug_assert_eq!(images.len(), PLACES * SHOWN.len());
         // Of weights a, a (1 - a), a (1 - a)^2, ... the squares' sum.
         Ok(self.energies(&images, &scale, |_| NEWEST / (2.0 - NEWEST)))
     }
@@ -75,22 +74,19 @@ impl SceneTable {
 
 #[cfg(test)]
 mod tests {
-    use super::super::white;
+    use super::super::{tests::ramp, white};
     use super::*;
 
     /// Independent samples, pixels alike: averages have the error that their weights say; clamping only adds to it.
     #[test]
     fn averages_of_independent_samples() {
-        let (side, cells) = (24, 16);
-        let value = |i: usize| ((i % cells) as f32 + (i / cells) as f32 + 1.0) / cells as f32;
-        let values = (0..side * side).flat_map(|_| (0..cells * cells).map(value)).collect();
-        let table = SceneTable::new([side; 2], cells, values);
-        let white = white(128, 64);
+        let table = ramp();
+        let plane = white(128, 64);
         for way in [Frames::Still, Frames::Moving] {
-            let energies = table.frames(&white, way).unwrap();
+            let energies = table.frames(&plane, way).unwrap();
             assert!((energies.raw - 1.0).abs() < 0.1 && (energies.wide - 1.0).abs() < 0.5, "{energies:?}");
         }
-        assert!(table.frames(&white, Frames::Clamped).unwrap().raw < 2.0);
-        assert!(table.frames(&super::super::white(16, 61), Frames::Still).is_err());
+        assert!(table.frames(&plane, Frames::Clamped).unwrap().raw < 2.0);
+        assert!(table.frames(&white(16, 61), Frames::Still).is_err());
     }
 }

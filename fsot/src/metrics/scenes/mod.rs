@@ -293,13 +293,18 @@ pub fn white(size: usize, samples: usize) -> Plane {
 mod tests {
     use super::*;
 
-    /// x + y in every pixel: samples in the middle have no error, independent ones that of one random sample.
-    #[test]
-    fn errors_are_relative_to_independent_samples() {
+    /// x + y in every pixel.
+    pub(super) fn ramp() -> SceneTable {
         let (side, cells) = (24, 16);
         let value = |i: usize| ((i % cells) as f32 + (i / cells) as f32 + 1.0) / cells as f32;
         let values = (0..side * side).flat_map(|_| (0..cells * cells).map(value)).collect();
-        let table = SceneTable::new([side; 2], cells, values);
+        SceneTable::new([side; 2], cells, values)
+    }
+
+    /// x + y in every pixel: samples in the middle have no error, independent ones that of one random sample.
+    #[test]
+    fn errors_are_relative_to_independent_samples() {
+        let table = ramp();
         let middle = Plane { size: 1, samples: 1, points: vec![[0.5, 0.5]] };
         assert!(table.errors(&middle, &[Count::All(1)]).unwrap()[0].raw < 1e-9);
         let white = white(128, 8);
