@@ -9,7 +9,7 @@ foreach(file Cargo.toml ../Cargo.toml ../Cargo.lock ../core/Cargo.toml)
         list(APPEND settings "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
     endif()
 endforeach()
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${settings} include/noisefloor.h)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${settings} include/noisefloor/base.h)
 set(archive "${NOISEFLOOR_CARGO_TARGET_DIR}/${cargo_folder}/libnoisefloor.a")
 set(object "${CMAKE_CURRENT_BINARY_DIR}/noisefloor.o")
 # The profile is the workspace's; where the package stands alone nothing else says it.

@@ -1,5 +1,6 @@
 //! What the generated header declares. Its form is cbindgen's, so a few splits read it.
 
+use crate::header;
 use anyhow::{Context, Result, bail};
 use std::fs;
 use xtask::paths;
@@ -29,27 +30,29 @@ pub(crate) struct Struct {
 }
 
 impl Header {
-    /// Reads include/noisefloor.h.
+    /// Reads include/noisefloor.h and its parts.
     pub(crate) fn committed() -> Result<Self> {
-        let path = paths::header();
-        let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
-        Self::parse(&text)
+        let mut all = String::new();
+        for file in header::parts().iter().map(String::as_str).chain(["noisefloor.h"]) {
+            let path = paths::include().join(file);
+            all += &fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        }
+        Self::parse(&all)
     }
 
     fn parse(text: &str) -> Result<Self> {
         let (text, asserts) = text.split_once(ASSERTS).with_context(|| format!("the header has no `{ASSERTS}`"))?;
         let mut header = Self { asserts: asserts.to_owned(), ..Self::default() };
         let mut statement = String::new();
-        // Of the comments only the one at the top has lines that could be taken for code; those of the others begin
-        // with an asterisk, which no declaration does.
-        let (_, text) = text.split_once("*/").context("the header does not begin with a comment")?;
+        // Comments' lines begin with an asterisk, which no declaration's does.
         for line in text.lines().map(str::trim) {
             if let Some((name, value)) = line.strip_prefix("#define NF_").and_then(|rest| rest.split_once(' ')) {
                 header.constants.push((format!("NF_{name}"), number(value)?));
             } else if !line.is_empty() && !["//", "/*", "*", "#"].iter().any(|start| line.starts_with(start)) {
                 statement = format!("{statement} {line}").trim().to_owned();
                 let open = statement.matches('{').count() > statement.matches('}').count();
-                if statement.ends_with('{') && statement.starts_with("extern") {
+                // Of extern "C" the beginning and the end.
+                if statement == "}" || statement.ends_with('{') && statement.starts_with("extern") {
                     statement.clear();
                 } else if statement.ends_with(';') && !open {
                     header.declare(&statement)?;

@@ -1,13 +1,14 @@
-//! The generated C header: cbindgen reads `capi/`, this file arranges what it finds by service.
+//! The generated C headers: cbindgen reads `capi/`, this file arranges what it finds by service.
 
-use crate::banner;
 use anyhow::{Context, Result, anyhow, bail};
 use std::fs;
 use std::path::Path;
 use xtask::paths;
 
-/// A chapter of the header and how its items' names begin, in the order in which they are printed.
+/// A chapter of a header and how its items' names begin, in the order in which they are printed.
 struct Chapter {
+    /// The header, in include/noisefloor/.
+    file: &'static str,
     title: &'static str,
     /// Where the mathematics stands, in docs/, and when to use what.
     guides: &'static str,
@@ -15,14 +16,22 @@ struct Chapter {
     prefixes: &'static [&'static str],
 }
 
+/// The header that the others include.
+const BASE: &str = "base.h";
+/// The width of the headers' lines.
+const WIDTH: usize = 120;
+
 /// Every item belongs to the chapter with the longest matching prefix.
 const CHAPTERS: [Chapter; 8] = [
     Chapter {
+        file: BASE,
         title: "Version and status",
         guides: "",
         prefixes: &["NF_ABI_VERSION", "nf_abi_version", "nf_status", "NF_OK|NF_ERR_", "nf_status_message"],
     },
+    Chapter { file: BASE, title: "Random numbers", guides: "", prefixes: &["nf_rng", "nf_rng_"] },
     Chapter {
+        file: "cv.h",
         title: "Control variates: samples of one integral, or of a pixel, made into an estimate of lower error",
         guides: "control_variates.md",
         prefixes: &[
@@ -45,27 +54,28 @@ const CHAPTERS: [Chapter; 8] = [
         ],
     },
     Chapter {
+        file: "cv.h",
         title: "Guidance: which estimator and which tile to use",
         guides: "choosing.md",
         prefixes: &["NF_SAMPLING_", "NF_METHOD_", "nf_recommendation", "nf_recommend"],
     },
     Chapter {
+        file: "mis.h",
         title: "Multiple importance sampling: the weight of one technique at one point",
         guides: "mis.md",
         prefixes: &["NF_MIS_", "nf_mis_"],
     },
     Chapter {
+        file: "mis.h",
         title: "Optimal multiple importance sampling: weights of least variance, found from the samples",
         guides: "mis.md",
         prefixes: &["NF_OMIS_", "nf_omis", "nf_omis_"],
     },
     Chapter {
+        file: "tile.h",
         title: "Samplers and tiles: sample points whose error is spread over the image where it shows least",
-        guides: "tiles.md, renderer.md",
+        guides: "sampling.md, tiles.md, renderer.md",
         prefixes: &[
-            "NF_TILE_",
-            "nf_tile",
-            "nf_tile_",
             "nf_sampler",
             "nf_sampler_pixel",
             "nf_sampler_white",
@@ -74,6 +84,9 @@ const CHAPTERS: [Chapter; 8] = [
             "nf_sampler_draw",
             "nf_sampler_table",
             "nf_sampler_fill",
+            "NF_TILE_",
+            "nf_tile",
+            "nf_tile_",
             "nf_tile_sampler",
             "nf_tile_sampler_pixel",
             "nf_tile_sampler_domain",
@@ -82,8 +95,8 @@ const CHAPTERS: [Chapter; 8] = [
             "nf_tile_sampler_fill",
         ],
     },
-    Chapter { title: "Random numbers", guides: "", prefixes: &["nf_rng", "nf_rng_"] },
     Chapter {
+        file: "table.h",
         title: "Minibatches: items drawn in proportion to their importance, and gradients of the mean loss from them",
         guides: "minibatch.md, minibatch_gradients.md",
         prefixes: &[
@@ -105,23 +118,36 @@ const CHAPTERS: [Chapter; 8] = [
     },
 ];
 
-/// Rewrites `include/noisefloor.h` from the `capi` crate.
+/// Rewrites `include/noisefloor.h` and its parts from the `capi` crate.
 pub(crate) fn write() -> Result<()> {
-    let path = paths::header();
-    fs::write(&path, generate()?).with_context(|| format!("cannot write {}", path.display()))
-}
-
-/// Fails if the committed header is not what the sources generate.
-pub(crate) fn check() -> Result<()> {
-    let path = paths::header();
-    let committed = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
-    if committed != generate()? {
-        bail!("{} is not what capi/ generates: run `cargo xtask header` and commit the result", path.display());
+    fs::create_dir_all(paths::include().join("noisefloor")).context("cannot create include/noisefloor")?;
+    for (file, text) in generate()? {
+        let path = paths::include().join(file);
+        fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
     }
     Ok(())
 }
 
-fn generate() -> Result<String> {
+/// Fails if the committed headers are not what the sources generate.
+pub(crate) fn check() -> Result<()> {
+    for (file, text) in generate()? {
+        let path = paths::include().join(file);
+        if fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))? != text {
+            bail!("{} is not what capi/ generates: run `cargo xtask header` and commit the result", path.display());
+        }
+    }
+    Ok(())
+}
+
+/// The parts' names under include/, each once, in their order.
+pub(crate) fn parts() -> Vec<String> {
+    let mut parts: Vec<_> = CHAPTERS.iter().map(|chapter| format!("noisefloor/{}", chapter.file)).collect();
+    parts.dedup();
+    parts
+}
+
+/// Names under include/, and texts.
+fn generate() -> Result<Vec<(String, String)>> {
     let crate_dir = paths::root().join("capi");
     let mut config = cbindgen::Config::from_file(crate_dir.join("cbindgen.toml"))
         .map_err(|error| anyhow!("capi/cbindgen.toml: {error}"))?;
@@ -131,31 +157,44 @@ fn generate() -> Result<String> {
     let trailer = config.trailer.take().context("capi/cbindgen.toml has no `trailer`")?;
     let items = items(&crate_dir, config)?;
 
-    let mut text = format!("{}\n\n#ifndef NOISEFLOOR_H\n#define NOISEFLOOR_H\n\n{includes}\n", conventions.trim());
-    text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n";
-    for (index, chapter) in CHAPTERS.iter().enumerate() {
-        let mut sorted: Vec<_> = items.iter().filter(|item| item.chapter == index).collect();
-        sorted.sort_by_key(|item| item.place);
-        let functions = sorted.iter().filter_map(|item| item.summary.as_ref());
-        text += &banner::banner(chapter.title, chapter.guides, functions);
-        let mut place = usize::MAX;
-        for item in sorted {
-            // Constants of one place stand together.
-            if !(item.is_constant() && item.place == place) {
-                text += "\n";
+    let mut all = Vec::new();
+    let mut whole = format!("{}\n\n#ifndef NOISEFLOOR_H\n#define NOISEFLOOR_H\n\n", conventions.trim());
+    for name in parts() {
+        whole += &format!("#include \"{name}\"\n");
+        let chapters = CHAPTERS.iter().enumerate().filter(|(_, chapter)| name.ends_with(chapter.file));
+        let guard = name.to_uppercase().replace(['/', '.'], "_");
+        let uses = if name.ends_with(BASE) { &includes } else { &format!("#include \"{BASE}\"\n") };
+        let mut text =
+            "/* Generated from capi/ by `cargo xtask header`; do not edit. Conventions: noisefloor.h. */\n".to_owned();
+        text += &format!("\n#ifndef {guard}\n#define {guard}\n\n{uses}\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n");
+        for (index, chapter) in chapters {
+            text += &format!("\n/* {}.", chapter.title);
+            if !chapter.guides.is_empty() {
+                text += &format!("\n * Guides, in docs/: {}.", chapter.guides);
             }
-            place = item.place;
-            text += &item.text;
+            text += " */\n";
+            let mut sorted: Vec<_> = items.iter().filter(|item| item.chapter == index).collect();
+            sorted.sort_by_key(|item| item.place);
+            let mut place = usize::MAX;
+            for item in sorted {
+                // Constants of one place stand together.
+                if !(item.is_constant() && item.place == place) {
+                    text += "\n";
+                }
+                place = item.place;
+                text += &item.text;
+            }
         }
+        text += &format!("\n#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n");
+        all.push((name, text));
     }
-    text += &format!("\n{}\n\n#ifdef __cplusplus\n}}\n#endif\n\n#endif /* NOISEFLOOR_H */\n", trailer.trim());
-    Ok(text)
+    whole += &format!("\n{}\n\n#endif /* NOISEFLOOR_H */\n", trailer.trim());
+    all.push(("noisefloor.h".to_owned(), whole));
+    Ok(all)
 }
 
 /// One declaration with its documentation.
 struct Item {
-    /// A function's name and the first sentence of its description.
-    summary: Option<(String, String)>,
     text: String,
     chapter: usize,
     place: usize,
@@ -177,22 +216,15 @@ impl Item {
         }
         let (_, chapter, place) =
             best.with_context(|| format!("release/src/header.rs has no chapter for `{name}`: add its prefix"))?;
-        let mut text = String::new();
-        // Arguments on lines of their own stand below the first, whose line a `struct` left out makes shorter.
-        let mut shorter = 0;
-        for line in block.lines() {
-            let tidied = tidy(line);
-            let indent = line.len() - line.trim_start().len();
-            text += tidied.get(shorter.min(indent)..).unwrap_or_default();
-            text.push('\n');
-            if let (Some(before), Some(after)) = (line.find('('), tidied.find('(')) {
-                shorter = before.saturating_sub(after);
-            }
-        }
         let is_function = code.first().is_some_and(|line| line.contains('(') && !line.starts_with("#define"));
-        let comments: Vec<_> = block.lines().filter(|line| line.trim_start().starts_with("//")).collect();
-        let summary = is_function.then(|| (name.to_owned(), banner::first_sentence(&comments)));
-        Ok(Self { summary, text, chapter, place })
+        let mut text = String::new();
+        for line in block.lines().filter(|line| !is_function || line.trim_start().starts_with("//")) {
+            text += &format!("{}\n", tidy(line));
+        }
+        if is_function {
+            text += &filled(&code);
+        }
+        Ok(Self { text, chapter, place })
     }
 
     fn is_constant(&self) -> bool {
@@ -223,6 +255,22 @@ fn name<'a>(code: &[&'a str]) -> Option<&'a str> {
         Some((before, _)) => before.split(word).rfind(ours),
         None => first.split(word).rfind(ours),
     }
+}
+
+/// A function's declaration, as many words to a line as fit.
+fn filled(code: &[&str]) -> String {
+    let whole = code.iter().map(|line| tidy(line.trim())).collect::<Vec<_>>().join(" ");
+    let mut text = String::new();
+    let mut column = 0;
+    for argument in whole.split_inclusive(", ") {
+        if column > 0 && column + argument.trim_end().len() > WIDTH {
+            text = format!("{}\n    ", text.trim_end());
+            column = 4;
+        }
+        text += argument;
+        column += argument.len();
+    }
+    text + "\n"
 }
 
 /// Parentheses around negative constants, `f` behind floats, and no `struct` where a typedef does.

@@ -3,7 +3,6 @@
 //! it.
 
 mod abi;
-mod banner;
 mod declarations;
 mod header;
 mod licences;

@@ -57,9 +57,9 @@ pub mod paths {
         target().join("noisefloor")
     }
 
-    /// The generated C header.
-    pub fn header() -> PathBuf {
-        root().join("include/noisefloor.h")
+    /// The C and C++ headers.
+    pub fn include() -> PathBuf {
+        root().join("include")
     }
 
     /// What is in a folder, in order.

@@ -34,7 +34,7 @@ enum Command {
     Test(test::Options),
     /// Run the fuzz targets for a while; inputs that crash go to fuzz/regressions
     Fuzz(fuzz::Options),
-    /// Regenerate include/noisefloor.h
+    /// Regenerate include/noisefloor.h and its parts
     Header,
     /// Rewrite capi/abi.txt, the list of what the C ABI promises
     Abi {

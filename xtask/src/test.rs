@@ -49,7 +49,7 @@ pub fn run(options: &Options) -> Result<()> {
     steps.run("lines of at most 120 columns", texts::columns);
     let clippy = ["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"];
     steps.cargo("lints (cargo clippy, warnings are errors)", &clippy, None);
-    steps.start("include/noisefloor.h is what capi/ generates", "release", "header");
+    steps.start("the headers are what capi/ generates", "release", "header");
     steps.start("capi/abi.txt: functions, layouts and constants of the C ABI are as promised", "release", "abi");
     steps.c("headers alone: C99, C11, C++11, C++17, C++20, every warning an error", "default", "headers", &[]);
     steps.run("the C library: no panic, no undefined symbol but mem*, only nf_* visible", || {

@@ -1,0 +1,84 @@
+/* Generated from capi/ by `cargo xtask header`; do not edit. Conventions: noisefloor.h. */
+
+#ifndef NOISEFLOOR_BASE_H
+#define NOISEFLOOR_BASE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Version and status. */
+
+// The version of this header. `nf_abi_version()` returns the library's.
+#define NF_ABI_VERSION 1
+
+// The ABI version the library was built with; it must equal `NF_ABI_VERSION`.
+uint32_t nf_abi_version(void);
+
+// 0 is success, a negative value an error; `nf_status_message` explains it.
+typedef int32_t nf_status;
+
+// Success.
+#define NF_OK 0
+// A required pointer is NULL.
+#define NF_ERR_NULL (-1)
+// An argument is outside its documented range.
+#define NF_ERR_RANGE (-2)
+// An input value is NaN or infinite.
+#define NF_ERR_NOT_FINITE (-3)
+// Caller-supplied memory is too small.
+#define NF_ERR_MEMORY (-4)
+// Caller-supplied memory is not aligned as its type needs.
+#define NF_ERR_ALIGNMENT (-5)
+// There is nothing to estimate or to draw from.
+#define NF_ERR_NO_SAMPLES (-6)
+// The options exist, but not in this combination.
+#define NF_ERR_UNSUPPORTED (-7)
+// The memory holds no initialised object.
+#define NF_ERR_STATE (-8)
+// Two objects were made with different configurations.
+#define NF_ERR_MISMATCH (-9)
+// The bytes are no tile, or no table.
+#define NF_ERR_FOREIGN (-10)
+// The format is newer than this library.
+#define NF_ERR_VERSION (-11)
+// Bytes are missing, or there are too many.
+#define NF_ERR_LENGTH (-12)
+// The bytes are damaged.
+#define NF_ERR_CORRUPT (-13)
+
+// A static, NUL-terminated sentence for a status; never NULL, also for values that are no status.
+const char *nf_status_message(nf_status status);
+
+/* Random numbers. */
+
+// A PCG32 random number generator (O'Neill 2014), for minibatches, examples and tests: the same numbers on every
+// target.
+//
+// A complete struct, kept by value. A copy repeats the numbers its original has yet to give. Give each thread its own,
+// with its own seed. Any value of the fields is valid; nf_rng_seed sets them well. Not for cryptography.
+typedef struct nf_rng {
+    // Where the generator is.
+    uint64_t state;
+    // Which of 2^63 streams it is on; the lowest bit counts as set.
+    uint64_t increment;
+} nf_rng;
+
+// Starts a generator. Any seed is good, and neighbouring seeds (pixel numbers, say) give unrelated numbers. Does
+// nothing if `rng` is NULL.
+void nf_rng_seed(nf_rng *rng, uint64_t seed);
+
+// The next 32 random bits; 0 if `rng` is NULL.
+uint32_t nf_rng_next(nf_rng *rng);
+
+// The next number uniform in [0, 1), a multiple of 2^-24; 0 if `rng` is NULL.
+float nf_rng_uniform(nf_rng *rng);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* NOISEFLOOR_BASE_H */
