@@ -211,7 +211,7 @@ static void call_balance(void)
 {
     uint32_t counts[TECHNIQUES] = {8, 8, 8, 8, 8, 8, 8, 8};
     for (uint32_t i = 0; i < BATCH; ++i)
-        check(nf_mis_balance(pdf + i * TECHNIQUES, counts, TECHNIQUES, technique[i], weight + i), "nf_mis_balance");
+        check(nf_mis_weight(NF_MIS_BALANCE, 0.0f, pdf + i * TECHNIQUES, counts, TECHNIQUES, technique[i], weight + i), "nf_mis_weight");
 }
 
 static void call_omis(void)
@@ -263,7 +263,7 @@ static const struct {
     {"nf_tile_sampler_fill two domains", prepare_tile_16, call_fill_pixels, 10, 4 * 8 * 16, "sample"},
     {"nf_table_draw", prepare_table, call_table_draw, 100, BATCH, "draw"},
     {"nf_table_update", prepare_table, call_table_update, 100, BATCH, "update"},
-    {"nf_mis_balance", nothing, call_balance, 100, BATCH, "weight"},
+    {"nf_mis_weight", nothing, call_balance, 100, BATCH, "weight"},
     {"nf_omis_weights", nothing, call_omis, 20, BATCH, "weight"},
     {"nf_gradient_estimate", prepare_gradient, call_gradient, 4, PARAMETERS, "parameter"},
 };

@@ -550,39 +550,31 @@ inline bool fits(const point &at) noexcept
     return at.pdf.size() == at.counts.size() && at.pdf.size() <= max_techniques;
 }
 inline std::uint32_t techniques(const point &at) noexcept { return static_cast<std::uint32_t>(at.pdf.size()); }
+inline returned<float> weight(std::uint32_t heuristic, float parameter, const point &at, std::uint32_t technique)
+{
+    float weight = 0;
+    nf_status code = NF_ERR_RANGE;
+    if (fits(at))
+        code = nf_mis_weight(heuristic, parameter, at.pdf.data(), at.counts.data(), techniques(at), technique, &weight);
+    return noisefloor::detail::finish(code, weight);
+}
 } // namespace detail
 
 inline returned<float> balance(const point &at, std::uint32_t technique)
 {
-    float weight = 0;
-    return noisefloor::detail::finish(
-        detail::fits(at) ? nf_mis_balance(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, &weight)
-                         : NF_ERR_RANGE,
-        weight);
+    return detail::weight(NF_MIS_BALANCE, 0, at, technique);
 }
 inline returned<float> power(const point &at, std::uint32_t technique, float beta = 2.0f)
 {
-    float weight = 0;
-    const nf_status code = detail::fits(at) ? nf_mis_power(at.pdf.data(), at.counts.data(), detail::techniques(at),
-                                                           technique, beta, &weight)
-                                            : NF_ERR_RANGE;
-    return noisefloor::detail::finish(code, weight);
+    return detail::weight(NF_MIS_POWER, beta, at, technique);
 }
 inline returned<float> cutoff(const point &at, std::uint32_t technique, float epsilon)
 {
-    float weight = 0;
-    const nf_status code = detail::fits(at) ? nf_mis_cutoff(at.pdf.data(), at.counts.data(), detail::techniques(at),
-                                                            technique, epsilon, &weight)
-                                            : NF_ERR_RANGE;
-    return noisefloor::detail::finish(code, weight);
+    return detail::weight(NF_MIS_CUTOFF, epsilon, at, technique);
 }
 inline returned<float> maximum(const point &at, std::uint32_t technique)
 {
-    float weight = 0;
-    const nf_status code =
-        detail::fits(at) ? nf_mis_maximum(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, &weight)
-                         : NF_ERR_RANGE;
-    return noisefloor::detail::finish(code, weight);
+    return detail::weight(NF_MIS_MAXIMUM, 0, at, technique);
 }
 inline returned<float> optimal(const point &at, std::uint32_t technique, span<const float> alpha, float value)
 {

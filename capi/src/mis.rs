@@ -10,89 +10,55 @@ pub const NF_MIS_MAX_TECHNIQUES: u32 = 16;
 
 const _: () = assert!(NF_MIS_MAX_TECHNIQUES as usize == MAX_TECHNIQUES);
 
-/// The balance heuristic (2.12): the weight n_j p_j / sum_k n_k p_k of technique j at one point.
+/// Heuristic (2.12): n_j p_j / sum_k n_k p_k. The default.
+pub const NF_MIS_BALANCE: u32 = 0;
+/// Heuristic: (n_j p_j)^beta / sum_k (n_k p_k)^beta; the parameter is beta, positive and finite, 0 means the usual 2.
+/// (2.13) prints the exponent outside the sum; those weights would not sum to 1, and these are Veach's.
+pub const NF_MIS_POWER: u32 = 1;
+/// Heuristic: the balance heuristic among the techniques with n_k p_k >= epsilon * max_i n_i p_i; the parameter is
+/// epsilon, 0..1. 0 is the balance heuristic, 1 the maximum heuristic with ties shared. (2.14) prints an absolute
+/// threshold on p_k, without the counts; it would depend on the unit of the density, and leave points where no
+/// technique reaches it. This is Veach's form.
+pub const NF_MIS_CUTOFF: u32 = 2;
+/// Heuristic: 1 for the technique with the largest n_k p_k (the first of them if several tie), 0 for others.
+pub const NF_MIS_MAXIMUM: u32 = 3;
+
+/// The weight of technique j at one point by a heuristic, NF_MIS_BALANCE to NF_MIS_MAXIMUM.
 ///
-/// pdf[techniques]: p_k, the density of each technique at the point, in any one measure, at least 0. Infinity stands
-/// for a delta distribution: where any is infinite the finite ones count as 0 and the infinite ones are equally dense.
-/// counts[techniques]: n_k, the number of samples of each technique; one with 0 has no part in it. techniques:
-/// 1..NF_MIS_MAX_TECHNIQUES. technique: j, below techniques.
+/// parameter: beta or epsilon; the other two heuristics do not read it. pdf[techniques]: p_k, the density of each
+/// technique at the point, in any one measure, at least 0. Infinity stands for a delta distribution: where any is
+/// infinite the finite ones count as 0 and the infinite ones are equally dense. counts[techniques]: n_k, the number of
+/// samples of each technique; one with 0 has no part in it. techniques: 1..NF_MIS_MAX_TECHNIQUES. technique: j, below
+/// techniques.
 ///
 /// The weights of all techniques sum to 1 and are safe for densities from 1e-38 to 1e38. Where every n_k p_k is 0, so
 /// that the point cannot have been drawn, each is 0. With them, the sum over all samples of weight * f / (n_j p_j) is
 /// unbiased (2.10).
 ///
-/// NF_ERR_NULL; NF_ERR_RANGE: techniques, technique, or a negative density; NF_ERR_NOT_FINITE: a density is NaN.
+/// NF_ERR_NULL; NF_ERR_RANGE: heuristic, parameter, techniques, technique, or a negative density; NF_ERR_NOT_FINITE: a
+/// density is NaN, or the parameter not finite.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_mis_balance(
+pub unsafe extern "C" fn nf_mis_weight(
+    heuristic: u32,
+    parameter: f32,
     pdf: *const f32,
     counts: *const u32,
     techniques: u32,
     technique: u32,
     weight: *mut f32,
 ) -> nf_status {
-    // SAFETY: the caller passes arrays of the length it says and an output that is no part of them.
-    unsafe { heuristic(pdf, counts, techniques, weight, |pdf, counts| mis::balance(pdf, counts, technique as usize)) }
-}
-
-/// The power heuristic: the weight (n_j p_j)^beta / sum_k (n_k p_k)^beta.
-///
-/// beta: positive and finite; 0 means the usual 2. 1 is the balance heuristic. (2.13) prints the exponent outside the
-/// sum; those weights would not sum to 1, and these are Veach's.
-///
-/// Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: beta is negative; NF_ERR_NOT_FINITE: beta is not
-/// finite.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_mis_power(
-    pdf: *const f32,
-    counts: *const u32,
-    techniques: u32,
-    technique: u32,
-    beta: f32,
-    weight: *mut f32,
-) -> nf_status {
-    let beta = if beta == 0.0 { mis::DEFAULT_BETA } else { beta };
-    // SAFETY: as for nf_mis_balance.
-    unsafe {
-        heuristic(pdf, counts, techniques, weight, |pdf, counts| mis::power(pdf, counts, technique as usize, beta))
-    }
-}
-
-/// The cutoff heuristic: the balance heuristic among the techniques with n_k p_k >= epsilon * max_i n_i p_i.
-///
-/// epsilon: 0..1; 0 is the balance heuristic, 1 the maximum heuristic with ties shared. (2.14) prints an absolute
-/// threshold on p_k, without the counts; it would depend on the unit of the density, and leave points where no
-/// technique reaches it. This is Veach's form.
-///
-/// Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: epsilon; NF_ERR_NOT_FINITE: epsilon is not finite.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_mis_cutoff(
-    pdf: *const f32,
-    counts: *const u32,
-    techniques: u32,
-    technique: u32,
-    epsilon: f32,
-    weight: *mut f32,
-) -> nf_status {
-    // SAFETY: as for nf_mis_balance.
-    unsafe {
-        heuristic(pdf, counts, techniques, weight, |pdf, counts| mis::cutoff(pdf, counts, technique as usize, epsilon))
-    }
-}
-
-/// The maximum heuristic: 1 for the technique with the largest n_k p_k (the first of them if several tie), 0 for
-/// others.
-///
-/// Arguments and errors as for nf_mis_balance.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_mis_maximum(
-    pdf: *const f32,
-    counts: *const u32,
-    techniques: u32,
-    technique: u32,
-    weight: *mut f32,
-) -> nf_status {
-    // SAFETY: as for nf_mis_balance.
-    unsafe { heuristic(pdf, counts, techniques, weight, |pdf, counts| mis::maximum(pdf, counts, technique as usize)) }
+    let technique = technique as usize;
+    let beta = if parameter == 0.0 { mis::DEFAULT_BETA } else { parameter };
+    let compute = |pdf: &[f32], counts: &[u32], _: &[f32]| match heuristic {
+        NF_MIS_BALANCE => mis::balance(pdf, counts, technique),
+        NF_MIS_POWER => mis::power(pdf, counts, technique, beta),
+        NF_MIS_CUTOFF => mis::cutoff(pdf, counts, technique, parameter),
+        NF_MIS_MAXIMUM => mis::maximum(pdf, counts, technique),
+        _ => Err(Error::Range),
+    };
+    // SAFETY: the caller passes arrays of the length it says and an output that is no part of them; the densities stand
+    // in for an alpha that is not read.
+    unsafe { with_alpha(pdf, counts, techniques, pdf, weight, compute) }
 }
 
 /// The optimal weight (2.15) of Kondapaneni et al. (2019), for an alpha from nf_omis_alpha:
@@ -115,7 +81,7 @@ pub unsafe extern "C" fn nf_mis_optimal(
     value: f32,
     weight: *mut f32,
 ) -> nf_status {
-    // SAFETY: as for nf_mis_balance.
+    // SAFETY: as for nf_mis_weight.
     unsafe {
         with_alpha(pdf, counts, techniques, alpha, weight, |pdf, counts, alpha| {
             mis::optimal(pdf, counts, technique as usize, alpha, value)
@@ -141,7 +107,7 @@ pub unsafe extern "C" fn nf_mis_optimal_contribution(
     value: f32,
     contribution: *mut f32,
 ) -> nf_status {
-    // SAFETY: as for nf_mis_balance.
+    // SAFETY: as for nf_mis_weight.
     unsafe {
         with_alpha(pdf, counts, techniques, alpha, contribution, |pdf, counts, alpha| {
             mis::optimal_contribution(pdf, counts, technique as usize, alpha, value)
@@ -150,20 +116,7 @@ pub unsafe extern "C" fn nf_mis_optimal_contribution(
 }
 
 /// # Safety
-/// `pdf` and `counts` must be NULL or `techniques` elements, `weight` NULL or one that is no part of them.
-unsafe fn heuristic(
-    pdf: *const f32,
-    counts: *const u32,
-    techniques: u32,
-    weight: *mut f32,
-    compute: impl FnOnce(&[f32], &[u32]) -> Result<f32, Error>,
-) -> nf_status {
-    // SAFETY: passed on to the caller; the densities stand in for an alpha that is not read.
-    unsafe { with_alpha(pdf, counts, techniques, pdf, weight, |pdf, counts, _| compute(pdf, counts)) }
-}
-
-/// # Safety
-/// As for [`heuristic`], and `alpha` must be NULL or `techniques` elements.
+/// `pdf`, `counts` and `alpha` must be NULL or `techniques` elements, `weight` NULL or one that is no part of them.
 unsafe fn with_alpha(
     pdf: *const f32,
     counts: *const u32,

@@ -113,8 +113,8 @@ static void mis(void)
     nf_status status;
     uint32_t j;
     platform_stack_paint();
-    status = nf_mis_balance(pdf, counts, 3, 1, &weight);
-    line("nf_mis_balance", status, bits(weight), 0);
+    status = nf_mis_weight(NF_MIS_BALANCE, 0.0f, pdf, counts, 3, 1, &weight);
+    line("nf_mis_weight", status, bits(weight), 0);
     platform_stack_paint();
     status = nf_omis_init(workspace, sizeof workspace, 3, 1, counts, &omis);
     for (j = 0; j < 3 && status == NF_OK; ++j)

@@ -86,8 +86,8 @@ function mis() {
     words.set([2, 1, 4], counts / 4);
     floats[value / 4] = 3;
     paint();
-    let status = nf.nf_mis_balance(pdf, counts, 3, 1, result);
-    line("nf_mis_balance", status, words[result / 4], 0);
+    let status = nf.nf_mis_weight(0, 0, pdf, counts, 3, 1, result);
+    line("nf_mis_weight", status, words[result / 4], 0);
     paint();
     status = nf.nf_omis_init(workspace, WORKSPACE_BYTES, 3, 1, counts, omis);
     for (let j = 0; j < 3 && !status; ++j) status = nf.nf_omis_add(words[omis / 4], j, pdf, value);

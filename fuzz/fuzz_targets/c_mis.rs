@@ -28,10 +28,10 @@ fn weights(source: &mut Source<'_>) -> Result<()> {
         // refused.
         unsafe {
             match which {
-                0 => nf_mis_balance(p, n, techniques, technique, out),
-                1 => nf_mis_power(p, n, techniques, technique, option, out),
-                2 => nf_mis_cutoff(p, n, techniques, technique, option, out),
-                3 => nf_mis_maximum(p, n, techniques, technique, out),
+                0 => nf_mis_weight(NF_MIS_BALANCE, 0.0, p, n, techniques, technique, out),
+                1 => nf_mis_weight(NF_MIS_POWER, option, p, n, techniques, technique, out),
+                2 => nf_mis_weight(NF_MIS_CUTOFF, option, p, n, techniques, technique, out),
+                3 => nf_mis_weight(NF_MIS_MAXIMUM, 0.0, p, n, techniques, technique, out),
                 4 => nf_mis_optimal(p, n, techniques, technique, alpha.pointer(), value, out),
                 _ => nf_mis_optimal_contribution(p, n, techniques, technique, alpha.pointer(), value, out),
             }
@@ -169,7 +169,7 @@ fn defaults_work() {
     // SAFETY: arrays have the lengths that the header asks for.
     unsafe {
         let mut weight = [f32::NAN; 2];
-        assert_eq!(nf_mis_balance(pdf.as_ptr(), counts.as_ptr(), 2, 1, weight.as_mut_ptr()), NF_OK);
+        assert_eq!(nf_mis_weight(NF_MIS_BALANCE, 0.0, pdf.as_ptr(), counts.as_ptr(), 2, 1, weight.as_mut_ptr()), NF_OK);
         assert_eq!(weight[0], 0.75);
         let mut memory = vec![0_u64; nf_omis_size(2, 1).div_ceil(8)];
         let (to, bytes, mut omis) = (memory.as_mut_ptr().cast(), 8 * memory.len(), null_mut());

@@ -15,47 +15,35 @@ extern "C" {
 // The most techniques that multiple importance sampling combines.
 #define NF_MIS_MAX_TECHNIQUES 16
 
-// The balance heuristic (2.12): the weight n_j p_j / sum_k n_k p_k of technique j at one point.
+// Heuristic (2.12): n_j p_j / sum_k n_k p_k. The default.
+#define NF_MIS_BALANCE 0
+// Heuristic: (n_j p_j)^beta / sum_k (n_k p_k)^beta; the parameter is beta, positive and finite, 0 means the usual 2.
+// (2.13) prints the exponent outside the sum; those weights would not sum to 1, and these are Veach's.
+#define NF_MIS_POWER 1
+// Heuristic: the balance heuristic among the techniques with n_k p_k >= epsilon * max_i n_i p_i; the parameter is
+// epsilon, 0..1. 0 is the balance heuristic, 1 the maximum heuristic with ties shared. (2.14) prints an absolute
+// threshold on p_k, without the counts; it would depend on the unit of the density, and leave points where no
+// technique reaches it. This is Veach's form.
+#define NF_MIS_CUTOFF 2
+// Heuristic: 1 for the technique with the largest n_k p_k (the first of them if several tie), 0 for others.
+#define NF_MIS_MAXIMUM 3
+
+// The weight of technique j at one point by a heuristic, NF_MIS_BALANCE to NF_MIS_MAXIMUM.
 //
-// pdf[techniques]: p_k, the density of each technique at the point, in any one measure, at least 0. Infinity stands
-// for a delta distribution: where any is infinite the finite ones count as 0 and the infinite ones are equally dense.
-// counts[techniques]: n_k, the number of samples of each technique; one with 0 has no part in it. techniques:
-// 1..NF_MIS_MAX_TECHNIQUES. technique: j, below techniques.
+// parameter: beta or epsilon; the other two heuristics do not read it. pdf[techniques]: p_k, the density of each
+// technique at the point, in any one measure, at least 0. Infinity stands for a delta distribution: where any is
+// infinite the finite ones count as 0 and the infinite ones are equally dense. counts[techniques]: n_k, the number of
+// samples of each technique; one with 0 has no part in it. techniques: 1..NF_MIS_MAX_TECHNIQUES. technique: j, below
+// techniques.
 //
 // The weights of all techniques sum to 1 and are safe for densities from 1e-38 to 1e38. Where every n_k p_k is 0, so
 // that the point cannot have been drawn, each is 0. With them, the sum over all samples of weight * f / (n_j p_j) is
 // unbiased (2.10).
 //
-// NF_ERR_NULL; NF_ERR_RANGE: techniques, technique, or a negative density; NF_ERR_NOT_FINITE: a density is NaN.
-nf_status nf_mis_balance(const float *pdf, const uint32_t *counts, uint32_t techniques, uint32_t technique,
-    float *weight);
-
-// The power heuristic: the weight (n_j p_j)^beta / sum_k (n_k p_k)^beta.
-//
-// beta: positive and finite; 0 means the usual 2. 1 is the balance heuristic. (2.13) prints the exponent outside the
-// sum; those weights would not sum to 1, and these are Veach's.
-//
-// Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: beta is negative; NF_ERR_NOT_FINITE: beta is not
-// finite.
-nf_status nf_mis_power(const float *pdf, const uint32_t *counts, uint32_t techniques, uint32_t technique, float beta,
-    float *weight);
-
-// The cutoff heuristic: the balance heuristic among the techniques with n_k p_k >= epsilon * max_i n_i p_i.
-//
-// epsilon: 0..1; 0 is the balance heuristic, 1 the maximum heuristic with ties shared. (2.14) prints an absolute
-// threshold on p_k, without the counts; it would depend on the unit of the density, and leave points where no
-// technique reaches it. This is Veach's form.
-//
-// Other arguments and errors as for nf_mis_balance; NF_ERR_RANGE: epsilon; NF_ERR_NOT_FINITE: epsilon is not finite.
-nf_status nf_mis_cutoff(const float *pdf, const uint32_t *counts, uint32_t techniques, uint32_t technique,
-    float epsilon, float *weight);
-
-// The maximum heuristic: 1 for the technique with the largest n_k p_k (the first of them if several tie), 0 for
-// others.
-//
-// Arguments and errors as for nf_mis_balance.
-nf_status nf_mis_maximum(const float *pdf, const uint32_t *counts, uint32_t techniques, uint32_t technique,
-    float *weight);
+// NF_ERR_NULL; NF_ERR_RANGE: heuristic, parameter, techniques, technique, or a negative density; NF_ERR_NOT_FINITE: a
+// density is NaN, or the parameter not finite.
+nf_status nf_mis_weight(uint32_t heuristic, float parameter, const float *pdf, const uint32_t *counts,
+    uint32_t techniques, uint32_t technique, float *weight);
 
 // The optimal weight (2.15) of Kondapaneni et al. (2019), for an alpha from nf_omis_alpha:
 // w_j = alpha_j p_j / f + n_j p_j / S (1 - sum_k alpha_k p_k / f), S = sum_k n_k p_k.

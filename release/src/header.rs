@@ -63,7 +63,7 @@ const CHAPTERS: [Chapter; 8] = [
         file: "mis.h",
         title: "Multiple importance sampling: the weight of one technique at one point",
         guides: "mis.md",
-        prefixes: &["NF_MIS_", "nf_mis_"],
+        prefixes: &["NF_MIS_MAX_TECHNIQUES", "NF_MIS_", "nf_mis_"],
     },
     Chapter {
         file: "mis.h",

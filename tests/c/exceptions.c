@@ -228,10 +228,10 @@ static void weights(void)
         for (i = 0; i < 12; ++i)
             pdf[i] = fabsf(pdf[i]);
         feclearexcept(FE_ALL_EXCEPT);
-        nf_mis_balance(pdf, counts, 3, 0, weight);
-        nf_mis_power(pdf, counts, 3, 0, 2.0f, weight);
-        nf_mis_cutoff(pdf, counts, 3, 0, 0.1f, weight);
-        nf_mis_maximum(pdf, counts, 3, 0, weight);
+        nf_mis_weight(NF_MIS_BALANCE, 0.0f, pdf, counts, 3, 0, weight);
+        nf_mis_weight(NF_MIS_POWER, 2.0f, pdf, counts, 3, 0, weight);
+        nf_mis_weight(NF_MIS_CUTOFF, 0.1f, pdf, counts, 3, 0, weight);
+        nf_mis_weight(NF_MIS_MAXIMUM, 0.0f, pdf, counts, 3, 0, weight);
         check_quiet("nf_mis", kind_names[kind], 0, 0, 0);
         if (nf_omis_init(work.start, work.bytes, 3, 1, counts, &omis) == NF_OK) {
             for (i = 0; i < 4; ++i)

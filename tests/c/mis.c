@@ -1,24 +1,8 @@
-/* Weights at a point: nf_mis_balance/power/cutoff/maximum/optimal/optimal_contribution(). */
+/* Weights at a point: nf_mis_weight/optimal/optimal_contribution(). */
 #include "check.h"
 
-typedef nf_status (*heuristic)(const float *, const uint32_t *, uint32_t, uint32_t, float *);
-static nf_status balance(const float *p, const uint32_t *n, uint32_t count, uint32_t j, float *w)
-{
-    return nf_mis_balance(p, n, count, j, w);
-}
-static nf_status power(const float *p, const uint32_t *n, uint32_t count, uint32_t j, float *w)
-{
-    return nf_mis_power(p, n, count, j, 0.0f, w);
-}
-static nf_status cutoff(const float *p, const uint32_t *n, uint32_t count, uint32_t j, float *w)
-{
-    return nf_mis_cutoff(p, n, count, j, 0.1f, w);
-}
-static nf_status maximum(const float *p, const uint32_t *n, uint32_t count, uint32_t j, float *w)
-{
-    return nf_mis_maximum(p, n, count, j, w);
-}
-static const heuristic heuristics[] = {balance, power, cutoff, maximum};
+/* Of each heuristic. */
+static const float parameter[4] = {0.0f, 0.0f, 0.1f, 0.0f};
 
 static float pdf[16], alpha[16];
 static uint32_t counts[16];
@@ -29,21 +13,21 @@ static void values(void)
     static const uint32_t n[3] = {2, 1, 4};
     float w;
     /* n p = 2, 2, .2 */
-    CHECK_STATUS(nf_mis_balance(p, n, 3, 0, &w), NF_OK);
+    CHECK_STATUS(nf_mis_weight(NF_MIS_BALANCE, 0.0f, p, n, 3, 0, &w), NF_OK);
     CHECK(fabsf(w - 2.0f / 4.2f) < 1e-6f);
-    CHECK_STATUS(nf_mis_power(p, n, 3, 2, 2.0f, &w), NF_OK);
+    CHECK_STATUS(nf_mis_weight(NF_MIS_POWER, 2.0f, p, n, 3, 2, &w), NF_OK);
     CHECK(fabsf(w - 0.04f / 8.04f) < 1e-6f);
-    CHECK_STATUS(nf_mis_power(p, n, 3, 2, 0.0f, &w), NF_OK);
+    CHECK_STATUS(nf_mis_weight(NF_MIS_POWER, 0.0f, p, n, 3, 2, &w), NF_OK);
     CHECK(fabsf(w - 0.04f / 8.04f) < 1e-6f);
-    CHECK_STATUS(nf_mis_power(p, n, 3, 2, 1.0f, &w), NF_OK);
+    CHECK_STATUS(nf_mis_weight(NF_MIS_POWER, 1.0f, p, n, 3, 2, &w), NF_OK);
     CHECK(fabsf(w - 0.2f / 4.2f) < 1e-6f);
-    CHECK_STATUS(nf_mis_cutoff(p, n, 3, 2, 0.2f, &w), NF_OK);
+    CHECK_STATUS(nf_mis_weight(NF_MIS_CUTOFF, 0.2f, p, n, 3, 2, &w), NF_OK);
     CHECK(w == 0.0f);
-    CHECK_STATUS(nf_mis_cutoff(p, n, 3, 0, 0.2f, &w), NF_OK);
+    CHECK_STATUS(nf_mis_weight(NF_MIS_CUTOFF, 0.2f, p, n, 3, 0, &w), NF_OK);
     CHECK(w == 0.5f);
-    CHECK_STATUS(nf_mis_maximum(p, n, 3, 0, &w), NF_OK);
+    CHECK_STATUS(nf_mis_weight(NF_MIS_MAXIMUM, 0.0f, p, n, 3, 0, &w), NF_OK);
     CHECK(w == 1.0f);
-    CHECK_STATUS(nf_mis_maximum(p, n, 3, 1, &w), NF_OK);
+    CHECK_STATUS(nf_mis_weight(NF_MIS_MAXIMUM, 0.0f, p, n, 3, 1, &w), NF_OK);
     CHECK(w == 0.0f);
 }
 
@@ -51,7 +35,7 @@ static void sums(void)
 {
     nf_rng rng;
     uint32_t round, techniques, j;
-    size_t k;
+    uint32_t k;
     nf_rng_seed(&rng, 23);
     for (round = 0; round < 200; ++round) {
         techniques = 1 + round % 16;
@@ -64,7 +48,7 @@ static void sums(void)
             double total = 0.0;
             for (j = 0; j < techniques; ++j) {
                 float w = -1.0f;
-                CHECK_STATUS(heuristics[k](pdf, counts, techniques, j, &w), NF_OK);
+                CHECK_STATUS(nf_mis_weight(k, parameter[k], pdf, counts, techniques, j, &w), NF_OK);
                 CHECK(w >= 0.0f && w <= 1.0f);
                 total += w;
             }
@@ -92,34 +76,33 @@ static void sums(void)
 static void edges(void)
 {
     float w = -1.0f;
-    size_t k;
-    uint32_t j;
+    uint32_t j, k;
     /* A point that nothing draws; a technique without samples; a delta distribution. */
     for (j = 0; j < 3; ++j) {
         pdf[j] = 0.0f;
         counts[j] = 1;
     }
     for (k = 0; k < 4; ++k) {
-        CHECK_STATUS(heuristics[k](pdf, counts, 3, 1, &w), NF_OK);
+        CHECK_STATUS(nf_mis_weight(k, parameter[k], pdf, counts, 3, 1, &w), NF_OK);
         CHECK(w == 0.0f);
     }
     pdf[0] = pdf[1] = pdf[2] = 1.0f;
     counts[0] = 0;
     for (k = 0; k < 4; ++k) {
-        CHECK_STATUS(heuristics[k](pdf, counts, 3, 0, &w), NF_OK);
+        CHECK_STATUS(nf_mis_weight(k, parameter[k], pdf, counts, 3, 0, &w), NF_OK);
         CHECK(w == 0.0f);
     }
     counts[0] = 1;
     pdf[2] = infinity_f();
     for (k = 0; k < 4; ++k) {
-        CHECK_STATUS(heuristics[k](pdf, counts, 3, 2, &w), NF_OK);
+        CHECK_STATUS(nf_mis_weight(k, parameter[k], pdf, counts, 3, 2, &w), NF_OK);
         CHECK(w == 1.0f);
-        CHECK_STATUS(heuristics[k](pdf, counts, 3, 0, &w), NF_OK);
+        CHECK_STATUS(nf_mis_weight(k, parameter[k], pdf, counts, 3, 0, &w), NF_OK);
         CHECK(w == 0.0f);
     }
 }
 
-/* The arguments that all six functions share. */
+/* The arguments that both heuristics and optimal weights have. */
 #define SHARED_ERRORS(call)                                                                          \
     do {                                                                                             \
         const float *p = pdf;                                                                        \
@@ -169,20 +152,21 @@ static void errors(void)
         counts[j] = 1;
         alpha[j] = 0.1f;
     }
-    SHARED_ERRORS(nf_mis_balance(p, n, techniques, j, out));
-    SHARED_ERRORS(nf_mis_power(p, n, techniques, j, 2.0f, out));
-    SHARED_ERRORS(nf_mis_cutoff(p, n, techniques, j, 0.5f, out));
-    SHARED_ERRORS(nf_mis_maximum(p, n, techniques, j, out));
+    SHARED_ERRORS(nf_mis_weight(NF_MIS_BALANCE, 0.0f, p, n, techniques, j, out));
+    SHARED_ERRORS(nf_mis_weight(NF_MIS_POWER, 2.0f, p, n, techniques, j, out));
+    SHARED_ERRORS(nf_mis_weight(NF_MIS_CUTOFF, 0.5f, p, n, techniques, j, out));
+    SHARED_ERRORS(nf_mis_weight(NF_MIS_MAXIMUM, 0.0f, p, n, techniques, j, out));
     SHARED_ERRORS(nf_mis_optimal(p, n, techniques, j, alpha, 1.0f, out));
     SHARED_ERRORS(nf_mis_optimal_contribution(p, n, techniques, j, alpha, 1.0f, out));
 
-    CHECK_REFUSED(nf_mis_power(pdf, counts, 3, 0, -1.0f, &w), NF_ERR_RANGE, w);
-    CHECK_REFUSED(nf_mis_power(pdf, counts, 3, 0, nan, &w), NF_ERR_NOT_FINITE, w);
-    CHECK_REFUSED(nf_mis_power(pdf, counts, 3, 0, infinite, &w), NF_ERR_NOT_FINITE, w);
-    CHECK_REFUSED(nf_mis_cutoff(pdf, counts, 3, 0, -0.1f, &w), NF_ERR_RANGE, w);
-    CHECK_REFUSED(nf_mis_cutoff(pdf, counts, 3, 0, 1.1f, &w), NF_ERR_RANGE, w);
-    CHECK_REFUSED(nf_mis_cutoff(pdf, counts, 3, 0, nan, &w), NF_ERR_NOT_FINITE, w);
-    CHECK_REFUSED(nf_mis_cutoff(pdf, counts, 3, 0, infinite, &w), NF_ERR_NOT_FINITE, w);
+    CHECK_REFUSED(nf_mis_weight(NF_MIS_MAXIMUM + 1, 0.0f, pdf, counts, 3, 0, &w), NF_ERR_RANGE, w);
+    CHECK_REFUSED(nf_mis_weight(NF_MIS_POWER, -1.0f, pdf, counts, 3, 0, &w), NF_ERR_RANGE, w);
+    CHECK_REFUSED(nf_mis_weight(NF_MIS_POWER, nan, pdf, counts, 3, 0, &w), NF_ERR_NOT_FINITE, w);
+    CHECK_REFUSED(nf_mis_weight(NF_MIS_POWER, infinite, pdf, counts, 3, 0, &w), NF_ERR_NOT_FINITE, w);
+    CHECK_REFUSED(nf_mis_weight(NF_MIS_CUTOFF, -0.1f, pdf, counts, 3, 0, &w), NF_ERR_RANGE, w);
+    CHECK_REFUSED(nf_mis_weight(NF_MIS_CUTOFF, 1.1f, pdf, counts, 3, 0, &w), NF_ERR_RANGE, w);
+    CHECK_REFUSED(nf_mis_weight(NF_MIS_CUTOFF, nan, pdf, counts, 3, 0, &w), NF_ERR_NOT_FINITE, w);
+    CHECK_REFUSED(nf_mis_weight(NF_MIS_CUTOFF, infinite, pdf, counts, 3, 0, &w), NF_ERR_NOT_FINITE, w);
 
     CHECK_REFUSED(nf_mis_optimal(pdf, counts, 3, 0, NULL, 1.0f, &w), NF_ERR_NULL, w);
     CHECK_REFUSED(nf_mis_optimal(pdf, counts, 3, 0, alpha, 0.0f, &w), NF_ERR_RANGE, w);

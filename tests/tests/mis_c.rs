@@ -37,14 +37,14 @@ fn call(f: impl FnOnce(*mut f32) -> nf_status) -> Answer {
     (status, (!out.is_nan()).then_some(out))
 }
 
-/// The six functions, with every argument but those for the densities, counts, number and technique fixed.
+/// The heuristics and the two functions of optimal weights, with every argument but those for the densities, counts, number and technique fixed.
 type Weight = fn(*const f32, *const u32, u32, u32, *mut f32) -> nf_status;
 
 const WEIGHTS: [Weight; 6] = [
-    |p, n, t, j, out| unsafe { nf_mis_balance(p, n, t, j, out) },
-    |p, n, t, j, out| unsafe { nf_mis_power(p, n, t, j, 2.0, out) },
-    |p, n, t, j, out| unsafe { nf_mis_cutoff(p, n, t, j, 0.1, out) },
-    |p, n, t, j, out| unsafe { nf_mis_maximum(p, n, t, j, out) },
+    |p, n, t, j, out| unsafe { nf_mis_weight(NF_MIS_BALANCE, 0.0, p, n, t, j, out) },
+    |p, n, t, j, out| unsafe { nf_mis_weight(NF_MIS_POWER, 2.0, p, n, t, j, out) },
+    |p, n, t, j, out| unsafe { nf_mis_weight(NF_MIS_CUTOFF, 0.1, p, n, t, j, out) },
+    |p, n, t, j, out| unsafe { nf_mis_weight(NF_MIS_MAXIMUM, 0.0, p, n, t, j, out) },
     |p, n, t, j, out| unsafe { nf_mis_optimal(p, n, t, j, ALPHA.as_ptr(), 2.0, out) },
     |p, n, t, j, out| unsafe { nf_mis_optimal_contribution(p, n, t, j, ALPHA.as_ptr(), 2.0, out) },
 ];
@@ -66,7 +66,8 @@ fn weights_are_those_of_the_core() {
         }
     }
     // A beta of 0 is the default.
-    let power = |beta| call(|out| unsafe { nf_mis_power(PDF.as_ptr(), COUNTS.as_ptr(), 3, 1, beta, out) });
+    let power =
+        |beta| call(|out| unsafe { nf_mis_weight(NF_MIS_POWER, beta, PDF.as_ptr(), COUNTS.as_ptr(), 3, 1, out) });
     assert_eq!(power(0.0), power(2.0));
     assert_ne!(power(0.0), power(1.0));
 }
@@ -90,10 +91,11 @@ fn errors_of_weights() {
         assert_eq!(call(|out| weight([1.0, -1.0].as_ptr(), counts, 2, 0, out)), (NF_ERR_RANGE, None));
         assert_eq!(call(|out| weight([1.0, f32::NAN].as_ptr(), counts, 2, 0, out)), (NF_ERR_NOT_FINITE, None));
     }
-    let power = |beta| call(|out| unsafe { nf_mis_power(pdf, counts, 3, 0, beta, out) });
+    let power = |beta| call(|out| unsafe { nf_mis_weight(NF_MIS_POWER, beta, pdf, counts, 3, 0, out) });
+    assert_eq!(call(|out| unsafe { nf_mis_weight(4, 0.0, pdf, counts, 3, 0, out) }), (NF_ERR_RANGE, None));
     assert_eq!(power(-1.0), (NF_ERR_RANGE, None));
     assert_eq!(power(f32::NAN), (NF_ERR_NOT_FINITE, None));
-    let cutoff = |epsilon| call(|out| unsafe { nf_mis_cutoff(pdf, counts, 3, 0, epsilon, out) });
+    let cutoff = |epsilon| call(|out| unsafe { nf_mis_weight(NF_MIS_CUTOFF, epsilon, pdf, counts, 3, 0, out) });
     assert_eq!(cutoff(2.0), (NF_ERR_RANGE, None));
     assert_eq!(cutoff(f32::INFINITY), (NF_ERR_NOT_FINITE, None));
     let optimal = |alpha, value| call(|out| unsafe { nf_mis_optimal(pdf, counts, 3, 0, alpha, value, out) });

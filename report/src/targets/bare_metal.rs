@@ -108,7 +108,7 @@ pub(crate) const WASM_EXPORTS: [&str; 21] = [
     "nf_cv_accumulator_init",
     "nf_cv_accumulator_add",
     "nf_cv_accumulator_estimate",
-    "nf_mis_balance",
+    "nf_mis_weight",
     "nf_omis_init",
     "nf_omis_add",
     "nf_omis_solve",
