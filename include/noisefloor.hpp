@@ -257,10 +257,6 @@ struct config : nf_cv_config {
     bool valid() const noexcept { return terms() > 0; }
     // Bytes; 0 for a configuration that is out of range.
     std::size_t workspace_size(std::size_t n) const noexcept { return nf_cv_workspace_size(this, n); }
-    std::size_t block_workspace_size(std::size_t pixels, std::size_t n) const noexcept
-    {
-        return nf_cv_block_workspace_size(this, pixels, n);
-    }
     // For n samples in each pixel.
     std::size_t image_workspace_size(const nf_cv_image &where, std::size_t n) const noexcept
     {
@@ -448,20 +444,6 @@ inline returned<nf_estimate> gradient_descent(const nf_cv_config &how, const sam
         code = nf_cv_gradient_descent(&how, what.u.data(), what.f.data(), n, coefficients.data(), workspace.data(),
                                       workspace.bytes(), &out);
     return detail::finish(code, out);
-}
-
-// nf_cv_block_estimate(): one estimate for each element of `out`, from as many samples of each.
-inline returned<void> estimate_block(const nf_cv_config &how, const samples &what, memory workspace,
-                                     span<nf_estimate> out)
-{
-    std::size_t n = 0;
-    nf_status code = detail::count(how, what, n);
-    if (code == NF_OK && (out.empty() || n % out.size() != 0))
-        code = NF_ERR_RANGE;
-    if (code == NF_OK)
-        code = nf_cv_block_estimate(&how, what.u.data(), what.f.data(), out.size(), n / out.size(), workspace.data(),
-                                    workspace.bytes(), out.data());
-    return detail::finish(code);
 }
 
 // nf_cv_image_estimate(): one estimate for each wanted pixel, from as many samples of each.

@@ -63,17 +63,20 @@ pub fn basis(family: Family) -> u32 {
 
 /// `nf_cv_image`.
 #[repr(C)]
-#[derive(Clone, Copy, Debug)]
-#[allow(missing_docs, reason = "include/noisefloor.h documents the fields")]
-pub struct Image {
-    pub width: u32,
-    pub height: u32,
-    pub frames: u32,
-    pub window: u32,
-    pub stride: u32,
-    pub unordered: u32,
-    pub surfaces: *const u32,
-    pub factors: *const f32,
+#[derive(Clone, Copy)]
+struct Image {
+    width: u32,
+    height: u32,
+    frames: u32,
+    window: u32,
+    stride: u32,
+    unordered: u32,
+    surfaces: *const u32,
+    factors: *const f32,
+    known: *const f32,
+    known_integrals: *const f32,
+    /// Column, row, width and height of what is given, then of what is wanted.
+    parts: [[u32; 4]; 2],
 }
 
 /// `nf_estimate`.
@@ -103,17 +106,6 @@ c_functions! {
         image: *const Image,
         u: *const f32,
         f: *const f32,
-        n: usize,
-        workspace: *mut c_void,
-        bytes: usize,
-        out: *mut Estimate,
-    ) -> i32;
-    fn nf_cv_block_workspace_size(config: *const Config, pixels: usize, n: usize) -> usize;
-    fn nf_cv_block_estimate(
-        config: *const Config,
-        u: *const f32,
-        f: *const f32,
-        pixels: usize,
         n: usize,
         workspace: *mut c_void,
         bytes: usize,
@@ -184,62 +176,51 @@ impl Batch {
     }
 }
 
-/// Estimates of the pixels of a square image that share fits: `nf_cv_image_estimate`, or `nf_cv_block_estimate` for
-/// square blocks.
+/// `nf_cv_image_estimate` of square images, or of blocks of pixels in no order.
 pub struct Shared {
     config: Config,
-    image: Option<Image>,
-    block: usize,
+    image: Image,
     n: usize,
     workspace: Vec<u64>,
     out: Vec<Estimate>,
 }
 
 impl Shared {
-    /// `side` x `side` pixels of `n` samples. With `stride` 0 blocks of 8 x 8 pixels in no order, else windows.
+    /// `side` x `side` pixels of `n` samples. With `stride` 0 blocks of 64 pixels in no order, else windows.
     pub fn new(config: Config, side: usize, n: usize, stride: usize) -> Self {
-        let (block, pixels) = (64, side * side);
+        let (pixels, block) = (side * side, 64);
         assert_eq!(pixels % block, 0);
-        let [width, stride] = [side, stride].map(|value| value as u32);
-        let image = (stride > 0).then_some(Image {
-            width,
-            height: width,
+        let (width, height) = if stride == 0 { (block, 1) } else { (side, side) };
+        let image = Image {
+            width: width as u32,
+            height: height as u32,
             frames: 1,
             window: 8,
-            stride,
-            unordered: 0,
+            stride: stride as u32,
+            unordered: u32::from(stride == 0),
             surfaces: std::ptr::null(),
             factors: std::ptr::null(),
-        });
-        // SAFETY: a valid configuration and image are all that is read.
-        let bytes = unsafe {
-            match &image {
-                Some(image) => nf_cv_image_workspace_size(&config, image, n),
-                None => nf_cv_block_workspace_size(&config, block, n),
-            }
+            known: std::ptr::null(),
+            known_integrals: std::ptr::null(),
+            parts: [[0; 4]; 2],
         };
-        Self { config, image, block, n, workspace: memory(bytes), out: vec![Estimate::default(); pixels] }
+        // SAFETY: a valid configuration and image are all that is read.
+        let bytes = unsafe { nf_cv_image_workspace_size(&config, &image, n) };
+        Self { config, image, n, workspace: memory(bytes), out: vec![Estimate::default(); pixels] }
     }
 
     /// All pixels' estimates; returns the first. `u` and `f` hold the samples of pixel after pixel, or block after
     /// block.
     pub fn estimate(&mut self, u: &[f32], f: &[f32]) -> f32 {
         let (dims, channels) = (self.config.dims as usize, self.config.channels as usize);
-        let samples = self.out.len() * self.n;
-        assert!(u.len() >= samples * dims && f.len() >= samples * channels);
         let (workspace, bytes) = (self.workspace.as_mut_ptr().cast(), self.workspace.len() * 8);
-        if let Some(image) = &self.image {
-            let (u, f, out) = (u.as_ptr(), f.as_ptr(), self.out.as_mut_ptr());
+        let pixels = (self.image.width * self.image.height) as usize;
+        let rows = pixels * self.n;
+        assert!(u.len() >= self.out.len() * self.n * dims && f.len() >= self.out.len() * self.n * channels);
+        for ((u, f), out) in u.chunks(rows * dims).zip(f.chunks(rows * channels)).zip(self.out.chunks_mut(pixels)) {
+            let (u, f, out) = (u.as_ptr(), f.as_ptr(), out.as_mut_ptr());
             // SAFETY: the arrays are as long as was just checked, the workspace as long as said.
-            check(unsafe { nf_cv_image_estimate(&self.config, image, u, f, self.n, workspace, bytes, out) });
-        } else {
-            let rows = self.block * self.n;
-            let blocks = u.chunks(rows * dims).zip(f.chunks(rows * channels)).zip(self.out.chunks_mut(self.block));
-            for ((u, f), out) in blocks {
-                let (u, f, out) = (u.as_ptr(), f.as_ptr(), out.as_mut_ptr());
-                // SAFETY: as above, of whole blocks.
-                check(unsafe { nf_cv_block_estimate(&self.config, u, f, self.block, self.n, workspace, bytes, out) });
-            }
+            check(unsafe { nf_cv_image_estimate(&self.config, &self.image, u, f, self.n, workspace, bytes, out) });
         }
         self.out[0].mean[0]
     }

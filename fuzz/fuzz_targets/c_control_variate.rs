@@ -160,28 +160,17 @@ fn shared(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
     };
     // SAFETY: as in `batch`.
     unsafe {
-        for is_image in [true, false] {
-            let bytes = if is_image {
-                nf_cv_image_workspace_size(config, &image, n)
-            } else {
-                nf_cv_block_workspace_size(config, pixels, n)
-            };
-            if bytes > MOST {
-                continue;
-            }
-            let mut workspace = source.memory(bytes)?;
-            let (memory, size) = (workspace.pointer_mut().cast(), workspace.bytes());
-            let mut out = vec![UNTOUCHED; pixels];
-            let (u, f, to) = (u.pointer(), f.pointer(), out.as_mut_ptr());
-            let status = if is_image {
-                nf_cv_image_estimate(config, &image, u, f, n, memory, size, to)
-            } else {
-                nf_cv_block_estimate(config, u, f, pixels, n, memory, size, to)
-            };
-            let part = wanted.width as usize * wanted.height as usize * frames.max(1) as usize;
-            let written = if is_image && is_part && status == NF_OK { part } else { pixels };
-            out.iter().take(written).for_each(|out| check(status, out));
+        let bytes = nf_cv_image_workspace_size(config, &image, n);
+        if bytes > MOST {
+            return Ok(());
         }
+        let mut workspace = source.memory(bytes)?;
+        let (memory, size) = (workspace.pointer_mut().cast(), workspace.bytes());
+        let mut out = vec![UNTOUCHED; pixels];
+        let status = nf_cv_image_estimate(config, &image, u.pointer(), f.pointer(), n, memory, size, out.as_mut_ptr());
+        let part = wanted.width as usize * wanted.height as usize * frames.max(1) as usize;
+        let written = if is_part && status == NF_OK { part } else { pixels };
+        out.iter().take(written).for_each(|out| check(status, out));
     }
     Ok(())
 }

@@ -117,7 +117,7 @@ typedef struct nf_cv_config {
     uint32_t optimizer;
     // Ridge strength per sample (at least 1e-12, in float 1e-5: less is raised to it), NF_RIDGE_AUTO, or 0 for the
     // estimator's default. NF_CV_ROBUST and NF_CV_GRADIENT_DESCENT do not use it; NF_RIDGE_AUTO is the default where
-    // there are no leave-one-out errors (streaming, incremental, blocks), and biases NF_CV_LEAVE_ONE_OUT slightly.
+    // there are no leave-one-out errors (streaming, incremental, images), and biases NF_CV_LEAVE_ONE_OUT slightly.
     float ridge;
     // Step of gradient descent: in standard deviations of the values for Adam, else times one over the largest
     // curvature. 0 means the default.
@@ -236,15 +236,31 @@ nf_status nf_cv_image_needed(const nf_cv_image *image, nf_cv_rectangle *out);
 // more.
 size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image *image, size_t n);
 
-// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of
-// the same window and surface share a fit. Fits also follow integrands that change across the window.
+// Estimates the integrals of the pixels of an image, or with `unordered` of any integrals that are alike: u and f hold
+// n samples of pixel after pixel as nf_cv_estimate() takes them, out has one estimate for each wanted pixel. Pixels of
+// the same window and surface share a fit, which follows integrands that change across the window; every pixel is
+// corrected by a fit to other pixels' samples (4.3.6), even from one sample in each. All is computed in float,
+// whatever `precision` says.
+//
+// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance
+// of their estimates across the pixels and, from 2 samples on, by what they leave of the variance within pixels that
+// they have not seen; unbiased as the group grows. NF_CV_K_FOLD lets two halves of the pixels choose for each other,
+// NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both exactly unbiased, if the pixels' samples are independent. Groups
+// of up to 4 pixels stay at their mean, but for one fit to several samples in each; one fit to 2 to 12 pixels can be a
+// fifth worse than the mean. Where fits explain little, NF_CV_ROBUST and NF_CV_K_FOLD leave pixels far brighter or
+// darker than all others out of the fits to others.
+//
+// Of a texture one sample in each pixel cannot tell: say it by `surfaces` or `factors`. Several do: pixels whose
+// samples are all alike stay as they are. With one sample, or `stratified`, std_error is the spread of the pixels'
+// estimates about their linear trend: an upper bound where the signal varies otherwise.
 //
 // With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone and is the only one that is exactly unbiased; NF_CV_ROBUST
 // chooses among fits to f and to what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD
 // is then unsupported.
 //
-// NF_ERR_RANGE also for an image without pixels, for windows and parts that nf_cv_image does not allow, for negative
-// factors or integrals and for `known` without `known_integrals`; NF_ERR_NOT_FINITE if any of the three is not finite.
+// NF_ERR_UNSUPPORTED for other estimators, controls, skipping and luminance ratio; NF_ERR_RANGE also for an image
+// without pixels, for windows and parts that nf_cv_image does not allow, for negative factors or integrals and for
+// `known` without `known_integrals`; NF_ERR_NOT_FINITE if any of the three is not finite; else as nf_cv_estimate().
 nf_status nf_cv_image_estimate(const nf_cv_config *config, const nf_cv_image *image, const float *u, const float *f,
     size_t n, void *workspace, size_t bytes, nf_estimate *out);
 
@@ -254,31 +270,6 @@ nf_status nf_cv_image_estimate(const nf_cv_config *config, const nf_cv_image *im
 //
 // NF_ERR_UNSUPPORTED also for `controls` and NF_NONFINITE_SKIP; else as nf_cv_estimate().
 nf_status nf_cv_estimate_many(const nf_cv_config *config, const float *u, const float *f, size_t n, size_t integrals,
-    void *workspace, size_t bytes, nf_estimate *out);
-
-// Bytes of workspace that nf_cv_block_estimate() needs; 0 as for nf_cv_workspace_size().
-size_t nf_cv_block_workspace_size(const nf_cv_config *config, size_t pixels, size_t n);
-
-// Estimates `pixels` integrals that are alike, from n samples of each: u and f hold pixel after pixel what
-// nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to other pixels' samples
-// (4.3.6), even from one sample in each. All is computed in float, whatever `precision` says.
-//
-// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance
-// of their estimates across the pixels and, from 2 samples on, by what they leave of the variance within pixels that
-// they have not seen; unbiased as the block grows. NF_CV_K_FOLD lets two halves of the pixels choose for each other,
-// NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both exactly unbiased, if the pixels' samples are independent. Groups
-// of up to 4 pixels stay at their mean, but for one fit to several samples in each; one fit to 2 to 12 pixels can be a
-// fifth worse than the mean. Where fits explain little, NF_CV_ROBUST and NF_CV_K_FOLD leave pixels far brighter or
-// darker than all others out of the fits to others.
-//
-// Of a texture one sample in each pixel cannot tell: say it by `surfaces` or `factors` of nf_cv_image. Several do:
-// pixels whose samples are all alike stay as they are.
-//
-// With one sample, or `stratified`, std_error is the spread of the pixels' estimates about their linear trend: an
-// upper bound where the signal varies otherwise.
-//
-// NF_ERR_UNSUPPORTED for other estimators, controls, skipping and luminance ratio; else as nf_cv_estimate().
-nf_status nf_cv_block_estimate(const nf_cv_config *config, const float *u, const float *f, size_t pixels, size_t n,
     void *workspace, size_t bytes, nf_estimate *out);
 
 // A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, in one

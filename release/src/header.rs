@@ -48,7 +48,6 @@ const CHAPTERS: [Chapter; 8] = [
             "nf_estimate",
             "nf_cv_workspace_size",
             "nf_cv_",
-            "nf_cv_block_",
             "nf_cv_accumulator",
             "nf_cv_accumulator_",
         ],

@@ -1,9 +1,19 @@
-/* A block of pixels that share a fit: nf_cv_block_estimate(). */
+/* Pixels in no order that share a fit: nf_cv_image_estimate() with `unordered`. */
 #include "check.h"
 
 #define PIXELS 16
 #define N 8
 static float u[PIXELS * N * 2], f[PIXELS * N * 3];
+
+static nf_cv_image block(uint32_t pixels)
+{
+    nf_cv_image image;
+    memset(&image, 0, sizeof image);
+    image.width = pixels;
+    image.height = 1;
+    image.unordered = 1;
+    return image;
+}
 
 /* Pixel p integrates (1 + x + y) (1 + p / 512). */
 static void fill_pixels(size_t channels)
@@ -18,6 +28,7 @@ static void fill_pixels(size_t channels)
 
 static void estimates(void)
 {
+    const nf_cv_image image = block(PIXELS);
     uint32_t channels, precision, c;
     size_t p;
     for (precision = 0; precision < 2; ++precision)
@@ -28,10 +39,10 @@ static void estimates(void)
             double plain_error = 0.0, error = 0.0;
             config.precision = precision;
             fill_pixels(channels);
-            work = memory_new(nf_cv_block_workspace_size(&config, PIXELS, N));
+            work = memory_new(nf_cv_image_workspace_size(&config, &image, N));
             outputs = memory_new(PIXELS * sizeof(nf_estimate));
             out = (nf_estimate *)outputs.start;
-            CHECK_STATUS(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, work.bytes, out), NF_OK);
+            CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_OK);
             for (p = 0; p < PIXELS; ++p) {
                 const float scale = 1.0f + (float)p / 512.0f;
                 double mean = 0.0;
@@ -58,74 +69,30 @@ static void single_pixel_is_the_mean(void)
 {
     nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST), plain = make_config(2, 0, 1, NF_CV_ROBUST);
     memory work = memory_new(1 << 16);
+    const nf_cv_image image = block(1);
     nf_estimate out, mean;
     fill_pixels(1);
-    CHECK_STATUS(nf_cv_block_estimate(&config, u, f, 1, N, work.start, work.bytes, &out), NF_OK);
+    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, &out), NF_OK);
     CHECK_STATUS(nf_cv_estimate(&plain, u, f, N, work.start, work.bytes, &mean), NF_OK);
     CHECK(fabsf(out.mean[0] - mean.mean[0]) < 1e-6f);
     memory_free(&work);
 }
 
-static void errors(void)
+static void unsupported(void)
 {
-    static const size_t huge[] = {SIZE_MAX,      SIZE_MAX / 2,    SIZE_MAX / 2 + 1,
-                                  SIZE_MAX / 16, SIZE_MAX / 4096, (SIZE_MAX >> 16) + 1};
+    const nf_cv_image image = block(PIXELS);
     nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
-    const size_t bytes = nf_cv_block_workspace_size(&config, PIXELS, N);
-    memory work = memory_new(bytes);
+    memory work = memory_new(1 << 18);
     nf_estimate out[PIXELS];
-    float saved;
-    size_t i;
-    fill_pixels(1);
-    CHECK_STATUS(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, bytes, out), NF_OK);
-    CHECK_REFUSED(nf_cv_block_estimate(NULL, u, f, PIXELS, N, work.start, bytes, out), NF_ERR_NULL, out);
-    CHECK_REFUSED(nf_cv_block_estimate(&config, NULL, f, PIXELS, N, work.start, bytes, out), NF_ERR_NULL, out);
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, NULL, PIXELS, N, work.start, bytes, out), NF_ERR_NULL, out);
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, NULL, bytes, out), NF_ERR_NULL, out);
-    CHECK_STATUS(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, bytes, NULL), NF_ERR_NULL);
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, 0, N, work.start, bytes, out), NF_ERR_NO_SAMPLES, out);
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, 0, work.start, bytes, out), NF_ERR_NO_SAMPLES, out);
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, bytes - 1, out), NF_ERR_MEMORY, out);
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, misaligned(work.start), bytes - 1, out),
-                  NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_block_estimate(&config, (const float *)misaligned(u), f, PIXELS, N, work.start, bytes, out),
-                  NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, bytes, (nf_estimate *)misaligned(out)),
-                  NF_ERR_ALIGNMENT, out);
-    for (i = 0; i < sizeof huge / sizeof *huge; ++i) {
-        nf_status status;
-        poison(out, sizeof out);
-        status = nf_cv_block_estimate(&config, u, f, huge[i], N, work.start, bytes, out);
-        CHECK(status == NF_ERR_RANGE || status == NF_ERR_MEMORY);
-        status = nf_cv_block_estimate(&config, u, f, PIXELS, huge[i], work.start, bytes, out);
-        CHECK(status == NF_ERR_RANGE || status == NF_ERR_MEMORY);
-        status = nf_cv_block_estimate(&config, u, f, huge[i], huge[i], work.start, bytes, out);
-        CHECK(status == NF_ERR_RANGE || status == NF_ERR_MEMORY);
-        CHECK(is_poisoned(out, sizeof out));
-        CHECK(nf_cv_block_workspace_size(&config, huge[i], huge[i]) == 0);
-    }
-    /* The last sample of the last pixel: nothing of the first pixels may have been written by then. */
-    saved = f[PIXELS * N - 1];
-    f[PIXELS * N - 1] = not_a_number();
-    CHECK_NAN_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, bytes, out), out);
-    f[PIXELS * N - 1] = saved;
-    saved = u[PIXELS * N * 2 - 1];
-    u[PIXELS * N * 2 - 1] = 1.5f;
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, bytes, out), NF_ERR_RANGE, out);
-    u[PIXELS * N * 2 - 1] = saved;
-    memory_free(&work);
-
-    work = memory_new(1 << 18);
+    fill_pixels(3);
     config.nonfinite = NF_NONFINITE_SKIP;
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, work.bytes, out), NF_ERR_UNSUPPORTED, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_UNSUPPORTED, out);
     config = make_config(2, 2, 3, NF_CV_ROBUST);
     config.color = NF_COLOR_LUMINANCE_RATIO;
-    fill_pixels(3);
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, work.bytes, out), NF_ERR_UNSUPPORTED, out);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_UNSUPPORTED, out);
     config = make_config(2, 2, 1, NF_CV_ROBUST);
     config.controls = 1;
-    CHECK_REFUSED(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, work.bytes, out), NF_ERR_UNSUPPORTED, out);
-    CHECK(nf_cv_block_workspace_size(NULL, PIXELS, N) == 0);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_UNSUPPORTED, out);
     memory_free(&work);
 }
 
@@ -134,6 +101,6 @@ int main(void)
     fill_uniform(u, PIXELS * N * 2, 11);
     estimates();
     single_pixel_is_the_mean();
-    errors();
+    unsupported();
     return report("block");
 }

@@ -84,15 +84,19 @@ static void refused(const nf_cv_config *config, nf_status status)
     float coefficients[4];
     nf_cv_accumulator *accumulator;
     nf_cv_config descent = *config;
-    /* Blocks and descents take no control functions at all. */
+    nf_cv_image pixels;
+    /* Images and descents take no control functions at all. */
     const nf_status narrower = config->controls > 0 ? NF_ERR_UNSUPPORTED : status;
+    memset(&pixels, 0, sizeof pixels);
+    pixels.width = 2;
+    pixels.height = 1;
     CHECK(nf_cv_workspace_size(config, N) == 0);
-    CHECK(nf_cv_block_workspace_size(config, 2, N / 2) == 0);
+    CHECK(nf_cv_image_workspace_size(config, &pixels, N / 2) == 0);
     CHECK(nf_cv_accumulator_size(config) == 0);
     CHECK(nf_cv_accumulator_workspace_size(config) == 0);
     CHECK_REFUSED(nf_cv_estimate(config, u, f, N, work.start, work.bytes, &out), status, out);
     CHECK_REFUSED(nf_cv_estimate_with_controls(config, u, f, u, u, N, work.start, work.bytes, &out), status, out);
-    CHECK_REFUSED(nf_cv_block_estimate(config, u, f, 2, N / 2, work.start, work.bytes, two), narrower, two);
+    CHECK_REFUSED(nf_cv_image_estimate(config, &pixels, u, f, N / 2, work.start, work.bytes, two), narrower, two);
     CHECK_REFUSED(nf_cv_accumulator_init(work.start, work.bytes, config, &accumulator), status, accumulator);
     if (config->estimator == NF_CV_ROBUST)
         descent.estimator = NF_CV_GRADIENT_DESCENT;

@@ -149,11 +149,6 @@ static void images(void)
         nf_cv_image_estimate(&config, &image, u, f, n, work.start, work.bytes, out);
         check_quiet("nf_cv_image_estimate", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
         memory_free(&work);
-        work = memory_new(nf_cv_block_workspace_size(&config, 256, n));
-        feclearexcept(FE_ALL_EXCEPT);
-        nf_cv_block_estimate(&config, u, f, 256, n, work.start, work.bytes, out);
-        check_quiet("nf_cv_block_estimate", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
-        memory_free(&work);
     }
 }
 

@@ -157,18 +157,20 @@ static void constant_pixels_are_exact(void)
         }
 }
 
-/* Pixels without places are a block. */
+/* Pixels without places: those of an image or of a row have the same bits. */
 static void unordered(void)
 {
     nf_cv_config config = make_config(2, 3, 1, NF_CV_ROBUST);
     nf_cv_image image = make_image(WIDTH, HEIGHT);
     nf_estimate out[PIXELS], expected[PIXELS];
-    memory work = memory_new(nf_cv_block_workspace_size(&config, PIXELS, N));
+    nf_cv_image row = make_image(PIXELS, 1);
+    memory work;
     fill_pixels(1);
-    image.unordered = 1;
+    image.unordered = row.unordered = 1;
+    work = memory_new(nf_cv_image_workspace_size(&config, &row, N));
     CHECK(nf_cv_image_workspace_size(&config, &image, N) == work.bytes);
     estimate(&config, &image, N, out);
-    CHECK_STATUS(nf_cv_block_estimate(&config, u, f, PIXELS, N, work.start, work.bytes, expected), NF_OK);
+    estimate(&config, &row, N, expected);
     CHECK(memcmp(out, expected, sizeof out) == 0);
     image.unordered = 2;
     CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);

@@ -146,12 +146,6 @@ static void estimates()
     CHECK(std::fabs(value_of(nf::gradient_descent(descent, {u, f}, coefficients, workspace)).mean[0] - 2.0f) < 0.2f);
     CHECK(coefficients[0] != 0.0f);
     CHECK(CODE(nf::gradient_descent(descent, {u, f}, span<float>(coefficients.data(), 4), workspace)) == status::range);
-
-    std::array<nf_estimate, 4> pixels{};
-    CHECK(CODE(nf::estimate_block(config, {u, f}, workspace, pixels)) == status::ok);
-    CHECK(pixels[3].samples == n / 4);
-    CHECK(CODE(nf::estimate_block(config, {u, f}, workspace, {pixels.data(), 3})) == status::range);
-    CHECK(CODE(nf::estimate_block(config, {u, f}, workspace, {})) == status::range);
 #ifdef NOISEFLOOR_NO_EXCEPTIONS
     CHECK(allocations == before);
 #else

@@ -113,7 +113,7 @@ pub struct nf_cv_config {
     pub optimizer: u32,
     /// Ridge strength per sample (at least 1e-12, in float 1e-5: less is raised to it), NF_RIDGE_AUTO, or 0 for the
     /// estimator's default. NF_CV_ROBUST and NF_CV_GRADIENT_DESCENT do not use it; NF_RIDGE_AUTO is the default where
-    /// there are no leave-one-out errors (streaming, incremental, blocks), and biases NF_CV_LEAVE_ONE_OUT slightly.
+    /// there are no leave-one-out errors (streaming, incremental, images), and biases NF_CV_LEAVE_ONE_OUT slightly.
     pub ridge: f32,
     /// Step of gradient descent: in standard deviations of the values for Adam, else times one over the largest
     /// curvature. 0 means the default.

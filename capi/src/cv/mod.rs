@@ -2,12 +2,12 @@
 
 mod accumulator;
 mod batch;
-mod block;
 mod config;
+mod image;
 mod many;
 
 pub use accumulator::*;
 pub use batch::*;
-pub use block::*;
 pub use config::*;
+pub use image::*;
 pub use many::*;

@@ -85,59 +85,6 @@ pub unsafe extern "C" fn nf_cv_image_needed(image: *const nf_cv_image, out: *mut
     })())
 }
 
-/// Bytes of workspace that nf_cv_block_estimate() needs; 0 as for nf_cv_workspace_size().
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_cv_block_workspace_size(config: *const nf_cv_config, pixels: usize, n: usize) -> usize {
-    // SAFETY: the caller's pointer, checked there for NULL and alignment.
-    let Ok(config) = (unsafe { convert::reference(config) }) else { return 0 };
-    workspace_size(config, &Image::unordered(pixels), n)
-}
-
-/// Estimates `pixels` integrals that are alike, from n samples of each: u and f hold pixel after pixel what
-/// nf_cv_estimate() takes, out one estimate for each pixel. Every pixel is corrected by a fit to other pixels' samples
-/// (4.3.6), even from one sample in each. All is computed in float, whatever `precision` says.
-///
-/// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance
-/// of their estimates across the pixels and, from 2 samples on, by what they leave of the variance within pixels that
-/// they have not seen; unbiased as the block grows. NF_CV_K_FOLD lets two halves of the pixels choose for each other,
-/// NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both exactly unbiased, if the pixels' samples are independent. Groups
-/// of up to 4 pixels stay at their mean, but for one fit to several samples in each; one fit to 2 to 12 pixels can be a
-/// fifth worse than the mean. Where fits explain little, NF_CV_ROBUST and NF_CV_K_FOLD leave pixels far brighter or
-/// darker than all others out of the fits to others.
-///
-/// Of a texture one sample in each pixel cannot tell: say it by `surfaces` or `factors` of nf_cv_image. Several do:
-/// pixels whose samples are all alike stay as they are.
-///
-/// With one sample, or `stratified`, std_error is the spread of the pixels' estimates about their linear trend: an
-/// upper bound where the signal varies otherwise.
-///
-/// NF_ERR_UNSUPPORTED for other estimators, controls, skipping and luminance ratio; else as nf_cv_estimate().
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_cv_block_estimate(
-    config: *const nf_cv_config,
-    u: *const f32,
-    f: *const f32,
-    pixels: usize,
-    n: usize,
-    workspace: *mut core::ffi::c_void,
-    bytes: usize,
-    out: *mut nf_estimate,
-) -> nf_status {
-    status((|| {
-        // SAFETY: the caller's pointer, checked there.
-        let config = unsafe { convert::reference(config)? };
-        let core = supported(config)?;
-        let total = convert::product(pixels, n)?;
-        // SAFETY: the caller's arrays, of the lengths the header states.
-        let (samples, out) = unsafe {
-            (samples(&core, u, f, core::ptr::null(), core::ptr::null(), total)?, convert::rooms(out, pixels)?)
-        };
-        let image = Image::unordered(pixels);
-        // SAFETY: the caller's workspace, `bytes` long.
-        unsafe { estimate(&core, &image, samples, n, (workspace, bytes), out) }
-    })())
-}
-
 /// Bytes of workspace that nf_cv_image_estimate() needs for n samples in each pixel; 0 as for nf_cv_workspace_size(),
 /// and for an image that is NULL, has no pixels, or has windows that nf_cv_image does not allow. With `known` it is
 /// more.
@@ -157,15 +104,31 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
     }
 }
 
-/// As nf_cv_block_estimate() for every pixel of an image: u and f hold n samples of pixel after pixel, and pixels of
-/// the same window and surface share a fit. Fits also follow integrands that change across the window.
+/// Estimates the integrals of the pixels of an image, or with `unordered` of any integrals that are alike: u and f hold
+/// n samples of pixel after pixel as nf_cv_estimate() takes them, out has one estimate for each wanted pixel. Pixels of
+/// the same window and surface share a fit, which follows integrands that change across the window; every pixel is
+/// corrected by a fit to other pixels' samples (4.3.6), even from one sample in each. All is computed in float,
+/// whatever `precision` says.
+///
+/// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance
+/// of their estimates across the pixels and, from 2 samples on, by what they leave of the variance within pixels that
+/// they have not seen; unbiased as the group grows. NF_CV_K_FOLD lets two halves of the pixels choose for each other,
+/// NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both exactly unbiased, if the pixels' samples are independent. Groups
+/// of up to 4 pixels stay at their mean, but for one fit to several samples in each; one fit to 2 to 12 pixels can be a
+/// fifth worse than the mean. Where fits explain little, NF_CV_ROBUST and NF_CV_K_FOLD leave pixels far brighter or
+/// darker than all others out of the fits to others.
+///
+/// Of a texture one sample in each pixel cannot tell: say it by `surfaces` or `factors`. Several do: pixels whose
+/// samples are all alike stay as they are. With one sample, or `stratified`, std_error is the spread of the pixels'
+/// estimates about their linear trend: an upper bound where the signal varies otherwise.
 ///
 /// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone and is the only one that is exactly unbiased; NF_CV_ROBUST
 /// chooses among fits to f and to what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD
 /// is then unsupported.
 ///
-/// NF_ERR_RANGE also for an image without pixels, for windows and parts that nf_cv_image does not allow, for negative
-/// factors or integrals and for `known` without `known_integrals`; NF_ERR_NOT_FINITE if any of the three is not finite.
+/// NF_ERR_UNSUPPORTED for other estimators, controls, skipping and luminance ratio; NF_ERR_RANGE also for an image
+/// without pixels, for windows and parts that nf_cv_image does not allow, for negative factors or integrals and for
+/// `known` without `known_integrals`; NF_ERR_NOT_FINITE if any of the three is not finite; else as nf_cv_estimate().
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_estimate(
     config: *const nf_cv_config,
