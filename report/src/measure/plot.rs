@@ -24,7 +24,7 @@ pub(crate) struct Plot<'a> {
     pub(crate) title: &'a str,
     pub(crate) x: &'a str,
     pub(crate) y: &'a str,
-    /// Of the vertical axis.
+    /// Of the vertical axis, if what it shows spans enough.
     pub(crate) logarithmic: bool,
     pub(crate) series: &'a [Series],
 }
@@ -55,8 +55,12 @@ impl Plot<'_> {
         let y = range(points().map(|(_, y)| y).chain(bands.filter(|&y| self.shows(y))));
         let mut text = String::new();
         let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-        let drawn =
-            if self.logarithmic { self.draw(&root, x, (y.start..y.end).log_scale()) } else { self.draw(&root, x, y) };
+        // A logarithmic axis of less than half a decade has hardly a label.
+        let drawn = if self.logarithmic && y.end > 3.0 * y.start {
+            self.draw(&root, x, (y.start..y.end).log_scale(), " (logarithmic)")
+        } else {
+            self.draw(&root, x, y, "")
+        };
         drawn.map_err(|error| anyhow!("cannot draw `{}`: {error}", self.title))?;
         drop(root);
         Ok(text)
@@ -75,6 +79,7 @@ impl Plot<'_> {
         root: &DrawingArea<B, plotters::coord::Shift>,
         x: Range<f64>,
         y: Y,
+        scale: &str,
     ) -> Result<(), DrawingError<B>>
     where
         Y::CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>,
@@ -87,7 +92,6 @@ impl Plot<'_> {
             .x_label_area_size(44)
             .y_label_area_size(64)
             .build_cartesian_2d(x, y)?;
-        let scale = if self.logarithmic { " (logarithmic)" } else { "" };
         chart
             .configure_mesh()
             .light_line_style(TRANSPARENT)
