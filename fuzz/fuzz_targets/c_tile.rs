@@ -63,7 +63,7 @@ fn draw(source: &mut Source<'_>, tile: Option<&nf_tile>) -> Result<()> {
         let dims = source.array(2, |source| source.small(5))?;
         let (width, height, samples) = (source.small(5)?, source.small(5)?, source.small(3)?);
         let samplers = [root, child];
-        let len = nf_tile_sampler_fill_len(dims.pointer(), 2, width, height, samples);
+        let len = nf_sampler_fill_len(dims.pointer(), 2, width, height, samples);
         if len < 1 << 12 {
             let room = if source.rarely(16)? { len / 2 } else { len };
             let mut u = source.array(room, |_| Ok(-1.0_f32))?;

@@ -65,7 +65,7 @@ void nf_sampler_draw(nf_sampler sampler, uint32_t dims, float *u);
 // The table that all draws look into, 65,536 numbers, for copies on other devices: see noisefloor_sampler.h.
 const uint32_t *nf_sampler_table(void);
 
-// How many numbers nf_sampler_fill writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
+// How many numbers nf_sampler_fill, or nf_tile_sampler_fill, writes: width * height * samples * (the sum of dims). 0 if one of dims is outside
 // 1..4, or memory has not that many.
 size_t nf_sampler_fill_len(const uint32_t *dims, size_t domains, uint32_t width, uint32_t height, uint32_t samples);
 
@@ -222,10 +222,6 @@ nf_tile_sampler nf_tile_sampler_scramble(nf_tile_sampler sampler, uint32_t seed)
 // it goes with. Two further numbers that belong together are better drawn from a domain of their own. Writes nothing
 // if dims is out of range or u is NULL.
 void nf_tile_sampler_draw(nf_tile_sampler sampler, uint32_t dims, float *u);
-
-// As nf_sampler_fill_len().
-size_t nf_tile_sampler_fill_len(const uint32_t *dims, size_t domains, uint32_t width, uint32_t height,
-    uint32_t samples);
 
 // As nf_sampler_fill(), of tiles' samplers. Those without a tile draw zeros.
 nf_status nf_tile_sampler_fill(const nf_tile_sampler *samplers, const uint32_t *dims, size_t domains, uint32_t width,

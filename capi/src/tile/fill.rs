@@ -6,19 +6,6 @@ use crate::fill;
 use crate::status::*;
 use noisefloor_core::tile::Sampler;
 
-/// As nf_sampler_fill_len().
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_tile_sampler_fill_len(
-    dims: *const u32,
-    domains: usize,
-    width: u32,
-    height: u32,
-    samples: u32,
-) -> usize {
-    // SAFETY: the caller passes `domains` numbers.
-    unsafe { fill::len(dims, domains, [width, height, samples]) }
-}
-
 /// As nf_sampler_fill(), of tiles' samplers. Those without a tile draw zeros.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_tile_sampler_fill(
