@@ -23,8 +23,7 @@
  *  - Configurations are plain numbers; zero in an optional field means the documented default (of nf_cv_config all but
  *    dims, order and channels are optional), an unknown value is NF_ERR_RANGE.
  *  - NF_ERR_RANGE does not say which argument it means: a function's comment lists those that it can mean, with their
- *    ranges there or where they are declared. Of a configuration and samples, it was the configuration if
- *    nf_cv_workspace_size() is 0 for one sample.
+ *    ranges there or where they are declared. nf_cv_config_check() names what is wrong with an nf_cv_config.
  *  - References such as (4.22) are to C. Salaun, "Toward Improving Monte Carlo Estimator for Rendering and
  *    Machine Learning", 2025.
  */

@@ -254,7 +254,9 @@ struct config : nf_cv_config {
 
     // 0 for a configuration that is out of range.
     std::uint32_t terms() const noexcept { return nf_cv_terms(this); }
-    bool valid() const noexcept { return terms() > 0; }
+    bool valid() const noexcept { return check() == nullptr; }
+    // What is wrong with it, or nullptr.
+    const char *check() const noexcept { return nf_cv_config_check(this); }
     // Bytes; 0 for a configuration that is out of range.
     std::size_t workspace_size(std::size_t n) const noexcept { return nf_cv_workspace_size(this, n); }
     // For n samples in each pixel.

@@ -129,6 +129,11 @@ typedef struct nf_cv_config {
 // Sets a configuration to the robust estimator over 2 coordinates, order 2, 1 channel. NULL is ignored.
 void nf_cv_config_default(nf_cv_config *config);
 
+// What is wrong with a configuration, in a static sentence with a NUL that names the field and its range: the first of
+// them if there are several. NULL if nothing is. Options that only some functions take are not looked at: where those
+// fail they return NF_ERR_UNSUPPORTED.
+const char *nf_cv_config_check(const nf_cv_config *config);
+
 // The number of terms of a regression, constant included; 0 for a configuration that is NULL or out of range.
 uint32_t nf_cv_terms(const nf_cv_config *config);
 

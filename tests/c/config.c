@@ -49,6 +49,29 @@ static void terms(void)
     CHECK(nf_cv_terms(NULL) == 0);
 }
 
+/* What is wrong is named; a configuration of which nothing is said is taken. */
+static void checked(void)
+{
+    nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
+    memory work = memory_new(1 << 16);
+    nf_estimate out;
+    CHECK(nf_cv_config_check(&config) == NULL);
+    config.dims = 17;
+    CHECK(strcmp(nf_cv_config_check(&config), "dims must be 1 to 16") == 0);
+    config = make_config(7, 4, 1, NF_CV_ROBUST);
+    CHECK(strstr(nf_cv_config_check(&config), "136 terms") != NULL);
+    CHECK(nf_cv_config_check(NULL) != NULL);
+    config = make_config(3, 1, 3, NF_CV_ROBUST);
+    config.color = NF_COLOR_LUMINANCE_RATIO;
+    config.stride = 4;
+    config.folds = 16;
+    config.iterations = 1u << 20;
+    config.momentum = 0.5f;
+    CHECK(nf_cv_config_check(&config) == NULL);
+    CHECK_STATUS(nf_cv_estimate(&config, u, f, 8, work.start, work.bytes, &out), NF_OK);
+    memory_free(&work);
+}
+
 /* The most slices there can be: 136 less the terms of the other coordinates, as the header says. */
 static void most_slices(void)
 {
@@ -113,6 +136,7 @@ static void refused(const nf_cv_config *config, nf_status status)
         change;                                                 \
         refused(&config, status);                               \
         CHECK(nf_cv_terms(&config) == 0);                       \
+        CHECK(nf_cv_config_check(&config) != NULL);             \
     } while (0)
 /* The number of terms does not depend on these fields, so that nf_cv_terms() need not look at them. */
 #define REFUSED_AFTER_TERMS(change, status)                     \
@@ -193,6 +217,7 @@ int main(void)
     fill_linear(f, u, N, 2, 1);
     defaults();
     terms();
+    checked();
     most_slices();
     ranges();
     limits();
