@@ -69,6 +69,8 @@ struct Samples {
 fn samples(source: &mut Source<'_>, config: &nf_cv_config, n: usize) -> Result<Samples> {
     // SAFETY: a reference is a valid pointer.
     let valid = unsafe { nf_cv_terms(config) } > 0;
+    // SAFETY: as above.
+    assert!(valid || !unsafe { nf_cv_config_check(config) }.is_null());
     let len = |width: u32| if valid { n * width as usize } else { 0 };
     let stride = if config.stride == 0 { config.dims } else { config.stride };
     let used =
