@@ -178,8 +178,8 @@ NFS_FUNCTION nfs_point nfs_pair(nfs_uint x, nfs_uint y, nfs_uint first NFS_TABLE
     second ^= (second & 0x55555555u) << 1;
     p.x = first ^ (NOISEFLOOR_TABLE((pixel << 6) | (first >> 26)) << 16);
     p.y = second ^ (NOISEFLOOR_TABLE((pixel << 6) | (second >> 26)) & 0xffff0000u);
-    p.x ^= (((pixel << 8) | (p.x >> 24)) * 0x21f0aaadu) >> 8;
-    p.y ^= (((pixel << 8) | (p.y >> 24)) * 0x735a2d97u) >> 8;
+    p.x ^= (((pixel << 8) | (p.x >> 24)) * 0x9e3779b9u) >> 8;
+    p.y ^= (((pixel << 8) | (p.y >> 24)) * 0xc13fa9a9u) >> 8;
     return p;
 }
 

@@ -38,7 +38,7 @@ const SCENES: [(&str, &str, u32, f64); 5] = [
     ("global", "three bounces (15 dims)", 1, 2900.0),
 ];
 const SPP: [u32; 3] = [1, 4, 16];
-const SAMPLERS: [Choice; 4] = [Choice::Random, Choice::Sobol, Choice::Tile(2), Choice::Progressive];
+const SAMPLERS: [Choice; 3] = [Choice::Random, Choice::Sobol, Choice::Default];
 const ESTIMATORS: [&str; 3] = ["mc", "robust", "shared"];
 
 /// What was rendered of one scene.
@@ -169,8 +169,8 @@ const ZOOM: u32 = 2;
 const COLUMNS: [(Choice, &str, &str); 4] = [
     (Choice::Random, ESTIMATORS[0], "random"),
     (Choice::Sobol, ESTIMATORS[0], "Owen-scrambled Sobol"),
-    (Choice::Tile(2), ESTIMATORS[0], "tile"),
-    (Choice::Tile(2), ESTIMATORS[2], "tile, shared fits"),
+    (Choice::Default, ESTIMATORS[0], "noisefloor"),
+    (Choice::Default, ESTIMATORS[2], "noisefloor, shared fits"),
 ];
 
 /// Parts of a scene's images, each above its errors.

@@ -154,6 +154,25 @@ fn borders_are_sampled() {
     }
 }
 
+/// Within the strata of 1, 2, 4, ... 64 samples, which the table is made for, values lie anywhere, over the table: no
+/// eighth of them is shunned by all pixels. Of 128 and 256 samples, too, but less evenly.
+#[test]
+fn strata_are_filled() {
+    for n in (0..=8).map(|m| 1 << m) {
+        let mut counts = [[0; 8]; 2];
+        for value in (0..PIXELS).flat_map(|pixel| (0..n).map(move |i| root(pixel).moved(0, 0, i).draw::<2>())) {
+            for (counts, value) in counts.iter_mut().zip(value) {
+                counts[((value * n as f32).fract() * 8.0) as usize] += 1;
+            }
+        }
+        for count in counts.as_flattened() {
+            let density = f64::from(8 * count) / f64::from(n * PIXELS);
+            let tolerance = if n > 64 { 0.25 } else { 0.1 };
+            assert!((density - 1.0).abs() <= tolerance, "{n} samples: {density}, of {counts:?}");
+        }
+    }
+}
+
 /// Neighbours' values differ more than those of pixels at random; white samplers' do not. Of one sample, the mean
 /// square of differences between pixels beside each other, over 1/6.
 #[test]
@@ -192,8 +211,8 @@ fn pinned_values() {
     assert_eq!(hash, PINNED_HASH);
 }
 
-const PINNED: [u32; 4] = [16_580_072, 14_679_437, 3_603_397, 16_581_010];
-const PINNED_HASH: u64 = 1_163_471_203_703_790_533;
+const PINNED: [u32; 4] = [7_094_631, 13_877_880, 2_340_580, 16_007_169];
+const PINNED_HASH: u64 = 3_730_653_606_809_117_566;
 
 #[test]
 fn filled_at_once() {

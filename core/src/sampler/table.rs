@@ -29,7 +29,7 @@ pub(super) const fn pascal(first: u32) -> u32 {
 }
 
 /// How the finer digits of each axis depend on the leading eight.
-const FINE: [u32; 2] = [0x21f0_aaad, 0x735a_2d97];
+const FINE: [u32; 2] = [0x9e37_79b9, 0xc13f_a9a9];
 
 /// A coordinate with its offset, whose 24 bits below the leading 8 are exclusive-or a hash of these, of the pixel (row
 /// times side plus column) and of the axis, 0 or 1: without it, all points that share an offset would share their finer

@@ -2,8 +2,10 @@
 
 use super::problem::OCTAVES;
 
-/// Bins of a marginal.
-pub(crate) const BINS: usize = 128;
+/// Bins of a marginal: eight in each stratum of the longest octave.
+pub(crate) const BINS: usize = 512;
+/// How many bins beside its own an octave's point counts in, on each side: fewer points are seen less sharply.
+const REACH: [usize; OCTAVES] = [7, 7, 7, 7, 7, 3, 1];
 /// Numbers of a state: `[octave][axis][bin]`.
 pub(crate) const STATE: usize = OCTAVES * 2 * BINS;
 /// How much of a deviation is added to what is remembered of it, each sweep.
@@ -35,11 +37,11 @@ impl Border {
         }
     }
 
-    /// The surplus of a bin of an octave, relative to its mean.
+    /// The surplus around a bin of an octave, relative to its mean.
     pub(crate) fn surplus(&self, octave: usize, axis: usize, bin: usize) -> f32 {
-        let at = |bin: usize| self.counts[(octave * 2 + axis) * BINS + bin] as f32;
-        let (low, high) = (bin.saturating_sub(1), (bin + 1).min(BINS - 1));
-        (0.25 * at(low) + 0.5 * at(bin) + 0.25 * at(high)) / self.means[octave] - 1.0
+        let counts = &self.counts[(octave * 2 + axis) * BINS..][..BINS];
+        let near = around(bin, REACH[octave]).map(|(bin, distance)| weight(octave, distance) * counts[bin] as f32);
+        near.sum::<f32>() / self.means[octave] - 1.0
     }
 
     /// The least and the greatest density within 1/64 of a border, relative to a uniform one.
@@ -67,10 +69,28 @@ impl Border {
         self.surplus(octave, axis, bin) + self.past[(octave * 2 + axis) * BINS + bin]
     }
 
-    /// What a point more in a bin adds to the surplus of that bin, and of those beside it.
-    pub(crate) fn share(&self, octave: usize) -> [f32; 2] {
-        [0.5, 0.25].map(|share| share / self.means[octave])
+    /// What a point more in a bin adds to the surplus of bins, for each distance from it.
+    pub(crate) fn share(&self, octave: usize) -> Shares {
+        std::array::from_fn(|distance| weight(octave, distance) / self.means[octave])
     }
+}
+
+/// Something for each distance from a bin.
+pub(crate) type Shares = [f32; 8];
+
+/// The weight of a bin at a distance: a triangle whose weights have the sum 1.
+fn weight(octave: usize, distance: usize) -> f32 {
+    let side = REACH[octave] + 1;
+    side.saturating_sub(distance) as f32 / (side * side) as f32
+}
+
+/// Bins around one and their distances from it; those beyond a border are mirrored.
+pub(crate) fn around(bin: usize, reach: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..=2 * reach).map(move |i| {
+        let distance = i.abs_diff(reach);
+        let place = if bin + i < reach { reach - bin - i - 1 } else { bin + i - reach };
+        (place.min(2 * BINS - 1 - place), distance)
+    })
 }
 
 /// The bin of a coordinate.

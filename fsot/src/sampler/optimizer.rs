@@ -1,7 +1,7 @@
 //! Descent over the pixels of a nested-net tile, some that do not see each other at a time.
 
 use super::basis::{Basis, SPECTRUM, Spectrum};
-use super::border::{BINS, Border, STATE, bin};
+use super::border::{BINS, Border, STATE, Shares, around, bin};
 use super::energy::{Energy, Groups, POINTS, Places};
 use super::pixels::{REACH, Weights};
 use super::power::power;
@@ -239,25 +239,20 @@ impl SamplerOptimizer {
     /// Prices without what a pixel's own points add to them.
     fn without(&self, energy: &Energy, prices: &Prices, own: &Places) -> Prices {
         let mut prices = *prices;
-        let mut sums = [[0.0f32; 2]; OCTAVES];
-        let mut sum = [0.0; 2];
+        let mut sums = [Shares::default(); OCTAVES];
+        let mut sum = Shares::default();
         for &octave in energy.octaves.iter().rev() {
             let factor = self.factor(energy, octave);
-            let share = self.border.share(octave);
-            sum = [sum[0] + factor * share[0], sum[1] + factor * share[1]];
+            sum.iter_mut().zip(self.border.share(octave)).for_each(|(sum, share)| *sum += factor * share);
             sums[octave] = sum;
         }
-        for point in 0..energy.points {
-            let first = energy.first[point];
-            for axis in 0..2 {
-                let place = bin(own[axis][point]);
+        for (axis, places) in own.iter().enumerate() {
+            for (place, first) in places.iter().zip(energy.first).take(energy.points) {
                 // In an octave's prices are those of all longer ones; a point is in its own and these.
-                for &octave in &energy.octaves {
-                    let [own, beside] = sums[octave.max(first)];
-                    let prices = &mut prices[octave][axis];
-                    prices[place] -= own;
-                    prices[place.saturating_sub(1)] -= beside;
-                    prices[(place + 1).min(BINS - 1)] -= beside;
+                for (bin, distance) in around(bin(*place), sum.len() - 1) {
+                    for &octave in &energy.octaves {
+                        prices[octave][axis][bin] -= sums[octave.max(first)][distance];
+                    }
                 }
             }
         }

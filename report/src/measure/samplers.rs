@@ -11,8 +11,6 @@ pub(crate) enum Choice {
     Sobol,
     /// The tile of so many dimensions that has as many samples as are drawn, or the next fewer.
     Tile(u32),
-    /// One tile for every number of samples.
-    Progressive,
 }
 
 impl Choice {
@@ -23,7 +21,6 @@ impl Choice {
             Self::Random => "random".to_owned(),
             Self::Sobol => "Owen-Sobol".to_owned(),
             Self::Tile(dims) => format!("tile {dims}D"),
-            Self::Progressive => "progressive tile".to_owned(),
         }
     }
 
@@ -37,7 +34,6 @@ impl Choice {
             Self::Tile(dims) => {
                 (0..=spp.ilog2()).rev().find_map(|power| find(&format!("128_{}SPP_{dims}D", 1 << power)))
             }
-            Self::Progressive => find("128_16SPP_2D_PROGRESSIVE"),
         }
     }
 }
