@@ -211,7 +211,8 @@ static void call_balance(void)
 {
     uint32_t counts[TECHNIQUES] = {8, 8, 8, 8, 8, 8, 8, 8};
     for (uint32_t i = 0; i < BATCH; ++i)
-        check(nf_mis_weight(NF_MIS_BALANCE, 0.0f, pdf + i * TECHNIQUES, counts, TECHNIQUES, technique[i], weight + i), "nf_mis_weight");
+        check(nf_mis_weight(NF_MIS_BALANCE, 0.0f, pdf + i * TECHNIQUES, counts, TECHNIQUES, technique[i], weight + i),
+              "nf_mis_weight");
 }
 
 static void call_omis(void)

@@ -37,7 +37,8 @@ fn call(f: impl FnOnce(*mut f32) -> nf_status) -> Answer {
     (status, (!out.is_nan()).then_some(out))
 }
 
-/// The heuristics and the two functions of optimal weights, with every argument but those for the densities, counts, number and technique fixed.
+/// The heuristics and the two functions of optimal weights, with every argument but those for the densities, counts,
+/// number and technique fixed.
 type Weight = fn(*const f32, *const u32, u32, u32, *mut f32) -> nf_status;
 
 const WEIGHTS: [Weight; 6] = [
