@@ -107,8 +107,8 @@ pub extern "C" fn nf_sampler_table() -> *const u32 {
     table::TABLE.as_ptr()
 }
 
-/// How many numbers nf_sampler_fill, or nf_tile_sampler_fill, writes: width * height * samples * (the sum of dims). 0 if
-/// one of dims is outside 1..4, or memory has not that many.
+/// How many numbers nf_sampler_fill, or nf_tile_sampler_fill, writes: width * height * samples * (the sum of dims). 0
+/// if one of dims is outside 1..4, or memory has not that many.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_sampler_fill_len(
     dims: *const u32,

@@ -65,8 +65,8 @@ void nf_sampler_draw(nf_sampler sampler, uint32_t dims, float *u);
 // The table that all draws look into, 65,536 numbers, for copies on other devices: see noisefloor_sampler.h.
 const uint32_t *nf_sampler_table(void);
 
-// How many numbers nf_sampler_fill, or nf_tile_sampler_fill, writes: width * height * samples * (the sum of dims). 0 if
-// one of dims is outside 1..4, or memory has not that many.
+// How many numbers nf_sampler_fill, or nf_tile_sampler_fill, writes: width * height * samples * (the sum of dims). 0
+// if one of dims is outside 1..4, or memory has not that many.
 size_t nf_sampler_fill_len(const uint32_t *dims, size_t domains, uint32_t width, uint32_t height, uint32_t samples);
 
 // Draws for many pixels and samples at once, for renderers that work on whole images. The same bits as single draws.
