@@ -13,7 +13,8 @@ foreach(header IN ITEMS noisefloor.h noisefloor.hpp noisefloor_sampler.h)
     file(REAL_PATH "include/${header}" header)
     install(FILES "${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 endforeach()
-install(DIRECTORY include/noisefloor/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/noisefloor")
+file(REAL_PATH include/noisefloor parts)
+install(DIRECTORY "${parts}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 # The tiles as files: for programs that read them (nf_tile_from_bytes), in place of the library's own.
 install(DIRECTORY ../core/tiles/ DESTINATION "${CMAKE_INSTALL_DATADIR}/noisefloor/tiles" FILES_MATCHING PATTERN "*.nft")
 
