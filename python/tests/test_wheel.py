@@ -31,7 +31,8 @@ def test_it_is_small_and_has_all():
     assert os.path.basename(WHEEL).startswith("noisefloor-") and "-py3-none-" in WHEEL
     names = set(zipfile.ZipFile(WHEEL).namelist())
     native = "noisefloor/native/"
-    for name in ("include/noisefloor.h", "include/noisefloor/cv.h", "include/noisefloor.hpp", "lib/cmake/noisefloor/noisefloorConfig.cmake"):
+    headers = "include/noisefloor.h", "include/noisefloor/cv.h", "include/noisefloor.hpp"
+    for name in (*headers, "lib/cmake/noisefloor/noisefloorConfig.cmake"):
         assert native + name in names
     assert {"noisefloor/py.typed", "noisefloor/torch.py"} <= names
     assert sum(".so" in name for name in names) == 1 and not any("tests" in name for name in names)

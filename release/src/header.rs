@@ -16,6 +16,13 @@ struct Chapter {
     prefixes: &'static [&'static str],
 }
 
+impl Chapter {
+    /// The header's name under include/.
+    fn path(&self) -> String {
+        format!("noisefloor/{}", self.file)
+    }
+}
+
 /// The header that the others include.
 const BASE: &str = "base.h";
 /// The width of the headers' lines.
@@ -140,7 +147,7 @@ pub(crate) fn check() -> Result<()> {
 
 /// The parts' names under include/, each once, in their order.
 pub(crate) fn parts() -> Vec<String> {
-    let mut parts: Vec<_> = CHAPTERS.iter().map(|chapter| format!("noisefloor/{}", chapter.file)).collect();
+    let mut parts: Vec<_> = CHAPTERS.iter().map(Chapter::path).collect();
     parts.dedup();
     parts
 }
@@ -154,42 +161,44 @@ fn generate() -> Result<Vec<(String, String)>> {
     let includes: String =
         std::mem::take(&mut config.sys_includes).iter().map(|file| format!("#include <{file}>\n")).collect();
     let trailer = config.trailer.take().context("capi/cbindgen.toml has no `trailer`")?;
-    let items = items(&crate_dir, config)?;
+    let mut items = items(&crate_dir, config)?;
+    items.sort_by_key(|item| (item.chapter, item.place));
 
-    let mut all = Vec::new();
     let mut whole = format!("{}\n\n#ifndef NOISEFLOOR_H\n#define NOISEFLOOR_H\n\n", conventions.trim());
-    for name in parts() {
-        whole += &format!("#include \"{name}\"\n");
-        let chapters = CHAPTERS.iter().enumerate().filter(|(_, chapter)| name.ends_with(chapter.file));
-        let guard = name.to_uppercase().replace(['/', '.'], "_");
-        let uses = if name.ends_with(BASE) { &includes } else { &format!("#include \"{BASE}\"\n") };
-        let mut text =
-            "/* Generated from capi/ by `cargo xtask header`; do not edit. Conventions: noisefloor.h. */\n".to_owned();
-        text += &format!("\n#ifndef {guard}\n#define {guard}\n\n{uses}\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n");
-        for (index, chapter) in chapters {
-            text += &format!("\n/* {}.", chapter.title);
-            if !chapter.guides.is_empty() {
-                text += &format!("\n * Guides, in docs/: {}.", chapter.guides);
-            }
-            text += " */\n";
-            let mut sorted: Vec<_> = items.iter().filter(|item| item.chapter == index).collect();
-            sorted.sort_by_key(|item| item.place);
-            let mut place = usize::MAX;
-            for item in sorted {
-                // Constants of one place stand together.
-                if !(item.is_constant() && item.place == place) {
-                    text += "\n";
-                }
-                place = item.place;
-                text += &item.text;
-            }
-        }
-        text += &format!("\n#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n");
-        all.push((name, text));
-    }
+    whole.extend(parts().iter().map(|name| format!("#include \"{name}\"\n")));
     whole += &format!("\n{}\n\n#endif /* NOISEFLOOR_H */\n", trailer.trim());
-    all.push(("noisefloor.h".to_owned(), whole));
-    Ok(all)
+    let parts = parts().into_iter().map(|name| {
+        let text = part(&name, &includes, &items);
+        (name, text)
+    });
+    Ok(parts.chain([("noisefloor.h".to_owned(), whole)]).collect())
+}
+
+/// The text of a part.
+fn part(name: &str, includes: &str, items: &[Item]) -> String {
+    let guard = name.to_uppercase().replace(['/', '.'], "_");
+    let base = format!("#include \"{BASE}\"\n");
+    let includes = if name == CHAPTERS[0].path() { includes } else { &base };
+    let mut text =
+        "/* Generated from capi/ by `cargo xtask header`; do not edit. Conventions: noisefloor.h. */\n".to_owned();
+    text += &format!("\n#ifndef {guard}\n#define {guard}\n\n{includes}\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n");
+    for (index, chapter) in CHAPTERS.iter().enumerate().filter(|(_, chapter)| chapter.path() == name) {
+        text += &format!("\n/* {}.", chapter.title);
+        if !chapter.guides.is_empty() {
+            text += &format!("\n * Guides, in docs/: {}.", chapter.guides);
+        }
+        text += " */\n";
+        let mut place = usize::MAX;
+        for item in items.iter().filter(|item| item.chapter == index) {
+            // Constants of one place stand together.
+            if !(item.is_constant() && item.place == place) {
+                text += "\n";
+            }
+            place = item.place;
+            text += &item.text;
+        }
+    }
+    text + &format!("\n#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n")
 }
 
 /// One declaration with its documentation.

@@ -144,11 +144,17 @@ static void images(void)
             image.known = known;
             image.known_integrals = integrals;
         }
-        work = memory_new(nf_cv_image_workspace_size(&config, &image, n));
-        feclearexcept(FE_ALL_EXCEPT);
-        nf_cv_image_estimate(&config, &image, u, f, n, work.start, work.bytes, out);
-        check_quiet("nf_cv_image_estimate", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
-        memory_free(&work);
+        /* Then the same pixels without places, surfaces and factors. */
+        for (i = 0; i < 2; ++i) {
+            work = memory_new(nf_cv_image_workspace_size(&config, &image, n));
+            feclearexcept(FE_ALL_EXCEPT);
+            nf_cv_image_estimate(&config, &image, u, f, n, work.start, work.bytes, out);
+            check_quiet("nf_cv_image_estimate", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
+            memory_free(&work);
+            memset(&image, 0, sizeof image);
+            image.width = image.height = 16;
+            image.unordered = 1;
+        }
     }
 }
 

@@ -112,6 +112,7 @@ static void fill(void)
     CHECK(is_poisoned(u, sizeof u));
     CHECK(nf_sampler_fill_len(bad, 3, 1, 1, 1) == 0 && nf_sampler_fill_len(NULL, 3, 1, 1, 1) == 0);
     CHECK(nf_sampler_fill_len(dims, 3, UINT32_MAX, UINT32_MAX, UINT32_MAX) == 0);
+    CHECK(nf_sampler_fill_len(dims, 3, 0, 1, 1) == 0);
 }
 
 int main(void)

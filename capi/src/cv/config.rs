@@ -187,47 +187,26 @@ pub unsafe extern "C" fn nf_cv_terms(config: *const nf_cv_config) -> u32 {
 pub unsafe extern "C" fn nf_cv_config_check(config: *const nf_cv_config) -> *const core::ffi::c_char {
     // SAFETY: the caller's pointer, checked there for NULL and alignment.
     match unsafe { convert::reference(config) } {
-        Ok(config) => problem(config).map_or(core::ptr::null(), CStr::as_ptr),
+        Ok(config) => check(config).err().map_or(core::ptr::null(), CStr::as_ptr),
         Err(_) => c"the configuration is NULL or misaligned".as_ptr(),
     }
 }
 
-fn problem(config: &nf_cv_config) -> Option<&'static CStr> {
-    let is_amount = |value: f32| (0.0..f32::INFINITY).contains(&value);
-    let rules = [
-        ((1..=16).contains(&config.dims), c"dims must be 1 to 16"),
-        (config.order <= 7, c"order must be 0 to 7"),
-        ((1..=4).contains(&config.channels), c"channels must be 1 to 4"),
-        (config.estimator <= NF_CV_INCREMENTAL, c"estimator must be one of NF_CV_*, 0 to 5"),
-        (config.basis <= NF_BASIS_GAUSSIAN, c"basis must be one of NF_BASIS_*, 0 to 3"),
-        (config.stratified <= 1, c"stratified must be 0 or 1"),
-        (config.controls <= 4, c"controls must be 0 to 4"),
-        (config.stride == 0 || config.stride >= config.dims, c"stride must be 0 or at least dims"),
-        (config.solver <= NF_SOLVER_DUAL, c"solver must be one of NF_SOLVER_*, 0 to 3"),
-        (config.precision <= NF_PRECISION_F32, c"precision must be one of NF_PRECISION_*, 0 or 1"),
-        (is_narrow(config).is_ok(), c"precision must be NF_PRECISION_F32: this library was built for float alone"),
-        (config.nonfinite <= NF_NONFINITE_SKIP, c"nonfinite must be one of NF_NONFINITE_*, 0 or 1"),
-        (config.color <= NF_COLOR_LUMINANCE_RATIO, c"color must be one of NF_COLOR_*, 0 or 1"),
-        (config.color == 0 || config.channels == 3, c"color NF_COLOR_LUMINANCE_RATIO is for 3 channels"),
-        (config.folds != 1 && config.folds <= 16, c"folds must be 0, or 2 to 16"),
-        (config.iterations <= 1 << 20, c"iterations must be 0 to 1048576"),
-        (config.optimizer <= NF_OPTIMIZER_PLAIN, c"optimizer must be one of NF_OPTIMIZER_*, 0 to 2"),
-        (
-            config.ridge == NF_RIDGE_AUTO || is_amount(config.ridge),
-            c"ridge must be NF_RIDGE_AUTO, or finite and at least 0",
-        ),
-        (is_amount(config.learning_rate), c"learning_rate must be finite and at least 0"),
-        ((0.0..1.0).contains(&config.momentum), c"momentum must be at least 0 and below 1"),
-        (
-            core_config(config).is_ok_and(|config| config.terms().is_ok()),
-            c"dims, order, slices and controls make more than 136 terms: lower one of them",
-        ),
-    ];
-    rules.into_iter().find(|(is_kept, _)| !is_kept).map(|(_, rule)| rule)
+fn check(config: &nf_cv_config) -> Result<(), &'static CStr> {
+    read(config)?.check().map_err(|(_, words)| words)?;
+    is_narrow(config).map(|_| ()).map_err(|status| match status {
+        NF_ERR_UNSUPPORTED => c"precision must be NF_PRECISION_F32: this library was built for float alone",
+        _ => c"precision must be one of NF_PRECISION_*, 0 or 1",
+    })
 }
 
 /// The core's configuration; precision apart, see [`is_narrow`].
 pub(super) fn core_config(config: &nf_cv_config) -> Result<Config, nf_status> {
+    read(config).map_err(|_| NF_ERR_RANGE)
+}
+
+/// The same, or what is wrong with a number that stands for a choice.
+fn read(config: &nf_cv_config) -> Result<Config, &'static CStr> {
     Ok(Config {
         dims: config.dims as usize,
         order: config.order as usize,
@@ -242,18 +221,39 @@ pub(super) fn core_config(config: &nf_cv_config) -> Result<Config, nf_status> {
                 Estimator::GradientDescent,
                 Estimator::Incremental,
             ],
+            c"estimator must be one of NF_CV_*, 0 to 5",
         )?,
-        basis: pick(config.basis, &[Family::Legendre, Family::Step, Family::Sine, Family::Gaussian])?,
-        stratified: pick(config.stratified, &[false, true])?,
+        basis: pick(
+            config.basis,
+            &[Family::Legendre, Family::Step, Family::Sine, Family::Gaussian],
+            c"basis must be one of NF_BASIS_*, 0 to 3",
+        )?,
+        stratified: pick(config.stratified, &[false, true], c"stratified must be 0 or 1")?,
         slices: config.slices as usize,
         controls: config.controls as usize,
         stride: config.stride as usize,
-        solver: pick(config.solver, &[Solver::Auto, Solver::NormalEquations, Solver::SquareRoot, Solver::Dual])?,
-        non_finite: pick(config.nonfinite, &[NonFinite::Error, NonFinite::Skip])?,
-        color: pick(config.color, &[Color::PerChannel, Color::LuminanceRatio])?,
+        solver: pick(
+            config.solver,
+            &[Solver::Auto, Solver::NormalEquations, Solver::SquareRoot, Solver::Dual],
+            c"solver must be one of NF_SOLVER_*, 0 to 3",
+        )?,
+        non_finite: pick(
+            config.nonfinite,
+            &[NonFinite::Error, NonFinite::Skip],
+            c"nonfinite must be one of NF_NONFINITE_*, 0 or 1",
+        )?,
+        color: pick(
+            config.color,
+            &[Color::PerChannel, Color::LuminanceRatio],
+            c"color must be one of NF_COLOR_*, 0 or 1",
+        )?,
         folds: config.folds as usize,
         iterations: config.iterations as usize,
-        optimizer: pick(config.optimizer, &[Optimizer::Momentum, Optimizer::Adam, Optimizer::Plain])?,
+        optimizer: pick(
+            config.optimizer,
+            &[Optimizer::Momentum, Optimizer::Adam, Optimizer::Plain],
+            c"optimizer must be one of NF_OPTIMIZER_*, 0 to 2",
+        )?,
         ridge: match config.ridge {
             0.0 => Ridge::Default,
             NF_RIDGE_AUTO => Ridge::Auto,
@@ -276,8 +276,8 @@ pub(super) fn is_narrow(config: &nf_cv_config) -> Result<bool, nf_status> {
     }
 }
 
-fn pick<T: Copy>(value: u32, choices: &[T]) -> Result<T, nf_status> {
-    choices.get(value as usize).copied().ok_or(NF_ERR_RANGE)
+fn pick<T: Copy>(value: u32, choices: &[T], words: &'static CStr) -> Result<T, &'static CStr> {
+    choices.get(value as usize).copied().ok_or(words)
 }
 
 pub(super) fn c_estimate(estimate: &Estimate) -> nf_estimate {

@@ -1,7 +1,8 @@
 //! What an estimate is made with.
 
-use crate::basis::{Family, MAX_TERMS, Shape};
+use crate::basis::{Family, MAX_DIMS, MAX_ORDER, MAX_TERMS, Shape};
 use crate::error::Error;
+use core::ffi::CStr;
 
 /// How samples become an estimate (chapter 4).
 ///
@@ -196,30 +197,44 @@ impl Config {
         Ok(1 + self.controls + self.checked_shape()?.columns())
     }
 
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// What [`terms`](Self::terms) answers, and the rule that is broken in words, with the NUL that C needs.
+    pub fn check(&self) -> Result<(), (Error, &'static CStr)> {
+        self.keeps_rules().map(|_| ())
+    }
+
     /// Checks every field, and returns how many functions there are.
+    #[inline]
     pub(crate) fn checked_shape(&self) -> Result<Shape, Error> {
-        let in_range = (1..=Self::MAX_CHANNELS).contains(&self.channels)
-            && self.controls <= Self::MAX_CONTROLS
-            && (self.stride == 0 || self.stride >= self.dims)
-            && self.folds != 1
-            && self.folds <= Self::MAX_FOLDS
-            && self.iterations <= 1 << 20
-            && match self.ridge {
-                Ridge::Fixed(strength) => strength > 0.0 && strength.is_finite(),
-                Ridge::Default | Ridge::Auto => true,
-            }
-            && (0.0..f32::INFINITY).contains(&self.learning_rate)
-            && (0.0..1.0).contains(&self.momentum);
-        if !in_range {
-            return Err(Error::Range);
-        }
+        self.keeps_rules().map_err(|(error, _)| error)
+    }
+
+    #[inline]
+    fn keeps_rules(&self) -> Result<Shape, (Error, &'static CStr)> {
+        let rule = |is_kept: bool, words: &'static CStr| if is_kept { Ok(()) } else { Err((Error::Range, words)) };
+        rule((1..=MAX_DIMS).contains(&self.dims), c"dims must be 1 to 16")?;
+        rule(self.order <= MAX_ORDER, c"order must be 0 to 7")?;
+        rule((1..=Self::MAX_CHANNELS).contains(&self.channels), c"channels must be 1 to 4")?;
+        rule(self.controls <= Self::MAX_CONTROLS, c"controls must be 0 to 4")?;
+        rule(self.stride == 0 || self.stride >= self.dims, c"stride must be 0 or at least dims")?;
+        rule(self.folds != 1 && self.folds <= Self::MAX_FOLDS, c"folds must be 0, or 2 to 16")?;
+        rule(self.iterations <= 1 << 20, c"iterations must be 0 to 1048576")?;
+        let is_strength = match self.ridge {
+            Ridge::Fixed(strength) => strength > 0.0 && strength.is_finite(),
+            Ridge::Default | Ridge::Auto => true,
+        };
+        rule(is_strength, c"ridge must be the default, automatic, or finite and above 0")?;
+        let is_rate = (0.0..f32::INFINITY).contains(&self.learning_rate);
+        rule(is_rate, c"learning_rate must be finite and at least 0")?;
+        rule((0.0..1.0).contains(&self.momentum), c"momentum must be at least 0 and below 1")?;
         if self.color == Color::LuminanceRatio && self.channels != 3 {
-            return Err(Error::Unsupported);
+            return Err((Error::Unsupported, c"color must not be the luminance ratio but for 3 channels"));
         }
-        let shape = Shape::new(self.dims, self.order, self.slices)?;
-        if 1 + self.controls + shape.columns() > MAX_TERMS {
-            return Err(Error::Range);
-        }
+        let terms = c"dims, order, slices and controls make more than 136 terms: lower one of them";
+        let shape = Shape::new(self.dims, self.order, self.slices).map_err(|error| (error, terms))?;
+        rule(1 + self.controls + shape.columns() <= MAX_TERMS, terms)?;
         Ok(shape)
     }
 

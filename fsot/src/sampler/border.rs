@@ -6,6 +6,10 @@ use super::problem::OCTAVES;
 pub(crate) const BINS: usize = 512;
 /// How many bins beside its own an octave's point counts in, on each side: fewer points are seen less sharply.
 const REACH: [usize; OCTAVES] = [7, 7, 7, 7, 7, 3, 1];
+/// Something for each distance from a bin, up to the longest reach.
+pub(crate) type Shares = [f32; 8];
+/// The weights of bins at each distance: triangles whose weights have the sum 1.
+const WEIGHTS: [Shares; OCTAVES] = weights();
 /// Numbers of a state: `[octave][axis][bin]`.
 pub(crate) const STATE: usize = OCTAVES * 2 * BINS;
 /// How much of a deviation is added to what is remembered of it, each sweep.
@@ -40,7 +44,7 @@ impl Border {
     /// The surplus around a bin of an octave, relative to its mean.
     pub(crate) fn surplus(&self, octave: usize, axis: usize, bin: usize) -> f32 {
         let counts = &self.counts[(octave * 2 + axis) * BINS..][..BINS];
-        let near = around(bin, REACH[octave]).map(|(bin, distance)| weight(octave, distance) * counts[bin] as f32);
+        let near = around(bin, REACH[octave]).map(|(bin, distance)| WEIGHTS[octave][distance] * counts[bin] as f32);
         near.sum::<f32>() / self.means[octave] - 1.0
     }
 
@@ -71,17 +75,23 @@ impl Border {
 
     /// What a point more in a bin adds to the surplus of bins, for each distance from it.
     pub(crate) fn share(&self, octave: usize) -> Shares {
-        std::array::from_fn(|distance| weight(octave, distance) / self.means[octave])
+        WEIGHTS[octave].map(|weight| weight / self.means[octave])
     }
 }
 
-/// Something for each distance from a bin.
-pub(crate) type Shares = [f32; 8];
-
-/// The weight of a bin at a distance: a triangle whose weights have the sum 1.
-fn weight(octave: usize, distance: usize) -> f32 {
-    let side = REACH[octave] + 1;
-    side.saturating_sub(distance) as f32 / (side * side) as f32
+const fn weights() -> [Shares; OCTAVES] {
+    let mut all = [[0.0; 8]; OCTAVES];
+    let mut octave = 0;
+    while octave < OCTAVES {
+        let side = REACH[octave] + 1;
+        let mut distance = 0;
+        while distance < side {
+            all[octave][distance] = (side - distance) as f32 / (side * side) as f32;
+            distance += 1;
+        }
+        octave += 1;
+    }
+    all
 }
 
 /// Bins around one and their distances from it; those beyond a border are mirrored.
