@@ -1,6 +1,7 @@
 //! Lines against an axis, as SVG: named series, each line labelled at its end.
 
 use anyhow::{Result, anyhow};
+use plotters::coord::combinators::BindKeyPoints;
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -55,9 +56,10 @@ impl Plot<'_> {
         let y = range(points().map(|(_, y)| y).chain(bands.filter(|&y| self.shows(y))));
         let mut text = String::new();
         let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-        // A logarithmic axis of less than half a decade has hardly a label.
+        // A logarithmic axis of less than half a decade would have hardly a label.
         let drawn = if self.logarithmic && y.end > 3.0 * y.start {
-            self.draw(&root, x, (y.start..y.end).log_scale(), " (logarithmic)")
+            let axis = (y.start..y.end).log_scale().with_key_points(ticks(&y));
+            self.draw(&root, x, axis, " (logarithmic)")
         } else {
             self.draw(&root, x, y, "")
         };
@@ -166,6 +168,18 @@ fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
     if low < high { low * 0.97..high * 1.03 } else { 1.0..2.0 }
 }
 
+/// Labels of a logarithmic axis: the fewest round numbers that are four at least.
+fn ticks(range: &Range<f64>) -> Vec<f64> {
+    let decades = || range.start.log10().floor() as i32..=range.end.log10() as i32 + 1;
+    let of = |digits: &[f64]| -> Vec<f64> {
+        let all = decades().flat_map(|decade| digits.iter().map(move |digit| digit * 10_f64.powi(decade)));
+        all.filter(|tick| range.contains(tick)).collect()
+    };
+    let digits: [&[f64]; 3] = [&[1.0], &[1.0, 2.0, 5.0], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]];
+    let choices = digits.map(of);
+    choices.iter().find(|ticks| ticks.len() >= 4).unwrap_or(&choices[2]).clone()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -175,6 +189,14 @@ mod tests {
         let heights = spread(&[100.0, 101.0, 102.0, 600.0]);
         assert!(heights.windows(2).all(|pair| pair[1] - pair[0] >= LABEL_HEIGHT));
         assert!(heights.iter().all(|&height| height <= f64::from(SIZE.1)));
+    }
+
+    #[test]
+    fn logarithmic_axes_have_labels() {
+        assert_eq!(ticks(&(2.2..6.9)), [3.0, 4.0, 5.0, 6.0]);
+        assert_eq!(ticks(&(0.09..1.05)), [0.1, 0.2, 0.5, 1.0]);
+        assert_eq!(ticks(&(0.5..2e4)), [1.0, 10.0, 100.0, 1000.0, 10000.0]);
+        assert_eq!(ticks(&(2.1..6.31)).len(), 4);
     }
 
     #[test]

@@ -16,22 +16,23 @@ struct Service {
     except: &'static [&'static str],
 }
 
-const SERVICES: [Service; 11] = [
+const SERVICES: [Service; 12] = [
     Service {
         name: "control variates: one pixel",
         functions: &["nf_cv_"],
-        except: &["nf_cv_image", "nf_cv_block", "nf_cv_accumulator"],
+        except: &["nf_cv_image", "nf_cv_accumulator"],
     },
-    Service { name: "control variates: shared fits", functions: &["nf_cv_image", "nf_cv_block"], except: &[] },
+    Service { name: "control variates: shared fits", functions: &["nf_cv_image"], except: &[] },
     Service { name: "control variates: streaming", functions: &["nf_cv_accumulator"], except: &[] },
     Service { name: "recommendations", functions: &["nf_recommend"], except: &[] },
     Service { name: "MIS heuristics", functions: &["nf_mis_"], except: &[] },
     Service { name: "optimal MIS", functions: &["nf_omis_"], except: &["nf_omis_weights"] },
     Service {
-        name: "tiles and samplers, without built-in tiles",
+        name: "tiles, without built-in ones",
         functions: &["nf_tile_"],
-        except: &["nf_tile_builtin"],
+        except: &["nf_tile_builtin", "nf_tile_64_", "nf_tile_128_"],
     },
+    Service { name: "default sampler, with its table", functions: &["nf_sampler_"], except: &[] },
     Service { name: "random numbers", functions: &["nf_rng_"], except: &[] },
     Service { name: "minibatches: tables", functions: &["nf_table_", "nf_shard", "nf_shuffle"], except: &[] },
     Service {
