@@ -11,7 +11,7 @@
 
 use noisefloor_core::Error;
 use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Samples};
-use noisefloor_core::minibatch::table::{Shard, Table};
+use noisefloor_core::minibatch::table::{Kernel, Portable, Shard, State, Table};
 use noisefloor_core::minibatch::{Batch, Gradient};
 use noisefloor_core::mis::Solver;
 use noisefloor_core::real::Real;
@@ -22,7 +22,7 @@ use crate::avx2::Avx2;
 
 /// A table to draw from, and one to change.
 pub(crate) type Reader<'a> = Table<&'a [f32], &'a [i64]>;
-pub(crate) type Writer<'a> = Table<&'a mut [f32], &'a mut [i64]>;
+pub(crate) type Writer<'a, K = Portable> = Table<&'a mut [f32], &'a mut [i64], K>;
 
 /// Functions of two bodies: one compiled for every processor of the target, and one for those that have the vector
 /// units named, which run that.
@@ -76,7 +76,7 @@ by_processor! {
         index: &mut [u32],
         weight: Option<&mut [f32]>,
     ) -> Result<(), Error> {
-        "avx2,popcnt" => table.draw_by::<Avx2>(rng, index, weight),
+        "avx2,popcnt" => table.clone().with_kernel::<Avx2>().draw(rng, index, weight),
         _ => table.draw(rng, index, weight),
     }
 
@@ -87,7 +87,7 @@ by_processor! {
         index: &mut [u32],
         weight: Option<&mut [f32]>,
     ) -> Result<(), Error> {
-        "avx2,popcnt" => table.draw_stratified_by::<Avx2>(rng, index, weight),
+        "avx2,popcnt" => table.clone().with_kernel::<Avx2>().draw_stratified(rng, index, weight),
         _ => table.draw_stratified(rng, index, weight),
     }
 
@@ -99,31 +99,31 @@ by_processor! {
         index: &mut [u32],
         weight: Option<&mut [f32]>,
     ) -> Result<(), Error> {
-        "avx2,popcnt" => table.draw_shard_by::<Avx2>(all, rng, index, weight),
+        "avx2,popcnt" => table.clone().with_kernel::<Avx2>().draw_shard(all, rng, index, weight),
         _ => table.draw_shard(all, rng, index, weight),
     }
 
     /// [`Writer::draw_distinct`].
     fn table_draw_distinct(
-        table: &mut Writer<'_>,
+        table: Writer<'_>,
         rng: &mut Rng,
         index: &mut [u32],
         weight: Option<&mut [f32]>,
     ) -> Result<(), Error> {
-        "avx2,popcnt" => table.draw_distinct_by::<Avx2>(rng, index, weight),
-        _ => table.draw_distinct(rng, index, weight),
+        "avx2,popcnt" => table.with_kernel::<Avx2>().draw_distinct(rng, index, weight),
+        _ => table.with_kernel::<Portable>().draw_distinct(rng, index, weight),
     }
 
-    /// [`Writer::update`].
-    fn table_update(table: &mut Writer<'_>, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
-        "avx2,popcnt" => table.update_by::<Avx2>(index, importance, momentum),
-        _ => table.update(index, importance, momentum),
+    /// [`Writer::update`]: how the table then is.
+    fn table_update(table: Writer<'_>, index: &[u32], importance: &[f32], momentum: f32) -> Result<State, Error> {
+        "avx2,popcnt" => changed(table.with_kernel::<Avx2>(), |table| table.update(index, importance, momentum)),
+        _ => changed(table, |table| table.update(index, importance, momentum)),
     }
 
-    /// [`Writer::add_epsilon`].
-    fn table_add_epsilon(table: &mut Writer<'_>, epsilon: f32) -> Result<(), Error> {
-        "avx2,popcnt" => table.add_epsilon_by::<Avx2>(epsilon),
-        _ => table.add_epsilon(epsilon),
+    /// [`Writer::add_epsilon`]: how the table then is.
+    fn table_add_epsilon(table: Writer<'_>, epsilon: f32) -> Result<State, Error> {
+        "avx2,popcnt" => changed(table.with_kernel::<Avx2>(), |table| table.add_epsilon(epsilon)),
+        _ => changed(table, |table| table.add_epsilon(epsilon)),
     }
 
     /// [`Gradient::estimate`].
@@ -138,6 +138,16 @@ by_processor! {
         "avx2" => state.estimate(batch, solver, beta, gradient, estimate),
         _ => state.estimate(batch, solver, beta, gradient, estimate),
     }
+}
+
+/// Changes a table, and says how it then is.
+#[inline(always)]
+fn changed<K: Kernel>(
+    mut table: Writer<'_, K>,
+    change: impl FnOnce(&mut Writer<'_, K>) -> Result<(), Error>,
+) -> Result<State, Error> {
+    change(&mut table)?;
+    Ok(table.state())
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -161,11 +161,11 @@ pub unsafe extern "C" fn nf_table_draw_distinct(
 ) -> nf_status {
     status((|| {
         // SAFETY: the caller passes a table and a generator that no one else uses, and outputs of `batch` elements.
-        let (mut opened, index, weight) =
+        let (opened, index, weight) =
             unsafe { (open_mut(table)?, convert::outputs(index, batch as usize)?, weights(weight, batch)?) };
         // SAFETY: as above.
         unsafe {
-            rng::try_with(rng, |rng| dispatch::table_draw_distinct(&mut opened, rng, index, weight).map_err(status_of))
+            rng::try_with(rng, |rng| dispatch::table_draw_distinct(opened, rng, index, weight).map_err(status_of))
         }
         // What it changes it changes back: the struct stays as it is.
     })())
@@ -203,7 +203,9 @@ pub unsafe extern "C" fn nf_table_update(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_set_uniform_fraction(table: *mut nf_table, fraction: f32) -> nf_status {
     // SAFETY: the caller passes a table that no one else uses.
-    unsafe { change(table, |table| table.set_uniform_fraction(fraction).map_err(status_of)) }
+    unsafe {
+        change(table, |mut table| table.set_uniform_fraction(fraction).map(|()| table.state()).map_err(status_of))
+    }
 }
 
 /// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3, after an epoch. The uniform fraction does as
@@ -223,7 +225,12 @@ pub unsafe extern "C" fn nf_table_add_epsilon(table: *mut nf_table, epsilon: f32
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_append(table: *mut nf_table, importance: *const f32, count: u32) -> nf_status {
     // SAFETY: the caller passes `count` importances and a table that no one else uses.
-    unsafe { change(table, |table| table.append(convert::slice(importance, count as usize)?).map_err(status_of)) }
+    unsafe {
+        change(table, |mut table| {
+            table.append(convert::slice(importance, count as usize)?).map_err(status_of)?;
+            Ok(table.state())
+        })
+    }
 }
 
 /// The probability p_i of drawing an item; 0 if there is no such item or no table. It comes with the item in
@@ -402,18 +409,14 @@ unsafe fn open_mut<'a>(table: *mut nf_table) -> Result<Writer<'a>, nf_status> {
     Table::resume(importance, sums, state(table)).map_err(|_| NF_ERR_STATE)
 }
 
-/// Changes a table.
+/// Changes a table: `change` says how it then is.
 ///
 /// # Safety
 /// As for [`open_mut`].
-unsafe fn change(table: *mut nf_table, change: impl FnOnce(&mut Writer<'_>) -> Result<(), nf_status>) -> nf_status {
+unsafe fn change(table: *mut nf_table, change: impl FnOnce(Writer<'_>) -> Result<State, nf_status>) -> nf_status {
     status((|| {
-        let state = {
-            // SAFETY: passed on to the caller.
-            let mut opened = unsafe { open_mut(table) }?;
-            change(&mut opened)?;
-            opened.state()
-        };
+        // SAFETY: passed on to the caller.
+        let state = change(unsafe { open_mut(table) }?)?;
         // SAFETY: as above; nothing else refers to the struct any more.
         let table = unsafe { convert::reference_mut(table) }?;
         (table.scale, table.items, table.uniform_fraction) = (state.scale, state.items, state.uniform_fraction);

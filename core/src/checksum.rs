@@ -41,14 +41,5 @@ impl Crc {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::Crc;
-
-    /// The check value of the catalogue of CRC algorithms.
-    #[test]
-    fn check_value() {
-        assert_eq!(Crc::new().add(b"123456789").finish(), 0xcbf4_3926);
-        assert_eq!(Crc::new().add(b"1234").add(b"56789").finish(), 0xcbf4_3926);
-        assert_eq!(Crc::new().finish(), 0);
-    }
-}
+#[path = "../tests/parts/checksum.rs"]
+mod tests;

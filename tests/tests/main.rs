@@ -43,6 +43,7 @@ mod mis_optimal;
 mod mis_statistics;
 mod mis_support;
 mod mis_weight;
+mod recommend;
 mod rng;
 mod sampler;
 mod small_cases;

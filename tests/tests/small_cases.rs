@@ -125,29 +125,29 @@ fn a_table() {
     assert_eq!(table.probability(3), 0.2);
 }
 
-/// What is named by its kernel is what has no kernel in its name.
+/// A kernel that is named is the one that a table has from the start.
 #[test]
 fn the_portable_kernel() {
     assert_eq!(Portable::total(&[0.5; 16]), 8.0);
     let seed = || Rng::seed(1);
-    let (mut table, mut again) = (one_to_four(), one_to_four());
+    let (mut table, mut again) = (one_to_four(), one_to_four().with_kernel::<Portable>());
     let (mut a, mut b) = ([0; 8], [0; 8]);
     table.draw(&mut seed(), &mut a, None).unwrap();
-    table.draw_by::<Portable>(&mut seed(), &mut b, None).unwrap();
+    again.draw(&mut seed(), &mut b, None).unwrap();
     assert_eq!(a, b);
     table.draw_stratified(&mut seed(), &mut a, None).unwrap();
-    table.draw_stratified_by::<Portable>(&mut seed(), &mut b, None).unwrap();
+    again.draw_stratified(&mut seed(), &mut b, None).unwrap();
     assert_eq!(a, b);
     table.draw_shard(&table.shard(), &mut seed(), &mut a, None).unwrap();
-    table.draw_shard_by::<Portable>(&table.shard(), &mut seed(), &mut b, None).unwrap();
+    again.draw_shard(&again.shard(), &mut seed(), &mut b, None).unwrap();
     assert_eq!(a, b);
     table.draw_distinct(&mut seed(), &mut a[..3], None).unwrap();
-    again.draw_distinct_by::<Portable>(&mut seed(), &mut b[..3], None).unwrap();
+    again.draw_distinct(&mut seed(), &mut b[..3], None).unwrap();
     assert_eq!(a, b);
     table.update(&[0], &[5.0], 0.3).unwrap();
-    again.update_by::<Portable>(&[0], &[5.0], 0.3).unwrap();
+    again.update(&[0], &[5.0], 0.3).unwrap();
     table.add_epsilon(0.5).unwrap();
-    again.add_epsilon_by::<Portable>(0.5).unwrap();
+    again.add_epsilon(0.5).unwrap();
     assert_eq!((table.importance(0), table.total()), (again.importance(0), again.total()));
 }
 

@@ -2,7 +2,7 @@
 
 use super::draw::check_lengths;
 use super::mixture::Mixture;
-use super::{Kernel, Portable, Table};
+use super::{Kernel, Table};
 use crate::Error;
 use crate::rng::Rng;
 
@@ -10,7 +10,7 @@ use crate::rng::Rng;
 /// table's memory has been damaged.
 const PATIENCE: f64 = 64.0;
 
-impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S> {
+impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> Table<I, S, K> {
     /// Draws different items, one after the other. The k-th is item i with probability
     ///
     /// `c_i = ((1 - d) q_i / sum q + d / N) / (1 - d (k - 1) / N)`,
@@ -28,13 +28,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     /// Errors, which change nothing: [`Error::Range`] for more draws than items, or another number of
     /// weights; [`Error::NoSamples`] where the uniform fraction is 0 and fewer items have an importance above 0.
     #[inline(always)]
-    pub fn draw_distinct(&mut self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
-        self.draw_distinct_by::<Portable>(rng, index, weight)
-    }
-
-    /// [`Table::draw_distinct`] by another [`Kernel`]: the same bits.
-    #[inline(always)]
-    pub fn draw_distinct_by<K: Kernel>(
+    pub fn draw_distinct(
         &mut self,
         rng: &mut Rng,
         index: &mut [u32],
@@ -57,7 +51,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
             let mixture = self.mixture().unwrap_or(Mixture::uniform(items));
             // What has been taken is met by a uniform draw only.
             let left = 1.0 - mixture.uniform * (drawn as f64 / f64::from(items));
-            let item = self.draw_left::<K>(&mixture, left, rng);
+            let item = self.draw_left(&mixture, left, rng);
             let chance = self.probability_in(&mixture, item) / left;
             if let Some(out) = weight.as_mut().and_then(|weight| weight.get_mut(drawn)) {
                 *out = ((1.0 / chance + (batch - (drawn + 1) as f64)) / f64::from(items)) as f32;
@@ -66,12 +60,12 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
                 *out = item;
             }
             self.turn(item);
-            self.refresh::<K>(item);
+            self.refresh(item);
         }
         for &item in index.iter() {
             self.turn(item);
             if self.state.scale == scale {
-                self.refresh::<K>(item);
+                self.refresh(item);
             }
         }
         if self.state.scale != scale {
@@ -84,10 +78,10 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
 
     /// Draws until an item has not been taken, of which a draw has the probability `left`.
     #[inline(always)]
-    fn draw_left<K: Kernel>(&self, mixture: &Mixture, left: f64, rng: &mut Rng) -> u32 {
+    fn draw_left(&self, mixture: &Mixture, left: f64, rng: &mut Rng) -> u32 {
         let (mut item, mut expected) = ([0], 0.0);
         while expected < PATIENCE {
-            self.draw_mixture::<K, 1>(mixture, 1.0, rng, &mut item, None);
+            self.draw_mixture::<1>(mixture, 1.0, rng, &mut item, None);
             if !self.is_taken(item[0]) {
                 return item[0];
             }

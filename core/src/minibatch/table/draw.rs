@@ -1,7 +1,7 @@
 //! Drawing batches with replacement.
 
 use super::mixture::{Mixture, Ways};
-use super::{ARITY, Block, CHILDREN, Kernel, Levels, Node, Portable, Table, tree};
+use super::{ARITY, Block, CHILDREN, Kernel, Levels, Node, Table, tree};
 use crate::Error;
 use crate::rng::Rng;
 
@@ -10,7 +10,7 @@ pub(super) const CHUNK: usize = 64;
 /// How many nodes the first cache holds beside what else a draw needs.
 const NEAR: usize = 128;
 
-impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
+impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// Draws items with replacement, independent of each other.
     ///
     /// `weight`, as long as `index`, becomes 1 / (N p) of each: gradients times weights, averaged over the batch,
@@ -24,28 +24,17 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// uniform fraction are 0.
     #[inline(always)]
     pub fn draw(&self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
-        self.draw_by::<Portable>(rng, index, weight)
-    }
-
-    /// [`Table::draw`] by another [`Kernel`]: the same bits.
-    #[inline(always)]
-    pub fn draw_by<K: Kernel>(
-        &self,
-        rng: &mut Rng,
-        index: &mut [u32],
-        weight: Option<&mut [f32]>,
-    ) -> Result<(), Error> {
         check_lengths(index, &weight)?;
         if index.is_empty() {
             return Ok(());
         }
-        self.draw_mixture::<K, CHUNK>(&self.mixture()?, f64::from(self.state.items), rng, index, weight);
+        self.draw_mixture::<CHUNK>(&self.mixture()?, f64::from(self.state.items), rng, index, weight);
         Ok(())
     }
 
     /// As [`Table::draw`], for a mixture of its own and checked lengths; weights are 1 / (`factor` p).
     #[inline(always)]
-    pub(super) fn draw_mixture<K: Kernel, const AT_ONCE: usize>(
+    pub(super) fn draw_mixture<const AT_ONCE: usize>(
         &self,
         mixture: &Mixture,
         factor: f64,
@@ -54,7 +43,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         weight: Option<&mut [f32]>,
     ) {
         let seed = rng.next_u64();
-        self.draw_at::<K, AT_ONCE>(mixture, factor, index, weight, |k| noise(seed, k));
+        self.draw_at::<AT_ONCE>(mixture, factor, index, weight, |k| noise(seed, k));
     }
 
     /// As [`Table::draw`], one draw from each of as many equal parts of the line of probabilities as there are draws:
@@ -64,17 +53,6 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     /// Those drawn uniformly come first, and both in the order of the data set: use the batch as a whole.
     #[inline(always)]
     pub fn draw_stratified(&self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
-        self.draw_stratified_by::<Portable>(rng, index, weight)
-    }
-
-    /// [`Table::draw_stratified`] by another [`Kernel`]: the same bits.
-    #[inline(always)]
-    pub fn draw_stratified_by<K: Kernel>(
-        &self,
-        rng: &mut Rng,
-        index: &mut [u32],
-        weight: Option<&mut [f32]>,
-    ) -> Result<(), Error> {
         check_lengths(index, &weight)?;
         if index.is_empty() {
             return Ok(());
@@ -82,14 +60,14 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         let mixture = self.mixture()?;
         let seed = rng.next_u64();
         let width = u64::MAX / (index.len() as u64).max(1);
-        self.draw_at::<K, CHUNK>(&mixture, f64::from(self.state.items), index, weight, |k| {
+        self.draw_at::<CHUNK>(&mixture, f64::from(self.state.items), index, weight, |k| {
             k.wrapping_mul(width).wrapping_add(high_product(noise(seed, k), width))
         });
         Ok(())
     }
 
     #[inline(always)]
-    fn draw_at<K: Kernel, const AT_ONCE: usize>(
+    fn draw_at<const AT_ONCE: usize>(
         &self,
         mixture: &Mixture,
         factor: f64,
@@ -122,7 +100,11 @@ struct Descent<'a> {
 }
 
 impl<'a> Descent<'a> {
-    fn new<I: AsRef<[f32]>, S: AsRef<[i64]>>(table: &'a Table<I, S>, mixture: &Mixture, factor: f64) -> Self {
+    fn new<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel>(
+        table: &'a Table<I, S, K>,
+        mixture: &Mixture,
+        factor: f64,
+    ) -> Self {
         let (by_weight, by_item) = mixture.factors(factor);
         Descent {
             blocks: table.blocks(),

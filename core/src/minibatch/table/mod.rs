@@ -27,6 +27,7 @@ pub use shard::{Shard, allocate};
 pub use tree::{CHILDREN, Node};
 
 use crate::Error;
+use core::marker::PhantomData;
 use mixture::Mixture;
 use tree::{Levels, MAX_BLOCKS};
 
@@ -88,14 +89,17 @@ pub struct State {
 /// table.update(&index, &importance, 0.3)?;
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
+///
+/// `K` is what draws and updates consist of: [`Portable`], unless [`Table::with_kernel`] takes another.
 #[derive(Clone, Debug)]
-pub struct Table<I, S> {
+pub struct Table<I, S, K = Portable> {
     importance: I,
     sums: S,
     /// How many blocks there is room for, and the tree over them.
     blocks: usize,
     levels: Levels,
     state: State,
+    kernel: PhantomData<K>,
 }
 
 impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
@@ -123,7 +127,32 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         if blocks * ARITY < state.items as usize {
             return Err(Error::Memory);
         }
-        Ok(Table { importance, sums, blocks, levels: Levels::new(blocks), state })
+        Ok(Table { importance, sums, blocks, levels: Levels::new(blocks), state, kernel: PhantomData })
+    }
+
+    /// The same table, drawn from and updated by other code, which gives the same bits.
+    #[inline(always)]
+    pub fn with_kernel<K: Kernel>(self) -> Table<I, S, K> {
+        let Table { importance, sums, blocks, levels, state, .. } = self;
+        Table { importance, sums, blocks, levels, state, kernel: PhantomData }
+    }
+}
+
+impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
+    /// Sets the part of draws that are uniform over the items, 0..=1: no weight is above its reciprocal. 0 draws by
+    /// importance alone, 1 uniformly. Small fractions let weights explode when an importance has become out of date.
+    ///
+    /// Errors: [`Error::NotFinite`], [`Error::Range`].
+    pub fn set_uniform_fraction(&mut self, fraction: f32) -> Result<(), Error> {
+        if !fraction.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        if !(0.0..=1.0).contains(&fraction) {
+            return Err(Error::Range);
+        }
+        // Turns -0 into 0.
+        self.state.uniform_fraction = fraction + 0.0;
+        Ok(())
     }
 
     /// What is needed to take up the memory again.
@@ -259,22 +288,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         }
         table.rebuild();
         Ok(table)
-    }
-
-    /// Sets the part of draws that are uniform over the items, 0..=1: no weight is above its reciprocal. 0 draws by
-    /// importance alone, 1 uniformly. Small fractions let weights explode when an importance has become out of date.
-    ///
-    /// Errors: [`Error::NotFinite`], [`Error::Range`].
-    pub fn set_uniform_fraction(&mut self, fraction: f32) -> Result<(), Error> {
-        if !fraction.is_finite() {
-            return Err(Error::NotFinite);
-        }
-        if !(0.0..=1.0).contains(&fraction) {
-            return Err(Error::Range);
-        }
-        // Turns -0 into 0.
-        self.state.uniform_fraction = fraction + 0.0;
-        Ok(())
     }
 }
 

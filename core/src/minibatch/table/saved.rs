@@ -3,7 +3,7 @@
 //! Little-endian: the magic "nf_table", version u32, items u32, scale f64, uniform fraction f32, CRC-32 of all other
 //! bytes u32, and an f32 for each item. The sums are made again: they are the same.
 
-use super::{State, Table, is_scale};
+use super::{Kernel, State, Table, is_scale};
 use crate::Error;
 use crate::checksum::Crc;
 
@@ -20,7 +20,7 @@ pub const fn saved_len(items: u32) -> usize {
     if len <= isize::MAX as u64 { len as usize } else { 0 }
 }
 
-impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
+impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// Writes the table to exactly [`saved_len`] bytes. A table loaded from them draws the same items from the same
     /// generator.
     ///

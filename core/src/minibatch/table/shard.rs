@@ -2,7 +2,7 @@
 
 use super::draw::{CHUNK, check_lengths};
 use super::mixture::Mixture;
-use super::{Kernel, Portable, Table};
+use super::{Kernel, Table};
 use crate::Error;
 use crate::rng::Rng;
 
@@ -109,7 +109,7 @@ pub fn allocate(
     Ok(())
 }
 
-impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
+impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// What other processes must know of this table.
     pub fn shard(&self) -> Shard {
         Shard { importance: self.total(), items: u64::from(self.state.items) }
@@ -148,18 +148,6 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
         index: &mut [u32],
         weight: Option<&mut [f32]>,
     ) -> Result<(), Error> {
-        self.draw_shard_by::<Portable>(all, rng, index, weight)
-    }
-
-    /// [`Table::draw_shard`] by another [`Kernel`]: the same bits.
-    #[inline(always)]
-    pub fn draw_shard_by<K: Kernel>(
-        &self,
-        all: &Shard,
-        rng: &mut Rng,
-        index: &mut [u32],
-        weight: Option<&mut [f32]>,
-    ) -> Result<(), Error> {
         check_lengths(index, &weight)?;
         if !all.importance.is_finite() {
             return Err(Error::NotFinite);
@@ -178,7 +166,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
             return Err(Error::NoSamples);
         }
         let mixture = Mixture::of(self.sum(), self.state.items, uniform / share)?;
-        self.draw_mixture::<K, CHUNK>(&mixture, share * all.items as f64, rng, index, weight);
+        self.draw_mixture::<CHUNK>(&mixture, share * all.items as f64, rng, index, weight);
         Ok(())
     }
 }

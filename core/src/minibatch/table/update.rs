@@ -14,7 +14,7 @@ const LARGEST_SUM: i64 = 1 << 62;
 /// The sum stays above this times the number of blocks, so that rounding a block's weight changes little.
 const LEAST_WEIGHT: i64 = 1 << 16;
 
-impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S> {
+impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> Table<I, S, K> {
     /// Sets the importance of the visited items: `q = momentum q + (1 - momentum) importance` (line 13 of Algorithm 3,
     /// (6.11)), one after the other, so that an item that comes twice is changed twice. Momentum 0 forgets the old
     /// value; .3 is a good choice.
@@ -27,12 +27,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     /// importance, or a momentum outside 0..=1; [`Error::NotFinite`].
     #[inline(always)]
     pub fn update(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
-        self.update_by::<Portable>(index, importance, momentum)
-    }
-
-    /// [`Table::update`] by another [`Kernel`]: the same bits.
-    #[inline(always)]
-    pub fn update_by<K: Kernel>(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
         check_importances(importance)?;
         if !momentum.is_finite() {
             return Err(Error::NotFinite);
@@ -54,7 +48,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
                 }
             }
             let mix = |&q: &f32| move |old: f32| (momentum * old + fresh * q + 0.0).min(f32::MAX);
-            in_range &= self.change::<K, _>(index.iter().copied().zip(importance.iter().map(mix)));
+            in_range &= self.change(index.iter().copied().zip(importance.iter().map(mix)));
         }
         self.restore_scale(in_range);
         Ok(())
@@ -82,7 +76,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
         } else {
             let mut in_range = true;
             for (chunk, start) in importance.chunks(CHUNK).zip((first..).step_by(CHUNK)) {
-                in_range &= self.change::<Portable, _>((start..).zip(chunk.iter().map(|&q| move |_| q + 0.0)));
+                in_range &= self.change((start..).zip(chunk.iter().map(|&q| move |_| q + 0.0)));
             }
             self.restore_scale(in_range);
         }
@@ -95,12 +89,6 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative number.
     #[inline(always)]
     pub fn add_epsilon(&mut self, epsilon: f32) -> Result<(), Error> {
-        self.add_epsilon_by::<Portable>(epsilon)
-    }
-
-    /// [`Table::add_epsilon`] by another [`Kernel`]: the same bits.
-    #[inline(always)]
-    pub fn add_epsilon_by<K: Kernel>(&mut self, epsilon: f32) -> Result<(), Error> {
         check_importances(&[epsilon])?;
         let items = self.state.items as usize;
         let scale = self.state.scale;
@@ -120,15 +108,15 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
 
     /// Makes the sums follow an item whose importance has been changed.
     #[inline(always)]
-    pub(super) fn refresh<K: Kernel>(&mut self, item: u32) {
-        let in_range = self.change::<K, _>(core::iter::once((item, |q| q)));
+    pub(super) fn refresh(&mut self, item: u32) {
+        let in_range = self.change(core::iter::once((item, |q| q)));
         self.restore_scale(in_range);
     }
 
     /// At most [`CHUNK`] changes: an item, and its new importance from the old. False if the sums are beyond their
     /// range, and wrong until they are built again.
     #[inline(always)]
-    fn change<K: Kernel, F: Fn(f32) -> f32>(&mut self, changes: impl Iterator<Item = (u32, F)>) -> bool {
+    fn change<F: Fn(f32) -> f32>(&mut self, changes: impl Iterator<Item = (u32, F)>) -> bool {
         let scale = self.state.scale;
         let levels = self.levels;
         let (blocks, nodes) = self.parts();
