@@ -2,6 +2,7 @@
 
 use super::figure::Figure;
 use super::template;
+use crate::measure::table as measured;
 use anyhow::Result;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -68,6 +69,38 @@ pub(crate) fn headings(words: &[&str], more: impl IntoIterator<Item = String>) -
     words.iter().map(|&word| word.to_owned()).chain(more).collect()
 }
 
+/// A table's columns: one by one, or between bars.
+pub(crate) trait Columns {
+    fn list(&self) -> Vec<String>;
+}
+
+impl Columns for str {
+    fn list(&self) -> Vec<String> {
+        self.split(" | ").map(str::to_owned).collect()
+    }
+}
+
+impl<T: AsRef<str>> Columns for [T] {
+    fn list(&self) -> Vec<String> {
+        self.iter().map(|column| column.as_ref().to_owned()).collect()
+    }
+}
+
+impl<T: AsRef<str>, const N: usize> Columns for [T; N] {
+    fn list(&self) -> Vec<String> {
+        self[..].list()
+    }
+}
+
+impl<T: AsRef<str>> Columns for Vec<T> {
+    fn list(&self) -> Vec<String> {
+        self[..].list()
+    }
+}
+
+/// A cell's figure, of the numbers that it sums up; none of no number.
+pub(crate) type Show = fn(&[f64]) -> Option<Figure>;
+
 #[derive(Default)]
 pub(crate) struct Chapter {
     title: String,
@@ -101,39 +134,63 @@ impl Chapter {
         self.settings.insert(name.into(), value.into());
     }
 
-    /// `columns`: their headings; what stands in the first `words` of them is aligned left.
+    /// What stands in the first `words` of the columns is aligned left.
     pub(crate) fn table(
         &mut self,
         name: &'static str,
-        columns: &[impl AsRef<str>],
+        columns: &(impl Columns + ?Sized),
         words: usize,
         rows: Vec<Vec<Cell>>,
     ) {
-        let columns = columns.iter().map(|column| column.as_ref().to_owned()).collect();
-        self.tables.push(Table { name, section: self.section.clone(), columns, words, rows });
+        self.tables.push(Table { name, section: self.section.clone(), columns: columns.list(), words, rows });
     }
 
-    /// A table with a row for each of `down` and a column for each of `across`; the words of a row stand under `words`.
+    /// A table with a row for each of `down` and a column for each of `across`; the words of a row stand under `lead`.
     /// A row without any cell is left out.
     pub(crate) fn grid<D, A>(
         &mut self,
         name: &'static str,
-        words: &[&str],
+        lead: (usize, &str),
         down: impl IntoIterator<Item = (Vec<Cell>, D)>,
-        across: &[(String, A)],
+        across: &[(impl AsRef<str>, A)],
         cell: impl Fn(&D, &A) -> Result<Cell>,
     ) -> Result<()> {
+        let (words, mut columns) = (lead.0, lead.1.list());
+        let first = columns.len();
         let mut rows = Vec::new();
         for (mut cells, of) in down {
             for (_, at) in across {
                 cells.push(cell(&of, at)?);
             }
-            if cells[words.len()..].iter().any(|cell| !matches!(cell, Cell::Missing)) {
+            if cells[first..].iter().any(|cell| !matches!(cell, Cell::Missing)) {
                 rows.push(cells);
             }
         }
-        self.table(name, &headings(words, across.iter().map(|(heading, _)| heading.clone())), words.len(), rows);
+        columns.extend(across.iter().map(|(heading, _)| heading.as_ref().to_owned()));
+        self.table(name, &columns, words, rows);
         Ok(())
+    }
+
+    /// The same of a program's table: a row for each different cells of the columns `down` (each with its heading), a
+    /// column for each cell of `across`, whose word stands for the braces of a heading; of what is left, `of` is shown.
+    pub(crate) fn pivot(
+        &mut self,
+        name: &'static str,
+        table: &measured::Table,
+        down: &[(&str, &str)],
+        (across, heading): (&str, &str),
+        (of, show): (&str, Show),
+    ) -> Result<()> {
+        let keys: Vec<&str> = down.iter().map(|(column, _)| *column).collect();
+        let rows = table.kinds(&keys)?;
+        let rows = rows.into_iter().map(|kind| (kind.iter().copied().map(Cell::from).collect(), kind));
+        let columns = table.headings(across, |word| heading.replace("{}", word))?;
+        let lead: Vec<&str> = down.iter().map(|(_, heading)| *heading).collect();
+        self.grid(name, (down.len(), &lead.join(" | ")), rows, &columns, |kind, word| {
+            let mut wanted: Vec<(&str, &str)> = keys.iter().copied().zip(kind.iter().copied()).collect();
+            wanted.push((across, word));
+            Ok(show(&table.numbers_of(of, &wanted)?).into())
+        })
     }
 
     pub(crate) fn json(&self) -> Value {

@@ -53,7 +53,7 @@ impl Unit {
 }
 
 /// Rounded to so many digits, without an exponent.
-fn significant(value: f64, digits: i32) -> String {
+pub(super) fn significant(value: f64, digits: i32) -> String {
     let before = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
     format!("{value:.*}", (digits - 1 - before).max(0) as usize)
 }
@@ -95,6 +95,20 @@ impl Figure {
     /// The mean, as [`Figure::brief`].
     pub(crate) fn mean(values: &[f64], unit: Unit) -> Option<Self> {
         (!values.is_empty()).then(|| Self::brief(Estimate::mean(values), unit))
+    }
+
+    /// What was measured once, if it is a number.
+    pub(crate) fn once(values: &[f64], unit: Unit) -> Option<Self> {
+        values.first().filter(|value| value.is_finite()).map(|&value| Self::exact(value, unit))
+    }
+
+    /// a / b, pair by pair.
+    pub(crate) fn ratio(a: &[f64], b: &[f64]) -> Self {
+        Self::new(Estimate::ratio(a, b), Unit::Ratio)
+    }
+
+    pub(crate) fn count(count: usize) -> Self {
+        Self::exact(count as f64, Unit::Count)
     }
 
     /// Without an interval: a count, or the largest of several figures.

@@ -19,6 +19,7 @@ mod outcome;
 pub(crate) mod pixels;
 mod plan;
 mod points;
+mod prelude;
 mod program;
 mod python;
 mod run;
@@ -31,7 +32,7 @@ pub(crate) mod targets;
 pub(crate) mod template;
 
 use crate::measure::output::Output;
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use chapter::Chapter;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
@@ -185,13 +186,6 @@ pub(crate) struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// Compiles the programs that the chapter runs, in the order of its list.
-    fn build<const N: usize>(&self) -> Result<[PathBuf; N]> {
-        let programs = program::build(self.programs, &self.plan)?;
-        self.compiled();
-        programs.try_into().map_err(|programs| anyhow!("{N} programs are run, not {programs:?}"))
-    }
-
     /// To be called once everything is compiled: a chapter's time is counted from here.
     pub(crate) fn compiled(&self) {
         self.clock.restart();

@@ -1,12 +1,13 @@
-//! Measurement programs of the package noisefloor-bench: building them, running them.
+//! Measurement programs of the package noisefloor-bench: building them, running them, their tables.
 
 use super::Report;
 use super::plan::Plan;
-use crate::measure::running;
+use crate::measure::{running, table::Table};
 use anyhow::{Context, Result};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Stdio;
+use tempfile::TempDir;
 use xtask::{library, run};
 
 /// Compiles bench targets, all in one call so that they compile side by side, and returns the programs, in the order of
@@ -28,10 +29,30 @@ pub(super) fn build(names: &[&str], plan: &Plan) -> Result<Vec<PathBuf>> {
     names.iter().map(find).collect()
 }
 
-/// Runs a program, as large as the report is to be; it writes its tables to `folder`.
-pub(super) fn measure(report: &Report, program: &Path, folder: &Path) -> Result<()> {
-    let mut command = run::command(program);
-    command.arg("--output").arg(folder).args(report.plan.option());
-    // Its output is for people; what is needed is in the tables.
-    running::run(command, |_| Ok(())).map(|_| ())
+/// The folder that programs have written their tables to.
+pub(super) struct Tables(TempDir);
+
+impl Tables {
+    pub(super) fn new() -> Result<Self> {
+        Ok(Self(tempfile::tempdir().context("cannot create a temporary folder")?))
+    }
+
+    pub(super) fn read(&self, name: &str) -> Result<Table> {
+        Table::of_file(&self.0.path().join(format!("{name}.csv")))
+    }
+
+    /// Runs a program, as large as the report is to be. Its output is for people; what is needed is in the tables.
+    pub(super) fn measure(&self, report: &Report, mut program: std::process::Command) -> Result<()> {
+        program.arg("--output").arg(self.0.path()).args(report.plan.option());
+        running::run(program, |_| Ok(())).map(|_| ())
+    }
+}
+
+/// Compiles and runs the chapter's programs.
+pub(super) fn measure(report: &Report) -> Result<Tables> {
+    let programs = build(report.programs, &report.plan)?;
+    report.compiled();
+    let tables = Tables::new()?;
+    programs.iter().try_for_each(|program| tables.measure(report, run::command(program)))?;
+    Ok(tables)
 }

@@ -1,5 +1,6 @@
 //! Tables that programs write: a line of headings, then rows of as many cells.
 
+use crate::chapters::statistics::Estimate;
 use anyhow::{Context, Result, bail};
 use std::path::Path;
 use std::str::FromStr;
@@ -26,6 +27,13 @@ impl Table {
         Self::parse(&text, &name, separator)
     }
 
+    /// The same, divided by semicolons if the headings are, otherwise by commas.
+    pub(crate) fn of_file(path: &Path) -> Result<Self> {
+        let headings = std::fs::read_to_string(path).unwrap_or_default();
+        let has_semicolons = headings.lines().next().is_some_and(|line| line.contains(';'));
+        Self::read(path, if has_semicolons { ';' } else { ',' })
+    }
+
     /// As [`Table::read`], of what was read already.
     pub(crate) fn parse(text: &str, name: &str, separator: char) -> Result<Self> {
         let cells = |line: &str| line.split(separator).map(str::to_owned).collect::<Vec<_>>();
@@ -49,18 +57,17 @@ impl Table {
 
     /// The rows whose cell under a heading is this.
     pub(crate) fn only(&self, heading: &str, word: &str) -> Result<Self> {
-        let column = self.column(heading)?;
-        let rows = self.rows.iter().filter(|row| row[column] == word).cloned().collect();
-        Ok(Self { name: self.name.clone(), headings: self.headings.clone(), rows })
+        self.column(heading)?;
+        Ok(self.of(&[(heading, word)]))
+    }
+
+    /// The rows with these cells under these headings.
+    pub(crate) fn of(&self, wanted: &[(&str, &str)]) -> Self {
+        let rows = self.rows().filter(|row| row.has(wanted)).map(|row| row.cells.to_vec()).collect();
+        Self { name: self.name.clone(), headings: self.headings.clone(), rows }
     }
 
     /// A column, row by row.
-    pub(crate) fn words(&self, heading: &str) -> Result<Vec<&str>> {
-        let column = self.column(heading)?;
-        Ok(self.rows.iter().map(|row| row[column].as_str()).collect())
-    }
-
-    /// The same as numbers.
     pub(crate) fn numbers(&self, heading: &str) -> Result<Vec<f64>> {
         self.column(heading)?;
         self.rows().map(|row| row.number(heading)).collect()
@@ -78,13 +85,19 @@ impl Table {
 
     /// The different cells of a column, in the order in which they come.
     pub(crate) fn distinct(&self, heading: &str) -> Result<Vec<&str>> {
-        let mut words = Vec::new();
-        for word in self.words(heading)? {
-            if !words.contains(&word) {
-                words.push(word);
+        Ok(self.kinds(&[heading])?.concat())
+    }
+
+    /// The different cells of some columns together, in the order in which they come.
+    pub(crate) fn kinds(&self, headings: &[&str]) -> Result<Vec<Vec<&str>>> {
+        let mut kinds = Vec::new();
+        for row in self.rows() {
+            let kind = headings.iter().map(|heading| row.word(heading)).collect::<Result<Vec<_>>>()?;
+            if !kinds.contains(&kind) {
+                kinds.push(kind);
             }
         }
-        Ok(words)
+        Ok(kinds)
     }
 
     fn column(&self, heading: &str) -> Result<usize> {
@@ -103,6 +116,11 @@ impl<'a> Row<'a> {
         let word = self.word(heading)?;
         let number = word.parse().ok();
         number.with_context(|| format!("{}: `{word}` in column `{heading}` is no number", self.table.name))
+    }
+
+    /// The ratio of a row that has one, with its interval; `count` is the column of its repetitions.
+    pub(crate) fn ratio(&self, count: &str) -> Result<Estimate> {
+        Ok(Estimate::of_logarithm(self.number("ratio")?, self.number("half_width")?, self.number(count)?))
     }
 
     /// None for an empty cell.
@@ -125,7 +143,7 @@ mod tests {
         let table = Table::parse("name;n;x\na, b;1;2.5e-1\nc;2;\na, b;4;3\n", "t.csv", ';')?;
         assert_eq!(table.distinct("name")?, ["a, b", "c"]);
         let some = table.only("name", "a, b")?;
-        assert_eq!((some.words("n")?, some.numbers("x")?), (vec!["1", "4"], vec![0.25, 3.0]));
+        assert_eq!((some.distinct("n")?, some.numbers("x")?), (vec!["1", "4"], vec![0.25, 3.0]));
         let rows: Vec<_> = table.rows().collect();
         assert_eq!(
             (rows[0].number::<u32>("n")?, rows[0].optional("x")?, rows[1].optional("x")?),

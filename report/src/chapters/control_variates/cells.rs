@@ -58,7 +58,7 @@ impl Cell {
             dims: row.number("dims")?,
             n: row.number("n")?,
             setting: Setting::read(row)?,
-            ratio: ratio(row)?,
+            ratio: row.ratio("repetitions")?,
             ns: row.number("ns")?,
             mean_ns: row.number("mean_ns")?,
         })
@@ -68,11 +68,6 @@ impl Cell {
     fn gain(&self, cost: f64) -> f64 {
         (self.mean_ns + cost) / (self.ns + cost) / self.ratio.value.max(LEAST).powi(2)
     }
-}
-
-/// The ratio of a row that has one, with its interval.
-pub(super) fn ratio(row: Row) -> Result<Estimate> {
-    Ok(Estimate::of_logarithm(row.number("ratio")?, row.number("half_width")?, row.number("repetitions")?))
 }
 
 /// A setting over several integrands.
@@ -92,7 +87,7 @@ pub(super) struct Summary {
 
 impl Summary {
     /// None for no cells.
-    pub(super) fn new(setting: &Setting, cells: &[&Cell]) -> Option<Self> {
+    fn new(setting: &Setting, cells: &[&Cell]) -> Option<Self> {
         let worst = cells.iter().max_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value))?;
         let count = cells.len() as f64;
         let largest = |end: &dyn Fn(&Estimate) -> f64| cells.iter().map(|cell| end(&cell.ratio)).fold(0.0, f64::max);
@@ -159,14 +154,10 @@ impl Cells {
         let mut settings: Vec<&Setting> = here.iter().map(|cell| &cell.setting).collect();
         settings.sort();
         settings.dedup();
-        let of = |setting: &Setting| -> Vec<&Cell> {
-            here.iter().copied().filter(|cell| &cell.setting == setting).collect()
-        };
+        let of = |setting| here.iter().copied().filter(|cell| &cell.setting == setting).collect();
         let complete = settings.into_iter().map(|setting| (setting, of(setting)));
-        complete
-            .filter(|(_, cells)| cells.len() == integrands)
-            .filter_map(|(setting, cells)| Summary::new(setting, &cells))
-            .collect()
+        let complete = complete.filter(|(_, cells): &(_, Vec<&Cell>)| cells.len() == integrands);
+        complete.filter_map(|(setting, cells)| Summary::new(setting, &cells)).collect()
     }
 }
 
@@ -207,7 +198,7 @@ mod tests {
     fn the_lower_end_of_a_cell_is_of_its_logarithm() -> Result<()> {
         let text = "ratio,half_width,repetitions\n2.231,4.18,27\n";
         let table = Table::parse(text, "grid.csv", ',')?;
-        let ratio = ratio(table.rows().next().expect("a row"))?;
+        let ratio = table.rows().next().expect("a row").ratio("repetitions")?;
         assert!((ratio.low - 2.231 * 2.231 / 6.411).abs() < 1e-9, "{ratio:?}");
         Ok(())
     }

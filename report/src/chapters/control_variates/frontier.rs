@@ -1,8 +1,7 @@
 //! Error against time: every setting of a family of integrands, and which of them no other beats in both.
 
-use super::cells::{Cells, MEAN, Summary};
-use crate::chapters::chapter::{Cell, Chapter, row};
-use crate::chapters::figure::{Figure, Unit};
+use super::cells::{Cells, MEAN, Setting, Summary};
+use crate::chapters::prelude::*;
 
 /// A family: name of the file, title, dims.
 const FAMILIES: [(&str, &str, [usize; 2]); 4] = [
@@ -21,84 +20,56 @@ pub(super) fn write(chapter: &mut Chapter, cells: &Cells) {
     chapter.setting("worst ratio of a safe setting", SAFE);
     chapter.setting("step of the frontier, percent", 100.0 * STEP);
     for (file, title, [low, high]) in FAMILIES {
-        family(chapter, cells, (file, title, [low, high]));
+        let inside = |dims: usize| (low..=high).contains(&dims);
+        let mut names: Vec<&str> =
+            cells.all.iter().filter(|cell| inside(cell.dims)).map(|cell| cell.integrand.as_str()).collect();
+        names.sort_unstable();
+        names.dedup();
+        chapter.section(&format!("Error against time, {title}"), "");
+        chapter.setting(format!("integrands, {title}"), names.join(", "));
+        let rows =
+            cells.counts.iter().flat_map(|&n| listed(n, &cells.summaries(inside, n), &cells.recommended(high, n)));
+        let columns = "samples | setting | error | worst | where | ns per sample | efficiency, free samples | \
+                       efficiency, 1 us samples | safe | what it is";
+        chapter.table(file, columns, 2, rows.collect());
     }
 }
 
-fn family(chapter: &mut Chapter, cells: &Cells, (file, title, [low, high]): (&'static str, &str, [usize; 2])) {
-    let inside = |dims: usize| (low..=high).contains(&dims);
-    let mut names: Vec<&str> =
-        cells.all.iter().filter(|cell| inside(cell.dims)).map(|c| c.integrand.as_str()).collect();
-    names.dedup();
-    names.sort_unstable();
-    names.dedup();
-    let mut rows = Vec::new();
-    for &n in &cells.counts {
-        let all = cells.summaries(inside, n);
-        let frontier = frontier(&all);
-        let recommended = cells.recommended(high.min(15), n);
-        let is_safe = |summary: &&Summary| is_safe(summary) == Some(true) && summary.setting.estimator != MEAN;
-        let best = all.iter().filter(is_safe).max_by(|a, b| a.gains[1].total_cmp(&b.gains[1]));
-        let advised = all.iter().find(|summary| summary.setting == recommended);
-        let mut listed: Vec<&Summary> = frontier.clone();
-        for extra in advised.into_iter().chain(best) {
-            if !listed.iter().any(|summary| summary.setting == extra.setting) {
-                listed.push(extra);
-            }
-        }
-        listed.sort_by(|a, b| a.ns.total_cmp(&b.ns));
-        for summary in listed {
-            let is = |other: Option<&Summary>| other.is_some_and(|other| other.setting == summary.setting);
-            let on = frontier.iter().any(|other| other.setting == summary.setting);
-            let roles = [(on, "frontier"), (is(advised), "recommended"), (is(best), "best safe one")];
-            let roles: Vec<&str> = roles.into_iter().filter(|(is, _)| *is).map(|(_, role)| role).collect();
-            rows.push(table_row(n, summary, &roles.join(", ")));
-        }
-    }
-    chapter.section(&format!("Error against time, {title}"), "");
-    let joined = names.join(", ");
-    chapter.setting(format!("integrands, {title}"), joined.as_str());
-    let columns = [
-        "samples",
-        "setting",
-        "error",
-        "worst",
-        "where",
-        "ns per sample",
-        "efficiency, free samples",
-        "efficiency, 1 us samples",
-        "safe",
-        "what it is",
-    ];
-    chapter.table(file, &columns, 2, rows);
-}
-
-fn table_row(n: usize, summary: &Summary, roles: &str) -> Vec<Cell> {
-    let ns = Figure::exact(summary.ns, Unit::Nanoseconds);
-    let [free, dear] = summary.gains.map(|gain| Figure::exact(gain, Unit::Ratio));
-    let worst = Figure::new(summary.worst, Unit::Ratio);
-    row![
-        n as u32,
-        summary.setting.name(),
-        Figure::new(summary.ratio, Unit::Ratio),
-        worst,
-        summary.place.clone(),
-        ns,
-        free,
-        dear,
-        safety(summary),
-        roles,
-    ]
+/// The frontier, what is recommended, and the best safe setting, by time.
+fn listed(n: usize, all: &[Summary], recommended: &Setting) -> Vec<Vec<Cell>> {
+    let frontier = frontier(all);
+    let is_safe = |summary: &&Summary| is_safe(summary) == Some(true) && summary.setting.estimator != MEAN;
+    let best = all.iter().filter(is_safe).max_by(|a, b| a.gains[1].total_cmp(&b.gains[1]));
+    let advised = all.iter().find(|summary| summary.setting == *recommended);
+    let is = |one: &Summary, other: Option<&Summary>| other.is_some_and(|other| other.setting == one.setting);
+    let on = |one: &Summary| frontier.iter().any(|other| is(one, Some(other)));
+    let mut listed: Vec<&Summary> = all.iter().filter(|one| on(one) || is(one, advised) || is(one, best)).collect();
+    listed.sort_by(|a, b| a.ns.total_cmp(&b.ns));
+    let row = |summary: &Summary| {
+        let roles =
+            [(on(summary), "frontier"), (is(summary, advised), "recommended"), (is(summary, best), "best safe one")];
+        let roles: Vec<&str> = roles.into_iter().filter(|(is, _)| *is).map(|(_, role)| role).collect();
+        let [free, dear] = summary.gains.map(|gain| Figure::exact(gain, Unit::Ratio));
+        row![
+            n as u32,
+            summary.setting.name(),
+            Figure::new(summary.ratio, Unit::Ratio),
+            Figure::new(summary.worst, Unit::Ratio),
+            summary.place.clone(),
+            Figure::exact(summary.ns, Unit::Nanoseconds),
+            free,
+            dear,
+            self::is_safe(summary).map_or("not decided", |is_safe| if is_safe { "yes" } else { "no" }),
+            roles.join(", "),
+        ]
+    };
+    listed.into_iter().map(row).collect()
 }
 
 /// None: the intervals do not decide.
 fn is_safe(summary: &Summary) -> Option<bool> {
     let [low, high] = summary.ends;
     if high <= SAFE { Some(true) } else { (low > SAFE).then_some(false) }
-}
-
-fn safety(summary: &Summary) -> &'static str {
-    is_safe(summary).map_or("not decided", |is_safe| if is_safe { "yes" } else { "no" })
 }
 
 /// Settings with less error than every faster one.
@@ -118,9 +89,7 @@ fn frontier(all: &[Summary]) -> Vec<&Summary> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::cells::Setting;
     use super::*;
-    use crate::chapters::statistics::Estimate;
 
     fn summary(order: usize, ratio: f64, ns: f64) -> Summary {
         let ratio = Estimate::exact(ratio);
