@@ -1,4 +1,4 @@
-//! What docs/mis.md, docs/choosing.md, docs/control_variates.md and docs/shared_fits.md say in words of any samples,
+//! What docs/mis.md, docs/choosing.md, docs/control_variates.md and docs/image_fits.md say in words of any samples,
 //! held against random ones. What needs a slow model or statistics is in the other tests of those services.
 
 use crate::cv_support::*;
@@ -111,7 +111,7 @@ proptest! {
         }
     }
 
-    /// shared_fits.md: but for the robust choice a pixel's own samples never shape its correction, and their order
+    /// image_fits.md: but for the robust choice a pixel's own samples never shape its correction, and their order
     /// never matters, within the rounding of a fit in `f32`.
     #[test]
     fn a_pixel_does_not_see_itself(
