@@ -1,39 +1,65 @@
-//! Many pixels and samples at once: what all samplers' `fill` share.
+//! Many pixels and samples at once, for renderers that work on whole images.
 
 use crate::error::Error;
 
-/// How many numbers so many dims of each domain are; `None` for more than memory holds.
-pub(crate) fn len(dims: impl Iterator<Item = usize>, width: usize, height: usize, samples: usize) -> Option<usize> {
-    let dims = dims.into_iter().try_fold(0_usize, |sum, dims| sum.checked_add(dims))?;
+/// A sampler of which [`fill`] draws.
+pub trait PixelSampler {
+    /// Writes what the sampler, moved by x columns and y rows, draws from the samples of a pixel: `dims` numbers, 1 to
+    /// 4, of each, every `stride`.
+    fn draw_pixel(&self, place: [u32; 2], dims: usize, stride: usize, u: &mut [f32]);
+}
+
+/// How many numbers [`fill`] writes; `None` for more than memory holds.
+pub fn fill_len<S>(domains: &[(S, usize)], width: usize, height: usize, samples: usize) -> Option<usize> {
+    let dims = domains.iter().try_fold(0_usize, |sum, (_, dims)| sum.checked_add(*dims))?;
     width.checked_mul(height)?.checked_mul(samples)?.checked_mul(dims)
 }
 
-/// Draws for `width x height` pixels, `samples` samples of each: `draw(sampler, [x, y], dims, stride, u)` writes the
-/// numbers that a sampler, moved by x columns and y rows, draws from a pixel's samples, every `stride`.
-#[inline(always)]
-pub(crate) fn fill<S>(
+/// Draws for `width x height` pixels, `samples` samples of each, in several domains: the same bits as single draws.
+///
+/// Each element of `domains` is a sampler, for the first pixel and sample, and how many numbers to draw from it, 1 to
+/// 4. `u[y][x][sample][..]` is what those samplers, moved by y rows, x columns and `sample` samples, draw, one after
+/// the other: [`fill_len`] numbers; more stay as they are.
+///
+/// # Errors
+/// [`Error::Range`] for dims outside 1 to 4 or sizes that overflow; [`Error::Memory`] if `u` is too short.
+///
+/// ```
+/// # #[cfg(feature = "sampler")] {
+/// use noisefloor::sampler::{Sampler, fill};
+///
+/// let sampler = Sampler::pixel(0, 0, 0, 0).domain(1);
+/// let mut u = [0.0; 3 * 2 * 2]; // 3 columns, 2 rows, 2 numbers
+/// fill(&[(sampler, 2)], 3, 2, 1, &mut u)?;
+/// assert_eq!(u[4..6], sampler.moved(2, 0, 0).draw::<2>());
+/// # }
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
+pub fn fill<S: PixelSampler>(
     domains: &[(S, usize)],
-    [width, height, samples]: [usize; 3],
+    width: usize,
+    height: usize,
+    samples: usize,
     u: &mut [f32],
-    draw: impl Fn(&S, [u32; 2], usize, usize, &mut [f32]),
 ) -> Result<(), Error> {
-    let dims = || domains.iter().map(|&(_, dims)| dims);
-    if !dims().all(|dims| (1..=4).contains(&dims)) {
+    if !domains.iter().all(|(_, dims)| (1..=4).contains(dims)) {
         return Err(Error::Range);
     }
-    let len = len(dims(), width, height, samples).ok_or(Error::Range)?;
+    let len = fill_len(domains, width, height, samples).ok_or(Error::Range)?;
     // Without domains or samples, as many places as there may be have nothing to draw.
     if len == 0 {
         return Ok(());
     }
     let u = u.get_mut(..len).ok_or(Error::Memory)?;
-    let sample = dims().fold(0_usize, usize::wrapping_add);
+    let sample = domains.iter().fold(0_usize, |sum, (_, dims)| sum.wrapping_add(*dims));
     let pixels = u.chunks_exact_mut(sample.wrapping_mul(samples).max(1));
     let places = (0..height).flat_map(|y| (0..width).map(move |x| [x as u32, y as u32]));
-    for (mut pixel, place) in pixels.zip(places) {
+    for (pixel, place) in pixels.zip(places) {
+        let mut first = 0;
         for (sampler, dims) in domains {
-            draw(sampler, place, *dims, sample, pixel);
-            pixel = pixel.get_mut(*dims..).unwrap_or_default();
+            let Some(rest) = pixel.get_mut(first..) else { break };
+            sampler.draw_pixel(place, *dims, sample, rest);
+            first = first.wrapping_add(*dims);
         }
     }
     Ok(())

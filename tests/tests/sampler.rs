@@ -229,7 +229,7 @@ fn filled_at_once() {
     assert_eq!(fill(&[(root(0), 5)], 1, 1, 1, &mut u), Err(Error::Range));
     assert_eq!(fill(&[(root(0), 0)], 1, 1, 1, &mut u), Err(Error::Range));
     assert_eq!(fill(&samplers, usize::MAX, 3, 5, &mut u), Err(Error::Range));
-    assert_eq!(fill(&[], usize::MAX, usize::MAX, 1, &mut u), Err(Error::Range));
+    assert_eq!(fill::<Sampler>(&[], usize::MAX, usize::MAX, 1, &mut u), Err(Error::Range));
     assert_eq!(fill(&samplers, 0, 3, 5, &mut []), Ok(()));
 }
 

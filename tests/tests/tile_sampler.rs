@@ -188,7 +188,7 @@ fn fill_gives_the_same_bits() {
     assert_eq!(fill(&domains, usize::MAX, 2, 1, &mut u), Err(Error::Range));
     assert!(u.iter().all(|&u| u == -1.0));
     assert_eq!(fill(&domains, 0, 5, 5, &mut []), Ok(()));
-    assert_eq!(fill(&[], 5, 5, 5, &mut []), Ok(()));
+    assert_eq!(fill::<Sampler>(&[], 5, 5, 5, &mut []), Ok(()));
 }
 
 /// Samples that share their hashes are the samples drawn one by one: of each kind of tile, from any first index, to

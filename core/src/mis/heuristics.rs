@@ -1,16 +1,4 @@
 //! The balance, power, cutoff and maximum heuristics (2.12-2.14).
-//!
-//! All four take, for one point x:
-//!
-//! - `pdf`: p_k(x) of each of the 1..=16 techniques, in any common measure, at least 0. Infinity stands for a delta
-//!   distribution: where any is infinite the finite ones count as 0, and the infinite ones are equally dense.
-//! - `counts`: n_k, the samples taken of each technique. One with n_k = 0 has no part in it, whatever its density.
-//! - `technique`: which one's weight is asked for.
-//!
-//! The weights of all techniques sum to one. Where every n_k p_k is 0, so that x cannot have been drawn, each is 0.
-//!
-//! Errors: [`Error::Range`] for a number of techniques outside 1..=16, slices of different lengths, a technique that
-//! does not exist or a negative density; [`Error::NotFinite`] for a density that is NaN.
 
 use super::MAX_TECHNIQUES;
 use crate::Error;
@@ -21,9 +9,17 @@ pub const DEFAULT_BETA: f32 = 2.0;
 
 /// The balance heuristic (2.12): `n_j p_j / sum_k n_k p_k`.
 ///
-/// Arguments and errors are the same for every heuristic: `pdf` holds each technique's density at the point (infinity
-/// is a delta distribution), `counts` its number of samples; [`Error::Range`] for slices that are not of one length in
-/// 1..=16, a technique that does not exist or a negative density, [`Error::NotFinite`] for a NaN.
+/// Arguments and errors are the same for every heuristic, at one point x:
+///
+/// - `pdf`: p_k(x) of each of the 1..=16 techniques, in any common measure, at least 0. Infinity stands for a delta
+///   distribution: where any is infinite the finite ones count as 0, and the infinite ones are equally dense.
+/// - `counts`: n_k, the samples taken of each technique. One with n_k = 0 has no part in it, whatever its density.
+/// - `technique`: which one's weight is asked for.
+///
+/// The weights of all techniques sum to one. Where every n_k p_k is 0, so that x cannot have been drawn, each is 0.
+///
+/// Errors: [`Error::Range`] for slices that are not of one length in 1..=16, a technique that does not exist or a
+/// negative density; [`Error::NotFinite`] for a NaN.
 ///
 /// ```
 /// // The point is three times as dense under the second technique; one sample of each.

@@ -13,7 +13,7 @@
 //! the balance estimate less what the samples got wrong about the densities' integrals, each of which is 1.
 
 use super::linear::{self, Factor, Matrix, Vector};
-use super::memory::{self, RecordMut, Sums};
+use super::memory::{Sums, SumsMut, sums_len};
 use super::{MAX_TECHNIQUES, len};
 use crate::Error;
 
@@ -157,11 +157,11 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         if estimate.len() != self.integrals {
             return Err(Error::Range);
         }
-        let factor = self.factor(solver)?;
         let (sums, rounds) = self.sums()?;
+        let factor = self.factor(solver)?;
         let scale = root_counts(&self.counts);
-        for (out, record) in estimate.iter_mut().zip(memory::records(sums.rest, self.techniques, self.integrals)) {
-            let value = match (&factor, solver) {
+        for (out, record) in estimate.iter_mut().zip(sums.records()) {
+            *out = to_f32(match (&factor, solver) {
                 (Some(factor), _) => {
                     let alpha = factor.solve_scaled(&scale, record.moment, rounds);
                     let error = sums.ratio.iter().zip(&alpha).map(|(ratio, alpha)| (ratio / rounds - 1.0) * alpha);
@@ -169,8 +169,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
                 }
                 (None, Solver::Progressive) => record.progressive / rounds,
                 (None, _) => record.balance / rounds,
-            };
-            *out = to_f32(value);
+            });
         }
         Ok(())
     }
@@ -184,21 +183,17 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         if self.integrals.checked_mul(self.techniques) != Some(alpha.len()) {
             return Err(Error::Range);
         }
-        let factor = self.factor(solver)?;
         let (sums, rounds) = self.sums()?;
+        let factor = self.factor(solver)?;
+        let (_, current) = self.split()?;
+        if solver == Solver::Progressive {
+            alpha.iter_mut().zip(current).for_each(|(out, &alpha)| *out = to_f32(alpha));
+            return Ok(());
+        }
         let scale = root_counts(&self.counts);
-        let rows = alpha.chunks_exact_mut(self.techniques.clamp(1, MAX_TECHNIQUES));
-        for (row, record) in rows.zip(memory::records(sums.rest, self.techniques, self.integrals)) {
-            match (&factor, solver) {
-                (Some(factor), _) => {
-                    let solved = factor.solve_scaled(&scale, record.moment, rounds);
-                    row.iter_mut().zip(solved).for_each(|(out, alpha)| *out = to_f32(alpha));
-                }
-                (None, Solver::Progressive) => {
-                    row.iter_mut().zip(record.alpha).for_each(|(out, &alpha)| *out = to_f32(alpha));
-                }
-                (None, _) => row.fill(0.0),
-            }
+        for (row, record) in alpha.chunks_exact_mut(self.techniques.max(1)).zip(sums.records()) {
+            let solved = factor.as_ref().map(|factor| factor.solve_scaled(&scale, record.moment, rounds));
+            row.iter_mut().zip(solved.unwrap_or_default()).for_each(|(out, alpha)| *out = to_f32(alpha));
         }
         Ok(())
     }
@@ -208,7 +203,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         solver.check()?;
         let (sums, rounds) = self.sums()?;
         let (n, scale) = (self.techniques, root_counts(&self.counts));
-        Ok(solver.factor(|| linear::scaled(sums.matrix, rounds, &scale, n), &scale, n, *sums.samples))
+        Ok(solver.factor(|| linear::scaled(sums.matrix, rounds, &scale, n), &scale, n, sums.samples))
     }
 
     fn sum_counts(&self) -> f64 {
@@ -217,9 +212,15 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
 
     /// The sums and the number of rounds R, which is positive.
     fn sums(&self) -> Result<(Sums<'_>, f64), Error> {
-        let sums = memory::sums(self.memory.as_ref(), self.techniques).ok_or(Error::Memory)?;
-        let rounds = *sums.samples / self.sum_counts();
+        let sums = Sums::of(self.split()?.0, self.techniques).ok_or(Error::Memory)?;
+        let rounds = sums.samples / self.sum_counts();
         if rounds > 0.0 { Ok((sums, rounds)) } else { Err(Error::NoSamples) }
+    }
+
+    /// All sums, and the progressive estimator's alphas.
+    fn split(&self) -> Result<(&[f64], &[f64]), Error> {
+        let at = sums_len(self.techniques, self.integrals);
+        self.memory.as_ref().split_at_checked(at).ok_or(Error::Memory)
     }
 }
 
@@ -262,7 +263,8 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         ratio.iter_mut().zip(pdf).for_each(|(ratio, &p)| *ratio = f64::from(p) / sum);
 
         let per_sample = 1.0 / self.sum_counts();
-        let sums = memory::sums_mut(self.memory.as_mut(), techniques).ok_or(Error::Memory)?;
+        let (sums, alphas) = self.split_mut()?;
+        let sums = SumsMut::of(sums, techniques).ok_or(Error::Memory)?;
         *sums.samples += 1.0;
         sums.ratio.iter_mut().zip(&ratio).for_each(|(sum, ratio)| *sum += ratio);
         let mut cells = sums.matrix.iter_mut();
@@ -271,8 +273,9 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
                 *cell += row * column;
             }
         }
-        for (&value, record) in value.iter().zip(memory::records_mut(sums.rest, techniques, self.integrals)) {
-            let RecordMut { balance, progressive, moment, alpha } = record;
+        let of_integrals = sums.records.zip(alphas.chunks_exact(techniques.max(1)));
+        for (&value, (record, alpha)) in value.iter().zip(of_integrals) {
+            let [balance, progressive, moment @ ..] = record else { break };
             let value = f64::from(value) / sum;
             *balance += value;
             // sum alpha, shared out over the round's samples, + (f - sum alpha p) / S.
@@ -309,16 +312,14 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         if solver == Solver::Progressive {
             return Err(Error::Unsupported);
         }
-        let factor = self.factor(solver)?;
         let (_, rounds) = self.sums()?;
-        let scale = root_counts(&self.counts);
-        let sums = memory::sums_mut(self.memory.as_mut(), self.techniques).ok_or(Error::Memory)?;
-        for record in memory::records_mut(sums.rest, self.techniques, self.integrals) {
-            let solved = match &factor {
-                Some(factor) => factor.solve_scaled(&scale, record.moment, rounds),
-                None => Vector::default(),
-            };
-            record.alpha.iter_mut().zip(solved).for_each(|(alpha, solved)| *alpha = solved);
+        let factor = self.factor(solver)?;
+        let (techniques, scale) = (self.techniques, root_counts(&self.counts));
+        let (sums, alphas) = self.split_mut()?;
+        let sums = Sums::of(sums, techniques).ok_or(Error::Memory)?;
+        for (alpha, record) in alphas.chunks_exact_mut(techniques.max(1)).zip(sums.records()) {
+            let solved = factor.as_ref().map(|factor| factor.solve_scaled(&scale, record.moment, rounds));
+            alpha.iter_mut().zip(solved.unwrap_or_default()).for_each(|(alpha, solved)| *alpha = solved);
         }
         Ok(())
     }
@@ -334,15 +335,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         if !(0.0..=1.0).contains(&beta) {
             return Err(Error::Range);
         }
-        let beta = f64::from(beta);
-        let sums = memory::sums_mut(self.memory.as_mut(), self.techniques).ok_or(Error::Memory)?;
-        *sums.samples *= beta;
-        sums.ratio.iter_mut().chain(sums.matrix).for_each(|sum| *sum *= beta);
-        for record in memory::records_mut(sums.rest, self.techniques, self.integrals) {
-            *record.balance *= beta;
-            *record.progressive *= beta;
-            record.moment.iter_mut().for_each(|sum| *sum *= beta);
-        }
+        self.split_mut()?.0.iter_mut().for_each(|sum| *sum *= f64::from(beta));
         Ok(())
     }
 
@@ -364,22 +357,18 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// # Ok::<(), noisefloor::Error>(())
     /// ```
     pub fn merge<N: AsRef<[f64]>>(&mut self, other: &OptimalMis<N>) -> Result<(), Error> {
-        let techniques = self.techniques;
-        if techniques != other.techniques || !same(&self.counts, &other.counts) || self.integrals != other.integrals {
+        let like = self.techniques == other.techniques && self.integrals == other.integrals;
+        if !like || !same(&self.counts, &other.counts) {
             return Err(Error::Mismatch);
         }
-        let from = memory::sums(other.memory.as_ref(), techniques).ok_or(Error::Memory)?;
-        let to = memory::sums_mut(self.memory.as_mut(), techniques).ok_or(Error::Memory)?;
-        *to.samples += from.samples;
-        let shared = to.ratio.iter_mut().chain(to.matrix);
-        shared.zip(from.ratio.iter().chain(from.matrix)).for_each(|(to, from)| *to += from);
-        let records = memory::records_mut(to.rest, techniques, self.integrals);
-        for (to, from) in records.zip(memory::records(from.rest, techniques, self.integrals)) {
-            *to.balance += from.balance;
-            *to.progressive += from.progressive;
-            to.moment.iter_mut().zip(from.moment).for_each(|(to, from)| *to += from);
-        }
+        let (from, _) = other.split()?;
+        self.split_mut()?.0.iter_mut().zip(from).for_each(|(to, from)| *to += from);
         Ok(())
+    }
+
+    fn split_mut(&mut self) -> Result<(&mut [f64], &mut [f64]), Error> {
+        let at = sums_len(self.techniques, self.integrals);
+        self.memory.as_mut().split_at_mut_checked(at).ok_or(Error::Memory)
     }
 }
 

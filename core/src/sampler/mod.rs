@@ -22,13 +22,13 @@
 //! assert!([x, y, a, b, c, d, e].iter().all(|u| (0.0..1.0).contains(u)));
 //! ```
 
-mod fill;
 mod net;
 pub mod table;
 
-pub use fill::fill;
+pub use crate::pixels::{fill, fill_len};
 
 use crate::hash::{GOLDEN, child, mix};
+use crate::pixels::PixelSampler;
 
 /// One sample of one pixel: 16 bytes, to be copied freely. Drawing does not change it. Any value of the fields is
 /// valid.
@@ -154,5 +154,12 @@ impl Sampler {
             [a, b, c, d, ..] => [*a, *b, *c, *d] = self.draw(),
             [] => {}
         }
+    }
+}
+
+impl PixelSampler for Sampler {
+    #[inline]
+    fn draw_pixel(&self, [x, y]: [u32; 2], dims: usize, stride: usize, u: &mut [f32]) {
+        self.moved(x, y, 0).draw_samples(dims, stride, u);
     }
 }

@@ -27,7 +27,6 @@
 //! ```
 
 mod builtin;
-mod fill;
 mod format;
 mod hash;
 mod net;
@@ -38,8 +37,8 @@ mod sequence;
 mod site;
 mod view;
 
+pub use crate::pixels::{fill, fill_len};
 pub use builtin::Builtin;
-pub use fill::{fill, fill_len};
 pub use format::{HEADER_BYTES, Header, KERNEL_BYTES, MAGIC, VERSION, quantize};
 pub use sampler::{Sampler, State};
 pub use view::{MAX_DIMS, MAX_FRAMES, MAX_SIZE, MAX_SPP, Shape, Tile};

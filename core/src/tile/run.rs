@@ -4,6 +4,7 @@ use super::point::{Net, netted};
 use super::sampler::{Sampler, State};
 use super::site::Site;
 use super::view::unit;
+use crate::pixels::PixelSampler;
 
 impl Sampler<'_> {
     /// Draws `dims` coordinates, 1 to 4, of this sample and of those that follow it: sample k's to `u[k * stride..]`,
@@ -68,5 +69,12 @@ impl Sampler<'_> {
             *u = self.moved(0, 0, k).draw();
             (rest, k) = (rest.get_mut(stride..).unwrap_or_default(), k.wrapping_add(1));
         }
+    }
+}
+
+impl PixelSampler for Sampler<'_> {
+    #[inline]
+    fn draw_pixel(&self, [x, y]: [u32; 2], dims: usize, stride: usize, u: &mut [f32]) {
+        self.moved(x, y, 0).draw_samples(dims, stride, u);
     }
 }
