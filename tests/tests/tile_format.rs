@@ -23,7 +23,7 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// The table of docs/tiles.md, field by field.
+/// The table of core/tiles/README.md, field by field.
 #[test]
 fn layout() {
     let payload: Vec<u8> = (0..SHAPE.payload_bytes()).map(|i| i as u8).collect();

@@ -1,4 +1,4 @@
-//! The `.nft` format, version 1: a header of 128 bytes, then the values; `docs/tiles.md` has the table.
+//! The `.nft` format, version 1: a header of 128 bytes, then the values; `core/tiles/README.md` has the table.
 
 use super::view::Shape;
 use crate::Error;

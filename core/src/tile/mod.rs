@@ -10,7 +10,7 @@
 //! - [`fill()`]: many pixels and samples at once, the same bits.
 //! - [`Header`]: how a tile is stored.
 //!
-//! `docs/tiles.md` has the format, the semantics and a renderer's loop.
+//! `docs/tiles.md` has the semantics and a renderer's calls, `core/tiles/README.md` the format.
 //!
 //! ```
 //! # #[cfg(feature = "tile-64-1spp-2d")] {
