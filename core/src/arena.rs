@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::lanes::{LANES, Lanes};
+use crate::matrix::{Triangle, packed_len};
 use crate::real::Real;
 
 /// A buffer that is given out piece by piece, front to back.
@@ -20,6 +21,20 @@ impl<'a, R: Real> Arena<'a, R> {
         let (part, rest) = core::mem::take(&mut self.rest).split_at_mut_checked(len).ok_or(Error::Memory)?;
         self.rest = rest;
         Ok(part)
+    }
+
+    /// The next `len` numbers, all zero.
+    #[inline(always)]
+    pub(crate) fn zeros(&mut self, len: usize) -> Result<&'a mut [R], Error> {
+        let part = self.take(len)?;
+        part.fill(R::ZERO);
+        Ok(part)
+    }
+
+    /// A packed triangle of `order` rows, with whatever they held.
+    #[inline(always)]
+    pub(crate) fn triangle(&mut self, order: usize) -> Result<Triangle<&'a mut [R]>, Error> {
+        Triangle::new(self.take(packed_len(order))?, order)
     }
 
     /// The next `panels` groups of eight numbers.

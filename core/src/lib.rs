@@ -53,6 +53,8 @@ mod hash;
 mod lanes;
 #[cfg(feature = "control-variate")]
 mod linalg;
+#[cfg(feature = "control-variate")]
+mod matrix;
 #[cfg(feature = "minibatch")]
 pub mod minibatch;
 #[cfg(feature = "mis")]

@@ -2,12 +2,13 @@
 
 use super::config::{Color, Config, Estimate, Estimator, Solver};
 use super::design::Design;
+use super::fit::{descent, givens};
 use super::fitter::{self, Fitter, Rule};
+use super::k_fold;
 use super::plan::{Plan, is_plain};
 use super::result::{self, Outcome};
 use super::samples::{Reader, Samples, Subset};
 use super::state::State;
-use super::{gradient_descent, k_fold, square_root};
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
@@ -37,13 +38,13 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
         return Ok(design);
     }
     let solve = match config.estimator {
-        Estimator::GradientDescent => gradient_descent::size(plan.columns, channels),
+        Estimator::GradientDescent => descent::size(plan.columns, channels),
         Estimator::KFold => k_fold::size::<R>(config, plan.columns, channels, n).ok_or(Error::Memory)?,
         Estimator::Incremental => {
             let state = State::<R>::new(config)?;
             return state.len().checked_add(state.workspace_len()).ok_or(Error::Memory);
         }
-        Estimator::LeastSquares if config.solver == Solver::SquareRoot => square_root::size(plan.columns, channels),
+        Estimator::LeastSquares if config.solver == Solver::SquareRoot => givens::size(plan.columns, channels),
         _ => fitter::size(n, plan.dual, plan.columns, channels).ok_or(Error::Memory)?,
     };
     design.checked_add(solve).ok_or(Error::Memory)
@@ -90,9 +91,9 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
     } else {
         match config.estimator {
             Estimator::KFold => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
-            Estimator::GradientDescent => gradient_descent::estimate(&design, config, &basis, None, &mut arena)?,
+            Estimator::GradientDescent => descent::estimate(&design, config, &basis, None, &mut arena)?,
             Estimator::LeastSquares if config.solver == Solver::SquareRoot => {
-                square_root::least_squares(&design, config, &basis, &mut arena)?
+                givens::least_squares(&design, config, &basis, &mut arena)?
             }
             // The incremental estimate went its own way above.
             Estimator::Robust | Estimator::LeaveOneOut | Estimator::LeastSquares | Estimator::Incremental => {

@@ -1,14 +1,14 @@
 //! A pixel's samples as a regression sees them: columns of functions, centred, and values, centred and scaled.
 
 use super::Config;
+use super::per_channel::PerChannel;
 use super::samples::{Reader, Subset};
 use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
-use crate::linalg::row_mut;
+use crate::matrix::{Panel, Triangle, at};
 use crate::real::Real;
-use crate::rows::{rows, rows_mut};
 
 /// The size of a control function about its mean, in epsilons of its size about zero, that is rounding noise.
 const NOISE: f64 = 64.0;
@@ -22,11 +22,11 @@ pub(crate) struct Design<'a, R> {
     /// Values of a sample.
     pub(crate) channels: usize,
     /// Panel after panel, each with one group of lanes for each column.
-    pub(crate) panels: &'a mut [Lanes<R>],
+    pub(crate) panels: Panel<&'a [Lanes<R>]>,
     /// Panel after panel, each with one group of lanes for each channel.
-    pub(crate) values: &'a mut [Lanes<R>],
+    pub(crate) values: Panel<&'a [Lanes<R>]>,
     /// What was subtracted from each column: its sample mean.
-    pub(crate) column_means: &'a mut [R],
+    pub(crate) column_means: &'a [R],
     /// How stored values map to the caller's.
     pub(crate) units: [Units<R>; Config::MAX_CHANNELS],
 }
@@ -87,16 +87,15 @@ impl<'a, R: Real> Design<'a, R> {
     ) -> Result<Self, Error> {
         let channels = reader.channels();
         let count = reader.count(subset).div_ceil(LANES);
-        let panels = arena.take_lanes(count.checked_mul(columns).ok_or(Error::Memory)?)?;
-        let values = arena.take_lanes(count.checked_mul(channels).ok_or(Error::Memory)?)?;
-        let column_means = arena.take(columns)?;
-        let units = units(reader, subset);
+        let mut panels = Panel::new(arena.take_lanes(count.checked_mul(columns).ok_or(Error::Memory)?)?, columns);
+        let mut values = Panel::new(arena.take_lanes(count.checked_mul(channels).ok_or(Error::Memory)?)?, channels);
+        let column_means = arena.zeros(columns)?;
+        let mut units = units(reader, subset);
         let factors = units.map(|unit| R::ONE.scale(-unit.exponent));
         let mut x = [[R::ZERO; LANES]; MAX_DIMS];
         let mut h = [[R::ZERO; LANES]; Config::MAX_CONTROLS];
         let mut f = [[R::ZERO; LANES]; Config::MAX_CHANNELS];
-        let mut column_panels = rows_mut(panels, columns);
-        let mut value_panels = rows_mut(values, channels);
+        let (mut column_panels, mut value_panels) = (panels.rows_mut(), values.rows_mut());
         let (mut next, mut n) = (0, 0);
         loop {
             // Lanes that are not filled hold an earlier panel's samples, in range; they are cleared below.
@@ -108,7 +107,7 @@ impl<'a, R: Real> Design<'a, R> {
             if let Some(panel) = column_panels.next() {
                 reader.columns(basis, &x, &h, panel);
             }
-            let values = value_panels.next().unwrap_or(&mut []).iter_mut();
+            let values = value_panels.next().into_iter().flatten();
             for (((out, f), &factor), unit) in values.zip(&f).zip(&factors).zip(&units) {
                 *out = f.map(|f| f * factor - unit.offset);
             }
@@ -116,98 +115,44 @@ impl<'a, R: Real> Design<'a, R> {
         if n == 0 {
             return Err(Error::NoSamples);
         }
-        let used = n.div_ceil(LANES);
-        let panels = panels.get_mut(..used * columns).ok_or(Error::Memory)?;
-        let values = values.get_mut(..used * channels).ok_or(Error::Memory)?;
-        clear_unused(panels, columns, n);
-        clear_unused(values, channels, n);
-        let mut design = Self { n, columns, channels, panels, values, column_means, units };
-        design.centre(centre);
+        panels.truncate(n.div_ceil(LANES));
+        values.truncate(n.div_ceil(LANES));
+        clear_unused(&mut panels, n);
+        clear_unused(&mut values, n);
         if centre {
-            design.clear_constant(reader.control_integrals());
-        }
-        Ok(design)
-    }
-
-    /// Subtracts the means, or with `centre` false sets them to zero.
-    #[inline(always)]
-    fn centre(&mut self, centre: bool) {
-        for mean in self.column_means.iter_mut() {
-            *mean = R::ZERO;
-        }
-        if !centre {
-            return;
-        }
-        let inverse = R::ONE / R::from_usize(self.n);
-        for (j, mean) in self.column_means.iter_mut().enumerate() {
-            let mut total = [R::ZERO; LANES];
-            for panel in rows(self.panels, self.columns) {
-                if let Some(column) = panel.get(j) {
-                    total = lanes::zip(&total, column, |a, b| a + b);
-                }
-            }
-            *mean = lanes::sum(&total) * inverse;
-        }
-        for panel in rows_mut(self.panels, self.columns) {
-            for (column, &mean) in panel.iter_mut().zip(self.column_means.iter()) {
-                *column = column.map(|value| value - mean);
+            self::centre(&mut panels, n, column_means);
+            clear_constant(&mut panels, n, column_means, reader.control_integrals());
+            let mut means = PerChannel::default();
+            self::centre(&mut values, n, means.get_mut(..channels).unwrap_or_default());
+            for (unit, &mean) in units.iter_mut().zip(means.iter()) {
+                unit.offset += mean;
             }
         }
-        for (channel, unit) in self.units.iter_mut().enumerate().take(self.channels) {
-            let mut total = [R::ZERO; LANES];
-            for panel in rows(self.values, self.channels) {
-                if let Some(values) = panel.get(channel) {
-                    total = lanes::zip(&total, values, |a, b| a + b);
-                }
-            }
-            let mean = lanes::sum(&total) * inverse;
-            for panel in rows_mut(self.values, self.channels) {
-                if let Some(values) = panel.get_mut(channel) {
-                    *values = values.map(|value| value - mean);
-                }
-            }
-            unit.offset += mean;
-        }
-        // Centring moved the unused lanes too.
-        clear_unused(self.panels, self.columns, self.n);
-        clear_unused(self.values, self.channels, self.n);
-    }
-
-    /// Zeroes control functions that hardly move about their means: what is left is rounding noise, and says nothing
-    /// about the values.
-    fn clear_constant(&mut self, integrals: &[f32]) {
-        for (j, &integral) in integrals.iter().enumerate().take(self.columns) {
-            let mean = self.column_means.get(j).copied().unwrap_or(R::ZERO).abs();
-            let noise = R::from_f64(NOISE) * R::EPSILON * (mean + R::from_f32(integral).abs());
-            if (self.column_square(j) / R::from_usize(self.n)).sqrt() <= noise {
-                for column in rows_mut(self.panels, self.columns).filter_map(|panel| panel.get_mut(j)) {
-                    *column = [R::ZERO; LANES];
-                }
-            }
-        }
+        let (panels, values) = (panels.into_shared(), values.into_shared());
+        Ok(Self { n, columns, channels, panels, values, column_means, units })
     }
 
     /// The panels one by one: columns and values of eight samples.
     #[inline(always)]
     pub(crate) fn each_panel(&self) -> impl Iterator<Item = (&[Lanes<R>], &[Lanes<R>])> {
-        rows(self.panels, self.columns).zip(rows(self.values, self.channels))
+        self.panels.rows().zip(self.values.rows())
     }
 
     /// The sum of squares of a column.
     pub(crate) fn column_square(&self, column: usize) -> R {
-        square(self.panels, self.columns, column)
+        square(&self.panels, column)
     }
 
     /// The sum of squares of a channel.
     pub(crate) fn sum_of_squares(&self, channel: usize) -> R {
-        square(self.values, self.channels, channel)
+        square(&self.values, channel)
     }
 
     /// The sum of squared residuals of coefficients.
     pub(crate) fn residual_square(&self, channel: usize, b: &[R]) -> R {
         let mut total = [R::ZERO; LANES];
         for (panel, values) in self.each_panel() {
-            let mut residual = values.get(channel).copied().unwrap_or([R::ZERO; LANES]);
+            let mut residual = at(values, channel);
             for (column, &b) in panel.iter().zip(b) {
                 lanes::subtract_scaled(&mut residual, b, column);
             }
@@ -220,25 +165,20 @@ impl<'a, R: Real> Design<'a, R> {
     ///
     /// Two columns times two at a time: their sums stay in registers.
     #[inline(always)]
-    pub(crate) fn normal_equations(&self, gram: &mut [R], rhs: &mut [R]) {
+    pub(crate) fn normal_equations(&self, gram: &mut Triangle<&mut [R]>, rhs: &mut Panel<&mut [R]>) {
         for j in (0..self.columns).step_by(2) {
             for k in (0..=j).step_by(2) {
                 let sums = self.products(|panel, _| two(panel, j), k);
-                for (step, sums) in sums.iter().enumerate() {
-                    let row = row_mut(gram, j + step).get_mut(k..).unwrap_or(&mut []);
-                    for (out, sum) in row.iter_mut().zip(sums) {
-                        *out = lanes::sum(sum);
-                    }
+                for (step, sums) in sums.iter().enumerate().take(self.columns - j) {
+                    put(gram.row_mut(j + step), k, sums);
                 }
             }
         }
         for channel in (0..self.channels).step_by(2) {
             for k in (0..self.columns).step_by(2) {
                 let sums = self.products(|_, values| two(values, channel), k);
-                for (row, sums) in rows_mut(rhs, self.columns).skip(channel).zip(&sums) {
-                    for (out, sum) in row.get_mut(k..).unwrap_or(&mut []).iter_mut().zip(sums) {
-                        *out = lanes::sum(sum);
-                    }
+                for (row, sums) in rhs.rows_mut().skip(channel).zip(&sums) {
+                    put(row, k, sums);
                 }
             }
         }
@@ -259,34 +199,72 @@ impl<'a, R: Real> Design<'a, R> {
     }
 }
 
-/// The sum of squares of group `index` of every panel, of `width` groups each.
+/// Writes sums over lanes to places `first` and the next of a row.
 #[inline(always)]
-fn square<R: Real>(panels: &[Lanes<R>], width: usize, index: usize) -> R {
+fn put<R: Real>(row: &mut [R], first: usize, sums: &[Lanes<R>; 2]) {
+    for (out, sum) in row.iter_mut().skip(first).zip(sums) {
+        *out = lanes::sum(sum);
+    }
+}
+
+/// The sum of squares of group `index` of every panel.
+#[inline(always)]
+fn square<R: Real>(panels: &Panel<&[Lanes<R>]>, index: usize) -> R {
     let mut total = [R::ZERO; LANES];
-    for values in rows(panels, width).filter_map(|panel| panel.get(index)) {
+    for values in panels.column(index) {
         lanes::add_product(&mut total, values, values);
     }
     lanes::sum(&total)
 }
 
+/// Subtracts each column's mean, and writes it to `means`.
+#[inline(always)]
+fn centre<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means: &mut [R]) {
+    let inverse = R::ONE / R::from_usize(n);
+    for (j, mean) in means.iter_mut().enumerate() {
+        let total = panels.column(j).fold([R::ZERO; LANES], |total, column| lanes::zip(&total, column, |a, b| a + b));
+        *mean = lanes::sum(&total) * inverse;
+    }
+    for panel in panels.rows_mut() {
+        for (column, &mean) in panel.iter_mut().zip(means.iter()) {
+            *column = column.map(|value| value - mean);
+        }
+    }
+    // That moved the unused lanes too.
+    clear_unused(panels, n);
+}
+
+/// Zeroes control functions that hardly move about their means: what is left is rounding noise, and says nothing about
+/// the values.
+fn clear_constant<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means: &[R], integrals: &[f32]) {
+    for (j, (&mean, &integral)) in means.iter().zip(integrals).enumerate() {
+        let noise = R::from_f64(NOISE) * R::EPSILON * (mean.abs() + R::from_f32(integral).abs());
+        if (square(&panels.view(), j) / R::from_usize(n)).sqrt() <= noise {
+            for column in panels.column_mut(j) {
+                *column = [R::ZERO; LANES];
+            }
+        }
+    }
+}
+
 /// Groups `first` and the next; zero where there is none.
 #[inline(always)]
 fn two<R: Real>(groups: &[Lanes<R>], first: usize) -> [Lanes<R>; 2] {
-    match groups.get(first..).unwrap_or(&[]) {
+    match groups.get(first..).unwrap_or_default() {
         [a, b, ..] => [*a, *b],
         [a] => [*a, [R::ZERO; LANES]],
         [] => [[R::ZERO; LANES]; 2],
     }
 }
 
-/// Zeroes the lanes after sample `n`, where each panel has `width` groups.
+/// Zeroes the lanes after sample `n`, of which the last panel holds some.
 #[inline(always)]
-fn clear_unused<R: Real>(panels: &mut [Lanes<R>], width: usize, n: usize) {
+fn clear_unused<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize) {
     let used = n % LANES;
     if used == 0 {
         return;
     }
-    for group in panels.rchunks_exact_mut(width.max(1)).next().unwrap_or(&mut []) {
+    for group in panels.row_mut(n / LANES) {
         for value in group.iter_mut().skip(used) {
             *value = R::ZERO;
         }

@@ -2,17 +2,18 @@
 
 use super::config::{Config, Ridge};
 use super::design::Design;
-use super::per_channel::{PerChannel, get, set};
+use super::fit::dual::{self, Dual};
+use super::fit::normal::{self, Normal};
+use super::fit::{Fit, Penalty, System};
+use super::per_channel::PerChannel;
 use super::result;
 use super::ridge::{self, CHOICES, MAX_FITS, MIXED};
-use super::ridge_fit::{self, Choice, Dual, RidgeFit};
 use super::trust::{self, Centre};
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
-use crate::linalg::packed_len;
+use crate::matrix::{at, packed_len, rows, rows_mut};
 use crate::real::Real;
-use crate::rows::{rows, rows_mut};
 
 /// Which fits are made and how one is made of them.
 #[derive(Clone, Copy, PartialEq)]
@@ -29,28 +30,26 @@ pub(crate) enum Rule {
 
 /// Fits and their weights.
 pub(crate) struct Blend<R> {
-    fits: [RidgeFit<R>; MAX_FITS],
+    fits: [Fit<R>; MAX_FITS],
     /// What each fit adds to the mean.
     corrections: [PerChannel<R>; MAX_FITS],
     weights: [PerChannel<R>; MAX_FITS],
     plain_weight: PerChannel<R>,
 }
 
-/// The systems of a design that every fit starts from.
+/// The fits that can be made to a design.
 pub(crate) struct Fitter<'a, 'd, R> {
     design: &'d Design<'a, R>,
-    gram: &'a [R],
-    rhs: &'a [R],
+    system: System<'a, R>,
     penalties: &'a [R],
-    dual: Option<Dual<'a, R>>,
 }
 
 /// How many numbers a [`Fitter`] and its fits take, for up to `n` samples.
 pub(crate) fn size(n: usize, dual: bool, columns: usize, channels: usize) -> Option<usize> {
     let gram = if dual { 0 } else { packed_len(columns) };
-    let dual = if dual { ridge_fit::dual_size(n, channels)? } else { 0 };
+    let dual = if dual { dual::len(n, channels)? } else { 0 };
     let systems = gram + columns * (1 + channels) + MAX_FITS * columns * channels;
-    systems.checked_add(ridge_fit::primal_size(columns, channels).max(dual))
+    systems.checked_add(normal::fit_len(columns, channels).max(dual))
 }
 
 impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
@@ -62,22 +61,22 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         use_dual: bool,
         arena: &mut Arena<'a, R>,
     ) -> Result<Self, Error> {
-        let columns = design.columns;
+        let penalties = arena.take(design.columns)?;
         // Penalties of control functions come from the matrix, but the dual has no control functions.
-        let gram = arena.take(if use_dual { 0 } else { packed_len(columns) })?;
-        let rhs = arena.take(columns * design.channels)?;
-        let penalties = arena.take(columns)?;
-        if !use_dual {
-            design.normal_equations(gram, rhs);
-        }
-        let per_sample = R::ONE / R::from_usize(design.n);
-        ridge::penalties(config, basis, |j| ridge_fit::diagonal_entry(gram, j) * per_sample, penalties);
-        let factor = ridge::control_factor::<R>(config);
-        for penalty in penalties.iter_mut().take(config.controls) {
-            *penalty *= factor;
-        }
-        let dual = if use_dual { Some(Dual::new(design, penalties, arena)?) } else { None };
-        Ok(Self { design, gram, rhs, penalties, dual })
+        let system = if use_dual {
+            ridge::penalties(config, basis, |_| R::ZERO, penalties);
+            System::Dual(Dual::new(design, penalties, arena)?)
+        } else {
+            let normal = Normal::of(design, arena)?;
+            let per_sample = R::ONE / normal.count;
+            ridge::penalties(config, basis, |j| normal.gram.diagonal(j) * per_sample, penalties);
+            let factor = ridge::control_factor::<R>(config);
+            for penalty in penalties.iter_mut().take(config.controls) {
+                *penalty *= factor;
+            }
+            System::Normal(normal)
+        };
+        Ok(Self { design, system, penalties })
     }
 
     /// Makes and weighs the fits. `coefficients`, if wanted, gets the blended fit's, a row for each channel.
@@ -103,29 +102,26 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         };
         let each = design.columns * design.channels;
         let kept = arena.take(if coefficients.is_some() { strengths.len() * each } else { 0 })?;
-        let mut fits = [RidgeFit::default(); MAX_FITS];
+        let mut fits = [Fit::default(); MAX_FITS];
         for (index, (&strength, fit)) in strengths.iter().zip(&mut fits).enumerate() {
             let kept = kept.get_mut(index * each..(index + 1) * each).filter(|kept| !kept.is_empty());
-            let choice = Choice { strength: R::from_f64(strength), penalties: self.penalties, leave_one_out };
-            *fit = match &self.dual {
-                Some(dual) => dual.fit(design, choice, kept, arena.scratch())?,
-                None => ridge_fit::primal(design, self.gram, self.rhs, choice, kept, arena.scratch())?,
-            };
+            let penalty = Penalty { strength: R::from_f64(strength), relative: self.penalties };
+            *fit = self.system.fit(design, penalty, leave_one_out, kept, arena.scratch())?;
         }
         let blend = self.weigh(rule, fits, strengths.len());
         for (channel, out) in coefficients.into_iter().flat_map(|all| rows_mut(all, design.columns)).enumerate() {
             for (j, out) in out.iter_mut().enumerate() {
                 *out = R::ZERO;
                 for (kept, weights) in rows(kept, each).zip(&blend.weights) {
-                    let b = kept.get(channel * design.columns + j).copied().unwrap_or(R::ZERO);
-                    *out += get(weights, channel) * b;
+                    let b = at(kept, channel * design.columns + j);
+                    *out += weights[channel] * b;
                 }
             }
         }
         Ok(blend)
     }
 
-    fn weigh(&self, rule: Rule, fits: [RidgeFit<R>; MAX_FITS], used: usize) -> Blend<R> {
+    fn weigh(&self, rule: Rule, fits: [Fit<R>; MAX_FITS], used: usize) -> Blend<R> {
         let corrections =
             fits.map(|fit| if let Rule::LeastSquares(_) = rule { fit.in_sample } else { fit.leave_one_out });
         let (weights, plain_weight) = Default::default();
@@ -134,7 +130,7 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         if !matches!(rule, Rule::Robust | Rule::Fold) {
             let best = if used > 1 { best_of(&fits, &plain) } else { 0 };
             if let Some(weights) = blend.weights.get_mut(best) {
-                *weights = [R::ONE; Config::MAX_CHANNELS];
+                *weights = PerChannel([R::ONE; Config::MAX_CHANNELS]);
             }
             return blend;
         }
@@ -149,15 +145,15 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         }
         let discounts = centres.map(|centre| centre.discount());
         for channel in 0..self.design.channels {
-            let press = fits.map(|fit| get(&fit.press, channel));
-            let plain = get(&plain, channel);
+            let press = fits.map(|fit| fit.press[channel]);
+            let plain = plain[channel];
             let variance = plain * result::press_factor(n);
             let mut discounts = discounts;
             for (discount, correction) in discounts.iter_mut().zip(&blend.corrections) {
-                *discount += trust::surprise(get(correction, channel), variance);
+                *discount += trust::surprise(correction[channel], variance);
             }
             let mut weights = [R::ZERO; MAX_FITS];
-            let each = weights.get_mut(..used).unwrap_or(&mut []);
+            let each = weights.get_mut(..used).unwrap_or_default();
             let mut plain_weight = trust::weigh(plain, &press, &discounts, power, n, trust::prior(n), each);
             if rule == Rule::Fold {
                 for (weight, centre) in weights.iter_mut().zip(&centres) {
@@ -166,9 +162,9 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
                     *weight = kept;
                 }
             }
-            set(&mut blend.plain_weight, channel, plain_weight);
+            blend.plain_weight[channel] = plain_weight;
             for (slot, weight) in blend.weights.iter_mut().zip(weights) {
-                set(slot, channel, weight);
+                slot[channel] = weight;
             }
         }
         blend
@@ -176,8 +172,8 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
 }
 
 /// Of fits the one with the smallest leave-one-out error summed over the channels, each relative to its plain mean's.
-fn best_of<R: Real>(fits: &[RidgeFit<R>; MAX_FITS], plain: &PerChannel<R>) -> usize {
-    let error = |fit: &RidgeFit<R>| {
+fn best_of<R: Real>(fits: &[Fit<R>; MAX_FITS], plain: &PerChannel<R>) -> usize {
+    let error = |fit: &Fit<R>| {
         // Of a channel that is constant nothing counts.
         let ratio = |press: R, plain: R| press.to_f64() / if plain > R::ZERO { plain.to_f64() } else { f64::INFINITY };
         fit.press.iter().zip(plain).map(|(&press, &plain)| ratio(press, plain)).sum::<f64>()
@@ -212,14 +208,14 @@ impl<R: Real> Blend<R> {
         let plain = plain_press(design);
         let mut variance = PerChannel::default();
         for channel in 0..design.channels {
-            let spread = |value: R| (value - get(total, channel)) * (value - get(total, channel));
-            let mut sum = get(&self.plain_weight, channel) * (get(&plain, channel) * factor + spread(R::ZERO));
+            let spread = |value: R| (value - total[channel]) * (value - total[channel]);
+            let mut sum = self.plain_weight[channel] * (plain[channel] * factor + spread(R::ZERO));
             let fits = self.fits.iter().zip(&self.corrections).zip(&self.weights);
             for ((fit, correction), weights) in fits {
-                let own = get(&fit.influence, channel) * factor * trust::few_left(fit.freedom, n);
-                sum += get(weights, channel) * (own + spread(get(correction, channel)));
+                let own = fit.influence[channel] * factor * trust::few_left(fit.freedom, n);
+                sum += weights[channel] * (own + spread(correction[channel]));
             }
-            set(&mut variance, channel, sum);
+            variance[channel] = sum;
         }
         (design.n > 1).then_some(variance)
     }
@@ -228,8 +224,8 @@ impl<R: Real> Blend<R> {
     /// factor, of fits to `n` samples.
     pub(crate) fn inflation(&self, channel: usize, n: R) -> R {
         let fits = self.fits.iter().zip(&self.weights);
-        fits.fold(get(&self.plain_weight, channel), |sum, (fit, weights)| {
-            sum + get(weights, channel) * Centre::new(fit.eccentricity, fit.freedom, n).inflation
+        fits.fold(self.plain_weight[channel], |sum, (fit, weights)| {
+            sum + weights[channel] * Centre::new(fit.eccentricity, fit.freedom, n).inflation
         })
     }
 }
@@ -242,7 +238,7 @@ pub(crate) fn plain_press<R: Real>(design: &Design<'_, R>) -> PerChannel<R> {
     let factor = if design.n > 1 { n / (n - R::ONE) } else { R::ZERO };
     let mut press = PerChannel::default();
     for channel in 0..design.channels {
-        set(&mut press, channel, design.sum_of_squares(channel) * factor * factor);
+        press[channel] = design.sum_of_squares(channel) * factor * factor;
     }
     press
 }

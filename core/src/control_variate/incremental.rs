@@ -6,14 +6,16 @@
 //! number has grown by a sixteenth: they are always fits to preceding samples.
 
 use super::config::{Config, Ridge};
-use super::moments::{self, Centred, Moments};
-use super::per_channel::{PerChannel, add, get, set};
+use super::fit::Penalty;
+use super::fit::normal::{self, Centred};
+use super::per_channel::PerChannel;
 use super::result::{self, Outcome};
+use super::sums::Sums;
 use super::{ridge, trust};
 use crate::arena::Arena;
 use crate::basis::Basis;
+use crate::matrix::rows_mut;
 use crate::real::Real;
-use crate::rows::rows_mut;
 
 /// Total ridge strengths: not per sample, as the fits of few samples need them most.
 const STRENGTHS: [f64; 2] = [0.1, 1.0];
@@ -42,7 +44,7 @@ pub(crate) struct Progress<R> {
 
 /// Numbers that follow the sums in an accumulator's buffer: coefficients, and room to renew them.
 pub(crate) fn len(columns: usize, channels: usize) -> usize {
-    FITS * columns * channels + columns + moments::centred_len(columns, channels) + moments::solve_len(columns)
+    FITS * columns * channels + columns + normal::centred_len(columns, channels) + normal::solve_len(columns)
 }
 
 /// Adds a sample's value, corrected by the fits so far.
@@ -52,18 +54,18 @@ pub(crate) fn correct<R: Real>(progress: &mut Progress<R>, ridge: Ridge, coeffic
     for (channel, &f) in f.iter().enumerate() {
         let mut slopes = [R::ZERO; FITS];
         for (fit, slope) in slopes.iter_mut().enumerate() {
-            let b = coefficients.get((fit * channels + channel) * p.len()..).unwrap_or(&[]);
+            let b = coefficients.get((fit * channels + channel) * p.len()..).unwrap_or_default();
             *slope = b.iter().zip(p).fold(R::ZERO, |sum, (&b, &p)| sum + b * p);
         }
         let mut value = f;
         if fitted {
-            let errors = progress.errors.map(|errors| get(&errors, channel));
+            let errors = progress.errors.map(|errors| errors[channel]);
             let weights = match ridge {
                 Ridge::Fixed(_) => [R::ONE, R::ZERO],
                 Ridge::Default | Ridge::Auto => {
                     let n = progress.predictions;
                     let power = n * R::from_f64(SHARPNESS);
-                    let plain = get(&progress.plain_error, channel);
+                    let plain = progress.plain_error[channel];
                     let mut weights = [R::ZERO; FITS];
                     let prior = R::from_f64(trust::PRIOR);
                     trust::weigh(plain, &errors, &[], power, n, prior, &mut weights);
@@ -74,14 +76,14 @@ pub(crate) fn correct<R: Real>(progress: &mut Progress<R>, ridge: Ridge, coeffic
                 value -= weight * slope;
             }
             for ((errors, intercepts), &slope) in progress.errors.iter_mut().zip(&progress.intercepts).zip(&slopes) {
-                let error = f - get(intercepts, channel) - slope;
-                add(errors, channel, error * error);
+                let error = f - intercepts[channel] - slope;
+                errors[channel] += error * error;
             }
-            let error = f - get(&progress.mean, channel);
-            add(&mut progress.plain_error, channel, error * error);
+            let error = f - progress.mean[channel];
+            progress.plain_error[channel] += error * error;
         }
-        add(&mut progress.total, channel, value);
-        add(&mut progress.square, channel, value * value);
+        progress.total[channel] += value;
+        progress.square[channel] += value * value;
     }
     if fitted {
         progress.predictions += R::ONE;
@@ -107,7 +109,7 @@ pub(crate) fn refit<R: Real>(
         Ridge::Default | Ridge::Auto => STRENGTHS.map(|strength| R::from_f64(strength / samples as f64)),
     };
     let mut solve = || {
-        let sums = Moments::new(sums, columns + 1, channels)?;
+        let sums = Sums::new(sums, columns + 1, channels).ok()?;
         let mut arena = Arena::new(rest);
         let coefficients = arena.take(FITS * columns * channels).ok()?;
         let penalties = arena.take(columns).ok()?;
@@ -120,9 +122,10 @@ pub(crate) fn refit<R: Real>(
         let centred = Centred::new(&sums, columns, channels, &mut arena).ok()??;
         let fits = rows_mut(coefficients, columns * channels).zip(strengths).zip(&mut progress.intercepts);
         for ((coefficients, strength), intercepts) in fits {
-            centred.solve(penalties, strength, coefficients, false, &mut arena.scratch()).ok()?;
+            let penalty = Penalty { strength, relative: penalties };
+            centred.normal.solve(penalty, coefficients, &mut arena.scratch()).ok()?;
             for (channel, b) in rows_mut(coefficients, columns).enumerate() {
-                set(intercepts, channel, centred.intercept(channel, b));
+                intercepts[channel] = centred.intercept(channel, b);
             }
         }
         progress.mean = centred.value_means;
@@ -139,7 +142,7 @@ pub(crate) fn outcome<R: Real>(progress: &Progress<R>, samples: u64) -> Outcome<
     let mut correction = PerChannel::default();
     let mut variance = PerChannel::default();
     for (channel, (correction, variance)) in correction.iter_mut().zip(&mut variance).enumerate() {
-        let (total, square) = (get(&progress.total, channel), get(&progress.square, channel));
+        let (total, square) = (progress.total[channel], progress.square[channel]);
         *correction = total / n;
         *variance = (square - total * total / n).max(R::ZERO) / result::mean_divisor(n);
     }
@@ -151,13 +154,13 @@ impl<R: Real> Progress<R> {
     pub(crate) fn merge(&mut self, other: &Self, factors: &PerChannel<R>, shift: &PerChannel<R>, samples: u64) {
         let n = R::from_f64(samples as f64);
         for (channel, (total, square)) in self.total.iter_mut().zip(&mut self.square).enumerate() {
-            let (factor, shift) = (get(factors, channel), get(shift, channel));
-            let added = factor * get(&other.total, channel);
+            let (factor, shift) = (factors[channel], shift[channel]);
+            let added = factor * other.total[channel];
             *total += added + shift * n;
-            *square += factor * factor * get(&other.square, channel) + shift * (added + added + shift * n);
+            *square += factor * factor * other.square[channel] + shift * (added + added + shift * n);
             let squares = self.errors.iter_mut().chain([&mut self.plain_error]);
             for (ours, theirs) in squares.zip(other.errors.iter().chain([&other.plain_error])) {
-                add(ours, channel, factor * factor * get(theirs, channel));
+                ours[channel] += factor * factor * theirs[channel];
             }
         }
         self.predictions += other.predictions;
@@ -172,16 +175,16 @@ impl<R: Real> Progress<R> {
     pub(crate) fn rescale(&mut self, factors: &PerChannel<R>, rest: &mut [R], columns: usize, channels: usize) {
         for (channel, &factor) in factors.iter().enumerate().take(channels) {
             for values in self.intercepts.iter_mut().chain([&mut self.total, &mut self.mean]) {
-                let value = get(values, channel);
-                set(values, channel, value * factor);
+                let value = values[channel];
+                values[channel] = value * factor;
             }
             for values in self.errors.iter_mut().chain([&mut self.square, &mut self.plain_error]) {
-                let value = get(values, channel);
-                set(values, channel, value * factor * factor);
+                let value = values[channel];
+                values[channel] = value * factor * factor;
             }
         }
         for (index, coefficients) in rows_mut(rest, columns).take(FITS * channels).enumerate() {
-            let factor = get(factors, index.checked_rem(channels).unwrap_or(0));
+            let factor = factors[index.checked_rem(channels).unwrap_or(0)];
             for value in coefficients {
                 *value *= factor;
             }

@@ -7,7 +7,7 @@ use super::config::{Config, Ridge, Solver};
 use super::design::Design;
 use super::fitter::{self, Fitter, Rule};
 use super::folds::Fold;
-use super::per_channel::{PerChannel, add, get, set};
+use super::per_channel::PerChannel;
 use super::plan::Plan;
 use super::result::Outcome;
 use super::samples::{Reader, Subset};
@@ -15,8 +15,8 @@ use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::{LANES, Lanes};
+use crate::matrix::{rows, rows_mut};
 use crate::real::Real;
-use crate::rows::{rows, rows_mut};
 
 /// Numbers that [`estimate`] takes from its arena.
 pub(crate) fn size<R: Real>(config: &Config, columns: usize, channels: usize, n: usize) -> Option<usize> {
@@ -40,8 +40,8 @@ pub(crate) fn estimate<R: Real>(
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
     let channels = whole.channels;
-    let mut sums = PerChannel::default();
-    let mut squares = PerChannel::default();
+    let mut sums = PerChannel::<R>::default();
+    let mut squares = PerChannel::<R>::default();
     let mut inflations = PerChannel::default();
     let coefficients = arena.take(whole.columns * channels)?;
     for index in 0..config.fold_count() {
@@ -55,9 +55,7 @@ pub(crate) fn estimate<R: Real>(
             Err(Error::NoSamples) => None,
             other => Some(other?),
         };
-        for value in coefficients.iter_mut() {
-            *value = R::ZERO;
-        }
+        coefficients.fill(R::ZERO);
         let mut inflation = [R::ONE; Config::MAX_CHANNELS];
         if let Some(train) = train.filter(|train| train.n > 1) {
             let plan = Plan::new(config, basis.columns(), train.n)?;
@@ -88,8 +86,8 @@ pub(crate) fn estimate<R: Real>(
                 // Relative to the whole design's mean.
                 let residuals = residuals(panel, &values.map(|value| to.relative(value, from)), coefficients);
                 for &residual in residuals.iter().take(used) {
-                    add(&mut sums, channel, residual);
-                    add(&mut squares, channel, residual * residual);
+                    sums[channel] += residual;
+                    squares[channel] += residual * residual;
                 }
             }
         }
@@ -98,11 +96,11 @@ pub(crate) fn estimate<R: Real>(
     let mut outcome = Outcome { correction: PerChannel::default(), variance: None };
     let mut variance = PerChannel::default();
     for channel in 0..channels {
-        let (sum, square) = (get(&sums, channel), get(&squares, channel));
-        set(&mut outcome.correction, channel, sum / n);
+        let (sum, square) = (sums[channel], squares[channel]);
+        outcome.correction[channel] = sum / n;
         let spread = (square - sum * sum / n).max(R::ZERO);
         // Not `mean_divisor`: with that, the compiler divides by zero in lanes of a vector that nobody reads.
-        set(&mut variance, channel, spread * get(&inflations, channel) / (n * n * (n - R::ONE).max(R::ONE)));
+        variance[channel] = spread * inflations[channel] / (n * n * (n - R::ONE).max(R::ONE));
     }
     outcome.variance = (whole.n > 1).then_some(variance);
     Ok(outcome)

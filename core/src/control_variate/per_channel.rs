@@ -1,29 +1,69 @@
 //! A number for each channel; those of channels that are not there are zero and ignored.
 
 use super::Config;
-use crate::real::Real;
+use core::ops::{Deref, DerefMut, Index, IndexMut};
 
 /// A number for each channel.
-pub(crate) type PerChannel<R> = [R; Config::MAX_CHANNELS];
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PerChannel<R>(pub(crate) [R; Config::MAX_CHANNELS]);
 
-/// One channel's number.
-#[inline(always)]
-pub(crate) fn get<R: Real>(values: &PerChannel<R>, channel: usize) -> R {
-    values.get(channel).copied().unwrap_or(R::ZERO)
-}
-
-/// Sets one channel's number.
-#[inline(always)]
-pub(crate) fn set<R: Real>(values: &mut PerChannel<R>, channel: usize, value: R) {
-    if let Some(slot) = values.get_mut(channel) {
-        *slot = value;
+impl<R> PerChannel<R> {
+    #[inline]
+    pub(crate) fn map<T>(self, f: impl FnMut(R) -> T) -> PerChannel<T> {
+        PerChannel(self.0.map(f))
     }
 }
 
-/// Adds to one channel's number.
-#[inline(always)]
-pub(crate) fn add<R: Real>(values: &mut PerChannel<R>, channel: usize, value: R) {
-    if let Some(slot) = values.get_mut(channel) {
-        *slot += value;
+impl<R> Deref for PerChannel<R> {
+    type Target = [R; Config::MAX_CHANNELS];
+
+    #[inline]
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl<R> DerefMut for PerChannel<R> {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.0
+    }
+}
+
+impl<'a, R> IntoIterator for &'a PerChannel<R> {
+    type Item = &'a R;
+    type IntoIter = core::slice::Iter<'a, R>;
+
+    #[inline]
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.iter()
+    }
+}
+
+impl<'a, R> IntoIterator for &'a mut PerChannel<R> {
+    type Item = &'a mut R;
+    type IntoIter = core::slice::IterMut<'a, R>;
+
+    #[inline]
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.iter_mut()
+    }
+}
+
+// No channel is beyond the last; the remainder shows that to the compiler.
+
+impl<R> Index<usize> for PerChannel<R> {
+    type Output = R;
+
+    #[inline]
+    fn index(&self, channel: usize) -> &R {
+        &self.0[channel % Config::MAX_CHANNELS]
+    }
+}
+
+impl<R> IndexMut<usize> for PerChannel<R> {
+    #[inline]
+    fn index_mut(&mut self, channel: usize) -> &mut R {
+        &mut self.0[channel % Config::MAX_CHANNELS]
     }
 }

@@ -3,19 +3,19 @@
 use super::config::{Color, Config, Estimate, Estimator, Ridge, Solver};
 use super::cross_fit;
 use super::design::Units;
+use super::fit::normal::Centred;
+use super::fit::{Penalty, descent, givens};
 use super::incremental;
-use super::moments::{Centred, Moments};
-use super::per_channel::{PerChannel, add, get, set};
+use super::per_channel::PerChannel;
 use super::result::{self, Outcome, Summary};
 use super::ridge;
 use super::state::State;
-use super::{gradient_descent, square_root};
+use super::sums::Sums;
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
-use crate::linalg::givens;
+use crate::matrix::{row_at, rows};
 use crate::real::Real;
-use crate::rows::rows;
 
 impl<R: Real> State<R> {
     /// The estimate from all samples so far. More may be added afterwards.
@@ -40,25 +40,18 @@ impl<R: Real> State<R> {
                 Estimator::Incremental => incremental::outcome(&state.incremental, state.samples).relative_to(&total),
                 Estimator::Robust | Estimator::KFold => self.cross_fit(sums, &total, &mut arena)?,
                 Estimator::GradientDescent => {
-                    let group = self.moments(sums, 0).ok_or(Error::Memory)?;
+                    let group = self.sums(sums, 0)?;
                     self.descend(&group, &total, &mut arena)?
                 }
                 _ if state.config.solver == Solver::SquareRoot => {
-                    let group = self.moments(sums, 0).ok_or(Error::Memory)?;
+                    let group = self.sums(sums, 0)?;
                     let basis = self.basis()?;
-                    let outcome = square_root::from_factor(
-                        &group,
-                        &state.config,
-                        &basis,
-                        state.terms(),
-                        state.channels,
-                        &mut arena,
-                    )?;
+                    let outcome = givens::from_factor(&group, &state.config, &basis, state.channels, &mut arena)?;
                     let variance = outcome.variance.or(total.variance);
                     Outcome { variance, ..outcome.relative_to(&total) }
                 }
                 _ => {
-                    let group = self.moments(sums, 0).ok_or(Error::Memory)?;
+                    let group = self.sums(sums, 0)?;
                     self.least_squares(&group, &total, &mut arena)?
                 }
             }
@@ -87,12 +80,11 @@ impl<R: Real> State<R> {
         Ok(basis)
     }
 
-    fn moments<'a>(&self, sums: &'a [R], fold: usize) -> Option<Moments<'a, R>> {
-        let group = self.group();
-        Moments::new(sums.get(fold * group..(fold + 1) * group)?, self.terms(), self.channels)
+    fn sums<'a>(&self, sums: &'a [R], fold: usize) -> Result<Sums<&'a [R]>, Error> {
+        Sums::new(row_at(sums, self.group(), fold), self.terms(), self.channels)
     }
 
-    fn penalties<'a>(&self, group: &Moments<'_, R>, arena: &mut Arena<'a, R>) -> Result<&'a [R], Error> {
+    fn penalties<'a>(&self, group: &Sums<&[R]>, arena: &mut Arena<'a, R>) -> Result<&'a [R], Error> {
         let penalties = arena.take(self.columns)?;
         ridge::penalties(&self.config, &self.basis()?, |j| group.mean_square(j), penalties);
         Ok(penalties)
@@ -114,7 +106,7 @@ impl<R: Real> State<R> {
 
     fn least_squares(
         &self,
-        group: &Moments<'_, R>,
+        group: &Sums<&[R]>,
         total: &Totals<R>,
         arena: &mut Arena<'_, R>,
     ) -> Result<Outcome<R>, Error> {
@@ -123,35 +115,28 @@ impl<R: Real> State<R> {
         let coefficients = arena.take(columns * channels)?;
         let Some(centred) = Centred::new(group, columns, channels, arena)? else { return Ok(total.plain()) };
         let strength = R::from_f64(ridge::least_squares::<R>(self.config.ridge));
-        let centre = centred.solve(penalties, strength, coefficients, true, arena)?;
-        let eccentricity = centre.map_or(R::ZERO, |centre| centre.eccentricity);
+        let penalty = Penalty { strength, relative: penalties };
+        let factor = centred.normal.solve(penalty, coefficients, arena)?;
+        let eccentricity = centred.normal.eccentricity(&factor, arena)?;
         let (correction, residual) = in_sample(&centred, coefficients);
-        let variance = result::residual_variance(residual, columns, centred.count, eccentricity);
+        let variance = result::residual_variance(residual, columns, centred.normal.count, eccentricity);
         Ok(Outcome { correction, variance: variance.or(total.variance) })
     }
 
-    fn descend(
-        &self,
-        group: &Moments<'_, R>,
-        total: &Totals<R>,
-        arena: &mut Arena<'_, R>,
-    ) -> Result<Outcome<R>, Error> {
+    fn descend(&self, group: &Sums<&[R]>, total: &Totals<R>, arena: &mut Arena<'_, R>) -> Result<Outcome<R>, Error> {
         let (columns, channels) = (self.columns, self.channels);
         let Some(centred) = Centred::new(group, columns, channels, arena)? else { return Ok(total.plain()) };
-        let coefficients = arena.take(columns * channels)?;
-        for value in coefficients.iter_mut() {
-            *value = R::ZERO;
-        }
-        gradient_descent::descend(&centred, &self.config, &self.basis()?, coefficients, total.variance, arena)
+        let coefficients = arena.zeros(columns * channels)?;
+        descent::descend(&centred, &self.config, &self.basis()?, coefficients, total.variance, arena)
     }
 }
 
 /// What a fit to all samples adds to the mean, and its sums of squared residuals: its intercept is the estimate.
 fn in_sample<R: Real>(centred: &Centred<'_, R>, coefficients: &[R]) -> (PerChannel<R>, PerChannel<R>) {
     let (mut correction, mut residual) = (PerChannel::default(), PerChannel::default());
-    for (channel, b) in rows(coefficients, centred.columns).enumerate() {
-        set(&mut correction, channel, centred.intercept(channel, b) - get(&centred.value_means, channel));
-        set(&mut residual, channel, centred.residual_square(channel, b));
+    for (channel, b) in rows(coefficients, centred.normal.means.len()).enumerate() {
+        correction[channel] = centred.intercept(channel, b) - centred.value_means[channel];
+        residual[channel] = centred.residual_square(channel, b);
     }
     (correction, residual)
 }
@@ -168,30 +153,30 @@ pub(crate) struct Totals<R> {
 
 impl<R: Real> Totals<R> {
     fn new(state: &State<R>, sums: &[R]) -> Result<Self, Error> {
-        let mut totals = PerChannel::default();
-        let mut squares = PerChannel::default();
+        let mut totals = PerChannel::<R>::default();
+        let mut squares = PerChannel::<R>::default();
         for fold in 0..state.groups() {
-            let group = state.moments(sums, fold).ok_or(Error::Memory)?;
+            let group = state.sums(sums, fold)?;
             for channel in 0..state.channels {
                 let (total, square) = if state.config.solver == Solver::SquareRoot {
-                    givens::first_column(group.gram, group.rhs, group.square, state.channels, channel)
+                    givens::totals(&group, channel)
                 } else {
                     (group.total(channel), group.square(channel))
                 };
-                add(&mut totals, channel, total);
-                add(&mut squares, channel, square);
+                totals[channel] += total;
+                squares[channel] += square;
             }
         }
         let n = R::from_f64(state.samples as f64);
         let mut result = Self { units: state.units, mean: PerChannel::default(), variance: None };
         let mut variance = PerChannel::default();
         for (channel, unit) in result.units.iter_mut().enumerate().take(state.channels) {
-            let total = get(&totals, channel);
+            let total = totals[channel];
             let mean = total / n;
             unit.offset += mean;
-            set(&mut result.mean, channel, mean);
-            let square = Real::max(get::<R>(&squares, channel) - total * mean, R::ZERO);
-            set(&mut variance, channel, square / result::mean_divisor(n));
+            result.mean[channel] = mean;
+            let square = Real::max(squares[channel] - total * mean, R::ZERO);
+            variance[channel] = square / result::mean_divisor(n);
         }
         result.variance = (state.samples > 1).then_some(variance);
         Ok(result)

@@ -2,12 +2,13 @@
 
 use super::config::{Config, Estimate};
 use super::design::Units;
-use super::per_channel::{PerChannel, set};
+use super::per_channel::PerChannel;
 use super::result::{self, Outcome, Summary};
+use super::sums::Sums;
 use crate::basis::{Basis, Family};
 use crate::error::Error;
-use crate::linalg::ldlt;
-use crate::linalg::{row, row_mut};
+use crate::linalg::ldlt::Ldlt;
+use crate::matrix::{Panel, Triangle, at};
 
 /// A streaming least-squares regressor (Alg. 1) over `DIMS` coordinates with `TERMS` terms, constant included, and
 /// `CHANNELS` values of each sample, in `f64`. For `f32` there is [`Accumulator`](super::Accumulator).
@@ -75,24 +76,10 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         }
         let x = u.map(|u| [f64::from(u)]);
         let mut p = [[1.0]; TERMS];
-        self.basis.evaluate(&x, p.get_mut(1..).unwrap_or(&mut []));
-        let p = p.as_flattened();
-        let gram = self.gram.as_flattened_mut();
-        for (j, &value) in p.iter().enumerate() {
-            for (out, &other) in row_mut(gram, j).iter_mut().zip(p) {
-                *out += value * other;
-            }
-        }
+        self.basis.evaluate(&x, p.get_mut(1..).unwrap_or_default());
         let values =
             core::array::from_fn::<f64, CHANNELS, _>(|channel| f64::from(f[channel]) - f64::from(self.offset[channel]));
-        for (out, &p) in self.rhs.iter_mut().zip(p) {
-            for (out, &value) in out.iter_mut().zip(&values) {
-                *out += p * value;
-            }
-        }
-        for (out, &value) in self.square.iter_mut().zip(&values) {
-            *out += value * value;
-        }
+        self.sums_mut()?.add(p.as_flattened(), &values);
         self.samples += 1;
         Ok(())
     }
@@ -115,45 +102,39 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
             return Err(Error::Range);
         }
         let n = self.samples as f64;
-        let sums = self.gram.as_flattened();
-        let mut factor = self.gram;
-        let factor = factor.as_flattened_mut();
+        let sums = self.sums()?;
+        let mut matrix = self.gram;
+        let mut matrix = Triangle::new(matrix.as_flattened_mut(), TERMS)?;
         let mut penalties = [0.0; TERMS];
-        self.basis.penalties(penalties.get_mut(1..).unwrap_or(&mut []));
+        self.basis.penalties(penalties.get_mut(1..).unwrap_or_default());
         let strength = f64::from(strength) * n;
-        ldlt::add_diagonal(factor, TERMS, |j| strength * penalties.get(j).copied().unwrap_or(0.0));
+        for (j, &penalty) in penalties.iter().enumerate() {
+            if let Some(diagonal) = matrix.diagonal_mut(j) {
+                *diagonal += strength * penalty;
+            }
+        }
         // The intercept is the first unknown and has no penalty.
-        ldlt::factor(factor, TERMS);
+        let factor = Ldlt::new(matrix);
         let mut outcome = Outcome { correction: PerChannel::default(), variance: None };
         let mut units = [Units::default(); Config::MAX_CHANNELS];
-        let mut residuals = PerChannel::default();
-        let mut plain_variance = PerChannel::default();
-        for channel in 0..CHANNELS {
-            let rhs = core::array::from_fn::<f64, TERMS, _>(|j| self.rhs[j][channel]);
-            let mut solution = rhs;
-            ldlt::solve(factor, &mut solution);
-            let total = rhs.first().copied().unwrap_or(0.0);
+        let (mut residuals, mut plain_variance) = (PerChannel::default(), PerChannel::default());
+        for (channel, (unit, offset)) in units.iter_mut().zip(self.offset).enumerate() {
+            let mut solution = core::array::from_fn::<f64, TERMS, _>(|j| self.rhs[j][channel]);
+            factor.solve(&mut solution);
+            let (total, intercept) = (sums.total(channel), at(&solution, 0));
             let mean = total / n;
-            set(&mut outcome.correction, channel, solution.first().copied().unwrap_or(0.0) - mean);
-            if let (Some(unit), Some(&offset)) = (units.get_mut(channel), self.offset.get(channel)) {
-                unit.offset = f64::from(offset) + mean;
-            }
-            // f'f - 2 b'r + b'G b
-            let cross: f64 = solution.iter().zip(&rhs).map(|(b, r)| b * r).sum();
-            let residual = self.square[channel] + quadratic(sums, &solution) - cross - cross;
-            let plain = (self.square[channel] - total * total / n).max(0.0) / result::mean_divisor(n);
-            set(&mut plain_variance, channel, plain);
-            set(&mut residuals, channel, residual.max(0.0));
+            outcome.correction[channel] = intercept - mean;
+            unit.offset = f64::from(offset) + mean;
+            plain_variance[channel] = (sums.square(channel) - total * mean).max(0.0) / result::mean_divisor(n);
+            residuals[channel] = sums.residual_square(channel, intercept, solution.get(1..).unwrap_or_default());
         }
         let plain_variance = (self.samples > 1).then_some(plain_variance);
         // With e the first unit vector and x = A^-1 e, the intercept's weights on the samples have squares of sum x'P'P
         // x.
         let mut x = [0.0; TERMS];
-        if let Some(first) = x.first_mut() {
-            *first = 1.0;
-        }
-        ldlt::solve(factor, &mut x);
-        let eccentricity = (n * quadratic(sums, &x) - 1.0).max(0.0);
+        x.iter_mut().take(1).for_each(|first| *first = 1.0);
+        factor.solve(&mut x);
+        let eccentricity = (n * sums.gram.quadratic(&x) - 1.0).max(0.0);
         let variance = result::residual_variance(residuals, TERMS.saturating_sub(1), n, eccentricity);
         outcome.variance = variance.or(plain_variance);
         let samples = usize::try_from(self.samples).unwrap_or(usize::MAX);
@@ -171,31 +152,23 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         if self.samples == 0 {
             self.offset = other.offset;
         }
-        let count = other.samples as f64;
-        for channel in 0..CHANNELS {
-            let shift = f64::from(other.offset[channel]) - f64::from(self.offset[channel]);
-            let total = other.rhs.first().map_or(0.0, |row| row[channel]);
-            self.square[channel] += other.square[channel] + shift * (total + total + shift * count);
-            for (j, (ours, theirs)) in self.rhs.iter_mut().zip(&other.rhs).enumerate() {
-                let column = row(other.gram.as_flattened(), j).first().copied().unwrap_or(0.0);
-                ours[channel] += theirs[channel] + shift * column;
-            }
+        let mut shift = PerChannel::default();
+        for (shift, (theirs, ours)) in shift.iter_mut().zip(other.offset.iter().zip(&self.offset)) {
+            *shift = f64::from(*theirs) - f64::from(*ours);
         }
-        for (ours, theirs) in self.gram.as_flattened_mut().iter_mut().zip(other.gram.as_flattened()) {
-            *ours += *theirs;
-        }
+        let factors = PerChannel([1.0; Config::MAX_CHANNELS]);
+        self.sums_mut()?.merge(&other.sums()?, &factors, &shift);
         self.samples = self.samples.saturating_add(other.samples);
         Ok(())
     }
-}
 
-/// x'G x for a packed G.
-fn quadratic(gram: &[f64], x: &[f64]) -> f64 {
-    let mut total = 0.0;
-    for (j, &value) in x.iter().enumerate() {
-        for (k, (&gram, &other)) in row(gram, j).iter().zip(x).enumerate() {
-            total += value * if k == j { gram * other } else { (gram + gram) * other };
-        }
+    fn sums(&self) -> Result<Sums<&[f64]>, Error> {
+        let gram = Triangle::new(self.gram.as_flattened(), TERMS)?;
+        Ok(Sums { gram, rhs: Panel::new(self.rhs.as_flattened(), CHANNELS), square: &self.square })
     }
-    total
+
+    fn sums_mut(&mut self) -> Result<Sums<&mut [f64]>, Error> {
+        let gram = Triangle::new(self.gram.as_flattened_mut(), TERMS)?;
+        Ok(Sums { gram, rhs: Panel::new(self.rhs.as_flattened_mut(), CHANNELS), square: &mut self.square })
+    }
 }

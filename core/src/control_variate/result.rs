@@ -2,7 +2,7 @@
 
 use super::config::{Config, Estimate};
 use super::design::{Design, Units};
-use super::per_channel::{PerChannel, get};
+use super::per_channel::PerChannel;
 use super::samples::Reader;
 use super::trust::Centre;
 use crate::real::Real;
@@ -95,13 +95,13 @@ pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estim
     let (mut gain, mut counted) = (0.0, 0.0);
     for (channel, unit) in summary.units.iter().enumerate().take(summary.channels) {
         if let (Some(mean), Some(error)) = (mean.get_mut(channel), error.get_mut(channel)) {
-            let correction = get(&outcome.correction, channel);
+            let correction = outcome.correction[channel];
             let is_usable = correction.is_finite();
             *mean = unit.value(if is_usable { correction } else { R::ZERO });
             *error = f64::INFINITY;
             if let (Some(variance), Some(plain)) = (&outcome.variance, &summary.plain_variance) {
-                let plain = get(plain, channel);
-                let variance = get(variance, channel);
+                let plain = plain[channel];
+                let variance = variance[channel];
                 // Of what is no number all that is known is the mean's.
                 let is_known = is_usable && (variance >= R::ZERO || variance < R::ZERO);
                 let variance = if is_known { variance.max(R::ZERO) } else { plain };

@@ -56,7 +56,7 @@ pub(crate) fn least_squares<R: Real>(ridge: Ridge) -> f64 {
 /// Relative penalties of control functions and basis, where `mean_square` is that of a control function's column.
 #[inline(always)]
 pub(crate) fn penalties<R: Real>(config: &Config, basis: &Basis, mean_square: impl Fn(usize) -> R, out: &mut [R]) {
-    let (controls, functions) = out.split_at_mut_checked(config.controls).unwrap_or((&mut [], &mut []));
+    let (controls, functions) = out.split_at_mut_checked(config.controls).unwrap_or_default();
     for (j, penalty) in controls.iter_mut().enumerate() {
         *penalty = R::from_f64(CONTROL_PENALTY) * mean_square(j);
     }

@@ -3,19 +3,19 @@
 use super::config::{Color, Config, Estimator, Ridge, Solver};
 use super::cross_fit;
 use super::design::Units;
+use super::fit::{descent, givens as square_root, normal};
 use super::folds;
 use super::incremental;
-use super::moments::{self, Moments, MomentsMut};
 use super::per_channel::PerChannel;
 use super::plan::is_plain;
 use super::samples::{Reader, Samples, Subset};
-use super::{gradient_descent, square_root};
+use super::sums::{self, Sums};
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
 use crate::error::Error;
 use crate::lanes::Lanes;
-use crate::linalg::{givens, row};
+use crate::linalg::givens;
+use crate::matrix::{at, row_at, row_at_mut, rows_mut};
 use crate::real::Real;
-use crate::rows::rows_mut;
 
 /// The most samples of an accumulator in `f32`.
 const NARROW_CAPACITY: u64 = 1 << 22;
@@ -85,7 +85,7 @@ impl<R: Real> State<R> {
 
     /// Numbers of one group of sums.
     pub(super) fn group(&self) -> usize {
-        moments::len(self.terms(), self.channels)
+        sums::len(self.terms(), self.channels)
     }
 
     /// Groups of sums: one for each fold, or one.
@@ -113,11 +113,11 @@ impl<R: Real> State<R> {
     /// Numbers of workspace that an estimate takes.
     pub fn workspace_len(&self) -> usize {
         let (columns, channels) = (self.columns, self.channels);
-        let solve = moments::solve_len(columns);
-        let fit = moments::centred_len(columns, channels) + columns * (1 + channels) + solve;
+        let solve = normal::solve_len(columns);
+        let fit = normal::centred_len(columns, channels) + columns * (1 + channels) + solve;
         let len = match self.config.estimator {
             Estimator::Robust | Estimator::KFold => cross_fit::len(columns, channels) + self.group() + fit,
-            Estimator::GradientDescent => fit + gradient_descent::size(columns, channels),
+            Estimator::GradientDescent => fit + descent::size(columns, channels),
             _ if self.config.solver == Solver::SquareRoot => square_root::size(self.terms(), channels) + self.group(),
             _ => fit,
         };
@@ -182,14 +182,14 @@ impl<R: Real> State<R> {
         reader.each(Subset::All, |sample| {
             sample.put(0, &mut x, &mut h);
             if terms > 1 {
-                reader.columns(&basis, &x, &h, p.get_mut(1..terms).unwrap_or(&mut []));
+                reader.columns(&basis, &x, &h, p.get_mut(1..terms).unwrap_or_default());
             }
             if let Some(colour) = reader.colour(sample) {
                 for (sum, value) in self.colour.iter_mut().zip(colour) {
                     *sum += value;
                 }
             }
-            self.add_row(sums, p.get_mut(..terms).unwrap_or(&mut []), reader.values(sample));
+            self.add_row(sums, p.get_mut(..terms).unwrap_or_default(), PerChannel(reader.values(sample)));
         });
         Ok(())
     }
@@ -202,16 +202,16 @@ impl<R: Real> State<R> {
         let groups = state.groups();
         fit_units(state, &values, sums);
         let mut f = PerChannel::default();
-        for ((f, value), unit) in f.iter_mut().zip(values).zip(&state.units) {
+        for ((f, &value), unit) in f.iter_mut().zip(&values).zip(&state.units) {
             *f = value * R::ONE.scale(-unit.exponent) - unit.offset;
         }
-        let f = f.get_mut(..channels).unwrap_or(&mut []);
+        let f = f.get_mut(..channels).unwrap_or_default();
         let p = p.as_flattened_mut();
         if state.config.estimator == Estimator::Incremental {
-            let (group, rest) = sums.split_at_mut_checked(group).unwrap_or((&mut [], &mut []));
-            incremental::correct(&mut state.incremental, state.config.ridge, rest, p.get(1..).unwrap_or(&[]), f);
-            if let Some(mut moments) = MomentsMut::new(group, terms, channels) {
-                moments.add(p, f);
+            let (group, rest) = sums.split_at_mut_checked(group).unwrap_or_default();
+            incremental::correct(&mut state.incremental, state.config.ridge, rest, p.get(1..).unwrap_or_default(), f);
+            if let Ok(mut sums) = Sums::new_mut(group, terms, channels) {
+                sums.add(p, f);
             }
             state.samples += 1;
             incremental::refit(state.samples, &mut state.incremental, &state.config, group, rest, terms - 1, channels);
@@ -219,12 +219,11 @@ impl<R: Real> State<R> {
         }
         let fold = folds::of_stream(state.samples, groups);
         state.samples += 1;
-        let sums = sums.get_mut(fold * group..(fold + 1) * group).unwrap_or(&mut []);
-        if let Some(mut moments) = MomentsMut::new(sums, terms, channels) {
+        if let Ok(mut sums) = Sums::new_mut(row_at_mut(sums, group, fold), terms, channels) {
             if state.config.solver == Solver::SquareRoot {
-                givens::add_row(moments.gram, moments.rhs, moments.square, p, f);
+                givens::add_row(&mut sums.gram, &mut sums.rhs, sums.square, p, f);
             } else {
-                moments.add(p, f);
+                sums.add(p, f);
             }
         }
     }
@@ -254,7 +253,7 @@ impl<R: Real> State<R> {
             state.units = other.units;
         }
         raise_exponents(state, &other.units.map(|unit| unit.exponent), sums);
-        let mut factors = [R::ONE; Config::MAX_CHANNELS];
+        let mut factors = PerChannel([R::ONE; Config::MAX_CHANNELS]);
         let mut shift = PerChannel::default();
         let units = other.units.iter().zip(&state.units);
         for (((theirs, ours), factor), shift) in units.zip(&mut factors).zip(&mut shift) {
@@ -262,21 +261,17 @@ impl<R: Real> State<R> {
             *shift = theirs.offset * *factor - ours.offset;
         }
         let size = |sums: &[R], fold: usize| {
-            let moments = sums.get(fold * group..).and_then(|sums| Moments::new(sums, terms, channels));
-            moments.map_or(0.0, |moments| moments.count().to_f64())
+            Sums::new(row_at(sums, group, fold), terms, channels).map_or(0.0, |sums| sums.count().to_f64())
         };
         let rotation = folds::rotation(groups, |fold| size(sums, fold), |fold| size(other_sums, fold));
         for fold in 0..groups {
-            let range = fold * group..(fold + 1) * group;
-            let ours = sums.get_mut(range).and_then(|sums| MomentsMut::new(sums, terms, channels));
+            let mut ours = Sums::new_mut(row_at_mut(sums, group, fold), terms, channels)?;
             let theirs = (fold + groups - rotation).checked_rem(groups).unwrap_or(0);
-            let theirs = other_sums.get(theirs * group..(theirs + 1) * group);
-            let theirs = theirs.and_then(|sums| Moments::new(sums, terms, channels));
-            let (Some(mut ours), Some(theirs)) = (ours, theirs) else { continue };
+            let theirs = Sums::new(row_at(other_sums, group, theirs), terms, channels)?;
             if state.config.solver == Solver::SquareRoot {
-                merge_factors(&mut ours, &theirs, &factors, &shift, terms, channels);
+                merge_factors(&mut ours, &theirs, &factors, &shift, channels);
             } else {
-                ours.merge(&theirs, &factors, &shift, channels);
+                ours.merge(&theirs, &factors, &shift);
             }
         }
         for (sum, value) in state.colour.iter_mut().zip(other.colour) {
@@ -285,7 +280,7 @@ impl<R: Real> State<R> {
         state.incremental.merge(&other.incremental, &factors, &shift, other.samples);
         state.samples = state.samples.saturating_add(other.samples);
         if state.config.estimator == Estimator::Incremental {
-            let (group, rest) = sums.split_at_mut_checked(group).unwrap_or((&mut [], &mut []));
+            let (group, rest) = sums.split_at_mut_checked(group).unwrap_or_default();
             state.incremental.refit_now();
             incremental::refit(state.samples, &mut state.incremental, &state.config, group, rest, terms - 1, channels);
         }
@@ -307,7 +302,7 @@ fn fit_units<R: Real>(state: &mut State<R>, values: &PerChannel<R>, sums: &mut [
 
 /// Raises the units' exponents to at least those given, and rescales what was summed.
 fn raise_exponents<R: Real>(state: &mut State<R>, exponents: &[i32; Config::MAX_CHANNELS], sums: &mut [R]) {
-    let mut factors = [R::ONE; Config::MAX_CHANNELS];
+    let mut factors = PerChannel([R::ONE; Config::MAX_CHANNELS]);
     let mut any = false;
     let fresh = state.samples == 0;
     for ((unit, &exponent), factor) in state.units.iter_mut().zip(exponents).zip(&mut factors) {
@@ -326,10 +321,10 @@ fn raise_exponents<R: Real>(state: &mut State<R>, exponents: &[i32; Config::MAX_
         return;
     }
     let (terms, channels, group, groups) = (state.terms(), state.channels, state.group(), state.groups());
-    let (folds, rest) = sums.split_at_mut_checked(groups * group).unwrap_or((&mut [], &mut []));
+    let (folds, rest) = sums.split_at_mut_checked(groups * group).unwrap_or_default();
     for sums in rows_mut(folds, group) {
-        if let Some(mut moments) = MomentsMut::new(sums, terms, channels) {
-            moments.rescale(&factors, channels);
+        if let Ok(mut sums) = Sums::new_mut(sums, terms, channels) {
+            sums.rescale(&factors);
         }
     }
     state.incremental.rescale(&factors, rest, state.columns, channels);
@@ -337,29 +332,28 @@ fn raise_exponents<R: Real>(state: &mut State<R>, exponents: &[i32; Config::MAX_
 
 /// Rotates the rows of another triangular factor into ours.
 fn merge_factors<R: Real>(
-    ours: &mut MomentsMut<'_, R>,
-    theirs: &Moments<'_, R>,
+    ours: &mut Sums<&mut [R]>,
+    theirs: &Sums<&[R]>,
     factors: &PerChannel<R>,
     shift: &PerChannel<R>,
-    terms: usize,
     channels: usize,
 ) {
     let mut x = [R::ZERO; MAX_TERMS];
-    let x = x.get_mut(..terms).unwrap_or(&mut []);
-    for j in 0..terms {
+    let x = x.get_mut(..theirs.gram.order()).unwrap_or_default();
+    for (j, z) in theirs.rhs.rows().enumerate() {
         for (k, x) in x.iter_mut().enumerate() {
-            *x = if k < j { R::ZERO } else { row(theirs.gram, k).get(j).copied().unwrap_or(R::ZERO) };
+            *x = if k < j { R::ZERO } else { theirs.gram.at(k, j) };
         }
         // The constant's column is the first, so a shift of the values is that many times column 0 of R.
-        let first = if j == 0 { x.first().copied().unwrap_or(R::ZERO) } else { R::ZERO };
+        let first = if j == 0 { at(x, 0) } else { R::ZERO };
         let mut y = PerChannel::default();
-        let z = theirs.rhs.get(j * channels..).unwrap_or(&[]);
-        for (((y, &z), &factor), &shift) in y.iter_mut().zip(z).zip(factors).zip(shift) {
-            *y = factor * z + shift * first;
+        for (channel, &z) in z.iter().enumerate() {
+            y[channel] = factors[channel] * z + shift[channel] * first;
         }
-        givens::add_row(ours.gram, ours.rhs, ours.square, x, y.get_mut(..channels).unwrap_or(&mut []));
+        let y = y.get_mut(..channels).unwrap_or_default();
+        givens::add_row(&mut ours.gram, &mut ours.rhs, ours.square, x, y);
     }
-    for ((square, &other), &factor) in ours.square.iter_mut().zip(theirs.square).zip(factors) {
+    for ((square, &other), &factor) in ours.square.iter_mut().zip(theirs.square).zip(factors.iter()) {
         *square += factor * factor * other;
     }
 }

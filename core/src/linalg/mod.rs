@@ -1,16 +1,9 @@
-//! The small dense linear algebra of the regressions.
-//!
-//! Symmetric and triangular matrices are packed: row j of the lower triangle holds j + 1 numbers and starts at
-//! j (j + 1) / 2. A row that is not there reads as empty, so no index can be out of bounds.
+//! The small dense linear algebra of the regressions, over the packed triangles of [`matrix`](crate::matrix).
 
 pub(crate) mod givens;
 pub(crate) mod ldlt;
 
-/// The count of numbers in a packed triangle of `n` rows.
-#[inline(always)]
-pub(crate) const fn packed_len(n: usize) -> usize {
-    n * (n + 1) / 2
-}
+pub(crate) use crate::matrix::packed_len;
 
 /// Row `j` of a packed lower triangle, diagonal included.
 #[inline(always)]

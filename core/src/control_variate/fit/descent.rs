@@ -4,19 +4,19 @@
 //! that the early steps go where functions vary most. A fit that stopped early is a shrunk one: at low sample counts
 //! this is safer than least squares, with no matrix at all.
 
-use super::config::{Config, Estimate, Optimizer};
-use super::design::Design;
-use super::moments::Centred;
-use super::per_channel::{PerChannel, get, set};
-use super::plan::Plan;
-use super::result::{self, Outcome};
-use super::samples::{Reader, Samples, Subset};
+use super::super::config::{Config, Estimate, Optimizer};
+use super::super::design::Design;
+use super::super::per_channel::PerChannel;
+use super::super::plan::Plan;
+use super::super::result::{self, Outcome};
+use super::super::samples::{Reader, Samples, Subset};
+use super::normal::Centred;
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
+use crate::matrix::{copy, rows_mut};
 use crate::real::Real;
-use crate::rows::rows_mut;
 
 /// Steps, if the caller names none: half as many as samples, within these bounds. Stopping early shrinks the fit as a
 /// ridge does, which few samples need.
@@ -58,12 +58,12 @@ pub(crate) trait Objective<R> {
     fn means(&self) -> &[R];
 }
 
-/// As [`estimate`](super::estimate) with [`Estimator::GradientDescent`](super::Estimator::GradientDescent), starting
+/// As [`estimate`](super::super::estimate) with [`Estimator::GradientDescent`](super::super::Estimator::GradientDescent), starting
 /// from `coefficients`, a row of `terms - 1` numbers for each channel in the values' unit, and leaving the solution
 /// there: a previous frame's solution is a good start for the next (4.2.6).
 ///
 /// # Errors
-/// As for [`estimate`](super::estimate), and [`Error::NotFinite`] for a start that is not finite. The coefficients are
+/// As for [`estimate`](super::super::estimate), and [`Error::NotFinite`] for a start that is not finite. The coefficients are
 /// written only on success.
 ///
 /// ```
@@ -110,10 +110,7 @@ pub(crate) fn estimate<R: Real>(
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
     let columns = design.columns;
-    let solutions = arena.take(columns * design.channels)?;
-    for value in solutions.iter_mut() {
-        *value = R::ZERO;
-    }
+    let solutions = arena.zeros(columns * design.channels)?;
     let unit = |index: usize| index.checked_div(columns).and_then(|channel| design.units.get(channel));
     if let Some(warm) = &warm {
         for (index, (out, &value)) in solutions.iter_mut().zip(warm.iter()).enumerate() {
@@ -145,10 +142,8 @@ pub(crate) fn descend<R: Real>(
     let (gradient, first, second) = (arena.take(columns)?, arena.take(columns)?, arena.take(columns)?);
     let (scales, units) = (arena.take(columns)?, arena.take(columns)?);
     control_units(objective, config.controls, units);
-    for (scale, &unit) in scales.iter_mut().zip(units.iter()) {
-        *scale = unit;
-    }
-    basis.scales(scales.get_mut(config.controls..).unwrap_or(&mut []));
+    copy(scales, units);
+    basis.scales(scales.get_mut(config.controls..).unwrap_or_default());
     let curvature = match config.optimizer {
         Optimizer::Adam => R::ONE,
         Optimizer::Momentum | Optimizer::Plain => largest_curvature(objective, scales, first, gradient, second),
@@ -159,9 +154,8 @@ pub(crate) fn descend<R: Real>(
     for (channel, solution) in rows_mut(coefficients, columns).enumerate() {
         let square = objective.square(channel);
         let descent = Descent::new(config, (square / n).sqrt(), curvature);
-        for value in first.iter_mut().chain(second.iter_mut()) {
-            *value = R::ZERO;
-        }
+        first.fill(R::ZERO);
+        second.fill(R::ZERO);
         let steps = match config.iterations {
             0 => (objective.count() / 2).clamp(ITERATIONS.0, ITERATIONS.1),
             steps => steps,
@@ -174,9 +168,7 @@ pub(crate) fn descend<R: Real>(
         let residual = objective.residual_square(channel, solution);
         let is_fit = residual <= square;
         if !is_fit {
-            for value in solution {
-                *value = R::ZERO;
-            }
+            solution.fill(R::ZERO);
             continue;
         }
         objective.gradient(Some(channel), solution, gradient);
@@ -187,11 +179,11 @@ pub(crate) fn descend<R: Real>(
             // The curvature of orthonormal functions is one: the gradient is what the coefficients lack.
             rest += (g * unit) * (unit * mean);
         }
-        set(&mut outcome.correction, channel, correction);
+        outcome.correction[channel] = correction;
         if let Some(variance) = &mut outcome.variance {
-            let own = variance_factor.map_or(get(variance, channel), |factor| residual * factor);
+            let own = variance_factor.map_or(variance[channel], |factor| residual * factor);
             // The square of what a descent to its end would still change.
-            set(variance, channel, own + rest * rest);
+            variance[channel] = own + rest * rest;
         }
     }
     Ok(outcome)
@@ -291,9 +283,7 @@ impl<R: Real> Objective<R> for Design<'_, R> {
     #[inline(always)]
     fn gradient(&self, channel: Option<usize>, b: &[R], out: &mut [R]) {
         let inverse = R::ONE / R::from_usize(self.n);
-        for value in out.iter_mut() {
-            *value = R::ZERO;
-        }
+        out.fill(R::ZERO);
         for (panel, values) in self.each_panel() {
             let mut residual = [R::ZERO; LANES];
             for (column, &b) in panel.iter().zip(b) {
@@ -339,7 +329,7 @@ impl<R: Real> Objective<R> for Centred<'_, R> {
     }
 
     fn square(&self, channel: usize) -> R {
-        get(&self.squares, channel)
+        self.squares[channel]
     }
 
     fn residual_square(&self, channel: usize, b: &[R]) -> R {
@@ -347,19 +337,19 @@ impl<R: Real> Objective<R> for Centred<'_, R> {
     }
 
     fn column_square(&self, column: usize) -> R {
-        self.column_square(column)
+        self.normal.gram.diagonal(column)
     }
 
     fn columns(&self) -> usize {
-        self.columns
+        self.normal.gram.order()
     }
 
     fn count(&self) -> usize {
-        self.count.to_f64() as usize
+        self.normal.count.to_f64() as usize
     }
 
     fn means(&self) -> &[R] {
-        self.means
+        self.normal.means
     }
 }
 

@@ -1,0 +1,320 @@
+//! The normal equations (4.27) and L D L'.
+
+use super::super::Config;
+use super::super::design::Design;
+use super::super::per_channel::PerChannel;
+use super::super::sums::{Sums, not_below_zero};
+use super::super::trust::Centre;
+use super::{Fit, Penalty, SMALLEST_GAP};
+use crate::arena::Arena;
+use crate::error::Error;
+use crate::lanes::{self, LANES, Lanes};
+use crate::linalg::ldlt::Ldlt;
+use crate::matrix::{Panel, Triangle, copy, packed_len};
+use crate::real::Real;
+
+/// A column whose sum of squares about its mean is below this fraction of that about zero, in units of the type's
+/// epsilon, is constant.
+const NOISE: f64 = 64.0;
+
+/// A ridge problem whose intercept is free and eliminated.
+pub(crate) struct Normal<'a, R> {
+    /// The number of samples.
+    pub(crate) count: R,
+    /// P'P
+    pub(crate) gram: Triangle<&'a mut [R]>,
+    /// P'f, a row for each channel.
+    pub(crate) rhs: Panel<&'a mut [R]>,
+    /// What was subtracted from each column.
+    pub(crate) means: &'a [R],
+}
+
+/// Numbers that [`Normal::fit`] takes from its arena.
+pub(crate) fn fit_len(columns: usize, channels: usize) -> usize {
+    packed_len(columns) + columns * (1 + channels) + columns * LANES
+}
+
+impl<'a, R: Real> Normal<'a, R> {
+    /// Of the samples of a design.
+    #[inline(always)]
+    pub(crate) fn of(design: &Design<'a, R>, arena: &mut Arena<'a, R>) -> Result<Self, Error> {
+        let mut gram = arena.triangle(design.columns)?;
+        let mut rhs = Panel::new(arena.take(design.columns * design.channels)?, design.columns);
+        design.normal_equations(&mut gram, &mut rhs);
+        Ok(Self { count: R::from_usize(design.n), gram, rhs, means: design.column_means })
+    }
+
+    /// P'P + L, factored.
+    #[inline(always)]
+    fn factor<'f>(&self, penalty: Penalty<'_, R>, arena: &mut Arena<'f, R>) -> Result<Ldlt<'f, R>, Error> {
+        let mut matrix = arena.triangle(self.gram.order())?;
+        copy(matrix.entries_mut(), self.gram.entries());
+        let strength = penalty.strength * self.count;
+        for (j, &relative) in penalty.relative.iter().enumerate() {
+            if let Some(diagonal) = matrix.diagonal_mut(j) {
+                *diagonal += strength * relative;
+            }
+        }
+        Ok(Ldlt::new(matrix))
+    }
+
+    #[inline(always)]
+    pub(crate) fn fit(
+        &self,
+        design: &Design<'_, R>,
+        penalty: Penalty<'_, R>,
+        leave_one_out: bool,
+        coefficients: Option<&mut [R]>,
+        mut arena: Arena<'_, R>,
+    ) -> Result<Fit<R>, Error> {
+        let columns = self.gram.order();
+        let factor = self.factor(penalty, &mut arena)?;
+        let means = arena.take(columns)?;
+        let mut solution = Panel::new(arena.take(columns * design.channels)?, columns);
+        let z = arena.take_lanes(columns)?;
+        // Everything below lives in the coordinates z = L^-1 p, where A^-1 is diagonal.
+        copy(means, self.means);
+        factor.forward(means);
+        let mut fit = Fit::default();
+        for (channel, (solution, rhs)) in solution.rows_mut().zip(self.rhs.rows()).enumerate() {
+            copy(solution, rhs);
+            factor.forward(solution);
+            for (j, (value, &mean)) in solution.iter_mut().zip(means.iter()).enumerate() {
+                *value *= factor.inverse_pivot(j);
+                fit.in_sample[channel] -= *value * mean;
+            }
+        }
+        if leave_one_out {
+            residuals(design, &factor, means, &solution, z, &mut fit);
+        }
+        if let Some(coefficients) = coefficients {
+            for (out, solution) in Panel::new(coefficients, columns).rows_mut().zip(solution.rows()) {
+                copy(out, solution);
+                factor.backward(out);
+            }
+        }
+        Ok(fit)
+    }
+
+    /// Writes the coefficients of a fit, a row for each channel, and returns the factored matrix.
+    #[inline(always)]
+    pub(crate) fn solve<'f>(
+        &self,
+        penalty: Penalty<'_, R>,
+        coefficients: &mut [R],
+        arena: &mut Arena<'f, R>,
+    ) -> Result<Ldlt<'f, R>, Error> {
+        let factor = self.factor(penalty, arena)?;
+        for (out, rhs) in Panel::new(coefficients, self.gram.order()).rows_mut().zip(self.rhs.rows()) {
+            copy(out, rhs);
+            factor.solve(out);
+        }
+        Ok(factor)
+    }
+
+    /// n sum_i (m'A^-1 p_i)^2 = n x'P'P x for x = A^-1 m.
+    pub(crate) fn eccentricity(&self, factor: &Ldlt<'_, R>, arena: &mut Arena<'_, R>) -> Result<R, Error> {
+        let x = arena.take(self.gram.order())?;
+        copy(x, self.means);
+        factor.solve(x);
+        Ok(self.gram.quadratic(x) * self.count)
+    }
+
+    /// Where the samples of a fit lie, for two or more.
+    pub(crate) fn centre(
+        &self,
+        factor: &Ldlt<'_, R>,
+        penalty: Penalty<'_, R>,
+        mut arena: Arena<'_, R>,
+    ) -> Result<Option<Centre<R>>, Error> {
+        if self.count <= R::ONE {
+            return Ok(None);
+        }
+        let columns = self.gram.order();
+        let (inverse, diagonal) = (arena.triangle(columns)?, arena.take(columns)?);
+        factor.inverse_diagonal(inverse, diagonal);
+        // tr(A^-1 P'P) = columns - tr(A^-1 L).
+        let strength = penalty.strength * self.count;
+        let mut freedom = R::from_usize(columns);
+        for (&value, &relative) in diagonal.iter().zip(penalty.relative) {
+            freedom -= strength * value * relative;
+        }
+        let eccentricity = self.eccentricity(factor, &mut arena)?;
+        Ok(Some(Centre::new(eccentricity, freedom, self.count)))
+    }
+}
+
+/// The leave-one-out figures, eight samples at a time.
+#[inline(always)]
+fn residuals<R: Real>(
+    design: &Design<'_, R>,
+    factor: &Ldlt<'_, R>,
+    means: &[R],
+    solution: &Panel<&mut [R]>,
+    z: &mut [Lanes<R>],
+    fit: &mut Fit<R>,
+) {
+    let n = R::from_usize(design.n);
+    let inverse_n = R::ONE / n;
+    let smallest_gap = R::from_f64(SMALLEST_GAP) * R::EPSILON;
+    let zero = [R::ZERO; LANES];
+    let [mut press, mut influences, mut corrections] = [[zero; Config::MAX_CHANNELS]; 3];
+    let (mut freedom, mut eccentricity) = (zero, zero);
+    for (panel, values) in design.each_panel() {
+        copy(z, panel);
+        factor.forward_lanes(z);
+        // leverage = p'A^-1 p, shift = m'A^-1 p
+        let (mut leverage, mut shift) = (zero, zero);
+        for (j, (z, &mean)) in z.iter().zip(means).enumerate() {
+            let pivot = factor.inverse_pivot(j);
+            let scaled_mean = mean * pivot;
+            let z = *z;
+            for l in 0..LANES {
+                leverage[l] += z[l] * z[l] * pivot;
+                shift[l] += z[l] * scaled_mean;
+            }
+        }
+        freedom = lanes::zip(&freedom, &leverage, |a, b| a + b);
+        lanes::add_product(&mut eccentricity, &shift, &shift);
+        let (mut gap, mut weight) = (zero, zero);
+        for l in 0..LANES {
+            gap[l] = R::ONE / (R::ONE - inverse_n - leverage[l]).max(smallest_gap);
+            weight[l] = R::ONE - n * shift[l];
+        }
+        let sums = press.iter_mut().zip(&mut influences).zip(&mut corrections);
+        for ((values, solution), ((press, influences), corrections)) in values.iter().zip(solution.rows()).zip(sums) {
+            let mut residual = *values;
+            for (z, &weight) in z.iter().zip(solution) {
+                lanes::subtract_scaled(&mut residual, weight, z);
+            }
+            let (mut press_sum, mut influence_sum, mut correction_sum) = (*press, *influences, *corrections);
+            for l in 0..LANES {
+                let residual = residual[l] * gap[l];
+                let influence = residual * weight[l];
+                press_sum[l] += residual * residual;
+                influence_sum[l] += influence * influence;
+                correction_sum[l] += (leverage[l] + shift[l]) * residual;
+            }
+            (*press, *influences, *corrections) = (press_sum, influence_sum, correction_sum);
+        }
+    }
+    fit.freedom = lanes::sum(&freedom);
+    fit.eccentricity = lanes::sum(&eccentricity) * n;
+    let sums = press.iter().zip(&influences).zip(&corrections).enumerate();
+    for (channel, ((press, influences), corrections)) in sums.take(design.channels) {
+        fit.press[channel] = lanes::sum(press);
+        fit.influence[channel] = lanes::sum(influences);
+        fit.leave_one_out[channel] = fit.in_sample[channel] + lanes::sum(corrections) * inverse_n;
+    }
+}
+
+/// The normal equations of sums, and what they say about the values.
+pub(crate) struct Centred<'a, R> {
+    pub(crate) normal: Normal<'a, R>,
+    /// The values' means.
+    pub(crate) value_means: PerChannel<R>,
+    /// The sums of squares about the means.
+    pub(crate) squares: PerChannel<R>,
+}
+
+/// How many numbers a [`Centred`] takes.
+pub(crate) fn centred_len(columns: usize, channels: usize) -> usize {
+    packed_len(columns) + columns * channels + columns
+}
+
+/// How many numbers a fit to one takes.
+pub(crate) fn solve_len(columns: usize) -> usize {
+    2 * packed_len(columns) + 2 * columns
+}
+
+impl<'a, R: Real> Centred<'a, R> {
+    /// Centres a group of sums; None if it holds no sample.
+    pub(crate) fn new(
+        sums: &Sums<&[R]>,
+        columns: usize,
+        channels: usize,
+        arena: &mut Arena<'a, R>,
+    ) -> Result<Option<Self>, Error> {
+        let mut gram = arena.triangle(columns)?;
+        let mut rhs = Panel::new(arena.take(columns * channels)?, columns);
+        let means = arena.take(columns)?;
+        let count = sums.count();
+        if count <= R::ZERO {
+            return Ok(None);
+        }
+        let inverse = R::ONE / count;
+        for (j, mean) in means.iter_mut().enumerate() {
+            *mean = sums.column_total(j) * inverse;
+        }
+        for j in 0..columns {
+            let total = sums.column_total(j);
+            let products = sums.gram.row(j + 1).iter().skip(1);
+            for ((out, &value), &mean) in gram.row_mut(j).iter_mut().zip(products).zip(means.iter()) {
+                *out = value - total * mean;
+            }
+        }
+        let (mut value_means, mut squares) = (PerChannel::default(), PerChannel::default());
+        for channel in 0..channels {
+            let mean = sums.total(channel) * inverse;
+            value_means[channel] = mean;
+            squares[channel] = (sums.square(channel) - sums.total(channel) * mean).max(R::ZERO);
+            for (j, out) in rhs.row_mut(channel).iter_mut().enumerate() {
+                *out = sums.rhs.at(j + 1, channel) - sums.column_total(j) * mean;
+            }
+        }
+        for j in 0..columns {
+            if gram.diagonal(j) > R::from_f64(NOISE) * R::EPSILON * sums.column_square(j) {
+                continue;
+            }
+            // What is left of a column that hardly moves is rounding noise, and says nothing about the values.
+            gram.row_mut(j).fill(R::ZERO);
+            for k in j + 1..columns {
+                if let Some(value) = gram.at_mut(k, j) {
+                    *value = R::ZERO;
+                }
+            }
+            for value in rhs.column_mut(j) {
+                *value = R::ZERO;
+            }
+        }
+        Ok(Some(Self { normal: Normal { count, gram, rhs, means }, value_means, squares }))
+    }
+
+    /// The intercept that goes with coefficients.
+    pub(crate) fn intercept(&self, channel: usize, b: &[R]) -> R {
+        b.iter().zip(self.normal.means).fold(self.value_means[channel], |sum, (&b, &m)| sum - b * m)
+    }
+
+    /// The sum of squared residuals of coefficients, f'f - 2 b'c + b'G b.
+    pub(crate) fn residual_square(&self, channel: usize, b: &[R]) -> R {
+        let mut total = self.squares[channel];
+        for (j, (&value, &rhs)) in b.iter().zip(self.normal.rhs.row(channel)).enumerate() {
+            total += value * (self.normal.gram.half_product(j, b) - rhs - rhs);
+        }
+        not_below_zero(total)
+    }
+
+    /// Half the negative gradient of the mean squared residual, (c - G b) / n; without a channel, G b / n.
+    pub(crate) fn half_gradient(&self, channel: Option<usize>, b: &[R], gradient: &mut [R]) {
+        let Normal { count, gram, rhs, .. } = &self.normal;
+        let sign = if channel.is_some() { -R::ONE } else { R::ONE };
+        gradient.fill(R::ZERO);
+        if let Some(channel) = channel {
+            copy(gradient, rhs.row(channel));
+        }
+        for (j, &value) in b.iter().enumerate() {
+            let mut product = gram.diagonal(j) * value;
+            for ((&gram, &other), out) in gram.left(j).iter().zip(b).zip(gradient.iter_mut()) {
+                product += gram * other;
+                *out += sign * gram * value;
+            }
+            if let Some(out) = gradient.get_mut(j) {
+                *out += sign * product;
+            }
+        }
+        let inverse = R::ONE / *count;
+        for out in gradient.iter_mut() {
+            *out *= inverse;
+        }
+    }
+}

@@ -1,0 +1,321 @@
+//! Checked views of matrices, over memory that somebody else owns.
+//!
+//! A view is made of a slice that is long enough, which is checked there and nowhere else. What lies outside reads as
+//! zero or as an empty row, so formulas over views have no index that could be out of bounds.
+//!
+//! `S` is `&[T]` or `&mut [T]`.
+
+use crate::error::Error;
+use crate::real::Real;
+use core::ops::{Deref, DerefMut};
+
+/// The count of numbers in a packed triangle of `order` rows.
+#[inline(always)]
+pub(crate) const fn packed_len(order: usize) -> usize {
+    order * (order + 1) / 2
+}
+
+/// One entry of a vector.
+#[inline(always)]
+pub(crate) fn at<T: Copy + Default>(vector: &[T], j: usize) -> T {
+    vector.get(j).copied().unwrap_or_default()
+}
+
+/// Entry `j` of a vector, and the entries before it: what a substitution works on.
+#[inline(always)]
+pub(crate) fn split_at<T>(vector: &mut [T], j: usize) -> Option<(&mut [T], &mut T)> {
+    vector.get_mut(..=j)?.split_last_mut().map(|(last, before)| (before, last))
+}
+
+/// Copies as many entries as both have.
+#[inline(always)]
+pub(crate) fn copy<T: Copy>(into: &mut [T], from: &[T]) {
+    for (into, &from) in into.iter_mut().zip(from) {
+        *into = from;
+    }
+}
+
+/// A symmetric or lower triangular matrix: row j holds the j + 1 entries up to the diagonal, and follows row j - 1.
+#[derive(Clone, Copy)]
+pub(crate) struct Triangle<S> {
+    entries: S,
+    order: usize,
+}
+
+impl<T, S: Deref<Target = [T]>> Triangle<S> {
+    /// # Errors
+    /// [`Error::Memory`] if `entries` are too few.
+    #[inline(always)]
+    pub(crate) fn new(entries: S, order: usize) -> Result<Self, Error> {
+        if entries.len() < packed_len(order) { Err(Error::Memory) } else { Ok(Self { entries, order }) }
+    }
+
+    /// The number of rows.
+    #[inline(always)]
+    pub(crate) fn order(&self) -> usize {
+        self.order
+    }
+
+    /// All entries, row after row.
+    #[inline(always)]
+    pub(crate) fn entries(&self) -> &[T] {
+        &self.entries
+    }
+
+    /// The same, to be read.
+    #[inline(always)]
+    pub(crate) fn view(&self) -> Triangle<&[T]> {
+        Triangle { entries: &self.entries, order: self.order }
+    }
+
+    /// Row `j`, diagonal included.
+    #[inline(always)]
+    pub(crate) fn row(&self, j: usize) -> &[T] {
+        let start = packed_len(j);
+        self.entries.get(start..start + j + 1).unwrap_or_default()
+    }
+
+    /// Row `j` left of the diagonal.
+    #[inline(always)]
+    pub(crate) fn left(&self, j: usize) -> &[T] {
+        let start = packed_len(j);
+        self.entries.get(start..start + j).unwrap_or_default()
+    }
+
+    /// The rows from the first on.
+    #[inline(always)]
+    pub(crate) fn rows<'a>(&'a self) -> impl Iterator<Item = &'a [T]>
+    where
+        T: 'a,
+    {
+        let mut rest: &[T] = &self.entries;
+        (1..=self.order).map_while(move |len| {
+            let (row, after) = rest.split_at_checked(len)?;
+            rest = after;
+            Some(row)
+        })
+    }
+}
+
+impl<T: Copy + Default, S: Deref<Target = [T]>> Triangle<S> {
+    /// Entry (j, k), k <= j.
+    #[inline(always)]
+    pub(crate) fn at(&self, j: usize, k: usize) -> T {
+        at(self.row(j), k)
+    }
+
+    /// Entry (j, j).
+    #[inline(always)]
+    pub(crate) fn diagonal(&self, j: usize) -> T {
+        at(&self.entries, packed_len(j) + j)
+    }
+}
+
+impl<R: Real, S: Deref<Target = [R]>> Triangle<S> {
+    /// Sum_k a_jk x_k over the row up to the diagonal, what is left of it counted twice; times x_j and summed over the
+    /// rows it makes x'A x.
+    #[inline(always)]
+    pub(crate) fn half_product(&self, j: usize, x: &[R]) -> R {
+        let mut sum = R::ZERO;
+        for (k, (&a, &x)) in self.row(j).iter().zip(x).enumerate() {
+            sum += (if k == j { a } else { a + a }) * x;
+        }
+        sum
+    }
+
+    /// x'A x
+    pub(crate) fn quadratic(&self, x: &[R]) -> R {
+        x.iter().enumerate().fold(R::ZERO, |sum, (j, &x_j)| sum + x_j * self.half_product(j, x))
+    }
+}
+
+impl<T, S: DerefMut<Target = [T]>> Triangle<S> {
+    /// All entries, row after row.
+    #[inline(always)]
+    pub(crate) fn entries_mut(&mut self) -> &mut [T] {
+        &mut self.entries
+    }
+
+    /// Row `j`, diagonal included.
+    #[inline(always)]
+    pub(crate) fn row_mut(&mut self, j: usize) -> &mut [T] {
+        let start = packed_len(j);
+        self.entries.get_mut(start..start + j + 1).unwrap_or_default()
+    }
+
+    /// Entry (j, k), k <= j.
+    #[inline(always)]
+    pub(crate) fn at_mut(&mut self, j: usize, k: usize) -> Option<&mut T> {
+        self.row_mut(j).get_mut(k)
+    }
+
+    /// Entry (j, j).
+    #[inline(always)]
+    pub(crate) fn diagonal_mut(&mut self, j: usize) -> Option<&mut T> {
+        self.entries.get_mut(packed_len(j) + j)
+    }
+
+    /// The rows before row `j`, row `j` left of the diagonal, and the entry there: what a factorisation works on.
+    #[inline(always)]
+    pub(crate) fn split(&mut self, j: usize) -> Option<(Triangle<&[T]>, &mut [T], &mut T)> {
+        let (before, rest) = self.entries.split_at_mut_checked(packed_len(j))?;
+        let (left, diagonal) = split_at(rest, j)?;
+        Some((Triangle { entries: before, order: j }, left, diagonal))
+    }
+}
+
+impl<'a, T> Panel<&'a mut [T]> {
+    /// Forgets all rows but the first `count`.
+    #[inline(always)]
+    pub(crate) fn truncate(&mut self, count: usize) {
+        let entries = core::mem::take(&mut self.entries);
+        let len = entries.len().min(count * self.width);
+        self.entries = entries.get_mut(..len).unwrap_or_default();
+    }
+
+    /// The same, from now on only to be read.
+    #[inline(always)]
+    pub(crate) fn into_shared(self) -> Panel<&'a [T]> {
+        Panel { entries: self.entries, width: self.width }
+    }
+}
+
+/// Rows of equal length, one after the other.
+#[derive(Clone, Copy)]
+pub(crate) struct Panel<S> {
+    entries: S,
+    width: usize,
+}
+
+impl<T, S: Deref<Target = [T]>> Panel<S> {
+    /// The whole rows of `width` entries.
+    #[inline(always)]
+    pub(crate) fn new(entries: S, width: usize) -> Self {
+        Self { entries, width }
+    }
+
+    /// The same, to be read.
+    #[inline(always)]
+    pub(crate) fn view(&self) -> Panel<&[T]> {
+        Panel { entries: &self.entries, width: self.width }
+    }
+
+    /// Row `i`.
+    #[inline(always)]
+    pub(crate) fn row(&self, i: usize) -> &[T] {
+        row_at(&self.entries, self.width, i)
+    }
+
+    /// The rows from the first on.
+    #[inline(always)]
+    pub(crate) fn rows(&self) -> Rows<'_, T> {
+        rows(&self.entries, self.width)
+    }
+
+    /// The entries at place `j` of every row.
+    #[inline(always)]
+    pub(crate) fn column<'a>(&'a self, j: usize) -> impl Iterator<Item = &'a T>
+    where
+        T: 'a,
+    {
+        self.rows().filter_map(move |row| row.get(j))
+    }
+}
+
+impl<T: Copy + Default, S: Deref<Target = [T]>> Panel<S> {
+    /// Entry (i, j).
+    #[inline(always)]
+    pub(crate) fn at(&self, i: usize, j: usize) -> T {
+        at(&self.entries, i * self.width + j)
+    }
+}
+
+impl<T, S: DerefMut<Target = [T]>> Panel<S> {
+    /// Row `i`.
+    #[inline(always)]
+    pub(crate) fn row_mut(&mut self, i: usize) -> &mut [T] {
+        row_at_mut(&mut self.entries, self.width, i)
+    }
+
+    /// The rows from the first on.
+    #[inline(always)]
+    pub(crate) fn rows_mut(&mut self) -> RowsMut<'_, T> {
+        rows_mut(&mut self.entries, self.width)
+    }
+
+    /// The entries at place `j` of every row.
+    #[inline(always)]
+    pub(crate) fn column_mut<'a>(&'a mut self, j: usize) -> impl Iterator<Item = &'a mut T>
+    where
+        T: 'a,
+    {
+        self.rows_mut().filter_map(move |row| row.get_mut(j))
+    }
+}
+
+// `chunks_exact` panics for a width of zero, which a matrix without columns has; these iterators then have no rows.
+
+/// Rows to read; see [`rows`].
+#[derive(Clone)]
+pub(crate) struct Rows<'a, T> {
+    rest: &'a [T],
+    width: usize,
+}
+
+/// Rows to write; see [`rows_mut`].
+pub(crate) struct RowsMut<'a, T> {
+    rest: &'a mut [T],
+    width: usize,
+}
+
+/// The whole rows of `width` entries.
+#[inline(always)]
+pub(crate) fn rows<T>(matrix: &[T], width: usize) -> Rows<'_, T> {
+    Rows { rest: matrix, width }
+}
+
+/// The whole rows of `width` entries.
+#[inline(always)]
+pub(crate) fn rows_mut<T>(matrix: &mut [T], width: usize) -> RowsMut<'_, T> {
+    RowsMut { rest: matrix, width }
+}
+
+/// Row `index` of `width` entries.
+#[inline(always)]
+pub(crate) fn row_at<T>(matrix: &[T], width: usize, index: usize) -> &[T] {
+    matrix.get(index * width..(index + 1) * width).unwrap_or_default()
+}
+
+/// Row `index` of `width` entries.
+#[inline(always)]
+pub(crate) fn row_at_mut<T>(matrix: &mut [T], width: usize, index: usize) -> &mut [T] {
+    matrix.get_mut(index * width..(index + 1) * width).unwrap_or_default()
+}
+
+impl<'a, T> Iterator for Rows<'a, T> {
+    type Item = &'a [T];
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<&'a [T]> {
+        if self.width == 0 {
+            return None;
+        }
+        let (row, rest) = self.rest.split_at_checked(self.width)?;
+        self.rest = rest;
+        Some(row)
+    }
+}
+
+impl<'a, T> Iterator for RowsMut<'a, T> {
+    type Item = &'a mut [T];
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<&'a mut [T]> {
+        if self.width == 0 || self.rest.len() < self.width {
+            return None;
+        }
+        let (row, rest) = core::mem::take(&mut self.rest).split_at_mut_checked(self.width)?;
+        self.rest = rest;
+        Some(row)
+    }
+}
