@@ -10,25 +10,49 @@ use crate::real::Real;
 use core::ops::{Deref, DerefMut};
 
 /// The count of numbers in a packed triangle of `order` rows.
-#[inline(always)]
+#[inline]
 pub(crate) const fn packed_len(order: usize) -> usize {
     order * (order + 1) / 2
 }
 
 /// One entry of a vector.
-#[inline(always)]
+#[inline]
 pub(crate) fn at<T: Copy + Default>(vector: &[T], j: usize) -> T {
     vector.get(j).copied().unwrap_or_default()
 }
 
+/// The entries of a vector from entry `start` on.
+#[inline]
+pub(crate) fn from<T>(vector: &[T], start: usize) -> &[T] {
+    vector.get(start..).unwrap_or_default()
+}
+
+/// The entries of a vector from entry `start` on.
+#[inline]
+pub(crate) fn from_mut<T>(vector: &mut [T], start: usize) -> &mut [T] {
+    vector.get_mut(start..).unwrap_or_default()
+}
+
+/// The first `len` entries of a vector.
+#[inline]
+pub(crate) fn first_mut<T>(vector: &mut [T], len: usize) -> &mut [T] {
+    vector.get_mut(..len).unwrap_or_default()
+}
+
+/// The first `len` entries of a vector, and the others.
+#[inline]
+pub(crate) fn halves_mut<T>(vector: &mut [T], len: usize) -> (&mut [T], &mut [T]) {
+    vector.split_at_mut_checked(len).unwrap_or_default()
+}
+
 /// Entry `j` of a vector, and the entries before it: what a substitution works on.
-#[inline(always)]
+#[inline]
 pub(crate) fn split_at<T>(vector: &mut [T], j: usize) -> Option<(&mut [T], &mut T)> {
     vector.get_mut(..=j)?.split_last_mut().map(|(last, before)| (before, last))
 }
 
 /// Copies as many entries as both have.
-#[inline(always)]
+#[inline]
 pub(crate) fn copy<T: Copy>(into: &mut [T], from: &[T]) {
     for (into, &from) in into.iter_mut().zip(from) {
         *into = from;
@@ -42,48 +66,51 @@ pub(crate) struct Triangle<S> {
     order: usize,
 }
 
+/// The rows before row j, row j left of the diagonal, and the entry there.
+type Split<'a, T> = (Triangle<&'a [T]>, &'a mut [T], &'a mut T);
+
 impl<T, S: Deref<Target = [T]>> Triangle<S> {
     /// # Errors
     /// [`Error::Memory`] if `entries` are too few.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn new(entries: S, order: usize) -> Result<Self, Error> {
         if entries.len() < packed_len(order) { Err(Error::Memory) } else { Ok(Self { entries, order }) }
     }
 
     /// The number of rows.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn order(&self) -> usize {
         self.order
     }
 
     /// All entries, row after row.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn entries(&self) -> &[T] {
         &self.entries
     }
 
     /// The same, to be read.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn view(&self) -> Triangle<&[T]> {
         Triangle { entries: &self.entries, order: self.order }
     }
 
     /// Row `j`, diagonal included.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn row(&self, j: usize) -> &[T] {
         let start = packed_len(j);
         self.entries.get(start..start + j + 1).unwrap_or_default()
     }
 
     /// Row `j` left of the diagonal.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn left(&self, j: usize) -> &[T] {
         let start = packed_len(j);
         self.entries.get(start..start + j).unwrap_or_default()
     }
 
     /// The rows from the first on.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn rows<'a>(&'a self) -> impl Iterator<Item = &'a [T]>
     where
         T: 'a,
@@ -99,13 +126,13 @@ impl<T, S: Deref<Target = [T]>> Triangle<S> {
 
 impl<T: Copy + Default, S: Deref<Target = [T]>> Triangle<S> {
     /// Entry (j, k), k <= j.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn at(&self, j: usize, k: usize) -> T {
         at(self.row(j), k)
     }
 
     /// Entry (j, j).
-    #[inline(always)]
+    #[inline]
     pub(crate) fn diagonal(&self, j: usize) -> T {
         at(&self.entries, packed_len(j) + j)
     }
@@ -114,7 +141,7 @@ impl<T: Copy + Default, S: Deref<Target = [T]>> Triangle<S> {
 impl<R: Real, S: Deref<Target = [R]>> Triangle<S> {
     /// Sum_k a_jk x_k over the row up to the diagonal, what is left of it counted twice; times x_j and summed over the
     /// rows it makes x'A x.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn half_product(&self, j: usize, x: &[R]) -> R {
         let mut sum = R::ZERO;
         for (k, (&a, &x)) in self.row(j).iter().zip(x).enumerate() {
@@ -131,33 +158,33 @@ impl<R: Real, S: Deref<Target = [R]>> Triangle<S> {
 
 impl<T, S: DerefMut<Target = [T]>> Triangle<S> {
     /// All entries, row after row.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn entries_mut(&mut self) -> &mut [T] {
         &mut self.entries
     }
 
     /// Row `j`, diagonal included.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn row_mut(&mut self, j: usize) -> &mut [T] {
         let start = packed_len(j);
         self.entries.get_mut(start..start + j + 1).unwrap_or_default()
     }
 
     /// Entry (j, k), k <= j.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn at_mut(&mut self, j: usize, k: usize) -> Option<&mut T> {
         self.row_mut(j).get_mut(k)
     }
 
     /// Entry (j, j).
-    #[inline(always)]
+    #[inline]
     pub(crate) fn diagonal_mut(&mut self, j: usize) -> Option<&mut T> {
         self.entries.get_mut(packed_len(j) + j)
     }
 
-    /// The rows before row `j`, row `j` left of the diagonal, and the entry there: what a factorisation works on.
-    #[inline(always)]
-    pub(crate) fn split(&mut self, j: usize) -> Option<(Triangle<&[T]>, &mut [T], &mut T)> {
+    /// What the factorisation of row `j` works on.
+    #[inline]
+    pub(crate) fn split(&mut self, j: usize) -> Option<Split<'_, T>> {
         let (before, rest) = self.entries.split_at_mut_checked(packed_len(j))?;
         let (left, diagonal) = split_at(rest, j)?;
         Some((Triangle { entries: before, order: j }, left, diagonal))
@@ -166,7 +193,7 @@ impl<T, S: DerefMut<Target = [T]>> Triangle<S> {
 
 impl<'a, T> Panel<&'a mut [T]> {
     /// Forgets all rows but the first `count`.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn truncate(&mut self, count: usize) {
         let entries = core::mem::take(&mut self.entries);
         let len = entries.len().min(count * self.width);
@@ -174,7 +201,7 @@ impl<'a, T> Panel<&'a mut [T]> {
     }
 
     /// The same, from now on only to be read.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn into_shared(self) -> Panel<&'a [T]> {
         Panel { entries: self.entries, width: self.width }
     }
@@ -189,31 +216,31 @@ pub(crate) struct Panel<S> {
 
 impl<T, S: Deref<Target = [T]>> Panel<S> {
     /// The whole rows of `width` entries.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn new(entries: S, width: usize) -> Self {
         Self { entries, width }
     }
 
     /// The same, to be read.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn view(&self) -> Panel<&[T]> {
         Panel { entries: &self.entries, width: self.width }
     }
 
     /// Row `i`.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn row(&self, i: usize) -> &[T] {
         row_at(&self.entries, self.width, i)
     }
 
     /// The rows from the first on.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn rows(&self) -> Rows<'_, T> {
         rows(&self.entries, self.width)
     }
 
     /// The entries at place `j` of every row.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn column<'a>(&'a self, j: usize) -> impl Iterator<Item = &'a T>
     where
         T: 'a,
@@ -224,7 +251,7 @@ impl<T, S: Deref<Target = [T]>> Panel<S> {
 
 impl<T: Copy + Default, S: Deref<Target = [T]>> Panel<S> {
     /// Entry (i, j).
-    #[inline(always)]
+    #[inline]
     pub(crate) fn at(&self, i: usize, j: usize) -> T {
         at(&self.entries, i * self.width + j)
     }
@@ -232,19 +259,19 @@ impl<T: Copy + Default, S: Deref<Target = [T]>> Panel<S> {
 
 impl<T, S: DerefMut<Target = [T]>> Panel<S> {
     /// Row `i`.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn row_mut(&mut self, i: usize) -> &mut [T] {
         row_at_mut(&mut self.entries, self.width, i)
     }
 
     /// The rows from the first on.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn rows_mut(&mut self) -> RowsMut<'_, T> {
         rows_mut(&mut self.entries, self.width)
     }
 
     /// The entries at place `j` of every row.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn column_mut<'a>(&'a mut self, j: usize) -> impl Iterator<Item = &'a mut T>
     where
         T: 'a,
@@ -269,25 +296,25 @@ pub(crate) struct RowsMut<'a, T> {
 }
 
 /// The whole rows of `width` entries.
-#[inline(always)]
+#[inline]
 pub(crate) fn rows<T>(matrix: &[T], width: usize) -> Rows<'_, T> {
     Rows { rest: matrix, width }
 }
 
 /// The whole rows of `width` entries.
-#[inline(always)]
+#[inline]
 pub(crate) fn rows_mut<T>(matrix: &mut [T], width: usize) -> RowsMut<'_, T> {
     RowsMut { rest: matrix, width }
 }
 
 /// Row `index` of `width` entries.
-#[inline(always)]
+#[inline]
 pub(crate) fn row_at<T>(matrix: &[T], width: usize, index: usize) -> &[T] {
     matrix.get(index * width..(index + 1) * width).unwrap_or_default()
 }
 
 /// Row `index` of `width` entries.
-#[inline(always)]
+#[inline]
 pub(crate) fn row_at_mut<T>(matrix: &mut [T], width: usize, index: usize) -> &mut [T] {
     matrix.get_mut(index * width..(index + 1) * width).unwrap_or_default()
 }
@@ -295,7 +322,7 @@ pub(crate) fn row_at_mut<T>(matrix: &mut [T], width: usize, index: usize) -> &mu
 impl<'a, T> Iterator for Rows<'a, T> {
     type Item = &'a [T];
 
-    #[inline(always)]
+    #[inline]
     fn next(&mut self) -> Option<&'a [T]> {
         if self.width == 0 {
             return None;
@@ -309,7 +336,7 @@ impl<'a, T> Iterator for Rows<'a, T> {
 impl<'a, T> Iterator for RowsMut<'a, T> {
     type Item = &'a mut [T];
 
-    #[inline(always)]
+    #[inline]
     fn next(&mut self) -> Option<&'a mut [T]> {
         if self.width == 0 || self.rest.len() < self.width {
             return None;

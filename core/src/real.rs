@@ -66,25 +66,25 @@ pub trait Real:
     fn exponent(self) -> i32;
 
     /// The larger of the two; `other` if `self` is NaN.
-    #[inline(always)]
+    #[inline]
     fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
 
     /// The smaller of the two; `other` if `self` is NaN.
-    #[inline(always)]
+    #[inline]
     fn min(self, other: Self) -> Self {
         if self < other { self } else { other }
     }
 
     /// Itself if positive, else one: a divisor that a compiler may use ahead of the decision whether there is one.
-    #[inline(always)]
+    #[inline]
     fn or_one(self) -> Self {
         if self > Self::ZERO { self } else { Self::ONE }
     }
 
     /// Neither NaN nor infinite.
-    #[inline(always)]
+    #[inline]
     fn is_finite(self) -> bool {
         self.abs() < Self::INFINITY
     }
@@ -97,27 +97,27 @@ impl Real for f64 {
     const EPSILON: Self = f64::EPSILON;
     const NARROW: bool = false;
 
-    #[inline(always)]
+    #[inline]
     fn from_f64(value: f64) -> Self {
         value
     }
-    #[inline(always)]
+    #[inline]
     fn from_f32(value: f32) -> Self {
         Self::from(value)
     }
-    #[inline(always)]
+    #[inline]
     fn from_usize(value: usize) -> Self {
         value as Self
     }
-    #[inline(always)]
+    #[inline]
     fn to_f32(self) -> f32 {
         self as f32
     }
-    #[inline(always)]
+    #[inline]
     fn to_f64(self) -> f64 {
         self
     }
-    #[inline(always)]
+    #[inline]
     fn sqrt(self) -> Self {
         libm::sqrt(self)
     }
@@ -130,7 +130,7 @@ impl Real for f64 {
     fn cos(self) -> Self {
         libm::cos(self)
     }
-    #[inline(always)]
+    #[inline]
     fn abs(self) -> Self {
         libm::fabs(self)
     }
@@ -149,27 +149,27 @@ impl Real for f32 {
     const EPSILON: Self = f32::EPSILON;
     const NARROW: bool = true;
 
-    #[inline(always)]
+    #[inline]
     fn from_f64(value: f64) -> Self {
         value as Self
     }
-    #[inline(always)]
+    #[inline]
     fn from_f32(value: f32) -> Self {
         value
     }
-    #[inline(always)]
+    #[inline]
     fn from_usize(value: usize) -> Self {
         value as Self
     }
-    #[inline(always)]
+    #[inline]
     fn to_f32(self) -> f32 {
         self
     }
-    #[inline(always)]
+    #[inline]
     fn to_f64(self) -> f64 {
         f64::from(self)
     }
-    #[inline(always)]
+    #[inline]
     fn sqrt(self) -> Self {
         libm::sqrtf(self)
     }
@@ -184,7 +184,7 @@ impl Real for f32 {
     fn cos(self) -> Self {
         libm::cosf(self)
     }
-    #[inline(always)]
+    #[inline]
     fn abs(self) -> Self {
         libm::fabsf(self)
     }

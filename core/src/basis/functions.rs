@@ -2,6 +2,7 @@
 
 use super::family::Family;
 use crate::lanes::Lanes;
+use crate::matrix::at;
 use crate::real::Real;
 
 /// What the recurrences of a family run on. Legendre: 2x - 1. Sine: cos(pi x). Otherwise x.
@@ -51,8 +52,8 @@ pub(crate) fn next<R: Real, const L: usize>(
     match family {
         // d P_d = (2 d - 1) t P_(d-1) - (d - 1) P_(d-2) with phi_d = sqrt(2 d + 1) P_d.
         Family::Legendre => {
-            let up = R::from_f64(LEGENDRE_UP.get(degree).copied().unwrap_or(0.0));
-            let down = R::from_f64(LEGENDRE_DOWN.get(degree).copied().unwrap_or(0.0));
+            let up = R::from_f64(at(&LEGENDRE_UP, degree));
+            let down = R::from_f64(at(&LEGENDRE_DOWN, degree));
             let (below, second) = (*below, *second_below);
             for l in 0..L {
                 out[l] = up * out[l] * below[l] - down * second[l];

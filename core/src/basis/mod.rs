@@ -26,8 +26,9 @@ pub use limits::{MAX_DIMS, MAX_ORDER, MAX_TERMS};
 
 use crate::error::Error;
 use crate::lanes::Lanes;
+use crate::matrix::{at, halves_mut, rows_mut};
 use crate::real::Real;
-use crate::rows::rows_mut;
+
 use gaussian::Gaussians;
 use heapless::Vec;
 use terms::Term;
@@ -153,7 +154,7 @@ impl Basis {
         }
         for (column, penalty) in out.iter_mut().enumerate().take(self.columns()) {
             let degree = degree(column);
-            let count = counts.get(degree).copied().unwrap_or(1);
+            let count = at(&counts, degree);
             *penalty = R::from_usize(count) * R::from_usize(1).scale(2 * (degree as i32 - 1));
         }
     }
@@ -221,16 +222,15 @@ impl Basis {
         let outside = -R::ONE / inside;
         let scale = count.sqrt();
         let picked = choice.map(|u| slice_of(u, slices));
-        let indicators = out.get_mut(continuous..continuous + slices).unwrap_or(&mut []);
-        for (s, column) in indicators.iter_mut().enumerate() {
+        for (s, column) in out.iter_mut().skip(continuous).take(slices).enumerate() {
             for (value, &k) in column.iter_mut().zip(&picked) {
                 *value = if k == s { inside } else { outside };
             }
         }
-        let (shared, blocks) = out.split_at_mut_checked(shared + slices).unwrap_or((&mut [], &mut []));
+        let (shared, blocks) = halves_mut(out, shared + slices);
         for (s, block) in rows_mut(blocks, copies).enumerate().take(slices) {
             for (term, column) in self.terms.iter().zip(block) {
-                let source = shared.get(term.column()).copied().unwrap_or([R::ZERO; L]);
+                let source = *shared.get(term.column()).unwrap_or(&[R::ZERO; L]);
                 for ((value, source), &k) in column.iter_mut().zip(source).zip(&picked) {
                     *value = if k == s { scale * source } else { R::ZERO };
                 }

@@ -1,11 +1,11 @@
 //! Estimates from samples in caller arrays.
 
-use super::config::{Color, Config, Estimate, Estimator, Solver};
+use super::config::{Color, Config, Estimate};
 use super::design::Design;
 use super::fit::{descent, givens};
 use super::fitter::{self, Fitter, Rule};
 use super::k_fold;
-use super::plan::{Plan, is_plain};
+use super::plan::{Method, Plan};
 use super::result::{self, Outcome};
 use super::samples::{Reader, Samples, Subset};
 use super::state::State;
@@ -19,35 +19,24 @@ use crate::real::Real;
 /// # Errors
 /// [`Error::Range`] or [`Error::Unsupported`] for a configuration that cannot be, [`Error::Memory`] if no memory could
 /// be large enough.
-///
-/// ```
-/// use noisefloor::control_variate::{Config, workspace_len};
-/// let mut workspace = vec![0.0_f64; workspace_len::<f64>(&Config::new(2, 2, 1), 64)?];
-/// # assert!(workspace.len() > 64);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[inline]
 pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error> {
-    let mut plan = Plan::new(config, config.checked_shape()?.columns(), n)?;
-    if is_plain(config, plan.columns) {
-        plan.columns = 0;
-    }
+    let plan = Plan::new(config, config.checked_shape()?.columns(), n)?;
+    let columns = plan.columns;
     let channels = if config.color == Color::LuminanceRatio { 1 } else { config.channels };
-    let design = Design::<R>::size(n, plan.columns, channels).ok_or(Error::Memory)?;
-    if plan.columns == 0 && config.estimator != Estimator::Incremental {
-        return Ok(design);
-    }
-    let solve = match config.estimator {
-        Estimator::GradientDescent => descent::size(plan.columns, channels),
-        Estimator::KFold => k_fold::size::<R>(config, plan.columns, channels, n).ok_or(Error::Memory)?,
-        Estimator::Incremental => {
+    let solve = match plan.method {
+        Method::Plain => return Design::<R>::size(n, 0, channels).ok_or(Error::Memory),
+        Method::Incremental => {
             let state = State::<R>::new(config)?;
             return state.len().checked_add(state.workspace_len()).ok_or(Error::Memory);
         }
-        Estimator::LeastSquares if config.solver == Solver::SquareRoot => givens::size(plan.columns, channels),
-        _ => fitter::size(n, plan.dual, plan.columns, channels).ok_or(Error::Memory)?,
+        Method::Descent => Some(descent::size(columns, channels)),
+        Method::KFold => k_fold::size::<R>(config, columns, channels, n),
+        Method::SquareRoot => Some(givens::size(columns, channels)),
+        Method::Robust | Method::LeaveOneOut | Method::LeastSquares => fitter::size(n, plan.dual, columns, channels),
     };
-    design.checked_add(solve).ok_or(Error::Memory)
+    let design = Design::<R>::size(n, columns, channels).ok_or(Error::Memory)?;
+    design.checked_add(solve.ok_or(Error::Memory)?).ok_or(Error::Memory)
 }
 
 /// Estimates the integral over primary sample space from a pixel's samples.
@@ -72,34 +61,30 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
 /// assert!((estimate.mean[0] - 1.5).abs() < 1e-4);
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
-#[inline(always)]
+#[inline]
 pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
-    if config.estimator == Estimator::Incremental {
+    let shape = config.checked_shape()?;
+    if Method::of(config, config.controls + shape.columns()) == Method::Incremental {
         return incremental(config, samples, workspace);
     }
     let mut basis = Basis::empty();
-    basis.set(config.basis, config.checked_shape()?)?;
+    basis.set(config.basis, shape)?;
     let reader = Reader::new(config, samples)?;
-    let plan = Plan::new(config, basis.columns(), reader.len())?;
+    let plan = Plan::new(config, shape.columns(), reader.len())?;
     reader.check()?;
     let mut arena = Arena::new(workspace);
-    let is_plain = is_plain(config, plan.columns);
-    let columns = if is_plain { 0 } else { plan.columns };
+    let columns = if plan.method == Method::Plain { 0 } else { plan.columns };
     let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena)?;
-    let outcome = if is_plain || design.n == 1 {
-        Outcome { correction: Default::default(), variance: result::plain_variance(&design) }
-    } else {
-        match config.estimator {
-            Estimator::KFold => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
-            Estimator::GradientDescent => descent::estimate(&design, config, &basis, None, &mut arena)?,
-            Estimator::LeastSquares if config.solver == Solver::SquareRoot => {
-                givens::least_squares(&design, config, &basis, &mut arena)?
-            }
-            // The incremental estimate went its own way above.
-            Estimator::Robust | Estimator::LeaveOneOut | Estimator::LeastSquares | Estimator::Incremental => {
-                fit(&design, config, &basis, plan, &mut arena)?
-            }
-        }
+    let method = if design.n == 1 { Method::Plain } else { plan.method };
+    let outcome = match method {
+        // What streams went its own way above.
+        Method::Plain | Method::Incremental => Outcome::plain(result::plain_variance(&design)),
+        Method::KFold => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
+        Method::Descent => descent::estimate(&design, config, &basis, None, &mut arena)?,
+        Method::SquareRoot => givens::least_squares(&design, config, &basis, &mut arena)?,
+        Method::Robust => fit(&design, config, &basis, plan, Rule::Robust, &mut arena)?,
+        Method::LeaveOneOut => fit(&design, config, &basis, plan, Rule::Single(config.ridge), &mut arena)?,
+        Method::LeastSquares => fit(&design, config, &basis, plan, Rule::LeastSquares(config.ridge), &mut arena)?,
     };
     Ok(result::finish(result::Summary::of(&design, &reader), outcome))
 }
@@ -114,19 +99,15 @@ fn incremental<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [
 }
 
 /// The estimators that fit all samples at once through the normal equations or their dual.
-#[inline(always)]
+#[inline]
 fn fit<'a, R: Real>(
     design: &Design<'a, R>,
     config: &Config,
     basis: &Basis,
     plan: Plan,
+    rule: Rule,
     arena: &mut Arena<'a, R>,
 ) -> Result<Outcome<R>, Error> {
-    let rule = match config.estimator {
-        Estimator::LeastSquares => Rule::LeastSquares(config.ridge),
-        Estimator::LeaveOneOut => Rule::Single(config.ridge),
-        _ => Rule::Robust,
-    };
     let fitter = Fitter::new(design, config, basis, plan.dual, arena)?;
     let blend = fitter.solve(rule, None, arena)?;
     // Algorithm 1 for least squares: its residuals have mean zero, so the estimate is the fit's constant term.

@@ -239,13 +239,13 @@ impl Config {
     }
 
     /// Numbers from one sample's coordinates to the next.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn step(&self) -> usize {
         if self.stride == 0 { self.dims } else { self.stride }
     }
 
     /// The number of folds.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn fold_count(&self) -> usize {
         if self.folds == 0 { 4 } else { self.folds }
     }

@@ -7,7 +7,7 @@ use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
-use crate::matrix::{Panel, Triangle, at};
+use crate::matrix::{Panel, Triangle, at, first_mut, from};
 use crate::real::Real;
 
 /// The size of a control function about its mean, in epsilons of its size about zero, that is rounding noise.
@@ -123,7 +123,7 @@ impl<'a, R: Real> Design<'a, R> {
             self::centre(&mut panels, n, column_means);
             clear_constant(&mut panels, n, column_means, reader.control_integrals());
             let mut means = PerChannel::default();
-            self::centre(&mut values, n, means.get_mut(..channels).unwrap_or_default());
+            self::centre(&mut values, n, first_mut(&mut *means, channels));
             for (unit, &mean) in units.iter_mut().zip(means.iter()) {
                 unit.offset += mean;
             }
@@ -250,7 +250,7 @@ fn clear_constant<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means:
 /// Groups `first` and the next; zero where there is none.
 #[inline(always)]
 fn two<R: Real>(groups: &[Lanes<R>], first: usize) -> [Lanes<R>; 2] {
-    match groups.get(first..).unwrap_or_default() {
+    match from(groups, first) {
         [a, b, ..] => [*a, *b],
         [a] => [*a, [R::ZERO; LANES]],
         [] => [[R::ZERO; LANES]; 2],

@@ -12,7 +12,7 @@ use super::trust::{self, Centre};
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
-use crate::matrix::{at, packed_len, rows, rows_mut};
+use crate::matrix::{at, first_mut, packed_len, rows, rows_mut};
 use crate::real::Real;
 
 /// Which fits are made and how one is made of them.
@@ -153,7 +153,7 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
                 *discount += trust::surprise(correction[channel], variance);
             }
             let mut weights = [R::ZERO; MAX_FITS];
-            let each = weights.get_mut(..used).unwrap_or_default();
+            let each = first_mut(&mut weights, used);
             let mut plain_weight = trust::weigh(plain, &press, &discounts, power, n, trust::prior(n), each);
             if rule == Rule::Fold {
                 for (weight, centre) in weights.iter_mut().zip(&centres) {

@@ -14,7 +14,7 @@ use super::sums::Sums;
 use super::{ridge, trust};
 use crate::arena::Arena;
 use crate::basis::Basis;
-use crate::matrix::rows_mut;
+use crate::matrix::{row_at, rows_mut};
 use crate::real::Real;
 
 /// Total ridge strengths: not per sample, as the fits of few samples need them most.
@@ -54,7 +54,7 @@ pub(crate) fn correct<R: Real>(progress: &mut Progress<R>, ridge: Ridge, coeffic
     for (channel, &f) in f.iter().enumerate() {
         let mut slopes = [R::ZERO; FITS];
         for (fit, slope) in slopes.iter_mut().enumerate() {
-            let b = coefficients.get((fit * channels + channel) * p.len()..).unwrap_or_default();
+            let b = row_at(coefficients, p.len(), fit * channels + channel);
             *slope = b.iter().zip(p).fold(R::ZERO, |sum, (&b, &p)| sum + b * p);
         }
         let mut value = f;

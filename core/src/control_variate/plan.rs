@@ -1,4 +1,15 @@
-//! How a configuration is carried out.
+//! What each estimator is: the one place that decides what is done for a configuration.
+//!
+//! | [`Method`] | of samples in arrays | of a stream | unbiased | its error is told by |
+//! |---|---|---|---|---|
+//! | `Plain` | the mean | the mean | yes | the values' spread |
+//! | `Robust` | `fitter`: the mean and two fits, weighed by leave-one-out errors | `cross_fit::pooled`: by held-out errors | nearly | leave-one-out residuals; held-out ones |
+//! | `LeaveOneOut` | `fitter`: each sample corrected by the fit to the others | - | yes | leave-one-out residuals |
+//! | `KFold` | `k_fold`: each fold corrected by fits to the others | `cross_fit::nested` | yes | held-out residuals |
+//! | `LeastSquares` | `fitter`: the fit's constant term | `readout`: the same | O(1/n) | residuals |
+//! | `SquareRoot` | `fit::givens`: the same | the same | O(1/n) | residuals |
+//! | `Descent` | `fit::descent`: the same of a fit that stops early | the same | no | residuals, and what is left of the gradient |
+//! | `Incremental` | as a stream | `incremental`: each sample corrected by fits to those before it | yes | the corrected values' spread |
 
 use super::config::{Config, Estimator, Ridge, Solver};
 use crate::error::Error;
@@ -6,18 +17,55 @@ use crate::error::Error;
 /// The most samples that [`Solver::Dual`] takes: its system is as large as they are.
 const MAX_DUAL: usize = 4096;
 
-/// Whether the estimate is the plain mean whatever the samples are.
-///
-/// What corrects some samples by fits to others undoes what is even about all of them, and errors on samples that a fit
-/// has not seen do not show it.
-pub(crate) fn is_plain(config: &Config, columns: usize) -> bool {
-    let fits_all = matches!(config.estimator, Estimator::LeastSquares | Estimator::GradientDescent);
-    columns == 0 || (config.stratified && !fits_all)
+/// How samples become an estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Method {
+    Plain,
+    Robust,
+    LeaveOneOut,
+    KFold,
+    LeastSquares,
+    SquareRoot,
+    Descent,
+    Incremental,
 }
 
-/// How a configuration is carried out.
+impl Method {
+    /// Of a fit of so many functions.
+    pub(crate) fn of(config: &Config, columns: usize) -> Self {
+        // What corrects some samples by fits to others undoes what is even about all of them, and errors on samples
+        // that a fit has not seen do not show it.
+        let fits_all = matches!(config.estimator, Estimator::LeastSquares | Estimator::GradientDescent);
+        if columns == 0 || (config.stratified && !fits_all) {
+            return Self::Plain;
+        }
+        match config.estimator {
+            Estimator::Robust => Self::Robust,
+            Estimator::LeaveOneOut => Self::LeaveOneOut,
+            Estimator::KFold => Self::KFold,
+            Estimator::LeastSquares if config.solver == Solver::SquareRoot => Self::SquareRoot,
+            Estimator::LeastSquares => Self::LeastSquares,
+            Estimator::GradientDescent => Self::Descent,
+            Estimator::Incremental => Self::Incremental,
+        }
+    }
+}
+
+/// # Errors
+/// [`Error::Unsupported`] for what a stream's sums cannot tell: leave-one-out errors need the samples.
+pub(crate) fn check_stream(config: &Config) -> Result<(), Error> {
+    let needs_samples = match config.estimator {
+        Estimator::LeaveOneOut => true,
+        Estimator::LeastSquares => config.ridge == Ridge::Auto,
+        _ => config.solver == Solver::SquareRoot,
+    };
+    if needs_samples || config.solver == Solver::Dual { Err(Error::Unsupported) } else { Ok(()) }
+}
+
+/// How samples in arrays become an estimate.
 #[derive(Clone, Copy)]
 pub(crate) struct Plan {
+    pub(crate) method: Method,
     /// Functions, control functions included, the constant not.
     pub(crate) columns: usize,
     /// Whether fits go through the samples' n x n system.
@@ -25,7 +73,7 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    #[inline(always)]
+    #[inline]
     pub(crate) fn new(config: &Config, functions: usize, n: usize) -> Result<Self, Error> {
         let columns = config.controls + functions;
         let dual = match config.solver {
@@ -38,6 +86,6 @@ impl Plan {
             Solver::SquareRoot if config.estimator == Estimator::LeastSquares && config.ridge != Ridge::Auto => false,
             Solver::SquareRoot => return Err(Error::Unsupported),
         };
-        Ok(Self { columns, dual })
+        Ok(Self { method: Method::of(config, columns), columns, dual })
     }
 }

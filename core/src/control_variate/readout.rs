@@ -1,12 +1,13 @@
 //! The estimates that a streaming estimate's sums hold.
 
-use super::config::{Color, Config, Estimate, Estimator, Ridge, Solver};
+use super::config::{Color, Config, Estimate, Ridge};
 use super::cross_fit;
 use super::design::Units;
 use super::fit::normal::Centred;
 use super::fit::{Penalty, descent, givens};
 use super::incremental;
 use super::per_channel::PerChannel;
+use super::plan::Method;
 use super::result::{self, Outcome, Summary};
 use super::ridge;
 use super::state::State;
@@ -33,28 +34,18 @@ impl<R: Real> State<R> {
         }
         let mut arena = Arena::new(workspace);
         let total = Totals::new(self, sums)?;
-        let outcome = if state.columns == 0 {
-            total.plain()
-        } else {
-            match state.config.estimator {
-                Estimator::Incremental => incremental::outcome(&state.incremental, state.samples).relative_to(&total),
-                Estimator::Robust | Estimator::KFold => self.cross_fit(sums, &total, &mut arena)?,
-                Estimator::GradientDescent => {
-                    let group = self.sums(sums, 0)?;
-                    self.descend(&group, &total, &mut arena)?
-                }
-                _ if state.config.solver == Solver::SquareRoot => {
-                    let group = self.sums(sums, 0)?;
-                    let basis = self.basis()?;
-                    let outcome = givens::from_factor(&group, &state.config, &basis, state.channels, &mut arena)?;
-                    let variance = outcome.variance.or(total.variance);
-                    Outcome { variance, ..outcome.relative_to(&total) }
-                }
-                _ => {
-                    let group = self.sums(sums, 0)?;
-                    self.least_squares(&group, &total, &mut arena)?
-                }
+        let outcome = match state.method {
+            Method::Robust | Method::KFold => self.cross_fit(sums, &total, &mut arena)?,
+            Method::Incremental => incremental::outcome(&state.incremental, state.samples).relative_to(&total),
+            Method::Descent => self.descend(&self.sums(sums, 0)?, &total, &mut arena)?,
+            Method::SquareRoot => {
+                let sums = self.sums(sums, 0)?;
+                let outcome = givens::from_factor(&sums, &state.config, &self.basis()?, state.channels, &mut arena)?;
+                Outcome { variance: outcome.variance.or(total.variance), ..outcome.relative_to(&total) }
             }
+            Method::LeastSquares => self.least_squares(&self.sums(sums, 0)?, &total, &mut arena)?,
+            // A stream has no leave-one-out errors.
+            Method::Plain | Method::LeaveOneOut => total.plain(),
         };
         let samples = state.samples;
         Ok(result::finish(
@@ -93,7 +84,7 @@ impl<R: Real> State<R> {
     fn cross_fit(&self, sums: &[R], total: &Totals<R>, arena: &mut Arena<'_, R>) -> Result<Outcome<R>, Error> {
         let (config, basis) = (&self.config, self.basis()?);
         let groups = cross_fit::Groups { sums, folds: self.groups(), columns: self.columns, channels: self.channels };
-        let k_fold = config.estimator == Estimator::KFold;
+        let k_fold = self.method == Method::KFold;
         // One fold to fit to and one to judge by, and for K-fold one to correct.
         let needed = if k_fold && !matches!(config.ridge, Ridge::Fixed(_)) { groups.folds.min(3) } else { 2 };
         let Some(variance) = total.variance.as_ref().filter(|_| groups.has(needed)) else { return Ok(total.plain()) };
@@ -158,7 +149,7 @@ impl<R: Real> Totals<R> {
         for fold in 0..state.groups() {
             let group = state.sums(sums, fold)?;
             for channel in 0..state.channels {
-                let (total, square) = if state.config.solver == Solver::SquareRoot {
+                let (total, square) = if state.method == Method::SquareRoot {
                     givens::totals(&group, channel)
                 } else {
                     (group.total(channel), group.square(channel))
@@ -183,7 +174,7 @@ impl<R: Real> Totals<R> {
     }
 
     fn plain(&self) -> Outcome<R> {
-        Outcome { correction: PerChannel::default(), variance: self.variance }
+        Outcome::plain(self.variance)
     }
 }
 

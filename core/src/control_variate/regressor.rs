@@ -8,7 +8,7 @@ use super::sums::Sums;
 use crate::basis::{Basis, Family};
 use crate::error::Error;
 use crate::linalg::ldlt::Ldlt;
-use crate::matrix::{Panel, Triangle, at};
+use crate::matrix::{Panel, Triangle, at, from, from_mut};
 
 /// A streaming least-squares regressor (Alg. 1) over `DIMS` coordinates with `TERMS` terms, constant included, and
 /// `CHANNELS` values of each sample, in `f64`. For `f32` there is [`Accumulator`](super::Accumulator).
@@ -63,7 +63,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::Range`]; the sample is then not added.
-    #[inline(always)]
+    #[inline]
     pub fn add(&mut self, u: &[f32; DIMS], f: &[f32; CHANNELS]) -> Result<(), Error> {
         if !u.iter().chain(f).all(|value| value.is_finite()) {
             return Err(Error::NotFinite);
@@ -76,7 +76,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         }
         let x = u.map(|u| [f64::from(u)]);
         let mut p = [[1.0]; TERMS];
-        self.basis.evaluate(&x, p.get_mut(1..).unwrap_or_default());
+        self.basis.evaluate(&x, from_mut(&mut p, 1));
         let values =
             core::array::from_fn::<f64, CHANNELS, _>(|channel| f64::from(f[channel]) - f64::from(self.offset[channel]));
         self.sums_mut()?.add(p.as_flattened(), &values);
@@ -93,7 +93,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     ///
     /// # Errors
     /// [`Error::NoSamples`], or [`Error::Range`] for a strength that is not positive and finite.
-    #[inline(always)]
+    #[inline]
     pub fn estimate(&self, strength: f32) -> Result<Estimate, Error> {
         if self.samples == 0 {
             return Err(Error::NoSamples);
@@ -106,7 +106,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         let mut matrix = self.gram;
         let mut matrix = Triangle::new(matrix.as_flattened_mut(), TERMS)?;
         let mut penalties = [0.0; TERMS];
-        self.basis.penalties(penalties.get_mut(1..).unwrap_or_default());
+        self.basis.penalties(from_mut(&mut penalties, 1));
         let strength = f64::from(strength) * n;
         for (j, &penalty) in penalties.iter().enumerate() {
             if let Some(diagonal) = matrix.diagonal_mut(j) {
@@ -126,7 +126,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
             outcome.correction[channel] = intercept - mean;
             unit.offset = f64::from(offset) + mean;
             plain_variance[channel] = (sums.square(channel) - total * mean).max(0.0) / result::mean_divisor(n);
-            residuals[channel] = sums.residual_square(channel, intercept, solution.get(1..).unwrap_or_default());
+            residuals[channel] = sums.residual_square(channel, intercept, from(&solution, 1));
         }
         let plain_variance = (self.samples > 1).then_some(plain_variance);
         // With e the first unit vector and x = A^-1 e, the intercept's weights on the samples have squares of sum x'P'P

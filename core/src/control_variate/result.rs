@@ -16,6 +16,13 @@ pub(crate) struct Outcome<R> {
     pub(crate) variance: Option<PerChannel<R>>,
 }
 
+impl<R: Real> Outcome<R> {
+    /// The plain mean.
+    pub(crate) fn plain(variance: Option<PerChannel<R>>) -> Self {
+        Self { correction: PerChannel::default(), variance }
+    }
+}
+
 /// The variance of the plain mean, None for one sample.
 pub(crate) fn plain_variance<R: Real>(design: &Design<'_, R>) -> Option<PerChannel<R>> {
     let n = R::from_usize(design.n);
@@ -29,14 +36,14 @@ pub(crate) fn plain_variance<R: Real>(design: &Design<'_, R>) -> Option<PerChann
 
 /// What a sum of squared deviations of `n` values is divided by to be the variance of their mean; for one, which has
 /// none, still no zero.
-#[inline(always)]
+#[inline]
 pub(crate) fn mean_divisor<R: Real>(n: R) -> R {
     n * (n - R::ONE).max(R::ONE)
 }
 
 /// What a sum of squared leave-one-out residuals of `n` samples, at least two, is multiplied by to be a variance: exact
 /// for the plain mean.
-#[inline(always)]
+#[inline]
 pub(crate) fn press_factor<R: Real>(n: R) -> R {
     (n - R::ONE) / (n * n * n)
 }

@@ -3,6 +3,7 @@
 use super::Config;
 use super::config::{Estimator, Ridge};
 use crate::basis::Basis;
+use crate::matrix::halves_mut;
 use crate::real::Real;
 
 /// Strengths, per sample, of the fits of a mixture. More of them gain nothing that a test can see, and each costs time.
@@ -54,9 +55,9 @@ pub(crate) fn least_squares<R: Real>(ridge: Ridge) -> f64 {
 }
 
 /// Relative penalties of control functions and basis, where `mean_square` is that of a control function's column.
-#[inline(always)]
+#[inline]
 pub(crate) fn penalties<R: Real>(config: &Config, basis: &Basis, mean_square: impl Fn(usize) -> R, out: &mut [R]) {
-    let (controls, functions) = out.split_at_mut_checked(config.controls).unwrap_or_default();
+    let (controls, functions) = halves_mut(out, config.controls);
     for (j, penalty) in controls.iter_mut().enumerate() {
         *penalty = R::from_f64(CONTROL_PENALTY) * mean_square(j);
     }

@@ -4,6 +4,7 @@ use super::Config;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::error::Error;
 use crate::lanes::{LANES, Lanes};
+use crate::matrix::{at, from, halves_mut, row_at};
 use crate::real::Real;
 
 use super::config::{Color, NonFinite};
@@ -149,11 +150,10 @@ impl<'a> Reader<'a> {
     #[inline(always)]
     pub(crate) fn get(&self, index: usize) -> Sample<'a> {
         let start = index * self.stride;
-        let row = |array: &'a [f32], width: usize| array.get(index * width..(index + 1) * width).unwrap_or(&[]);
         Sample {
-            u: self.samples.u.get(start..start + self.dims).unwrap_or(&[]),
-            f: row(self.samples.f, self.inputs),
-            h: row(self.samples.controls, self.controls),
+            u: self.samples.u.get(start..start + self.dims).unwrap_or_default(),
+            f: row_at(self.samples.f, self.inputs, index),
+            h: row_at(self.samples.controls, self.controls, index),
         }
     }
 
@@ -271,9 +271,8 @@ impl<'a> Reader<'a> {
         x: &mut [Lanes<R>; MAX_DIMS],
         f: &mut [Lanes<R>; Config::MAX_CHANNELS],
     ) {
-        let from = |array: &'a [f32], width: usize| array.get(first * width..).unwrap_or(&[]);
-        transpose(from(self.samples.u, self.stride), step * self.stride, self.dims, x);
-        transpose(from(self.samples.f, self.inputs), step * self.inputs, self.inputs, f);
+        transpose(from(self.samples.u, first * self.stride), step * self.stride, self.dims, x);
+        transpose(from(self.samples.f, first * self.inputs), step * self.inputs, self.inputs, f);
     }
 
     /// The values of a sample that are regressed: its channels, or its luminance.
@@ -293,7 +292,7 @@ impl<'a> Reader<'a> {
     /// Writes the position of sample `index` to lane `lane`.
     #[inline(always)]
     pub(crate) fn put_position<R: Real>(&self, index: usize, lane: usize, x: &mut [Lanes<R>; MAX_DIMS]) {
-        let row = self.samples.u.get(index * self.stride..).unwrap_or(&[]);
+        let row = from(self.samples.u, index * self.stride);
         match (self.dims, row) {
             (2, &[a, b, ..]) => [x[0][lane % LANES], x[1][lane % LANES]] = [a, b].map(R::from_f32),
             (3, &[a, b, c, ..]) => {
@@ -312,7 +311,7 @@ impl<'a> Reader<'a> {
     /// One channel of a sample as it was given.
     #[inline(always)]
     pub(crate) fn input(&self, index: usize, channel: usize) -> f32 {
-        self.samples.f.get(index * self.inputs + channel).copied().unwrap_or(0.0)
+        at(self.samples.f, index * self.inputs + channel)
     }
 
     /// Evaluates control functions and basis at `L` positions; `x` has a group of lanes for each coordinate, `h` one
@@ -325,7 +324,7 @@ impl<'a> Reader<'a> {
         h: &[Lanes<R, L>; Config::MAX_CONTROLS],
         out: &mut [Lanes<R, L>],
     ) {
-        let (controls, functions) = out.split_at_mut_checked(self.controls).unwrap_or((&mut [], &mut []));
+        let (controls, functions) = halves_mut(out, self.controls);
         for ((out, h), &integral) in controls.iter_mut().zip(h).zip(self.samples.control_integrals) {
             *out = h.map(|h| h - R::from_f32(integral));
         }
@@ -391,7 +390,7 @@ fn transpose<R: Real>(rows: &[f32], stride: usize, width: usize, out: &mut [Lane
         3 => transpose_exact::<R, 3>(rows, stride, out),
         _ => {
             for lane in 0..LANES {
-                let row = rows.get(lane * stride..).unwrap_or(&[]);
+                let row = from(rows, lane * stride);
                 for (out, &value) in out.iter_mut().zip(row).take(width) {
                     out[lane] = R::from_f32(value);
                 }

@@ -1,20 +1,20 @@
 //! What a streaming estimate knows besides its sums, and how samples get into them.
 
-use super::config::{Color, Config, Estimator, Ridge, Solver};
+use super::config::{Color, Config};
 use super::cross_fit;
 use super::design::Units;
 use super::fit::{descent, givens as square_root, normal};
 use super::folds;
 use super::incremental;
 use super::per_channel::PerChannel;
-use super::plan::is_plain;
+use super::plan::{self, Method};
 use super::samples::{Reader, Samples, Subset};
 use super::sums::{self, Sums};
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
 use crate::error::Error;
 use crate::lanes::Lanes;
 use crate::linalg::givens;
-use crate::matrix::{at, row_at, row_at_mut, rows_mut};
+use crate::matrix::{at, first_mut, from, halves_mut, row_at, row_at_mut, rows_mut};
 use crate::real::Real;
 
 /// The most samples of an accumulator in `f32`.
@@ -38,6 +38,7 @@ const NARROW_CAPACITY: u64 = 1 << 22;
 pub struct State<R> {
     pub(super) config: Config,
     pub(super) shape: Shape,
+    pub(super) method: Method,
     pub(super) columns: usize,
     pub(super) channels: usize,
     pub(super) samples: u64,
@@ -49,27 +50,18 @@ pub struct State<R> {
 
 impl<R: Real> State<R> {
     /// # Errors
-    /// [`Error::Unsupported`] for [`Estimator::LeaveOneOut`], which needs all samples at once, and whatever
+    /// [`Error::Unsupported`] for [`Estimator::LeaveOneOut`](super::Estimator::LeaveOneOut), which needs all samples at once, and whatever
     /// [`Config::terms`] finds.
     pub fn new(config: &Config) -> Result<Self, Error> {
         let shape = config.checked_shape()?;
-        let mut columns = config.controls + shape.columns();
-        if is_plain(config, columns) {
-            columns = 0;
-        }
-        let square_root = config.solver == Solver::SquareRoot;
-        let supported = match config.estimator {
-            Estimator::LeaveOneOut => false,
-            Estimator::LeastSquares => config.ridge != Ridge::Auto,
-            _ => !square_root,
-        };
-        if !supported || config.solver == Solver::Dual {
-            return Err(Error::Unsupported);
-        }
+        plan::check_stream(config)?;
+        let method = Method::of(config, config.controls + shape.columns());
+        let columns = if method == Method::Plain { 0 } else { config.controls + shape.columns() };
         let luminance = config.color == Color::LuminanceRatio;
         Ok(Self {
             config: *config,
             shape,
+            method,
             columns,
             channels: if luminance { 1 } else { config.channels },
             samples: 0,
@@ -90,16 +82,16 @@ impl<R: Real> State<R> {
 
     /// Groups of sums: one for each fold, or one.
     pub(super) fn groups(&self) -> usize {
-        match self.config.estimator {
-            Estimator::Robust | Estimator::KFold if self.columns > 0 => self.config.fold_count(),
+        match self.method {
+            Method::Robust | Method::KFold => self.config.fold_count(),
             _ => 1,
         }
     }
 
     /// Numbers of the whole buffer.
     pub fn len(&self) -> usize {
-        let extra = match self.config.estimator {
-            Estimator::Incremental => incremental::len(self.columns, self.channels),
+        let extra = match self.method {
+            Method::Incremental => incremental::len(self.columns, self.channels),
             _ => 0,
         };
         self.groups() * self.group() + extra
@@ -115,10 +107,10 @@ impl<R: Real> State<R> {
         let (columns, channels) = (self.columns, self.channels);
         let solve = normal::solve_len(columns);
         let fit = normal::centred_len(columns, channels) + columns * (1 + channels) + solve;
-        let len = match self.config.estimator {
-            Estimator::Robust | Estimator::KFold => cross_fit::len(columns, channels) + self.group() + fit,
-            Estimator::GradientDescent => fit + descent::size(columns, channels),
-            _ if self.config.solver == Solver::SquareRoot => square_root::size(self.terms(), channels) + self.group(),
+        let len = match self.method {
+            Method::Robust | Method::KFold => cross_fit::len(columns, channels) + self.group() + fit,
+            Method::Descent => fit + descent::size(columns, channels),
+            Method::SquareRoot => square_root::size(self.terms(), channels) + self.group(),
             _ => fit,
         };
         // Zero would say that there is no such accumulator.
@@ -189,7 +181,7 @@ impl<R: Real> State<R> {
                     *sum += value;
                 }
             }
-            self.add_row(sums, p.get_mut(..terms).unwrap_or_default(), PerChannel(reader.values(sample)));
+            self.add_row(sums, first_mut(&mut p, terms), PerChannel(reader.values(sample)));
         });
         Ok(())
     }
@@ -205,11 +197,11 @@ impl<R: Real> State<R> {
         for ((f, &value), unit) in f.iter_mut().zip(&values).zip(&state.units) {
             *f = value * R::ONE.scale(-unit.exponent) - unit.offset;
         }
-        let f = f.get_mut(..channels).unwrap_or_default();
+        let f = first_mut(&mut *f, channels);
         let p = p.as_flattened_mut();
-        if state.config.estimator == Estimator::Incremental {
-            let (group, rest) = sums.split_at_mut_checked(group).unwrap_or_default();
-            incremental::correct(&mut state.incremental, state.config.ridge, rest, p.get(1..).unwrap_or_default(), f);
+        if state.method == Method::Incremental {
+            let (group, rest) = halves_mut(sums, group);
+            incremental::correct(&mut state.incremental, state.config.ridge, rest, from(p, 1), f);
             if let Ok(mut sums) = Sums::new_mut(group, terms, channels) {
                 sums.add(p, f);
             }
@@ -220,7 +212,7 @@ impl<R: Real> State<R> {
         let fold = folds::of_stream(state.samples, groups);
         state.samples += 1;
         if let Ok(mut sums) = Sums::new_mut(row_at_mut(sums, group, fold), terms, channels) {
-            if state.config.solver == Solver::SquareRoot {
+            if state.method == Method::SquareRoot {
                 givens::add_row(&mut sums.gram, &mut sums.rhs, sums.square, p, f);
             } else {
                 sums.add(p, f);
@@ -229,7 +221,7 @@ impl<R: Real> State<R> {
     }
 
     /// Adds all samples of another state and its sums, as if they had been added here, up to rounding, where there is
-    /// one fold; of [`Estimator::Incremental`] each side's samples stay corrected by their own past.
+    /// one fold; of [`Estimator::Incremental`](super::Estimator::Incremental) each side's samples stay corrected by their own past.
     ///
     /// The robust estimate and K-fold put the other's folds where they make theirs most even: the same parts merged in
     /// the same order give the same bits, other splits of the same samples other folds, and estimates as good.
@@ -268,7 +260,7 @@ impl<R: Real> State<R> {
             let mut ours = Sums::new_mut(row_at_mut(sums, group, fold), terms, channels)?;
             let theirs = (fold + groups - rotation).checked_rem(groups).unwrap_or(0);
             let theirs = Sums::new(row_at(other_sums, group, theirs), terms, channels)?;
-            if state.config.solver == Solver::SquareRoot {
+            if state.method == Method::SquareRoot {
                 merge_factors(&mut ours, &theirs, &factors, &shift, channels);
             } else {
                 ours.merge(&theirs, &factors, &shift);
@@ -279,8 +271,8 @@ impl<R: Real> State<R> {
         }
         state.incremental.merge(&other.incremental, &factors, &shift, other.samples);
         state.samples = state.samples.saturating_add(other.samples);
-        if state.config.estimator == Estimator::Incremental {
-            let (group, rest) = sums.split_at_mut_checked(group).unwrap_or_default();
+        if state.method == Method::Incremental {
+            let (group, rest) = halves_mut(sums, group);
             state.incremental.refit_now();
             incremental::refit(state.samples, &mut state.incremental, &state.config, group, rest, terms - 1, channels);
         }
@@ -350,7 +342,7 @@ fn merge_factors<R: Real>(
         for (channel, &z) in z.iter().enumerate() {
             y[channel] = factors[channel] * z + shift[channel] * first;
         }
-        let y = y.get_mut(..channels).unwrap_or_default();
+        let y = first_mut(&mut *y, channels);
         givens::add_row(&mut ours.gram, &mut ours.rhs, ours.square, x, y);
     }
     for ((square, &other), &factor) in ours.square.iter_mut().zip(theirs.square).zip(factors.iter()) {

@@ -9,6 +9,7 @@
 //!   that follows noise by more;
 //! - how few samples there are ([`prior`]).
 
+use crate::matrix::at;
 use crate::real::Real;
 
 /// Trust in a candidate is its error, relative to the mean's, to the power of minus this times the number of samples
@@ -42,7 +43,7 @@ const DOUBT: f64 = 6.0;
 
 /// Where the centre of the samples lies as a fit to them measures distance, from the cube's.
 ///
-/// For q = `eccentricity` = n sum_i (m'A^-1 p_i)^2, with m the columns' means and p_i the centred columns, and k =
+/// For q = n sum_i (m'A^-1 p_i)^2, with m the columns' means and p_i the centred columns, and k =
 /// `freedom` effective coefficients, Hotelling's F = (q / k) (n - 1 - k) tells: it is about 1 for independent samples.
 /// If all lie in one part of the cube, errors on held-out samples are small and yet the fit's integral is an
 /// extrapolation: F is large. If they were placed to be even it is small.
@@ -50,23 +51,21 @@ const DOUBT: f64 = 6.0;
 pub(crate) struct Centre<R> {
     f: R,
     freedom: R,
-    /// q.
-    pub(crate) eccentricity: R,
     /// What the error of the fit's coefficients adds to the variance of its estimate, and of its own estimate.
     pub(crate) inflation: R,
 }
 
 impl<R: Real> Centre<R> {
     /// Of a fit to `n` samples, at least two.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn new(eccentricity: R, freedom: R, n: R) -> Self {
         let freedom = freedom.min(n - R::from_f64(1.5)).max(R::EPSILON);
         let f = eccentricity * (n - R::ONE - freedom) / freedom;
-        Self { f, freedom, eccentricity, inflation: (R::ONE + eccentricity) * few_left(freedom, n) }
+        Self { f, freedom, inflation: (R::ONE + eccentricity) * few_left(freedom, n) }
     }
 
     /// The logarithm of what trust in the fit is divided by because its samples lie to one side.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn discount(&self) -> R {
         let f = self.f * R::from_f64(1.0 / USUAL_F);
         if f <= R::ONE {
@@ -80,7 +79,7 @@ impl<R: Real> Centre<R> {
     }
 
     /// How much of what leaving samples out adds to the estimate of the fit to all is used.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn share(&self) -> R {
         let f = self.f.max(R::ZERO);
         f / (f + R::from_f64(EVEN_F))
@@ -90,7 +89,7 @@ impl<R: Real> Centre<R> {
     /// square of the two's likelihood ratio, k (F - 1 - ln F).
     ///
     /// A fit to some folds that corrects another undoes what is even about all of them together.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn independence(&self) -> R {
         let f = self.f.max(R::from_f64(1e-12));
         if f >= R::ONE {
@@ -103,7 +102,7 @@ impl<R: Real> Centre<R> {
 }
 
 /// What few residual degrees of freedom, n - 1 - k, add to a variance that is estimated from residuals.
-#[inline(always)]
+#[inline]
 pub(crate) fn few_left<R: Real>(freedom: R, n: R) -> R {
     let two = R::ONE + R::ONE;
     let left = (n - R::ONE - freedom).max(R::from_f64(0.5));
@@ -114,7 +113,7 @@ pub(crate) fn few_left<R: Real>(freedom: R, n: R) -> R {
 
 /// The logarithm of what trust in a fit that adds `correction` to the mean is divided by; nothing for a mean without
 /// variance, which is exact.
-#[inline(always)]
+#[inline]
 pub(crate) fn surprise<R: Real>(correction: R, variance: R) -> R {
     let error = if variance > R::ZERO { variance.sqrt() } else { R::INFINITY };
     let errors = correction.abs() / error;
@@ -125,7 +124,7 @@ pub(crate) fn surprise<R: Real>(correction: R, variance: R) -> R {
 }
 
 /// The trust in the mean of `n` samples where fits were discounted.
-#[inline(always)]
+#[inline]
 pub(crate) fn prior<R: Real>(n: R) -> R {
     let square = n * n;
     R::from_f64(INFORMED_PRIOR) * (R::ONE + R::from_f64(FEW) / (square * square))
@@ -133,7 +132,7 @@ pub(crate) fn prior<R: Real>(n: R) -> R {
 
 /// Sets `weights` to those of C candidates, (error / plain error)^(-power) / C less a discount, and returns the plain
 /// mean's, `prior`, all normalised. Errors are sums of squares over `n` samples.
-#[inline(always)]
+#[inline]
 pub(crate) fn weigh<R: Real>(
     plain: R,
     errors: &[R],
@@ -162,7 +161,7 @@ pub(crate) fn weigh<R: Real>(
     let prior = (prior * R::from_usize(weights.len())).ln() + caution;
     largest = prior;
     for (index, weight) in weights.iter_mut().enumerate() {
-        *weight -= discounts.get(index).copied().unwrap_or(R::ZERO);
+        *weight -= at(discounts, index);
         largest = largest.max(*weight);
     }
     let plain_weight = (prior - largest).exp();

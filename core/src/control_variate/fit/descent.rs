@@ -15,7 +15,7 @@ use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
-use crate::matrix::{copy, rows_mut};
+use crate::matrix::{copy, from_mut, rows_mut};
 use crate::real::Real;
 
 /// Steps, if the caller names none: half as many as samples, within these bounds. Stopping early shrinks the fit as a
@@ -143,7 +143,7 @@ pub(crate) fn descend<R: Real>(
     let (scales, units) = (arena.take(columns)?, arena.take(columns)?);
     control_units(objective, config.controls, units);
     copy(scales, units);
-    basis.scales(scales.get_mut(config.controls..).unwrap_or_default());
+    basis.scales(from_mut(scales, config.controls));
     let curvature = match config.optimizer {
         Optimizer::Adam => R::ONE,
         Optimizer::Momentum | Optimizer::Plain => largest_curvature(objective, scales, first, gradient, second),

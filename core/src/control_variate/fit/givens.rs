@@ -11,7 +11,7 @@ use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::LANES;
 use crate::linalg::givens;
-use crate::matrix::{Panel, Triangle, at, copy, packed_len};
+use crate::matrix::{Panel, Triangle, at, copy, first_mut, from_mut, packed_len};
 use crate::real::Real;
 
 /// Strength of the penalty that makes the solution unique: its square root, which is what rows see, is the type's
@@ -49,7 +49,7 @@ pub(crate) fn least_squares<R: Real>(
             system.add_row(x, &mut y);
         }
     }
-    basis.penalties(penalties.get_mut(config.controls..).unwrap_or_default());
+    basis.penalties(from_mut(penalties, config.controls));
     let n = R::from_usize(design.n);
     // A column that hardly moves is noise as a whole: its size is that before centring.
     system.column_squares(solution);
@@ -84,7 +84,7 @@ pub(crate) fn from_factor<R: Real>(
     for (out, rhs) in system.rhs.rows_mut().zip(sums.rhs.rows()) {
         copy(out, rhs);
     }
-    basis.penalties(penalties.get_mut(1 + config.controls..).unwrap_or_default());
+    basis.penalties(from_mut(penalties, 1 + config.controls));
     let first = sums.gram.at(0, 0);
     let count = first * first;
     system.column_squares(solution);
@@ -150,7 +150,7 @@ impl<'a, R: Real> System<'a, R> {
     /// `x` and `y` are used up.
     fn add_row(&mut self, x: &mut [R], y: &mut PerChannel<R>) {
         let mut unexplained = PerChannel::<R>::default();
-        let y = y.get_mut(..self.channels).unwrap_or_default();
+        let y = first_mut(&mut **y, self.channels);
         givens::add_row(&mut self.factor, &mut self.rhs, &mut *unexplained, x, y);
     }
 
