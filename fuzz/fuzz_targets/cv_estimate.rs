@@ -50,7 +50,7 @@ impl<'a> Arbitrary<'a> for Input {
             order: small(bytes, 7)?,
             channels: small(bytes, 4)?,
             estimator: *bytes.choose(&ESTIMATORS)?,
-            basis: *bytes.choose(&[Family::Legendre, Family::Step, Family::Sine, Family::Gaussian])?,
+            basis: *bytes.choose(&Family::ALL)?,
             stratified: u8::arbitrary(bytes)? < 16,
             slices: small(bytes, 8)?.saturating_sub(3),
             controls: small(bytes, 6)?.saturating_sub(2),

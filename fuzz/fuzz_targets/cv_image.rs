@@ -66,7 +66,7 @@ impl<'a> Arbitrary<'a> for Input {
                 Estimator::KFold,
                 Estimator::LeastSquares,
             ])?,
-            basis: *bytes.choose(&[Family::Legendre, Family::Step, Family::Sine, Family::Gaussian])?,
+            basis: *bytes.choose(&Family::ALL)?,
             stratified: bool::arbitrary(bytes)?,
             slices: small(bytes, 8)?.saturating_sub(3),
             controls: small(bytes, 6)?.saturating_sub(2),

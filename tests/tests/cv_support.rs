@@ -10,7 +10,7 @@ use noisefloor_tests::legendre;
 use noisefloor_tests::oracle::Design;
 use noisefloor_tests::random::SplitMix64;
 
-pub const FAMILIES: [Family; 4] = [Family::Legendre, Family::Step, Family::Sine, Family::Gaussian];
+pub const FAMILIES: [Family; 4] = Family::ALL;
 
 /// The batch estimators' workspace for `n` samples, full of NaN.
 pub fn workspace<R: Real>(config: &Config, n: usize) -> Vec<R> {

@@ -225,7 +225,7 @@ fn read(config: &nf_cv_config) -> Result<Config, &'static CStr> {
         )?,
         basis: pick(
             config.basis,
-            &[Family::Legendre, Family::Step, Family::Sine, Family::Gaussian],
+            &Family::ALL,
             c"basis must be one of NF_BASIS_*, 0 to 3",
         )?,
         stratified: pick(config.stratified, &[false, true], c"stratified must be 0 or 1")?,

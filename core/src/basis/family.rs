@@ -19,3 +19,8 @@ pub enum Family {
     /// Isotropic Gaussians.
     Gaussian,
 }
+
+impl Family {
+    /// Every one, in the order of their numbers in C.
+    pub const ALL: [Family; 4] = [Self::Legendre, Self::Step, Self::Sine, Self::Gaussian];
+}
