@@ -109,27 +109,27 @@ impl Method {
 
 /// A Rust accumulator with its workspace.
 pub struct Stream<R> {
-    accumulator: Accumulator<R, Vec<R>>,
+    accumulator: Accumulator<R>,
+    sums: Vec<R>,
     workspace: Vec<R>,
 }
 
 impl<R: Real> Stream<R> {
     /// An empty accumulator.
     pub fn new(config: &Config) -> Self {
-        let len = |count: Result<usize, _>| vec![R::ZERO; count.expect("a streaming configuration")];
-        let sums = len(Accumulator::<R, Vec<R>>::len(config));
-        let workspace = len(Accumulator::<R, Vec<R>>::workspace_len(config));
-        Self { accumulator: Accumulator::new(config, sums).expect("enough memory"), workspace }
+        let accumulator = Accumulator::new(config).expect("a streaming configuration");
+        let [sums, workspace] = [accumulator.len(), accumulator.workspace_len()].map(|len| vec![R::ZERO; len]);
+        Self { accumulator, sums, workspace }
     }
 
     /// Adds one sample for each value.
     pub fn add(&mut self, u: &[f32], f: &[f32]) {
-        self.accumulator.add(Samples::new(u, f)).expect("valid samples");
+        self.accumulator.add(&mut self.sums, Samples::new(u, f)).expect("valid samples");
     }
 
     /// The estimate so far.
     pub fn estimate(&mut self) -> f32 {
-        self.accumulator.estimate(&mut self.workspace).expect("samples were added").mean[0]
+        self.accumulator.estimate(&self.sums, &mut self.workspace).expect("samples were added").mean[0]
     }
 }
 

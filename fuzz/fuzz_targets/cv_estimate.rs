@@ -11,6 +11,7 @@ use noisefloor::control_variate::{
 };
 use noisefloor::real::Real;
 use noisefloor_tests::ESTIMATORS;
+use noisefloor_tests::stream::Stream;
 
 /// Workspaces beyond this many numbers are not allocated.
 const MOST: usize = 1 << 18;
@@ -148,12 +149,12 @@ fn run<R: Real>(input: &Input) {
         });
         assert_eq!(count, if result.is_ok() { input.pixels } else { 0 });
     }
-    if let Ok(len) = Accumulator::<R, Vec<R>>::len(config)
+    if let Ok(len) = Accumulator::<R>::new(config).map(|accumulator| accumulator.len())
         && len <= MOST
     {
-        let mut accumulator = Accumulator::<R, _>::new(config, vec![nan; len]).unwrap();
+        let mut accumulator = Stream::<R>::new(config).unwrap();
         let mut other = accumulator.clone();
-        let mut workspace = vec![nan; Accumulator::<R, Vec<R>>::workspace_len(config).unwrap()];
+        let mut workspace = accumulator.workspace();
         let step = if config.stride == 0 { config.dims } else { config.stride };
         let at = input.split.min(n);
         let cut = |array: &[f32], width: usize| at.saturating_mul(width).min(array.len());

@@ -14,6 +14,7 @@ pub mod shared_bias;
 pub mod shared_hard;
 pub mod shared_tiles;
 pub mod statistics;
+pub mod stream;
 pub mod tile;
 
 use noisefloor::control_variate::Estimator;

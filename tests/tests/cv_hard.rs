@@ -368,11 +368,11 @@ fn not_finite_is_an_error() {
                     }
                     let mut accumulator = accumulator::<f32>(&config);
                     assert_eq!(accumulator.add(Samples::new(u, f)), Err(Error::NotFinite));
-                    assert_eq!(finish(&config, &accumulator), Err(Error::NoSamples));
+                    assert_eq!(finish(&accumulator), Err(Error::NoSamples));
                     accumulator.add(Samples::new(&bad_u[..2 * place.max(1)], &f[..place.max(1)])).ok();
-                    let before = finish(&config, &accumulator);
+                    let before = finish(&accumulator);
                     assert_eq!(accumulator.add(Samples::new(u, f)), Err(Error::NotFinite));
-                    assert_eq!(finish(&config, &accumulator), before);
+                    assert_eq!(finish(&accumulator), before);
                 }
             }
             let config = Config::new(2, 2, 1);
@@ -501,7 +501,7 @@ fn extreme_control_functions() {
                     let mut narrow = accumulator::<f32>(&config);
                     wide.add(samples).unwrap();
                     narrow.add(samples).unwrap();
-                    all.extend([finish(&config, &wide), finish(&config, &narrow)]);
+                    all.extend([finish(&wide), finish(&narrow)]);
                 }
                 for (index, estimate) in all.into_iter().enumerate() {
                     assert!(is_sound(&estimate.unwrap()), "{estimator:?} {index} {size} {integral} {estimate:?}");
@@ -524,7 +524,7 @@ fn units_of_control_functions_do_not_matter() {
         if config.estimator != Estimator::LeaveOneOut {
             let mut accumulator = accumulator::<f64>(config);
             accumulator.add(samples).unwrap();
-            all.push(finish(config, &accumulator).unwrap());
+            all.push(finish(&accumulator).unwrap());
         }
         all
     };

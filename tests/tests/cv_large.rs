@@ -2,10 +2,11 @@
 
 use noisefloor::basis::Family;
 use noisefloor::control_variate::Regressor;
-use noisefloor::control_variate::{Accumulator, Config, Estimate, Estimator, Samples, State};
+use noisefloor::control_variate::{Config, Estimate, Estimator, Samples};
 use noisefloor::real::Real;
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::block;
+use noisefloor_tests::stream::Stream;
 
 /// exp(-x - y) and its integral.
 fn smooth(u: &[f32]) -> f32 {
@@ -22,14 +23,14 @@ fn draw(n: usize, seed: u64) -> (Vec<f32>, Vec<f32>) {
 }
 
 fn stream<R: Real>(config: &Config, parts: &[(Vec<f32>, Vec<f32>)]) -> Estimate {
-    let fresh = || Accumulator::<R, _>::new(config, vec![R::ZERO; State::<R>::new(config).unwrap().len()]).unwrap();
+    let fresh = || Stream::<R>::new(config).unwrap();
     let mut whole = fresh();
     for (u, f) in parts {
         let mut part = fresh();
         part.add(Samples::new(u, f)).unwrap();
         whole.merge(&part).unwrap();
     }
-    whole.estimate(&mut vec![R::ZERO; State::<R>::new(config).unwrap().workspace_len()]).unwrap()
+    whole.estimate(&mut whole.workspace()).unwrap()
 }
 
 /// With many samples the incremental estimate follows its fits, in both precisions: its error is below a third of the

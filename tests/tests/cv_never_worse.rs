@@ -5,7 +5,7 @@
 //! ratio, but no ratio's true value is near enough to 1.03 for that to decide.
 
 use crate::cv_support::*;
-use noisefloor::control_variate::{Accumulator, Config, Estimator, Samples, estimate, workspace_len};
+use noisefloor::control_variate::{Config, Estimator, Samples, estimate, workspace_len};
 use noisefloor_tests::integrands::{self, Integrand};
 use noisefloor_tests::random::{SplitMix64, mix};
 use noisefloor_tests::statistics::{Ratio, geometric_mean, rmse_ratio};
@@ -24,7 +24,7 @@ fn ratios<const N: usize>(
     let mut accumulators = configs.map(|(config, streaming)| streaming.then(|| accumulator::<f64>(&config)));
     let len = |(config, streaming): (Config, bool)| {
         if streaming {
-            Accumulator::<f64, Vec<f64>>::workspace_len(&config).unwrap()
+            accumulator::<f64>(&config).workspace().len()
         } else {
             workspace_len::<f64>(&config, n).unwrap()
         }

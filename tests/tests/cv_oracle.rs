@@ -287,7 +287,7 @@ fn control_functions_are_integrated_exactly() {
             if matches!(estimator, Estimator::Robust | Estimator::LeastSquares | Estimator::KFold) {
                 let mut accumulator = accumulator::<f64>(&pair);
                 accumulator.add(more).unwrap();
-                close(&finish(&pair, &accumulator).unwrap(), 0.3125, &g, tolerance, &what);
+                close(&finish(&accumulator).unwrap(), 0.3125, &g, tolerance, &what);
                 close(&batch_of::<f32>(&pair, more).unwrap(), 0.3125, &g, F32, &what);
             }
         }
@@ -551,7 +551,7 @@ fn incremental_is_the_loop() {
             for (u, f) in u.chunks(dims).zip(f.chunks(1)) {
                 accumulator.add(Samples::new(u, f)).unwrap();
             }
-            assert_eq!(finish(&config, &accumulator), batch::<f64>(&config, &u, &f));
+            assert_eq!(finish(&accumulator), batch::<f64>(&config, &u, &f));
         }
     }
     // With a fixed ridge and few samples, fits are renewed every time: the oracle's own form.

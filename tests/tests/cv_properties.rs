@@ -4,13 +4,14 @@ use crate::cv_support::*;
 use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{
-    self, Accumulator, Color, Config, Estimate, Estimator, NonFinite, Optimizer, Regressor, Ridge, Samples, Solver,
+    self, Color, Config, Estimate, Estimator, NonFinite, Optimizer, Regressor, Ridge, Samples, Solver,
     block_workspace_len, estimate_block, workspace_len,
 };
 use noisefloor::real::Real;
 use noisefloor_tests::ESTIMATORS;
 use noisefloor_tests::oracle::{Regression, stream_folds};
 use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::stream::Stream;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -178,11 +179,9 @@ fn knock<R: Real>(config: &Config, samples: Samples<'_>, rng: &mut SplitMix64) {
         assert_eq!(count, if result.is_ok() { pixels } else { 0 });
         assert_ne!(result, Err(Error::Memory));
     }
-    if let Ok(len) = Accumulator::<R, Vec<R>>::len(config) {
-        let mut accumulator = Accumulator::<R, _>::new(config, vec![nan; len]).unwrap();
-        assert_eq!(Accumulator::<R, _>::new(config, vec![nan; len - 1]).err(), Some(Error::Memory));
+    if let Ok(mut accumulator) = Stream::<R>::new(config) {
         let added = accumulator.add(samples);
-        let mut workspace = vec![nan; Accumulator::<R, Vec<R>>::workspace_len(config).unwrap()];
+        let mut workspace = accumulator.workspace();
         let estimate = check(accumulator.estimate(&mut workspace));
         assert_eq!(estimate.is_ok(), accumulator.samples() > 0, "{config:?}: {estimate:?}");
         assert!(added.is_ok() || accumulator.samples() == 0);
@@ -324,7 +323,7 @@ proptest! {
             parts.push(part);
         }
         prop_assume!(!all_f.is_empty());
-        let join = |parts: &[&Accumulator<f64, Vec<f64>>]| {
+        let join = |parts: &[&Stream<f64>]| {
             let mut joined = accumulator::<f64>(&config);
             parts.iter().for_each(|part| joined.merge(part).unwrap());
             joined
@@ -333,7 +332,7 @@ proptest! {
         let left = join(&[&join(&[a, b]), c]);
         let right = join(&[a, &join(&[b, c])]);
         let swapped = join(&[c, b, a]);
-        let estimate = |accumulator: &Accumulator<f64, Vec<f64>>| finish(&config, accumulator).unwrap();
+        let estimate = |accumulator: &Stream<f64>| finish(accumulator).unwrap();
         let base = estimate(&left);
         let tolerance = 1e-6 * (largest(&all_f) as f32 + base.mean[0].abs());
         if matches!(estimator, Estimator::Robust | Estimator::KFold) {
@@ -500,7 +499,7 @@ proptest! {
         let (mut subject, mut model) = (accumulator::<f64>(&config), Model::new(folds));
         let mut narrow = accumulator::<f32>(&config);
         for step in steps.into_iter().chain([Step::Estimate]) {
-            let before = finish(&config, &subject);
+            let before = finish(&subject);
             match step {
                 Step::Add(n) => {
                     let (u, f) = draw(n);
@@ -517,7 +516,7 @@ proptest! {
                     prop_assert_eq!(subject.add(Samples::new(&u, &f)), Err(Error::Range));
                     prop_assert_eq!(subject.add(Samples::new(&u[..n * dims - 1], &f)), Err(Error::Range));
                     prop_assert_eq!(subject.add(Samples::new(&[], &[])), Err(Error::NoSamples));
-                    prop_assert_eq!(finish(&config, &subject), before);
+                    prop_assert_eq!(finish(&subject), before);
                 }
                 Step::Merge(n) => {
                     let (u, f) = draw(n);
@@ -532,13 +531,13 @@ proptest! {
                 }
                 Step::MergeEmpty => {
                     subject.merge(&accumulator::<f64>(&config)).unwrap();
-                    prop_assert_eq!(finish(&config, &subject), before);
+                    prop_assert_eq!(finish(&subject), before);
                 }
                 Step::MergeOther => {
                     let mut other = accumulator::<f64>(&Config { order: 1, ..config });
                     other.add(Samples::new(&vec![0.5; dims], &[1.0])).unwrap();
                     prop_assert_eq!(subject.merge(&other), Err(Error::Mismatch));
-                    prop_assert_eq!(finish(&config, &subject), before);
+                    prop_assert_eq!(finish(&subject), before);
                 }
                 Step::Reset => {
                     subject.reset();
@@ -551,7 +550,7 @@ proptest! {
                         prop_assert_eq!(before, Err(Error::NoSamples));
                         continue;
                     }
-                    let (wide, narrow) = (before.unwrap(), finish(&config, &narrow).unwrap());
+                    let (wide, narrow) = (before.unwrap(), finish(&narrow).unwrap());
                     prop_assert_eq!(wide.samples as usize, model.count);
                     let expected = expected(&config, &model, f64::from(strength)) / f64::from(scale);
                     let error = |estimate: Estimate| (f64::from(estimate.mean[0]) / f64::from(scale) - expected).abs();

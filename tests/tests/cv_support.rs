@@ -4,11 +4,12 @@
 
 use noisefloor::Error;
 use noisefloor::basis::Family;
-use noisefloor::control_variate::{self, Accumulator, Config, Estimate, Estimator, Optimizer, Samples};
+use noisefloor::control_variate::{self, Config, Estimate, Estimator, Optimizer, Samples};
 use noisefloor::real::Real;
 use noisefloor_tests::legendre;
 use noisefloor_tests::oracle::Design;
 use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::stream::Stream;
 
 pub const FAMILIES: [Family; 4] = Family::ALL;
 
@@ -28,22 +29,20 @@ pub fn batch_of<R: Real>(config: &Config, samples: Samples<'_>) -> Result<Estima
 }
 
 /// An empty accumulator.
-pub fn accumulator<R: Real>(config: &Config) -> Accumulator<R, Vec<R>> {
-    let len = Accumulator::<R, Vec<R>>::len(config).unwrap();
-    Accumulator::new(config, vec![R::from_f64(f64::NAN); len]).unwrap()
+pub fn accumulator<R: Real>(config: &Config) -> Stream<R> {
+    Stream::new(config).unwrap()
 }
 
 /// What an accumulator estimates.
-pub fn finish<R: Real>(config: &Config, accumulator: &Accumulator<R, Vec<R>>) -> Result<Estimate, Error> {
-    let len = Accumulator::<R, Vec<R>>::workspace_len(config).unwrap();
-    accumulator.estimate(&mut vec![R::from_f64(f64::NAN); len])
+pub fn finish<R: Real>(accumulator: &Stream<R>) -> Result<Estimate, Error> {
+    accumulator.estimate(&mut accumulator.workspace())
 }
 
 /// A streaming estimate, all samples added at once.
 pub fn streamed<R: Real>(config: &Config, u: &[f32], f: &[f32]) -> Result<Estimate, Error> {
     let mut accumulator = accumulator::<R>(config);
     accumulator.add(Samples::new(u, f))?;
-    finish(config, &accumulator)
+    finish(&accumulator)
 }
 
 /// The default configuration with another estimator.

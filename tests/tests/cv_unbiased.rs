@@ -6,8 +6,8 @@
 
 use crate::cv_support::*;
 use noisefloor::control_variate::{
-    Accumulator, Config, Estimate, Estimator, NonFinite, Ridge, Samples, Solver, block_workspace_len, estimate,
-    estimate_block, workspace_len,
+    Config, Estimate, Estimator, NonFinite, Ridge, Samples, Solver, block_workspace_len, estimate, estimate_block,
+    workspace_len,
 };
 use noisefloor::real::Real;
 use noisefloor_tests::ESTIMATORS;
@@ -45,7 +45,7 @@ fn batches(config: &Config, integrand: &Integrand, n: usize, repetitions: usize,
 /// The streaming estimates of many sets, each added in `parts` accumulators that are then merged.
 fn streams(config: &Config, integrand: &Integrand, n: usize, parts: usize, repetitions: usize, seed: u64) -> Moments {
     let mut accumulators: Vec<_> = (0..parts).map(|_| accumulator::<f64>(config)).collect();
-    let mut workspace = vec![0.0; Accumulator::<f64, Vec<f64>>::workspace_len(config).unwrap()];
+    let mut workspace = accumulator::<f64>(config).workspace();
     let mut moments = Moments::default();
     sets(integrand, n, repetitions, seed, |u, f| {
         let each = n / parts;
@@ -131,7 +131,7 @@ fn incremental_prefixes() {
     let integrand = integrand("listing 4.1");
     let config = config(1, 2, Estimator::Incremental);
     let mut accumulator = accumulator::<f64>(&config);
-    let mut workspace = vec![0.0; Accumulator::<f64, Vec<f64>>::workspace_len(&config).unwrap()];
+    let mut workspace = accumulator.workspace();
     let mut prefixes = [Moments::default(); 16];
     sets(&integrand, 16, 30_000, 60, |u, f| {
         accumulator.reset();

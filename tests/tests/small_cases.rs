@@ -4,8 +4,8 @@ use crate::table_support::{memory, table};
 use noisefloor::Error;
 use noisefloor::basis::{Basis, Family};
 use noisefloor::control_variate::{
-    Accumulator, Color, Config, Estimator, Image, Optimizer, Regressor, Ridge, Samples, Solver, State,
-    block_workspace_len, estimate, gradient_descent, image_workspace_len,
+    Accumulator, Color, Config, Estimator, Image, Optimizer, Regressor, Ridge, Samples, Solver, block_workspace_len,
+    estimate, gradient_descent, image_workspace_len,
 };
 use noisefloor::minibatch::table::{Kernel, Portable, Shard, allocate, check_importances, importance_len, saved_len};
 use noisefloor::minibatch::{Batch, Gradient, System, Table, gradient_len, importance};
@@ -265,14 +265,11 @@ fn estimates() {
 }
 
 #[test]
-fn an_accumulator_and_its_state() {
-    type Owned = Accumulator<f64, Vec<f64>>;
+fn an_accumulator() {
     let config = Config::new(2, 2, 1);
-    let mut state = State::<f64>::new(&config).unwrap();
-    assert_eq!((state.len(), Owned::len(&config)), (112, Ok(112)));
-    assert_eq!(Owned::workspace_len(&config), Ok(state.workspace_len()));
-    assert!(!state.is_empty() && *state.config() == config);
-    assert_eq!(*Owned::new(&config, vec![0.0; 112]).unwrap().state().config(), config);
+    let mut state = Accumulator::<f64>::new(&config).unwrap();
+    assert!(state.len() == 112 && !state.is_empty() && *state.config() == config);
+    assert_eq!(state.reset(&mut [0.0; 111]), Err(Error::Memory));
     let mut sums = vec![f64::NAN; 112];
     state.reset(&mut sums).unwrap();
     state.add(&mut sums, Samples::new(&[0.1, 0.7], &[2.0])).unwrap();
@@ -286,7 +283,7 @@ fn an_accumulator_and_its_state() {
     state.reset(&mut sums).unwrap();
     assert_eq!(state.samples(), 0);
     let config = Config { estimator: Estimator::LeaveOneOut, ..config };
-    assert_eq!(State::<f64>::new(&config).err(), Some(Error::Unsupported));
+    assert_eq!(Accumulator::<f64>::new(&config).err(), Some(Error::Unsupported));
 }
 
 #[test]

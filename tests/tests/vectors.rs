@@ -5,12 +5,11 @@
 //! CHANGELOG.md.
 
 use noisefloor::basis::Family;
-use noisefloor::control_variate::{
-    Accumulator, Color, Config, Estimate, Estimator, Samples, Solver, estimate, workspace_len,
-};
+use noisefloor::control_variate::{Color, Config, Estimate, Estimator, Samples, Solver, estimate, workspace_len};
 use noisefloor::real::Real;
 use noisefloor::rng::Rng;
 use noisefloor_tests::ESTIMATORS;
+use noisefloor_tests::stream::Stream;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -114,10 +113,9 @@ fn compute<R: Real>(case: &Case) -> Estimate {
     };
     let (u, f) = samples(case);
     let result = if case.streaming {
-        let sums = vec![R::ZERO; Accumulator::<R, Vec<R>>::len(&config).unwrap()];
-        let mut accumulator = Accumulator::new(&config, sums).unwrap();
+        let mut accumulator = Stream::<R>::new(&config).unwrap();
         accumulator.add(Samples::new(&u, &f)).unwrap();
-        accumulator.estimate(&mut vec![R::ZERO; Accumulator::<R, Vec<R>>::workspace_len(&config).unwrap()])
+        accumulator.estimate(&mut accumulator.workspace())
     } else {
         estimate(&config, Samples::new(&u, &f), &mut vec![R::ZERO; workspace_len::<R>(&config, case.n).unwrap()])
     };

@@ -6,7 +6,7 @@ use crate::convert;
 use crate::magic::{self, magic};
 use crate::status::*;
 use core::ffi::c_void;
-use noisefloor_core::control_variate::State;
+use noisefloor_core::control_variate::Accumulator;
 use noisefloor_core::real::Real;
 
 /// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, in one
@@ -27,8 +27,8 @@ struct Header {
 
 #[derive(Clone, Copy)]
 enum AnyState {
-    Double(State<f64>),
-    Single(State<f32>),
+    Double(Accumulator<f64>),
+    Single(Accumulator<f32>),
 }
 
 /// Whether accumulators in double precision are part of the library: if not, nothing must make the compiler think so.
@@ -45,7 +45,11 @@ pub unsafe extern "C" fn nf_cv_accumulator_size(config: *const nf_cv_config) -> 
     // SAFETY: the caller's pointer, checked there for NULL and alignment.
     let Ok(config) = (unsafe { convert::reference(config) }) else { return 0 };
     let sums = size(config, |config, narrow| {
-        if narrow { State::<f32>::new(config).map(|s| s.len()) } else { State::<f64>::new(config).map(|s| s.len()) }
+        if narrow {
+            Accumulator::<f32>::new(config).map(|s| s.len())
+        } else {
+            Accumulator::<f64>::new(config).map(|s| s.len())
+        }
     });
     if sums == 0 { 0 } else { HEADER + sums }
 }
@@ -66,10 +70,10 @@ pub unsafe extern "C" fn nf_cv_accumulator_init(
         let (config, out) = unsafe { (convert::reference(config)?, convert::room(out)?) };
         let core = core_config(config)?;
         let (state, sums) = if is_narrow(config)? {
-            let state = State::new(&core).map_err(status_of)?;
+            let state = Accumulator::new(&core).map_err(status_of)?;
             (AnyState::Single(state), state.len() * size_of::<f32>())
         } else {
-            let state = State::new(&core).map_err(status_of)?;
+            let state = Accumulator::new(&core).map_err(status_of)?;
             (AnyState::Double(state), state.len() * size_of::<f64>())
         };
         // SAFETY: the caller's memory, `bytes` long.
@@ -152,9 +156,9 @@ pub unsafe extern "C" fn nf_cv_accumulator_workspace_size(config: *const nf_cv_c
     let Ok(config) = (unsafe { convert::reference(config) }) else { return 0 };
     size(config, |config, narrow| {
         if narrow {
-            State::<f32>::new(config).map(|state| state.workspace_len())
+            Accumulator::<f32>::new(config).map(|state| state.workspace_len())
         } else {
-            State::<f64>::new(config).map(|state| state.workspace_len())
+            Accumulator::<f64>::new(config).map(|state| state.workspace_len())
         }
     })
 }
@@ -200,13 +204,13 @@ pub unsafe extern "C" fn nf_cv_accumulator_reset(accumulator: *mut nf_cv_accumul
 }
 
 enum Opened<'a> {
-    Double(&'a mut State<f64>, &'a mut [f64]),
-    Single(&'a mut State<f32>, &'a mut [f32]),
+    Double(&'a mut Accumulator<f64>, &'a mut [f64]),
+    Single(&'a mut Accumulator<f32>, &'a mut [f32]),
 }
 
 enum OpenedShared<'a> {
-    Double(&'a State<f64>, &'a [f64]),
-    Single(&'a State<f32>, &'a [f32]),
+    Double(&'a Accumulator<f64>, &'a [f64]),
+    Single(&'a Accumulator<f32>, &'a [f32]),
 }
 
 /// # Safety
@@ -253,7 +257,7 @@ unsafe fn open_shared<'a>(accumulator: *const nf_cv_accumulator) -> Result<Opene
 /// # Safety
 /// As for [`samples`].
 unsafe fn add<R: Real>(
-    state: &mut State<R>,
+    state: &mut Accumulator<R>,
     sums: &mut [R],
     u: *const f32,
     f: *const f32,

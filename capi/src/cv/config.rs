@@ -223,11 +223,7 @@ fn read(config: &nf_cv_config) -> Result<Config, &'static CStr> {
             ],
             c"estimator must be one of NF_CV_*, 0 to 5",
         )?,
-        basis: pick(
-            config.basis,
-            &Family::ALL,
-            c"basis must be one of NF_BASIS_*, 0 to 3",
-        )?,
+        basis: pick(config.basis, &Family::ALL, c"basis must be one of NF_BASIS_*, 0 to 3")?,
         stratified: pick(config.stratified, &[false, true], c"stratified must be 0 or 1")?,
         slices: config.slices as usize,
         controls: config.controls as usize,

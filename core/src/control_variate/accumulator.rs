@@ -1,112 +1,354 @@
 //! Streaming estimates: sums of fixed size that samples are added to and that can be merged.
-//!
-//! Leave-one-out errors need the samples, which are gone, so the robust estimate here trusts held-out errors instead:
-//! runs of an accumulator's samples are summed into folds, and each fold judges the fits to the other folds.
 
-use super::config::{Config, Estimate};
-use super::samples::Samples;
-use super::state::State;
+use super::config::{Color, Config};
+use super::cross_fit;
+use super::design::Units;
+use super::fit::{descent, givens as square_root, normal};
+use super::folds;
+use super::incremental;
+use super::per_channel::PerChannel;
+use super::plan::{self, Method};
+use super::samples::{Reader, Samples, Subset};
+use super::sums::{self, Sums};
+use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
 use crate::error::Error;
+use crate::lanes::Lanes;
+use crate::linalg::givens;
+use crate::matrix::{at, first_mut, from, halves_mut, row_at, row_at_mut, rows_mut};
 use crate::real::Real;
 
-/// A fixed-size accumulator over `sums`, a buffer of [`Accumulator::len`] numbers: an array, a slice, a vector.
+/// The most samples of an accumulator in `f32`.
+const NARROW_CAPACITY: u64 = 1 << 22;
+
+/// A streaming estimate of fixed size: everything but the sums themselves, a buffer of [`Accumulator::len`] numbers that
+/// every method takes as the last call left it. A shorter one is [`Error::Memory`].
+///
+/// Leave-one-out errors need the samples, which are gone, so the robust estimate trusts held-out errors instead: runs of
+/// samples are summed into folds, and each fold judges the fits to the other folds.
 ///
 /// ```
 /// use noisefloor::control_variate::{Accumulator, Config, Samples};
 ///
-/// let config = Config::new(2, 2, 1);
-/// let mut accumulator = Accumulator::<f64, _>::new(&config, [0.0; 112])?;
-/// accumulator.add(Samples::new(&[0.1, 0.7, 0.5, 0.2], &[1.0, 3.0]))?;
-/// let estimate = accumulator.estimate(&mut [0.0; 256])?;
+/// let new = || Accumulator::<f64>::new(&Config::new(1, 1, 1));
+/// let (mut all, mut pass) = (new()?, new()?); // one of another thread, say
+/// let mut sums = vec![0.0; 2 * all.len()]; // anywhere, such as one buffer for all pixels
+/// let (all_sums, pass_sums) = sums.split_at_mut(pass.len());
+/// all.reset(all_sums)?;
+/// pass.reset(pass_sums)?;
+/// pass.add(pass_sums, Samples::new(&[0.1, 0.3], &[1.1, 1.3]))?;
+/// all.merge(all_sums, &pass, pass_sums)?;
+/// let estimate = all.estimate(all_sums, &mut vec![0.0; all.workspace_len()])?;
 /// assert_eq!(estimate.samples, 2);
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
-#[derive(Clone, Debug)]
-pub struct Accumulator<R, S> {
-    state: State<R>,
-    sums: S,
+#[derive(Clone, Copy, Debug)]
+pub struct Accumulator<R> {
+    pub(super) config: Config,
+    pub(super) shape: Shape,
+    pub(super) method: Method,
+    pub(super) columns: usize,
+    pub(super) channels: usize,
+    pub(super) samples: u64,
+    pub(super) units: [Units<R>; Config::MAX_CHANNELS],
+    /// Sums of red, green, blue and luminance, for a luminance ratio.
+    pub(super) colour: [f64; 4],
+    pub(super) incremental: incremental::Progress<R>,
 }
 
-impl<R: Real, S: AsRef<[R]> + AsMut<[R]>> Accumulator<R, S> {
-    /// Numbers of `sums` that a configuration needs.
-    ///
+impl<R: Real> Accumulator<R> {
     /// # Errors
-    /// As for [`Accumulator::new`].
-    pub fn len(config: &Config) -> Result<usize, Error> {
-        Ok(State::<R>::new(config)?.len())
+    /// [`Error::Unsupported`] for [`Estimator::LeaveOneOut`](super::Estimator::LeaveOneOut), which needs all samples at once, and whatever
+    /// [`Config::terms`] finds.
+    pub fn new(config: &Config) -> Result<Self, Error> {
+        let shape = config.checked_shape()?;
+        plan::check_stream(config)?;
+        let method = Method::of(config, config.controls + shape.columns());
+        let columns = if method == Method::Plain { 0 } else { config.controls + shape.columns() };
+        let luminance = config.color == Color::LuminanceRatio;
+        Ok(Self {
+            config: *config,
+            shape,
+            method,
+            columns,
+            channels: if luminance { 1 } else { config.channels },
+            samples: 0,
+            units: [Units::default(); Config::MAX_CHANNELS],
+            colour: [0.0; 4],
+            incremental: incremental::Progress::default(),
+        })
     }
 
-    /// Numbers of workspace that [`Accumulator::estimate`] needs.
-    ///
-    /// # Errors
-    /// As for [`Accumulator::new`].
-    pub fn workspace_len(config: &Config) -> Result<usize, Error> {
-        Ok(State::<R>::new(config)?.workspace_len())
+    pub(super) fn terms(&self) -> usize {
+        self.columns + 1
     }
 
-    /// An empty accumulator; `sums` is cleared.
-    ///
-    /// # Errors
-    /// [`Error::Memory`] if `sums` is too short, [`Error::Range`] or [`Error::Unsupported`] for the configuration.
-    pub fn new(config: &Config, mut sums: S) -> Result<Self, Error> {
-        let mut state = State::new(config)?;
-        state.reset(sums.as_mut())?;
-        Ok(Self { state, sums })
+    /// Numbers of one group of sums.
+    pub(super) fn group(&self) -> usize {
+        sums::len(self.terms(), self.channels)
+    }
+
+    /// Groups of sums: one for each fold, or one.
+    pub(super) fn groups(&self) -> usize {
+        match self.method {
+            Method::Robust | Method::KFold => self.config.fold_count(),
+            _ => 1,
+        }
+    }
+
+    /// Numbers of the whole buffer.
+    pub fn len(&self) -> usize {
+        let extra = match self.method {
+            Method::Incremental => incremental::len(self.columns, self.channels),
+            _ => 0,
+        };
+        self.groups() * self.group() + extra
+    }
+
+    /// Never: an accumulator has at least the sums of a constant.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Numbers of workspace that an estimate takes.
+    pub fn workspace_len(&self) -> usize {
+        let (columns, channels) = (self.columns, self.channels);
+        let solve = normal::solve_len(columns);
+        let fit = normal::centred_len(columns, channels) + columns * (1 + channels) + solve;
+        let len = match self.method {
+            Method::Robust | Method::KFold => cross_fit::len(columns, channels) + self.group() + fit,
+            Method::Descent => fit + descent::size(columns, channels),
+            Method::SquareRoot => square_root::size(self.terms(), channels) + self.group(),
+            _ => fit,
+        };
+        // Zero would say that there is no such accumulator.
+        len.max(1)
+    }
+
+    /// Samples added so far.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// What it was made with.
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    fn check_length(&self, sums: &[R]) -> Result<(), Error> {
+        if sums.len() < self.len() { Err(Error::Memory) } else { Ok(()) }
+    }
+
+    /// Sums of a narrow type stop growing when they are too large for one more sample to show.
+    fn check_capacity(&self, more: u64) -> Result<(), Error> {
+        let total = self.samples.saturating_add(more);
+        if R::NARROW && total > NARROW_CAPACITY { Err(Error::Range) } else { Ok(()) }
     }
 
     /// Forgets all samples.
-    pub fn reset(&mut self) {
-        // The length was checked when it was made.
-        let _ = self.state.reset(self.sums.as_mut());
+    ///
+    /// # Errors
+    /// [`Error::Memory`].
+    pub fn reset(&mut self, sums: &mut [R]) -> Result<(), Error> {
+        self.check_length(sums)?;
+        self.samples = 0;
+        self.units = [Units::default(); Config::MAX_CHANNELS];
+        self.colour = [0.0; 4];
+        self.incremental = incremental::Progress::default();
+        for value in sums {
+            *value = R::ZERO;
+        }
+        Ok(())
     }
 
     /// Adds samples, all or, on an error, none.
     ///
     /// # Errors
-    /// As for [`estimate`](super::estimate); adding no samples is an error too.
-    pub fn add(&mut self, samples: Samples<'_>) -> Result<(), Error> {
-        self.state.add(self.sums.as_mut(), samples)
+    /// As for [`estimate`](super::estimate); adding no samples is an error too, and in `f32` more than 2^22 of them.
+    pub fn add(&mut self, sums: &mut [R], samples: Samples<'_>) -> Result<(), Error> {
+        self.check_length(sums)?;
+        let reader = Reader::new(&self.config, samples)?;
+        reader.check()?;
+        self.check_capacity(reader.len() as u64)?;
+        let mut basis = Basis::empty();
+        let terms = self.terms();
+        if terms > 1 {
+            basis.set(self.config.basis, self.shape)?;
+        }
+        let mut p = [[R::ZERO]; MAX_TERMS];
+        p[0] = [R::ONE];
+        let mut x = [[R::ZERO; 1]; MAX_DIMS];
+        let mut h = [[R::ZERO; 1]; Config::MAX_CONTROLS];
+        reader.each(Subset::All, |sample| {
+            sample.put(0, &mut x, &mut h);
+            if terms > 1 {
+                reader.columns(&basis, &x, &h, p.get_mut(1..terms).unwrap_or_default());
+            }
+            if let Some(colour) = reader.colour(sample) {
+                for (sum, value) in self.colour.iter_mut().zip(colour) {
+                    *sum += value;
+                }
+            }
+            self.add_row(sums, first_mut(&mut p, terms), PerChannel(reader.values(sample)));
+        });
+        Ok(())
     }
 
-    /// Adds all samples of another accumulator ([`State::merge`]).
+    /// Adds one evaluated sample.
+    #[inline(always)]
+    fn add_row(&mut self, sums: &mut [R], p: &mut [Lanes<R, 1>], values: PerChannel<R>) {
+        let (terms, channels, group) = (self.terms(), self.channels, self.group());
+        let groups = self.groups();
+        self.fit_units(&values, sums);
+        let mut f = PerChannel::default();
+        for ((f, &value), unit) in f.iter_mut().zip(&values).zip(&self.units) {
+            *f = value * R::ONE.scale(-unit.exponent) - unit.offset;
+        }
+        let f = first_mut(&mut *f, channels);
+        let p = p.as_flattened_mut();
+        if self.method == Method::Incremental {
+            let (group, rest) = halves_mut(sums, group);
+            incremental::correct(&mut self.incremental, self.config.ridge, rest, from(p, 1), f);
+            if let Ok(mut sums) = Sums::new_mut(group, terms, channels) {
+                sums.add(p, f);
+            }
+            self.samples += 1;
+            incremental::refit(self.samples, &mut self.incremental, &self.config, group, rest, terms - 1, channels);
+            return;
+        }
+        let fold = folds::of_stream(self.samples, groups);
+        self.samples += 1;
+        if let Ok(mut sums) = Sums::new_mut(row_at_mut(sums, group, fold), terms, channels) {
+            if self.method == Method::SquareRoot {
+                givens::add_row(&mut sums.gram, &mut sums.rhs, sums.square, p, f);
+            } else {
+                sums.add(p, f);
+            }
+        }
+    }
+
+    /// Adds all samples of another accumulator, as if they had been added here, up to rounding, where there is
+    /// one fold; of [`Estimator::Incremental`](super::Estimator::Incremental) each
+    /// side's samples stay corrected by their own past.
+    ///
+    /// The robust estimate and K-fold put the other's folds where they make theirs most even: the same parts merged in
+    /// the same order give the same bits, other splits of the same samples other folds, and estimates as good.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] if the configurations differ.
-    ///
-    /// ```
-    /// use noisefloor::control_variate::{Accumulator, Config, Samples};
-    ///
-    /// let config = Config::new(1, 1, 1);
-    /// let new = || Accumulator::<f64, _>::new(&config, vec![0.0; Accumulator::<f64, Vec<f64>>::len(&config)?]);
-    /// let mut all = new()?;
-    /// let mut pass = new()?; // of another thread, say
-    /// pass.add(Samples::new(&[0.1, 0.3], &[1.1, 1.3]))?;
-    /// all.merge(&pass)?;
-    /// assert_eq!(all.samples(), 2);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
-    pub fn merge<T: AsRef<[R]>>(&mut self, other: &Accumulator<R, T>) -> Result<(), Error> {
-        self.state.merge(self.sums.as_mut(), &other.state, other.sums.as_ref())
+    /// [`Error::Mismatch`] if the configurations differ; in `f32` [`Error::Range`] for more than 2^22 samples together.
+    pub fn merge(&mut self, sums: &mut [R], other: &Self, other_sums: &[R]) -> Result<(), Error> {
+        if self.config != other.config {
+            return Err(Error::Mismatch);
+        }
+        self.check_length(sums)?;
+        other.check_length(other_sums)?;
+        if other.samples == 0 {
+            return Ok(());
+        }
+        self.check_capacity(other.samples)?;
+        let (terms, channels, group) = (self.terms(), self.channels, self.group());
+        let groups = self.groups();
+        if self.samples == 0 {
+            self.units = other.units;
+        }
+        self.raise_exponents(&other.units.map(|unit| unit.exponent), sums);
+        let mut factors = PerChannel([R::ONE; Config::MAX_CHANNELS]);
+        let mut shift = PerChannel::default();
+        let units = other.units.iter().zip(&self.units);
+        for (((theirs, ours), factor), shift) in units.zip(&mut factors).zip(&mut shift) {
+            *factor = R::ONE.scale(theirs.exponent - ours.exponent);
+            *shift = theirs.offset * *factor - ours.offset;
+        }
+        let size = |sums: &[R], fold: usize| {
+            Sums::new(row_at(sums, group, fold), terms, channels).map_or(0.0, |sums| sums.count().to_f64())
+        };
+        let rotation = folds::rotation(groups, |fold| size(sums, fold), |fold| size(other_sums, fold));
+        for fold in 0..groups {
+            let mut ours = Sums::new_mut(row_at_mut(sums, group, fold), terms, channels)?;
+            let theirs = (fold + groups - rotation).checked_rem(groups).unwrap_or(0);
+            let theirs = Sums::new(row_at(other_sums, group, theirs), terms, channels)?;
+            if self.method == Method::SquareRoot {
+                merge_factors(&mut ours, &theirs, &factors, &shift, channels);
+            } else {
+                ours.merge(&theirs, &factors, &shift);
+            }
+        }
+        for (sum, value) in self.colour.iter_mut().zip(other.colour) {
+            *sum += value;
+        }
+        self.incremental.merge(&other.incremental, &factors, &shift, other.samples);
+        self.samples = self.samples.saturating_add(other.samples);
+        if self.method == Method::Incremental {
+            let (group, rest) = halves_mut(sums, group);
+            self.incremental.refit_now();
+            incremental::refit(self.samples, &mut self.incremental, &self.config, group, rest, terms - 1, channels);
+        }
+        Ok(())
+    }
+
+    /// Sets the units at the first sample, and keeps values of a narrow type near one.
+    fn fit_units(&mut self, values: &PerChannel<R>, sums: &mut [R]) {
+        if R::NARROW {
+            self.raise_exponents(&values.map(|value| if value == R::ZERO { -126 } else { value.exponent() }), sums);
+        }
+        if self.samples == 0 {
+            for (unit, &value) in self.units.iter_mut().zip(values) {
+                unit.offset = value * R::ONE.scale(-unit.exponent);
+            }
+        }
+    }
+
+    /// Raises the units' exponents to at least those given, and rescales what was summed.
+    fn raise_exponents(&mut self, exponents: &[i32; Config::MAX_CHANNELS], sums: &mut [R]) {
+        let mut factors = PerChannel([R::ONE; Config::MAX_CHANNELS]);
+        let mut any = false;
+        let fresh = self.samples == 0;
+        for ((unit, &exponent), factor) in self.units.iter_mut().zip(exponents).zip(&mut factors) {
+            let exponent = exponent.clamp(-126, 126);
+            if exponent > unit.exponent || (fresh && R::NARROW) {
+                // Of nothing yet there is nothing to rescale.
+                if !fresh {
+                    *factor = R::ONE.scale((unit.exponent - exponent).max(-149));
+                    unit.offset *= *factor;
+                    any = true;
+                }
+                unit.exponent = exponent;
+            }
+        }
+        if any {
+            let (terms, channels, group) = (self.terms(), self.channels, self.group());
+            let (folds, rest) = halves_mut(sums, self.groups() * group);
+            for mut sums in rows_mut(folds, group).filter_map(|sums| Sums::new_mut(sums, terms, channels).ok()) {
+                sums.rescale(&factors);
+            }
+            self.incremental.rescale(&factors, rest, self.columns, channels);
+        }
     }
 }
 
-impl<R: Real, S: AsRef<[R]>> Accumulator<R, S> {
-    /// The estimate from all samples so far. More may be added afterwards.
-    ///
-    /// # Errors
-    /// [`Error::NoSamples`] if there are none, [`Error::Memory`] if `workspace` is shorter than
-    /// [`Accumulator::workspace_len`] says.
-    pub fn estimate(&self, workspace: &mut [R]) -> Result<Estimate, Error> {
-        self.state.estimate(self.sums.as_ref(), workspace)
+/// Rotates the rows of another triangular factor into ours.
+fn merge_factors<R: Real>(
+    ours: &mut Sums<&mut [R]>,
+    theirs: &Sums<&[R]>,
+    factors: &PerChannel<R>,
+    shift: &PerChannel<R>,
+    channels: usize,
+) {
+    let mut x = [R::ZERO; MAX_TERMS];
+    let x = x.get_mut(..theirs.gram.order()).unwrap_or_default();
+    for (j, z) in theirs.rhs.rows().enumerate() {
+        for (k, x) in x.iter_mut().enumerate() {
+            *x = if k < j { R::ZERO } else { theirs.gram.at(k, j) };
+        }
+        // The constant's column is the first, so a shift of the values is that many times column 0 of R.
+        let first = if j == 0 { at(x, 0) } else { R::ZERO };
+        let mut y = PerChannel::default();
+        for (channel, &z) in z.iter().enumerate() {
+            y[channel] = factors[channel] * z + shift[channel] * first;
+        }
+        let y = first_mut(&mut *y, channels);
+        givens::add_row(&mut ours.gram, &mut ours.rhs, ours.square, x, y);
     }
-
-    /// All but the buffer.
-    pub fn state(&self) -> &State<R> {
-        &self.state
-    }
-
-    /// Samples added so far.
-    pub fn samples(&self) -> u64 {
-        self.state.samples()
+    for ((square, &other), &factor) in ours.square.iter_mut().zip(theirs.square).zip(factors.iter()) {
+        *square += factor * factor * other;
     }
 }

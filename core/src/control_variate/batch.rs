@@ -1,5 +1,6 @@
 //! Estimates from samples in caller arrays.
 
+use super::accumulator::Accumulator;
 use super::config::{Color, Config, Estimate};
 use super::design::Design;
 use super::fit::{descent, givens};
@@ -8,7 +9,6 @@ use super::k_fold;
 use super::plan::{Method, Plan};
 use super::result::{self, Outcome};
 use super::samples::{Reader, Samples, Subset};
-use super::state::State;
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
@@ -27,8 +27,8 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
     let solve = match plan.method {
         Method::Plain => return Design::<R>::size(n, 0, channels).ok_or(Error::Memory),
         Method::Incremental => {
-            let state = State::<R>::new(config)?;
-            return state.len().checked_add(state.workspace_len()).ok_or(Error::Memory);
+            let stream = Accumulator::<R>::new(config)?;
+            return stream.len().checked_add(stream.workspace_len()).ok_or(Error::Memory);
         }
         Method::Descent => Some(descent::size(columns, channels)),
         Method::KFold => k_fold::size::<R>(config, columns, channels, n),
@@ -91,11 +91,11 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
 
 /// (4.30) is about a stream: the batch form streams.
 fn incremental<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
-    let mut state = State::<R>::new(config)?;
-    let (sums, scratch) = workspace.split_at_mut_checked(state.len()).ok_or(Error::Memory)?;
-    state.reset(sums)?;
-    state.add(sums, samples)?;
-    state.estimate(sums, scratch)
+    let mut stream = Accumulator::<R>::new(config)?;
+    let (sums, scratch) = workspace.split_at_mut_checked(stream.len()).ok_or(Error::Memory)?;
+    stream.reset(sums)?;
+    stream.add(sums, samples)?;
+    stream.estimate(sums, scratch)
 }
 
 /// The estimators that fit all samples at once through the normal equations or their dual.

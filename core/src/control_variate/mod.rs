@@ -21,7 +21,6 @@ mod regressor;
 mod result;
 mod ridge;
 mod samples;
-mod state;
 mod sums;
 mod trust;
 
@@ -32,4 +31,3 @@ pub use fit::descent::estimate_from as gradient_descent;
 pub use image::{Image, Rectangle, block_workspace_len, estimate_block, estimate_image, image_workspace_len};
 pub use regressor::Regressor;
 pub use samples::Samples;
-pub use state::State;

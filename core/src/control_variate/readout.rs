@@ -1,5 +1,6 @@
 //! The estimates that a streaming estimate's sums hold.
 
+use super::accumulator::Accumulator;
 use super::config::{Color, Config, Estimate, Ridge};
 use super::cross_fit;
 use super::design::Units;
@@ -10,7 +11,6 @@ use super::per_channel::PerChannel;
 use super::plan::Method;
 use super::result::{self, Outcome, Summary};
 use super::ridge;
-use super::state::State;
 use super::sums::Sums;
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -18,45 +18,44 @@ use crate::error::Error;
 use crate::matrix::{row_at, rows};
 use crate::real::Real;
 
-impl<R: Real> State<R> {
+impl<R: Real> Accumulator<R> {
     /// The estimate from all samples so far. More may be added afterwards.
     ///
     /// # Errors
     /// [`Error::NoSamples`] if there are none, [`Error::Memory`] if `workspace` is shorter than
-    /// [`State::workspace_len`] says.
+    /// [`Accumulator::workspace_len`] says.
     pub fn estimate(&self, sums: &[R], workspace: &mut [R]) -> Result<Estimate, Error> {
-        let state = self;
-        if sums.len() < state.len() {
+        if sums.len() < self.len() {
             return Err(Error::Memory);
         }
-        if state.samples == 0 {
+        if self.samples == 0 {
             return Err(Error::NoSamples);
         }
         let mut arena = Arena::new(workspace);
         let total = Totals::new(self, sums)?;
-        let outcome = match state.method {
+        let outcome = match self.method {
             Method::Robust | Method::KFold => self.cross_fit(sums, &total, &mut arena)?,
-            Method::Incremental => incremental::outcome(&state.incremental, state.samples).relative_to(&total),
+            Method::Incremental => incremental::outcome(&self.incremental, self.samples).relative_to(&total),
             Method::Descent => self.descend(&self.sums(sums, 0)?, &total, &mut arena)?,
             Method::SquareRoot => {
                 let sums = self.sums(sums, 0)?;
-                let outcome = givens::from_factor(&sums, &state.config, &self.basis()?, state.channels, &mut arena)?;
+                let outcome = givens::from_factor(&sums, &self.config, &self.basis()?, self.channels, &mut arena)?;
                 Outcome { variance: outcome.variance.or(total.variance), ..outcome.relative_to(&total) }
             }
             Method::LeastSquares => self.least_squares(&self.sums(sums, 0)?, &total, &mut arena)?,
             // A stream has no leave-one-out errors.
             Method::Plain | Method::LeaveOneOut => total.plain(),
         };
-        let samples = state.samples;
+        let samples = self.samples;
         Ok(result::finish(
             Summary {
                 samples: usize::try_from(samples).unwrap_or(usize::MAX),
-                channels: state.channels,
+                channels: self.channels,
                 units: total.units,
                 plain_variance: total.variance,
-                colour: (state.config.color == Color::LuminanceRatio).then(|| {
+                colour: (self.config.color == Color::LuminanceRatio).then(|| {
                     let inverse = 1.0 / samples as f64;
-                    let [red, green, blue, luminance] = state.colour.map(|sum| sum * inverse);
+                    let [red, green, blue, luminance] = self.colour.map(|sum| sum * inverse);
                     ([red, green, blue], luminance)
                 }),
             },
@@ -143,13 +142,13 @@ pub(crate) struct Totals<R> {
 }
 
 impl<R: Real> Totals<R> {
-    fn new(state: &State<R>, sums: &[R]) -> Result<Self, Error> {
+    fn new(accumulator: &Accumulator<R>, sums: &[R]) -> Result<Self, Error> {
         let mut totals = PerChannel::<R>::default();
         let mut squares = PerChannel::<R>::default();
-        for fold in 0..state.groups() {
-            let group = state.sums(sums, fold)?;
-            for channel in 0..state.channels {
-                let (total, square) = if state.method == Method::SquareRoot {
+        for fold in 0..accumulator.groups() {
+            let group = accumulator.sums(sums, fold)?;
+            for channel in 0..accumulator.channels {
+                let (total, square) = if accumulator.method == Method::SquareRoot {
                     givens::totals(&group, channel)
                 } else {
                     (group.total(channel), group.square(channel))
@@ -158,10 +157,10 @@ impl<R: Real> Totals<R> {
                 squares[channel] += square;
             }
         }
-        let n = R::from_f64(state.samples as f64);
-        let mut result = Self { units: state.units, mean: PerChannel::default(), variance: None };
+        let n = R::from_f64(accumulator.samples as f64);
+        let mut result = Self { units: accumulator.units, mean: PerChannel::default(), variance: None };
         let mut variance = PerChannel::default();
-        for (channel, unit) in result.units.iter_mut().enumerate().take(state.channels) {
+        for (channel, unit) in result.units.iter_mut().enumerate().take(accumulator.channels) {
             let total = totals[channel];
             let mean = total / n;
             unit.offset += mean;
@@ -169,7 +168,7 @@ impl<R: Real> Totals<R> {
             let square = Real::max(squares[channel] - total * mean, R::ZERO);
             variance[channel] = square / result::mean_divisor(n);
         }
-        result.variance = (state.samples > 1).then_some(variance);
+        result.variance = (accumulator.samples > 1).then_some(variance);
         Ok(result)
     }
 
