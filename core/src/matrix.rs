@@ -139,7 +139,7 @@ impl<T: Copy + Default, S: Deref<Target = [T]>> Triangle<S> {
 }
 
 impl<R: Real, S: Deref<Target = [R]>> Triangle<S> {
-    /// Sum_k a_jk x_k over the row up to the diagonal, what is left of it counted twice; times x_j and summed over the
+    /// Sum_k a_jk x_k over the row up to the diagonal, what is left of it counted twice: times x_j and summed over the
     /// rows it makes x'A x.
     #[inline]
     pub(crate) fn half_product(&self, j: usize, x: &[R]) -> R {
@@ -152,7 +152,14 @@ impl<R: Real, S: Deref<Target = [R]>> Triangle<S> {
 
     /// x'A x
     pub(crate) fn quadratic(&self, x: &[R]) -> R {
-        x.iter().enumerate().fold(R::ZERO, |sum, (j, &x_j)| sum + x_j * self.half_product(j, x))
+        let mut sum = R::ZERO;
+        for (j, &x_j) in x.iter().enumerate() {
+            for (k, (&a, &x_k)) in self.row(j).iter().zip(x).enumerate() {
+                let product = x_j * a * x_k;
+                sum += if k == j { product } else { product + product };
+            }
+        }
+        sum
     }
 }
 
