@@ -20,11 +20,11 @@ use crate::real::Real;
 /// The most samples of an accumulator in `f32`.
 const NARROW_CAPACITY: u64 = 1 << 22;
 
-/// A streaming estimate of fixed size: everything but the sums themselves, a buffer of [`Accumulator::len`] numbers that
-/// every method takes as the last call left it. A shorter one is [`Error::Memory`].
+/// A streaming estimate of fixed size: everything but the sums themselves, a buffer of [`Accumulator::len`] numbers
+/// that every method takes as the last call left it. A shorter one is [`Error::Memory`].
 ///
-/// Leave-one-out errors need the samples, which are gone, so the robust estimate trusts held-out errors instead: runs of
-/// samples are summed into folds, and each fold judges the fits to the other folds.
+/// Leave-one-out errors need the samples, which are gone, so the robust estimate trusts held-out errors instead: runs
+/// of samples are summed into folds, and each fold judges the fits to the other folds.
 ///
 /// ```
 /// use noisefloor::control_variate::{Accumulator, Config, Samples};
@@ -57,8 +57,8 @@ pub struct Accumulator<R> {
 
 impl<R: Real> Accumulator<R> {
     /// # Errors
-    /// [`Error::Unsupported`] for [`Estimator::LeaveOneOut`](super::Estimator::LeaveOneOut), which needs all samples at once, and whatever
-    /// [`Config::terms`] finds.
+    /// [`Error::Unsupported`] for [`Estimator::LeaveOneOut`](super::Estimator::LeaveOneOut), which needs all samples at
+    /// once, and whatever [`Config::terms`] finds.
     pub fn new(config: &Config) -> Result<Self, Error> {
         let shape = config.checked_shape()?;
         plan::check_stream(config)?;

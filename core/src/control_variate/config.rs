@@ -5,13 +5,6 @@ use crate::error::Error;
 use core::ffi::CStr;
 
 /// How samples become an estimate (chapter 4).
-///
-/// ```
-/// use noisefloor::control_variate::{Config, Estimator};
-/// assert_eq!(Config::new(2, 2, 1).estimator, Estimator::Robust);
-/// let unbiased = Config { estimator: Estimator::KFold, ..Config::new(2, 2, 1) };
-/// # assert!(unbiased.terms().is_ok());
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Estimator {
     /// A soft mixture of the plain mean and two ridge fits, weighted by their errors on samples that they have not
@@ -45,16 +38,6 @@ pub enum Solver {
 }
 
 /// What happens to a sample whose value or position is NaN or infinite.
-///
-/// ```
-/// use noisefloor::control_variate::{Config, NonFinite, Samples, estimate, workspace_len};
-///
-/// let config = Config { non_finite: NonFinite::Skip, ..Config::new(1, 1, 1) };
-/// let mut workspace = vec![0.0; workspace_len::<f64>(&config, 2)?];
-/// let samples = Samples::new(&[0.2, 0.6], &[1.0, f32::INFINITY]);
-/// assert_eq!(estimate(&config, samples, &mut workspace)?.samples, 1);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum NonFinite {
     /// The call fails with [`Error::NotFinite`].

@@ -1,15 +1,15 @@
 //! What each estimator is: the one place that decides what is done for a configuration.
 //!
-//! | [`Method`] | of samples in arrays | of a stream | unbiased | its error is told by |
+//! | [`Method`] | samples in arrays | a stream | unbiased | its error is told by |
 //! |---|---|---|---|---|
-//! | `Plain` | the mean | the mean | yes | the values' spread |
-//! | `Robust` | `fitter`: the mean and two fits, weighed by leave-one-out errors | `cross_fit::pooled`: by held-out errors | nearly | leave-one-out residuals; held-out ones |
-//! | `LeaveOneOut` | `fitter`: each sample corrected by the fit to the others | - | yes | leave-one-out residuals |
-//! | `KFold` | `k_fold`: each fold corrected by fits to the others | `cross_fit::nested` | yes | held-out residuals |
-//! | `LeastSquares` | `fitter`: the fit's constant term | `readout`: the same | O(1/n) | residuals |
-//! | `SquareRoot` | `fit::givens`: the same | the same | O(1/n) | residuals |
-//! | `Descent` | `fit::descent`: the same of a fit that stops early | the same | no | residuals, and what is left of the gradient |
-//! | `Incremental` | as a stream | `incremental`: each sample corrected by fits to those before it | yes | the corrected values' spread |
+//! | `Plain` | `batch` | `readout` | yes | the values' spread |
+//! | `Robust` | `fitter` | `cross_fit::pooled` | nearly | residuals left out |
+//! | `LeaveOneOut` | `fitter` | - | yes | residuals left out |
+//! | `KFold` | `k_fold` | `cross_fit::nested` | yes | residuals held out |
+//! | `LeastSquares` | `fitter` | `readout` | O(1/n) | residuals |
+//! | `SquareRoot` | `fit::givens` | `fit::givens` | O(1/n) | residuals |
+//! | `Descent` | `fit::descent` | `fit::descent` | no | residuals and the gradient |
+//! | `Incremental` | as a stream | `incremental` | yes | the corrected values' spread |
 
 use super::config::{Config, Estimator, Ridge, Solver};
 use crate::error::Error;
@@ -20,13 +20,21 @@ const MAX_DUAL: usize = 4096;
 /// How samples become an estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Method {
+    /// The mean, whatever the samples are.
     Plain,
+    /// The mean and two fits, weighed by their errors on samples that they have not seen.
     Robust,
+    /// Each sample is corrected by the fit to the others.
     LeaveOneOut,
+    /// Each fold is corrected by fits to the others.
     KFold,
+    /// The fit's constant term, by normal equations or their dual.
     LeastSquares,
+    /// The same, by Givens rotations.
     SquareRoot,
+    /// The same, of a fit by gradient descent.
     Descent,
+    /// Each sample is corrected by fits to those before it.
     Incremental,
 }
 
