@@ -1,6 +1,6 @@
 //! A pixel's samples as a regression sees them: columns of functions, centred, and values, centred and scaled.
 
-use super::Config;
+use super::config::Config;
 use super::per_channel::PerChannel;
 use super::samples::{Reader, Subset};
 use crate::arena::Arena;

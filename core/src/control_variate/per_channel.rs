@@ -1,6 +1,6 @@
 //! A number for each channel; those of channels that are not there are zero and ignored.
 
-use super::Config;
+use super::config::Config;
 use core::ops::{Deref, DerefMut, Index, IndexMut};
 
 /// A number for each channel.

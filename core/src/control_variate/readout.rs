@@ -4,6 +4,7 @@ use super::accumulator::Accumulator;
 use super::config::{Color, Config, Estimate, Ridge};
 use super::cross_fit;
 use super::design::Units;
+use super::fit::descent::Objective;
 use super::fit::normal::Centred;
 use super::fit::{Penalty, descent, givens};
 use super::incremental;

@@ -1,6 +1,6 @@
 //! Ridge strengths and penalties.
 
-use super::Config;
+use super::config::Config;
 use super::config::{Estimator, Ridge};
 use crate::basis::Basis;
 use crate::matrix::halves_mut;

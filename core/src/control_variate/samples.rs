@@ -1,6 +1,6 @@
 //! What the caller hands over: positions, values, and control functions at those positions.
 
-use super::Config;
+use super::config::Config;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::error::Error;
 use crate::lanes::{LANES, Lanes};

@@ -10,7 +10,6 @@ use super::super::per_channel::PerChannel;
 use super::super::plan::Plan;
 use super::super::result::{self, Outcome};
 use super::super::samples::{Reader, Samples, Subset};
-use super::normal::Centred;
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
@@ -50,8 +49,6 @@ pub(crate) trait Objective<R> {
     fn residual_square(&self, channel: usize, b: &[R]) -> R;
     /// The sum of squares of a function.
     fn column_square(&self, column: usize) -> R;
-    /// The number of functions.
-    fn columns(&self) -> usize;
     /// The number of samples.
     fn count(&self) -> usize;
     /// The functions' means.
@@ -138,7 +135,7 @@ pub(crate) fn descend<R: Real>(
     plain: Option<PerChannel<R>>,
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
-    let columns = objective.columns();
+    let columns = objective.means().len();
     let (gradient, first, second) = (arena.take(columns)?, arena.take(columns)?, arena.take(columns)?);
     let (scales, units) = (arena.take(columns)?, arena.take(columns)?);
     control_units(objective, config.controls, units);
@@ -207,11 +204,11 @@ fn control_units<R: Real>(objective: &impl Objective<R>, controls: usize, units:
 /// finished fit would: a descent that stops early is wrong in all of them in the same way. It overstates the error of
 /// one that nearly finished, up to 1.8 times on the test integrands.
 fn variance_factor<R: Real>(objective: &impl Objective<R>, units: &[R]) -> Option<R> {
-    let freedom = objective.count().checked_sub(objective.columns() + 1).filter(|&freedom| freedom > 0)?;
+    let freedom = objective.count().checked_sub(objective.means().len() + 1).filter(|&freedom| freedom > 0)?;
     let (n, freedom) = (R::from_usize(objective.count()), R::from_usize(freedom));
     let means = objective.means().iter().zip(units).map(|(&mean, &unit)| mean * unit);
     let square = means.fold(R::ZERO, |sum, mean| sum + mean * mean);
-    let uncertain = R::ONE + R::from_usize(2 * objective.columns()) * square;
+    let uncertain = R::ONE + R::from_usize(2 * objective.means().len()) * square;
     let all = n - R::ONE;
     Some(uncertain * all * all / (n * freedom * freedom * freedom))
 }
@@ -310,46 +307,12 @@ impl<R: Real> Objective<R> for Design<'_, R> {
         Design::column_square(self, column)
     }
 
-    fn columns(&self) -> usize {
-        self.columns
-    }
-
     fn count(&self) -> usize {
         self.n
     }
 
     fn means(&self) -> &[R] {
         self.column_means
-    }
-}
-
-impl<R: Real> Objective<R> for Centred<'_, R> {
-    fn gradient(&self, channel: Option<usize>, b: &[R], out: &mut [R]) {
-        self.half_gradient(channel, b, out);
-    }
-
-    fn square(&self, channel: usize) -> R {
-        self.squares[channel]
-    }
-
-    fn residual_square(&self, channel: usize, b: &[R]) -> R {
-        Centred::residual_square(self, channel, b)
-    }
-
-    fn column_square(&self, column: usize) -> R {
-        self.normal.gram.diagonal(column)
-    }
-
-    fn columns(&self) -> usize {
-        self.normal.gram.order()
-    }
-
-    fn count(&self) -> usize {
-        self.normal.count.to_f64() as usize
-    }
-
-    fn means(&self) -> &[R] {
-        self.normal.means
     }
 }
 

@@ -13,14 +13,9 @@ pub(crate) mod descent;
 pub(crate) mod dual;
 pub(crate) mod givens;
 pub(crate) mod normal;
+pub(crate) mod system;
 
-use super::design::Design;
 use super::per_channel::PerChannel;
-use crate::arena::Arena;
-use crate::error::Error;
-use crate::real::Real;
-use dual::Dual;
-use normal::Normal;
 
 /// The smallest 1 - h that a division is trusted with, in units of the type's epsilon.
 const SMALLEST_GAP: f64 = 64.0;
@@ -63,29 +58,4 @@ pub(crate) struct Fit<R> {
 pub(crate) struct Penalty<'a, R> {
     pub(crate) strength: R,
     pub(crate) relative: &'a [R],
-}
-
-/// The system of a design that all its fits start from.
-pub(crate) enum System<'a, R> {
-    Normal(Normal<'a, R>),
-    Dual(Dual<'a, R>),
-}
-
-impl<R: Real> System<'_, R> {
-    /// One fit, with its leave-one-out figures if they are wanted. `coefficients`, if wanted, gets a row for each
-    /// channel.
-    #[inline(always)]
-    pub(crate) fn fit(
-        &self,
-        design: &Design<'_, R>,
-        penalty: Penalty<'_, R>,
-        leave_one_out: bool,
-        coefficients: Option<&mut [R]>,
-        arena: Arena<'_, R>,
-    ) -> Result<Fit<R>, Error> {
-        match self {
-            System::Normal(normal) => normal.fit(design, penalty, leave_one_out, coefficients, arena),
-            System::Dual(dual) => dual.fit(design, penalty, leave_one_out, coefficients, arena),
-        }
-    }
 }

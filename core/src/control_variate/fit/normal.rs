@@ -1,10 +1,11 @@
 //! The normal equations (4.27) and L D L'.
 
-use super::super::Config;
+use super::super::config::Config;
 use super::super::design::Design;
 use super::super::per_channel::PerChannel;
 use super::super::sums::{Sums, not_below_zero};
 use super::super::trust::Centre;
+use super::descent::Objective;
 use super::{Fit, Penalty, SMALLEST_GAP};
 use crate::arena::Arena;
 use crate::error::Error;
@@ -284,18 +285,11 @@ impl<'a, R: Real> Centred<'a, R> {
     pub(crate) fn intercept(&self, channel: usize, b: &[R]) -> R {
         b.iter().zip(self.normal.means).fold(self.value_means[channel], |sum, (&b, &m)| sum - b * m)
     }
+}
 
-    /// The sum of squared residuals of coefficients, f'f - 2 b'c + b'G b.
-    pub(crate) fn residual_square(&self, channel: usize, b: &[R]) -> R {
-        let mut total = self.squares[channel];
-        for (j, (&value, &rhs)) in b.iter().zip(self.normal.rhs.row(channel)).enumerate() {
-            total += value * (self.normal.gram.half_product(j, b) - rhs - rhs);
-        }
-        not_below_zero(total)
-    }
-
-    /// Half the negative gradient of the mean squared residual, (c - G b) / n; without a channel, G b / n.
-    pub(crate) fn half_gradient(&self, channel: Option<usize>, b: &[R], gradient: &mut [R]) {
+impl<R: Real> Objective<R> for Centred<'_, R> {
+    /// (c - G b) / n; without a channel, G b / n.
+    fn gradient(&self, channel: Option<usize>, b: &[R], gradient: &mut [R]) {
         let Normal { count, gram, rhs, .. } = &self.normal;
         let sign = if channel.is_some() { -R::ONE } else { R::ONE };
         gradient.fill(R::ZERO);
@@ -316,5 +310,30 @@ impl<'a, R: Real> Centred<'a, R> {
         for out in gradient.iter_mut() {
             *out *= inverse;
         }
+    }
+
+    fn square(&self, channel: usize) -> R {
+        self.squares[channel]
+    }
+
+    /// f'f - 2 b'c + b'G b
+    fn residual_square(&self, channel: usize, b: &[R]) -> R {
+        let mut total = self.squares[channel];
+        for (j, (&value, &rhs)) in b.iter().zip(self.normal.rhs.row(channel)).enumerate() {
+            total += value * (self.normal.gram.half_product(j, b) - rhs - rhs);
+        }
+        not_below_zero(total)
+    }
+
+    fn column_square(&self, column: usize) -> R {
+        self.normal.gram.diagonal(column)
+    }
+
+    fn count(&self) -> usize {
+        self.normal.count.to_f64() as usize
+    }
+
+    fn means(&self) -> &[R] {
+        self.normal.means
     }
 }
