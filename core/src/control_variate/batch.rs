@@ -19,7 +19,7 @@ use crate::real::Real;
 /// # Errors
 /// [`Error::Range`] or [`Error::Unsupported`] for a configuration that cannot be, [`Error::Memory`] if no memory could
 /// be large enough.
-#[inline]
+#[inline(always)]
 pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error> {
     let plan = Plan::new(config, config.checked_shape()?.columns(), n)?;
     let columns = plan.columns;
@@ -61,7 +61,7 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
 /// assert!((estimate.mean[0] - 1.5).abs() < 1e-4);
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
-#[inline]
+#[inline(always)]
 pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
     let shape = config.checked_shape()?;
     if Method::of(config, config.controls + shape.columns()) == Method::Incremental {
@@ -99,7 +99,7 @@ fn incremental<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [
 }
 
 /// The estimators that fit all samples at once through the normal equations or their dual.
-#[inline]
+#[inline(always)]
 fn fit<'a, R: Real>(
     design: &Design<'a, R>,
     config: &Config,

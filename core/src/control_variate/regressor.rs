@@ -63,7 +63,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::Range`]; the sample is then not added.
-    #[inline]
+    #[inline(always)]
     pub fn add(&mut self, u: &[f32; DIMS], f: &[f32; CHANNELS]) -> Result<(), Error> {
         if !u.iter().chain(f).all(|value| value.is_finite()) {
             return Err(Error::NotFinite);
@@ -93,7 +93,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     ///
     /// # Errors
     /// [`Error::NoSamples`], or [`Error::Range`] for a strength that is not positive and finite.
-    #[inline]
+    #[inline(always)]
     pub fn estimate(&self, strength: f32) -> Result<Estimate, Error> {
         if self.samples == 0 {
             return Err(Error::NoSamples);
