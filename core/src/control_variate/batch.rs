@@ -19,7 +19,7 @@ use crate::real::Real;
 /// # Errors
 /// [`Error::Range`] or [`Error::Unsupported`] for a configuration that cannot be, [`Error::Memory`] if no memory could
 /// be large enough.
-#[inline(always)]
+#[inline]
 pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error> {
     let plan = Plan::new(config, config.checked_shape()?.columns(), n)?;
     let columns = plan.columns;
