@@ -33,6 +33,8 @@ typedef uint nfs_uint;
 #define NFS_FUNCTION
 #define NFS_REVERSE(a) bitfieldReverse(a)
 #define NFS_FLOAT(a) float(a)
+#define NFS_INSERT(low, high, at, bits) bitfieldInsert(low, high, at, bits)
+#define NFS_SIGN(a, k) uint(bitfieldExtract(int(a), k, 1))
 #define nfs_uint uint
 #elif defined(__METAL_VERSION__)
 #define NFS_FUNCTION static inline
@@ -60,6 +62,13 @@ typedef unsigned int nfs_uint;
 #define NFS_REVERSE(a) __builtin_bitreverse32(a)
 #endif
 typedef uint32_t nfs_uint;
+#endif
+
+/* The low bits up to `at`, above them `bits` of the high ones; and a bit as many times as there is room. */
+#if !defined(NFS_INSERT)
+#define NFS_INSERT(low, high, at, bits) \
+    ((((high) & ((1u << (bits)) - 1u)) << (at)) | ((low) & ((1u << (at)) - 1u)))
+#define NFS_SIGN(a, k) (0u - (((a) >> (k)) & 1u))
 #endif
 
 #if defined(NFS_BUFFER)
@@ -126,7 +135,7 @@ NFS_FUNCTION nfs nfs_pixel(nfs_uint x, nfs_uint y, nfs_uint frame, nfs_uint inde
     nfs s;
     s.domain = frame == 0u ? 0u : nfs_child(0x6672616du, frame);
     s.index = index;
-    s.place = (x & 0xffffu) | (y << 16);
+    s.place = NFS_INSERT(x, y, 16, 16);
     s.flags = 0u;
     return s;
 }
@@ -169,17 +178,17 @@ NFS_FUNCTION nfs_point nfs_place(nfs s)
 /* The point of a place, of a number whose bits are reversed. */
 NFS_FUNCTION nfs_point nfs_pair(nfs_uint x, nfs_uint y, nfs_uint first NFS_TABLE)
 {
-    nfs_uint pixel = ((y & 31u) << 5) | (x & 31u);
+    nfs_uint pixel = NFS_INSERT(x, y, 5, 5); /* in the lowest 10 bits */
     nfs_uint second = first ^ (first << 16);
     nfs_point p;
     second ^= (second & 0x00ff00ffu) << 8;
     second ^= (second & 0x0f0f0f0fu) << 4;
     second ^= (second & 0x33333333u) << 2;
     second ^= (second & 0x55555555u) << 1;
-    p.x = first ^ (NOISEFLOOR_TABLE((pixel << 6) | (first >> 26)) << 16);
-    p.y = second ^ (NOISEFLOOR_TABLE((pixel << 6) | (second >> 26)) & 0xffff0000u);
-    p.x ^= (((pixel << 8) | (p.x >> 24)) * 0x9e3779b9u) >> 8;
-    p.y ^= (((pixel << 8) | (p.y >> 24)) * 0xc13fa9a9u) >> 8;
+    p.x = first ^ (NOISEFLOOR_TABLE(NFS_INSERT(first >> 26, pixel, 6, 10)) << 16);
+    p.y = second ^ (NOISEFLOOR_TABLE(NFS_INSERT(second >> 26, pixel, 6, 10)) & 0xffff0000u);
+    p.x ^= (NFS_INSERT(p.x >> 24, pixel, 8, 10) * 0x9e3779b9u) >> 8;
+    p.y ^= (NFS_INSERT(p.y >> 24, pixel, 8, 10) * 0xc13fa9a9u) >> 8;
     return p;
 }
 
@@ -210,12 +219,12 @@ NFS_FUNCTION nfs_point nfs_move(nfs s, nfs_point at)
 {
     nfs_point p = at;
     if (s.domain != 0u) {
-        if ((s.domain & 0x80000000u) != 0u) {
+        if (s.domain > 0x7fffffffu) {
             p.x = at.y;
             p.y = at.x;
         }
-        p.x = ((s.domain & 0x40000000u) != 0u ? ~p.x : p.x) + s.domain;
-        p.y = ((s.domain & 0x20000000u) != 0u ? ~p.y : p.y) + (s.domain >> 8);
+        p.x = (p.x ^ NFS_SIGN(s.domain, 30)) + s.domain;
+        p.y = (p.y ^ NFS_SIGN(s.domain, 29)) + (s.domain >> 8);
     }
     return p;
 }

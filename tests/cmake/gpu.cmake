@@ -1,4 +1,5 @@
-# noisefloor_sampler.h on the devices that are there; without a GPU these are PoCL and Mesa's lavapipe.
+# noisefloor_sampler.h on the devices that are there; without a GPU these are PoCL, Mesa's lavapipe and
+# Chromium's SwiftShader.
 if(TESTS_UNDER)
     return()
 endif()
@@ -32,6 +33,12 @@ add_device_program(vulkan Vulkan::Vulkan)
 add_custom_target(gpu_shaders DEPENDS ${shaders})
 add_to(gpu gpu_shaders)
 add_check(gpu vulkan gpu_vulkan ${vulkan})
+# Chromium's, which the loader does not find by itself.
+set(swiftshader /usr/lib/chromium/vk_swiftshader_icd.json)
+if(EXISTS "${swiftshader}")
+    add_check(gpu swiftshader gpu_vulkan ${vulkan})
+    set_tests_properties(gpu.swiftshader PROPERTIES ENVIRONMENT "VK_ICD_FILENAMES=${swiftshader}")
+endif()
 
 # CUDA and HIP, of which clang compiles the host's side without the vendors' headers.
 find_program(clang clang)

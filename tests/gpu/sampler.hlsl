@@ -1,10 +1,10 @@
 // noisefloor_sampler.h in HLSL: the draws of expected.h.
 [[vk::binding(0)]] StructuredBuffer<uint> table;
 [[vk::binding(1)]] RWStructuredBuffer<float4> numbers;
-struct Push {
+[[vk::push_constant]] cbuffer Push
+{
     uint first;
 };
-[[vk::push_constant]] Push push;
 
 #define NFS_HLSL // DXC says so itself
 #define NOISEFLOOR_TABLE(i) table[i]
@@ -13,7 +13,7 @@ struct Push {
 
 [numthreads(64, 1, 1)] void main(uint3 id : SV_DispatchThreadID)
 {
-    nfs s = sampler_of(push.first + id.x);
+    nfs s = sampler_of(first + id.x);
     nfs_floats four = nfs_draw4(s), two = nfs_draw2(s);
     numbers[2u * id.x] = float4(four.x, four.y, four.z, four.w);
     numbers[2u * id.x + 1u] = float4(two.x, two.y, 0.0, 0.0);
