@@ -1,6 +1,7 @@
-"""What the report's chapter is made of: errors.csv, gradients.csv, times.csv and pictures.png in a folder.
+"""What the report's chapter is made of: times.csv, gradients.csv, fits.csv, errors.csv and pictures.png in a folder.
 
-python3 measure.py FOLDER [--size 128] [--seeds 32] [--many 8] [--reference 4096] [--frames 1024] [--rounds 15]
+python3 measure.py FOLDER [--parts times,gradients,fits,errors] [--scenes cornell,...] [--size 128] [--seeds 32]
+    [--many 8] [--reference 4096] [--frames 4096] [--rounds 15]
 """
 
 import argparse
@@ -13,12 +14,17 @@ import mitsuba as mi
 mi.set_variant("llvm_ad_rgb")
 mi.set_log_level(mi.LogLevel.Error)
 import mitsuba_oidn
-import noisefloor_mitsuba
+import noisefloor.mitsuba
 import scenes
 
 SAMPLERS = {
     name: {"type": name} for name in ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
 } | {"noisefloor": {"type": "noisefloor"}, "noisefloor, white": {"type": "noisefloor", "white": True}}
+# Without those that are `independent` at 1 sample and biased beyond.
+OF_GRADIENTS = {name: SAMPLERS[name] for name in SAMPLERS if name not in ("stratified", "orthogonal")} | {
+    "noisefloor, scrambled": {"type": "noisefloor", "scramble": True}
+}
+FITS = {"plain": None, "fits": {"known": False}, "fits, known light": {"known": True}}
 SPP = 1, 4, 16, 64
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 SIGMA, LIMIT = 2.1, 5.0
@@ -37,7 +43,7 @@ def described(make, sampler, size):
 def load(make, sampler, size, **integrator):
     scene = described(make, sampler, size)
     scene["integrator"] = {**scene["integrator"], **integrator}
-    return noisefloor_mitsuba.prepare(mi.load_dict(scene))
+    return noisefloor.mitsuba.prepare(mi.load_dict(scene))
 
 
 def render(scene, spp, seed):
@@ -86,14 +92,17 @@ def errors(image, denoised, halves):
     return error(*raw), error(*map(gaussian, raw)), error(*clean)
 
 
+def references(make, options):
+    """Two halves, of unrelated samples."""
+    plain = load(make, {"type": "independent"}, options.size)
+    count = max(options.reference // 512, 1)
+    return [np.mean([render(plain, 256, 1 + half * 10000 + k) for k in range(count)], 0) for half in range(2)]
+
+
 def measure_errors(options, out, pictures):
     out.write("scene;spp;sampler;seed;raw;filtered;denoised\n")
-    for name, make in scenes.SCENES.items():
-        plain = load(make, {"type": "independent"}, options.size)
-        halves = []
-        for half in range(2):
-            parts = [render(plain, 256, 1 + half * 10000 + k) for k in range(max(options.reference // 512, 1))]
-            halves.append(np.mean(parts, 0))
+    for name, make in options.chosen.items():
+        halves = references(make, options)
         albedo, normal = features(make, options.size)
         # One pixel of an environment may have no normal.
         albedo, normal = (np.ascontiguousarray(np.nan_to_num(a), np.float32) for a in (albedo, normal))
@@ -117,15 +126,38 @@ def measure_errors(options, out, pictures):
         print(name, "measured", flush=True)
 
 
+def measure_fits(options, out, seeds=16):
+    """By turns, so that other work on the machine is shared alike."""
+    out.write("scene;spp;kind;seed;raw;filtered;seconds\n")
+    for name, make in options.chosen.items():
+        halves, loaded = references(make, options), {}
+        for kind, fits in FITS.items():
+            scene = described(make, {"type": "noisefloor"}, options.size)
+            if fits is not None:
+                scene["integrator"] = {"type": "noisefloor_fits", "inner": scene["integrator"], **fits}
+            loaded[kind] = noisefloor.mitsuba.prepare(mi.load_dict(scene))
+        for spp in SPP[:3]:
+            for seed in range(-1, min(options.seeds, seeds)):
+                for kind, scene in loaded.items():
+                    start = time.perf_counter()
+                    image = render(scene, spp, FIRST + seed)
+                    seconds = time.perf_counter() - start
+                    # The first compiles; where there is no closed form, `known` is the same as without.
+                    if seed >= 0 and not getattr(scene.integrator(), "unknown", ""):
+                        figures = errors(image, image, halves)[:2]
+                        out.write(";".join(map(str, (name, spp, kind, seed, *figures, seconds))) + "\n")
+        print(name, "fitted", flush=True)
+
+
 def measure_gradients(options, out):
     """Derivatives by two parameters of a weighted mean of the picture, as an optimiser's step has them."""
     out.write("parameter;spp;sampler;frame;gradient\n")
     size, keys = 64, ("red.reflectance.value", "white.reflectance.value", "light.emitter.radiance.value")
     y, x = np.mgrid[0:size, 0:size] / size
     weight = mi.TensorXf((1 + np.sin(9 * x + 5 * y) * np.cos(7 * y))[:, :, None].repeat(3, 2).astype(np.float32))
-    jobs = [(s, n, max(options.frames // n, 8)) for n in (1, 4, 16) for s in SAMPLERS if s != "orthogonal"]
-    for sampler, spp, frames in [*jobs, ("reference", 256, max(options.frames // 16, 8))]:
-        plugin = SAMPLERS["independent" if sampler == "reference" else sampler]
+    jobs = [(s, n, max(options.frames // n, 8)) for n in (1, 4, 16) for s in OF_GRADIENTS]
+    for sampler, spp, frames in [*jobs, ("reference", 256, max(options.frames // 32, 8))]:
+        plugin = OF_GRADIENTS["independent" if sampler == "reference" else sampler]
         scene = load(scenes.cornell, dict(plugin), size, type="prb", max_depth=6)
         if not takes(scene, spp):
             continue
@@ -145,7 +177,7 @@ def measure_gradients(options, out):
 def measure_times(options, out, spp=16):
     """By turns, so that other work on the machine is shared alike."""
     out.write("scene;sampler;round;seconds\n")
-    for name, make in scenes.SCENES.items():
+    for name, make in options.chosen.items():
         loaded = {sampler: load(make, dict(plugin), options.size) for sampler, plugin in SAMPLERS.items()}
         loaded = {sampler: scene for sampler, scene in loaded.items() if takes(scene, spp)}
         for turn in range(-1, options.rounds):
@@ -160,20 +192,26 @@ def measure_times(options, out, spp=16):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("folder")
-    defaults = {"size": 128, "seeds": 32, "many": 8, "reference": 4096, "frames": 1024, "rounds": 15}
+    parser.add_argument("--parts", default="times,gradients,fits,errors")
+    parser.add_argument("--scenes", default=",".join(scenes.SCENES))
+    defaults = {"size": 128, "seeds": 32, "many": 8, "reference": 4096, "frames": 4096, "rounds": 15}
     for option, default in defaults.items():
         parser.add_argument(f"--{option}", type=int, default=default)
     options = parser.parse_args()
-    noisefloor_mitsuba.register()
+    options.chosen = {name: scenes.SCENES[name] for name in options.scenes.split(",")}
+    noisefloor.mitsuba.register()
     pictures = []
-    with open(f"{options.folder}/times.csv", "w") as out:
-        measure_times(options, out)
-    with open(f"{options.folder}/gradients.csv", "w") as out:
-        measure_gradients(options, out)
-    print("gradients measured", flush=True)
-    with open(f"{options.folder}/errors.csv", "w") as out:
-        measure_errors(options, out, pictures)
-    mi.util.write_bitmap(f"{options.folder}/pictures.png", np.concatenate(pictures, 0).astype(np.float32))
+    measures = {
+        "times": measure_times,
+        "gradients": measure_gradients,
+        "fits": measure_fits,
+        "errors": lambda options, out: measure_errors(options, out, pictures),
+    }
+    for part in options.parts.split(","):
+        with open(f"{options.folder}/{part}.csv", "w") as out:
+            measures[part](options, out)
+    if pictures:
+        mi.util.write_bitmap(f"{options.folder}/pictures.png", np.concatenate(pictures, 0).astype(np.float32))
 
 
 main()

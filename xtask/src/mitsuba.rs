@@ -2,7 +2,7 @@
 
 use crate::outcome::Outcome;
 use crate::tools::{self, Package};
-use crate::{paths, run};
+use crate::{paths, python, run};
 use anyhow::{Context, Result};
 use std::fs;
 use std::path::PathBuf;
@@ -12,21 +12,24 @@ use std::process::Command;
 const LLVM: Package = Package { name: "libllvm19", file: "/usr/lib/x86_64-linux-gnu/libLLVM.so.19.1" };
 const REQUIREMENTS: &str = "integrations/mitsuba/requirements.txt";
 
-/// A Python that has Mitsuba, for programs that import noisefloor_mitsuba; or why there is none. The shared library
-/// must be there.
-pub fn python() -> Result<Result<PathBuf, String>> {
-    if let Some(missing) = tools::packages(&[LLVM])? {
+/// A Python that has Mitsuba and noisefloor from a new wheel; or why there is none.
+pub fn environment() -> Result<Result<PathBuf, String>> {
+    if let Some(missing) = tools::packages(&[&[LLVM], &python::BUILD[..]].concat())? {
         return Ok(Err(missing));
     }
+    let wheel = match python::build()? {
+        Ok(wheel) => wheel,
+        Err(why) => return Ok(Err(why)),
+    };
     let folder = paths::target().join("mitsuba");
-    let (python, installed) = (folder.join("bin/python"), folder.join("requirements.txt"));
+    let (interpreter, installed) = (folder.join("bin/python"), folder.join("requirements.txt"));
     let wanted = paths::read(REQUIREMENTS)?;
     if fs::read_to_string(&installed).ok().as_deref() != Some(&wanted) {
         println!("   installing Mitsuba into {}", folder.display());
         let install = || -> Result<()> {
             run::read(run::command("python3").args(["-m", "venv"]).arg(&folder))?;
             let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement", REQUIREMENTS];
-            run::read(run::command(&python).args(pip))?;
+            run::read(run::command(&interpreter).args(pip))?;
             Ok(())
         };
         if let Err(error) = install() {
@@ -34,23 +37,23 @@ pub fn python() -> Result<Result<PathBuf, String>> {
         }
         fs::write(&installed, wanted).with_context(|| format!("cannot write {}", installed.display()))?;
     }
-    Ok(Ok(python))
+    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--force-reinstall"];
+    run::read(run::command(&interpreter).args(pip).arg(wheel))?;
+    Ok(Ok(interpreter))
 }
 
 /// A command of this Python.
-pub fn command(python: PathBuf) -> Command {
-    let mut command = run::command(python);
-    command.env("NOISEFLOOR_LIBRARY", paths::target().join("release/libnoisefloor.so"));
-    command.env("PYTHONPATH", paths::root().join("integrations/mitsuba")).env("PYTHONDONTWRITEBYTECODE", "1");
-    command.env("DRJIT_LIBLLVM_PATH", LLVM.file);
+pub fn command(interpreter: PathBuf) -> Command {
+    let mut command = run::command(interpreter);
+    command.env("PYTHONDONTWRITEBYTECODE", "1").env("DRJIT_LIBLLVM_PATH", LLVM.file);
     command
 }
 
 pub fn test() -> Result<Outcome> {
-    let python = match python()? {
-        Ok(python) => python,
+    let interpreter = match environment()? {
+        Ok(interpreter) => interpreter,
         Err(why) => return Ok(Outcome::NotRun(why)),
     };
-    run::check(command(python).arg("integrations/mitsuba/test_noisefloor_mitsuba.py"))?;
+    run::check(command(interpreter).arg("integrations/mitsuba/test_mitsuba.py"))?;
     Ok(Outcome::Passed)
 }

@@ -6,16 +6,20 @@ use crate::{c_tests, paths, run};
 use anyhow::{Context, Result};
 use std::fs;
 use std::path::PathBuf;
+use std::process::Command;
 
-const PACKAGES: [Package; 8] = [
+/// What a wheel is built with.
+pub const BUILD: [Package; 4] = [
     c_tests::PYTHON,
     Package { name: "python3-venv", file: "/usr/share/doc/python3-venv" },
+    Package { name: "cmake", file: "/usr/bin/cmake" },
+    Package { name: "make", file: "/usr/bin/make" },
+];
+const TESTED_WITH: [Package; 4] = [
     Package { name: "python3-pytest", file: "/usr/lib/python3/dist-packages/pytest/__init__.py" },
     Package { name: "python3-hypothesis", file: "/usr/lib/python3/dist-packages/hypothesis/__init__.py" },
     Package { name: "python3-scipy", file: "/usr/lib/python3/dist-packages/scipy/__init__.py" },
     Package { name: "python3-torch", file: "/usr/lib/python3/dist-packages/torch/__init__.py" },
-    Package { name: "cmake", file: "/usr/bin/cmake" },
-    Package { name: "make", file: "/usr/bin/make" },
 ];
 
 /// What a report trains on.
@@ -38,20 +42,22 @@ pub fn test() -> Result<Outcome> {
 /// A Python in which the package is installed from a new wheel, beside Debian's packages, `more` among them; or what is
 /// missing.
 pub fn environment(more: &[Package]) -> Result<Result<PathBuf, String>> {
-    if let Some(missing) = tools::packages(&[&PACKAGES, more].concat())? {
+    if let Some(missing) = tools::packages(&[&BUILD[..], &TESTED_WITH, more].concat())? {
         return Ok(Err(missing));
     }
-    let folder = paths::output().join("venv");
-    let python = folder.join("bin/python");
+    let wheel = match build()? {
+        Ok(wheel) => wheel,
+        Err(why) => return Ok(Err(why)),
+    };
+    run::read(pip(&["install", "--no-deps", "--force-reinstall"]).arg(wheel))?;
+    Ok(Ok(interpreter()))
+}
+
+/// A new wheel, or why there is none. The packages of `BUILD` must be there.
+pub fn build() -> Result<Result<PathBuf, String>> {
+    let (folder, python) = (paths::output().join("venv"), interpreter());
     // Debian's Python: another does not see Debian's packages.
     run::read(run::command("/usr/bin/python3").args(["-m", "venv", "--system-site-packages"]).arg(&folder))?;
-    let pip = |arguments: &[&str]| {
-        let mut command = run::command(&python);
-        command.args(["-m", "pip", "--disable-pip-version-check", "--quiet"]).args(arguments);
-        // So that a second build has the same bytes.
-        command.env("SOURCE_DATE_EPOCH", "1700000000");
-        command
-    };
     if run::read(run::command(&python).args(["-c", "import scikit_build_core"])).is_err()
         && let Err(error) = run::read(&mut pip(&["install", "scikit-build-core"]))
     {
@@ -65,8 +71,19 @@ pub fn environment(more: &[Package]) -> Result<Result<PathBuf, String>> {
     let mut build = pip(&["wheel", "./python", "--no-deps", "--no-build-isolation"]);
     build.args(["--config-settings", &cargo, "--config-settings", &target, "--wheel-dir"]);
     run::read(build.arg(wheels()))?;
-    run::read(pip(&["install", "--no-deps", "--force-reinstall"]).arg(wheel()?))?;
-    Ok(Ok(python))
+    Ok(Ok(wheel()?))
+}
+
+fn interpreter() -> PathBuf {
+    paths::output().join("venv/bin/python")
+}
+
+fn pip(arguments: &[&str]) -> Command {
+    let mut command = run::command(interpreter());
+    command.args(["-m", "pip", "--disable-pip-version-check", "--quiet"]).args(arguments);
+    // So that a second build has the same bytes.
+    command.env("SOURCE_DATE_EPOCH", "1700000000");
+    command
 }
 
 fn wheels() -> PathBuf {

@@ -13,6 +13,8 @@ use xtask::mitsuba;
 
 const PLAIN: &str = "independent";
 const DEFAULT: &str = "noisefloor";
+/// Of gradients, as integrations/mitsuba/README.md recommends.
+const SCRAMBLED: &str = "noisefloor, scrambled";
 /// For denoisers, as docs/choosing.md recommends.
 const DENOISED: &str = "noisefloor";
 const MEASURES: [(&str, &str); 3] = [("raw", "Raw"), ("filtered", "Filtered"), ("denoised", "After OIDN")];
@@ -23,8 +25,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let scratch = tempfile::tempdir()?;
     let folder = measured.clone().unwrap_or_else(|| scratch.path().to_owned());
     if measured.is_none() {
-        xtask::library::build()?;
-        let python = mitsuba::python()?.map_err(|why| anyhow!("{why}"))?;
+        let python = mitsuba::environment()?.map_err(|why| anyhow!("{why}"))?;
         report.compiled();
         let mut command = mitsuba::command(python);
         command.arg("integrations/mitsuba/measure.py").arg(&folder);
@@ -47,6 +48,8 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     }
     chapter.section("Time", "");
     times(&Table::read(&folder.join("times.csv"), ';')?, &mut chapter, &mut targets)?;
+    chapter.section("Image fits", "");
+    fits(&Table::read(&folder.join("fits.csv"), ';')?, &mut chapter)?;
     chapter.section("Gradients", "");
     derivatives(&gradients, &mut chapter, &mut targets)?;
     targets.write(&mut chapter);
@@ -137,6 +140,33 @@ fn times(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<
     Ok(())
 }
 
+/// Errors and times over those of the same samples without fits; their product is the error at equal time.
+fn fits(table: &Table, chapter: &mut Chapter) -> Result<()> {
+    let mut rows = Vec::new();
+    for scene in table.distinct("scene")? {
+        for spp in table.distinct("spp")? {
+            for kind in table.distinct("kind")?.into_iter().filter(|&kind| kind != "plain") {
+                let of = |measure, kind| table.numbers_of(measure, &[("scene", scene), ("spp", spp), ("kind", kind)]);
+                if of("raw", kind)?.is_empty() {
+                    continue;
+                }
+                let ratio = |measure| -> Result<Estimate> {
+                    Ok(Estimate::mean(&over(&of(measure, kind)?, &of(measure, "plain")?)))
+                };
+                let (raw, filtered) = (ratio("raw")?, ratio("filtered")?);
+                let time = Estimate::ratio(&of("seconds", kind)?, &of("seconds", "plain")?);
+                let at_equal_time = Figure::exact(raw.value * time.value, Unit::Ratio);
+                let figures = [raw, filtered, time].map(|estimate| Figure::new(estimate, Unit::Ratio));
+                let [raw, filtered, time] = figures;
+                rows.push(row![scene, spp, kind, raw, filtered, time, at_equal_time]);
+            }
+        }
+    }
+    let columns = ["scene", "spp", "integrator", "raw", "filtered", "time", "raw, equal time"];
+    chapter.table("fits", &columns, 3, rows);
+    Ok(())
+}
+
 /// Mean and standard deviation.
 fn moments(values: &[f64]) -> (f64, f64) {
     let (count, mean) = (values.len() as f64, values.iter().sum::<f64>() / values.len() as f64);
@@ -176,7 +206,7 @@ fn derivatives(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> R
                     Figure::new(ratio, Unit::Ratio),
                     Figure::new(bias, Unit::Percent)
                 ]);
-                if sampler == DEFAULT && spp == "1" {
+                if sampler == SCRAMBLED && spp == "1" {
                     let size = Estimate {
                         value: bias.value.abs(),
                         low: if bias.low * bias.high < 0.0 { 0.0 } else { bias.low.abs().min(bias.high.abs()) },

@@ -1,4 +1,4 @@
-"""Tests of noisefloor_mitsuba with the installed Mitsuba; $NOISEFLOOR_VARIANTS names others than the default."""
+"""Tests of noisefloor.mitsuba with the installed Mitsuba; $NOISEFLOOR_VARIANTS names others than the default."""
 
 import ctypes
 import os
@@ -11,24 +11,21 @@ import mitsuba as mi
 VARIANTS = os.environ.get("NOISEFLOOR_VARIANTS", "llvm_ad_rgb,llvm_ad_spectral,scalar_rgb").split(",")
 mi.set_variant(VARIANTS[0])
 mi.set_log_level(mi.LogLevel.Error)
-import noisefloor_mitsuba as nf
+import noisefloor
+import noisefloor.mitsuba as nf
+import scenes
+from noisefloor import _c
+from noisefloor.mitsuba import _fits, _known, _sampler
 
 # Of a z-test; there are fewer than twenty, on fixed seeds.
 LIMIT = 4.5
 
 
-def fill(keys, width, height, samples, frame=0, first=0, white=False):
+def fill(keys, width, height, samples, frame=0, first=0, white=False, scramble=False):
     """nf_sampler_fill: [pixels, samples, 2 numbers for each key]."""
-    library = nf.library()
-    pixel = (library.nf_sampler_white if white else library.nf_sampler_pixel)(0, 0, frame, first)
-    samplers = (type(pixel) * len(keys))(*[library.nf_sampler_domain(pixel, key) for key in keys])
-    u = np.full((width * height, samples, 2 * len(keys)), -1, np.float32)
-    u32, size = ctypes.c_uint32, ctypes.c_size_t
-    call = library.nf_sampler_fill
-    call.argtypes = [ctypes.c_void_p, ctypes.c_void_p, size, u32, u32, u32, ctypes.c_void_p, size]
-    dims = (u32 * len(keys))(*[2] * len(keys))
-    assert call(samplers, dims, len(keys), width, height, samples, u.ctypes.data, u.size) == 0
-    return u
+    source = noisefloor.Sampler(frame=frame, white=white, seed=int(scramble))
+    u = [source.domain(key).image(width, height, samples, 2, first=first) for key in keys]
+    return np.concatenate(u, -1).reshape(width * height, samples, 2 * len(keys))
 
 
 def sampler(width, height=0, **more):
@@ -64,14 +61,16 @@ class Recorded(unittest.TestCase):
 
     def test_the_librarys_bits(self):
         width, height = 150, 90
-        for samples, frame, white in ((1, 0, False), (1, 3, True), (4, 0xFFFFFFFF, False), (64, 9, False)):
-            one = sampler(width, height, sample_count=samples, white=white)
+        for samples, frame, white, scramble in (
+            (1, 0, False, False), (1, 3, True, False), (4, 0xFFFFFFFF, False, True), (64, 9, False, False),
+        ):  # fmt: skip
+            one = sampler(width, height, sample_count=samples, white=white, scramble=scramble)
             one.seed(frame, width * height * samples)
             drawn = np.array([np.array(one.next_2d()) for _ in range(5)])  # [request, number, wave]
-            expected = fill([0, 2, 4, 6, 8], width, height, samples, frame, 0, white).reshape(-1, 5, 2)
+            expected = fill([0, 2, 4, 6, 8], width, height, samples, frame, 0, white, scramble).reshape(-1, 5, 2)
             np.testing.assert_array_equal(drawn, expected.transpose(1, 2, 0))
             one.advance()
-            expected = fill([0, 1], width, height, samples, frame, samples, white).reshape(-1, 2, 2)
+            expected = fill([0, 1], width, height, samples, frame, samples, white, scramble).reshape(-1, 2, 2)
             np.testing.assert_array_equal(np.array(one.next_1d()), expected[:, 0, 0])
             np.testing.assert_array_equal(np.array(one.next_2d()), expected[:, 1].T)
 
@@ -79,11 +78,21 @@ class Recorded(unittest.TestCase):
         index = np.random.default_rng(1).integers(0, 2**32, 2048, np.uint32)
         domain = np.random.default_rng(2).integers(0, 2**32, 2048, np.uint32)
         domain[:64] = 0
-        u = nf.draw2(mi.UInt32(domain), mi.UInt32(17), mi.UInt32(40001), dr.brev(mi.UInt32(index)))
-        for k, (d, i) in enumerate(zip(domain, index)):
-            value = (ctypes.c_float * 2)()
-            nf.library().nf_sampler_draw(nf._State(int(d), int(i), 17, 40001, 0), 2, value)
-            self.assertEqual([u[0][k], u[1][k]], list(value))
+        for scrambled in (False, True):
+            state = mi.UInt32(domain), mi.UInt32(17), mi.UInt32(40001), dr.brev(mi.UInt32(index))
+            u = [*_sampler.draw(*state, False, scrambled), *_sampler.draw(*state, True, scrambled)]
+            for k, (d, i) in enumerate(zip(domain, index)):
+                value = (ctypes.c_float * 4)()
+                _c.sampler_draw(_c.Sampler(int(d), int(i), 17, 40001, int(scrambled)), 4, _c.address(value))
+                self.assertEqual([v[k] for v in u], list(value))
+
+    def test_film_and_lens_are_four_numbers_of_one_domain(self):
+        one = sampler(9, 7, sample_count=16, lens=True)
+        one.seed(5, 9 * 7 * 16)
+        drawn = np.array([np.array(one.next_2d()) for _ in range(3)])
+        both = noisefloor.Sampler(frame=5).domain(0).image(9, 7, 16, 4).reshape(-1, 4).T
+        np.testing.assert_array_equal(drawn[:2].reshape(4, -1), both)
+        np.testing.assert_array_equal(drawn[2], fill([4], 9, 7, 16, 5).reshape(-1, 2).T)
 
     def test_numbers_of_every_turn_of_a_recorded_loop_differ(self):
         one = sampler(16, sample_count=2)
@@ -199,6 +208,90 @@ class Recorded(unittest.TestCase):
             self.assertLess(abs(z_of_means(sets["noisefloor"][:, k], sets["independent"][:, k])), LIMIT)
 
 
+class Fits(unittest.TestCase):
+    """noisefloor_fits around Mitsuba's path tracer."""
+
+    def setUp(self):
+        mi.set_variant(VARIANTS[0])
+        nf.register()
+
+    def fits(self, depth=6, width=24, height=20, scene=None, **more):
+        scene = scene or mi.cornell_box()
+        film = {"type": "hdrfilm", "width": width, "height": height, "rfilter": {"type": "box"}, "pixel_format": "rgb"}
+        scene["sensor"] = {**scene["sensor"], "film": film, "sampler": {"type": "noisefloor"}}
+        scene["integrator"] = {"type": "path", "max_depth": depth}
+        plain = nf.prepare(mi.load_dict(scene))
+        scene["integrator"] = {"type": "noisefloor_fits", "inner": scene["integrator"], **more}
+        return plain, nf.prepare(mi.load_dict(scene))
+
+    def lens(self):
+        scene = mi.cornell_box()
+        scene["sensor"].update(type="thinlens", aperture_radius=0.1, focus_distance=3.0)
+        return scene
+
+    def test_order_0_is_the_plain_picture(self):
+        for scene in (mi.cornell_box(), self.lens()):
+            plain, fitted = self.fits(scene=scene, order=0, known=False)
+            for spp in (1, 4):
+                expected = np.array(mi.render(plain, spp=spp, seed=3))
+                np.testing.assert_allclose(np.array(mi.render(fitted, spp=spp, seed=3)), expected, rtol=1e-4, atol=1e-5)
+
+    def test_kept_numbers_are_those_that_were_drawn(self):
+        one = sampler(9, 7, sample_count=4)
+        one.seed(5, 9 * 7 * 4)
+        _, drawn = one.next_2d(), np.array(one.next_2d()).T.reshape(7, 9, 4, 2)
+        sensor = mi.load_dict({"type": "perspective"})
+        np.testing.assert_array_equal(_fits.kept(sensor, 1, 9, 7, 4, 5), drawn)
+        three = _fits.kept(sensor, 16, 9, 7, 4, 5)
+        np.testing.assert_array_equal(three[..., 2], drawn[..., 0])
+        np.testing.assert_array_equal(three[..., 0], drawn[..., 0] * 16 % 1)
+
+    def test_fits_lower_the_error_of_many_lights(self):
+        plain, fitted = self.fits(2, 32, 32, scenes.lights())
+        reference = np.mean([np.array(mi.render(plain, spp=512, seed=90 + k)) for k in range(2)], 0)
+        # Relative, as the report's: lights that are seen directly have no noise of the numbers that fits see.
+        scale = reference**2 + 0.01 * reference.mean() ** 2
+        error = lambda scene: np.minimum((pictures(scene, 8, 1) - reference) ** 2 / scale, 25).mean()
+        self.assertLess(error(fitted), 0.7 * error(plain))
+        mean = pictures(fitted, 24, 4).mean((1, 2, 3))
+        self.assertLess(abs(np.mean(mean) / reference.mean() - 1), 0.01)
+
+    def test_known_light_is_the_exact_mean(self):
+        plain, _ = self.fits()
+        sensor = plain.sensors()[0]
+        middle = plain.ray_intersect(_fits._rays(sensor, _fits._middles(sensor.film()))[0])
+        (a, exact), why = _known.light(plain, middle, _fits.kept(sensor, 1, 24, 20, 1024, 0))
+        self.assertEqual(why, "")
+        lit = exact.sum(-1) > 0
+        self.assertGreater(lit.mean(), 0.3)
+        # The points are a net of 1,024.
+        np.testing.assert_allclose(a.mean(2)[lit], exact[lit], rtol=2e-3, atol=1e-6)
+
+    def test_without_a_closed_form_it_is_said_why(self):
+        scene = mi.cornell_box()
+        scene["more"] = {"type": "constant"}
+        _, fitted = self.fits(scene=scene)
+        mi.render(fitted, spp=1)
+        self.assertEqual(fitted.integrator().unknown, "several emitters")
+
+    def test_what_it_cannot_do_is_refused(self):
+        scene = mi.cornell_box()
+        scene["integrator"] = {"type": "noisefloor_fits", "inner": scene["integrator"]}
+        for film, kind, why in (
+            ({"rfilter": {"type": "gaussian"}}, "noisefloor", "box filter"),
+            ({"rfilter": {"type": "box"}}, "independent", "sampler must be noisefloor"),
+        ):
+            scene["sensor"]["film"].update(width=8, height=8, **film)
+            scene["sensor"]["sampler"] = {"type": kind}
+            with self.assertRaises((ValueError, RuntimeError)) as refused:
+                mi.render(nf.prepare(mi.load_dict(scene)), spp=1)
+            self.assertIn(why, f"{refused.exception} {refused.exception.__cause__}")
+        del scene["integrator"]["inner"]
+        with self.assertRaises((ValueError, RuntimeError)) as refused:
+            mi.load_dict(scene)
+        self.assertIn("holds one integrator, not 0", f"{refused.exception} {refused.exception.__cause__}")
+
+
 class OtherVariants(unittest.TestCase):
     def test_pictures_are_those_of_other_samplers(self):
         for variant in VARIANTS[1:]:
@@ -216,8 +309,8 @@ class OtherVariants(unittest.TestCase):
         one.next_1d()
         one.advance()
         one.next_1d()
-        expected, library = (ctypes.c_float * 2)(), nf.library()
-        library.nf_sampler_draw(library.nf_sampler_domain(library.nf_sampler_white(4464, 1, 0, 1), 1), 2, expected)
+        expected = (ctypes.c_float * 2)()
+        _c.sampler_draw(_c.sampler_domain(_c.sampler_white(4464, 1, 0, 1), 1), 2, _c.address(expected))
         other = one.clone()
         self.assertEqual(list(one.next_2d()), list(expected))
         self.assertEqual(list(other.next_2d()), list(expected))

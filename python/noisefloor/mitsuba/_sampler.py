@@ -1,66 +1,31 @@
-"""noisefloor's sampler as a plugin of Mitsuba 3: `register()`, then `{"type": "noisefloor"}`. README.md says how.
+"""The plugin `noisefloor`, a sampler.
 
 In LLVM and CUDA variants the draws are recorded by Dr.Jit, with the bits of nf_sampler_draw(); the library gives the
 table alone. In scalar variants every draw is a call of the library.
 """
 
 import ctypes
-import os
 
 import drjit as dr
 import mitsuba as mi
 
-ABI_VERSION = 1
+from .. import _c
+
 SIZE, BITS = 32, 6  # the table's pixels on a side, and the leading bits of a value that it is indexed by
-FRAMES = 0x6672616D
+FRAMES, SCRAMBLED = 0x6672616D, 0x73637261
 FINE = 0x9E3779B9, 0xC13FA9A9
+# The matrix of the second two of four numbers.
+COLUMNS = (0x80000000, 0x40000000, 0xA0000000, 0xD0000000, 0x68000000, 0xFC000000, 0x72000000, 0xAB000000, 0xCB800000)
 
-
-class _State(ctypes.Structure):
-    """nf_sampler"""
-
-    _fields_ = [("domain", ctypes.c_uint32), ("index", ctypes.c_uint32), ("x", ctypes.c_uint16),
-                ("y", ctypes.c_uint16), ("flags", ctypes.c_uint32)]  # fmt: skip
-
-
-def load(path=None):
-    """The shared library: `path`, or $NOISEFLOOR_LIBRARY, or what the system's linker finds."""
-    path = path or os.environ.get("NOISEFLOOR_LIBRARY") or f"libnoisefloor.so.{ABI_VERSION}"
-    try:
-        library = ctypes.CDLL(path)
-    except OSError as error:
-        raise OSError(f"cannot load {path}: {error}. Set NOISEFLOOR_LIBRARY to noisefloor's shared library") from None
-    u32, state = ctypes.c_uint32, _State
-    library.nf_abi_version.restype = u32
-    if library.nf_abi_version() != ABI_VERSION:
-        raise OSError(f"{path} has ABI version {library.nf_abi_version()}; this file is written for {ABI_VERSION}")
-    for name, result, arguments in (
-        ("nf_sampler_pixel", state, [u32] * 4),
-        ("nf_sampler_white", state, [u32] * 4),
-        ("nf_sampler_domain", state, [state, u32]),
-        ("nf_sampler_draw", None, [state, u32, ctypes.POINTER(ctypes.c_float)]),
-        ("nf_sampler_table", ctypes.POINTER(u32), []),
-    ):
-        function = getattr(library, name)
-        function.restype, function.argtypes = result, arguments
-    return library
-
-
-_library = None
 # By variant. Not an attribute of the samplers: recorded loops would take it for a part of their state.
 _tables = {}
-
-
-def library():
-    global _library
-    _library = _library or load()
-    return _library
 
 
 def _table():
     variant = mi.variant()
     if variant not in _tables:
-        _tables[variant] = mi.UInt32(library().nf_sampler_table()[: SIZE * SIZE << BITS])
+        numbers = ctypes.cast(_c.sampler_table(), ctypes.POINTER(ctypes.c_uint32))
+        _tables[variant] = mi.UInt32(numbers[: SIZE * SIZE << BITS])
         dr.eval(_tables[variant])
     return _tables[variant]
 
@@ -76,25 +41,45 @@ def _child(domain, key):
     return dr.select(h == 0, mi.UInt32(1), h)
 
 
-def draw2(domain, x, y, first):
-    """Two numbers, for arrays of domains, pixels (hashed, if white) and reversed indices: nf_sampler_draw()."""
+def draw(domain, x, y, first, second=False, scrambled=False):
+    """Two numbers of nf_sampler_draw(), of four the second two: for arrays of domains, pixels (hashed, if white) and
+    reversed indices."""
     random = domain + x * 0x2C1B3C6D + y * 0x297A2D39
     random = (random ^ (random >> 15)) * 0x735A2D97
     random ^= random >> 15
     ordered = first ^ (first * (random << 1))
     ordered = ordered * ((random >> 15) | 1)
-    is_root = domain == 0
-    first = dr.select(is_root, first, ordered)
+    first = dr.select(domain == 0, first, ordered)
+    x, y = _move(domain, x, y)
+    if second:
+        other = domain * 0x9E3779B9 + 0x632BE5AB
+        x, y, first = x + (other >> 7), y + (other >> 19), _multiply(first)
+    values = _pair(((y & (SIZE - 1)) << 5) | (x & (SIZE - 1)), first)
+    if scrambled:
+        number = 3 if second else 1
+        values = [v + _mix(domain + (FINE[0] * (number + k) & 0xFFFFFFFF)) for k, v in enumerate(values)]
+    return [mi.Float(v >> 8) * (1 / 16777216) for v in values]
+
+
+def _move(domain, x, y):
+    """Where in the table the domain's pixel is."""
 
     def bit(k):
         return ((domain >> k) & 1) != 0
 
     flipped = bit(31)
     x, y = dr.select(flipped, y, x), dr.select(flipped, x, y)
-    x = dr.select(bit(30), ~x, x) + domain
-    y = dr.select(bit(29), ~y, y) + (domain >> 8)
-    pixel = ((y & (SIZE - 1)) << 5) | (x & (SIZE - 1))
+    return dr.select(bit(30), ~x, x) + domain, dr.select(bit(29), ~y, y) + (domain >> 8)
 
+
+def _multiply(first):
+    result = first & 0x007FFFFF
+    for k, column in enumerate(COLUMNS):
+        result ^= dr.select(((first >> (31 - k)) & 1) != 0, mi.UInt32(column), mi.UInt32(0))
+    return result
+
+
+def _pair(pixel, first):
     second = first ^ (first << 16)
     for mask, shift in ((0x00FF00FF, 8), (0x0F0F0F0F, 4), (0x33333333, 2), (0x55555555, 1)):
         second ^= (second & mask) << shift
@@ -103,23 +88,25 @@ def draw2(domain, x, y, first):
         return dr.gather(mi.UInt32, _table(), (pixel << BITS) | (value >> (32 - BITS)))
 
     values = first ^ (entry(first) << 16), second ^ (entry(second) & 0xFFFF0000)
-    fine = [v ^ ((((pixel << 8) | (v >> 24)) * factor) >> 8) for v, factor in zip(values, FINE)]
-    return [mi.Float(v >> 8) * (1 / 16777216) for v in fine]
+    return [v ^ ((((pixel << 8) | (v >> 24)) * factor) >> 8) for v, factor in zip(values, FINE)]
 
 
 def _jit_sampler():
     class NoisefloorSampler(mi.Sampler):
-        """Dimensions are counted, and the count is the domain's key; the seed is the frame."""
+        """Dimensions are counted, and the count is the domain's key; the seed is the frame. With a lens the place on
+        the film and that on the lens, the first two requests, are four numbers of one domain."""
 
         def __init__(self, props):
             super().__init__(props)
-            self.white = bool(props.get("white", False))
+            self.white, self.scramble = (bool(props.get(name, False)) for name in ("white", "scramble"))
+            self.lens = bool(props.get("lens", False))
             self.size = int(props.get("width", 0)), int(props.get("height", 0))
             self.per_wave = 1
             self._clear()
 
         def _clear(self):
             self.x, self.y, self.index, self.base, self.dimension = (mi.UInt32(0) for _ in range(5))
+            self.requests = 0  # right outside of recorded loops only
 
         def seed(self, seed, wavefront_size=2**32 - 1):
             super().seed(seed, wavefront_size)
@@ -132,11 +119,13 @@ def _jit_sampler():
             if width < 1 or height < 1 or rest:
                 raise ValueError(
                     f"noisefloor: the sampler takes its film for {width} x {height} pixels, and {wavefront_size} "
-                    "samples are not so many times a number. Call noisefloor_mitsuba.prepare(scene) once the scene is "
+                    "samples are not so many times a number. Call noisefloor.mitsuba.prepare(scene) once the scene is "
                     "loaded, and after a film's size has changed, or give the plugin `width` and `height`")  # fmt: skip
             # Opaque: as a literal it would be part of the kernel, and every seed would compile one.
             seed = mi.UInt32(seed)
             self.base = dr.select(seed == 0, mi.UInt32(0), _child(mi.UInt32(FRAMES), seed))
+            if self.scramble:
+                self.base = _child(self.base ^ SCRAMBLED, 1)
             dr.make_opaque(self.base)
             wave = dr.arange(mi.UInt32, wavefront_size)
             pixel = wave // self.per_wave
@@ -149,14 +138,15 @@ def _jit_sampler():
 
         def advance(self):
             self.index = self.index + self.per_wave
-            self.dimension = mi.UInt32(0)
+            self.dimension, self.requests = mi.UInt32(0), 0
 
         def schedule_state(self):
             dr.schedule(self.x, self.y, self.index, self.base, self.dimension)
 
         def _copy(self):
             props = mi.Properties()
-            props["sample_count"], props["white"] = self.sample_count(), self.white
+            props["sample_count"] = self.sample_count()
+            props["white"], props["scramble"], props["lens"] = self.white, self.scramble, self.lens
             props["width"], props["height"] = self.size
             return type(self)(props)
 
@@ -170,12 +160,15 @@ def _jit_sampler():
             # Arrays of their own: a loop that changes one sampler must not change the other.
             for name in ("x", "y", "index", "base", "dimension"):
                 setattr(other, name, mi.UInt32(getattr(self, name)))
+            other.requests = self.requests
             return other
 
         def _draw(self, count):
-            domain = _child(self.base, self.dimension)
+            on_lens = self.lens and self.requests == 1 and count == 2
+            domain = _child(self.base, mi.UInt32(0) if on_lens else self.dimension)
             self.dimension = self.dimension + count
-            return draw2(domain, self.x, self.y, dr.brev(self.index))
+            self.requests += 1
+            return draw(domain, self.x, self.y, dr.brev(self.index), on_lens, self.scramble)
 
         def next_1d(self, active=True):
             return self._draw(1)[0]
@@ -184,7 +177,8 @@ def _jit_sampler():
             return mi.Point2f(*self._draw(2))
 
         def to_string(self):
-            return f"NoisefloorSampler[sample_count={self.sample_count()}, white={self.white}, size={self.size}]"
+            options = [name for name in ("white", "scramble", "lens") if getattr(self, name)]
+            return f"NoisefloorSampler[sample_count={self.sample_count()}, size={self.size}, {options}]"
 
     return NoisefloorSampler
 
@@ -200,7 +194,7 @@ def _scalar_sampler():
             self._begin()
 
         def _begin(self):
-            self.state = library().nf_sampler_white(self.number & 0xFFFF, self.number >> 16, 0, self.index)
+            self.state = _c.sampler_white(self.number & 0xFFFF, self.number >> 16, 0, self.index)
             self.dimension = 0
 
         def seed(self, seed, wavefront_size=1):
@@ -228,7 +222,7 @@ def _scalar_sampler():
 
         def _draw(self, count):
             u = (ctypes.c_float * 2)()
-            library().nf_sampler_draw(library().nf_sampler_domain(self.state, self.dimension), 2, u)
+            _c.sampler_draw(_c.sampler_domain(self.state, self.dimension), 2, _c.address(u))
             self.dimension += count
             return u
 
@@ -244,19 +238,6 @@ def _scalar_sampler():
     return NoisefloorSampler
 
 
-def register():
-    """Makes the plugin `noisefloor` known to the variant that is set."""
-    library()
-    is_jit = mi.variant().startswith(("llvm", "cuda"))
-    sampler = (_jit_sampler if is_jit else _scalar_sampler)()
-    mi.register_sampler("noisefloor", lambda props: sampler(props))
-
-
-def prepare(scene):
-    """Tells the samplers of the scene's sensors how large their films are; returns the scene."""
-    for sensor in scene.sensors():
-        film, sampler = sensor.film(), sensor.sampler()
-        if hasattr(sampler, "size"):
-            border = 2 * film.rfilter().border_size() if film.sample_border() else 0
-            sampler.size = tuple(int(length) + border for length in film.crop_size())
-    return scene
+def kind():
+    """The class of samplers of the variant that is set."""
+    return _jit_sampler() if mi.variant().startswith(("llvm", "cuda")) else _scalar_sampler()

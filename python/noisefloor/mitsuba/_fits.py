@@ -1,0 +1,128 @@
+"""The plugin `noisefloor_fits`, an integrator around another: what it sees, through fits that neighbours share.
+
+The fits see the numbers that chose the emitter at the first hit and the point on it, and each sample's value.
+"""
+
+import drjit as dr
+import mitsuba as mi
+import numpy
+
+from .. import image_estimate
+from .._sampler import Sampler
+from . import _known
+
+
+def _rays(sensor, position, sampler=None):
+    """Rays through places of the film, with the sampler's numbers for lens and shutter, or the middle of both."""
+    film = sensor.film()
+    on_lens, time = mi.Point2f(0.5), mi.Float(sensor.shutter_open())
+    if sampler and sensor.needs_aperture_sample():
+        on_lens = sampler.next_2d()
+    if sampler and sensor.shutter_open_time() > 0:
+        time += sampler.next_1d() * sensor.shutter_open_time()
+    place = (position - mi.ScalarPoint2f(film.crop_offset())) / mi.ScalarPoint2f(film.crop_size())
+    return sensor.sample_ray_differential(time, 0.5, place, on_lens)
+
+
+def _middles(film):
+    """The pixels' middles, row after row."""
+    width, height = film.crop_size()
+    k = dr.arange(mi.UInt32, width * height)
+    offset = mi.ScalarPoint2f(film.crop_offset())
+    return mi.Point2f(k % width, k // width) + offset + 0.5
+
+
+def surfaces(hit):
+    """A number for each shape and axis that the normal faces."""
+    n, size = hit.n, dr.abs(hit.n)
+    axis = dr.select(size.x >= dr.maximum(size.y, size.z), 0, dr.select(size.y >= size.z, 1, 2))
+    along = dr.select(axis == 0, n.x, dr.select(axis == 1, n.y, n.z))
+    shape = dr.reinterpret_array(mi.UInt32, hit.shape)
+    found = 6 * shape + 2 * mi.UInt32(axis) + dr.select(along > 0, 1, 0)
+    return numpy.array(dr.select(hit.is_valid(), found, 0))
+
+
+def kept(sensor, lights, width, height, spp, seed, white=False, scramble=False):
+    """The numbers that the fits see: of the point on a light, and of several lights which."""
+    before = 2 + 2 * sensor.needs_aperture_sample() + (sensor.shutter_open_time() > 0)
+    source = Sampler(frame=seed, white=white, seed=int(scramble))
+    u = source.domain(before).image(width, height, spp, 2)
+    if lights == 1:
+        return u
+    # One number picks the light and is the first of the point on it: it is two.
+    scaled = u[..., 0] * numpy.float32(lights)
+    within = numpy.minimum(scaled - numpy.floor(scaled), numpy.float32(1 - 2**-24))
+    return numpy.stack([within, u[..., 1], u[..., 0]], -1)
+
+
+def _check(film, sampler, scene):
+    if not film.rfilter().is_box_filter() or film.sample_border():
+        raise ValueError("noisefloor_fits: the film needs a box filter, and no sample_border")
+    if not hasattr(sampler, "size"):
+        raise ValueError("noisefloor_fits: the sensor's sampler must be noisefloor")
+    if mi.is_spectral or mi.is_polarized:
+        raise ValueError(f"noisefloor_fits: {mi.variant()} has other numbers than RGB and monochromatic variants")
+    if not 1 <= len(scene.emitters()) <= 64:
+        raise ValueError(f"noisefloor_fits: {len(scene.emitters())} emitters; it is made for 1 to 64")
+
+
+def kind():
+    """The class of integrators of the variant that is set."""
+
+    class NoisefloorFits(mi.CppADIntegrator):
+        """Renders in one pass; order and `known` as docs/renderer.md has them."""
+
+        def __init__(self, props):
+            super().__init__(props)
+            found = [props[name] for name in props.keys() if isinstance(props[name], mi.Integrator)]
+            if len(found) != 1:
+                raise ValueError(f"noisefloor_fits: holds one integrator, not {len(found)}")
+            self.inner = found[0]
+            self.order, self.known = int(props.get("order", 2)), bool(props.get("known", True))
+            # Why `known` was left out, or "".
+            self.unknown = ""
+
+        def samples(self, scene, sensor, sampler):
+            """Values of all samples, (height, width, samples, channels)."""
+            film, spp = sensor.film(), sampler.sample_count()
+            (width, height), offset = film.crop_size(), mi.ScalarPoint2f(film.crop_offset())
+            pixel = dr.arange(mi.UInt32, width * height * spp) // spp
+            corner = mi.Point2f(pixel % width, pixel // width) + offset
+            ray, weight = _rays(sensor, corner + sampler.next_2d(), sampler)
+            radiance, valid, _ = self.inner.sample(scene, sampler, ray)
+            value = dr.select(valid, weight * radiance, 0)
+            return numpy.array(value).T.reshape(height, width, spp, -1)
+
+        def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
+            sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
+            film, original = sensor.film(), sensor.sampler()
+            _check(film, original, scene)
+            sampler = original.clone()
+            if spp:
+                sampler.set_sample_count(spp)
+            spp, (width, height) = sampler.sample_count(), film.crop_size()
+            sampler.seed(seed, width * height * spp)
+            f = self.samples(scene, sensor, sampler)
+            lights, first = scene.emitters(), int(mi.UInt32(seed)[0])
+            u = kept(sensor, len(lights), width, height, spp, first, original.white, original.scramble)
+            middle = scene.ray_intersect(_rays(sensor, _middles(film))[0])
+            more = {}
+            if self.known:
+                a, self.unknown = _known.light(scene, middle, u)
+                if a is not None:
+                    more = dict(zip(("known", "known_integrals"), a))
+            found = image_estimate(
+                u, f, surfaces=surfaces(middle).reshape(height, width), order=self.order, slices=len(lights),
+                stratified=True, channels=True, **more,
+            )  # fmt: skip
+            return mi.TensorXf(found.mean)
+
+        def aov_names(self):
+            return []
+
+        def to_string(self):
+            return f"NoisefloorFits[order={self.order}, known={self.known}, {self.inner}]"
+
+    return NoisefloorFits
+
+
