@@ -58,7 +58,7 @@ static void *allocate(size_t size, const char *what)
 
 static void configure(uint32_t estimator)
 {
-    nf_cv_config_default(&config);
+    config = (nf_cv_config){.dims = 2, .order = 2, .channels = 1};
     config.estimator = estimator;
 }
 
@@ -72,27 +72,37 @@ static void prepare_estimate(uint32_t estimator, size_t n)
 static void prepare_robust_16(void) { prepare_estimate(NF_CV_ROBUST, 16); }
 static void prepare_robust_64(void) { prepare_estimate(NF_CV_ROBUST, 64); }
 static void prepare_least_squares(void) { prepare_estimate(NF_CV_LEAST_SQUARES, 64); }
-static void call_16(void) { check(nf_cv_estimate(&config, u, f, 16, workspace, bytes, estimates), "nf_cv_estimate"); }
-static void call_64(void) { check(nf_cv_estimate(&config, u, f, 64, workspace, bytes, estimates), "nf_cv_estimate"); }
+static void call_estimate(size_t n)
+{
+    const nf_cv_samples samples = {.u = u, .f = f, .n = n};
+    check(nf_cv_estimate(&config, &samples, 1, workspace, bytes, estimates), "nf_cv_estimate");
+}
+
+static void call_16(void) { call_estimate(16); }
+static void call_64(void) { call_estimate(64); }
 
 static void prepare_accumulator(void)
 {
     configure(NF_CV_ROBUST);
-    size_t size = nf_cv_accumulator_size(&config);
+    size_t size = nf_cv_accumulator_size(&config, NULL);
     check(nf_cv_accumulator_init(allocate(size, "accumulator"), size, &config, &accumulator), "nf_cv_accumulator_init");
 }
 
 static void call_accumulator(void)
 {
-    for (int i = 0; i < 64; ++i)
-        check(nf_cv_accumulator_add(accumulator, u + 2 * i, f + i, 1), "nf_cv_accumulator_add");
+    for (int i = 0; i < 64; ++i) {
+        const nf_cv_samples samples = {.u = u + 2 * i, .f = f + i, .n = 1};
+        check(nf_cv_accumulator_add(accumulator, &samples), "nf_cv_accumulator_add");
+    }
 }
+
+static const nf_cv_samples pixels = {.u = u, .f = f, .n = SPP};
 
 static void prepare_image(void)
 {
     configure(NF_CV_ROBUST);
     image.width = SIDE, image.height = SIDE;
-    bytes = nf_cv_image_workspace_size(&config, &image, SPP);
+    bytes = nf_cv_image_workspace_size(&config, &image, &pixels);
     workspace = allocate(bytes, "nf_cv_image_workspace_size");
 }
 
@@ -106,7 +116,7 @@ static void prepare_bright_image(void)
 
 static void call_image(void)
 {
-    check(nf_cv_image_estimate(&config, &image, u, f, SPP, workspace, bytes, estimates), "nf_cv_image_estimate");
+    check(nf_cv_image_estimate(&config, &image, &pixels, workspace, bytes, estimates), "nf_cv_image_estimate");
 }
 
 static void call_sampler(void)
@@ -145,9 +155,9 @@ static void call_inlined_4(void)
     }
 }
 
-static void prepare_tile(void) { check(nf_tile_builtin(NF_TILE_128_4SPP_2D, &tile), "nf_tile_builtin"); }
-static void prepare_tile_4(void) { check(nf_tile_builtin(NF_TILE_128_4SPP_4D, &tile), "nf_tile_builtin"); }
-static void prepare_tile_16(void) { check(nf_tile_builtin(NF_TILE_128_16SPP_2D, &tile), "nf_tile_builtin"); }
+static void prepare_tile(void) { tile = nf_tile_128_4spp_2d; }
+static void prepare_tile_4(void) { tile = nf_tile_128_4spp_4d; }
+static void prepare_tile_16(void) { tile = nf_tile_128_16spp_2d; }
 
 static void call_draw(void)
 {

@@ -62,13 +62,15 @@ static std::vector<nf_estimate> estimate(std::vector<float> &f)
         f[i] = radiance(i, &u[dims * i]);               // yours: the sample's value / pdf
         surfaces[i] = surface_at(i);                    // yours: pixels with the same number share fits
     }
-    nf_cv_config config;
-    nf_cv_config_default(&config);                      // 2 dims, order 2, 1 channel
+    nf_cv_config config = {};
+    config.dims = dims, config.order = 2, config.channels = 1;
     config.stratified = 1;                              // this sampler's samples are
+    nf_cv_samples traced = {};
+    traced.u = u.data(), traced.f = f.data(), traced.n = samples;
     nf_cv_image image = {};
     image.width = width, image.height = height, image.surfaces = surfaces.data();
-    std::vector<uint64_t> memory(nf_cv_image_workspace_size(&config, &image, samples) / 8 + 1);
-    check(nf_cv_image_estimate(&config, &image, u.data(), f.data(), samples, memory.data(), 8 * memory.size(),
+    std::vector<uint64_t> memory(nf_cv_image_workspace_size(&config, &image, &traced) / 8 + 1);
+    check(nf_cv_image_estimate(&config, &image, &traced, memory.data(), 8 * memory.size(),
                                out.data()));            // out[pixel].mean[0] is the picture
     // README end
     return out;

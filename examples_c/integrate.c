@@ -18,12 +18,12 @@ int main(void)
         mean += f[i] / SAMPLES;
     }
 
-    nf_cv_config config;
-    nf_cv_config_default(&config); /* 2 dimensions, order 2, 1 channel, the robust estimator */
+    nf_cv_config config = {.dims = 2, .order = 2, .channels = 1}; /* the robust estimator */
+    nf_cv_samples samples = {.u = u, .f = f, .n = SAMPLES};
     nf_estimate estimate;
     nf_status status = NF_ERR_MEMORY;
     if (nf_cv_workspace_size(&config, SAMPLES) <= sizeof workspace)
-        status = nf_cv_estimate(&config, u, f, SAMPLES, workspace, sizeof workspace, &estimate);
+        status = nf_cv_estimate(&config, &samples, 1, workspace, sizeof workspace, &estimate);
     if (status != NF_OK) {
         fprintf(stderr, "noisefloor: %s\n", nf_status_message(status));
         return 1;

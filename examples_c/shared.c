@@ -35,16 +35,16 @@ static nf_status estimate(void)
         return status;
     render();
 
-    nf_cv_config config;
-    nf_cv_config_default(&config); /* 2 dimensions, order 2, 1 channel, the robust choice of fits */
-    config.stratified = 1; /* this sampler's are; order and stride for other samples: nf_recommend() */
+    /* This sampler's samples are stratified; order and stride for others: nf_recommend(). */
+    nf_cv_config config = {.dims = 2, .order = 2, .channels = 1, .stratified = 1};
+    nf_cv_samples samples = {.u = u, .f = f, .n = 1};
     nf_cv_image image = {0};
     image.width = SIZE;
     image.height = SIZE;
     image.surfaces = surfaces;
-    if (nf_cv_image_workspace_size(&config, &image, 1) > sizeof workspace)
+    if (nf_cv_image_workspace_size(&config, &image, &samples) > sizeof workspace)
         return NF_ERR_MEMORY;
-    return nf_cv_image_estimate(&config, &image, u, f, 1, workspace, sizeof workspace, estimates);
+    return nf_cv_image_estimate(&config, &image, &samples, workspace, sizeof workspace, estimates);
 }
 
 int main(void)

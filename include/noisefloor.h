@@ -21,9 +21,9 @@
  *    zeros and for values of magnitude 1e-15 to 1e15 (control functions in float: 1e-8 to 1e8), but for a descent with
  *    a `learning_rate` of the caller's: hosts may trap these.
  *  - Configurations are plain numbers; zero in an optional field means the documented default (of nf_cv_config all but
- *    dims, order and channels are optional), an unknown value is NF_ERR_RANGE.
+ *    dims, order and channels are optional), an unknown value is NF_ERR_RANGE. Zero or NULL is what is not there.
  *  - NF_ERR_RANGE does not say which argument it means: a function's comment lists those that it can mean, with their
- *    ranges there or where they are declared. nf_cv_config_check() names what is wrong with an nf_cv_config.
+ *    ranges there or where they are declared. nf_cv_check() names the field of a configuration.
  *  - References such as (4.22) are to C. Salaun, "Toward Improving Monte Carlo Estimator for Rendering and
  *    Machine Learning", 2025.
  */
@@ -49,14 +49,16 @@
 #define NF_ASSERT_ALIGNED_AS(a, b) NF_ASSERT_LAYOUT(sizeof(a) % sizeof(b) == 0)
 #endif
 NF_ASSERT_LAYOUT(sizeof(nf_status) == 4);
-NF_ASSERT_LAYOUT(sizeof(nf_cv_config) == 76 && offsetof(nf_cv_config, ridge) == 64);
+NF_ASSERT_LAYOUT(sizeof(nf_cv_config) == 60 && offsetof(nf_cv_config, ridge) == 56);
 NF_ASSERT_ALIGNED_AS(nf_cv_config, uint32_t);
+NF_ASSERT_LAYOUT(sizeof(nf_cv_samples) == 6 * sizeof(void *) + sizeof(size_t));
+NF_ASSERT_LAYOUT(sizeof(nf_cv_descent) == 16);
 NF_ASSERT_LAYOUT(sizeof(nf_estimate) == 40 && offsetof(nf_estimate, samples) == 32);
 NF_ASSERT_ALIGNED_AS(nf_estimate, float);
-NF_ASSERT_LAYOUT(sizeof(nf_cv_image) == 24 + 4 * sizeof(void *) + 32 && offsetof(nf_cv_image, surfaces) == 24);
+NF_ASSERT_LAYOUT(sizeof(nf_cv_image) == 24 + 2 * sizeof(void *) + 32 && offsetof(nf_cv_image, surfaces) == 24);
 NF_ASSERT_LAYOUT(sizeof(nf_cv_rectangle) == 16 && offsetof(nf_cv_rectangle, width) == 8);
 NF_ASSERT_ALIGNED_AS(nf_cv_rectangle, uint32_t);
-NF_ASSERT_LAYOUT(sizeof(nf_recommendation) == 108 && offsetof(nf_recommendation, config) == 32);
+NF_ASSERT_LAYOUT(sizeof(nf_recommendation) == 92 && offsetof(nf_recommendation, config) == 32);
 NF_ASSERT_ALIGNED_AS(nf_recommendation, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_tile) == 2 * sizeof(void *) + 24 && offsetof(nf_tile, size) == 2 * sizeof(void *));
 NF_ASSERT_ALIGNED_AS(nf_tile, void *);

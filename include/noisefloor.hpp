@@ -190,17 +190,11 @@ enum class solver : std::uint32_t {
     square_root = NF_SOLVER_SQUARE_ROOT,
     dual = NF_SOLVER_DUAL
 };
-enum class optimizer : std::uint32_t {
-    momentum = NF_OPTIMIZER_MOMENTUM,
-    adam = NF_OPTIMIZER_ADAM,
-    plain = NF_OPTIMIZER_PLAIN
-};
-
 // nf_cv_config with its defaults, and functions that change one thing and can be chained:
 // `config(3, 2, 3).with(estimator::k_fold).with_folds(2)`. The C fields remain accessible.
 struct config : nf_cv_config {
-    config() noexcept : nf_cv_config() { nf_cv_config_default(this); }
-    config(std::uint32_t dims_, std::uint32_t order_, std::uint32_t channels_ = 1) noexcept : config()
+    config() noexcept : config(2, 2) {}
+    config(std::uint32_t dims_, std::uint32_t order_, std::uint32_t channels_ = 1) noexcept : nf_cv_config()
     {
         dims = dims_;
         order = order_;
@@ -219,10 +213,6 @@ struct config : nf_cv_config {
     config with(noisefloor::solver value) const noexcept
     {
         return set(&nf_cv_config::solver, static_cast<std::uint32_t>(value));
-    }
-    config with(noisefloor::optimizer value) const noexcept
-    {
-        return set(&nf_cv_config::optimizer, static_cast<std::uint32_t>(value));
     }
     config with_stratified_samples(bool value = true) const noexcept
     {
@@ -246,26 +236,33 @@ struct config : nf_cv_config {
                    value ? std::uint32_t{NF_COLOR_LUMINANCE_RATIO} : std::uint32_t{NF_COLOR_PER_CHANNEL});
     }
     config with_folds(std::uint32_t count) const noexcept { return set(&nf_cv_config::folds, count); }
-    config with_iterations(std::uint32_t count) const noexcept { return set(&nf_cv_config::iterations, count); }
     config with_ridge(float strength) const noexcept { return set(&nf_cv_config::ridge, strength); }
     config with_automatic_ridge() const noexcept { return with_ridge(NF_RIDGE_AUTO); }
-    config with_learning_rate(float rate) const noexcept { return set(&nf_cv_config::learning_rate, rate); }
-    config with_momentum(float value) const noexcept { return set(&nf_cv_config::momentum, value); }
 
     // 0 for a configuration that is out of range.
     std::uint32_t terms() const noexcept { return nf_cv_terms(this); }
     bool valid() const noexcept { return check() == nullptr; }
     // What is wrong with it, or nullptr.
-    const char *check() const noexcept { return nf_cv_config_check(this); }
+    const char *check() const noexcept { return nf_cv_check(this, nullptr, nullptr); }
+    const char *check(const nf_cv_image &where) const noexcept { return nf_cv_check(this, &where, nullptr); }
     // Bytes; 0 for a configuration that is out of range.
     std::size_t workspace_size(std::size_t n) const noexcept { return nf_cv_workspace_size(this, n); }
-    // For n samples in each pixel.
-    std::size_t image_workspace_size(const nf_cv_image &where, std::size_t n) const noexcept
+    // For n samples in each pixel, of which something may be known.
+    std::size_t image_workspace_size(const nf_cv_image &where, std::size_t n, bool has_known = false) const noexcept
     {
-        return nf_cv_image_workspace_size(this, &where, n);
+        const float any = 0; // it is not read
+        nf_cv_samples samples{};
+        samples.n = n;
+        samples.known = has_known ? &any : nullptr;
+        return nf_cv_image_workspace_size(this, &where, &samples);
     }
-    std::size_t accumulator_size() const noexcept { return nf_cv_accumulator_size(this); }
-    std::size_t accumulator_workspace_size() const noexcept { return nf_cv_accumulator_workspace_size(this); }
+    std::size_t accumulator_size() const noexcept { return nf_cv_accumulator_size(this, nullptr); }
+    std::size_t accumulator_workspace_size() const noexcept
+    {
+        std::size_t bytes = 0;
+        nf_cv_accumulator_size(this, &bytes);
+        return bytes;
+    }
 
 private:
     template <class T> config set(T nf_cv_config::*field, T value) const noexcept
@@ -315,18 +312,6 @@ public:
         return copy;
     }
 
-    // What each sample would be with nothing in the way, as f, and config::channels integrals of it for each pixel.
-    image with_known(span<const float> known_values, span<const float> integrals) const noexcept
-    {
-        image copy = *this;
-        copy.known = known_values.data();
-        copy.known_integrals = integrals.data();
-        copy.known_ = known_values.size();
-        copy.known_integrals_ = integrals.size();
-        copy.has_known_ = true;
-        return copy;
-    }
-
     // nf_cv_image::wanted and nf_cv_image::given: the pixels to estimate, and those that the arrays hold.
     image with_parts(const nf_cv_rectangle &wanted_pixels, const nf_cv_rectangle &given_pixels) const noexcept
     {
@@ -361,15 +346,14 @@ public:
     {
         return is_empty(wanted) ? pixels() : count(wanted.width, wanted.height);
     }
-    // Whether the arrays are as long as they must be beside so many numbers of f.
-    bool fits(const nf_cv_config &how, std::size_t values) const noexcept
+    // Whether the arrays are as long as they must be.
+    bool fits(const nf_cv_config &how) const noexcept
     {
         const std::size_t channels = how.channels;
         const auto each = [&](std::size_t size) {
             return channels != 0 && size % channels == 0 && size / channels == pixels();
         };
-        return (!has_surfaces_ || surfaces_ == pixels()) && (!has_factors_ || each(factors_)) &&
-               (!has_known_ || (known_ == values && each(known_integrals_)));
+        return (!has_surfaces_ || surfaces_ == pixels()) && (!has_factors_ || each(factors_));
     }
 
 private:
@@ -386,8 +370,8 @@ private:
     }
 
     // An array that was given but is empty is an error, not "none".
-    bool has_surfaces_ = false, has_factors_ = false, has_known_ = false;
-    std::size_t surfaces_ = 0, factors_ = 0, known_ = 0, known_integrals_ = 0;
+    bool has_surfaces_ = false, has_factors_ = false;
+    std::size_t surfaces_ = 0, factors_ = 0;
 };
 
 // Samples in caller arrays. The number of samples is f.size() / channels, and all lengths must agree with it.
@@ -396,6 +380,9 @@ struct samples {
     span<const float> f;
     span<const float> controls{};
     span<const float> control_integrals{};
+    // Of an image: what f would be with nothing in the way, and config::channels integrals of it for each pixel.
+    span<const float> known{};
+    span<const float> known_integrals{};
 };
 
 namespace detail {
@@ -416,35 +403,59 @@ inline nf_status count(const nf_cv_config &how, const samples &what, std::size_t
         return NF_ERR_RANGE;
     return NF_OK;
 }
+// For the C functions: n samples of each integral.
+inline nf_cv_samples view(const samples &what, std::size_t n) noexcept
+{
+    nf_cv_samples out{};
+    out.u = what.u.data(), out.f = what.f.data(), out.n = n;
+    out.controls = what.controls.data(), out.control_integrals = what.control_integrals.data();
+    out.known = what.known.data(), out.known_integrals = what.known_integrals.data();
+    return out;
+}
 } // namespace detail
 
-// nf_cv_estimate_with_controls(): the estimate from all samples. status::range also for lengths that do not agree.
+// nf_cv_estimate() of one integral: the estimate from all samples. status::range also for lengths that do not agree.
 inline returned<nf_estimate> estimate(const nf_cv_config &how, const samples &what, memory workspace)
 {
     nf_estimate out{};
     std::size_t n = 0;
     nf_status code = detail::count(how, what, n);
+    const nf_cv_samples all = detail::view(what, n);
     if (code == NF_OK)
-        code =
-            nf_cv_estimate_with_controls(&how, what.u.data(), what.f.data(), what.controls.data(),
-                                         what.control_integrals.data(), n, workspace.data(), workspace.bytes(), &out);
+        code = nf_cv_estimate(&how, &all, 1, workspace.data(), workspace.bytes(), &out);
     return detail::finish(code, out);
+}
+
+// nf_cv_estimate() of as many integrals as `out` has room for, from as many samples of each.
+inline returned<void> estimate_each(const nf_cv_config &how, const samples &what, memory workspace,
+                                    span<nf_estimate> out)
+{
+    std::size_t n = 0;
+    nf_status code = detail::count(how, what, n);
+    if (code == NF_OK && (out.empty() || n % out.size() != 0))
+        code = NF_ERR_RANGE;
+    if (code == NF_OK) {
+        const nf_cv_samples all = detail::view(what, n / out.size());
+        code = nf_cv_estimate(&how, &all, out.size(), workspace.data(), workspace.bytes(), out.data());
+    }
+    return detail::finish(code);
 }
 
 // nf_cv_gradient_descent(): `coefficients` are the start, and afterwards the solution.
 inline returned<nf_estimate> gradient_descent(const nf_cv_config &how, const samples &what, span<float> coefficients,
-                                              memory workspace)
+                                              memory workspace, const nf_cv_descent &steps = {})
 {
     nf_estimate out{};
     std::size_t n = 0;
     nf_status code = detail::count(how, what, n);
+    const nf_cv_samples all = detail::view(what, n);
     const std::size_t rows = how.color == NF_COLOR_LUMINANCE_RATIO ? 1 : how.channels;
     const std::size_t terms = nf_cv_terms(&how);
     if (code == NF_OK && terms > 0 && coefficients.size() != rows * (terms - 1))
         code = NF_ERR_RANGE;
     if (code == NF_OK)
-        code = nf_cv_gradient_descent(&how, what.u.data(), what.f.data(), n, coefficients.data(), workspace.data(),
-                                      workspace.bytes(), &out);
+        code = nf_cv_gradient_descent(&how, &all, &steps, coefficients.data(), workspace.data(), workspace.bytes(),
+                                      &out);
     return detail::finish(code, out);
 }
 
@@ -456,18 +467,23 @@ inline returned<void> estimate_image(const nf_cv_config &how, const image &where
     nf_status code = detail::count(how, what, n);
     const std::size_t pixels = where.pixels();
     const bool divides = !out.empty() && out.size() == where.estimates() && pixels > 0 && n % pixels == 0;
-    if (code == NF_OK && !(divides && where.fits(how, what.f.size())))
+    const bool knows = !what.known.empty() || !what.known_integrals.empty();
+    if (code == NF_OK && !(divides && where.fits(how) &&
+                           (!knows || (what.known.size() == what.f.size() &&
+                                       what.known_integrals.size() % pixels == 0 &&
+                                       what.known_integrals.size() / pixels == how.channels))))
         code = NF_ERR_RANGE;
-    if (code == NF_OK)
-        code = nf_cv_image_estimate(&how, &where, what.u.data(), what.f.data(), n / pixels, workspace.data(),
-                                    workspace.bytes(), out.data());
+    if (code == NF_OK) {
+        const nf_cv_samples all = detail::view(what, n / pixels);
+        code = nf_cv_image_estimate(&how, &where, &all, workspace.data(), workspace.bytes(), out.data());
+    }
     return detail::finish(code);
 }
 
 // A view of an nf_cv_accumulator in caller memory: copying the view does not copy the sums.
 class accumulator {
 public:
-    // Makes an empty accumulator in `where`.
+    // Makes an empty accumulator in `where`, or empties the one that is there.
     static returned<accumulator> create(const nf_cv_config &how, memory where)
     {
         accumulator made(nullptr, how);
@@ -481,16 +497,15 @@ public:
     {
         std::size_t n = 0;
         nf_status code = detail::count(how_, what, n);
+        const nf_cv_samples all = detail::view(what, n);
         if (code == NF_OK)
-            code = nf_cv_accumulator_add_with_controls(handle_, what.u.data(), what.f.data(), what.controls.data(),
-                                                       what.control_integrals.data(), n);
+            code = nf_cv_accumulator_add(handle_, &all);
         return detail::finish(code);
     }
     returned<void> merge(const accumulator &other) const
     {
         return detail::finish(nf_cv_accumulator_merge(handle_, other.handle_));
     }
-    returned<void> reset() const { return detail::finish(nf_cv_accumulator_reset(handle_)); }
     returned<nf_estimate> estimate(memory workspace) const
     {
         nf_estimate out{};
@@ -560,15 +575,6 @@ inline returned<float> maximum(const point &at, std::uint32_t technique)
 {
     return detail::weight(NF_MIS_MAXIMUM, 0, at, technique);
 }
-inline returned<float> optimal(const point &at, std::uint32_t technique, span<const float> alpha, float value)
-{
-    float weight = 0;
-    nf_status code = NF_ERR_RANGE;
-    if (detail::fits(at) && alpha.size() == at.pdf.size())
-        code = nf_mis_optimal(at.pdf.data(), at.counts.data(), detail::techniques(at), technique, alpha.data(), value,
-                              &weight);
-    return noisefloor::detail::finish(code, weight);
-}
 inline returned<float> optimal_contribution(const point &at, std::uint32_t technique, span<const float> alpha,
                                             float value)
 {
@@ -598,7 +604,7 @@ public:
         return nf_omis_size(techniques, integrals);
     }
 
-    // Empty sums in `where`, for techniques that draw counts[j] samples a round.
+    // Empty sums in `where`, or empties those that are there, for techniques that draw counts[j] samples a round.
     static returned<optimal_mis> create(span<const std::uint32_t> counts, std::uint32_t integrals, memory where)
     {
         optimal_mis made;
@@ -622,22 +628,20 @@ public:
     returned<void> solve(span<float> out, solver how = solver::ridge, float ridge = 0.0f) const
     {
         const bool fits = out.size() == integrals_;
-        return detail::finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, out.data())
+        return detail::finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, out.data(), nullptr)
                                    : NF_ERR_RANGE);
     }
     // out[integrals * techniques]
     returned<void> alpha(span<float> out, solver how = solver::ridge, float ridge = 0.0f) const
     {
         const bool fits = techniques_ > 0 && out.size() % techniques_ == 0 && out.size() / techniques_ == integrals_;
-        return detail::finish(fits ? nf_omis_alpha(handle_, static_cast<std::uint32_t>(how), ridge, out.data())
+        return detail::finish(fits ? nf_omis_solve(handle_, static_cast<std::uint32_t>(how), ridge, nullptr, out.data())
                                    : NF_ERR_RANGE);
     }
-    returned<void> next_batch(solver how = solver::ridge, float ridge = 0.0f) const
+    returned<void> next_batch(solver how = solver::ridge, float ridge = 0.0f, float beta = 1.0f) const
     {
-        return detail::finish(nf_omis_next_batch(handle_, static_cast<std::uint32_t>(how), ridge));
+        return detail::finish(nf_omis_next_batch(handle_, static_cast<std::uint32_t>(how), ridge, beta));
     }
-    returned<void> decay(float beta) const { return detail::finish(nf_omis_decay(handle_, beta)); }
-    returned<void> reset() const { return detail::finish(nf_omis_reset(handle_)); }
     returned<void> merge(const optimal_mis &other) const
     {
         return detail::finish(nf_omis_merge(handle_, other.handle_));
@@ -654,14 +658,9 @@ private:
 // nf_tile: a view of sample points. The C fields remain accessible.
 struct tile : nf_tile {
     tile() noexcept : nf_tile() {}
+    // One that comes with the library: nf_tile_128_1spp_2d and its like.
     explicit tile(const nf_tile &other) noexcept : nf_tile(other) {}
 
-    // One that comes with the library: NF_TILE_128_1SPP_2D and its like.
-    static returned<tile> builtin(std::uint32_t id)
-    {
-        tile made;
-        return detail::finish(nf_tile_builtin(id, &made), made);
-    }
     // Of an .nft file's bytes, which must outlive the tile.
     static returned<tile> from_bytes(const void *bytes, std::size_t len)
     {
@@ -800,8 +799,7 @@ private:
 // ---- Minibatches ----
 
 // nf_table: the importances of a data set's items, in memory of the caller's. It may be moved, not copied: the memory
-// would be shared. The importance functions, nf_shuffle() and nf_gradient_*() are called as in C. Lengths that do not
-// agree are status::range; an empty `weight` stands for none.
+// would be shared. Lengths that do not agree are status::range; an empty `weight` stands for none.
 class table {
 public:
     // Bytes.
@@ -858,7 +856,10 @@ public:
     }
     returned<void> set_uniform_fraction(float fraction)
     {
-        return detail::finish(nf_table_set_uniform_fraction(&state_, fraction));
+        const bool is_fraction = fraction >= 0.0f && fraction <= 1.0f;
+        if (is_fraction)
+            state_.uniform_fraction = fraction;
+        return detail::finish(is_fraction ? NF_OK : NF_ERR_RANGE);
     }
     returned<void> add_epsilon(float epsilon) { return detail::finish(nf_table_add_epsilon(&state_, epsilon)); }
     returned<void> append(span<const float> importance)
@@ -869,7 +870,12 @@ public:
     }
 
     std::uint32_t items() const noexcept { return state_.items; }
-    float probability(std::uint32_t item) const noexcept { return nf_table_probability(&state_, item); }
+    // 0 for an item that does not exist.
+    float probability(std::uint32_t item) const noexcept
+    {
+        float p = 0;
+        return nf_table_probabilities(&state_, &item, 1, 1, &p) == NF_OK ? p : 0.0f;
+    }
     // p[k * stride] of index[k].
     returned<void> probabilities(span<const std::uint32_t> index, span<float> p, std::uint32_t stride = 1) const
     {
@@ -878,15 +884,20 @@ public:
         return detail::finish(fits ? nf_table_probabilities(&state_, index.data(), length(index), stride, p.data())
                                    : NF_ERR_RANGE);
     }
-    float importance(std::uint32_t item) const noexcept { return nf_table_importance(&state_, item); }
-    double total() const noexcept { return nf_table_total(&state_); }
+    float importance(std::uint32_t item) const noexcept { return item < items() ? state_.importance[item] : 0.0f; }
+    // The sum of all importances.
+    double total() const noexcept
+    {
+        nf_shard all{};
+        return nf_table_shard(&state_, &all) == NF_OK ? all.importance : 0.0;
+    }
     returned<nf_shard> shard() const
     {
         nf_shard out{};
         return detail::finish(nf_table_shard(&state_, &out), out);
     }
 
-    std::size_t saved_size() const noexcept { return nf_table_saved_size(&state_); }
+    std::size_t saved_size() const noexcept { return NF_TABLE_SAVED_HEADER + std::size_t{4} * items(); }
     returned<void> save(span<unsigned char> saved) const
     {
         return detail::finish(nf_table_save(&state_, saved.data(), saved.size()));
@@ -940,6 +951,105 @@ inline returned<void> omis_weights(std::uint32_t techniques, std::uint32_t items
                                                  technique.data(), static_cast<std::uint32_t>(batch), weight.data())
                                : NF_ERR_RANGE);
 }
+
+// nf_shuffle(): the element at `position` of a random permutation.
+inline std::uint32_t shuffle(std::uint64_t seed, std::uint32_t items, std::uint32_t position) noexcept
+{
+    return nf_shuffle(seed, items, position);
+}
+
+// Importances of many items at once; rows are the items. Lengths that do not agree are status::range.
+namespace importance {
+
+enum class split : std::uint32_t { norm = NF_NODES_NORM, sign = NF_NODES_SIGN };
+
+namespace detail {
+inline std::uint32_t number(std::size_t size) noexcept { return static_cast<std::uint32_t>(size); }
+// How many values each of so many rows has; 0 if they do not agree.
+inline std::uint32_t columns(std::size_t size, std::size_t rows) noexcept
+{
+    const bool fits = rows > 0 && rows <= UINT32_MAX && size % rows == 0 && size / rows <= UINT32_MAX;
+    return fits ? number(size / rows) : 0;
+}
+} // namespace detail
+
+// nf_importance_cross_entropy(): logits[rows * classes], label[rows]; empty outputs are not wanted.
+inline returned<void> cross_entropy(span<const float> logits, span<const std::uint32_t> label, span<float> norm,
+                                    span<float> loss = {}, span<float> gradient = {})
+{
+    const std::size_t rows = label.size();
+    const std::uint32_t classes = detail::columns(logits.size(), rows);
+    const bool fits = classes > 0 && (norm.empty() || norm.size() == rows) && (loss.empty() || loss.size() == rows) &&
+                      (gradient.empty() || gradient.size() == logits.size());
+    return noisefloor::detail::finish(
+        fits ? nf_importance_cross_entropy(logits.data(), label.data(), detail::number(rows), classes, norm.data(),
+                                           loss.data(), gradient.data())
+             : NF_ERR_RANGE);
+}
+// nf_importance_squared_error(): output[rows * outputs], target[rows * outputs], norm[rows].
+inline returned<void> squared_error(span<const float> output, span<const float> target, span<float> norm)
+{
+    const std::uint32_t outputs = detail::columns(output.size(), norm.size());
+    const bool fits = outputs > 0 && target.size() == output.size();
+    return noisefloor::detail::finish(
+        fits ? nf_importance_squared_error(output.data(), target.data(), detail::number(norm.size()), outputs,
+                                           norm.data())
+             : NF_ERR_RANGE);
+}
+// nf_importance_gradient(): derivatives[rows * outputs], out[rows * techniques].
+inline returned<void> gradient(span<const float> derivatives, std::uint32_t techniques, span<float> out,
+                               split how = split::norm)
+{
+    const std::size_t rows = techniques > 0 && out.size() % techniques == 0 ? out.size() / techniques : 0;
+    const std::uint32_t outputs = detail::columns(derivatives.size(), rows);
+    return noisefloor::detail::finish(
+        outputs > 0 ? nf_importance_gradient(derivatives.data(), detail::number(rows), outputs,
+                                             static_cast<std::uint32_t>(how), techniques, out.data())
+                    : NF_ERR_RANGE);
+}
+
+} // namespace importance
+
+// A view of an nf_gradient in caller memory: copying the view does not copy the averages.
+class optimal_gradient {
+public:
+    // Bytes.
+    static std::size_t size(std::uint32_t techniques, std::uint32_t parameters) noexcept
+    {
+        return nf_gradient_size(techniques, parameters);
+    }
+    // Makes one that has seen no batch in `where`, or makes the one that is there forget.
+    static returned<optimal_gradient> create(std::uint32_t techniques, std::uint32_t parameters, memory where)
+    {
+        optimal_gradient made;
+        made.techniques_ = techniques;
+        made.parameters_ = parameters;
+        const nf_status code =
+            nf_gradient_init(where.data(), where.bytes(), techniques, parameters, &made.handle_);
+        return detail::finish(code, made);
+    }
+    optimal_gradient() noexcept = default;
+
+    // pdf[batch * techniques], technique[batch], gradients[batch * parameters], out[parameters]
+    returned<void> estimate(std::uint32_t items, span<const float> pdf, span<const std::uint32_t> technique,
+                            span<const float> gradients, span<float> out, float momentum = 0.0f,
+                            optimal_mis::solver how = optimal_mis::solver::ridge, float ridge = 0.0f) const
+    {
+        const std::size_t batch = technique.size();
+        const bool fits = batch > 0 && batch <= UINT32_MAX && pdf.size() % batch == 0 &&
+                          pdf.size() / batch == techniques_ && gradients.size() % batch == 0 &&
+                          gradients.size() / batch == parameters_ && out.size() == parameters_;
+        return detail::finish(fits ? nf_gradient_estimate(handle_, static_cast<std::uint32_t>(how), ridge, momentum,
+                                                          items, pdf.data(), technique.data(), gradients.data(),
+                                                          static_cast<std::uint32_t>(batch), out.data())
+                                   : NF_ERR_RANGE);
+    }
+    nf_gradient *handle() const noexcept { return handle_; }
+
+private:
+    nf_gradient *handle_ = nullptr;
+    std::uint32_t techniques_ = 0, parameters_ = 0;
+};
 
 static_assert(sizeof(config) == sizeof(nf_cv_config), "config is an nf_cv_config");
 static_assert(std::is_trivially_copyable_v<config> && std::is_trivially_copyable_v<accumulator>,

@@ -32,11 +32,7 @@ pub struct Config {
     pub nonfinite: u32,
     pub color: u32,
     pub folds: u32,
-    pub iterations: u32,
-    pub optimizer: u32,
     pub ridge: f32,
-    pub learning_rate: f32,
-    pub momentum: f32,
 }
 
 /// The `NF_CV_*` value of an estimator.
@@ -61,6 +57,22 @@ pub fn basis(family: Family) -> u32 {
     }
 }
 
+/// `nf_cv_samples`.
+#[repr(C)]
+struct Samples {
+    u: *const f32,
+    f: *const f32,
+    n: usize,
+    /// Controls, their integrals, and what is known: nothing.
+    others: [*const f32; 4],
+}
+
+impl Samples {
+    fn new(u: *const f32, f: *const f32, n: usize) -> Self {
+        Self { u, f, n, others: [std::ptr::null(); 4] }
+    }
+}
+
 /// `nf_cv_image`.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -73,8 +85,6 @@ struct Image {
     unordered: u32,
     surfaces: *const u32,
     factors: *const f32,
-    known: *const f32,
-    known_integrals: *const f32,
     /// Column, row, width and height of what is given, then of what is wanted.
     parts: [[u32; 4]; 2],
 }
@@ -93,41 +103,36 @@ c_functions! {
     fn nf_cv_workspace_size(config: *const Config, n: usize) -> usize;
     fn nf_cv_estimate(
         config: *const Config,
-        u: *const f32,
-        f: *const f32,
-        n: usize,
+        samples: *const Samples,
+        integrals: usize,
         workspace: *mut c_void,
         bytes: usize,
         out: *mut Estimate,
     ) -> i32;
-    fn nf_cv_image_workspace_size(config: *const Config, image: *const Image, n: usize) -> usize;
+    fn nf_cv_image_workspace_size(config: *const Config, image: *const Image, samples: *const Samples) -> usize;
     fn nf_cv_image_estimate(
         config: *const Config,
         image: *const Image,
-        u: *const f32,
-        f: *const f32,
-        n: usize,
+        samples: *const Samples,
         workspace: *mut c_void,
         bytes: usize,
         out: *mut Estimate,
     ) -> i32;
-    fn nf_cv_accumulator_size(config: *const Config) -> usize;
+    fn nf_cv_accumulator_size(config: *const Config, workspace: *mut usize) -> usize;
     fn nf_cv_accumulator_init(
         memory: *mut c_void,
         bytes: usize,
         config: *const Config,
         out: *mut *mut c_void,
     ) -> i32;
-    fn nf_cv_accumulator_add(accumulator: *mut c_void, u: *const f32, f: *const f32, n: usize) -> i32;
+    fn nf_cv_accumulator_add(accumulator: *mut c_void, samples: *const Samples) -> i32;
     fn nf_cv_accumulator_merge(accumulator: *mut c_void, other: *const c_void) -> i32;
-    fn nf_cv_accumulator_workspace_size(config: *const Config) -> usize;
     fn nf_cv_accumulator_estimate(
         accumulator: *const c_void,
         workspace: *mut c_void,
         bytes: usize,
         out: *mut Estimate,
     ) -> i32;
-    fn nf_cv_accumulator_reset(accumulator: *mut c_void) -> i32;
 }
 
 /// 8-byte aligned memory of at least `bytes` bytes.
@@ -162,15 +167,8 @@ impl Batch {
         let bytes = self.workspace.len() * 8;
         // SAFETY: the arrays are as long as was just checked, the workspace as long as said.
         check(unsafe {
-            nf_cv_estimate(
-                &self.config,
-                u.as_ptr(),
-                f.as_ptr(),
-                self.n,
-                self.workspace.as_mut_ptr().cast(),
-                bytes,
-                &mut out,
-            )
+            let samples = Samples::new(u.as_ptr(), f.as_ptr(), self.n);
+            nf_cv_estimate(&self.config, &samples, 1, self.workspace.as_mut_ptr().cast(), bytes, &mut out)
         });
         out.mean[0]
     }
@@ -200,12 +198,11 @@ impl Shared {
             unordered: u32::from(stride == 0),
             surfaces: std::ptr::null(),
             factors: std::ptr::null(),
-            known: std::ptr::null(),
-            known_integrals: std::ptr::null(),
             parts: [[0; 4]; 2],
         };
-        // SAFETY: a valid configuration and image are all that is read.
-        let bytes = unsafe { nf_cv_image_workspace_size(&config, &image, n) };
+        let samples = Samples::new(std::ptr::null(), std::ptr::null(), n);
+        // SAFETY: a valid configuration and image, and the number of samples, are all that is read.
+        let bytes = unsafe { nf_cv_image_workspace_size(&config, &image, &samples) };
         Self { config, image, n, workspace: memory(bytes), out: vec![Estimate::default(); pixels] }
     }
 
@@ -218,9 +215,9 @@ impl Shared {
         let rows = pixels * self.n;
         assert!(u.len() >= self.out.len() * self.n * dims && f.len() >= self.out.len() * self.n * channels);
         for ((u, f), out) in u.chunks(rows * dims).zip(f.chunks(rows * channels)).zip(self.out.chunks_mut(pixels)) {
-            let (u, f, out) = (u.as_ptr(), f.as_ptr(), out.as_mut_ptr());
+            let (samples, out) = (Samples::new(u.as_ptr(), f.as_ptr(), self.n), out.as_mut_ptr());
             // SAFETY: the arrays are as long as was just checked, the workspace as long as said.
-            check(unsafe { nf_cv_image_estimate(&self.config, &self.image, u, f, self.n, workspace, bytes, out) });
+            check(unsafe { nf_cv_image_estimate(&self.config, &self.image, &samples, workspace, bytes, out) });
         }
         self.out[0].mean[0]
     }
@@ -228,7 +225,7 @@ impl Shared {
 
 /// `nf_cv_accumulator` in memory of its own.
 pub struct Accumulator {
-    dims: usize,
+    config: Config,
     memory: Vec<u64>,
     workspace: Vec<u64>,
 }
@@ -236,22 +233,20 @@ pub struct Accumulator {
 impl Accumulator {
     /// An empty accumulator.
     pub fn new(config: Config) -> Self {
-        // SAFETY: a valid configuration is all that is read.
-        let (size, work) = unsafe { (nf_cv_accumulator_size(&config), nf_cv_accumulator_workspace_size(&config)) };
-        let mut this = Self { dims: config.dims as usize, memory: memory(size), workspace: memory(work) };
-        let mut out = std::ptr::null_mut();
-        let bytes = this.memory.len() * 8;
-        // SAFETY: the memory is as long as said.
-        check(unsafe { nf_cv_accumulator_init(this.memory.as_mut_ptr().cast(), bytes, &config, &mut out) });
-        assert_eq!(out.cast_const().cast(), this.memory.as_ptr(), "the object starts its memory");
+        let mut work = 0;
+        // SAFETY: a valid configuration is all that is read, a size all that is written.
+        let size = unsafe { nf_cv_accumulator_size(&config, &mut work) };
+        let mut this = Self { config, memory: memory(size), workspace: memory(work) };
+        this.reset();
         this
     }
 
     /// Adds one sample for each value.
     pub fn add(&mut self, u: &[f32], f: &[f32]) {
-        assert!(u.len() >= f.len() * self.dims);
+        assert!(u.len() >= f.len() * self.config.dims as usize);
+        let samples = Samples::new(u.as_ptr(), f.as_ptr(), f.len());
         // SAFETY: the arrays are as long as was just checked; `new` made the object.
-        check(unsafe { nf_cv_accumulator_add(self.memory.as_mut_ptr().cast(), u.as_ptr(), f.as_ptr(), f.len()) });
+        check(unsafe { nf_cv_accumulator_add(self.memory.as_mut_ptr().cast(), &samples) });
     }
 
     /// Adds another accumulator's samples.
@@ -273,7 +268,10 @@ impl Accumulator {
 
     /// Forgets all samples.
     pub fn reset(&mut self) {
-        // SAFETY: `new` made the object.
-        check(unsafe { nf_cv_accumulator_reset(self.memory.as_mut_ptr().cast()) });
+        let mut out = std::ptr::null_mut();
+        let bytes = self.memory.len() * 8;
+        // SAFETY: the memory is as long as said.
+        check(unsafe { nf_cv_accumulator_init(self.memory.as_mut_ptr().cast(), bytes, &self.config, &mut out) });
+        assert_eq!(out.cast_const().cast(), self.memory.as_ptr(), "the object starts its memory");
     }
 }

@@ -29,6 +29,15 @@ pub(crate) unsafe fn reference<'a, T>(pointer: *const T) -> Result<&'a T, nf_sta
     Ok(unsafe { &*pointer })
 }
 
+/// [`reference`], or nothing for NULL.
+///
+/// # Safety
+/// As for [`reference`].
+pub(crate) unsafe fn optional<'a, T>(pointer: *const T) -> Result<Option<&'a T>, nf_status> {
+    // SAFETY: passed on to the caller.
+    if pointer.is_null() { Ok(None) } else { unsafe { reference(pointer) }.map(Some) }
+}
+
 /// An exclusive reference to one object that already exists; [`room`] is for one that may not.
 ///
 /// # Safety
@@ -84,6 +93,18 @@ pub(crate) unsafe fn slice<'a, T>(pointer: *const T, len: usize) -> Result<&'a [
     check(pointer, len)?;
     // SAFETY: not NULL, aligned and of a representable length as just checked; the rest is the caller's promise.
     Ok(unsafe { core::slice::from_raw_parts(pointer, len) })
+}
+
+/// [`outputs`], or nothing for NULL.
+///
+/// # Safety
+/// As for [`outputs`].
+pub(crate) unsafe fn optional_outputs<'a, T: AnyBits>(
+    pointer: *mut T,
+    len: usize,
+) -> Result<Option<&'a mut [T]>, nf_status> {
+    // SAFETY: passed on to the caller.
+    if pointer.is_null() { Ok(None) } else { unsafe { outputs(pointer, len) }.map(Some) }
 }
 
 /// `len` elements that already exist, to change; a zero length gives an empty slice whatever the pointer.

@@ -13,16 +13,6 @@ fn checked_len(dims: &[u32], width: u32, height: u32, samples: u32) -> Option<us
     (len <= isize::MAX as usize / size_of::<f32>()).then_some(len)
 }
 
-/// The same; 0 if not.
-///
-/// # Safety
-/// `dims` must be NULL or point to `domains` numbers.
-pub(crate) unsafe fn len(dims: *const u32, domains: usize, [width, height, samples]: [u32; 3]) -> usize {
-    // SAFETY: passed on to the caller.
-    let Ok(dims) = (unsafe { convert::slice(dims, domains) }) else { return 0 };
-    checked_len(dims, width, height, samples).unwrap_or(0)
-}
-
 /// Draws for all pixels and samples: `draw(sampler, [x, y], dims, stride, u)` writes one domain of one pixel, `dims`
 /// numbers of each sample, every `stride`.
 ///

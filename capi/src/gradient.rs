@@ -7,13 +7,8 @@ use crate::{convert, dispatch};
 use noisefloor_core::minibatch::{self, Batch, Gradient, System};
 
 /// Optimal MIS gradients from explicit per-item gradients, with momentum over steps (6.2.3): averages over the batches
-/// so far of the linear system that all parameters share, and J + 1 floats per parameter.
-///
-/// Without momentum nf_omis_weights gives the same estimate, at the cost of one weighted backward pass.
-///
-/// Lives in caller memory of nf_gradient_size bytes, 8-byte aligned; nothing to destroy. May be moved and copied as
-/// bytes between calls, in one process or among those that run the same library file; no file format, and for no one
-/// else to change, as for nf_cv_accumulator.
+/// so far of J + 1 floats per parameter. May be moved and copied as nf_cv_accumulator. Without momentum nf_omis_weights
+/// gives the same estimate at the cost of one weighted backward pass.
 #[allow(non_camel_case_types)]
 pub struct nf_gradient {
     _private: (),
@@ -31,17 +26,15 @@ struct Header {
 
 const MAGIC: u64 = magic::<Header>("nf_gradient");
 
-/// The bytes of memory an nf_gradient needs: 4 (techniques + 1) per parameter and about 1.4 kB. 0 unless techniques is
-/// in 1..NF_MIS_MAX_TECHNIQUES, parameters at least 1, and the size one that memory can have.
+/// Bytes of an nf_gradient, 4 (techniques + 1) per parameter and about 1.4 kB; 0 unless techniques is
+/// 1..NF_MIS_MAX_TECHNIQUES and parameters at least 1, or if no memory has them.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_gradient_size(techniques: u32, parameters: u32) -> usize {
     convert::object_size::<Header, f32>(minibatch::gradient_len(techniques as usize, parameters as usize))
 }
 
-/// Makes an nf_gradient that has seen no batch in `memory`, `*out` being its handle (the same address).
-///
-/// memory: at least nf_gradient_size(techniques, parameters) bytes, 8-byte aligned; what it holds is lost.
-/// techniques: J in 1..NF_MIS_MAX_TECHNIQUES. parameters: at least 1.
+/// Makes an nf_gradient that has seen no batch in `memory`, or makes one forget: `*out` is its handle, the same
+/// address.
 ///
 /// NF_ERR_NULL; NF_ERR_RANGE: techniques or parameters; NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
 #[unsafe(no_mangle)]
@@ -68,21 +61,14 @@ pub unsafe extern "C" fn nf_gradient_init(
 
 /// Adds a batch of drawn items, and estimates the gradient of the mean loss from it and, with momentum, those before.
 ///
-/// solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN or NF_OMIS_BALANCE, and ridge, as for nf_omis_weights, where it is said which
-/// is unbiased. They may change from call to call. beta: 0..1, the momentum. A batch that is t steps old counts beta^t,
-/// divided by the sum of those weights: the estimate has its right size from the first step on. 0 forgets the earlier
-/// batches, and the estimate is that of nf_omis_weights but for rounding, which NF_OMIS_PLAIN magnifies where
-/// techniques are nearly alike; 1 averages all. Older gradients lag: under an optimiser with momentum of its own, such
-/// as Adam, use 0. items, pdf[batch * techniques], technique[batch]: as for nf_omis_weights, with the techniques of
-/// nf_gradient_init. gradient[batch * parameters]: that of sample s by parameter p at s * parameters + p, finite,
-/// unweighted. It is read twice: once to see that all of it is finite. batch: the number of samples.
-/// estimate[parameters]: the output. One beyond the range of float becomes the largest finite float.
+/// solver, ridge, items, pdf[batch * techniques], technique[batch]: as for nf_omis_weights. beta: the momentum, 0..1. A
+/// batch that is t steps old counts beta^t, divided by the sum of those weights: 0 forgets the earlier batches, 1
+/// averages all. Older gradients lag: under an optimiser with momentum of its own, such as Adam, use 0.
+/// gradient[batch * parameters]: those of each sample, row after row, finite, unweighted; read twice.
+/// estimate[parameters]: the output; one beyond the range of float becomes the largest finite float.
 ///
-/// Sums are in float, in an order that does not depend on the processor.
-///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver, ridge, beta, items, a technique or probability, or gradients over
-/// probabilities beyond the range of float; NF_ERR_NOT_FINITE: ridge, beta, a probability or gradient;
-/// NF_ERR_NO_SAMPLES: an empty batch; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.
+/// NF_ERR_STATE; NF_ERR_RANGE also for beta, or gradients over probabilities beyond the range of float;
+/// NF_ERR_NOT_FINITE also for beta or a gradient; else as for nf_omis_weights.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_gradient_estimate(
     state: *mut nf_gradient,
@@ -113,20 +99,6 @@ pub unsafe extern "C" fn nf_gradient_estimate(
         let mut state = Gradient::resume(averages, header.system, parameters).map_err(status_of)?;
         dispatch::gradient(&mut state, &batch, solver, beta, gradient, estimate).map_err(status_of)?;
         header.system = *state.system();
-        Ok(())
-    })())
-}
-
-/// Forgets every batch; techniques and parameters stay.
-///
-/// NF_ERR_NULL; NF_ERR_STATE.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_gradient_reset(state: *mut nf_gradient) -> nf_status {
-    status((|| {
-        // SAFETY: the caller passes an object that no one else uses meanwhile.
-        let (header, averages) = unsafe { open(state) }?;
-        header.system = System::new(header.techniques as usize);
-        averages.fill(0.0);
         Ok(())
     })())
 }

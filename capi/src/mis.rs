@@ -12,31 +12,26 @@ const _: () = assert!(NF_MIS_MAX_TECHNIQUES as usize == MAX_TECHNIQUES);
 
 /// Heuristic (2.12): n_j p_j / sum_k n_k p_k. The default.
 pub const NF_MIS_BALANCE: u32 = 0;
-/// Heuristic: (n_j p_j)^beta / sum_k (n_k p_k)^beta; the parameter is beta, positive and finite, 0 means the usual 2.
-/// (2.13) prints the exponent outside the sum; those weights would not sum to 1, and these are Veach's.
+/// Heuristic: (n_j p_j)^beta / sum_k (n_k p_k)^beta, the parameter being beta, above 0; 0 means the usual 2. Veach's:
+/// the exponents of (2.13) would not sum to 1.
 pub const NF_MIS_POWER: u32 = 1;
-/// Heuristic: the balance heuristic among the techniques with n_k p_k >= epsilon * max_i n_i p_i; the parameter is
-/// epsilon, 0..1. 0 is the balance heuristic, 1 the maximum heuristic with ties shared. (2.14) prints an absolute
-/// threshold on p_k, without the counts; it would depend on the unit of the density, and leave points where no
-/// technique reaches it. This is Veach's form.
+/// Heuristic: balance among techniques with n_k p_k >= epsilon max_i n_i p_i, the parameter being epsilon, 0..1.
+/// Veach's: the threshold of (2.14) on p_k alone would depend on the density's unit.
 pub const NF_MIS_CUTOFF: u32 = 2;
-/// Heuristic: 1 for the technique with the largest n_k p_k (the first of them if several tie), 0 for others.
+/// Heuristic: 1 for the first technique with the largest n_k p_k, 0 for others.
 pub const NF_MIS_MAXIMUM: u32 = 3;
 
-/// The weight of technique j at one point by a heuristic, NF_MIS_BALANCE to NF_MIS_MAXIMUM.
-///
-/// parameter: beta or epsilon; the other two heuristics do not read it. pdf[techniques]: p_k, the density of each
-/// technique at the point, in any one measure, at least 0. Infinity stands for a delta distribution: where any is
-/// infinite the finite ones count as 0 and the infinite ones are equally dense. counts[techniques]: n_k, the number of
-/// samples of each technique; one with 0 has no part in it. techniques: 1..NF_MIS_MAX_TECHNIQUES. technique: j, below
-/// techniques.
-///
-/// The weights of all techniques sum to 1 and are safe for densities from 1e-38 to 1e38. Where every n_k p_k is 0, so
-/// that the point cannot have been drawn, each is 0. With them, the sum over all samples of weight * f / (n_j p_j) is
+/// The weight of technique j at one point by a heuristic. The sum over all samples of weight * f / (n_j p_j) is
 /// unbiased (2.10).
 ///
-/// NF_ERR_NULL; NF_ERR_RANGE: heuristic, parameter, techniques, technique, or a negative density; NF_ERR_NOT_FINITE: a
-/// density is NaN, or the parameter not finite.
+/// parameter: beta or epsilon, else not read. pdf[techniques]: p_k, the density of each technique at the point, at
+/// least 0; infinite ones (delta distributions) are equally dense, and finite ones then count as 0. counts[techniques]:
+/// n_k, samples of each technique; one with 0 has no part. techniques: 1..NF_MIS_MAX_TECHNIQUES. technique: j.
+///
+/// The weights of all techniques sum to 1, for densities from 1e-38 to 1e38; each is 0 where every n_k p_k is.
+///
+/// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: heuristic, parameter, techniques, technique, a density;
+/// NF_ERR_NOT_FINITE: a density is NaN, or the parameter not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_mis_weight(
     heuristic: u32,
@@ -61,42 +56,16 @@ pub unsafe extern "C" fn nf_mis_weight(
     unsafe { with_alpha(pdf, counts, techniques, pdf, weight, compute) }
 }
 
-/// The optimal weight (2.15) of Kondapaneni et al. (2019), for an alpha from nf_omis_alpha:
-/// w_j = alpha_j p_j / f + n_j p_j / S (1 - sum_k alpha_k p_k / f), S = sum_k n_k p_k.
+/// What one sample of technique j adds to the estimate (2.10) with the optimal weights (2.15) of Kondapaneni et al.
+/// (2019): w_j f / (n_j p_j) = alpha_j / n_j + (f - sum_k alpha_k p_k) / S, S = sum_k n_k p_k.
 ///
-/// pdf[techniques]: finite and at least 0. counts[techniques]: at least 1. alpha[techniques]: finite. value: f at the
-/// point, not divided by a density, finite and not 0. Where f is 0 the weight does not exist, though the sample still
-/// contributes: see nf_mis_optimal_contribution.
+/// Unbiased if alpha came from other samples. The term is not 0 where f is: add those samples too. Times the number of
+/// samples, it is what a regression is fitted to (4.3.3).
 ///
-/// Whatever alpha is, the weights sum to 1; they may be negative or above 1. Where no density is positive each is 0.
+/// pdf[techniques]: finite, at least 0, that of the technique positive. counts[techniques]: at least 1.
+/// alpha[techniques]: from nf_omis_solve. value: f, not divided by a density. All finite.
 ///
-/// NF_ERR_NULL; NF_ERR_RANGE: an argument is outside these ranges, or the weight outside float's; NF_ERR_NOT_FINITE.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_mis_optimal(
-    pdf: *const f32,
-    counts: *const u32,
-    techniques: u32,
-    technique: u32,
-    alpha: *const f32,
-    value: f32,
-    weight: *mut f32,
-) -> nf_status {
-    // SAFETY: as for nf_mis_weight.
-    unsafe {
-        with_alpha(pdf, counts, techniques, alpha, weight, |pdf, counts, alpha| {
-            mis::optimal(pdf, counts, technique as usize, alpha, value)
-        })
-    }
-}
-
-/// What one sample of technique j adds to the estimate (2.10) with optimal weights:
-/// w_j f / (n_j p_j) = alpha_j / n_j + (f - sum_k alpha_k p_k) / S, S = sum_k n_k p_k.
-///
-/// The sum over all samples is the estimate, unbiased if alpha came from other samples. The term is not 0 where f is;
-/// leaving such samples out keeps the mean and loses part of the gain. These terms, times the number of samples, are
-/// what a regression control variate is fitted to (4.3.3).
-///
-/// Arguments and errors as for nf_mis_optimal, except that value may be 0, and pdf[technique] must be positive.
+/// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: an argument, or the term in float; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_mis_optimal_contribution(
     pdf: *const f32,

@@ -20,12 +20,9 @@ pub const NF_OMIS_BALANCE: u32 = 3;
 /// Optimal multiple importance sampling (Kondapaneni et al. 2019; 2.15): sums over samples of J techniques, from which
 /// P integrals are estimated with weights of least variance.
 ///
-/// With S = sum_k n_k p_k and s over all samples, it keeps A = sum_s p p' / S^2 and b = sum_s f p / S^2 and a few sums
-/// more. After R rounds of n_k samples each, an integral is sum_s f / S / R - (sum_s p / S / R - 1)' alpha with alpha
-/// from A alpha = b: the balance estimate, less what the samples got wrong about the densities' integrals.
-///
-/// Lives in caller memory of nf_omis_size bytes, 8-byte aligned; never moved or copied in use, nor changed by anyone
-/// else; nothing to destroy.
+/// With S = sum_k n_k p_k it keeps A = sum p p' / S^2, b = sum f p / S^2 and a few sums more. After R rounds of n_k
+/// samples an integral is sum f / S / R - (sum p / S / R - 1)' alpha with A alpha = b: the balance estimate, less what
+/// the samples got wrong about the densities' integrals.
 #[allow(non_camel_case_types)]
 pub struct nf_omis {
     _private: (),
@@ -43,17 +40,15 @@ struct Header {
 
 const MAGIC: u64 = magic::<Header>("nf_omis");
 
-/// The bytes of memory an nf_omis needs; 0 unless techniques is in 1..NF_MIS_MAX_TECHNIQUES, integrals at least 1, and
-/// the size one that memory can have.
+/// Bytes of an nf_omis; 0 unless techniques is 1..NF_MIS_MAX_TECHNIQUES and integrals at least 1, or if no memory has
+/// them.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_omis_size(techniques: u32, integrals: u32) -> usize {
     convert::object_size::<Header, f64>(mis::len(techniques as usize, integrals as usize))
 }
 
-/// Makes an empty nf_omis in `memory`, `*out` being its handle (the same address).
-///
-/// memory: at least nf_omis_size(techniques, integrals) bytes, 8-byte aligned; what it holds is lost.
-/// counts[techniques]: n_k, how many samples of each technique make one round, at least 1.
+/// Makes an empty nf_omis in `memory`, or empties one: `*out` is its handle, the same address. counts[techniques]: n_k,
+/// how many samples of each technique make one round, at least 1.
 ///
 /// NF_ERR_NULL; NF_ERR_RANGE: techniques, integrals or a count; NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
 #[unsafe(no_mangle)]
@@ -85,16 +80,13 @@ pub unsafe extern "C" fn nf_omis_init(
     })())
 }
 
-/// Adds one sample, drawn by `technique`.
+/// Adds one sample, drawn by `technique`: every one, those of value 0 too, in whole rounds of the counts or from
+/// technique k with probability n_k / sum n.
 ///
-/// pdf[techniques]: the density of each technique at the sample's point, finite and at least 0, positive for the
-/// technique that drew it. value[integrals]: the value of each integrand there, not divided by any density, finite.
+/// pdf[techniques]: the density of each technique at the point, finite, at least 0, that of the technique positive.
+/// value[integrals]: each integrand there, not divided by any density, finite.
 ///
-/// Add every sample, those of value 0 included: without them no solver but NF_OMIS_BALANCE is unbiased or consistent.
-/// The samples should make whole rounds of the counts, or each be drawn from technique k with probability n_k / sum n.
-///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE: a density (combine delta
-/// distributions outside) or a value.
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_omis_add(
     omis: *mut nf_omis,
@@ -113,89 +105,69 @@ pub unsafe extern "C" fn nf_omis_add(
     })())
 }
 
-/// Estimates the integrals from all samples so far. The object does not change: the same call gives the same answer,
-/// and more samples may be added.
+/// Estimates the integrals from all samples so far, or the weights' coefficients alpha (2.15); NULL for what is not
+/// wanted.
 ///
-/// solver: NF_OMIS_RIDGE, NF_OMIS_PLAIN, NF_OMIS_PROGRESSIVE or NF_OMIS_BALANCE; each says whether it is unbiased.
-/// ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for the default 2;
-/// otherwise ignored. With the densities' counts N and n samples it adds L = ridge (tr(N A) - 1) / n N^-1 to A, at
-/// least 1e-8 tr(N A) N^-1. estimate[integrals]: the outputs. One beyond the range of float becomes the largest finite
-/// float.
+/// solver: NF_OMIS_*. ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for
+/// the default 2. It adds ridge (tr(N A) - 1) / n N^-1 to A, N being the counts and n the samples, and at least 1e-8
+/// tr(N A) N^-1. estimate[integrals], alpha[integrals * techniques]: outputs; one beyond the range of float becomes the
+/// largest finite float. alpha is for nf_mis_optimal_contribution, of NF_OMIS_PROGRESSIVE the current batch's.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge; NF_ERR_NO_SAMPLES.
+/// NF_ERR_NULL: no object, or nothing wanted; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge;
+/// NF_ERR_NO_SAMPLES.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_omis_solve(omis: *const nf_omis, solver: u32, ridge: f32, estimate: *mut f32) -> nf_status {
+pub unsafe extern "C" fn nf_omis_solve(
+    omis: *const nf_omis,
+    solver: u32,
+    ridge: f32,
+    estimate: *mut f32,
+    alpha: *mut f32,
+) -> nf_status {
     status((|| {
-        // SAFETY: the caller passes an object that no one writes meanwhile, and room for its integrals.
+        // SAFETY: the caller passes an object that no one writes meanwhile.
         let omis = unsafe { open(omis) }?;
-        // SAFETY: as above.
-        let estimate = unsafe { convert::outputs(estimate, omis.integrals()) }?;
-        omis.solve(solver_of(solver, ridge)?, estimate).map_err(status_of)
-    })())
-}
-
-/// The coefficients of the weights (2.15), for nf_mis_optimal and nf_mis_optimal_contribution:
-/// alpha[p * techniques + j] of integral p and technique j.
-///
-/// Used on samples other than those it came from, an alpha gives unbiased estimates. NF_OMIS_PROGRESSIVE stands for the
-/// alpha of the current batch, NF_OMIS_BALANCE for zeros. Arguments and errors as for nf_omis_solve.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_omis_alpha(omis: *const nf_omis, solver: u32, ridge: f32, alpha: *mut f32) -> nf_status {
-    status((|| {
-        // SAFETY: the caller passes an object that no one writes meanwhile, and room for its integrals and techniques.
-        let omis = unsafe { open(omis) }?;
+        if estimate.is_null() && alpha.is_null() {
+            return Err(NF_ERR_NULL);
+        }
         let len = convert::product(omis.integrals(), omis.techniques())?;
-        // SAFETY: as above.
-        let alpha = unsafe { convert::outputs(alpha, len) }?;
-        omis.alpha(solver_of(solver, ridge)?, alpha).map_err(status_of)
+        // SAFETY: the caller passes NULL or room for its integrals, and for those times its techniques.
+        let (estimate, alpha) =
+            unsafe { (convert::optional_outputs(estimate, omis.integrals())?, convert::optional_outputs(alpha, len)?) };
+        let solver = solver_of(solver, ridge)?;
+        // Both refuse the same.
+        if let Some(alpha) = alpha {
+            omis.alpha(solver, alpha).map_err(status_of)?;
+        }
+        estimate.map_or(Ok(()), |estimate| omis.solve(solver, estimate).map_err(status_of))
     })())
 }
 
-/// Ends a batch: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so far on those that
-/// follow.
+/// Ends a batch, between whole rounds: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so
+/// far on those that follow, and 0 before the first call. Then multiplies all sums by beta: 1 unless integrals drift,
+/// as gradients do.
 ///
-/// Before the first call alpha is 0, the balance heuristic; NF_OMIS_BALANCE returns to that. Call it between whole
-/// rounds, whenever you like: what alpha adds has expectation 0 over a round, not over a part of one.
-///
-/// Other arguments and errors as for nf_omis_solve; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE as the solver.
+/// NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE as the solver; NF_ERR_RANGE, NF_ERR_NOT_FINITE also for a beta outside 0..1;
+/// else as for nf_omis_solve.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_omis_next_batch(omis: *mut nf_omis, solver: u32, ridge: f32) -> nf_status {
+pub unsafe extern "C" fn nf_omis_next_batch(omis: *mut nf_omis, solver: u32, ridge: f32, beta: f32) -> nf_status {
     status((|| {
         // SAFETY: the caller passes an object that no one else uses meanwhile.
         let mut omis = unsafe { open_mut(omis) }?;
-        omis.next_batch(solver_of(solver, ridge)?).map_err(status_of)
+        if !beta.is_finite() {
+            return Err(NF_ERR_NOT_FINITE);
+        }
+        if !(0.0..=1.0).contains(&beta) {
+            return Err(NF_ERR_RANGE);
+        }
+        omis.next_batch(solver_of(solver, ridge)?).map_err(status_of)?;
+        omis.decay(beta).map_err(status_of)
     })())
 }
 
-/// Multiplies all sums by beta in 0..1, so that older samples count for less: for integrals that drift, as gradients
-/// do. NF_OMIS_PROGRESSIVE keeps its alpha.
+/// Adds the samples of `other`, of another thread or pass; alpha of NF_OMIS_PROGRESSIVE stays that of `omis`.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE, NF_ERR_NOT_FINITE: beta.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_omis_decay(omis: *mut nf_omis, beta: f32) -> nf_status {
-    status((|| {
-        // SAFETY: the caller passes an object that no one else uses meanwhile.
-        unsafe { open_mut(omis) }?.decay(beta).map_err(status_of)
-    })())
-}
-
-/// Forgets every sample and NF_OMIS_PROGRESSIVE's alpha; techniques, integrals and counts stay.
-///
-/// NF_ERR_NULL; NF_ERR_STATE.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_omis_reset(omis: *mut nf_omis) -> nf_status {
-    status((|| {
-        // SAFETY: the caller passes an object that no one else uses meanwhile.
-        unsafe { open_mut(omis) }?.reset();
-        Ok(())
-    })())
-}
-
-/// Adds the samples of `other`, of another thread or pass, to `omis`. `other` does not change and must be another
-/// object; NF_OMIS_PROGRESSIVE's alpha stays that of `omis`.
-///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: their techniques, integrals or
-/// counts differ.
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: other techniques, integrals or
+/// counts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis) -> nf_status {
     status((|| {
@@ -209,23 +181,17 @@ pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis
     })())
 }
 
-/// The optimal MIS gradient of a minibatch as one weight per drawn item (6.2): the gradient of the mean loss is
-/// (1 / batch) sum_s weight[s] * gradient_s for every parameter at once, so that one backward pass over weighted losses
-/// computes it. The same convention as the weights of nf_table_draw.
+/// The optimal MIS gradient of a minibatch as one weight per drawn item (6.2): (1 / batch) sum_s weight[s] * gradient_s
+/// is the gradient of the mean loss for every parameter at once, by one backward pass over weighted losses.
 ///
-/// solver: NF_OMIS_RIDGE, the default: shrinks to the balance heuristic where the batch says little. NF_OMIS_PLAIN:
-/// exact where a gradient is a linear combination of the probabilities; heavy-tailed with similar techniques or small
-/// batches. Both are consistent, not unbiased, and their weights may be negative. NF_OMIS_BALANCE: unbiased, positive.
-/// ridge: for NF_OMIS_RIDGE, as for nf_omis_solve: 1e-8..1e8, or 0 for the default 2; otherwise ignored. techniques: J
-/// in 1..NF_MIS_MAX_TECHNIQUES. items: N, the size of the data set, at least 1. pdf[batch * techniques]: at s *
-/// techniques + j the probability with which technique j draws the item of sample s; each technique's sum to 1 over the
-/// items. Finite, at least 0 and at most 1, positive for the technique that drew it. Those of before the batch was
-/// drawn: tables may be updated meanwhile. technique[batch]: which technique drew sample s. Their numbers n_j are
-/// counted from it; a technique that drew nothing has no part in the weights. batch: the number of samples, at least 1.
-/// weight[batch]: the output. One beyond the range of float becomes the largest finite float.
+/// solver: NF_OMIS_RIDGE or NF_OMIS_PLAIN, consistent, of weights that may be negative, or NF_OMIS_BALANCE, unbiased.
+/// ridge: as for nf_omis_solve. techniques: J, 1..NF_MIS_MAX_TECHNIQUES. items: N, of the data set, at least 1.
+/// pdf[batch * J]: the probability, above 0 to 1, with which technique j draws the item of sample s, at s * J + j,
+/// before any update; 0 only for others than the technique that drew it. technique[batch]: which one drew sample s.
+/// weight[batch]: the output; one beyond the range of float becomes the largest finite float.
 ///
-/// With S_s = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2,
-/// weight_s = (1 / S_s - (q - 1)' (A + ridge)^-1 p_s / S_s^2) batch / items.
+/// With n_j samples of technique j, S_s = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2, weight_s =
+/// (1 / S_s - (q - 1)' (A + ridge)^-1 p_s / S_s^2) batch / items.
 ///
 /// NF_ERR_NULL; NF_ERR_RANGE: solver, ridge, techniques, items, a technique or a probability; NF_ERR_NOT_FINITE: ridge
 /// or a probability; NF_ERR_NO_SAMPLES: an empty batch; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.

@@ -24,42 +24,36 @@ pub const NF_METHOD_SHARED: u32 = 2;
 pub struct nf_recommendation {
     /// How to make estimates of the samples: NF_METHOD_*
     pub method: u32,
-    /// The `stride` of nf_cv_image for NF_METHOD_SHARED, for windows of 8. With surfaces leave it 0, for overlapping
+    /// `stride` of nf_cv_image for NF_METHOD_SHARED, in windows of 8. With surfaces leave it 0, for overlapping
     /// windows.
     pub image_stride: u32,
-    /// Which built-in tile to draw from, if there is a choice: its samples per pixel. A tile of 1 sample is continued
-    /// as a Sobol sequence.
+    /// Which tile of the library to draw from, if there is a choice: its samples per pixel. One of 1 sample is
+    /// continued as a Sobol sequence.
     pub tile_samples: u32,
     /// The same: its dims.
     pub tile_dims: u32,
-    /// What to expect: mean squared error over that of the plain mean of independent samples. Of stratified samples
-    /// measured on the tile named above, except: for 5 to 8 dims and 1 to 3 samples, on that of 2 dims; from 64 samples
-    /// on, with Sobol points scrambled in each pixel (on the tile of 1 sample, continued, only the plain mean was
-    /// measured, at .77 to 1.1 times this error).
+    /// What to expect: mean squared error over that of the plain mean of independent samples, as docs/choosing.md
+    /// measures it.
     pub error: f32,
-    /// The same of the image filtered by a Gaussian of 2.1 pixels, with the same exceptions; the plain mean of the tile
-    /// of 1 sample, continued, has .81 to 1.4 times the error of Sobol points scrambled in each pixel that is given
-    /// here.
+    /// The same of the image filtered by a Gaussian of 2.1 pixels.
     pub filtered_error: f32,
-    /// Nanoseconds that the method takes for each sample on the machine of the report: of NF_METHOD_SHARED in rendered
-    /// frames of three channels with surfaces, in windows side by side, of NF_METHOD_PER_PIXEL for one channel. Windows
-    /// that overlap by half take three times as long, and pay from twice `pays_from` on.
+    /// Nanoseconds that the method takes for each sample on the machine of the report: of NF_METHOD_SHARED three
+    /// channels in windows side by side (overlapping ones take three times as long), else one channel.
     pub cost: f32,
-    /// The cost of a sample, in nanoseconds, from which a fit pays: below it more samples of the plain mean, in the
-    /// same time, would lower the error further. Of NF_METHOD_SHARED the median over eight rendered frames. Infinite if
-    /// no fit pays at any cost.
+    /// The cost of a sample, in nanoseconds, below which more samples of the plain mean lower the error further in the
+    /// same time. Infinite if no fit pays at any cost.
     pub pays_from: f32,
     /// How to estimate. `channels` is 1: set your own. `stride` is all dims.
     pub config: nf_cv_config,
 }
 
-/// Which estimator, of which order, and which of the library's tiles to use for samples of `dims` coordinates and `spp`
-/// of them per pixel, both at least 1. `sampling` is NF_SAMPLING_*; `can_share` is 1 if neighbouring pixels' samples
-/// are at hand together and integrate similar functions, else 0. `sample_cost` is what a sample costs to trace, in
-/// nanoseconds: below `pays_from` the plain mean is best. INFINITY compares errors at equal samples. docs/choosing.md
-/// has the measurements that it rests on.
+/// Which estimator, order and tile to use for `spp` samples per pixel of `dims` coordinates, both at least 1
+/// (docs/choosing.md).
 ///
-/// NF_ERR_RANGE also for a cost that is not above 0, NF_ERR_NOT_FINITE for a NaN.
+/// sampling: NF_SAMPLING_*. can_share: 1 if neighbouring pixels' samples are at hand together and integrate similar
+/// functions, else 0. sample_cost: nanoseconds to trace a sample, above 0; INFINITY compares errors at equal samples.
+///
+/// NF_ERR_NULL; NF_ERR_RANGE; NF_ERR_NOT_FINITE: a NaN.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_recommend(
     dims: u32,

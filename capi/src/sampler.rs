@@ -4,13 +4,12 @@ use crate::status::*;
 use crate::{convert, fill};
 use noisefloor_core::sampler::{Sampler, table};
 
-/// One sample of one pixel, of the default sampler: a small struct, passed and copied by value. Drawing does not change
-/// it, and there is nothing to set up.
+/// One sample of one pixel, of the default sampler: passed and copied by value, unchanged by drawing, made by
+/// nf_sampler_pixel.
 ///
-/// A sampler stands for a point of a cube with as many dimensions as are asked for. There are no dimension counters:
-/// each decision of a path (lens, light, bounce, ...) has a domain, a child of the sampler by a key of its own. A
-/// domain's numbers depend on nothing but pixel, frame, index and the keys that led to it, so that any sample can be
-/// drawn in any order, on any thread, and at any time. Made by nf_sampler_pixel; the fields are not to be written.
+/// It stands for a point of a cube of any dimensions. Each decision of a path (lens, light, bounce, ...) has a domain,
+/// a child of the sampler by a key of its own, whose numbers depend on nothing but pixel, frame, index and the keys
+/// that led to it: any sample can be drawn in any order, on any thread.
 #[repr(C)]
 #[allow(non_camel_case_types)]
 #[derive(Clone, Copy)]
@@ -27,46 +26,37 @@ pub struct nf_sampler {
     pub flags: u32,
 }
 
-/// Sample `index` of pixel (x, y) in `frame`, any values of each.
-///
-/// The samples of a pixel are one sequence, best at powers of two: take any number, and stop where you like. Each frame
-/// is unrelated to the others. Where frames are averaged, by a viewer or by TAA, leave the frame 0 and let the index
-/// count on.
+/// Sample `index` of pixel (x, y) in `frame`, any values of each. The samples of a pixel are one sequence, best at
+/// powers of two. Frames are unrelated to each other: where they are averaged, leave the frame 0 and count the index
+/// on.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_sampler_pixel(x: u32, y: u32, frame: u32, index: u32) -> nf_sampler {
     of(Sampler::pixel(x, y, frame, index))
 }
 
-/// As nf_sampler_pixel(), but neighbours know nothing of each other: the error is that of each pixel, white over the
-/// image. For denoisers that were made for white noise.
+/// As nf_sampler_pixel(), but the error is white over the image: for denoisers that were made for white noise.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_sampler_white(x: u32, y: u32, frame: u32, index: u32) -> nf_sampler {
     of(Sampler::white(x, y, frame, index))
 }
 
-/// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent.
-/// Keys mean something only among the children of one parent: a bounce's light may have the same key as the next
-/// bounce's.
+/// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent;
+/// keys mean something only among the children of one parent.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_sampler_domain(sampler: nf_sampler, key: u32) -> nf_sampler {
     of(to(&sampler).domain(key))
 }
 
-/// An independent version of the sampler for each seed but 0; seed 0 changes nothing.
-///
-/// All values of a dimension are shifted, modulo 1, by a hash of seed and domain. Over random seeds every value is
-/// uniform, so that estimates are unbiased, as far as a hash of 32 bits is random. The shift costs quality: where good
-/// images are wanted, and not exact unbiasedness, take another frame instead. Children of a scrambled sampler are
-/// scrambled.
+/// An independent version of the sampler, and of its children, for each seed but 0, which changes nothing. All values
+/// of a dimension are shifted, modulo 1, by a hash of seed and domain: uniform over random seeds, so that estimates are
+/// unbiased, at a cost of quality. For good images take another frame instead.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_sampler_scramble(sampler: nf_sampler, seed: u32) -> nf_sampler {
     of(to(&sampler).scramble(seed))
 }
 
-/// Writes `dims` numbers, 1..4, to u[dims]: each in [0, 1), a multiple of 2^-24.
-///
-/// The first two are optimised together, across pixels too; all four are stratified together. Fewer are the first of
-/// those. More come from a domain of their own. Writes nothing if dims is out of range or u is NULL.
+/// Writes `dims` numbers, 1..4, to u[dims]: each in [0, 1), a multiple of 2^-24; nothing if dims is out of range or u
+/// NULL. The first two are optimised together, across pixels too; all four are stratified together.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_sampler_draw(sampler: nf_sampler, dims: u32, u: *mut f32) {
     // SAFETY: passed on to the caller.
@@ -107,26 +97,11 @@ pub extern "C" fn nf_sampler_table() -> *const u32 {
     table::TABLE.as_ptr()
 }
 
-/// How many numbers nf_sampler_fill, or nf_tile_sampler_fill, writes: width * height * samples * (the sum of dims). 0
-/// if one of dims is outside 1..4, or memory has not that many.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_sampler_fill_len(
-    dims: *const u32,
-    domains: usize,
-    width: u32,
-    height: u32,
-    samples: u32,
-) -> usize {
-    // SAFETY: the caller passes `domains` numbers.
-    unsafe { fill::len(dims, domains, [width, height, samples]) }
-}
-
-/// Draws for many pixels and samples at once, for renderers that work on whole images. The same bits as single draws.
+/// Draws for many pixels and samples at once, with the bits of single draws.
 ///
-/// samplers[domains]: one for each domain, all at the first pixel and the first sample. dims[domains]: how many numbers
-/// to draw from each, 1..4. width, height: how many pixels, to the right and down. samples: how many samples of each,
-/// by ascending index. u[height][width][samples][sum of dims]: what the samplers draw there, one after the other; len
-/// numbers are there, at least nf_sampler_fill_len.
+/// samplers[domains]: all at the first pixel and sample. dims[domains]: how many numbers of each, 1..4. width, height:
+/// pixels to the right and down. samples: of each pixel, by ascending index. u[height][width][samples][sum of dims], of
+/// which `len` numbers are there.
 ///
 /// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: dims, or sizes that memory cannot have; NF_ERR_MEMORY: len.
 #[unsafe(no_mangle)]

@@ -4,14 +4,14 @@ use crate::convert;
 use crate::dispatch;
 use crate::rng::{self, nf_rng};
 use crate::status::*;
-use crate::table::{nf_table, open, weights};
+use crate::table::{nf_table, open};
 use noisefloor_core::minibatch::{
     self,
     table::{self, Shard},
 };
 
-/// What the processes of a data-parallel trainer must know of each other's tables. Each owns the table of its part of
-/// the data; before a draw all gather these 16 bytes from each (MPI_Allgather, for example).
+/// What the processes of a data-parallel trainer, each with the table of its part of the data, must know of each
+/// other's: before a draw all gather these 16 bytes (MPI_Allgather, for example).
 #[repr(C)]
 #[allow(non_camel_case_types)]
 #[derive(Clone, Copy)]
@@ -36,11 +36,9 @@ pub unsafe extern "C" fn nf_table_shard(table: *const nf_table, out: *mut nf_sha
     })())
 }
 
-/// How many of a batch's items each process draws: counts[shards], in proportion to the shards' probabilities, rounded
-/// up or down at random so that each is right on average. They sum to batch.
-///
-/// Every process calls it with the same shards and a generator of the same seed, and finds its own count among the
-/// results. uniform_fraction: 0..1, that of all tables.
+/// How many of a batch's items each process draws: counts[shards], in proportion to the shards' probabilities, each
+/// right on average. They sum to batch. Every process calls it with the same shards and a generator of the same seed.
+/// uniform_fraction: that of all tables.
 ///
 /// NF_ERR_NULL; NF_ERR_RANGE: a negative sum, 2^53 items or more, uniform_fraction; NF_ERR_NOT_FINITE;
 /// NF_ERR_NO_SAMPLES: no shards, no items, or nothing that can be drawn.
@@ -65,15 +63,13 @@ pub unsafe extern "C" fn nf_shards_allocate(
     })())
 }
 
-/// As nf_table_draw, for this process's part of a batch over all shards, of which this table is one: weights are those
-/// of the whole. Gradients times weights, summed over all processes and divided by the whole batch's size, estimate the
-/// gradient of the mean loss over all items.
+/// As nf_table_draw, for this process's part of a batch over all shards, of which this table is one, unchanged since
+/// its nf_shard was made: gradients times weights, summed over all processes and divided by the whole batch's size,
+/// estimate the gradient of the mean loss over all items. batch: from nf_shards_allocate. Where the others dwarf it a
+/// weight may be infinite.
 ///
-/// All tables must have the same uniform fraction; batch is what nf_shards_allocate gave to this process.
-///
-/// Other arguments and errors as for nf_table_draw and nf_shards_allocate; NF_ERR_RANGE: the shards together have less
-/// than this table. A table must not have changed since its nf_shard was made. Where the others dwarf it a weight may
-/// be infinite.
+/// NF_ERR_RANGE also if the shards together have less than this table; else as for nf_table_draw and
+/// nf_shards_allocate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_draw_shard(
     table: *const nf_table,
@@ -90,7 +86,8 @@ pub unsafe extern "C" fn nf_table_draw_shard(
         unsafe {
             let table = open(table)?;
             let all = Shard::sum(shared(convert::slice(shard, shards as usize)?)).map_err(status_of)?;
-            let (index, weight) = (convert::outputs(index, batch as usize)?, weights(weight, batch)?);
+            let (index, weight) =
+                (convert::outputs(index, batch as usize)?, convert::optional_outputs(weight, batch as usize)?);
             rng::try_with(rng, |rng| dispatch::table_draw_shard(&table, &all, rng, index, weight).map_err(status_of))
         }
     })())
@@ -101,9 +98,8 @@ fn shared(shards: &[nf_shard]) -> impl Iterator<Item = Shard> + Clone {
     shards.iter().map(|&nf_shard { importance, items }| Shard { importance, items })
 }
 
-/// The element at `position` of a random permutation of 0..items-1, which seed chooses: the order of an initial epoch
-/// (Algorithm 4), or of minibatches drawn uniformly without replacement, with no array of indices. 0 if there are no
-/// items; positions beyond the last start again.
+/// The element at `position` of a random permutation of 0..items-1, which seed chooses: an epoch's order (Algorithm 4)
+/// with no array of indices. 0 if there are no items; positions beyond the last start again.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_shuffle(seed: u64, items: u32, position: u32) -> u32 {
     minibatch::shuffle(seed, items, position)

@@ -11,15 +11,11 @@ use noisefloor_core::minibatch::table::{self, State, Table};
 ///
 /// Item i is drawn with probability p_i = (1 - d) q_i / sum q + d / N: q_i is its importance, d the uniform fraction,
 /// .2 unless set. No weight 1 / (N p_i) is then above 1 / d. Where all importances are 0 draws are uniform, or
-/// NF_ERR_NO_SAMPLES if d is 0.
-///
-/// A complete struct that refers to the memory its items live in; the fields are to be read, never written. A copy
-/// refers to the same memory: keep one. Nothing to destroy. Should that memory change on its own, what is drawn are
-/// still items that exist, if not as often as they should be.
+/// NF_ERR_NO_SAMPLES if d is 0. The struct refers to the memory its items live in: keep one copy.
 #[repr(C)]
 #[allow(non_camel_case_types)]
 pub struct nf_table {
-    /// The importance of each item, in the memory given to nf_table_init.
+    /// q_i, of each item, to be read. In the memory given to nf_table_init.
     pub importance: *mut f32,
     /// The sums over them, behind.
     pub sums: *mut i64,
@@ -29,7 +25,8 @@ pub struct nf_table {
     pub items: u32,
     /// How many blocks of 16 items there is room for.
     pub blocks: u32,
-    /// The part of draws that are uniform.
+    /// d, the part of draws that are uniform; to be written at will, 0 to 1, else all calls are NF_ERR_RANGE. At 0 an
+    /// item of importance 0 is never drawn, and one whose importance is out of date can get a weight of thousands.
     pub uniform_fraction: f32,
     /// Says that this is a table.
     pub magic: u32,
@@ -37,6 +34,11 @@ pub struct nf_table {
 
 /// "nf_t", read on a little-endian machine.
 const MAGIC: u32 = u32::from_le_bytes(*b"nf_t");
+/// nf_table_save: the bytes before those of the items, of which each takes 4.
+pub const NF_TABLE_SAVED_HEADER: u32 = 32;
+
+const _: () = assert!(NF_TABLE_SAVED_HEADER as usize == table::HEADER_BYTES);
+
 /// A block of items is a cache line, and starts where one does.
 const ALIGNMENT: usize = 64;
 /// What aligning memory that is aligned to 8 bytes takes at most.
@@ -44,8 +46,7 @@ const SLACK: usize = ALIGNMENT - 8;
 const BLOCK: usize = 16;
 const MAX_BLOCKS: u32 = 1 << 28;
 
-/// The bytes of memory a table of so many items needs, at most 4.6 for each and a few hundred; 0 for 0 items or a size
-/// that no memory has.
+/// Bytes of memory of a table, at most 4.6 for each item and a few hundred; 0 for 0 items, or if no memory has them.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_table_size(items: u32) -> usize {
     let blocks = items.div_ceil(BLOCK as u32);
@@ -65,11 +66,9 @@ fn parts(blocks: u32) -> Option<(usize, usize)> {
     (importance > 0 && all <= isize::MAX as usize).then_some((importance, sums))
 }
 
-/// Makes a table of `items` items in `memory`.
-///
-/// memory: at least nf_table_size(items) bytes, 8-byte aligned; what it holds is lost. More is room for
+/// Makes a table of `items` items in `memory`, of which more than nf_table_size(items) bytes are room for
 /// nf_table_append. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch
-/// that visits every item (Algorithm 4).
+/// (Algorithm 4).
 ///
 /// NF_ERR_NULL; NF_ERR_RANGE: no items, or a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all are 0;
 /// NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
@@ -109,11 +108,12 @@ pub unsafe extern "C" fn nf_table_init(
 
 /// Draws `batch` items with replacement, independently, in proportion to importance.
 ///
-/// index[batch]: the items. weight[batch]: 1 / (N p) of each, for importance sampling: gradients times weights,
-/// averaged over the batch, estimate the gradient of the mean loss without bias (6.3). NULL where they are not wanted:
-/// without weights it is adaptive sampling (w = p in Algorithm 3), which favours important items, a bias by design.
+/// index[batch]: the items. weight[batch]: 1 / (N p) of each: gradients times weights, averaged over the batch,
+/// estimate the gradient of the mean loss without bias (6.3). NULL where they are not wanted: adaptive sampling (w = p
+/// in Algorithm 3), which favours important items, a bias by design.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_NO_SAMPLES: nothing can be drawn. A batch of 0 is no error.
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: uniform_fraction; NF_ERR_NO_SAMPLES: nothing can be drawn. A batch of 0 is
+/// no error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_draw(
     table: *const nf_table,
@@ -126,9 +126,8 @@ pub unsafe extern "C" fn nf_table_draw(
     unsafe { draw(table, rng, batch, index, weight, dispatch::table_draw) }
 }
 
-/// As nf_table_draw, from `batch` equal parts of the line of probabilities: item i comes about `batch` p_i times, so
-/// that the estimate varies less where neighbouring items are alike. Items drawn uniformly come first, and all in the
-/// order of the data set: use the batch as a whole.
+/// As nf_table_draw, from `batch` equal parts of the line of probabilities: less variance where neighbouring items are
+/// alike. In the order of the data set, uniform draws first: use the batch as a whole.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_draw_stratified(
     table: *const nf_table,
@@ -141,16 +140,15 @@ pub unsafe extern "C" fn nf_table_draw_stratified(
     unsafe { draw(table, rng, batch, index, weight, dispatch::table_draw_stratified) }
 }
 
-/// Draws `batch` different items, without replacement, the k-th being item i with probability
-///     c_i = ((1 - d) q_i / sum q + d / N) / (1 - d (k - 1) / N),
-/// the sum being that of the items not yet drawn, and d the uniform fraction (1 where that sum is 0). Weights make the
-/// same estimate as nf_table_draw's, without bias (Raj 1956): (1 / c_k + batch - k) / N for the k-th item.
+/// Draws `batch` different items, the k-th being item i with probability c_i = ((1 - d) q_i / sum q + d / N) / (1 - d
+/// (k - 1) / N), the sum being that of the items not yet drawn. weight: (1 / c_k + batch - k) / N, for the same
+/// unbiased estimate (Raj 1956).
 ///
-/// The table is the same afterwards, but is written meanwhile. A draw takes the time of some ten updates; where a few
-/// items have nearly all of the sum the table is built again without them, which takes time for every item.
+/// The table is written meanwhile, and the same afterwards. A draw takes the time of some ten updates, or, where a few
+/// items have nearly all of the sum, time for every item.
 ///
-/// Other arguments and errors as for nf_table_draw; NF_ERR_RANGE: more than there are items; NF_ERR_NO_SAMPLES also
-/// where the uniform fraction is 0 and fewer items have an importance above 0.
+/// NF_ERR_RANGE: more than there are items; NF_ERR_NO_SAMPLES also where d is 0 and fewer items have an importance
+/// above 0; else as for nf_table_draw.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_draw_distinct(
     table: *mut nf_table,
@@ -161,8 +159,13 @@ pub unsafe extern "C" fn nf_table_draw_distinct(
 ) -> nf_status {
     status((|| {
         // SAFETY: the caller passes a table and a generator that no one else uses, and outputs of `batch` elements.
-        let (opened, index, weight) =
-            unsafe { (open_mut(table)?, convert::outputs(index, batch as usize)?, weights(weight, batch)?) };
+        let (opened, index, weight) = unsafe {
+            (
+                open_mut(table)?,
+                convert::outputs(index, batch as usize)?,
+                convert::optional_outputs(weight, batch as usize)?,
+            )
+        };
         // SAFETY: as above.
         unsafe {
             rng::try_with(rng, |rng| dispatch::table_draw_distinct(opened, rng, index, weight).map_err(status_of))
@@ -176,8 +179,7 @@ pub unsafe extern "C" fn nf_table_draw_distinct(
 ///
 /// index[batch]; importance[batch]: at least 0, finite. momentum: 0..1; 0 forgets the old value, .3 is a good choice.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item that does not exist, a negative importance, momentum;
-/// NF_ERR_NOT_FINITE.
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item, an importance, momentum; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_update(
     table: *mut nf_table,
@@ -196,20 +198,8 @@ pub unsafe extern "C" fn nf_table_update(
     }
 }
 
-/// Sets the uniform fraction d, 0..1. 0 draws by importance alone: an item of importance 0 is never drawn, and one
-/// whose importance is out of date can get a weight of thousands. 1 draws uniformly.
-///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE; NF_ERR_NOT_FINITE.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_table_set_uniform_fraction(table: *mut nf_table, fraction: f32) -> nf_status {
-    // SAFETY: the caller passes a table that no one else uses.
-    unsafe {
-        change(table, |mut table| table.set_uniform_fraction(fraction).map(|()| table.state()).map_err(status_of))
-    }
-}
-
-/// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3, after an epoch. The uniform fraction does as
-/// much and costs nothing.
+/// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3. The uniform fraction does as much and costs
+/// nothing.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
@@ -220,8 +210,7 @@ pub unsafe extern "C" fn nf_table_add_epsilon(table: *mut nf_table, epsilon: f32
 
 /// Adds `count` items behind the last.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_MEMORY: the memory given to nf_table_init has no room; NF_ERR_RANGE: a negative
-/// importance; NF_ERR_NOT_FINITE.
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_MEMORY: nf_table_init got no room; NF_ERR_RANGE, NF_ERR_NOT_FINITE: an importance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_append(table: *mut nf_table, importance: *const f32, count: u32) -> nf_status {
     // SAFETY: the caller passes `count` importances and a table that no one else uses.
@@ -233,19 +222,10 @@ pub unsafe extern "C" fn nf_table_append(table: *mut nf_table, importance: *cons
     }
 }
 
-/// The probability p_i of drawing an item; 0 if there is no such item or no table. It comes with the item in
-/// nf_table_draw's weight; this is for items that another table drew.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_table_probability(table: *const nf_table, item: u32) -> f32 {
-    // SAFETY: the caller passes NULL or a table that no one writes meanwhile.
-    unsafe { open(table) }.map_or(0.0, |table| table.probability(item))
-}
-
-/// The probabilities of count items: p[k * stride] of index[k]. With J tables, stride J and p + j for the j-th table
-/// make the rows of densities that nf_omis_weights takes.
+/// The probabilities of `count` items: p[k * stride] of index[k]. With J tables, stride J and p + j for the j-th table
+/// make the rows that nf_omis_weights takes.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item that does not exist, or stride 0; NF_ERR_NO_SAMPLES as for
-/// nf_table_draw.
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item, or stride 0; NF_ERR_NO_SAMPLES as for nf_table_draw.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_probabilities(
     table: *const nf_table,
@@ -284,28 +264,7 @@ pub unsafe extern "C" fn nf_table_probabilities(
     })())
 }
 
-/// The importance q_i of an item; 0 if there is no such item or no table.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_table_importance(table: *const nf_table, item: u32) -> f32 {
-    // SAFETY: the caller passes NULL or a table that no one writes meanwhile.
-    unsafe { open(table) }.map_or(0.0, |table| table.importance(item))
-}
-
-/// The sum of all importances; 0 if there is no table.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_table_total(table: *const nf_table) -> f64 {
-    // SAFETY: the caller passes NULL or a table that no one writes meanwhile.
-    unsafe { open(table) }.map_or(0.0, |table| table.total())
-}
-
-/// The bytes that nf_table_save writes; 0 if there is no table.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_table_saved_size(table: *const nf_table) -> usize {
-    // SAFETY: the caller passes NULL or a table that no one writes meanwhile.
-    unsafe { open(table) }.map_or(0, |table| table::saved_len(table.items()))
-}
-
-/// Writes the table, the same bytes on every target, to exactly nf_table_saved_size bytes, of any alignment.
+/// Writes the table, the same bytes on every target: exactly NF_TABLE_SAVED_HEADER + 4 * items, of any alignment.
 ///
 /// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_LENGTH.
 #[unsafe(no_mangle)]
@@ -317,20 +276,10 @@ pub unsafe extern "C" fn nf_table_save(table: *const nf_table, saved: *mut c_voi
     })())
 }
 
-/// The number of items in what nf_table_save wrote, to make memory for it with nf_table_size; 0 if it is no saved
-/// table. Only the first bytes are looked at.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_table_saved_items(saved: *const c_void, len: usize) -> u32 {
-    // SAFETY: the caller passes `len` bytes.
-    let saved = unsafe { convert::slice(saved.cast::<u8>(), len) };
-    saved.ok().and_then(|saved| table::saved_items(saved).ok()).unwrap_or(0)
-}
-
-/// A table as it was when nf_table_save wrote it, in memory as for nf_table_init. It draws the same items from the same
-/// generator.
+/// A table as nf_table_save wrote it, in memory as for nf_table_init: it draws the same items from the same generator.
 ///
-/// NF_ERR_NULL; NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: what is wrong with the bytes;
-/// NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+/// NF_ERR_NULL; NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: the bytes; NF_ERR_MEMORY;
+/// NF_ERR_ALIGNMENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_load(
     table: *mut nf_table,
@@ -365,20 +314,12 @@ unsafe fn draw(
     status((|| {
         // SAFETY: the caller passes a table that no one writes meanwhile, a generator that no one else uses, and
         // outputs of `batch` elements.
-        let (table, index, weight) =
-            unsafe { (open(table)?, convert::outputs(index, batch as usize)?, weights(weight, batch)?) };
+        let (table, index, weight) = unsafe {
+            (open(table)?, convert::outputs(index, batch as usize)?, convert::optional_outputs(weight, batch as usize)?)
+        };
         // SAFETY: as above.
         unsafe { rng::try_with(rng, |rng| draw(&table, rng, index, weight).map_err(status_of)) }
     })())
-}
-
-/// The weights, unless NULL says that they are not wanted.
-///
-/// # Safety
-/// A non-NULL `weight` must be room for `batch` elements that no one else uses.
-pub(crate) unsafe fn weights<'a>(weight: *mut f32, batch: u32) -> Result<Option<&'a mut [f32]>, nf_status> {
-    // SAFETY: passed on to the caller.
-    if weight.is_null() { Ok(None) } else { unsafe { convert::outputs(weight, batch as usize) }.map(Some) }
 }
 
 /// The table as the core sees it, to read.
@@ -425,11 +366,15 @@ unsafe fn change(table: *mut nf_table, change: impl FnOnce(Writer<'_>) -> Result
 }
 
 fn state(table: &nf_table) -> State {
-    State { scale: table.scale, items: table.items, uniform_fraction: table.uniform_fraction }
+    // Adding 0 turns -0 into it.
+    State { scale: table.scale, items: table.items, uniform_fraction: table.uniform_fraction + 0.0 }
 }
 
 /// How many importances and sums a table's memory has.
 fn lengths(table: &nf_table) -> Result<(usize, usize), nf_status> {
+    if !(0.0..=1.0).contains(&table.uniform_fraction) {
+        return Err(NF_ERR_RANGE);
+    }
     if table.magic != MAGIC || table.importance.is_null() || table.blocks > MAX_BLOCKS {
         return Err(NF_ERR_STATE);
     }

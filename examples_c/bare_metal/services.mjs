@@ -60,22 +60,34 @@ function tile() {
     }
 }
 
-function controlVariate(name, precision) {
-    const config = structure(), estimate = structure();
-    nf.nf_cv_config_default(config);
+// nf_cv_config and nf_cv_samples: fields that are not set are zero.
+function configuration(precision) {
+    const config = structure();
+    words.fill(0, config / 4, (config + STRUCT_BYTES) / 4);
+    [words[config / 4], words[config / 4 + 1], words[config / 4 + 2]] = [2, 2, 1];
     words[(config + PRECISION_OFFSET) / 4] = precision;
+    return config;
+}
+function samples() {
+    const all = structure();
+    words.fill(0, all / 4, (all + STRUCT_BYTES) / 4);
+    [words[all / 4], words[all / 4 + 1], words[all / 4 + 2]] = [u, f, SAMPLES];
+    return all;
+}
+
+function controlVariate(name, precision) {
+    const config = configuration(precision), all = samples(), estimate = structure();
     paint();
-    const status = nf.nf_cv_estimate(config, u, f, SAMPLES, workspace, WORKSPACE_BYTES, estimate);
+    const status = nf.nf_cv_estimate(config, all, 1, workspace, WORKSPACE_BYTES, estimate);
     line(name, status, words[estimate / 4], words[(estimate + STD_ERROR_OFFSET) / 4]);
 }
 
 function streaming() {
-    const config = structure(), estimate = structure(), accumulator = structure(), half = WORKSPACE_BYTES / 2;
-    nf.nf_cv_config_default(config);
-    words[(config + PRECISION_OFFSET) / 4] = PRECISION_F32;
+    const config = configuration(PRECISION_F32), all = samples(), half = WORKSPACE_BYTES / 2;
+    const estimate = structure(), accumulator = structure();
     paint();
     const status = nf.nf_cv_accumulator_init(workspace, half, config, accumulator)
-        || nf.nf_cv_accumulator_add(words[accumulator / 4], u, f, SAMPLES)
+        || nf.nf_cv_accumulator_add(words[accumulator / 4], all)
         || nf.nf_cv_accumulator_estimate(words[accumulator / 4], workspace + half, half, estimate);
     line("nf_cv_accumulator", status, words[estimate / 4], words[(estimate + STD_ERROR_OFFSET) / 4]);
 }
@@ -91,7 +103,7 @@ function mis() {
     paint();
     status = nf.nf_omis_init(workspace, WORKSPACE_BYTES, 3, 1, counts, omis);
     for (let j = 0; j < 3 && !status; ++j) status = nf.nf_omis_add(words[omis / 4], j, pdf, value);
-    status ||= nf.nf_omis_solve(words[omis / 4], OMIS_RIDGE, 0, result);
+    status ||= nf.nf_omis_solve(words[omis / 4], OMIS_RIDGE, 0, result, 0);
     line("nf_omis", status, words[result / 4], 0);
 }
 
@@ -107,8 +119,7 @@ function minibatch() {
 }
 
 tile();
-controlVariate("nf_cv_estimate_f32", PRECISION_F32);
-controlVariate("nf_cv_estimate_f64", PRECISION_F64);
+controlVariate("nf_cv_estimate", PRECISION_F64);
 streaming();
 mis();
 minibatch();

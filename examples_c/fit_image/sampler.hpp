@@ -137,12 +137,12 @@ private:
         const float outputs[3] = {output[0], output[stride], output[2 * stride]};
         const float targets[3] = {target[0], target[stride], target[2 * stride]};
         if (method_.tables == 1) {
-            q[0] = nf_importance_squared_error(outputs, targets, 3);
+            check(nf_importance_squared_error(outputs, targets, 1, 3, q), "nf_importance_squared_error");
         } else if (method_.tables > 1) {
             float derivatives[3];
             for (int c = 0; c < 3; ++c)
                 derivatives[c] = 2.0f * (outputs[c] - targets[c]);
-            check(nf_importance_nodes(derivatives, 3, method_.split, method_.tables, q), "nf_importance_nodes");
+            check(nf_importance_gradient(derivatives, 1, 3, method_.split, method_.tables, q), "nf_importance_gradient");
         }
     }
 
@@ -155,7 +155,7 @@ private:
                 std::fill(initial_[j].begin(), initial_[j].end(), 1e-20f);
             const std::size_t bytes = memory_[j].size() * sizeof(std::uint64_t);
             check(nf_table_init(&tables_[j], memory_[j].data(), bytes, items_, initial_[j].data()), "nf_table_init");
-            check(nf_table_set_uniform_fraction(&tables_[j], uniform_fraction_), "nf_table_set_uniform_fraction");
+            tables_[j].uniform_fraction = uniform_fraction_;
         }
         started_ = true;
     }

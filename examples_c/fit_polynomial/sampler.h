@@ -93,17 +93,17 @@ static void importances(const method *m, const float *gradient, float *q)
         break;
     case ABSOLUTE_RESIDUAL: {
         const float error = 0.5f * output;
-        q[0] = nf_importance_squared_error(&error, &zero, 1);
+        status = nf_importance_squared_error(&error, &zero, 1, 1, q);
         break;
     }
     case SIGNED_RESIDUAL:
-        status = nf_importance_nodes(&output, 1, NF_NODES_SIGN, m->tables, q);
+        status = nf_importance_gradient(&output, 1, 1, NF_NODES_SIGN, m->tables, q);
         break;
     case SIGNED_DERIVATIVES:
-        status = nf_importance_nodes(gradient, TERMS, NF_NODES_SIGN, m->tables, q);
+        status = nf_importance_gradient(gradient, 1, TERMS, NF_NODES_SIGN, m->tables, q);
         break;
     }
-    check(status, "nf_importance_nodes");
+    check(status, "importances");
 }
 
 static void draw_batch(sampler *s)
@@ -169,8 +169,7 @@ static void start_tables(sampler *s)
         for (uint32_t i = 0; largest == 0.0f && i < s->options->items; ++i)
             s->initial[j][i] = 1e-20f;
         check(nf_table_init(&s->tables[j], s->memory[j], s->bytes, s->options->items, s->initial[j]), "nf_table_init");
-        check(nf_table_set_uniform_fraction(&s->tables[j], (float)s->options->uniform_fraction),
-              "nf_table_set_uniform_fraction");
+        s->tables[j].uniform_fraction = (float)s->options->uniform_fraction;
     }
     s->started = 1;
 }

@@ -10,8 +10,8 @@ namespace demo {
 class AccumulatorImage {
 public:
     AccumulatorImage(const nf_cv_config &config, size_t pixels)
-        : words_((nf_cv_accumulator_size(&config) + 7) / 8), memory_(words_ * pixels),
-          workspace_(memory(nf_cv_accumulator_workspace_size(&config)))
+        : words_((nf_cv_accumulator_size(&config, nullptr) + 7) / 8), memory_(words_ * pixels),
+          workspace_(memory(accumulator_workspace_size(config)))
     {
         for (size_t p = 0; p < pixels; ++p) {
             nf_cv_accumulator *accumulator = nullptr;
@@ -51,7 +51,7 @@ public:
                 throw std::runtime_error(
                     "`" + name + "` needs the samples of neighbouring pixels, which --accumulate does not keep");
             configs_.push_back(configure(find_estimator(name), setup));
-            if (nf_cv_accumulator_size(&configs_.back()) == 0)
+            if (nf_cv_accumulator_size(&configs_.back(), nullptr) == 0)
                 throw std::runtime_error(refusal(name, configs_.back(), setup) +
                                          ", or it cannot be streamed, as --accumulate does");
             accumulators_.emplace_back(configs_.back(), size_t{options.width} * options.height);
@@ -92,10 +92,12 @@ private:
         times.tracing += seconds(start, stop);
         for (size_t e = 0; e < accumulators_.size(); ++e) {
             start = stop;
-            for (uint32_t x = 0; x < options_.width; ++x)
-                check(nf_cv_accumulator_add(accumulators_[e].pixel(size_t{y} * options_.width + x),
-                                            u + size_t{x} * count * dims_, f + size_t{x} * count * 3, count),
+            for (uint32_t x = 0; x < options_.width; ++x) {
+                const nf_cv_samples samples =
+                    samples_of(u + size_t{x} * count * dims_, f + size_t{x} * count * 3, count);
+                check(nf_cv_accumulator_add(accumulators_[e].pixel(size_t{y} * options_.width + x), &samples),
                       "nf_cv_accumulator_add");
+            }
             stop = Clock::now();
             times.estimating[e] += seconds(start, stop);
         }

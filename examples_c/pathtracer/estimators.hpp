@@ -76,6 +76,20 @@ protected:
 // noisefloor's memory must be 8-byte aligned, which an array of uint64_t is.
 inline std::vector<uint64_t> memory(size_t bytes) { return std::vector<uint64_t>((bytes + 7) / 8); }
 
+inline nf_cv_samples samples_of(const float *u, const float *f, size_t n)
+{
+    nf_cv_samples samples = {};
+    samples.u = u, samples.f = f, samples.n = n;
+    return samples;
+}
+
+inline size_t accumulator_workspace_size(const nf_cv_config &config)
+{
+    size_t bytes = 0;
+    nf_cv_accumulator_size(&config, &bytes);
+    return bytes;
+}
+
 class Regression final : public PixelEstimator {
 public:
     Regression(const nf_cv_config &config, size_t n)
@@ -87,7 +101,9 @@ protected:
     void pixel(const float *u, const float *f, size_t n, float *mean) override
     {
         nf_estimate result;
-        check(nf_cv_estimate(&config_, u, f, n, workspace_.data(), 8 * workspace_.size(), &result), "nf_cv_estimate");
+        const nf_cv_samples samples = samples_of(u, f, n);
+        check(nf_cv_estimate(&config_, &samples, 1, workspace_.data(), 8 * workspace_.size(), &result),
+              "nf_cv_estimate");
         std::copy(result.mean, result.mean + 3, mean);
     }
 
@@ -100,8 +116,8 @@ private:
 class Streaming final : public PixelEstimator {
 public:
     explicit Streaming(const nf_cv_config &config)
-        : PixelEstimator(config.stride), config_(config), state_(memory(nf_cv_accumulator_size(&config))),
-          workspace_(memory(nf_cv_accumulator_workspace_size(&config)))
+        : PixelEstimator(config.stride), config_(config), state_(memory(nf_cv_accumulator_size(&config, nullptr))),
+          workspace_(memory(accumulator_workspace_size(config)))
     {
     }
 
@@ -112,9 +128,10 @@ protected:
         nf_cv_accumulator *accumulator = nullptr;
         check(nf_cv_accumulator_init(state_.data(), 8 * state_.size(), &config_, &accumulator),
               "nf_cv_accumulator_init");
-        for (size_t i = 0; i < n; i += pass)
-            check(nf_cv_accumulator_add(accumulator, u + i * config_.stride, f + i * 3, std::min(pass, n - i)),
-                  "nf_cv_accumulator_add");
+        for (size_t i = 0; i < n; i += pass) {
+            const nf_cv_samples samples = samples_of(u + i * config_.stride, f + i * 3, std::min(pass, n - i));
+            check(nf_cv_accumulator_add(accumulator, &samples), "nf_cv_accumulator_add");
+        }
         nf_estimate result;
         check(nf_cv_accumulator_estimate(accumulator, workspace_.data(), 8 * workspace_.size(), &result),
               "nf_cv_accumulator_estimate");
@@ -146,10 +163,11 @@ public:
         nf_cv_image image = {};
         image.width = image.height = side;
         image.stride = stride();
+        nf_cv_samples samples = samples_of(nullptr, nullptr, n);
         const float any = 0; // it is not read: that there is something known takes memory
         if (kind == known)
-            image.known = image.known_integrals = &any;
-        workspace_ = memory(nf_cv_image_workspace_size(&config, &image, n));
+            samples.known = &any;
+        workspace_ = memory(nf_cv_image_workspace_size(&config, &image, &samples));
     }
 
     void estimate(const Samples &s, float *means) override
@@ -159,11 +177,12 @@ public:
         image.height = s.height;
         image.surfaces = kind_ == blind ? nullptr : s.surface;
         image.stride = stride();
+        nf_cv_samples samples = samples_of(s.u, s.f, s.n);
         if (kind_ == known) {
-            image.known = s.known;
-            image.known_integrals = s.integrals;
+            samples.known = s.known;
+            samples.known_integrals = s.integrals;
         }
-        check(nf_cv_image_estimate(&config_, &image, s.u, s.f, s.n, workspace_.data(), 8 * workspace_.size(),
+        check(nf_cv_image_estimate(&config_, &image, &samples, workspace_.data(), 8 * workspace_.size(),
                                    results_.data()),
               "nf_cv_image_estimate");
         for (size_t p = 0; p < s.pixels(); ++p)
@@ -250,8 +269,7 @@ inline const EstimatorName &find_estimator(const std::string &name)
 inline nf_cv_config configure(const EstimatorName &known, const EstimatorSetup &setup)
 {
     const std::string name = known.name;
-    nf_cv_config config;
-    nf_cv_config_default(&config);
+    nf_cv_config config = {};
     config.dims = setup.regressed;
     config.stride = setup.dims;
     config.basis = setup.basis;

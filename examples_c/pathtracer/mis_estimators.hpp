@@ -64,9 +64,9 @@ private:
                 for (uint32_t t = 0; t < 2; ++t)
                     if (pairs[i].drawn[t].pdf[t] > 0)
                         check(nf_omis_add(omis, t, pairs[i].drawn[t].pdf, pairs[i].drawn[t].value), "nf_omis_add");
-            nf_status status = nf_omis_alpha(omis, NF_OMIS_RIDGE, 0, alpha);
+            nf_status status = nf_omis_solve(omis, NF_OMIS_RIDGE, 0, nullptr, alpha);
             if (status != NF_ERR_NO_SAMPLES) // nothing to be seen from here
-                check(status, "nf_omis_alpha");
+                check(status, "nf_omis_solve");
         }
         std::copy_n(pairs[0].emitted, 3, mean);
         for (uint32_t t = 0; t < 2; ++t) {
@@ -93,7 +93,8 @@ private:
     {
         if (kind_.regression) {
             nf_estimate result;
-            check(nf_cv_estimate(&config_, u, weighted_.data(), n, workspace_.data(), 8 * workspace_.size(), &result),
+            const nf_cv_samples samples = samples_of(u, weighted_.data(), n);
+            check(nf_cv_estimate(&config_, &samples, 1, workspace_.data(), 8 * workspace_.size(), &result),
                   "nf_cv_estimate");
             for (size_t c = 0; c < 3; ++c)
                 mean[c] += result.mean[c];
@@ -120,8 +121,7 @@ inline std::unique_ptr<Estimator> make_mis_estimator(const std::string &name, co
     for (const MisEstimatorName &known : mis_estimator_names) {
         if (name != known.name)
             continue;
-        nf_cv_config config;
-        nf_cv_config_default(&config);
+        nf_cv_config config = {};
         config.dims = 2;
         config.stride = setup.dims;
         config.order = setup.order;

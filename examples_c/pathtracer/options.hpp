@@ -72,8 +72,7 @@ inline void print_usage(FILE *to, const Program &program)
         std::fprintf(to, " %s", name);
     std::fputs("\ntiles:", to);
     for (const TileName &tile : tile_names)
-        if (has_tile(tile))
-            std::fprintf(to, " %s", tile.name);
+        std::fprintf(to, " %s", tile.name);
     std::fputs("\nfilters:", to);
     for (const FilterName &filter : filter_names)
         std::fprintf(to, " %s", filter.name);

@@ -14,38 +14,30 @@ namespace demo {
 
 struct TileName {
     const char *name;
-    uint32_t id;
+    const nf_tile *tile;
 };
 
 inline const TileName tile_names[] = {
-    {"128_1SPP_2D", NF_TILE_128_1SPP_2D},
-    {"128_4SPP_2D", NF_TILE_128_4SPP_2D},
-    {"128_16SPP_2D", NF_TILE_128_16SPP_2D},
-    {"128_16SPP_2D_PROGRESSIVE", NF_TILE_128_16SPP_2D_PROGRESSIVE},
-    {"128_1SPP_4D", NF_TILE_128_1SPP_4D},
-    {"128_4SPP_4D", NF_TILE_128_4SPP_4D},
-    {"128_1SPP_2D_GAUSSIAN", NF_TILE_128_1SPP_2D_GAUSSIAN},
-    {"128_4SPP_2D_GAUSSIAN", NF_TILE_128_4SPP_2D_GAUSSIAN},
-    {"128_1SPP_2D_TEMPORAL", NF_TILE_128_1SPP_2D_TEMPORAL},
-    {"64_1SPP_2D", NF_TILE_64_1SPP_2D},
-    {"64_4SPP_2D", NF_TILE_64_4SPP_2D},
-    {"64_4SPP_2D_TEMPORAL", NF_TILE_64_4SPP_2D_TEMPORAL},
+    {"128_1SPP_2D", &nf_tile_128_1spp_2d},
+    {"128_4SPP_2D", &nf_tile_128_4spp_2d},
+    {"128_16SPP_2D", &nf_tile_128_16spp_2d},
+    {"128_16SPP_2D_PROGRESSIVE", &nf_tile_128_16spp_2d_progressive},
+    {"128_1SPP_4D", &nf_tile_128_1spp_4d},
+    {"128_4SPP_4D", &nf_tile_128_4spp_4d},
+    {"128_1SPP_2D_GAUSSIAN", &nf_tile_128_1spp_2d_gaussian},
+    {"128_4SPP_2D_GAUSSIAN", &nf_tile_128_4spp_2d_gaussian},
+    {"128_1SPP_2D_TEMPORAL", &nf_tile_128_1spp_2d_temporal},
+    {"64_1SPP_2D", &nf_tile_64_1spp_2d},
+    {"64_4SPP_2D", &nf_tile_64_4spp_2d},
+    {"64_4SPP_2D_TEMPORAL", &nf_tile_64_4spp_2d_temporal},
 };
 
-// False if the linked library was built without it.
-inline bool has_tile(const TileName &tile)
-{
-    nf_tile view;
-    return nf_tile_builtin(tile.id, &view) == NF_OK;
-}
-
-// Those that the linked library carries.
+// Those that come with the library.
 inline std::string tile_list()
 {
     std::string list;
     for (const TileName &tile : tile_names)
-        if (has_tile(tile))
-            list += (list.empty() ? "" : ", ") + std::string(tile.name);
+        list += (list.empty() ? "" : ", ") + std::string(tile.name);
     return list;
 }
 
@@ -58,11 +50,7 @@ public:
         for (const TileName &known : tile_names) {
             if (name != known.name)
                 continue;
-            nf_status status = nf_tile_builtin(known.id, &view_);
-            if (status == NF_ERR_UNSUPPORTED)
-                throw std::runtime_error("the library was built without the tile " + name + "; it carries " +
-                                         tile_list());
-            check(status, name);
+            view_ = *known.tile;
             return;
         }
         read(name);
@@ -105,8 +93,8 @@ inline std::string default_tile(uint32_t samples)
     const TileName *best = nullptr;
     uint32_t best_size = 0, best_spp = 0;
     for (const TileName &tile : tile_names) {
-        nf_tile view;
-        if (nf_tile_builtin(tile.id, &view) != NF_OK || view.dims != 2 || view.spp > samples)
+        const nf_tile &view = *tile.tile;
+        if (view.dims != 2 || view.spp > samples)
             continue;
         // Of equals the first: those that follow are for special purposes.
         if (!best || view.spp > best_spp || (view.spp == best_spp && view.size > best_size)) {
@@ -115,8 +103,6 @@ inline std::string default_tile(uint32_t samples)
             best_spp = view.spp;
         }
     }
-    if (!best)
-        throw std::runtime_error("the library carries no tile of two dimensions; name another, from a file");
     return best->name;
 }
 

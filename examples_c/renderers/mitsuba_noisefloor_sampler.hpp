@@ -45,7 +45,7 @@ public:
     std::vector<Float> numbers(uint32_t frame, uint32_t dimension, uint32_t dims, uint32_t samples) const
     {
         const nf_sampler first = nf_sampler_domain(nf_sampler_pixel(0, 0, frame, 0), dimension);
-        std::vector<Float> u(nf_sampler_fill_len(&dims, 1, m_film_size.x, m_film_size.y, samples));
+        std::vector<Float> u(std::size_t{dims} * m_film_size.x * m_film_size.y * samples);
         room::check(nf_sampler_fill(&first, &dims, 1, m_film_size.x, m_film_size.y, samples, u.data(), u.size()),
                     "nf_sampler_fill");
         return u;

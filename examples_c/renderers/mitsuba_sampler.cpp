@@ -26,10 +26,11 @@ class Accumulators {
 public:
     Accumulators()
     {
-        nf_cv_config_default(&config_);
         config_.dims = 3;
+        config_.order = 2;
+        config_.channels = 1;
         config_.slices = room::lamps;
-        stride_ = nf_cv_accumulator_size(&config_) / 8 + 1;
+        stride_ = nf_cv_accumulator_size(&config_, &workspace_) / 8 + 1;
         memory_.resize(pixels * stride_);
         accumulators_.resize(pixels);
         for (uint32_t pixel = 0; pixel < pixels; ++pixel)
@@ -43,12 +44,14 @@ public:
         const Float x = sampler.number(emitter_dimension), scaled = x * static_cast<Float>(room::lamps);
         const Float u[] = {scaled - static_cast<Float>(static_cast<int>(scaled)), sampler.number(emitter_dimension + 1),
                            x};
-        room::check(nf_cv_accumulator_add(accumulators_[pixel], u, &value, 1), "nf_cv_accumulator_add");
+        nf_cv_samples sample = {};
+        sample.u = u, sample.f = &value, sample.n = 1;
+        room::check(nf_cv_accumulator_add(accumulators_[pixel], &sample), "nf_cv_accumulator_add");
     }
 
     std::vector<Float> picture() const
     {
-        std::vector<uint64_t> workspace(nf_cv_accumulator_workspace_size(&config_) / 8 + 1);
+        std::vector<uint64_t> workspace(workspace_ / 8 + 1);
         std::vector<Float> image;
         for (const nf_cv_accumulator *accumulator : accumulators_) {
             nf_estimate estimate;
@@ -61,7 +64,7 @@ public:
 
 private:
     nf_cv_config config_{};
-    size_t stride_ = 0;
+    size_t stride_ = 0, workspace_ = 0;
     std::vector<uint64_t> memory_;
     std::vector<nf_cv_accumulator *> accumulators_;
 };

@@ -23,12 +23,13 @@ std::vector<Float> shared_fits(const Film &film, const NoisefloorSampler &sample
     const nf_sampler domains[] = {sampler.Request({0, 0}, light_dimension),
                                   sampler.Request({0, 0}, choice_dimension)};
     const uint32_t dims[] = {2, 1};
-    std::vector<Float> u(nf_sampler_fill_len(dims, 2, width, height, n));
+    std::vector<Float> u(std::size_t{3} * width * height * n);
     room::check(nf_sampler_fill(domains, dims, 2, width, height, n, u.data(), u.size()), "nf_sampler_fill");
 
-    nf_cv_config config;
-    nf_cv_config_default(&config);
+    nf_cv_config config = {};
     config.dims = 3;
+    config.order = 2;
+    config.channels = 1;
     config.slices = room::lamps;
     config.stratified = 1;
 
@@ -38,10 +39,12 @@ std::vector<Float> shared_fits(const Film &film, const NoisefloorSampler &sample
     image.height = height;
     image.surfaces = surfaces.data();
 
-    std::vector<uint64_t> workspace(nf_cv_image_workspace_size(&config, &image, n) / 8 + 1);
+    nf_cv_samples samples = {};
+    samples.u = u.data(), samples.f = film.Values().data(), samples.n = n;
+    std::vector<uint64_t> workspace(nf_cv_image_workspace_size(&config, &image, &samples) / 8 + 1);
     std::vector<nf_estimate> estimates(surfaces.size());
-    room::check(nf_cv_image_estimate(&config, &image, u.data(), film.Values().data(), n, workspace.data(),
-                                     8 * workspace.size(), estimates.data()),
+    room::check(nf_cv_image_estimate(&config, &image, &samples, workspace.data(), 8 * workspace.size(),
+                                     estimates.data()),
                 "nf_cv_image_estimate");
     std::vector<Float> pixels;
     for (const nf_estimate &estimate : estimates)

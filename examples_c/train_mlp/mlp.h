@@ -24,7 +24,7 @@ typedef struct workspace {
     float *activation[LAYERS + 1]; /* [rows * size[l]] */
     float *delta[LAYERS + 1];      /* [rows * size[l]]; delta[0] is not used */
     float *transposed;             /* the weights of one layer */
-    uint8_t *label;                /* [rows] */
+    uint32_t *label;               /* [rows] */
 } workspace;
 
 /* ---- c[m * n] += a b, with a's element (i, p) at a[i * row + p * column] and b [k * n] ---- */
@@ -103,7 +103,7 @@ static workspace workspace_create(const mlp *net, uint32_t rows)
             largest = (size_t)net->size[l - 1] * net->size[l];
     }
     space.transposed = allocate(largest, sizeof(float));
-    space.label = allocate(rows, 1);
+    space.label = allocate(rows, sizeof *space.label);
     return space;
 }
 
@@ -148,11 +148,9 @@ static void forward(const mlp *net, workspace *space, uint32_t count)
 /* softmax - onehot into delta[LAYERS]: the loss's derivative by the logits, equation (6.10). */
 static void output_gradient(const mlp *net, workspace *space, uint32_t count)
 {
-    size_t classes = net->size[LAYERS];
-    for (uint32_t r = 0; r < count; ++r)
-        check(nf_cross_entropy_gradient(space->activation[LAYERS] + r * classes, net->size[LAYERS], space->label[r],
-                                        space->delta[LAYERS] + r * classes),
-              "gradient of the cross-entropy");
+    check(nf_importance_cross_entropy(space->activation[LAYERS], space->label, count, net->size[LAYERS], NULL, NULL,
+                                      space->delta[LAYERS]),
+          "gradient of the cross-entropy");
 }
 
 /* From delta[LAYERS] to the other deltas. It is linear: a factor on a row of delta[LAYERS] is a weight on that item. */
@@ -204,12 +202,14 @@ static quality evaluate(const mlp *net, workspace *space, const dataset *data, u
         forward(net, space, count);
         for (uint32_t r = 0; r < count; ++r) {
             const float *logits = space->activation[LAYERS] + (size_t)r * classes;
+            float loss;
             uint32_t best = 0;
             for (uint32_t c = 1; c < classes; ++c)
                 if (logits[c] > logits[best])
                     best = c;
             sum.error += best != space->label[r];
-            sum.loss += nf_importance_cross_entropy_loss(logits, classes, space->label[r]);
+            check(nf_importance_cross_entropy(logits, &space->label[r], 1, classes, NULL, &loss, NULL), "loss");
+            sum.loss += loss;
         }
     }
     free(index);

@@ -29,7 +29,7 @@ static sampler sampler_create(const options *o, enum mode mode, uint32_t items, 
     for (uint32_t j = 0; j < s.tables; ++j) {
         s.memory[j] = allocate(bytes, 1);
         check(nf_table_init(&s.table[j], s.memory[j], bytes, items, NULL), "table of importances");
-        check(nf_table_set_uniform_fraction(&s.table[j], o->delta), "--delta");
+        s.table[j].uniform_fraction = o->delta;
     }
     s.technique = allocate(o->batch, sizeof *s.technique);
     s.pdf = allocate((size_t)o->batch * MAX_TECHNIQUES, sizeof *s.pdf);
@@ -105,9 +105,9 @@ static void sampler_update(sampler *s, const mlp *net, const workspace *space, c
 {
     uint32_t classes = net->size[LAYERS];
     if (s->tables == 1) {
-        for (uint32_t r = 0; r < count; ++r)
-            s->importance[r] =
-                nf_importance_cross_entropy(space->activation[LAYERS] + (size_t)r * classes, classes, space->label[r]);
+        check(nf_importance_cross_entropy(space->activation[LAYERS], space->label, count, classes, s->importance, NULL,
+                                          NULL),
+              "importances");
         check(nf_table_update(&s->table[0], index, s->importance, count, gamma), "update of the importances");
         return;
     }
@@ -115,7 +115,8 @@ static void sampler_update(sampler *s, const mlp *net, const workspace *space, c
      */
     float part[MAX_TECHNIQUES];
     for (uint32_t r = 0; r < count && s->tables > 0; ++r) {
-        check(nf_importance_nodes(space->delta[LAYERS] + (size_t)r * classes, classes, NF_NODES_SIGN, s->tables, part),
+        check(nf_importance_gradient(space->delta[LAYERS] + (size_t)r * classes, 1, classes, NF_NODES_SIGN, s->tables,
+                                     part),
               "importances");
         for (uint32_t j = 0; j < s->tables; ++j)
             s->importance[(size_t)j * count + r] = part[j];

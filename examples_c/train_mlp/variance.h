@@ -84,12 +84,13 @@ static void scan_items(scan *all, const mlp *net, const dataset *data, workspace
                 square += last;
             }
             all->square[start + r] = square;
-            all->rating[RATE_LOSS][start + r] = nf_importance_cross_entropy_loss(logits, classes, space->label[r]);
-            all->rating[RATE_OURS][start + r] = nf_importance_cross_entropy(logits, classes, space->label[r]);
+            check(nf_importance_cross_entropy(logits, &space->label[r], 1, classes, &all->rating[RATE_OURS][start + r],
+                                              &all->rating[RATE_LOSS][start + r], NULL),
+                  "importances");
             all->rating[RATE_LAST_LAYER][start + r] = (float)sqrt(last);
             all->rating[RATE_GRADIENT][start + r] = (float)sqrt(square);
-            check(nf_importance_nodes(space->delta[LAYERS] + (size_t)r * classes, classes, NF_NODES_SIGN, techniques,
-                                      part),
+            check(nf_importance_gradient(space->delta[LAYERS] + (size_t)r * classes, 1, classes, NF_NODES_SIGN,
+                                         techniques, part),
                   "importances");
             for (uint32_t j = 0; j < techniques; ++j)
                 all->part[j][start + r] = part[j];
@@ -168,7 +169,7 @@ static void sampler_refresh(sampler *s, const scan *all)
     for (uint32_t j = 0; j < s->tables; ++j) {
         const float *importance = s->tables == 1 ? all->rating[RATE_OURS] : all->part[j];
         check(nf_table_init(&s->table[j], s->memory[j], bytes, s->items, importance), "fresh table");
-        check(nf_table_set_uniform_fraction(&s->table[j], s->o->delta), "--delta");
+        s->table[j].uniform_fraction = s->o->delta;
     }
 }
 

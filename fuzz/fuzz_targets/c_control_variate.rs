@@ -16,7 +16,6 @@ const MOST: usize = 1 << 21;
 const UNTOUCHED: nf_estimate = nf_estimate { mean: [-7.0; 4], std_error: [-7.0; 4], samples: 7, gain: -7.0 };
 
 fn config(source: &mut Source<'_>) -> Result<nf_cv_config> {
-    let iterations = source.small(40)?;
     Ok(nf_cv_config {
         dims: source.small(5)?,
         order: source.small(4)?,
@@ -32,13 +31,24 @@ fn config(source: &mut Source<'_>) -> Result<nf_cv_config> {
         nonfinite: source.small(1)?,
         color: u32::from(source.rarely(8)?),
         folds: source.small(5)?,
+        ridge: source.number()?,
+    })
+}
+
+fn descent(source: &mut Source<'_>) -> Result<nf_cv_descent> {
+    let iterations = source.small(40)?;
+    Ok(nf_cv_descent {
+        optimizer: source.small(3)?,
         // Many steps are no other code, only slow.
         iterations: if iterations > 1 << 20 { iterations } else { iterations % 41 },
-        optimizer: source.small(3)?,
-        ridge: source.number()?,
         learning_rate: source.number()?,
         momentum: source.number()?,
     })
+}
+
+fn arrays(u: *const f32, f: *const f32, n: usize) -> nf_cv_samples {
+    let nothing = null();
+    nf_cv_samples { u, f, n, controls: nothing, control_integrals: nothing, known: nothing, known_integrals: nothing }
 }
 
 fn is_sound(estimate: &nf_estimate) -> bool {
@@ -70,7 +80,7 @@ fn samples(source: &mut Source<'_>, config: &nf_cv_config, n: usize) -> Result<S
     // SAFETY: a reference is a valid pointer.
     let valid = unsafe { nf_cv_terms(config) } > 0;
     // SAFETY: as above.
-    assert!(valid || !unsafe { nf_cv_config_check(config) }.is_null());
+    assert!(valid || !unsafe { nf_cv_check(config, null(), null()) }.is_null());
     let len = |width: u32| if valid { n * width as usize } else { 0 };
     let stride = if config.stride == 0 { config.dims } else { config.stride };
     let used =
@@ -99,20 +109,31 @@ fn batch(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
         let mut workspace = source.memory(bytes)?;
         let (memory, size) = (workspace.pointer_mut().cast(), workspace.bytes());
         let mut out = UNTOUCHED;
-        check(nf_cv_estimate(config, u.pointer(), f.pointer(), n, memory, size, &mut out), &out);
-        assert!(nf_cv_estimate(config, u.pointer(), f.pointer(), n, memory, size, null_mut()) < 0);
+        let samples = arrays(u.pointer(), f.pointer(), n);
+        check(nf_cv_estimate(config, &samples, 1, memory, size, &mut out), &out);
+        assert!(nf_cv_estimate(config, &samples, 1, memory, size, null_mut()) < 0);
+        assert!(nf_cv_estimate(config, null(), 1, memory, size, &mut UNTOUCHED) < 0);
         let mut out = UNTOUCHED;
-        let (h, integrals) = (h.pointer(), integrals.pointer());
-        let status =
-            nf_cv_estimate_with_controls(config, u.pointer(), f.pointer(), h, integrals, n, memory, size, &mut out);
-        check(status, &out);
+        let controlled = nf_cv_samples { controls: h.pointer(), control_integrals: integrals.pointer(), ..samples };
+        check(nf_cv_estimate(config, &controlled, 1, memory, size, &mut out), &out);
+        // Half of them as an integral each.
+        let mut each = vec![UNTOUCHED; n / 2 + 1];
+        let count = n / 2;
+        let halves = nf_cv_samples { n: 2, ..samples };
+        if nf_cv_workspace_size(config, 2) <= size {
+            let status = nf_cv_estimate(config, &halves, count, memory, size, each.as_mut_ptr());
+            each.iter().take(count).for_each(|out| check(status, out));
+            assert!(each.iter().skip(count).all(|out| out.samples == UNTOUCHED.samples));
+        }
+        let steps = descent(source)?;
+        nf_cv_check(config, null(), &steps);
         let rows = if config.color == NF_COLOR_LUMINANCE_RATIO { 1 } else { config.channels };
         let terms = nf_cv_terms(config).saturating_sub(1);
         let mut start = source.array((terms * rows.min(4)) as usize, Source::number)?;
         let before = start.values.clone();
         let mut out = UNTOUCHED;
         let start_pointer = start.pointer_mut();
-        let status = nf_cv_gradient_descent(config, u.pointer(), f.pointer(), n, start_pointer, memory, size, &mut out);
+        let status = nf_cv_gradient_descent(config, &samples, &steps, start_pointer, memory, size, &mut out);
         check(status, &out);
         let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
         assert!(status == NF_OK || bits(&before) == bits(&start.values));
@@ -155,21 +176,25 @@ fn shared(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
         unordered: u32::from(source.rarely(4)?),
         surfaces: if source.any()? { surfaces.pointer() } else { null() },
         factors: if source.any()? { factors.pointer() } else { null() },
-        known: if has_known { known.pointer() } else { null() },
-        known_integrals: if has_integrals { integrals.pointer() } else { null() },
         given: if source.any()? { whole } else { nf_cv_rectangle::default() },
         wanted,
     };
+    let samples = nf_cv_samples {
+        known: if has_known { known.pointer() } else { null() },
+        known_integrals: if has_integrals { integrals.pointer() } else { null() },
+        ..arrays(u.pointer(), f.pointer(), n)
+    };
     // SAFETY: as in `batch`.
     unsafe {
-        let bytes = nf_cv_image_workspace_size(config, &image, n);
+        let bytes = nf_cv_image_workspace_size(config, &image, &samples);
+        assert!(bytes == 0 || nf_cv_check(config, &image, null()).is_null());
         if bytes > MOST {
             return Ok(());
         }
         let mut workspace = source.memory(bytes)?;
         let (memory, size) = (workspace.pointer_mut().cast(), workspace.bytes());
         let mut out = vec![UNTOUCHED; pixels];
-        let status = nf_cv_image_estimate(config, &image, u.pointer(), f.pointer(), n, memory, size, out.as_mut_ptr());
+        let status = nf_cv_image_estimate(config, &image, &samples, memory, size, out.as_mut_ptr());
         let part = wanted.width as usize * wanted.height as usize * frames.max(1) as usize;
         let written = if is_part && status == NF_OK { part } else { pixels };
         out.iter().take(written).for_each(|out| check(status, out));
@@ -194,8 +219,8 @@ unsafe fn state_of(accumulator: *const nf_cv_accumulator, workspace: &mut [u64])
 fn streaming(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
     // SAFETY: as in `batch`; an accumulator lives in memory that outlives it.
     unsafe {
-        let bytes = nf_cv_accumulator_size(config);
-        let work = nf_cv_accumulator_workspace_size(config);
+        let mut work = 0;
+        let bytes = nf_cv_accumulator_size(config, &mut work);
         if bytes > MOST || work > MOST {
             return Ok(());
         }
@@ -212,20 +237,23 @@ fn streaming(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
             let count = usize::from(source.any::<u8>()? % 12);
             let Samples { n, u, f, h, integrals } = samples(source, config, count)?;
             let before = objects.map(|object| state_of(object, &mut sound));
+            let samples = arrays(u.pointer(), f.pointer(), n);
+            let controlled = nf_cv_samples { controls: h.pointer(), control_integrals: integrals.pointer(), ..samples };
             let status = match source.any::<u8>()? % 6 {
-                0 => nf_cv_accumulator_add(first, u.pointer(), f.pointer(), n),
-                1 => nf_cv_accumulator_add(second, u.pointer(), f.pointer(), n),
-                2 => {
-                    let (h, integrals) = (h.pointer(), integrals.pointer());
-                    nf_cv_accumulator_add_with_controls(first, u.pointer(), f.pointer(), h, integrals, n)
-                }
+                0 => nf_cv_accumulator_add(first, &samples),
+                1 => nf_cv_accumulator_add(second, &samples),
+                2 => nf_cv_accumulator_add(first, &controlled),
                 3 => nf_cv_accumulator_merge(first, second),
                 4 => {
                     let status = nf_cv_accumulator_merge(first, first);
                     assert!(status < 0);
                     status
                 }
-                _ => nf_cv_accumulator_reset(second),
+                // Made anew: empty.
+                _ => match second.is_null() {
+                    true => nf_cv_accumulator_add(second, &samples),
+                    false => nf_cv_accumulator_init(second.cast(), bytes, config, &mut objects[1]),
+                },
             };
             let after = objects.map(|object| state_of(object, &mut sound));
             assert!(status == NF_OK || before == after, "{status}: {before:?} became {after:?}");
@@ -255,21 +283,22 @@ fn defaults_work() {
     let (u, f) = ([0.1, 0.2, 0.7, 0.4, 0.5, 0.9], [1.0, 2.0, 3.0]);
     // SAFETY: arrays have the lengths that the header asks for.
     unsafe {
-        let mut config = std::mem::MaybeUninit::uninit();
-        nf_cv_config_default(config.as_mut_ptr());
-        let default: nf_cv_config = config.assume_init();
+        // All zeros but these are defaults.
+        let default = nf_cv_config { dims: 2, order: 2, channels: 1, ..std::mem::zeroed() };
+        let samples = arrays(u.as_ptr(), f.as_ptr(), 3);
         for precision in [NF_PRECISION_F64, NF_PRECISION_F32] {
             let config = nf_cv_config { precision, ..default };
             let mut out = UNTOUCHED;
             let mut workspace = vec![0_u64; nf_cv_workspace_size(&config, 3).div_ceil(8)];
             let (memory, size) = (workspace.as_mut_ptr().cast(), 8 * workspace.len());
-            assert_eq!(nf_cv_estimate(&config, u.as_ptr(), f.as_ptr(), 3, memory, size, &mut out), NF_OK);
+            assert_eq!(nf_cv_estimate(&config, &samples, 1, memory, size, &mut out), NF_OK);
             check(NF_OK, &out);
-            let mut state = vec![0_u64; nf_cv_accumulator_size(&config).div_ceil(8)];
+            let mut work = 0;
+            let mut state = vec![0_u64; nf_cv_accumulator_size(&config, &mut work).div_ceil(8)];
             let (memory, size, mut accumulator) = (state.as_mut_ptr().cast(), 8 * state.len(), null_mut());
             assert_eq!(nf_cv_accumulator_init(memory, size, &config, &mut accumulator), NF_OK);
-            assert_eq!(nf_cv_accumulator_add(accumulator, u.as_ptr(), f.as_ptr(), 3), NF_OK);
-            let mut workspace = vec![0; nf_cv_accumulator_workspace_size(&config).div_ceil(8)];
+            assert_eq!(nf_cv_accumulator_add(accumulator, &samples), NF_OK);
+            let mut workspace = vec![0; work.div_ceil(8)];
             assert_eq!(state_of(accumulator, &mut workspace).0, NF_OK);
         }
     }
@@ -277,10 +306,7 @@ fn defaults_work() {
 
 fuzz_target!(init: defaults_work(), |bytes: &[u8]| {
     // SAFETY: NULL is allowed.
-    unsafe {
-        nf_cv_config_default(null_mut());
-        assert_eq!(nf_cv_terms(null()), 0);
-    }
+    unsafe { assert_eq!(nf_cv_terms(null()), 0) };
     // Bytes that ran out are no input.
     run(bytes).ok();
 });

@@ -12,8 +12,13 @@ use support::Source;
 
 /// The probabilities of all items sum to 1.
 fn check(table: &nf_table) {
-    // SAFETY: a reference is a valid pointer.
-    let sum: f64 = (0..table.items).map(|item| f64::from(unsafe { nf_table_probability(table, item) })).sum();
+    let probability = |item: u32| {
+        let mut p = 0.0;
+        // SAFETY: references are valid pointers. Where nothing can be drawn it stays 0.
+        unsafe { nf_table_probabilities(table, &item, 1, 1, &mut p) };
+        f64::from(p)
+    };
+    let sum: f64 = (0..table.items).map(probability).sum();
     assert!(sum == 0.0 || (sum - 1.0).abs() < 1e-4, "probabilities sum to {sum}");
 }
 
@@ -58,15 +63,20 @@ fn operation(source: &mut Source<'_>, table: &mut nf_table, rng: &mut nf_rng) ->
             4..7 => _ = nf_table_update(table, index.pointer(), importance.pointer(), batch, source.unit()?),
             7 => _ = nf_table_append(table, importance.pointer(), batch),
             8 => _ = nf_table_add_epsilon(table, source.number()?),
-            9 => _ = nf_table_set_uniform_fraction(table, source.unit()?),
+            9 => {
+                // Numbers outside 0..=1 are refused by every call.
+                let fraction = source.unit()?;
+                if (0.0..=1.0).contains(&fraction) {
+                    table.uniform_fraction = fraction;
+                }
+            }
             10 => {
                 let stride = source.small(2)?;
                 let mut p = vec![-7.0; if stride > 2 { 0 } else { count * stride as usize }];
                 if stride <= 2 {
                     nf_table_probabilities(table, index.pointer(), batch, stride, p.as_mut_ptr());
                 }
-                let item = source.small(items)?;
-                assert!(nf_table_importance(table, item) >= 0.0 && nf_table_total(table) >= 0.0);
+                assert!(total(table) >= 0.0);
             }
             _ => save(source, table)?,
         }
@@ -75,25 +85,31 @@ fn operation(source: &mut Source<'_>, table: &mut nf_table, rng: &mut nf_rng) ->
     Ok(())
 }
 
+fn total(table: &nf_table) -> f64 {
+    let mut shard = nf_shard { importance: -1.0, items: 0 };
+    // SAFETY: references are valid pointers.
+    assert_eq!(unsafe { nf_table_shard(table, &mut shard) }, NF_OK);
+    shard.importance
+}
+
 /// What was saved is loaded; with a byte changed it is refused.
 unsafe fn save(source: &mut Source<'_>, table: &nf_table) -> Result<()> {
     // SAFETY: as in `operation`.
     unsafe {
-        let mut saved = vec![0_u8; nf_table_saved_size(table)];
+        let mut saved = vec![0_u8; NF_TABLE_SAVED_HEADER as usize + 4 * table.items as usize];
         assert_eq!(nf_table_save(table, saved.as_mut_ptr().cast(), saved.len()), NF_OK);
         assert!(nf_table_save(table, saved.as_mut_ptr().cast(), saved.len() - 1) < 0);
         let at = source.any::<u16>()? as usize % saved.len();
         let change = source.any::<u8>()?;
         saved[at] ^= change;
-        let items = nf_table_saved_items(saved.as_ptr().cast(), saved.len());
-        let mut memory = vec![0_u64; nf_table_size(items.min(1 << 12)).div_ceil(8)];
+        let mut memory = vec![0_u64; nf_table_size(table.items).div_ceil(8)];
         let mut loaded = MaybeUninit::uninit();
         let (to, bytes) = (memory.as_mut_ptr().cast(), 8 * memory.len());
         let status = nf_table_load(loaded.as_mut_ptr(), to, bytes, saved.as_ptr().cast(), saved.len());
         assert_eq!(status == NF_OK, change == 0, "{status}: byte {at} changed by {change:#x}");
         if status == NF_OK {
             let loaded = loaded.assume_init();
-            assert_eq!(nf_table_total(&loaded).to_bits(), nf_table_total(table).to_bits());
+            assert_eq!(total(&loaded).to_bits(), total(table).to_bits());
         }
     }
     Ok(())
@@ -108,18 +124,20 @@ fn importances(source: &mut Source<'_>) -> Result<()> {
     let (a, b) = (logits.pointer(), target.pointer());
     // SAFETY: as in `operation`.
     unsafe {
-        let norm = nf_importance_cross_entropy(a, outputs, label);
-        assert!(norm.is_nan() || (0.0..=1.415).contains(&norm), "{norm}");
-        for q in [
-            nf_importance_cross_entropy_loss(a, outputs, label),
-            nf_importance_squared_error(a, b, outputs),
-            nf_importance_gradient(a, outputs),
-        ] {
-            assert!(q.is_nan() || (q >= 0.0 && q.is_finite()), "{q}");
-        }
+        let [mut norm, mut loss, mut other] = [-7.0_f32; 3];
         let mut gradient = source.array(len, |_| Ok(-7.0_f32))?;
-        let status = nf_cross_entropy_gradient(a, outputs, label, gradient.pointer_mut());
-        let good = gradient.values.iter().all(|&g| if status == NF_OK { g.abs() <= 1.0 } else { g == -7.0 });
+        let to = gradient.pointer_mut();
+        let status = nf_importance_cross_entropy(a, &label, 1, outputs, &mut norm, &mut loss, to);
+        assert!(if status == NF_OK { (0.0..=1.415).contains(&norm) } else { norm == -7.0 }, "{norm}");
+        assert!(if status == NF_OK { loss >= 0.0 && loss.is_finite() } else { loss == -7.0 }, "{loss}");
+        for status in [
+            nf_importance_squared_error(a, b, 1, outputs, &mut other),
+            nf_importance_gradient(a, 1, outputs, NF_NODES_NORM, 1, &mut other),
+        ] {
+            assert!(status != NF_OK || (other >= 0.0 && other.is_finite()), "{other}");
+        }
+        let good =
+            gradient.values.iter().all(|&g| if status == NF_OK { to.is_null() || g.abs() <= 1.0 } else { g == -7.0 });
         assert!(good, "{status}: {:?}", gradient.values);
     }
     let (items, position) = (source.any::<u32>()?, source.any::<u32>()?);
@@ -171,7 +189,9 @@ fn defaults_work() {
         assert!(index.iter().all(|&item| item < 3) && weight.iter().all(|&w| w > 0.0), "{index:?} {weight:?}");
         assert_eq!(nf_table_update(table, index.as_ptr(), weight.as_ptr(), 2, 0.3), NF_OK);
         check(&*table);
-        assert!(nf_importance_cross_entropy([0.0, 1.0].as_ptr(), 2, 1) > 0.0);
+        let (logits, mut norm) = ([0.0, 1.0], 0.0);
+        let status = nf_importance_cross_entropy(logits.as_ptr(), &1, 1, 2, &mut norm, null_mut(), null_mut());
+        assert!(status == NF_OK && norm > 0.0);
     }
 }
 

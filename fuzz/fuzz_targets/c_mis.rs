@@ -21,7 +21,7 @@ fn weights(source: &mut Source<'_>) -> Result<()> {
     let counts = source.array(len, |source| source.small(4))?;
     let alpha = source.array(len, Source::number)?;
     let (option, value) = (source.number()?, source.number()?);
-    let which = source.any::<u8>()? % 6;
+    let which = source.any::<u8>()? % 5;
     let (p, n) = (pdf.pointer(), counts.pointer());
     let call = |technique: u32, out: *mut f32| {
         // SAFETY: arrays have the lengths that the header asks for; wrong addresses are NULL or misaligned, which are
@@ -32,7 +32,6 @@ fn weights(source: &mut Source<'_>) -> Result<()> {
                 1 => nf_mis_weight(NF_MIS_POWER, option, p, n, techniques, technique, out),
                 2 => nf_mis_weight(NF_MIS_CUTOFF, option, p, n, techniques, technique, out),
                 3 => nf_mis_weight(NF_MIS_MAXIMUM, 0.0, p, n, techniques, technique, out),
-                4 => nf_mis_optimal(p, n, techniques, technique, alpha.pointer(), value, out),
                 _ => nf_mis_optimal_contribution(p, n, techniques, technique, alpha.pointer(), value, out),
             }
         }
@@ -91,15 +90,13 @@ fn accumulator(source: &mut Source<'_>) -> Result<()> {
                     let value = source.array(p, Source::number)?;
                     nf_omis_add(object, source.small(6)?, pdf.pointer(), value.pointer());
                 }
-                4 => _ = nf_omis_next_batch(object, solver, ridge),
-                5 => _ = nf_omis_decay(object, source.unit()?),
-                6 => _ = nf_omis_merge(first, second),
-                _ => _ = nf_omis_reset(object),
+                4 | 5 => _ = nf_omis_next_batch(object, solver, ridge, source.unit()?),
+                _ => _ = nf_omis_merge(first, second),
             }
             let (mut estimate, mut alpha) = (vec![f32::NAN; p], vec![f32::NAN; p * j]);
-            let solved = nf_omis_solve(object, solver, ridge, estimate.as_mut_ptr());
+            let solved = nf_omis_solve(object, solver, ridge, estimate.as_mut_ptr(), null_mut());
             assert!(estimate.iter().all(|value| value.is_finite() == (solved == NF_OK)), "{solved}: {estimate:?}");
-            let solved = nf_omis_alpha(object, solver, ridge, alpha.as_mut_ptr());
+            let solved = nf_omis_solve(object, solver, ridge, null_mut(), alpha.as_mut_ptr());
             assert!(alpha.iter().all(|value| value.is_finite() == (solved == NF_OK)), "{solved}: {alpha:?}");
         }
     }
@@ -137,8 +134,8 @@ fn gradients(source: &mut Source<'_>) -> Result<()> {
                 let status = nf_omis_weights(solver, ridge, techniques, items, pdf, technique, batch, to);
                 assert!(weight.iter().all(|value| value.is_finite() == (status == NF_OK)), "{status}: {weight:?}");
             }
-            if source.rarely(4)? {
-                nf_gradient_reset(state);
+            if source.rarely(4)? && !state.is_null() {
+                nf_gradient_init(state.cast(), bytes, techniques, parameters, &mut state);
             }
         }
         let outputs = usize::from(source.any::<u8>()? % 24);
@@ -147,7 +144,7 @@ fn gradients(source: &mut Source<'_>) -> Result<()> {
         let mut importance = vec![-7.0; if techniques > 16 { 0 } else { techniques as usize }];
         let before = importance.clone();
         let (outputs, to) = (nodes.values.len() as u32, importance.as_mut_ptr());
-        let status = nf_importance_nodes(nodes.pointer(), outputs, split, techniques, to);
+        let status = nf_importance_gradient(nodes.pointer(), 1, outputs, split, techniques, to);
         assert!(status == NF_OK || before == importance);
         assert!(status != NF_OK || importance.iter().all(|&q| q >= 0.0 && q.is_finite()), "{importance:?}");
     }
@@ -175,7 +172,7 @@ fn defaults_work() {
         let (to, bytes, mut omis) = (memory.as_mut_ptr().cast(), 8 * memory.len(), null_mut());
         assert_eq!(nf_omis_init(to, bytes, 2, 1, counts.as_ptr(), &mut omis), NF_OK);
         assert_eq!(nf_omis_add(omis, 0, pdf.as_ptr(), &1.0), NF_OK);
-        assert_eq!(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0, weight.as_mut_ptr()), NF_OK);
+        assert_eq!(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0, weight.as_mut_ptr(), null_mut()), NF_OK);
         let (p, j, to) = (pdf.as_ptr(), technique.as_ptr(), weight.as_mut_ptr());
         assert_eq!(nf_omis_weights(NF_OMIS_RIDGE, 0.0, 2, 2, p, j, 2, to), NF_OK);
         let mut memory = vec![0_u64; nf_gradient_size(2, 1).div_ceil(8)];

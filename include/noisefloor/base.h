@@ -12,8 +12,7 @@ extern "C" {
 
 /* Version and status. */
 
-// The version of this header. `nf_abi_version()` returns the library's.
-#define NF_ABI_VERSION 1
+#define NF_ABI_VERSION 1 // The version of this header. `nf_abi_version()` returns the library's.
 
 // The ABI version the library was built with; it must equal `NF_ABI_VERSION`.
 uint32_t nf_abi_version(void);
@@ -21,34 +20,20 @@ uint32_t nf_abi_version(void);
 // 0 is success, a negative value an error; `nf_status_message` explains it.
 typedef int32_t nf_status;
 
-// Success.
-#define NF_OK 0
-// A required pointer is NULL.
-#define NF_ERR_NULL (-1)
-// An argument is outside its documented range.
-#define NF_ERR_RANGE (-2)
-// An input value is NaN or infinite.
-#define NF_ERR_NOT_FINITE (-3)
-// Caller-supplied memory is too small.
-#define NF_ERR_MEMORY (-4)
-// Caller-supplied memory is not aligned as its type needs.
-#define NF_ERR_ALIGNMENT (-5)
-// There is nothing to estimate or to draw from.
-#define NF_ERR_NO_SAMPLES (-6)
-// The options exist, but not in this combination.
-#define NF_ERR_UNSUPPORTED (-7)
-// The memory holds no initialised object.
-#define NF_ERR_STATE (-8)
-// Two objects were made with different configurations.
-#define NF_ERR_MISMATCH (-9)
-// The bytes are no tile, or no table.
-#define NF_ERR_FOREIGN (-10)
-// The format is newer than this library.
-#define NF_ERR_VERSION (-11)
-// Bytes are missing, or there are too many.
-#define NF_ERR_LENGTH (-12)
-// The bytes are damaged.
-#define NF_ERR_CORRUPT (-13)
+#define NF_OK 0 // Success.
+#define NF_ERR_NULL (-1) // A required pointer is NULL.
+#define NF_ERR_RANGE (-2) // An argument is outside its documented range.
+#define NF_ERR_NOT_FINITE (-3) // An input value is NaN or infinite.
+#define NF_ERR_MEMORY (-4) // Caller-supplied memory is too small.
+#define NF_ERR_ALIGNMENT (-5) // Caller-supplied memory is not aligned as its type needs.
+#define NF_ERR_NO_SAMPLES (-6) // There is nothing to estimate or to draw from.
+#define NF_ERR_UNSUPPORTED (-7) // The options exist, but not in this combination.
+#define NF_ERR_STATE (-8) // The memory holds no initialised object.
+#define NF_ERR_MISMATCH (-9) // Two objects were made with different configurations.
+#define NF_ERR_FOREIGN (-10) // The bytes are no tile, or no table.
+#define NF_ERR_VERSION (-11) // The format is newer than this library.
+#define NF_ERR_LENGTH (-12) // Bytes are missing, or there are too many.
+#define NF_ERR_CORRUPT (-13) // The bytes are damaged.
 
 // A static, NUL-terminated sentence for a status; never NULL, also for values that are no status.
 const char *nf_status_message(nf_status status);
@@ -61,10 +46,8 @@ const char *nf_status_message(nf_status status);
 // A complete struct, kept by value. A copy repeats the numbers its original has yet to give. Give each thread its own,
 // with its own seed. Any value of the fields is valid; nf_rng_seed sets them well. Not for cryptography.
 typedef struct nf_rng {
-    // Where the generator is.
-    uint64_t state;
-    // Which of 2^63 streams it is on; the lowest bit counts as set.
-    uint64_t increment;
+    uint64_t state; // Where the generator is.
+    uint64_t increment; // Which of 2^63 streams it is on; the lowest bit counts as set.
 } nf_rng;
 
 // Starts a generator. Any seed is good, and neighbouring seeds (pixel numbers, say) give unrelated numbers. Does

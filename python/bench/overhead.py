@@ -109,10 +109,12 @@ def integrals(runs, count=100_000, n=16, dims=2):
     config.dims = dims
     workspace = _c.workspace(_c.cv_workspace_size(ctypes.addressof(config), n))
     out = numpy.empty(count, _c.ESTIMATE)
-    at = ctypes.addressof(config), _c.data(u), _c.data(f), n, count, _c.data(workspace), workspace.nbytes, _c.data(out)
+    samples = _c.Samples(u=_c.data(u), f=_c.data(f), n=n)
+    of = ctypes.addressof(config), ctypes.addressof(samples)
+    at = *of, count, _c.data(workspace), workspace.nbytes, _c.data(out)
     u64, f64 = u.astype(numpy.float64), f.astype(numpy.float64)
     calls = {
-        "C call": lambda: _c.cv_estimate_many(*at),
+        "C call": lambda: _c.cv_estimate(*at),
         "package, float32": lambda: noisefloor.estimate(u, f),
         "package, float64": lambda: noisefloor.estimate(u64, f64),
     }

@@ -32,9 +32,19 @@ class Config(ctypes.Structure):
     C_NAME = "nf_cv_config"
     _fields_ = _fields(
         u32,
-        "dims order channels estimator basis stratified slices controls stride solver precision nonfinite color folds "
-        "iterations optimizer",
-    ) + _fields(f32, "ridge learning_rate momentum")
+        "dims order channels estimator basis stratified slices controls stride solver precision nonfinite color folds",
+    ) + _fields(f32, "ridge")
+
+
+class Samples(ctypes.Structure):
+    """Samples of integrals."""
+
+    C_NAME = "nf_cv_samples"
+    _fields_ = (
+        _fields(pointer, "u f")
+        + [("n", ctypes.c_size_t)]
+        + _fields(pointer, "controls control_integrals known known_integrals")
+    )
 
 
 class Rectangle(ctypes.Structure):
@@ -50,7 +60,7 @@ class Image(ctypes.Structure):
     C_NAME = "nf_cv_image"
     _fields_ = (
         _fields(u32, "width height frames window stride unordered")
-        + _fields(pointer, "surfaces factors known known_integrals")
+        + _fields(pointer, "surfaces factors")
         + _fields(Rectangle, "given wanted")
     )
 
@@ -99,7 +109,7 @@ class Estimate(ctypes.Structure):
     _fields_ = [("mean", f32 * 4), ("std_error", f32 * 4), ("samples", u32), ("gain", f32)]
 
 
-STRUCTS = (Config, Rectangle, Image, Recommendation, Sampler, Rng, Table, Estimate)
+STRUCTS = (Config, Samples, Rectangle, Image, Recommendation, Sampler, Rng, Table, Estimate)
 #: Estimates as an array of NumPy's.
 ESTIMATE = numpy.dtype(Estimate)
 
@@ -120,6 +130,7 @@ CONSTANTS = dict(
     NF_METHOD_SHARED=2,
     NF_OMIS_RIDGE=0,
     NF_MIS_MAX_TECHNIQUES=16,
+    NF_TABLE_SAVED_HEADER=32,
 )
 
 
@@ -134,14 +145,12 @@ MAX_DIMS, MAX_ORDER, MAX_CHANNELS, MAX_TERMS, MAX_ITEMS = 16, 7, 4, 136, 2**32 -
 FUNCTIONS = """
 uint32_t nf_abi_version(void);
 const char *nf_status_message(nf_status);
-void nf_cv_config_default(nf_cv_config *);
 uint32_t nf_cv_terms(const nf_cv_config *);
 size_t nf_cv_workspace_size(const nf_cv_config *, size_t);
-nf_status nf_cv_estimate_many(const nf_cv_config *, const float *, const float *, size_t, size_t, void *, size_t,
+nf_status nf_cv_estimate(const nf_cv_config *, const nf_cv_samples *, size_t, void *, size_t, nf_estimate *);
+size_t nf_cv_image_workspace_size(const nf_cv_config *, const nf_cv_image *, const nf_cv_samples *);
+nf_status nf_cv_image_estimate(const nf_cv_config *, const nf_cv_image *, const nf_cv_samples *, void *, size_t,
     nf_estimate *);
-size_t nf_cv_image_workspace_size(const nf_cv_config *, const nf_cv_image *, size_t);
-nf_status nf_cv_image_estimate(const nf_cv_config *, const nf_cv_image *, const float *, const float *, size_t, void *,
-    size_t, nf_estimate *);
 nf_status nf_recommend(uint32_t, uint32_t, uint32_t, uint32_t, float, nf_recommendation *);
 nf_sampler nf_sampler_pixel(uint32_t, uint32_t, uint32_t, uint32_t);
 nf_sampler nf_sampler_white(uint32_t, uint32_t, uint32_t, uint32_t);
@@ -157,11 +166,8 @@ nf_status nf_table_draw(const nf_table *, nf_rng *, uint32_t, uint32_t *, float 
 nf_status nf_table_draw_stratified(const nf_table *, nf_rng *, uint32_t, uint32_t *, float *);
 nf_status nf_table_draw_distinct(nf_table *, nf_rng *, uint32_t, uint32_t *, float *);
 nf_status nf_table_update(nf_table *, const uint32_t *, const float *, uint32_t, float);
-nf_status nf_table_set_uniform_fraction(nf_table *, float);
 nf_status nf_table_probabilities(const nf_table *, const uint32_t *, uint32_t, uint32_t, float *);
-size_t nf_table_saved_size(const nf_table *);
 nf_status nf_table_save(const nf_table *, void *, size_t);
-uint32_t nf_table_saved_items(const void *, size_t);
 nf_status nf_table_load(nf_table *, void *, size_t, const void *, size_t);
 uint32_t nf_shuffle(uint64_t, uint32_t, uint32_t);
 nf_status nf_omis_weights(uint32_t, float, uint32_t, uint32_t, const float *, const uint32_t *, uint32_t, float *);
@@ -214,9 +220,7 @@ def message(status):
 
 def default_config():
     """A configuration with the library's defaults."""
-    config = Config()
-    cv_config_default(address(config))  # noqa: F821
-    return config
+    return Config(dims=2, order=2, channels=1)
 
 
 address = ctypes.addressof

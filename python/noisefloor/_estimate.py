@@ -80,10 +80,14 @@ def estimate(
     out = numpy.empty(leading, _c.ESTIMATE)
     workspace = _c.workspace(_c.cv_workspace_size(_c.address(config), n))
     steps = 4 * n * d, 4 * n * config.channels, _c.ESTIMATE.itemsize
+    samples = _c.Samples(n=n)
     for first in range(0, out.size, CHUNK):
         some = min(CHUNK, out.size - first)
         at = [_c.data(array) + first * step for array, step in zip((u, f, out), steps)]
-        status = _c.cv_estimate_many(_c.address(config), *at[:2], n, some, _c.data(workspace), workspace.nbytes, at[2])
+        samples.u, samples.f = at[:2]
+        status = _c.cv_estimate(
+            _c.address(config), _c.address(samples), some, _c.data(workspace), workspace.nbytes, at[2]
+        )
         if status:
             _refuse(status, u, f, config)
     return _result(out, channels, config.channels)
@@ -136,33 +140,33 @@ def image_estimate(
     image = _c.Image(width=pixels[-1], height=pixels[-2], frames=pixels[0] if len(pixels) == 3 else 1)
     image.window = _arrays.integer("window", window, 1, 32)
     image.stride = 0 if stride is None else _arrays.integer("stride", stride, 1, window)
+    samples = _c.Samples(u=_c.data(u), f=_c.data(f), n=n)
     kept = []
 
-    def give(name, array, shape):
+    def give(place, name, array, shape):
         _arrays.check_shape(name, array, tuple(shape), "as u and f say")
-        setattr(image, name, _c.data(array))
+        setattr(place, name, _c.data(array))
         kept.append(array)
 
     if surfaces is not None:
-        give("surfaces", _arrays.integers("surfaces", surfaces, 2**32 - 1), pixels)
-    for name, array, shape in (
-        ("factors", factors, (*pixels, *own)),
-        ("known", known, f.shape),
-        ("known_integrals", known_integrals, (*pixels, *own)),
+        give(image, "surfaces", _arrays.integers("surfaces", surfaces, 2**32 - 1), pixels)
+    for place, name, array, shape in (
+        (image, "factors", factors, (*pixels, *own)),
+        (samples, "known", known, f.shape),
+        (samples, "known_integrals", known_integrals, (*pixels, *own)),
     ):
         if array is not None:
             array = _arrays.floats(name, array)
             (_arrays.check_finite if name == "known" else _arrays.check_positive)(name, array)
-            give(name, array, shape)
+            give(place, name, array, shape)
     if (known is None) != (known_integrals is None):
         raise ValueError("known and known_integrals belong together: one of them is None")
     out = numpy.empty(pixels, _c.ESTIMATE)
-    workspace = _c.workspace(_c.cv_image_workspace_size(_c.address(config), _c.address(image), n))
+    workspace = _c.workspace(_c.cv_image_workspace_size(_c.address(config), _c.address(image), _c.address(samples)))
     status = _c.cv_image_estimate(
         _c.address(config),
         _c.address(image),
-        *(_c.data(array) for array in (u, f)),
-        n,
+        _c.address(samples),
         _c.data(workspace),
         workspace.nbytes,
         _c.data(out),

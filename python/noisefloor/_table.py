@@ -42,7 +42,7 @@ class Table:
         if status:
             _arrays.check_positive("importance", importance)
             raise ValueError(f"importance: {_c.message(status)}: all {n} are 0")
-        _c.table_set_uniform_fraction(self._at, fraction)
+        self._table.uniform_fraction = fraction
         _c.rng_seed(self._rng_at, seed)
 
     def _prepare(self, n):
@@ -70,7 +70,7 @@ class Table:
     def uniform_fraction(self, value: float) -> None:
         value = _arrays.number("uniform_fraction", value, 0, 1)
         with self._lock:
-            _c.table_set_uniform_fraction(self._at, value)
+            self._table.uniform_fraction = value
 
     def draw(self, batch: int, method: str = "iid") -> tuple[numpy.ndarray, numpy.ndarray]:
         """Draws items in proportion to importance.
@@ -165,7 +165,7 @@ class Table:
         """All that decides what is drawn next: "table", uint8 of shape (bytes,), and "rng", two ints. The same bytes on
         every machine."""
         with self._lock:
-            saved = numpy.empty(_c.table_saved_size(self._at), numpy.uint8)
+            saved = numpy.empty(_c.CONSTANTS["NF_TABLE_SAVED_HEADER"] + 4 * self._n, numpy.uint8)
             status = _c.table_save(self._at, _c.data(saved), saved.nbytes)
             rng = (self._rng.state, self._rng.increment)
         assert not status, _c.message(status)
@@ -174,8 +174,8 @@ class Table:
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Becomes the table that `state_dict` saw, of as many items."""
         saved = numpy.ascontiguousarray(_arrays.array("table", state["table"]), numpy.uint8)
-        items = _c.table_saved_items(_c.data(saved), saved.nbytes)
-        if items not in (0, self._n):
+        items = (saved.nbytes - _c.CONSTANTS["NF_TABLE_SAVED_HEADER"]) // 4
+        if items != self._n:
             raise ValueError(f"the state has {items} items, this table {self._n}")
         first, second = (_arrays.integer("rng", number, 0, 2**64 - 1) for number in state["rng"])
         with self._lock:

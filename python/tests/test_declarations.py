@@ -55,4 +55,4 @@ def test_others_are_refused(right, wrong, tmp_path):
 
 
 def test_every_function_is_used_by_name():
-    assert all(callable(getattr(_c, name)) for name in ("table_draw", "cv_estimate_many", "sampler_fill", "shuffle"))
+    assert all(callable(getattr(_c, name)) for name in ("table_draw", "cv_estimate", "sampler_fill", "shuffle"))

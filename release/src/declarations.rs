@@ -44,8 +44,9 @@ impl Header {
         let (text, asserts) = text.split_once(ASSERTS).with_context(|| format!("the header has no `{ASSERTS}`"))?;
         let mut header = Self { asserts: asserts.to_owned(), ..Self::default() };
         let mut statement = String::new();
-        // Comments' lines begin with an asterisk, which no declaration's does.
-        for line in text.lines().map(str::trim) {
+        // Comments' lines begin with an asterisk, which no declaration's does; others stand beside the code.
+        let code = |line: &'_ str| line.find(" // ").unwrap_or(line.len());
+        for line in text.lines().map(|line| line[..code(line)].trim()) {
             if let Some((name, value)) = line.strip_prefix("#define NF_").and_then(|rest| rest.split_once(' ')) {
                 header.constants.push((format!("NF_{name}"), number(value)?));
             } else if !line.is_empty() && !["//", "/*", "*", "#"].iter().any(|start| line.starts_with(start)) {

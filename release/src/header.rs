@@ -46,15 +46,22 @@ const CHAPTERS: [Chapter; 8] = [
             "NF_BASIS_",
             "NF_SOLVER_",
             "NF_RIDGE_",
-            "NF_OPTIMIZER_",
             "NF_COLOR_",
             "NF_NONFINITE_",
             "NF_PRECISION_",
             "nf_cv_config",
+            "nf_cv_samples",
             "nf_cv_terms",
             "nf_estimate",
             "nf_cv_workspace_size",
-            "nf_cv_",
+            "nf_cv_estimate",
+            "nf_cv_rectangle",
+            "nf_cv_image",
+            "nf_cv_image_",
+            "NF_OPTIMIZER_",
+            "nf_cv_descent",
+            "nf_cv_gradient_descent",
+            "nf_cv_check",
             "nf_cv_accumulator",
             "nf_cv_accumulator_",
         ],
@@ -90,7 +97,6 @@ const CHAPTERS: [Chapter; 8] = [
             "nf_sampler_draw",
             "nf_sampler_table",
             "nf_sampler_fill",
-            "NF_TILE_",
             "nf_tile",
             "nf_tile_",
             "nf_tile_sampler",
@@ -106,6 +112,7 @@ const CHAPTERS: [Chapter; 8] = [
         title: "Minibatches: items drawn in proportion to their importance, and gradients of the mean loss from them",
         guides: "minibatch.md, minibatch_gradients.md",
         prefixes: &[
+            "NF_TABLE_",
             "nf_table",
             "nf_table_",
             "nf_shard",
@@ -115,8 +122,6 @@ const CHAPTERS: [Chapter; 8] = [
             "nf_shuffle",
             "NF_NODES_",
             "nf_importance_",
-            "nf_cross_entropy_gradient",
-            "nf_importance_nodes",
             "nf_omis_weights",
             "nf_gradient",
             "nf_gradient_",
@@ -232,7 +237,7 @@ impl Item {
         if is_function {
             text += &filled(&code);
         }
-        Ok(Self { text, chapter, place })
+        Ok(Self { text: beside(&text), chapter, place })
     }
 
     fn is_constant(&self) -> bool {
@@ -263,6 +268,31 @@ fn name<'a>(code: &[&'a str]) -> Option<&'a str> {
         Some((before, _)) => before.split(word).rfind(ours),
         None => first.split(word).rfind(ours),
     }
+}
+
+/// Comments of one line go beside the constant or field that they describe, where there is room.
+fn beside(text: &str) -> String {
+    let comment = |line: &str| line.trim_start().starts_with("//");
+    let mut result = String::new();
+    let mut waiting: Vec<&str> = Vec::new();
+    for line in text.lines() {
+        if comment(line) {
+            waiting.push(line);
+            continue;
+        }
+        let is_short = line.starts_with("#define") || line.starts_with("    ");
+        match waiting[..] {
+            [words] if is_short && line.len() + words.trim().len() < WIDTH => {
+                result += &format!("{line} {}\n", words.trim());
+            }
+            _ => {
+                result.extend(waiting.iter().map(|words| format!("{words}\n")));
+                result += &format!("{line}\n");
+            }
+        }
+        waiting.clear();
+    }
+    result
 }
 
 /// A function's declaration, as many words to a line as fit.

@@ -8,6 +8,15 @@ static const uint32_t streaming[] = {NF_CV_ROBUST, NF_CV_LEAST_SQUARES, NF_CV_K_
                                      NF_CV_INCREMENTAL};
 #define STREAMING (sizeof streaming / sizeof *streaming)
 
+static nf_status add_controlled(nf_cv_accumulator *accumulator, const float *pu, const float *pf, const float *h,
+                                const float *integral, size_t n)
+{
+    nf_cv_samples samples = samples_of(pu, pf, n);
+    samples.controls = h;
+    samples.control_integrals = integral;
+    return nf_cv_accumulator_add(accumulator, &samples);
+}
+
 typedef struct stream {
     memory state, work;
     nf_cv_accumulator *accumulator;
@@ -16,8 +25,8 @@ typedef struct stream {
 static stream stream_new(const nf_cv_config *config)
 {
     stream s;
-    s.state = memory_new(nf_cv_accumulator_size(config));
-    s.work = memory_new(nf_cv_accumulator_workspace_size(config));
+    s.state = memory_new(nf_cv_accumulator_size(config, NULL));
+    s.work = memory_new(accumulator_workspace_size(config));
     s.accumulator = NULL;
     CHECK(s.state.bytes > 0 && s.work.bytes > 0);
     CHECK_STATUS(nf_cv_accumulator_init(s.state.start, s.state.bytes, config, &s.accumulator), NF_OK);
@@ -50,7 +59,7 @@ static void normal_use(uint32_t estimator, uint32_t precision, uint32_t solver)
     at_once = stream_new(&config);
     in_pieces = stream_new(&config);
     moved = stream_new(&config);
-    CHECK_STATUS(nf_cv_accumulator_add(at_once.accumulator, u, f, N), NF_OK);
+    CHECK_STATUS(add_samples(at_once.accumulator, u, f, N), NF_OK);
     whole = estimate(&at_once);
     CHECK(whole.samples == N);
     CHECK(fabsf(whole.mean[0] - 2.0f) < 0.15f && fabsf(whole.mean[1] - 4.0f) < 0.3f);
@@ -58,7 +67,7 @@ static void normal_use(uint32_t estimator, uint32_t precision, uint32_t solver)
 
     /* One at a time: the same bits, and an estimate after every sample. */
     for (i = 0; i < N; ++i) {
-        CHECK_STATUS(nf_cv_accumulator_add(in_pieces.accumulator, u + 2 * i, f + 2 * i, 1), NF_OK);
+        CHECK_STATUS(add_samples(in_pieces.accumulator, u + 2 * i, f + 2 * i, 1), NF_OK);
         a = estimate(&in_pieces);
         CHECK(a.samples == i + 1 && isfinite(a.mean[0]));
         if (i == 0)
@@ -74,8 +83,8 @@ static void normal_use(uint32_t estimator, uint32_t precision, uint32_t solver)
     /* Two halves, merged: as good as one, though not the same bits. The other stays as it is. */
     first = stream_new(&config);
     second = stream_new(&config);
-    CHECK_STATUS(nf_cv_accumulator_add(first.accumulator, u, f, N / 2), NF_OK);
-    CHECK_STATUS(nf_cv_accumulator_add(second.accumulator, u + N, f + N, N / 2), NF_OK);
+    CHECK_STATUS(add_samples(first.accumulator, u, f, N / 2), NF_OK);
+    CHECK_STATUS(add_samples(second.accumulator, u + N, f + N, N / 2), NF_OK);
     a = estimate(&second);
     CHECK_STATUS(nf_cv_accumulator_merge(first.accumulator, second.accumulator), NF_OK);
     b = estimate(&second);
@@ -87,7 +96,7 @@ static void normal_use(uint32_t estimator, uint32_t precision, uint32_t solver)
         CHECK(fabsf(b.mean[0] - whole.mean[0]) < 1e-4f);
 
     /* Merging with nothing, either way. */
-    CHECK_STATUS(nf_cv_accumulator_reset(second.accumulator), NF_OK);
+    CHECK_STATUS(nf_cv_accumulator_init(second.state.start, second.state.bytes, &config, &second.accumulator), NF_OK);
     CHECK_STATUS(nf_cv_accumulator_merge(at_once.accumulator, second.accumulator), NF_OK);
     a = estimate(&at_once);
     CHECK(memcmp(&a, &whole, sizeof a) == 0);
@@ -95,11 +104,11 @@ static void normal_use(uint32_t estimator, uint32_t precision, uint32_t solver)
     a = estimate(&second);
     CHECK(a.samples == N && fabsf(a.mean[0] - whole.mean[0]) < 1e-3f);
 
-    /* Reset: as new. */
-    CHECK_STATUS(nf_cv_accumulator_reset(at_once.accumulator), NF_OK);
+    /* Made anew in the same memory: empty. */
+    CHECK_STATUS(nf_cv_accumulator_init(at_once.state.start, at_once.state.bytes, &config, &at_once.accumulator), NF_OK);
     CHECK_STATUS(nf_cv_accumulator_estimate(at_once.accumulator, at_once.work.start, at_once.work.bytes, &b),
                  NF_ERR_NO_SAMPLES);
-    CHECK_STATUS(nf_cv_accumulator_add(at_once.accumulator, u, f, N), NF_OK);
+    CHECK_STATUS(add_samples(at_once.accumulator, u, f, N), NF_OK);
     a = estimate(&at_once);
     CHECK(memcmp(&a, &whole, sizeof a) == 0);
     stream_free(&at_once);
@@ -120,7 +129,7 @@ static void constants(uint32_t estimator)
         nf_estimate out;
         for (i = 0; i < N; ++i)
             g[i] = values[v];
-        CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, g, N), NF_OK);
+        CHECK_STATUS(add_samples(s.accumulator, u, g, N), NF_OK);
         out = estimate(&s);
         CHECK(out.mean[0] == values[v] && out.std_error[0] == 0.0f);
         stream_free(&s);
@@ -130,7 +139,7 @@ static void constants(uint32_t estimator)
 static void init_errors(void)
 {
     nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
-    const size_t bytes = nf_cv_accumulator_size(&config);
+    const size_t bytes = nf_cv_accumulator_size(&config, NULL);
     memory state = memory_new(bytes);
     nf_cv_accumulator *out;
     CHECK_REFUSED(nf_cv_accumulator_init(NULL, bytes, &config, &out), NF_ERR_NULL, out);
@@ -140,17 +149,17 @@ static void init_errors(void)
     CHECK_REFUSED(nf_cv_accumulator_init(state.start, 0, &config, &out), NF_ERR_MEMORY, out);
     CHECK_REFUSED(nf_cv_accumulator_init((char *)state.start + 4, bytes, &config, &out), NF_ERR_ALIGNMENT, out);
     config.estimator = NF_CV_LEAVE_ONE_OUT;
-    CHECK(nf_cv_accumulator_size(&config) == 0 && nf_cv_accumulator_workspace_size(&config) == 0);
+    CHECK(nf_cv_accumulator_size(&config, NULL) == 0 && accumulator_workspace_size(&config) == 0);
     CHECK_REFUSED(nf_cv_accumulator_init(state.start, bytes, &config, &out), NF_ERR_UNSUPPORTED, out);
     config.estimator = NF_CV_ROBUST;
     config.solver = NF_SOLVER_DUAL;
-    CHECK(nf_cv_accumulator_size(&config) == 0);
+    CHECK(nf_cv_accumulator_size(&config, NULL) == 0);
     CHECK_REFUSED(nf_cv_accumulator_init(state.start, bytes, &config, &out), NF_ERR_UNSUPPORTED, out);
     config.solver = NF_SOLVER_SQUARE_ROOT;
     CHECK_REFUSED(nf_cv_accumulator_init(state.start, bytes, &config, &out), NF_ERR_UNSUPPORTED, out);
     /* A refusal leaves even the memory as it was. */
     CHECK(is_poisoned(state.start, bytes));
-    CHECK(nf_cv_accumulator_size(NULL) == 0 && nf_cv_accumulator_workspace_size(NULL) == 0);
+    CHECK(nf_cv_accumulator_size(NULL, NULL) == 0 && accumulator_workspace_size(NULL) == 0);
     memory_free(&state);
 }
 
@@ -164,30 +173,27 @@ static void no_object(void)
     nf_estimate out;
     int pass;
     for (pass = 0; pass < 2; ++pass) {
-        CHECK_STATUS(nf_cv_accumulator_add(wrong, u, f, N), NF_ERR_STATE);
-        CHECK_STATUS(nf_cv_accumulator_add_with_controls(wrong, u, f, NULL, NULL, N), NF_ERR_STATE);
+        CHECK_STATUS(add_samples(wrong, u, f, N), NF_ERR_STATE);
         CHECK_STATUS(nf_cv_accumulator_merge(wrong, good.accumulator), NF_ERR_STATE);
         CHECK_STATUS(nf_cv_accumulator_merge(good.accumulator, wrong), NF_ERR_STATE);
         CHECK_REFUSED(nf_cv_accumulator_estimate(wrong, good.work.start, good.work.bytes, &out), NF_ERR_STATE, out);
-        CHECK_STATUS(nf_cv_accumulator_reset(wrong), NF_ERR_STATE);
         memset(bad.start, 0, bad.bytes);
     }
-    CHECK_STATUS(nf_cv_accumulator_add(NULL, u, f, N), NF_ERR_NULL);
+    CHECK_STATUS(add_samples(NULL, u, f, N), NF_ERR_NULL);
     CHECK_STATUS(nf_cv_accumulator_merge(NULL, good.accumulator), NF_ERR_NULL);
     CHECK_STATUS(nf_cv_accumulator_merge(good.accumulator, NULL), NF_ERR_NULL);
     CHECK_STATUS(nf_cv_accumulator_merge(NULL, NULL), NF_ERR_NULL);
     CHECK_REFUSED(nf_cv_accumulator_estimate(NULL, good.work.start, good.work.bytes, &out), NF_ERR_NULL, out);
-    CHECK_STATUS(nf_cv_accumulator_reset(NULL), NF_ERR_NULL);
-    CHECK_STATUS(nf_cv_accumulator_add(odd, u, f, N), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_cv_accumulator_add(good.accumulator, NULL), NF_ERR_NULL);
+    CHECK_STATUS(add_samples(odd, u, f, N), NF_ERR_ALIGNMENT);
     CHECK_STATUS(nf_cv_accumulator_merge(odd, good.accumulator), NF_ERR_ALIGNMENT);
     CHECK_STATUS(nf_cv_accumulator_merge(good.accumulator, odd), NF_ERR_ALIGNMENT);
     CHECK_REFUSED(nf_cv_accumulator_estimate(odd, good.work.start, good.work.bytes, &out), NF_ERR_ALIGNMENT, out);
-    CHECK_STATUS(nf_cv_accumulator_reset(odd), NF_ERR_ALIGNMENT);
     memory_free(&bad);
     stream_free(&good);
 }
 
-static nf_status reset(void *object) { return nf_cv_accumulator_reset((nf_cv_accumulator *)object); }
+static nf_status add_one(void *object) { return add_samples((nf_cv_accumulator *)object, u, f, 1); }
 
 /* Bytes of another build of the library, which may mean something else by them. */
 static void another_build(void)
@@ -198,7 +204,7 @@ static void another_build(void)
         stream s;
         config.precision = precision;
         s = stream_new(&config);
-        check_other_builds(s.accumulator, "nf_cvac1", reset);
+        check_other_builds(s.accumulator, "nf_cvac1", add_one);
         stream_free(&s);
     }
 }
@@ -213,25 +219,25 @@ static void refused_calls_change_nothing(uint32_t estimator)
     float saved;
     size_t i, n;
     CHECK_REFUSED(nf_cv_accumulator_estimate(s.accumulator, s.work.start, s.work.bytes, &out), NF_ERR_NO_SAMPLES, out);
-    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, 50), NF_OK);
-    CHECK_STATUS(nf_cv_accumulator_add(twin.accumulator, u, f, 50), NF_OK);
+    CHECK_STATUS(add_samples(s.accumulator, u, f, 50), NF_OK);
+    CHECK_STATUS(add_samples(twin.accumulator, u, f, 50), NF_OK);
     first = estimate(&s);
 
-    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, NULL, f, N), NF_ERR_NULL);
-    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, NULL, N), NF_ERR_NULL);
-    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, (const float *)misaligned(u), f, 1), NF_ERR_ALIGNMENT);
-    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, 0), NF_ERR_NO_SAMPLES);
+    CHECK_STATUS(add_samples(s.accumulator, NULL, f, N), NF_ERR_NULL);
+    CHECK_STATUS(add_samples(s.accumulator, u, NULL, N), NF_ERR_NULL);
+    CHECK_STATUS(add_samples(s.accumulator, (const float *)misaligned(u), f, 1), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(add_samples(s.accumulator, u, f, 0), NF_ERR_NO_SAMPLES);
     for (n = SIZE_MAX; n > SIZE_MAX / 65536; n /= 4)
-        CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, n), NF_ERR_RANGE);
+        CHECK_STATUS(add_samples(s.accumulator, u, f, n), NF_ERR_RANGE);
     saved = f[2 * N - 1];
     f[2 * N - 1] = not_a_number();
-    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, N), NF_ERR_NOT_FINITE);
+    CHECK_STATUS(add_samples(s.accumulator, u, f, N), NF_ERR_NOT_FINITE);
     f[2 * N - 1] = saved;
     saved = u[2 * N - 1];
     u[2 * N - 1] = -1.0f;
-    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, N), NF_ERR_RANGE);
+    CHECK_STATUS(add_samples(s.accumulator, u, f, N), NF_ERR_RANGE);
     u[2 * N - 1] = infinity_f();
-    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, N), NF_ERR_NOT_FINITE);
+    CHECK_STATUS(add_samples(s.accumulator, u, f, N), NF_ERR_NOT_FINITE);
     u[2 * N - 1] = saved;
 
     CHECK_STATUS(nf_cv_accumulator_merge(s.accumulator, s.accumulator), NF_ERR_RANGE);
@@ -245,7 +251,7 @@ static void refused_calls_change_nothing(uint32_t estimator)
     others[5].basis = NF_BASIS_SINE;
     for (i = 0; i < 6; ++i) {
         stream other = stream_new(&others[i]);
-        CHECK_STATUS(nf_cv_accumulator_add(other.accumulator, u, f, 20), NF_OK);
+        CHECK_STATUS(add_samples(other.accumulator, u, f, 20), NF_OK);
         CHECK_STATUS(nf_cv_accumulator_merge(s.accumulator, other.accumulator), NF_ERR_MISMATCH);
         stream_free(&other);
     }
@@ -258,8 +264,8 @@ static void refused_calls_change_nothing(uint32_t estimator)
 
     out = estimate(&s);
     CHECK(memcmp(&first, &out, sizeof out) == 0);
-    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u + 100, f + 100, N - 50), NF_OK);
-    CHECK_STATUS(nf_cv_accumulator_add(twin.accumulator, u + 100, f + 100, N - 50), NF_OK);
+    CHECK_STATUS(add_samples(s.accumulator, u + 100, f + 100, N - 50), NF_OK);
+    CHECK_STATUS(add_samples(twin.accumulator, u + 100, f + 100, N - 50), NF_OK);
     out = estimate(&s);
     first = estimate(&twin);
     CHECK(out.samples == N && memcmp(&first, &out, sizeof out) == 0);
@@ -276,7 +282,7 @@ static void skipping(void)
     config.nonfinite = NF_NONFINITE_SKIP;
     s = stream_new(&config);
     f[7] = not_a_number();
-    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, f, N), NF_OK);
+    CHECK_STATUS(add_samples(s.accumulator, u, f, N), NF_OK);
     f[7] = saved;
     out = estimate(&s);
     CHECK(out.samples == N - 1 && isfinite(out.mean[0]) && isfinite(out.mean[1]));
@@ -296,12 +302,12 @@ static void controls(void)
     }
     config.controls = 1;
     s = stream_new(&config);
-    CHECK_STATUS(nf_cv_accumulator_add(s.accumulator, u, g, N), NF_ERR_NULL);
-    CHECK_STATUS(nf_cv_accumulator_add_with_controls(s.accumulator, u, g, NULL, &integral, N), NF_ERR_NULL);
-    CHECK_STATUS(nf_cv_accumulator_add_with_controls(s.accumulator, u, g, h, NULL, N), NF_ERR_NULL);
-    CHECK_STATUS(nf_cv_accumulator_add_with_controls(s.accumulator, u, g, h, &bad, N), NF_ERR_NOT_FINITE);
+    CHECK_STATUS(add_samples(s.accumulator, u, g, N), NF_ERR_NULL);
+    CHECK_STATUS(add_controlled(s.accumulator, u, g, NULL, &integral, N), NF_ERR_NULL);
+    CHECK_STATUS(add_controlled(s.accumulator, u, g, h, NULL, N), NF_ERR_NULL);
+    CHECK_STATUS(add_controlled(s.accumulator, u, g, h, &bad, N), NF_ERR_NOT_FINITE);
     CHECK_STATUS(nf_cv_accumulator_estimate(s.accumulator, s.work.start, s.work.bytes, &out), NF_ERR_NO_SAMPLES);
-    CHECK_STATUS(nf_cv_accumulator_add_with_controls(s.accumulator, u, g, h, &integral, N), NF_OK);
+    CHECK_STATUS(add_controlled(s.accumulator, u, g, h, &integral, N), NF_OK);
     out = estimate(&s);
     CHECK(fabsf(out.mean[0] - 1.25f) < 1e-3f);
     stream_free(&s);

@@ -1,9 +1,10 @@
-/* Estimates from arrays: nf_cv_estimate(), nf_cv_estimate_with_controls(), nf_cv_gradient_descent(). */
+/* Estimates from arrays: nf_cv_estimate(), nf_cv_gradient_descent(). */
 #include "check.h"
 
 #define N 64
 static float u[N * 4], f[N * 4];
 static const uint32_t estimators = 6;
+static nf_cv_descent steps; /* by default */
 
 /* Constant values: every estimator, basis and precision gives them back exactly. */
 static void constants(void)
@@ -23,7 +24,7 @@ static void constants(void)
                     for (i = 0; i < N; ++i)
                         f[i] = values[v];
                     work = memory_new(nf_cv_workspace_size(&config, N));
-                    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
+                    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
                     CHECK(out.mean[0] == values[v]);
                     CHECK(out.std_error[0] == 0.0f);
                     CHECK(out.samples == N);
@@ -45,9 +46,9 @@ static void linear(void)
                 config.precision = precision;
                 fill_linear(f, u, N, 2, channels);
                 work = memory_new(nf_cv_workspace_size(&config, N));
-                CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
+                CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
                 /* Deterministic, and independent of what the workspace holds. */
-                CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &again), NF_OK);
+                CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &again), NF_OK);
                 CHECK(memcmp(&out, &again, sizeof out) == 0);
                 for (c = 0; c < 4; ++c) {
                     const float scale = (float)(c + 1);
@@ -77,7 +78,7 @@ static void solvers(void)
         memory work;
         config.solver = solver;
         work = memory_new(nf_cv_workspace_size(&config, N));
-        CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
+        CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
         CHECK(fabsf(out.mean[0] - 2.0f) < 1e-4f && fabsf(out.mean[1] - 4.0f) < 1e-4f);
         memory_free(&work);
     }
@@ -94,15 +95,15 @@ static void plain_means(void)
     fill_linear(f, u, N, 2, 1);
     for (i = 0; i < N; ++i)
         mean += f[i] / (double)N;
-    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &plain), NF_OK);
+    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &plain), NF_OK);
     CHECK(fabs(plain.mean[0] - mean) < 1e-6);
     CHECK(plain.gain == 1.0f);
     config.order = 3;
     config.stratified = 1;
-    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &stratified), NF_OK);
+    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &stratified), NF_OK);
     CHECK(memcmp(&plain, &stratified, sizeof plain) == 0);
     config.stratified = 0;
-    CHECK_STATUS(nf_cv_estimate(&config, u, f, 1, work.start, work.bytes, &one), NF_OK);
+    CHECK_STATUS(estimate_one(&config, u, f, 1, work.start, work.bytes, &one), NF_OK);
     CHECK(one.mean[0] == f[0] && one.samples == 1 && isinf(one.std_error[0]));
     memory_free(&work);
 }
@@ -122,10 +123,10 @@ static void strides(void)
         wide[5 * i] = u[2 * i];
         wide[5 * i + 1] = u[2 * i + 1];
     }
-    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &narrow_out), NF_OK);
+    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &narrow_out), NF_OK);
     config.stride = 5;
     CHECK(nf_cv_workspace_size(&config, N) == work.bytes);
-    CHECK_STATUS(nf_cv_estimate(&config, wide, f, N, work.start, work.bytes, &wide_out), NF_OK);
+    CHECK_STATUS(estimate_one(&config, wide, f, N, work.start, work.bytes, &wide_out), NF_OK);
     CHECK(memcmp(&narrow_out, &wide_out, sizeof wide_out) == 0);
     memory_free(&work);
 }
@@ -137,14 +138,14 @@ static void slices_and_colors(void)
     nf_estimate out;
     fill_linear(f, u, N, 3, 3);
     config.slices = 4;
-    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
+    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
     CHECK(fabsf(out.mean[0] - 2.5f) < 0.3f);
     config.slices = 0;
     config.color = NF_COLOR_LUMINANCE_RATIO;
-    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
+    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
     CHECK(fabsf(out.mean[0] - 2.5f) < 0.3f && fabsf(out.mean[2] - 3.0f * out.mean[0]) < 1e-4f);
     config.channels = 2;
-    CHECK_REFUSED(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    CHECK_REFUSED(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
     memory_free(&work);
 }
 
@@ -154,12 +155,12 @@ typedef nf_status (*estimate_function)(const nf_cv_config *, const float *, cons
 static nf_status plain(const nf_cv_config *c, const float *pu, const float *pf, size_t n, void *w, size_t b,
                        nf_estimate *out)
 {
-    return nf_cv_estimate(c, pu, pf, n, w, b, out);
+    return estimate_one(c, pu, pf, n, w, b, out);
 }
 static nf_status with_controls(const nf_cv_config *c, const float *pu, const float *pf, size_t n, void *w, size_t b,
                                nf_estimate *out)
 {
-    return nf_cv_estimate_with_controls(c, pu, pf, NULL, NULL, n, w, b, out);
+    return estimate_controlled(c, pu, pf, NULL, NULL, n, w, b, out);
 }
 static float start[64];
 static nf_status descent(const nf_cv_config *c, const float *pu, const float *pf, size_t n, void *w, size_t b,
@@ -168,7 +169,7 @@ static nf_status descent(const nf_cv_config *c, const float *pu, const float *pf
     nf_status status;
     float before[64];
     memcpy(before, start, sizeof start);
-    status = nf_cv_gradient_descent(c, pu, pf, n, start, w, b, out);
+    status = descend(c, pu, pf, n, &steps, start, w, b, out);
     if (status != NF_OK)
         CHECK(memcmp(before, start, sizeof start) == 0);
     return status;
@@ -260,15 +261,15 @@ static void combinations(void)
     fill_linear(f, u, N, 2, 1);
     config.solver = NF_SOLVER_SQUARE_ROOT;
     CHECK(nf_cv_workspace_size(&config, N) == 0);
-    CHECK_REFUSED(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    CHECK_REFUSED(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
     config.estimator = NF_CV_LEAST_SQUARES;
     config.ridge = NF_RIDGE_AUTO;
-    CHECK_REFUSED(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    CHECK_REFUSED(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
     config = make_config(2, 2, 1, NF_CV_ROBUST);
     config.solver = NF_SOLVER_DUAL;
     config.controls = 1;
     CHECK(nf_cv_workspace_size(&config, N) == 0);
-    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, f, u, N, work.start, work.bytes, &out),
+    CHECK_REFUSED(estimate_controlled(&config, u, f, f, u, N, work.start, work.bytes, &out),
                   NF_ERR_UNSUPPORTED, out);
     config.controls = 0;
     CHECK(nf_cv_workspace_size(&config, 4096) > 0);
@@ -290,29 +291,28 @@ static void controls(void)
     }
     config.controls = 1;
     work = memory_new(nf_cv_workspace_size(&config, N));
-    CHECK_STATUS(nf_cv_estimate_with_controls(&config, u, f, h, &integral, N, work.start, work.bytes, &out), NF_OK);
+    CHECK_STATUS(estimate_controlled(&config, u, f, h, &integral, N, work.start, work.bytes, &out), NF_OK);
     CHECK(fabsf(out.mean[0] - 1.25f) < 1e-4f);
-    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, NULL, &integral, N, work.start, work.bytes, &out),
+    CHECK_REFUSED(estimate_controlled(&config, u, f, NULL, &integral, N, work.start, work.bytes, &out),
                   NF_ERR_NULL, out);
-    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, h, NULL, N, work.start, work.bytes, &out), NF_ERR_NULL,
+    CHECK_REFUSED(estimate_controlled(&config, u, f, h, NULL, N, work.start, work.bytes, &out), NF_ERR_NULL,
                   out);
-    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, (const float *)misaligned(h), &integral, N, work.start,
-                                               work.bytes, &out),
+    CHECK_REFUSED(estimate_controlled(&config, u, f, (const float *)misaligned(h), &integral, N, work.start, work.bytes, &out),
                   NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, h, &bad, N, work.start, work.bytes, &out),
+    CHECK_REFUSED(estimate_controlled(&config, u, f, h, &bad, N, work.start, work.bytes, &out),
                   NF_ERR_NOT_FINITE, out);
-    CHECK_REFUSED(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_NULL, out);
+    CHECK_REFUSED(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_NULL, out);
     saved = h[3];
     h[3] = infinity_f();
-    CHECK_REFUSED(nf_cv_estimate_with_controls(&config, u, f, h, &integral, N, work.start, work.bytes, &out),
+    CHECK_REFUSED(estimate_controlled(&config, u, f, h, &integral, N, work.start, work.bytes, &out),
                   NF_ERR_NOT_FINITE, out);
     h[3] = saved;
     memory_free(&work);
 
     config.controls = 0;
     work = memory_new(nf_cv_workspace_size(&config, N));
-    CHECK_STATUS(nf_cv_estimate_with_controls(&config, u, f, NULL, NULL, N, work.start, work.bytes, &out), NF_OK);
-    CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &without), NF_OK);
+    CHECK_STATUS(estimate_controlled(&config, u, f, NULL, NULL, N, work.start, work.bytes, &out), NF_OK);
+    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &without), NF_OK);
     CHECK(memcmp(&out, &without, sizeof out) == 0);
     memory_free(&work);
 }
@@ -333,42 +333,72 @@ static void many_integrals(void)
             fill_linear(f, u, N, stride, 1);
             work = memory_new(nf_cv_workspace_size(&config, EACH));
             poison(out, sizeof out);
-            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out), NF_OK);
+            CHECK_STATUS(estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out), NF_OK);
             CHECK(is_poisoned(&out[INTEGRALS], sizeof *out) && memory_is_intact(&work));
             for (i = 0; i < INTEGRALS; ++i) {
-                CHECK_STATUS(nf_cv_estimate(&config, u + i * EACH * stride, f + i * EACH, EACH, work.start, work.bytes,
-                                            &one), NF_OK);
+                CHECK_STATUS(estimate_one(&config, u + i * EACH * stride, f + i * EACH, EACH, work.start, work.bytes, &one), NF_OK);
                 CHECK(memcmp(&one, &out[i], sizeof one) == 0);
             }
             poison(out, sizeof out);
             saved = u[(N - 1) * stride + 1];
             u[(N - 1) * stride + 1] = 1.5f;
-            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
+            CHECK_STATUS(estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
                          NF_ERR_RANGE);
             u[(N - 1) * stride + 1] = saved;
             f[N - 1] = infinity_f();
-            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
+            CHECK_STATUS(estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
                          NF_ERR_NOT_FINITE);
             config.nonfinite = NF_NONFINITE_SKIP;
-            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
+            CHECK_STATUS(estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
                          NF_ERR_UNSUPPORTED);
             config.nonfinite = NF_NONFINITE_ERROR;
             config.controls = 1;
-            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
+            CHECK_STATUS(estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out),
                          NF_ERR_UNSUPPORTED);
             config.controls = 0;
-            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, SIZE_MAX / 2, work.start, work.bytes, out),
+            CHECK_STATUS(estimate_many(&config, u, f, EACH, SIZE_MAX / 2, work.start, work.bytes, out),
                          NF_ERR_RANGE);
-            CHECK_STATUS(nf_cv_estimate_many(NULL, u, f, EACH, 1, work.start, work.bytes, out), NF_ERR_NULL);
-            CHECK_STATUS(nf_cv_estimate_many(&config, NULL, f, EACH, 1, work.start, work.bytes, out), NF_ERR_NULL);
-            CHECK_STATUS(nf_cv_estimate_many(&config, u, NULL, EACH, 1, work.start, work.bytes, out), NF_ERR_NULL);
-            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, 1, work.start, work.bytes, NULL), NF_ERR_NULL);
-            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, 0, 1, work.start, work.bytes, out), NF_ERR_NO_SAMPLES);
-            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, 1, work.start, work.bytes - 1, out), NF_ERR_MEMORY);
-            CHECK_STATUS(nf_cv_estimate_many(&config, u, f, EACH, 0, work.start, work.bytes, out), NF_OK);
+            CHECK_STATUS(estimate_many(NULL, u, f, EACH, 1, work.start, work.bytes, out), NF_ERR_NULL);
+            CHECK_STATUS(estimate_many(&config, NULL, f, EACH, 1, work.start, work.bytes, out), NF_ERR_NULL);
+            CHECK_STATUS(estimate_many(&config, u, NULL, EACH, 1, work.start, work.bytes, out), NF_ERR_NULL);
+            CHECK_STATUS(estimate_many(&config, u, f, EACH, 1, work.start, work.bytes, NULL), NF_ERR_NULL);
+            CHECK_STATUS(estimate_many(&config, u, f, 0, 1, work.start, work.bytes, out), NF_ERR_NO_SAMPLES);
+            CHECK_STATUS(estimate_many(&config, u, f, EACH, 1, work.start, work.bytes - 1, out), NF_ERR_MEMORY);
+            CHECK_STATUS(estimate_many(&config, u, f, EACH, 0, work.start, work.bytes, out), NF_OK);
             CHECK(is_poisoned(out, sizeof out));
             memory_free(&work);
         }
+}
+
+/* Samples that are not there, and what is known of an image's. */
+static void sample_errors(void)
+{
+    static const nf_cv_descent odd[] = {{3, 0, 0.0f, 0.0f},     {0, (1u << 20) + 1, 0.0f, 0.0f}, {0, 0, -1.0f, 0.0f},
+                                        {0, 0, 0.0f, -0.1f}, {0, 0, 0.0f, 1.0f}};
+    nf_cv_config config = make_config(2, 2, 1, NF_CV_GRADIENT_DESCENT);
+    nf_cv_samples samples = samples_of(u, f, N);
+    memory work = memory_new(nf_cv_workspace_size(&config, N));
+    float coefficients[5] = {0};
+    nf_estimate out;
+    size_t i;
+    fill_linear(f, u, N, 2, 1);
+    CHECK_REFUSED(nf_cv_estimate(&config, NULL, 1, work.start, work.bytes, &out), NF_ERR_NULL, out);
+    CHECK_REFUSED(nf_cv_estimate(&config, (const nf_cv_samples *)misaligned(&samples), 1, work.start, work.bytes, &out),
+                  NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_cv_gradient_descent(&config, NULL, &steps, coefficients, work.start, work.bytes, &out),
+                  NF_ERR_NULL, out);
+    CHECK_REFUSED(descend(&config, u, f, N, NULL, coefficients, work.start, work.bytes, &out), NF_ERR_NULL, out);
+    for (i = 0; i < sizeof odd / sizeof *odd; ++i) {
+        CHECK_REFUSED(descend(&config, u, f, N, &odd[i], coefficients, work.start, work.bytes, &out), NF_ERR_RANGE, out);
+        CHECK(nf_cv_check(&config, NULL, &odd[i]) != NULL);
+    }
+    CHECK(nf_cv_check(&config, NULL, &steps) == NULL);
+    samples.known = f;
+    CHECK_REFUSED(nf_cv_estimate(&config, &samples, 1, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    samples.known = NULL;
+    samples.known_integrals = f;
+    CHECK_REFUSED(nf_cv_estimate(&config, &samples, 1, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
+    memory_free(&work);
 }
 
 static void warm_starts(void)
@@ -380,36 +410,36 @@ static void warm_starts(void)
     uint32_t optimizer;
     fill_linear(f, u, N, 2, 2);
     for (optimizer = 0; optimizer < 3; ++optimizer) {
-        config.optimizer = optimizer;
-        config.iterations = 0;
+        steps.optimizer = optimizer;
+        steps.iterations = 0;
         memset(coefficients, 0, sizeof coefficients);
-        CHECK_STATUS(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &cold), NF_OK);
-        CHECK_STATUS(nf_cv_estimate(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
-        CHECK(memcmp(&cold, &out, sizeof out) == 0);
-        config.iterations = 400;
-        CHECK_STATUS(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &warm), NF_OK);
+        CHECK_STATUS(descend(&config, u, f, N, &steps, coefficients, work.start, work.bytes, &cold), NF_OK);
+        CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
+        CHECK((memcmp(&cold, &out, sizeof out) == 0) == (optimizer == NF_OPTIMIZER_MOMENTUM));
+        steps.iterations = 400;
+        CHECK_STATUS(descend(&config, u, f, N, &steps, coefficients, work.start, work.bytes, &warm), NF_OK);
         /* u = 1/2 + phi_1 / sqrt(12), with the orthonormal phi_1. */
         if (optimizer != NF_OPTIMIZER_ADAM) {
             CHECK(fabsf(warm.mean[0] - 2.0f) < 1e-3f && fabsf(warm.mean[1] - 4.0f) < 2e-3f);
             CHECK(fabsf(coefficients[0] - 0.288675f) < 1e-2f && fabsf(coefficients[5] - 2 * 0.288675f) < 2e-2f);
         }
     }
-    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, NULL, work.start, work.bytes, &out), NF_ERR_NULL, out);
+    CHECK_REFUSED(descend(&config, u, f, N, &steps, NULL, work.start, work.bytes, &out), NF_ERR_NULL, out);
     CHECK_REFUSED(
-        nf_cv_gradient_descent(&config, u, f, N, (float *)misaligned(coefficients), work.start, work.bytes, &out),
+        descend(&config, u, f, N, &steps, (float *)misaligned(coefficients), work.start, work.bytes, &out),
         NF_ERR_ALIGNMENT, out);
     coefficients[9] = not_a_number();
     memcpy(before, coefficients, sizeof before);
-    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &out),
+    CHECK_REFUSED(descend(&config, u, f, N, &steps, coefficients, work.start, work.bytes, &out),
                   NF_ERR_NOT_FINITE, out);
     CHECK(memcmp(before, coefficients, sizeof before) == 0);
     coefficients[9] = 0.0f;
     config.estimator = NF_CV_ROBUST;
-    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &out),
+    CHECK_REFUSED(descend(&config, u, f, N, &steps, coefficients, work.start, work.bytes, &out),
                   NF_ERR_UNSUPPORTED, out);
     config.estimator = NF_CV_GRADIENT_DESCENT;
     config.controls = 1;
-    CHECK_REFUSED(nf_cv_gradient_descent(&config, u, f, N, coefficients, work.start, work.bytes, &out),
+    CHECK_REFUSED(descend(&config, u, f, N, &steps, coefficients, work.start, work.bytes, &out),
                   NF_ERR_UNSUPPORTED, out);
     memory_free(&work);
 }
@@ -434,6 +464,7 @@ int main(void)
     combinations();
     controls();
     many_integrals();
+    sample_errors();
     warm_starts();
     CHECK(nf_cv_workspace_size(NULL, N) == 0);
     return report("batch");

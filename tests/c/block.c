@@ -39,10 +39,10 @@ static void estimates(void)
             double plain_error = 0.0, error = 0.0;
             config.precision = precision;
             fill_pixels(channels);
-            work = memory_new(nf_cv_image_workspace_size(&config, &image, N));
+            work = memory_new(image_workspace_size(&config, &image, N));
             outputs = memory_new(PIXELS * sizeof(nf_estimate));
             out = (nf_estimate *)outputs.start;
-            CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_OK);
+            CHECK_STATUS(estimate_image(&config, &image, u, f, N, work.start, work.bytes, out), NF_OK);
             for (p = 0; p < PIXELS; ++p) {
                 const float scale = 1.0f + (float)p / 512.0f;
                 double mean = 0.0;
@@ -72,8 +72,8 @@ static void single_pixel_is_the_mean(void)
     const nf_cv_image image = block(1);
     nf_estimate out, mean;
     fill_pixels(1);
-    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, &out), NF_OK);
-    CHECK_STATUS(nf_cv_estimate(&plain, u, f, N, work.start, work.bytes, &mean), NF_OK);
+    CHECK_STATUS(estimate_image(&config, &image, u, f, N, work.start, work.bytes, &out), NF_OK);
+    CHECK_STATUS(estimate_one(&plain, u, f, N, work.start, work.bytes, &mean), NF_OK);
     CHECK(fabsf(out.mean[0] - mean.mean[0]) < 1e-6f);
     memory_free(&work);
 }
@@ -86,13 +86,13 @@ static void unsupported(void)
     nf_estimate out[PIXELS];
     fill_pixels(3);
     config.nonfinite = NF_NONFINITE_SKIP;
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_UNSUPPORTED, out);
+    CHECK_REFUSED(estimate_image(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_UNSUPPORTED, out);
     config = make_config(2, 2, 3, NF_CV_ROBUST);
     config.color = NF_COLOR_LUMINANCE_RATIO;
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_UNSUPPORTED, out);
+    CHECK_REFUSED(estimate_image(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_UNSUPPORTED, out);
     config = make_config(2, 2, 1, NF_CV_ROBUST);
     config.controls = 1;
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_UNSUPPORTED, out);
+    CHECK_REFUSED(estimate_image(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_UNSUPPORTED, out);
     memory_free(&work);
 }
 

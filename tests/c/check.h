@@ -146,12 +146,85 @@ static inline float infinity_f(void) { return (float)HUGE_VAL; }
 static inline nf_cv_config make_config(uint32_t dims, uint32_t order, uint32_t channels, uint32_t estimator)
 {
     nf_cv_config config;
-    nf_cv_config_default(&config);
+    memset(&config, 0, sizeof config);
     config.dims = dims;
     config.order = order;
     config.channels = channels;
     config.estimator = estimator;
     return config;
+}
+
+static inline nf_cv_samples samples_of(const float *u, const float *f, size_t n)
+{
+    nf_cv_samples samples;
+    memset(&samples, 0, sizeof samples);
+    samples.u = u;
+    samples.f = f;
+    samples.n = n;
+    return samples;
+}
+
+/* The calls of samples as functions of their arrays. */
+static inline nf_status estimate_many(const nf_cv_config *config, const float *u, const float *f, size_t n,
+                                      size_t integrals, void *workspace, size_t bytes, nf_estimate *out)
+{
+    const nf_cv_samples samples = samples_of(u, f, n);
+    return nf_cv_estimate(config, &samples, integrals, workspace, bytes, out);
+}
+static inline nf_status estimate_one(const nf_cv_config *config, const float *u, const float *f, size_t n,
+                                     void *workspace, size_t bytes, nf_estimate *out)
+{
+    return estimate_many(config, u, f, n, 1, workspace, bytes, out);
+}
+static inline nf_status estimate_image(const nf_cv_config *config, const nf_cv_image *image, const float *u,
+                                       const float *f, size_t n, void *workspace, size_t bytes, nf_estimate *out)
+{
+    const nf_cv_samples samples = samples_of(u, f, n);
+    return nf_cv_image_estimate(config, image, &samples, workspace, bytes, out);
+}
+static inline size_t image_workspace_size(const nf_cv_config *config, const nf_cv_image *image, size_t n)
+{
+    const nf_cv_samples samples = samples_of(NULL, NULL, n);
+    return nf_cv_image_workspace_size(config, image, &samples);
+}
+static inline nf_status estimate_controlled(const nf_cv_config *config, const float *u, const float *f, const float *h,
+                                            const float *integral, size_t n, void *workspace, size_t bytes,
+                                            nf_estimate *out)
+{
+    nf_cv_samples samples = samples_of(u, f, n);
+    samples.controls = h;
+    samples.control_integrals = integral;
+    return nf_cv_estimate(config, &samples, 1, workspace, bytes, out);
+}
+static inline nf_status descend(const nf_cv_config *config, const float *u, const float *f, size_t n,
+                                const nf_cv_descent *descent, float *coefficients, void *workspace, size_t bytes,
+                                nf_estimate *out)
+{
+    const nf_cv_samples samples = samples_of(u, f, n);
+    return nf_cv_gradient_descent(config, &samples, descent, coefficients, workspace, bytes, out);
+}
+static inline nf_status add_samples(nf_cv_accumulator *accumulator, const float *u, const float *f, size_t n)
+{
+    const nf_cv_samples samples = samples_of(u, f, n);
+    return nf_cv_accumulator_add(accumulator, &samples);
+}
+static inline size_t accumulator_workspace_size(const nf_cv_config *config)
+{
+    size_t workspace;
+    nf_cv_accumulator_size(config, &workspace);
+    return workspace;
+}
+
+/* What a table says of one item, and of all. */
+static inline float probability_of(const nf_table *table, uint32_t item)
+{
+    float p;
+    return nf_table_probabilities(table, &item, 1, 1, &p) == NF_OK ? p : 0.0f;
+}
+static inline double total_of(const nf_table *table)
+{
+    nf_shard shard;
+    return nf_table_shard(table, &shard) == NF_OK ? shard.importance : 0.0;
 }
 
 /* n rows of `stride` uniform numbers. */

@@ -1,21 +1,8 @@
-/* Configurations: defaults, and what every function makes of one that is out of range. */
+/* Configurations: what every function makes of one that is out of range. */
 #include "check.h"
 
 #define N 40
 static float u[N * 20], f[N * 5];
-
-static void defaults(void)
-{
-    nf_cv_config config, expected;
-    memset(&expected, 0, sizeof expected);
-    expected.dims = 2;
-    expected.order = 2;
-    expected.channels = 1;
-    poison(&config, sizeof config);
-    nf_cv_config_default(&config);
-    CHECK(memcmp(&config, &expected, sizeof config) == 0);
-    nf_cv_config_default(NULL);
-}
 
 /* binomial(dims + order, order), the dimension of the polynomials of total degree. */
 static uint32_t expected_terms(uint32_t dims, uint32_t order)
@@ -54,21 +41,45 @@ static void checked(void)
 {
     nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
     memory work = memory_new(1 << 16);
+    nf_cv_image image;
     nf_estimate out;
-    CHECK(nf_cv_config_check(&config) == NULL);
+    memset(&image, 0, sizeof image);
+    CHECK(nf_cv_check(&config, NULL, NULL) == NULL);
+    CHECK(strstr(nf_cv_check(&config, &image, NULL), "width") != NULL);
+    image.width = image.height = 64;
+    CHECK(nf_cv_check(&config, &image, NULL) == NULL);
+    CHECK(nf_cv_check(&config, (const nf_cv_image *)misaligned(&image), NULL) != NULL);
+    image.unordered = 2;
+    CHECK(strstr(nf_cv_check(&config, &image, NULL), "unordered") != NULL);
+    image.unordered = 1;
+    CHECK(nf_cv_check(&config, &image, NULL) == NULL);
+    image.wanted.width = image.wanted.height = 8;
+    CHECK(strstr(nf_cv_check(&config, &image, NULL), "all zero") != NULL);
+    image.unordered = 0;
+    image.window = 33;
+    CHECK(strstr(nf_cv_check(&config, &image, NULL), "1024 pixels") != NULL);
+    image.window = 8;
+    image.stride = 9;
+    CHECK(strstr(nf_cv_check(&config, &image, NULL), "stride") != NULL);
+    image.stride = 0;
+    image.given.width = 65;
+    image.given.height = 1;
+    CHECK(strstr(nf_cv_check(&config, &image, NULL), "given must lie") != NULL);
+    image.given = image.wanted;
+    CHECK(strstr(nf_cv_check(&config, &image, NULL), "nf_cv_image_needed") != NULL);
+    CHECK_STATUS(nf_cv_image_needed(&image, &image.given), NF_OK);
+    CHECK(nf_cv_check(&config, &image, NULL) == NULL);
     config.dims = 17;
-    CHECK(strcmp(nf_cv_config_check(&config), "dims must be 1 to 16") == 0);
+    CHECK(strcmp(nf_cv_check(&config, NULL, NULL), "dims must be 1 to 16") == 0);
     config = make_config(7, 4, 1, NF_CV_ROBUST);
-    CHECK(strstr(nf_cv_config_check(&config), "136 terms") != NULL);
-    CHECK(nf_cv_config_check(NULL) != NULL);
+    CHECK(strstr(nf_cv_check(&config, NULL, NULL), "136 terms") != NULL);
+    CHECK(nf_cv_check(NULL, NULL, NULL) != NULL);
     config = make_config(3, 1, 3, NF_CV_ROBUST);
     config.color = NF_COLOR_LUMINANCE_RATIO;
     config.stride = 4;
     config.folds = 16;
-    config.iterations = 1u << 20;
-    config.momentum = 0.5f;
-    CHECK(nf_cv_config_check(&config) == NULL);
-    CHECK_STATUS(nf_cv_estimate(&config, u, f, 8, work.start, work.bytes, &out), NF_OK);
+    CHECK(nf_cv_check(&config, NULL, NULL) == NULL);
+    CHECK_STATUS(estimate_one(&config, u, f, 8, work.start, work.bytes, &out), NF_OK);
     memory_free(&work);
 }
 
@@ -107,6 +118,7 @@ static void refused(const nf_cv_config *config, nf_status status)
     float coefficients[4];
     nf_cv_accumulator *accumulator;
     nf_cv_config descent = *config;
+    const nf_cv_descent steps = {0, 0, 0.0f, 0.0f};
     nf_cv_image pixels;
     /* Images and descents take no control functions at all. */
     const nf_status narrower = config->controls > 0 ? NF_ERR_UNSUPPORTED : status;
@@ -114,17 +126,17 @@ static void refused(const nf_cv_config *config, nf_status status)
     pixels.width = 2;
     pixels.height = 1;
     CHECK(nf_cv_workspace_size(config, N) == 0);
-    CHECK(nf_cv_image_workspace_size(config, &pixels, N / 2) == 0);
-    CHECK(nf_cv_accumulator_size(config) == 0);
-    CHECK(nf_cv_accumulator_workspace_size(config) == 0);
-    CHECK_REFUSED(nf_cv_estimate(config, u, f, N, work.start, work.bytes, &out), status, out);
-    CHECK_REFUSED(nf_cv_estimate_with_controls(config, u, f, u, u, N, work.start, work.bytes, &out), status, out);
-    CHECK_REFUSED(nf_cv_image_estimate(config, &pixels, u, f, N / 2, work.start, work.bytes, two), narrower, two);
+    CHECK(image_workspace_size(config, &pixels, N / 2) == 0);
+    CHECK(nf_cv_accumulator_size(config, NULL) == 0);
+    CHECK(accumulator_workspace_size(config) == 0);
+    CHECK_REFUSED(estimate_one(config, u, f, N, work.start, work.bytes, &out), status, out);
+    CHECK_REFUSED(estimate_controlled(config, u, f, u, u, N, work.start, work.bytes, &out), status, out);
+    CHECK_REFUSED(estimate_image(config, &pixels, u, f, N / 2, work.start, work.bytes, two), narrower, two);
     CHECK_REFUSED(nf_cv_accumulator_init(work.start, work.bytes, config, &accumulator), status, accumulator);
     if (config->estimator == NF_CV_ROBUST)
         descent.estimator = NF_CV_GRADIENT_DESCENT;
     poison(coefficients, sizeof coefficients);
-    CHECK_REFUSED(nf_cv_gradient_descent(&descent, u, f, N, coefficients, work.start, work.bytes, &out), narrower,
+    CHECK_REFUSED(descend(&descent, u, f, N, &steps, coefficients, work.start, work.bytes, &out), narrower,
                   out);
     CHECK(is_poisoned(coefficients, sizeof coefficients));
     memory_free(&work);
@@ -136,7 +148,7 @@ static void refused(const nf_cv_config *config, nf_status status)
         change;                                                 \
         refused(&config, status);                               \
         CHECK(nf_cv_terms(&config) == 0);                       \
-        CHECK(nf_cv_config_check(&config) != NULL);             \
+        CHECK(nf_cv_check(&config, NULL, NULL) != NULL);             \
     } while (0)
 /* The number of terms does not depend on these fields, so that nf_cv_terms() need not look at them. */
 #define REFUSED_AFTER_TERMS(change, status)                     \
@@ -173,18 +185,10 @@ static void ranges(void)
     REFUSED(config.color = 2, NF_ERR_RANGE);
     REFUSED(config.folds = 1, NF_ERR_RANGE);
     REFUSED(config.folds = 17, NF_ERR_RANGE);
-    REFUSED(config.iterations = (1u << 20) + 1, NF_ERR_RANGE);
-    REFUSED(config.optimizer = 3, NF_ERR_RANGE);
     REFUSED(config.ridge = -0.5f, NF_ERR_RANGE);
     REFUSED(config.ridge = -2.0f, NF_ERR_RANGE);
     REFUSED(config.ridge = nan, NF_ERR_RANGE);
     REFUSED(config.ridge = infinite, NF_ERR_RANGE);
-    REFUSED(config.learning_rate = -1.0f, NF_ERR_RANGE);
-    REFUSED(config.learning_rate = nan, NF_ERR_RANGE);
-    REFUSED(config.learning_rate = infinite, NF_ERR_RANGE);
-    REFUSED(config.momentum = -0.1f, NF_ERR_RANGE);
-    REFUSED(config.momentum = 1.0f, NF_ERR_RANGE);
-    REFUSED(config.momentum = nan, NF_ERR_RANGE);
 }
 
 /* The largest and the smallest of everything is accepted. */
@@ -204,7 +208,7 @@ static void limits(void)
                     continue;
                 fill_linear(long_f, long_u, 20, dims, 4);
                 work = memory_new(nf_cv_workspace_size(&config, 20));
-                CHECK_STATUS(nf_cv_estimate(&config, long_u, long_f, 20, work.start, work.bytes, &out), NF_OK);
+                CHECK_STATUS(estimate_one(&config, long_u, long_f, 20, work.start, work.bytes, &out), NF_OK);
                 CHECK(out.samples == 20);
                 CHECK(isfinite(out.mean[0]) && isfinite(out.mean[3]) && isfinite(out.gain));
                 memory_free(&work);
@@ -215,7 +219,6 @@ int main(void)
 {
     fill_uniform(u, N * 20, 1);
     fill_linear(f, u, N, 2, 1);
-    defaults();
     terms();
     checked();
     most_slices();

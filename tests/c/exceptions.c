@@ -69,6 +69,8 @@ static void control_variates(void)
         float size = 1.0f, integral;
         const size_t n = 1 + below(turn % 2 ? 80 : 6);
         nf_estimate out;
+        nf_cv_descent steps = {0, 0, 0.0f, 0.0f};
+        float coefficients[4 * 136] = {0};
         nf_cv_accumulator *accumulator = NULL, *other = NULL;
         memory work, state, others;
         size_t i;
@@ -83,24 +85,31 @@ static void control_variates(void)
             size = powf(10.0f, digits * (2.0f * nf_rng_uniform(&rng) - 1.0f));
         }
         integral = 0.5f * size;
-        config.optimizer = below(2) ? NF_OPTIMIZER_ADAM : NF_OPTIMIZER_MOMENTUM;
         fill_points(u, n * config.dims);
         fill_values(kind, u, config.dims, f, n, config.channels);
         for (i = 0; i < n; ++i)
             controls[i] = size * u[i * config.dims];
         work = memory_new(nf_cv_workspace_size(&config, n));
         feclearexcept(FE_ALL_EXCEPT);
-        nf_cv_estimate_with_controls(&config, u, f, controls, &integral, n, work.start, work.bytes, &out);
+        estimate_controlled(&config, u, f, controls, &integral, n, work.start, work.bytes, &out);
         check_quiet("nf_cv_estimate", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
+        steps.optimizer = below(2) ? NF_OPTIMIZER_ADAM : NF_OPTIMIZER_MOMENTUM;
+        feclearexcept(FE_ALL_EXCEPT);
+        descend(&config, u, f, n, &steps, coefficients, work.start, work.bytes, &out);
+        check_quiet("nf_cv_gradient_descent", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
         memory_free(&work);
-        state = memory_new(nf_cv_accumulator_size(&config));
-        others = memory_new(nf_cv_accumulator_size(&config));
-        work = memory_new(nf_cv_accumulator_workspace_size(&config));
+        state = memory_new(nf_cv_accumulator_size(&config, NULL));
+        others = memory_new(nf_cv_accumulator_size(&config, NULL));
+        work = memory_new(accumulator_workspace_size(&config));
         feclearexcept(FE_ALL_EXCEPT);
         if (state.bytes > 0 && nf_cv_accumulator_init(state.start, state.bytes, &config, &accumulator) == NF_OK &&
             nf_cv_accumulator_init(others.start, others.bytes, &config, &other) == NF_OK) {
-            nf_cv_accumulator_add_with_controls(accumulator, u, f, controls, &integral, n);
-            nf_cv_accumulator_add_with_controls(other, u, f, controls, &integral, n / 2 + 1 < n ? n / 2 + 1 : n);
+            nf_cv_samples samples = samples_of(u, f, n);
+            samples.controls = controls;
+            samples.control_integrals = &integral;
+            nf_cv_accumulator_add(accumulator, &samples);
+            samples.n = n / 2 + 1 < n ? n / 2 + 1 : n;
+            nf_cv_accumulator_add(other, &samples);
             nf_cv_accumulator_merge(accumulator, other);
             nf_cv_accumulator_estimate(accumulator, work.start, work.bytes, &out);
             check_quiet("nf_cv_accumulator", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
@@ -122,6 +131,7 @@ static void images(void)
         const size_t n = 1 + below(4);
         nf_cv_config config = make_config(2, 1 + below(3), 1 + 2 * below(2), (uint32_t)turn / KINDS % 6);
         nf_cv_image image;
+        nf_cv_samples samples = samples_of(u, f, n);
         memory work;
         size_t i;
         memset(&image, 0, sizeof image);
@@ -141,19 +151,20 @@ static void images(void)
         for (i = 0; i < 256 * 3; ++i)
             integrals[i] = below(4) ? fabsf(known[i]) : 0.0f;
         if (below(2)) {
-            image.known = known;
-            image.known_integrals = integrals;
+            samples.known = known;
+            samples.known_integrals = integrals;
         }
         /* Then the same pixels without places, surfaces and factors. */
         for (i = 0; i < 2; ++i) {
-            work = memory_new(nf_cv_image_workspace_size(&config, &image, n));
+            work = memory_new(nf_cv_image_workspace_size(&config, &image, &samples));
             feclearexcept(FE_ALL_EXCEPT);
-            nf_cv_image_estimate(&config, &image, u, f, n, work.start, work.bytes, out);
+            nf_cv_image_estimate(&config, &image, &samples, work.start, work.bytes, out);
             check_quiet("nf_cv_image_estimate", kind_names[kind], (int)config.estimator, (int)config.precision, (int)n);
             memory_free(&work);
             memset(&image, 0, sizeof image);
             image.width = image.height = 16;
             image.unordered = 1;
+            samples = samples_of(u, f, n);
         }
     }
 }
@@ -179,9 +190,9 @@ static void tables(void)
             nf_table_draw_stratified(&table, &rng, batch, index, weight);
             nf_table_draw_distinct(&table, &rng, batch, index, weight);
             nf_table_update(&table, index, importance, batch, 0.3f);
-            nf_table_set_uniform_fraction(&table, 0.1f);
+            table.uniform_fraction = 0.1f;
             nf_table_draw(&table, &rng, batch, index, weight);
-            nf_table_probability(&table, 0);
+            nf_table_probabilities(&table, index, 1, 1, weight);
         }
         check_quiet("nf_table", kind_names[kind], (int)items, (int)batch, 0);
         memory_free(&work);
@@ -190,7 +201,8 @@ static void tables(void)
 
 static void importances(void)
 {
-    float values[10], others[10], gradient[10], nodes[10];
+    static const uint32_t label = 3;
+    float values[10], others[10], gradient[10], nodes[10], loss, norm;
     int turn;
     for (turn = 0; turn < 900; ++turn) {
         const int kind = turn % KINDS;
@@ -198,12 +210,10 @@ static void importances(void)
         fill_values(kind, values, 1, others, 10, 1);
         fill_values(kind, others, 1, values, 10, 1);
         feclearexcept(FE_ALL_EXCEPT);
-        nf_importance_cross_entropy(values, 10, 3);
-        nf_importance_cross_entropy_loss(values, 10, 3);
-        nf_importance_squared_error(values, others, 10);
-        nf_importance_gradient(values, 10);
-        nf_cross_entropy_gradient(values, 10, 3, gradient);
-        nf_importance_nodes(gradient, 10, NF_NODES_SIGN, 2, nodes);
+        nf_importance_cross_entropy(values, &label, 1, 10, &norm, &loss, gradient);
+        nf_importance_squared_error(values, others, 1, 10, &norm);
+        nf_importance_gradient(values, 1, 10, NF_NODES_NORM, 1, &norm);
+        nf_importance_gradient(gradient, 1, 10, NF_NODES_SIGN, 2, nodes);
         check_quiet("nf_importance", kind_names[kind], 0, 0, 0);
     }
 }
@@ -237,13 +247,11 @@ static void weights(void)
         if (nf_omis_init(work.start, work.bytes, 3, 1, counts, &omis) == NF_OK) {
             for (i = 0; i < 4; ++i)
                 nf_omis_add(omis, technique[i], pdf + 3 * i, value + i);
-            nf_omis_solve(omis, solver, 0.0f, out);
-            nf_omis_alpha(omis, solver, 0.0f, alpha);
-            nf_omis_next_batch(omis, solver, 0.0f);
-            nf_omis_decay(omis, 0.5f);
+            nf_omis_solve(omis, solver, 0.0f, out, NULL);
+            nf_omis_solve(omis, solver, 0.0f, NULL, alpha);
+            nf_omis_next_batch(omis, solver, 0.0f, 0.5f);
         }
         check_quiet("nf_omis", kind_names[kind], (int)solver, 0, 0);
-        nf_mis_optimal(pdf, counts, 3, 0, alpha, value[0], weight);
         nf_mis_optimal_contribution(pdf, counts, 3, 0, alpha, value[0], weight);
         check_quiet("nf_mis_optimal", kind_names[kind], (int)solver, 0, 0);
         nf_omis_weights(solver, 0.0f, 3, 500, pdf, technique, 4, weight);

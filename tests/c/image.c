@@ -30,9 +30,9 @@ static void fill_pixels(size_t channels)
 
 static void estimate(const nf_cv_config *config, const nf_cv_image *image, size_t n, nf_estimate *out)
 {
-    memory work = memory_new(nf_cv_image_workspace_size(config, image, n));
+    memory work = memory_new(image_workspace_size(config, image, n));
     CHECK(work.bytes > 0);
-    CHECK_STATUS(nf_cv_image_estimate(config, image, u, f, n, work.start, work.bytes, out), NF_OK);
+    CHECK_STATUS(estimate_image(config, image, u, f, n, work.start, work.bytes, out), NF_OK);
     memory_free(&work);
 }
 
@@ -167,21 +167,21 @@ static void unordered(void)
     memory work;
     fill_pixels(1);
     image.unordered = row.unordered = 1;
-    work = memory_new(nf_cv_image_workspace_size(&config, &row, N));
-    CHECK(nf_cv_image_workspace_size(&config, &image, N) == work.bytes);
+    work = memory_new(image_workspace_size(&config, &row, N));
+    CHECK(image_workspace_size(&config, &image, N) == work.bytes);
     estimate(&config, &image, N, out);
     estimate(&config, &row, N, expected);
     CHECK(memcmp(out, expected, sizeof out) == 0);
     image.unordered = 2;
-    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_RANGE, out);
+    CHECK(image_workspace_size(&config, &image, N) == 0);
+    CHECK_REFUSED(estimate_image(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_RANGE, out);
     memory_free(&work);
 }
 
 #define REFUSED_BY(bytes, expected)                                                                                    \
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out), expected, out)
+    CHECK_REFUSED(estimate_image(&config, &image, u, f, N, work.start, bytes, out), expected, out)
 #define REFUSED(expected)                                                                                              \
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), expected, out)
+    CHECK_REFUSED(estimate_image(&config, &image, u, f, N, work.start, work.bytes, out), expected, out)
 
 /* Parts: what is refused, and the bits of the whole. */
 static void parts(void)
@@ -199,24 +199,24 @@ static void parts(void)
     image.wanted.y = 1;
     image.wanted.width = 1;
     image.wanted.height = 2;
-    work = memory_new(nf_cv_image_workspace_size(&config, &image, N));
+    work = memory_new(image_workspace_size(&config, &image, N));
     CHECK(work.bytes > 0);
-    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_OK);
+    CHECK_STATUS(estimate_image(&config, &image, u, f, N, work.start, work.bytes, out), NF_OK);
     for (y = 0; y < 2; ++y)
         CHECK(memcmp(&out[y], &whole[(1 + y) * WIDTH + WIDTH - 1], sizeof out[y]) == 0);
     CHECK_STATUS(nf_cv_image_needed(&image, &needed), NF_OK);
     CHECK(needed.x + needed.width == WIDTH && needed.x == WIDTH - 4 && needed.y == 0);
     image.given = needed;
-    CHECK(nf_cv_image_workspace_size(&config, &image, N) > 0);
+    CHECK(image_workspace_size(&config, &image, N) > 0);
     ++image.given.x;
     --image.given.width;
-    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_RANGE, out);
+    CHECK(image_workspace_size(&config, &image, N) == 0);
+    CHECK_REFUSED(estimate_image(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_RANGE, out);
     memset(&image.given, 0, sizeof image.given);
     for (x = 0; x < 4; ++x) {
         const uint32_t beyond[4][4] = {{WIDTH, 0, 1, 1}, {0, 0, 1, 0}, {0, 0, 0xffffffffu, 1}, {0xffffffffu, 1, 2, 1}};
         memcpy(&image.wanted, beyond[x], sizeof image.wanted);
-        CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_RANGE, out);
+        CHECK_REFUSED(estimate_image(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_RANGE, out);
         CHECK_STATUS(nf_cv_image_needed(&image, &needed), NF_ERR_RANGE);
     }
     CHECK_STATUS(nf_cv_image_needed(NULL, &needed), NF_ERR_NULL);
@@ -231,6 +231,7 @@ static void known(void)
     static float values[PIXELS * N], integrals[PIXELS];
     nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
     nf_cv_image image = make_image(WIDTH, HEIGHT);
+    nf_cv_samples samples = samples_of(u, f, N);
     memory work;
     size_t bytes, i;
     nf_estimate out[PIXELS];
@@ -239,37 +240,37 @@ static void known(void)
         values[i] = 2.0f * f[i];
     for (i = 0; i < PIXELS; ++i)
         integrals[i] = 1.0f + (float)i;
-    bytes = nf_cv_image_workspace_size(&config, &image, N);
-    image.known = values;
-    image.known_integrals = integrals;
-    CHECK(nf_cv_image_workspace_size(&config, &image, N) > bytes);
-    bytes = nf_cv_image_workspace_size(&config, &image, N);
+    bytes = image_workspace_size(&config, &image, N);
+    samples.known = values;
+    samples.known_integrals = integrals;
+    CHECK(nf_cv_image_workspace_size(&config, &image, &samples) > bytes);
+    bytes = nf_cv_image_workspace_size(&config, &image, &samples);
     work = memory_new(bytes);
-    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out), NF_OK);
-    REFUSED_BY(bytes - 1, NF_ERR_MEMORY);
-    image.known_integrals = NULL;
-    REFUSED_BY(bytes, NF_ERR_RANGE);
-    image.known_integrals = (const float *)misaligned(integrals);
-    REFUSED_BY(bytes, NF_ERR_ALIGNMENT);
-    image.known_integrals = integrals;
-    image.known = (const float *)misaligned(values);
-    REFUSED_BY(bytes, NF_ERR_ALIGNMENT);
-    image.known = NULL;
-    REFUSED_BY(bytes, NF_ERR_RANGE);
-    image.known = values;
+    CHECK_STATUS(nf_cv_image_estimate(&config, &image, &samples, work.start, bytes, out), NF_OK);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, &samples, work.start, bytes - 1, out), NF_ERR_MEMORY, out);
+    samples.known_integrals = NULL;
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, &samples, work.start, bytes, out), NF_ERR_RANGE, out);
+    samples.known_integrals = (const float *)misaligned(integrals);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, &samples, work.start, bytes, out), NF_ERR_ALIGNMENT, out);
+    samples.known_integrals = integrals;
+    samples.known = (const float *)misaligned(values);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, &samples, work.start, bytes, out), NF_ERR_ALIGNMENT, out);
+    samples.known = NULL;
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, &samples, work.start, bytes, out), NF_ERR_RANGE, out);
+    samples.known = values;
     values[PIXELS * N - 1] = not_a_number();
-    REFUSED_BY(bytes, NF_ERR_NOT_FINITE);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, &samples, work.start, bytes, out), NF_ERR_NOT_FINITE, out);
     values[PIXELS * N - 1] = 2.0f * f[PIXELS * N - 1];
     integrals[PIXELS - 1] = -1.0f;
-    REFUSED_BY(bytes, NF_ERR_RANGE);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, &samples, work.start, bytes, out), NF_ERR_RANGE, out);
     integrals[PIXELS - 1] = infinity_f();
-    REFUSED_BY(bytes, NF_ERR_NOT_FINITE);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, &samples, work.start, bytes, out), NF_ERR_NOT_FINITE, out);
     integrals[PIXELS - 1] = (float)PIXELS;
     config.estimator = NF_CV_K_FOLD;
-    REFUSED_BY(bytes, NF_ERR_UNSUPPORTED);
-    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, &samples, work.start, bytes, out), NF_ERR_UNSUPPORTED, out);
+    CHECK(nf_cv_image_workspace_size(&config, &image, &samples) == 0);
     config.estimator = NF_CV_LEAVE_ONE_OUT;
-    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out), NF_OK);
+    CHECK_STATUS(nf_cv_image_estimate(&config, &image, &samples, work.start, bytes, out), NF_OK);
     for (i = 0; i < PIXELS; ++i)
         CHECK(fabsf(out[i].mean[0] - 0.5f * integrals[i]) < 1e-5f * integrals[i]);
     memory_free(&work);
@@ -282,37 +283,37 @@ static void errors(void)
     static const uint32_t sizes[] = {0x10000u, 0x7fffffffu, 0x80000000u, 0xffffffffu};
     nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
     nf_cv_image image = make_image(WIDTH, HEIGHT);
-    const size_t bytes = nf_cv_image_workspace_size(&config, &image, N);
+    const size_t bytes = image_workspace_size(&config, &image, N);
     memory work = memory_new(bytes);
     nf_estimate out[PIXELS];
     float saved;
     size_t i, j;
     fill_pixels(1);
-    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out), NF_OK);
-    CHECK_REFUSED(nf_cv_image_estimate(NULL, &image, u, f, N, work.start, bytes, out), NF_ERR_NULL, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, NULL, u, f, N, work.start, bytes, out), NF_ERR_NULL, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, NULL, f, N, work.start, bytes, out), NF_ERR_NULL, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, NULL, N, work.start, bytes, out), NF_ERR_NULL, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, NULL, bytes, out), NF_ERR_NULL, out);
-    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, NULL), NF_ERR_NULL);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, 0, work.start, bytes, out), NF_ERR_NO_SAMPLES, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes - 1, out), NF_ERR_MEMORY, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, 0, out), NF_ERR_MEMORY, out);
+    CHECK_STATUS(estimate_image(&config, &image, u, f, N, work.start, bytes, out), NF_OK);
+    CHECK_REFUSED(estimate_image(NULL, &image, u, f, N, work.start, bytes, out), NF_ERR_NULL, out);
+    CHECK_REFUSED(estimate_image(&config, NULL, u, f, N, work.start, bytes, out), NF_ERR_NULL, out);
+    CHECK_REFUSED(estimate_image(&config, &image, NULL, f, N, work.start, bytes, out), NF_ERR_NULL, out);
+    CHECK_REFUSED(estimate_image(&config, &image, u, NULL, N, work.start, bytes, out), NF_ERR_NULL, out);
+    CHECK_REFUSED(estimate_image(&config, &image, u, f, N, NULL, bytes, out), NF_ERR_NULL, out);
+    CHECK_STATUS(estimate_image(&config, &image, u, f, N, work.start, bytes, NULL), NF_ERR_NULL);
+    CHECK_REFUSED(estimate_image(&config, &image, u, f, 0, work.start, bytes, out), NF_ERR_NO_SAMPLES, out);
+    CHECK_REFUSED(estimate_image(&config, &image, u, f, N, work.start, bytes - 1, out), NF_ERR_MEMORY, out);
+    CHECK_REFUSED(estimate_image(&config, &image, u, f, N, work.start, 0, out), NF_ERR_MEMORY, out);
 
     /* Alignment, of everything that is pointed to. */
     CHECK_REFUSED(
-        nf_cv_image_estimate(&config, (const nf_cv_image *)misaligned(&image), u, f, N, work.start, bytes, out),
+        estimate_image(&config, (const nf_cv_image *)misaligned(&image), u, f, N, work.start, bytes, out),
         NF_ERR_ALIGNMENT, out);
     CHECK_REFUSED(
-        nf_cv_image_estimate((const nf_cv_config *)misaligned(&config), &image, u, f, N, work.start, bytes, out),
+        estimate_image((const nf_cv_config *)misaligned(&config), &image, u, f, N, work.start, bytes, out),
         NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, (const float *)misaligned(u), f, N, work.start, bytes, out),
+    CHECK_REFUSED(estimate_image(&config, &image, (const float *)misaligned(u), f, N, work.start, bytes, out),
                   NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, (const float *)misaligned(f), N, work.start, bytes, out),
+    CHECK_REFUSED(estimate_image(&config, &image, u, (const float *)misaligned(f), N, work.start, bytes, out),
                   NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, misaligned(work.start), bytes - 1, out),
+    CHECK_REFUSED(estimate_image(&config, &image, u, f, N, misaligned(work.start), bytes - 1, out),
                   NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, (nf_estimate *)misaligned(out)),
+    CHECK_REFUSED(estimate_image(&config, &image, u, f, N, work.start, bytes, (nf_estimate *)misaligned(out)),
                   NF_ERR_ALIGNMENT, out);
     image.surfaces = (const uint32_t *)misaligned(surfaces);
     REFUSED(NF_ERR_ALIGNMENT);
@@ -333,62 +334,62 @@ static void errors(void)
     factors[PIXELS - 1] = -infinity_f();
     REFUSED(NF_ERR_NOT_FINITE);
     factors[PIXELS - 1] = -0.0f;
-    CHECK_STATUS(nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out), NF_OK);
+    CHECK_STATUS(estimate_image(&config, &image, u, f, N, work.start, bytes, out), NF_OK);
     image.factors = NULL;
     known();
 
     /* Sizes, windows, strides. */
     image = make_image(0, HEIGHT);
     REFUSED(NF_ERR_RANGE);
-    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    CHECK(image_workspace_size(&config, &image, N) == 0);
     image = make_image(WIDTH, 0);
     REFUSED(NF_ERR_RANGE);
-    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    CHECK(image_workspace_size(&config, &image, N) == 0);
     image = make_image(WIDTH, HEIGHT);
     image.window = 4;
     image.stride = 5;
     REFUSED(NF_ERR_RANGE);
-    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    CHECK(image_workspace_size(&config, &image, N) == 0);
     image.window = 0;
     image.stride = 9;
     REFUSED(NF_ERR_RANGE);
     image = make_image(33, 32);
     image.window = 33;
-    CHECK(nf_cv_image_workspace_size(&config, &image, 1) == 0);
+    CHECK(image_workspace_size(&config, &image, 1) == 0);
     image.window = 32;
-    CHECK(nf_cv_image_workspace_size(&config, &image, 1) > 0);
+    CHECK(image_workspace_size(&config, &image, 1) > 0);
     image = make_image(8, 8);
     image.frames = 16;
-    CHECK(nf_cv_image_workspace_size(&config, &image, 1) > 0);
+    CHECK(image_workspace_size(&config, &image, 1) > 0);
     image.frames = 17;
-    CHECK(nf_cv_image_workspace_size(&config, &image, 1) == 0);
+    CHECK(image_workspace_size(&config, &image, 1) == 0);
     /* A window may be larger than the image, if the image is small enough. */
     image = make_image(WIDTH, HEIGHT);
     image.window = image.stride = 0xffffffffu;
-    CHECK(nf_cv_image_workspace_size(&config, &image, N) > 0);
+    CHECK(image_workspace_size(&config, &image, N) > 0);
     for (i = 0; i < sizeof sizes / sizeof *sizes; ++i)
         for (j = 0; j < sizeof sizes / sizeof *sizes; ++j) {
             nf_status status;
             image = make_image(sizes[i], sizes[j]);
             poison(out, sizeof out);
-            status = nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out);
+            status = estimate_image(&config, &image, u, f, N, work.start, bytes, out);
             CHECK(status == NF_ERR_RANGE || status == NF_ERR_MEMORY);
             image = make_image(WIDTH, HEIGHT);
             image.frames = sizes[i];
-            status = nf_cv_image_estimate(&config, &image, u, f, N, work.start, bytes, out);
+            status = estimate_image(&config, &image, u, f, N, work.start, bytes, out);
             CHECK(status == NF_ERR_RANGE || status == NF_ERR_MEMORY);
             image.frames = 0;
-            status = nf_cv_image_estimate(&config, &image, u, f, SIZE_MAX / (i + 1), work.start, bytes, out);
+            status = estimate_image(&config, &image, u, f, SIZE_MAX / (i + 1), work.start, bytes, out);
             CHECK(status == NF_ERR_RANGE || status == NF_ERR_MEMORY);
             CHECK(is_poisoned(out, sizeof out));
-            CHECK(nf_cv_image_workspace_size(&config, &image, SIZE_MAX / (i + 1)) == 0);
+            CHECK(image_workspace_size(&config, &image, SIZE_MAX / (i + 1)) == 0);
         }
     image = make_image(WIDTH, HEIGHT);
 
     /* Samples: the last of the last pixel. */
     saved = f[PIXELS * N - 1];
     f[PIXELS * N - 1] = not_a_number();
-    CHECK_NAN_REFUSED(nf_cv_image_estimate(&config, &image, u, f, N, work.start, work.bytes, out), out);
+    CHECK_NAN_REFUSED(estimate_image(&config, &image, u, f, N, work.start, work.bytes, out), out);
     f[PIXELS * N - 1] = saved;
     saved = u[PIXELS * N * 2 - 1];
     u[PIXELS * N * 2 - 1] = 1.5f;
@@ -400,7 +401,7 @@ static void errors(void)
     work = memory_new(1 << 20);
     config.estimator = NF_CV_LEAST_SQUARES;
     REFUSED(NF_ERR_UNSUPPORTED);
-    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    CHECK(image_workspace_size(&config, &image, N) == 0);
     config.estimator = NF_CV_GRADIENT_DESCENT;
     REFUSED(NF_ERR_UNSUPPORTED);
     config.estimator = NF_CV_INCREMENTAL;
@@ -410,7 +411,7 @@ static void errors(void)
     config = make_config(2, 2, 1, NF_CV_ROBUST);
     config.controls = 1;
     REFUSED(NF_ERR_UNSUPPORTED);
-    CHECK(nf_cv_image_workspace_size(&config, &image, N) == 0);
+    CHECK(image_workspace_size(&config, &image, N) == 0);
     config = make_config(2, 2, 1, NF_CV_ROBUST);
     config.nonfinite = NF_NONFINITE_SKIP;
     REFUSED(NF_ERR_UNSUPPORTED);
@@ -421,8 +422,8 @@ static void errors(void)
     config = make_config(0, 2, 1, NF_CV_ROBUST);
     REFUSED(NF_ERR_RANGE);
     config = make_config(2, 2, 1, NF_CV_ROBUST);
-    CHECK(nf_cv_image_workspace_size(NULL, &image, N) == 0);
-    CHECK(nf_cv_image_workspace_size(&config, NULL, N) == 0);
+    CHECK(image_workspace_size(NULL, &image, N) == 0);
+    CHECK(image_workspace_size(&config, NULL, N) == 0);
     memory_free(&work);
 }
 

@@ -41,41 +41,45 @@ static void normal_use(void)
     for (i = 0; i < 200; ++i) {
         add_round(omis, &rng);
         if (i % 50 == 49)
-            CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_RIDGE, 0.0f), NF_OK);
+            CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_RIDGE, 0.0f, 1.0f), NF_OK);
     }
     for (k = 0; k < 4; ++k) {
-        CHECK_STATUS(nf_omis_solve(omis, solvers[k], 0.0f, estimate), NF_OK);
-        CHECK_STATUS(nf_omis_solve(omis, solvers[k], 0.0f, again), NF_OK);
+        CHECK_STATUS(nf_omis_solve(omis, solvers[k], 0.0f, estimate, NULL), NF_OK);
+        CHECK_STATUS(nf_omis_solve(omis, solvers[k], 0.0f, again, NULL), NF_OK);
         CHECK(memcmp(estimate, again, sizeof estimate) == 0);
         /* The balance heuristic's standard errors at 600 samples are about .05 and .012. */
         CHECK(fabsf(estimate[0] - 5.0f) < 0.2f && fabsf(estimate[1] - 1.0f / 3.0f) < 0.05f);
     }
-    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_PLAIN, 0.0f, estimate), NF_OK);
+    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_PLAIN, 0.0f, estimate, NULL), NF_OK);
     CHECK(fabsf(estimate[0] - 5.0f) < 1e-4f);
-    CHECK_STATUS(nf_omis_alpha(omis, NF_OMIS_PLAIN, 0.0f, alpha), NF_OK);
+    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_PLAIN, 0.0f, NULL, alpha), NF_OK);
     CHECK(fabsf(alpha[0] - 3.0f) < 1e-3f && fabsf(alpha[1] - 2.0f) < 1e-3f);
-    CHECK_STATUS(nf_omis_alpha(omis, NF_OMIS_BALANCE, 0.0f, alpha), NF_OK);
+    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_BALANCE, 0.0f, NULL, alpha), NF_OK);
     CHECK(alpha[0] == 0.0f && alpha[3] == 0.0f);
-    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 2.0f, estimate), NF_OK);
-    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0f, again), NF_OK);
+    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 2.0f, estimate, NULL), NF_OK);
+    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0f, again, NULL), NF_OK);
     CHECK(memcmp(estimate, again, sizeof estimate) == 0);
 
     /* Fading keeps a ratio of sums; with half of the samples the same ridge counts twice. */
-    CHECK_STATUS(nf_omis_decay(omis, 0.5f), NF_OK);
-    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 1.0f, again), NF_OK);
+    CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_BALANCE, 0.0f, 0.5f), NF_OK);
+    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 1.0f, again, NULL), NF_OK);
     CHECK(fabsf(estimate[0] - again[0]) < 1e-5f && fabsf(estimate[1] - again[1]) < 1e-6f);
 
     /* Merging: the samples of both. */
     for (i = 0; i < 100; ++i)
         add_round(second, &rng);
     CHECK_STATUS(nf_omis_merge(omis, second), NF_OK);
-    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_PLAIN, 0.0f, estimate), NF_OK);
+    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_PLAIN, 0.0f, estimate, NULL), NF_OK);
     CHECK(fabsf(estimate[0] - 5.0f) < 1e-4f);
 
-    CHECK_STATUS(nf_omis_reset(omis), NF_OK);
-    CHECK_REFUSED(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0f, estimate), NF_ERR_NO_SAMPLES, estimate);
-    CHECK_REFUSED(nf_omis_alpha(omis, NF_OMIS_RIDGE, 0.0f, alpha), NF_ERR_NO_SAMPLES, alpha);
-    CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_RIDGE, 0.0f), NF_ERR_NO_SAMPLES);
+    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_PLAIN, 0.0f, again, alpha), NF_OK);
+    CHECK(memcmp(estimate, again, sizeof estimate) == 0 && fabsf(alpha[0] - 3.0f) < 1e-3f);
+
+    /* Made anew in the same memory: empty. */
+    CHECK_STATUS(nf_omis_init(m.start, m.bytes, 2, 2, counts, &omis), NF_OK);
+    CHECK_REFUSED(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0f, estimate, NULL), NF_ERR_NO_SAMPLES, estimate);
+    CHECK_REFUSED(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0f, NULL, alpha), NF_ERR_NO_SAMPLES, alpha);
+    CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_RIDGE, 0.0f, 1.0f), NF_ERR_NO_SAMPLES);
     memory_free(&m);
     memory_free(&m2);
 }
@@ -145,37 +149,35 @@ static void errors(void)
     CHECK_STATUS(nf_omis_add(omis, 0, pdf, value), NF_ERR_NOT_FINITE);
     value[1] = 2.0f;
 
-    CHECK_REFUSED(nf_omis_solve(NULL, NF_OMIS_RIDGE, 0.0f, out), NF_ERR_NULL, out);
-    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0f, NULL), NF_ERR_NULL);
-    CHECK_REFUSED(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0f, (float *)misaligned(out)), NF_ERR_ALIGNMENT, out);
-    CHECK_REFUSED(nf_omis_alpha(NULL, NF_OMIS_RIDGE, 0.0f, out), NF_ERR_NULL, out);
-    CHECK_STATUS(nf_omis_alpha(omis, NF_OMIS_RIDGE, 0.0f, NULL), NF_ERR_NULL);
+    CHECK_REFUSED(nf_omis_solve(NULL, NF_OMIS_RIDGE, 0.0f, out, NULL), NF_ERR_NULL, out);
+    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0f, NULL, NULL), NF_ERR_NULL);
+    CHECK_REFUSED(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0f, (float *)misaligned(out), NULL), NF_ERR_ALIGNMENT, out);
+    CHECK_REFUSED(nf_omis_solve(NULL, NF_OMIS_RIDGE, 0.0f, NULL, out), NF_ERR_NULL, out);
+    CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_RIDGE, 0.0f, NULL, NULL), NF_ERR_NULL);
     {
         static const float ridges[] = {-1.0f, 1e-9f, 1e9f};
-        CHECK_REFUSED(nf_omis_solve(omis, 4, 0.0f, out), NF_ERR_RANGE, out);
-        CHECK_REFUSED(nf_omis_solve(omis, UINT32_MAX, 0.0f, out), NF_ERR_RANGE, out);
-        CHECK_REFUSED(nf_omis_alpha(omis, 4, 0.0f, out), NF_ERR_RANGE, out);
-        CHECK_STATUS(nf_omis_next_batch(omis, 4, 0.0f), NF_ERR_RANGE);
+        CHECK_REFUSED(nf_omis_solve(omis, 4, 0.0f, out, NULL), NF_ERR_RANGE, out);
+        CHECK_REFUSED(nf_omis_solve(omis, UINT32_MAX, 0.0f, out, NULL), NF_ERR_RANGE, out);
+        CHECK_REFUSED(nf_omis_solve(omis, 4, 0.0f, NULL, out), NF_ERR_RANGE, out);
+        CHECK_STATUS(nf_omis_next_batch(omis, 4, 0.0f, 1.0f), NF_ERR_RANGE);
         for (i = 0; i < 3; ++i) {
-            CHECK_REFUSED(nf_omis_solve(omis, NF_OMIS_RIDGE, ridges[i], out), NF_ERR_RANGE, out);
-            CHECK_REFUSED(nf_omis_alpha(omis, NF_OMIS_RIDGE, ridges[i], out), NF_ERR_RANGE, out);
-            CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_RIDGE, ridges[i]), NF_ERR_RANGE);
+            CHECK_REFUSED(nf_omis_solve(omis, NF_OMIS_RIDGE, ridges[i], out, NULL), NF_ERR_RANGE, out);
+            CHECK_REFUSED(nf_omis_solve(omis, NF_OMIS_RIDGE, ridges[i], NULL, out), NF_ERR_RANGE, out);
+            CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_RIDGE, ridges[i], 1.0f), NF_ERR_RANGE);
         }
-        CHECK_REFUSED(nf_omis_solve(omis, NF_OMIS_RIDGE, nan, out), NF_ERR_NOT_FINITE, out);
-        CHECK_REFUSED(nf_omis_alpha(omis, NF_OMIS_RIDGE, infinite, out), NF_ERR_NOT_FINITE, out);
-        CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_RIDGE, nan), NF_ERR_NOT_FINITE);
+        CHECK_REFUSED(nf_omis_solve(omis, NF_OMIS_RIDGE, nan, out, NULL), NF_ERR_NOT_FINITE, out);
+        CHECK_REFUSED(nf_omis_solve(omis, NF_OMIS_RIDGE, infinite, NULL, out), NF_ERR_NOT_FINITE, out);
+        CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_RIDGE, nan, 1.0f), NF_ERR_NOT_FINITE);
         /* Other solvers ignore the ridge. */
-        CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_PLAIN, nan, out), NF_OK);
+        CHECK_STATUS(nf_omis_solve(omis, NF_OMIS_PLAIN, nan, out, NULL), NF_OK);
     }
-    CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_PROGRESSIVE, 0.0f), NF_ERR_UNSUPPORTED);
-    CHECK_STATUS(nf_omis_next_batch(NULL, NF_OMIS_RIDGE, 0.0f), NF_ERR_NULL);
-    CHECK_STATUS(nf_omis_decay(NULL, 0.5f), NF_ERR_NULL);
-    CHECK_STATUS(nf_omis_decay(omis, -0.1f), NF_ERR_RANGE);
-    CHECK_STATUS(nf_omis_decay(omis, 1.1f), NF_ERR_RANGE);
-    CHECK_STATUS(nf_omis_decay(omis, nan), NF_ERR_NOT_FINITE);
-    CHECK_STATUS(nf_omis_decay(omis, infinite), NF_ERR_NOT_FINITE);
-    CHECK_STATUS(nf_omis_reset(NULL), NF_ERR_NULL);
-    CHECK_STATUS(nf_omis_reset(odd), NF_ERR_ALIGNMENT);
+    CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_PROGRESSIVE, 0.0f, 1.0f), NF_ERR_UNSUPPORTED);
+    CHECK_STATUS(nf_omis_next_batch(NULL, NF_OMIS_RIDGE, 0.0f, 1.0f), NF_ERR_NULL);
+    CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_BALANCE, 0.0f, -0.1f), NF_ERR_RANGE);
+    CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_BALANCE, 0.0f, 1.1f), NF_ERR_RANGE);
+    CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_BALANCE, 0.0f, nan), NF_ERR_NOT_FINITE);
+    CHECK_STATUS(nf_omis_next_batch(omis, NF_OMIS_BALANCE, 0.0f, infinite), NF_ERR_NOT_FINITE);
+    CHECK_STATUS(nf_omis_next_batch(odd, NF_OMIS_RIDGE, 0.0f, 1.0f), NF_ERR_ALIGNMENT);
 
     CHECK_STATUS(nf_omis_merge(omis, omis), NF_ERR_RANGE);
     CHECK_STATUS(nf_omis_merge(NULL, omis), NF_ERR_NULL);
@@ -193,11 +195,9 @@ static void errors(void)
         CHECK_STATUS(nf_omis_merge(omis, other), NF_ERR_STATE);
         CHECK_STATUS(nf_omis_merge(other, omis), NF_ERR_STATE);
         CHECK_STATUS(nf_omis_add(other, 0, pdf, value), NF_ERR_STATE);
-        CHECK_REFUSED(nf_omis_solve(other, NF_OMIS_RIDGE, 0.0f, out), NF_ERR_STATE, out);
-        CHECK_REFUSED(nf_omis_alpha(other, NF_OMIS_RIDGE, 0.0f, out), NF_ERR_STATE, out);
-        CHECK_STATUS(nf_omis_next_batch(other, NF_OMIS_RIDGE, 0.0f), NF_ERR_STATE);
-        CHECK_STATUS(nf_omis_decay(other, 0.5f), NF_ERR_STATE);
-        CHECK_STATUS(nf_omis_reset(other), NF_ERR_STATE);
+        CHECK_REFUSED(nf_omis_solve(other, NF_OMIS_RIDGE, 0.0f, out, NULL), NF_ERR_STATE, out);
+        CHECK_REFUSED(nf_omis_solve(other, NF_OMIS_RIDGE, 0.0f, NULL, out), NF_ERR_STATE, out);
+        CHECK_STATUS(nf_omis_next_batch(other, NF_OMIS_RIDGE, 0.0f, 1.0f), NF_ERR_STATE);
     }
     CHECK(memcmp(before.start, m.start, m.bytes) == 0);
     memory_free(&m);
@@ -205,13 +205,17 @@ static void errors(void)
     memory_free(&before);
 }
 
-static nf_status reset(void *object) { return nf_omis_reset((nf_omis *)object); }
+static nf_status add(void *object)
+{
+    static const float ones[2] = {1.0f, 1.0f};
+    return nf_omis_add((nf_omis *)object, 0, ones, ones);
+}
 
 /* Bytes of another build of the library, which may mean something else by them. */
 static void another_build(void)
 {
     memory m;
-    check_other_builds(make(&m), "nf_omis\x01", reset);
+    check_other_builds(make(&m), "nf_omis\x01", add);
     memory_free(&m);
 }
 

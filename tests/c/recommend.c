@@ -43,8 +43,8 @@ static void shared_estimates_follow(void)
     image.stride = 4;
     CHECK_STATUS(nf_recommend(2, 4, NF_SAMPLING_INDEPENDENT, 1, INFINITY, &out), NF_OK);
     CHECK(out.method == NF_METHOD_SHARED);
-    work = memory_new(nf_cv_image_workspace_size(&out.config, &image, 4));
-    CHECK_STATUS(nf_cv_image_estimate(&out.config, &image, u, f, 4, work.start, work.bytes, estimates), NF_OK);
+    work = memory_new(image_workspace_size(&out.config, &image, 4));
+    CHECK_STATUS(estimate_image(&out.config, &image, u, f, 4, work.start, work.bytes, estimates), NF_OK);
     for (p = 0; p < 16; ++p) {
         double mean = 0.0;
         for (i = 0; i < 4; ++i)

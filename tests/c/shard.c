@@ -25,9 +25,9 @@ static void make(set *s, float fraction)
         s->room[k] = memory_new(nf_table_size(sizes[k]));
         CHECK_STATUS(nf_table_init(&s->table[k], s->room[k].start, s->room[k].bytes, sizes[k], NULL), NF_OK);
         CHECK_STATUS(nf_table_update(&s->table[k], every, q, sizes[k], 0.0f), NF_OK);
-        CHECK_STATUS(nf_table_set_uniform_fraction(&s->table[k], fraction), NF_OK);
+        s->table[k].uniform_fraction = fraction;
         CHECK_STATUS(nf_table_shard(&s->table[k], &s->shard[k]), NF_OK);
-        CHECK(s->shard[k].items == sizes[k] && s->shard[k].importance == nf_table_total(&s->table[k]));
+        CHECK(s->shard[k].items == sizes[k] && s->shard[k].importance == total_of(&s->table[k]));
     }
 }
 
@@ -128,7 +128,7 @@ static void errors(void)
     CHECK_REFUSED(nf_shards_allocate(bad, SHARDS, 0.2f, &rng, 10, counts), NF_ERR_RANGE, counts);
     CHECK_REFUSED(nf_table_draw_shard(&s.table[0], bad, SHARDS, &rng, 4, index, weight), NF_ERR_RANGE, index);
 
-    CHECK_STATUS(nf_table_set_uniform_fraction(&s.table[1], 0.0f), NF_OK);
+    s.table[1].uniform_fraction = 0.0f;
     CHECK_REFUSED(nf_table_draw_shard(&s.table[1], s.shard, SHARDS, &rng, 4, index, weight), NF_ERR_NO_SAMPLES, index);
     CHECK_REFUSED(nf_table_draw_shard(&s.table[1], s.shard + 1, 1, &rng, 4, index, weight), NF_ERR_NO_SAMPLES, index);
     CHECK_REFUSED(nf_shards_allocate(s.shard + 1, 1, 0.0f, &rng, 10, counts), NF_ERR_NO_SAMPLES, counts);

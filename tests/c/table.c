@@ -27,7 +27,7 @@ static void check_batch(const nf_table *table, const uint32_t *index, const floa
     uint32_t k;
     for (k = 0; k < batch; ++k) {
         CHECK(index[k] < table->items);
-        CHECK(fabs(weight[k] * items * nf_table_probability(table, index[k]) - 1.0) < 1e-6);
+        CHECK(fabs(weight[k] * items * probability_of(table, index[k]) - 1.0) < 1e-6);
     }
 }
 
@@ -40,12 +40,11 @@ static void normal_use(void)
     float weight[64], p[3 * 64], fresh[64];
     double sum = 0.0;
     for (i = 0; i < ITEMS; ++i) {
-        CHECK(nf_table_importance(&table, i) == mixed[i]);
+        CHECK(table.importance[i] == mixed[i]);
         sum += mixed[i];
     }
-    CHECK(table.items == ITEMS && nf_table_total(&table) == sum && table.uniform_fraction == 0.2f);
-    CHECK(nf_table_importance(&table, ITEMS) == 0.0f && nf_table_probability(&table, ITEMS) == 0.0f);
-    CHECK(fabsf(nf_table_probability(&table, 1) - 0.002f) < 1e-9f);
+    CHECK(table.items == ITEMS && total_of(&table) == sum && table.uniform_fraction == 0.2f);
+    CHECK(fabsf(probability_of(&table, 1) - 0.002f) < 1e-9f);
 
     nf_rng_seed(&rng, 1);
     copy = rng;
@@ -68,28 +67,28 @@ static void normal_use(void)
         }
     }
     for (i = 0; i < ITEMS; ++i)
-        CHECK(nf_table_importance(&table, i) == mixed[i]);
-    CHECK(nf_table_total(&table) == sum);
+        CHECK(table.importance[i] == mixed[i]);
+    CHECK(total_of(&table) == sum);
 
     /* With a fraction of 0 no item without importance comes; with 1 all weights are 1. */
-    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 0.0f), NF_OK);
+    table.uniform_fraction = 0.0f;
     for (i = 0; i < 100; ++i) {
         uint32_t k;
         CHECK_STATUS(nf_table_draw(&table, &rng, 64, index, NULL), NF_OK);
         for (k = 0; k < 64; ++k)
             CHECK(mixed[index[k]] > 0.0f);
     }
-    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 1.0f), NF_OK);
+    table.uniform_fraction = 1.0f;
     CHECK_STATUS(nf_table_draw(&table, &rng, 64, index, weight), NF_OK);
     for (i = 0; i < 64; ++i)
         CHECK(fabsf(weight[i] - 1.0f) < 1e-6f);
-    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 0.2f), NF_OK);
+    table.uniform_fraction = 0.2f;
 
     /* One column of three: the others stay as they are. */
     poison(p, sizeof p);
     CHECK_STATUS(nf_table_probabilities(&table, index, 64, 3, p), NF_OK);
     for (i = 0; i < 64; ++i) {
-        CHECK(p[3 * i] == nf_table_probability(&table, index[i]));
+        CHECK(p[3 * i] == probability_of(&table, index[i]));
         CHECK(is_poisoned(p + 3 * i + 1, 2 * sizeof *p));
     }
 
@@ -101,14 +100,14 @@ static void normal_use(void)
     fresh[2] = 0.0f;
     fresh[3] = 2.0f;
     CHECK_STATUS(nf_table_update(&table, again, fresh, 4, 0.5f), NF_OK);
-    CHECK(nf_table_importance(&table, 5) == ((6.0f + 10.0f) / 2.0f + 20.0f) / 2.0f / 2.0f);
-    CHECK(nf_table_importance(&table, 7) == 1.0f);
+    CHECK(table.importance[5] == ((6.0f + 10.0f) / 2.0f + 20.0f) / 2.0f / 2.0f);
+    CHECK(table.importance[7] == 1.0f);
     CHECK_STATUS(nf_table_update(&table, again, fresh, 4, 1.0f), NF_OK);
-    CHECK(nf_table_importance(&table, 7) == 1.0f);
+    CHECK(table.importance[7] == 1.0f);
     CHECK_STATUS(nf_table_update(&table, again, fresh, 4, 0.0f), NF_OK);
-    CHECK(nf_table_importance(&table, 5) == 0.0f && nf_table_importance(&table, 7) == 2.0f);
+    CHECK(table.importance[5] == 0.0f && table.importance[7] == 2.0f);
     CHECK_STATUS(nf_table_add_epsilon(&table, 0.5f), NF_OK);
-    CHECK(nf_table_importance(&table, 5) == 0.5f && nf_table_importance(&table, 7) == 2.5f);
+    CHECK(table.importance[5] == 0.5f && table.importance[7] == 2.5f);
 
     /* Nothing at all is no error. */
     CHECK_STATUS(nf_table_draw(&table, &rng, 0, NULL, NULL), NF_OK);
@@ -120,7 +119,7 @@ static void normal_use(void)
     memory_free(&m);
 
     m = make(&table, ITEMS, NULL);
-    CHECK(nf_table_total(&table) == ITEMS && nf_table_importance(&table, ITEMS - 1) == 1.0f);
+    CHECK(total_of(&table) == ITEMS && table.importance[ITEMS - 1] == 1.0f);
     memory_free(&m);
 }
 
@@ -165,7 +164,7 @@ static void sizes_and_init(void)
     for (k = 0; k < 64; k += 8) {
         memory shifted = memory_new(nf_table_size(ITEMS) + k);
         CHECK_STATUS(nf_table_init(&out, (char *)shifted.start + k, shifted.bytes - k, ITEMS, mixed), NF_OK);
-        CHECK(nf_table_importance(&out, ITEMS - 1) == mixed[ITEMS - 1]);
+        CHECK(out.importance[ITEMS - 1] == mixed[ITEMS - 1]);
         memory_free(&shifted);
     }
 }
@@ -238,22 +237,25 @@ static void errors(void)
     CHECK_STATUS(nf_table_probabilities(&table, index, 4, 1, NULL), NF_ERR_NULL);
     CHECK_REFUSED(nf_table_probabilities(&table, index, 4, 0, weight), NF_ERR_RANGE, weight);
 
-    CHECK_STATUS(nf_table_set_uniform_fraction(NULL, 0.1f), NF_ERR_NULL);
-    CHECK_STATUS(nf_table_set_uniform_fraction(&table, -0.1f), NF_ERR_RANGE);
-    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 1.1f), NF_ERR_RANGE);
-    CHECK_STATUS(nf_table_set_uniform_fraction(&table, nan), NF_ERR_NOT_FINITE);
-    CHECK_STATUS(nf_table_set_uniform_fraction(&table, infinite), NF_ERR_NOT_FINITE);
+    {
+        const float kept = table.uniform_fraction, bad[] = {-0.1f, 1.1f, nan, infinite};
+        size_t k;
+        for (k = 0; k < sizeof bad / sizeof *bad; ++k) {
+            table.uniform_fraction = bad[k];
+            CHECK_REFUSED(nf_table_draw(&table, &rng, 4, out, weight), NF_ERR_RANGE, out);
+            CHECK_STATUS(nf_table_add_epsilon(&table, 0.1f), NF_ERR_RANGE);
+        }
+        table.uniform_fraction = kept;
+    }
     CHECK_STATUS(nf_table_add_epsilon(NULL, 0.1f), NF_ERR_NULL);
     CHECK_STATUS(nf_table_add_epsilon(&table, -0.1f), NF_ERR_RANGE);
     CHECK_STATUS(nf_table_add_epsilon(&table, nan), NF_ERR_NOT_FINITE);
     CHECK_STATUS(nf_table_add_epsilon(&table, infinite), NF_ERR_NOT_FINITE);
-    CHECK(nf_table_probability(NULL, 0) == 0.0f && nf_table_importance(NULL, 0) == 0.0f && nf_table_total(NULL) == 0.0);
-    CHECK(nf_table_saved_size(NULL) == 0);
     CHECK(memcmp(before.start, m.start, m.bytes) == 0 && memcmp(&before_struct, &table, sizeof table) == 0);
     CHECK(memcmp(&before_rng, &rng, sizeof rng) == 0);
 
     /* Fewer items than are asked for can be drawn. */
-    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 0.0f), NF_OK);
+    table.uniform_fraction = 0.0f;
     {
         uint32_t many[ITEMS];
         CHECK_REFUSED(nf_table_draw_distinct(&table, &rng, ITEMS, many, NULL), NF_ERR_NO_SAMPLES, many);
@@ -277,6 +279,7 @@ static void no_table(void)
     nf_rng_seed(&rng, 1);
     for (k = 0; k < 2; ++k) {
         memset(&table, k == 0 ? 0 : POISON, sizeof table);
+        table.uniform_fraction = 0.5f;
         if (k == 1)
             table.importance = value;
         CHECK_REFUSED(nf_table_draw(&table, &rng, 2, index, NULL), NF_ERR_STATE, index);
@@ -289,11 +292,8 @@ static void no_table(void)
         CHECK_REFUSED(nf_table_probabilities(&table, index, 2, 1, value), NF_ERR_STATE, value);
         value[0] = value[1] = 1.0f;
         CHECK_STATUS(nf_table_append(&table, value, 2), NF_ERR_STATE);
-        CHECK_STATUS(nf_table_set_uniform_fraction(&table, 0.5f), NF_ERR_STATE);
         CHECK_STATUS(nf_table_add_epsilon(&table, 0.5f), NF_ERR_STATE);
         CHECK_REFUSED(nf_table_save(&table, bytes, sizeof bytes), NF_ERR_STATE, bytes);
-        CHECK(nf_table_saved_size(&table) == 0 && nf_table_total(&table) == 0.0);
-        CHECK(nf_table_importance(&table, 0) == 0.0f && nf_table_probability(&table, 0) == 0.0f);
     }
 }
 
@@ -309,16 +309,16 @@ static void zeros(void)
         every[i] = i;
     nf_rng_seed(&rng, 4);
     CHECK_STATUS(nf_table_update(&table, every, none, ITEMS, 0.0f), NF_OK);
-    CHECK(nf_table_total(&table) == 0.0);
+    CHECK(total_of(&table) == 0.0);
     CHECK_STATUS(nf_table_draw(&table, &rng, 8, index, weight), NF_OK);
     for (i = 0; i < 8; ++i)
         CHECK(fabsf(weight[i] - 1.0f) < 1e-6f);
-    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 0.0f), NF_OK);
+    table.uniform_fraction = 0.0f;
     CHECK_REFUSED(nf_table_draw(&table, &rng, 8, index, NULL), NF_ERR_NO_SAMPLES, index);
     CHECK_REFUSED(nf_table_draw_stratified(&table, &rng, 8, index, NULL), NF_ERR_NO_SAMPLES, index);
     CHECK_REFUSED(nf_table_draw_distinct(&table, &rng, 8, index, NULL), NF_ERR_NO_SAMPLES, index);
     CHECK_REFUSED(nf_table_probabilities(&table, every, 8, 1, weight), NF_ERR_NO_SAMPLES, weight);
-    CHECK(nf_table_probability(&table, 0) == 0.0f);
+    CHECK(probability_of(&table, 0) == 0.0f);
     CHECK_STATUS(nf_table_add_epsilon(&table, 1e-30f), NF_OK);
     CHECK_STATUS(nf_table_draw(&table, &rng, 8, index, weight), NF_OK);
     check_batch(&table, index, weight, 8);
@@ -336,15 +336,15 @@ static void growing(void)
     CHECK_STATUS(nf_table_init(&table, m.start, m.bytes, 1, ones), NF_OK);
     for (;;) {
         const uint32_t before = table.items, more = 1 + count++ % 7;
-        const double total = nf_table_total(&table);
+        const double total = total_of(&table);
         const nf_status status = nf_table_append(&table, ones, more);
         if (status != NF_OK) {
             CHECK_STATUS(status, NF_ERR_MEMORY);
-            CHECK(table.items == before && nf_table_total(&table) == total);
+            CHECK(table.items == before && total_of(&table) == total);
             break;
         }
-        CHECK(table.items == before + more && nf_table_total(&table) == before + more);
-        CHECK(nf_table_importance(&table, before + more - 1) == 1.0f);
+        CHECK(table.items == before + more && total_of(&table) == before + more);
+        CHECK(table.importance[before + more - 1] == 1.0f);
     }
     CHECK(table.items >= 994);
     CHECK_STATUS(nf_table_draw(&table, &rng, 16, index, weight), NF_OK);
@@ -360,8 +360,8 @@ static void saving(void)
     uint32_t index[32], again[32];
     float weight[32], weight_again[32];
     size_t i, len;
-    CHECK_STATUS(nf_table_set_uniform_fraction(&table, 0.3f), NF_OK);
-    len = nf_table_saved_size(&table);
+    table.uniform_fraction = 0.3f;
+    len = (NF_TABLE_SAVED_HEADER + 4 * (size_t)table.items);
     CHECK(len == 32 + 4 * ITEMS);
     saved = memory_new(len);
     changed = memory_new(len + 1);
@@ -375,8 +375,6 @@ static void saving(void)
     /* Of any alignment. */
     CHECK_STATUS(nf_table_save(&table, misaligned(changed.start), len), NF_OK);
     CHECK(memcmp(saved.start, misaligned(changed.start), len) == 0);
-    CHECK(nf_table_saved_items(saved.start, len) == ITEMS && nf_table_saved_items(NULL, len) == 0);
-    CHECK(nf_table_saved_items(saved.start, 15) == 0 && nf_table_saved_items(changed.start, len) == 0);
 
     CHECK_STATUS(nf_table_load(NULL, m2.start, m2.bytes, saved.start, len), NF_ERR_NULL);
     CHECK_REFUSED(nf_table_load(&loaded, NULL, m2.bytes, saved.start, len), NF_ERR_NULL, loaded);
@@ -401,7 +399,7 @@ static void saving(void)
 
     memcpy(misaligned(changed.start), saved.start, len);
     CHECK_STATUS(nf_table_load(&loaded, m2.start, m2.bytes, misaligned(changed.start), len), NF_OK);
-    CHECK(loaded.items == ITEMS && nf_table_total(&loaded) == nf_table_total(&table) &&
+    CHECK(loaded.items == ITEMS && total_of(&loaded) == total_of(&table) &&
           loaded.uniform_fraction == 0.3f);
     nf_rng_seed(&rng, 6);
     copy = rng;

@@ -68,7 +68,7 @@ static result draw(uint32_t items, uint64_t seed, uint32_t draws, float fraction
         values[k] = k == 0 ? 1.0f : k / 16 % 5 == 2 ? 0.0f : q;
     }
     CHECK_STATUS(nf_table_init(&table, m.start, m.bytes, items, values), NF_OK);
-    CHECK_STATUS(nf_table_set_uniform_fraction(&table, fraction), NF_OK);
+    table.uniform_fraction = fraction;
 
     CHECK_STATUS(nf_table_draw(&table, &rng, draws, index, weight), NF_OK);
     r.hash[0] = hash_batch(index, weight, draws);
@@ -93,9 +93,9 @@ static result draw(uint32_t items, uint64_t seed, uint32_t draws, float fraction
 
     CHECK_STATUS(nf_table_draw_distinct(&table, &rng, distinct, index, weight), NF_OK);
     r.hash[3] = hash_batch(index, weight, distinct);
-    total = nf_table_total(&table);
+    total = total_of(&table);
     memcpy(&r.hash[4], &total, sizeof total);
-    bytes = memory_new(nf_table_saved_size(&table));
+    bytes = memory_new((NF_TABLE_SAVED_HEADER + 4 * (size_t)table.items));
     CHECK_STATUS(nf_table_save(&table, bytes.start, bytes.bytes), NF_OK);
     r.hash[5] = FNV_START;
     for (k = 0; k < bytes.bytes; ++k)

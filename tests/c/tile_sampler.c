@@ -98,7 +98,6 @@ static void fill(const nf_tile *tile)
     s[0] = nf_tile_sampler_pixel(tile, 6, 7, 1, 2);
     s[1] = nf_tile_sampler_domain(s[0], 4);
     s[2] = nf_tile_sampler_domain(nf_tile_sampler_scramble(s[0], 5), 6);
-    CHECK(nf_sampler_fill_len(dims, 3, WIDTH, HEIGHT, SAMPLES) == COUNT);
     CHECK_STATUS(nf_tile_sampler_fill(s, dims, 3, WIDTH, HEIGHT, SAMPLES, u, COUNT), NF_OK);
     for (y = 0; y < HEIGHT; ++y)
         for (x = 0; x < WIDTH; ++x)

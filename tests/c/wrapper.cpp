@@ -74,15 +74,13 @@ static void views()
 
 static void configurations()
 {
-    nf_cv_config expected;
-    nf_cv_config_default(&expected);
+    const nf_cv_config expected = make_config(2, 2, 1, NF_CV_ROBUST);
     const nf::config defaults;
     CHECK(std::memcmp(&defaults, &expected, sizeof expected) == 0);
     const nf::config config = nf::config(3, 1, 2)
                                   .with(nf::estimator::k_fold)
                                   .with(nf::basis::sine)
                                   .with(nf::solver::normal_equations)
-                                  .with(nf::optimizer::adam)
                                   .with_stratified_samples()
                                   .with_slices(4)
                                   .with_controls(1)
@@ -90,23 +88,18 @@ static void configurations()
                                   .with_single_precision()
                                   .with_non_finite_skipped()
                                   .with_folds(5)
-                                  .with_iterations(9)
-                                  .with_ridge(0.5f)
-                                  .with_learning_rate(0.25f)
-                                  .with_momentum(0.75f);
+                                  .with_ridge(0.5f);
     CHECK(config.dims == 3 && config.order == 1 && config.channels == 2 && config.estimator == NF_CV_K_FOLD);
-    CHECK(config.basis == NF_BASIS_SINE && config.solver == NF_SOLVER_NORMAL_EQUATIONS &&
-          config.optimizer == NF_OPTIMIZER_ADAM);
+    CHECK(config.basis == NF_BASIS_SINE && config.solver == NF_SOLVER_NORMAL_EQUATIONS);
     CHECK(config.stratified == 1 && config.slices == 4 && config.controls == 1 && config.stride == 7 &&
           config.precision == NF_PRECISION_F32);
-    CHECK(config.nonfinite == NF_NONFINITE_SKIP && config.folds == 5 && config.iterations == 9);
-    CHECK(config.ridge == 0.5f && config.learning_rate == 0.25f && config.momentum == 0.75f);
+    CHECK(config.nonfinite == NF_NONFINITE_SKIP && config.folds == 5 && config.ridge == 0.5f);
     CHECK(config.with_automatic_ridge().ridge == NF_RIDGE_AUTO);
     CHECK(config.with_luminance_ratio().color == NF_COLOR_LUMINANCE_RATIO);
     CHECK(config.terms() == nf_cv_terms(&config) && config.valid());
     CHECK(!nf::config(0, 1).valid() && nf::config(17, 1).workspace_size(4) == 0);
     CHECK(config.workspace_size(64) == nf_cv_workspace_size(&config, 64) &&
-          config.accumulator_size() == nf_cv_accumulator_size(&config));
+          config.accumulator_size() == nf_cv_accumulator_size(&config, nullptr));
 }
 
 static void estimates()
@@ -115,7 +108,7 @@ static void estimates()
     std::array<std::uint64_t, 4096> workspace{};
     nf_estimate expected;
     CHECK(config.workspace_size(n) <= sizeof workspace);
-    CHECK(nf_cv_estimate(&config, u, f, n, workspace.data(), sizeof workspace, &expected) == NF_OK);
+    CHECK(estimate_one(&config, u, f, n, workspace.data(), sizeof workspace, &expected) == NF_OK);
     const std::size_t before = allocations;
     const nf_estimate estimate = value_of(nf::estimate(config, {u, f}, workspace));
     CHECK(std::memcmp(&estimate, &expected, sizeof estimate) == 0);
@@ -141,10 +134,20 @@ static void estimates()
     const float half[1] = {0.5f};
     CHECK(CODE(nf::estimate(config.with_controls(1), {u, f, h, half}, workspace)) == status::ok);
 
+    std::array<nf_estimate, 4> each{};
+    SUCCEED(nf::estimate_each(config, {u, f}, workspace, each));
+    CHECK(estimate_one(&config, u, f, n / 4, workspace.data(), sizeof workspace, &expected) == NF_OK);
+    CHECK(std::memcmp(&each[0], &expected, sizeof expected) == 0 && each[3].samples == n / 4);
+    CHECK(CODE(nf::estimate_each(config, {u, f}, workspace, {each.data(), 3})) == status::range);
+    CHECK(CODE(nf::estimate_each(config, {u, f}, workspace, {})) == status::range);
+
     std::array<float, 5> coefficients{};
     const nf::config descent = config.with(nf::estimator::gradient_descent);
     CHECK(std::fabs(value_of(nf::gradient_descent(descent, {u, f}, coefficients, workspace)).mean[0] - 2.0f) < 0.2f);
     CHECK(coefficients[0] != 0.0f);
+    nf_cv_descent steps{};
+    steps.momentum = 2.0f;
+    CHECK(CODE(nf::gradient_descent(descent, {u, f}, coefficients, workspace, steps)) == status::range);
     CHECK(CODE(nf::gradient_descent(descent, {u, f}, span<float>(coefficients.data(), 4), workspace)) == status::range);
 #ifdef NOISEFLOOR_NO_EXCEPTIONS
     CHECK(allocations == before);
@@ -170,11 +173,11 @@ static void images()
     plain.width = plain.height = plain.window = 4;
     plain.frames = 1;
     plain.stride = 2;
-    CHECK(image.unordered == 0 && image.without_places().unordered == 1 && !image.with_surfaces({}).fits(config, 16));
-    CHECK(config.image_workspace_size(image, 4) == nf_cv_image_workspace_size(&config, &plain, 4));
+    CHECK(image.unordered == 0 && image.without_places().unordered == 1 && !image.with_surfaces({}).fits(config));
+    CHECK(config.image_workspace_size(image, 4) == image_workspace_size(&config, &plain, 4));
     CHECK(config.image_workspace_size(image, 4) > 0 && config.image_workspace_size(image, 4) <= sizeof workspace);
     CHECK(config.image_workspace_size(nf::image(4, 4, 200), 4) == 0);
-    CHECK(nf_cv_image_estimate(&config, &plain, u, f, 4, workspace.data(), sizeof workspace, expected.data()) == NF_OK);
+    CHECK(estimate_image(&config, &plain, u, f, 4, workspace.data(), sizeof workspace, expected.data()) == NF_OK);
     const std::size_t before = allocations;
     SUCCEED(nf::estimate_image(config, image, {u, f}, workspace, pixels));
     CHECK(std::memcmp(pixels.data(), expected.data(), sizeof expected) == 0 && pixels[15].samples == 4);
@@ -197,13 +200,16 @@ static void images()
     // All of the light arrives: what is known is exact.
     const span<const float> exact(factors.data(), 16), known(f);
     const nf::config alone = config.with(nf::estimator::leave_one_out);
-    SUCCEED(nf::estimate_image(alone, image.with_known(known, exact), {u, f}, workspace, pixels));
+    CHECK(config.image_workspace_size(image, 4, true) > config.image_workspace_size(image, 4));
+    SUCCEED(nf::estimate_image(alone, image, {u, f, {}, {}, known, exact}, workspace, pixels));
     for (std::size_t pixel = 0; pixel < 16; ++pixel)
         CHECK(std::fabs(pixels[pixel].mean[0] - 2.0f) < 1e-4f);
-    for (const auto &wrong : {image.with_known({}, exact), image.with_known(known, {}),
-                              image.with_known({f, n - 1}, exact),
-                              image.with_known(known, {factors.data(), 15})})
-        CHECK(CODE(nf::estimate_image(config, wrong, {u, f}, workspace, pixels)) == status::range);
+    const span<const float> nothing, short_known(f, n - 1), short_exact(factors.data(), 15);
+    for (const auto &wrong : {nf::samples{u, f, {}, {}, nothing, exact}, nf::samples{u, f, {}, {}, known, nothing},
+                              nf::samples{u, f, {}, {}, short_known, exact},
+                              nf::samples{u, f, {}, {}, known, short_exact}})
+        CHECK(CODE(nf::estimate_image(config, image, wrong, workspace, pixels)) == status::range);
+    CHECK(config.check(image) == nullptr && config.check(image.with_window(4, 5)) != nullptr);
 
     const span<const std::uint32_t> few(surfaces.data(), 15);
     CHECK(CODE(nf::estimate_image(config, image.with_surfaces(few), {u, f}, workspace, pixels)) == status::range);
@@ -240,12 +246,11 @@ static void accumulators()
     SUCCEED(a.merge(b));
     const nf_estimate estimate = value_of(a.estimate(workspace));
     CHECK(estimate.samples == n && std::fabs(estimate.mean[0] - 2.0f) < 1e-4f);
-    SUCCEED(a.reset());
+    a = value_of(nf::accumulator::create(config, first));
     CHECK(allocations == before);
     CHECK(CODE(a.estimate(workspace)) == nf::status::no_samples);
     CHECK(CODE(a.merge(a)) == nf::status::range);
     CHECK(CODE(a.add({nf::span<const float>(u, 3), f})) == nf::status::range);
-    CHECK(CODE(nf::accumulator().reset()) == nf::status::null);
     CHECK(CODE(nf::accumulator::create(config, {first.data(), 8})) == nf::status::memory);
     CHECK(CODE(nf::accumulator::create(config.with(nf::estimator::leave_one_out), first)) == nf::status::unsupported);
     CHECK(nf::accumulator(a.handle(), config).handle() == static_cast<void *>(first.data()));
@@ -260,13 +265,11 @@ static void mis()
     CHECK(value_of(nf::mis::power(at, 0)) == 0.1f);
     CHECK(value_of(nf::mis::cutoff(at, 1, 0.5f)) == 1.0f);
     CHECK(value_of(nf::mis::maximum(at, 1)) == 1.0f);
-    const float weight = value_of(nf::mis::optimal(at, 1, alpha, 2.0f)),
-                term = value_of(nf::mis::optimal_contribution(at, 1, alpha, 2.0f));
-    CHECK(std::fabs(weight * 2.0f / 3.0f - term) < 1e-6f);
+    // alpha_j / n_j + (f - sum of alpha_k p_k) / sum of n_k p_k
+    CHECK(std::fabs(value_of(nf::mis::optimal_contribution(at, 1, alpha, 2.0f)) - (0.25f + 0.75f / 4.0f)) < 1e-6f);
     CHECK(CODE(nf::mis::balance(at, 2)) == nf::status::range);
     CHECK(CODE(nf::mis::balance({pdf, {counts, 1}}, 0)) == nf::status::range);
-    CHECK(CODE(nf::mis::optimal(at, 0, {alpha, 1}, 2.0f)) == nf::status::range);
-    CHECK(CODE(nf::mis::optimal(at, 0, alpha, 0.0f)) == nf::status::range);
+    CHECK(CODE(nf::mis::optimal_contribution(at, 0, {alpha, 1}, 2.0f)) == nf::status::range);
 
     std::array<std::uint64_t, 64> sums{};
     CHECK(nf::optimal_mis::size(2, 1) <= sizeof sums);
@@ -280,7 +283,7 @@ static void mis()
     SUCCEED(omis.solve(estimate, nf::optimal_mis::solver::balance));
     CHECK(estimate[0] == 1.0f);
     SUCCEED(omis.alpha(found));
-    SUCCEED(omis.decay(0.5f));
+    SUCCEED(omis.next_batch(nf::optimal_mis::solver::balance, 0.0f, 0.5f));
     CHECK(CODE(omis.add(0, {pdf, 1}, value)) == nf::status::range);
     CHECK(CODE(omis.solve({})) == nf::status::range);
     CHECK(CODE(omis.alpha({found.data(), 1})) == nf::status::range);
@@ -288,7 +291,6 @@ static void mis()
     CHECK(CODE(omis.next_batch(nf::optimal_mis::solver::progressive)) == nf::status::unsupported);
     CHECK(CODE(nf::optimal_mis::create({counts, 0}, 1, sums)) == nf::status::range);
     CHECK(CODE(nf::optimal_mis::create(counts, 1, {sums.data(), 8})) == nf::status::memory);
-    SUCCEED(omis.reset());
 }
 
 static void samplers()
@@ -319,7 +321,7 @@ static void samplers()
 static void tiles()
 {
     const std::size_t before = allocations;
-    const nf::tile tile = value_of(nf::tile::builtin(NF_TILE_64_1SPP_2D));
+    const nf::tile tile(nf_tile_64_1spp_2d);
     CHECK(tile.size == 64 && tile.spp == 1 && tile.dims == 2);
     const nf::tile_sampler pixel(tile, 3, 70, 0, 0), child = pixel.domain(7).scramble(9);
     float expected[4];
@@ -343,7 +345,6 @@ static void tiles()
     CHECK(allocations == before);
     CHECK(CODE(nf::fill(both, {dims, 1}, 2, 2, 3, block)) == nf::status::range);
     CHECK(CODE(nf::fill(both, dims, 2, 2, 4, block)) == nf::status::memory);
-    CHECK(CODE(nf::tile::builtin(0)) == nf::status::range);
     const unsigned char text[] = "P6 1 1 255";
     CHECK(CODE(nf::tile::from_bytes(text)) == nf::status::foreign);
     CHECK(CODE(nf::tile::from_bytes("\x8eNFT\r\n\x1a\n", 8)) == nf::status::length);
@@ -378,6 +379,7 @@ static void minibatches()
     SUCCEED(table.init(room, importance));
     CHECK(table.items() == 5 && table.total() == 10.0 && table.importance(3) == 3.0f);
     SUCCEED(table.set_uniform_fraction(0.0f));
+    CHECK(CODE(table.set_uniform_fraction(1.5f)) == nf::status::range);
     CHECK(table.probability(4) == 0.4f && table.probability(0) == 0.0f);
 
     nf_rng expected_rng;
@@ -435,6 +437,45 @@ static void minibatches()
     CHECK(CODE(nf::omis_weights(3, 10, pdf, technique, wrapped)) == nf::status::range);
 }
 
+static void importances()
+{
+    const float logits[] = {0.0f, 0.0f, 9.0f, 0.0f}, target[] = {0.0f, 3.0f, 9.0f, 0.0f};
+    const std::uint32_t label[] = {0, 0};
+    std::array<float, 2> norm{}, loss{};
+    std::array<float, 4> gradient{}, parts{};
+    SUCCEED(nf::importance::cross_entropy(logits, label, norm, loss, gradient));
+    CHECK(norm[0] == std::sqrt(0.5f) && norm[1] < 0.001f && loss[1] < loss[0] && gradient[0] == -0.5f);
+    SUCCEED(nf::importance::cross_entropy(logits, label, norm));
+    CHECK(CODE(nf::importance::cross_entropy(logits, label, norm, {loss.data(), 1})) == nf::status::range);
+    SUCCEED(nf::importance::squared_error(logits, target, norm));
+    CHECK(norm[0] == 6.0f && norm[1] == 0.0f);
+    CHECK(CODE(nf::importance::squared_error(logits, {target, 2}, norm)) == nf::status::range);
+    SUCCEED(nf::importance::gradient(gradient, 1, norm));
+    CHECK(std::fabs(norm[0] - std::sqrt(0.5f)) < 1e-6f);
+    SUCCEED(nf::importance::gradient(gradient, 2, parts, nf::importance::split::sign));
+    CHECK(parts[0] == 0.5f && parts[1] == 0.5f);
+    CHECK(CODE(nf::importance::gradient(gradient, 0, parts)) == nf::status::range);
+    CHECK(CODE(nf::importance::gradient({}, 1, norm)) == nf::status::range);
+    CHECK(nf::shuffle(1, 5, 2) == nf_shuffle(1, 5, 2));
+}
+
+static void gradients()
+{
+    const float pdf[] = {0.1f, 0.2f, 0.3f, 0.1f}, each[] = {1.0f, 2.0f};
+    const std::uint32_t technique[] = {0, 1};
+    std::vector<std::uint64_t> room(nf::optimal_gradient::size(2, 1) / 8 + 1);
+    const nf::optimal_gradient state = value_of(nf::optimal_gradient::create(2, 1, room));
+    std::array<float, 1> out{};
+    float weight[2];
+    SUCCEED(state.estimate(10, pdf, technique, each, out));
+    SUCCEED(nf::omis_weights(2, 10, pdf, technique, weight));
+    CHECK(std::fabs(out[0] - (weight[0] + 2.0f * weight[1]) / 2.0f) < 1e-5f);
+    CHECK(state.handle() == static_cast<void *>(room.data()));
+    CHECK(CODE(state.estimate(10, pdf, technique, {each, 1}, out)) == nf::status::range);
+    CHECK(CODE(nf::optimal_gradient::create(2, 1, {room.data(), 8})) == nf::status::memory);
+    CHECK(CODE(nf::optimal_gradient::create(17, 1, room)) == nf::status::range);
+}
+
 static void recommendations()
 {
     nf_recommendation expected;
@@ -461,6 +502,8 @@ int main()
     tiles();
     random_numbers();
     minibatches();
+    importances();
+    gradients();
     recommendations();
     return report("wrapper");
 }

@@ -37,16 +37,15 @@ fn call(f: impl FnOnce(*mut f32) -> nf_status) -> Answer {
     (status, (!out.is_nan()).then_some(out))
 }
 
-/// The heuristics and the two functions of optimal weights, with every argument but those for the densities, counts,
+/// The heuristics and the optimal weights' terms, with every argument but those for the densities, counts,
 /// number and technique fixed.
 type Weight = fn(*const f32, *const u32, u32, u32, *mut f32) -> nf_status;
 
-const WEIGHTS: [Weight; 6] = [
+const WEIGHTS: [Weight; 5] = [
     |p, n, t, j, out| unsafe { nf_mis_weight(NF_MIS_BALANCE, 0.0, p, n, t, j, out) },
     |p, n, t, j, out| unsafe { nf_mis_weight(NF_MIS_POWER, 2.0, p, n, t, j, out) },
     |p, n, t, j, out| unsafe { nf_mis_weight(NF_MIS_CUTOFF, 0.1, p, n, t, j, out) },
     |p, n, t, j, out| unsafe { nf_mis_weight(NF_MIS_MAXIMUM, 0.0, p, n, t, j, out) },
-    |p, n, t, j, out| unsafe { nf_mis_optimal(p, n, t, j, ALPHA.as_ptr(), 2.0, out) },
     |p, n, t, j, out| unsafe { nf_mis_optimal_contribution(p, n, t, j, ALPHA.as_ptr(), 2.0, out) },
 ];
 
@@ -58,7 +57,6 @@ fn weights_are_those_of_the_core() {
             mis::power(&PDF, &COUNTS, j, 2.0),
             mis::cutoff(&PDF, &COUNTS, j, 0.1),
             mis::maximum(&PDF, &COUNTS, j),
-            mis::optimal(&PDF, &COUNTS, j, &ALPHA, 2.0),
             mis::optimal_contribution(&PDF, &COUNTS, j, &ALPHA, 2.0),
         ];
         for (weight, expected) in WEIGHTS.iter().zip(expected) {
@@ -99,9 +97,9 @@ fn errors_of_weights() {
     let cutoff = |epsilon| call(|out| unsafe { nf_mis_weight(NF_MIS_CUTOFF, epsilon, pdf, counts, 3, 0, out) });
     assert_eq!(cutoff(2.0), (NF_ERR_RANGE, None));
     assert_eq!(cutoff(f32::INFINITY), (NF_ERR_NOT_FINITE, None));
-    let optimal = |alpha, value| call(|out| unsafe { nf_mis_optimal(pdf, counts, 3, 0, alpha, value, out) });
+    let optimal =
+        |alpha, value| call(|out| unsafe { nf_mis_optimal_contribution(pdf, counts, 3, 0, alpha, value, out) });
     assert_eq!(optimal(null(), 1.0), (NF_ERR_NULL, None));
-    assert_eq!(optimal(ALPHA.as_ptr(), 0.0), (NF_ERR_RANGE, None));
     assert_eq!(optimal(ALPHA.as_ptr(), f32::NAN), (NF_ERR_NOT_FINITE, None));
 }
 
@@ -141,9 +139,8 @@ fn the_accumulator_is_the_core_s() {
         let to = if i % 5 == 0 { &mut expected_other } else { &mut expected };
         to.add(i as usize % 3, &pdf, &value).unwrap();
         if i == 14 {
-            assert_eq!(unsafe { nf_omis_next_batch(omis, NF_OMIS_PLAIN, 0.0) }, NF_OK);
+            assert_eq!(unsafe { nf_omis_next_batch(omis, NF_OMIS_PLAIN, 0.0, 0.5) }, NF_OK);
             expected.next_batch(Solver::Plain).unwrap();
-            assert_eq!(unsafe { nf_omis_decay(omis, 0.5) }, NF_OK);
             expected.decay(0.5).unwrap();
         }
     }
@@ -158,17 +155,18 @@ fn the_accumulator_is_the_core_s() {
     ] {
         let (mut out, mut reference) = ([0.0; 2], [0.0; 2]);
         for _ in 0..2 {
-            assert_eq!(unsafe { nf_omis_solve(omis, code, ridge, out.as_mut_ptr()) }, NF_OK);
+            assert_eq!(unsafe { nf_omis_solve(omis, code, ridge, out.as_mut_ptr(), null_mut()) }, NF_OK);
             expected.solve(solver, &mut reference).unwrap();
             assert_eq!(out, reference);
         }
         let (mut out, mut reference) = ([0.0; 6], [0.0; 6]);
-        assert_eq!(unsafe { nf_omis_alpha(omis, code, ridge, out.as_mut_ptr()) }, NF_OK);
+        assert_eq!(unsafe { nf_omis_solve(omis, code, ridge, null_mut(), out.as_mut_ptr()) }, NF_OK);
         expected.alpha(solver, &mut reference).unwrap();
         assert_eq!(out, reference);
     }
-    assert_eq!(unsafe { nf_omis_reset(omis) }, NF_OK);
-    assert_eq!(unsafe { nf_omis_solve(omis, NF_OMIS_PLAIN, 0.0, [0.0; 2].as_mut_ptr()) }, NF_ERR_NO_SAMPLES);
+    let omis = memory.init();
+    let solve = unsafe { nf_omis_solve(omis, NF_OMIS_PLAIN, 0.0, [0.0; 2].as_mut_ptr(), null_mut()) };
+    assert_eq!(solve, NF_ERR_NO_SAMPLES);
 }
 
 #[test]
@@ -209,13 +207,11 @@ fn errors_of_init_leave_memory_and_handle() {
 #[test]
 fn errors_of_every_method() {
     type Method = fn(*mut nf_omis) -> nf_status;
-    const METHODS: [Method; 8] = [
+    const METHODS: [Method; 6] = [
         |omis| unsafe { nf_omis_add(omis, 0, PDF.as_ptr(), [1.0; 2].as_ptr()) },
-        |omis| unsafe { nf_omis_solve(omis, 0, 0.0, [0.0; 2].as_mut_ptr()) },
-        |omis| unsafe { nf_omis_alpha(omis, 0, 0.0, [0.0; 6].as_mut_ptr()) },
-        |omis| unsafe { nf_omis_next_batch(omis, 0, 0.0) },
-        |omis| unsafe { nf_omis_decay(omis, 0.5) },
-        |omis| unsafe { nf_omis_reset(omis) },
+        |omis| unsafe { nf_omis_solve(omis, 0, 0.0, [0.0; 2].as_mut_ptr(), null_mut()) },
+        |omis| unsafe { nf_omis_solve(omis, 0, 0.0, null_mut(), [0.0; 6].as_mut_ptr()) },
+        |omis| unsafe { nf_omis_next_batch(omis, 0, 0.0, 1.0) },
         |omis| unsafe { nf_omis_merge(omis, Memory::new().init()) },
         |omis| unsafe { nf_omis_merge(Memory::new().init(), omis) },
     ];
@@ -226,9 +222,9 @@ fn errors_of_every_method() {
         let mut memory = Memory::new();
         let omis = memory.init();
         assert_eq!(method(omis.cast::<u8>().wrapping_add(1).cast()), NF_ERR_ALIGNMENT);
-        if i < 6 {
-            // Only adding and emptying need no sample.
-            let expected = if matches!(i, 1..=3) { NF_ERR_NO_SAMPLES } else { NF_OK };
+        if i < 4 {
+            // Only adding needs no sample.
+            let expected = if i == 0 { NF_OK } else { NF_ERR_NO_SAMPLES };
             assert_eq!(method(omis), expected);
         }
     }
@@ -259,16 +255,15 @@ fn errors_of_arguments_change_nothing() {
         (NF_OMIS_RIDGE, 1e9, NF_ERR_RANGE),
         (NF_OMIS_RIDGE, f32::NAN, NF_ERR_NOT_FINITE),
     ] {
-        assert_eq!(unsafe { nf_omis_solve(omis, solver, ridge, out.as_mut_ptr()) }, expected);
-        assert_eq!(unsafe { nf_omis_alpha(omis, solver, ridge, out.as_mut_ptr()) }, expected);
-        assert_eq!(unsafe { nf_omis_next_batch(omis, solver, ridge) }, expected);
+        assert_eq!(unsafe { nf_omis_solve(omis, solver, ridge, out.as_mut_ptr(), null_mut()) }, expected);
+        assert_eq!(unsafe { nf_omis_solve(omis, solver, ridge, null_mut(), out.as_mut_ptr()) }, expected);
+        assert_eq!(unsafe { nf_omis_next_batch(omis, solver, ridge, 1.0) }, expected);
     }
-    assert_eq!(unsafe { nf_omis_solve(omis, 0, 0.0, null_mut()) }, NF_ERR_NULL);
-    assert_eq!(unsafe { nf_omis_alpha(omis, 0, 0.0, null_mut()) }, NF_ERR_NULL);
+    assert_eq!(unsafe { nf_omis_solve(omis, 0, 0.0, null_mut(), null_mut()) }, NF_ERR_NULL);
     assert_eq!(out, [7.0; 6]);
-    assert_eq!(unsafe { nf_omis_next_batch(omis, NF_OMIS_PROGRESSIVE, 0.0) }, NF_ERR_UNSUPPORTED);
-    assert_eq!(unsafe { nf_omis_decay(omis, 1.5) }, NF_ERR_RANGE);
-    assert_eq!(unsafe { nf_omis_decay(omis, f32::NAN) }, NF_ERR_NOT_FINITE);
+    assert_eq!(unsafe { nf_omis_next_batch(omis, NF_OMIS_PROGRESSIVE, 0.0, 1.0) }, NF_ERR_UNSUPPORTED);
+    assert_eq!(unsafe { nf_omis_next_batch(omis, 0, 0.0, 1.5) }, NF_ERR_RANGE);
+    assert_eq!(unsafe { nf_omis_next_batch(omis, 0, 0.0, f32::NAN) }, NF_ERR_NOT_FINITE);
     assert_eq!(unsafe { nf_omis_merge(omis, omis) }, NF_ERR_RANGE);
     let mut small = vec![0_u64; nf_omis_size(2, 2) / 8];
     let mut other = null_mut();

@@ -45,7 +45,7 @@ nf_cv_config config()
 
 class Accumulator {
 public:
-    Accumulator() : memory_(nf_cv_accumulator_size(&config_) / 8 + 1)
+    Accumulator() : memory_(nf_cv_accumulator_size(&config_, &workspace_) / 8 + 1)
     {
         check(nf_cv_accumulator_init(memory_.data(), memory_.size() * 8, &config_, &state), "nf_cv_accumulator_init");
     }
@@ -53,7 +53,7 @@ public:
     // Reads the accumulator; the workspace is the thread's own.
     nf_estimate estimate() const
     {
-        std::vector<double> work(nf_cv_accumulator_workspace_size(&config_) / 8 + 1);
+        std::vector<double> work(workspace_ / 8 + 1);
         nf_estimate out;
         check(nf_cv_accumulator_estimate(state, work.data(), work.size() * 8, &out), "nf_cv_accumulator_estimate");
         return out;
@@ -61,6 +61,7 @@ public:
 
 private:
     nf_cv_config config_ = config();
+    std::size_t workspace_ = 0;
     std::vector<double> memory_;
 
 public:
@@ -71,8 +72,7 @@ public:
 // races. Each tile has an accumulator; they are merged in the order of the tiles.
 bool render(bool shared)
 {
-    nf_tile blue;
-    check(nf_tile_builtin(NF_TILE_64_4SPP_2D, &blue), "nf_tile_builtin");
+    const nf_tile blue = nf_tile_64_4spp_2d;
     std::vector<Accumulator> accumulators(tiles);
     run([&](unsigned thread) {
         for (unsigned tile = thread; tile < tiles; tile += threads) {
@@ -83,7 +83,9 @@ bool render(bool shared)
                 nf_tile_sampler_draw(nf_tile_sampler_domain(pixel, 1), 2, u + 2 * i);
                 f[i] = u[2 * i] + u[2 * i + 1];
             }
-            check(nf_cv_accumulator_add(accumulators[shared ? 0 : tile].state, u, f, samples), "nf_cv_accumulator_add");
+            nf_cv_samples all{};
+            all.u = u, all.f = f, all.n = samples;
+            check(nf_cv_accumulator_add(accumulators[shared ? 0 : tile].state, &all), "nf_cv_accumulator_add");
         }
     });
     Accumulator image;
@@ -137,13 +139,12 @@ bool load(bool updating, bool one_generator)
 // An nf_tile that is read while another thread makes it anew.
 void remake_tile()
 {
-    nf_tile tile;
-    check(nf_tile_builtin(NF_TILE_64_1SPP_2D, &tile), "nf_tile_builtin");
+    nf_tile tile = nf_tile_64_1spp_2d;
     run([&](unsigned thread) {
         float u[2];
         for (std::uint32_t i = 0; i < rounds; ++i)
             if (thread == 0)
-                check(nf_tile_builtin(NF_TILE_64_1SPP_2D, &tile), "nf_tile_builtin");
+                tile = i % 2 == 0 ? nf_tile_64_1spp_2d : nf_tile_64_4spp_2d;
             else
                 nf_tile_sampler_draw(nf_tile_sampler_pixel(&tile, i, thread, 0, 0), 2, u);
     });

@@ -16,7 +16,7 @@ struct Accumulator {
     std::vector<double> memory;
     nf_cv_accumulator *state = nullptr;
 
-    explicit Accumulator(const nf_cv_config &config) : memory(nf_cv_accumulator_size(&config) / sizeof(double) + 1)
+    explicit Accumulator(const nf_cv_config &config) : memory(nf_cv_accumulator_size(&config, nullptr) / sizeof(double) + 1)
     {
         if (nf_cv_accumulator_init(memory.data(), memory.size() * sizeof(double), &config, &state) != NF_OK)
             std::fprintf(stderr, "the accumulator was refused\n");
@@ -34,7 +34,9 @@ void add(nf_cv_accumulator *accumulator, std::uint32_t thread)
         u[2 * i + 1] = nf_rng_uniform(&rng);
         f[i] = u[2 * i] + u[2 * i + 1];
     }
-    nf_cv_accumulator_add(accumulator, u, f, samples);
+    nf_cv_samples all{};
+    all.u = u, all.f = f, all.n = samples;
+    nf_cv_accumulator_add(accumulator, &all);
 }
 
 } // namespace
@@ -58,7 +60,9 @@ int main(int count, char **arguments)
     for (unsigned i = 1; i < threads && !race; ++i)
         if (nf_cv_accumulator_merge(accumulators[0].state, accumulators[i].state) != NF_OK)
             return 1;
-    std::vector<double> work(nf_cv_accumulator_workspace_size(&config) / sizeof(double) + 1);
+    std::size_t bytes = 0;
+    nf_cv_accumulator_size(&config, &bytes);
+    std::vector<double> work(bytes / sizeof(double) + 1);
     nf_estimate out;
     if (nf_cv_accumulator_estimate(accumulators[0].state, work.data(), work.size() * sizeof(double), &out) != NF_OK)
         return 1;

@@ -1,18 +1,16 @@
 //! Streaming accumulators in caller memory.
 
-use super::batch::{samples, size};
 use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimate};
+use super::samples::{self, nf_cv_samples};
 use crate::convert;
 use crate::magic::{self, magic};
 use crate::status::*;
 use core::ffi::c_void;
-use noisefloor_core::control_variate::Accumulator;
+use noisefloor_core::control_variate::{Accumulator, Config};
 use noisefloor_core::real::Real;
 
-/// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, in one
-/// process or among those that run the same library file. The bytes are no file format: another build may lay them out
-/// otherwise. NF_ERR_STATE tells those of another version, or of another size, not of every other build. No one but
-/// the library may change them: behind the first 8 they are not checked.
+/// A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, among
+/// processes that run the same library file.
 #[allow(non_camel_case_types)]
 pub struct nf_cv_accumulator {
     _private: (),
@@ -39,25 +37,33 @@ const MAGIC: u64 = magic::<Header>("nf_cv_accumulator");
 /// Bytes that the sums start at.
 const HEADER: usize = size_of::<Header>();
 
-/// Bytes that an accumulator needs; 0 for a configuration that is NULL, out of range or not for streaming.
+/// Bytes of an accumulator, and in `workspace`, unless NULL, those that nf_cv_accumulator_estimate() needs; both 0 for
+/// a configuration that is NULL, out of range or not for streaming.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_cv_accumulator_size(config: *const nf_cv_config) -> usize {
-    // SAFETY: the caller's pointer, checked there for NULL and alignment.
-    let Ok(config) = (unsafe { convert::reference(config) }) else { return 0 };
-    let sums = size(config, |config, narrow| {
-        if narrow {
-            Accumulator::<f32>::new(config).map(|s| s.len())
-        } else {
-            Accumulator::<f64>::new(config).map(|s| s.len())
-        }
-    });
-    if sums == 0 { 0 } else { HEADER + sums }
+pub unsafe extern "C" fn nf_cv_accumulator_size(config: *const nf_cv_config, workspace: *mut usize) -> usize {
+    let sizes = || {
+        // SAFETY: the caller's pointer, checked there for NULL and alignment.
+        let config = unsafe { convert::reference(config) }?;
+        let core = core_config(config)?;
+        if is_narrow(config)? { sizes::<f32>(&core) } else { sizes::<f64>(&core) }
+    };
+    let [all, scratch] = sizes().unwrap_or_default();
+    // SAFETY: the caller passes NULL or a place for a number.
+    if let Ok(workspace) = unsafe { convert::room(workspace) } {
+        workspace.write(scratch);
+    }
+    all
 }
 
-/// Makes an empty accumulator in `memory`, 8-byte aligned and of at least nf_cv_accumulator_size() bytes, and returns
-/// it in out.
+fn sizes<R: Real>(config: &Config) -> Result<[usize; 2], nf_status> {
+    let state = Accumulator::<R>::new(config).map_err(status_of)?;
+    Ok([HEADER + state.len() * size_of::<R>(), state.workspace_len() * size_of::<R>()])
+}
+
+/// Makes an empty accumulator in `memory`, or empties one: `*out` is its handle, the same address.
 ///
-/// NF_ERR_UNSUPPORTED for NF_CV_LEAVE_ONE_OUT, which needs all samples at once, and for NF_SOLVER_DUAL.
+/// NF_ERR_NULL; NF_ERR_RANGE: the configuration; NF_ERR_MEMORY; NF_ERR_ALIGNMENT; NF_ERR_UNSUPPORTED:
+/// NF_CV_LEAVE_ONE_OUT, which needs all samples at once, and NF_SOLVER_DUAL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_init(
     memory: *mut c_void,
@@ -88,43 +94,30 @@ pub unsafe extern "C" fn nf_cv_accumulator_init(
     })())
 }
 
-/// Adds n samples, laid out as for nf_cv_estimate(): all of them or, on an error, none. Several at a time are cheaper.
-/// In single precision an accumulator holds 2^22 samples: NF_ERR_RANGE beyond. A configuration with `controls` needs
-/// nf_cv_accumulator_add_with_controls().
+/// Adds samples of the one integral: all of them or, on an error, none. Several at a time are cheaper. In single
+/// precision an accumulator holds 2^22 samples.
+///
+/// NF_ERR_STATE; NF_ERR_RANGE also for more samples than it holds; else as for nf_cv_estimate().
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_add(
     accumulator: *mut nf_cv_accumulator,
-    u: *const f32,
-    f: *const f32,
-    n: usize,
-) -> nf_status {
-    // SAFETY: the caller's pointers; there are no control functions.
-    unsafe { nf_cv_accumulator_add_with_controls(accumulator, u, f, core::ptr::null(), core::ptr::null(), n) }
-}
-
-/// As nf_cv_accumulator_add(), with the control functions of nf_cv_estimate_with_controls().
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_cv_accumulator_add_with_controls(
-    accumulator: *mut nf_cv_accumulator,
-    u: *const f32,
-    f: *const f32,
-    h: *const f32,
-    h_integral: *const f32,
-    n: usize,
+    samples: *const nf_cv_samples,
 ) -> nf_status {
     status((|| {
-        // SAFETY: the caller's object, checked there, and arrays of the lengths the header states.
+        // SAFETY: the caller's object and samples, checked there, and arrays of the lengths the header states.
         unsafe {
+            let samples = convert::reference(samples)?;
             match open(accumulator)? {
-                Opened::Double(state, sums) => add(state, sums, u, f, h, h_integral, n),
-                Opened::Single(state, sums) => add(state, sums, u, f, h, h_integral, n),
+                Opened::Double(state, sums) => add(state, sums, samples),
+                Opened::Single(state, sums) => add(state, sums, samples),
             }
         }
     })())
 }
 
-/// Adds all samples of `other`, which stays as it is. NF_ERR_MISMATCH if the configurations differ, NF_ERR_RANGE if
-/// both are the same object. Like every function of an accumulator, NF_ERR_STATE for memory that holds none.
+/// Adds all samples of `other`, which stays as it is.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_MISMATCH: other configurations; NF_ERR_RANGE: both are the same object.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_merge(
     accumulator: *mut nf_cv_accumulator,
@@ -149,21 +142,9 @@ pub unsafe extern "C" fn nf_cv_accumulator_merge(
     })())
 }
 
-/// Bytes of workspace that nf_cv_accumulator_estimate() needs; 0 as for nf_cv_accumulator_size().
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_cv_accumulator_workspace_size(config: *const nf_cv_config) -> usize {
-    // SAFETY: the caller's pointer, checked there for NULL and alignment.
-    let Ok(config) = (unsafe { convert::reference(config) }) else { return 0 };
-    size(config, |config, narrow| {
-        if narrow {
-            Accumulator::<f32>::new(config).map(|state| state.workspace_len())
-        } else {
-            Accumulator::<f64>::new(config).map(|state| state.workspace_len())
-        }
-    })
-}
-
-/// The estimate from all samples so far; more may be added afterwards. NF_ERR_NO_SAMPLES if there are none.
+/// The estimate from all samples so far; more may be added afterwards.
+///
+/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_MEMORY; NF_ERR_ALIGNMENT; NF_ERR_NO_SAMPLES.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_estimate(
     accumulator: *const nf_cv_accumulator,
@@ -187,18 +168,6 @@ pub unsafe extern "C" fn nf_cv_accumulator_estimate(
             };
             out.write(c_estimate(&estimate.map_err(status_of)?));
             Ok(())
-        }
-    })())
-}
-
-/// Forgets all samples.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_cv_accumulator_reset(accumulator: *mut nf_cv_accumulator) -> nf_status {
-    status((|| {
-        // SAFETY: the caller's object, checked there.
-        match unsafe { open(accumulator)? } {
-            Opened::Double(state, sums) => state.reset(sums).map_err(status_of),
-            Opened::Single(state, sums) => state.reset(sums).map_err(status_of),
         }
     })())
 }
@@ -255,17 +224,9 @@ unsafe fn open_shared<'a>(accumulator: *const nf_cv_accumulator) -> Result<Opene
 }
 
 /// # Safety
-/// As for [`samples`].
-unsafe fn add<R: Real>(
-    state: &mut Accumulator<R>,
-    sums: &mut [R],
-    u: *const f32,
-    f: *const f32,
-    h: *const f32,
-    h_integral: *const f32,
-    n: usize,
-) -> Result<(), nf_status> {
+/// As for [`samples::read`].
+unsafe fn add<R: Real>(state: &mut Accumulator<R>, sums: &mut [R], samples: &nf_cv_samples) -> Result<(), nf_status> {
     // SAFETY: the caller's promise.
-    let samples = unsafe { samples(state.config(), u, f, h, h_integral, n)? };
+    let samples = unsafe { samples::read_without_known(state.config(), samples, 1)? };
     state.add(sums, samples).map_err(status_of)
 }

@@ -1,25 +1,23 @@
 //! Configuration and result, and their translation to the core's types.
 
+use super::descent::{nf_cv_descent, with};
+use super::image::{check_image, nf_cv_image};
 use crate::convert;
 use crate::status::*;
-use core::ffi::CStr;
+use core::ffi::{CStr, c_char};
 use noisefloor_core::basis::Family;
-use noisefloor_core::control_variate::{Color, Config, Estimate, Estimator, NonFinite, Optimizer, Ridge, Solver};
+use noisefloor_core::control_variate::{Color, Config, Estimate, Estimator, NonFinite, Ridge, Solver};
 
-/// Estimator: a soft mixture of the plain mean and ridge fits, weighted by their leave-one-out errors (streaming:
-/// held-out errors). The default; never noticeably worse than the mean: at most 1.03 times its RMSE where that was
-/// searched, in 1 to 8 dims at orders 1 to 3 and 4 to 64 samples, 1.06 times on stripes that samples rarely see.
-/// Slightly biased at low sample counts.
+/// Estimator: a soft mixture of the plain mean and ridge fits, by their errors on samples they have not seen. The
+/// default; slightly biased at few samples, and never noticeably worse than the mean.
 pub const NF_CV_ROBUST: u32 = 0;
-/// Estimator: least squares on its own samples (Alg. 1). The cheapest; bias O(1/n); needs several samples per term.
+/// Estimator: least squares on its own samples (Alg. 1). Cheapest; bias O(1/n); wants several samples per term.
 pub const NF_CV_LEAST_SQUARES: u32 = 1;
-/// Estimator: one ridge fit, each sample corrected by the fit to all others. Exactly unbiased for the default or a
-/// given ridge. Not for streaming.
+/// Estimator: each sample corrected by a ridge fit to all others. Exactly unbiased; not for streaming.
 pub const NF_CV_LEAVE_ONE_OUT: u32 = 2;
-/// Estimator: each fold corrected by a robust fit to the other folds (two folds: 4.2.6). Exactly unbiased.
+/// Estimator: each fold corrected by a robust fit to the other folds (4.2.6). Exactly unbiased.
 pub const NF_CV_K_FOLD: u32 = 3;
-/// Estimator: the fit by gradient descent on its own samples (Alg. 2). Biased, below 32 samples more than least
-/// squares.
+/// Estimator: gradient descent on its own samples (Alg. 2). Biased; see nf_cv_gradient_descent().
 pub const NF_CV_GRADIENT_DESCENT: u32 = 4;
 /// Estimator: each sample corrected by a fit to those before it (4.30). Exactly unbiased after every sample.
 pub const NF_CV_INCREMENTAL: u32 = 5;
@@ -57,17 +55,11 @@ pub const NF_COLOR_PER_CHANNEL: u32 = 0;
 /// Rec. 709 luminance is regressed and scales the plain mean of 3 channels (section 4.3).
 pub const NF_COLOR_LUMINANCE_RATIO: u32 = 1;
 
-/// Gradient descent with heavy-ball momentum. The default.
-pub const NF_OPTIMIZER_MOMENTUM: u32 = 0;
-/// Gradient descent by Adam.
-pub const NF_OPTIMIZER_ADAM: u32 = 1;
-/// Plain gradient descent (4.29).
-pub const NF_OPTIMIZER_PLAIN: u32 = 2;
-
 /// For `ridge`: of a few strengths the one with the smallest leave-one-out error.
 pub const NF_RIDGE_AUTO: f32 = -1.0;
 
-/// How to estimate. Zero in any field but dims, order and channels is its default; order 0 is the plain mean.
+/// How to estimate. Zero in any field but dims, order and channels is its default, so that
+/// `nf_cv_config config = {.dims = 2, .order = 2, .channels = 1};` is the robust estimator over 2 coordinates.
 #[repr(C)]
 #[derive(Clone, Copy)]
 #[allow(non_camel_case_types)]
@@ -82,45 +74,33 @@ pub struct nf_cv_config {
     pub estimator: u32,
     /// NF_BASIS_*
     pub basis: u32,
-    /// 1 if the samples are stratified (a tile, Sobol points, a lattice), 0 if independent. With 1, one pixel's
-    /// estimate is the plain mean, but for NF_CV_LEAST_SQUARES and NF_CV_GRADIENT_DESCENT: what corrects some samples
-    /// by fits to others undoes what is even about all, and their errors do not show it. Fits shared by pixels correct
-    /// all the same, and take their std_error from the pixels' spread.
+    /// 1 if a pixel's samples are stratified (a tile, Sobol points, a lattice). One pixel's estimate is then the plain
+    /// mean, but for NF_CV_LEAST_SQUARES and NF_CV_GRADIENT_DESCENT: fits to some of the samples undo what is even
+    /// about all. Fits shared by pixels correct all the same.
     pub stratified: u32,
     /// If above 1, the last coordinate picks one of this many equally likely alternatives, a light say (figure 4.15).
-    /// Each takes a term: at most 136 less binomial(dims - 1 + order, order), those of the other coordinates, and
-    /// `controls`. That is 130 at 3 dims, order 2, where up to 43 have functions of their own as well
-    /// (docs/control_variates.md). Of more alternatives let each slice stand for several.
+    /// At most 136 less binomial(dims - 1 + order, order) and less `controls`: 130 at 3 dims, order 2. Of more
+    /// alternatives let each slice stand for several.
     pub slices: u32,
     /// User-supplied control functions with known integrals (4.18), 0 to 4.
     pub controls: u32,
     /// Floats from one sample's u to the next; 0 means dims. A path may be longer than what is regressed (4.3.5); its
-    /// first dims coordinates must exist, uniform, for every sample, however short its path.
+    /// first dims coordinates must be uniform for every sample, however short its path.
     pub stride: u32,
     /// NF_SOLVER_*
     pub solver: u32,
-    /// NF_PRECISION_*
+    /// NF_PRECISION_*, of accumulators. Arrays are computed in the best that the library was built for, images in
+    /// float.
     pub precision: u32,
     /// NF_NONFINITE_*
     pub nonfinite: u32,
     /// NF_COLOR_*
     pub color: u32,
-    /// Folds of NF_CV_K_FOLD and of the streaming NF_CV_ROBUST, 2 to 16; 0 means 4. Runs of samples in the order in
-    /// which they come.
+    /// Runs of samples, in their order, for NF_CV_K_FOLD and the streaming NF_CV_ROBUST: 2 to 16; 0 means 4.
     pub folds: u32,
-    /// Steps of gradient descent, at most 2^20; 0 means half as many as samples, 8 to 128.
-    pub iterations: u32,
-    /// NF_OPTIMIZER_*
-    pub optimizer: u32,
-    /// Ridge strength per sample (at least 1e-12, in float 1e-5: less is raised to it), NF_RIDGE_AUTO, or 0 for the
-    /// estimator's default. NF_CV_ROBUST and NF_CV_GRADIENT_DESCENT do not use it; NF_RIDGE_AUTO is the default where
-    /// there are no leave-one-out errors (streaming, incremental, images), and biases NF_CV_LEAVE_ONE_OUT slightly.
+    /// Ridge strength per sample (at least 1e-12, in float 1e-5), NF_RIDGE_AUTO, or 0 for the estimator's default.
+    /// NF_CV_ROBUST and NF_CV_GRADIENT_DESCENT do not use it; NF_RIDGE_AUTO biases NF_CV_LEAVE_ONE_OUT slightly.
     pub ridge: f32,
-    /// Step of gradient descent: in standard deviations of the values for Adam, else times one over the largest
-    /// curvature. 0 means the default.
-    pub learning_rate: f32,
-    /// Momentum of gradient descent, below 1; 0 means the default.
-    pub momentum: f32,
 }
 
 /// An estimate of an integral over primary sample space.
@@ -138,16 +118,7 @@ pub struct nf_estimate {
     pub gain: f32,
 }
 
-/// Sets a configuration to the robust estimator over 2 coordinates, order 2, 1 channel. NULL is ignored.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_cv_config_default(config: *mut nf_cv_config) {
-    // SAFETY: the caller's pointer, checked there for NULL and alignment.
-    if let Ok(config) = unsafe { convert::room(config) } {
-        config.write(default_config());
-    }
-}
-
-/// What nf_cv_config_default() sets.
+/// The robust estimator over 2 coordinates, order 2, 1 channel.
 pub(crate) fn default_config() -> nf_cv_config {
     nf_cv_config {
         dims: 2,
@@ -164,11 +135,7 @@ pub(crate) fn default_config() -> nf_cv_config {
         nonfinite: NF_NONFINITE_ERROR,
         color: NF_COLOR_PER_CHANNEL,
         folds: 0,
-        iterations: 0,
-        optimizer: NF_OPTIMIZER_MOMENTUM,
         ridge: 0.0,
-        learning_rate: 0.0,
-        momentum: 0.0,
     }
 }
 
@@ -180,16 +147,28 @@ pub unsafe extern "C" fn nf_cv_terms(config: *const nf_cv_config) -> u32 {
     config.ok().and_then(|config| config.terms().ok()).map_or(0, |terms| terms as u32)
 }
 
-/// What is wrong with a configuration, in a static sentence with a NUL that names the field and its range: the first of
-/// them if there are several. NULL if nothing is. Options that only some functions take are not looked at: where those
-/// fail they return NF_ERR_UNSUPPORTED.
+/// What is wrong with a configuration, and with an image and a descent unless they are NULL: a static sentence that
+/// names the first field that is out of its range, or NULL. Arrays are not read, and options that only some functions
+/// take, NF_ERR_UNSUPPORTED elsewhere, pass.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_cv_config_check(config: *const nf_cv_config) -> *const core::ffi::c_char {
-    // SAFETY: the caller's pointer, checked there for NULL and alignment.
-    match unsafe { convert::reference(config) } {
-        Ok(config) => check(config).err().map_or(core::ptr::null(), CStr::as_ptr),
-        Err(_) => c"the configuration is NULL or misaligned".as_ptr(),
-    }
+pub unsafe extern "C" fn nf_cv_check(
+    config: *const nf_cv_config,
+    image: *const nf_cv_image,
+    descent: *const nf_cv_descent,
+) -> *const c_char {
+    // SAFETY: the caller's pointers, checked there for NULL and alignment.
+    let (config, image, descent) = unsafe {
+        let Ok(config) = convert::reference(config) else {
+            return c"the configuration is NULL or misaligned".as_ptr();
+        };
+        (config, convert::optional(image), convert::optional(descent))
+    };
+    let (Ok(image), Ok(descent)) = (image, descent) else { return c"the image or descent is misaligned".as_ptr() };
+    let result = check(config).and_then(|()| image.map_or(Ok(()), check_image)).and_then(|()| match descent {
+        Some(descent) => with(read(config)?, descent)?.check().map_err(|(_, words)| words),
+        None => Ok(()),
+    });
+    result.err().map_or(core::ptr::null(), CStr::as_ptr)
 }
 
 fn check(config: &nf_cv_config) -> Result<(), &'static CStr> {
@@ -244,19 +223,12 @@ fn read(config: &nf_cv_config) -> Result<Config, &'static CStr> {
             c"color must be one of NF_COLOR_*, 0 or 1",
         )?,
         folds: config.folds as usize,
-        iterations: config.iterations as usize,
-        optimizer: pick(
-            config.optimizer,
-            &[Optimizer::Momentum, Optimizer::Adam, Optimizer::Plain],
-            c"optimizer must be one of NF_OPTIMIZER_*, 0 to 2",
-        )?,
         ridge: match config.ridge {
             0.0 => Ridge::Default,
             NF_RIDGE_AUTO => Ridge::Auto,
             strength => Ridge::Fixed(strength),
         },
-        learning_rate: config.learning_rate,
-        momentum: config.momentum,
+        ..Config::new(0, 0, 0)
     })
 }
 
@@ -272,7 +244,7 @@ pub(super) fn is_narrow(config: &nf_cv_config) -> Result<bool, nf_status> {
     }
 }
 
-fn pick<T: Copy>(value: u32, choices: &[T], words: &'static CStr) -> Result<T, &'static CStr> {
+pub(super) fn pick<T: Copy>(value: u32, choices: &[T], words: &'static CStr) -> Result<T, &'static CStr> {
     choices.get(value as usize).copied().ok_or(words)
 }
 

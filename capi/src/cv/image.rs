@@ -1,10 +1,11 @@
 //! Estimates of neighbouring pixels, which share fits.
 
-use super::batch::{len, samples};
 use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimate};
+use super::samples::{self, nf_cv_samples};
 use crate::convert;
 use crate::dispatch;
 use crate::status::*;
+use core::ffi::CStr;
 use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Rectangle, Samples};
 
 /// The pixels of an image, or of a part of one, and what is known of them. All zero but width and height: nothing.
@@ -22,35 +23,23 @@ pub struct nf_cv_image {
     /// Width and height of the windows that pixels share a fit in; 0 means 8. At most 1024 pixels in all frames
     /// together.
     pub window: u32,
-    /// Pixels from one window to the next, at most `window`; 0 means half of it. Where windows overlap corrections are
-    /// averaged. The time of an estimate goes with the square of window / stride.
+    /// Pixels from one window to the next, at most `window`; 0 means half of it. Corrections of overlapping windows are
+    /// averaged; the time of an estimate goes with the square of window / stride.
     pub stride: u32,
-    /// 1 if the pixels have no places: all of the same surface, in all frames, then share one fit, whatever `window`
-    /// and `stride` say. With `surfaces` they are at most 1024.
+    /// 1 if the pixels have no places: all of one surface, in all frames, share a fit. With `surfaces` at most 1024
+    /// pixels.
     pub unordered: u32,
-    /// A number for each pixel, or NULL: only pixels with the same number share a fit. What shows the same material
-    /// under a similar normal and depth, for example. Must not depend on the pixel's own samples, or no estimator is
-    /// unbiased.
+    /// A number for each pixel, or NULL: only pixels of the same number share a fit, those that show one material under
+    /// a similar normal, say. It must not depend on the pixel's own samples, or no estimator is unbiased.
     pub surfaces: *const u32,
-    /// `channels` numbers for each pixel, or NULL: what its values are divided by before a fit and multiplied by after
-    /// it, such as its albedo. Finite and not negative; 0 counts as 1. Must not depend on the pixel's own samples
-    /// either. For textures, where all samples of a pixel see one albedo: with defocus or motion blur they can raise
-    /// the error. Pixels near 0 beside others are better kept apart by `surfaces`: their values would decide the fit.
+    /// `channels` numbers for each pixel, or NULL: what its values are divided by before a fit, its albedo say. Finite,
+    /// at least 0, and not dependent on its own samples; 0 counts as 1. For textures of which all samples of a pixel
+    /// see the same; pixels near 0 beside others are better kept apart by `surfaces`.
     pub factors: *const f32,
-    /// For each sample, as f, what it would be with nothing in the way (its unshadowed contribution), or NULL. Finite.
-    /// Pixels are then also corrected by how far it is from `known_integrals`, as far as their neighbours follow it.
-    pub known: *const f32,
-    /// With `known`, else NULL: `channels` numbers for each pixel, its exact integrals over u: of a polygon light in
-    /// closed form, for example. Finite and not negative; a pixel with 0 is not corrected by it. Where a pixel's
-    /// samples see several points, the mean of theirs.
-    pub known_integrals: *const f32,
-    /// The pixels that u, f and the arrays above hold, in all frames; all zero: all of the image. Numbers of pixels
-    /// then count these alone.
+    /// The pixels that all arrays hold, in all frames, and that are counted; all zero: all of the image.
     pub given: nf_cv_rectangle,
-    /// The pixels to estimate, for which `out` has room; all zero: all that are given. A part without pixels is
-    /// refused, but at the origin, where it is all zero. Every window that has one of
-    /// them must be given whole, see nf_cv_image_needed(). Parts that are estimated on their own, by threads for
-    /// example, have the bits of the whole.
+    /// The pixels to estimate, of which every window must be given whole: see nf_cv_image_needed(). All zero: all that
+    /// are given. Parts that are estimated apart, by threads say, have the bits of the whole.
     pub wanted: nf_cv_rectangle,
 }
 
@@ -69,110 +58,127 @@ pub struct nf_cv_rectangle {
     pub height: u32,
 }
 
-/// Writes which pixels must be given for those of `image->wanted`: its windows whole; all zero, and so all, where
-/// pixels have no places. Reads no array. `out` may be `&image->given`.
+/// Writes which pixels must be given for `image->wanted`, and all zero, for all, where pixels have no places. Reads no
+/// array; `out` may be `&image->given`.
 ///
-/// NF_ERR_RANGE for windows that nf_cv_image does not allow and for `wanted` beyond the image.
+/// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: what nf_cv_check() says of the windows and `wanted`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_needed(image: *const nf_cv_image, out: *mut nf_cv_rectangle) -> nf_status {
     status((|| {
         // SAFETY: the caller's pointers, checked there. A copy, as `out` may be a part of the image.
         let (image, out) = unsafe { (*convert::reference(image)?, convert::room(out)?) };
-        let needed = core_image(&image)?.needed().map_err(status_of)?;
+        let needed = core_image(&image, &NO_SAMPLES)?.needed().map_err(status_of)?;
         let [x, y, width, height] = [needed.x, needed.y, needed.width, needed.height].map(|value| value as u32);
         out.write(nf_cv_rectangle { x, y, width, height });
         Ok(())
     })())
 }
 
-/// Bytes of workspace that nf_cv_image_estimate() needs for n samples in each pixel; 0 as for nf_cv_workspace_size(),
-/// and for an image that is NULL, has no pixels, or has windows that nf_cv_image does not allow. With `known` it is
-/// more.
+/// Bytes of workspace that nf_cv_image_estimate() needs for `samples->n` samples in each pixel, more with `known`; 0 as
+/// for nf_cv_workspace_size(), and for an image that nf_cv_check() refuses. No array is read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_workspace_size(
     config: *const nf_cv_config,
     image: *const nf_cv_image,
-    n: usize,
+    samples: *const nf_cv_samples,
 ) -> usize {
-    // SAFETY: the caller's pointers, checked there for NULL and alignment.
-    let (Ok(config), Ok(image)) = (unsafe { (convert::reference(config), convert::reference(image)) }) else {
-        return 0;
+    let len = || {
+        // SAFETY: the caller's pointers, checked there for NULL and alignment.
+        let (config, image, samples) =
+            unsafe { (convert::reference(config)?, convert::reference(image)?, convert::reference(samples)?) };
+        let image = core_image(image, samples)?;
+        cv::image_workspace_len(&supported(config)?, &image, samples.n).map_err(status_of)
     };
-    match core_image(image) {
-        Ok(image) => workspace_size(config, &image, n),
-        Err(_) => 0,
-    }
+    len().ok().and_then(|len| len.checked_mul(size_of::<f32>())).unwrap_or(0)
 }
 
-/// Estimates the integrals of the pixels of an image, or with `unordered` of any integrals that are alike: u and f hold
-/// n samples of pixel after pixel as nf_cv_estimate() takes them, out has one estimate for each wanted pixel. Pixels of
-/// the same window and surface share a fit, which follows integrands that change across the window; every pixel is
-/// corrected by a fit to other pixels' samples (4.3.6), even from one sample in each. All is computed in float,
-/// whatever `precision` says.
+/// Estimates the pixels of an image from `samples->n` samples in each: out[wanted pixels]. Pixels of one window and
+/// surface share a fit, which follows integrands that change across the window; each pixel is corrected by a fit to the
+/// others' samples (4.3.6), even from one sample. Computed in float.
 ///
-/// The estimator says how fits are chosen. NF_CV_ROBUST weighs fits of rising degree and the plain mean by the variance
-/// of their estimates across the pixels and, from 2 samples on, by what they leave of the variance within pixels that
-/// they have not seen; unbiased as the group grows. NF_CV_K_FOLD lets two halves of the pixels choose for each other,
-/// NF_CV_LEAVE_ONE_OUT or a `ridge` is one fit: both exactly unbiased, if the pixels' samples are independent. Groups
-/// of up to 4 pixels stay at their mean, but for one fit to several samples in each; one fit to 2 to 12 pixels can be a
-/// fifth worse than the mean. Where fits explain little, NF_CV_ROBUST and NF_CV_K_FOLD leave pixels far brighter or
-/// darker than all others out of the fits to others.
+/// NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
+/// they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and a `ridge` are exactly
+/// unbiased for independent samples. Groups of up to 4 pixels stay at their mean. Of a texture one sample in each pixel
+/// cannot tell: say it by `surfaces` or `factors`. With one sample, or `stratified`, std_error is the spread of the
+/// pixels' estimates about their linear trend: an upper bound where the signal varies otherwise.
 ///
-/// Of a texture one sample in each pixel cannot tell: say it by `surfaces` or `factors`. Several do: pixels whose
-/// samples are all alike stay as they are. With one sample, or `stratified`, std_error is the spread of the pixels'
-/// estimates about their linear trend: an upper bound where the signal varies otherwise.
+/// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
+/// to what is left of it, with order 0 between the mean and what is known; NF_CV_K_FOLD is unsupported.
 ///
-/// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone and is the only one that is exactly unbiased; NF_CV_ROBUST
-/// chooses among fits to f and to what is left of it, and with order 0 between the mean and what is known. NF_CV_K_FOLD
-/// is then unsupported.
-///
-/// NF_ERR_UNSUPPORTED for other estimators, controls, skipping and luminance ratio; NF_ERR_RANGE also for an image
-/// without pixels, for windows and parts that nf_cv_image does not allow, for negative factors or integrals and for
-/// `known` without `known_integrals`; NF_ERR_NOT_FINITE if any of the three is not finite; else as nf_cv_estimate().
+/// NF_ERR_UNSUPPORTED: other estimators, `controls`, NF_NONFINITE_SKIP, luminance ratio; NF_ERR_RANGE also for the
+/// image, negative factors or integrals, and `known` without integrals; else as for nf_cv_estimate().
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_estimate(
     config: *const nf_cv_config,
     image: *const nf_cv_image,
-    u: *const f32,
-    f: *const f32,
-    n: usize,
+    samples: *const nf_cv_samples,
     workspace: *mut core::ffi::c_void,
     bytes: usize,
     out: *mut nf_estimate,
 ) -> nf_status {
     status((|| {
         // SAFETY: the caller's pointers, checked there.
-        let (config, of) = unsafe { (convert::reference(config)?, convert::reference(image)?) };
+        let (config, of, given) =
+            unsafe { (convert::reference(config)?, convert::reference(image)?, convert::reference(samples)?) };
         let core = supported(config)?;
-        let mut image = core_image(of)?;
+        let mut image = core_image(of, given)?;
         let [pixels, estimates] = image.counts().map_err(status_of)?;
-        let total = convert::product(pixels, n)?;
+        let values = convert::product(pixels, core.channels)?;
         // SAFETY: the caller's arrays, of the lengths the header states.
         let (samples, out) = unsafe {
-            (samples(&core, u, f, core::ptr::null(), core::ptr::null(), total)?, convert::rooms(out, estimates)?)
+            image.surfaces = array(of.surfaces, pixels)?;
+            image.factors = array(of.factors, values)?;
+            image.known = array(given.known, convert::product(values, given.n)?)?;
+            image.known_integrals = array(given.known_integrals, values)?;
+            (samples::read(&core, given, pixels)?, convert::rooms(out, estimates)?)
         };
-        if !of.surfaces.is_null() {
-            // SAFETY: as above.
-            image.surfaces = unsafe { convert::slice(of.surfaces, pixels)? };
-        }
-        if !of.factors.is_null() {
-            // SAFETY: as above.
-            image.factors = unsafe { convert::slice(of.factors, convert::product(pixels, core.channels)?)? };
-        }
-        image.known = &[];
-        if !of.known.is_null() {
-            // SAFETY: as above.
-            image.known = unsafe { convert::slice(of.known, convert::product(total, core.channels)?)? };
-        }
-        if !of.known_integrals.is_null() {
-            // SAFETY: as above.
-            image.known_integrals =
-                unsafe { convert::slice(of.known_integrals, convert::product(pixels, core.channels)?)? };
-        }
         // SAFETY: the caller's workspace, `bytes` long.
-        unsafe { estimate(&core, &image, samples, n, (workspace, bytes), out) }
+        unsafe { estimate(&core, &image, samples, given.n, (workspace, bytes), out) }
     })())
 }
+
+/// `len` elements; none for NULL.
+///
+/// # Safety
+/// As for [`convert::slice`].
+unsafe fn array<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], nf_status> {
+    // SAFETY: passed on to the caller.
+    if pointer.is_null() { Ok(&[]) } else { unsafe { convert::slice(pointer, len) } }
+}
+
+/// What is wrong with an image, in words. Whether something is, the core decides.
+pub(super) fn check_image(image: &nf_cv_image) -> Result<(), &'static CStr> {
+    let Err(_) = core_image(image, &NO_SAMPLES).and_then(|image| image.counts().map_err(status_of)) else {
+        return Ok(());
+    };
+    let side = if image.window == 0 { 8 } else { image.window };
+    let in_window = [side.min(image.width), side.min(image.height), image.frames.max(1)];
+    let end = |of: &nf_cv_rectangle| [u64::from(of.x) + u64::from(of.width), u64::from(of.y) + u64::from(of.height)];
+    let [right, below] = end(&image.given);
+    Err(match image {
+        nf_cv_image { width: 0, .. } | nf_cv_image { height: 0, .. } => c"width and height must be at least 1",
+        nf_cv_image { unordered: 2.., .. } => c"unordered must be 0 or 1",
+        nf_cv_image { unordered: 1, .. } => {
+            c"given and wanted must be all zero, and pixels with surfaces at most 1024, where unordered is 1"
+        }
+        _ if in_window.iter().map(|&length| u128::from(length)).product::<u128>() > 1024 => {
+            c"window must be at most 1024 pixels, all frames together"
+        }
+        _ if image.stride > side => c"stride must be at most window",
+        _ if right > u64::from(image.width) || below > u64::from(image.height) => c"given must lie in the image",
+        _ => c"wanted must have pixels, and given hold its windows whole: see nf_cv_image_needed()",
+    })
+}
+
+const NO_SAMPLES: nf_cv_samples = nf_cv_samples {
+    u: core::ptr::null(),
+    f: core::ptr::null(),
+    n: 0,
+    controls: core::ptr::null(),
+    control_integrals: core::ptr::null(),
+    known: core::ptr::null(),
+    known_integrals: core::ptr::null(),
+};
 
 /// The core's configuration.
 fn supported(config: &nf_cv_config) -> Result<Config, nf_status> {
@@ -183,7 +189,7 @@ fn supported(config: &nf_cv_config) -> Result<Config, nf_status> {
 }
 
 /// The image without its arrays; of `known` only whether there is one, on which the workspace depends.
-fn core_image(image: &nf_cv_image) -> Result<Image<'static>, nf_status> {
+fn core_image(image: &nf_cv_image, samples: &nf_cv_samples) -> Result<Image<'static>, nf_status> {
     let [width, height, frames, window, stride] =
         [image.width, image.height, image.frames, image.window, image.stride].map(|value| value as usize);
     let unordered = match image.unordered {
@@ -191,23 +197,13 @@ fn core_image(image: &nf_cv_image) -> Result<Image<'static>, nf_status> {
         1 => true,
         _ => return Err(NF_ERR_RANGE),
     };
-    let known: &[f32] = if image.known.is_null() { &[] } else { &[0.0] };
+    let known: &[f32] = if samples.known.is_null() { &[] } else { &[0.0] };
     let rectangle = |of: &nf_cv_rectangle| {
         let [x, y, width, height] = [of.x, of.y, of.width, of.height].map(|value| value as usize);
         Rectangle::new(x, y, width, height)
     };
     let (given, wanted) = (rectangle(&image.given), rectangle(&image.wanted));
     Ok(Image { frames, window, stride, unordered, known, given, wanted, ..Image::new(width, height) })
-}
-
-/// Bytes, 0 for what is not supported or out of range.
-fn workspace_size(config: &nf_cv_config, image: &Image<'_>, n: usize) -> usize {
-    let size = || {
-        let core = supported(config)?;
-        let len = cv::image_workspace_len(&core, image, n).map_err(status_of)?;
-        len.checked_mul(size_of::<f32>()).ok_or(NF_ERR_MEMORY)
-    };
-    size().unwrap_or(0)
 }
 
 /// # Safety
@@ -225,7 +221,7 @@ unsafe fn estimate(
             out.write(c_estimate(&estimate));
         }
     };
-    let needed = len(cv::image_workspace_len(config, image, n))?;
+    let needed = cv::image_workspace_len(config, image, n).map_err(status_of)?;
     // SAFETY: the caller's promise, see above.
     let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
     dispatch::estimate_image(config, image, samples, workspace, write).map_err(status_of)

@@ -3,11 +3,13 @@
 mod accumulator;
 mod batch;
 mod config;
+mod descent;
 mod image;
-mod many;
+mod samples;
 
 pub use accumulator::*;
 pub use batch::*;
 pub use config::*;
+pub use descent::*;
 pub use image::*;
-pub use many::*;
+pub use samples::*;

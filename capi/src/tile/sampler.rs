@@ -4,13 +4,7 @@ use super::view::{core_view, nf_tile};
 use crate::convert;
 use noisefloor_core::tile::{Sampler, State};
 
-/// One sample of one pixel: a small struct, passed and copied by value. Drawing does not change it.
-///
-/// A sampler stands for a point of a cube with as many dimensions as are asked for. There are no dimension counters:
-/// each decision of a path (lens, light, bounce, ...) has a domain, a child of the sampler by a key of its own. A
-/// domain's numbers depend on nothing but tile, pixel, frame, index and the keys that led to it, so that any sample can
-/// be drawn in any order, on any thread, and at any time. Made by nf_tile_sampler_pixel; the fields are not to be
-/// written.
+/// One sample of one pixel, as nf_sampler is, drawn from a tile. Made by nf_tile_sampler_pixel.
 #[repr(C)]
 #[allow(non_camel_case_types)]
 #[derive(Clone, Copy)]
@@ -31,13 +25,10 @@ pub struct nf_tile_sampler {
     pub scrambled: u16,
 }
 
-/// Sample `index` of pixel (x, y) in `frame`, any values of each: pixels repeat with the tile's size.
-///
-/// The first tile->spp samples are the tile's. Those that follow continue with a scrambled Sobol sequence in their
-/// place; none is repeated. Frames 0 to tile->frames - 1 are the tile's; each later run of them is the tile at another
-/// place, unrelated to it. For an image that is refined over time leave the frame and count the index.
-///
-/// tile: it must outlive the sampler and stay where it is. All draws of a sampler without a tile, NULL, are 0.
+/// Sample `index` of pixel (x, y) in `frame`, any values of each. Samples beyond tile->spp continue with a scrambled
+/// Sobol sequence; frames beyond tile->frames are the tile at other places. For an image that is refined over time
+/// leave the frame and count the index. The tile must outlive the sampler and stay where it is; of NULL all draws are
+/// 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_tile_sampler_pixel(
     tile: *const nf_tile,
@@ -64,32 +55,22 @@ fn later(tile: *const nf_tile, x: u32, y: u32, frame: u32, index: u32) -> nf_til
     sampler(tile, state.unwrap_or_default())
 }
 
-/// The child domain of a key, any value. Children of different keys are unrelated to each other and to their parent.
-/// Keys mean something only among the children of one parent: a bounce's light may have the same key as the next
-/// bounce's.
+/// As nf_sampler_domain().
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_tile_sampler_domain(sampler: nf_tile_sampler, key: u32) -> nf_tile_sampler {
     self::sampler(sampler.tile, state(&sampler).domain(key))
 }
 
-/// An independent version of the sampler for each seed but 0; seed 0 changes nothing.
-///
-/// It is the tile at another place, with all values of a dimension shifted, modulo 1, by a hash of seed and domain.
-/// Over random seeds every value is uniform, so an estimate is unbiased, as far as a hash of 32 bits is random (the
-/// tile's own values are fixed, and an estimate from them is what it is). The shift costs quality: where good images
-/// are wanted, and not exact unbiasedness, take another frame instead. Children of a scrambled sampler are scrambled.
+/// As nf_sampler_scramble(): the tile at another place, and shifted.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_tile_sampler_scramble(sampler: nf_tile_sampler, seed: u32) -> nf_tile_sampler {
     self::sampler(sampler.tile, state(&sampler).scramble(seed))
 }
 
-/// Writes the first `dims` coordinates, 1..4, of the sampler's point to u[dims]: each in [0, 1), a multiple of 2^-24.
-///
-/// Up to tile->dims they are optimised together, and more come from other places of the tile; fewer are the first of
-/// those. If the tile has at least two dims and spp, and is not progressive, each further number of its samples is
-/// stratified, and the third of a tile of two dims with those two: draw a choice, or a time, after the two numbers that
-/// it goes with. Two further numbers that belong together are better drawn from a domain of their own. Writes nothing
-/// if dims is out of range or u is NULL.
+/// Writes the first `dims` coordinates, 1..4, as nf_sampler_draw() does. Up to tile->dims are optimised together, more
+/// come from other places of the tile. Of a tile that is not progressive, with at least two dims and spp, each further
+/// number is stratified, the third with the first two: draw a choice, or a time, after the two numbers that it goes
+/// with.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_tile_sampler_draw(sampler: nf_tile_sampler, dims: u32, u: *mut f32) {
     // SAFETY: passed on to the caller.

@@ -12,39 +12,39 @@ const fn builtin(tile: Builtin) -> nf_tile {
     }
 }
 
-/// The tile NF_TILE_128_1SPP_2D.
+/// 128 x 128 pixels, 1 sample, 2 dims.
 #[unsafe(no_mangle)]
 pub static nf_tile_128_1spp_2d: nf_tile = builtin(Builtin::Size128Spp1Dims2);
-/// The tile NF_TILE_128_4SPP_2D.
+/// The same, 4 samples.
 #[unsafe(no_mangle)]
 pub static nf_tile_128_4spp_2d: nf_tile = builtin(Builtin::Size128Spp4Dims2);
-/// The tile NF_TILE_128_16SPP_2D.
+/// The same, 16 samples.
 #[unsafe(no_mangle)]
 pub static nf_tile_128_16spp_2d: nf_tile = builtin(Builtin::Size128Spp16Dims2);
-/// The tile NF_TILE_128_16SPP_2D_PROGRESSIVE.
+/// The same, 16 samples, of which the first 1, 2, 4 and 8 are well distributed too.
 #[unsafe(no_mangle)]
 pub static nf_tile_128_16spp_2d_progressive: nf_tile = builtin(Builtin::Size128Spp16Dims2Progressive);
-/// The tile NF_TILE_128_1SPP_4D.
+/// 128 x 128 pixels, 1 sample, 4 dims.
 #[unsafe(no_mangle)]
 pub static nf_tile_128_1spp_4d: nf_tile = builtin(Builtin::Size128Spp1Dims4);
-/// The tile NF_TILE_128_4SPP_4D.
+/// The same, 4 samples.
 #[unsafe(no_mangle)]
 pub static nf_tile_128_4spp_4d: nf_tile = builtin(Builtin::Size128Spp4Dims4);
-/// The tile NF_TILE_128_1SPP_2D_GAUSSIAN.
+/// 128 x 128 pixels, 1 sample, 2 dims, for images reconstructed with a Gaussian filter (figures 5.21, 5.22).
 #[unsafe(no_mangle)]
 pub static nf_tile_128_1spp_2d_gaussian: nf_tile = builtin(Builtin::Size128Spp1Dims2Gaussian);
-/// The tile NF_TILE_128_4SPP_2D_GAUSSIAN.
+/// The same, 4 samples.
 #[unsafe(no_mangle)]
 pub static nf_tile_128_4spp_2d_gaussian: nf_tile = builtin(Builtin::Size128Spp4Dims2Gaussian);
-/// The tile NF_TILE_128_1SPP_2D_TEMPORAL.
+/// 128 x 128 pixels, 1 sample, 2 dims, 16 frames.
 #[unsafe(no_mangle)]
 pub static nf_tile_128_1spp_2d_temporal: nf_tile = builtin(Builtin::Size128Spp1Dims2Temporal);
-/// The tile NF_TILE_64_1SPP_2D.
+/// 64 x 64 pixels, 1 sample, 2 dims.
 #[unsafe(no_mangle)]
 pub static nf_tile_64_1spp_2d: nf_tile = builtin(Builtin::Size64Spp1Dims2);
-/// The tile NF_TILE_64_4SPP_2D.
+/// The same, 4 samples.
 #[unsafe(no_mangle)]
 pub static nf_tile_64_4spp_2d: nf_tile = builtin(Builtin::Size64Spp4Dims2);
-/// The tile NF_TILE_64_4SPP_2D_TEMPORAL.
+/// The same, 4 samples, 16 frames.
 #[unsafe(no_mangle)]
 pub static nf_tile_64_4spp_2d_temporal: nf_tile = builtin(Builtin::Size64Spp4Dims2Temporal);

@@ -3,54 +3,10 @@
 use crate::convert;
 use crate::status::*;
 use core::ffi::c_void;
-use noisefloor_core::tile::{Builtin, Shape, Tile};
+use noisefloor_core::tile::{Shape, Tile};
 
-/// nf_tile_builtin: 128 x 128 pixels, 1 sample, 2 dims.
-pub const NF_TILE_128_1SPP_2D: u32 = 1;
-/// nf_tile_builtin: 128 x 128 pixels, 4 samples, 2 dims.
-pub const NF_TILE_128_4SPP_2D: u32 = 2;
-/// nf_tile_builtin: 128 x 128 pixels, 16 samples, 2 dims.
-pub const NF_TILE_128_16SPP_2D: u32 = 3;
-/// nf_tile_builtin: 128 x 128 pixels, 16 samples, 2 dims; the first 1, 2, 4 and 8 samples are well distributed too.
-pub const NF_TILE_128_16SPP_2D_PROGRESSIVE: u32 = 4;
-/// nf_tile_builtin: 128 x 128 pixels, 1 sample, 4 dims.
-pub const NF_TILE_128_1SPP_4D: u32 = 5;
-/// nf_tile_builtin: 128 x 128 pixels, 4 samples, 4 dims.
-pub const NF_TILE_128_4SPP_4D: u32 = 6;
-/// nf_tile_builtin: 128 x 128 pixels, 1 sample, 2 dims, for images reconstructed with a Gaussian filter (figures 5.21,
-/// 5.22).
-pub const NF_TILE_128_1SPP_2D_GAUSSIAN: u32 = 7;
-/// nf_tile_builtin: 128 x 128 pixels, 4 samples, 2 dims, for images reconstructed with a Gaussian filter.
-pub const NF_TILE_128_4SPP_2D_GAUSSIAN: u32 = 8;
-/// nf_tile_builtin: 128 x 128 pixels, 1 sample, 2 dims, 16 frames.
-pub const NF_TILE_128_1SPP_2D_TEMPORAL: u32 = 9;
-/// nf_tile_builtin: 64 x 64 pixels, 1 sample, 2 dims.
-pub const NF_TILE_64_1SPP_2D: u32 = 10;
-/// nf_tile_builtin: 64 x 64 pixels, 4 samples, 2 dims.
-pub const NF_TILE_64_4SPP_2D: u32 = 11;
-/// nf_tile_builtin: 64 x 64 pixels, 4 samples, 2 dims, 16 frames.
-pub const NF_TILE_64_4SPP_2D_TEMPORAL: u32 = 12;
-
-const _: () = {
-    assert!(NF_TILE_128_1SPP_2D == Builtin::Size128Spp1Dims2 as u32);
-    assert!(NF_TILE_128_4SPP_2D == Builtin::Size128Spp4Dims2 as u32);
-    assert!(NF_TILE_128_16SPP_2D == Builtin::Size128Spp16Dims2 as u32);
-    assert!(NF_TILE_128_16SPP_2D_PROGRESSIVE == Builtin::Size128Spp16Dims2Progressive as u32);
-    assert!(NF_TILE_128_1SPP_4D == Builtin::Size128Spp1Dims4 as u32);
-    assert!(NF_TILE_128_4SPP_4D == Builtin::Size128Spp4Dims4 as u32);
-    assert!(NF_TILE_128_1SPP_2D_GAUSSIAN == Builtin::Size128Spp1Dims2Gaussian as u32);
-    assert!(NF_TILE_128_4SPP_2D_GAUSSIAN == Builtin::Size128Spp4Dims2Gaussian as u32);
-    assert!(NF_TILE_128_1SPP_2D_TEMPORAL == Builtin::Size128Spp1Dims2Temporal as u32);
-    assert!(NF_TILE_64_1SPP_2D == Builtin::Size64Spp1Dims2 as u32);
-    assert!(NF_TILE_64_4SPP_2D == Builtin::Size64Spp4Dims2 as u32);
-    assert!(NF_TILE_64_4SPP_2D_TEMPORAL == Builtin::Size64Spp4Dims2Temporal as u32);
-};
-
-/// A view of a tile: sample points for a square of pixels that repeats over the image (chapter 5; docs/tiles.md).
-///
-/// A complete struct, to be copied freely; it owns nothing. `nf_tile_128_1spp_2d` and its like come with the library,
-/// and a program linked with `--gc-sections` carries those that it names; nf_tile_from_bytes makes others. The fields
-/// are to be read, never written; all zero is a valid tile, whose samples are all 0.
+/// A view of a tile: sample points for a square of pixels that repeats over the image (chapter 5; docs/tiles.md). To be
+/// copied freely, never written; it owns nothing. All zero is a valid tile, whose samples are all 0.
 #[repr(C)]
 #[allow(non_camel_case_types)]
 #[derive(Clone, Copy)]
@@ -76,24 +32,10 @@ pub struct nf_tile {
 // SAFETY: nobody writes what `values` points to.
 unsafe impl Sync for nf_tile {}
 
-/// One of the tiles that come with the library, by number: id is NF_TILE_*. A program that calls it carries all of
-/// them.
+/// The tile of an .nft file's bytes, all of them checked: about 3 ms for a megabyte. They must outlive the tile,
+/// unchanged.
 ///
-/// NF_ERR_NULL; NF_ERR_RANGE: id; NF_ERR_UNSUPPORTED: this library was built without that tile.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn nf_tile_builtin(id: u32, out: *mut nf_tile) -> nf_status {
-    status((|| {
-        let tile = Builtin::from_id(id).ok_or(NF_ERR_RANGE)?.tile().map_err(status_of)?;
-        // SAFETY: the caller passes NULL or room for a tile.
-        unsafe { convert::write(out, view(tile)) }
-    })())
-}
-
-/// The tile of an .nft file's bytes, all of them checked: about 3 ms for a megabyte. The bytes must outlive the tile,
-/// unchanged; any alignment will do.
-///
-/// NF_ERR_NULL; NF_ERR_RANGE: len; NF_ERR_FOREIGN: the bytes are no tile; NF_ERR_VERSION: one of a newer format;
-/// NF_ERR_LENGTH: truncated, or followed by other bytes; NF_ERR_CORRUPT: damaged.
+/// NF_ERR_NULL; NF_ERR_RANGE: len; NF_ERR_FOREIGN; NF_ERR_VERSION; NF_ERR_LENGTH; NF_ERR_CORRUPT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_tile_from_bytes(bytes: *const c_void, len: usize, out: *mut nf_tile) -> nf_status {
     status((|| {

@@ -103,7 +103,6 @@ pub(crate) const WASM_EXPORTS: [&str; 21] = [
     "nf_tile_sampler_pixel",
     "nf_tile_sampler_domain",
     "nf_tile_sampler_draw",
-    "nf_cv_config_default",
     "nf_cv_estimate",
     "nf_cv_accumulator_init",
     "nf_cv_accumulator_add",

@@ -30,16 +30,12 @@ const SERVICES: [Service; 12] = [
     Service {
         name: "tiles, without built-in ones",
         functions: &["nf_tile_"],
-        except: &["nf_tile_builtin", "nf_tile_64_", "nf_tile_128_"],
+        except: &["nf_tile_64_", "nf_tile_128_"],
     },
     Service { name: "default sampler, with its table", functions: &["nf_sampler_"], except: &[] },
     Service { name: "random numbers", functions: &["nf_rng_"], except: &[] },
     Service { name: "minibatches: tables", functions: &["nf_table_", "nf_shard", "nf_shuffle"], except: &[] },
-    Service {
-        name: "minibatches: importances",
-        functions: &["nf_importance_", "nf_cross_entropy_gradient"],
-        except: &[],
-    },
+    Service { name: "minibatches: importances", functions: &["nf_importance_"], except: &[] },
     Service { name: "minibatches: gradients", functions: &["nf_gradient_", "nf_omis_weights"], except: &[] },
 ];
 

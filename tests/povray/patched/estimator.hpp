@@ -50,13 +50,12 @@ inline std::unique_ptr<demo::Estimator> make_estimator(const Settings &settings,
             order = advice.config.order > 0 ? advice.config.order : 2;
     }
     if (name == "accumulator") { // what a renderer does that keeps no samples
-        nf_cv_config config;
-        nf_cv_config_default(&config);
+        nf_cv_config config = {};
         config.dims = config.stride = dims;
         config.order = order;
         config.channels = 3;
         config.stratified = stratified(settings);
-        if (nf_cv_accumulator_size(&config) == 0)
+        if (nf_cv_accumulator_size(&config, nullptr) == 0)
             throw std::runtime_error(demo::refusal(name, config, setup));
         return std::make_unique<demo::Streaming>(config);
     }

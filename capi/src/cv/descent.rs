@@ -1,0 +1,89 @@
+//! The fit by gradient descent, with its options and its solution.
+
+use super::batch::Best;
+use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimate, pick};
+use super::samples::{self, nf_cv_samples};
+use crate::convert;
+use crate::status::*;
+use core::ffi::{CStr, c_void};
+use noisefloor_core::control_variate::{self as cv, Color, Config, Estimator, Optimizer};
+
+/// Heavy-ball momentum. The default.
+pub const NF_OPTIMIZER_MOMENTUM: u32 = 0;
+/// Adam.
+pub const NF_OPTIMIZER_ADAM: u32 = 1;
+/// Plain steps (4.29).
+pub const NF_OPTIMIZER_PLAIN: u32 = 2;
+
+/// How nf_cv_gradient_descent() steps. Zero in any field is its default.
+#[repr(C)]
+#[derive(Clone, Copy)]
+#[allow(non_camel_case_types)]
+pub struct nf_cv_descent {
+    /// NF_OPTIMIZER_*
+    pub optimizer: u32,
+    /// Steps, at most 2^20; by default half as many as samples, 8 to 128.
+    pub iterations: u32,
+    /// Length of a step: in standard deviations of the values for Adam, else times one over the largest curvature.
+    pub learning_rate: f32,
+    /// Below 1.
+    pub momentum: f32,
+}
+
+/// nf_cv_estimate() of one integral by NF_CV_GRADIENT_DESCENT, which `estimator` must be, from a start: `coefficients`
+/// are `channels` rows (1 for a luminance ratio) of nf_cv_terms() - 1 floats in the values' unit, and the solution
+/// afterwards. The solution of a previous frame is a good start (4.2.6). A channel whose descent diverges is its mean,
+/// and its coefficients are 0.
+///
+/// Other errors as for nf_cv_estimate(); NF_ERR_RANGE also for the descent, NF_ERR_NOT_FINITE for the start,
+/// NF_ERR_UNSUPPORTED for another estimator and `controls`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nf_cv_gradient_descent(
+    config: *const nf_cv_config,
+    samples: *const nf_cv_samples,
+    descent: *const nf_cv_descent,
+    coefficients: *mut f32,
+    workspace: *mut c_void,
+    bytes: usize,
+    out: *mut nf_estimate,
+) -> nf_status {
+    status((|| {
+        // SAFETY: the caller's pointers, each checked there.
+        let (config, given, descent, out) = unsafe {
+            let (config, samples) = (convert::reference(config)?, convert::reference(samples)?);
+            (config, samples, convert::reference(descent)?, convert::room(out)?)
+        };
+        let core = with(core_config(config)?, descent).map_err(|_| NF_ERR_RANGE)?;
+        is_narrow(config)?;
+        if core.estimator != Estimator::GradientDescent || core.controls > 0 {
+            return Err(NF_ERR_UNSUPPORTED);
+        }
+        let rows = if core.color == Color::LuminanceRatio { 1 } else { core.channels };
+        let columns = core.terms().map_err(status_of)? - 1;
+        // SAFETY: the caller's arrays and workspace, of the lengths the header states.
+        let (samples, coefficients, workspace) = unsafe {
+            let samples = samples::read_without_known(&core, given, 1)?;
+            let coefficients = convert::slice_mut(coefficients, convert::product(rows, columns)?)?;
+            let len = cv::workspace_len::<Best>(&core, given.n).map_err(status_of)?;
+            (samples, coefficients, convert::workspace::<Best>(workspace, bytes, len)?)
+        };
+        let estimate = cv::gradient_descent(&core, samples, coefficients, workspace).map_err(status_of)?;
+        out.write(c_estimate(&estimate));
+        Ok(())
+    })())
+}
+
+/// The core's configuration with that of a descent, or what is wrong with a number that stands for a choice.
+pub(super) fn with(config: Config, descent: &nf_cv_descent) -> Result<Config, &'static CStr> {
+    Ok(Config {
+        optimizer: pick(
+            descent.optimizer,
+            &[Optimizer::Momentum, Optimizer::Adam, Optimizer::Plain],
+            c"optimizer must be one of NF_OPTIMIZER_*, 0 to 2",
+        )?,
+        iterations: descent.iterations as usize,
+        learning_rate: descent.learning_rate,
+        momentum: descent.momentum,
+        ..config
+    })
+}
