@@ -1,6 +1,6 @@
 """Times of minibatches and integrals: the C library's calls, the package around them, PyTorch's ways to draw.
 
-    python python/bench/overhead.py      needs torch
+    python python/bench/overhead.py      needs torch; with torchrl installed, that too
 
 Microseconds of processor time, medians of 7 runs in turns.
 """
@@ -17,6 +17,14 @@ from torch.nn.functional import cross_entropy
 import noisefloor
 from noisefloor import _c
 from noisefloor.torch import ImportanceBatchSampler
+
+try:
+    from torchrl.data import LazyTensorStorage, PrioritizedSampler
+
+    TORCHRL = True
+except ImportError:
+    TORCHRL = False
+    print("without torchrl, which is not installed")
 
 BATCH, FRACTION = 128, 0.2
 
@@ -63,8 +71,26 @@ def draws(items, runs):
     # It takes no more categories.
     if items <= 2**24:
         calls["torch.multinomial"] = multinomial
-    repeats = {"C calls": 2000, "package": 2000, "torch.multinomial": max(2, 4_000_000 // items)}
+    if items <= 10**7 and TORCHRL:
+        calls["torchrl"] = torchrl(q, new)
+    repeats = {"C calls": 2000, "package": 2000, "torch.multinomial": max(2, 4_000_000 // items), "torchrl": 200}
     return time_of(calls, repeats, runs)
+
+
+def torchrl(q, new):
+    """A prioritised replay buffer's draw and update, weights included; priorities are the importances."""
+    items = len(q)
+    storage, every = LazyTensorStorage(items), torch.arange(items)
+    storage.set(range(items), torch.zeros(items, 1))
+    sampler = PrioritizedSampler(items, alpha=1.0, beta=1.0)
+    sampler.extend(every)
+    sampler.update_priority(every, q)
+
+    def call():
+        index, _ = sampler.sample(storage, BATCH)
+        sampler.update_priority(torch.as_tensor(index), new)
+
+    return call
 
 
 def steps(batch, runs):
@@ -124,13 +150,14 @@ def integrals(runs, count=100_000, n=16, dims=2):
 def main():
     """Writes the tables."""
     options = output.arguments(__doc__)
+    output.versions(options, "numpy", "torch", "torchrl", "scipy", "vegas")
     torch.set_num_threads(1)
     runs = 1 if options.quick else 7
-    names = "C calls", "package", "torch.multinomial"
+    names = "C calls", "package", "torch.multinomial", "torchrl"
     rows = []
     for items in (20_000,) if options.quick else (20_000, 1_000_000, 10_000_000, 100_000_000):
         times = draws(items, runs)
-        rows.append([f"{items:,} items", *(f"{times[name]:.1f}" if name in times else "refused" for name in names)])
+        rows.append([f"{items:,} items", *(f"{times[name]:.1f}" if name in times else "-" for name in names)])
     output.write(options, "draws", ["table of", *names], rows)
     rows = []
     for batch in (32,) if options.quick else (32, 128, 512):

@@ -248,6 +248,9 @@ def test_recommendations():
     u = samples(16, 2)
     noisefloor.estimate(u, smooth(u), order=best.order, estimator=best.estimator, stratified=best.stratified)
     assert noisefloor.recommend(2, 1, stratified=True, can_share=True).method == "shared"
+    # What docs/python.md says of Sobol points: no fit is safe.
+    for dims, n in ((1, 64), (2, 256), (4, 1024), (8, 4096)):
+        assert noisefloor.recommend(dims, n, stratified=True).method == "plain_mean"
     assert noisefloor.recommend(2, 16, sample_cost=1e-3).method == "plain_mean"
     for options, said in (
         ({"sample_cost": 0}, "sample_cost is 0.0"),

