@@ -142,7 +142,8 @@ private:
             float derivatives[3];
             for (int c = 0; c < 3; ++c)
                 derivatives[c] = 2.0f * (outputs[c] - targets[c]);
-            check(nf_importance_gradient(derivatives, 1, 3, method_.split, method_.tables, q), "nf_importance_gradient");
+            check(nf_importance_gradient(derivatives, 1, 3, method_.split, method_.tables, q),
+                  "nf_importance_gradient");
         }
     }
 

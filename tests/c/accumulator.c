@@ -105,7 +105,8 @@ static void normal_use(uint32_t estimator, uint32_t precision, uint32_t solver)
     CHECK(a.samples == N && fabsf(a.mean[0] - whole.mean[0]) < 1e-3f);
 
     /* Made anew in the same memory: empty. */
-    CHECK_STATUS(nf_cv_accumulator_init(at_once.state.start, at_once.state.bytes, &config, &at_once.accumulator), NF_OK);
+    CHECK_STATUS(nf_cv_accumulator_init(at_once.state.start, at_once.state.bytes, &config, &at_once.accumulator),
+                 NF_OK);
     CHECK_STATUS(nf_cv_accumulator_estimate(at_once.accumulator, at_once.work.start, at_once.work.bytes, &b),
                  NF_ERR_NO_SAMPLES);
     CHECK_STATUS(add_samples(at_once.accumulator, u, f, N), NF_OK);

@@ -297,7 +297,8 @@ static void controls(void)
                   NF_ERR_NULL, out);
     CHECK_REFUSED(estimate_controlled(&config, u, f, h, NULL, N, work.start, work.bytes, &out), NF_ERR_NULL,
                   out);
-    CHECK_REFUSED(estimate_controlled(&config, u, f, (const float *)misaligned(h), &integral, N, work.start, work.bytes, &out),
+    CHECK_REFUSED(estimate_controlled(&config, u, f, (const float *)misaligned(h), &integral, N, work.start,
+                  work.bytes, &out),
                   NF_ERR_ALIGNMENT, out);
     CHECK_REFUSED(estimate_controlled(&config, u, f, h, &bad, N, work.start, work.bytes, &out),
                   NF_ERR_NOT_FINITE, out);
@@ -336,7 +337,8 @@ static void many_integrals(void)
             CHECK_STATUS(estimate_many(&config, u, f, EACH, INTEGRALS, work.start, work.bytes, out), NF_OK);
             CHECK(is_poisoned(&out[INTEGRALS], sizeof *out) && memory_is_intact(&work));
             for (i = 0; i < INTEGRALS; ++i) {
-                CHECK_STATUS(estimate_one(&config, u + i * EACH * stride, f + i * EACH, EACH, work.start, work.bytes, &one), NF_OK);
+                CHECK_STATUS(estimate_one(&config, u + i * EACH * stride, f + i * EACH, EACH, work.start, work.bytes,
+                             &one), NF_OK);
                 CHECK(memcmp(&one, &out[i], sizeof one) == 0);
             }
             poison(out, sizeof out);
@@ -389,7 +391,8 @@ static void sample_errors(void)
                   NF_ERR_NULL, out);
     CHECK_REFUSED(descend(&config, u, f, N, NULL, coefficients, work.start, work.bytes, &out), NF_ERR_NULL, out);
     for (i = 0; i < sizeof odd / sizeof *odd; ++i) {
-        CHECK_REFUSED(descend(&config, u, f, N, &odd[i], coefficients, work.start, work.bytes, &out), NF_ERR_RANGE, out);
+        CHECK_REFUSED(descend(&config, u, f, N, &odd[i], coefficients, work.start, work.bytes, &out), NF_ERR_RANGE,
+                      out);
         CHECK(nf_cv_check(&config, NULL, &odd[i]) != NULL);
     }
     CHECK(nf_cv_check(&config, NULL, &steps) == NULL);

@@ -73,7 +73,8 @@ static void nodes(void)
 
     CHECK_REFUSED(nf_importance_gradient(NULL, 1, 5, NF_NODES_NORM, 2, q), NF_ERR_NULL, q);
     CHECK_STATUS(nf_importance_gradient(gradient, 1, 5, NF_NODES_NORM, 2, NULL), NF_ERR_NULL);
-    CHECK_REFUSED(nf_importance_gradient((const float *)misaligned(q), 1, 1, NF_NODES_NORM, 1, q + 4), NF_ERR_ALIGNMENT, q);
+    CHECK_REFUSED(nf_importance_gradient((const float *)misaligned(q), 1, 1, NF_NODES_NORM, 1, q + 4),
+                  NF_ERR_ALIGNMENT, q);
     CHECK_REFUSED(nf_importance_gradient(gradient, 1, 5, 2, 2, q), NF_ERR_RANGE, q);
     CHECK_REFUSED(nf_importance_gradient(gradient, 1, 5, UINT32_MAX, 2, q), NF_ERR_RANGE, q);
     CHECK_REFUSED(nf_importance_gradient(gradient, 1, 5, NF_NODES_NORM, 0, q), NF_ERR_RANGE, q);

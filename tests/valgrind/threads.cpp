@@ -16,7 +16,8 @@ struct Accumulator {
     std::vector<double> memory;
     nf_cv_accumulator *state = nullptr;
 
-    explicit Accumulator(const nf_cv_config &config) : memory(nf_cv_accumulator_size(&config, nullptr) / sizeof(double) + 1)
+    explicit Accumulator(const nf_cv_config &config)
+        : memory(nf_cv_accumulator_size(&config, nullptr) / sizeof(double) + 1)
     {
         if (nf_cv_accumulator_init(memory.data(), memory.size() * sizeof(double), &config, &state) != NF_OK)
             std::fprintf(stderr, "the accumulator was refused\n");
