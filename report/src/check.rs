@@ -18,6 +18,10 @@ enum Step {
     Chapters,
     /// A quick chapter of the path tracer on Embree.
     Embree,
+    /// A quick chapter of Mitsuba 3.
+    Mitsuba,
+    /// A quick chapter of the Python package.
+    Python,
 }
 
 const CHAPTERS: [&str; 6] = ["tables", "gradients", "control_variates", "analytic", "samplers", "points"];
@@ -41,5 +45,19 @@ fn step(step: Step) -> Result<Outcome> {
     match step {
         Step::Chapters => chapters::check_quick(&CHAPTERS).map(|()| Outcome::Passed),
         Step::Embree => embree::report(|| chapters::check_quick(&["embree"])),
+        Step::Mitsuba => if_there("mitsuba"),
+        Step::Python => if_there("python"),
+    }
+}
+
+/// A quick chapter of what is not everywhere: it says what is missing.
+fn if_there(chapter: &str) -> Result<Outcome> {
+    match chapters::check_quick(&[chapter]) {
+        Ok(()) => Ok(Outcome::Passed),
+        Err(error) => {
+            let why = format!("{error:#}");
+            let is_missing = ["missing: ", "to be had", "be installed"].iter().any(|words| why.contains(words));
+            if is_missing { Ok(Outcome::NotRun(why.replace('\n', " "))) } else { Err(error) }
+        }
     }
 }

@@ -104,9 +104,9 @@ fn scenes(options: &Options, renderer: &Renderer, output: &Output) -> Result<()>
         }
     }
     bar.finish_and_clear();
-    let columns =
-        ["scene", "integral over", "spp", "sampler", "estimator", "error over random's", "filtered", "ns per sample"];
-    chapter.table("demo", &columns, 2, rows);
+    let columns = "scene | integral over | spp | sampler | estimator | error over random's | filtered | ns per \
+                   sample";
+    chapter.table("demo", columns, 2, rows);
     let table = chapter.render(include_str!("../templates/demo.md"), &|_| true)?;
     output.write_text("demo.md", &table)?;
     println!("{table}");

@@ -52,15 +52,9 @@ pub fn run(options: &Options) -> Result<()> {
 
 /// Those that run: one that was asked for, or all that build quickly.
 fn targets(wanted: Option<&str>) -> Result<Vec<String>> {
-    let output = run::cargo().args(["fuzz", "list"]).output().context("cannot start cargo")?;
-    if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr);
-        bail!(
-            "`cargo fuzz list` failed; if cargo-fuzz is not there, `cargo install --locked cargo-fuzz`: {}",
-            said.trim()
-        );
-    }
-    let all: Vec<String> = String::from_utf8_lossy(&output.stdout).lines().map(str::to_owned).collect();
+    let said = run::read(run::cargo().args(["fuzz", "list"]));
+    let said = said.context("without cargo-fuzz: `cargo install --locked cargo-fuzz`")?;
+    let all: Vec<String> = said.lines().map(str::to_owned).collect();
     match wanted {
         None => Ok(all.into_iter().filter(|name| name != FSOT.0).collect()),
         Some(name) if all.iter().any(|target| target == name) => Ok(vec![name.to_owned()]),

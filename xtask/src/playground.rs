@@ -31,7 +31,7 @@ pub fn build() -> Result<Result<PathBuf, String>> {
     cargo.args(["rustc", "--quiet", "--release", "--lib", "--crate-type", "cdylib", "--manifest-path", MANIFEST]);
     run::check(cargo.args(["-Z", "build-std=core", "--target", triple, "--target-dir"]).arg(&target))?;
     let module = target.join(triple).join("release/noisefloor_playground.wasm");
-    let bytes = fs::read(&module).with_context(|| format!("cannot read {}", module.display()))?;
+    let module = run::read(run::command("base64").arg("--wrap=0").arg(module))?;
     let (place, page) = ("const embedded = \"", paths::read("docs/playground/page.html")?);
     if page.matches(place).count() != 1 {
         bail!("docs/playground/page.html has no one place `{place}` for the module");
@@ -39,7 +39,7 @@ pub fn build() -> Result<Result<PathBuf, String>> {
     let folder = paths::target().join("demo");
     fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
     let out = folder.join("playground.html");
-    fs::write(&out, page.replace(place, &(place.to_owned() + &base64(&bytes))))
+    fs::write(&out, page.replace(place, &(place.to_owned() + &module)))
         .with_context(|| format!("cannot write {}", out.display()))?;
     Ok(Ok(out))
 }
@@ -72,24 +72,4 @@ pub fn test() -> Result<Outcome> {
 
 fn folder() -> PathBuf {
     paths::target().join("playground")
-}
-
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let group = |three: &[u8]| -> [char; 4] {
-        let number = (0..3).fold(0, |sum, k| sum << 8 | usize::from(three.get(k).copied().unwrap_or(0)));
-        let digit = |k: usize| if k > three.len() { '=' } else { DIGITS[number >> (18 - 6 * k) & 63] as char };
-        [digit(0), digit(1), digit(2), digit(3)]
-    };
-    bytes.chunks(3).flat_map(group).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn base64_of_rfc_4648() {
-        for (bytes, text) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
-            assert_eq!(super::base64(bytes.as_bytes()), text);
-        }
-    }
 }

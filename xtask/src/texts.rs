@@ -2,10 +2,9 @@
 //! program's; and how much there is.
 
 use crate::outcome::Outcome;
-use crate::{paths, run};
+use crate::{c_tests, library, paths, run, tools};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 const WIDTH: usize = 120;
@@ -109,65 +108,18 @@ pub fn readme() -> Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// Prints lines of Rust, words of the documents, and the report's size.
+/// Prints how large everything is.
 pub fn sizes() -> Result<Outcome> {
-    let Some(files) = run::tracked() else {
-        return Ok(Outcome::NotRun("git does not know which files there are".to_owned()));
-    };
-    let of = |prefix: &str, ending: &str| -> Vec<String> {
-        let wanted = files.iter().filter(|file| file.starts_with(prefix) && file.ends_with(ending));
-        wanted.filter_map(|file| fs::read_to_string(paths::root().join(file)).ok()).collect()
-    };
-    let lines = |texts: &[String]| texts.iter().map(|text| text.lines().count()).sum::<usize>();
-    let words = |texts: &[String]| texts.iter().map(|text| text.split_whitespace().count()).sum::<usize>();
-    for room in ["core/src/", "capi/src/", "fsot/", "tests/", "fuzz/", "bench/", "release/", "report/", "xtask/"] {
-        let texts = of(room, ".rs");
-        println!("   {room:<10} {:>6} lines of Rust in {} files", lines(&texts), texts.len());
+    if let Some(missing) = tools::packages(&[c_tests::PYTHON])? {
+        return Ok(Outcome::NotRun(missing));
     }
-    let sum = |rooms: &[&str]| rooms.iter().map(|room| lines(&of(room, ".rs"))).sum::<usize>() as f64;
-    let tools = sum(&["bench/", "release/", "report/", "xtask/"]) / sum(&["core/src/", "capi/src/"]);
-    println!("   bench/, release/, report/ and xtask/ are {tools:.2} of core/ and capi/");
-    let doctests = of("core/src/", ".rs").iter().map(|text| in_fences(text)).sum::<usize>();
-    println!("   core/src/  {doctests:>6} lines of doctests");
-    let readme = of("README.md", "");
-    let seen = readme.iter().map(|text| seen(text)).collect::<String>();
-    let numbers = seen.split(|c: char| !c.is_ascii_digit() && c != '.');
-    let numbers = numbers.filter(|word| word.contains(|c: char| c.is_ascii_digit())).count();
-    println!("   README.md  {:>6} words, {numbers} numbers, {} lines", words(&readme), lines(&readme));
-    let report = of("docs/report/", ".md");
-    println!("   docs/      {:>6} words of guides", words(&of("docs/", ".md")) - words(&report));
-    let bytes = files.iter().filter(|file| file.starts_with("docs/report/"));
-    let bytes =
-        bytes.filter_map(|file| fs::metadata(paths::root().join(file)).ok()).map(|data| data.len()).sum::<u64>();
-    println!("   docs/report {:>5.1} MB", bytes as f64 / 1e6);
-    let tree =
-        run::read(run::cargo().args(["tree", "--package", "xtask", "--prefix", "none", "--edges", "normal,build"]))?;
+    let tree = ["tree", "--package", "xtask", "--prefix", "none", "--edges", "normal,build"];
+    let tree = run::read(run::cargo().args(tree))?;
     let packages: BTreeSet<&str> = tree.lines().map(|line| line.trim_end_matches(" (*)")).collect();
-    println!("   xtask      {:>6} packages", packages.len());
+    let mut script = run::command("python3");
+    script.args(["-B", "xtask/sizes.py"]).arg(library::build()?).arg(packages.len().to_string());
+    run::check(&mut script)?;
     Ok(Outcome::Passed)
-}
-
-/// What a reader sees of a document's prose: no code, no comments, no targets of links.
-fn seen(text: &str) -> String {
-    let outside = |text: &str, open: &str, close: &str| -> String {
-        let mut parts = text.split(open);
-        let first = parts.next().unwrap_or_default().to_owned();
-        first + &parts.map(|part| part.split_once(close).map_or("", |(_, after)| after)).collect::<String>()
-    };
-    let prose: String = text.split("\n```").step_by(2).collect();
-    outside(&outside(&prose, "<!--", "-->"), "](", ")")
-}
-
-/// Lines between fences of comments.
-fn in_fences(text: &str) -> usize {
-    let mut inside = false;
-    let comments = text.lines().map(str::trim_start).filter(|line| line.starts_with("///") || line.starts_with("//!"));
-    let counted = comments.filter(|line| {
-        let is_fence = line[3..].trim_start().starts_with("```");
-        inside ^= is_fence;
-        inside && !is_fence
-    });
-    counted.count()
 }
 
 #[cfg(test)]

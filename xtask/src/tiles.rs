@@ -30,7 +30,7 @@ const ENERGIES: [&str; 3] = ["filtered", "perceptual", "raw"];
 /// What a measured energy may differ by, relatively: its last digits depend on the Fourier transform.
 const TOLERANCE: f64 = 0.02;
 
-/// Makes the tiles, or checks them, and prints what they are worth.
+/// Makes the tiles, or checks them; the sidecars say what they are worth.
 pub fn run(options: &Options) -> Result<()> {
     run::check(run::cargo().args(["build", "--quiet", "--profile", "fsot", "--package", "noisefloor-fsot"]))?;
     let program = paths::target().join("fsot/fsot").with_extension(std::env::consts::EXE_EXTENSION);
@@ -44,7 +44,6 @@ pub fn run(options: &Options) -> Result<()> {
     let shipped = paths::root().join("core/tiles");
     let folder = if options.check { paths::target().join("tiles") } else { shipped.clone() };
     fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
-    let mut table = String::from("half-spaces / Gaussians, error energy relative to white noise\n");
     let mut different = Vec::new();
     for name in names {
         eprintln!("{name}");
@@ -58,8 +57,6 @@ pub fn run(options: &Options) -> Result<()> {
         command.args(options.threads.iter().flat_map(|threads| ["--threads".to_owned(), threads.to_string()]));
         run::check(&mut command)?;
         let made = info(&program, Some(&path))?;
-        table += &format!("{name}, {} bytes\n", made["bytes"]);
-        rows(&made["sidecar"]).for_each(|row| table += &describe(row));
         if options.check {
             let shipped = shipped.join(format!("{name}.nft"));
             if fs::read(&shipped).ok() != Some(fs::read(&path)?) {
@@ -69,7 +66,6 @@ pub fn run(options: &Options) -> Result<()> {
             }
         }
     }
-    print!("{table}");
     if !different.is_empty() {
         bail!("not what is made now: {}. `cargo xtask tiles` writes them anew", different.join(", "));
     }
@@ -122,14 +118,6 @@ fn close(a: &Value, b: &Value) -> bool {
     let both = ENERGIES.iter().flat_map(|energy| [0, 1].map(|i| (a[energy][i].as_f64(), b[energy][i].as_f64())));
     CASE.iter().all(|key| a[key] == b[key])
         && both.into_iter().all(|pair| matches!(pair, (Some(a), Some(b)) if (a - b).abs() <= TOLERANCE * a.abs()))
-}
-
-fn describe(row: &Value) -> String {
-    let axes = row["axes"].as_array().map_or(String::new(), |axes| format!(", dims {} and {}", axes[0], axes[1]));
-    let alpha = row["alpha"].as_f64().map_or(String::new(), |alpha| format!(", after EMA {alpha}"));
-    let case = format!("{} spp{axes}{alpha}", row["spp"]);
-    let [[a, b], [c, d]] = ["filtered", "raw"].map(|energy| [0, 1].map(|i| row[energy][i].to_string()));
-    format!("  {case:<28}filtered {a:<8} / {b:<10} raw {c:<8} / {d}\n")
 }
 
 #[cfg(test)]

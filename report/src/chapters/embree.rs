@@ -1,14 +1,12 @@
 //! The chapter of the Embree harness.
 
 use super::Report;
-use super::chapter::Chapter;
 use super::clock::Clock;
 use super::measurement::Measurement;
 use super::tables::{SECTIONS, Section};
-use super::targets::Targets;
+use crate::chapters::prelude::*;
 use crate::measure::progress;
 use crate::measure::renderer::{Renderer, threads};
-use anyhow::Result;
 
 /// Units of the progress bar in a second.
 const SECOND: u64 = 1000;

@@ -78,8 +78,8 @@ fn chapters(index: &mut Chapter, all: &[Summary]) {
             run.processor_seconds.map(seconds)
         ]
     });
-    let columns = ["chapter", "what it measures", "run", "measured", "other work", "seconds", "CPU seconds"];
-    index.table("chapters", &columns, 4, rows.collect());
+    let columns = "chapter | what it measures | run | measured | other work | seconds | CPU seconds";
+    index.table("chapters", columns, 4, rows.collect());
 }
 
 fn machines(index: &mut Chapter, all: &[Summary]) {
@@ -95,8 +95,8 @@ fn machines(index: &mut Chapter, all: &[Summary]) {
         let Machine { processor, cores, clock, kernel, compilers } = machine.clone();
         row![names.join(", "), processor, cores.to_string(), clock, kernel, compilers.join("; ")]
     };
-    let columns = ["chapters", "processor", "cores", "clock", "kernel", "compilers"];
-    index.table("machine", &columns, 6, distinct.into_iter().map(row).collect());
+    let columns = "chapters | processor | cores | clock | kernel | compilers";
+    index.table("machine", columns, 6, distinct.into_iter().map(row).collect());
 }
 
 /// The chapters' own tables.
@@ -121,9 +121,8 @@ fn targets(index: &mut Chapter, all: &[Summary]) {
     index.quote("targets", Figure::exact(rows.len() as f64, Unit::Count));
     index.quote("targets reached everywhere", everywhere);
     index.quote("targets reached everywhere by the value", by_value);
-    let columns =
-        ["chapter", "target", "bound", "reached", "by value", "of", "worst place", "measured there", "verdict there"];
-    index.table("targets", &columns, 3, rows);
+    let columns = "chapter | target | bound | reached | by value | of | worst place | measured there | verdict there";
+    index.table("targets", columns, 3, rows);
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! The chapter of instruction counts.
 
 use super::Report;
-use super::chapter::{Cell, Chapter, row};
-use super::figure::{Figure, Unit};
-use anyhow::{Result, bail};
+use crate::chapters::prelude::*;
+use anyhow::bail;
 use xtask::{instructions, library, tools};
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
@@ -20,6 +19,6 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let rows = counted.counts.into_iter().map(|count| -> Vec<Cell> {
         row![count.name, count.unit, Figure::exact(count.instructions, Unit::Instructions)]
     });
-    chapter.table("counts", &["function", "per", "instructions"], 2, rows.collect());
+    chapter.table("counts", "function | per | instructions", 2, rows.collect());
     Ok(chapter)
 }

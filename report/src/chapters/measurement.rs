@@ -32,7 +32,7 @@ const SEED: u64 = 1;
 const REFERENCE_SEEDS: [u64; 2] = [1_000_001, 1_000_002];
 
 /// What is integrated, pixel by pixel.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct View {
     pub(crate) scene: &'static str,
     /// Pixels on a side.
@@ -63,22 +63,22 @@ pub(crate) struct Experiment<'a> {
     pub(crate) options: &'a [&'a str],
 }
 
-/// Tells experiments of random samples apart.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct Key {
-    view: View,
-    spp: u32,
-    order: u32,
-    seeds: u32,
-    options: Vec<String>,
-}
+impl<'a> Experiment<'a> {
+    /// Order 2, random samples, one seed.
+    pub(crate) fn new(view: View, spp: u32, estimators: &'a [&'a str]) -> Self {
+        Self { view, spp, order: 2, sampler: Sampler::Random, estimators, seeds: 1, options: &[] }
+    }
 
-impl Key {
-    /// None where the samples are not random: few sections share those, and their images are large.
-    fn of(experiment: &Experiment) -> Option<Self> {
-        let Experiment { view, spp, order, seeds, options, .. } = *experiment;
-        let options = options.iter().map(|&word| word.to_owned()).collect();
-        matches!(experiment.sampler, Sampler::Random).then_some(Self { view, spp, order, seeds, options })
+    /// Tells experiments of random samples apart. None where the samples are not random: few sections share those, and
+    /// their images are large.
+    fn key(&self) -> Option<String> {
+        let Self { view, spp, order, seeds, options, .. } = self;
+        matches!(self.sampler, Sampler::Random).then(|| format!("{view:?} {spp} {order} {seeds} {options:?}"))
+    }
+
+    /// All words of the command line that it adds.
+    fn options(&self, more: &[&'a str]) -> Vec<&'a str> {
+        [self.view.options, self.options, more].concat()
     }
 }
 
@@ -96,7 +96,7 @@ pub(crate) struct Measurement<'a> {
     scratch: TempDir,
     references: RefCell<BTreeMap<View, Known>>,
     /// Experiments of random samples: several sections show the same ones.
-    outcomes: RefCell<BTreeMap<Key, Outcome>>,
+    outcomes: RefCell<BTreeMap<String, Outcome>>,
     /// Runs of the program so far.
     runs: Cell<u32>,
     /// Where the bar will be at the end of the section.
@@ -147,7 +147,7 @@ impl<'a> Measurement<'a> {
             let job = self.job(&experiment, seed, 1)?;
             runs.push((Job { options: view.options, ..job }, prefix.clone()));
         }
-        self.side_by_side(runs, view.size)?;
+        self.side_by_side(&mut runs, view.size)?;
         let halves = prefixes.map(|prefix| prefix.with_extension("reference.pfm"));
         let reference = Rc::new(Reference::new(&read_pfm(&halves[0])?, &read_pfm(&halves[1])?));
         self.references.borrow_mut().insert(view, Known { reference: reference.clone(), halves });
@@ -166,11 +166,7 @@ impl<'a> Measurement<'a> {
     /// Renders every seed; or takes what was rendered before with the same samples, and with these estimators and
     /// perhaps more.
     pub(crate) fn run(&self, experiment: &Experiment) -> Result<Outcome> {
-        if let Some(known) = self.known(experiment) {
-            return Ok(known);
-        }
-        let reference = self.reference(experiment.view)?;
-        Ok(self.keep(experiment, Outcome { reference, renderings: self.render(experiment)?.into() }))
+        self.run_all(&[Some(*experiment)])?.pop().flatten().context("a rendering was lost")
     }
 
     /// As [`Self::run`] of each that there is, of one size, no two with the same samples, side by side: for sections
@@ -178,73 +174,52 @@ impl<'a> Measurement<'a> {
     pub(crate) fn run_all(&self, experiments: &[Option<Experiment>]) -> Result<Vec<Option<Outcome>>> {
         let is_new = |experiment: &&Experiment| self.known(experiment).is_none();
         let new: Vec<Experiment> = experiments.iter().flatten().filter(is_new).copied().collect();
-        let mut renderings = self.render_all(&new)?.into_iter();
+        new.iter().try_for_each(|experiment| self.reference(experiment.view).map(|_| ()))?;
+        let mut renderings = self.render(&new)?.into_iter();
         let mut outcome = |experiment: &Experiment| -> Result<Outcome> {
             if let Some(known) = self.known(experiment) {
                 return Ok(known);
             }
             let renderings = renderings.next().context("a rendering was lost")?.into();
-            Ok(self.keep(experiment, Outcome { reference: self.reference(experiment.view)?, renderings }))
+            let outcome = Outcome { reference: self.reference(experiment.view)?, renderings };
+            if let Some(key) = experiment.key() {
+                self.outcomes.borrow_mut().insert(key, outcome.clone());
+            }
+            Ok(outcome)
         };
         experiments.iter().map(|experiment| experiment.as_ref().map(&mut outcome).transpose()).collect()
     }
 
     /// What was rendered before, if all estimators were.
     fn known(&self, experiment: &Experiment) -> Option<Outcome> {
-        let known = self.outcomes.borrow().get(&Key::of(experiment)?)?.clone();
+        let known = self.outcomes.borrow().get(&experiment.key()?)?.clone();
         experiment.estimators.iter().all(|estimator| known.of(estimator).is_ok()).then_some(known)
     }
 
-    fn keep(&self, experiment: &Experiment, outcome: Outcome) -> Outcome {
-        if let Some(key) = Key::of(experiment) {
-            self.outcomes.borrow_mut().insert(key, outcome.clone());
-        }
-        outcome
-    }
-
-    /// As [`Self::run`], without a reference.
-    pub(crate) fn render(&self, experiment: &Experiment) -> Result<Vec<Renderings>> {
-        let Experiment { view, seeds, .. } = *experiment;
-        self.say_what(experiment);
-        let options = [view.options, experiment.options].concat();
-        let folder = self.run_folder()?;
-        let prefix = folder.path().join("picture");
-        let job = Job { options: &options, ..self.job(experiment, SEED, seeds)? };
-        let timings = self.renderer.render(&job, view.size, &prefix, self.bar)?;
-        Self::read(experiment, &prefix, &timings)
-    }
-
-    /// As [`Self::render`] of each, of one size, side by side.
-    pub(crate) fn render_all(&self, experiments: &[Experiment]) -> Result<Vec<Vec<Renderings>>> {
+    /// Of experiments of one size, without a reference; several side by side.
+    pub(crate) fn render(&self, experiments: &[Experiment]) -> Result<Vec<Vec<Renderings>>> {
         let Some(first) = experiments.first() else { return Ok(Vec::new()) };
-        self.say_what(first);
-        let options: Vec<Vec<&str>> =
-            experiments.iter().map(|experiment| [experiment.view.options, experiment.options].concat()).collect();
+        self.bar.set_message(format!("{}: {} spp", first.view.scene, first.spp));
+        let options: Vec<Vec<&str>> = experiments.iter().map(|experiment| experiment.options(&[])).collect();
         let folder = self.run_folder()?;
-        let prefixes: Vec<PathBuf> =
-            (0..experiments.len()).map(|number| folder.path().join(format!("picture-{number}"))).collect();
         let mut runs = Vec::new();
-        for ((experiment, options), prefix) in experiments.iter().zip(&options).zip(&prefixes) {
-            let job = self.job(experiment, SEED, experiment.seeds)?;
-            runs.push((Job { options, ..job }, prefix.clone()));
+        for ((number, experiment), options) in experiments.iter().enumerate().zip(&options) {
+            let job = Job { options, ..self.job(experiment, SEED, experiment.seeds)? };
+            runs.push((job, folder.path().join(format!("picture-{number}"))));
         }
-        let timings = self.side_by_side(runs, first.view.size)?;
-        let all = experiments.iter().zip(&prefixes).zip(&timings);
-        all.map(|((experiment, prefix), timings)| Self::read(experiment, prefix, timings)).collect()
-    }
-
-    fn say_what(&self, Experiment { view, spp, .. }: &Experiment) {
-        self.bar.set_message(format!("{}: {spp} spp", view.scene));
+        let timings = self.side_by_side(&mut runs, first.view.size)?;
+        let all = experiments.iter().zip(&runs).zip(&timings);
+        all.map(|((experiment, (_, prefix)), timings)| Self::read(experiment, prefix, timings)).collect()
     }
 
     /// Together they advance the bar to the section's end at most.
-    fn side_by_side(&self, mut runs: Vec<side_by_side::Run>, size: u32) -> Result<Vec<Vec<Timing>>> {
+    fn side_by_side(&self, runs: &mut [side_by_side::Run], size: u32) -> Result<Vec<Vec<Timing>>> {
         let mut left = self.section_end.get().saturating_sub(self.bar.position());
-        for (job, _) in &mut runs {
+        for (job, _) in &mut *runs {
             job.work = job.work.min(left);
             left -= job.work;
         }
-        side_by_side::render(self.renderer, &runs, size, self.bar)
+        side_by_side::render(self.renderer, runs, size, self.bar)
     }
 
     /// What a run has left.
@@ -268,7 +243,7 @@ impl<'a> Measurement<'a> {
         let references = self.references.borrow();
         let known = references.get(&view).context("the reference was lost")?;
         let files = known.halves.each_ref().map(|file| file.display().to_string()).join(",");
-        let options = [view.options, experiment.options, &["--statistics", &files]].concat();
+        let options = experiment.options(&["--statistics", &files]);
         let folder = self.run_folder()?;
         self.bar.set_message(format!("{}: {} seeds", view.scene, batches * seeds));
         let mut runs = Vec::new();
@@ -276,20 +251,12 @@ impl<'a> Measurement<'a> {
             let job = self.job(experiment, SEED + u64::from(batch * seeds), seeds)?;
             runs.push((Job { options: &options, ..job }, folder.path().join(format!("statistics-{batch}"))));
         }
-        let prefixes: Vec<PathBuf> = runs.iter().map(|(_, prefix)| prefix.clone()).collect();
-        self.side_by_side(runs, view.size)?;
-        let one = |prefix: PathBuf| -> Result<Vec<[Rgb32FImage; 2]>> {
+        self.side_by_side(&mut runs, view.size)?;
+        let one = |(_, prefix): &side_by_side::Run| -> Result<Vec<[Rgb32FImage; 2]>> {
             let read =
                 |estimator: &str, what: &str| read_pfm(&prefix.with_extension(format!("{estimator}.{what}.pfm")));
             estimators.iter().map(|estimator| Ok([read(estimator, "mean")?, read(estimator, "mse")?])).collect()
         };
-        prefixes.into_iter().map(one).collect()
-    }
-}
-
-impl<'a> Experiment<'a> {
-    /// Order 2, random samples, one seed.
-    pub(crate) fn new(view: View, spp: u32, estimators: &'a [&'a str]) -> Self {
-        Self { view, spp, order: 2, sampler: Sampler::Random, estimators, seeds: 1, options: &[] }
+        runs.iter().map(one).collect()
     }
 }

@@ -125,9 +125,8 @@ impl Targets {
                 worst.verdict()
             ]
         };
-        let columns =
-            ["target", "bound", "reached", "by value", "of", "worst place", "measured there", "verdict there"];
-        chapter.table("targets", &columns, 2, groups.iter().map(row).collect());
+        let columns = "target | bound | reached | by value | of | worst place | measured there | verdict there";
+        chapter.table("targets", columns, 2, groups.iter().map(row).collect());
         let missed = groups.iter().flatten().filter(|target| !target.is_reached());
         let row = |one: &&Target| -> Vec<Cell> {
             let figure = Figure::new(one.estimate, one.unit);
@@ -135,7 +134,7 @@ impl Targets {
         };
         let rows: Vec<Vec<Cell>> = missed.map(row).collect();
         if !rows.is_empty() {
-            chapter.table("targets missed", &["target", "place", "measured", "bound", "verdict"], 2, rows);
+            chapter.table("targets missed", "target | place | measured | bound | verdict", 2, rows);
         }
     }
 }

@@ -35,7 +35,7 @@ fn targets(chapter: &mut Chapter, all: &[Findings]) -> Result<()> {
             findings.emulator.as_str()
         ]
     });
-    chapter.table("targets", &["target", "Rust's name", "optimised", "what ran", "on"], 5, rows.collect());
+    chapter.table("targets", "target | Rust's name | optimised | what ran | on", 5, rows.collect());
     Ok(())
 }
 

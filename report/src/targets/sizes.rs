@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use object::{Object, ObjectSection, SectionKind};
 use std::fs;
 use std::path::{Path, PathBuf};
-use xtask::{abi, c_tests, run};
+use xtask::{c_tests, paths, run};
 
 /// A service and how the names of its functions begin; `except` takes some away.
 struct Service {
@@ -50,14 +50,15 @@ pub(crate) struct Size {
 
 /// Of each service, linked alone.
 pub(crate) fn measure(platform: &Platform, archive: &Path) -> Result<Vec<Size>> {
-    // As the header has them: GNU nm cannot read WebAssembly.
-    let header = abi::Header::committed()?;
-    let all: Vec<String> = header.symbols().map(|name| name.to_string()).collect();
+    // As the ABI has them: GNU nm cannot read WebAssembly.
+    let abi = paths::read("capi/abi.txt")?;
+    let functions = abi.lines().filter_map(|line| line.strip_prefix("function ")?.split('(').next());
+    let all: Vec<&str> = functions.filter_map(|line| line.rsplit([' ', '*']).next()).collect();
     let begins = |symbol: &str, with: &[&str]| with.iter().any(|prefix| symbol.starts_with(prefix));
     let mut sizes = Vec::new();
     for service in &SERVICES {
-        let wanted = |symbol: &&String| begins(symbol, service.functions) && !begins(symbol, service.except);
-        let functions: Vec<_> = all.iter().filter(wanted).map(String::as_str).collect();
+        let wanted = |symbol: &&str| begins(symbol, service.functions) && !begins(symbol, service.except);
+        let functions: Vec<_> = all.iter().copied().filter(wanted).collect();
         if functions.is_empty() {
             bail!("no function of \"{}\" in {}", service.name, archive.display());
         }

@@ -1,15 +1,12 @@
 //! An animation, filtered along time and over the image: figures 5.23 and 5.24.
 
 use super::Section;
-use crate::chapters::chapter::row;
-use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::measurement::{BASELINE, Experiment, View};
-use crate::chapters::statistics::Estimate;
+use crate::chapters::prelude::*;
 use crate::measure::metric::Reference;
 use crate::measure::renderer::Sampler;
 use crate::measure::samplers::Choice;
 use crate::measure::score;
-use anyhow::Result;
 use image::Rgb32FImage;
 
 /// The first is the thesis's, and what the temporal tile of [`CHOSEN`] samples had its settings chosen on; the second
@@ -109,8 +106,8 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
             }
         }
     }
-    let columns = ["scene", "samples", "frame", "filter", "sampler", "relMSE x 1000", "over random"];
-    section.chapter.table("animation", &columns, 5, rows);
+    let columns = "scene | samples | frame | filter | sampler | relMSE x 1000 | over random";
+    section.chapter.table("animation", columns, 5, rows);
     Ok(())
 }
 
@@ -139,8 +136,7 @@ fn measure(
     let experiment =
         |frame| Experiment { sampler, seeds, ..Experiment::new(view(section, scene, frame), spp, &[BASELINE]) };
     let experiments: Vec<Experiment> = (0..references.len() as u32).map(experiment).collect();
-    let frames =
-        section.measurement.render_all(&experiments)?.into_iter().flatten().map(|renderings| renderings.images);
+    let frames = section.measurement.render(&experiments)?.into_iter().flatten().map(|renderings| renderings.images);
     let (frames, count): (Vec<_>, _) = (frames.collect(), references.len());
     let mut errors = Vec::new();
     for (_, kernel) in KERNELS {

@@ -1,11 +1,8 @@
 //! Estimators on several scenes, in the layouts of the thesis's figures.
 
 use super::Section;
-use crate::chapters::chapter::{Cell, row};
-use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::measurement::{BASELINE, DEFAULT, Experiment, LEAST_SQUARES, Outcome, View};
-use crate::chapters::statistics::Estimate;
-use anyhow::Result;
+use crate::chapters::prelude::*;
 
 /// What a cell holds of an estimator.
 #[derive(Clone, Copy)]
@@ -88,10 +85,9 @@ pub(super) fn direct(section: &mut Section) -> Result<()> {
         }
     }
     section.chapter.setting("samples per pixel of figure 4.4's table", plan.middle());
-    section.chapter.table("direct", &["scene", "estimator", "MC", "O1", "O2", "O3"], 2, overview);
-    let columns =
-        ["scene", "samples", "estimator", "O1 same samples", "O2", "O3", "O1 same time", "O2 time", "O3 time"];
-    section.chapter.table("direct ratios", &columns, 3, ratios);
+    section.chapter.table("direct", "scene | estimator | MC | O1 | O2 | O3", 2, overview);
+    let columns = "scene | samples | estimator | O1 same samples | O2 | O3 | O1 same time | O2 time | O3 time";
+    section.chapter.table("direct ratios", columns, 3, ratios);
     Ok(())
 }
 
@@ -117,9 +113,8 @@ pub(super) fn indirect(section: &mut Section) -> Result<()> {
         let statement = format!("15 dims, order {order}: default over MC, below 1 outside its interval");
         section.targets.below(&statement, SCENE, outcome.ratio(DEFAULT)?, Unit::Ratio, 1.0);
     }
-    let columns =
-        ["estimator", "order", "relMSE x 1000", "ratio to MC", "upper half", "lower half", "ratio, same time"];
-    section.chapter.table("indirect", &columns, 2, rows);
+    let columns = "estimator | order | relMSE x 1000 | ratio to MC | upper half | lower half | ratio, same time";
+    section.chapter.table("indirect", columns, 2, rows);
     Ok(())
 }
 
@@ -153,17 +148,9 @@ pub(super) fn mis(section: &mut Section) -> Result<()> {
         let experiment = Experiment::new(View::new(scene, plan.size), plan.middle(), &NAMES);
         rows.push(line(section, row![scene], &[(Experiment { options: &["--mis"], ..experiment }, &all)])?);
     }
-    let columns = [
-        "scene",
-        "balance, relMSE x 1000",
-        "balance, regression",
-        "optimal",
-        "optimal, regression",
-        "ratio: balance, regression",
-        "ratio: optimal",
-        "ratio: optimal, regression",
-    ];
-    section.chapter.table("mis", &columns, 1, rows);
+    let columns = "scene | balance, relMSE x 1000 | balance, regression | optimal | optimal, regression | ratio: \
+                   balance, regression | ratio: optimal | ratio: optimal, regression";
+    section.chapter.table("mis", columns, 1, rows);
     Ok(())
 }
 
@@ -188,8 +175,8 @@ pub(super) fn bases(section: &mut Section) -> Result<()> {
             rows.push(line(section, row![scene, label], &parts)?);
         }
     }
-    let columns = ["scene", "estimator", "MC, relMSE x 1000", "polynomials", "step functions", "Gaussians", "sines"];
-    section.chapter.table("bases", &columns, 2, rows);
+    let columns = "scene | estimator | MC, relMSE x 1000 | polynomials | step functions | Gaussians | sines";
+    section.chapter.table("bases", columns, 2, rows);
     Ok(())
 }
 
@@ -213,9 +200,8 @@ pub(super) fn lights(section: &mut Section) -> Result<()> {
         let parts = [(with(1), &first[..]), (with(2), &ratio), (with(3), &ratio), (with(2), &last)];
         rows.push(line(section, row![lights], &parts)?);
     }
-    let columns =
-        ["lights", "MC, relMSE x 1000", "least squares, O1", "O2", "O3", "default, O2", "default with slices, O2"];
-    section.chapter.table("many lights", &columns, 0, rows);
+    let columns = "lights | MC, relMSE x 1000 | least squares, O1 | O2 | O3 | default, O2 | default with slices, O2";
+    section.chapter.table("many lights", columns, 0, rows);
     Ok(())
 }
 
@@ -233,7 +219,7 @@ pub(super) fn solvers(section: &mut Section) -> Result<()> {
             rows.push(line(section, row![spp, order], &[(Experiment { order, ..experiment }, &all)])?);
         }
     }
-    let columns = ["samples", "order", "direct", "its ns", "gradient descent", "its ns", "default", "its ns"];
-    section.chapter.table("solvers", &columns, 0, rows);
+    let columns = "samples | order | direct | its ns | gradient descent | its ns | default | its ns";
+    section.chapter.table("solvers", columns, 0, rows);
     Ok(())
 }

@@ -2,12 +2,9 @@
 
 use super::Section;
 use super::samplers::Errors;
-use crate::chapters::chapter::{Cell, row};
-use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::measurement::{BASELINE, Experiment, Outcome, SHARED, View};
-use crate::chapters::statistics::Estimate;
+use crate::chapters::prelude::*;
 use crate::measure::samplers::Choice;
-use anyhow::Result;
 
 const SCENES: [&str; 8] = ["dining", "chopper", "dragon", "microcity", "animation", "killeroos", "bathroom", "lens"];
 const SPP: [u32; 3] = [1, 4, 16];
@@ -41,18 +38,9 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
             }
         }
     }
-    let columns = [
-        "scene",
-        "samples",
-        "sampler",
-        "method",
-        "raw",
-        "filtered",
-        "same time",
-        "adds, ns per sample",
-        "pays from, ns",
-    ];
-    section.chapter.table("shared fits at equal time", &columns, 4, rows);
+    let columns = "scene | samples | sampler | method | raw | filtered | same time | adds, ns per sample | pays \
+                   from, ns";
+    section.chapter.table("shared fits at equal time", columns, 4, rows);
     Ok(())
 }
 

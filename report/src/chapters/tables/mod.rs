@@ -9,10 +9,9 @@ pub(super) mod public;
 mod samplers;
 mod unbiased;
 
-use super::chapter::Chapter;
 use super::measurement::Measurement;
 pub(crate) use super::targets;
-use anyhow::Result;
+use crate::chapters::prelude::*;
 use targets::Targets;
 
 /// What a section adds to.

@@ -2,13 +2,12 @@
 
 use super::Section;
 use super::estimators::seeds;
-use crate::chapters::chapter::{headings, row};
-use crate::chapters::figure::{Figure, Unit};
+use crate::chapters::chapter::headings;
 use crate::chapters::measurement::{BASELINE, DEFAULT, Experiment, View};
 use crate::chapters::pixels::{BATCHES, SIGNIFICANCE, Shares, TOO_MUCH};
+use crate::chapters::prelude::*;
 use crate::chapters::scenes::{SCENES, Scene};
-use crate::chapters::statistics::Estimate;
-use anyhow::{Result, bail};
+use anyhow::bail;
 use image::Rgb32FImage;
 
 pub(super) fn write(section: &mut Section) -> Result<()> {
@@ -98,8 +97,8 @@ fn write_pixels(section: &mut Section) -> Result<()> {
             Figure::exact(shares.largest(), Unit::Ratio)
         ]);
     }
-    let columns = ["scene", "pixels", "as measured, %", "in both halves, %", "significantly, %", "largest ratio"];
-    section.chapter.table("never worse, pixels", &columns, 1, rows);
+    let columns = "scene | pixels | as measured, % | in both halves, % | significantly, % | largest ratio";
+    section.chapter.table("never worse, pixels", columns, 1, rows);
     Ok(())
 }
 

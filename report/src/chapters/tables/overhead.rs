@@ -1,11 +1,8 @@
 //! What estimating costs beside sampling, as "Computation Time" in the thesis's section 4.3.5.
 
 use super::Section;
-use crate::chapters::chapter::{Cell, row};
-use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::measurement::{BASELINE, DEFAULT, Experiment, LEAST_SQUARES, Renderings, SHARED, View};
-use crate::chapters::statistics::Estimate;
-use anyhow::{Context, Result};
+use crate::chapters::prelude::*;
 
 const SCENES: [&str; 6] = ["killeroos", "bathroom", "dining", "chopper", "microcity", "duck"];
 const ESTIMATORS: [&str; 4] = [BASELINE, DEFAULT, LEAST_SQUARES, SHARED];
@@ -30,7 +27,7 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
                 };
                 let view = View::new(scene, size);
                 let experiment = Experiment { seeds: plan.seeds, options, ..Experiment::new(view, spp, &ESTIMATORS) };
-                let renderings = section.measurement.render(&experiment)?;
+                let renderings = section.measurement.render(&[experiment])?.swap_remove(0);
                 let plain = find(&renderings, BASELINE)?;
                 let frame = plain.nanoseconds(|t| t.sampling_ns_per_sample + t.estimating_ns_per_sample);
                 let mut cells: Vec<Cell> = row![scene, rays, spp, Figure::brief(frame, Unit::Nanoseconds)];
@@ -48,16 +45,9 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
             }
         }
     }
-    let columns = [
-        "scene",
-        "camera rays of a pixel",
-        "samples",
-        "frame, ns per sample",
-        "default, %",
-        "least squares, %",
-        "shared fits, %",
-    ];
-    section.chapter.table("overhead", &columns, 2, rows);
+    let columns = "scene | camera rays of a pixel | samples | frame, ns per sample | default, % | least squares, % \
+                   | shared fits, %";
+    section.chapter.table("overhead", columns, 2, rows);
     Ok(())
 }
 

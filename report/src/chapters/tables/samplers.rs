@@ -2,15 +2,13 @@
 
 use super::Section;
 use super::public::Public;
-use crate::chapters::chapter::{Cell, headings, row};
-use crate::chapters::figure::{Figure, Unit};
+use crate::chapters::chapter::headings;
 use crate::chapters::measurement::{BASELINE, Experiment, Outcome, SHARED, View};
+use crate::chapters::prelude::*;
 use crate::chapters::scenes;
-use crate::chapters::statistics::Estimate;
 use crate::measure::renderer::Sampler;
 use crate::measure::samplers::{Choice, Tiles};
 use crate::measure::score;
-use anyhow::Result;
 use std::path::Path;
 
 const SCENES: [&str; 7] = ["dining", "dragon", "chopper", "microcity", "killeroos", "bathroom", "lens"];
@@ -128,9 +126,8 @@ fn write_shared(section: &mut Section, all: &[Measured]) {
         }
         rows.push(cells);
     }
-    let columns =
-        ["scene", "samples", "random: raw", "filtered", "Owen-Sobol: raw", "filtered", "tile: raw", "filtered"];
-    section.chapter.table("shared fits", &columns, 1, rows);
+    let columns = "scene | samples | random: raw | filtered | Owen-Sobol: raw | filtered | tile: raw | filtered";
+    section.chapter.table("shared fits", columns, 1, rows);
 }
 
 fn aim(section: &mut Section, all: &[Measured]) {

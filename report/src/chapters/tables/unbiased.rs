@@ -1,15 +1,13 @@
 //! Are shared fits unbiased? The mean of many independent frames against the reference.
 
 use super::Section;
-use crate::chapters::chapter::row;
-use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::measurement::{BASELINE, Experiment, SHARED, SHARED_UNBIASED, View};
+use crate::chapters::prelude::*;
 use crate::chapters::sign_flips::SignFlips;
-use crate::chapters::statistics::{Estimate, normal_quantile};
+use crate::chapters::statistics::normal_quantile;
 use crate::measure::metric::median;
 use crate::measure::renderer::Sampler;
 use crate::measure::samplers::{Choice, Tiles};
-use anyhow::Result;
 use image::Rgb32FImage;
 
 const SCENES: [&str; 2] = ["dining", "killeroos"];
@@ -119,20 +117,9 @@ pub(super) fn write(section: &mut Section) -> Result<()> {
             ]);
         }
     }
-    let columns = [
-        "scene",
-        "samples",
-        "sampler",
-        "estimator",
-        "numbers",
-        "largest z",
-        "chance allows",
-        "mean z^2",
-        "chance allows",
-        "median z",
-        "mean z",
-    ];
-    section.chapter.table("unbiased", &columns, 1, rows);
+    let columns = "scene | samples | sampler | estimator | numbers | largest z | chance allows | mean z^2 | chance \
+                   allows | median z | mean z";
+    section.chapter.table("unbiased", columns, 1, rows);
     Ok(())
 }
 
