@@ -95,7 +95,7 @@ pub(crate) fn wasm(platform: &Platform, node: &str, module: &Path) -> Result<Tol
 }
 
 /// What services.mjs calls, and what it needs to know of the module's memory.
-pub(crate) const WASM_EXPORTS: [&str; 21] = [
+pub(crate) const WASM_EXPORTS: [&str; 20] = [
     "__heap_base",
     "__data_end",
     "__stack_pointer",
