@@ -174,8 +174,9 @@ class Table:
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Becomes the table that `state_dict` saw, of as many items."""
         saved = numpy.ascontiguousarray(_arrays.array("table", state["table"]), numpy.uint8)
-        items = (saved.nbytes - _c.CONSTANTS["NF_TABLE_SAVED_HEADER"]) // 4
-        if items != self._n:
+        # What is no table at all, the library says.
+        items = int.from_bytes(saved[12:16].tobytes(), "little") if saved[:8].tobytes() == b"nf_table" else 0
+        if items not in (0, self._n):
             raise ValueError(f"the state has {items} items, this table {self._n}")
         first, second = (_arrays.integer("rng", number, 0, 2**64 - 1) for number in state["rng"])
         with self._lock:
