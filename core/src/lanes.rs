@@ -32,6 +32,13 @@ pub(crate) fn zip<R: Real, const L: usize>(a: &Lanes<R, L>, b: &Lanes<R, L>, f: 
     out
 }
 
+/// Ends an iteration of a loop over groups of lanes. Compilers would else unroll the lanes and go through several
+/// iterations at once, with shuffles that take longer than the arithmetic.
+#[inline(always)]
+pub(crate) fn keep_together() {
+    black_box(());
+}
+
 /// `a + b * c` lane by lane.
 #[inline(always)]
 pub(crate) fn plus_product<R: Real, const L: usize>(a: Lanes<R, L>, b: Lanes<R, L>, c: Lanes<R, L>) -> Lanes<R, L> {

@@ -291,14 +291,19 @@ impl<'a> Reader<'a> {
 
     /// Writes the position of sample `index` to lane `lane`.
     #[inline(always)]
-    pub(crate) fn put_position<R: Real>(&self, index: usize, lane: usize, x: &mut [Lanes<R>; MAX_DIMS]) {
+    pub(crate) fn put_position<R: Real, const L: usize>(
+        &self,
+        index: usize,
+        lane: usize,
+        x: &mut [Lanes<R, L>; MAX_DIMS],
+    ) {
         let row = from(self.samples.u, index * self.stride);
         match (self.dims, row) {
-            (2, &[a, b, ..]) => [x[0][lane % LANES], x[1][lane % LANES]] = [a, b].map(R::from_f32),
+            (2, &[a, b, ..]) => [x[0][lane % L], x[1][lane % L]] = [a, b].map(R::from_f32),
             (3, &[a, b, c, ..]) => {
-                [x[0][lane % LANES], x[1][lane % LANES], x[2][lane % LANES]] = [a, b, c].map(R::from_f32);
+                [x[0][lane % L], x[1][lane % L], x[2][lane % L]] = [a, b, c].map(R::from_f32);
             }
-            _ => x.iter_mut().zip(row).take(self.dims).for_each(|(x, &u)| x[lane % LANES] = R::from_f32(u)),
+            _ => x.iter_mut().zip(row).take(self.dims).for_each(|(x, &u)| x[lane % L] = R::from_f32(u)),
         }
     }
 

@@ -30,6 +30,7 @@ impl<'a, R: Real> Ldlt<'a, R> {
                 let l_jk = *value * l.diagonal(k);
                 pivot -= *value * l_jk;
                 *value = l_jk;
+                lanes::keep_together();
             }
             *diagonal = if pivot > tolerance * *diagonal { R::ONE / pivot } else { R::ZERO };
         }
@@ -119,6 +120,7 @@ pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
             let mut sum = *v_k;
             for (a, b) in before.iter().zip(l.left(k)) {
                 sum = lanes::minus_product(sum, *a, *b);
+                lanes::keep_together();
             }
             *v_k = sum;
         }
@@ -146,6 +148,7 @@ pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first:
             for n in 0..N {
                 sums[n] = lanes::minus_product(sums[n], x[n], *l);
             }
+            lanes::keep_together();
         }
         *x_j = sums;
     }

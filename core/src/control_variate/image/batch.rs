@@ -20,6 +20,8 @@ use crate::rows::{row_at, row_at_mut, rows, rows_mut};
 
 /// A number for each of eight groups.
 pub(super) type Eight = Lanes<f32>;
+/// The same for four samples or pixels of each.
+pub(super) type Four = [Eight; AT_ONCE];
 /// Nothing in any lane.
 pub(super) const NONE: Eight = [0.0; LANES];
 /// How many colours there are.
@@ -153,21 +155,21 @@ fn power_of_two(exponent: i32) -> f32 {
     f32::from_bits(((exponent + 127).clamp(0, 254) as u32) << 23)
 }
 
-impl Sums<'_> {
-    /// The part that a colour belongs to.
-    #[inline(always)]
-    fn part(&self, colour: usize) -> usize {
-        match self.parts {
-            1 => 0,
-            2 => usize::from(Colours::HALVES[1].has(colour)),
-            _ => colour % COLOURS,
-        }
+/// Which of the parts a slot, or its colour, belongs to.
+#[inline(always)]
+fn part_of(parts: usize, slot: usize) -> usize {
+    match parts {
+        1 => 0,
+        2 => usize::from(Colours::HALVES[1].has(slot)),
+        _ => slot % COLOURS,
     }
+}
 
+impl Sums<'_> {
     /// Whether a part is of some colours.
     #[inline(always)]
     fn is_of(&self, part: usize, colours: Colours) -> bool {
-        (0..COLOURS).any(|colour| colours.has(colour) && self.part(colour) == part)
+        (0..COLOURS).any(|colour| colours.has(colour) && part_of(self.parts, colour) == part)
     }
 
     /// Joins the lanes, in all of them.
@@ -219,82 +221,42 @@ impl<'a> Products<'a> {
         self.grams.iter_mut().chain(self.sides.iter_mut()).chain(self.squares.iter_mut())
     }
 
-    /// Adds four rows: their columns, and their values.
+    /// Adds the rows of a block: its columns, and its values.
     #[inline(always)]
-    fn add(&mut self, part: usize, columns: [&[Eight]; AT_ONCE], values: [&[Eight]; AT_ONCE]) {
-        let [a, b, c, d] = columns;
-        let width = a.len();
+    fn add(&mut self, part: usize, columns: &[Four], values: &[Four]) {
+        let (width, count) = (columns.len(), values.len());
         let mut gram = row_at_mut(self.grams, packed_len(width), part);
-        for (i, (((&ai, &bi), &ci), &di)) in a.iter().zip(b).zip(c).zip(d).enumerate() {
+        for (i, column) in columns.iter().enumerate() {
             let Some((row, rest)) = gram.split_at_mut_checked(i + 1) else { return };
             gram = rest;
-            for ((((out, a), b), c), d) in row.iter_mut().zip(a).zip(b).zip(c).zip(d) {
-                *out = plus_four(*out, [(ai, *a), (bi, *b), (ci, *c), (di, *d)]);
-            }
+            add_products(row, column, columns);
         }
-        let count = values[0].len();
         let squares = row_at_mut(self.squares, count, part);
         let sides = row_at_mut(self.sides, count * width, part);
-        for (value, (sides, square)) in rows_mut(sides, width).zip(squares).enumerate() {
-            let [va, vb, vc, vd] = values.map(|values| values.get(value).copied().unwrap_or(NONE));
-            for ((((out, a), b), c), d) in sides.iter_mut().zip(a).zip(b).zip(c).zip(d) {
-                *out = plus_four(*out, [(va, *a), (vb, *b), (vc, *c), (vd, *d)]);
-            }
-            *square = plus_four(*square, [(va, va), (vb, vb), (vc, vc), (vd, vd)]);
+        for ((value, sides), square) in values.iter().zip(rows_mut(sides, width)).zip(squares) {
+            add_products(sides, value, columns);
+            *square = plus_four(*square, value, value);
         }
     }
 }
 
-/// Rows that are added four at a time.
-struct Pending<'a> {
-    columns: &'a mut [Eight],
-    values: &'a mut [Eight],
-    /// Columns and values of a row.
-    widths: [usize; 2],
-    held: usize,
-}
-
-impl<'a> Pending<'a> {
-    fn new(columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        let rows = [arena.take_lanes(AT_ONCE * columns)?, arena.take_lanes(AT_ONCE * values)?];
-        let [all, each] = rows;
-        Ok(Self { columns: all, values: each, widths: [columns, values], held: 0 })
-    }
-
-    /// The next row's columns and values.
-    #[inline(always)]
-    fn row(&mut self) -> (&mut [Eight], &mut [Eight]) {
-        let [columns, values] = self.widths;
-        (row_at_mut(self.columns, columns, self.held), row_at_mut(self.values, values, self.held))
-    }
-
-    /// Counts that row, and adds it with three others.
-    #[inline(always)]
-    fn push(&mut self, part: usize, products: &mut Products<'_>) {
-        self.held += 1;
-        if self.held == AT_ONCE {
-            let [columns, values] = self.widths;
-            let four = |all, width| [0, 1, 2, 3].map(|row| row_at::<Eight>(all, width, row));
-            products.add(part, four(self.columns, columns), four(self.values, values));
-            self.held = 0;
-        }
-    }
-
-    /// Adds what is left.
-    #[inline(always)]
-    fn finish(&mut self, part: usize, products: &mut Products<'_>) {
-        while self.held > 0 {
-            let (columns, values) = self.row();
-            columns.iter_mut().chain(values).for_each(|value| *value = NONE);
-            self.push(part, products);
-        }
+/// Adds to each sum the products of a column with one of `columns`.
+#[inline(always)]
+fn add_products(sums: &mut [Eight], column: &Four, columns: &[Four]) {
+    let column = *column;
+    for (sum, other) in sums.iter_mut().zip(columns) {
+        *sum = plus_four(*sum, &column, other);
+        lanes::keep_together();
     }
 }
 
 /// A sum and four products, one after the other.
 #[inline(always)]
-fn plus_four(sum: Eight, products: [(Eight, Eight); AT_ONCE]) -> Eight {
-    products.into_iter().fold(sum, |sum, (a, b)| lanes::plus_product(sum, a, b))
+fn plus_four(mut sum: Eight, a: &Four, b: &Four) -> Eight {
+    for row in 0..AT_ONCE {
+        sum = lanes::plus_product(sum, a[row], b[row]);
+    }
+    sum
 }
 
 impl<'a> Batch<'a> {
@@ -439,6 +401,19 @@ impl<'a> Batch<'a> {
         }
     }
 
+    /// The image's numbers of a slot's pixels; where a lane has none, that of another.
+    #[inline(always)]
+    fn numbers(&self, call: &Call<'_>, groups: &Groups<'_>, slot: usize) -> [usize; LANES] {
+        let first = self.pixel(call, groups, 0, 0).map_or(0, |(pixel, _)| pixel);
+        let mut numbers = [first; LANES];
+        for (lane, number) in numbers.iter_mut().enumerate() {
+            if let Some((pixel, _)) = self.pixel(call, groups, lane, slot) {
+                *number = pixel;
+            }
+        }
+        numbers
+    }
+
     /// Reads all samples and sums their products.
     #[inline(always)]
     pub(super) fn load(
@@ -448,75 +423,38 @@ impl<'a> Batch<'a> {
         terms: &Terms,
         arena: &mut Arena<'_, f32>,
     ) -> Result<(), Error> {
-        let (width, n, count) = (terms.columns(), call.n, self.values);
-        let channels = call.config.channels;
-        let mut position = Position { x: [NONE; MAX_DIMS], h: [NONE; Config::MAX_CONTROLS] };
         let mut arena = arena.scratch();
-        let mut samples = Pending::new(width, count, &mut arena)?;
-        let mut pixels = Pending::new(width, 2 * count, &mut arena)?;
-        let first = arena.take_lanes(count)?;
-        self.set_units(channels);
+        let mut samples = Block::new(terms.columns(), self.values, &mut arena)?;
+        let mut pixels = Block::new(terms.columns(), 2 * self.values, &mut arena)?;
+        let first = arena.take_lanes(self.values)?;
+        self.set_units(call.config.channels);
         self.sums.samples.each().chain(self.sums.pixels.each()).for_each(|sum| *sum = NONE);
         for part in 0..self.sums.parts {
-            for slot in 0..self.slots {
-                if self.sums.part(slot) != part {
-                    continue;
+            let slots = self.slots;
+            let parts = self.sums.parts;
+            let mut slots = (0..slots).filter(move |&slot| part_of(parts, slot) == part);
+            if call.n == 1 {
+                while let Some(four) = next_four(&mut slots) {
+                    self.load_singles(call, groups, terms, &mut samples, &four);
+                    self.sums.samples.add(part, samples.columns, samples.values);
                 }
-                let number = |lane| self.pixel(call, groups, lane, slot).map(|(pixel, _)| pixel);
-                let numbers = [0, 1, 2, 3, 4, 5, 6, 7].map(number);
-                let inside = self.inside.get(slot).copied().unwrap_or(NONE);
-                let places = row_at(self.places, terms.fixed(), slot);
-                let [coefficients, integrals] =
-                    [&*self.coefficients, &*self.integrals].map(|all| row_at(all, channels, slot));
-                let pixels_of = Pixels { units: &self.units, terms, numbers, places, coefficients, integrals };
-                let columns_of = row_at_mut(self.columns, width, slot);
-                let means = row_at_mut(self.means, count, slot);
-                for sample in 0..n {
-                    let (columns, values) = samples.row();
-                    call.read(&pixels_of, sample, &mut position, columns, values);
-                    if sample == 0 {
-                        columns_of.iter_mut().zip(columns.iter()).for_each(|(sum, column)| *sum = *column);
-                        first.iter_mut().zip(values.iter()).for_each(|(first, value)| *first = *value);
-                    } else {
-                        columns_of.iter_mut().zip(columns.iter()).for_each(|(sum, column)| *sum = plus(sum, column));
-                    }
-                    if n > 1 {
-                        // Differences tell equal values from such as are nearly so.
-                        for ((value, first), sum) in values.iter_mut().zip(first.iter()).zip(means.iter_mut()) {
-                            *value = lanes::zip(value, first, |value, first| value - first);
-                            *sum = if sample == 0 { *value } else { plus(sum, value) };
-                        }
-                    } else {
-                        means.iter_mut().zip(values.iter()).for_each(|(mean, value)| *mean = *value);
-                    }
-                    if self.leaves_out {
-                        columns.iter_mut().chain(values).for_each(|value| *value = only(&inside, value));
-                    }
-                    samples.push(part, &mut self.sums.samples);
-                }
-                if n > 1 {
-                    let inverse = 1.0 / n as f32;
-                    let root = Real::sqrt(n as f32);
-                    columns_of.iter_mut().chain(means.iter_mut()).for_each(|sum| *sum = sum.map(|sum| sum * inverse));
-                    let (columns, values) = pixels.row();
-                    let (differences, whole) = values.split_at_mut_checked(count).unwrap_or_default();
-                    let means = means.iter_mut().zip(first.iter());
-                    for ((mean, first), (difference, whole)) in means.zip(differences.iter_mut().zip(whole)) {
-                        *difference = *mean;
-                        *mean = plus(mean, first);
-                        *whole = *mean;
-                    }
-                    columns.iter_mut().zip(columns_of.iter()).for_each(|(out, mean)| *out = *mean);
-                    columns.iter_mut().chain(values).for_each(|value| {
-                        *value = only(&inside, &value.map(|value| value * root));
-                    });
-                    pixels.push(part, &mut self.sums.pixels);
-                    columns_of.iter_mut().take(terms.fixed()).for_each(|column| *column = NONE);
+                continue;
+            }
+            let mut held = 0;
+            for slot in slots {
+                self.load_several(call, groups, terms, &mut samples, (part, slot), first);
+                self.put_means(call, terms, &mut pixels, (slot, held), first);
+                held += 1;
+                if held == AT_ONCE {
+                    self.sums.pixels.add(part, pixels.columns, pixels.values);
+                    held = 0;
                 }
             }
-            samples.finish(part, &mut self.sums.samples);
-            if n > 1 {
-                pixels.finish(part, &mut self.sums.pixels);
+            if held > 0 {
+                for four in pixels.columns.iter_mut().chain(pixels.values.iter_mut()) {
+                    four.iter_mut().skip(held).for_each(|row| *row = NONE);
+                }
+                self.sums.pixels.add(part, pixels.columns, pixels.values);
             }
         }
         if self.is_joined {
@@ -524,24 +462,163 @@ impl<'a> Batch<'a> {
         }
         Ok(())
     }
+
+    /// Reads the samples of four slots, and keeps their columns and values.
+    #[inline(always)]
+    fn load_singles(
+        &mut self,
+        call: &Call<'_>,
+        groups: &Groups<'_>,
+        terms: &Terms,
+        block: &mut Block<'_>,
+        slots: &[Option<usize>; AT_ONCE],
+    ) {
+        let mut rows = [None; AT_ONCE];
+        for (row, slot) in rows.iter_mut().zip(slots) {
+            *row = slot.map(|slot| Row { slot, sample: 0, pixels: self.numbers(call, groups, slot) });
+        }
+        call.read(self, terms, &rows, block);
+        for (row, slot) in slots.iter().enumerate() {
+            let Some(slot) = *slot else { continue };
+            keep_row(row_at_mut(self.columns, terms.columns(), slot), block.columns, row);
+            keep_row(row_at_mut(self.means, self.values, slot), block.values, row);
+        }
+        self.mask(block, &rows);
+    }
+
+    /// Reads the samples of one slot, adds their products, and keeps the sums of their columns, the values of the first
+    /// and how far the others are from them.
+    #[inline(always)]
+    fn load_several(
+        &mut self,
+        call: &Call<'_>,
+        groups: &Groups<'_>,
+        terms: &Terms,
+        block: &mut Block<'_>,
+        (part, slot): (usize, usize),
+        first: &mut [Eight],
+    ) {
+        let pixels = self.numbers(call, groups, slot);
+        for begin in (0..call.n).step_by(AT_ONCE) {
+            let mut rows = [None; AT_ONCE];
+            for (row, out) in rows.iter_mut().enumerate() {
+                *out = (begin + row < call.n).then_some(Row { slot, sample: begin + row, pixels });
+            }
+            call.read(self, terms, &rows, block);
+            if begin == 0 {
+                keep_row(first, block.values, 0);
+            }
+            // Differences tell equal values from such as are nearly so.
+            for (values, first) in block.values.iter_mut().zip(first.iter()) {
+                for value in values.iter_mut().take(call.n - begin) {
+                    *value = lanes::zip(value, first, |value, first| value - first);
+                }
+            }
+            let sums = row_at_mut(self.columns, terms.columns(), slot).iter_mut().zip(block.columns.iter());
+            let means = row_at_mut(self.means, self.values, slot).iter_mut().zip(block.values.iter());
+            for (sum, [a, b, c, d]) in sums.chain(means) {
+                let before = if begin == 0 { *a } else { plus(sum, a) };
+                *sum = plus(&plus(&plus(&before, b), c), d);
+                lanes::keep_together();
+            }
+            self.mask(block, &rows);
+            self.sums.samples.add(part, block.columns, block.values);
+        }
+    }
+
+    /// Makes means of a slot's sums, and a row of them.
+    #[inline(always)]
+    fn put_means(
+        &mut self,
+        call: &Call<'_>,
+        terms: &Terms,
+        block: &mut Block<'_>,
+        (slot, row): (usize, usize),
+        first: &[Eight],
+    ) {
+        let (inverse, root) = (1.0 / call.n as f32, Real::sqrt(call.n as f32));
+        let inside = self.inside.get(slot).copied().unwrap_or(NONE);
+        let put = |out: &mut Four, mean: &Eight| {
+            out[row % AT_ONCE] = only(&inside, &mean.map(|mean| mean * root));
+        };
+        let columns = row_at_mut(self.columns, terms.columns(), slot);
+        for (out, sum) in block.columns.iter_mut().zip(columns.iter_mut()) {
+            *sum = sum.map(|sum| sum * inverse);
+            put(out, sum);
+            lanes::keep_together();
+        }
+        let (differences, whole) = block.values.split_at_mut_checked(self.values).unwrap_or_default();
+        let means = row_at_mut(self.means, self.values, slot).iter_mut().zip(first);
+        for ((mean, first), (difference, whole)) in means.zip(differences.iter_mut().zip(whole)) {
+            *mean = mean.map(|sum| sum * inverse);
+            put(difference, mean);
+            *mean = plus(mean, first);
+            put(whole, mean);
+        }
+        columns.iter_mut().take(terms.fixed()).for_each(|column| *column = NONE);
+    }
+
+    /// Empties the lanes of pixels that no fit is made to.
+    #[inline(always)]
+    fn mask(&self, block: &mut Block<'_>, rows: &[Option<Row>; AT_ONCE]) {
+        if !self.leaves_out {
+            return;
+        }
+        for (row, at) in rows.iter().enumerate() {
+            let inside = at.and_then(|at| self.inside.get(at.slot)).copied().unwrap_or(NONE);
+            for four in block.columns.iter_mut().chain(block.values.iter_mut()) {
+                four[row] = only(&inside, &four[row]);
+            }
+        }
+    }
 }
 
-/// Where eight samples are, and their control functions: what is left of other samples where there is no pixel.
-struct Position {
-    x: [Eight; MAX_DIMS],
-    h: [Eight; Config::MAX_CONTROLS],
+/// The next four slots, or fewer.
+#[inline(always)]
+pub(super) fn next_four(slots: &mut impl Iterator<Item = usize>) -> Option<[Option<usize>; AT_ONCE]> {
+    let first = slots.next()?;
+    Some([Some(first), slots.next(), slots.next(), slots.next()])
 }
 
-/// The pixels of a slot.
-struct Pixels<'a> {
-    units: &'a [Units; Config::MAX_CHANNELS],
-    terms: &'a Terms,
-    /// The image's numbers of them.
-    numbers: [Option<usize>; LANES],
-    places: &'a [Eight],
-    /// Of each channel, if something is known.
-    coefficients: &'a [Eight],
-    integrals: &'a [Eight],
+/// Copies a row of a block.
+#[inline(always)]
+fn keep_row(out: &mut [Eight], block: &[Four], row: usize) {
+    for (out, four) in out.iter_mut().zip(block) {
+        *out = four[row % AT_ONCE];
+        lanes::keep_together();
+    }
+}
+
+/// Samples of a slot: those of its pixels with one number.
+#[derive(Clone, Copy)]
+struct Row {
+    slot: usize,
+    sample: usize,
+    /// The image's numbers of the pixels; of another where a lane has none.
+    pixels: [usize; LANES],
+}
+
+/// Columns and values of four rows.
+struct Block<'a> {
+    /// Where they are, and their control functions: what is left of others where there is no row.
+    x: [Lanes<f32, AT_ONCE_LANES>; MAX_DIMS],
+    h: [Lanes<f32, AT_ONCE_LANES>; Config::MAX_CONTROLS],
+    columns: &'a mut [Four],
+    values: &'a mut [Four],
+}
+
+/// Numbers of a [`Four`].
+const AT_ONCE_LANES: usize = AT_ONCE * LANES;
+
+impl<'a> Block<'a> {
+    fn new(columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+        Ok(Self {
+            x: [[0.0; AT_ONCE_LANES]; MAX_DIMS],
+            h: [[0.0; AT_ONCE_LANES]; Config::MAX_CONTROLS],
+            columns: arena.take_lanes(AT_ONCE * columns)?.as_chunks_mut().0,
+            values: arena.take_lanes(AT_ONCE * values)?.as_chunks_mut().0,
+        })
+    }
 }
 
 impl Call<'_> {
@@ -593,62 +670,80 @@ impl Call<'_> {
         if factor > 0.0 { f64::from(factor) } else { 1.0 }
     }
 
-    /// Writes a sample of eight pixels: its columns, and its values in units. Zero where there is no pixel.
+    /// Reads four rows of samples: their columns, and their values in units. Zero where there is no pixel.
     #[inline(always)]
-    fn read(
-        &self,
-        pixels: &Pixels<'_>,
-        sample: usize,
-        position: &mut Position,
-        columns: &mut [Eight],
-        values: &mut [Eight],
-    ) {
-        let Pixels { units, terms, numbers, places, coefficients, integrals } = pixels;
-        let channels = self.config.channels;
-        let (inputs, rest) = values.split_at_mut_checked(channels).unwrap_or_default();
-        let Position { x, h } = position;
+    fn read(&self, batch: &Batch<'_>, terms: &Terms, rows: &[Option<Row>; AT_ONCE], block: &mut Block<'_>) {
+        let Block { x, h, columns, values } = block;
+        let (fixed, functions) = columns.split_at_mut_checked(terms.fixed()).unwrap_or_default();
         let mut is_full = true;
-        for (lane, pixel) in numbers.iter().enumerate() {
-            let &Some(pixel) = pixel else {
-                is_full = false;
+        for (row, at) in rows.iter().enumerate() {
+            let places = at.as_ref().map_or(&[][..], |at| row_at(batch.places, terms.fixed(), at.slot));
+            for (j, column) in fixed.iter_mut().enumerate() {
+                column[row] = places.get(j).copied().unwrap_or(NONE);
+            }
+            let one = places.first().copied().unwrap_or(NONE);
+            is_full &= one == [1.0; LANES];
+            let Some(at) = at else {
+                values.iter_mut().for_each(|value| value[row] = NONE);
                 continue;
             };
-            let index = pixel * self.n + sample;
-            self.reader.put_position(index, lane, x);
+            for (lane, pixel) in at.pixels.iter().enumerate() {
+                self.reader.put_position(pixel * self.n + at.sample, row * LANES + lane, x);
+            }
             if self.config.controls > 0 {
-                self.reader.get(index).put(lane, x, h);
+                for (lane, pixel) in at.pixels.iter().enumerate() {
+                    self.reader.get(pixel * self.n + at.sample).put(row * LANES + lane, x, h);
+                }
             }
-            for (channel, value) in inputs.iter_mut().enumerate() {
-                value[lane % LANES] = self.value(pixel, index, channel);
-            }
-            let known = coefficients.iter().zip(*integrals).zip(rest.iter_mut()).zip(inputs.iter());
-            for (channel, (((coefficient, integral), out), value)) in known.enumerate() {
-                let apart = self.known(pixel, index, channel) - integral[lane % LANES];
-                let left = value[lane % LANES] - coefficient[lane % LANES] * apart;
-                out[lane % LANES] = left;
+            self.read_values(batch, at, row, values);
+            for (value, units) in values.iter_mut().zip(batch.units.iter().take(self.config.channels).cycle()) {
+                // Only what no fit is made to, or is known of it, is far beyond the unit; its square fits too.
+                let limited =
+                    lanes::zip(&value[row], &units.limits, |value, most| Real::min(Real::max(value, -most), most));
+                let scaled = lanes::zip(&only(&one, &limited), &units.scales, |value, scale| value * scale);
+                value[row] = only(&one, &lanes::zip(&scaled, &units.offsets, |value, offset| value - offset));
             }
         }
-        let one = places.first().copied().unwrap_or(NONE);
-        for (value, units) in values.iter_mut().zip(units.iter().take(channels).cycle()) {
-            // Only what no fit is made to, or is known of it, is far beyond the unit; its square fits too.
-            let limited = lanes::zip(value, &units.limits, |value, most| Real::min(Real::max(value, -most), most));
-            let scaled = lanes::zip(&only(&one, &limited), &units.scales, |value, scale| value * scale);
-            *value = only(&one, &lanes::zip(&scaled, &units.offsets, |value, offset| value - offset));
-        }
-        let (fixed, rest) = columns.split_at_mut_checked(terms.fixed()).unwrap_or_default();
-        for (out, place) in fixed.iter_mut().zip(places.iter()) {
-            *out = *place;
-        }
-        let (functions, products) = rest.split_at_mut_checked(terms.functions).unwrap_or_default();
-        self.reader.columns(self.basis, x, h, functions);
-        if !is_full {
-            functions.iter_mut().for_each(|column| *column = only(&one, column));
+        let (functions, products) = functions.split_at_mut_checked(terms.functions).unwrap_or_default();
+        let wide = functions.as_flattened_mut().as_flattened_mut().as_chunks_mut::<AT_ONCE_LANES>().0;
+        self.reader.columns(self.basis, x, h, wide);
+        if let (false, Some(one)) = (is_full, fixed.first()) {
+            for column in functions.iter_mut() {
+                for row in 0..AT_ONCE {
+                    column[row] = only(&one[row], &column[row]);
+                }
+                lanes::keep_together();
+            }
         }
         let (first, count) = terms.moving;
         let moving = functions.get(first..first + count).unwrap_or(&[]);
-        for (products, axis) in rows_mut(products, count).zip(places.iter().skip(1)) {
+        for (products, axis) in rows_mut(products, count).zip(fixed.iter().skip(1)) {
             for (out, function) in products.iter_mut().zip(moving) {
-                *out = lanes::zip(function, axis, |function, axis| function * axis);
+                for row in 0..AT_ONCE {
+                    out[row] = lanes::zip(&function[row], &axis[row], |function, axis| function * axis);
+                }
+                lanes::keep_together();
+            }
+        }
+    }
+
+    /// A row's values, as they were given but for factors and what is known of them.
+    #[inline(always)]
+    fn read_values(&self, batch: &Batch<'_>, at: &Row, row: usize, values: &mut [Four]) {
+        let channels = self.config.channels;
+        let (inputs, rest) = values.split_at_mut_checked(channels).unwrap_or_default();
+        for (channel, value) in inputs.iter_mut().enumerate() {
+            for (lane, pixel) in at.pixels.iter().enumerate() {
+                value[row][lane] = self.value(*pixel, pixel * self.n + at.sample, channel);
+            }
+        }
+        let [coefficients, integrals] =
+            [&*batch.coefficients, &*batch.integrals].map(|all| row_at(all, channels, at.slot));
+        let known = coefficients.iter().zip(integrals).zip(rest.iter_mut()).zip(inputs.iter());
+        for (channel, (((coefficient, integral), out), value)) in known.enumerate() {
+            for (lane, pixel) in at.pixels.iter().enumerate() {
+                let apart = self.known(*pixel, pixel * self.n + at.sample, channel) - integral[lane];
+                out[row][lane] = value[row][lane] - coefficient[lane] * apart;
             }
         }
     }

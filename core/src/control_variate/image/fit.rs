@@ -4,7 +4,7 @@
 
 use super::super::config::Ridge;
 use super::super::ridge;
-use super::batch::{AT_ONCE, Batch, COLOURS, Eight, MAX_FIXED, NONE, Total, only, products_len};
+use super::batch::{AT_ONCE, Batch, COLOURS, Eight, MAX_FIXED, NONE, Total, next_four, only, products_len};
 use super::terms::Terms;
 use super::{Call, Layout};
 use crate::arena::Arena;
@@ -123,12 +123,7 @@ impl<'a> Fits<'a> {
                 self.judge(terms, batch, colour);
             }
             let mut slots = (0..batch.slots).filter(|&slot| targets.has(slot));
-            loop {
-                let mut four = [None; AT_ONCE];
-                four.iter_mut().for_each(|slot| *slot = slots.next());
-                if four[0].is_none() {
-                    break;
-                }
+            while let Some(four) = next_four(&mut slots) {
                 if is_single {
                     self.apply::<true>(terms, batch, &four);
                 } else {
@@ -246,6 +241,7 @@ impl<'a> Fits<'a> {
                     let within = if k < fixed { 0.0 } else { out[l] - means[l] };
                     out[l] = within + weight[l] * means[l];
                 }
+                lanes::keep_together();
             }
         }
         for (value, sides) in rows_mut(self.system.sides, width).enumerate() {
@@ -256,6 +252,7 @@ impl<'a> Fits<'a> {
                     let within = if j < fixed { 0.0 } else { out[l] - means[l] };
                     out[l] = within + weight[l] * whole[l];
                 }
+                lanes::keep_together();
             }
         }
     }
@@ -292,6 +289,7 @@ impl<'a> Fits<'a> {
                         for l in 0..LANES {
                             sum[l] += (samples[l] - means[l]) * (twice * other[l]);
                         }
+                        lanes::keep_together();
                     }
                     left = lanes::plus_product(left, sum, *b);
                 }
@@ -327,6 +325,7 @@ impl<'a> Fits<'a> {
                     for s in 0..AT_ONCE {
                         moved[s] = lanes::minus_product(moved[s], place[s], *unit);
                     }
+                    lanes::keep_together();
                 }
             }
             &*self.moved
@@ -357,6 +356,7 @@ impl<'a> Fits<'a> {
                         leverage[s] = lanes::plus_product(leverage[s], scaled, z[s]);
                         reach[s] = lanes::plus_product(reach[s], scaled, moved[s]);
                     }
+                    lanes::keep_together();
                 }
             }
             for (value, (residual, fitted)) in self.residuals.iter_mut().zip(self.fitted.iter_mut()).enumerate() {
@@ -368,6 +368,7 @@ impl<'a> Fits<'a> {
                         }
                         fitted[s] = lanes::plus_product(fitted[s], *side, moved[s]);
                     }
+                    lanes::keep_together();
                 }
                 for (s, slot) in slots.iter().enumerate() {
                     let Some(slot) = slot else { continue };
