@@ -150,6 +150,14 @@ pub(super) fn plus(a: &Eight, b: &Eight) -> Eight {
     lanes::zip(a, b, |a, b| a + b)
 }
 
+impl Units {
+    /// Two to the powers of the exponents.
+    #[inline(always)]
+    pub(super) fn powers(&self) -> Eight {
+        self.exponents.map(power_of_two)
+    }
+}
+
 /// 2 to the power of an exponent from -126 to 127.
 fn power_of_two(exponent: i32) -> f32 {
     f32::from_bits(((exponent + 127).clamp(0, 254) as u32) << 23)
@@ -188,7 +196,10 @@ impl Sums<'_> {
                 if is_first {
                     out.iter_mut().zip(sums).for_each(|(out, sum)| *out = *sum);
                 } else {
-                    out.iter_mut().zip(sums).for_each(|(out, sum)| *out = plus(out, sum));
+                    for (out, sum) in out.iter_mut().zip(sums) {
+                        *out = plus(out, sum);
+                        lanes::keep_together();
+                    }
                 }
                 is_first = false;
             }
@@ -328,12 +339,14 @@ impl<'a> Batch<'a> {
         let axes = call.windows.used_axes();
         let scales = axes.map(|axis| (SQRT_3 / call.windows.extent[axis % MAX_AXES].max(1) as f64) as f32);
         for slot in 0..self.slots {
-            let mut places = [NONE; MAX_FIXED];
+            let mut one = NONE;
+            // Of each axis twice where they are, and 1.
+            let mut halves = [[0_i32; LANES]; MAX_AXES];
             for lane in 0..LANES {
                 let Some((pixel, at)) = self.pixel(call, groups, lane, slot) else { continue };
-                places[0][lane] = 1.0;
-                for axis in 0..MAX_AXES {
-                    places[1 + axis][lane] = (2 * at[axes[axis] % MAX_AXES] + 1) as f32 * scales[axis] - SQRT_3 as f32;
+                one[lane] = 1.0;
+                for (halves, at) in halves.iter_mut().zip(at) {
+                    halves[lane] = 2 * at as i32 + 1;
                 }
                 let ranges = row_at_mut(self.ranges, 2 * channels, slot);
                 for (channel, range) in rows_mut(ranges, 2).enumerate() {
@@ -342,14 +355,19 @@ impl<'a> Batch<'a> {
                     }
                 }
             }
-            for (out, place) in row_at_mut(self.places, fixed, slot).iter_mut().zip(&places) {
-                *out = *place;
+            if let Some((first, places)) = row_at_mut(self.places, fixed, slot).split_first_mut() {
+                *first = one;
+                for (place, (axis, scale)) in places.iter_mut().zip(axes.iter().zip(scales)) {
+                    *place = only(&one, &halves[axis % MAX_AXES].map(|at| at as f32 * scale - SQRT_3 as f32));
+                    lanes::keep_together();
+                }
             }
             for range in row_at_mut(self.ranges, 2 * channels, slot) {
-                *range = only(&places[0], range);
+                *range = only(&one, range);
+                lanes::keep_together();
             }
             if let Some(inside) = self.inside.get_mut(slot) {
-                *inside = places[0];
+                *inside = one;
             }
         }
     }
@@ -387,6 +405,7 @@ impl<'a> Batch<'a> {
                     largest[l] = if inside[l] > 0.0 { Real::max(most, largest[l]) } else { largest[l] };
                     first[l] = if inside[l] > 0.0 && first[l] == f32::INFINITY { low[l] } else { first[l] };
                 }
+                lanes::keep_together();
             }
             if self.is_joined {
                 largest = [largest.into_iter().fold(0.0, Real::max); LANES];
@@ -680,6 +699,7 @@ impl Call<'_> {
             let places = at.as_ref().map_or(&[][..], |at| row_at(batch.places, terms.fixed(), at.slot));
             for (j, column) in fixed.iter_mut().enumerate() {
                 column[row] = places.get(j).copied().unwrap_or(NONE);
+                lanes::keep_together();
             }
             let one = places.first().copied().unwrap_or(NONE);
             is_full &= one == [1.0; LANES];
@@ -702,6 +722,7 @@ impl Call<'_> {
                     lanes::zip(&value[row], &units.limits, |value, most| Real::min(Real::max(value, -most), most));
                 let scaled = lanes::zip(&only(&one, &limited), &units.scales, |value, scale| value * scale);
                 value[row] = only(&one, &lanes::zip(&scaled, &units.offsets, |value, offset| value - offset));
+                lanes::keep_together();
             }
         }
         let (functions, products) = functions.split_at_mut_checked(terms.functions).unwrap_or_default();

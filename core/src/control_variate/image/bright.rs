@@ -34,6 +34,7 @@ impl Highest {
             let above = lanes::zip(place, &value, |place, value| if value > place { value } else { place });
             value = lanes::zip(place, &value, |place, value| if value > place { place } else { value });
             *place = above;
+            lanes::keep_together();
         }
     }
 

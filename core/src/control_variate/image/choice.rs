@@ -44,27 +44,24 @@ impl Choices {
         if choice <= self.fits { (channel, choice) } else { (self.channels + channel, choice - self.fits - 1) }
     }
 
-    /// The channel and choice of each place in a list of channels' choices.
+    /// Writes the estimates of a channel of a slot's pixels, wherever they are.
     #[inline(always)]
-    fn each(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let count = self.count;
-        (0..self.channels).flat_map(move |channel| (0..count).map(move |choice| (channel, choice)))
-    }
-
-    /// An estimate of a slot's pixels, wherever they are.
-    #[inline(always)]
-    fn estimate(&self, batch: &Batch<'_>, fits: &Fits<'_>, slot: usize, (channel, choice): (usize, usize)) -> Eight {
-        let (value, fit) = self.value_and_fit(channel, choice);
-        let mean = batch.means.get(slot * batch.values + value).copied().unwrap_or(NONE);
-        match fit.checked_sub(1) {
-            Some(fit) => plus(&mean, &fits.correction((slot, value, fit))),
-            None => mean,
+    fn estimate(&self, batch: &Batch<'_>, fits: &Fits<'_>, (slot, channel): (usize, usize), estimates: &mut [Eight]) {
+        for (kind, estimates) in rows_mut(estimates, 1 + self.fits).enumerate() {
+            let value = channel + kind * self.channels;
+            let mean = batch.means.get(slot * batch.values + value).copied().unwrap_or(NONE);
+            let Some((plain, corrected)) = estimates.split_first_mut() else { return };
+            *plain = mean;
+            for (out, correction) in corrected.iter_mut().zip(fits.corrections(slot, value)) {
+                *out = plus(&mean, correction);
+                lanes::keep_together();
+            }
         }
     }
 }
 
-/// Lanes of each choice of [`Spreads`].
-const SPREADS: usize = 3 + MAX_FIXED;
+/// Lanes of each choice of [`Spreads`], with those that are needed to make them.
+const SPREADS: usize = 4 + MAX_FIXED;
 /// How many shares of each choice are kept: those that either half, or all pixels, chose.
 const MAX_SHARES: usize = 2;
 
@@ -137,19 +134,27 @@ impl<'a> Spreads<'a> {
         }
         let mut factor = [NONE; packed_len(MAX_FIXED)];
         let slots = || batch.inside.iter().enumerate().filter(|&(slot, _)| taken.has(slot));
+        let estimates = arena.take_lanes(choices.count)?;
         for (slot, inside) in slots() {
             let places = row_at(batch.places, fixed, slot);
             for (j, place) in places.iter().enumerate() {
                 let place = lanes::zip(place, inside, |place, inside| place * inside);
                 for (sum, other) in row_mut(&mut factor, j).iter_mut().zip(places) {
                     lanes::add_product(sum, &place, other);
+                    lanes::keep_together();
                 }
             }
-            for ((square, trend), at) in squares.iter_mut().zip(rows_mut(trends, fixed)).zip(choices.each()) {
-                let estimate = only(inside, &choices.estimate(batch, fits, slot, at));
-                lanes::add_product(square, &estimate, &estimate);
-                for (sum, place) in trend.iter_mut().zip(places) {
-                    lanes::add_product(sum, &estimate, place);
+            for channel in 0..choices.channels {
+                choices.estimate(batch, fits, (slot, channel), estimates);
+                let squares = row_at_mut(squares, choices.count, channel);
+                let trends = rows_mut(row_at_mut(trends, choices.count * fixed, channel), fixed);
+                for ((estimate, square), trend) in estimates.iter().zip(squares).zip(trends) {
+                    let estimate = only(inside, estimate);
+                    lanes::add_product(square, &estimate, &estimate);
+                    for (sum, place) in trend.iter_mut().zip(places) {
+                        lanes::add_product(sum, &estimate, place);
+                        lanes::keep_together();
+                    }
                 }
             }
         }
@@ -170,12 +175,19 @@ impl<'a> Spreads<'a> {
         // The difference of the sums of squares would lose the digits that matter beside a strong trend.
         for (slot, inside) in slots() {
             let places = row_at(batch.places, fixed, slot);
-            for ((sum, trend), at) in sums.iter_mut().zip(rows(trends, fixed)).zip(choices.each()) {
-                let estimate = choices.estimate(batch, fits, slot, at);
-                let rest = places.iter().zip(trend);
-                let rest = rest.fold(estimate, |rest, (place, slope)| lanes::minus_product(rest, *place, *slope));
-                let rest = only(inside, &rest);
-                lanes::add_product(sum, &rest, &rest);
+            for channel in 0..choices.channels {
+                choices.estimate(batch, fits, (slot, channel), estimates);
+                let sums = row_at_mut(sums, choices.count, channel);
+                let trends = rows(row_at(trends, choices.count * fixed, channel), fixed);
+                for ((rest, sum), trend) in estimates.iter_mut().zip(sums).zip(trends) {
+                    for (place, slope) in places.iter().zip(trend) {
+                        *rest = lanes::minus_product(*rest, *place, *slope);
+                        lanes::keep_together();
+                    }
+                    let rest = only(inside, rest);
+                    lanes::add_product(sum, &rest, &rest);
+                    lanes::keep_together();
+                }
             }
         }
         for (sum, square) in sums.iter_mut().zip(squares) {
@@ -188,10 +200,12 @@ impl<'a> Spreads<'a> {
         }
         let has_several = fits.has_several;
         if has_several {
-            for (sum, (channel, choice)) in within.iter_mut().zip(choices.each()) {
-                let (value, fit) = choices.value_and_fit(channel, choice);
-                for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
-                    *sum = plus(sum, &fits.within(value, colour, fit));
+            for channel in 0..choices.channels {
+                for (choice, sum) in row_at_mut(within, choices.count, channel).iter_mut().enumerate() {
+                    let (value, fit) = choices.value_and_fit(channel, choice);
+                    for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
+                        *sum = plus(sum, &fits.within(value, colour, fit));
+                    }
                 }
             }
         }

@@ -49,7 +49,7 @@ fn within_len(terms: &Terms, values: usize, n: usize) -> usize {
 
 /// Fits to the pixels of a batch.
 pub(super) struct Fits<'a> {
-    /// For each slot, each candidate's corrections of the values' means.
+    /// For each slot and value, each candidate's correction of its mean.
     corrections: &'a mut [Eight],
     /// How many candidates there are.
     pub(super) count: usize,
@@ -139,10 +139,10 @@ impl<'a> Fits<'a> {
         row_at(self.within, 1 + self.count, value * COLOURS + colour).get(fit).copied().unwrap_or(NONE)
     }
 
-    /// A candidate's correction of a value of a slot.
+    /// The candidates' corrections of a value of a slot.
     #[inline(always)]
-    pub(super) fn correction(&self, (slot, value, fit): (usize, usize, usize)) -> Eight {
-        self.corrections.get((slot * self.count + fit) * self.values + value).copied().unwrap_or(NONE)
+    pub(super) fn corrections(&self, slot: usize, value: usize) -> &[Eight] {
+        row_at(self.corrections, self.count, slot * self.values + value)
     }
 
     /// The fit to all pixels of some colours.
@@ -171,6 +171,7 @@ impl<'a> Fits<'a> {
                 let unit = if controls.contains(&j) { diagonal[l] / divisor[l] } else { 1.0 };
                 diagonal[l] += strength * Real::max(count[l] - own, 0.0) * penalty * unit;
             }
+            lanes::keep_together();
         }
         ldlt::factor_each(system, width);
         for (j, pivot) in self.pivots.iter_mut().enumerate() {
@@ -180,6 +181,7 @@ impl<'a> Fits<'a> {
             ldlt::forward_each::<f32, 1>(system, 0, ldlt::one_each_mut(side));
             for (side, pivot) in side.iter_mut().zip(self.pivots.iter()) {
                 *side = lanes::zip(side, pivot, |side, pivot| side * pivot);
+                lanes::keep_together();
             }
         }
         if call.n == 1 {
@@ -309,6 +311,7 @@ impl<'a> Fits<'a> {
             let columns = slot.map_or(&[][..], |slot| row_at(batch.columns, width, slot));
             for (j, solved) in self.solved.iter_mut().enumerate() {
                 solved[s] = columns.get(j).copied().unwrap_or(NONE);
+                lanes::keep_together();
             }
         }
         ldlt::forward_each(self.system.gram, if OWN { 0 } else { fixed }, self.solved);
@@ -316,6 +319,7 @@ impl<'a> Fits<'a> {
             // The fixed columns follow the signal, and correct nothing.
             for (moved, solved) in self.moved.iter_mut().zip(self.solved.iter()) {
                 *moved = *solved;
+                lanes::keep_together();
             }
             for (k, unit) in rows(self.units, width).enumerate() {
                 let place = slots.map(|slot| {
@@ -372,7 +376,7 @@ impl<'a> Fits<'a> {
                 }
                 for (s, slot) in slots.iter().enumerate() {
                     let Some(slot) = slot else { continue };
-                    let at = (slot * self.count + fit) * values + value;
+                    let at = (slot * values + value) * self.count + fit;
                     let Some(out) = self.corrections.get_mut(at) else { continue };
                     // A pixel that no fit is made to is corrected by the fit to all.
                     let own = if batch.leaves_out { only(&inside[s], &residual[s]) } else { residual[s] };
@@ -380,6 +384,7 @@ impl<'a> Fits<'a> {
                         let left = Real::max(1.0 - leverage[s][l], SINGULAR);
                         out[l] = if OWN { reach[s][l] * (own[l] / left) - fitted[s][l] } else { -fitted[s][l] };
                     }
+                    lanes::keep_together();
                 }
             }
         }

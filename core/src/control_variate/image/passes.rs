@@ -11,7 +11,7 @@ use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::real::Real;
-use crate::rows::rows_mut;
+use crate::rows::{rows, rows_mut};
 use core::hint::black_box;
 
 impl Call<'_> {
@@ -101,7 +101,7 @@ impl Call<'_> {
                 if turn.is_none() {
                     self.tell(groups, &batch, &spreads, &shares);
                 }
-                self.put(groups, &batch, &fits, turn, (choices, &shares));
+                self.put(groups, &batch, &fits, turn, &shares);
             }
         }
         Ok(())
@@ -152,7 +152,7 @@ impl Call<'_> {
         batch: &Batch<'_>,
         fits: &Fits<'_>,
         turn: Option<usize>,
-        (choices, shares): (Choices, &Shares<'_>),
+        shares: &Shares<'_>,
     ) {
         let channels = self.config.channels;
         for slot in 0..batch.slots {
@@ -164,22 +164,30 @@ impl Call<'_> {
                 let shares = shares.of(half, channel);
                 let mut sum = [0.0; LANES];
                 let mean = batch.means.get(slot * batch.values + channel).copied().unwrap_or(NONE);
-                for (choice, share) in shares.iter().enumerate().skip(1) {
-                    let (value, fit) = choices.value_and_fit(channel, choice);
-                    if value != channel {
-                        let other = batch.means.get(slot * batch.values + value).copied().unwrap_or(NONE);
-                        lanes::add_product(&mut sum, &lanes::zip(&other, &mean, |other, mean| other - mean), share);
+                for (kind, shares) in rows(shares, 1 + fits.count).enumerate() {
+                    let Some((plain, shares)) = shares.split_first() else { continue };
+                    let value = channel + kind * channels;
+                    let other = batch.means.get(slot * batch.values + value).copied().unwrap_or(NONE);
+                    let known = lanes::zip(&other, &mean, |other, mean| other - mean);
+                    if kind > 0 {
+                        lanes::add_product(&mut sum, &known, plain);
                     }
-                    if let Some(fit) = fit.checked_sub(1) {
-                        lanes::add_product(&mut sum, &fits.correction((slot, value, fit)), share);
+                    for (correction, share) in fits.corrections(slot, value).iter().zip(shares) {
+                        if kind > 0 {
+                            lanes::add_product(&mut sum, &known, share);
+                        }
+                        lanes::add_product(&mut sum, correction, share);
+                        lanes::keep_together();
                     }
                 }
-                for (lane, (value, &exponent)) in sum.into_iter().zip(&units.exponents).enumerate() {
+                // What is too large is no number, and found at the end.
+                let sum =
+                    lanes::zip(&sum, &units.powers(), |sum, power| if sum.is_finite() { sum * power } else { 0.0 });
+                for (lane, value) in sum.into_iter().enumerate() {
                     let Some(index) = batch.member(lane, slot) else { continue };
                     let at = (batch.lanes[lane].start + index) * channels + channel;
                     if let Some(out) = groups.corrections.get_mut(at) {
-                        // What is too large is no number, and found at the end.
-                        *out = if value.is_finite() { value.scale(exponent) } else { 0.0 };
+                        *out = value;
                     }
                 }
             }

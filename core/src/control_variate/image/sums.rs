@@ -76,7 +76,7 @@ impl Call<'_> {
         let has_factors = !self.image.factors.is_empty();
         // How near a pixel is to its window's centre: 1 there, falling linearly along x and y to almost 0.
         let inverse = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
-        let hat = |at: usize, inverse: f32| 1.0 - Real::abs((2 * at + 1) as f32 * inverse - 1.0);
+        let hat = |at: usize, inverse: f32| 1.0 - Real::abs((2 * at as i32 + 1) as f32 * inverse - 1.0);
         for group in groups.in_order(self) {
             let Some(([gain, has_error], errors)) = groups.told(self, &group).split_first_chunk() else { continue };
             let window = self.window(first + group.window);
