@@ -452,6 +452,31 @@ fn narrow_precision() {
     }
 }
 
+/// Few samples, each in an accumulator of its own, have a standard error above 0, also where rounding to `f32` is most of
+/// what a fit to as few says of where they lie.
+#[test]
+fn few_merged_samples_have_an_error() {
+    let mut rng = SplitMix64::new(13);
+    for n in [2, 3, 4, 8, 16] {
+        for _ in 0..500 {
+            let u = points(n, 2, &mut rng);
+            let f = values(&u, 2, smooth);
+            for estimator in [Estimator::Robust, Estimator::KFold, Estimator::LeastSquares] {
+                let config = config(2, 2, estimator);
+                let mut parts = u.chunks(2).zip(f.chunks(1)).map(|(u, f)| {
+                    let mut part = accumulator::<f32>(&config);
+                    part.add(Samples::new(u, f)).unwrap();
+                    part
+                });
+                let mut merged = parts.next().unwrap();
+                parts.for_each(|part| merged.merge(&part).unwrap());
+                let estimate = finish(&merged).unwrap();
+                assert!(estimate.std_error[0] > 0.0, "{estimator:?}, {n}: {estimate:?} of {u:?}");
+            }
+        }
+    }
+}
+
 /// Steps far too long, of any rule, end at a finite estimate.
 #[test]
 fn divergent_descent() {

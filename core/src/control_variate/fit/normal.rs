@@ -118,7 +118,7 @@ impl<'a, R: Real> Normal<'a, R> {
         let x = arena.take(self.gram.order())?;
         copy(x, self.means);
         factor.solve(x);
-        Ok(self.gram.quadratic(x) * self.count)
+        Ok(not_below_zero(self.gram.quadratic(x)) * self.count)
     }
 
     /// Where the samples of a fit lie, for two or more.
