@@ -14,7 +14,7 @@ use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
 use crate::error::Error;
 use crate::lanes::Lanes;
 use crate::linalg::givens;
-use crate::matrix::{at, first_mut, from, halves_mut, row_at, row_at_mut, rows_mut};
+use crate::matrix::{at, first_mut, from, halves_mut, row_at, row_at_mut, rows, rows_mut};
 use crate::real::Real;
 
 /// The most samples of an accumulator in `f32`.
@@ -189,6 +189,7 @@ impl<R: Real> Accumulator<R> {
                 }
             }
             self.add_row(sums, first_mut(&mut p, terms), PerChannel(reader.values(sample)));
+            self.move_zero(self.samples - 1, sums);
         });
         Ok(())
     }
@@ -276,13 +277,57 @@ impl<R: Real> Accumulator<R> {
             *sum += value;
         }
         self.incremental.merge(&other.incremental, &factors, &shift, other.samples);
+        let before = self.samples;
         self.samples = self.samples.saturating_add(other.samples);
+        self.move_zero(before, sums);
         if self.method == Method::Incremental {
             let (group, rest) = halves_mut(sums, group);
             self.incremental.refit_now();
             incremental::refit(self.samples, &mut self.incremental, &self.config, group, rest, terms - 1, channels);
         }
         Ok(())
+    }
+
+    /// Moves the units' zero of a narrow type to the mean so far, each time that the samples, of which there were
+    /// `before`, have doubled: of values that all lie to one side of it, as where the first sample is an outlier or in
+    /// shadow, the sums would soon be too large for one more to show.
+    #[inline(always)]
+    fn move_zero(&mut self, before: u64, sums: &mut [R]) {
+        if R::NARROW && before > 0 && self.samples.leading_zeros() < before.leading_zeros() {
+            self.move_zero_to_mean(sums);
+        }
+    }
+
+    #[inline(never)]
+    fn move_zero_to_mean(&mut self, sums: &mut [R]) {
+        let (terms, channels, group) = (self.terms(), self.channels, self.group());
+        let (folds, _) = halves_mut(sums, self.groups() * group);
+        let square_root = self.method == Method::SquareRoot;
+        let mut totals = PerChannel::<R>::default();
+        for sums in rows(folds, group).filter_map(|sums| Sums::new(sums, terms, channels).ok()) {
+            for (channel, total) in totals.iter_mut().enumerate().take(channels) {
+                *total += if square_root { square_root::totals(&sums, channel).0 } else { sums.total(channel) };
+            }
+        }
+        let n = R::from_f64(self.samples as f64);
+        let mut shift = PerChannel::default();
+        for ((unit, &total), shift) in self.units.iter_mut().zip(&totals).zip(&mut shift) {
+            let before = unit.offset;
+            unit.offset += total / n;
+            *shift = before - unit.offset;
+        }
+        for mut sums in rows_mut(folds, group).filter_map(|sums| Sums::new_mut(sums, terms, channels).ok()) {
+            if square_root {
+                // The constant's column is the first, of which only the first row holds something.
+                let constant = sums.gram.at(0, 0);
+                for (out, &shift) in sums.rhs.row_mut(0).iter_mut().zip(shift.iter()) {
+                    *out += shift * constant;
+                }
+            } else {
+                sums.shift(&shift);
+            }
+        }
+        self.incremental.shift(&shift, self.samples);
     }
 
     /// Sets the units at the first sample, and keeps values of a narrow type near one.

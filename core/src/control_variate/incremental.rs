@@ -166,6 +166,19 @@ impl<R: Real> Progress<R> {
         self.predictions += other.predictions;
     }
 
+    /// Adds `shift` to the values of `samples` samples.
+    pub(crate) fn shift(&mut self, shift: &PerChannel<R>, samples: u64) {
+        let n = R::from_f64(samples as f64);
+        for (channel, &shift) in shift.iter().enumerate() {
+            let total = self.total[channel];
+            self.square[channel] += shift * (total + total + shift * n);
+            for values in self.intercepts.iter_mut().chain([&mut self.mean]) {
+                values[channel] += shift;
+            }
+            self.total[channel] += shift * n;
+        }
+    }
+
     /// Makes the next fits due at once.
     pub(crate) fn refit_now(&mut self) {
         self.next_fit = 0;

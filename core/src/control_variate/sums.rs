@@ -128,6 +128,21 @@ impl<R: Real, S: DerefMut<Target = [R]>> Sums<S> {
         add(self.gram.entries_mut(), other.gram.entries());
     }
 
+    /// Makes the sums those of `shift` + f.
+    pub(crate) fn shift(&mut self, shift: &PerChannel<R>) {
+        let (gram, rhs) = (self.gram.view(), &mut self.rhs);
+        for (channel, square) in self.square.iter_mut().enumerate() {
+            let (shift, total) = (shift[channel], rhs.at(0, channel));
+            *square += shift * (total + total + shift * gram.at(0, 0));
+        }
+        for (j, out) in rhs.rows_mut().enumerate() {
+            let column = gram.at(j, 0);
+            for (out, &shift) in out.iter_mut().zip(shift.iter()) {
+                *out += shift * column;
+            }
+        }
+    }
+
     /// Makes the sums those of `factors` times f.
     pub(crate) fn rescale(&mut self, factors: &PerChannel<R>) {
         for out in self.rhs.rows_mut() {
