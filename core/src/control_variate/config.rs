@@ -54,6 +54,7 @@ pub enum Color {
     #[default]
     PerChannel,
     /// The thesis's form (4.3): regress the Rec. 709 luminance, scale the plain mean by the ratio of luminances.
+    /// Standard errors are the luminance's, scaled alike: they leave out what the colour is uncertain by.
     LuminanceRatio,
 }
 
