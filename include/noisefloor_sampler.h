@@ -13,14 +13,15 @@
  * In OpenCL C and Metal, which have no global buffers, there is nothing to define, and the table is the last argument
  * of a draw: nfs_draw2(s, table), `global` or `device`.
  *
- * Functions and arguments are those of noisefloor.h. State is 16 bytes. GLSL needs version 400 or ES 310.
+ * Functions and arguments are those of noisefloor.h. State is 16 bytes. GLSL needs version 400 or ES 310, there with
+ * a table of highp uint.
  */
 #ifndef NOISEFLOOR_SAMPLER_H
 #define NOISEFLOOR_SAMPLER_H
 
 #if defined(__HLSL_VERSION) || defined(__hlsl_dx_compiler)
 #define NFS_HLSL
-#elif defined(GL_core_profile) || defined(GL_compatibility_profile) || defined(GL_es_profile) || defined(VULKAN)
+#elif defined(GL_core_profile) || defined(GL_compatibility_profile) || defined(GL_ES)
 #define NFS_GLSL
 #endif
 
@@ -35,7 +36,9 @@ typedef uint nfs_uint;
 #define NFS_FLOAT(a) float(a)
 #define NFS_INSERT(low, high, at, bits) bitfieldInsert(low, high, at, bits)
 #define NFS_SIGN(a, k) uint(bitfieldExtract(int(a), k, 1))
-#define nfs_uint uint
+/* In ES, fragment shaders have less by default. */
+#define nfs_uint highp uint
+#define nfs_float highp float
 #elif defined(__METAL_VERSION__)
 #define NFS_FUNCTION static inline
 #define NFS_REVERSE(a) metal::reverse_bits(a)
@@ -80,6 +83,10 @@ typedef uint32_t nfs_uint;
 #define NFS_GIVEN
 #endif
 
+#if !defined(nfs_float)
+#define nfs_float float
+#endif
+
 /* One sample of one pixel. */
 struct nfs {
     nfs_uint domain; /* 0 is the root */
@@ -90,7 +97,7 @@ struct nfs {
 
 /* What is drawn. */
 struct nfs_floats {
-    float x, y, z, w;
+    nfs_float x, y, z, w;
 };
 
 struct nfs_point {
@@ -193,7 +200,7 @@ NFS_FUNCTION nfs_point nfs_pair(nfs_uint x, nfs_uint y, nfs_uint first NFS_TABLE
 }
 
 /* Values' shift modulo 1. */
-NFS_FUNCTION float nfs_unit(nfs s, nfs_uint value, nfs_uint number)
+NFS_FUNCTION nfs_float nfs_unit(nfs s, nfs_uint value, nfs_uint number)
 {
     if ((s.flags & 1u) != 0u)
         value += nfs_mix(s.domain + 0x9e3779b9u * number);

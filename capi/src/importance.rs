@@ -125,7 +125,7 @@ pub unsafe extern "C" fn nf_importance_gradient(
         let (gradient, importance) = unsafe { (convert::slice(gradient, len)?, convert::outputs(importance, all)?) };
         finite(gradient)?;
         // What else is refused is refused of the first item.
-        for (gradient, importance) in gradient.chunks(outputs).zip(importance.chunks_mut(techniques)) {
+        for (gradient, importance) in gradient.chunks(outputs).zip(importance.chunks_mut(techniques.max(1))) {
             importance::nodes(gradient, split, importance).map_err(status_of)?;
         }
         Ok(())

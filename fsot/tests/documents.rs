@@ -43,7 +43,7 @@ fn steps(points: usize, classes: Vec<class::Class>, quality: Quality) -> u64 {
 /// "170 K log2 n": for K objectives and n points.
 #[test]
 fn the_formulas_of_steps_are_those_of_the_code() {
-    let rows = table(&document("fsot_points.md"), "| | draft | standard | high |");
+    let rows = table(&document("fsot.md"), "| | draft | standard | high | one step |");
     for (row, points, log) in [(&rows[0], 4096, 12), (&rows[1], 16_384, 1)] {
         for (cell, quality) in row[1..].iter().zip(QUALITIES) {
             let base = number(cell.split(' ').next().unwrap());

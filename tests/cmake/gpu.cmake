@@ -17,17 +17,19 @@ endfunction()
 add_device_program(opencl OpenCL::OpenCL)
 add_check(gpu opencl gpu_opencl)
 
-# The same draws in GLSL and in HLSL.
+# The same draws in GLSL and in HLSL; and what GLSL ES must compile.
 set(vulkan "")
 set(shaders "")
-foreach(shader IN ITEMS "GLSL sampler.comp -V" "HLSL sampler.hlsl -D -V -S comp -e main")
+foreach(shader IN ITEMS "GLSL sampler.comp -V" "HLSL sampler.hlsl -D -V -S comp -e main" "ES fragment.frag -V")
     string(REPLACE " " ";" arguments "${shader}")
     list(POP_FRONT arguments language source)
     set(spirv "${CMAKE_CURRENT_BINARY_DIR}/${source}.spv")
     add_custom_command(OUTPUT "${spirv}" DEPENDS gpu/${source} gpu/sampler_of.h ../include/noisefloor_sampler.h
         COMMAND "${glslang}" ${arguments} "-I${root}/include" "-I${root}/tests/gpu" -o "${spirv}" "${root}/tests/gpu/${source}" VERBATIM)
     list(APPEND shaders "${spirv}")
-    list(APPEND vulkan ${language} "${spirv}")
+    if(NOT language STREQUAL "ES")
+        list(APPEND vulkan ${language} "${spirv}")
+    endif()
 endforeach()
 add_device_program(vulkan Vulkan::Vulkan)
 add_custom_target(gpu_shaders DEPENDS ${shaders})

@@ -452,8 +452,8 @@ fn narrow_precision() {
     }
 }
 
-/// Few samples, each in an accumulator of its own, have a standard error above 0, also where rounding to `f32` is most of
-/// what a fit to as few says of where they lie.
+/// Few samples, each in an accumulator of its own, have a standard error above 0, also where rounding to `f32` is most
+/// of what a fit to as few says of where they lie.
 #[test]
 fn few_merged_samples_have_an_error() {
     let mut rng = SplitMix64::new(13);
