@@ -31,7 +31,8 @@ pub fn build() -> Result<Result<PathBuf, String>> {
     cargo.args(["rustc", "--quiet", "--release", "--lib", "--crate-type", "cdylib", "--manifest-path", MANIFEST]);
     run::check(cargo.args(["-Z", "build-std=core", "--target", triple, "--target-dir"]).arg(&target))?;
     let module = target.join(triple).join("release/noisefloor_playground.wasm");
-    let module = run::read(run::command("base64").arg("--wrap=0").arg(module))?;
+    run::check(run::command("gzip").args(["--best", "--no-name", "--keep", "--force"]).arg(&module))?;
+    let module = run::read(run::command("base64").arg("--wrap=0").arg(module.with_extension("wasm.gz")))?;
     let (place, page) = ("const embedded = \"", paths::read("docs/playground/page.html")?);
     if page.matches(place).count() != 1 {
         bail!("docs/playground/page.html has no one place `{place}` for the module");
