@@ -76,15 +76,20 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
     let columns = if plan.method == Method::Plain { 0 } else { plan.columns };
     let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena)?;
     let method = if design.n == 1 { Method::Plain } else { plan.method };
-    let outcome = match method {
+    // One place that fits: it is most of what a program with an estimate carries.
+    let rule = match method {
+        Method::Robust => Some(Rule::Robust),
+        Method::LeaveOneOut => Some(Rule::Single(config.ridge)),
+        Method::LeastSquares => Some(Rule::LeastSquares(config.ridge)),
+        _ => None,
+    };
+    let outcome = match (rule, method) {
+        (Some(rule), _) => fit(&design, config, &basis, plan, rule, &mut arena)?,
+        (None, Method::KFold) => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
+        (None, Method::Descent) => descent::estimate(&design, config, &basis, None, &mut arena)?,
+        (None, Method::SquareRoot) => givens::least_squares(&design, config, &basis, &mut arena)?,
         // What streams went its own way above.
-        Method::Plain | Method::Incremental => Outcome::plain(result::plain_variance(&design)),
-        Method::KFold => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
-        Method::Descent => descent::estimate(&design, config, &basis, None, &mut arena)?,
-        Method::SquareRoot => givens::least_squares(&design, config, &basis, &mut arena)?,
-        Method::Robust => fit(&design, config, &basis, plan, Rule::Robust, &mut arena)?,
-        Method::LeaveOneOut => fit(&design, config, &basis, plan, Rule::Single(config.ridge), &mut arena)?,
-        Method::LeastSquares => fit(&design, config, &basis, plan, Rule::LeastSquares(config.ridge), &mut arena)?,
+        (None, _) => Outcome::plain(result::plain_variance(&design)),
     };
     Ok(result::finish(result::Summary::of(&design, &reader), outcome))
 }
@@ -92,10 +97,10 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
 /// (4.30) is about a stream: the batch form streams.
 fn incremental<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
     let mut stream = Accumulator::<R>::new(config)?;
-    let (sums, scratch) = workspace.split_at_mut_checked(stream.len()).ok_or(Error::Memory)?;
+    let sums = workspace.get_mut(..stream.len()).ok_or(Error::Memory)?;
     stream.reset(sums)?;
     stream.add(sums, samples)?;
-    stream.estimate(sums, scratch)
+    stream.incremental(sums)
 }
 
 /// The estimators that fit all samples at once through the normal equations or their dual.

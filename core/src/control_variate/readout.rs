@@ -26,17 +26,11 @@ impl<R: Real> Accumulator<R> {
     /// [`Error::NoSamples`] if there are none, [`Error::Memory`] if `workspace` is shorter than
     /// [`Accumulator::workspace_len`] says.
     pub fn estimate(&self, sums: &[R], workspace: &mut [R]) -> Result<Estimate, Error> {
-        if sums.len() < self.len() {
-            return Err(Error::Memory);
-        }
-        if self.samples == 0 {
-            return Err(Error::NoSamples);
-        }
+        let total = self.totals(sums)?;
         let mut arena = Arena::new(workspace);
-        let total = Totals::new(self, sums)?;
         let outcome = match self.method {
             Method::Robust | Method::KFold => self.cross_fit(sums, &total, &mut arena)?,
-            Method::Incremental => incremental::outcome(&self.incremental, self.samples).relative_to(&total),
+            Method::Incremental => return Ok(self.incremental_of(total)),
             Method::Descent => self.descend(&self.sums(sums, 0)?, &total, &mut arena)?,
             Method::SquareRoot => {
                 let sums = self.sums(sums, 0)?;
@@ -47,21 +41,43 @@ impl<R: Real> Accumulator<R> {
             // A stream has no leave-one-out errors.
             Method::Plain | Method::LeaveOneOut => total.plain(),
         };
+        Ok(self.finish(total, outcome))
+    }
+
+    /// The incremental estimate alone, for programs that need no other of a stream.
+    pub(crate) fn incremental(&self, sums: &[R]) -> Result<Estimate, Error> {
+        Ok(self.incremental_of(self.totals(sums)?))
+    }
+
+    fn incremental_of(&self, total: Totals<R>) -> Estimate {
+        let outcome = incremental::outcome(&self.incremental, self.samples).relative_to(&total);
+        self.finish(total, outcome)
+    }
+
+    fn totals(&self, sums: &[R]) -> Result<Totals<R>, Error> {
+        if sums.len() < self.len() {
+            return Err(Error::Memory);
+        }
+        if self.samples == 0 {
+            return Err(Error::NoSamples);
+        }
+        Totals::new(self, sums)
+    }
+
+    fn finish(&self, total: Totals<R>, outcome: Outcome<R>) -> Estimate {
         let samples = self.samples;
-        Ok(result::finish(
-            Summary {
-                samples: usize::try_from(samples).unwrap_or(usize::MAX),
-                channels: self.channels,
-                units: total.units,
-                plain_variance: total.variance,
-                colour: (self.config.color == Color::LuminanceRatio).then(|| {
-                    let inverse = 1.0 / samples as f64;
-                    let [red, green, blue, luminance] = self.colour.map(|sum| sum * inverse);
-                    ([red, green, blue], luminance)
-                }),
-            },
-            outcome,
-        ))
+        let summary = Summary {
+            samples: usize::try_from(samples).unwrap_or(usize::MAX),
+            channels: self.channels,
+            units: total.units,
+            plain_variance: total.variance,
+            colour: (self.config.color == Color::LuminanceRatio).then(|| {
+                let inverse = 1.0 / samples as f64;
+                let [red, green, blue, luminance] = self.colour.map(|sum| sum * inverse);
+                ([red, green, blue], luminance)
+            }),
+        };
+        result::finish(summary, outcome)
     }
 
     #[inline(never)]
