@@ -45,15 +45,18 @@ pub unsafe extern "C" fn nf_importance_cross_entropy(
             return Err(NF_ERR_RANGE);
         }
         finite(logits)?;
-        let items = || logits.chunks_exact(classes).zip(label).map(|(logits, &label)| (logits, label as usize));
+        let items = || (0..rows).zip(label).map(|(i, &label)| (row(logits, classes, i), label as usize));
         for (out, (logits, label)) in importance.into_iter().flatten().zip(items()) {
             *out = importance::cross_entropy(logits, label);
         }
         for (out, (logits, label)) in loss.into_iter().flatten().zip(items()) {
             *out = importance::cross_entropy_loss(logits, label);
         }
-        for (out, (logits, label)) in gradient.into_iter().flat_map(|all| all.chunks_exact_mut(classes)).zip(items()) {
-            importance::cross_entropy_gradient(logits, label, out).map_err(status_of)?;
+        if let Some(gradient) = gradient {
+            for (i, (logits, label)) in items().enumerate() {
+                let out = row_mut(gradient, classes, i);
+                importance::cross_entropy_gradient(logits, label, out).map_err(status_of)?;
+            }
         }
         Ok(())
     })())
@@ -84,9 +87,8 @@ pub unsafe extern "C" fn nf_importance_squared_error(
         }
         finite(output)?;
         finite(target)?;
-        let items = output.chunks(outputs.max(1)).zip(target.chunks(outputs.max(1)));
-        for (out, (output, target)) in importance.iter_mut().zip(items) {
-            *out = importance::squared_error(output, target);
+        for (i, out) in importance.iter_mut().enumerate() {
+            *out = importance::squared_error(row(output, outputs, i), row(target, outputs, i));
         }
         Ok(())
     })())
@@ -125,11 +127,24 @@ pub unsafe extern "C" fn nf_importance_gradient(
         let (gradient, importance) = unsafe { (convert::slice(gradient, len)?, convert::outputs(importance, all)?) };
         finite(gradient)?;
         // What else is refused is refused of the first item.
-        for (gradient, importance) in gradient.chunks(outputs).zip(importance.chunks_mut(techniques.max(1))) {
-            importance::nodes(gradient, split, importance).map_err(status_of)?;
+        for i in 0..rows {
+            let out = row_mut(importance, techniques, i);
+            importance::nodes(row(gradient, outputs, i), split, out).map_err(status_of)?;
         }
         Ok(())
     })())
+}
+
+// `chunks` divides by its width, which panics for zero: not every compiler sees that there is none.
+
+/// Row `i` of a matrix, which has it.
+fn row(matrix: &[f32], width: usize, i: usize) -> &[f32] {
+    matrix.get(i * width..).and_then(|rest| rest.get(..width)).unwrap_or_default()
+}
+
+/// Row `i` of a matrix, which has it.
+fn row_mut(matrix: &mut [f32], width: usize, i: usize) -> &mut [f32] {
+    matrix.get_mut(i * width..).and_then(|rest| rest.get_mut(..width)).unwrap_or_default()
 }
 
 /// Before anything is written.

@@ -81,7 +81,7 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
         Method::Robust => Some(Rule::Robust),
         Method::LeaveOneOut => Some(Rule::Single(config.ridge)),
         Method::LeastSquares => Some(Rule::LeastSquares(config.ridge)),
-        _ => None,
+        Method::Plain | Method::Incremental | Method::KFold | Method::Descent | Method::SquareRoot => None,
     };
     let outcome = match (rule, method) {
         (Some(rule), _) => fit(&design, config, &basis, plan, rule, &mut arena)?,

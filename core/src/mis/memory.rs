@@ -5,6 +5,7 @@
 //! All before the alphas are sums over the samples: they decay and are merged as they lie there.
 
 use super::MAX_TECHNIQUES;
+use crate::matrix::{RowsMut, rows, rows_mut};
 
 /// The f64 that [`OptimalMis`](super::OptimalMis) needs; 0 if `techniques` is not in 1..=16, `integrals` is 0, or no
 /// memory could hold them.
@@ -39,7 +40,7 @@ pub(super) struct SumsMut<'a> {
     pub(super) ratio: &'a mut [f64],
     pub(super) matrix: &'a mut [f64],
     /// Of each integral balance, progressive and moment.
-    pub(super) records: core::slice::ChunksExactMut<'a, f64>,
+    pub(super) records: RowsMut<'a, f64>,
 }
 
 /// The sums of one integral.
@@ -61,8 +62,7 @@ impl<'a> Sums<'a> {
     }
 
     pub(super) fn records(&self) -> impl Iterator<Item = Record<'a>> + use<'a> {
-        let records = self.records.chunks_exact(record_len(self.ratio.len()));
-        records.filter_map(|record| match record {
+        rows(self.records, record_len(self.ratio.len())).filter_map(|record| match record {
             &[balance, progressive, ref moment @ ..] => Some(Record { balance, progressive, moment }),
             _ => None,
         })
@@ -74,13 +74,12 @@ impl<'a> SumsMut<'a> {
         let (samples, rest) = sums.split_first_mut()?;
         let (ratio, rest) = rest.split_at_mut_checked(techniques)?;
         let (matrix, records) = rest.split_at_mut_checked(pairs(techniques))?;
-        Some(SumsMut { samples, ratio, matrix, records: records.chunks_exact_mut(record_len(techniques)) })
+        Some(SumsMut { samples, ratio, matrix, records: rows_mut(records, record_len(techniques)) })
     }
 }
 
-/// The remainder shows that the length is positive, as dividing memory into records requires.
 const fn record_len(techniques: usize) -> usize {
-    2 + techniques % (MAX_TECHNIQUES + 1)
+    2 + techniques
 }
 
 const fn pairs(techniques: usize) -> usize {

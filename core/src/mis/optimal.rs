@@ -16,6 +16,7 @@ use super::linear::{self, Factor, Matrix, Vector};
 use super::memory::{Sums, SumsMut, sums_len};
 use super::{MAX_TECHNIQUES, len};
 use crate::Error;
+use crate::matrix::{rows, rows_mut};
 
 /// The ridge of [`Solver::default`], in samples: less loses to the balance heuristic where a few samples must tell
 /// apart densities that bring little, more gives away gain where they bring much.
@@ -191,7 +192,7 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
             return Ok(());
         }
         let scale = root_counts(&self.counts);
-        for (row, record) in alpha.chunks_exact_mut(self.techniques.max(1)).zip(sums.records()) {
+        for (row, record) in rows_mut(alpha, self.techniques).zip(sums.records()) {
             let solved = factor.as_ref().map(|factor| factor.solve_scaled(&scale, record.moment, rounds));
             row.iter_mut().zip(solved.unwrap_or_default()).for_each(|(out, alpha)| *out = to_f32(alpha));
         }
@@ -273,7 +274,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
                 *cell += row * column;
             }
         }
-        let of_integrals = sums.records.zip(alphas.chunks_exact(techniques.max(1)));
+        let of_integrals = sums.records.zip(rows(alphas, techniques));
         for (&value, (record, alpha)) in value.iter().zip(of_integrals) {
             let [balance, progressive, moment @ ..] = record else { break };
             let value = f64::from(value) / sum;
@@ -317,7 +318,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         let (techniques, scale) = (self.techniques, root_counts(&self.counts));
         let (sums, alphas) = self.split_mut()?;
         let sums = Sums::of(sums, techniques).ok_or(Error::Memory)?;
-        for (alpha, record) in alphas.chunks_exact_mut(techniques.max(1)).zip(sums.records()) {
+        for (alpha, record) in rows_mut(alphas, techniques).zip(sums.records()) {
             let solved = factor.as_ref().map(|factor| factor.solve_scaled(&scale, record.moment, rounds));
             alpha.iter_mut().zip(solved.unwrap_or_default()).for_each(|(alpha, solved)| *alpha = solved);
         }
