@@ -67,7 +67,6 @@ pub mod real;
 pub mod recommend;
 pub mod rng;
 #[cfg(feature = "control-variate")]
-mod rows;
 #[cfg(feature = "sampler")]
 pub mod sampler;
 #[cfg(feature = "tile")]

@@ -15,6 +15,20 @@ pub(crate) const fn packed_len(order: usize) -> usize {
     order * (order + 1) / 2
 }
 
+/// Row `j` of a packed triangle, diagonal included.
+#[inline(always)]
+pub(crate) fn row<T>(triangle: &[T], j: usize) -> &[T] {
+    let start = packed_len(j);
+    triangle.get(start..start + j + 1).unwrap_or_default()
+}
+
+/// Row `j` of a packed triangle, diagonal included.
+#[inline(always)]
+pub(crate) fn row_mut<T>(triangle: &mut [T], j: usize) -> &mut [T] {
+    let start = packed_len(j);
+    triangle.get_mut(start..start + j + 1).unwrap_or_default()
+}
+
 /// One entry of a vector.
 #[inline]
 pub(crate) fn at<T: Copy + Default>(vector: &[T], j: usize) -> T {
@@ -98,8 +112,7 @@ impl<T, S: Deref<Target = [T]>> Triangle<S> {
     /// Row `j`, diagonal included.
     #[inline]
     pub(crate) fn row(&self, j: usize) -> &[T] {
-        let start = packed_len(j);
-        self.entries.get(start..start + j + 1).unwrap_or_default()
+        row(&self.entries, j)
     }
 
     /// Row `j` left of the diagonal.
@@ -173,8 +186,7 @@ impl<T, S: DerefMut<Target = [T]>> Triangle<S> {
     /// Row `j`, diagonal included.
     #[inline]
     pub(crate) fn row_mut(&mut self, j: usize) -> &mut [T] {
-        let start = packed_len(j);
-        self.entries.get_mut(start..start + j + 1).unwrap_or_default()
+        row_mut(&mut self.entries, j)
     }
 
     /// Entry (j, k), k <= j.

@@ -6,7 +6,7 @@
 use super::batch::{Batch, Eight, NONE, plus};
 use super::fit::Colours;
 use crate::lanes::{self, LANES};
-use crate::rows::row_at;
+use crate::matrix::row_at;
 
 /// One of so many pixels may be set aside at each end, rounded up.
 const SHARE: usize = 16;

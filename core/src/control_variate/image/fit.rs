@@ -10,9 +10,9 @@ use super::{Call, Layout};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
-use crate::linalg::{ldlt, packed_len, row, row_mut};
+use crate::linalg::ldlt;
+use crate::matrix::{packed_len, row, row_at, row_at_mut, row_mut, rows, rows_mut};
 use crate::real::Real;
-use crate::rows::{row_at, row_at_mut, rows, rows_mut};
 
 /// Ridge strength per sample if the caller gives none.
 const STRENGTH: f64 = 0.003;

@@ -4,7 +4,7 @@ use super::Layout;
 use super::pixels::{Image, Window};
 use crate::arena::Arena;
 use crate::error::Error;
-use crate::rows::{row_at, row_at_mut};
+use crate::matrix::{row_at, row_at_mut};
 use heapless::Vec;
 
 /// Windows that are worked on together hold at most so many pixels, or are eight.
