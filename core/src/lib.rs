@@ -66,7 +66,8 @@ pub mod real;
 #[cfg(feature = "control-variate")]
 pub mod recommend;
 pub mod rng;
-#[cfg(feature = "control-variate")]
+#[cfg(any(feature = "control-variate", feature = "mis"))]
+mod rows;
 #[cfg(feature = "sampler")]
 pub mod sampler;
 #[cfg(feature = "tile")]

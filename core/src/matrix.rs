@@ -7,6 +7,7 @@
 
 use crate::error::Error;
 use crate::real::Real;
+use crate::rows::{Rows, RowsMut, rows, rows_mut};
 use core::ops::{Deref, DerefMut};
 
 /// The count of numbers in a packed triangle of `order` rows.
@@ -27,6 +28,18 @@ pub(crate) fn row<T>(triangle: &[T], j: usize) -> &[T] {
 pub(crate) fn row_mut<T>(triangle: &mut [T], j: usize) -> &mut [T] {
     let start = packed_len(j);
     triangle.get_mut(start..start + j + 1).unwrap_or_default()
+}
+
+/// Row `index` of `width` entries.
+#[inline]
+pub(crate) fn row_at<T>(matrix: &[T], width: usize, index: usize) -> &[T] {
+    matrix.get(index * width..(index + 1) * width).unwrap_or_default()
+}
+
+/// Row `index` of `width` entries.
+#[inline]
+pub(crate) fn row_at_mut<T>(matrix: &mut [T], width: usize, index: usize) -> &mut [T] {
+    matrix.get_mut(index * width..(index + 1) * width).unwrap_or_default()
 }
 
 /// One entry of a vector.
@@ -296,72 +309,5 @@ impl<T, S: DerefMut<Target = [T]>> Panel<S> {
         T: 'a,
     {
         self.rows_mut().filter_map(move |row| row.get_mut(j))
-    }
-}
-
-// `chunks_exact` panics for a width of zero, which a matrix without columns has; these iterators then have no rows.
-
-/// Rows to read; see [`rows`].
-#[derive(Clone)]
-pub(crate) struct Rows<'a, T> {
-    rest: &'a [T],
-    width: usize,
-}
-
-/// Rows to write; see [`rows_mut`].
-pub(crate) struct RowsMut<'a, T> {
-    rest: &'a mut [T],
-    width: usize,
-}
-
-/// The whole rows of `width` entries.
-#[inline]
-pub(crate) fn rows<T>(matrix: &[T], width: usize) -> Rows<'_, T> {
-    Rows { rest: matrix, width }
-}
-
-/// The whole rows of `width` entries.
-#[inline]
-pub(crate) fn rows_mut<T>(matrix: &mut [T], width: usize) -> RowsMut<'_, T> {
-    RowsMut { rest: matrix, width }
-}
-
-/// Row `index` of `width` entries.
-#[inline]
-pub(crate) fn row_at<T>(matrix: &[T], width: usize, index: usize) -> &[T] {
-    matrix.get(index * width..(index + 1) * width).unwrap_or_default()
-}
-
-/// Row `index` of `width` entries.
-#[inline]
-pub(crate) fn row_at_mut<T>(matrix: &mut [T], width: usize, index: usize) -> &mut [T] {
-    matrix.get_mut(index * width..(index + 1) * width).unwrap_or_default()
-}
-
-impl<'a, T> Iterator for Rows<'a, T> {
-    type Item = &'a [T];
-
-    #[inline]
-    fn next(&mut self) -> Option<&'a [T]> {
-        if self.width == 0 {
-            return None;
-        }
-        let (row, rest) = self.rest.split_at_checked(self.width)?;
-        self.rest = rest;
-        Some(row)
-    }
-}
-
-impl<'a, T> Iterator for RowsMut<'a, T> {
-    type Item = &'a mut [T];
-
-    #[inline]
-    fn next(&mut self) -> Option<&'a mut [T]> {
-        if self.width == 0 || self.rest.len() < self.width {
-            return None;
-        }
-        let (row, rest) = core::mem::take(&mut self.rest).split_at_mut_checked(self.width)?;
-        self.rest = rest;
-        Some(row)
     }
 }

@@ -14,8 +14,9 @@ use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
 use crate::error::Error;
 use crate::lanes::Lanes;
 use crate::linalg::givens;
-use crate::matrix::{at, first_mut, from, halves_mut, row_at, row_at_mut, rows, rows_mut};
+use crate::matrix::{at, first_mut, from, halves_mut, row_at, row_at_mut};
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
 /// The most samples of an accumulator in `f32`.
 const NARROW_CAPACITY: u64 = 1 << 22;

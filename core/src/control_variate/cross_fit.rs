@@ -17,8 +17,9 @@ use super::trust::{self, Centre};
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
-use crate::matrix::{at, row_at, rows, rows_mut};
+use crate::matrix::{at, row_at};
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
 /// The number of candidates besides the plain mean.
 const FITS: usize = MIXED.len();

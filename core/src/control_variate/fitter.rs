@@ -13,8 +13,9 @@ use super::trust::{self, Centre};
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
-use crate::matrix::{at, first_mut, packed_len, rows, rows_mut};
+use crate::matrix::{at, first_mut, packed_len};
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
 /// Which fits are made and how one is made of them.
 #[derive(Clone, Copy, PartialEq)]

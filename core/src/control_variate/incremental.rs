@@ -14,8 +14,9 @@ use super::sums::Sums;
 use super::{ridge, trust};
 use crate::arena::Arena;
 use crate::basis::Basis;
-use crate::matrix::{row_at, rows_mut};
+use crate::matrix::row_at;
 use crate::real::Real;
+use crate::rows::rows_mut;
 
 /// Total ridge strengths: not per sample, as the fits of few samples need them most.
 const STRENGTHS: [f64; 2] = [0.1, 1.0];

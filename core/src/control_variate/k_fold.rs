@@ -15,8 +15,8 @@ use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::{LANES, Lanes};
-use crate::matrix::{rows, rows_mut};
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
 /// Numbers that [`estimate`] takes from its arena.
 pub(crate) fn size<R: Real>(config: &Config, columns: usize, channels: usize, n: usize) -> Option<usize> {

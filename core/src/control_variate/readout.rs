@@ -16,8 +16,9 @@ use super::sums::Sums;
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
-use crate::matrix::{row_at, rows};
+use crate::matrix::row_at;
 use crate::real::Real;
+use crate::rows::rows;
 
 impl<R: Real> Accumulator<R> {
     /// The estimate from all samples so far. More may be added afterwards.

@@ -16,7 +16,7 @@ use super::linear::{self, Factor, Matrix, Vector};
 use super::memory::{Sums, SumsMut, sums_len};
 use super::{MAX_TECHNIQUES, len};
 use crate::Error;
-use crate::matrix::{rows, rows_mut};
+use crate::rows::{rows, rows_mut};
 
 /// The ridge of [`Solver::default`], in samples: less loses to the balance heuristic where a few samples must tell
 /// apart densities that bring little, more gives away gain where they bring much.

@@ -14,8 +14,9 @@ use crate::arena::Arena;
 use crate::basis::MAX_DIMS;
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
-use crate::matrix::{packed_len, row_at, row_at_mut, rows, rows_mut};
+use crate::matrix::{packed_len, row_at, row_at_mut};
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
 /// A number for each of eight groups.
 pub(super) type Eight = Lanes<f32>;

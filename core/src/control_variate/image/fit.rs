@@ -11,8 +11,9 @@ use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
-use crate::matrix::{packed_len, row, row_at, row_at_mut, row_mut, rows, rows_mut};
+use crate::matrix::{packed_len, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 
 /// Ridge strength per sample if the caller gives none.
 const STRENGTH: f64 = 0.003;

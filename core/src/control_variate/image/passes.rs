@@ -10,8 +10,8 @@ use super::groups::{Group, Groups};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
-use crate::matrix::{rows, rows_mut};
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 use core::hint::black_box;
 
 impl Call<'_> {

@@ -7,8 +7,9 @@ use super::groups::Groups;
 use super::pixels::Rectangle;
 use crate::arena::Arena;
 use crate::error::Error;
-use crate::matrix::{row_at, row_at_mut, rows, rows_mut};
+use crate::matrix::{row_at, row_at_mut};
 use crate::real::Real;
+use crate::rows::{rows, rows_mut};
 use core::hint::black_box;
 
 /// Sums of a pixel that are not a channel's: the weight of the groups that it was in, of those with an error, and their
