@@ -17,11 +17,8 @@ function(add_errors label program pairs)
         -P "${CMAKE_CURRENT_SOURCE_DIR}/cmake/errors.cmake")
 endfunction()
 
-foreach(name IN ITEMS pbrt_sampler mitsuba_sampler)
-    add_program(renderers ${name} ../examples_c/renderers/${name}.cpp ${fast} -Wconversion -Wshadow)
-endforeach()
+add_program(renderers pbrt_sampler ../examples_c/renderers/pbrt_sampler.cpp ${fast} -Wconversion -Wshadow)
 add_errors(renderers pbrt_sampler independent:sampler,sampler:noisefloor)
-add_errors(renderers mitsuba_sampler independent:sampler,mean:noisefloor)
 
 add_program(train_mlp train_mlp ../examples_c/train_mlp.c ${fast})
 add_program(fit_polynomial fit_polynomial ../examples_c/fit_polynomial.c ${fast})
