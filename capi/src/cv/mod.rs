@@ -2,6 +2,7 @@
 
 mod accumulator;
 mod batch;
+mod check;
 mod config;
 mod descent;
 mod image;
@@ -9,6 +10,7 @@ mod samples;
 
 pub use accumulator::*;
 pub use batch::*;
+pub use check::*;
 pub use config::*;
 pub use descent::*;
 pub use image::*;

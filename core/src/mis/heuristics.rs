@@ -1,6 +1,6 @@
 //! The balance, power, cutoff and maximum heuristics (2.12-2.14).
 
-use super::MAX_TECHNIQUES;
+use super::limits::MAX_TECHNIQUES;
 use crate::Error;
 use crate::real::Real;
 

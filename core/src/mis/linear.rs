@@ -1,6 +1,6 @@
 //! Symmetric systems of at most 16 unknowns, two ways.
 
-use super::MAX_TECHNIQUES;
+use super::limits::MAX_TECHNIQUES;
 
 pub(crate) type Vector = [f64; MAX_TECHNIQUES];
 pub(crate) type Matrix = [Vector; MAX_TECHNIQUES];

@@ -4,7 +4,7 @@
 //!
 //! All before the alphas are sums over the samples: they decay and are merged as they lie there.
 
-use super::MAX_TECHNIQUES;
+use super::limits::MAX_TECHNIQUES;
 use crate::rows::{RowsMut, rows, rows_mut};
 
 /// The f64 that [`OptimalMis`](super::OptimalMis) needs; 0 if `techniques` is not in 1..=16, `integrals` is 0, or no

@@ -12,9 +12,9 @@
 //!
 //! the balance estimate less what the samples got wrong about the densities' integrals, each of which is 1.
 
+use super::limits::MAX_TECHNIQUES;
 use super::linear::{self, Factor, Matrix, Vector};
-use super::memory::{Sums, SumsMut, sums_len};
-use super::{MAX_TECHNIQUES, len};
+use super::memory::{Sums, SumsMut, len, sums_len};
 use crate::Error;
 use crate::rows::{rows, rows_mut};
 

@@ -1,6 +1,6 @@
 //! The `.nft` format, version 1: a header of 128 bytes, then the values; `core/tiles/README.md` has the table.
 
-use super::view::Shape;
+use super::shape::Shape;
 use crate::Error;
 use crate::checksum::Crc;
 

@@ -34,11 +34,15 @@ mod point;
 mod run;
 mod sampler;
 mod sequence;
+mod shape;
 mod site;
+mod state;
 mod view;
 
 pub use crate::pixels::{fill, fill_len};
 pub use builtin::Builtin;
 pub use format::{HEADER_BYTES, Header, KERNEL_BYTES, MAGIC, VERSION, quantize};
-pub use sampler::{Sampler, State};
-pub use view::{MAX_DIMS, MAX_FRAMES, MAX_SIZE, MAX_SPP, Shape, Tile};
+pub use sampler::Sampler;
+pub use shape::{MAX_DIMS, MAX_FRAMES, MAX_SIZE, MAX_SPP, Shape};
+pub use state::State;
+pub use view::Tile;

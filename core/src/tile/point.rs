@@ -1,9 +1,10 @@
 //! A sample that is more than stored values: scrambled, beyond the tile's samples, or of more dimensions than it has.
 
-use super::sampler::State;
 use super::sequence;
+use super::shape::Shape;
 use super::site::Site;
-use super::view::{Shape, Tile};
+use super::state::State;
+use super::view::Tile;
 use crate::hash::{GOLDEN, child, mix};
 
 /// Keeps domains of further dimensions apart from those of keys.

@@ -1,8 +1,9 @@
 //! Samples of one pixel that follow each other: what they share is computed once.
 
 use super::point::{Net, netted};
-use super::sampler::{Sampler, State};
+use super::sampler::Sampler;
 use super::site::Site;
+use super::state::State;
 use super::view::unit;
 use crate::pixels::PixelSampler;
 

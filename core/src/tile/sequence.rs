@@ -1,6 +1,6 @@
 //! What follows a tile's samples: a Sobol sequence, shuffled and scrambled for each domain.
 
-use super::view::MAX_DIMS;
+use super::shape::MAX_DIMS;
 use crate::hash::{GOLDEN, mix};
 
 /// Moves a pixel's first sample to where its sample `index`, at least 1, belongs.

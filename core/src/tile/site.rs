@@ -2,8 +2,9 @@
 
 use super::hash::{permute, permute_few, permute_octave, permute_octave_few};
 use super::net;
-use super::sampler::State;
-use super::view::{Shape, Tile};
+use super::shape::Shape;
+use super::state::State;
+use super::view::Tile;
 use crate::hash::mix;
 
 /// A pixel's place in a domain. Its samples cost little once it is known.

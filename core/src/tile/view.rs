@@ -1,70 +1,8 @@
-//! What a tile is: its shape, and a view of its values.
+//! A view of a tile's values.
 
+use super::format::Header;
+use super::shape::Shape;
 use crate::Error;
-use crate::tile::Header;
-
-/// The largest side, in pixels.
-pub const MAX_SIZE: u32 = 1024;
-/// The most samples of a pixel.
-pub const MAX_SPP: u32 = 256;
-/// The most dimensions of a sample.
-pub const MAX_DIMS: u32 = 8;
-/// The most frames.
-pub const MAX_FRAMES: u32 = 256;
-
-/// How many values a tile has, and how they are stored.
-///
-/// ```
-/// use noisefloor::tile::Shape;
-/// let shape = Shape { size: 128, spp: 4, dims: 2, frames: 1, bits: 16, progressive: false };
-/// assert!(shape.is_valid());
-/// assert_eq!(shape.payload_bytes(), 128 * 128 * 4 * 2 * 2);
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shape {
-    /// Pixels on a side: a power of two, 1 to [`MAX_SIZE`].
-    pub size: u32,
-    /// Samples of each pixel: a power of two, 1 to [`MAX_SPP`].
-    pub spp: u32,
-    /// Dimensions of each sample: 1 to [`MAX_DIMS`].
-    pub dims: u32,
-    /// Frames, which follow each other in time and then repeat: 1 to [`MAX_FRAMES`].
-    pub frames: u32,
-    /// Bits of each coordinate: 8 or 16.
-    pub bits: u32,
-    /// Whether the first 1, 2, 4, ... samples of a pixel are well distributed too, so that their order matters.
-    pub progressive: bool,
-}
-
-impl Shape {
-    /// Whether every field is in its range.
-    pub const fn is_valid(&self) -> bool {
-        self.size.is_power_of_two()
-            && self.size <= MAX_SIZE
-            && self.spp.is_power_of_two()
-            && self.spp <= MAX_SPP
-            && 0 < self.dims
-            && self.dims <= MAX_DIMS
-            && 0 < self.frames
-            && self.frames <= MAX_FRAMES
-            && (self.bits == 8 || self.bits == 16)
-    }
-
-    /// How many coordinates a tile of this shape has; meaningless unless [`is_valid`](Shape::is_valid).
-    pub const fn coordinates(&self) -> u64 {
-        // At most 2^(10 + 10 + 8 + 3 + 8) for a valid shape.
-        (self.size as u64)
-            .wrapping_mul(self.size as u64)
-            .wrapping_mul(self.spp as u64)
-            .wrapping_mul(self.dims as u64)
-            .wrapping_mul(self.frames as u64)
-    }
-
-    /// How many bytes its payload has; meaningless unless [`is_valid`](Shape::is_valid).
-    pub const fn payload_bytes(&self) -> u64 {
-        self.coordinates().wrapping_mul(self.bits as u64 / 8)
-    }
-}
 
 /// A view of a tile: it owns nothing, and is as cheap to copy as a slice.
 ///

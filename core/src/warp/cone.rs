@@ -3,7 +3,7 @@
 //! `cos_max` is the cosine of the half-angle: 1 is the direction +z alone, 0 the hemisphere, -1 every direction. What
 //! lies outside -1..=1 is clamped, and NaN counts as 1.
 
-use super::{direction, drop_and_turn, is_direction, unit, unit_square};
+use super::frame::{direction, drop_and_turn, is_direction, unit, unit_square};
 use core::f64::consts::TAU;
 use glam::{Vec2, Vec3};
 

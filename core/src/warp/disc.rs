@@ -1,6 +1,6 @@
 //! The disc: P. Shirley and K. Chiu, "A Low Distortion Map Between Disk and Square", 1997.
 
-use super::{TOLERANCE, unit, unit_square};
+use super::frame::{TOLERANCE, unit, unit_square};
 use core::f64::consts::{FRAC_1_PI, FRAC_PI_4};
 use glam::Vec2;
 

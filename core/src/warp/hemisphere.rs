@@ -1,7 +1,7 @@
 //! The hemisphere about +z, uniform and in proportion to the cosine with the pole.
 
 use super::disc::{concentric_disc_f64, concentric_disc_inverse};
-use super::{direction, drop_and_turn, is_direction, unit, unit_square};
+use super::frame::{direction, drop_and_turn, is_direction, unit, unit_square};
 use core::f64::consts::{FRAC_1_PI, TAU};
 use glam::{Vec2, Vec3};
 

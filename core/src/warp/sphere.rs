@@ -1,6 +1,6 @@
 //! The whole sphere of directions.
 
-use super::{direction, drop_and_turn, is_direction, unit, unit_square};
+use super::frame::{direction, drop_and_turn, is_direction, unit, unit_square};
 use core::f64::consts::TAU;
 use glam::{Vec2, Vec3};
 

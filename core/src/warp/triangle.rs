@@ -1,6 +1,6 @@
 //! The triangle: E. Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
 
-use super::{unit, unit_square};
+use super::frame::{unit, unit_square};
 use glam::{Vec2, Vec3};
 
 /// Barycentric coordinates of a uniform point of any triangle: at least 0, with sum 1. The point is

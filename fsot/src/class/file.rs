@@ -1,6 +1,7 @@
 //! Class files: classes written down by a person, in TOML or JSON.
 
-use super::{Class, ClassFunction};
+use super::function::ClassFunction;
+use super::weighted::{Class, check_weight};
 use crate::Error;
 use crate::error::Result;
 use crate::read;
@@ -74,7 +75,7 @@ impl ClassFile {
         }
         for entry in &file.class {
             entry.function.check(&entry.name)?;
-            super::check_weight(entry.weight, &entry.name)?;
+            check_weight(entry.weight, &entry.name)?;
         }
         Ok(file)
     }

@@ -1,6 +1,7 @@
 //! Point-set filtering (5.3.1): which points make a subclass.
 
-use super::{ClassCoordinates, ClassFunction};
+use super::function::ClassFunction;
+use super::weighted::ClassCoordinates;
 use std::ops::Range;
 
 /// A class function at all points of a set: neighbours of equal value are one run, so a box costs one entry and a ramp

@@ -1,6 +1,7 @@
 //! The class configurations of the chapter's figures.
 
-use super::{Class, ClassFunction, Step};
+use super::function::{ClassFunction, Step};
+use super::weighted::Class;
 use crate::target::{Target, Uniform};
 use std::sync::Arc;
 

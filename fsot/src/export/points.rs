@@ -3,7 +3,7 @@
 use crate::counted::counted;
 use crate::error::{Error, Result};
 use crate::points::Points;
-use crate::read;
+use crate::read::ending;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -68,7 +68,7 @@ pub(crate) struct Json {
 impl Format {
     /// By the ending of the name: `.csv`, `.json`; anything else is text.
     pub fn of(path: &Path) -> Format {
-        match read::ending(path).as_str() {
+        match ending(path).as_str() {
             "csv" => Format::Csv,
             "json" => Format::Json,
             _ => Format::Text,

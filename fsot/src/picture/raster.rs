@@ -1,7 +1,7 @@
 //! Drawing to pixels.
 
 use super::colour::{decode, encode};
-use super::{Blend, Drawing, Shape};
+use super::drawing::{Blend, Drawing, Shape};
 use crate::error::{Error, Result};
 use image::{ExtendedColorType, ImageEncoder, RgbImage};
 use rayon::prelude::*;

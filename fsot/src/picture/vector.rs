@@ -1,6 +1,6 @@
 //! Drawing to SVG.
 
-use super::{Blend, Colour, Drawing, Mark, Shape};
+use super::drawing::{Blend, Colour, Drawing, Mark, Shape};
 use svg::Document;
 use svg::node::element::{Circle, Group, Polygon, Rectangle};
 

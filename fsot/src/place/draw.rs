@@ -1,6 +1,6 @@
 //! Objects as trees.
 
-use super::Object;
+use super::object::Object;
 use crate::picture::{Colour, Drawing, Mark, Shape};
 
 /// What trees stand on.

@@ -2,8 +2,10 @@
 //! 5.15).
 
 mod draw;
+mod object;
 
 pub use draw::{colour_of, drawing};
+pub use object::Object;
 
 use crate::class::{Class, ClassCoordinates, ClassFunction};
 use crate::counted::counted;
@@ -34,19 +36,6 @@ pub struct Options {
     pub seed: u64,
     /// How long to optimise.
     pub quality: Quality,
-}
-
-/// A thing in its place.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct Object {
-    /// To the right, in [0, 1].
-    pub x: f32,
-    /// Downwards, in [0, 1].
-    pub y: f32,
-    /// The number of its colour, from 0.
-    pub color: usize,
-    /// Its size, in (0, 1); 1/2 for all if sizes are not asked for.
-    pub size: f32,
 }
 
 /// Objects about to be placed.

@@ -1,6 +1,6 @@
 //! Animated stippling: frames that share points (figure 5.13).
 
-use super::{Options, effort, inks, paper, radius};
+use super::options::{Options, effort, inks, paper, radius};
 use crate::class::{Class, ClassFunction, Step};
 use crate::counted::counted;
 use crate::error::{Error, Result};

@@ -1,65 +1,24 @@
 //! Stippling: pictures drawn with dots (5.5.1, figures 5.10-5.13).
 
 mod animation;
+mod options;
 mod separation;
 
 pub use animation::{Animation, Windows};
+pub use options::Options;
 pub use separation::{Ink, Tone, cmyk, grey, ink_for};
 
 use crate::class::{Class, ClassCoordinates, ClassFunction, Step};
 use crate::error::{Error, Result};
 use crate::export::points::Labels;
-use crate::optimize::{Domain, Problem, Quality};
-use crate::picture::{BLACK, Blend, Drawing, Photo, WHITE};
+use crate::optimize::{Domain, Problem};
+use crate::picture::{Drawing, Photo};
 use crate::points::{BELOW_ONE, Points};
 use crate::random::stream;
 use crate::target::image::{ImageTarget, spread};
+use options::{effort, inks, paper, radius};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// How a picture becomes dots.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
-    /// Dots of all inks.
-    pub points: usize,
-    /// Cyan, magenta, yellow and black dots instead of black ones.
-    pub cmyk: bool,
-    /// White dots on black paper instead of black ones on white; not with `cmyk`.
-    pub invert: bool,
-    /// What "half as dark" means.
-    pub tone: Tone,
-    /// The part of what is common to the three colours that black replaces, in [0, 1].
-    pub grey_component: f32,
-    /// Chooses all random numbers.
-    pub seed: u64,
-    /// How long to optimise: draft, standard and high are 400, 4,000 and 16,000 iterations here.
-    pub quality: Quality,
-}
-
-/// Pictures gain from more iterations than even sets: small features are the last to settle.
-fn effort(quality: Quality) -> Quality {
-    match quality {
-        Quality::Draft => Quality::Iterations(400),
-        Quality::Standard => Quality::Iterations(4000),
-        Quality::High => Quality::Iterations(16_000),
-        other => other,
-    }
-}
-
-impl Options {
-    /// Black dots at standard quality.
-    pub fn new(points: usize) -> Options {
-        Options {
-            points,
-            cmyk: false,
-            invert: false,
-            tone: Tone::Encoded,
-            grey_component: 1.0,
-            seed: 1,
-            quality: Quality::Standard,
-        }
-    }
-}
 
 /// The dots of one ink.
 #[derive(Clone, Debug, PartialEq)]
@@ -165,42 +124,6 @@ fn check_points(points: usize) -> Result<()> {
         1..=MAX_POINTS => Ok(()),
         _ => Err(Error::Input(format!("{points} dots cannot be made: give 1 to {MAX_POINTS}"))),
     }
-}
-
-fn paper(extent: [f32; 2], invert: bool, linear: bool) -> Drawing {
-    Drawing {
-        paper: if invert { BLACK } else { WHITE },
-        blend: if invert { Blend::Over } else { Blend::Multiply },
-        linear,
-        ..Drawing::new(extent)
-    }
-}
-
-/// The radius of dots that together have `ink_area` of the paper.
-fn radius(ink_area: f64, extent: [f32; 2], dots: usize) -> f32 {
-    let area = ink_area * f64::from(extent[0]) * f64::from(extent[1]);
-    (area / (dots as f64 * std::f64::consts::PI)).sqrt() as f32
-}
-
-/// The inks of a picture that has more than one tone.
-fn inks(photo: &Photo, options: &Options) -> Result<Vec<Ink>> {
-    let all = |black: bool| {
-        let end = if black { 0.0 } else { 1.0 };
-        photo.pixels.iter().all(|rgb| rgb.iter().all(|value| (value - end).abs() < 0.5 / 255.0))
-    };
-    for (black, name) in [(true, "black"), (false, "white")] {
-        if all(black) {
-            return Err(Error::Input(format!(
-                "the picture is {name} all over: there is nothing to show with dots; \
-                 for evenly spread points see `fsot points`"
-            )));
-        }
-    }
-    Ok(if options.cmyk {
-        cmyk(photo, options.tone, options.grey_component)
-    } else {
-        grey(photo, options.tone, options.invert)
-    })
 }
 
 /// Whole numbers that sum to `points`, proportional to the energies: rounded down, and the largest remainders rounded

@@ -1,7 +1,8 @@
 //! Densities given as functions.
 
+use super::cdf::bins_of_cdf;
+use super::distribution::{MAX_DIMS, MEAN_COMPONENT, Target};
 use super::image::ImageTarget;
-use super::{MAX_DIMS, MEAN_COMPONENT, Target, bins_of_cdf};
 use crate::Error;
 use crate::error::Result;
 use crate::points::BELOW_ONE;

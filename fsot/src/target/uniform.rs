@@ -1,7 +1,7 @@
 //! The uniform distribution, whose projections have closed forms or cheap exact tables.
 
 use super::cdf::bins_of_cdf;
-use super::{MAX_DIMS, MEAN_COMPONENT, Target};
+use super::distribution::{MAX_DIMS, MEAN_COMPONENT, Target};
 use noisefloor::rng::Rng;
 use std::sync::LazyLock;
 

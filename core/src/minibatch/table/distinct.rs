@@ -1,8 +1,9 @@
 //! Drawing without replacement.
 
 use super::draw::check_lengths;
+use super::importances::Table;
+use super::kernel::Kernel;
 use super::mixture::Mixture;
-use super::{Kernel, Table};
 use crate::Error;
 use crate::rng::Rng;
 

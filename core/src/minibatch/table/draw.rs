@@ -1,7 +1,10 @@
 //! Drawing batches with replacement.
 
+use super::block::{ARITY, Block};
+use super::importances::Table;
+use super::kernel::Kernel;
 use super::mixture::{Mixture, Ways};
-use super::{ARITY, Block, CHILDREN, Kernel, Levels, Node, Table, tree};
+use super::tree::{self, CHILDREN, Levels, Node};
 use crate::Error;
 use crate::rng::Rng;
 

@@ -3,7 +3,8 @@
 //! Little-endian: the magic "nf_table", version u32, items u32, scale f64, uniform fraction f32, CRC-32 of all other
 //! bytes u32, and an f32 for each item. The sums are made again: they are the same.
 
-use super::{Kernel, State, Table, is_scale};
+use super::importances::{State, Table, is_scale};
+use super::kernel::Kernel;
 use crate::Error;
 use crate::checksum::Crc;
 

@@ -1,8 +1,9 @@
 //! Several tables drawn as one: each process of a data-parallel trainer owns the table of its part of the data.
 
 use super::draw::{CHUNK, check_lengths};
+use super::importances::Table;
+use super::kernel::Kernel;
 use super::mixture::Mixture;
-use super::{Kernel, Table};
 use crate::Error;
 use crate::rng::Rng;
 

@@ -1,7 +1,9 @@
 //! Changing importances.
 
-use super::tree::{self, Levels};
-use super::{ARITY, Block, CHILDREN, Kernel, Node, Portable, Table, check_importances, power_of_two};
+use super::block::{ARITY, Block};
+use super::importances::{Table, check_importances, power_of_two};
+use super::kernel::{Kernel, Portable};
+use super::tree::{self, CHILDREN, Levels, Node};
 use crate::Error;
 
 /// How many changes go up the tree together.

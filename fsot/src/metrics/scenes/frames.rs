@@ -1,6 +1,6 @@
 //! Frames of one sample each, averaged over time.
 
-use super::{Energies, Plane, SceneTable, places};
+use super::{Energies, Frames, Plane, SceneTable, places};
 use crate::error::Result;
 use rayon::prelude::*;
 
@@ -8,18 +8,6 @@ use rayon::prelude::*;
 const NEWEST: f64 = 0.1;
 /// The frames that are looked at; before the first of them an average has settled.
 const SHOWN: [usize; 4] = [40, 47, 54, 61];
-
-/// How frames are averaged: the average so far, and a tenth of the new frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Frames {
-    /// The picture stands still.
-    Still,
-    /// The picture moves by a pixel each frame, and the average with it.
-    Moving,
-    /// It stands still, and the average is clamped to what the new frame has in the 3 x 3 pixels around, as temporal
-    /// anti-aliasing does.
-    Clamped,
-}
 
 impl SceneTable {
     /// The errors of averages of frames, each of one sample: sample t in frame t. Energies are relative to those of

@@ -9,8 +9,6 @@
 
 mod frames;
 
-pub use frames::Frames;
-
 use crate::error::{Error, Result};
 use crate::random::stream;
 use rayon::prelude::*;
@@ -66,6 +64,18 @@ pub enum Count {
     Adapted,
     /// 1, 2, 4 or 8 by chance.
     Mixed,
+}
+
+/// How frames are averaged: the average so far, and a tenth of the new frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Frames {
+    /// The picture stands still.
+    Still,
+    /// The picture moves by a pixel each frame, and the average with it.
+    Moving,
+    /// It stands still, and the average is clamped to what the new frame has in the 3 x 3 pixels around, as temporal
+    /// anti-aliasing does.
+    Clamped,
 }
 
 impl Plane {

@@ -1,6 +1,6 @@
 //! Starting positions: points spread along a space-filling curve.
 
-use super::ImageTarget;
+use super::density::ImageTarget;
 use crate::target::Target;
 use noisefloor::rng::Rng;
 

@@ -1,0 +1,290 @@
+//! The table: the memory of the importances and of their sums, and what they say.
+
+use super::block::{ARITY, Block};
+use super::kernel::{Kernel, Portable};
+use super::mixture::Mixture;
+use super::tree::{self, CHILDREN, Levels, MAX_BLOCKS, Node};
+use crate::Error;
+use core::marker::PhantomData;
+
+/// The uniform fraction of a new table: no weight above 5. Measured best on classification (.2 to .5 are close).
+pub const DEFAULT_UNIFORM_FRACTION: f32 = 0.2;
+
+/// How many f32 of importances a table for so many items needs: `items`, rounded up to blocks of 16. 0 if no memory has
+/// them.
+pub const fn importance_len(items: u32) -> usize {
+    let len = (items as u64).div_ceil(ARITY as u64) * ARITY as u64;
+    if len <= (isize::MAX as usize / size_of::<f32>()) as u64 { len as usize } else { 0 }
+}
+
+/// How many i64 of sums a table for so many items needs: one for 15 items or so. 0 if no memory has the importances.
+pub const fn sums_len(items: u32) -> usize {
+    Levels::new(importance_len(items) / ARITY).nodes() * CHILDREN
+}
+
+/// What a table knows besides its memory; see [`Table::resume`].
+///
+/// ```
+/// use noisefloor::minibatch::{Table, table};
+///
+/// let (mut importance, mut sums) = ([0.0; table::importance_len(4)], [0; table::sums_len(4)]);
+/// let state = Table::new(&mut importance, &mut sums, 4, None)?.state(); // with the memory, all there is of a table
+/// let table = Table::resume(&mut importance, &mut sums, state)?;
+/// assert_eq!((table.items(), table.total()), (4, 4.0));
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// What an importance is multiplied by to give its weight in the sums: a power of two.
+    pub scale: f64,
+    /// How many items there are.
+    pub items: u32,
+    /// The part of draws that are uniform, 0..=1.
+    pub uniform_fraction: f32,
+}
+
+/// Importances of the items of a data set, from which batches are drawn.
+///
+/// Item i is drawn with probability `p_i = (1 - d) q_i / sum q + d / N`, d being the uniform fraction: every weight
+/// 1 / (N p_i) is then at most 1 / d. Where all importances are 0 draws are uniform, or refused if d is 0.
+///
+/// The memory is [`importance_len`] values of f32 and [`sums_len`] of i64, borrowed or owned, 4.6 bytes per item in
+/// all. More memory is room for [`Table::append`].
+///
+/// ```
+/// use noisefloor::minibatch::{Table, table};
+/// use noisefloor::rng::Rng;
+///
+/// const ITEMS: u32 = 1000;
+/// let mut table = Table::new([0.0; table::importance_len(ITEMS)], [0; table::sums_len(ITEMS)], ITEMS, None)?;
+/// let mut rng = Rng::seed(1);
+/// let (mut index, mut weight) = ([0; 64], [0.0; 64]);
+/// table.draw(&mut rng, &mut index, Some(&mut weight))?;
+/// // Gradients times `weight`, averaged over the batch, estimate the gradient of the mean loss. Then what was learnt:
+/// let importance = index.map(|i| if i < 10 { 5.0 } else { 0.1 });
+/// table.update(&index, &importance, 0.3)?;
+/// # Ok::<(), noisefloor::Error>(())
+/// ```
+///
+/// `K` is what draws and updates consist of: [`Portable`], unless [`Table::with_kernel`] takes another.
+#[derive(Clone, Debug)]
+pub struct Table<I, S, K = Portable> {
+    pub(super) importance: I,
+    pub(super) sums: S,
+    /// How many blocks there is room for, and the tree over them.
+    pub(super) blocks: usize,
+    pub(super) levels: Levels,
+    pub(super) state: State,
+    kernel: PhantomData<K>,
+}
+
+impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
+    /// Takes up memory that a table of this state has used.
+    ///
+    /// Errors: [`Error::Memory`] if it is too small for the items, [`Error::Range`] for a state that no table has. The
+    /// contents are not checked: if they are not what that table left there, draws are still of items that exist, but
+    /// not as often as they should be, and weights are any numbers.
+    pub fn resume(importance: I, sums: S, state: State) -> Result<Self, Error> {
+        if state.items == 0 || !is_scale(state.scale) || !(0.0..=1.0).contains(&state.uniform_fraction) {
+            return Err(Error::Range);
+        }
+        // The most blocks that the sums are for, by bisection.
+        let fits = |blocks| Levels::new(blocks).nodes() * CHILDREN <= sums.as_ref().len();
+        let most = (importance.as_ref().len() / ARITY).min(MAX_BLOCKS);
+        let mut blocks = most;
+        if !fits(most) {
+            let mut not = most;
+            blocks = 0;
+            while not - blocks > 1 {
+                let middle = blocks + (not - blocks) / 2;
+                if fits(middle) { blocks = middle } else { not = middle }
+            }
+        }
+        if blocks * ARITY < state.items as usize {
+            return Err(Error::Memory);
+        }
+        Ok(Table { importance, sums, blocks, levels: Levels::new(blocks), state, kernel: PhantomData })
+    }
+
+    /// The same table, drawn from and updated by other code, which gives the same bits.
+    #[inline(always)]
+    pub fn with_kernel<K: Kernel>(self) -> Table<I, S, K> {
+        let Table { importance, sums, blocks, levels, state, .. } = self;
+        Table { importance, sums, blocks, levels, state, kernel: PhantomData }
+    }
+}
+
+impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
+    /// Sets the part of draws that are uniform over the items, 0..=1: no weight is above its reciprocal. 0 draws by
+    /// importance alone, 1 uniformly. Small fractions let weights explode when an importance has become out of date.
+    ///
+    /// Errors: [`Error::NotFinite`], [`Error::Range`].
+    pub fn set_uniform_fraction(&mut self, fraction: f32) -> Result<(), Error> {
+        if !fraction.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        if !(0.0..=1.0).contains(&fraction) {
+            return Err(Error::Range);
+        }
+        // Turns -0 into 0.
+        self.state.uniform_fraction = fraction + 0.0;
+        Ok(())
+    }
+
+    /// What is needed to take up the memory again.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// The number of items N.
+    pub fn items(&self) -> u32 {
+        self.state.items
+    }
+
+    /// How many items there is room for.
+    pub fn capacity(&self) -> u32 {
+        u32::try_from(self.blocks * ARITY).unwrap_or(u32::MAX)
+    }
+
+    /// The sum of all importances, as the tree has it: each block's sum is rounded, by 1 / 2^50 of all or so.
+    pub fn total(&self) -> f64 {
+        self.sum() as f64 / self.state.scale
+    }
+
+    /// The importance of an item; 0 for an item that does not exist.
+    pub fn importance(&self, item: u32) -> f32 {
+        let importance = self.importance.as_ref().get(item as usize);
+        if item < self.state.items { importance.copied().unwrap_or(0.0) } else { 0.0 }
+    }
+
+    /// The probability of drawing an item, as f32; 0 for an item that does not exist, or if nothing can be drawn.
+    pub fn probability(&self, item: u32) -> f32 {
+        let Ok(mixture) = self.mixture() else { return 0.0 };
+        if item < self.state.items { self.probability_in(&mixture, item) as f32 } else { 0.0 }
+    }
+
+    /// Writes the probabilities of some items, one every `stride` elements: with as many tables as `stride`, and the
+    /// k-th writing from element k on, the densities of all techniques lie together for each item.
+    ///
+    /// Errors: [`Error::Range`] for an item that does not exist, `stride` 0, or a `probability` that ends before its
+    /// last element; [`Error::NoSamples`] as for [`Table::draw`].
+    ///
+    /// ```
+    /// use noisefloor::minibatch::{Table, table};
+    ///
+    /// let memory = ([0.0; table::importance_len(4)], [0; table::sums_len(4)]);
+    /// let table = Table::new(memory.0, memory.1, 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
+    /// // Rows for two techniques, of which this is the first.
+    /// let mut rows = [0.0; 4];
+    /// table.probabilities(&[3, 0], 2, &mut rows)?;
+    /// assert_eq!((rows[0], rows[2]), (table.probability(3), table.probability(0)));
+    /// # Ok::<(), noisefloor::Error>(())
+    /// ```
+    pub fn probabilities(&self, index: &[u32], stride: usize, probability: &mut [f32]) -> Result<(), Error> {
+        let Some(last) = index.len().checked_sub(1) else { return Ok(()) };
+        let fits = last.checked_mul(stride).is_some_and(|last| last < probability.len());
+        if stride == 0 || !fits {
+            return Err(Error::Range);
+        }
+        self.check_items(index)?;
+        let mixture = self.mixture()?;
+        for (out, &item) in probability.iter_mut().step_by(stride).zip(index) {
+            *out = self.probability_in(&mixture, item) as f32;
+        }
+        Ok(())
+    }
+
+    pub(super) fn probability_in(&self, mixture: &Mixture, item: u32) -> f64 {
+        let item = item as usize;
+        let block = self.blocks().get(item / ARITY);
+        let q = self.importance.as_ref().get(item).copied().unwrap_or(0.0);
+        let (begin, end) = self.span(item / ARITY);
+        mixture.probability(q, block.map_or(0.0, Portable::total), end.wrapping_sub(begin))
+    }
+
+    /// Whether the table has these items: else [`Error::Range`].
+    #[inline(always)]
+    pub fn check_items(&self, index: &[u32]) -> Result<(), Error> {
+        let beyond = index.iter().fold(false, |beyond, &item| beyond | (item >= self.state.items));
+        if beyond { Err(Error::Range) } else { Ok(()) }
+    }
+
+    /// Where a block begins and ends among those of its node.
+    fn span(&self, block: usize) -> (i64, i64) {
+        self.nodes().get(block / CHILDREN).map_or((0, 0), |node| tree::span(node, block % CHILDREN))
+    }
+
+    pub(super) fn mixture(&self) -> Result<Mixture, Error> {
+        Mixture::of(self.sum(), self.state.items, f64::from(self.state.uniform_fraction))
+    }
+
+    /// The sum of all weights, below 2^62.
+    pub(super) fn sum(&self) -> i64 {
+        self.nodes().last().map_or(0, |root| root[CHILDREN - 1]).max(0)
+    }
+
+    /// The blocks there is room for.
+    #[inline(always)]
+    pub(super) fn blocks(&self) -> &[Block] {
+        let (blocks, _) = self.importance.as_ref().as_chunks();
+        blocks.get(..self.blocks).unwrap_or_default()
+    }
+
+    /// The nodes, those of the lowest level first; the root is the last.
+    #[inline(always)]
+    pub(super) fn nodes(&self) -> &[Node] {
+        let (nodes, _) = self.sums.as_ref().as_chunks();
+        nodes.get(..self.levels.nodes()).unwrap_or_default()
+    }
+}
+
+impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S> {
+    /// A table of `items` items, with these importances or, without, 1 for each, and [`DEFAULT_UNIFORM_FRACTION`].
+    ///
+    /// Errors: [`Error::Range`] for no items, another number of importances or a negative one; [`Error::NotFinite`] for
+    /// NaN or infinity; [`Error::NoSamples`] if all are 0; [`Error::Memory`] for less than [`importance_len`] and
+    /// [`sums_len`].
+    pub fn new(importance: I, sums: S, items: u32, values: Option<&[f32]>) -> Result<Self, Error> {
+        let state = State { scale: 1.0, items, uniform_fraction: DEFAULT_UNIFORM_FRACTION };
+        let mut table = Table::resume(importance, sums, state)?;
+        if let Some(values) = values {
+            if values.len() != items as usize {
+                return Err(Error::Range);
+            }
+            check_importances(values)?;
+            if values.iter().all(|&q| q == 0.0) {
+                return Err(Error::NoSamples);
+            }
+        }
+        let memory = table.importance.as_mut();
+        memory.fill(0.0);
+        match values {
+            Some(values) => memory.iter_mut().zip(values).for_each(|(to, &from)| *to = from + 0.0),
+            None => memory.iter_mut().take(items as usize).for_each(|q| *q = 1.0),
+        }
+        table.rebuild();
+        Ok(table)
+    }
+}
+
+/// Whether a table takes these importances: [`Error::NotFinite`], or [`Error::Range`] for a negative one.
+pub fn check_importances(values: &[f32]) -> Result<(), Error> {
+    // No early end: compilers check eight at a time.
+    let (finite, negative) =
+        values.iter().fold((true, false), |(finite, negative), &q| (finite & q.is_finite(), negative | (q < 0.0)));
+    match (finite, negative) {
+        (false, _) => Err(Error::NotFinite),
+        (true, true) => Err(Error::Range),
+        (true, false) => Ok(()),
+    }
+}
+
+/// 2^`exponent`, which must be in -1022..=1023.
+pub(super) fn power_of_two(exponent: i64) -> f64 {
+    f64::from_bits(((exponent + 1023) as u64 & 0x7ff) << 52)
+}
+
+/// Whether a scale is a power of two that [`Table`] may have chosen.
+pub(super) fn is_scale(scale: f64) -> bool {
+    (power_of_two(-300)..=power_of_two(300)).contains(&scale) && scale.to_bits() << 12 == 0
+}
