@@ -101,7 +101,7 @@ fn runs(extent: Extent) -> Vec<Run> {
 fn main() -> Result<()> {
     let options = Options::parse();
     let extent = options.extent();
-    let mut out = "study,sampler,classes,points,steps,seed,threads,seconds,part,of_points,w2,bound,\
+    let mut out = "study,set,sampler,classes,points,steps,seed,threads,seconds,part,of_points,w2,bound,\
                    discrepancy,discrepancy_relative,neighbour,\
                    half_planes,gaussians,half_planes_relative,gaussians_relative\n"
         .to_owned();
@@ -123,7 +123,7 @@ fn main() -> Result<()> {
                 let start = Instant::now();
                 let set = of(points, seed)?;
                 let seconds = start.elapsed().as_secs_f64();
-                write!(out, "peer,{name},1,{points},0,{seed},1,{seconds:.5e},")?;
+                write!(out, "peer,{name},{name},1,{points},0,{seed},1,{seconds:.5e},")?;
                 figures(&set, "all", &mut out)?;
             }
         }
@@ -148,8 +148,13 @@ fn optimised(run: &Run, seed: u64, out: &mut String) -> Result<()> {
     })?;
     let seconds = start.elapsed().as_secs_f64();
     let points = optimizer.points();
+    let set = match run.study {
+        "scaling" => "draft",
+        "million" => "few steps",
+        study => study,
+    };
     let head = format!(
-        "{},optimised,{count},{},{},{seed},{threads},{seconds:.5e},",
+        "{},{set},optimised,{count},{},{},{seed},{threads},{seconds:.5e},",
         run.study,
         run.points,
         optimizer.iterations()

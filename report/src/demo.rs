@@ -1,16 +1,16 @@
 //! `cargo xtask demo`: the path tracer with every sampler, with and without fits, as a picture and a table; then the
 //! trainers, as the report's chapter of gradients.
 
-use crate::chapters::{self, chapter::Chapter, chapter::row, figure::Figure, figure::Unit};
+use crate::chapters;
+use crate::chapters::chapter::{Chapter, row};
+use crate::chapters::figure::{Figure, Unit};
+use crate::chapters::measurement::Measurement;
 use crate::measure::filter::SIGMA;
 use crate::measure::metric::Reference;
 use crate::measure::output::Output;
 use crate::measure::part::Part;
-use crate::measure::renderer::{Job, Renderer, Sampler};
-use crate::measure::runs::{Runs, SEED};
-use crate::measure::samplers::Choice;
-use crate::measure::score::Score;
-use crate::measure::{progress, text};
+use crate::measure::renderer::{Job, Renderer, View};
+use crate::measure::{progress, score, text};
 use anyhow::{Context, Result};
 use clap::Args;
 use image::imageops::replace;
@@ -29,25 +29,26 @@ pub(crate) struct Options {
     out: Option<PathBuf>,
 }
 
-/// A scene of the path tracer: its name, what is integrated, the order of the fits, a sample's nanoseconds, roughly.
-const SCENES: [(&str, &str, u32, f64); 5] = [
-    ("direct", "the light's surface (2 dims)", 2, 300.0),
-    ("lens", "the lens and the light's surface (4 dims)", 2, 800.0),
-    ("motion", "time and the light's surface (3 dims)", 2, 600.0),
-    ("lights", "six lights' surfaces and their choice (3 dims)", 2, 350.0),
-    ("global", "three bounces (15 dims)", 1, 2900.0),
+/// A scene of the path tracer: its name, what is integrated, the order of the fits.
+const SCENES: [(&str, &str, u32); 5] = [
+    ("direct", "the light's surface (2 dims)", 2),
+    ("lens", "the lens and the light's surface (4 dims)", 2),
+    ("motion", "time and the light's surface (3 dims)", 2),
+    ("lights", "six lights' surfaces and their choice (3 dims)", 2),
+    ("global", "three bounces (15 dims)", 1),
 ];
 const SPP: [u32; 3] = [1, 4, 16];
-const SAMPLERS: [Choice; 3] = [Choice::Random, Choice::Sobol, Choice::Default];
+const SAMPLERS: [&str; 3] = ["random", "Owen-Sobol", "default"];
 const ESTIMATORS: [&str; 3] = ["mc", "robust", "shared"];
 
 /// What was rendered of one scene.
 struct Rendered {
     spp: u32,
-    choice: Choice,
+    sampler: &'static str,
     estimator: &'static str,
     image: Rgb32FImage,
-    score: Score,
+    /// Raw, and filtered.
+    errors: [f64; 2],
     nanoseconds: f64,
 }
 
@@ -75,32 +76,34 @@ pub(crate) fn run(options: &Options) -> Result<()> {
 }
 
 fn scenes(options: &Options, renderer: &Renderer, output: &Output) -> Result<()> {
-    let (size, reference_spp) = if options.quick { (128, 30) } else { (256, 100) };
-    let work = |spp: u32, cost: f64| (f64::from(size * size * spp) * cost * 1e-3) as u64 + 1;
-    let each = |cost| {
-        let renderings = SPP.iter().map(|&spp| SAMPLERS.len() as u64 * work(spp, cost + 2000.0));
-        2 * work(reference_spp, cost) + renderings.sum::<u64>()
-    };
-    let bar = progress::bar(SCENES.iter().map(|(.., cost)| each(*cost)).sum())?;
-    let runs = Runs::new(renderer, &bar, size)?;
-    let tiles = renderer.tiles()?;
+    let (size, reference) = if options.quick { (128, 30) } else { (256, 100) };
+    let bar = progress::bar((SCENES.len() * SPP.len() * SAMPLERS.len()) as u64)?;
+    let measurement = Measurement::new(renderer, &bar)?;
     let mut chapter = Chapter::new("Samplers and fits in a path tracer");
     let mut rows = Vec::new();
-    for (scene, domain, order, cost) in SCENES {
-        let reference = runs.reference(scene, reference_spp, work(reference_spp, cost))?;
+    for (scene, domain, order) in SCENES {
+        let view = View { scene, size, frame: 0, reference };
         let mut all = Vec::new();
-        for (spp, choice) in SPP.into_iter().flat_map(|spp| SAMPLERS.map(|choice| (spp, choice))) {
-            let Some(sampler) = choice.sampler(spp, &tiles) else { continue };
-            runs.say(format!("{scene}: {}", text::samples_per_pixel(spp)));
-            all.extend(render(&runs, &reference, (scene, order, work(spp, cost + 2000.0)), (spp, choice, sampler))?);
+        for (spp, name) in SPP.into_iter().flat_map(|spp| SAMPLERS.map(|name| (spp, name))) {
+            let sampler = renderer.sampler(name, spp).with_context(|| format!("the path tracer has no {name}"))?;
+            let job = Job { sampler, order, ..Job::new(view, spp, &ESTIMATORS) };
+            let outcome = measurement.run(&[job])?.pop().context("a rendering was lost")?;
+            for estimator in ESTIMATORS {
+                let of = outcome.of(estimator)?;
+                let image = of.images.first().context("no image")?.clone();
+                let errors = score::errors(&image, &outcome.reference);
+                let nanoseconds = of.timings.first().context("the path tracer printed no times")?.frame();
+                all.push(Rendered { spp, sampler: name, estimator, image, errors, nanoseconds });
+            }
+            bar.inc(1);
         }
         for one in &all {
             let [raw, filtered] = ratios(one, &all).map(|ratio| Figure::exact(ratio, Unit::Ratio));
             let time = Figure::exact(one.nanoseconds, Unit::Nanoseconds);
-            rows.push(row![scene, domain, one.spp, one.choice.label(), one.estimator, raw, filtered, time]);
+            rows.push(row![scene, domain, one.spp, one.sampler, one.estimator, raw, filtered, time]);
         }
         if scene == SCENES[0].0 {
-            output.write_picture("shared.png", &draw(&all, &reference))?;
+            output.write_picture("shared.png", &draw(&all, &*measurement.reference(view)?))?;
         }
     }
     bar.finish_and_clear();
@@ -133,31 +136,11 @@ fn index(folder: &Path) -> Result<()> {
     fs::write(folder.join("index.html"), html).context("cannot write index.html")
 }
 
-fn render(
-    runs: &Runs,
-    reference: &Reference,
-    (scene, order, work): (&str, u32, u64),
-    (spp, choice, sampler): (u32, Choice, Sampler),
-) -> Result<Vec<Rendered>> {
-    let (estimators, options) = (&ESTIMATORS, &[]);
-    let timings =
-        runs.render(&Job { scene, spp, order, seed: SEED, seeds: 1, frame: 0, sampler, estimators, options, work })?;
-    let one = |estimator: &'static str| {
-        let image = runs.image(scene, estimator)?;
-        let timing = timings.iter().find(|timing| timing.estimator == estimator);
-        let timing = timing.context("the path tracer printed no times")?;
-        let nanoseconds = timing.sampling_ns_per_sample + timing.estimating_ns_per_sample;
-        Ok(Rendered { spp, choice, estimator, score: Score::new(&image, reference), image, nanoseconds })
-    };
-    ESTIMATORS.into_iter().map(one).collect()
-}
-
 /// Raw and filtered errors over those of the plain mean of as many random samples.
 fn ratios(one: &Rendered, all: &[Rendered]) -> [f64; 2] {
-    let is_plain =
-        |other: &&Rendered| (other.spp, other.choice, other.estimator) == (one.spp, Choice::Random, ESTIMATORS[0]);
-    let plain = all.iter().find(is_plain).map_or(Score { raw: f64::NAN, filtered: f64::NAN }, |plain| plain.score);
-    [one.score.raw / plain.raw, one.score.filtered / plain.filtered]
+    let is_plain = |of: &&Rendered| (of.spp, of.sampler, of.estimator) == (one.spp, SAMPLERS[0], ESTIMATORS[0]);
+    let plain = all.iter().find(is_plain).map_or([f64::NAN; 2], |plain| plain.errors);
+    [one.errors[0] / plain[0], one.errors[1] / plain[1]]
 }
 
 const GAP: u32 = 8;
@@ -166,11 +149,11 @@ const BACKGROUND: Rgb<u8> = Rgb([24, 24, 28]);
 const PART: [u32; 2] = [108, 80];
 const CORNER: [f64; 2] = [0.17, 0.49];
 const ZOOM: u32 = 2;
-const COLUMNS: [(Choice, &str, &str); 4] = [
-    (Choice::Random, ESTIMATORS[0], "random"),
-    (Choice::Sobol, ESTIMATORS[0], "Owen-scrambled Sobol"),
-    (Choice::Default, ESTIMATORS[0], "noisefloor"),
-    (Choice::Default, ESTIMATORS[2], "noisefloor, shared fits"),
+const COLUMNS: [(&str, &str, &str); 4] = [
+    (SAMPLERS[0], ESTIMATORS[0], "random"),
+    (SAMPLERS[1], ESTIMATORS[0], "Owen-scrambled Sobol"),
+    (SAMPLERS[2], ESTIMATORS[0], "noisefloor"),
+    (SAMPLERS[2], ESTIMATORS[2], "noisefloor, shared fits"),
 ];
 
 /// Parts of a scene's images, each above its errors.
@@ -190,8 +173,8 @@ fn draw(all: &[Rendered], reference: &Reference) -> RgbImage {
         text::draw(&mut picture, left(index), GAP / 2 + text::LINE, name);
     }
     for (spp, y) in SPP.into_iter().zip((top..).step_by(row_height as usize)) {
-        let find = |(choice, estimator, _): (Choice, &str, &str)| {
-            all.iter().find(|one| (one.spp, one.choice, one.estimator) == (spp, choice, estimator))
+        let find = |(sampler, estimator, _): (&str, &str, &str)| {
+            all.iter().find(|one| (one.spp, one.sampler, one.estimator) == (spp, sampler, estimator))
         };
         let cells = COLUMNS.map(find);
         let scale = cells[0].map_or(1.0, |one| part.error_scale(&one.image));

@@ -62,7 +62,7 @@ pub(crate) fn hard(size: Extent) -> String {
             format!("{of};{name};{n};{};{};{images}\n", ratio.value, ratio.half_width)
         })
         .collect();
-    format!("of;scene;n;ratio;half_width;images\n{}", rows.concat())
+    format!("of;scene;n;ratio;half_width;repetitions\n{}", rows.concat())
 }
 
 /// Bias over the RMSE.
@@ -70,7 +70,7 @@ pub(crate) fn bias(size: Extent) -> String {
     let mut text = "samples;n;estimator;window;typical;largest;chance\n".to_owned();
     let mut row = |samples: &str, n: usize, estimator: &str, window: usize, bias: &Bias| {
         let Bias { typical, largest, chance } = bias;
-        let _ = writeln!(text, "{samples};{n};{estimator};{window};{typical};{largest};{chance}");
+        let _ = writeln!(text, "{samples};{n};{estimator};{window} x {window};{typical};{largest};{chance}");
     };
     for (side, repetitions) in [(4, 3000), (8, 800), (16, 200)] {
         let bias = shared_bias::bias(&Config::new(2, 3, 1), side, 1, size.of(repetitions), independent(side * side));

@@ -38,9 +38,9 @@ fn main() -> Result<()> {
     let all: &[u32] = &[1000, 10_000, 60_000, 1_000_000, 10_000_000];
     let sizes = extent.choose(&[1000, 30_000][..], all, all);
     let mut tables = Tables {
-        times: "items,cache,method,chunk,draw,update\n".to_owned(),
+        times: "items,cache,method,chunk,draw,update,step\n".to_owned(),
         items: "items,method,bytes,epsilon\n".to_owned(),
-        drift: "items,updates,method,changed,compared,risen,lost,error\n".to_owned(),
+        drift: "items,updates,method,changed,compared,risen,lost,risen_or_lost,error\n".to_owned(),
     };
     let memory = Memory::new();
     for &items in sizes {
@@ -54,7 +54,12 @@ fn main() -> Result<()> {
             "{method:28} {changed} of {compared} numbers changed, {risen} of importance 0 drawn, {lost} lost, \
              probabilities to {error:.1e}"
         );
-        writeln!(tables.drift, "{},{updates},{method},{changed},{compared},{risen},{lost},{error:e}", drift::ITEMS)?;
+        let wrong = risen + lost;
+        writeln!(
+            tables.drift,
+            "{},{updates},{method},{changed},{compared},{risen},{lost},{wrong},{error:e}",
+            drift::ITEMS
+        )?;
     }
     let Tables { times, items, drift } = tables;
     options.write("minibatch_table", &[("times.csv", times), ("items.csv", items), ("drift.csv", drift)])
@@ -97,7 +102,9 @@ fn measure(extent: Extent, items: u32, memory: &Memory, tables: &mut Tables) -> 
 fn record(items: u32, cache: &str, method: &dyn Method, times: &Times, csv: &mut String) -> Result<()> {
     let name = method.name();
     for (chunk, (draw, update)) in times.iter().enumerate() {
-        writeln!(csv, "{items},{cache},{name},{chunk},{draw:.3},{update:.3}")?;
+        // Microseconds.
+        let step = (draw + update) * BATCH as f64 / 1000.0;
+        writeln!(csv, "{items},{cache},{name},{chunk},{draw:.3},{update:.3},{step:.6}")?;
     }
     let draw = median(&mut times.iter().map(|time| time.0).collect::<Vec<_>>());
     let update = median(&mut times.iter().map(|time| time.1).collect::<Vec<_>>());

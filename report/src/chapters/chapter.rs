@@ -2,7 +2,6 @@
 
 use super::figure::Figure;
 use super::template;
-use crate::measure::table as measured;
 use anyhow::Result;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -50,7 +49,7 @@ impl<T: Into<Cell>> From<Option<T>> for Cell {
 
 #[derive(Serialize)]
 struct Table {
-    name: &'static str,
+    name: String,
     section: String,
     columns: Vec<String>,
     /// What stands in so many columns is aligned left.
@@ -63,11 +62,6 @@ macro_rules! row {
     ($($cell:expr),+ $(,)?) => { vec![$($crate::chapters::chapter::Cell::from($cell)),+] };
 }
 pub(crate) use row;
-
-/// A table's columns: `words`, then `more` that depend on what was measured.
-pub(crate) fn headings(words: &[&str], more: impl IntoIterator<Item = String>) -> Vec<String> {
-    words.iter().map(|&word| word.to_owned()).chain(more).collect()
-}
 
 /// A table's columns: one by one, or between bars.
 pub(crate) trait Columns {
@@ -98,9 +92,6 @@ impl<T: AsRef<str>> Columns for Vec<T> {
     }
 }
 
-/// A cell's figure, of the numbers that it sums up; none of no number.
-pub(crate) type Show = fn(&[f64]) -> Option<Figure>;
-
 #[derive(Default)]
 pub(crate) struct Chapter {
     title: String,
@@ -120,10 +111,6 @@ impl Chapter {
         self.section = if source.is_empty() { title.to_owned() } else { format!("{title} ({source})") };
     }
 
-    pub(crate) fn current_section(&self) -> &str {
-        &self.section
-    }
-
     /// A figure that the text quotes.
     pub(crate) fn quote(&mut self, name: impl Into<String>, figure: Figure) {
         self.quoted.insert(name.into(), figure);
@@ -137,12 +124,18 @@ impl Chapter {
     /// What stands in the first `words` of the columns is aligned left.
     pub(crate) fn table(
         &mut self,
-        name: &'static str,
+        name: impl Into<String>,
         columns: &(impl Columns + ?Sized),
         words: usize,
         rows: Vec<Vec<Cell>>,
     ) {
-        self.tables.push(Table { name, section: self.section.clone(), columns: columns.list(), words, rows });
+        self.tables.push(Table {
+            name: name.into(),
+            section: self.section.clone(),
+            columns: columns.list(),
+            words,
+            rows,
+        });
     }
 
     /// A table with a row for each of `down` and a column for each of `across`; the words of a row stand under `lead`.
@@ -169,28 +162,6 @@ impl Chapter {
         columns.extend(across.iter().map(|(heading, _)| heading.as_ref().to_owned()));
         self.table(name, &columns, words, rows);
         Ok(())
-    }
-
-    /// The same of a program's table: a row for each different cells of the columns `down` (each with its heading), a
-    /// column for each cell of `across`, whose word stands for the braces of a heading; of what is left, `of` is shown.
-    pub(crate) fn pivot(
-        &mut self,
-        name: &'static str,
-        table: &measured::Table,
-        down: &[(&str, &str)],
-        (across, heading): (&str, &str),
-        (of, show): (&str, Show),
-    ) -> Result<()> {
-        let keys: Vec<&str> = down.iter().map(|(column, _)| *column).collect();
-        let rows = table.kinds(&keys)?;
-        let rows = rows.into_iter().map(|kind| (kind.iter().copied().map(Cell::from).collect(), kind));
-        let columns = table.headings(across, |word| heading.replace("{}", word))?;
-        let lead: Vec<&str> = down.iter().map(|(_, heading)| *heading).collect();
-        self.grid(name, (down.len(), &lead.join(" | ")), rows, &columns, |kind, word| {
-            let mut wanted: Vec<(&str, &str)> = keys.iter().copied().zip(kind.iter().copied()).collect();
-            wanted.push((across, word));
-            Ok(show(&table.numbers_of(of, &wanted)?).into())
-        })
     }
 
     pub(crate) fn json(&self) -> Value {

@@ -5,13 +5,14 @@ mod cells;
 mod frontier;
 
 use super::prelude::*;
-use super::{Report, program};
+use super::program;
+use super::report::Report;
 use cells::{BASES, Cells, DEFAULT, ESTIMATORS, MEAN, Setting, Summary};
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     let tables = program::measure(report)?;
     let cells = Cells::new(&tables.read("grid")?, &tables.read("recommended")?)?;
-    let mut chapter = Chapter::new("Control variates: error against time");
+    let mut chapter = Chapter::new(report.names[1]);
     judge(&tables.read("must_reach")?)?.write(&mut chapter);
     frontier::write(&mut chapter, &cells);
     grid(&mut chapter, &cells)?;

@@ -1,38 +1,236 @@
-//! The chapter of the Embree harness.
+//! The chapter of the Embree harness: what report/chapters/embree_runs.toml renders, a row for each image; and what needs
+//! more than that.
 
-use super::Report;
+mod animation;
+mod never_worse;
+mod pixels;
+mod public;
+mod sign_flips;
+mod unbiased;
+
 use super::clock::Clock;
-use super::measurement::Measurement;
-use super::tables::{SECTIONS, Section};
-use crate::chapters::prelude::*;
-use crate::measure::progress;
-use crate::measure::renderer::{Renderer, threads};
+use super::measurement::{Measurement, Outcome};
+use super::plan::Plan;
+use super::prelude::*;
+use super::report::Report;
+use crate::measure::renderer::{Job, Renderer, Timing, View, threads};
+use crate::measure::{filter, progress, score};
+use indicatif::ProgressBar;
+use serde::Deserialize;
+use std::collections::{BTreeMap, BTreeSet};
+use xtask::paths;
 
-/// Units of the progress bar in a second.
-const SECOND: u64 = 1000;
+/// What is rendered.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Runs {
+    scenes: BTreeMap<String, Scene>,
+    names: BTreeMap<String, String>,
+    section: Vec<Section>,
+}
+
+/// What the report knows of a scene beyond what the program says.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Scene {
+    dims: u32,
+    lights: String,
+    reference: u32,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Section {
+    name: String,
+    /// Roughly.
+    seconds: u64,
+    runs: Vec<Run>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Run {
+    scenes: Vec<String>,
+    size: u32,
+    spp: Vec<u32>,
+    #[serde(default = "random")]
+    samplers: Vec<String>,
+    #[serde(default = "second")]
+    order: Vec<u32>,
+    /// Words of the command line.
+    #[serde(default)]
+    variants: BTreeMap<String, Vec<String>>,
+    /// Samples of the reference, over what the scene's references have.
+    #[serde(default = "once")]
+    precision: u32,
+    #[serde(default)]
+    side_by_side: bool,
+    estimators: Vec<String>,
+}
+
+fn random() -> Vec<String> {
+    vec!["random".to_owned()]
+}
+
+fn second() -> Vec<u32> {
+    vec![2]
+}
+
+fn once() -> u32 {
+    1
+}
+
+/// What all sections have.
+struct Harness<'a> {
+    plan: &'a Plan,
+    runs: &'a Runs,
+    measurement: Measurement<'a>,
+}
+
+/// What comes after the runs, and roughly its seconds.
+const FURTHER: [u64; 3] = [55, 28, 23];
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     let program = xtask::embree::build()?;
-    super::tables::public::build()?;
+    public::build()?;
     report.compiled();
-    let renderer = Renderer::new(program);
-    let bar = progress::bar(SECTIONS.iter().map(|(seconds, _)| seconds * SECOND).sum())?;
-    let measurement = Measurement::new(report.plan, &renderer, &bar)?;
-    let mut chapter = Chapter::new("Control variates and tiles in an Embree path tracer");
-    chapter.setting("threads", threads());
-    chapter.setting("seeds", report.plan.seeds);
-    chapter.setting("pixels on a side, estimators", report.plan.size);
-    chapter.setting("pixels on a side, samplers", report.plan.tile_size);
-    let (mut targets, mut start) = (Targets::default(), 0);
-    for (seconds, section) in SECTIONS {
-        let (clock, end) = (Clock::start(), start + seconds * SECOND);
-        measurement.begin_section(start, end);
-        section(&mut Section { measurement: &measurement, chapter: &mut chapter, targets: &mut targets })?;
-        // Where there is no terminal, and so no bar, this alone tells how far it is.
-        bar.suspend(|| println!("   {}: {:.0} s", chapter.current_section(), clock.seconds()));
-        start = end;
+    let text = report.plan.filled(&paths::read("report/chapters/embree_runs.toml")?);
+    let runs: Runs = toml::from_str(&text).context("report/chapters/embree_runs.toml")?;
+    let bar = progress::bar(runs.section.iter().map(|of| of.seconds).chain(FURTHER).sum())?;
+    let renderer = Renderer::new(program)?;
+    let harness = Harness { plan: report.plan, runs: &runs, measurement: Measurement::new(&renderer, &bar)? };
+    let mut all = Table::new("runs", COLUMNS);
+    for section in &runs.section {
+        timed(&bar, section.seconds, &section.name, || {
+            section.runs.iter().try_for_each(|run| harness.measure(section, run, &mut all))
+        })?;
     }
+    let [of_animation, of_pixels, of_bias] = FURTHER;
+    let animation = timed(&bar, of_animation, "animation", || animation::measure(&harness))?;
+    let table = |name: &str| Ok(if name == "runs" { all.clone() } else { animation.clone() });
+    let (mut chapter, mut targets) = report.described(&table)?;
+    chapter.setting("threads", threads());
+    chapter.setting("relative errors are limited to", score::LIMIT);
+    chapter.setting("filter's standard deviation, pixels", filter::SIGMA);
+    chapter.setting("weight of the newest frame", animation::ALPHA);
+    chapter.setting("samples per pixel of the tile whose settings were chosen", animation::CHOSEN);
+    timed(&bar, of_pixels, "pixels", || never_worse::write(&harness, &mut chapter, &mut targets))?;
+    timed(&bar, of_bias, "bias", || unbiased::write(&harness, &mut chapter, &mut targets))?;
     bar.finish_and_clear();
     targets.write(&mut chapter);
     Ok(chapter)
+}
+
+/// Where there is no terminal, and so no bar, the line that it says tells how far it is.
+fn timed<T>(bar: &ProgressBar, seconds: u64, name: &str, measure: impl FnOnce() -> Result<T>) -> Result<T> {
+    let clock = Clock::start();
+    let measured = measure()?;
+    bar.suspend(|| println!("   {name}: {:.0} s", clock.seconds()));
+    bar.inc(seconds);
+    Ok(measured)
+}
+
+const COLUMNS: &str = "section | scene | dims | lights | spp | sampler | variant | estimator | order | error | upper | \
+                       lower | raw | filtered | same time | raw same time | frame | ns | overhead | added";
+
+impl<'a> Harness<'a> {
+    /// `precision`: samples of the reference, over what the scene's references have.
+    fn view<'b>(&self, scene: &'b str, size: u32, precision: u32) -> Result<View<'b>> {
+        let known = self.runs.scenes.get(scene);
+        let of = known.with_context(|| format!("embree_runs.toml knows no scene `{scene}`"))?;
+        let factor = precision * self.plan.of("reference_factor");
+        // Many pixels, few samples: the reference's error matters less.
+        let is_large = size >= self.plan.of("tile_size");
+        let divisor = self.plan.of("reference_divisor") * if is_large { 4 } else { 1 };
+        Ok(View { scene, size, frame: 0, reference: (factor * of.reference / divisor).max(16) })
+    }
+
+    fn measure(&self, section: &Section, run: &'a Run, all: &mut Table) -> Result<()> {
+        let public = public::Public::new(&self.measurement);
+        let estimators: Vec<&str> = run.estimators.iter().map(String::as_str).collect();
+        let plain = [(String::new(), Vec::new())].into();
+        let variants = if run.variants.is_empty() { &plain } else { &run.variants };
+        for scene in self.plan.some(&run.scenes) {
+            let view = self.view(scene, run.size, run.precision)?;
+            for &spp in &run.spp {
+                let mut jobs: Vec<(Job, [String; 3])> = Vec::new();
+                for sampler in &run.samplers {
+                    let of = match public.file(sampler, spp, self.runs.scenes[scene].dims)? {
+                        Some(file) => Some(file),
+                        None => self.measurement.renderer.sampler(sampler, spp),
+                    };
+                    // There is no such tile.
+                    let Some(of) = of else { continue };
+                    for (variant, options) in variants {
+                        for &order in &run.order {
+                            let mut job = Job { order, sampler: of.clone(), ..Job::new(view, spp, &estimators) };
+                            job.seeds = self.plan.of("seeds");
+                            job.options = options.iter().map(String::as_str).collect();
+                            jobs.push((job, [sampler.clone(), variant.clone(), order.to_string()]));
+                        }
+                    }
+                }
+                let (jobs, words): (Vec<Job>, Vec<_>) = jobs.into_iter().unzip();
+                let outcomes: Vec<Outcome> = match run.side_by_side {
+                    true => self.measurement.run(&jobs)?,
+                    false => jobs.chunks(1).map(|job| self.measurement.run(job)).collect::<Result<Vec<_>>>()?.concat(),
+                };
+                let mut known = BTreeSet::new();
+                for (outcome, [sampler, variant, order]) in outcomes.iter().zip(words) {
+                    let Scene { dims, lights, .. } = &self.runs.scenes[scene];
+                    let place = [&section.name, scene, &dims.to_string(), lights, &spp.to_string(), &sampler, &variant];
+                    self.record(outcome, &place.map(String::as_str), &order, &mut known, all);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A row for each image. The first estimator has no order and nothing that it is compared with; it is the same in
+    /// every run of the same samples, and stands there once.
+    fn record(&self, outcome: &Outcome, place: &[&str], order: &str, known: &mut BTreeSet<String>, all: &mut Table) {
+        let reference = &*outcome.reference;
+        let relative = |one: &Timing, plain: &Timing| one.total_seconds / plain.total_seconds;
+        let errors = outcome.renderings.iter().map(|of| of.images.iter().map(|image| Errors::new(reference, image)));
+        let errors: Vec<Vec<Errors>> = errors.map(Iterator::collect).collect();
+        let seen: Vec<Vec<[f64; 2]>> = outcome.renderings.iter().map(|of| of.seen(reference)).collect();
+        for (index, of) in outcome.renderings.iter().enumerate() {
+            let name = self.runs.names.get(&of.estimator).unwrap_or(&of.estimator).as_str();
+            if index == 0 && !known.insert(place.join(", ")) {
+                continue;
+            }
+            for (seed, Errors { all: error, upper, lower }) in errors[index].iter().enumerate() {
+                let ([raw, filtered], time) = (seen[index][seed], &of.timings[seed]);
+                let plain = &outcome.renderings[0].timings[seed];
+                let added = time.estimating_ns_per_sample - plain.estimating_ns_per_sample;
+                let same_time =
+                    [error / errors[0][seed].all, raw / seen[0][seed][0]].map(|of| of * relative(time, plain));
+                let compared = [same_time[0], same_time[1], time.frame(), time.estimating_ns_per_sample]
+                    .into_iter()
+                    .chain([100.0 * added / plain.frame(), added])
+                    .enumerate()
+                    .map(|(at, number)| if index == 0 && at != 2 { String::new() } else { number.to_string() });
+                let numbers = [*error, *upper, *lower, raw, filtered].map(|number| number.to_string());
+                let words = [name, if index == 0 { "-" } else { order }];
+                let words = place.iter().chain(&words).map(|&word| word.to_owned());
+                all.push(words.chain(numbers).chain(compared).collect());
+            }
+        }
+    }
+}
+
+/// relMSE of an image, and what its upper and its lower half add to it.
+struct Errors {
+    all: f64,
+    upper: f64,
+    lower: f64,
+}
+
+impl Errors {
+    fn new(reference: &crate::measure::metric::Reference, image: &image::Rgb32FImage) -> Self {
+        let terms = reference.terms(image);
+        let (upper, lower) = terms.split_at(terms.len() / 2);
+        let [upper, lower] = [upper, lower].map(|half| half.iter().sum::<f64>());
+        Self { all: reference.rel_mse(image), upper, lower }
+    }
 }

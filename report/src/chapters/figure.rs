@@ -1,12 +1,13 @@
 //! A measured figure: its value, and its confidence interval, as text and as JSON.
 
 use super::statistics::Estimate;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a figure counts, and how it is written.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 pub(crate) enum Unit {
     /// One error, time or variance over another.
+    #[default]
     Ratio,
     /// As the thesis prints it.
     RelMseE3,
@@ -85,26 +86,6 @@ impl Figure {
     /// The value alone is written; its interval is in the JSON.
     pub(crate) fn brief(estimate: Estimate, unit: Unit) -> Self {
         Self { text: unit.text(estimate.value), ..Self::new(estimate, unit) }
-    }
-
-    /// The median of a figure that was measured several times; none of one that never was.
-    pub(crate) fn median(values: &[f64], unit: Unit) -> Option<Self> {
-        (!values.is_empty()).then(|| Self::new(Estimate::median(values), unit))
-    }
-
-    /// The mean, as [`Figure::brief`].
-    pub(crate) fn mean(values: &[f64], unit: Unit) -> Option<Self> {
-        (!values.is_empty()).then(|| Self::brief(Estimate::mean(values), unit))
-    }
-
-    /// What was measured once, if it is a number.
-    pub(crate) fn once(values: &[f64], unit: Unit) -> Option<Self> {
-        values.first().filter(|value| value.is_finite()).map(|&value| Self::exact(value, unit))
-    }
-
-    /// a / b, pair by pair.
-    pub(crate) fn ratio(a: &[f64], b: &[f64]) -> Self {
-        Self::new(Estimate::ratio(a, b), Unit::Ratio)
     }
 
     pub(crate) fn count(count: usize) -> Self {

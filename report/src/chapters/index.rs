@@ -4,8 +4,9 @@
 use super::chapter::{Cell, Chapter, row};
 use super::figure::{Figure, Unit};
 use super::machine::Machine;
+use super::plan::{Extent, Plan};
 use super::template::{self, list};
-use super::{CHAPTERS, Entry};
+use super::{described::Description, list::chapters as all_chapters};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -42,16 +43,19 @@ const BESIDE: (&str, &str, &str) = ("sizes.md", "Code size and stack on other ta
 
 /// The index of the chapters in `folder`, and of one that has just been written and is not there yet.
 pub(super) fn write(folder: &Path, new: Option<(&str, &Value)>) -> Result<String> {
-    let mut all: Vec<Summary> = Vec::new();
-    for name in CHAPTERS.iter().flat_map(Entry::file_names) {
-        let json = match new {
-            Some((written, json)) if written == name => Some(json.clone()),
-            // A chapter that was never written is not there.
-            _ => fs::read_to_string(folder.join(format!("{name}.json")))
-                .ok()
-                .and_then(|text| serde_json::from_str(&text).ok()),
-        };
-        all.extend(json.and_then(|json| serde_json::from_value(json).ok()));
+    let (mut all, plan): (Vec<Summary>, _) = (Vec::new(), Plan::new(Extent::Full)?);
+    for (name, _) in all_chapters(&[]) {
+        let description = Description::read(name, &plan)?;
+        for name in [Some(name), description.full.as_ref().map(|full| full.name.as_str())].into_iter().flatten() {
+            let json = match new {
+                Some((written, json)) if written == name => Some(json.clone()),
+                // A chapter that was never written is not there.
+                _ => fs::read_to_string(folder.join(format!("{name}.json")))
+                    .ok()
+                    .and_then(|text| serde_json::from_str(&text).ok()),
+            };
+            all.extend(json.and_then(|json| serde_json::from_value(json).ok()));
+        }
     }
     let mut index = Chapter::new("Measurements");
     chapters(&mut index, &all);

@@ -1,8 +1,7 @@
 //! The chapter of instruction counts.
 
-use super::Report;
-use crate::chapters::prelude::*;
-use anyhow::bail;
+use super::prelude::*;
+use super::report::Report;
 use xtask::{instructions, library, tools};
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
@@ -13,7 +12,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     report.compiled();
     let counted = instructions::count(&program)?;
 
-    let mut chapter = Chapter::new("Instructions of the hottest functions");
+    let mut chapter = Chapter::new(report.names[1]);
     chapter.setting("compiler", counted.compiler.as_str());
     chapter.setting("vector units", counted.vector_units.as_str());
     let rows = counted.counts.into_iter().map(|count| -> Vec<Cell> {

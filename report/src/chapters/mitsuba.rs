@@ -1,13 +1,9 @@
 //! The chapter of Mitsuba 3, which integrations/mitsuba/measure.py measures.
 
-use super::Report;
-use super::chapter::{Cell, Chapter, headings, row};
-use super::figure::{Figure, Unit};
-use super::statistics::Estimate;
-use super::targets::Targets;
+use super::prelude::*;
+use super::report::Report;
 use crate::measure::running;
-use crate::measure::table::Table;
-use anyhow::{Context, Result, anyhow};
+use anyhow::anyhow;
 use std::path::PathBuf;
 use xtask::mitsuba;
 
@@ -15,9 +11,6 @@ const PLAIN: &str = "independent";
 const DEFAULT: &str = "noisefloor";
 /// Of gradients, as integrations/mitsuba/README.md recommends.
 const SCRAMBLED: &str = "noisefloor, scrambled";
-/// For denoisers, as docs/choosing.md recommends.
-const DENOISED: &str = "noisefloor";
-const MEASURES: [(&str, &str); 3] = [("raw", "Raw"), ("filtered", "Filtered"), ("denoised", "After OIDN")];
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     // What was measured before, by hand: it takes a quarter of an hour.
@@ -29,141 +22,48 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
         report.compiled();
         let mut command = mitsuba::command(python);
         command.arg("integrations/mitsuba/measure.py").arg(&folder);
-        if report.plan.option() == Some("--quick") {
+        if report.plan.is_quick() {
             command.args("--size 32 --seeds 3 --many 2 --reference 512 --frames 16 --rounds 3".split(' '));
         }
         running::run(command, |_| Ok(()))?;
     }
-    let errors = Table::read(&folder.join("errors.csv"), ';')?;
-    let gradients = Table::read(&folder.join("gradients.csv"), ';')?;
     let picture = image::open(folder.join("pictures.png")).context("measure.py wrote no picture")?;
     report.output.write_picture("mitsuba.png", &picture.to_rgb8())?;
-    let mut chapter = Chapter::new("Samplers in Mitsuba 3");
-    let mut targets = Targets::default();
-    chapter.setting("seeds", errors.only("spp", "1")?.distinct("seed")?.len());
-    chapter.setting("seeds of 64 samples", errors.only("spp", "64")?.distinct("seed")?.len());
-    for (measure, title) in MEASURES {
-        chapter.section(title, "");
-        ratios(&errors, measure, &mut chapter, &mut targets)?;
-    }
-    chapter.section("Time", "");
-    times(&Table::read(&folder.join("times.csv"), ';')?, &mut chapter, &mut targets)?;
-    chapter.section("Image fits", "");
-    fits(&Table::read(&folder.join("fits.csv"), ';')?, &mut chapter)?;
+    let table = |name: &str| Table::read(&folder.join(format!("{name}.csv")), ';');
+    let (mut chapter, mut targets) = report.described(&table)?;
+    let errors = table("errors")?;
+    over_scenes("raw error over the best's, geometric mean", &errors, "raw", &mut targets, (Side::AtMost, 1.03))?;
+    let statement = "error after OIDN over the best's, geometric mean";
+    over_scenes(statement, &errors, "denoised", &mut targets, (Side::Below, 1.0))?;
     chapter.section("Gradients", "");
-    derivatives(&gradients, &mut chapter, &mut targets)?;
+    derivatives(&table("gradients")?, &mut chapter, &mut targets)?;
     targets.write(&mut chapter);
     Ok(chapter)
 }
 
-/// Each over the mean of another's: their mean is a ratio of means, whose interval is that of the numerator's over seeds.
-fn over(own: &[f64], other: &[f64]) -> Vec<f64> {
-    let mean = other.iter().sum::<f64>() / other.len() as f64;
-    own.iter().map(|value| value / mean).collect()
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
-fn ratios(table: &Table, measure: &'static str, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
-    let (scenes, counts) = (table.distinct("scene")?, table.distinct("spp")?);
-    let samplers: Vec<&str> = table.distinct("sampler")?.into_iter().filter(|&name| name != PLAIN).collect();
-    let mut rows = Vec::new();
-    for &spp in &counts {
-        let mut of_scenes: Vec<Vec<f64>> = Vec::new();
-        for &scene in &scenes {
-            // Seed by seed.
+/// The geometric mean over all scenes of the error over that of Mitsuba's best sampler, seed by seed.
+fn over_scenes(statement: &str, table: &Table, measure: &str, targets: &mut Targets, bound: (Side, f64)) -> Result<()> {
+    let samplers = table.distinct("sampler")?;
+    for spp in table.distinct("spp")? {
+        let mut ratios: Vec<Vec<f64>> = Vec::new();
+        for scene in table.distinct("scene")? {
             let of = |sampler| table.numbers_of(measure, &[("scene", scene), ("spp", spp), ("sampler", sampler)]);
-            let plain = of(PLAIN)?;
-            let mut cells: Vec<Cell> = row![scene, spp, Figure::exact(Estimate::mean(&plain).value, Unit::Error)];
-            let mut best: Option<(f64, Vec<f64>)> = None;
-            for &sampler in &samplers {
-                let own = of(sampler)?;
-                if own.is_empty() {
-                    cells.push(Cell::Missing);
-                    continue;
-                }
-                let ratio = Estimate::mean(&over(&own, &plain));
-                cells.push(Figure::new(ratio, Unit::Ratio).into());
-                if !sampler.starts_with(DEFAULT) && best.as_ref().is_none_or(|(value, _)| ratio.value < *value) {
-                    best = Some((ratio.value, own));
-                }
-            }
-            rows.push(cells);
-            // Independent samples are one of Mitsuba's samplers, too.
-            let best = best.filter(|(value, _)| *value < 1.0).map_or(plain, |(_, own)| own);
-            let own = of(if measure == "denoised" { DENOISED } else { DEFAULT })?;
-            let bound = match (measure, spp) {
-                ("filtered", "1" | "4" | "16") => 0.85,
-                ("raw", "1" | "4" | "16") => 1.15,
-                _ => 1.05,
-            };
-            let (ratios, place) = (over(&own, &best), format!("{scene}, {spp} spp"));
-            let ratio = Estimate::mean(&ratios);
-            of_scenes.push(ratios);
-            let statement = format!("{measure} error over the best Mitsuba sampler's, {bound} at most");
-            targets.at_most(&statement, &place, ratio, Unit::Ratio, bound);
+            let others = samplers.iter().filter(|name| !name.starts_with(DEFAULT));
+            let others = others.map(|name| of(name)).collect::<Result<Vec<_>>>()?;
+            let means = others.iter().filter(|numbers| !numbers.is_empty()).map(|numbers| mean(numbers));
+            let best = means.fold(f64::INFINITY, f64::min);
+            ratios.push(of(DEFAULT)?.into_iter().map(|own| own / best).collect());
         }
-        let seeds = of_scenes.iter().map(Vec::len).min().unwrap_or(0);
-        let mean = |seed: usize| {
-            let logarithms = of_scenes.iter().map(|ratios| ratios[seed].max(1e-9).ln());
-            (logarithms.sum::<f64>() / of_scenes.len() as f64).exp()
-        };
-        let all = Estimate::mean(&(0..seeds).map(mean).collect::<Vec<_>>());
-        let place = format!("{spp} spp");
-        match measure {
-            "raw" => targets.at_most("raw error over the best's, geometric mean", &place, all, Unit::Ratio, 1.03),
-            "denoised" => {
-                targets.below("error after OIDN over the best's, geometric mean", &place, all, Unit::Ratio, 1.0)
-            }
-            _ => {}
-        }
+        let seeds = ratios.iter().map(Vec::len).min().unwrap_or(0);
+        let logarithms = |seed: usize| ratios.iter().map(move |scene| scene[seed].max(1e-9).ln());
+        let means = (0..seeds).map(|seed| mean(&logarithms(seed).collect::<Vec<_>>()).exp());
+        let estimate = Estimate::mean(&means.collect::<Vec<_>>());
+        targets.add(statement, &format!("{spp} spp"), estimate, Unit::Ratio, bound);
     }
-    let columns = headings(&["scene", "spp", PLAIN], samplers.iter().map(|&name| name.to_owned()));
-    chapter.table(measure, &columns, 2, rows);
-    Ok(())
-}
-
-fn times(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
-    let samplers: Vec<&str> = table.distinct("sampler")?.into_iter().filter(|&name| name != PLAIN).collect();
-    let mut rows = Vec::new();
-    for scene in table.distinct("scene")? {
-        let seconds = |sampler| table.numbers_of("seconds", &[("scene", scene), ("sampler", sampler)]);
-        let mut cells: Vec<Cell> = row![scene];
-        for &sampler in &samplers {
-            let ratio = Estimate::ratio(&seconds(sampler)?, &seconds(PLAIN)?);
-            cells.push(Figure::new(ratio, Unit::Ratio).into());
-            if sampler == DEFAULT {
-                targets.at_most("time of an LLVM frame over independent's", scene, ratio, Unit::Ratio, 1.05);
-            }
-        }
-        rows.push(cells);
-    }
-    chapter.table("times", &headings(&["scene"], samplers.iter().map(|&name| name.to_owned())), 1, rows);
-    Ok(())
-}
-
-/// Errors and times over those of the same samples without fits; their product is the error at equal time.
-fn fits(table: &Table, chapter: &mut Chapter) -> Result<()> {
-    let mut rows = Vec::new();
-    for scene in table.distinct("scene")? {
-        for spp in table.distinct("spp")? {
-            for kind in table.distinct("kind")?.into_iter().filter(|&kind| kind != "plain") {
-                let of = |measure, kind| table.numbers_of(measure, &[("scene", scene), ("spp", spp), ("kind", kind)]);
-                if of("raw", kind)?.is_empty() {
-                    continue;
-                }
-                let ratio = |measure| -> Result<Estimate> {
-                    Ok(Estimate::mean(&over(&of(measure, kind)?, &of(measure, "plain")?)))
-                };
-                let (raw, filtered) = (ratio("raw")?, ratio("filtered")?);
-                let time = Estimate::ratio(&of("seconds", kind)?, &of("seconds", "plain")?);
-                let at_equal_time = Figure::exact(raw.value * time.value, Unit::Ratio);
-                let figures = [raw, filtered, time].map(|estimate| Figure::new(estimate, Unit::Ratio));
-                let [raw, filtered, time] = figures;
-                rows.push(row![scene, spp, kind, raw, filtered, time, at_equal_time]);
-            }
-        }
-    }
-    let columns = ["scene", "spp", "integrator", "raw", "filtered", "time", "raw, equal time"];
-    chapter.table("fits", &columns, 3, rows);
     Ok(())
 }
 

@@ -1,18 +1,26 @@
 //! Measurement programs of the package noisefloor-bench: building them, running them, their tables.
 
-use super::Report;
 use super::plan::Plan;
-use crate::measure::{running, table::Table};
-use anyhow::{Context, Result};
+use super::prelude::*;
+use super::report::Report;
+use crate::measure::running;
 use serde_json::Value;
 use std::path::PathBuf;
 use std::process::Stdio;
 use tempfile::TempDir;
 use xtask::{library, run};
 
+/// A chapter that is its description.
+pub(super) fn write(report: &Report) -> Result<Chapter> {
+    let tables = measure(report)?;
+    let (mut chapter, targets) = report.described(&|name| tables.read(name))?;
+    targets.write(&mut chapter);
+    Ok(chapter)
+}
+
 /// Compiles bench targets, all in one call so that they compile side by side, and returns the programs, in the order of
 /// the names.
-pub(super) fn build(names: &[&str], plan: &Plan) -> Result<Vec<PathBuf>> {
+pub(super) fn build(names: &[String], plan: &Plan) -> Result<Vec<PathBuf>> {
     // The programs link it, so that what ships is what is measured.
     library::build()?;
     let mut cargo = run::cargo();
@@ -20,7 +28,7 @@ pub(super) fn build(names: &[&str], plan: &Plan) -> Result<Vec<PathBuf>> {
     names.iter().for_each(|name| _ = cargo.args(["--bench", name]));
     let messages = run::read(cargo.args(["--message-format", "json-render-diagnostics"]).stderr(Stdio::inherit()))?;
     let artifacts: Vec<Value> = messages.lines().filter_map(|line| serde_json::from_str(line).ok()).collect();
-    let find = |name: &&str| -> Result<PathBuf> {
+    let find = |name: &String| -> Result<PathBuf> {
         let artifact =
             artifacts.iter().find(|message| message["target"]["name"] == **name && !message["executable"].is_null());
         let path = artifact.and_then(|message| message["executable"].as_str());
@@ -33,26 +41,21 @@ pub(super) fn build(names: &[&str], plan: &Plan) -> Result<Vec<PathBuf>> {
 pub(super) struct Tables(TempDir);
 
 impl Tables {
-    pub(super) fn new() -> Result<Self> {
-        Ok(Self(tempfile::tempdir().context("cannot create a temporary folder")?))
-    }
-
     pub(super) fn read(&self, name: &str) -> Result<Table> {
         Table::of_file(&self.0.path().join(format!("{name}.csv")))
     }
-
-    /// Runs a program, as large as the report is to be. Its output is for people; what is needed is in the tables.
-    pub(super) fn measure(&self, report: &Report, mut program: std::process::Command) -> Result<()> {
-        program.arg("--output").arg(self.0.path()).args(report.plan.option());
-        running::run(program, |_| Ok(())).map(|_| ())
-    }
 }
 
-/// Compiles and runs the chapter's programs.
+/// Compiles and runs the chapter's programs, as large as the report is to be. Their output is for people; what is needed
+/// is in the tables.
 pub(super) fn measure(report: &Report) -> Result<Tables> {
-    let programs = build(report.programs, &report.plan)?;
+    let programs = build(&report.description.programs, report.plan)?;
     report.compiled();
-    let tables = Tables::new()?;
-    programs.iter().try_for_each(|program| tables.measure(report, run::command(program)))?;
+    let tables = Tables(tempfile::tempdir().context("cannot create a temporary folder")?);
+    for program in &programs {
+        let mut program = run::command(program);
+        program.arg("--output").arg(tables.0.path()).args(report.plan.option());
+        running::run(program, |_| Ok(()))?;
+    }
     Ok(tables)
 }

@@ -1,10 +1,8 @@
 //! The chapter of the Python package: what python/bench measures.
 
-use super::Report;
-use super::chapter::{Cell, Chapter};
+use super::prelude::*;
+use super::report::Report;
 use crate::measure::running;
-use anyhow::{Context, Result, bail};
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use xtask::tools::{self, Package};
@@ -12,16 +10,6 @@ use xtask::{paths, python, run};
 
 /// Names a Python that has torch, torchrl, scipy and vegas, for times and integration; else Debian's packages serve.
 const PEERS: &str = "NOISEFLOOR_PEERS";
-
-/// Tables, as the programs name their files: section, and columns that are aligned left.
-const TABLES: [(&str, &str, usize); 6] = [
-    ("versions", "Packages", 1),
-    ("draws", "Draw and update", 1),
-    ("steps", "A step of training", 1),
-    ("integrals", "Many integrals", 1),
-    ("integration", "Integration", 1),
-    ("training", "Training", 3),
-];
 
 /// Lists of words, of ten languages.
 const WORDS: [Package; 10] = [
@@ -48,7 +36,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     run::read(run::command(&debian).args(install).arg(&package).arg(python::wheel()?))?;
     let peers = std::env::var_os(PEERS).map_or_else(|| debian.clone(), PathBuf::from);
     let data = paths::target().join("data");
-    if report.plan.option() != Some("--quick") {
+    if !report.plan.is_quick() {
         fetch(&debian, &data)?;
     }
     report.compiled();
@@ -61,15 +49,8 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
         command.args(report.plan.option()).env("PYTHONPATH", &package).env("PYTHONDONTWRITEBYTECODE", "1");
         running::run(command, |_| Ok(()))?;
     }
-    let mut chapter = Chapter::new("Python");
-    for (name, section, words) in TABLES {
-        let text = fs::read_to_string(folder.path().join(format!("{name}.csv"))).with_context(|| name.to_owned())?;
-        let mut lines = text.lines().map(|line| line.split(';').map(str::to_owned).collect::<Vec<_>>());
-        let columns = lines.next().with_context(|| format!("{name}.csv is empty"))?;
-        chapter.section(section, "");
-        chapter.table(name, &columns, words, lines.map(|row| row.into_iter().map(Cell::from).collect()).collect());
-    }
-    Ok(chapter)
+    let table = |name: &str| Table::read(&folder.path().join(format!("{name}.csv")), ';');
+    Ok(report.described(&table)?.0)
 }
 
 /// What is trained on. What cannot be had is left out, and so is its part of the chapter.

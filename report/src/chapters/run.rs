@@ -1,18 +1,56 @@
 //! Writing chapters one after the other. Each is complete, with the index, before the next begins.
 
 use super::clock::Clock;
+use super::described::Description;
 use super::index::{self, Facts};
+use super::list::{self, Write};
 use super::machine::{self, Machine};
-use super::plan::Plan;
-use super::{CHAPTERS, Entry, Options, Report, json, program, template};
+use super::plan::{Extent, Plan};
+use super::report::Report;
+use super::{json, program, template};
 use crate::measure::output::Output;
 use crate::measure::progress;
 use anyhow::{Context, Result, bail};
+use clap::Args;
 use serde_json::{Value, json};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 use xtask::paths;
+
+#[derive(Args, Default)]
+pub(crate) struct Options {
+    /// Tiny images and few seeds, for tests: whether everything works, not the figures
+    #[arg(long)]
+    quick: bool,
+    /// Larger images, finer grids and more seeds: narrower intervals, and much longer
+    #[arg(long, conflicts_with = "quick")]
+    full: bool,
+    /// These chapters instead of all, separated by commas; the others stay as they are, in the index too
+    #[arg(long, value_name = "CHAPTER", value_delimiter = ',', value_parser = list::names())]
+    only: Vec<String>,
+    /// Where everything goes [default: docs/report]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Only write the texts anew, from the JSON files that are there
+    #[arg(long, conflicts_with_all = ["quick", "full", "only"])]
+    render: bool,
+}
+
+impl Options {
+    /// The trainers alone, for the demo.
+    pub(crate) fn gradients(quick: bool, folder: &Path) -> Self {
+        Self { quick, only: vec!["gradients".to_owned()], out: Some(folder.to_owned()), ..Self::default() }
+    }
+
+    fn plan(&self) -> Result<Plan> {
+        Plan::new(match (self.quick, self.full) {
+            (true, _) => Extent::Quick,
+            (_, true) => Extent::Full,
+            _ => Extent::Default,
+        })
+    }
+}
 
 pub(crate) fn run(options: &Options) -> Result<()> {
     let start = Instant::now();
@@ -21,27 +59,26 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     if options.render {
         return render(&folder);
     }
-    let wanted: Vec<&Entry> = CHAPTERS
-        .iter()
-        .filter(|entry| options.only.is_empty() || options.only.iter().any(|o| o == entry.name))
-        .collect();
-    let machine = Machine::read();
-    let programs: Vec<&str> = wanted.iter().flat_map(|entry| entry.programs).copied().collect();
+    let (plan, machine) = (options.plan()?, Machine::read());
+    let describe = |(name, write)| Ok((name, write, Description::read(name, &plan)?));
+    let wanted: Vec<(&str, Write, Description)> =
+        list::chapters(&options.only).into_iter().map(describe).collect::<Result<_>>()?;
+    let programs: Vec<String> = wanted.iter().flat_map(|(.., of)| &of.programs).cloned().collect();
     if wanted.len() > 1 && !programs.is_empty() {
         println!("building the programs that measure: {}", programs.join(", "));
         // Side by side, for all chapters. What does not compile is said again by the chapter that needs it.
-        _ = program::build(&programs, &Plan::new(options.quick, options.full));
+        _ = program::build(&programs, &plan);
     }
-    let bar = progress::bar(wanted.iter().map(|entry| entry.seconds).sum())?;
+    let bar = progress::bar(wanted.iter().map(|(.., of)| of.seconds).sum())?;
     let (mut written, mut failed) = (Vec::new(), Vec::new());
-    for (number, entry) in (1..).zip(&wanted) {
-        bar.set_message(format!("chapter {number} of {}: {}", wanted.len(), entry.name));
-        match write(entry, options, &folder, &machine) {
-            Ok(()) => written.push(entry.name),
+    for (number, (name, write, description)) in (1..).zip(&wanted) {
+        bar.set_message(format!("chapter {number} of {}: {name}", wanted.len()));
+        match write_one(name, *write, description, &plan, &folder, &machine) {
+            Ok(()) => written.push(*name),
             // The others do not depend on it.
-            Err(error) => failed.push(format!("{}: {error:#}", entry.name)),
+            Err(error) => failed.push(format!("{name}: {error:#}")),
         }
-        bar.inc(entry.seconds);
+        bar.inc(description.seconds);
     }
     bar.finish_and_clear();
     if !failed.is_empty() {
@@ -53,26 +90,31 @@ pub(crate) fn run(options: &Options) -> Result<()> {
 }
 
 /// One chapter and the index, both or neither.
-fn write(entry: &Entry, options: &Options, folder: &Path, machine: &Machine) -> Result<()> {
-    let output = Output::new(folder)?;
-    let date = machine::date();
-    let plan = Plan::new(options.quick, options.full);
-    let (name, description) = entry.chapter(&plan);
-    let report = Report { name, programs: entry.programs, plan, output: &output, clock: Clock::start() };
-    let mut chapter = (entry.write)(&report)?.json();
-    let facts = Facts {
-        name: name.to_owned(),
-        description: description.to_owned(),
-        sizes: report.plan.name().to_owned(),
+fn write_one(
+    name: &str,
+    write: Write,
+    description: &Description,
+    plan: &Plan,
+    folder: &Path,
+    machine: &Machine,
+) -> Result<()> {
+    let (output, date) = (Output::new(folder)?, machine::date());
+    let names = description.names(name, plan);
+    let report = Report { names, description, plan, output: &output, clock: Clock::start() };
+    let mut chapter = write(&report)?.json();
+    let [name, _, about] = names.map(str::to_owned);
+    chapter["run"] = json!(Facts {
+        name: name.clone(),
+        description: about,
+        sizes: plan.name().to_owned(),
         seconds: Some(report.clock.seconds()),
         processor_seconds: report.clock.processor_seconds(),
         other_work: report.clock.other_work(),
         date,
         machine: machine.clone(),
-    };
-    chapter["run"] = json!(facts);
-    write_chapter(&output, name, &chapter)?;
-    output.write_text("README.md", &index::write(folder, Some((name, &chapter)))?)?;
+    });
+    write_chapter(&output, &name, &chapter)?;
+    output.write_text("README.md", &index::write(folder, Some((&name, &chapter)))?)?;
     output.commit()
 }
 

@@ -6,7 +6,7 @@ use super::statistics::Estimate;
 
 /// Which side of a bound is right.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Side {
+pub(crate) enum Side {
     AtMost,
     Below,
     AtLeast,
@@ -66,29 +66,27 @@ impl Target {
     }
 }
 
-fn count(count: usize) -> Figure {
-    Figure::exact(count as f64, Unit::Count)
-}
-
 impl Targets {
+    pub(crate) fn add(
+        &mut self,
+        statement: &str,
+        scene: &str,
+        estimate: Estimate,
+        unit: Unit,
+        (side, bound): (Side, f64),
+    ) {
+        let (statement, scene) = (statement.to_owned(), scene.to_owned());
+        self.0.push(Target { statement, scene, estimate, unit, side, bound });
+    }
+
     /// The figure shall be `bound` at most.
     pub(crate) fn at_most(&mut self, statement: &str, scene: &str, estimate: Estimate, unit: Unit, bound: f64) {
-        self.push(statement, scene, estimate, unit, (Side::AtMost, bound));
+        self.add(statement, scene, estimate, unit, (Side::AtMost, bound));
     }
 
     /// The figure shall be less than `bound`.
     pub(crate) fn below(&mut self, statement: &str, scene: &str, estimate: Estimate, unit: Unit, bound: f64) {
-        self.push(statement, scene, estimate, unit, (Side::Below, bound));
-    }
-
-    /// The figure shall be `bound` at least.
-    pub(crate) fn at_least(&mut self, statement: &str, scene: &str, estimate: Estimate, unit: Unit, bound: f64) {
-        self.push(statement, scene, estimate, unit, (Side::AtLeast, bound));
-    }
-
-    fn push(&mut self, statement: &str, scene: &str, estimate: Estimate, unit: Unit, (side, bound): (Side, f64)) {
-        let (statement, scene) = (statement.to_owned(), scene.to_owned());
-        self.0.push(Target { statement, scene, estimate, unit, side, bound });
+        self.add(statement, scene, estimate, unit, (Side::Below, bound));
     }
 
     /// Targets of the same statement, in the order in which they were measured.
@@ -109,17 +107,18 @@ impl Targets {
         chapter.section("What was to be reached", "");
         let groups = self.groups();
         let all = |of: fn(&Target) -> bool| groups.iter().filter(|group| group.iter().all(|one| of(one))).count();
-        chapter.quote("targets", count(groups.len()));
-        chapter.quote("targets reached everywhere", count(all(Target::is_reached)));
-        chapter.quote("targets reached everywhere by the value", count(all(|one| one.keeps(one.estimate.value))));
+        chapter.quote("targets", Figure::count(groups.len()));
+        chapter.quote("targets reached everywhere", Figure::count(all(Target::is_reached)));
+        chapter
+            .quote("targets reached everywhere by the value", Figure::count(all(|one| one.keeps(one.estimate.value))));
         let row = |group: &Vec<&Target>| -> Vec<Cell> {
             let worst = worst(group);
             row![
                 worst.statement.clone(),
                 worst.bound_text(),
-                count(group.iter().filter(|target| target.is_reached()).count()),
-                count(group.iter().filter(|target| target.keeps(target.estimate.value)).count()),
-                count(group.len()),
+                Figure::count(group.iter().filter(|target| target.is_reached()).count()),
+                Figure::count(group.iter().filter(|target| target.keeps(target.estimate.value)).count()),
+                Figure::count(group.len()),
                 worst.scene.clone(),
                 Figure::new(worst.estimate, worst.unit),
                 worst.verdict()
@@ -178,7 +177,7 @@ mod tests {
             targets.at_most("low", "", estimate(value), Unit::Ratio, 0.5);
         }
         for value in [0.7, 0.55, 0.45, 0.3] {
-            targets.at_least("high", "", estimate(value), Unit::Ratio, 0.5);
+            targets.add("high", "", estimate(value), Unit::Ratio, (Side::AtLeast, 0.5));
         }
         let verdicts: Vec<&str> =
             targets.0.iter().map(|target| target.verdict().split(':').next().unwrap_or("")).collect();

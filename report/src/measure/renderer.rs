@@ -1,9 +1,7 @@
 //! Compiling and running the path tracer, or another program that has its command line.
 
 use super::running;
-use super::samplers::Tiles;
 use anyhow::{Context, Result};
-use indicatif::ProgressBar;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use xtask::{library, paths, run};
@@ -11,6 +9,7 @@ use xtask::{library, paths, run};
 /// The compiled program.
 pub(crate) struct Renderer {
     program: PathBuf,
+    tiles: Vec<String>,
 }
 
 /// One line of the program's output: how long one estimator took, in seconds summed over the threads.
@@ -23,37 +22,59 @@ pub(crate) struct Timing {
     pub(crate) estimating_ns_per_sample: f64,
 }
 
-/// One run of the program.
-#[derive(Clone, Copy)]
-pub(crate) struct Job<'a> {
+impl Timing {
+    pub(crate) fn frame(&self) -> f64 {
+        self.sampling_ns_per_sample + self.estimating_ns_per_sample
+    }
+}
+
+/// What is integrated, pixel by pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View<'a> {
     pub(crate) scene: &'a str,
+    /// Pixels on a side.
+    pub(crate) size: u32,
+    pub(crate) frame: u32,
+    /// Samples per pixel of each half of its reference.
+    pub(crate) reference: u32,
+}
+
+/// One run of the program: renderings that differ in their seeds alone.
+#[derive(Clone)]
+pub(crate) struct Job<'a> {
+    pub(crate) view: View<'a>,
     pub(crate) spp: u32,
     /// Total degree of the fits.
     pub(crate) order: u32,
+    pub(crate) sampler: Sampler,
+    /// None: a reference.
+    pub(crate) estimators: Vec<&'a str>,
+    /// The first of as many consecutive ones.
     pub(crate) seed: u64,
-    /// Renderings with as many consecutive seeds, in one process.
     pub(crate) seeds: u32,
-    pub(crate) frame: u32,
-    pub(crate) sampler: Sampler<'a>,
-    /// Empty: a reference.
-    pub(crate) estimators: &'a [&'a str],
     /// Further words of the command line.
-    pub(crate) options: &'a [&'a str],
-    /// What it adds to the progress bar.
-    pub(crate) work: u64,
+    pub(crate) options: Vec<&'a str>,
+}
+
+impl<'a> Job<'a> {
+    /// Order 2, random samples, one seed.
+    pub(crate) fn new(view: View<'a>, spp: u32, estimators: &[&'a str]) -> Self {
+        let (estimators, options) = (estimators.to_vec(), Vec::new());
+        Self { view, spp, order: 2, sampler: Sampler::Random, estimators, seed: 1, seeds: 1, options }
+    }
 }
 
 /// Where the sample points come from.
-#[derive(Clone, Copy)]
-pub(crate) enum Sampler<'a> {
+#[derive(Clone)]
+pub(crate) enum Sampler {
     /// The library's own.
     Default,
     Random,
     Sobol,
     /// A built-in tile's name, or a file.
-    Tile(&'a str),
+    Tile(String),
     /// A file of points that another program made.
-    Table(&'a Path),
+    Table(PathBuf),
 }
 
 /// As many threads as there are cores.
@@ -61,9 +82,10 @@ pub(crate) fn threads() -> u32 {
     std::thread::available_parallelism().map_or(1, |n| n.get().min(256) as u32)
 }
 
-/// Where a renderer leaves an estimator's images, one of each seed from `first` on.
-pub(crate) fn images(prefix: &Path, estimator: &str, first: u64, seeds: u32) -> impl Iterator<Item = PathBuf> {
-    (first..first + u64::from(seeds)).map(move |seed| match seeds {
+/// Where a renderer leaves an estimator's images, one of each seed.
+pub(crate) fn images(prefix: &Path, estimator: &str, job: &Job) -> impl Iterator<Item = PathBuf> {
+    let seeds = job.seeds;
+    (job.seed..job.seed + u64::from(seeds)).map(move |seed| match seeds {
         1 => prefix.with_extension(format!("{estimator}.pfm")),
         _ => prefix.with_extension(format!("{estimator}.{seed}.pfm")),
     })
@@ -77,41 +99,40 @@ impl Renderer {
         let mut compiler = run::compiler("CXX", "c++");
         compiler.args(["-O2", "-std=c++17", "-Wall", "-Wextra", "-Iinclude", "examples_c/pathtracer.cpp"]);
         run::compile(compiler.arg(&archive).args(["-pthread", "-o"]).arg(&program))?;
-        Ok(Self::new(program))
+        Self::new(program)
     }
 
     /// Runs a program that is there already.
-    pub(crate) fn new(program: PathBuf) -> Self {
-        Self { program }
+    pub(crate) fn new(program: PathBuf) -> Result<Self> {
+        let help = run::read(run::command(&program).arg("--help"))?;
+        let tiles = help.lines().find_map(|line| line.strip_prefix("tiles:")).unwrap_or_default();
+        Ok(Self { program, tiles: tiles.split_whitespace().map(str::to_owned).collect() })
     }
 
-    /// The names of the tiles that the library carries.
-    pub(crate) fn tiles(&self) -> Result<Tiles> {
-        let help = run::read(run::command(&self.program).arg("--help"))?;
-        let line = help.lines().find_map(|line| line.strip_prefix("tiles:")).unwrap_or_default();
-        Ok(Tiles(line.split_whitespace().map(str::to_owned).collect()))
+    /// A sampler as tables call it; None if there is no such tile. `tile 2D`: that of so many dimensions which has as
+    /// many samples as are drawn, or the next fewer.
+    pub(crate) fn sampler(&self, name: &str, spp: u32) -> Option<Sampler> {
+        let tile = |name: String| self.tiles.contains(&name).then_some(Sampler::Tile(name));
+        match name.strip_prefix("tile ") {
+            Some(dims) => (0..=spp.ilog2()).rev().find_map(|power| tile(format!("128_{}SPP_{dims}", 1 << power))),
+            None => match name {
+                "default" => Some(Sampler::Default),
+                "random" => Some(Sampler::Random),
+                "Owen-Sobol" => Some(Sampler::Sobol),
+                _ => tile(name.to_owned()),
+            },
+        }
     }
 
-    /// Renders `size` x `size` pixels to the files of [`images`], with as many threads as there are cores.
-    pub(crate) fn render(&self, job: &Job, size: u32, prefix: &Path, bar: &ProgressBar) -> Result<Vec<Timing>> {
-        self.render_with(threads(), job, size, prefix, bar)
-    }
-
-    /// The same with so many threads; the picture does not depend on them.
-    pub(crate) fn render_with(
-        &self,
-        threads: u32,
-        job: &Job,
-        size: u32,
-        prefix: &Path,
-        bar: &ProgressBar,
-    ) -> Result<Vec<Timing>> {
+    /// Renders to the files of [`images`]. The picture does not depend on the number of threads.
+    pub(crate) fn render(&self, job: &Job, prefix: &Path, threads: u32) -> Result<Vec<Timing>> {
+        let View { scene, size, frame, .. } = job.view;
         let mut command = run::command(&self.program);
         let size = size.to_string();
-        command.args(["--scene", job.scene, "--width", &size, "--height", &size]);
+        command.args(["--scene", scene, "--width", &size, "--height", &size]);
         command.args(["--spp", &job.spp.to_string(), "--order", &job.order.to_string()]);
-        command.args(["--seed", &job.seed.to_string(), "--frame", &job.frame.to_string()]);
-        match job.sampler {
+        command.args(["--seed", &job.seed.to_string(), "--frame", &frame.to_string()]);
+        match &job.sampler {
             Sampler::Default => command.args(["--sampler", "default"]),
             Sampler::Random => command.args(["--sampler", "random"]),
             Sampler::Sobol => command.args(["--sampler", "sobol"]),
@@ -121,26 +142,21 @@ impl Renderer {
         if job.seeds > 1 {
             command.args(["--seeds", &job.seeds.to_string()]);
         }
-        command.args(job.options);
+        command.args(&job.options);
         command.args(["--threads", &threads.to_string(), "--output"]).arg(prefix);
         if job.estimators.is_empty() {
             command.arg("--reference");
         } else {
             command.args(["--estimators", &job.estimators.join(",")]);
         }
-        let start = bar.position();
         let mut timings = Vec::new();
         let rendered = running::run(command, |line| {
-            if let Some(part) = line.strip_prefix("progress ") {
-                let part: f64 = part.parse().with_context(|| format!("the path tracer said `{line}`"))?;
-                bar.set_position(start + (part * job.work as f64) as u64);
-            } else {
+            if !line.starts_with("progress ") {
                 timings.push(serde_json::from_str(line).with_context(|| format!("the path tracer said `{line}`"))?);
             }
             Ok(())
         });
-        rendered.with_context(|| format!("rendering `{}` failed", job.scene))?;
-        bar.set_position(start + job.work);
+        rendered.with_context(|| format!("rendering `{scene}` failed"))?;
         Ok(timings)
     }
 }

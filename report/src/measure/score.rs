@@ -4,23 +4,8 @@ use super::filter::gaussian;
 use crate::measure::metric::Reference;
 use image::Rgb32FImage;
 
-/// An image's errors.
-#[derive(Clone, Copy)]
-pub(crate) struct Score {
-    /// relMSE, errors beyond [`LIMIT`] limited.
-    pub(crate) raw: f64,
-    /// relMSE of the image as it is seen: the errors are filtered, then squared.
-    pub(crate) filtered: f64,
-}
-
-impl Score {
-    pub(crate) fn new(image: &Rgb32FImage, reference: &Reference) -> Self {
-        let [raw, filtered] = errors(image, reference);
-        Self { raw, filtered }
-    }
-}
-
-/// [`Score::raw`] and [`Score::filtered`].
+/// The relMSE, errors beyond [`LIMIT`] limited; and that of the image as it is seen: the errors are filtered, then
+/// squared.
 pub(crate) fn errors(image: &Rgb32FImage, reference: &Reference) -> [f64; 2] {
     let [a, b] = limited_errors(image, reference);
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / a.len().max(1) as f64;
@@ -41,9 +26,5 @@ fn limited_errors(image: &Rgb32FImage, reference: &Reference) -> [Vec<f64>; 2] {
 /// (I - R) / sqrt(R^2 + epsilon), limited, row after row.
 pub(crate) fn signed_errors(image: &Rgb32FImage, reference: &Reference) -> Vec<f64> {
     let [a, b] = limited_errors(image, reference);
-    average(&a, &b)
-}
-
-fn average(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect()
 }

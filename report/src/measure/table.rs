@@ -2,13 +2,43 @@
 
 use crate::chapters::statistics::Estimate;
 use anyhow::{Context, Result, bail};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
+/// What rows must have, by the names of columns.
+pub(crate) type Filter = BTreeMap<String, Words>;
+
+/// Cells, of which any will do.
+#[derive(Clone, PartialEq, Deserialize)]
+#[serde(untagged)]
+pub(crate) enum Words {
+    One(String),
+    Any(Vec<String>),
+}
+
+impl Words {
+    pub(crate) fn list(&self) -> &[String] {
+        match self {
+            Self::One(word) => std::slice::from_ref(word),
+            Self::Any(words) => words,
+        }
+    }
+}
+
+impl fmt::Display for Words {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&self.list().join(", "))
+    }
+}
+
+#[derive(Clone, PartialEq)]
 pub(crate) struct Table {
     /// For errors: where it is from.
     name: String,
-    headings: Vec<String>,
+    pub(crate) headings: Vec<String>,
     rows: Vec<Vec<String>>,
 }
 
@@ -16,10 +46,20 @@ pub(crate) struct Table {
 #[derive(Clone, Copy)]
 pub(crate) struct Row<'a> {
     table: &'a Table,
-    cells: &'a [String],
+    pub(crate) cells: &'a [String],
 }
 
 impl Table {
+    /// Without rows; headings between bars.
+    pub(crate) fn new(name: &str, headings: &str) -> Self {
+        let headings = headings.split(" | ").map(str::to_owned).collect();
+        Self { name: name.to_owned(), headings, rows: Vec::new() }
+    }
+
+    pub(crate) fn push(&mut self, row: Vec<String>) {
+        self.rows.push(row);
+    }
+
     /// Of a file whose cells are divided by `separator` and hold none.
     pub(crate) fn read(path: &Path, separator: char) -> Result<Self> {
         let name = path.display().to_string();
@@ -55,16 +95,63 @@ impl Table {
         self.rows().find(|row| row.has(wanted)).with_context(|| format!("{} has no row of {wanted:?}", self.name))
     }
 
-    /// The rows whose cell under a heading is this.
-    pub(crate) fn only(&self, heading: &str, word: &str) -> Result<Self> {
-        self.column(heading)?;
-        Ok(self.of(&[(heading, word)]))
-    }
-
     /// The rows with these cells under these headings.
     pub(crate) fn of(&self, wanted: &[(&str, &str)]) -> Self {
-        let rows = self.rows().filter(|row| row.has(wanted)).map(|row| row.cells.to_vec()).collect();
+        self.filtered(|row| row.has(wanted))
+    }
+
+    /// The rows that a filter lets through.
+    pub(crate) fn only(&self, filter: &Filter) -> Result<Self> {
+        let wanted: Vec<(usize, &[String])> =
+            filter.iter().map(|(heading, words)| Ok((self.column(heading)?, words.list()))).collect::<Result<_>>()?;
+        Ok(self.filtered(|row| wanted.iter().all(|(column, words)| words.contains(&row.cells[*column]))))
+    }
+
+    fn filtered(&self, is_wanted: impl Fn(&Row) -> bool) -> Self {
+        let rows = self.rows().filter(is_wanted).map(|row| row.cells.to_vec()).collect();
         Self { name: self.name.clone(), headings: self.headings.clone(), rows }
+    }
+
+    /// Columns made rows: of each column its name, and the word for it in the new column `what`; `value` has the cells.
+    pub(crate) fn melted(mut self, columns: &[[String; 2]]) -> Result<Self> {
+        if columns.is_empty() {
+            return Ok(self);
+        }
+        let places = columns.iter().map(|[name, word]| Ok((self.column(name)?, word))).collect::<Result<Vec<_>>>()?;
+        let melt = |row: Vec<String>| {
+            let one = |&(at, word): &(usize, &String)| [&row[..], &[word.clone(), row[at].clone()]].concat();
+            places.iter().map(one).collect::<Vec<_>>()
+        };
+        self.rows = self.rows.into_iter().flat_map(melt).collect();
+        self.headings.extend(["what", "value"].map(str::to_owned));
+        Ok(self)
+    }
+
+    /// The numbers of a column, without empty cells.
+    pub(crate) fn measured(&self, heading: &str) -> Result<Vec<f64>> {
+        self.column(heading)?;
+        let numbers = self.rows().map(|row| row.optional(heading));
+        Ok(numbers.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
+    }
+
+    /// The different cells of some columns together; columns are sorted as the filter lists their cells, or by where
+    /// they come first. Of no columns one, which lets all rows through.
+    pub(crate) fn combinations(&self, headings: &[impl AsRef<str>], by: &Filter) -> Result<Vec<Filter>> {
+        let headings: Vec<&str> = headings.iter().map(AsRef::as_ref).collect();
+        let order = |heading: &&str| match by.get(*heading) {
+            Some(words) => Ok(words.list().iter().map(String::as_str).collect()),
+            None => self.distinct(heading),
+        };
+        let orders = headings.iter().map(order).collect::<Result<Vec<Vec<&str>>>>()?;
+        let place = |kind: &Vec<&str>| -> Vec<Option<usize>> {
+            kind.iter().zip(&orders).map(|(cell, order)| order.iter().position(|word| word == cell)).collect()
+        };
+        let mut kinds = if headings.is_empty() { vec![Vec::new()] } else { self.kinds(&headings)? };
+        kinds.sort_by_key(place);
+        let filter = |kind: Vec<&str>| {
+            headings.iter().zip(kind).map(|(name, word)| ((*name).to_owned(), Words::One(word.to_owned()))).collect()
+        };
+        Ok(kinds.into_iter().map(filter).collect())
     }
 
     /// A column, row by row.
@@ -79,7 +166,7 @@ impl Table {
     }
 
     /// The different cells of a column, each with its words in the heading of a table.
-    pub(crate) fn headings(&self, heading: &str, words: impl Fn(&str) -> String) -> Result<Vec<(String, &str)>> {
+    pub(crate) fn named(&self, heading: &str, words: impl Fn(&str) -> String) -> Result<Vec<(String, &str)>> {
         Ok(self.distinct(heading)?.into_iter().map(|word| (words(word), word)).collect())
     }
 
@@ -118,9 +205,9 @@ impl<'a> Row<'a> {
         number.with_context(|| format!("{}: `{word}` in column `{heading}` is no number", self.table.name))
     }
 
-    /// The ratio of a row that has one, with its interval; `count` is the column of its repetitions.
-    pub(crate) fn ratio(&self, count: &str) -> Result<Estimate> {
-        Ok(Estimate::of_logarithm(self.number("ratio")?, self.number("half_width")?, self.number(count)?))
+    /// A ratio, with its interval and how often it was measured.
+    pub(crate) fn ratio(&self, heading: &str) -> Result<Estimate> {
+        Ok(Estimate::of_logarithm(self.number(heading)?, self.number("half_width")?, self.number("repetitions")?))
     }
 
     /// None for an empty cell.
@@ -142,7 +229,7 @@ mod tests {
     fn cells_are_found_by_their_headings() -> Result<()> {
         let table = Table::parse("name;n;x\na, b;1;2.5e-1\nc;2;\na, b;4;3\n", "t.csv", ';')?;
         assert_eq!(table.distinct("name")?, ["a, b", "c"]);
-        let some = table.only("name", "a, b")?;
+        let some = table.of(&[("name", "a, b")]);
         assert_eq!((some.distinct("n")?, some.numbers("x")?), (vec!["1", "4"], vec![0.25, 3.0]));
         let rows: Vec<_> = table.rows().collect();
         assert_eq!(

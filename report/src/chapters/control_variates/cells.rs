@@ -58,7 +58,7 @@ impl Cell {
             dims: row.number("dims")?,
             n: row.number("n")?,
             setting: Setting::read(row)?,
-            ratio: row.ratio("repetitions")?,
+            ratio: row.ratio("ratio")?,
             ns: row.number("ns")?,
             mean_ns: row.number("mean_ns")?,
         })
@@ -198,7 +198,7 @@ mod tests {
     fn the_lower_end_of_a_cell_is_of_its_logarithm() -> Result<()> {
         let text = "ratio,half_width,repetitions\n2.231,4.18,27\n";
         let table = Table::parse(text, "grid.csv", ',')?;
-        let ratio = table.rows().next().expect("a row").ratio("repetitions")?;
+        let ratio = table.rows().next().expect("a row").ratio("ratio")?;
         assert!((ratio.low - 2.231 * 2.231 / 6.411).abs() < 1e-9, "{ratio:?}");
         Ok(())
     }

@@ -159,7 +159,7 @@ impl Plan {
 fn line(table: &Table, name: &str, key: &str, x: &str, (y, factor): (&str, f64)) -> Result<Series> {
     let mut series = Series { name: name.to_owned(), ..Series::default() };
     for word in table.distinct(key)? {
-        let group = table.only(key, word)?;
+        let group = table.of(&[(key, word)]);
         let at = Estimate::mean(&group.numbers(x)?).value;
         let Estimate { value, low, high, seeds } = Estimate::mean(&group.numbers(y)?);
         series.points.push((at, factor * value));
@@ -171,7 +171,7 @@ fn line(table: &Table, name: &str, key: &str, x: &str, (y, factor): (&str, f64))
 }
 
 fn error_plot(plan: &Plan, table: &Table) -> Result<String> {
-    let line = |mode: &&str| line(&table.only("mode", mode)?, mode, "epoch", "seconds", ("test_error", 100.0));
+    let line = |mode: &&str| line(&table.of(&[("mode", mode)]), mode, "epoch", "seconds", ("test_error", 100.0));
     let mut series: Vec<Series> = MODES.iter().map(line).collect::<Result<_>>()?;
     for line in &mut series {
         // The untrained network, wrong nine times in ten, would take up most of the picture.

@@ -3,8 +3,8 @@
 mod mlp;
 mod trainer;
 
-use super::Report;
 use super::prelude::*;
+use super::report::Report;
 use crate::measure::progress;
 use indicatif::ProgressBar;
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ struct Parts<'a> {
 impl Parts<'_> {
     /// Writes a plot under the chapter's name.
     fn plot(&self, name: &str, plot: &str) -> Result<()> {
-        self.report.output.write_text(&format!("{}-{name}.svg", self.report.name), plot)
+        self.report.output.write_text(&format!("{}-{name}.svg", self.report.names[0]), plot)
     }
 
     fn sizes(&self) -> &'static str {
@@ -46,9 +46,8 @@ impl Parts<'_> {
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     let is_full = report.plan.is_full();
-    let title = if is_full { "Gradients of minibatches, long runs" } else { "Gradients of minibatches" };
     let (archive, bar) = (library::build()?, progress::bar(7)?);
-    let mut parts = Parts { report, archive, bar, chapter: Chapter::new(title), targets: Targets::default() };
+    let mut parts = Parts { report, archive, bar, chapter: Chapter::new(report.names[1]), targets: Targets::default() };
     let perceptrons = mlp::Trainer::new(&parts)?;
     let fit_polynomial = Program::compile("fit_polynomial.c", &parts.archive)?;
     report.compiled();

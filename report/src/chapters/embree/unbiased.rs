@@ -1,13 +1,11 @@
 //! Are shared fits unbiased? The mean of many independent frames against the reference.
 
-use super::Section;
-use crate::chapters::measurement::{BASELINE, Experiment, SHARED, SHARED_UNBIASED, View};
+use super::Harness;
+use super::sign_flips::SignFlips;
 use crate::chapters::prelude::*;
-use crate::chapters::sign_flips::SignFlips;
 use crate::chapters::statistics::normal_quantile;
 use crate::measure::metric::median;
-use crate::measure::renderer::Sampler;
-use crate::measure::samplers::{Choice, Tiles};
+use crate::measure::renderer::Job;
 use image::Rgb32FImage;
 
 const SCENES: [&str; 2] = ["dining", "killeroos"];
@@ -50,100 +48,70 @@ impl Frames {
     }
 }
 
-/// One image of the table.
-struct Test<'a> {
-    scene: &'static str,
-    spp: u32,
-    label: &'static str,
-    sampler: Sampler<'a>,
-}
-
-pub(super) fn write(section: &mut Section) -> Result<()> {
-    section.chapter.section("Are shared fits unbiased?", "");
-    let plan = section.measurement.plan;
-    let tiles = section.measurement.renderer.tiles()?;
-    let tests: Vec<Test> = plan.some(&SCENES).iter().flat_map(|&scene| tests(scene, plan.some(&SPP), &tiles)).collect();
+pub(super) fn write(harness: &Harness, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
+    chapter.section("Are shared fits unbiased?", "");
+    let (plan, measurement) = (harness.plan, &harness.measurement);
+    let count = plan.of("frames") / BATCHES * BATCHES;
+    chapter.setting("frames of the test of biases", count);
+    chapter.setting("significance of the test of biases, percent", 100.0 * SIGNIFICANCE);
+    chapter.setting("frames with light, at least", LIT.min(plan.of("frames") / 4));
+    chapter.setting("batches of the test of biases", BATCHES);
+    let samplers = |spp| [("random", "random"), ("tile, scrambled", "tile 2D")].map(|(name, of)| (spp, name, of));
+    let kinds = plan.some(&SPP).iter().flat_map(|&spp| samplers(spp));
+    let kinds = kinds.filter_map(|(spp, name, of)| Some((spp, name, measurement.renderer.sampler(of, spp)?)));
+    let tests: Vec<_> = kinds.collect();
+    let tests: Vec<_> = plan.some(&SCENES).iter().flat_map(|&scene| tests.iter().map(move |of| (scene, of))).collect();
     // Of two estimators, the largest z and the mean of z^2.
     let level = SIGNIFICANCE / (4 * tests.len()) as f64;
-    explain(section);
     let mut rows = Vec::new();
-    for Test { scene, spp, label, sampler } in tests {
+    for (scene, (spp, label, sampler)) in tests {
         // The reference's error must be small beside that of the mean of so many frames.
-        let view = View { precision: 8, ..View::new(scene, size(section)) };
-        let estimators = [BASELINE, SHARED, SHARED_UNBIASED];
+        let view = harness.view(scene, plan.of("bias_size"), 8)?;
         // A tile at other places keeps its own small error, which a thousand frames can show.
-        let experiment = Experiment {
-            sampler,
-            seeds: plan.frames / BATCHES,
-            options: &["--scramble"],
-            ..Experiment::new(view, spp, &estimators)
-        };
-        let batches = section.measurement.statistics(&experiment, BATCHES)?;
-        let halves = section.measurement.reference(view)?.images.each_ref().map(values);
+        let options = vec!["--scramble"];
+        let job = Job::new(view, *spp, &["mc", "shared", "shared_k_fold"]);
+        let job = Job { sampler: sampler.clone(), seeds: count / BATCHES, options, ..job };
+        let batches = measurement.statistics(&job, BATCHES)?;
+        let halves = measurement.reference(view)?.images.each_ref().map(values);
         let frames = |estimator: usize| {
             let one: Vec<[Rgb32FImage; 2]> = batches.iter().map(|batch| batch[estimator].clone()).collect();
-            Frames::new(&one, BATCHES * experiment.seeds)
+            Frames::new(&one, count)
         };
         let lit = lit_pixels(&frames(0), &halves);
         for (index, estimator) in NAMES.into_iter().enumerate() {
             let scores = scores(&frames(index), &halves, &lit);
             let allowed = [normal_quantile(level / (2.0 * scores.count as f64)), scores.flips.allowed(level)];
             let found = [scores.largest, scores.flips.measured()];
-            if index > 0 {
-                for (what, (found, allowed)) in
-                    ["largest z", "mean z^2"].into_iter().zip(found.into_iter().zip(allowed))
-                {
-                    let statement = format!(
-                        "{estimator} unbiased: {what} of the mean of independent frames, over what chance allows"
-                    );
-                    let place = format!("{scene}, {label}, {spp} spp");
-                    let estimate = Estimate::median(&[found / allowed]);
-                    section.targets.at_most(&statement, &place, estimate, Unit::Ratio, 1.0);
-                }
+            for (at, what) in ["largest z", "mean z^2"].into_iter().enumerate().filter(|_| index > 0) {
+                let statement =
+                    format!("{estimator} unbiased: {what} of the mean of independent frames, over what chance allows");
+                let (place, estimate) =
+                    (format!("{scene}, {label}, {spp} spp"), Estimate::exact(found[at] / allowed[at]));
+                targets.at_most(&statement, &place, estimate, Unit::Ratio, 1.0);
             }
-            let sigmas = |value| Figure::exact(value, Unit::Sigmas);
+            let [largest, chance, median, image] =
+                [found[0], allowed[0], scores.median, scores.image].map(|value| Figure::exact(value, Unit::Sigmas));
+            let [square, square_chance] = [found[1], allowed[1]].map(|value| Figure::exact(value, Unit::Ratio));
+            let count = Figure::count(scores.count);
             rows.push(row![
                 scene,
-                spp,
-                label,
+                *spp,
+                *label,
                 estimator,
-                Figure::exact(scores.count as f64, Unit::Count),
-                sigmas(found[0]),
-                sigmas(allowed[0]),
-                Figure::exact(found[1], Unit::Ratio),
-                Figure::exact(allowed[1], Unit::Ratio),
-                sigmas(scores.median),
-                sigmas(scores.image)
+                count,
+                largest,
+                chance,
+                square,
+                square_chance,
+                median,
+                image
             ]);
         }
     }
     let columns = "scene | samples | sampler | estimator | numbers | largest z | chance allows | mean z^2 | chance \
                    allows | median z | mean z";
-    section.chapter.table("unbiased", columns, 1, rows);
+    chapter.table("unbiased", columns, 1, rows);
     Ok(())
-}
-
-/// Many frames of few pixels.
-fn size(section: &Section) -> u32 {
-    let plan = section.measurement.plan;
-    if plan.is_full() { plan.small * 3 / 4 } else { plan.small * 5 / 8 }
-}
-
-fn tests<'a>(scene: &'static str, spps: &[u32], tiles: &'a Tiles) -> Vec<Test<'a>> {
-    let of = |&spp: &u32| {
-        let samplers = [("random", Some(Sampler::Random)), ("tile, scrambled", Choice::Tile(2).sampler(spp, tiles))];
-        samplers.into_iter().filter_map(move |(label, sampler)| Some(Test { scene, spp, label, sampler: sampler? }))
-    };
-    spps.iter().flat_map(of).collect()
-}
-
-fn explain(section: &mut Section) {
-    let plan = section.measurement.plan;
-    section.chapter.setting("frames of the test of biases", plan.frames / BATCHES * BATCHES);
-    section.chapter.setting("pixels on a side of the test of biases", size(section));
-    section.chapter.setting("significance of the test of biases, percent", 100.0 * SIGNIFICANCE);
-    section.chapter.setting("frames with light, at least", LIT.min(plan.frames / 4));
-    section.chapter.setting("batches of the test of biases", BATCHES);
 }
 
 fn values(image: &Rgb32FImage) -> Vec<f64> {

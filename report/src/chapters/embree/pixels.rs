@@ -1,6 +1,6 @@
 //! One estimator against another, pixel by pixel: how many pixels are served worse, and how sure that is.
 
-use super::statistics::{Random, student, student_quantile};
+use crate::chapters::statistics::{Random, student, student_quantile};
 
 /// Ratios of mean squared errors beyond it are too many.
 pub(crate) const TOO_MUCH: f64 = 1.2;

@@ -1,0 +1,391 @@
+//! Chapters as data: report/chapters/NAME.toml says which figures of the programs' tables stand in which tables of a
+//! chapter, and which bounds they are to keep.
+//!
+//! - A word in braces stands for the cell of that column.
+//! - Whatever key is not named below is a column, and its value what the rows of a figure have there: a word, or a list
+//!   of which any will do.
+
+use super::chapter::{Cell, Chapter};
+use super::figure::{Figure, Unit};
+use super::plan::Plan;
+use super::statistics::Estimate;
+use super::targets::{Side, Targets};
+use crate::measure::table::{Filter, Table, Words};
+use anyhow::{Context, Result};
+use serde::Deserialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use xtask::paths;
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct Description {
+    title: String,
+    /// A line for the index and for `--help`.
+    pub(crate) about: String,
+    /// Roughly what a default run takes on a quiet machine of two cores, without compiling.
+    pub(crate) seconds: u64,
+    /// Bench targets of noisefloor-bench that it runs.
+    pub(crate) programs: Vec<String>,
+    /// Where a `--full` run measures other things: a chapter of its own, which other runs leave as it is.
+    pub(crate) full: Option<Full>,
+    /// What was chosen.
+    settings: BTreeMap<String, Value>,
+    setting: Vec<Counted>,
+    quote: Vec<Quote>,
+    table: Vec<Described>,
+    target: Vec<Target>,
+}
+
+/// What `--full` writes instead of a chapter.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Full {
+    /// As files name it.
+    pub(crate) name: String,
+    pub(crate) title: String,
+    pub(crate) about: String,
+}
+
+/// A setting that a program's table tells.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Counted {
+    name: String,
+    from: String,
+    #[serde(default, rename = "where")]
+    rows: Filter,
+    /// How many different cells this column has,
+    count: Option<String>,
+    /// or its first cell.
+    first: Option<String>,
+}
+
+/// A figure that the text quotes.
+#[derive(Deserialize)]
+struct Quote {
+    name: String,
+    from: String,
+    #[serde(flatten)]
+    of: Query,
+}
+
+/// A table with a row for each combination of the cells of `down`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Described {
+    name: String,
+    section: String,
+    from: String,
+    #[serde(default, rename = "where")]
+    rows: Filter,
+    /// Columns of the program's table that are made rows: of each its name, and the word in the new column `what`.
+    #[serde(default)]
+    melt: Vec<[String; 2]>,
+    /// A table for each combination of these columns' cells.
+    #[serde(default)]
+    each: Vec<String>,
+    /// Of the rows of the program's table those that make lines; figures may be of others.
+    #[serde(default)]
+    lines: Filter,
+    /// Each with its heading behind a colon, if that is another.
+    #[serde(default)]
+    down: Vec<String>,
+    /// What rows are sorted by, if not by `down`.
+    order: Option<Vec<String>>,
+    /// None: the program's table as it is.
+    #[serde(default)]
+    columns: Vec<Column>,
+    /// How many columns are words and aligned left: those of `down`, if nothing is said.
+    words: Option<usize>,
+}
+
+#[derive(Deserialize)]
+struct Column {
+    heading: String,
+    /// A column for each combination of these.
+    #[serde(default)]
+    across: Vec<String>,
+    #[serde(flatten)]
+    of: Query,
+}
+
+/// What a figure is made of.
+#[derive(Deserialize)]
+struct Query {
+    /// The column of its numbers.
+    of: String,
+    #[serde(default)]
+    show: Show,
+    #[serde(default)]
+    unit: Unit,
+    /// The interval is in the JSON alone.
+    #[serde(default)]
+    brief: bool,
+    /// Each number is divided by that in this column.
+    per: Option<String>,
+    times: Option<f64>,
+    /// The value is multiplied by that of another figure; there is no interval then.
+    by: Option<Box<Query>>,
+    /// Not the value, but what is left of it over what is missing from 1: infinite from there on.
+    #[serde(default)]
+    odds: bool,
+    /// Divided by the numbers of other rows, which have these cells instead. Of several such rows those that are least.
+    #[serde(default)]
+    over: Filter,
+    #[serde(flatten)]
+    rows: Filter,
+}
+
+/// How the numbers of a figure become one.
+#[derive(Deserialize, Clone, Copy, Default, PartialEq)]
+#[serde(rename_all = "lowercase")]
+enum Show {
+    /// Of ratios the median of the pairs'.
+    #[default]
+    Median,
+    /// Of ratios that of the means, whose interval is the numerator's.
+    Mean,
+    /// The same. None if one of them is no number.
+    Geometric,
+    /// The first.
+    Once,
+    Largest,
+    /// A ratio that has its interval, and how often it was measured, in columns of its own.
+    Logarithm,
+    /// No number: the different cells, one behind the other.
+    Word,
+}
+
+/// A bound for a figure, in each place.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Target {
+    statement: String,
+    place: String,
+    from: String,
+    #[serde(default, rename = "where")]
+    rows: Filter,
+    #[serde(default)]
+    melt: Vec<[String; 2]>,
+    #[serde(default)]
+    each: Vec<String>,
+    figure: Query,
+    at_most: Option<Limit>,
+    at_least: Option<Limit>,
+    below: Option<Limit>,
+    /// What tells several limits apart, if not all words of `each`.
+    by: Option<String>,
+}
+
+/// One for all places, or those that have one.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Limit {
+    One(f64),
+    Of(BTreeMap<String, f64>),
+}
+
+/// What programs have measured, by name.
+pub(crate) type Measured<'a> = &'a dyn Fn(&str) -> Result<Table>;
+
+impl Description {
+    /// With the numbers of a plan, if there is one.
+    pub(crate) fn read(name: &str, plan: &Plan) -> Result<Self> {
+        let text = paths::read(format!("report/chapters/{name}.toml"))?;
+        toml::from_str(&plan.filled(&text)).with_context(|| format!("report/chapters/{name}.toml"))
+    }
+
+    /// What a run writes: the name of the files, the title, and the index's line.
+    pub(crate) fn names<'a>(&'a self, name: &'a str, plan: &Plan) -> [&'a str; 3] {
+        match &self.full {
+            Some(Full { name, title, about }) if plan.is_full() => [name, title, about],
+            _ => [name, &self.title, &self.about],
+        }
+    }
+
+    pub(crate) fn write(&self, measured: Measured, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
+        for (name, value) in &self.settings {
+            chapter.setting(name, value.clone());
+        }
+        for Counted { name, from, rows, count, first } in &self.setting {
+            let table = measured(from)?.only(rows)?;
+            let of = |column: &Option<String>| column.as_ref().map(|column| table.distinct(column)).transpose();
+            if let Some(cells) = of(count)? {
+                chapter.setting(name, cells.len());
+            }
+            if let Some(&cell) = of(first)?.iter().flatten().next() {
+                chapter.setting(name, cell.parse::<u64>().map_or(Value::from(cell), Value::from));
+            }
+        }
+        for Quote { name, from, of } in &self.quote {
+            if let Cell::Figure(figure) = of.cell(&measured(from)?, &Filter::new())? {
+                chapter.quote(name, figure);
+            }
+        }
+        self.table.iter().try_for_each(|table| table.write(measured(&table.from)?, chapter))?;
+        self.target.iter().try_for_each(|target| target.write(measured(&target.from)?, targets))
+    }
+}
+
+impl Described {
+    fn write(&self, table: Table, chapter: &mut Chapter) -> Result<()> {
+        let table = table.melted(&self.melt)?.only(&self.rows)?;
+        for each in table.combinations(&self.each, &self.rows)? {
+            chapter.section(&filled(&self.section, &each), "");
+            let (headings, rows) = match self.columns.is_empty() {
+                true => (
+                    table.headings.clone(),
+                    table.rows().map(|row| row.cells.iter().cloned().map(Cell::from).collect()).collect(),
+                ),
+                false => self.cells(&table.only(&each)?)?,
+            };
+            if !rows.is_empty() {
+                chapter.table(&self.name, &headings, self.words.unwrap_or(self.down.len()), rows);
+            }
+        }
+        Ok(())
+    }
+
+    /// Headings and rows. What was not measured, rows and columns of `across`, is left out.
+    fn cells(&self, table: &Table) -> Result<(Vec<String>, Vec<Vec<Cell>>)> {
+        let down: Vec<_> = self.down.iter().map(|down| down.split_once(": ").unwrap_or((down, down))).collect();
+        let names: Vec<&str> = down.iter().map(|(name, _)| *name).collect();
+        let order =
+            self.order.as_ref().map_or_else(|| names.clone(), |order| order.iter().map(String::as_str).collect());
+        let kinds = table.only(&self.lines)?.combinations(&order, &joined(&self.rows, &self.lines))?;
+        let is_measured = |cell: &Cell| !matches!(cell, Cell::Missing);
+        let mut columns: Vec<(String, Vec<Cell>)> = Vec::new();
+        for (name, heading) in &down {
+            let words = kinds.iter().map(|of| Cell::from(of[*name].to_string()));
+            columns.push(((*heading).to_owned(), words.collect()));
+        }
+        for column in &self.columns {
+            for at in table.combinations(&column.across, &self.rows)? {
+                let cells = kinds.iter().map(|of| column.of.cell(table, &joined(of, &at)));
+                let cells = cells.collect::<Result<Vec<_>>>()?;
+                if column.across.is_empty() || cells.iter().any(is_measured) {
+                    columns.push((filled(&column.heading, &at), cells));
+                }
+            }
+        }
+        let (headings, columns): (Vec<String>, Vec<Vec<Cell>>) = columns.into_iter().unzip();
+        let row = |at: usize| columns.iter().map(|cells| cells[at].clone()).collect::<Vec<_>>();
+        let rows = (0..kinds.len()).map(row).filter(|row| row[down.len()..].iter().any(is_measured));
+        Ok((headings, rows.collect()))
+    }
+}
+
+impl Target {
+    fn write(&self, table: Table, targets: &mut Targets) -> Result<()> {
+        let table = table.melted(&self.melt)?.only(&self.rows)?;
+        let limits = [(&self.at_most, Side::AtMost), (&self.at_least, Side::AtLeast), (&self.below, Side::Below)];
+        for each in table.combinations(&self.each, &self.rows)? {
+            let words = self.each.iter().map(|column| each[column].to_string());
+            let key = self.by.as_ref().map_or_else(|| words.collect::<Vec<_>>().join(", "), |by| filled(by, &each));
+            for (limit, side) in limits {
+                let bound = match limit {
+                    Some(Limit::One(bound)) => Some(bound),
+                    Some(Limit::Of(bounds)) => bounds.get(&key),
+                    None => None,
+                };
+                if let (Some(&bound), Some(estimate)) = (bound, self.figure.estimate(&table, &each)?) {
+                    let (statement, place) = (filled(&self.statement, &each), filled(&self.place, &each));
+                    targets.add(&statement, &place, estimate, self.figure.unit, (side, bound));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Query {
+    fn cell(&self, table: &Table, of: &Filter) -> Result<Cell> {
+        if self.show == Show::Word {
+            let words = table.only(&joined(of, &self.rows))?.distinct(&self.of)?.concat();
+            return Ok(Some(words).filter(|words| !words.is_empty()).into());
+        }
+        let show = if self.brief { Figure::brief } else { Figure::new };
+        let Some(mut estimate) = self.estimate(table, of)? else { return Ok(Cell::Missing) };
+        if let Some(factor) = &self.by {
+            let value = factor.estimate(table, of)?.map_or(f64::NAN, |of| of.value);
+            let odds = if value < 1.0 { value / (1.0 - value) } else { f64::INFINITY };
+            estimate = Estimate::exact(estimate.value * if factor.odds { odds } else { value });
+        }
+        Ok(show(estimate, self.unit).into())
+    }
+
+    /// None of what was not measured.
+    fn estimate(&self, table: &Table, of: &Filter) -> Result<Option<Estimate>> {
+        let rows = joined(of, &self.rows);
+        let own = self.numbers(table, &rows)?;
+        if own.is_empty() {
+            return Ok(None);
+        }
+        if self.show == Show::Logarithm {
+            return table.only(&rows)?.rows().next().map(|row| row.ratio(&self.of)).transpose();
+        }
+        if self.over.is_empty() {
+            return Ok(self.sum_up(&own));
+        }
+        let mut least: Option<(f64, Vec<f64>)> = None;
+        for over in choices(&self.over) {
+            let others = joined(&rows, &over);
+            // Nothing is compared with itself.
+            let is_same = table.only(&others)? == table.only(&rows)?;
+            let numbers = if is_same { Vec::new() } else { self.numbers(table, &others)? };
+            let value = self.sum_up(&numbers).map_or(f64::INFINITY, |estimate| estimate.value);
+            if !numbers.is_empty() && least.as_ref().is_none_or(|(least, _)| value < *least) {
+                least = Some((value, numbers));
+            }
+        }
+        let Some((value, others)) = least else { return Ok(None) };
+        Ok(match self.show {
+            Show::Mean | Show::Geometric => self.sum_up(&own.iter().map(|own| own / value).collect::<Vec<_>>()),
+            _ => Some(Estimate::ratio(&own, &others)),
+        })
+    }
+
+    fn numbers(&self, table: &Table, rows: &Filter) -> Result<Vec<f64>> {
+        let numbers = table.only(rows)?;
+        let mut all = numbers.measured(&self.of)?;
+        if let Some(per) = &self.per {
+            all.iter_mut().zip(numbers.numbers(per)?).for_each(|(number, per)| *number /= per);
+        }
+        let factor = self.times.unwrap_or(1.0);
+        Ok(all.into_iter().map(|number| number * factor).collect())
+    }
+
+    fn sum_up(&self, numbers: &[f64]) -> Option<Estimate> {
+        let &first = numbers.first()?;
+        match self.show {
+            Show::Mean => Some(Estimate::mean(numbers)),
+            Show::Geometric if numbers.iter().any(|number| !number.is_finite()) => None,
+            Show::Geometric => Some(Estimate::geometric_mean(numbers)),
+            Show::Once => Some(Estimate::exact(first)).filter(|_| first.is_finite()),
+            Show::Largest => Some(Estimate::exact(numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max))),
+            _ => Some(Estimate::median(numbers)),
+        }
+    }
+}
+
+/// The cells of both; of the second those of the same columns.
+fn joined(one: &Filter, other: &Filter) -> Filter {
+    one.iter().chain(other).map(|(column, words)| (column.clone(), words.clone())).collect()
+}
+
+/// Each combination of one word of every column.
+fn choices(filter: &Filter) -> Vec<Filter> {
+    filter.iter().fold(vec![Filter::new()], |all, (column, words)| {
+        let with =
+            |choice: &Filter, word: &String| joined(choice, &[(column.clone(), Words::One(word.clone()))].into());
+        all.iter().flat_map(|choice| words.list().iter().map(move |word| with(choice, word))).collect()
+    })
+}
+
+/// The text with columns' cells for their names in braces.
+fn filled(text: &str, cells: &Filter) -> String {
+    cells
+        .iter()
+        .fold(text.to_owned(), |text, (column, words)| text.replace(&format!("{{{column}}}"), &words.to_string()))
+}

@@ -1,0 +1,31 @@
+//! What a chapter is written from.
+
+use super::clock::Clock;
+use super::described::{Description, Measured};
+use super::plan::Plan;
+use super::prelude::*;
+use crate::measure::output::Output;
+
+pub(crate) struct Report<'a> {
+    /// The chapter that is written, as files name it, its title, and the index's line.
+    pub(crate) names: [&'a str; 3],
+    pub(crate) description: &'a Description,
+    pub(crate) plan: &'a Plan,
+    /// Markdown, JSON, plots.
+    pub(crate) output: &'a Output,
+    pub(crate) clock: Clock,
+}
+
+impl Report<'_> {
+    /// To be called once everything is compiled: a chapter's time is counted from here.
+    pub(crate) fn compiled(&self) {
+        self.clock.restart();
+    }
+
+    /// The chapter as it is described.
+    pub(crate) fn described(&self, measured: Measured) -> Result<(Chapter, Targets)> {
+        let (mut chapter, mut targets) = (Chapter::new(self.names[1]), Targets::default());
+        self.description.write(measured, &mut chapter, &mut targets)?;
+        Ok((chapter, targets))
+    }
+}
