@@ -63,35 +63,6 @@ macro_rules! row {
 }
 pub(crate) use row;
 
-/// A table's columns: one by one, or between bars.
-pub(crate) trait Columns {
-    fn list(&self) -> Vec<String>;
-}
-
-impl Columns for str {
-    fn list(&self) -> Vec<String> {
-        self.split(" | ").map(str::to_owned).collect()
-    }
-}
-
-impl<T: AsRef<str>> Columns for [T] {
-    fn list(&self) -> Vec<String> {
-        self.iter().map(|column| column.as_ref().to_owned()).collect()
-    }
-}
-
-impl<T: AsRef<str>, const N: usize> Columns for [T; N] {
-    fn list(&self) -> Vec<String> {
-        self[..].list()
-    }
-}
-
-impl<T: AsRef<str>> Columns for Vec<T> {
-    fn list(&self) -> Vec<String> {
-        self[..].list()
-    }
-}
-
 #[derive(Default)]
 pub(crate) struct Chapter {
     title: String,
@@ -106,9 +77,9 @@ impl Chapter {
         Self { title: title.to_owned(), section: title.to_owned(), ..Self::default() }
     }
 
-    /// The tables that follow stand below this heading; `source` names the figures of the thesis beside them.
-    pub(crate) fn section(&mut self, title: &str, source: &str) {
-        self.section = if source.is_empty() { title.to_owned() } else { format!("{title} ({source})") };
+    /// The tables that follow stand below this heading.
+    pub(crate) fn section(&mut self, title: &str) {
+        title.clone_into(&mut self.section);
     }
 
     /// A figure that the text quotes.
@@ -121,47 +92,10 @@ impl Chapter {
         self.settings.insert(name.into(), value.into());
     }
 
-    /// What stands in the first `words` of the columns is aligned left.
-    pub(crate) fn table(
-        &mut self,
-        name: impl Into<String>,
-        columns: &(impl Columns + ?Sized),
-        words: usize,
-        rows: Vec<Vec<Cell>>,
-    ) {
-        self.tables.push(Table {
-            name: name.into(),
-            section: self.section.clone(),
-            columns: columns.list(),
-            words,
-            rows,
-        });
-    }
-
-    /// A table with a row for each of `down` and a column for each of `across`; the words of a row stand under `lead`.
-    /// A row without any cell is left out.
-    pub(crate) fn grid<D, A>(
-        &mut self,
-        name: &'static str,
-        lead: (usize, &str),
-        down: impl IntoIterator<Item = (Vec<Cell>, D)>,
-        across: &[(impl AsRef<str>, A)],
-        cell: impl Fn(&D, &A) -> Result<Cell>,
-    ) -> Result<()> {
-        let (words, mut columns) = (lead.0, lead.1.list());
-        let first = columns.len();
-        let mut rows = Vec::new();
-        for (mut cells, of) in down {
-            for (_, at) in across {
-                cells.push(cell(&of, at)?);
-            }
-            if cells[first..].iter().any(|cell| !matches!(cell, Cell::Missing)) {
-                rows.push(cells);
-            }
-        }
-        columns.extend(across.iter().map(|(heading, _)| heading.as_ref().to_owned()));
-        self.table(name, &columns, words, rows);
-        Ok(())
+    /// Columns between bars. What stands in the first `words` of them is aligned left.
+    pub(crate) fn table(&mut self, name: &str, columns: &str, words: usize, rows: Vec<Vec<Cell>>) {
+        let columns = columns.split(" | ").map(str::to_owned).collect();
+        self.tables.push(Table { name: name.to_owned(), section: self.section.clone(), columns, words, rows });
     }
 
     pub(crate) fn json(&self) -> Value {

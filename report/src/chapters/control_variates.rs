@@ -7,15 +7,15 @@ mod frontier;
 use super::prelude::*;
 use super::program;
 use super::report::Report;
-use cells::{BASES, Cells, DEFAULT, ESTIMATORS, MEAN, Setting, Summary};
+use cells::{Cells, DEFAULT, MEAN, Summary};
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     let tables = program::measure(report)?;
     let cells = Cells::new(&tables.read("grid")?, &tables.read("recommended")?)?;
-    let mut chapter = Chapter::new(report.names[1]);
+    let (mut chapter, _) = report.described(&|_| Ok(grid(&cells)))?;
+    chapter.setting("dims of the table of estimators, at most", DIMS);
     judge(&tables.read("must_reach")?)?.write(&mut chapter);
     frontier::write(&mut chapter, &cells);
-    grid(&mut chapter, &cells)?;
     integrands(&mut chapter, &cells);
     precision(&mut chapter, &tables.read("cells")?)?;
     Ok(chapter)
@@ -34,32 +34,25 @@ fn judge(table: &Table) -> Result<Targets> {
     Ok(targets)
 }
 
-const ORDERS: [(&str, usize); 4] = [("order 1", 1), ("order 2", 2), ("order 3", 3), ("order 5", 5)];
-/// Up to so many dims all of these orders have at most as many terms as the library admits.
+/// Up to so many dims orders 1, 2, 3 and 5 have at most as many terms as the library admits.
 const DIMS: usize = 3;
 
-/// Bases and orders of every estimator.
-fn grid(chapter: &mut Chapter, cells: &Cells) -> Result<()> {
-    chapter.section("Estimators, bases, orders", "");
-    chapter.setting("dims of the table of estimators, at most", DIMS);
+/// Of each setting the geometric mean of the error, and the worst.
+fn grid(cells: &Cells) -> Table {
+    let mut all = Table::new("settings", "n | estimator | basis | order | errors");
     for &n in &cells.counts {
-        let all = cells.summaries(|dims| dims <= DIMS, n);
-        let rows = ESTIMATORS
-            .iter()
-            .flat_map(|estimator| BASES.map(|basis| (row![n as u32, *estimator, basis], (*estimator, basis))));
-        let lead = (3, "samples | estimator | basis");
-        chapter.grid("estimators, bases, orders", lead, rows, &ORDERS, |(estimator, basis), &order| {
-            let setting = Setting { estimator: (*estimator).to_owned(), basis: (*basis).to_owned(), order };
-            let both = |of: &Summary| [of.ratio.value, of.worst.value].map(|value| Unit::Ratio.text(value)).join("; ");
-            Ok(all.iter().find(|summary| summary.setting == setting).map(both).into())
-        })?;
+        for Summary { setting, ratio, worst, .. } in cells.summaries(|dims| dims <= DIMS, n) {
+            let errors = [ratio.value, worst.value].map(|value| Unit::Ratio.text(value)).join("; ");
+            let (n, order) = (n.to_string(), setting.order.to_string());
+            all.push(vec![n, setting.estimator, setting.basis, order, errors]);
+        }
     }
-    Ok(())
+    all
 }
 
 /// Each integrand: the recommended setting, and the one of least error.
 fn integrands(chapter: &mut Chapter, cells: &Cells) {
-    chapter.section("Each integrand", "");
+    chapter.section("Each integrand");
     let mut rows = Vec::new();
     for mean in cells.all.iter().filter(|cell| cell.setting.estimator == MEAN) {
         let here = || cells.all.iter().filter(|cell| cell.integrand == mean.integrand && cell.n == mean.n);
@@ -89,7 +82,7 @@ fn integrands(chapter: &mut Chapter, cells: &Cells) {
 
 /// What `f32` accumulation costs in error and saves in time.
 fn precision(chapter: &mut Chapter, table: &Table) -> Result<()> {
-    chapter.section("f32 against f64", "");
+    chapter.section("f32 against f64");
     let mut rows = Vec::new();
     for (method, degree) in ["robust", "least squares"].into_iter().flat_map(|of| ["2", "3"].map(|degree| (of, degree)))
     {

@@ -10,7 +10,7 @@ use super::figure::{Figure, Unit};
 use super::plan::Plan;
 use super::statistics::Estimate;
 use super::targets::{Side, Targets};
-use crate::measure::table::{Filter, Table, Words};
+use crate::measure::table::{Filter, Row, Table, Words};
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use serde_json::Value;
@@ -151,6 +151,10 @@ enum Show {
     /// The first.
     Once,
     Largest,
+    /// A number, and half of its interval if there is one: "2.5 +- 0.1".
+    Written,
+    /// A number whose interval's ends have columns of their own.
+    Ends,
     /// A ratio that has its interval, and how often it was measured, in columns of its own.
     Logarithm,
     /// No number: the different cells, one behind the other.
@@ -208,8 +212,10 @@ impl Description {
         for (name, value) in &self.settings {
             chapter.setting(name, value.clone());
         }
+        // What was not measured has no columns.
+        let measured = |name: &str| measured(name).map(|table| Some(table).filter(|table| !table.headings.is_empty()));
         for Counted { name, from, rows, count, first } in &self.setting {
-            let table = measured(from)?.only(rows)?;
+            let Some(table) = measured(from)?.map(|table| table.only(rows)).transpose()? else { continue };
             let of = |column: &Option<String>| column.as_ref().map(|column| table.distinct(column)).transpose();
             if let Some(cells) = of(count)? {
                 chapter.setting(name, cells.len());
@@ -219,12 +225,18 @@ impl Description {
             }
         }
         for Quote { name, from, of } in &self.quote {
-            if let Cell::Figure(figure) = of.cell(&measured(from)?, &Filter::new())? {
+            let Some(table) = measured(from)? else { continue };
+            if let Cell::Figure(figure) = of.cell(&table, &Filter::new())? {
                 chapter.quote(name, figure);
             }
         }
-        self.table.iter().try_for_each(|table| table.write(measured(&table.from)?, chapter))?;
-        self.target.iter().try_for_each(|target| target.write(measured(&target.from)?, targets))
+        for described in &self.table {
+            measured(&described.from)?.map(|table| described.write(table, chapter)).transpose()?;
+        }
+        for target in &self.target {
+            measured(&target.from)?.map(|table| target.write(table, targets)).transpose()?;
+        }
+        Ok(())
     }
 }
 
@@ -232,7 +244,7 @@ impl Described {
     fn write(&self, table: Table, chapter: &mut Chapter) -> Result<()> {
         let table = table.melted(&self.melt)?.only(&self.rows)?;
         for each in table.combinations(&self.each, &self.rows)? {
-            chapter.section(&filled(&self.section, &each), "");
+            chapter.section(&filled(&self.section, &each));
             let (headings, rows) = match self.columns.is_empty() {
                 true => (
                     table.headings.clone(),
@@ -241,7 +253,7 @@ impl Described {
                 false => self.cells(&table.only(&each)?)?,
             };
             if !rows.is_empty() {
-                chapter.table(&self.name, &headings, self.words.unwrap_or(self.down.len()), rows);
+                chapter.table(&self.name, &headings.join(" | "), self.words.unwrap_or(self.down.len()), rows);
             }
         }
         Ok(())
@@ -318,12 +330,17 @@ impl Query {
     /// None of what was not measured.
     fn estimate(&self, table: &Table, of: &Filter) -> Result<Option<Estimate>> {
         let rows = joined(of, &self.rows);
+        if matches!(self.show, Show::Written | Show::Logarithm | Show::Ends) {
+            let one = |row: Row| match self.show {
+                Show::Written => row.written(&self.of),
+                Show::Logarithm => row.ratio(&self.of),
+                _ => row.between(&self.of),
+            };
+            return table.only(&rows)?.rows().next().map(one).transpose();
+        }
         let own = self.numbers(table, &rows)?;
         if own.is_empty() {
             return Ok(None);
-        }
-        if self.show == Show::Logarithm {
-            return table.only(&rows)?.rows().next().map(|row| row.ratio(&self.of)).transpose();
         }
         if self.over.is_empty() {
             return Ok(self.sum_up(&own));

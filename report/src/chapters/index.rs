@@ -69,7 +69,7 @@ pub(super) fn write(folder: &Path, new: Option<(&str, &Value)>) -> Result<String
 }
 
 fn chapters(index: &mut Chapter, all: &[Summary]) {
-    index.section("Chapters", "");
+    index.section("Chapters");
     let seconds = |seconds: f64| format!("{seconds:.0}");
     let rows = all.iter().map(|Summary { title, run, .. }| -> Vec<Cell> {
         row![
@@ -87,7 +87,7 @@ fn chapters(index: &mut Chapter, all: &[Summary]) {
 }
 
 fn machines(index: &mut Chapter, all: &[Summary]) {
-    index.section("Machine", "");
+    index.section("Machine");
     let mut distinct: Vec<(&Machine, Vec<&str>)> = Vec::new();
     for one in all {
         match distinct.iter_mut().find(|(machine, _)| **machine == one.run.machine) {
@@ -105,7 +105,7 @@ fn machines(index: &mut Chapter, all: &[Summary]) {
 
 /// The chapters' own tables.
 fn targets(index: &mut Chapter, all: &[Summary]) {
-    index.section("What was to be reached", "");
+    index.section("What was to be reached");
     let text = |cell: &Value| cell["text"].as_str().or(cell.as_str()).unwrap_or("-").to_owned();
     let mut rows: Vec<Vec<Cell>> = Vec::new();
     let mut reached = [0, 0];

@@ -35,7 +35,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     over_scenes("raw error over the best's, geometric mean", &errors, "raw", &mut targets, (Side::AtMost, 1.03))?;
     let statement = "error after OIDN over the best's, geometric mean";
     over_scenes(statement, &errors, "denoised", &mut targets, (Side::Below, 1.0))?;
-    chapter.section("Gradients", "");
+    chapter.section("Gradients");
     derivatives(&table("gradients")?, &mut chapter, &mut targets)?;
     targets.write(&mut chapter);
     Ok(chapter)
@@ -119,7 +119,7 @@ fn derivatives(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> R
             }
         }
     }
-    let columns = ["parameter", "spp", "sampler", "spread over independent's", "bias, %"];
-    chapter.table("gradients", &columns, 3, rows);
+    let columns = "parameter | spp | sampler | spread over independent's | bias, %";
+    chapter.table("gradients", columns, 3, rows);
     Ok(())
 }

@@ -7,60 +7,40 @@ use super::report::Report;
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     let tables = program::measure(report)?;
-    let (mut chapter, targets) = report.described(&|name| tables.read(name))?;
+    // What `recommend()` says, what is best, and where that is better by more than its noise.
+    let decisions = tables.read("decisions")?.with("shown", shown)?;
+    let decisions = decisions.with("better", |row| choice(row, "best", ["best_raw", "best_filtered"]))?;
+    let better = decisions.filtered(|row| row.number::<f64>("excess_low").is_ok_and(|low| low > 1.0));
+    let (mut chapter, targets) = report.described(&|name| match name {
+        "decisions" => Ok(decisions.clone()),
+        "better" => Ok(better.clone()),
+        _ => tables.read(name),
+    })?;
     let energies = tables.read("energies")?;
     let integrands: usize = energies.rows().next().context("no energies were measured")?.number("integrands")?;
     chapter.setting("integrands of each family, one sample", integrands * energies.distinct("batch")?.len());
-    decisions(&tables.read("decisions")?, &mut chapter)?;
+    chapter.quote("decisions", Figure::count(decisions.rows().count()));
+    chapter.quote("decisions where another was better", Figure::count(better.rows().count()));
+    let largest = decisions.numbers("excess")?.into_iter().fold(1.0, f64::max);
+    chapter.quote("largest excess of a recommendation", Figure::exact(largest, Unit::Ratio));
     targets.write(&mut chapter);
     Ok(chapter)
 }
 
-/// What `recommend()` says, and whether this run agrees.
-fn decisions(table: &Table, chapter: &mut Chapter) -> Result<()> {
-    chapter.section("What is recommended", "");
-    let counts = table.named("n", |n| format!("n = {n}"))?;
-    let (dims, kinds) = (table.distinct("dims")?, table.kinds(&["samples", "neighbours"])?);
-    let down = dims.iter().flat_map(|dims| kinds.iter().map(move |of| (row![*dims, of[0], of[1]], (*dims, of))));
-    chapter.grid("recommended", (3, "dims | samples | neighbours"), down, &counts, |(dims, of), n| {
-        let wanted = [("dims", *dims), ("samples", of[0]), ("neighbours", of[1]), ("n", *n)];
-        Ok(match table.rows().find(|row| row.has(&wanted)) {
-            Some(row) if of[1].is_empty() => name(row, "recommended")?.into(),
-            Some(row) => choice(row, "recommended", ["raw", "filtered"])?.into(),
-            None => Cell::Missing,
-        })
-    })?;
-    // Where something else was better by more than its noise.
-    let mut rows = Vec::new();
-    for row in table.rows().filter(|row| row.number::<f64>("excess_low").is_ok_and(|low| low > 1.0)) {
-        let [value, low, high] = ["excess", "excess_low", "excess_high"].map(|column| row.number(column));
-        rows.push(row![
-            row.word("dims")?,
-            row.word("n")?,
-            row.word("samples")?,
-            row.word("neighbours")?,
-            choice(row, "recommended", ["raw", "filtered"])?,
-            choice(row, "best", ["best_raw", "best_filtered"])?,
-            Figure::new(Estimate { value: value?, low: low?, high: high?, seeds: 2 }, Unit::Ratio)
-        ]);
+/// Of samplers the name alone; of estimators with the errors.
+fn shown(row: &Row) -> Result<String> {
+    match row.word("neighbours")? {
+        "" => name(row, "recommended"),
+        _ => choice(row, "recommended", ["raw", "filtered"]),
     }
-    chapter.quote("decisions", Figure::count(table.rows().count()));
-    chapter.quote("decisions where another was better", Figure::count(rows.len()));
-    let largest = table.numbers("excess")?.into_iter().fold(1.0, f64::max);
-    chapter.quote("largest excess of a recommendation", Figure::exact(largest, Unit::Ratio));
-    if !rows.is_empty() {
-        let columns = "dims | n | samples | neighbours | recommended | better | excess";
-        chapter.table("better than recommended", columns, 6, rows);
-    }
-    Ok(())
 }
 
-fn name(row: Row<'_>, column: &str) -> Result<String> {
+fn name(row: &Row, column: &str) -> Result<String> {
     Ok(row.word(column)?.replace(';', ","))
 }
 
 /// What is chosen, and its errors, of which two digits hold.
-fn choice(row: Row<'_>, column: &str, errors: [&str; 2]) -> Result<String> {
+fn choice(row: &Row, column: &str, errors: [&str; 2]) -> Result<String> {
     let [raw, filtered] = errors.map(|error| row.number(error).map(|error| significant(error, 2)));
     Ok(format!("{}: {}, {}", name(row, column)?, raw?, filtered?))
 }

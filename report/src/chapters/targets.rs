@@ -104,7 +104,7 @@ impl Targets {
     /// One row for each statement, its worst place standing for it; then every place that misses it. The index reads
     /// the first table.
     pub(crate) fn write(&self, chapter: &mut Chapter) {
-        chapter.section("What was to be reached", "");
+        chapter.section("What was to be reached");
         let groups = self.groups();
         let all = |of: fn(&Target) -> bool| groups.iter().filter(|group| group.iter().all(|one| of(one))).count();
         chapter.quote("targets", Figure::count(groups.len()));

@@ -1,4 +1,4 @@
-//! Lines against an axis, as SVG: named series, each line labelled at its end.
+//! Lines against an axis, as SVG: named series.
 
 use anyhow::{Result, anyhow};
 use plotters::coord::combinators::BindKeyPoints;
@@ -31,9 +31,9 @@ pub(crate) struct Plot<'a> {
 }
 
 const SIZE: (u32, u32) = (900, 560);
-/// Pixels to the right of the axes, for the labels, and between two labels.
-const LABELS: u32 = 210;
-const LABEL_HEIGHT: f64 = 17.0;
+/// Pixels to the right of the axes, for the series' names, and from one name to the next.
+const LABELS: u32 = 230;
+const LABEL_HEIGHT: i32 = 20;
 const FONT: &str = "sans-serif";
 /// Told apart by colour-blind readers too (Okabe and Ito 2008), the yellow darkened.
 const COLOURS: [RGBColor; 8] = [
@@ -106,7 +106,7 @@ impl Plot<'_> {
             .y_labels(10)
             .draw()?;
 
-        let mut labels = Vec::new();
+        let left = (SIZE.0 - LABELS + 10) as i32;
         for (index, series) in self.series.iter().enumerate() {
             let colour = COLOURS[series.colour.unwrap_or(index) % COLOURS.len()];
             let band = || series.band.iter().filter(|band| self.shows(band.1));
@@ -115,52 +115,25 @@ impl Plot<'_> {
                 let outline: Vec<_> = low.chain(band().rev().map(|&(at, _, high)| (at, high))).collect();
                 chart.draw_series([Polygon::new(outline, colour.mix(0.15).filled())])?;
             }
-            let line = self.shown(series);
-            let style = colour.stroke_width(2);
+            let (line, style) = (self.shown(series), colour.stroke_width(2));
             if series.dashed {
-                chart.draw_series(DashedLineSeries::new(line.iter().copied(), 6, 4, style))?;
+                chart.draw_series(DashedLineSeries::new(line, 6, 4, style))?;
             } else {
-                chart.draw_series(LineSeries::new(line.iter().copied(), style))?;
+                chart.draw_series(LineSeries::new(line, style))?;
             }
-            if let Some(end) = line.last() {
-                labels.push((f64::from(chart.backend_coord(end).1), series.name.as_str(), colour, series.dashed));
+            let height = 60 + LABEL_HEIGHT * index as i32;
+            let sample: &[[i32; 2]] = if series.dashed { &[[0, 6], [10, 16]] } else { &[[0, 16]] };
+            for [from, to] in sample {
+                root.draw(&PathElement::new(vec![(left + from, height), (left + to, height)], style))?;
             }
-        }
-        let left = (SIZE.0 - LABELS + 10) as i32;
-        labels.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let wanted: Vec<_> = labels.iter().map(|label| label.0).collect();
-        for (height, (_, name, colour, dashed)) in spread(&wanted).into_iter().zip(labels) {
-            let height = height as i32;
-            let dashes: &[(i32, i32)] = if dashed { &[(0, 8), (13, 21)] } else { &[(0, 21)] };
-            for &(from, to) in dashes {
-                let stroke = vec![(left + from, height), (left + to, height)];
-                root.draw(&PathElement::new(stroke, colour.stroke_width(2)))?;
-            }
-            let style = (FONT, 14).into_font().color(&colour).pos(Pos::new(HPos::Left, VPos::Center));
-            root.draw(&Text::new(name.to_owned(), (left + 27, height), style))?;
+            let words = (FONT, 14).into_font().color(&colour).pos(Pos::new(HPos::Left, VPos::Center));
+            root.draw(&Text::new(series.name.clone(), (left + 24, height), words))?;
         }
         root.present()
     }
 }
 
 type DrawingError<B> = DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>;
-
-/// Heights from the top for labels that want to be at `wanted` (ascending), none above another's text.
-fn spread(wanted: &[f64]) -> Vec<f64> {
-    let mut heights = wanted.to_vec();
-    let (top, bottom) = (50.0, f64::from(SIZE.1) - 30.0);
-    let mut free = top;
-    for height in &mut heights {
-        *height = height.max(free);
-        free = *height + LABEL_HEIGHT;
-    }
-    let mut free = bottom;
-    for height in heights.iter_mut().rev() {
-        *height = height.min(free);
-        free = *height - LABEL_HEIGHT;
-    }
-    heights
-}
 
 /// What an axis must show, and a little more; what starts at nought stays there.
 fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
@@ -183,13 +156,6 @@ fn ticks(range: &Range<f64>) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn labels_keep_their_distance() {
-        let heights = spread(&[100.0, 101.0, 102.0, 600.0]);
-        assert!(heights.windows(2).all(|pair| pair[1] - pair[0] >= LABEL_HEIGHT));
-        assert!(heights.iter().all(|&height| height <= f64::from(SIZE.1)));
-    }
 
     #[test]
     fn logarithmic_axes_have_labels() {

@@ -37,7 +37,7 @@ impl fmt::Display for Words {
 #[derive(Clone, PartialEq)]
 pub(crate) struct Table {
     /// For errors: where it is from.
-    name: String,
+    pub(crate) name: String,
     pub(crate) headings: Vec<String>,
     rows: Vec<Vec<String>>,
 }
@@ -52,7 +52,7 @@ pub(crate) struct Row<'a> {
 impl Table {
     /// Without rows; headings between bars.
     pub(crate) fn new(name: &str, headings: &str) -> Self {
-        let headings = headings.split(" | ").map(str::to_owned).collect();
+        let headings = headings.split(" | ").filter(|heading| !heading.is_empty()).map(str::to_owned).collect();
         Self { name: name.to_owned(), headings, rows: Vec::new() }
     }
 
@@ -90,11 +90,6 @@ impl Table {
         self.rows.iter().map(|cells| Row { table: self, cells })
     }
 
-    /// The first row with these cells under these headings.
-    pub(crate) fn find(&self, wanted: &[(&str, &str)]) -> Result<Row<'_>> {
-        self.rows().find(|row| row.has(wanted)).with_context(|| format!("{} has no row of {wanted:?}", self.name))
-    }
-
     /// The rows with these cells under these headings.
     pub(crate) fn of(&self, wanted: &[(&str, &str)]) -> Self {
         self.filtered(|row| row.has(wanted))
@@ -107,7 +102,7 @@ impl Table {
         Ok(self.filtered(|row| wanted.iter().all(|(column, words)| words.contains(&row.cells[*column]))))
     }
 
-    fn filtered(&self, is_wanted: impl Fn(&Row) -> bool) -> Self {
+    pub(crate) fn filtered(&self, is_wanted: impl Fn(&Row) -> bool) -> Self {
         let rows = self.rows().filter(is_wanted).map(|row| row.cells.to_vec()).collect();
         Self { name: self.name.clone(), headings: self.headings.clone(), rows }
     }
@@ -125,6 +120,16 @@ impl Table {
         self.rows = self.rows.into_iter().flat_map(melt).collect();
         self.headings.extend(["what", "value"].map(str::to_owned));
         Ok(self)
+    }
+
+    /// With another column.
+    pub(crate) fn with(&self, heading: &str, cell: impl Fn(&Row) -> Result<String>) -> Result<Self> {
+        let mut table = self.clone();
+        for (cells, row) in table.rows.iter_mut().zip(self.rows()) {
+            cells.push(cell(&row)?);
+        }
+        table.headings.push(heading.to_owned());
+        Ok(table)
     }
 
     /// The numbers of a column, without empty cells.
@@ -165,11 +170,6 @@ impl Table {
         self.rows().filter(|row| row.has(wanted)).map(|row| row.number(heading)).collect()
     }
 
-    /// The different cells of a column, each with its words in the heading of a table.
-    pub(crate) fn named(&self, heading: &str, words: impl Fn(&str) -> String) -> Result<Vec<(String, &str)>> {
-        Ok(self.distinct(heading)?.into_iter().map(|word| (words(word), word)).collect())
-    }
-
     /// The different cells of a column, in the order in which they come.
     pub(crate) fn distinct(&self, heading: &str) -> Result<Vec<&str>> {
         Ok(self.kinds(&[heading])?.concat())
@@ -187,9 +187,11 @@ impl Table {
         Ok(kinds)
     }
 
+    /// `NAME[2]` is the second column of this name.
     fn column(&self, heading: &str) -> Result<usize> {
-        let column = self.headings.iter().position(|name| name == heading);
-        column.with_context(|| format!("{} has no column `{heading}`", self.name))
+        let (name, skip) = heading.strip_suffix("[2]").map_or((heading, 0), |name| (name, 1));
+        let mut columns = (0..self.headings.len()).filter(|&column| self.headings[column] == name);
+        columns.nth(skip).with_context(|| format!("{} has no column `{heading}`", self.name))
     }
 }
 
@@ -208,6 +210,21 @@ impl<'a> Row<'a> {
     /// A ratio, with its interval and how often it was measured.
     pub(crate) fn ratio(&self, heading: &str) -> Result<Estimate> {
         Ok(Estimate::of_logarithm(self.number(heading)?, self.number("half_width")?, self.number("repetitions")?))
+    }
+
+    /// A number, and half of its interval if there is one: "2.5 +- 0.1".
+    pub(crate) fn written(&self, heading: &str) -> Result<Estimate> {
+        let word = self.word(heading)?;
+        let (value, half) = word.split_once(" +- ").unwrap_or((word, "0"));
+        let [value, half] = [value, half].map(|word| word.trim().parse::<f64>());
+        let (value, half) = (value?, half?);
+        Ok(Estimate { value, low: value - half, high: value + half, seeds: 2 })
+    }
+
+    /// A number whose interval's ends have columns of their own.
+    pub(crate) fn between(&self, heading: &str) -> Result<Estimate> {
+        let [value, low, high] = ["", "_low", "_high"].map(|end| self.number(&format!("{heading}{end}")));
+        Ok(Estimate { value: value?, low: low?, high: high?, seeds: 2 })
     }
 
     /// None for an empty cell.

@@ -1,7 +1,7 @@
 //! examples_c/bare_metal: linked without an operating system, run on an emulated board or in node, its output compared
 //! with this machine's. On targets with an operating system it tells the stack.
 
-use super::platform::Platform;
+use super::platform::{Board, Platform};
 use super::sizes;
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
@@ -18,40 +18,8 @@ const HOST: [&str; 3] = ["services.c", "stack.c", "host.c"];
 const STACK: &str = " stack ";
 
 /// What the program prints is QEMU's standard output; without a device for it, it would be the standard error.
-const DEVICES: [&str; 10] = [
-    "-display",
-    "none",
-    "-serial",
-    "none",
-    "-monitor",
-    "none",
-    "-chardev",
-    "stdio,id=out",
-    "-semihosting-config",
-    "enable=on,target=native,chardev=out",
-];
-
-/// An emulated board: how it is compiled for, and how it is started.
-struct Board {
-    compiler: &'static [&'static str],
-    /// Its own part of the program.
-    source: &'static str,
-    linker_script: &'static str,
-    machine: &'static [&'static str],
-}
-
-const CORTEX_M4F: Board = Board {
-    compiler: &["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"],
-    source: "cortex_m4f.c",
-    linker_script: "mps2_an386.ld",
-    machine: &["-M", "mps2-an386"],
-};
-const RISC_V: Board = Board {
-    compiler: &["-march=rv32imac", "-mabi=ilp32"],
-    source: "riscv32.c",
-    linker_script: "riscv_virt.ld",
-    machine: &["-M", "virt", "-bios", "none"],
-};
+const DEVICES: &str = "-display none -serial none -monitor none -chardev stdio,id=out -semihosting-config \
+                       enable=on,target=native,chardev=out";
 
 /// Bytes of stack of each call, by its name.
 type Stacks = Vec<(String, u32)>;
@@ -65,58 +33,33 @@ pub(crate) struct Told {
 }
 
 /// Without an operating system. Fails unless every line is this machine's.
-pub(crate) fn alone(platform: &Platform, binutils: &str, emulator: &str, archive: &Path) -> Result<Told> {
-    let board = if platform.triple.starts_with("riscv") { RISC_V } else { CORTEX_M4F };
+pub(crate) fn alone(platform: &Platform, board: &Board, binutils: &str, archive: &Path) -> Result<Told> {
     let image = c_tests::output("bare_metal.elf")?;
     let mut compiler = run::command(format!("{binutils}gcc"));
-    compiler.args(board.compiler).args(ALONE).arg("-T").arg(format!("{FOLDER}/{}", board.linker_script));
-    let sources = ["services.c", "stack.c", "board.c", board.source];
+    compiler.args(board.compiler.split(' ')).args(ALONE).arg("-T").arg(format!("{FOLDER}/{}", board.linker_script));
+    let sources = ["services.c", "stack.c", "board.c", &board.source];
     // What the program's own floating-point numbers need where there is no unit for them.
     compile(platform, &mut compiler, &sources, archive, &["-lgcc"], &image)?;
     // A program that hangs is ended.
     let mut machine = run::command("timeout");
-    machine.args(["60", emulator]).args(board.machine).args(DEVICES);
+    machine.args(["60", &platform.emulator]).args(board.machine.split(' ')).args(DEVICES.split(' '));
     let told = compare(platform, machine.arg("-kernel").arg(&image))?;
     Ok(Told { image: Some(sizes::program(&image)?), ..told })
 }
 
 /// On another processor's operating system.
-pub(crate) fn hosted(platform: &Platform, binutils: &str, emulator: &str, archive: &Path) -> Result<Told> {
+pub(crate) fn hosted(platform: &Platform, binutils: &str, archive: &Path) -> Result<Told> {
     let program = c_tests::output("bare_metal_hosted")?;
     let mut compiler = run::command(format!("{binutils}gcc"));
     compile(platform, compiler.arg("-static"), &HOST, archive, &["-pthread"], &program)?;
-    compare(platform, run::command(emulator).arg(program))
+    compare(platform, run::command(&platform.emulator).arg(program))
 }
 
 /// The WebAssembly module `module`, which exports what services.mjs calls.
-pub(crate) fn wasm(platform: &Platform, node: &str, module: &Path) -> Result<Told> {
-    let mut script = run::command(node);
+pub(crate) fn wasm(platform: &Platform, module: &Path) -> Result<Told> {
+    let mut script = run::command(&platform.emulator);
     compare(platform, script.arg(format!("{FOLDER}/services.mjs")).arg(module).arg(tile()))
 }
-
-/// What services.mjs calls, and what it needs to know of the module's memory.
-pub(crate) const WASM_EXPORTS: [&str; 20] = [
-    "__heap_base",
-    "__data_end",
-    "__stack_pointer",
-    "nf_tile_from_bytes",
-    "nf_tile_sampler_pixel",
-    "nf_tile_sampler_domain",
-    "nf_tile_sampler_draw",
-    "nf_cv_estimate",
-    "nf_cv_accumulator_init",
-    "nf_cv_accumulator_add",
-    "nf_cv_accumulator_estimate",
-    "nf_mis_weight",
-    "nf_omis_init",
-    "nf_omis_add",
-    "nf_omis_solve",
-    "nf_rng_seed",
-    "nf_rng_uniform",
-    "nf_table_init",
-    "nf_table_draw",
-    "nf_table_update",
-];
 
 fn tile() -> PathBuf {
     paths::root().join("core/tiles/64_1SPP_2D.nft")

@@ -16,13 +16,13 @@ pub(crate) const BUILD_CORE: [&str; 2] = ["-Z", "build-std=core"];
 pub(crate) fn archive(platform: &Platform) -> Result<PathBuf> {
     let folder = folder(platform);
     let mut cargo = run::command(CARGO);
-    environment(&mut cargo).env("CARGO_PROFILE_RELEASE_OPT_LEVEL", platform.opt_level);
+    environment(&mut cargo).env("CARGO_PROFILE_RELEASE_OPT_LEVEL", &platform.opt_level);
     cargo.args(["rustc", "--quiet", "--package", "noisefloor-capi", "--release", "--crate-type", "staticlib"]);
     if !platform.has_double {
         cargo.arg("--no-default-features");
     }
-    run::check(cargo.args(BUILD_CORE).args(["--target", platform.triple, "--target-dir"]).arg(&folder))?;
-    let archive = folder.join(platform.triple).join("release/libnoisefloor.a");
+    run::check(cargo.args(BUILD_CORE).args(["--target", &platform.triple, "--target-dir"]).arg(&folder))?;
+    let archive = folder.join(&platform.triple).join("release/libnoisefloor.a");
     if !archive.exists() {
         bail!("cargo wrote no {}", archive.display());
     }

@@ -3,16 +3,18 @@
 
 mod bare_metal;
 mod build;
-mod chapter;
 mod consumer;
 mod platform;
 mod sizes;
-mod wasm;
 
+use crate::chapters::described::Description;
+use crate::chapters::plan::{Extent, Plan};
+use crate::chapters::{chapter::Chapter, write_chapter};
+use crate::measure::output::Output;
+use crate::measure::table::Table;
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use platform::{PLATFORMS, Platform};
-use sizes::Size;
+use platform::{Platform, Targets};
 use std::path::Path;
 use xtask::tools::Package;
 use xtask::{c_tests, library, paths, run, tools};
@@ -24,69 +26,92 @@ pub(crate) struct Options {
     targets: Vec<String>,
 }
 
-/// What was found out about one target.
-struct Findings {
-    platform: &'static Platform,
-    sizes: Vec<Size>,
-    /// What examples_c/bare_metal told.
-    program: bare_metal::Told,
-    /// What ran, in words.
-    ran: String,
-    /// The emulator's name and version.
-    emulator: String,
-}
-
 pub(crate) fn run(options: &Options) -> Result<()> {
-    if let Some(unknown) = options.targets.iter().find(|name| PLATFORMS.iter().all(|known| known.triple != **name)) {
-        let known: Vec<_> = PLATFORMS.iter().map(|known| known.triple).collect();
+    let all = Targets::read()?;
+    if let Some(unknown) = options.targets.iter().find(|name| all.platforms.iter().all(|known| known.triple != **name))
+    {
+        let known: Vec<&str> = all.platforms.iter().map(|known| known.triple.as_str()).collect();
         bail!("`{unknown}` is none of the targets that this knows: {}", known.join(", "));
     }
-    let is_wanted = |platform: &&Platform| {
-        options.targets.is_empty() || options.targets.iter().any(|wanted| wanted == platform.triple)
-    };
-    let wanted: Vec<&'static Platform> = PLATFORMS.iter().filter(is_wanted).collect();
-    let packages: Vec<Package> =
-        platform::COMPILER.iter().chain(wanted.iter().flat_map(|platform| platform.packages)).copied().collect();
-    if let Some(missing) = tools::packages(&packages)? {
+    let is_wanted = |platform: &&Platform| options.targets.is_empty() || options.targets.contains(&platform.triple);
+    let wanted: Vec<&Platform> = all.platforms.iter().filter(is_wanted).collect();
+    let packages = all.packages.iter().chain(wanted.iter().flat_map(|platform| &platform.packages));
+    if let Some(missing) = tools::packages(&packages.copied().collect::<Vec<Package>>())? {
         bail!("{missing}");
     }
-    let mut all = Vec::new();
+    let mut ran = Table::new("targets", "target | Rust's name | optimised | what ran | on");
+    let mut sizes = Table::new("sizes", "target | kind | service | bytes");
+    let mut example = Table::new("example", "target | call | bytes");
     for platform in wanted {
         println!("== {}", platform.id());
-        all.push(one(platform).with_context(|| format!("target {}", platform.id()))?);
+        let measured = one(platform, &all, &mut ran, &mut sizes, &mut example);
+        measured.with_context(|| format!("target {}", platform.id()))?;
     }
-    if options.targets.is_empty() { chapter::write(&all) } else { Ok(()) }
+    if options.targets.is_empty() { write(&[ran, sizes, example]) } else { Ok(()) }
+}
+
+/// docs/report/sizes.md and .json.
+fn write(tables: &[Table]) -> Result<()> {
+    let plan = Plan::new(Extent::Default)?;
+    let description = Description::read("sizes", &plan)?;
+    let mut chapter = Chapter::new(description.names("sizes", &plan)[1]);
+    let find = |name: &str| tables.iter().find(|table| table.name == name).cloned().context("no such table");
+    description.write(&find, &mut chapter, &mut Default::default())?;
+    let compiler = run::read(run::command(build::RUSTC).arg("--version"))?;
+    chapter.setting("compiler", compiler.trim().split(" (").next().unwrap_or_default());
+    if !find("sizes")?.distinct("kind")?.contains(&sizes::KINDS[2]) {
+        chapter.setting("variables", "none");
+    }
+    let output = Output::new(&paths::root().join("docs/report"))?;
+    write_chapter(&output, "sizes", &chapter.json())?;
+    output.commit()?;
+    println!("wrote docs/report/sizes.md and sizes.json");
+    Ok(())
 }
 
 /// Builds, runs what can be run, and measures.
-fn one(platform: &'static Platform) -> Result<Findings> {
+fn one(platform: &Platform, all: &Targets, ran: &mut Table, sizes: &mut Table, example: &mut Table) -> Result<()> {
     let raw = build::archive(platform)?;
-    let sizes = sizes::measure(platform, &raw)?;
-    let (program, ran) = there(platform, &raw)?;
-    let version = run::read(run::command(platform.emulator).arg("--version"))?;
+    for service in &all.services {
+        let found = sizes::measure(platform, &raw, service)?;
+        // A line of variables stands there only if there are any.
+        for (kind, bytes) in
+            sizes::KINDS.into_iter().zip(found).filter(|(kind, bytes)| *kind != "variables" || *bytes > 0)
+        {
+            sizes.push([&platform.name, kind, &service.name, &bytes.to_string()].map(str::to_owned).to_vec());
+        }
+    }
+    let (told, what) = there(platform, all, &raw)?;
+    let calls = told.stacks.into_iter().map(|(call, depth)| (format!("`{call}`"), depth.into()));
+    for (call, bytes) in calls.chain(told.image.map(|bytes| ("image".to_owned(), bytes))) {
+        example.push([&platform.name, &call, &bytes.to_string()].map(String::clone).to_vec());
+    }
+    let version = run::read(run::command(&platform.emulator).arg("--version"))?;
     // QEMU says much more in parentheses and further lines.
     let version = version.lines().next().unwrap_or_default().split(" (").next().unwrap_or_default();
     let emulator = format!("`{}`: {version}", platform.emulator);
     println!("   ran on {emulator}");
-    Ok(Findings { platform, sizes, program, ran, emulator })
+    let triple = format!("`{}`", platform.triple);
+    ran.push([&platform.name, &triple, &platform.opt_level, &what, &emulator].map(String::clone).to_vec());
+    Ok(())
 }
 
 /// Runs what can be run there, and says what that was.
-fn there(platform: &Platform, raw: &Path) -> Result<(bare_metal::Told, String)> {
-    let Some(binutils) = platform.binutils else {
+fn there(platform: &Platform, all: &Targets, raw: &Path) -> Result<(bare_metal::Told, String)> {
+    let Some(binutils) = &platform.binutils else {
         let module = c_tests::output("services.wasm")?;
-        sizes::link(platform, raw, &bare_metal::WASM_EXPORTS, &module)?;
-        return Ok((bare_metal::wasm(platform, platform.emulator, &module)?, "the example".to_owned()));
+        sizes::link(platform, raw, &all.exports, &module)?;
+        return Ok((bare_metal::wasm(platform, &module)?, "the example".to_owned()));
     };
     let archive = library::one_object(raw, &paths::output().join(platform.id()), binutils)?;
     library::check(&archive)?;
     println!("   no panic, no undefined symbol but mem*, only nf_* visible");
-    if platform.is_bare_metal {
-        let told = bare_metal::alone(platform, binutils, platform.emulator, &archive)?;
+    if let Some(board) = &platform.board {
+        let told = bare_metal::alone(platform, board, binutils, &archive)?;
         return Ok((told, "the example, without an operating system".to_owned()));
     }
-    let mut ran = c_tests_there(binutils, platform.emulator, &archive)?;
-    let told = bare_metal::hosted(platform, binutils, platform.emulator, &archive)?;
+    let mut ran = c_tests_there(binutils, &platform.emulator, &archive)?;
+    let told = bare_metal::hosted(platform, binutils, &archive)?;
     ran += ", the example";
     if consumer::run(platform)? {
         ran += ", a CMake project";

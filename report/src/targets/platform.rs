@@ -1,21 +1,70 @@
-//! The targets: what each needs to be built, and to be run here.
+//! The targets, and what is measured of each: report/targets.toml.
 
+use anyhow::{Context, Result};
+use serde::{Deserialize, Deserializer};
+use xtask::paths;
 use xtask::tools::Package;
 
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Targets {
+    #[serde(deserialize_with = "packages")]
+    pub(crate) packages: Vec<Package>,
+    pub(crate) exports: Vec<String>,
+    #[serde(rename = "platform")]
+    pub(crate) platforms: Vec<Platform>,
+    #[serde(rename = "service")]
+    pub(crate) services: Vec<Service>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(crate) struct Platform {
-    pub(crate) triple: &'static str,
+    pub(crate) triple: String,
     /// What a reader calls it.
-    pub(crate) name: &'static str,
-    /// How the names of its gcc and binutils begin, where they are needed.
-    pub(crate) binutils: Option<&'static str>,
-    /// Runs its programs here.
-    pub(crate) emulator: &'static str,
-    pub(crate) is_bare_metal: bool,
-    /// Cargo's: where memory is scarce, for size.
-    pub(crate) opt_level: &'static str,
-    /// Whether control variates in double precision are part of the library.
+    pub(crate) name: String,
+    pub(crate) binutils: Option<String>,
+    pub(crate) emulator: String,
+    pub(crate) opt_level: String,
+    #[serde(rename = "double", default = "yes")]
     pub(crate) has_double: bool,
-    pub(crate) packages: &'static [Package],
+    pub(crate) board: Option<Board>,
+    #[serde(deserialize_with = "packages")]
+    pub(crate) packages: Vec<Package>,
+}
+
+/// An emulated board.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Board {
+    pub(crate) compiler: String,
+    pub(crate) source: String,
+    pub(crate) linker_script: String,
+    pub(crate) machine: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Service {
+    pub(crate) name: String,
+    pub(crate) functions: Vec<String>,
+    #[serde(default)]
+    pub(crate) except: Vec<String>,
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn packages<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Package>, D::Error> {
+    let all = Vec::<[String; 2]>::deserialize(from)?;
+    Ok(all.into_iter().map(|[name, file]| Package { name: name.leak(), file: file.leak() }).collect())
+}
+
+impl Targets {
+    pub(crate) fn read() -> Result<Self> {
+        toml::from_str(&paths::read("report/targets.toml")?).context("report/targets.toml")
+    }
 }
 
 impl Platform {
@@ -28,93 +77,3 @@ impl Platform {
         format!("{}{}", self.triple, if self.has_double { "" } else { "-float" })
     }
 }
-
-/// A compiler with the source of Rust's core, which every target is built from.
-pub(crate) const COMPILER: [Package; 3] = [
-    // Not their programs: those of rustup, in another folder, would stand for them.
-    Package { name: "rustc-web", file: "/usr/share/doc/rustc-web" },
-    Package { name: "cargo-web", file: "/usr/share/doc/cargo-web" },
-    Package { name: "rust-web-src", file: "/usr/share/doc/rust-web-src" },
-];
-
-const QEMU_USER: Package = Package { name: "qemu-user", file: "/usr/bin/qemu-s390x" };
-
-const CORTEX: &[Package] = &[
-    Package { name: "gcc-arm-none-eabi", file: "/usr/bin/arm-none-eabi-gcc" },
-    Package { name: "qemu-system-arm", file: "/usr/bin/qemu-system-arm" },
-];
-
-pub(crate) const PLATFORMS: [Platform; 6] = [
-    Platform {
-        triple: "thumbv7em-none-eabihf",
-        name: "Cortex-M4F",
-        binutils: Some("arm-none-eabi-"),
-        emulator: "qemu-system-arm",
-        is_bare_metal: true,
-        opt_level: "s",
-        has_double: true,
-        packages: CORTEX,
-    },
-    Platform {
-        triple: "thumbv7em-none-eabihf",
-        name: "Cortex-M4F, float alone",
-        binutils: Some("arm-none-eabi-"),
-        emulator: "qemu-system-arm",
-        is_bare_metal: true,
-        opt_level: "s",
-        has_double: false,
-        packages: CORTEX,
-    },
-    Platform {
-        triple: "riscv32imac-unknown-none-elf",
-        name: "RISC-V, 32 bits",
-        binutils: Some("riscv64-unknown-elf-"),
-        emulator: "qemu-system-riscv32",
-        is_bare_metal: true,
-        opt_level: "s",
-        has_double: true,
-        packages: &[
-            Package { name: "gcc-riscv64-unknown-elf", file: "/usr/bin/riscv64-unknown-elf-gcc" },
-            Package { name: "qemu-system-misc", file: "/usr/bin/qemu-system-riscv32" },
-        ],
-    },
-    Platform {
-        triple: "aarch64-unknown-linux-gnu",
-        name: "AArch64",
-        binutils: Some("aarch64-linux-gnu-"),
-        emulator: "qemu-aarch64",
-        is_bare_metal: false,
-        opt_level: "3",
-        has_double: true,
-        packages: &[
-            QEMU_USER,
-            Package { name: "cmake", file: "/usr/bin/cmake" },
-            Package { name: "gcc-aarch64-linux-gnu", file: "/usr/bin/aarch64-linux-gnu-gcc" },
-            Package { name: "libc6-dev-arm64-cross", file: "/usr/aarch64-linux-gnu/lib/libc.a" },
-        ],
-    },
-    Platform {
-        triple: "s390x-unknown-linux-gnu",
-        name: "s390x, big-endian",
-        binutils: Some("s390x-linux-gnu-"),
-        emulator: "qemu-s390x",
-        is_bare_metal: false,
-        opt_level: "3",
-        has_double: true,
-        packages: &[
-            QEMU_USER,
-            Package { name: "gcc-s390x-linux-gnu", file: "/usr/bin/s390x-linux-gnu-gcc" },
-            Package { name: "libc6-dev-s390x-cross", file: "/usr/s390x-linux-gnu/lib/libc.a" },
-        ],
-    },
-    Platform {
-        triple: "wasm32-unknown-unknown",
-        name: "WebAssembly",
-        binutils: None,
-        emulator: "node",
-        is_bare_metal: true,
-        opt_level: "s",
-        has_double: true,
-        packages: &[Package { name: "nodejs", file: "/usr/bin/node" }],
-    },
-];

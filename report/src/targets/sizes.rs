@@ -1,81 +1,35 @@
 //! What each service adds to a program that links nothing else: the archive linked for the service's functions alone,
 //! unused sections dropped.
 
-use super::platform::Platform;
-use super::wasm;
+use super::platform::{Platform, Service};
 use anyhow::{Context, Result, bail};
 use object::{Object, ObjectSection, SectionKind};
 use std::fs;
 use std::path::{Path, PathBuf};
 use xtask::{c_tests, paths, run};
 
-/// A service and how the names of its functions begin; `except` takes some away.
-struct Service {
-    name: &'static str,
-    functions: &'static [&'static str],
-    except: &'static [&'static str],
-}
+/// Kinds of sections that a program would load: code, constants; and variables, initialised or not.
+pub(crate) const KINDS: [&str; 3] = ["text", "rodata", "variables"];
 
-const SERVICES: [Service; 12] = [
-    Service {
-        name: "control variates: one pixel",
-        functions: &["nf_cv_"],
-        except: &["nf_cv_image", "nf_cv_accumulator"],
-    },
-    Service { name: "control variates: shared fits", functions: &["nf_cv_image"], except: &[] },
-    Service { name: "control variates: streaming", functions: &["nf_cv_accumulator"], except: &[] },
-    Service { name: "recommendations", functions: &["nf_recommend"], except: &[] },
-    Service { name: "MIS heuristics", functions: &["nf_mis_"], except: &[] },
-    Service { name: "optimal MIS", functions: &["nf_omis_"], except: &["nf_omis_weights"] },
-    Service {
-        name: "tiles, without built-in ones",
-        functions: &["nf_tile_"],
-        except: &["nf_tile_64_", "nf_tile_128_"],
-    },
-    Service { name: "default sampler, with its table", functions: &["nf_sampler_"], except: &[] },
-    Service { name: "random numbers", functions: &["nf_rng_"], except: &[] },
-    Service { name: "minibatches: tables", functions: &["nf_table_", "nf_shard", "nf_shuffle"], except: &[] },
-    Service { name: "minibatches: importances", functions: &["nf_importance_"], except: &[] },
-    Service { name: "minibatches: gradients", functions: &["nf_gradient_", "nf_omis_weights"], except: &[] },
-];
-
-/// Bytes.
-pub(crate) struct Size {
-    pub(crate) service: &'static str,
-    pub(crate) text: u64,
-    pub(crate) rodata: u64,
-    /// Variables, initialised or not.
-    pub(crate) data: u64,
-}
-
-/// Of each service, linked alone.
-pub(crate) fn measure(platform: &Platform, archive: &Path) -> Result<Vec<Size>> {
+/// Bytes of each of [`KINDS`] of a service, linked alone.
+pub(crate) fn measure(platform: &Platform, archive: &Path, service: &Service) -> Result<[u64; 3]> {
     // As the ABI has them: GNU nm cannot read WebAssembly.
     let abi = paths::read("capi/abi.txt")?;
     let functions = abi.lines().filter_map(|line| line.strip_prefix("function ")?.split('(').next());
-    let all: Vec<&str> = functions.filter_map(|line| line.rsplit([' ', '*']).next()).collect();
-    let begins = |symbol: &str, with: &[&str]| with.iter().any(|prefix| symbol.starts_with(prefix));
-    let mut sizes = Vec::new();
-    for service in &SERVICES {
-        let wanted = |symbol: &&str| begins(symbol, service.functions) && !begins(symbol, service.except);
-        let functions: Vec<_> = all.iter().copied().filter(wanted).collect();
-        if functions.is_empty() {
-            bail!("no function of \"{}\" in {}", service.name, archive.display());
-        }
-        let output = c_tests::output("sizes")?;
-        link(platform, archive, &functions, &output)?;
-        let bytes = fs::read(&output).with_context(|| format!("cannot read {}", output.display()))?;
-        sizes.push(if platform.is_wasm() {
-            wasm::size(service.name, &bytes)?
-        } else {
-            sections(service.name, &bytes)?
-        });
+    let all = functions.filter_map(|line| line.rsplit([' ', '*']).next());
+    let begins = |symbol: &str, with: &[String]| with.iter().any(|prefix| symbol.starts_with(prefix));
+    let wanted = |symbol: &&str| begins(symbol, &service.functions) && !begins(symbol, &service.except);
+    let functions: Vec<&str> = all.filter(wanted).collect();
+    if functions.is_empty() {
+        bail!("no function of \"{}\" in {}", service.name, archive.display());
     }
-    Ok(sizes)
+    let output = c_tests::output("sizes")?;
+    link(platform, archive, &functions, &output)?;
+    sections(&output)
 }
 
 /// Links the archive for these functions alone.
-pub(crate) fn link(platform: &Platform, archive: &Path, functions: &[&str], output: &Path) -> Result<()> {
+pub(crate) fn link(platform: &Platform, archive: &Path, functions: &[impl AsRef<str>], output: &Path) -> Result<()> {
     let mut link = run::command(linker()?);
     let option = if platform.is_wasm() {
         link.args(["-flavor", "wasm", "--no-entry", "--gc-sections", "--strip-all"]);
@@ -85,7 +39,7 @@ pub(crate) fn link(platform: &Platform, archive: &Path, functions: &[&str], outp
         "--undefined"
     };
     for function in functions {
-        link.arg(format!("{option}={function}"));
+        link.arg(format!("{option}={}", function.as_ref()));
     }
     run::check(link.arg(archive).arg("-o").arg(output))
 }
@@ -100,22 +54,26 @@ pub(crate) fn program(path: &Path) -> Result<u64> {
 }
 
 /// Sums of the sections that a program would load.
-fn sections(service: &'static str, bytes: &[u8]) -> Result<Size> {
-    let file = object::File::parse(bytes).context("the linker wrote no program")?;
-    let mut size = Size { service, text: 0, rodata: 0, data: 0 };
+fn sections(path: &Path) -> Result<[u64; 3]> {
+    let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let file = object::File::parse(&*bytes).context("the linker wrote no program")?;
+    let mut sizes = [0; 3];
     for section in file.sections() {
-        match section.kind() {
-            SectionKind::Text => size.text += section.size(),
+        let kind = match section.kind() {
+            SectionKind::Text => 0,
+            // A module's constants are data, too; it has no other.
+            SectionKind::Data if file.format() == object::BinaryFormat::Wasm => 1,
             SectionKind::ReadOnlyData | SectionKind::ReadOnlyString | SectionKind::ReadOnlyDataWithRel
                 if section.name() != Ok(".eh_frame") =>
             {
-                size.rodata += section.size();
+                1
             }
-            SectionKind::Data | SectionKind::UninitializedData => size.data += section.size(),
-            _ => {}
-        }
+            SectionKind::Data | SectionKind::UninitializedData => 2,
+            _ => continue,
+        };
+        sizes[kind] += section.size();
     }
-    Ok(size)
+    Ok(sizes)
 }
 
 /// LLVM's linker, which knows every target and comes with Rust.

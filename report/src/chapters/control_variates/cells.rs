@@ -16,9 +16,6 @@ pub(super) struct Setting {
 pub(super) const MEAN: &str = "mean";
 /// The library's default.
 pub(super) const DEFAULT: &str = "robust";
-pub(super) const ESTIMATORS: [&str; 6] =
-    [DEFAULT, "least squares", "leave-one-out", "4-fold", "gradient descent", "incremental"];
-pub(super) const BASES: [&str; 4] = ["legendre", "step", "sine", "gaussian"];
 
 impl Setting {
     pub(super) fn read(row: Row) -> Result<Self> {

@@ -16,7 +16,7 @@ const SAFE: f64 = 1.05;
 const STEP: f64 = 0.02;
 
 pub(super) fn write(chapter: &mut Chapter, cells: &Cells) {
-    chapter.section("Error against time", "");
+    chapter.section("Error against time");
     chapter.setting("worst ratio of a safe setting", SAFE);
     chapter.setting("step of the frontier, percent", 100.0 * STEP);
     for (file, title, [low, high]) in FAMILIES {
@@ -25,7 +25,7 @@ pub(super) fn write(chapter: &mut Chapter, cells: &Cells) {
             cells.all.iter().filter(|cell| inside(cell.dims)).map(|cell| cell.integrand.as_str()).collect();
         names.sort_unstable();
         names.dedup();
-        chapter.section(&format!("Error against time, {title}"), "");
+        chapter.section(&format!("Error against time, {title}"));
         chapter.setting(format!("integrands, {title}"), names.join(", "));
         let rows =
             cells.counts.iter().flat_map(|&n| listed(n, &cells.summaries(inside, n), &cells.recommended(high, n)));

@@ -9,7 +9,7 @@ use image::Rgb32FImage;
 const SPP: u32 = 16;
 
 pub(super) fn write(harness: &Harness, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
-    chapter.section("The default against plain Monte Carlo, pixel by pixel", "");
+    chapter.section("The default against plain Monte Carlo, pixel by pixel");
     let seeds = harness.plan.of("pixel_seeds");
     let batches = BATCHES.min(seeds / 2);
     chapter.setting("a pixel's ratio that is too much", TOO_MUCH);

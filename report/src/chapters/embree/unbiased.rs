@@ -49,7 +49,7 @@ impl Frames {
 }
 
 pub(super) fn write(harness: &Harness, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
-    chapter.section("Are shared fits unbiased?", "");
+    chapter.section("Are shared fits unbiased?");
     let (plan, measurement) = (harness.plan, &harness.measurement);
     let count = plan.of("frames") / BATCHES * BATCHES;
     chapter.setting("frames of the test of biases", count);

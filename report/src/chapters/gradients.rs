@@ -1,0 +1,192 @@
+//! The chapter on gradients of minibatches: the trainers of examples_c, run as report/chapters/gradients_runs.toml says.
+
+use super::prelude::*;
+use super::report::Report;
+use crate::measure::plot::{Plot, Series};
+use crate::measure::{progress, running};
+use indicatif::ProgressBar;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use xtask::{library, paths, run};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Runs {
+    network: Vec<Network>,
+    run: Vec<Run>,
+    method: Vec<Method>,
+}
+
+/// A training.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Network {
+    name: String,
+    title: String,
+    /// A folder; none: MNIST, if it can be had.
+    data: Option<String>,
+    /// Adam's learning rate.
+    rate: String,
+    seeds: String,
+    epochs: String,
+    variance: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Run {
+    table: String,
+    program: String,
+    arguments: String,
+    /// In a full report only.
+    #[serde(default)]
+    full: bool,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Method {
+    name: String,
+    is: [String; 2],
+    colour: usize,
+}
+
+const MODES: [&str; 5] = ["uniform", "importance", "adaptive", "balance", "omis"];
+
+pub(super) fn write(report: &Report) -> Result<Chapter> {
+    let text = report.plan.filled(&paths::read("report/chapters/gradients_runs.toml")?);
+    let runs: Runs = toml::from_str(&text).context("report/chapters/gradients_runs.toml")?;
+    let further: Vec<&Run> = runs.run.iter().filter(|run| report.plan.is_full() || !run.full).collect();
+    let (archive, bar) = (library::build()?, progress::bar((2 * runs.network.len() + further.len()) as u64)?);
+    let mnist = (!report.plan.is_quick())
+        .then(mnist)
+        .and_then(|mnist| mnist.inspect_err(|error| println!("without MNIST, which could not be had: {error:#}")).ok());
+    let mut programs = BTreeMap::new();
+    for source in further.iter().map(|run| run.program.as_str()).chain(["train_mlp.c"]) {
+        programs.insert(source, compile(source, &archive)?);
+    }
+    report.compiled();
+    let mut tables = BTreeMap::new();
+    for network in &runs.network {
+        let Some(data) = network.data.clone().or_else(|| Some(mnist.as_ref()?.to_str()?.to_owned())) else { continue };
+        let (name, rate) = (&network.name, &network.rate);
+        let train = |epochs: &str, more: &[&str]| {
+            let network = ["--data", &data, "--epochs", epochs, "--rate", rate, "--batch", "64", "--hidden", "128,64"];
+            run_one(&programs["train_mlp.c"], name, &[&network[..], more].concat(), &bar)
+        };
+        let (csv, said) = train(&network.epochs, &["--modes", &MODES.join(","), "--seeds", &network.seeds])?;
+        let plot = error_plot(network, &Table::parse(&csv, name, ',')?)?;
+        report.output.write_text(&format!("{}-{name}-time.svg", report.names[0]), &plot)?;
+        tables.insert(name.clone(), summary(&said)?);
+
+        let scratch = tempfile::tempdir()?;
+        let path = scratch.path().join("variance.csv");
+        train(&network.variance, &["--variance", path.to_str().context("a folder whose name is not Unicode")?])?;
+        let named = |row: &Row| {
+            let is = [row.word("method")?, row.word("uniform_fraction")?];
+            let method = runs.method.iter().find(|method| method.is == is);
+            Ok(method.map_or(String::new(), |method| method.name.clone()))
+        };
+        let variance = Table::read(&path, ',')?.with("line", named)?;
+        if network.data.is_none() {
+            let plot = variance_plot(network, &variance, &runs.method)?;
+            report.output.write_text(&format!("{}-{name}-variance.svg", report.names[0]), &plot)?;
+        }
+        tables.insert(format!("{name} variance"), variance);
+    }
+    for Run { table, program, arguments, .. } in further {
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        tables.insert(table.clone(), summary(&run_one(&programs[&**program], table, &arguments, &bar)?.1)?);
+    }
+    bar.finish_and_clear();
+    // What was not run has no columns.
+    let (mut chapter, targets) =
+        report.described(&|name| Ok(tables.get(name).cloned().unwrap_or_else(|| Table::new(name, ""))))?;
+    targets.write(&mut chapter);
+    Ok(chapter)
+}
+
+/// The folder with MNIST's four files.
+fn mnist() -> Result<PathBuf> {
+    let folder = paths::target().join("data/mnist");
+    run::check(run::command("sh").arg("report/mnist.sh").arg(&folder))?;
+    Ok(folder)
+}
+
+/// Compiles `examples_c/SOURCE` against the library, for this machine: what is measured is time. Without errno the
+/// compiler vectorises square roots.
+fn compile(source: &str, archive: &Path) -> Result<PathBuf> {
+    let path = paths::output().join(Path::new(source).with_extension(""));
+    let (mut compiler, standard) = match source.ends_with(".c") {
+        true => (run::compiler("CC", "cc"), "-std=c99"),
+        false => (run::compiler("CXX", "c++"), "-std=c++17"),
+    };
+    compiler.args([standard, "-O3", "-march=native", "-fno-math-errno", "-Wall", "-Wextra", "-Iinclude"]);
+    compiler.arg(Path::new("examples_c").join(source)).arg(archive);
+    run::check(compiler.args(["-lm", "-o"]).arg(&path))?;
+    Ok(path)
+}
+
+/// Runs to the end: the standard output, CSV, and the standard error, a summary.
+fn run_one(program: &Path, name: &str, arguments: &[&str], bar: &ProgressBar) -> Result<(String, String)> {
+    bar.set_message(format!("gradients: {name}"));
+    let (mut command, mut csv) = (run::command(program), String::new());
+    command.args(arguments);
+    let said = running::run(command, |line| {
+        csv += &format!("{line}\n");
+        Ok(())
+    })?;
+    bar.inc(1);
+    Ok((csv, said))
+}
+
+/// The first table of a text in Markdown.
+fn summary(text: &str) -> Result<Table> {
+    let mut lines = text.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
+    let cells = |line: &str| line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+    let headings = cells(lines.next().context("the trainer wrote no table")?);
+    let mut table = Table::new("the trainer's summary", &headings.join(" | "));
+    lines.skip(1).for_each(|line| table.push(cells(line)));
+    Ok(table)
+}
+
+/// One line of a plot: at each different word of `key`, in order, the mean of `x` and that of `y` times `factor`, with
+/// its 95 % confidence interval over the seeds.
+fn line(table: &Table, name: &str, key: &str, x: &str, (y, factor): (&str, f64)) -> Result<Series> {
+    let mut series = Series { name: name.to_owned(), ..Series::default() };
+    for word in table.distinct(key)? {
+        let group = table.of(&[(key, word)]);
+        let at = Estimate::mean(&group.numbers(x)?).value;
+        let Estimate { value, low, high, seeds } = Estimate::mean(&group.numbers(y)?);
+        series.points.push((at, factor * value));
+        if seeds > 1 {
+            series.band.push((at, factor * low, factor * high));
+        }
+    }
+    Ok(series)
+}
+
+fn error_plot(network: &Network, table: &Table) -> Result<String> {
+    let line = |mode: &&str| line(&table.of(&[("mode", mode)]), mode, "epoch", "seconds", ("test_error", 100.0));
+    let mut series: Vec<Series> = MODES.iter().map(line).collect::<Result<_>>()?;
+    for line in &mut series {
+        // The untrained network, wrong nine times in ten, would take up most of the picture.
+        line.points.retain(|&(at, _)| at > 0.0);
+        line.band.retain(|&(at, ..)| at > 0.0);
+    }
+    let Network { title, rate, seeds, .. } = network;
+    let title = format!("{title}, rate {rate}: mean of {seeds} seeds, 95 % confidence intervals");
+    Plot { title: &title, x: "seconds of training", y: "test error, %", logarithmic: true, series: &series }.svg()
+}
+
+fn variance_plot(network: &Network, table: &Table, methods: &[Method]) -> Result<String> {
+    let line = |Method { name, is, colour }: &Method| -> Result<Series> {
+        let series = line(&table.of(&[("line", name)]), name, "epoch", "epoch", ("ratio", 1.0))?;
+        Ok(Series { dashed: is[1] == "0.2", colour: Some(*colour), ..series })
+    };
+    let series: Vec<Series> = methods.iter().map(line).collect::<Result<_>>()?;
+    let Network { title, rate, .. } = network;
+    let title = format!("{title}, rate {rate}: variance of the gradient estimate, one network trained uniformly");
+    Plot { title: &title, x: "epoch", y: "variance / uniform's", logarithmic: true, series: &series }.svg()
+}
