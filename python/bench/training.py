@@ -23,7 +23,7 @@ BATCH = 64
 MODES = "uniform", "importance", "adaptive"
 MEASURES = "error %", "log loss", "calibration error %"
 #: A rate that anyone would try, and those of which the best for uniform minibatches is taken where it falls to 0.
-MODERATE, RATES = 0.0005, (0.001, 0.002, 0.004)
+MODERATE, RATES = 0.0005, (0.001, 0.002, 0.004, 0.008)
 #: What the processes of a pool, which are forked, train on.
 TASK = None
 
@@ -98,12 +98,14 @@ def main():
     options = output.arguments(__doc__, lambda add: add("--data", type=pathlib.Path, default="target/data"))
     seeds, rates = (2, RATES[:1]) if options.quick else (6, RATES)
     torch.set_num_threads(1)
-    found = []
+    found, tasks = [], []
     for TASK in data.tasks(options.data, options.quick):
+        tasks += [[TASK.name, TASK.about, f"{len(TASK.x):,}", f"{len(TASK.test_x):,}", str(TASK.epochs)]]
         with multiprocessing.get_context("fork").Pool() as pool:
             found += compare(pool, MODERATE, False, seeds)
             found += compare(pool, best_rate(pool, rates), True, seeds)
         print(f"{TASK.name}: done", flush=True)
+    output.write(options, "tasks", ["task", "what is learned", "items", "test", "epochs"], tasks)
     headings = ["task", "rates", "mode", "rate"]
     for name in MEASURES:
         headings += [name, f"{name} minus uniform's"]
