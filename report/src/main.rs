@@ -8,6 +8,7 @@ mod targets;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
+use xtask::start;
 
 #[derive(Parser)]
 #[command(name = "cargo xtask", about = "Demonstrate and measure noisefloor")]
@@ -31,17 +32,10 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let result = match Arguments::parse().command {
+    start::exit(match Arguments::parse().command {
         Command::Demo(options) => demo::run(&options),
         Command::Report(options) => chapters::run(&options),
         Command::Targets(options) => targets::run(&options),
-        Command::Check(options) => return check::run(&options),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::FAILURE
-        }
-    }
+        Command::Check(options) => check::run(&options),
+    })
 }

@@ -1,8 +1,7 @@
 //! What tests the C library from outside, described by tests/CMakeLists.txt: built by CMake, run by CTest.
 
-use crate::outcome::Outcome;
-use crate::tools::{self, Package};
-use crate::{paths, run};
+use crate::tools::{self, Missing, Package};
+use crate::{library, paths, run};
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::PathBuf;
@@ -13,10 +12,8 @@ const CMAKE: [Package; 2] =
     [Package { name: "cmake", file: "/usr/bin/cmake" }, Package { name: "make", file: "/usr/bin/make" }];
 
 /// Builds and runs the tests with this label of a preset of tests/CMakePresets.json, which need these packages.
-pub fn run(preset: &str, label: &str, needed: &[Package]) -> Result<Outcome> {
-    if let Some(why) = build(preset, label, needed)? {
-        return Ok(Outcome::NotRun(why));
-    }
+pub fn run(preset: &str, label: &str, needed: &[Package]) -> Result<()> {
+    build(preset, label, needed)?;
     let mut test = run::command("ctest");
     test.args(["--verbose", "--no-tests=error", "--label-regex", &format!("^{label}$"), "--test-dir"]);
     let output = test.arg(folder(preset)).output().context("cannot start ctest")?;
@@ -34,38 +31,36 @@ pub fn run(preset: &str, label: &str, needed: &[Package]) -> Result<Outcome> {
     // Not what the ctest of an installed project says.
     let counts = text.lines().filter(|line| line.contains("tests passed") && !line.contains(": "));
     counts.for_each(|line| println!("   {preset}: {line}"));
-    Ok(Outcome::Passed)
+    Ok(())
 }
 
 /// As [`run()`], and what there is of it under the sanitizers, if the compiler has them.
-pub fn run_twice(label: &str, needed: &[Package]) -> Result<Outcome> {
-    let outcome = run("default", label, needed)?;
-    if let (Outcome::Passed, Outcome::NotRun(why)) = (&outcome, run("asan", label, needed)?) {
-        println!("   not under the sanitizers: {why}");
+pub fn run_twice(label: &str, needed: &[Package]) -> Result<()> {
+    run("default", label, needed)?;
+    match run("asan", label, needed) {
+        Err(why) if why.is::<Missing>() => println!("   not under the sanitizers: {why}"),
+        result => result?,
     }
-    Ok(outcome)
+    Ok(())
 }
 
-/// Builds what a label needs, or says why it cannot run here.
-pub fn build(preset: &str, label: &str, needed: &[Package]) -> Result<Option<String>> {
-    if let Some(missing) = tools::packages(&[&CMAKE[..], needed].concat())? {
-        return Ok(Some(missing));
-    }
+/// Builds what a label needs.
+pub fn build(preset: &str, label: &str, needed: &[Package]) -> Result<()> {
+    tools::packages(&[&CMAKE[..], needed].concat())?;
     let mut configure = run::command("cmake");
     configure.args(["-S", "tests", "--preset", preset, "-B"]).arg(folder(preset));
-    configure.arg(format!("-DNOISEFLOOR_CARGO={}", run::cargo().get_program().to_string_lossy()));
-    configure.arg(format!("-DNOISEFLOOR_CARGO_TARGET_DIR={}", paths::target().display()));
+    configure.args(library::settings().map(|setting| format!("-D{setting}")));
     let output = configure.output().context("cannot start cmake")?;
     let said = String::from_utf8_lossy(&output.stderr);
     if !output.status.success() {
         bail!("tests/CMakeLists.txt, preset {preset}:\n{said}");
     }
     if let Some(why) = said.lines().find_map(|line| line.strip_prefix("NOT RUN: ")) {
-        return Ok(Some(why.to_owned()));
+        bail!(Missing(why.to_owned()));
     }
     let mut build = run::command("cmake");
     build.arg("--build").arg(folder(preset)).args(["--parallel", "2", "--target", label]);
-    run::read(&mut build).map(|_| None)
+    run::read(&mut build).map(drop)
 }
 
 /// Where CMake puts what it makes for a preset.

@@ -1,9 +1,8 @@
 //! The path tracer on Embree: `tests/embree`.
 
 use crate::c_tests;
-use crate::outcome::Outcome;
-use crate::tools::{self, Package};
-use anyhow::{Result, bail};
+use crate::tools::Package;
+use anyhow::Result;
 use std::path::{Path, PathBuf};
 
 const ASSIMP: Package = Package { name: "libassimp-dev", file: "/usr/include/assimp/Importer.hpp" };
@@ -13,19 +12,8 @@ const EMBREE_4: [&str; 2] = ["/usr/include/embree4/rtcore.h", "/usr/local/includ
 
 /// Builds the C library and the harness, and returns the harness's path.
 pub fn build() -> Result<PathBuf> {
-    match c_tests::build("default", "embree_scenes", &packages())? {
-        Some(missing) => bail!("{missing}"),
-        None => Ok(c_tests::folder("default").join("embree_harness")),
-    }
-}
-
-/// What `check` says of the report that is made with the harness.
-pub fn report(check: impl FnOnce() -> Result<()>) -> Result<Outcome> {
-    if let Some(missing) = tools::packages(&packages())? {
-        return Ok(Outcome::NotRun(missing));
-    }
-    check()?;
-    Ok(Outcome::Passed)
+    c_tests::build("default", "embree_scenes", &packages())?;
+    Ok(c_tests::folder("default").join("embree_harness"))
 }
 
 /// What the harness needs.

@@ -1,6 +1,6 @@
 //! `cargo xtask install`: what capi/CMakeLists.txt describes, with cargo's target folder shared.
 
-use crate::{paths, run};
+use crate::{library, paths, run};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -30,8 +30,7 @@ pub fn run(options: &Options) -> Result<()> {
     // A former choice of the library folder does not stay.
     configure.args(["-S", "capi", "-DCMAKE_BUILD_TYPE=Release", "-UCMAKE_INSTALL_LIBDIR", "-B"]).arg(&build);
     configure.arg(format!("-DCMAKE_INSTALL_PREFIX={}", prefix.display()));
-    configure.arg(format!("-DNOISEFLOOR_CARGO={}", run::cargo().get_program().to_string_lossy()));
-    configure.arg(format!("-DNOISEFLOOR_CARGO_TARGET_DIR={}", paths::target().display()));
+    configure.args(library::settings().map(|setting| format!("-D{setting}")));
     configure.args(options.libdir.iter().map(|libdir| format!("-DCMAKE_INSTALL_LIBDIR={}", libdir.display())));
     run::read(&mut configure)?;
     run::read(run::command("cmake").arg("--build").arg(&build).args(["--parallel", "2"]))?;

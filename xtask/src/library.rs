@@ -19,6 +19,12 @@ pub fn build() -> Result<PathBuf> {
     one_object(&paths::target().join("release/libnoisefloor.a"), &paths::output(), "")
 }
 
+/// Of capi/CMakeLists.txt, so that it has what cargo made already.
+pub fn settings() -> [String; 2] {
+    let cargo = run::cargo().get_program().to_string_lossy().into_owned();
+    [format!("NOISEFLOOR_CARGO={cargo}"), format!("NOISEFLOOR_CARGO_TARGET_DIR={}", paths::target().display())]
+}
+
 /// Makes cargo's archive `raw` into one of a single object, in the folder `output`. The binutils' names begin with
 /// `prefix`: nothing, or a target.
 pub fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<PathBuf> {

@@ -60,7 +60,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let result = match Arguments::parse().command {
+    start::exit(match Arguments::parse().command {
         Command::Demo(passed) => {
             println!(
                 "a path tracer with every sampler and fits, then small trainers: pictures and tables in target/demo"
@@ -81,14 +81,7 @@ fn main() -> ExitCode {
         Command::Install(options) => install::run(&options),
         Command::Tiles(options) => tiles::run(&options),
         Command::Embree => embree::build().map(|path| println!("{}", path.display())),
-        Command::Playground => playground::run(),
+        Command::Playground => playground::build().map(|path| println!("{}", path.display())),
         Command::Library => library::build().map(|path| println!("{}", path.display())),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::FAILURE
-        }
-    }
+    })
 }

@@ -1,7 +1,6 @@
 //! `cargo xtask playground`: the page to play with, one file with its WebAssembly module inside.
 
 use crate::c_tests::PYTHON;
-use crate::outcome::Outcome;
 use crate::tools::{self, Package};
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
@@ -18,11 +17,9 @@ const COMPILER: [Package; 4] = [
 const BROWSER: [Package; 2] = [Package { name: "chromium", file: "/usr/bin/chromium" }, PYTHON];
 const MANIFEST: &str = "docs/playground/Cargo.toml";
 
-/// Makes target/demo/playground.html, or says why it cannot be made here.
-pub fn build() -> Result<Result<PathBuf, String>> {
-    if let Some(missing) = tools::packages(&COMPILER)? {
-        return Ok(Err(missing));
-    }
+/// Makes target/demo/playground.html.
+pub fn build() -> Result<PathBuf> {
+    tools::packages(&COMPILER)?;
     let (target, triple) = (folder(), "wasm32-unknown-unknown");
     let mut cargo = run::command(COMPILER[1].file);
     // What rustup's cargo set for us is not for Debian's.
@@ -42,33 +39,19 @@ pub fn build() -> Result<Result<PathBuf, String>> {
     let out = folder.join("playground.html");
     fs::write(&out, page.replace(place, &(place.to_owned() + &module)))
         .with_context(|| format!("cannot write {}", out.display()))?;
-    Ok(Ok(out))
-}
-
-pub fn run() -> Result<()> {
-    match build()? {
-        Ok(page) => println!("{}", page.display()),
-        Err(why) => bail!("{why}"),
-    }
-    Ok(())
+    Ok(out)
 }
 
 /// The page in headless Chromium, beside the same program compiled for this machine.
-pub fn test() -> Result<Outcome> {
-    if let Some(missing) = tools::packages(&BROWSER)? {
-        return Ok(Outcome::NotRun(missing));
-    }
-    let page = match build()? {
-        Ok(page) => page,
-        Err(why) => return Ok(Outcome::NotRun(why)),
-    };
+pub fn test() -> Result<()> {
+    tools::packages(&BROWSER)?;
+    let page = build()?;
     let mut cargo = run::cargo();
     cargo.args(["build", "--quiet", "--release", "--manifest-path", MANIFEST, "--target-dir"]);
     run::check(cargo.arg(folder()))?;
     let mut python = run::command("python3");
     python.args(["-B", "tests/programs/playground.py"]).arg(page).arg(folder().join("release/numbers"));
-    run::check(python.arg(paths::target().join("demo/playground.png")))?;
-    Ok(Outcome::Passed)
+    run::check(python.arg(paths::target().join("demo/playground.png")))
 }
 
 fn folder() -> PathBuf {

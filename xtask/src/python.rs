@@ -1,12 +1,10 @@
 //! `python/`: the wheel, and its tests in an environment of their own.
 
-use crate::outcome::Outcome;
-use crate::tools::{self, Package};
-use crate::{c_tests, paths, run};
+use crate::tools::{self, Missing, Package};
+use crate::{c_tests, library, paths, run};
 use anyhow::{Context, Result};
 use std::fs;
-use std::path::PathBuf;
-use std::process::Command;
+use std::path::{Path, PathBuf};
 
 /// What a wheel is built with.
 pub const BUILD: [Package; 4] = [
@@ -23,69 +21,65 @@ const TESTED_WITH: [Package; 4] = [
 ];
 
 /// Runs python/tests with the package installed.
-pub fn test() -> Result<Outcome> {
-    let python = match environment()? {
-        Ok(python) => python,
-        Err(missing) => return Ok(Outcome::NotRun(missing)),
-    };
-    let wheel = wheel()?;
+pub fn test() -> Result<()> {
+    let python = environment()?;
     let mut test = run::command("timeout");
-    test.arg("600").arg(&python).args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "python/tests"]);
-    run::check(test.env("NOISEFLOOR_WHEEL", &wheel).env("PYTHONDONTWRITEBYTECODE", "1"))?;
-    Ok(Outcome::Passed)
+    test.arg("600").arg(python).args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "python/tests"]);
+    run::check(test.env("NOISEFLOOR_WHEEL", wheel()?).env("PYTHONDONTWRITEBYTECODE", "1"))
 }
 
-/// A Python in which the package is installed from a new wheel, beside Debian's packages; or what is missing.
-pub fn environment() -> Result<Result<PathBuf, String>> {
-    if let Some(missing) = tools::packages(&[&BUILD[..], &TESTED_WITH].concat())? {
-        return Ok(Err(missing));
-    }
-    let wheel = match build()? {
-        Ok(wheel) => wheel,
-        Err(why) => return Ok(Err(why)),
-    };
-    run::read(pip(&["install", "--no-deps", "--force-reinstall"]).arg(wheel))?;
-    Ok(Ok(interpreter()))
+/// A Python in which the package is installed from a new wheel, beside Debian's packages.
+pub fn environment() -> Result<PathBuf> {
+    tools::packages(&[&BUILD[..], &TESTED_WITH].concat())?;
+    let python = build()?;
+    install(&python)?;
+    Ok(python)
 }
 
-/// A new wheel, or why there is none. The packages of `BUILD` must be there.
-pub fn build() -> Result<Result<PathBuf, String>> {
-    let (folder, python) = (paths::output().join("venv"), interpreter());
-    // Debian's Python: another does not see Debian's packages.
-    run::read(run::command("/usr/bin/python3").args(["-m", "venv", "--system-site-packages"]).arg(&folder))?;
-    if run::read(run::command(&python).args(["-c", "import scikit_build_core"])).is_err()
-        && let Err(error) = run::read(&mut pip(&["install", "scikit-build-core"]))
-    {
-        return Ok(Err(format!("scikit-build-core, which builds the wheel, is not to be had: {error:#}")));
+/// Builds a new wheel, with the Python that it returns. The packages of `BUILD` must be there.
+pub fn build() -> Result<PathBuf> {
+    let python = create(&paths::output().join("venv"), &["--system-site-packages"])?;
+    if run::read(run::command(&python).args(["-c", "import scikit_build_core"])).is_err() {
+        fetch(&python, &["scikit-build-core"])?;
     }
     if wheels().exists() {
         fs::remove_dir_all(wheels()).with_context(|| format!("cannot remove {}", wheels().display()))?;
     }
-    let cargo = format!("cmake.define.NOISEFLOOR_CARGO={}", run::cargo().get_program().to_string_lossy());
-    let target = format!("cmake.define.NOISEFLOOR_CARGO_TARGET_DIR={}", paths::target().display());
-    let mut build = pip(&["wheel", "./python", "--no-deps", "--no-build-isolation"]);
-    build.args(["--config-settings", &cargo, "--config-settings", &target, "--wheel-dir"]);
-    run::read(build.arg(wheels()))?;
-    Ok(Ok(wheel()?))
+    let [cargo, target] = library::settings().map(|setting| format!("--config-settings=cmake.define.{setting}"));
+    let folder = format!("--wheel-dir={}", wheels().display());
+    pip(&python, &["wheel", "./python", "--no-deps", "--no-build-isolation", &cargo, &target, &folder])?;
+    Ok(python)
 }
 
-fn interpreter() -> PathBuf {
-    paths::output().join("venv/bin/python")
+/// A new environment of Debian's Python: another does not see Debian's packages.
+pub fn create(folder: &Path, options: &[&str]) -> Result<PathBuf> {
+    run::read(run::command("/usr/bin/python3").args(["-m", "venv"]).args(options).arg(folder))?;
+    Ok(folder.join("bin/python"))
 }
 
-fn pip(arguments: &[&str]) -> Command {
-    let mut command = run::command(interpreter());
+/// Installs the wheel that was built.
+pub fn install(python: &Path) -> Result<()> {
+    pip(python, &["install", "--no-deps", "--force-reinstall", &wheel()?.to_string_lossy()])
+}
+
+/// Installs what pip fetches; [`Missing`] where it is out of reach.
+pub fn fetch(python: &Path, arguments: &[&str]) -> Result<()> {
+    let fetched = pip(python, &[&["install"], arguments].concat());
+    fetched.map_err(|error| Missing(format!("not to be had: {error:#}").replace('\n', " ")).into())
+}
+
+fn pip(python: &Path, arguments: &[&str]) -> Result<()> {
+    let mut command = run::command(python);
     command.args(["-m", "pip", "--disable-pip-version-check", "--quiet"]).args(arguments);
     // So that a second build has the same bytes.
-    command.env("SOURCE_DATE_EPOCH", "1700000000");
-    command
+    run::read(command.env("SOURCE_DATE_EPOCH", "1700000000")).map(drop)
 }
 
 fn wheels() -> PathBuf {
     paths::output().join("wheel")
 }
 
-/// The one that `environment` has built.
+/// The one that was built.
 pub fn wheel() -> Result<PathBuf> {
     paths::list(wheels())?.pop().context("pip made no wheel")
 }

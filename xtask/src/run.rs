@@ -70,12 +70,6 @@ pub fn packages() -> Result<Vec<serde_json::Value>> {
     Ok(metadata["packages"].as_array().context("cargo metadata names no packages")?.clone())
 }
 
-/// The files that git knows, from the workspace root; None where there is no repository.
-pub fn tracked() -> Option<Vec<String>> {
-    let listed = read(command("git").args(["ls-files", "-z"])).ok()?;
-    Some(listed.split_terminator('\0').map(str::to_owned).collect())
-}
-
 fn missing(command: &Command) -> String {
     let program = command.get_program().to_string_lossy();
     format!("cannot start `{program}`: is it installed? (Debian: apt-get install build-essential)")

@@ -1,10 +1,13 @@
 //! Starts the crates `release` and `report`, which stand apart because what they are made of takes long to compile.
 
-use crate::outcome::{NOT_RUN, Outcome};
-use crate::{paths, run, tools};
+use crate::tools::{self, Missing};
+use crate::{paths, run};
 use anyhow::{Context, Result, bail};
 use std::ffi::OsString;
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitCode, Stdio};
+
+/// The exit status of a program that is a step of the tests and cannot run here.
+const NOT_RUN: u8 = 77;
 
 fn program(cargo: &str, folder: &str) -> Command {
     let mut program = run::cargo();
@@ -30,8 +33,15 @@ pub fn start(folder: &str, command: &str, arguments: &[OsString]) -> Result<()> 
     run::check(&mut program)
 }
 
+/// How a program that was started ends.
+pub fn exit(result: Result<()>) -> ExitCode {
+    let Err(error) = result else { return ExitCode::SUCCESS };
+    eprintln!("error: {error:#}");
+    if error.is::<Missing>() { ExitCode::from(NOT_RUN) } else { ExitCode::FAILURE }
+}
+
 /// Runs a step of the tests.
-pub fn check(folder: &str, step: &str) -> Result<Outcome> {
+pub fn check(folder: &str, step: &str) -> Result<()> {
     let output = program("run", folder)
         .args(["--quiet", "--", "check", step])
         .stderr(Stdio::piped())
@@ -39,10 +49,11 @@ pub fn check(folder: &str, step: &str) -> Result<Outcome> {
         .wait_with_output()?;
     let errors = String::from_utf8_lossy(&output.stderr);
     if output.status.code() == Some(NOT_RUN.into()) {
-        return Ok(Outcome::NotRun(errors.lines().last().unwrap_or_default().to_owned()));
+        let why = errors.lines().last().unwrap_or_default();
+        bail!(Missing(why.trim_start_matches("error: ").to_owned()));
     }
     if !output.status.success() {
         bail!("{errors}");
     }
-    Ok(Outcome::Passed)
+    Ok(())
 }

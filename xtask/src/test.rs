@@ -1,8 +1,7 @@
 //! `cargo xtask test`: everything that decides whether a change is right.
 
 use crate::c_tests::{self, PYTHON};
-use crate::outcome::Outcome;
-use crate::tools::{self, Package};
+use crate::tools::{self, Missing, Package};
 use crate::{embree, fuzz, instructions, library, mitsuba, playground, povray, python, run, start, texts};
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -53,10 +52,8 @@ pub fn run(options: &Options) -> Result<()> {
     steps.start("the headers are what capi/ generates", "release", "header");
     steps.start("capi/abi.txt: functions, layouts and constants of the C ABI are as promised", "release", "abi");
     steps.c("headers alone: C99, C11, C++11, C++17, C++20, every warning an error", "default", "headers", &[]);
-    steps.run("the C library: no panic, no undefined symbol but mem*, only nf_* visible", || {
-        library::check(&archive()?)?;
-        Ok(Outcome::Passed)
-    });
+    let heading = "the C library: no panic, no undefined symbol but mem*, only nf_* visible";
+    steps.run(heading, || library::check(&archive()?));
     // The benches have none.
     let mut test = vec!["test", "--profile", "suite", "--workspace", "--no-fail-fast", "--exclude", "noisefloor-bench"];
     test.extend(COMPILED_FAST.iter().flat_map(|name| ["--exclude", name]));
@@ -147,7 +144,7 @@ struct Steps<'a> {
 
 impl Steps<'_> {
     /// Runs one step; the others follow even if it fails.
-    fn run(&mut self, heading: &'static str, action: impl FnOnce() -> Result<Outcome>) {
+    fn run(&mut self, heading: &'static str, action: impl FnOnce() -> Result<()>) {
         if self.options.filter.as_ref().is_some_and(|filter| !heading.contains(filter.as_str())) {
             self.left_out += 1;
             return;
@@ -155,11 +152,11 @@ impl Steps<'_> {
         println!("\n== {heading}");
         let start = Instant::now();
         match action() {
-            Ok(Outcome::Passed) => {
+            Ok(()) => {
                 println!("   ok ({:.1} s)", start.elapsed().as_secs_f64());
                 self.passed += 1;
             }
-            Ok(Outcome::NotRun(why)) => {
+            Err(why) if why.is::<Missing>() => {
                 println!("   NOT RUN: {why}");
                 self.not_run.push(heading);
             }
@@ -172,10 +169,7 @@ impl Steps<'_> {
 
     /// A command of cargo's, with a variable of its environment.
     fn cargo(&mut self, heading: &'static str, arguments: &[&str], variable: Option<(&str, &str)>) {
-        self.run(heading, || {
-            run::check(run::cargo().args(arguments).envs(variable))?;
-            Ok(Outcome::Passed)
-        });
+        self.run(heading, || run::check(run::cargo().args(arguments).envs(variable)));
     }
 
     /// What `release` or `report` checks.
@@ -214,7 +208,7 @@ impl Steps<'_> {
 }
 
 /// Builds the core with no feature, and with each alone.
-fn each_feature() -> Result<Outcome> {
+fn each_feature() -> Result<()> {
     let packages = run::packages()?;
     let core = packages.iter().find(|package| package["name"] == "noisefloor").context("there is no `noisefloor`")?;
     let features = core["features"].as_object().context("`noisefloor` has no features")?;
@@ -225,5 +219,5 @@ fn each_feature() -> Result<Outcome> {
         build.args(["build", "--quiet", "--package", "noisefloor", "--no-default-features", "--features", feature]);
         run::check(build.env("RUSTFLAGS", "-D warnings"))?;
     }
-    Ok(Outcome::Passed)
+    Ok(())
 }

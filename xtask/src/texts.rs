@@ -1,8 +1,8 @@
 //! What holds for all texts: lines no longer than a screen is wide, links that lead somewhere, code that is a
 //! program's; and how much there is.
 
-use crate::outcome::Outcome;
-use crate::{c_tests, library, paths, run, tools};
+use crate::tools::{self, Missing};
+use crate::{c_tests, library, paths, run};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -12,10 +12,8 @@ const KINDS: [&str; 6] = ["rs", "c", "h", "hpp", "cpp", "md"];
 const APART: [&str; 3] = ["docs/report/", "THIRD_PARTY.md", "report/"];
 
 /// Checks the lines of every file that git knows.
-pub fn columns() -> Result<Outcome> {
-    let Some(files) = run::tracked() else {
-        return Ok(Outcome::NotRun("git does not know which files there are".to_owned()));
-    };
+pub fn columns() -> Result<()> {
+    let files = tracked()?;
     let of_a_kind = |name: &&String| name.rsplit_once('.').is_some_and(|(_, kind)| KINDS.contains(&kind));
     let mut long = Vec::new();
     for name in files.iter().filter(of_a_kind).filter(|name| !APART.iter().any(|apart| name.starts_with(apart))) {
@@ -27,7 +25,14 @@ pub fn columns() -> Result<Outcome> {
     if !long.is_empty() {
         bail!("lines of more than {WIDTH} columns:\n   {}", long.join("\n   "));
     }
-    Ok(Outcome::Passed)
+    Ok(())
+}
+
+/// The files that git knows, from the workspace root.
+fn tracked() -> Result<Vec<String>> {
+    let listed = run::read(run::command("git").args(["ls-files", "-z"]));
+    let listed = listed.map_err(|_| Missing("git does not know which files there are".to_owned()))?;
+    Ok(listed.split_terminator('\0').map(str::to_owned).collect())
 }
 
 /// The columns of a line of Markdown: 0 where it cannot be broken, and without the targets of links.
@@ -41,11 +46,9 @@ fn columns_of_text(line: &str) -> usize {
 
 /// Checks the links of all documents: each must lead to a file that exists, and to a heading in it. Templates are
 /// checked as docs/report/ has them, filled in.
-pub fn links() -> Result<Outcome> {
+pub fn links() -> Result<()> {
     let root = paths::root();
-    let Some(files) = run::tracked() else {
-        return Ok(Outcome::NotRun("git does not know which files there are".to_owned()));
-    };
+    let files = tracked()?;
     let is_document = |name: &&String| name.ends_with(".md") && !name.starts_with("report/templates/");
     let documents: Vec<_> = files.iter().filter(is_document).map(|name| root.join(name)).collect();
     let (mut links, mut broken) = (0, Vec::new());
@@ -61,7 +64,7 @@ pub fn links() -> Result<Outcome> {
         bail!("links to no file or no heading:\n   {}", broken.join("\n   "));
     }
     println!("   {links} links in {} documents", documents.len());
-    Ok(Outcome::Passed)
+    Ok(())
 }
 
 /// What stands between `](` and `)`.
@@ -91,7 +94,7 @@ fn anchor(line: &str) -> Option<String> {
 
 /// README.md's first block of code is a part of image.cpp, letter by letter, and the two commands that do all the
 /// set-up follow.
-pub fn readme() -> Result<Outcome> {
+pub fn readme() -> Result<()> {
     let (text, program) = (paths::read("README.md")?, paths::read("examples_c/image.cpp")?);
     let part = program.split_once("    // README begin\n").and_then(|(_, rest)| rest.split_once("    // README end\n"));
     let (part, _) = part.context("examples_c/image.cpp has no part between `README begin` and `README end`")?;
@@ -106,21 +109,18 @@ pub fn readme() -> Result<Outcome> {
             bail!("README.md does not say `{}`", command.trim());
         }
     }
-    Ok(Outcome::Passed)
+    Ok(())
 }
 
 /// Prints how large everything is.
-pub fn sizes() -> Result<Outcome> {
-    if let Some(missing) = tools::packages(&[c_tests::PYTHON])? {
-        return Ok(Outcome::NotRun(missing));
-    }
+pub fn sizes() -> Result<()> {
+    tools::packages(&[c_tests::PYTHON])?;
     let tree = ["tree", "--package", "xtask", "--prefix", "none", "--edges", "normal,build"];
     let tree = run::read(run::cargo().args(tree))?;
     let packages: BTreeSet<&str> = tree.lines().map(|line| line.trim_end_matches(" (*)")).collect();
     let mut script = run::command("python3");
     script.args(["-B", "xtask/sizes.py"]).arg(library::build()?).arg(packages.len().to_string());
-    run::check(&mut script)?;
-    Ok(Outcome::Passed)
+    run::check(&mut script)
 }
 
 #[cfg(test)]

@@ -2,8 +2,21 @@
 
 use crate::run;
 use anyhow::{Result, bail};
+use std::fmt;
 use std::path::Path;
 use std::process::{Command, Stdio};
+
+/// An error that is no failure: something cannot run here, and this says why.
+#[derive(Debug)]
+pub struct Missing(pub String);
+
+impl std::error::Error for Missing {}
+
+impl fmt::Display for Missing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
 
 /// Fails unless every tool is there; on Debian, as root, missing compilers are installed first.
 pub fn ensure() -> Result<()> {
@@ -48,25 +61,25 @@ pub struct Package {
     pub file: &'static str,
 }
 
-/// Installs those that are missing where that is allowed; otherwise returns what is missing and what to do.
-pub fn packages(wanted: &[Package]) -> Result<Option<String>> {
-    let missing = |wanted: &[Package]| -> Vec<&str> {
+/// Installs those that are missing where that is allowed; otherwise [`Missing`] says what to do.
+pub fn packages(wanted: &[Package]) -> Result<()> {
+    let missing = || -> Vec<&str> {
         wanted.iter().filter(|package| !is_there(package.file)).map(|package| package.name).collect()
     };
-    let before = missing(wanted);
+    let before = missing();
     if before.is_empty() {
-        return Ok(None);
+        return Ok(());
     }
-    if can_install() {
-        println!("   installing {}", before.join(", "));
-        install(&before)?;
-        let after = missing(wanted);
-        if !after.is_empty() {
-            bail!("the packages {} were installed, but their files are not where Debian has them", after.join(", "));
-        }
-        return Ok(None);
+    if !can_install() {
+        bail!(Missing(format!("missing: {0}. On Debian: apt-get install {0}", before.join(" "))));
     }
-    Ok(Some(format!("missing: {0}. On Debian: apt-get install {0}", before.join(" "))))
+    println!("   installing {}", before.join(", "));
+    install(&before)?;
+    let after = missing();
+    if !after.is_empty() {
+        bail!("the packages {} were installed, but their files are not where Debian has them", after.join(", "));
+    }
+    Ok(())
 }
 
 fn is_there(file: &str) -> bool {
@@ -78,7 +91,8 @@ fn is_there(file: &str) -> bool {
 
 /// Debian's package manager is there and this user may use it.
 pub fn can_install() -> bool {
-    Path::new("/etc/debian_version").exists() && is_root()
+    let user = run::read(run::command("id").arg("-u"));
+    Path::new("/etc/debian_version").exists() && user.is_ok_and(|id| id.trim() == "0")
 }
 
 fn install(packages: &[&str]) -> Result<()> {
@@ -99,8 +113,4 @@ fn missing_compilers() -> Vec<String> {
 fn works(command: &mut Command) -> bool {
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command.status().is_ok_and(|status| status.success())
-}
-
-fn is_root() -> bool {
-    run::read(run::command("id").arg("-u")).is_ok_and(|id| id.trim() == "0")
 }

@@ -3,7 +3,6 @@
 use super::prelude::*;
 use super::report::Report;
 use crate::measure::running;
-use anyhow::anyhow;
 use std::path::PathBuf;
 use xtask::mitsuba;
 
@@ -18,9 +17,8 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let scratch = tempfile::tempdir()?;
     let folder = measured.clone().unwrap_or_else(|| scratch.path().to_owned());
     if measured.is_none() {
-        let python = mitsuba::environment()?.map_err(|why| anyhow!("{why}"))?;
+        let mut command = mitsuba::command()?;
         report.compiled();
-        let mut command = mitsuba::command(python);
         command.arg("integrations/mitsuba/measure.py").arg(&folder);
         if report.plan.is_quick() {
             command.args("--size 32 --seeds 3 --many 2 --reference 512 --frames 16 --rounds 3".split(' '));

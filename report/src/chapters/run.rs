@@ -75,6 +75,8 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         bar.set_message(format!("chapter {number} of {}: {name}", wanted.len()));
         match write_one(name, *write, description, &plan, &folder, &machine) {
             Ok(()) => written.push(*name),
+            // An error that says what is missing stays one.
+            Err(error) if wanted.len() == 1 => return Err(error),
             // The others do not depend on it.
             Err(error) => failed.push(format!("{name}: {error:#}")),
         }

@@ -36,9 +36,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let is_wanted = |platform: &&Platform| options.targets.is_empty() || options.targets.contains(&platform.triple);
     let wanted: Vec<&Platform> = all.platforms.iter().filter(is_wanted).collect();
     let packages = all.packages.iter().chain(wanted.iter().flat_map(|platform| &platform.packages));
-    if let Some(missing) = tools::packages(&packages.copied().collect::<Vec<Package>>())? {
-        bail!("{missing}");
-    }
+    tools::packages(&packages.copied().collect::<Vec<Package>>())?;
     let mut ran = Table::new("targets", "target | Rust's name | optimised | what ran | on");
     let mut sizes = Table::new("sizes", "target | kind | service | bytes");
     let mut example = Table::new("example", "target | call | bytes");
