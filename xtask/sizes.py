@@ -1,6 +1,6 @@
 """How large the product, its tools and its documents are: printed by a step of `cargo xtask test`.
 
-Usage: sizes.py LIBRARY PACKAGES, from the repository's root: the C library, and how many packages xtask is made of."""
+Usage: sizes.py LIBRARY, the C library, from the repository's root."""
 
 import os
 import re
@@ -110,9 +110,12 @@ def seen(text):
 
 rooms = ["core/src", "core/src/control_variate", "capi/src", "fsot", "tests", "bench", "release", "report", "xtask"]
 say("lines of Rust", ", ".join(f"{room} {lines(room + '/')}" for room in rooms))
+tree = [os.environ.get("CARGO", "cargo"), *"tree --package xtask --prefix none --edges normal,build".split()]
+tree = subprocess.run(tree, capture_output=True, text=True, check=True).stdout
+packages = {line.removesuffix(" (*)") for line in tree.splitlines()}
 tools = sum(lines(room + "/") for room in ["bench", "release", "report", "xtask"])
 say("tools over product", f"{tools / (lines('core/src/') + lines('capi/src/')):.2f}")
-say("xtask", f"{len(under('xtask/', '.rs'))} files, {sys.argv[2]} packages")
+say("xtask", f"{len(under('xtask/', '.rs'))} files, {len(packages)} packages")
 say("in core/src", ", ".join(f"{count('core/src/', word)} {word}" for word in ["unwrap_or", "inline(always)"]))
 fence = re.compile(r"//[/!] ```.*\n((?:\s*//[/!](?! ```).*\n)*)\s*//[/!] ```")
 doctests = "".join(part for text in under("core/src/", ".rs").values() for part in fence.findall(text))

@@ -34,7 +34,7 @@ impl Header {
     pub(crate) fn committed() -> Result<Self> {
         let mut all = String::new();
         for file in header::parts().iter().map(String::as_str).chain(["noisefloor.h"]) {
-            let path = paths::include().join(file);
+            let path = paths::root().join("include").join(file);
             all += &fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
         }
         Self::parse(&all)

@@ -131,9 +131,9 @@ const CHAPTERS: [Chapter; 8] = [
 
 /// Rewrites `include/noisefloor.h` and its parts from the `capi` crate.
 pub(crate) fn write() -> Result<()> {
-    fs::create_dir_all(paths::include().join("noisefloor")).context("cannot create include/noisefloor")?;
+    fs::create_dir_all(paths::root().join("include").join("noisefloor")).context("cannot create include/noisefloor")?;
     for (file, text) in generate()? {
-        let path = paths::include().join(file);
+        let path = paths::root().join("include").join(file);
         fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
     }
     Ok(())
@@ -142,7 +142,7 @@ pub(crate) fn write() -> Result<()> {
 /// Fails if the committed headers are not what the sources generate.
 pub(crate) fn check() -> Result<()> {
     for (file, text) in generate()? {
-        let path = paths::include().join(file);
+        let path = paths::root().join("include").join(file);
         if fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))? != text {
             bail!("{} is not what capi/ generates: run `cargo xtask header` and commit the result", path.display());
         }

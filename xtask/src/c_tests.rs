@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 pub const PYTHON: Package = Package { name: "python3", file: "/usr/bin/python3" };
 /// Debian's cmake does without make unless asked.
-const CMAKE: [Package; 2] =
+pub const CMAKE: [Package; 2] =
     [Package { name: "cmake", file: "/usr/bin/cmake" }, Package { name: "make", file: "/usr/bin/make" }];
 
 /// Builds and runs the tests with this label of a preset of tests/CMakePresets.json, which need these packages.

@@ -88,11 +88,9 @@ pub fn replay() -> Result<()> {
             inputs.extend(paths::list(&regressions)?);
         }
         let program = target.join("debug").join(name);
-        let output = run::command(&program)
-            .arg("-timeout=25")
-            .args(&inputs)
-            .output()
-            .with_context(|| format!("cannot start {}", program.display()))?;
+        let mut replay = run::command(&program);
+        let output = replay.arg("-timeout=25").args(&inputs).output();
+        let output = output.with_context(|| format!("cannot start {}", program.display()))?;
         judge(&output, &format!("{}: a committed input crashes it", name.display()))?;
         println!("   {}: {} inputs", name.display(), inputs.len());
     }

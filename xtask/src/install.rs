@@ -1,6 +1,6 @@
 //! `cargo xtask install`: what capi/CMakeLists.txt describes, with cargo's target folder shared.
 
-use crate::{library, paths, run};
+use crate::{library, paths, run, tools};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::path::PathBuf;
@@ -16,9 +16,7 @@ pub struct Options {
 }
 
 pub fn run(options: &Options) -> Result<()> {
-    let works = |program: &&str| run::read(run::command(program).arg("--version")).is_ok();
-    let missing: Vec<_> =
-        ["cmake", "cc", "ld", "nm", "objcopy"].into_iter().filter(|program| !works(program)).collect();
+    let missing = tools::missing(["cmake", "cc", "ld", "nm", "objcopy"].map(run::command));
     if !missing.is_empty() {
         bail!("missing: {}. On Debian: apt-get install cmake gcc libc6-dev binutils", missing.join(", "));
     }

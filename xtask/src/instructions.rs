@@ -40,9 +40,8 @@ pub fn compile(archive: &Path) -> Result<PathBuf> {
 pub fn count(program: &Path) -> Result<Counts> {
     let list = run::read(run::command("valgrind").args(["--quiet", "--tool=none"]).arg(program))?;
     let mut lines = list.lines();
-    let vector_units = lines.next().and_then(|line| line.strip_prefix("vector units,"));
-    let vector_units =
-        vector_units.context("bench/instructions.c did not say which vector units there are")?.to_owned();
+    let units = lines.next().and_then(|line| line.strip_prefix("vector units,"));
+    let vector_units = units.context("bench/instructions.c did not say which vector units there are")?.to_owned();
     let counts: Vec<Count> = lines.map(|line| count_case(program, line)).collect::<Result<_>>()?;
     if counts.is_empty() {
         bail!("bench/instructions.c has no cases");

@@ -1,16 +1,14 @@
 //! What `cargo xtask` is made of, for the crates `release` and `report` too.
 
 pub mod c_tests;
-pub mod embree;
 pub mod fill;
 pub mod fuzz;
 pub mod install;
 pub mod instructions;
 pub mod library;
-pub mod mitsuba;
 pub mod playground;
-pub mod povray;
 pub mod python;
+pub mod renderers;
 pub mod run;
 pub mod start;
 pub mod test;
@@ -42,11 +40,6 @@ pub mod paths {
     /// Where the C library and what is linked with it go.
     pub fn output() -> PathBuf {
         target().join("noisefloor")
-    }
-
-    /// The C and C++ headers.
-    pub fn include() -> PathBuf {
-        root().join("include")
     }
 
     /// What is in a folder, in order.

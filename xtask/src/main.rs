@@ -62,12 +62,10 @@ enum Command {
 fn main() -> ExitCode {
     start::exit(match Arguments::parse().command {
         Command::Demo(passed) => {
-            println!(
-                "a path tracer with every sampler and fits, then small trainers: pictures and tables in target/demo"
-            );
+            println!("pictures and tables of a path tracer, then of small trainers: see target/demo");
             start::start("report", "demo", &passed.arguments)
         }
-        Command::Povray => povray::run(),
+        Command::Povray => renderers::povray(),
         Command::Report(passed) => start::start("report", "report", &passed.arguments),
         Command::Targets(passed) => start::start("report", "targets", &passed.arguments),
         Command::Header => start::start("release", "header", &[]),
@@ -80,7 +78,7 @@ fn main() -> ExitCode {
         Command::Licences => start::start("release", "licences", &[]),
         Command::Install(options) => install::run(&options),
         Command::Tiles(options) => tiles::run(&options),
-        Command::Embree => embree::build().map(|path| println!("{}", path.display())),
+        Command::Embree => renderers::embree().map(|path| println!("{}", path.display())),
         Command::Playground => playground::build().map(|path| println!("{}", path.display())),
         Command::Library => library::build().map(|path| println!("{}", path.display())),
     })

@@ -20,7 +20,7 @@ const MANIFEST: &str = "docs/playground/Cargo.toml";
 /// Makes target/demo/playground.html.
 pub fn build() -> Result<PathBuf> {
     tools::packages(&COMPILER)?;
-    let (target, triple) = (folder(), "wasm32-unknown-unknown");
+    let (target, triple) = (paths::target().join("playground"), "wasm32-unknown-unknown");
     let mut cargo = run::command(COMPILER[1].file);
     // What rustup's cargo set for us is not for Debian's.
     cargo.env("RUSTC_BOOTSTRAP", "1").env("RUSTC", COMPILER[0].file).env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO");
@@ -48,12 +48,9 @@ pub fn test() -> Result<()> {
     let page = build()?;
     let mut cargo = run::cargo();
     cargo.args(["build", "--quiet", "--release", "--manifest-path", MANIFEST, "--target-dir"]);
-    run::check(cargo.arg(folder()))?;
+    let folder = paths::target().join("playground");
+    run::check(cargo.arg(&folder))?;
     let mut python = run::command("python3");
-    python.args(["-B", "tests/programs/playground.py"]).arg(page).arg(folder().join("release/numbers"));
+    python.args(["-B", "tests/programs/playground.py"]).arg(page).arg(folder.join("release/numbers"));
     run::check(python.arg(paths::target().join("demo/playground.png")))
-}
-
-fn folder() -> PathBuf {
-    paths::target().join("playground")
 }

@@ -1,18 +1,15 @@
 //! `python/`: the wheel, and its tests in an environment of their own.
 
+use crate::c_tests::{CMAKE, PYTHON};
 use crate::tools::{self, Missing, Package};
-use crate::{c_tests, library, paths, run};
+use crate::{library, paths, run};
 use anyhow::{Context, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What a wheel is built with.
-pub const BUILD: [Package; 4] = [
-    c_tests::PYTHON,
-    Package { name: "python3-venv", file: "/usr/share/doc/python3-venv" },
-    Package { name: "cmake", file: "/usr/bin/cmake" },
-    Package { name: "make", file: "/usr/bin/make" },
-];
+pub const BUILD: [Package; 4] =
+    [PYTHON, Package { name: "python3-venv", file: "/usr/share/doc/python3-venv" }, CMAKE[0], CMAKE[1]];
 const TESTED_WITH: [Package; 4] = [
     Package { name: "python3-pytest", file: "/usr/lib/python3/dist-packages/pytest/__init__.py" },
     Package { name: "python3-hypothesis", file: "/usr/lib/python3/dist-packages/hypothesis/__init__.py" },

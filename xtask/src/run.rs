@@ -32,16 +32,15 @@ pub fn check(command: &mut Command) -> Result<()> {
 /// As [`check`], and says every ten seconds that a compiler is still at work.
 pub fn compile(command: &mut Command) -> Result<()> {
     let (mut child, start) = (command.spawn().with_context(|| missing(command))?, Instant::now());
-    let mut said = 0;
+    let mut next = 10;
     let status = loop {
         if let Some(status) = child.try_wait()? {
             break status;
         }
         thread::sleep(Duration::from_millis(20));
-        let tens = start.elapsed().as_secs() / 10;
-        if tens > said {
-            println!("   compiling for {} s", 10 * tens);
-            said = tens;
+        if start.elapsed() > Duration::from_secs(next) {
+            println!("   compiling for {next} s");
+            next += 10;
         }
     };
     judge(status, command)

@@ -42,11 +42,9 @@ pub fn exit(result: Result<()>) -> ExitCode {
 
 /// Runs a step of the tests.
 pub fn check(folder: &str, step: &str) -> Result<()> {
-    let output = program("run", folder)
-        .args(["--quiet", "--", "check", step])
-        .stderr(Stdio::piped())
-        .spawn()?
-        .wait_with_output()?;
+    let mut program = program("run", folder);
+    program.args(["--quiet", "--", "check", step]).stderr(Stdio::piped());
+    let output = program.spawn()?.wait_with_output()?;
     let errors = String::from_utf8_lossy(&output.stderr);
     if output.status.code() == Some(NOT_RUN.into()) {
         let why = errors.lines().last().unwrap_or_default();

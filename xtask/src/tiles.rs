@@ -44,17 +44,17 @@ pub fn run(options: &Options) -> Result<()> {
     let shipped = paths::root().join("core/tiles");
     let folder = if options.check { paths::target().join("tiles") } else { shipped.clone() };
     fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
-    let mut different = Vec::new();
+    let (threads, mut different) = (options.threads.map(|threads| format!("--threads={threads}")), Vec::new());
     for name in names {
         eprintln!("{name}");
         if name == SAMPLER {
-            different.extend(sampler(&program, &shipped, &folder, options)?);
+            let file = sampler(&program, &shipped, &folder, threads.as_deref())?;
+            different.extend(file.filter(|_| options.check));
             continue;
         }
         let path = folder.join(format!("{name}.nft"));
         let mut command = run::command(&program);
-        command.args(["tile", "--preset", name, "--quiet", "--out"]).arg(&path);
-        command.args(options.threads.iter().flat_map(|threads| ["--threads".to_owned(), threads.to_string()]));
+        command.args(["tile", "--preset", name, "--quiet", "--out"]).arg(&path).args(&threads);
         run::check(&mut command)?;
         let made = info(&program, Some(&path))?;
         if options.check {
@@ -73,17 +73,16 @@ pub fn run(options: &Options) -> Result<()> {
 }
 
 /// Makes the table of the default sampler by its sidecar's command; its file, if it differs from the one that ships.
-fn sampler(program: &Path, shipped: &Path, folder: &Path, options: &Options) -> Result<Option<String>> {
+fn sampler(program: &Path, shipped: &Path, folder: &Path, threads: Option<&str>) -> Result<Option<String>> {
     let [file, sidecar] = ["bin", "toml"].map(|ending| format!("{SAMPLER}.{ending}"));
     let text = fs::read_to_string(shipped.join(&sidecar)).with_context(|| format!("cannot read {sidecar}"))?;
     let command = text.lines().find_map(|line| line.strip_prefix("command = \"fsot ")?.strip_suffix('"'));
     let arguments = command.with_context(|| format!("{sidecar} has no command"))?.split_whitespace();
     let mut make = run::command(program);
     make.args(arguments.filter(|argument| *argument != file)).arg(folder.join(&file)).arg("--quiet");
-    make.args(options.threads.iter().flat_map(|threads| ["--threads".to_owned(), threads.to_string()]));
-    run::check(&mut make)?;
+    run::check(make.args(threads))?;
     let is_same = fs::read(shipped.join(&file)).ok() == Some(fs::read(folder.join(&file))?);
-    Ok((options.check && !is_same).then_some(file))
+    Ok((!is_same).then_some(file))
 }
 
 /// What fsot says of its presets, or of a tile and its sidecar.

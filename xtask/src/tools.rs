@@ -34,15 +34,12 @@ pub fn ensure() -> Result<()> {
 
 /// Fails unless there are C and C++ compilers and binutils; on Debian, as root, missing ones are installed first.
 pub fn compilers() -> Result<()> {
-    let missing = missing_compilers();
-    if missing.is_empty() {
-        return Ok(());
-    }
-    if can_install() {
+    let mut missing = missing_compilers();
+    if !missing.is_empty() && can_install() {
         println!("missing: {}; installing gcc, g++ and binutils", missing.join(", "));
         install(&["gcc", "g++", "libc6-dev", "binutils"])?;
+        missing = missing_compilers();
     }
-    let missing = missing_compilers();
     if !missing.is_empty() {
         bail!(
             "missing: {}. What is compiled needs a C99 and a C++17 compiler and binutils (Debian: apt-get install \
@@ -104,8 +101,12 @@ fn install(packages: &[&str]) -> Result<()> {
 
 fn missing_compilers() -> Vec<String> {
     let compilers = [("CC", "cc"), ("CXX", "c++")].map(|(variable, default)| run::compiler(variable, default));
-    let binutils = ["ld", "ar", "nm", "objcopy"].map(run::command);
-    let mut missing: Vec<_> = compilers.into_iter().chain(binutils).collect();
+    missing(compilers.into_iter().chain(["ld", "ar", "nm", "objcopy"].map(run::command)))
+}
+
+/// The names of those that do not start.
+pub fn missing(programs: impl IntoIterator<Item = Command>) -> Vec<String> {
+    let mut missing: Vec<_> = programs.into_iter().collect();
     missing.retain_mut(|program| !works(program.arg("--version")));
     missing.iter().map(|program| program.get_program().to_string_lossy().into_owned()).collect()
 }

@@ -91,7 +91,7 @@ struct Harness<'a> {
 const FURTHER: [u64; 3] = [55, 28, 23];
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
-    let program = xtask::embree::build()?;
+    let program = xtask::renderers::embree()?;
     public::build()?;
     report.compiled();
     let text = report.plan.filled(&paths::read("report/chapters/embree_runs.toml")?);

@@ -4,7 +4,7 @@ use super::prelude::*;
 use super::report::Report;
 use crate::measure::running;
 use std::path::PathBuf;
-use xtask::mitsuba;
+use xtask::renderers;
 
 const PLAIN: &str = "independent";
 const DEFAULT: &str = "noisefloor";
@@ -17,7 +17,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let scratch = tempfile::tempdir()?;
     let folder = measured.clone().unwrap_or_else(|| scratch.path().to_owned());
     if measured.is_none() {
-        let mut command = mitsuba::command()?;
+        let mut command = renderers::mitsuba()?;
         report.compiled();
         command.arg("integrations/mitsuba/measure.py").arg(&folder);
         if report.plan.is_quick() {
