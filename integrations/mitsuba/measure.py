@@ -7,15 +7,16 @@ python3 measure.py FOLDER [--parts times,gradients,fits,errors] [--scenes cornel
 import argparse
 import time
 
-import numpy as np
 import drjit as dr
 import mitsuba as mi
+import numpy as np
 
 mi.set_variant("llvm_ad_rgb")
 mi.set_log_level(mi.LogLevel.Error)
 import mitsuba_oidn
-import noisefloor.mitsuba
 import scenes
+
+import noisefloor.mitsuba
 
 SAMPLERS = {
     name: {"type": name} for name in ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")

@@ -1,7 +1,7 @@
 """The scenes of the report's chapter: none but what Mitsuba and a few lines of NumPy make."""
 
-import numpy as np
 import mitsuba as mi
+import numpy as np
 
 
 def _scale(*s):
@@ -90,6 +90,7 @@ def lights():
 
 def textures():
     """A textured room that a lamp under the ceiling lights, with glass and rough metal."""
+
     def wall(transform, bsdf):
         return {"type": "rectangle", "to_world": transform @ _scale(3, 3, 1), "bsdf": {"type": "twosided", "b": bsdf}}
 

@@ -8,16 +8,17 @@ import sys
 import tempfile
 import unittest
 
-import numpy as np
 import drjit as dr
 import mitsuba as mi
+import numpy as np
 
 VARIANTS = os.environ.get("NOISEFLOOR_VARIANTS", "llvm_ad_rgb,llvm_ad_spectral,scalar_rgb").split(",")
 mi.set_variant(VARIANTS[0])
 mi.set_log_level(mi.LogLevel.Error)
+import scenes
+
 import noisefloor
 import noisefloor.mitsuba as nf
-import scenes
 from noisefloor import _c
 from noisefloor.mitsuba import _fits, _known, _sampler
 

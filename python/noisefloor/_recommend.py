@@ -45,8 +45,8 @@ def recommend(
         sample_cost: nanoseconds that a sample costs, above 0; infinity compares errors at equal samples.
 
     Returns:
-        A `Recommendation`, by measurements in rendered images. Of stratified points without neighbours it is their mean:
-        a fit may do a little better, and for some smooth integrands half as bad again.
+        A `Recommendation`, by measurements in rendered images. Of stratified points without neighbours it is their
+        mean: a fit may do a little better, and for some smooth integrands half as bad again.
     """
     out = _c.Recommendation()
     dims = _arrays.integer("dims", dims, 1, 2**32 - 1)

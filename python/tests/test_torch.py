@@ -13,11 +13,11 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-import train  # noqa: E402
-from torch.utils.data import DataLoader, TensorDataset  # noqa: E402
+import train
+from torch.utils.data import DataLoader, TensorDataset
 
-import noisefloor  # noqa: E402
-from noisefloor.torch import ImportanceBatchSampler, cross_entropy_importance  # noqa: E402
+import noisefloor
+from noisefloor.torch import ImportanceBatchSampler, cross_entropy_importance
 
 PROGRAM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "train.py")
 

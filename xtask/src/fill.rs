@@ -57,15 +57,17 @@ fn fill(document: &str, cell: &dyn Fn(&str) -> Result<f64>) -> Result<String> {
             let old = out.split_off(number);
             let digits = old.trim_end_matches('`');
             ensure!(!digits.is_empty(), "no number stands before <!-- {name} -->");
-            let sign = out.ends_with(['-', '−', '+']);
             let value = cell(name).with_context(|| format!("<!-- {name} -->"))?;
-            ensure!(sign || value >= 0.0, "<!-- {name} -->: {value} has a sign that {digits} has not");
+            let is_signed = out.ends_with(['-', '−', '+']);
+            ensure!(is_signed || value >= 0.0, "<!-- {name} -->: {value} has a sign that {digits} has not");
+            if is_signed && out.ends_with('+') == (value < 0.0) {
+                out.pop();
+                out.push(if value < 0.0 { '−' } else { '+' });
+            }
             out.push_str(&written(value.abs(), digits));
             out.push_str(&old[digits.len()..]);
         }
-        out.push_str("<!-- ");
-        out.push_str(name);
-        out.push_str(" -->");
+        out += &format!("<!-- {name} -->");
         rest = after;
     }
     out.push_str(rest);
@@ -172,6 +174,8 @@ mod tests {
         assert_eq!(filled("is .50<!-- a/b: c --> of", 0.123).unwrap(), "is .12<!-- a/b: c --> of");
         assert_eq!(filled("`1050`<!-- a/b: c -->", 1049.6).unwrap(), "`1050`<!-- a/b: c -->");
         assert_eq!(filled("-0.5<!-- a/b: c -->", -0.66).unwrap(), "-0.7<!-- a/b: c -->");
+        assert_eq!(filled("−0.5<!-- a/b: c -->", 0.66).unwrap(), "+0.7<!-- a/b: c -->");
+        assert_eq!(filled("+.5<!-- a/b: c -->", -0.66).unwrap(), "−.7<!-- a/b: c -->");
         assert_eq!(filled("<!-- a comment --> 3", 1.0).unwrap(), "<!-- a comment --> 3");
         assert!(filled("some<!-- a/b: c -->", 1.0).is_err());
         assert!(filled("1.0<!-- a/b: c -->", -1.0).is_err());

@@ -25,8 +25,7 @@ pub fn compiler(variable: &str, default: &str) -> Command {
 
 /// Runs to the end; a failure is an error that shows the command line.
 pub fn check(command: &mut Command) -> Result<()> {
-    let status = command.status().with_context(|| missing(command))?;
-    judge(status, command)
+    judge(command.status().with_context(|| missing(command))?, command)
 }
 
 /// As [`check`], and says every ten seconds that a compiler is still at work.

@@ -11,8 +11,7 @@ const NOT_RUN: u8 = 77;
 
 fn program(cargo: &str, folder: &str) -> Command {
     let mut program = run::cargo();
-    program.args([cargo, "--profile", "xtask", "--manifest-path"]);
-    program.arg(paths::root().join(folder).join("Cargo.toml"));
+    program.args([cargo, "--profile", "xtask", "--manifest-path"]).arg(paths::root().join(folder).join("Cargo.toml"));
     program
 }
 

@@ -35,8 +35,7 @@ pub fn run(options: &Options) -> Result<()> {
     run::check(run::cargo().args(["build", "--quiet", "--profile", "fsot", "--package", "noisefloor-fsot"]))?;
     let program = paths::target().join("fsot/fsot").with_extension(std::env::consts::EXE_EXTENSION);
     let presets = info(&program, None)?["presets"].as_array().context("`fsot info --json` has no presets")?.clone();
-    let presets = presets.iter().filter_map(Value::as_str).chain([SAMPLER]);
-    let presets: Vec<_> = presets.map(str::to_owned).collect();
+    let presets: Vec<_> = presets.iter().filter_map(Value::as_str).chain([SAMPLER]).map(str::to_owned).collect();
     if let Some(unknown) = options.names.iter().find(|name| !presets.contains(name)) {
         bail!("there is no tile {unknown}; there are {}", presets.join(", "));
     }

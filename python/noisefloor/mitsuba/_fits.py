@@ -124,5 +124,3 @@ def kind():
             return f"NoisefloorFits[order={self.order}, known={self.known}, {self.inner}]"
 
     return NoisefloorFits
-
-
