@@ -22,6 +22,7 @@
  *    a `learning_rate` of the caller's: hosts may trap these.
  *  - Configurations are plain numbers; zero in an optional field means the documented default (of nf_cv_config all but
  *    dims, order and channels are optional), an unknown value is NF_ERR_RANGE. Zero or NULL is what is not there.
+ *  - Not listed with each function: NF_ERR_NULL and NF_ERR_ALIGNMENT of any pointer, NF_ERR_STATE of any object.
  *  - NF_ERR_RANGE does not say which argument it means: a function's comment lists those that it can mean, with their
  *    ranges there or where they are declared. nf_cv_check() names the field of a configuration.
  *  - References such as (4.22) are to C. Salaun, "Toward Improving Monte Carlo Estimator for Rendering and
@@ -48,31 +49,24 @@
 #define NF_ASSERT_LAYOUT(condition) extern char nf_assert_layout[(condition) ? 1 : -1]
 #define NF_ASSERT_ALIGNED_AS(a, b) NF_ASSERT_LAYOUT(sizeof(a) % sizeof(b) == 0)
 #endif
+#define NF_ASSERT_STRUCT(a, size, field, offset, b) \
+    NF_ASSERT_LAYOUT(sizeof(a) == (size) && offsetof(a, field) == (offset)); NF_ASSERT_ALIGNED_AS(a, b)
 NF_ASSERT_LAYOUT(sizeof(nf_status) == 4);
-NF_ASSERT_LAYOUT(sizeof(nf_cv_config) == 60 && offsetof(nf_cv_config, ridge) == 56);
-NF_ASSERT_ALIGNED_AS(nf_cv_config, uint32_t);
+NF_ASSERT_STRUCT(nf_cv_config, 60, ridge, 56, uint32_t);
 NF_ASSERT_LAYOUT(sizeof(nf_cv_samples) == 6 * sizeof(void *) + sizeof(size_t));
 NF_ASSERT_LAYOUT(sizeof(nf_cv_descent) == 16);
-NF_ASSERT_LAYOUT(sizeof(nf_estimate) == 40 && offsetof(nf_estimate, samples) == 32);
-NF_ASSERT_ALIGNED_AS(nf_estimate, float);
+NF_ASSERT_STRUCT(nf_estimate, 40, samples, 32, float);
 NF_ASSERT_LAYOUT(sizeof(nf_cv_image) == 24 + 2 * sizeof(void *) + 32 && offsetof(nf_cv_image, surfaces) == 24);
-NF_ASSERT_LAYOUT(sizeof(nf_cv_rectangle) == 16 && offsetof(nf_cv_rectangle, width) == 8);
-NF_ASSERT_ALIGNED_AS(nf_cv_rectangle, uint32_t);
-NF_ASSERT_LAYOUT(sizeof(nf_recommendation) == 92 && offsetof(nf_recommendation, config) == 32);
-NF_ASSERT_ALIGNED_AS(nf_recommendation, uint32_t);
-NF_ASSERT_LAYOUT(sizeof(nf_tile) == 2 * sizeof(void *) + 24 && offsetof(nf_tile, size) == 2 * sizeof(void *));
-NF_ASSERT_ALIGNED_AS(nf_tile, void *);
-NF_ASSERT_LAYOUT(sizeof(nf_tile_sampler) == sizeof(void *) + 16 && offsetof(nf_tile_sampler, domain) == sizeof(void *));
-NF_ASSERT_ALIGNED_AS(nf_tile_sampler, void *);
-NF_ASSERT_LAYOUT(sizeof(nf_sampler) == 16 && offsetof(nf_sampler, x) == 8);
-NF_ASSERT_ALIGNED_AS(nf_sampler, uint32_t);
-NF_ASSERT_LAYOUT(sizeof(nf_rng) == 16 && offsetof(nf_rng, increment) == 8);
-NF_ASSERT_ALIGNED_AS(nf_rng, uint64_t);
-NF_ASSERT_LAYOUT(sizeof(nf_table) == 2 * sizeof(void *) + 24 && offsetof(nf_table, items) == 2 * sizeof(void *) + 8);
-NF_ASSERT_ALIGNED_AS(nf_table, double);
-NF_ASSERT_LAYOUT(sizeof(nf_shard) == 16 && offsetof(nf_shard, items) == 8);
-NF_ASSERT_ALIGNED_AS(nf_shard, uint64_t);
-#undef NF_ASSERT_LAYOUT
+NF_ASSERT_STRUCT(nf_cv_rectangle, 16, width, 8, uint32_t);
+NF_ASSERT_STRUCT(nf_recommendation, 92, config, 32, uint32_t);
+NF_ASSERT_STRUCT(nf_tile, 2 * sizeof(void *) + 24, size, 2 * sizeof(void *), void *);
+NF_ASSERT_STRUCT(nf_tile_sampler, sizeof(void *) + 16, domain, sizeof(void *), void *);
+NF_ASSERT_STRUCT(nf_sampler, 16, x, 8, uint32_t);
+NF_ASSERT_STRUCT(nf_rng, 16, increment, 8, uint64_t);
+NF_ASSERT_STRUCT(nf_table, 2 * sizeof(void *) + 24, items, 2 * sizeof(void *) + 8, double);
+NF_ASSERT_STRUCT(nf_shard, 16, items, 8, uint64_t);
+#undef NF_ASSERT_STRUCT
 #undef NF_ASSERT_ALIGNED_AS
+#undef NF_ASSERT_LAYOUT
 
 #endif /* NOISEFLOOR_H */

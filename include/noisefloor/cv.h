@@ -38,7 +38,8 @@ extern "C" {
 #define NF_RIDGE_AUTO (-1.0f) // For `ridge`: of a few strengths the one with the smallest leave-one-out error.
 
 #define NF_COLOR_PER_CHANNEL 0 // Each channel is regressed on its own, with one factorisation. The default.
-// Rec. 709 luminance is regressed and scales the plain mean of 3 channels (section 4.3).
+// Rec. 709 luminance is regressed and scales the plain mean of 3 channels (section 4.3). Standard errors are the
+// luminance's, scaled alike: they leave out what the colour is uncertain by.
 #define NF_COLOR_LUMINANCE_RATIO 1
 
 #define NF_NONFINITE_ERROR 0 // A NaN or infinite sample is NF_ERR_NOT_FINITE. The default.
@@ -117,10 +118,9 @@ size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
 // Estimates `integrals` integrals from `samples->n` samples of each, apart from each other: out[integrals]. Nothing of
 // the workspace, nf_cv_workspace_size() bytes, is kept.
-//
-// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: the configuration, a coordinate, or a size that no memory has;
-// NF_ERR_NOT_FINITE: a sample; NF_ERR_NO_SAMPLES; NF_ERR_MEMORY: the workspace; NF_ERR_UNSUPPORTED: options that
-// exclude each other, `known`, or of several integrals `controls` and NF_NONFINITE_SKIP.
+// NF_ERR_RANGE: the configuration, a coordinate, or a size that no memory has; NF_ERR_NOT_FINITE: a sample;
+// NF_ERR_NO_SAMPLES; NF_ERR_MEMORY: the workspace; NF_ERR_UNSUPPORTED: options that exclude each other, `known`, or of
+// several integrals `controls` and NF_NONFINITE_SKIP.
 nf_status nf_cv_estimate(const nf_cv_config *config, const nf_cv_samples *samples, size_t integrals, void *workspace,
     size_t bytes, nf_estimate *out);
 
@@ -163,8 +163,7 @@ typedef struct nf_cv_image {
 
 // Writes which pixels must be given for `image->wanted`, and all zero, for all, where pixels have no places. Reads no
 // array; `out` may be `&image->given`.
-//
-// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: what nf_cv_check() says of the windows and `wanted`.
+// NF_ERR_RANGE: what nf_cv_check() says of the windows and `wanted`.
 nf_status nf_cv_image_needed(const nf_cv_image *image, nf_cv_rectangle *out);
 
 // Bytes of workspace that nf_cv_image_estimate() needs for `samples->n` samples in each pixel, more with `known`; 0 as
@@ -183,7 +182,6 @@ size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image 
 //
 // With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
 // to what is left of it, with order 0 between the mean and what is known; NF_CV_K_FOLD is unsupported.
-//
 // NF_ERR_UNSUPPORTED: other estimators, `controls`, NF_NONFINITE_SKIP, luminance ratio; NF_ERR_RANGE also for the
 // image, negative factors or integrals, and `known` without integrals; else as for nf_cv_estimate().
 nf_status nf_cv_image_estimate(const nf_cv_config *config, const nf_cv_image *image, const nf_cv_samples *samples,
@@ -226,25 +224,21 @@ typedef struct nf_cv_accumulator nf_cv_accumulator;
 size_t nf_cv_accumulator_size(const nf_cv_config *config, size_t *workspace);
 
 // Makes an empty accumulator in `memory`, or empties one: `*out` is its handle, the same address.
-//
-// NF_ERR_NULL; NF_ERR_RANGE: the configuration; NF_ERR_MEMORY; NF_ERR_ALIGNMENT; NF_ERR_UNSUPPORTED:
-// NF_CV_LEAVE_ONE_OUT, which needs all samples at once, and NF_SOLVER_DUAL.
+// NF_ERR_RANGE: the configuration; NF_ERR_MEMORY; NF_ERR_UNSUPPORTED: NF_CV_LEAVE_ONE_OUT, which needs all samples at
+// once, and NF_SOLVER_DUAL.
 nf_status nf_cv_accumulator_init(void *memory, size_t bytes, const nf_cv_config *config, nf_cv_accumulator **out);
 
 // Adds samples of the one integral: all of them or, on an error, none. Several at a time are cheaper. In single
 // precision an accumulator holds 2^22 samples.
-//
-// NF_ERR_STATE; NF_ERR_RANGE also for more samples than it holds; else as for nf_cv_estimate().
+// NF_ERR_RANGE also for more samples than it holds; else as for nf_cv_estimate().
 nf_status nf_cv_accumulator_add(nf_cv_accumulator *accumulator, const nf_cv_samples *samples);
 
 // Adds all samples of `other`, which stays as it is.
-//
-// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_MISMATCH: other configurations; NF_ERR_RANGE: both are the same object.
+// NF_ERR_MISMATCH: other configurations; NF_ERR_RANGE: both are the same object.
 nf_status nf_cv_accumulator_merge(nf_cv_accumulator *accumulator, const nf_cv_accumulator *other);
 
 // The estimate from all samples so far; more may be added afterwards.
-//
-// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_MEMORY; NF_ERR_ALIGNMENT; NF_ERR_NO_SAMPLES.
+// NF_ERR_MEMORY; NF_ERR_NO_SAMPLES.
 nf_status nf_cv_accumulator_estimate(const nf_cv_accumulator *accumulator, void *workspace, size_t bytes,
     nf_estimate *out);
 
@@ -286,8 +280,7 @@ typedef struct nf_recommendation {
 //
 // sampling: NF_SAMPLING_*. can_share: 1 if neighbouring pixels' samples are at hand together and integrate similar
 // functions, else 0. sample_cost: nanoseconds to trace a sample, above 0; INFINITY compares errors at equal samples.
-//
-// NF_ERR_NULL; NF_ERR_RANGE; NF_ERR_NOT_FINITE: a NaN.
+// NF_ERR_RANGE; NF_ERR_NOT_FINITE: a NaN.
 nf_status nf_recommend(uint32_t dims, uint32_t spp, uint32_t sampling, uint32_t can_share, float sample_cost,
     nf_recommendation *out);
 

@@ -31,9 +31,8 @@ extern "C" {
 // n_k, samples of each technique; one with 0 has no part. techniques: 1..NF_MIS_MAX_TECHNIQUES. technique: j.
 //
 // The weights of all techniques sum to 1, for densities from 1e-38 to 1e38; each is 0 where every n_k p_k is.
-//
-// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: heuristic, parameter, techniques, technique, a density;
-// NF_ERR_NOT_FINITE: a density is NaN, or the parameter not finite.
+// NF_ERR_RANGE: heuristic, parameter, techniques, technique, a density; NF_ERR_NOT_FINITE: a density is NaN, or the
+// parameter not finite.
 nf_status nf_mis_weight(uint32_t heuristic, float parameter, const float *pdf, const uint32_t *counts,
     uint32_t techniques, uint32_t technique, float *weight);
 
@@ -45,8 +44,7 @@ nf_status nf_mis_weight(uint32_t heuristic, float parameter, const float *pdf, c
 //
 // pdf[techniques]: finite, at least 0, that of the technique positive. counts[techniques]: at least 1.
 // alpha[techniques]: from nf_omis_solve. value: f, not divided by a density. All finite.
-//
-// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: an argument, or the term in float; NF_ERR_NOT_FINITE.
+// NF_ERR_RANGE: an argument, or the term in float; NF_ERR_NOT_FINITE.
 nf_status nf_mis_optimal_contribution(const float *pdf, const uint32_t *counts, uint32_t techniques, uint32_t technique,
     const float *alpha, float value, float *contribution);
 
@@ -77,8 +75,7 @@ size_t nf_omis_size(uint32_t techniques, uint32_t integrals);
 
 // Makes an empty nf_omis in `memory`, or empties one: `*out` is its handle, the same address. counts[techniques]: n_k,
 // how many samples of each technique make one round, at least 1.
-//
-// NF_ERR_NULL; NF_ERR_RANGE: techniques, integrals or a count; NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+// NF_ERR_RANGE: techniques, integrals or a count; NF_ERR_MEMORY.
 nf_status nf_omis_init(void *memory, size_t bytes, uint32_t techniques, uint32_t integrals, const uint32_t *counts,
     nf_omis **out);
 
@@ -87,8 +84,7 @@ nf_status nf_omis_init(void *memory, size_t bytes, uint32_t techniques, uint32_t
 //
 // pdf[techniques]: the density of each technique at the point, finite, at least 0, that of the technique positive.
 // value[integrals]: each integrand there, not divided by any density, finite.
-//
-// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE.
+// NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE.
 nf_status nf_omis_add(nf_omis *omis, uint32_t technique, const float *pdf, const float *value);
 
 // Estimates the integrals from all samples so far, or the weights' coefficients alpha (2.15); NULL for what is not
@@ -98,23 +94,19 @@ nf_status nf_omis_add(nf_omis *omis, uint32_t technique, const float *pdf, const
 // the default 2. It adds ridge (tr(N A) - 1) / n N^-1 to A, N being the counts and n the samples, and at least 1e-8
 // tr(N A) N^-1. estimate[integrals], alpha[integrals * techniques]: outputs; one beyond the range of float becomes the
 // largest finite float. alpha is for nf_mis_optimal_contribution, of NF_OMIS_PROGRESSIVE the current batch's.
-//
-// NF_ERR_NULL: no object, or nothing wanted; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge;
+// NF_ERR_NULL: no object, or nothing wanted; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge;
 // NF_ERR_NO_SAMPLES.
 nf_status nf_omis_solve(const nf_omis *omis, uint32_t solver, float ridge, float *estimate, float *alpha);
 
 // Ends a batch, between whole rounds: NF_OMIS_PROGRESSIVE uses the alpha that solver and ridge find in all samples so
 // far on those that follow, and 0 before the first call. Then multiplies all sums by beta: 1 unless integrals drift,
 // as gradients do.
-//
 // NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE as the solver; NF_ERR_RANGE, NF_ERR_NOT_FINITE also for a beta outside 0..1;
 // else as for nf_omis_solve.
 nf_status nf_omis_next_batch(nf_omis *omis, uint32_t solver, float ridge, float beta);
 
 // Adds the samples of `other`, of another thread or pass; alpha of NF_OMIS_PROGRESSIVE stays that of `omis`.
-//
-// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: other techniques, integrals or
-// counts.
+// NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: other techniques, integrals or counts.
 nf_status nf_omis_merge(nf_omis *omis, const nf_omis *other);
 
 #ifdef __cplusplus

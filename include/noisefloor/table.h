@@ -37,9 +37,7 @@ size_t nf_table_size(uint32_t items);
 // Makes a table of `items` items in `memory`, of which more than nf_table_size(items) bytes are room for
 // nf_table_append. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch
 // (Algorithm 4).
-//
-// NF_ERR_NULL; NF_ERR_RANGE: no items, or a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all are 0;
-// NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+// NF_ERR_RANGE: no items, or a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all are 0; NF_ERR_MEMORY.
 nf_status nf_table_init(nf_table *table, void *memory, size_t bytes, uint32_t items, const float *importance);
 
 // Draws `batch` items with replacement, independently, in proportion to importance.
@@ -47,9 +45,7 @@ nf_status nf_table_init(nf_table *table, void *memory, size_t bytes, uint32_t it
 // index[batch]: the items. weight[batch]: 1 / (N p) of each: gradients times weights, averaged over the batch,
 // estimate the gradient of the mean loss without bias (6.3). NULL where they are not wanted: adaptive sampling (w = p
 // in Algorithm 3), which favours important items, a bias by design.
-//
-// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: uniform_fraction; NF_ERR_NO_SAMPLES: nothing can be drawn. A batch of 0 is
-// no error.
+// NF_ERR_RANGE: uniform_fraction; NF_ERR_NO_SAMPLES: nothing can be drawn. A batch of 0 is no error.
 nf_status nf_table_draw(const nf_table *table, nf_rng *rng, uint32_t batch, uint32_t *index, float *weight);
 
 // As nf_table_draw, from `batch` equal parts of the line of probabilities: less variance where neighbouring items are
@@ -62,7 +58,6 @@ nf_status nf_table_draw_stratified(const nf_table *table, nf_rng *rng, uint32_t 
 //
 // The table is written meanwhile, and the same afterwards. A draw takes the time of some ten updates, or, where a few
 // items have nearly all of the sum, time for every item.
-//
 // NF_ERR_RANGE: more than there are items; NF_ERR_NO_SAMPLES also where d is 0 and fewer items have an importance
 // above 0; else as for nf_table_draw.
 nf_status nf_table_draw_distinct(nf_table *table, nf_rng *rng, uint32_t batch, uint32_t *index, float *weight);
@@ -71,38 +66,31 @@ nf_status nf_table_draw_distinct(nf_table *table, nf_rng *rng, uint32_t batch, u
 // Algorithm 3, (6.11)). An item that comes twice is changed twice.
 //
 // index[batch]; importance[batch]: at least 0, finite. momentum: 0..1; 0 forgets the old value, .3 is a good choice.
-//
-// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item, an importance, momentum; NF_ERR_NOT_FINITE.
+// NF_ERR_RANGE: an item, an importance, momentum; NF_ERR_NOT_FINITE.
 nf_status nf_table_update(nf_table *table, const uint32_t *index, const float *importance, uint32_t batch,
     float momentum);
 
 // Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3. The uniform fraction does as much and costs
 // nothing.
-//
-// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE; NF_ERR_NOT_FINITE.
+// NF_ERR_RANGE; NF_ERR_NOT_FINITE.
 nf_status nf_table_add_epsilon(nf_table *table, float epsilon);
 
 // Adds `count` items behind the last.
-//
-// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_MEMORY: nf_table_init got no room; NF_ERR_RANGE, NF_ERR_NOT_FINITE: an importance.
+// NF_ERR_MEMORY: nf_table_init got no room; NF_ERR_RANGE, NF_ERR_NOT_FINITE: an importance.
 nf_status nf_table_append(nf_table *table, const float *importance, uint32_t count);
 
 // The probabilities of `count` items: p[k * stride] of index[k]. With J tables, stride J and p + j for the j-th table
 // make the rows that nf_omis_weights takes.
-//
-// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item, or stride 0; NF_ERR_NO_SAMPLES as for nf_table_draw.
+// NF_ERR_RANGE: an item, or stride 0; NF_ERR_NO_SAMPLES as for nf_table_draw.
 nf_status nf_table_probabilities(const nf_table *table, const uint32_t *index, uint32_t count, uint32_t stride,
     float *p);
 
 // Writes the table, the same bytes on every target: exactly NF_TABLE_SAVED_HEADER + 4 * items, of any alignment.
-//
-// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_LENGTH.
+// NF_ERR_LENGTH.
 nf_status nf_table_save(const nf_table *table, void *saved, size_t len);
 
 // A table as nf_table_save wrote it, in memory as for nf_table_init: it draws the same items from the same generator.
-//
-// NF_ERR_NULL; NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: the bytes; NF_ERR_MEMORY;
-// NF_ERR_ALIGNMENT.
+// NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: the bytes; NF_ERR_MEMORY.
 nf_status nf_table_load(nf_table *table, void *memory, size_t bytes, const void *saved, size_t len);
 
 // What the processes of a data-parallel trainer, each with the table of its part of the data, must know of each
@@ -113,16 +101,13 @@ typedef struct nf_shard {
 } nf_shard;
 
 // What the other processes must know of this table.
-//
-// NF_ERR_NULL; NF_ERR_STATE.
 nf_status nf_table_shard(const nf_table *table, nf_shard *out);
 
 // How many of a batch's items each process draws: counts[shards], in proportion to the shards' probabilities, each
 // right on average. They sum to batch. Every process calls it with the same shards and a generator of the same seed.
 // uniform_fraction: that of all tables.
-//
-// NF_ERR_NULL; NF_ERR_RANGE: a negative sum, 2^53 items or more, uniform_fraction; NF_ERR_NOT_FINITE;
-// NF_ERR_NO_SAMPLES: no shards, no items, or nothing that can be drawn.
+// NF_ERR_RANGE: a negative sum, 2^53 items or more, uniform_fraction; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: no shards,
+// no items, or nothing that can be drawn.
 nf_status nf_shards_allocate(const nf_shard *shard, uint32_t shards, float uniform_fraction, nf_rng *rng,
     uint32_t batch, uint32_t *counts);
 
@@ -130,7 +115,6 @@ nf_status nf_shards_allocate(const nf_shard *shard, uint32_t shards, float unifo
 // its nf_shard was made: gradients times weights, summed over all processes and divided by the whole batch's size,
 // estimate the gradient of the mean loss over all items. batch: from nf_shards_allocate. Where the others dwarf it a
 // weight may be infinite.
-//
 // NF_ERR_RANGE also if the shards together have less than this table; else as for nf_table_draw and
 // nf_shards_allocate.
 nf_status nf_table_draw_shard(const nf_table *table, const nf_shard *shard, uint32_t shards, nf_rng *rng,
@@ -151,16 +135,14 @@ uint32_t nf_shuffle(uint64_t seed, uint32_t items, uint32_t position);
 //
 // logits[rows * classes]: finite, of any size. label[rows]: below classes. importance[rows], loss[rows], gradient[rows
 // * classes]: outputs; a loss beyond the range of float becomes the largest finite float.
-//
-// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: a label, or no classes; NF_ERR_NOT_FINITE: a logit.
+// NF_ERR_RANGE: a label, or no classes; NF_ERR_NOT_FINITE: a logit.
 nf_status nf_importance_cross_entropy(const float *logits, const uint32_t *label, uint32_t rows, uint32_t classes,
     float *importance, float *loss, float *gradient);
 
 // Of each of `rows` items || 2 (output - target) ||, the norm of the derivative of the loss sum (output - target)^2.
 //
 // output[rows * outputs], target[rows * outputs]: finite. importance[rows]: outputs, at most the largest finite float.
-//
-// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: no outputs; NF_ERR_NOT_FINITE.
+// NF_ERR_RANGE: no outputs; NF_ERR_NOT_FINITE.
 nf_status nf_importance_squared_error(const float *output, const float *target, uint32_t rows, uint32_t outputs,
     float *importance);
 
@@ -171,8 +153,7 @@ nf_status nf_importance_squared_error(const float *output, const float *target, 
 // NF_NODES_NORM and half as many with NF_NODES_SIGN: importance[g] is the norm over group g, or importance[2 g],
 // importance[2 g + 1] those of max(gradient, 0) and max(-gradient, 0). techniques: 1..NF_MIS_MAX_TECHNIQUES.
 // importance[rows * techniques]: outputs, at most the largest finite float.
-//
-// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: split, techniques, or fewer outputs than groups; NF_ERR_NOT_FINITE.
+// NF_ERR_RANGE: split, techniques, or fewer outputs than groups; NF_ERR_NOT_FINITE.
 nf_status nf_importance_gradient(const float *gradient, uint32_t rows, uint32_t outputs, uint32_t split,
     uint32_t techniques, float *importance);
 
@@ -187,9 +168,8 @@ nf_status nf_importance_gradient(const float *gradient, uint32_t rows, uint32_t 
 //
 // With n_j samples of technique j, S_s = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2, weight_s =
 // (1 / S_s - (q - 1)' (A + ridge)^-1 p_s / S_s^2) batch / items.
-//
-// NF_ERR_NULL; NF_ERR_RANGE: solver, ridge, techniques, items, a technique or a probability; NF_ERR_NOT_FINITE: ridge
-// or a probability; NF_ERR_NO_SAMPLES: an empty batch; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.
+// NF_ERR_RANGE: solver, ridge, techniques, items, a technique or a probability; NF_ERR_NOT_FINITE: ridge or a
+// probability; NF_ERR_NO_SAMPLES: an empty batch; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.
 nf_status nf_omis_weights(uint32_t solver, float ridge, uint32_t techniques, uint32_t items, const float *pdf,
     const uint32_t *technique, uint32_t batch, float *weight);
 
@@ -204,8 +184,7 @@ size_t nf_gradient_size(uint32_t techniques, uint32_t parameters);
 
 // Makes an nf_gradient that has seen no batch in `memory`, or makes one forget: `*out` is its handle, the same
 // address.
-//
-// NF_ERR_NULL; NF_ERR_RANGE: techniques or parameters; NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+// NF_ERR_RANGE: techniques or parameters; NF_ERR_MEMORY.
 nf_status nf_gradient_init(void *memory, size_t bytes, uint32_t techniques, uint32_t parameters, nf_gradient **out);
 
 // Adds a batch of drawn items, and estimates the gradient of the mean loss from it and, with momentum, those before.
@@ -215,9 +194,8 @@ nf_status nf_gradient_init(void *memory, size_t bytes, uint32_t techniques, uint
 // averages all. Older gradients lag: under an optimiser with momentum of its own, such as Adam, use 0.
 // gradient[batch * parameters]: those of each sample, row after row, finite, unweighted; read twice.
 // estimate[parameters]: the output; one beyond the range of float becomes the largest finite float.
-//
-// NF_ERR_STATE; NF_ERR_RANGE also for beta, or gradients over probabilities beyond the range of float;
-// NF_ERR_NOT_FINITE also for beta or a gradient; else as for nf_omis_weights.
+// NF_ERR_RANGE also for beta, or gradients over probabilities beyond the range of float; NF_ERR_NOT_FINITE also for
+// beta or a gradient; else as for nf_omis_weights.
 nf_status nf_gradient_estimate(nf_gradient *state, uint32_t solver, float ridge, float beta, uint32_t items,
     const float *pdf, const uint32_t *technique, const float *gradient, uint32_t batch, float *estimate);
 

@@ -128,7 +128,8 @@ impl Header {
     pub(crate) fn check_asserts(&self) -> Result<()> {
         let structs = self.structs.iter().map(|one| &one.name);
         for name in structs.chain(self.typedefs.iter().map(|(name, _)| name)) {
-            if !self.asserts.contains(&format!("sizeof({name}) == ")) {
+            let asserted = [format!("sizeof({name}) == "), format!("NF_ASSERT_STRUCT({name}, ")];
+            if !asserted.iter().any(|text| self.asserts.contains(text)) {
                 bail!("the header asserts nothing of sizeof({name}): add a line to capi/cbindgen.toml");
             }
         }

@@ -234,6 +234,8 @@ impl Item {
         for line in block.lines().filter(|line| !is_function || line.trim_start().starts_with("//")) {
             text += &format!("{}\n", tidy(line));
         }
+        // Errors begin a line of their own, and need no empty one before.
+        let mut text = text.replace("//\n// NF_ERR_", "// NF_ERR_");
         if is_function {
             text += &filled(&code);
         }
