@@ -36,7 +36,7 @@ pub extern "C" fn nf_gradient_size(techniques: u32, parameters: u32) -> usize {
 /// Makes an nf_gradient that has seen no batch in `memory`, or makes one forget: `*out` is its handle, the same
 /// address.
 ///
-/// NF_ERR_NULL; NF_ERR_RANGE: techniques or parameters; NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+/// NF_ERR_RANGE: techniques or parameters; NF_ERR_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_gradient_init(
     memory: *mut core::ffi::c_void,
@@ -67,8 +67,8 @@ pub unsafe extern "C" fn nf_gradient_init(
 /// gradient[batch * parameters]: those of each sample, row after row, finite, unweighted; read twice.
 /// estimate[parameters]: the output; one beyond the range of float becomes the largest finite float.
 ///
-/// NF_ERR_STATE; NF_ERR_RANGE also for beta, or gradients over probabilities beyond the range of float;
-/// NF_ERR_NOT_FINITE also for beta or a gradient; else as for nf_omis_weights.
+/// NF_ERR_RANGE also for beta, or gradients over probabilities beyond the range of float; NF_ERR_NOT_FINITE also for
+/// beta or a gradient; else as for nf_omis_weights.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_gradient_estimate(
     state: *mut nf_gradient,

@@ -17,7 +17,7 @@ pub const NF_NODES_SIGN: u32 = 1;
 /// logits[rows * classes]: finite, of any size. label[rows]: below classes. importance[rows], loss[rows], gradient[rows
 /// * classes]: outputs; a loss beyond the range of float becomes the largest finite float.
 ///
-/// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: a label, or no classes; NF_ERR_NOT_FINITE: a logit.
+/// NF_ERR_RANGE: a label, or no classes; NF_ERR_NOT_FINITE: a logit.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_importance_cross_entropy(
     logits: *const f32,
@@ -66,7 +66,7 @@ pub unsafe extern "C" fn nf_importance_cross_entropy(
 ///
 /// output[rows * outputs], target[rows * outputs]: finite. importance[rows]: outputs, at most the largest finite float.
 ///
-/// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: no outputs; NF_ERR_NOT_FINITE.
+/// NF_ERR_RANGE: no outputs; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_importance_squared_error(
     output: *const f32,
@@ -102,7 +102,7 @@ pub unsafe extern "C" fn nf_importance_squared_error(
 /// importance[2 g + 1] those of max(gradient, 0) and max(-gradient, 0). techniques: 1..NF_MIS_MAX_TECHNIQUES.
 /// importance[rows * techniques]: outputs, at most the largest finite float.
 ///
-/// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: split, techniques, or fewer outputs than groups; NF_ERR_NOT_FINITE.
+/// NF_ERR_RANGE: split, techniques, or fewer outputs than groups; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_importance_gradient(
     gradient: *const f32,

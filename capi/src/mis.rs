@@ -30,8 +30,8 @@ pub const NF_MIS_MAXIMUM: u32 = 3;
 ///
 /// The weights of all techniques sum to 1, for densities from 1e-38 to 1e38; each is 0 where every n_k p_k is.
 ///
-/// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: heuristic, parameter, techniques, technique, a density;
-/// NF_ERR_NOT_FINITE: a density is NaN, or the parameter not finite.
+/// NF_ERR_RANGE: heuristic, parameter, techniques, technique, a density; NF_ERR_NOT_FINITE: a density is NaN, or the
+/// parameter not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_mis_weight(
     heuristic: u32,
@@ -65,7 +65,7 @@ pub unsafe extern "C" fn nf_mis_weight(
 /// pdf[techniques]: finite, at least 0, that of the technique positive. counts[techniques]: at least 1.
 /// alpha[techniques]: from nf_omis_solve. value: f, not divided by a density. All finite.
 ///
-/// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: an argument, or the term in float; NF_ERR_NOT_FINITE.
+/// NF_ERR_RANGE: an argument, or the term in float; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_mis_optimal_contribution(
     pdf: *const f32,

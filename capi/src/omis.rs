@@ -50,7 +50,7 @@ pub extern "C" fn nf_omis_size(techniques: u32, integrals: u32) -> usize {
 /// Makes an empty nf_omis in `memory`, or empties one: `*out` is its handle, the same address. counts[techniques]: n_k,
 /// how many samples of each technique make one round, at least 1.
 ///
-/// NF_ERR_NULL; NF_ERR_RANGE: techniques, integrals or a count; NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+/// NF_ERR_RANGE: techniques, integrals or a count; NF_ERR_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_omis_init(
     memory: *mut core::ffi::c_void,
@@ -86,7 +86,7 @@ pub unsafe extern "C" fn nf_omis_init(
 /// pdf[techniques]: the density of each technique at the point, finite, at least 0, that of the technique positive.
 /// value[integrals]: each integrand there, not divided by any density, finite.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE.
+/// NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_omis_add(
     omis: *mut nf_omis,
@@ -113,7 +113,7 @@ pub unsafe extern "C" fn nf_omis_add(
 /// tr(N A) N^-1. estimate[integrals], alpha[integrals * techniques]: outputs; one beyond the range of float becomes the
 /// largest finite float. alpha is for nf_mis_optimal_contribution, of NF_OMIS_PROGRESSIVE the current batch's.
 ///
-/// NF_ERR_NULL: no object, or nothing wanted; NF_ERR_STATE; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge;
+/// NF_ERR_NULL: no object, or nothing wanted; NF_ERR_RANGE: solver or ridge; NF_ERR_NOT_FINITE: ridge;
 /// NF_ERR_NO_SAMPLES.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_omis_solve(
@@ -166,8 +166,7 @@ pub unsafe extern "C" fn nf_omis_next_batch(omis: *mut nf_omis, solver: u32, rid
 
 /// Adds the samples of `other`, of another thread or pass; alpha of NF_OMIS_PROGRESSIVE stays that of `omis`.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: other techniques, integrals or
-/// counts.
+/// NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: other techniques, integrals or counts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis) -> nf_status {
     status((|| {
@@ -193,8 +192,8 @@ pub unsafe extern "C" fn nf_omis_merge(omis: *mut nf_omis, other: *const nf_omis
 /// With n_j samples of technique j, S_s = sum_k n_k p_k, q = sum_s p_s / S_s and A = sum_s p_s p_s' / S_s^2, weight_s =
 /// (1 / S_s - (q - 1)' (A + ridge)^-1 p_s / S_s^2) batch / items.
 ///
-/// NF_ERR_NULL; NF_ERR_RANGE: solver, ridge, techniques, items, a technique or a probability; NF_ERR_NOT_FINITE: ridge
-/// or a probability; NF_ERR_NO_SAMPLES: an empty batch; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.
+/// NF_ERR_RANGE: solver, ridge, techniques, items, a technique or a probability; NF_ERR_NOT_FINITE: ridge or a
+/// probability; NF_ERR_NO_SAMPLES: an empty batch; NF_ERR_UNSUPPORTED: NF_OMIS_PROGRESSIVE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_omis_weights(
     solver: u32,

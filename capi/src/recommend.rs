@@ -53,7 +53,7 @@ pub struct nf_recommendation {
 /// sampling: NF_SAMPLING_*. can_share: 1 if neighbouring pixels' samples are at hand together and integrate similar
 /// functions, else 0. sample_cost: nanoseconds to trace a sample, above 0; INFINITY compares errors at equal samples.
 ///
-/// NF_ERR_NULL; NF_ERR_RANGE; NF_ERR_NOT_FINITE: a NaN.
+/// NF_ERR_RANGE; NF_ERR_NOT_FINITE: a NaN.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_recommend(
     dims: u32,

@@ -103,7 +103,7 @@ pub extern "C" fn nf_sampler_table() -> *const u32 {
 /// pixels to the right and down. samples: of each pixel, by ascending index. u[height][width][samples][sum of dims], of
 /// which `len` numbers are there.
 ///
-/// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: dims, or sizes that memory cannot have; NF_ERR_MEMORY: len.
+/// NF_ERR_RANGE: dims, or sizes that memory cannot have; NF_ERR_MEMORY: len.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_sampler_fill(
     samplers: *const nf_sampler,
@@ -115,11 +115,8 @@ pub unsafe extern "C" fn nf_sampler_fill(
     u: *mut f32,
     len: usize,
 ) -> nf_status {
-    let draw = |sampler: &nf_sampler, [x, y]: [u32; 2], dims, stride, u: &mut [f32]| {
-        to(sampler).moved(x, y, 0).draw_samples(dims, stride, u);
-    };
     // SAFETY: the caller's arrays, of the lengths that are stated.
-    status(unsafe { fill::fill((samplers, dims, domains), [width, height, samples], (u, len), draw) })
+    unsafe { fill::fill((samplers, dims, domains), [width, height, samples], (u, len), to) }
 }
 
 fn to(&nf_sampler { domain, index, x, y, flags }: &nf_sampler) -> Sampler {

@@ -70,8 +70,7 @@ fn parts(blocks: u32) -> Option<(usize, usize)> {
 /// nf_table_append. importance[items]: at least 0, finite, not all 0; or NULL, which makes all 1, for an initial epoch
 /// (Algorithm 4).
 ///
-/// NF_ERR_NULL; NF_ERR_RANGE: no items, or a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all are 0;
-/// NF_ERR_MEMORY; NF_ERR_ALIGNMENT.
+/// NF_ERR_RANGE: no items, or a negative importance; NF_ERR_NOT_FINITE; NF_ERR_NO_SAMPLES: all are 0; NF_ERR_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_init(
     table: *mut nf_table,
@@ -112,8 +111,7 @@ pub unsafe extern "C" fn nf_table_init(
 /// estimate the gradient of the mean loss without bias (6.3). NULL where they are not wanted: adaptive sampling (w = p
 /// in Algorithm 3), which favours important items, a bias by design.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: uniform_fraction; NF_ERR_NO_SAMPLES: nothing can be drawn. A batch of 0 is
-/// no error.
+/// NF_ERR_RANGE: uniform_fraction; NF_ERR_NO_SAMPLES: nothing can be drawn. A batch of 0 is no error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_draw(
     table: *const nf_table,
@@ -179,7 +177,7 @@ pub unsafe extern "C" fn nf_table_draw_distinct(
 ///
 /// index[batch]; importance[batch]: at least 0, finite. momentum: 0..1; 0 forgets the old value, .3 is a good choice.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item, an importance, momentum; NF_ERR_NOT_FINITE.
+/// NF_ERR_RANGE: an item, an importance, momentum; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_update(
     table: *mut nf_table,
@@ -201,7 +199,7 @@ pub unsafe extern "C" fn nf_table_update(
 /// Adds epsilon, at least 0, to every importance: line 15 of Algorithm 3. The uniform fraction does as much and costs
 /// nothing.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE; NF_ERR_NOT_FINITE.
+/// NF_ERR_RANGE; NF_ERR_NOT_FINITE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_add_epsilon(table: *mut nf_table, epsilon: f32) -> nf_status {
     // SAFETY: the caller passes a table that no one else uses.
@@ -210,7 +208,7 @@ pub unsafe extern "C" fn nf_table_add_epsilon(table: *mut nf_table, epsilon: f32
 
 /// Adds `count` items behind the last.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_MEMORY: nf_table_init got no room; NF_ERR_RANGE, NF_ERR_NOT_FINITE: an importance.
+/// NF_ERR_MEMORY: nf_table_init got no room; NF_ERR_RANGE, NF_ERR_NOT_FINITE: an importance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_append(table: *mut nf_table, importance: *const f32, count: u32) -> nf_status {
     // SAFETY: the caller passes `count` importances and a table that no one else uses.
@@ -225,7 +223,7 @@ pub unsafe extern "C" fn nf_table_append(table: *mut nf_table, importance: *cons
 /// The probabilities of `count` items: p[k * stride] of index[k]. With J tables, stride J and p + j for the j-th table
 /// make the rows that nf_omis_weights takes.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_RANGE: an item, or stride 0; NF_ERR_NO_SAMPLES as for nf_table_draw.
+/// NF_ERR_RANGE: an item, or stride 0; NF_ERR_NO_SAMPLES as for nf_table_draw.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_probabilities(
     table: *const nf_table,
@@ -266,7 +264,7 @@ pub unsafe extern "C" fn nf_table_probabilities(
 
 /// Writes the table, the same bytes on every target: exactly NF_TABLE_SAVED_HEADER + 4 * items, of any alignment.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_LENGTH.
+/// NF_ERR_LENGTH.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_save(table: *const nf_table, saved: *mut c_void, len: usize) -> nf_status {
     status((|| {
@@ -278,8 +276,7 @@ pub unsafe extern "C" fn nf_table_save(table: *const nf_table, saved: *mut c_voi
 
 /// A table as nf_table_save wrote it, in memory as for nf_table_init: it draws the same items from the same generator.
 ///
-/// NF_ERR_NULL; NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: the bytes; NF_ERR_MEMORY;
-/// NF_ERR_ALIGNMENT.
+/// NF_ERR_FOREIGN, NF_ERR_VERSION, NF_ERR_LENGTH, NF_ERR_CORRUPT: the bytes; NF_ERR_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_load(
     table: *mut nf_table,

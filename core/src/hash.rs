@@ -1,7 +1,7 @@
 //! Hashes of 32 bits.
 
 /// 32 well-mixed bits: the finaliser of MurmurHash3 (A. Appleby, 2011), a bijection that keeps 0.
-#[inline(always)]
+#[inline]
 pub(crate) const fn mix(mut h: u32) -> u32 {
     h ^= h >> 16;
     h = h.wrapping_mul(0x85eb_ca6b);
@@ -15,7 +15,7 @@ pub(crate) const GOLDEN: u32 = 0x9e37_79b9;
 
 /// The domain that `key` leads to from `domain`; never the root, 0. For either argument fixed, a bijection of the other
 /// but for that exception.
-#[inline(always)]
+#[inline]
 pub(crate) const fn child(domain: u32, key: u32) -> u32 {
     let h = mix(key.wrapping_add(GOLDEN) ^ domain.wrapping_mul(0x2c92_77b5));
     h + (h == 0) as u32

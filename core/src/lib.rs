@@ -70,6 +70,8 @@ pub mod rng;
 mod rows;
 #[cfg(feature = "sampler")]
 pub mod sampler;
+#[allow(dead_code, reason = "each feature uses some of them")]
+mod slices;
 #[cfg(feature = "tile")]
 pub mod tile;
 #[cfg(feature = "warp")]

@@ -8,6 +8,7 @@
 use crate::error::Error;
 use crate::real::Real;
 use crate::rows::{Rows, RowsMut, rows, rows_mut};
+pub(crate) use crate::slices::{at, first_mut, from, from_mut, halves_mut, row_at, row_at_mut};
 use core::ops::{Deref, DerefMut};
 
 /// The count of numbers in a packed triangle of `order` rows.
@@ -17,59 +18,17 @@ pub(crate) const fn packed_len(order: usize) -> usize {
 }
 
 /// Row `j` of a packed triangle, diagonal included.
-#[inline(always)]
+#[inline]
 pub(crate) fn row<T>(triangle: &[T], j: usize) -> &[T] {
     let start = packed_len(j);
     triangle.get(start..start + j + 1).unwrap_or_default()
 }
 
 /// Row `j` of a packed triangle, diagonal included.
-#[inline(always)]
+#[inline]
 pub(crate) fn row_mut<T>(triangle: &mut [T], j: usize) -> &mut [T] {
     let start = packed_len(j);
     triangle.get_mut(start..start + j + 1).unwrap_or_default()
-}
-
-/// Row `index` of `width` entries.
-#[inline]
-pub(crate) fn row_at<T>(matrix: &[T], width: usize, index: usize) -> &[T] {
-    matrix.get(index * width..(index + 1) * width).unwrap_or_default()
-}
-
-/// Row `index` of `width` entries.
-#[inline]
-pub(crate) fn row_at_mut<T>(matrix: &mut [T], width: usize, index: usize) -> &mut [T] {
-    matrix.get_mut(index * width..(index + 1) * width).unwrap_or_default()
-}
-
-/// One entry of a vector.
-#[inline]
-pub(crate) fn at<T: Copy + Default>(vector: &[T], j: usize) -> T {
-    vector.get(j).copied().unwrap_or_default()
-}
-
-/// The entries of a vector from entry `start` on.
-#[inline]
-pub(crate) fn from<T>(vector: &[T], start: usize) -> &[T] {
-    vector.get(start..).unwrap_or_default()
-}
-
-/// The entries of a vector from entry `start` on.
-#[inline]
-pub(crate) fn from_mut<T>(vector: &mut [T], start: usize) -> &mut [T] {
-    vector.get_mut(start..).unwrap_or_default()
-}
-
-/// The first `len` entries of a vector.
-#[inline]
-pub(crate) fn first_mut<T>(vector: &mut [T], len: usize) -> &mut [T] {
-    vector.get_mut(..len).unwrap_or_default()
-}
-
-/// The first `len` entries of a vector, and the others.
-#[inline]
-pub(crate) fn halves_mut<T>(vector: &mut [T], len: usize) -> (&mut [T], &mut [T]) {
-    vector.split_at_mut_checked(len).unwrap_or_default()
 }
 
 /// Entry `j` of a vector, and the entries before it: what a substitution works on.

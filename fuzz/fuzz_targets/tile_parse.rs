@@ -21,7 +21,7 @@ fn draw(tile: &Tile<'_>, numbers: &[u8]) {
         assert_eq!(sampler.draw::<2>(), all[..2]);
         assert_eq!(sampler.draw::<3>(), all[..3]);
         let mut u = [0.0; 3 * 2 * 2 * 4];
-        fill(&[(sampler, 4)], 3, 2, 2, &mut u).unwrap();
+        fill([(sampler, 4)], 3, 2, 2, &mut u).unwrap();
         assert_eq!(u[..4], all);
     }
 }

@@ -513,6 +513,36 @@ fn narrow_streams_forget_their_first_sample() {
     }
 }
 
+/// The same of samples in arrays, by every estimator. Givens rotations are those of a stream.
+#[test]
+fn narrow_batches_forget_their_first_sample() {
+    let mut rng = SplitMix64::new(15);
+    let n = 100_000;
+    let u = points(n, 2, &mut rng);
+    for first in [1e4, 0.0] {
+        let mut f: Vec<f32> = u.chunks(2).map(|u| 0.6 + 0.1 * u[0] + 0.01 * rng.uniform_f32()).collect();
+        f[0] = first;
+        for estimator in ESTIMATORS {
+            let config = config(2, 1, estimator);
+            let (wide, narrow) = (batch::<f64>(&config, &u, &f).unwrap(), batch::<f32>(&config, &u, &f).unwrap());
+            let what = format!("{estimator:?}, {first} first: {narrow:?} for {wide:?}");
+            assert!((narrow.mean[0] - wide.mean[0]).abs() < 0.05 * wide.std_error[0], "{what}");
+            assert!((narrow.std_error[0] / wide.std_error[0] - 1.0).abs() < 0.1, "{what}");
+        }
+    }
+}
+
+/// An incremental estimate of arrays takes the memory of its stream, and no more.
+#[test]
+fn memory_of_incremental_estimates() {
+    let config = config(2, 2, Estimator::Incremental);
+    let len = control_variate::workspace_len::<f64>(&config, 9).unwrap();
+    let estimate = |len| {
+        control_variate::estimate(&config, Samples::new(&[0.5; 18], &[1.0; 9]), &mut vec![f64::NAN; len]).map(drop)
+    };
+    assert_eq!((estimate(len), estimate(len - 1)), (Ok(()), Err(Error::Memory)));
+}
+
 /// Steps far too long, of any rule, end at a finite estimate.
 #[test]
 fn divergent_descent() {

@@ -216,8 +216,8 @@ proptest! {
         let (width, height, samples) = size;
         let root = Sampler::pixel(&tile, x, y, frame, index);
         let domains = [(walk(&tile, [x, y, frame, index], &path), dims), (root, 2)];
-        let mut u = vec![-1.0; fill_len(&domains, width, height, samples).unwrap()];
-        fill(&domains, width, height, samples, &mut u).unwrap();
+        let mut u = vec![-1.0; fill_len(domains, width, height, samples).unwrap()];
+        fill(domains, width, height, samples, &mut u).unwrap();
         let mut filled = u.chunks(dims + 2);
         for i in 0..height * width * samples {
             let [row, column, sample] = [i / samples / width, i / samples % width, i % samples].map(|k| k as u32);

@@ -218,19 +218,19 @@ const PINNED_HASH: u64 = 3_730_653_606_809_117_566;
 fn filled_at_once() {
     let samplers = [(root(5).domain(1), 2), (Sampler::white(7, 8, 9, 10).scramble(3), 3)];
     let mut u = vec![-1.0; 4 * 3 * 5 * 5 + 1];
-    fill(&samplers, 4, 3, 5, &mut u).unwrap();
+    fill(samplers, 4, 3, 5, &mut u).unwrap();
     assert_eq!(u.pop(), Some(-1.0));
     for (at, drawn) in u.chunks(5).enumerate() {
         let [x, y, sample] = [at / 5 % 4, at / 20, at % 5].map(|value| value as u32);
         let [a, b] = samplers.map(|(sampler, _)| sampler.moved(x, y, sample));
         assert_eq!(drawn, [&a.draw::<2>()[..], &b.draw::<3>()].concat());
     }
-    assert_eq!(fill(&samplers, 4, 3, 5, &mut u[1..]), Err(Error::Memory));
-    assert_eq!(fill(&[(root(0), 5)], 1, 1, 1, &mut u), Err(Error::Range));
-    assert_eq!(fill(&[(root(0), 0)], 1, 1, 1, &mut u), Err(Error::Range));
-    assert_eq!(fill(&samplers, usize::MAX, 3, 5, &mut u), Err(Error::Range));
-    assert_eq!(fill::<Sampler>(&[], usize::MAX, usize::MAX, 1, &mut u), Err(Error::Range));
-    assert_eq!(fill(&samplers, 0, 3, 5, &mut []), Ok(()));
+    assert_eq!(fill(samplers, 4, 3, 5, &mut u[1..]), Err(Error::Memory));
+    assert_eq!(fill([(root(0), 5)], 1, 1, 1, &mut u), Err(Error::Range));
+    assert_eq!(fill([(root(0), 0)], 1, 1, 1, &mut u), Err(Error::Range));
+    assert_eq!(fill(samplers, usize::MAX, 3, 5, &mut u), Err(Error::Range));
+    assert_eq!(fill([samplers[0]; 0], usize::MAX, usize::MAX, 1, &mut u), Err(Error::Range));
+    assert_eq!(fill(samplers, 0, 3, 5, &mut []), Ok(()));
 }
 
 proptest! {

@@ -62,8 +62,8 @@ fn sizes<R: Real>(config: &Config) -> Result<[usize; 2], nf_status> {
 
 /// Makes an empty accumulator in `memory`, or empties one: `*out` is its handle, the same address.
 ///
-/// NF_ERR_NULL; NF_ERR_RANGE: the configuration; NF_ERR_MEMORY; NF_ERR_ALIGNMENT; NF_ERR_UNSUPPORTED:
-/// NF_CV_LEAVE_ONE_OUT, which needs all samples at once, and NF_SOLVER_DUAL.
+/// NF_ERR_RANGE: the configuration; NF_ERR_MEMORY; NF_ERR_UNSUPPORTED: NF_CV_LEAVE_ONE_OUT, which needs all samples at
+/// once, and NF_SOLVER_DUAL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_init(
     memory: *mut c_void,
@@ -97,7 +97,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_init(
 /// Adds samples of the one integral: all of them or, on an error, none. Several at a time are cheaper. In single
 /// precision an accumulator holds 2^22 samples.
 ///
-/// NF_ERR_STATE; NF_ERR_RANGE also for more samples than it holds; else as for nf_cv_estimate().
+/// NF_ERR_RANGE also for more samples than it holds; else as for nf_cv_estimate().
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_add(
     accumulator: *mut nf_cv_accumulator,
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_add(
 
 /// Adds all samples of `other`, which stays as it is.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_MISMATCH: other configurations; NF_ERR_RANGE: both are the same object.
+/// NF_ERR_MISMATCH: other configurations; NF_ERR_RANGE: both are the same object.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_merge(
     accumulator: *mut nf_cv_accumulator,
@@ -144,7 +144,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_merge(
 
 /// The estimate from all samples so far; more may be added afterwards.
 ///
-/// NF_ERR_NULL; NF_ERR_STATE; NF_ERR_MEMORY; NF_ERR_ALIGNMENT; NF_ERR_NO_SAMPLES.
+/// NF_ERR_MEMORY; NF_ERR_NO_SAMPLES.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_estimate(
     accumulator: *const nf_cv_accumulator,

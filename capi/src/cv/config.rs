@@ -50,7 +50,8 @@ pub const NF_NONFINITE_SKIP: u32 = 1;
 
 /// Each channel is regressed on its own, with one factorisation. The default.
 pub const NF_COLOR_PER_CHANNEL: u32 = 0;
-/// Rec. 709 luminance is regressed and scales the plain mean of 3 channels (section 4.3).
+/// Rec. 709 luminance is regressed and scales the plain mean of 3 channels (section 4.3). Standard errors are the
+/// luminance's, scaled alike: they leave out what the colour is uncertain by.
 pub const NF_COLOR_LUMINANCE_RATIO: u32 = 1;
 
 /// For `ridge`: of a few strengths the one with the smallest leave-one-out error.

@@ -61,7 +61,7 @@ pub struct nf_cv_rectangle {
 /// Writes which pixels must be given for `image->wanted`, and all zero, for all, where pixels have no places. Reads no
 /// array; `out` may be `&image->given`.
 ///
-/// NF_ERR_NULL; NF_ERR_ALIGNMENT; NF_ERR_RANGE: what nf_cv_check() says of the windows and `wanted`.
+/// NF_ERR_RANGE: what nf_cv_check() says of the windows and `wanted`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_needed(image: *const nf_cv_image, out: *mut nf_cv_rectangle) -> nf_status {
     status((|| {

@@ -87,7 +87,7 @@ impl Shape {
     }
 
     /// All functions; the constant is not one of them.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn columns(&self) -> usize {
         self.shared + self.slices + self.slices * self.copies
     }
@@ -121,13 +121,13 @@ impl Basis {
     }
 
     /// A basis of no functions, to be set.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn empty() -> Self {
         Self { family: Family::Legendre, shape: Shape::default(), terms: Vec::new(), gaussians: None }
     }
 
     /// Makes it another basis, of a shape that was checked. A basis is a few kilobytes, which are better not moved.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn set(&mut self, family: Family, shape: Shape) -> Result<(), Error> {
         self.family = family;
         self.shape = shape;
@@ -137,7 +137,7 @@ impl Basis {
     }
 
     /// How many functions there are; the constant is not one of them.
-    #[inline(always)]
+    #[inline]
     pub fn columns(&self) -> usize {
         self.shape.columns()
     }
@@ -241,7 +241,7 @@ impl Basis {
 }
 
 /// Which of `slices` equal parts of [0, 1] holds `u`; 1 belongs to the last.
-#[inline(always)]
+#[inline]
 fn slice_of<R: Real>(u: R, slices: usize) -> usize {
     // A float-to-integer cast saturates, so this is total.
     ((u.to_f32() * slices as f32) as usize).min(slices - 1)

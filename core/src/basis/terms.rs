@@ -27,12 +27,12 @@ pub(crate) struct Term {
 }
 
 impl Term {
-    #[inline(always)]
+    #[inline]
     pub(crate) fn degree(&self) -> usize {
         usize::from(self.degree)
     }
 
-    #[inline(always)]
+    #[inline]
     pub(crate) fn column(&self) -> usize {
         usize::from(self.column)
     }

@@ -3,20 +3,20 @@
 use super::config::{Color, Config};
 use super::cross_fit;
 use super::design::Units;
-use super::fit::{descent, givens as square_root, normal};
+use super::fit::{descent, givens, normal};
 use super::folds;
 use super::incremental;
 use super::per_channel::PerChannel;
 use super::plan::{self, Method};
 use super::samples::{Reader, Samples, Subset};
-use super::sums::{self, Sums};
+use super::sums::{Form, Layout, Sums};
+use super::totals::Totals;
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
 use crate::error::Error;
 use crate::lanes::Lanes;
-use crate::linalg::givens;
-use crate::matrix::{at, first_mut, from, halves_mut, row_at, row_at_mut};
 use crate::real::Real;
-use crate::rows::{rows, rows_mut};
+use crate::slices::{first_mut, from, from_mut, halves_mut};
+use core::num::NonZeroUsize;
 
 /// The most samples of an accumulator in `f32`.
 const NARROW_CAPACITY: u64 = 1 << 22;
@@ -47,8 +47,7 @@ pub struct Accumulator<R> {
     pub(super) config: Config,
     pub(super) shape: Shape,
     pub(super) method: Method,
-    pub(super) columns: usize,
-    pub(super) channels: usize,
+    pub(super) layout: Layout,
     pub(super) samples: u64,
     pub(super) units: [Units<R>; Config::MAX_CHANNELS],
     /// Sums of red, green, blue and luminance, for a luminance ratio.
@@ -64,14 +63,16 @@ impl<R: Real> Accumulator<R> {
         let shape = config.checked_shape()?;
         plan::check_stream(config)?;
         let method = Method::of(config, config.controls + shape.columns());
-        let columns = if method == Method::Plain { 0 } else { config.controls + shape.columns() };
-        let luminance = config.color == Color::LuminanceRatio;
+        let layout = Layout {
+            form: if method == Method::SquareRoot { Form::Factor } else { Form::Products },
+            columns: if method == Method::Plain { 0 } else { config.controls + shape.columns() },
+            channels: if config.color == Color::LuminanceRatio { 1 } else { config.channels },
+        };
         Ok(Self {
             config: *config,
             shape,
             method,
-            columns,
-            channels: if luminance { 1 } else { config.channels },
+            layout,
             samples: 0,
             units: [Units::default(); Config::MAX_CHANNELS],
             colour: [0.0; 4],
@@ -79,30 +80,22 @@ impl<R: Real> Accumulator<R> {
         })
     }
 
-    pub(super) fn terms(&self) -> usize {
-        self.columns + 1
-    }
-
-    /// Numbers of one group of sums.
-    pub(super) fn group(&self) -> usize {
-        sums::len(self.terms(), self.channels)
-    }
-
     /// Groups of sums: one for each fold, or one.
-    pub(super) fn groups(&self) -> usize {
+    pub(super) fn groups(&self) -> NonZeroUsize {
         match self.method {
             Method::Robust | Method::KFold => self.config.fold_count(),
-            _ => 1,
+            _ => NonZeroUsize::MIN,
         }
+    }
+
+    /// Numbers of the groups of sums.
+    fn sums_len(&self) -> usize {
+        self.groups().get() * self.layout.len()
     }
 
     /// Numbers of the whole buffer.
     pub fn len(&self) -> usize {
-        let extra = match self.method {
-            Method::Incremental => incremental::len(self.columns, self.channels),
-            _ => 0,
-        };
-        self.groups() * self.group() + extra
+        self.sums_len() + if self.method == Method::Incremental { incremental::len(self.layout) } else { 0 }
     }
 
     /// Never: an accumulator has at least the sums of a constant.
@@ -112,13 +105,11 @@ impl<R: Real> Accumulator<R> {
 
     /// Numbers of workspace that an estimate takes.
     pub fn workspace_len(&self) -> usize {
-        let (columns, channels) = (self.columns, self.channels);
-        let solve = normal::solve_len(columns);
-        let fit = normal::centred_len(columns, channels) + columns * (1 + channels) + solve;
+        let fit = normal::len(self.layout);
         let len = match self.method {
-            Method::Robust | Method::KFold => cross_fit::len(columns, channels) + self.group() + fit,
-            Method::Descent => fit + descent::size(columns, channels),
-            Method::SquareRoot => square_root::size(self.terms(), channels) + self.group(),
+            Method::Robust | Method::KFold => cross_fit::len(self.layout) + fit,
+            Method::Descent => fit + descent::size(self.layout.columns, self.layout.channels),
+            Method::SquareRoot => givens::size(self.layout),
             _ => fit,
         };
         // Zero would say that there is no such accumulator.
@@ -171,7 +162,7 @@ impl<R: Real> Accumulator<R> {
         reader.check()?;
         self.check_capacity(reader.len() as u64)?;
         let mut basis = Basis::empty();
-        let terms = self.terms();
+        let terms = self.layout.terms();
         if terms > 1 {
             basis.set(self.config.basis, self.shape)?;
         }
@@ -182,7 +173,7 @@ impl<R: Real> Accumulator<R> {
         reader.each(Subset::All, |sample| {
             sample.put(0, &mut x, &mut h);
             if terms > 1 {
-                reader.columns(&basis, &x, &h, p.get_mut(1..terms).unwrap_or_default());
+                reader.columns(&basis, &x, &h, from_mut(first_mut(&mut p, terms), 1));
             }
             if let Some(colour) = reader.colour(sample) {
                 for (sum, value) in self.colour.iter_mut().zip(colour) {
@@ -196,35 +187,25 @@ impl<R: Real> Accumulator<R> {
     }
 
     /// Adds one evaluated sample.
-    #[inline(always)]
+    #[inline]
     fn add_row(&mut self, sums: &mut [R], p: &mut [Lanes<R, 1>], values: PerChannel<R>) {
-        let (terms, channels, group) = (self.terms(), self.channels, self.group());
-        let groups = self.groups();
         self.fit_units(&values, sums);
         let mut f = PerChannel::default();
         for ((f, &value), unit) in f.iter_mut().zip(&values).zip(&self.units) {
             *f = value * R::ONE.scale(-unit.exponent) - unit.offset;
         }
-        let f = first_mut(&mut *f, channels);
-        let p = p.as_flattened_mut();
+        let (p, f) = (p.as_flattened_mut(), first_mut(&mut *f, self.layout.channels));
+        let (groups, rest) = halves_mut(sums, self.sums_len());
         if self.method == Method::Incremental {
-            let (group, rest) = halves_mut(sums, group);
-            incremental::correct(&mut self.incremental, self.config.ridge, rest, from(p, 1), f);
-            if let Ok(mut sums) = Sums::new_mut(group, terms, channels) {
-                sums.add(p, f);
-            }
-            self.samples += 1;
-            incremental::refit(self.samples, &mut self.incremental, &self.config, group, rest, terms - 1, channels);
-            return;
+            self.incremental.correct(self.config.ridge, rest, from(p, 1), f);
         }
-        let fold = folds::of_stream(self.samples, groups);
+        let fold = folds::of_stream(self.samples, self.groups());
+        if let Ok(mut sums) = self.layout.group_mut(groups, fold) {
+            sums.add(p, f);
+        }
         self.samples += 1;
-        if let Ok(mut sums) = Sums::new_mut(row_at_mut(sums, group, fold), terms, channels) {
-            if self.method == Method::SquareRoot {
-                givens::add_row(&mut sums.gram, &mut sums.rhs, sums.square, p, f);
-            } else {
-                sums.add(p, f);
-            }
+        if self.method == Method::Incremental {
+            self.incremental.refit(self.samples, &self.config, self.layout, groups, rest);
         }
     }
 
@@ -247,8 +228,6 @@ impl<R: Real> Accumulator<R> {
             return Ok(());
         }
         self.check_capacity(other.samples)?;
-        let (terms, channels, group) = (self.terms(), self.channels, self.group());
-        let groups = self.groups();
         if self.samples == 0 {
             self.units = other.units;
         }
@@ -260,19 +239,12 @@ impl<R: Real> Accumulator<R> {
             *factor = R::ONE.scale(theirs.exponent - ours.exponent);
             *shift = theirs.offset * *factor - ours.offset;
         }
-        let size = |sums: &[R], fold: usize| {
-            Sums::new(row_at(sums, group, fold), terms, channels).map_or(0.0, |sums| sums.count().to_f64())
-        };
+        let (layout, groups) = (self.layout, self.groups());
+        let size = |sums: &[R], fold| layout.group(sums, fold).map_or(0.0, |group| group.count().to_f64());
         let rotation = folds::rotation(groups, |fold| size(sums, fold), |fold| size(other_sums, fold));
-        for fold in 0..groups {
-            let mut ours = Sums::new_mut(row_at_mut(sums, group, fold), terms, channels)?;
-            let theirs = (fold + groups - rotation).checked_rem(groups).unwrap_or(0);
-            let theirs = Sums::new(row_at(other_sums, group, theirs), terms, channels)?;
-            if self.method == Method::SquareRoot {
-                merge_factors(&mut ours, &theirs, &factors, &shift, channels);
-            } else {
-                ours.merge(&theirs, &factors, &shift);
-            }
+        for fold in 0..groups.get() {
+            let theirs = layout.group(other_sums, (fold + groups.get() - rotation) % groups)?;
+            layout.group_mut(sums, fold)?.merge(&theirs, &factors, &shift);
         }
         for (sum, value) in self.colour.iter_mut().zip(other.colour) {
             *sum += value;
@@ -282,9 +254,9 @@ impl<R: Real> Accumulator<R> {
         self.samples = self.samples.saturating_add(other.samples);
         self.move_zero(before, sums);
         if self.method == Method::Incremental {
-            let (group, rest) = halves_mut(sums, group);
+            let (groups, rest) = halves_mut(sums, self.sums_len());
             self.incremental.refit_now();
-            incremental::refit(self.samples, &mut self.incremental, &self.config, group, rest, terms - 1, channels);
+            self.incremental.refit(self.samples, &self.config, layout, groups, rest);
         }
         Ok(())
     }
@@ -292,7 +264,7 @@ impl<R: Real> Accumulator<R> {
     /// Moves the units' zero of a narrow type to the mean so far, each time that the samples, of which there were
     /// `before`, have doubled: of values that all lie to one side of it, as where the first sample is an outlier or in
     /// shadow, the sums would soon be too large for one more to show.
-    #[inline(always)]
+    #[inline]
     fn move_zero(&mut self, before: u64, sums: &mut [R]) {
         if R::NARROW && before > 0 && self.samples.leading_zeros() < before.leading_zeros() {
             self.move_zero_to_mean(sums);
@@ -301,34 +273,28 @@ impl<R: Real> Accumulator<R> {
 
     #[inline(never)]
     fn move_zero_to_mean(&mut self, sums: &mut [R]) {
-        let (terms, channels, group) = (self.terms(), self.channels, self.group());
-        let (folds, _) = halves_mut(sums, self.groups() * group);
-        let square_root = self.method == Method::SquareRoot;
-        let mut totals = PerChannel::<R>::default();
-        for sums in rows(folds, group).filter_map(|sums| Sums::new(sums, terms, channels).ok()) {
-            for (channel, total) in totals.iter_mut().enumerate().take(channels) {
-                *total += if square_root { square_root::totals(&sums, channel).0 } else { sums.total(channel) };
-            }
-        }
-        let n = R::from_f64(self.samples as f64);
+        let units = self.totals(sums).units;
         let mut shift = PerChannel::default();
-        for ((unit, &total), shift) in self.units.iter_mut().zip(&totals).zip(&mut shift) {
-            let before = unit.offset;
-            unit.offset += total / n;
-            *shift = before - unit.offset;
+        for ((shift, before), after) in shift.iter_mut().zip(&self.units).zip(&units) {
+            *shift = before.offset - after.offset;
         }
-        for mut sums in rows_mut(folds, group).filter_map(|sums| Sums::new_mut(sums, terms, channels).ok()) {
-            if square_root {
-                // The constant's column is the first, of which only the first row holds something.
-                let constant = sums.gram.at(0, 0);
-                for (out, &shift) in sums.rhs.row_mut(0).iter_mut().zip(shift.iter()) {
-                    *out += shift * constant;
-                }
-            } else {
-                sums.shift(&shift);
+        self.units = units;
+        self.each_group(sums, |group| group.shift(&shift));
+        self.incremental.shift(&shift, self.samples);
+    }
+
+    /// What the sums say about the plain mean.
+    pub(super) fn totals(&self, sums: &[R]) -> Totals<R> {
+        let groups = (0..self.groups().get()).filter_map(|fold| self.layout.group(sums, fold).ok());
+        Totals::new(groups, self.samples, self.units)
+    }
+
+    fn each_group(&self, sums: &mut [R], mut change: impl FnMut(&mut Sums<&mut [R]>)) {
+        for fold in 0..self.groups().get() {
+            if let Ok(mut group) = self.layout.group_mut(sums, fold) {
+                change(&mut group);
             }
         }
-        self.incremental.shift(&shift, self.samples);
     }
 
     /// Sets the units at the first sample, and keeps values of a narrow type near one.
@@ -361,40 +327,9 @@ impl<R: Real> Accumulator<R> {
             }
         }
         if any {
-            let (terms, channels, group) = (self.terms(), self.channels, self.group());
-            let (folds, rest) = halves_mut(sums, self.groups() * group);
-            for mut sums in rows_mut(folds, group).filter_map(|sums| Sums::new_mut(sums, terms, channels).ok()) {
-                sums.rescale(&factors);
-            }
-            self.incremental.rescale(&factors, rest, self.columns, channels);
+            self.each_group(sums, |group| group.rescale(&factors));
+            let coefficients = from_mut(sums, self.sums_len());
+            self.incremental.rescale(&factors, coefficients, self.layout);
         }
-    }
-}
-
-/// Rotates the rows of another triangular factor into ours.
-fn merge_factors<R: Real>(
-    ours: &mut Sums<&mut [R]>,
-    theirs: &Sums<&[R]>,
-    factors: &PerChannel<R>,
-    shift: &PerChannel<R>,
-    channels: usize,
-) {
-    let mut x = [R::ZERO; MAX_TERMS];
-    let x = x.get_mut(..theirs.gram.order()).unwrap_or_default();
-    for (j, z) in theirs.rhs.rows().enumerate() {
-        for (k, x) in x.iter_mut().enumerate() {
-            *x = if k < j { R::ZERO } else { theirs.gram.at(k, j) };
-        }
-        // The constant's column is the first, so a shift of the values is that many times column 0 of R.
-        let first = if j == 0 { at(x, 0) } else { R::ZERO };
-        let mut y = PerChannel::default();
-        for (channel, &z) in z.iter().enumerate() {
-            y[channel] = factors[channel] * z + shift[channel] * first;
-        }
-        let y = first_mut(&mut *y, channels);
-        givens::add_row(&mut ours.gram, &mut ours.rhs, ours.square, x, y);
-    }
-    for ((square, &other), &factor) in ours.square.iter_mut().zip(theirs.square).zip(factors.iter()) {
-        *square += factor * factor * other;
     }
 }

@@ -3,7 +3,7 @@
 use super::accumulator::Accumulator;
 use super::config::{Color, Config, Estimate};
 use super::design::Design;
-use super::fit::{descent, givens};
+use super::fit::descent;
 use super::fitter::{self, Fitter, Rule};
 use super::k_fold;
 use super::plan::{Method, Plan};
@@ -26,13 +26,14 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
     let channels = if config.color == Color::LuminanceRatio { 1 } else { config.channels };
     let solve = match plan.method {
         Method::Plain => return Design::<R>::size(n, 0, channels).ok_or(Error::Memory),
-        Method::Incremental => {
+        // The fits of an incremental estimate are part of the stream.
+        Method::Incremental => return Ok(Accumulator::<R>::new(config)?.len()),
+        Method::SquareRoot => {
             let stream = Accumulator::<R>::new(config)?;
-            return stream.len().checked_add(stream.workspace_len()).ok_or(Error::Memory);
+            return Ok(stream.len() + stream.workspace_len());
         }
         Method::Descent => Some(descent::size(columns, channels)),
         Method::KFold => k_fold::size::<R>(config, columns, channels, n),
-        Method::SquareRoot => Some(givens::size(columns, channels)),
         Method::Robust | Method::LeaveOneOut | Method::LeastSquares => fitter::size(n, plan.dual, columns, channels),
     };
     let design = Design::<R>::size(n, columns, channels).ok_or(Error::Memory)?;
@@ -64,8 +65,8 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
 #[inline(always)]
 pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
     let shape = config.checked_shape()?;
-    if Method::of(config, config.controls + shape.columns()) == Method::Incremental {
-        return incremental(config, samples, workspace);
+    if matches!(Method::of(config, config.controls + shape.columns()), Method::Incremental | Method::SquareRoot) {
+        return streamed(config, samples, workspace);
     }
     let mut basis = Basis::empty();
     basis.set(config.basis, shape)?;
@@ -87,20 +88,19 @@ pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut 
         (Some(rule), _) => fit(&design, config, &basis, plan, rule, &mut arena)?,
         (None, Method::KFold) => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
         (None, Method::Descent) => descent::estimate(&design, config, &basis, None, &mut arena)?,
-        (None, Method::SquareRoot) => givens::least_squares(&design, config, &basis, &mut arena)?,
         // What streams went its own way above.
         (None, _) => Outcome::plain(result::plain_variance(&design)),
     };
     Ok(result::finish(result::Summary::of(&design, &reader), outcome))
 }
 
-/// (4.30) is about a stream: the batch form streams.
-fn incremental<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
+/// (4.30) is about a stream, and Givens rotations take one row at a time: their batch form streams.
+fn streamed<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
     let mut stream = Accumulator::<R>::new(config)?;
-    let sums = workspace.get_mut(..stream.len()).ok_or(Error::Memory)?;
+    let (sums, workspace) = workspace.split_at_mut_checked(stream.len()).ok_or(Error::Memory)?;
     stream.reset(sums)?;
     stream.add(sums, samples)?;
-    stream.incremental(sums)
+    stream.estimate_of_array(sums, workspace)
 }
 
 /// The estimators that fit all samples at once through the normal equations or their dual.

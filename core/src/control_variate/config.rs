@@ -3,6 +3,10 @@
 use crate::basis::{Family, MAX_DIMS, MAX_ORDER, MAX_TERMS, Shape};
 use crate::error::Error;
 use core::ffi::CStr;
+use core::num::NonZeroUsize;
+
+/// How many folds there are, if the caller names no number.
+const FOLDS: NonZeroUsize = NonZeroUsize::MIN.saturating_add(3);
 
 /// How samples become an estimate (chapter 4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -230,8 +234,8 @@ impl Config {
 
     /// The number of folds.
     #[inline]
-    pub(crate) fn fold_count(&self) -> usize {
-        if self.folds == 0 { 4 } else { self.folds }
+    pub(crate) fn fold_count(&self) -> NonZeroUsize {
+        NonZeroUsize::new(self.folds).unwrap_or(FOLDS)
     }
 }
 

@@ -12,7 +12,7 @@ use super::fit::normal::Centred;
 use super::per_channel::PerChannel;
 use super::result::{self, Outcome};
 use super::ridge::{self, MIXED};
-use super::sums::{self, Sums};
+use super::sums::{self, Layout, Sums};
 use super::trust::{self, Centre};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -28,27 +28,21 @@ const FITS: usize = MIXED.len();
 pub(crate) struct Groups<'a, R> {
     pub(crate) sums: &'a [R],
     pub(crate) folds: usize,
-    pub(crate) columns: usize,
-    pub(crate) channels: usize,
+    pub(crate) layout: Layout,
 }
 
 /// Candidate fits and their squared errors.
 type Errors<R> = [PerChannel<R>; FITS];
 
-/// Numbers that an estimate takes from its arena beyond one fit and one group of sums.
-pub(crate) fn len(columns: usize, channels: usize) -> usize {
-    FITS * columns * channels
+/// Numbers that an estimate takes from its arena beyond one fit.
+pub(crate) fn len(layout: Layout) -> usize {
+    FITS * layout.columns * layout.channels + layout.len()
 }
 
 impl<'a, R: Real> Groups<'a, R> {
-    fn group(&self, fold: usize) -> Option<Sums<&'a [R]>> {
-        let len = sums::len(self.columns + 1, self.channels);
-        Sums::new(row_at(self.sums, len, fold), self.columns + 1, self.channels).ok()
-    }
-
     /// The folds that hold samples.
     fn each(&self) -> impl Iterator<Item = (usize, Sums<&'a [R]>)> {
-        let filled = |fold| self.group(fold).filter(|group| group.count() > R::ZERO);
+        let filled = |fold| self.layout.group(self.sums, fold).ok().filter(|group| group.count() > R::ZERO);
         (0..self.folds).filter_map(move |fold| Some((fold, filled(fold)?)))
     }
 
@@ -60,13 +54,12 @@ impl<'a, R: Real> Groups<'a, R> {
     /// Writes the sums of all folds but those left out.
     fn train<'b>(&self, left_out: &[usize], sums: &'b mut [R]) -> Result<Sums<&'b [R]>, Error> {
         sums.fill(R::ZERO);
-        let len = sums::len(self.columns + 1, self.channels);
-        for (fold, group) in rows(self.sums, len).take(self.folds).enumerate() {
+        for (fold, group) in rows(self.sums, self.layout.len()).take(self.folds).enumerate() {
             if !left_out.contains(&fold) {
                 sums::add(sums, group);
             }
         }
-        Sums::new(sums, self.columns + 1, self.channels)
+        self.layout.group(sums, 0)
     }
 }
 
@@ -90,9 +83,9 @@ pub(crate) fn pooled<R: Real>(
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
     let candidates = Candidates { groups, config, basis, strengths: &MIXED, is_fixed: false };
-    let channels = groups.channels;
-    let coefficients = arena.take(FITS * groups.columns * channels)?;
-    let train = arena.take(sums::len(groups.columns + 1, channels))?;
+    let Layout { columns, channels, .. } = groups.layout;
+    let coefficients = arena.take(FITS * columns * channels)?;
+    let train = arena.take(groups.layout.len())?;
     let mut judge = Judge::default();
     // Sums of f - b'p over the folds, b from the others.
     let mut crossed = Errors::<R>::default();
@@ -157,9 +150,9 @@ pub(crate) fn nested<R: Real>(
     let fixed = [ridge::single::<R>(config.ridge)];
     let strengths: &[f64] = if is_fixed { &fixed } else { &MIXED };
     let candidates = Candidates { groups, config, basis, strengths, is_fixed };
-    let channels = groups.channels;
-    let coefficients = arena.take(FITS * groups.columns * channels)?;
-    let train = arena.take(sums::len(groups.columns + 1, channels))?;
+    let Layout { columns, channels, .. } = groups.layout;
+    let coefficients = arena.take(FITS * columns * channels)?;
+    let train = arena.take(groups.layout.len())?;
     let mut sums = PerChannel::<R>::default();
     let mut press = PerChannel::<R>::default();
     let mut count = R::ZERO;
@@ -192,12 +185,12 @@ pub(crate) fn nested<R: Real>(
                 *weight = kept;
             }
             // The mixture's coefficients, in place of the first candidate's.
-            for j in 0..groups.columns {
+            for j in 0..columns {
                 let mut mixed = R::ZERO;
                 for (candidate, &weight) in weights.iter().enumerate() {
                     mixed += weight * at(row_of(coefficients, candidate, channel, groups), j);
                 }
-                if let Some(out) = coefficients.get_mut(channel * groups.columns + j) {
+                if let Some(out) = coefficients.get_mut(channel * columns + j) {
                     *out = mixed;
                 }
             }
@@ -227,9 +220,9 @@ impl<R: Real> Candidates<'_, '_, R> {
         let mut arena = arena.scratch();
         let mut centres = [None; FITS];
         coefficients.fill(R::ZERO);
-        let (columns, channels) = (self.groups.columns, self.groups.channels);
+        let Layout { columns, channels, .. } = self.groups.layout;
         let penalties = arena.take(columns)?;
-        if let Some(centred) = Centred::new(train, columns, channels, &mut arena)? {
+        if let Some(centred) = Centred::new(train, &mut arena)? {
             // From the training set alone, as the coefficients.
             ridge::penalties(self.config, self.basis, |j| train.mean_square(j), penalties);
             let candidates = self.strengths.iter().zip(rows_mut(coefficients, columns * channels)).zip(&mut centres);
@@ -245,7 +238,7 @@ impl<R: Real> Candidates<'_, '_, R> {
 }
 
 fn row_of<'c, R>(coefficients: &'c [R], candidate: usize, channel: usize, groups: &Groups<'_, R>) -> &'c [R] {
-    row_at(coefficients, groups.columns, candidate * groups.channels + channel)
+    row_at(coefficients, groups.layout.columns, candidate * groups.layout.channels + channel)
 }
 
 /// Held-out errors.
@@ -270,7 +263,7 @@ impl<R: Real> Judge<R> {
         self.count += judging.count();
         self.fits += R::ONE;
         let inverse = if train.count() > R::ZERO { R::ONE / train.count() } else { R::ZERO };
-        for channel in 0..groups.channels {
+        for channel in 0..groups.layout.channels {
             let mean = train.total(channel) * inverse;
             let error = judging.residual_square(channel, mean, &[]);
             self.plain[channel] += error;

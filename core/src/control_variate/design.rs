@@ -55,13 +55,13 @@ impl<R: Real> Units<R> {
     }
 
     /// A length stored in other units, in these.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn converted(&self, length: R, other: &Self) -> R {
         if self.exponent == other.exponent { length } else { length.scale(other.exponent - self.exponent) }
     }
 
     /// A value stored in other units, in these.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn relative(&self, stored: R, other: &Self) -> R {
         self.converted(other.offset + stored, other) - self.offset
     }
@@ -122,10 +122,13 @@ impl<'a, R: Real> Design<'a, R> {
         if centre {
             self::centre(&mut panels, n, column_means);
             clear_constant(&mut panels, n, column_means, reader.control_integrals());
-            let mut means = PerChannel::default();
-            self::centre(&mut values, n, first_mut(&mut *means, channels));
-            for (unit, &mean) in units.iter_mut().zip(means.iter()) {
-                unit.offset += mean;
+            // Of a narrow type twice: about an outlier, the first sample may be one, the first mean is rounded to it.
+            for _ in 0..1 + usize::from(R::NARROW) {
+                let mut means = PerChannel::default();
+                self::centre(&mut values, n, first_mut(&mut *means, channels));
+                for (unit, &mean) in units.iter_mut().zip(means.iter()) {
+                    unit.offset += mean;
+                }
             }
         }
         let (panels, values) = (panels.into_shared(), values.into_shared());
@@ -200,7 +203,7 @@ impl<'a, R: Real> Design<'a, R> {
 }
 
 /// Writes sums over lanes to places `first` and the next of a row.
-#[inline(always)]
+#[inline]
 fn put<R: Real>(row: &mut [R], first: usize, sums: &[Lanes<R>; 2]) {
     for (out, sum) in row.iter_mut().skip(first).zip(sums) {
         *out = lanes::sum(sum);
@@ -208,7 +211,7 @@ fn put<R: Real>(row: &mut [R], first: usize, sums: &[Lanes<R>; 2]) {
 }
 
 /// The sum of squares of group `index` of every panel.
-#[inline(always)]
+#[inline]
 fn square<R: Real>(panels: &Panel<&[Lanes<R>]>, index: usize) -> R {
     let mut total = [R::ZERO; LANES];
     for values in panels.column(index) {
@@ -218,7 +221,7 @@ fn square<R: Real>(panels: &Panel<&[Lanes<R>]>, index: usize) -> R {
 }
 
 /// Subtracts each column's mean, and writes it to `means`.
-#[inline(always)]
+#[inline]
 fn centre<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means: &mut [R]) {
     let inverse = R::ONE / R::from_usize(n);
     for (j, mean) in means.iter_mut().enumerate() {
@@ -248,7 +251,7 @@ fn clear_constant<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize, means:
 }
 
 /// Groups `first` and the next; zero where there is none.
-#[inline(always)]
+#[inline]
 fn two<R: Real>(groups: &[Lanes<R>], first: usize) -> [Lanes<R>; 2] {
     match from(groups, first) {
         [a, b, ..] => [*a, *b],
@@ -258,7 +261,7 @@ fn two<R: Real>(groups: &[Lanes<R>], first: usize) -> [Lanes<R>; 2] {
 }
 
 /// Zeroes the lanes after sample `n`, of which the last panel holds some.
-#[inline(always)]
+#[inline]
 fn clear_unused<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize) {
     let used = n % LANES;
     if used == 0 {
@@ -273,7 +276,7 @@ fn clear_unused<R: Real>(panels: &mut Panel<&mut [Lanes<R>]>, n: usize) {
 
 /// Where the stored values' zero and unit lie: at the first sample, so that constants are exact, and, for a type whose
 /// range squares could leave, at a power of two near the largest value.
-#[inline(always)]
+#[inline]
 pub(crate) fn units<R: Real>(reader: &Reader<'_>, subset: Subset) -> [Units<R>; Config::MAX_CHANNELS] {
     let mut units = [Units::default(); Config::MAX_CHANNELS];
     if R::NARROW {

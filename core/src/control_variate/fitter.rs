@@ -4,7 +4,6 @@ use super::config::{Config, Ridge};
 use super::design::Design;
 use super::fit::dual::{self, Dual};
 use super::fit::normal::{self, Normal};
-use super::fit::system::System;
 use super::fit::{Fit, Penalty};
 use super::per_channel::PerChannel;
 use super::result;
@@ -37,6 +36,12 @@ pub(crate) struct Blend<R> {
     corrections: [PerChannel<R>; MAX_FITS],
     weights: [PerChannel<R>; MAX_FITS],
     plain_weight: PerChannel<R>,
+}
+
+/// The system that all fits to a design start from.
+enum System<'a, R> {
+    Normal(Normal<'a, R>),
+    Dual(Dual<'a, R>),
 }
 
 /// The fits that can be made to a design.
@@ -108,7 +113,10 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         for (index, (&strength, fit)) in strengths.iter().zip(&mut fits).enumerate() {
             let kept = kept.get_mut(index * each..(index + 1) * each).filter(|kept| !kept.is_empty());
             let penalty = Penalty { strength: R::from_f64(strength), relative: self.penalties };
-            *fit = self.system.fit(design, penalty, leave_one_out, kept, arena.scratch())?;
+            *fit = match &self.system {
+                System::Normal(normal) => normal.fit(design, penalty, leave_one_out, kept, arena.scratch())?,
+                System::Dual(dual) => dual.fit(design, penalty, leave_one_out, kept, arena.scratch())?,
+            };
         }
         let blend = self.weigh(rule, fits, strengths.len());
         for (channel, out) in coefficients.into_iter().flat_map(|all| rows_mut(all, design.columns)).enumerate() {

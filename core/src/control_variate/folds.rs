@@ -5,6 +5,8 @@
 //! every k-th sample each would be one side of the cube, and what corrects it a fit to the other sides. Independent
 //! samples are the same in every order.
 
+use core::num::NonZeroUsize;
+
 /// One of the folds of `n` samples that are all there: a run, all of the same length but for one sample.
 #[derive(Clone, Copy)]
 pub(crate) struct Fold {
@@ -13,9 +15,9 @@ pub(crate) struct Fold {
 }
 
 impl Fold {
-    /// Fold `index` of `folds`, which is not zero.
-    pub(crate) fn new(index: usize, folds: usize, n: usize) -> Self {
-        let (each, more) = (n.checked_div(folds).unwrap_or(0), n.checked_rem(folds).unwrap_or(0));
+    /// Fold `index` of `folds`.
+    pub(crate) fn new(index: usize, folds: NonZeroUsize, n: usize) -> Self {
+        let (each, more) = (n / folds, n % folds);
         let start = |index: usize| index * each + index.min(more);
         Self { start: start(index), end: start(index + 1) }
     }
@@ -39,23 +41,23 @@ const RUN: u64 = 4;
 /// Runs grow with the stream: with P the power of two next to the number of folds, the first 4 P samples are P runs of
 /// 4, the next 4 P samples are P runs too, the next 8 P, and so on, and runs go to the folds in turn.
 #[inline]
-pub(crate) fn of_stream(index: u64, folds: usize) -> usize {
-    let (index, folds) = (index / RUN, folds.max(1) as u64);
-    let bits = folds.next_power_of_two().trailing_zeros();
+pub(crate) fn of_stream(index: u64, folds: NonZeroUsize) -> usize {
+    let index = index / RUN;
+    let bits = folds.get().next_power_of_two().trailing_zeros();
     let octave = (index >> bits).checked_ilog2().map_or(0, |octave| octave + 1);
     // Runs of the octaves before, and of this one.
     let run = if octave == 0 { index } else { (u64::from(octave) << bits) + (index >> (octave - 1)) - (1 << bits) };
-    run.checked_rem(folds).unwrap_or(0) as usize
+    run as usize % folds
 }
 
 /// By how many folds those of another stream are moved on before ours get their samples, from the sizes of both: so
 /// that the folds are as even as can be.
-pub(crate) fn rotation(folds: usize, ours: impl Fn(usize) -> f64, theirs: impl Fn(usize) -> f64) -> usize {
-    let moved = |fold: usize, rotation: usize| (fold + rotation).checked_rem(folds).unwrap_or(0);
+pub(crate) fn rotation(folds: NonZeroUsize, ours: impl Fn(usize) -> f64, theirs: impl Fn(usize) -> f64) -> usize {
+    let moved = |fold: usize, rotation: usize| (fold + rotation) % folds;
     // The sum of the squared sizes, but for what no rotation changes.
-    let crowding = |rotation| (0..folds).map(|fold| ours(moved(fold, rotation)) * theirs(fold)).sum::<f64>();
+    let crowding = |rotation| (0..folds.get()).map(|fold| ours(moved(fold, rotation)) * theirs(fold)).sum::<f64>();
     let (mut best, mut least) = (0, f64::INFINITY);
-    for rotation in 0..folds {
+    for rotation in 0..folds.get() {
         let crowding = crowding(rotation);
         if crowding < least {
             (best, least) = (rotation, crowding);

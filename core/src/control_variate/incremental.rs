@@ -10,7 +10,7 @@ use super::fit::Penalty;
 use super::fit::normal::{self, Centred};
 use super::per_channel::PerChannel;
 use super::result::{self, Outcome};
-use super::sums::Sums;
+use super::sums::{self, Layout};
 use super::{ridge, trust};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -44,97 +44,8 @@ pub(crate) struct Progress<R> {
 }
 
 /// Numbers that follow the sums in an accumulator's buffer: coefficients, and room to renew them.
-pub(crate) fn len(columns: usize, channels: usize) -> usize {
-    FITS * columns * channels + columns + normal::centred_len(columns, channels) + normal::solve_len(columns)
-}
-
-/// Adds a sample's value, corrected by the fits so far.
-pub(crate) fn correct<R: Real>(progress: &mut Progress<R>, ridge: Ridge, coefficients: &[R], p: &[R], f: &[R]) {
-    let fitted = progress.next_fit > 0;
-    let channels = f.len();
-    for (channel, &f) in f.iter().enumerate() {
-        let mut slopes = [R::ZERO; FITS];
-        for (fit, slope) in slopes.iter_mut().enumerate() {
-            let b = row_at(coefficients, p.len(), fit * channels + channel);
-            *slope = b.iter().zip(p).fold(R::ZERO, |sum, (&b, &p)| sum + b * p);
-        }
-        let mut value = f;
-        if fitted {
-            let errors = progress.errors.map(|errors| errors[channel]);
-            let weights = match ridge {
-                Ridge::Fixed(_) => [R::ONE, R::ZERO],
-                Ridge::Default | Ridge::Auto => {
-                    let n = progress.predictions;
-                    let power = n * R::from_f64(SHARPNESS);
-                    let plain = progress.plain_error[channel];
-                    let mut weights = [R::ZERO; FITS];
-                    let prior = R::from_f64(trust::PRIOR);
-                    trust::weigh(plain, &errors, &[], power, n, prior, &mut weights);
-                    weights
-                }
-            };
-            for (&weight, &slope) in weights.iter().zip(&slopes) {
-                value -= weight * slope;
-            }
-            for ((errors, intercepts), &slope) in progress.errors.iter_mut().zip(&progress.intercepts).zip(&slopes) {
-                let error = f - intercepts[channel] - slope;
-                errors[channel] += error * error;
-            }
-            let error = f - progress.mean[channel];
-            progress.plain_error[channel] += error * error;
-        }
-        progress.total[channel] += value;
-        progress.square[channel] += value * value;
-    }
-    if fitted {
-        progress.predictions += R::ONE;
-    }
-}
-
-/// Renews the fits if they are due.
-pub(crate) fn refit<R: Real>(
-    samples: u64,
-    progress: &mut Progress<R>,
-    config: &Config,
-    sums: &[R],
-    rest: &mut [R],
-    columns: usize,
-    channels: usize,
-) {
-    if samples < progress.next_fit.max(2) {
-        return;
-    }
-    let strengths = match config.ridge {
-        Ridge::Fixed(_) => [R::from_f64(ridge::single::<R>(config.ridge)); FITS],
-        // `Centred::solve` takes strengths per sample.
-        Ridge::Default | Ridge::Auto => STRENGTHS.map(|strength| R::from_f64(strength / samples as f64)),
-    };
-    let mut solve = || {
-        let sums = Sums::new(sums, columns + 1, channels).ok()?;
-        let mut arena = Arena::new(rest);
-        let coefficients = arena.take(FITS * columns * channels).ok()?;
-        let penalties = arena.take(columns).ok()?;
-        if progress.next_fit == 0 || config.controls > 0 {
-            // They stay in the buffer: only those of control functions depend on the samples.
-            let mut basis = Basis::empty();
-            basis.set(config.basis, config.checked_shape().ok()?).ok()?;
-            ridge::penalties(config, &basis, |j| sums.mean_square(j), penalties);
-        }
-        let centred = Centred::new(&sums, columns, channels, &mut arena).ok()??;
-        let fits = rows_mut(coefficients, columns * channels).zip(strengths).zip(&mut progress.intercepts);
-        for ((coefficients, strength), intercepts) in fits {
-            let penalty = Penalty { strength, relative: penalties };
-            centred.normal.solve(penalty, coefficients, &mut arena.scratch()).ok()?;
-            for (channel, b) in rows_mut(coefficients, columns).enumerate() {
-                intercepts[channel] = centred.intercept(channel, b);
-            }
-        }
-        progress.mean = centred.value_means;
-        progress.next_fit = samples.saturating_add((samples / 16).max(1));
-        Some(())
-    };
-    // The buffer was measured for this, so there is nothing to fail; fits that are not renewed are still valid ones.
-    let _: Option<()> = solve();
+pub(crate) fn len(layout: Layout) -> usize {
+    FITS * layout.columns * layout.channels + normal::len(layout)
 }
 
 /// The mean of the corrected values.
@@ -143,14 +54,95 @@ pub(crate) fn outcome<R: Real>(progress: &Progress<R>, samples: u64) -> Outcome<
     let mut correction = PerChannel::default();
     let mut variance = PerChannel::default();
     for (channel, (correction, variance)) in correction.iter_mut().zip(&mut variance).enumerate() {
-        let (total, square) = (progress.total[channel], progress.square[channel]);
+        let total = progress.total[channel];
         *correction = total / n;
-        *variance = (square - total * total / n).max(R::ZERO) / result::mean_divisor(n);
+        *variance = sums::spread(progress.square[channel], total, *correction) / result::mean_divisor(n);
     }
     Outcome { correction, variance: (samples > 1).then_some(variance) }
 }
 
 impl<R: Real> Progress<R> {
+    /// Adds a sample's value, corrected by the fits so far.
+    pub(crate) fn correct(&mut self, ridge: Ridge, coefficients: &[R], p: &[R], f: &[R]) {
+        let fitted = self.next_fit > 0;
+        let channels = f.len();
+        for (channel, &f) in f.iter().enumerate() {
+            let mut slopes = [R::ZERO; FITS];
+            for (fit, slope) in slopes.iter_mut().enumerate() {
+                let b = row_at(coefficients, p.len(), fit * channels + channel);
+                *slope = b.iter().zip(p).fold(R::ZERO, |sum, (&b, &p)| sum + b * p);
+            }
+            let mut value = f;
+            if fitted {
+                let errors = self.errors.map(|errors| errors[channel]);
+                let weights = match ridge {
+                    Ridge::Fixed(_) => [R::ONE, R::ZERO],
+                    Ridge::Default | Ridge::Auto => {
+                        let n = self.predictions;
+                        let power = n * R::from_f64(SHARPNESS);
+                        let plain = self.plain_error[channel];
+                        let mut weights = [R::ZERO; FITS];
+                        let prior = R::from_f64(trust::PRIOR);
+                        trust::weigh(plain, &errors, &[], power, n, prior, &mut weights);
+                        weights
+                    }
+                };
+                for (&weight, &slope) in weights.iter().zip(&slopes) {
+                    value -= weight * slope;
+                }
+                for ((errors, intercepts), &slope) in self.errors.iter_mut().zip(&self.intercepts).zip(&slopes) {
+                    let error = f - intercepts[channel] - slope;
+                    errors[channel] += error * error;
+                }
+                let error = f - self.mean[channel];
+                self.plain_error[channel] += error * error;
+            }
+            self.total[channel] += value;
+            self.square[channel] += value * value;
+        }
+        if fitted {
+            self.predictions += R::ONE;
+        }
+    }
+
+    /// Renews the fits if they are due.
+    pub(crate) fn refit(&mut self, samples: u64, config: &Config, layout: Layout, sums: &[R], rest: &mut [R]) {
+        if samples < self.next_fit.max(2) {
+            return;
+        }
+        let strengths = match config.ridge {
+            Ridge::Fixed(_) => [R::from_f64(ridge::single::<R>(config.ridge)); FITS],
+            // `Centred::solve` takes strengths per sample.
+            Ridge::Default | Ridge::Auto => STRENGTHS.map(|strength| R::from_f64(strength / samples as f64)),
+        };
+        let mut solve = || {
+            let (Layout { columns, channels, .. }, sums) = (layout, layout.group(sums, 0).ok()?);
+            let mut arena = Arena::new(rest);
+            let coefficients = arena.take(FITS * columns * channels).ok()?;
+            let penalties = arena.take(columns).ok()?;
+            if self.next_fit == 0 || config.controls > 0 {
+                // They stay in the buffer: only those of control functions depend on the samples.
+                let mut basis = Basis::empty();
+                basis.set(config.basis, config.checked_shape().ok()?).ok()?;
+                ridge::penalties(config, &basis, |j| sums.mean_square(j), penalties);
+            }
+            let centred = Centred::new(&sums, &mut arena).ok()??;
+            let fits = rows_mut(coefficients, columns * channels).zip(strengths).zip(&mut self.intercepts);
+            for ((coefficients, strength), intercepts) in fits {
+                let penalty = Penalty { strength, relative: penalties };
+                centred.normal.solve(penalty, coefficients, &mut arena.scratch()).ok()?;
+                for (channel, b) in rows_mut(coefficients, columns).enumerate() {
+                    intercepts[channel] = centred.intercept(channel, b);
+                }
+            }
+            self.mean = centred.value_means;
+            self.next_fit = samples.saturating_add((samples / 16).max(1));
+            Some(())
+        };
+        // The buffer was measured for this, so there is nothing to fail; fits that are not renewed are still valid ones.
+        let _: Option<()> = solve();
+    }
+
     /// Adds another estimate's corrected values, of values that are `shift` + `factors` times as they were.
     pub(crate) fn merge(&mut self, other: &Self, factors: &PerChannel<R>, shift: &PerChannel<R>, samples: u64) {
         let n = R::from_f64(samples as f64);
@@ -186,8 +178,8 @@ impl<R: Real> Progress<R> {
     }
 
     /// Multiplies values, and with them the coefficients in front of `rest`.
-    pub(crate) fn rescale(&mut self, factors: &PerChannel<R>, rest: &mut [R], columns: usize, channels: usize) {
-        for (channel, &factor) in factors.iter().enumerate().take(channels) {
+    pub(crate) fn rescale(&mut self, factors: &PerChannel<R>, rest: &mut [R], layout: Layout) {
+        for (channel, &factor) in factors.iter().enumerate().take(layout.channels) {
             for values in self.intercepts.iter_mut().chain([&mut self.total, &mut self.mean]) {
                 let value = values[channel];
                 values[channel] = value * factor;
@@ -197,11 +189,16 @@ impl<R: Real> Progress<R> {
                 values[channel] = value * factor * factor;
             }
         }
-        for (index, coefficients) in rows_mut(rest, columns).take(FITS * channels).enumerate() {
-            let factor = factors[index.checked_rem(channels).unwrap_or(0)];
-            for value in coefficients {
-                *value *= factor;
+        for fit in rows_mut(rest, layout.columns * layout.channels).take(FITS) {
+            for (coefficients, &factor) in rows_mut(fit, layout.columns).zip(factors) {
+                for value in coefficients {
+                    *value *= factor;
+                }
             }
         }
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/parts/incremental.rs"]
+mod tests;

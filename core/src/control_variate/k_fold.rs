@@ -11,6 +11,7 @@ use super::per_channel::PerChannel;
 use super::plan::Plan;
 use super::result::Outcome;
 use super::samples::{Reader, Subset};
+use super::sums;
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
@@ -21,7 +22,7 @@ use crate::rows::{rows, rows_mut};
 /// Numbers that [`estimate`] takes from its arena.
 pub(crate) fn size<R: Real>(config: &Config, columns: usize, channels: usize, n: usize) -> Option<usize> {
     // The largest training set leaves out the smallest fold, and the held-out fold is no larger than that.
-    let train = n - n.checked_div(config.fold_count()).unwrap_or(0);
+    let train = n - n / config.fold_count();
     let designs = Design::<R>::size(train, columns, channels)?.checked_mul(2)?;
     let primal = fitter::size(train, false, columns, channels)?;
     // Training sets differ in size, and skipped samples make them smaller: some may be short where the largest is not.
@@ -40,11 +41,11 @@ pub(crate) fn estimate<R: Real>(
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
     let channels = whole.channels;
-    let mut sums = PerChannel::<R>::default();
+    let mut totals = PerChannel::<R>::default();
     let mut squares = PerChannel::<R>::default();
     let mut inflations = PerChannel::default();
     let coefficients = arena.take(whole.columns * channels)?;
-    for index in 0..config.fold_count() {
+    for index in 0..config.fold_count().get() {
         let fold = Fold::new(index, config.fold_count(), reader.len());
         let mut arena = arena.scratch();
         let held_out = match load(reader, basis, whole.columns, Subset::Fold(fold), false, &mut arena) {
@@ -86,7 +87,7 @@ pub(crate) fn estimate<R: Real>(
                 // Relative to the whole design's mean.
                 let residuals = residuals(panel, &values.map(|value| to.relative(value, from)), coefficients);
                 for &residual in residuals.iter().take(used) {
-                    sums[channel] += residual;
+                    totals[channel] += residual;
                     squares[channel] += residual * residual;
                 }
             }
@@ -96,9 +97,9 @@ pub(crate) fn estimate<R: Real>(
     let mut outcome = Outcome { correction: PerChannel::default(), variance: None };
     let mut variance = PerChannel::default();
     for channel in 0..channels {
-        let (sum, square) = (sums[channel], squares[channel]);
-        outcome.correction[channel] = sum / n;
-        let spread = (square - sum * sum / n).max(R::ZERO);
+        let (total, mean) = (totals[channel], totals[channel] / n);
+        outcome.correction[channel] = mean;
+        let spread = sums::spread(squares[channel], total, mean);
         // Not `mean_divisor`: with that, the compiler divides by zero in lanes of a vector that nobody reads.
         variance[channel] = spread * inflations[channel] / (n * n * (n - R::ONE).max(R::ONE));
     }
@@ -120,7 +121,7 @@ fn load<'a, R: Real>(
 }
 
 /// f - b'p, where the columns' integrals are zero.
-#[inline(always)]
+#[inline]
 fn residuals<R: Real>(panel: &[Lanes<R>], values: &Lanes<R>, coefficients: &[R]) -> Lanes<R> {
     let mut residuals = *values;
     for (column, &weight) in panel.iter().zip(coefficients) {

@@ -22,6 +22,7 @@ mod result;
 mod ridge;
 mod samples;
 mod sums;
+mod totals;
 mod trust;
 
 pub use accumulator::Accumulator;

@@ -7,7 +7,7 @@
 //! | `LeaveOneOut` | `fitter` | - | yes | residuals left out |
 //! | `KFold` | `k_fold` | `cross_fit::nested` | yes | residuals held out |
 //! | `LeastSquares` | `fitter` | `readout` | O(1/n) | residuals |
-//! | `SquareRoot` | `fit::givens` | `fit::givens` | O(1/n) | residuals |
+//! | `SquareRoot` | as a stream | `fit::givens` | O(1/n) | residuals |
 //! | `Descent` | `fit::descent` | `fit::descent` | no | residuals and the gradient |
 //! | `Incremental` | as a stream | `incremental` | yes | the corrected values' spread |
 

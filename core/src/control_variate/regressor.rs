@@ -2,13 +2,17 @@
 
 use super::config::{Config, Estimate};
 use super::design::Units;
+use super::fit::{Penalty, normal};
 use super::per_channel::PerChannel;
 use super::result::{self, Outcome, Summary};
-use super::sums::Sums;
+use super::sums::{Form, Sums};
+use super::totals::Totals;
+use crate::arena::Arena;
 use crate::basis::{Basis, Family};
 use crate::error::Error;
-use crate::linalg::ldlt::Ldlt;
-use crate::matrix::{Panel, Triangle, at, from, from_mut};
+use crate::matrix::{Panel, Triangle};
+use crate::slices::{first_mut, from_mut};
+use core::iter;
 
 /// A streaming least-squares regressor (Alg. 1) over `DIMS` coordinates with `TERMS` terms, constant included, and
 /// `CHANNELS` values of each sample, in `f64`. For `f32` there is [`Accumulator`](super::Accumulator).
@@ -63,7 +67,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::Range`]; the sample is then not added.
-    #[inline(always)]
+    #[inline]
     pub fn add(&mut self, u: &[f32; DIMS], f: &[f32; CHANNELS]) -> Result<(), Error> {
         if !u.iter().chain(f).all(|value| value.is_finite()) {
             return Err(Error::NotFinite);
@@ -77,9 +81,9 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         let x = u.map(|u| [f64::from(u)]);
         let mut p = [[1.0]; TERMS];
         self.basis.evaluate(&x, from_mut(&mut p, 1));
-        let values =
+        let mut values =
             core::array::from_fn::<f64, CHANNELS, _>(|channel| f64::from(f[channel]) - f64::from(self.offset[channel]));
-        self.sums_mut()?.add(p.as_flattened(), &values);
+        self.sums_mut()?.add(p.as_flattened_mut(), &mut values);
         self.samples += 1;
         Ok(())
     }
@@ -93,7 +97,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     ///
     /// # Errors
     /// [`Error::NoSamples`], or [`Error::Range`] for a strength that is not positive and finite.
-    #[inline(always)]
+    #[inline]
     pub fn estimate(&self, strength: f32) -> Result<Estimate, Error> {
         if self.samples == 0 {
             return Err(Error::NoSamples);
@@ -101,44 +105,25 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         if !(strength > 0.0 && strength.is_finite()) {
             return Err(Error::Range);
         }
-        let n = self.samples as f64;
         let sums = self.sums()?;
-        let mut matrix = self.gram;
-        let mut matrix = Triangle::new(matrix.as_flattened_mut(), TERMS)?;
-        let mut penalties = [0.0; TERMS];
-        self.basis.penalties(from_mut(&mut penalties, 1));
-        let strength = f64::from(strength) * n;
-        for (j, &penalty) in penalties.iter().enumerate() {
-            if let Some(diagonal) = matrix.diagonal_mut(j) {
-                *diagonal += strength * penalty;
-            }
-        }
-        // The intercept is the first unknown and has no penalty.
-        let factor = Ldlt::new(matrix);
-        let mut outcome = Outcome { correction: PerChannel::default(), variance: None };
         let mut units = [Units::default(); Config::MAX_CHANNELS];
-        let (mut residuals, mut plain_variance) = (PerChannel::default(), PerChannel::default());
-        for (channel, (unit, offset)) in units.iter_mut().zip(self.offset).enumerate() {
-            let mut solution = core::array::from_fn::<f64, TERMS, _>(|j| self.rhs[j][channel]);
-            factor.solve(&mut solution);
-            let (total, intercept) = (sums.total(channel), at(&solution, 0));
-            let mean = total / n;
-            outcome.correction[channel] = intercept - mean;
-            unit.offset = f64::from(offset) + mean;
-            plain_variance[channel] = (sums.square(channel) - total * mean).max(0.0) / result::mean_divisor(n);
-            residuals[channel] = sums.residual_square(channel, intercept, from(&solution, 1));
+        for (unit, offset) in units.iter_mut().zip(self.offset) {
+            unit.offset = f64::from(offset);
         }
-        let plain_variance = (self.samples > 1).then_some(plain_variance);
-        // With e the first unit vector and x = A^-1 e, the intercept's weights on the samples have squares of sum x'P'P
-        // x.
-        let mut x = [0.0; TERMS];
-        x.iter_mut().take(1).for_each(|first| *first = 1.0);
-        factor.solve(&mut x);
-        let eccentricity = (n * sums.gram.quadratic(&x) - 1.0).max(0.0);
-        let variance = result::residual_variance(residuals, TERMS.saturating_sub(1), n, eccentricity);
-        outcome.variance = variance.or(plain_variance);
-        let samples = usize::try_from(self.samples).unwrap_or(usize::MAX);
-        Ok(result::finish(Summary { samples, channels: CHANNELS, units, plain_variance, colour: None }, outcome))
+        let total = Totals::new(iter::once(self.sums()?), self.samples, units);
+        let mut penalties = [0.0; TERMS];
+        let penalties = first_mut(&mut penalties, self.basis.columns());
+        self.basis.penalties(penalties);
+        let penalty = Penalty { strength: f64::from(strength), relative: penalties };
+        // Enough for `normal::len`, whatever the sizes are.
+        let mut workspace = [[[0.0; TERMS]; TERMS]; 4];
+        let arena = &mut Arena::new(workspace.as_flattened_mut().as_flattened_mut());
+        let outcome = normal::least_squares(&sums, penalty, arena)?.unwrap_or(total.plain());
+        let outcome = Outcome { variance: outcome.variance.or(total.variance), ..outcome };
+        let Totals { units, variance, .. } = total;
+        let summary =
+            Summary { samples: self.samples, channels: CHANNELS, units, plain_variance: variance, colour: None };
+        Ok(result::finish(summary, outcome))
     }
 
     /// Adds all samples of another regressor.
@@ -164,11 +149,21 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
 
     fn sums(&self) -> Result<Sums<&[f64]>, Error> {
         let gram = Triangle::new(self.gram.as_flattened(), TERMS)?;
-        Ok(Sums { gram, rhs: Panel::new(self.rhs.as_flattened(), CHANNELS), square: &self.square })
+        Ok(Sums {
+            form: Form::Products,
+            gram,
+            rhs: Panel::new(self.rhs.as_flattened(), CHANNELS),
+            square: &self.square,
+        })
     }
 
     fn sums_mut(&mut self) -> Result<Sums<&mut [f64]>, Error> {
         let gram = Triangle::new(self.gram.as_flattened_mut(), TERMS)?;
-        Ok(Sums { gram, rhs: Panel::new(self.rhs.as_flattened_mut(), CHANNELS), square: &mut self.square })
+        Ok(Sums {
+            form: Form::Products,
+            gram,
+            rhs: Panel::new(self.rhs.as_flattened_mut(), CHANNELS),
+            square: &mut self.square,
+        })
     }
 }

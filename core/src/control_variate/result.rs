@@ -73,7 +73,7 @@ pub(crate) fn residual_variance<R: Real>(
 
 /// What an [`Estimate`] is put together from, besides the outcome.
 pub(crate) struct Summary<R> {
-    pub(crate) samples: usize,
+    pub(crate) samples: u64,
     pub(crate) channels: usize,
     pub(crate) units: [Units<R>; Config::MAX_CHANNELS],
     pub(crate) plain_variance: Option<PerChannel<R>>,
@@ -84,7 +84,7 @@ pub(crate) struct Summary<R> {
 impl<R: Real> Summary<R> {
     pub(crate) fn of(design: &Design<'_, R>, reader: &Reader<'_>) -> Self {
         Self {
-            samples: design.n,
+            samples: design.n as u64,
             channels: design.channels,
             units: design.units,
             plain_variance: plain_variance(design),

@@ -4,8 +4,8 @@ use super::config::Config;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::error::Error;
 use crate::lanes::{LANES, Lanes};
-use crate::matrix::{at, from, halves_mut, row_at};
 use crate::real::Real;
+use crate::slices::{at, first, from, halves_mut, row_at};
 
 use super::config::{Color, NonFinite};
 use super::folds::Fold;
@@ -55,7 +55,7 @@ pub(crate) enum Subset {
 }
 
 impl Subset {
-    #[inline(always)]
+    #[inline]
     fn contains(self, index: usize) -> bool {
         match self {
             Subset::All => true,
@@ -88,7 +88,7 @@ pub(crate) struct Sample<'a> {
 impl<'a> Reader<'a> {
     /// # Errors
     /// [`Error::Range`] if the arrays' lengths do not belong together, [`Error::NoSamples`] if they are empty.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn new(config: &Config, samples: Samples<'a>) -> Result<Self, Error> {
         let n = samples.f.len().checked_div(config.channels).unwrap_or(0);
         if n == 0 && samples.f.is_empty() {
@@ -121,7 +121,7 @@ impl<'a> Reader<'a> {
     }
 
     /// How many samples the arrays hold.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn len(&self) -> usize {
         self.n
     }
@@ -141,24 +141,24 @@ impl<'a> Reader<'a> {
     }
 
     /// How many values of a sample are regressed.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn channels(&self) -> usize {
         if self.luminance { 1 } else { self.inputs }
     }
 
     /// Sample `index`, whatever it holds.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn get(&self, index: usize) -> Sample<'a> {
         let start = index * self.stride;
         Sample {
-            u: self.samples.u.get(start..start + self.dims).unwrap_or_default(),
+            u: first(from(self.samples.u, start), self.dims),
             f: row_at(self.samples.f, self.inputs, index),
             h: row_at(self.samples.controls, self.controls, index),
         }
     }
 
     /// Checks every sample. After this, all samples that [`Reader::is_used`] accepts are finite and in range.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn check(&self) -> Result<(), Error> {
         // Branch-free over the values: one flag for everything, and the reason is looked for only if it is down.
         let mut fine = true;
@@ -200,13 +200,13 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether sample `index` of the subset counts.
-    #[inline(always)]
+    #[inline]
     fn is_used(&self, index: usize, subset: Subset) -> bool {
         subset.contains(index) && (!self.skip || self.get(index).is_finite())
     }
 
     /// Calls `visit` with each used sample in order and returns their number.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn each(&self, subset: Subset, mut visit: impl FnMut(&Sample<'a>)) -> usize {
         let mut used = 0;
         for index in 0..self.n {
@@ -257,7 +257,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether samples are positions and values, all of which count.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn is_simple(&self) -> bool {
         !self.skip && !self.luminance && self.controls == 0
     }
@@ -276,7 +276,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The values of a sample that are regressed: its channels, or its luminance.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn values<R: Real>(&self, sample: &Sample<'_>) -> [R; Config::MAX_CHANNELS] {
         let mut values = [R::ZERO; Config::MAX_CHANNELS];
         if self.luminance {
@@ -290,7 +290,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Writes the position of sample `index` to lane `lane`.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn put_position<R: Real, const L: usize>(
         &self,
         index: usize,
@@ -308,13 +308,13 @@ impl<'a> Reader<'a> {
     }
 
     /// One channel of a sample.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn value(&self, index: usize, channel: usize) -> f64 {
         f64::from(self.input(index, channel))
     }
 
     /// One channel of a sample as it was given.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn input(&self, index: usize, channel: usize) -> f32 {
         at(self.samples.f, index * self.inputs + channel)
     }
@@ -366,7 +366,7 @@ impl Sample<'_> {
     }
 
     /// Writes the position and the control functions to lane `lane`.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn put<R: Real, const L: usize>(
         &self,
         lane: usize,
@@ -419,7 +419,7 @@ fn transpose_exact<R: Real, const WIDTH: usize>(rows: &[f32], stride: usize, out
 }
 
 /// Rec. 709 luminance, rounded once.
-#[inline(always)]
+#[inline]
 fn luminance(rgb: &[f32]) -> f32 {
     let sum: f64 = rgb.iter().zip(LUMINANCE).map(|(&c, weight)| f64::from(c) * weight).sum();
     sum as f32

@@ -1,60 +1,112 @@
 //! Fixed-size sums over samples, from which every fit of the streaming estimators is made.
 //!
-//! For rows p = (1, functions) and values f the sums are P'P (packed), P'f (a row for each term) and f'f.
+//! For rows p = (1, functions) and values f the sums are P'P (packed), P'f (a row for each term) and f'f: the
+//! [`Form::Products`]. Of badly placed samples they lose digits that [`Form::Factor`] keeps: in the same places stand R'
+//! for P = Q R, Q'f, and what of f'f is left.
 
 use super::per_channel::PerChannel;
+use crate::basis::MAX_TERMS;
 use crate::error::Error;
-use crate::matrix::{Panel, Triangle, at, packed_len};
+use crate::linalg::givens;
+use crate::matrix::{Panel, Triangle, packed_len};
 use crate::real::Real;
+use crate::slices::{at, first_mut, row_at, row_at_mut};
 use core::ops::{Deref, DerefMut};
 
-/// How many numbers the sums of `terms` terms (constant included) and `channels` values take.
-pub(crate) const fn len(terms: usize, channels: usize) -> usize {
-    packed_len(terms) + terms * channels + channels
+/// What is kept of the samples' rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Form {
+    /// Their products.
+    Products,
+    /// Their triangular factor.
+    Factor,
+}
+
+/// How groups of sums lie in memory, one after the other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Layout {
+    pub(crate) form: Form,
+    /// Functions, the constant not counted.
+    pub(crate) columns: usize,
+    pub(crate) channels: usize,
 }
 
 /// One group of sums; `S` is `&[R]` or `&mut [R]`.
 pub(crate) struct Sums<S> {
+    pub(crate) form: Form,
     pub(crate) gram: Triangle<S>,
     pub(crate) rhs: Panel<S>,
     pub(crate) square: S,
 }
 
-impl<'a, R: Real> Sums<&'a [R]> {
-    /// # Errors
-    /// [`Error::Memory`] for less than [`len`] numbers.
-    pub(crate) fn new(numbers: &'a [R], terms: usize, channels: usize) -> Result<Self, Error> {
-        let (gram, rest) = numbers.split_at_checked(packed_len(terms)).ok_or(Error::Memory)?;
-        let (rhs, square) = rest.split_at_checked(terms * channels).ok_or(Error::Memory)?;
-        Ok(Self { gram: Triangle::new(gram, terms)?, rhs: Panel::new(rhs, channels), square })
+impl Layout {
+    /// The constant and the functions.
+    pub(crate) fn terms(&self) -> usize {
+        self.columns + 1
     }
-}
 
-impl<'a, R: Real> Sums<&'a mut [R]> {
+    /// How many numbers a group takes.
+    pub(crate) fn len(&self) -> usize {
+        packed_len(self.terms()) + self.terms() * self.channels + self.channels
+    }
+
+    /// Group `index`.
+    ///
     /// # Errors
-    /// [`Error::Memory`] for less than [`len`] numbers.
+    /// [`Error::Memory`] if there are too few numbers.
+    pub(crate) fn group<'a, R>(&self, sums: &'a [R], index: usize) -> Result<Sums<&'a [R]>, Error> {
+        let (gram, rest) =
+            row_at(sums, self.len(), index).split_at_checked(packed_len(self.terms())).ok_or(Error::Memory)?;
+        let (rhs, square) = rest.split_at_checked(self.terms() * self.channels).ok_or(Error::Memory)?;
+        let (gram, rhs) = (Triangle::new(gram, self.terms())?, Panel::new(rhs, self.channels));
+        Ok(Sums { form: self.form, gram, rhs, square })
+    }
+
+    /// Group `index`, to be changed.
+    ///
+    /// # Errors
+    /// As for [`Layout::group`].
     #[inline]
-    pub(crate) fn new_mut(numbers: &'a mut [R], terms: usize, channels: usize) -> Result<Self, Error> {
-        let (gram, rest) = numbers.split_at_mut_checked(packed_len(terms)).ok_or(Error::Memory)?;
-        let (rhs, square) = rest.split_at_mut_checked(terms * channels).ok_or(Error::Memory)?;
-        Ok(Self { gram: Triangle::new(gram, terms)?, rhs: Panel::new(rhs, channels), square })
+    pub(crate) fn group_mut<'a, R>(&self, sums: &'a mut [R], index: usize) -> Result<Sums<&'a mut [R]>, Error> {
+        let group = row_at_mut(sums, self.len(), index);
+        let (gram, rest) = group.split_at_mut_checked(packed_len(self.terms())).ok_or(Error::Memory)?;
+        let (rhs, square) = rest.split_at_mut_checked(self.terms() * self.channels).ok_or(Error::Memory)?;
+        let (gram, rhs) = (Triangle::new(gram, self.terms())?, Panel::new(rhs, self.channels));
+        Ok(Sums { form: self.form, gram, rhs, square })
     }
 }
 
 impl<R: Real, S: Deref<Target = [R]>> Sums<S> {
+    /// How they lie in memory.
+    pub(crate) fn layout(&self) -> Layout {
+        Layout { form: self.form, columns: self.gram.order().saturating_sub(1), channels: self.channels() }
+    }
+
+    /// Values of a sample.
+    pub(crate) fn channels(&self) -> usize {
+        self.square.len()
+    }
+
     /// The number of samples.
     pub(crate) fn count(&self) -> R {
-        self.gram.at(0, 0)
+        // Of a factor the constant's column is the first.
+        let first = self.gram.at(0, 0);
+        if self.form == Form::Factor { first * first } else { first }
     }
 
     /// The sum of the values of a channel.
     pub(crate) fn total(&self, channel: usize) -> R {
-        self.rhs.at(0, channel)
+        let first = self.rhs.at(0, channel);
+        if self.form == Form::Factor { self.gram.at(0, 0) * first } else { first }
     }
 
     /// The sum of the values' squares.
     pub(crate) fn square(&self, channel: usize) -> R {
-        at(&self.square, channel)
+        let last = at(&self.square, channel);
+        if self.form == Form::Products {
+            return last;
+        }
+        self.rhs.column(channel).fold(last, |sum, &z| sum + z * z)
     }
 
     /// The sum of column j.
@@ -94,26 +146,32 @@ impl<R: Real, S: Deref<Target = [R]>> Sums<S> {
 }
 
 impl<R: Real, S: DerefMut<Target = [R]>> Sums<S> {
-    /// Adds a sample: its row, 1 first, and its values.
-    #[inline(always)]
-    pub(crate) fn add(&mut self, p: &[R], f: &[R]) {
+    /// Adds a sample: its row, 1 first, and its values. Both are used up.
+    #[inline]
+    pub(crate) fn add(&mut self, p: &mut [R], f: &mut [R]) {
+        if self.form == Form::Factor {
+            return givens::add_row(&mut self.gram, &mut self.rhs, &mut self.square, p, f);
+        }
         for (j, &value) in p.iter().enumerate() {
-            for (out, &other) in self.gram.row_mut(j).iter_mut().zip(p) {
+            for (out, &other) in self.gram.row_mut(j).iter_mut().zip(&*p) {
                 *out += value * other;
             }
         }
-        for (out, &value) in self.rhs.rows_mut().zip(p) {
-            for (out, &f) in out.iter_mut().zip(f) {
+        for (out, &value) in self.rhs.rows_mut().zip(&*p) {
+            for (out, &f) in out.iter_mut().zip(&*f) {
                 *out += value * f;
             }
         }
-        for (out, &f) in self.square.iter_mut().zip(f) {
+        for (out, &f) in self.square.iter_mut().zip(&*f) {
             *out += f * f;
         }
     }
 
     /// Adds another group's sums, of values that are `shift` + `factors` times as they were summed.
     pub(crate) fn merge(&mut self, other: &Sums<&[R]>, factors: &PerChannel<R>, shift: &PerChannel<R>) {
+        if self.form == Form::Factor {
+            return self.merge_factor(other, factors, shift);
+        }
         for (channel, square) in self.square.iter_mut().enumerate() {
             let (factor, shift) = (factors[channel], shift[channel]);
             let total = factor * other.total(channel);
@@ -128,15 +186,39 @@ impl<R: Real, S: DerefMut<Target = [R]>> Sums<S> {
         add(self.gram.entries_mut(), other.gram.entries());
     }
 
+    /// Rotates the rows of another factor into this one.
+    fn merge_factor(&mut self, other: &Sums<&[R]>, factors: &PerChannel<R>, shift: &PerChannel<R>) {
+        let mut x = [R::ZERO; MAX_TERMS];
+        let x = first_mut(&mut x, other.gram.order());
+        for (j, z) in other.rhs.rows().enumerate() {
+            for (k, x) in x.iter_mut().enumerate() {
+                *x = if k < j { R::ZERO } else { other.gram.at(k, j) };
+            }
+            // The constant's column is the first, so a shift of the values is that many times column 0 of R.
+            let first = if j == 0 { at(x, 0) } else { R::ZERO };
+            let mut y = PerChannel::default();
+            for (channel, &z) in z.iter().enumerate() {
+                y[channel] = factors[channel] * z + shift[channel] * first;
+            }
+            self.add(x, first_mut(&mut *y, other.channels()));
+        }
+        for ((square, &other), &factor) in self.square.iter_mut().zip(other.square).zip(factors.iter()) {
+            *square += factor * factor * other;
+        }
+    }
+
     /// Makes the sums those of `shift` + f.
     pub(crate) fn shift(&mut self, shift: &PerChannel<R>) {
         let (gram, rhs) = (self.gram.view(), &mut self.rhs);
-        for (channel, square) in self.square.iter_mut().enumerate() {
-            let (shift, total) = (shift[channel], rhs.at(0, channel));
-            *square += shift * (total + total + shift * gram.at(0, 0));
+        if self.form == Form::Products {
+            for (channel, square) in self.square.iter_mut().enumerate() {
+                let (shift, total) = (shift[channel], rhs.at(0, channel));
+                *square += shift * (total + total + shift * gram.at(0, 0));
+            }
         }
         for (j, out) in rhs.rows_mut().enumerate() {
-            let column = gram.at(j, 0);
+            // Of the constant's column a factor holds something in the first row alone.
+            let column = if self.form == Form::Factor && j > 0 { R::ZERO } else { gram.at(j, 0) };
             for (out, &shift) in out.iter_mut().zip(shift.iter()) {
                 *out += shift * column;
             }
@@ -161,6 +243,11 @@ pub(crate) fn add<R: Real>(into: &mut [R], other: &[R]) {
     for (into, &other) in into.iter_mut().zip(other) {
         *into += other;
     }
+}
+
+/// The sum of squares about the mean, from those about zero.
+pub(crate) fn spread<R: Real>(square: R, total: R, mean: R) -> R {
+    not_below_zero(square - total * mean)
 }
 
 /// What rounding took below zero is zero; what is no number stays so, and is not taken for a perfect fit.

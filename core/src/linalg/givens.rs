@@ -6,13 +6,14 @@
 
 use crate::matrix::{Panel, Triangle, split_at};
 use crate::real::Real;
+use core::ops::DerefMut;
 
 /// Rotates one row into the factor: `x` has one number for each column, `y` one for each right-hand side, of which
 /// `rhs` has a row for each column. `residual` gathers what no coefficient can explain. `x` and `y` are used up.
-#[inline(always)]
-pub(crate) fn add_row<R: Real>(
-    factor: &mut Triangle<&mut [R]>,
-    rhs: &mut Panel<&mut [R]>,
+#[inline]
+pub(crate) fn add_row<R: Real, S: DerefMut<Target = [R]>>(
+    factor: &mut Triangle<S>,
+    rhs: &mut Panel<S>,
     residual: &mut [R],
     x: &mut [R],
     y: &mut [R],
@@ -39,7 +40,7 @@ pub(crate) fn add_row<R: Real>(
 }
 
 /// x := R^-1 x; a column with no pivot gets coefficient zero.
-#[inline(always)]
+#[inline]
 pub(crate) fn solve<R: Real>(factor: &Triangle<&[R]>, x: &mut [R]) {
     for j in (0..x.len()).rev() {
         let Some((before, x_j)) = split_at(x, j) else { return };
@@ -64,13 +65,13 @@ pub(crate) fn inverse_square<R: Real>(factor: &Triangle<&[R]>, x: &mut [R]) -> R
     total
 }
 
-#[inline(always)]
+#[inline]
 fn quotient<R: Real>(value: R, pivot: R) -> R {
     if pivot == R::ZERO { R::ZERO } else { value / pivot }
 }
 
 /// (c, s, r) with c a + s b = r and c b - s a = 0, without overflow.
-#[inline(always)]
+#[inline]
 fn rotation<R: Real>(a: R, b: R) -> (R, R, R) {
     let size = a.abs().max(b.abs());
     let (a, b) = (a / size, b / size);

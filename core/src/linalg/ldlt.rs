@@ -38,7 +38,7 @@ impl<'a, R: Real> Ldlt<'a, R> {
     }
 
     /// 1 / d_j.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn inverse_pivot(&self, j: usize) -> R {
         self.0.diagonal(j)
     }
@@ -66,7 +66,7 @@ impl<'a, R: Real> Ldlt<'a, R> {
     }
 
     /// x := L'^-1 x.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn backward(&self, x: &mut [R]) {
         for j in (0..x.len()).rev() {
             let Some((before, &mut x_j)) = split_at(x, j) else { return };
@@ -77,7 +77,7 @@ impl<'a, R: Real> Ldlt<'a, R> {
     }
 
     /// x := A^-1 x.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn solve(&self, x: &mut [R]) {
         self.forward(x);
         for (j, x_j) in x.iter_mut().enumerate() {
@@ -87,7 +87,7 @@ impl<'a, R: Real> Ldlt<'a, R> {
     }
 
     /// Writes the diagonal of A^-1 to `diagonal`; `inverse` is scratch for L^-1.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn inverse_diagonal(&self, mut inverse: Triangle<&mut [R]>, diagonal: &mut [R]) {
         diagonal.fill(R::ZERO);
         for j in 0..self.0.order() {
@@ -109,7 +109,7 @@ impl<'a, R: Real> Ldlt<'a, R> {
 }
 
 /// [`Ldlt::new`] of eight matrices side by side, packed triangles of `n` rows.
-#[inline(always)]
+#[inline]
 pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
     let tolerance = R::from_f64(DEPENDENT) * R::EPSILON;
     let Ok(mut matrices) = Triangle::new(matrices, n) else { return };
@@ -138,7 +138,7 @@ pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
 }
 
 /// X := L^-1 X for eight systems side by side, of `N` right-hand sides each; rows before `first` are zero and stay so.
-#[inline(always)]
+#[inline]
 pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first: usize, x: &mut [[Lanes<R>; N]]) {
     let Ok(factors) = Triangle::new(factors, x.len()) else { return };
     for (j, row) in factors.rows().enumerate().skip(first) {
@@ -155,13 +155,13 @@ pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first:
 }
 
 /// Right-hand sides, one for each system.
-#[inline(always)]
+#[inline]
 pub(crate) fn one_each_mut<R>(x: &mut [Lanes<R>]) -> &mut [[Lanes<R>; 1]] {
     x.as_chunks_mut().0
 }
 
 /// X := A^-1 X for eight systems side by side.
-#[inline(always)]
+#[inline]
 pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
     forward_each::<R, 1>(factors, 0, one_each_mut(x));
     let Ok(pivots) = Triangle::new(factors, x.len()) else { return };
@@ -172,7 +172,7 @@ pub(crate) fn solve_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
 }
 
 /// X := L'^-1 X for eight systems side by side.
-#[inline(always)]
+#[inline]
 pub(crate) fn backward_each<R: Real>(factors: &[Lanes<R>], x: &mut [Lanes<R>]) {
     let Ok(factors) = Triangle::new(factors, x.len()) else { return };
     for j in (0..x.len()).rev() {

@@ -160,7 +160,7 @@ impl<M: AsRef<[f32]> + AsMut<[f32]>> Gradient<M> {
 }
 
 /// Refuses gradients that are not finite, or whose sums might not be.
-#[inline(always)]
+#[inline]
 fn check(batch: &Batch<'_>, gradient: &[f32], parameters: usize) -> Result<(), Error> {
     let mut bound = 0.0;
     let mut overflow = false;
@@ -197,7 +197,7 @@ impl Coefficients {
     }
 }
 
-#[inline(always)]
+#[inline]
 fn fade(averages: &mut [f32], keep: f32) {
     if keep == 0.0 {
         averages.fill(0.0);

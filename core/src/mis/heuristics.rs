@@ -3,6 +3,7 @@
 use super::limits::MAX_TECHNIQUES;
 use crate::Error;
 use crate::real::Real;
+use crate::slices::at;
 
 /// The exponent that Veach recommends for [`power`].
 pub const DEFAULT_BETA: f32 = 2.0;
@@ -119,7 +120,7 @@ impl Shares {
         }
         let divisor = largest.or_one();
         share.iter_mut().take(techniques).for_each(|share| *share /= divisor);
-        let own = share.get(technique).copied().unwrap_or(0.0);
+        let own = at(&share, technique);
         Ok(Shares { share, techniques, own })
     }
 

@@ -25,10 +25,10 @@
 mod net;
 pub mod table;
 
-pub use crate::pixels::{fill, fill_len};
+pub use crate::pixels::{PixelSampler, fill, fill_len};
 
 use crate::hash::{GOLDEN, child, mix};
-use crate::pixels::PixelSampler;
+use crate::slices::first_mut;
 
 /// One sample of one pixel: 16 bytes, to be copied freely. Drawing does not change it. Any value of the fields is
 /// valid.
@@ -73,7 +73,7 @@ impl Sampler {
     /// The samples of a pixel are one sequence, best at powers of two; take any number, and stop where you like. Each
     /// frame is the table at another place, unrelated to the others. Where frames are averaged, by a viewer or by TAA,
     /// leave the frame 0 and let the index count on.
-    #[inline(always)]
+    #[inline]
     pub const fn pixel(x: u32, y: u32, frame: u32, index: u32) -> Sampler {
         let domain = if frame == 0 { 0 } else { child(FRAMES, frame) };
         Sampler { domain, index, x: x as u16, y: y as u16, flags: 0 }
@@ -81,14 +81,14 @@ impl Sampler {
 
     /// The same, but neighbours know nothing of each other: the error is that of each pixel, white over the image. For
     /// denoisers that were made for white noise.
-    #[inline(always)]
+    #[inline]
     pub const fn white(x: u32, y: u32, frame: u32, index: u32) -> Sampler {
         Sampler { flags: HASHED, ..Sampler::pixel(x, y, frame, index) }
     }
 
     /// The child domain of a key. Children of different keys are unrelated to each other and to their parent; keys mean
     /// something only among children of one parent.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub const fn domain(self, key: u32) -> Sampler {
         Sampler { domain: child(self.domain, key), ..self }
@@ -100,7 +100,7 @@ impl Sampler {
     /// domain. Over random seeds every value is uniform, so estimates are unbiased, as far as a hash of 32 bits is
     /// random. The shift costs quality: where good images are wanted, and not exact unbiasedness, take another frame
     /// instead. Children of a scrambled sampler are scrambled.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub const fn scramble(self, seed: u32) -> Sampler {
         if seed == 0 {
@@ -110,7 +110,7 @@ impl Sampler {
     }
 
     /// The same domain of the pixel `x` columns to the right and `y` rows down, and of the sample `index` further.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub const fn moved(self, x: u32, y: u32, index: u32) -> Sampler {
         let (x, y) = ((self.x as u32).wrapping_add(x) as u16, (self.y as u32).wrapping_add(y) as u16);
@@ -139,7 +139,7 @@ impl Sampler {
     pub fn draw_samples(&self, dims: usize, stride: usize, u: &mut [f32]) {
         if (1..=4).contains(&dims) {
             for (k, u) in (0..).zip(u.chunks_mut(stride.max(dims))) {
-                self.moved(0, 0, k).draw_into(u.get_mut(..dims).unwrap_or_default());
+                self.moved(0, 0, k).draw_into(first_mut(u, dims));
             }
         }
     }

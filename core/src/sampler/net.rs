@@ -7,6 +7,7 @@
 use super::table::{BITS, SIZE, TABLE, fine, pascal};
 use super::{HASHED, Sampler};
 use crate::hash::{GOLDEN, mix};
+use crate::slices::chunk;
 
 /// The point in 32-bit fixed point.
 #[inline(always)]
@@ -24,11 +25,11 @@ pub(super) fn point<const N: usize>(sampler: &Sampler) -> [u32; N] {
     }
     let [a, b] = pair(x, y, first);
     if N < 3 {
-        return [a, b, 0, 0].first_chunk().copied().unwrap_or([0; N]);
+        return chunk(&[a, b, 0, 0]);
     }
     let other = domain.wrapping_mul(GOLDEN).wrapping_add(0x632b_e5ab);
     let [c, d] = pair(x.wrapping_add(other >> 7), y.wrapping_add(other >> 19), second(first));
-    [a, b, c, d].first_chunk().copied().unwrap_or([0; N])
+    chunk(&[a, b, c, d])
 }
 
 /// Where in the table a domain's pixel is: at another place, and mirrored and transposed or not, which keeps neighbours

@@ -12,14 +12,14 @@ pub const ENTRIES: usize = ((SIZE * SIZE) << BITS) as usize;
 pub static TABLE: [u32; ENTRIES] = entries(include_bytes!("../../tiles/nested_32.bin"));
 
 /// Sobol's first two dimensions at an index: its reversed bits, and Pascal's matrix modulo 2 times these.
-#[inline(always)]
+#[inline]
 pub const fn net(index: u32) -> [u32; 2] {
     let first = index.reverse_bits();
     [first, pascal(first)]
 }
 
 /// The second of these by the first.
-#[inline(always)]
+#[inline]
 pub(super) const fn pascal(first: u32) -> u32 {
     let mut second = first ^ first << 16;
     second ^= (second & 0x00ff_00ff) << 8;
@@ -34,7 +34,7 @@ const FINE: [u32; 2] = [0x9e37_79b9, 0xc13f_a9a9];
 /// A coordinate with its offset, whose 24 bits below the leading 8 are exclusive-or a hash of these, of the pixel (row
 /// times side plus column) and of the axis, 0 or 1: without it, all points that share an offset would share their finer
 /// digits.
-#[inline(always)]
+#[inline]
 pub const fn fine(value: u32, pixel: u32, axis: usize) -> u32 {
     value ^ (pixel << 8 | value >> 24).wrapping_mul(FINE[axis & 1]) >> 8
 }

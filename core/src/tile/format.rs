@@ -67,8 +67,8 @@ impl Header {
 
     /// What the tile was optimised for.
     pub fn kernel(&self) -> &str {
-        let len = self.kernel.iter().position(|&byte| byte == 0).unwrap_or(KERNEL_BYTES);
-        self.kernel.get(..len).and_then(|text| core::str::from_utf8(text).ok()).unwrap_or("")
+        let text = self.kernel.split(|&byte| byte == 0).next();
+        text.and_then(|text| core::str::from_utf8(text).ok()).unwrap_or("")
     }
 
     /// The bytes to write before `payload`, which is what [`Tile::new`](super::Tile::new) takes.

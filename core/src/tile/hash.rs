@@ -6,7 +6,7 @@ use crate::hash::{GOLDEN, mix};
 /// for random b and a != 0. Of all affine bijections each is equally likely (to 2^-16), so that any two samples go to
 /// any two places with the same probability: what it takes for sums of products of two sampled domains to have the mean
 /// and the variance of random pairing.
-#[inline(always)]
+#[inline]
 pub(super) fn permute(index: u32, samples: u32, random: u32) -> u32 {
     permute_few(index, samples, random).unwrap_or_else(|| {
         let (mask, scale) = mask_and_scale(samples, random);
@@ -22,7 +22,7 @@ pub(super) fn permute_few(index: u32, samples: u32, random: u32) -> Option<u32> 
     Some((u32::from(*product) ^ random) & mask)
 }
 
-#[inline(always)]
+#[inline]
 const fn mask_and_scale(samples: u32, random: u32) -> (u32, u32) {
     let mask = samples.wrapping_sub(1) & 255;
     (mask, ((random >> 16).wrapping_mul(mask) >> 16).wrapping_add(1))
@@ -35,7 +35,7 @@ fn product_by_bits(a: u32, b: u32, bits: u32) -> u32 {
 }
 
 /// The product in the field of 2^bits elements.
-#[inline(always)]
+#[inline]
 const fn product(a: u32, b: u32, bits: u32) -> u32 {
     // x^bits = POLYNOMIAL(x): irreducible.
     let polynomial = POLYNOMIALS[if bits < 8 { bits } else { 8 } as usize];
@@ -71,7 +71,7 @@ static PRODUCTS: [[u8; 256]; 5] = {
 };
 
 /// As [`permute`], within each octave `[2^k, 2^(k + 1))`: the first 1, 2, 4, ... samples remain those.
-#[inline(always)]
+#[inline]
 pub(super) fn permute_octave(index: u32, random: u32) -> u32 {
     octave(index, random).map_or(index, |(first, random)| first | permute(index ^ first, first, random))
 }
@@ -85,7 +85,7 @@ pub(super) fn permute_octave_few(index: u32, random: u32) -> Option<u32> {
 
 /// The first index of an octave, which is as many as the octave has, and its random bits: octaves are permuted
 /// independently.
-#[inline(always)]
+#[inline]
 fn octave(index: u32, random: u32) -> Option<(u32, u32)> {
     let bits = index.checked_ilog2()?;
     Some((1 << (bits & 7), mix(random.wrapping_add(GOLDEN.wrapping_mul(bits)))))

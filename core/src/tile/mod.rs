@@ -39,7 +39,7 @@ mod site;
 mod state;
 mod view;
 
-pub use crate::pixels::{fill, fill_len};
+pub use crate::pixels::{PixelSampler, fill, fill_len};
 pub use builtin::Builtin;
 pub use format::{HEADER_BYTES, Header, KERNEL_BYTES, MAGIC, VERSION, quantize};
 pub use sampler::Sampler;

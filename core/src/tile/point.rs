@@ -6,6 +6,7 @@ use super::site::Site;
 use super::state::State;
 use super::view::Tile;
 use crate::hash::{GOLDEN, child, mix};
+use crate::slices::chunk;
 
 /// Keeps domains of further dimensions apart from those of keys.
 const DIMENSIONS: u32 = 0x6469_6d73;
@@ -33,7 +34,7 @@ pub(super) fn point<const N: usize>(tile: &Tile<'_>, state: &State) -> [u32; N] 
         }
         _ => return call(tile, state, group_of),
     };
-    all.first_chunk().copied().unwrap_or([0; N])
+    chunk(&all)
 }
 
 /// Whether N coordinates are more than the tile's and those beyond are stratified.
@@ -100,7 +101,7 @@ fn group_of<const N: usize>(payload: &[u8], rest: Rest, domain: u32, index: u32,
     let (tile, state) = (Tile::resume(rest.shape(), payload), rest.state(domain, index, xy));
     let site = Site::new(&tile, &state);
     let sample = site.sample(tile.shape(), domain, index);
-    let mut fixed = tile.fixed(site.at(tile.shape(), sample)).unwrap_or([0; N]);
+    let mut fixed = tile.fixed(site.at(tile.shape(), sample));
     moved(tile.shape(), &state, &mut fixed);
     fixed
 }
@@ -135,13 +136,16 @@ impl Net {
         let shape = tile.shape();
         let sample = self.own.sample(shape, state.domain, state.index);
         let place = self.own.at(shape, sample);
-        let [a, b] = tile.fixed(place).unwrap_or([0; 2]);
+        let [a, b] = tile.fixed(place);
         let c = match shape.dims {
             2 => self.third.further(tile, sample, 0),
-            _ => tile.fixed(place.wrapping_add(2)).map_or(0, |[c]| c),
+            _ => {
+                let [c] = tile.fixed(place.wrapping_add(2));
+                c
+            }
         };
         let d = if N > 3 { self.fourth.further(tile, sample, 3_u32.wrapping_sub(shape.dims)) } else { 0 };
-        let mut fixed = [a, b, c, d].first_chunk().copied().unwrap_or([0; N]);
+        let mut fixed = chunk(&[a, b, c, d]);
         if let Some((own, further)) = fixed.split_at_mut_checked(shape.dims as usize) {
             moved(shape, state, own);
             moved(shape, &more(state, 1), further);

@@ -6,6 +6,7 @@ use super::site::Site;
 use super::state::State;
 use super::view::unit;
 use crate::pixels::PixelSampler;
+use crate::slices::from_mut;
 
 impl Sampler<'_> {
     /// Draws `dims` coordinates, 1 to 4, of this sample and of those that follow it: sample k's to `u[k * stride..]`,
@@ -55,7 +56,7 @@ impl Sampler<'_> {
                 if !tile.values(site.at(shape, sample), u) {
                     *u = [0.0; N];
                 }
-                (rest, k) = (rest.get_mut(stride..).unwrap_or_default(), k.wrapping_add(1));
+                (rest, k) = (from_mut(rest, stride), k.wrapping_add(1));
             }
         } else if netted(shape, N) {
             let net = Net::new::<N>(tile, &self.state());
@@ -63,12 +64,12 @@ impl Sampler<'_> {
                 && let Some((u, _)) = rest.split_first_chunk_mut::<N>()
             {
                 *u = net.point(tile, &self.moved(0, 0, k).state()).map(unit);
-                (rest, k) = (rest.get_mut(stride..).unwrap_or_default(), k.wrapping_add(1));
+                (rest, k) = (from_mut(rest, stride), k.wrapping_add(1));
             }
         }
         while let Some((u, _)) = rest.split_first_chunk_mut::<N>() {
             *u = self.moved(0, 0, k).draw();
-            (rest, k) = (rest.get_mut(stride..).unwrap_or_default(), k.wrapping_add(1));
+            (rest, k) = (from_mut(rest, stride), k.wrapping_add(1));
         }
     }
 }

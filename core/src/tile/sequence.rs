@@ -8,7 +8,7 @@ use crate::hash::{GOLDEN, mix};
 /// That is exclusive or with point `index` of a sequence that all pixels share: S. Joe and F. Kuo's Sobol sequence
 /// (2008) in an order shuffled within each octave of indices, Owen-scrambled, and shifted so that its first point is
 /// the origin. With the pixel's first sample at index 0, any aligned run of 2^k indices is a digital net.
-#[inline(always)]
+#[inline]
 pub(super) fn shift(domain: u32, index: u32, fixed: &mut [u32]) {
     let index = shuffle(index, mix(domain ^ SHUFFLE));
     for ((u, directions), dim) in fixed.iter_mut().zip(&DIRECTIONS).zip(1_u32..) {
@@ -29,7 +29,7 @@ const VALUES: u32 = 0x6f77_656e;
 /// Owen's nested scrambling of the reversed bits of a number: whether a bit changes depends on those below it.
 ///
 /// S. Laine and T. Karras, "Stratified Sampling for Stochastic Transparency", 2011, with N. Vegdahl's constants (2021).
-#[inline(always)]
+#[inline]
 const fn scramble(mut bits: u32, seed: u32) -> u32 {
     bits ^= bits.wrapping_mul(0x3d20_adea);
     bits = bits.wrapping_add(seed);
@@ -39,7 +39,7 @@ const fn scramble(mut bits: u32, seed: u32) -> u32 {
 }
 
 /// A nested permutation within each octave `[2^k, 2^(k + 1))`: aligned runs of 2^j indices go to such runs.
-#[inline(always)]
+#[inline]
 fn shuffle(index: u32, seed: u32) -> u32 {
     match index.checked_ilog2() {
         Some(bits @ 1..) => {

@@ -66,7 +66,7 @@ impl Site {
         let bits = shape.spp.trailing_zeros();
         let stratum = net::stratum(sample, bits, number, self.random);
         let within = (stratum ^ self.random >> 8) & shape.spp.wrapping_sub(1);
-        let [within] = tile.fixed(self.at(shape, within)).unwrap_or([0]);
+        let [within] = tile.fixed(self.at(shape, within));
         stratum << ((32 - bits) & 31) | within >> (bits & 31)
     }
 }

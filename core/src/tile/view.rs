@@ -117,11 +117,11 @@ impl<'a> Tile<'a> {
         true
     }
 
-    /// N consecutive coordinates in 32-bit fixed point; `None` beyond the payload.
+    /// N consecutive coordinates in 32-bit fixed point; zero beyond the payload.
     #[inline(always)]
-    pub(super) fn fixed<const N: usize>(&self, place: usize) -> Option<[u32; N]> {
+    pub(super) fn fixed<const N: usize>(&self, place: usize) -> [u32; N] {
         let shift = if self.shape.bits == 16 { 15 } else { 23 };
-        Some(self.stored(place)?.map(|v| (2 * v + 1) << shift))
+        self.stored(place).map_or([0; N], |stored| stored.map(|v| (2 * v + 1) << shift))
     }
 }
 

@@ -243,7 +243,7 @@ impl<R: Real> Descent<R> {
 
     /// One step along the negative gradient, of lengths `scales` for gradients in `units`; `bias` holds the powers of
     /// Adam's decays so far.
-    #[inline(always)]
+    #[inline]
     fn step(
         &self,
         solution: &mut [R],
@@ -278,7 +278,7 @@ impl<R: Real> Descent<R> {
 }
 
 impl<R: Real> Objective<R> for Design<'_, R> {
-    #[inline(always)]
+    #[inline]
     fn gradient(&self, channel: Option<usize>, b: &[R], out: &mut [R]) {
         let inverse = R::ONE / R::from_usize(self.n);
         out.fill(R::ZERO);

@@ -23,7 +23,7 @@ pub(crate) fn len(n: usize, channels: usize) -> Option<usize> {
 }
 
 impl<'a, R: Real> Dual<'a, R> {
-    #[inline(always)]
+    #[inline]
     pub(crate) fn new(design: &Design<'_, R>, penalties: &[R], arena: &mut Arena<'a, R>) -> Result<Self, Error> {
         let padded = design.n.next_multiple_of(LANES);
         let mut kernel = arena.triangle(padded)?;
@@ -56,7 +56,7 @@ impl<'a, R: Real> Dual<'a, R> {
     /// The fit with ridge strength s over all columns. With B = K + s n I,
     ///
     /// b = D^-1 P' B^-1 f,   h_i - 1/n = 1 - s n (B^-1)_ii,   m'A^-1 p_i = (B^-1 g)_i.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn fit(
         &self,
         design: &Design<'_, R>,

@@ -13,7 +13,6 @@ pub(crate) mod descent;
 pub(crate) mod dual;
 pub(crate) mod givens;
 pub(crate) mod normal;
-pub(crate) mod system;
 
 use super::per_channel::PerChannel;
 

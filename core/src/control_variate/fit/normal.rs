@@ -3,7 +3,8 @@
 use super::super::config::Config;
 use super::super::design::Design;
 use super::super::per_channel::PerChannel;
-use super::super::sums::{Sums, not_below_zero};
+use super::super::result::{self, Outcome};
+use super::super::sums::{Layout, Sums, not_below_zero, spread};
 use super::super::trust::Centre;
 use super::descent::Objective;
 use super::{Fit, Penalty, SMALLEST_GAP};
@@ -11,7 +12,7 @@ use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::ldlt::Ldlt;
-use crate::matrix::{Panel, Triangle, copy, packed_len};
+use crate::matrix::{Panel, Triangle, copy, packed_len, row_at};
 use crate::real::Real;
 
 /// A column whose sum of squares about its mean is below this fraction of that about zero, in units of the type's
@@ -218,24 +219,38 @@ pub(crate) struct Centred<'a, R> {
     pub(crate) squares: PerChannel<R>,
 }
 
-/// How many numbers a [`Centred`] takes.
-pub(crate) fn centred_len(columns: usize, channels: usize) -> usize {
-    packed_len(columns) + columns * channels + columns
+/// How many numbers a [`Centred`] and a fit to it take, its penalties and coefficients included.
+pub(crate) fn len(Layout { columns, channels, .. }: Layout) -> usize {
+    3 * packed_len(columns) + columns * (4 + 2 * channels)
 }
 
-/// How many numbers a fit to one takes.
-pub(crate) fn solve_len(columns: usize) -> usize {
-    2 * packed_len(columns) + 2 * columns
+/// Algorithm 1 from sums: what a fit to all samples adds to the mean. None if there is no sample.
+#[inline]
+pub(crate) fn least_squares<R: Real>(
+    sums: &Sums<&[R]>,
+    penalty: Penalty<'_, R>,
+    arena: &mut Arena<'_, R>,
+) -> Result<Option<Outcome<R>>, Error> {
+    let Layout { columns, channels, .. } = sums.layout();
+    let coefficients = arena.take(columns * channels)?;
+    let Some(centred) = Centred::new(sums, arena)? else { return Ok(None) };
+    let factor = centred.normal.solve(penalty, coefficients, arena)?;
+    let eccentricity = centred.normal.eccentricity(&factor, arena)?;
+    // Its residuals have mean zero: its intercept is the estimate.
+    let (mut correction, mut residual) = (PerChannel::default(), PerChannel::default());
+    for channel in 0..channels {
+        let b = row_at(coefficients, columns, channel);
+        correction[channel] = centred.intercept(channel, b) - centred.value_means[channel];
+        residual[channel] = centred.residual_square(channel, b);
+    }
+    let variance = result::residual_variance(residual, columns, centred.normal.count, eccentricity);
+    Ok(Some(Outcome { correction, variance }))
 }
 
 impl<'a, R: Real> Centred<'a, R> {
     /// Centres a group of sums; None if it holds no sample.
-    pub(crate) fn new(
-        sums: &Sums<&[R]>,
-        columns: usize,
-        channels: usize,
-        arena: &mut Arena<'a, R>,
-    ) -> Result<Option<Self>, Error> {
+    pub(crate) fn new(sums: &Sums<&[R]>, arena: &mut Arena<'a, R>) -> Result<Option<Self>, Error> {
+        let Layout { columns, channels, .. } = sums.layout();
         let mut gram = arena.triangle(columns)?;
         let mut rhs = Panel::new(arena.take(columns * channels)?, columns);
         let means = arena.take(columns)?;
@@ -258,7 +273,7 @@ impl<'a, R: Real> Centred<'a, R> {
         for channel in 0..channels {
             let mean = sums.total(channel) * inverse;
             value_means[channel] = mean;
-            squares[channel] = (sums.square(channel) - sums.total(channel) * mean).max(R::ZERO);
+            squares[channel] = spread(sums.square(channel), sums.total(channel), mean);
             for (j, out) in rhs.row_mut(channel).iter_mut().enumerate() {
                 *out = sums.rhs.at(j + 1, channel) - sums.column_total(j) * mean;
             }

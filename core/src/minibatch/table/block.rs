@@ -12,7 +12,7 @@ pub type Block = [f32; ARITY];
 type Row = [f64; 4];
 
 /// The sum of a block, and of its columns.
-#[inline(always)]
+#[inline]
 fn columns(block: &Block) -> (Row, f64) {
     let q = block.map(positive);
     let mut sums = [q[0], q[1], q[2], q[3]];
@@ -23,13 +23,13 @@ fn columns(block: &Block) -> (Row, f64) {
 }
 
 /// The sum of a block.
-#[inline(always)]
+#[inline]
 pub(super) fn total(block: &Block) -> f64 {
     columns(block).1
 }
 
 /// The item that `u` in `0.0..1.0` falls on, never one of importance 0, and the block's sum.
-#[inline(always)]
+#[inline]
 pub(super) fn find(block: &Block, u: f64) -> (usize, f64) {
     let (sums, total) = columns(block);
     let y = u * total;
@@ -50,7 +50,7 @@ pub(super) fn find(block: &Block, u: f64) -> (usize, f64) {
     (position % 4 * 4 + position / 4, total)
 }
 
-#[inline(always)]
+#[inline]
 fn add(sums: &Row, q: &[f64; ARITY], row: usize) -> Row {
     // Copied before it is written, which lets compilers use vector instructions.
     let mut out = *sums;
@@ -61,7 +61,7 @@ fn add(sums: &Row, q: &[f64; ARITY], row: usize) -> Row {
 }
 
 /// An item taken out of the table for a while has a negative importance, which counts as 0.
-#[inline(always)]
+#[inline]
 fn positive(q: f32) -> f64 {
     f64::from(if q > 0.0 { q } else { 0.0 })
 }

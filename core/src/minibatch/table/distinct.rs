@@ -28,7 +28,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     ///
     /// Errors, which change nothing: [`Error::Range`] for more draws than items, or another number of
     /// weights; [`Error::NoSamples`] where the uniform fraction is 0 and fewer items have an importance above 0.
-    #[inline(always)]
+    #[inline]
     pub fn draw_distinct(
         &mut self,
         rng: &mut Rng,
@@ -78,7 +78,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     }
 
     /// Draws until an item has not been taken, of which a draw has the probability `left`.
-    #[inline(always)]
+    #[inline]
     fn draw_left(&self, mixture: &Mixture, left: f64, rng: &mut Rng) -> u32 {
         let (mut item, mut expected) = ([0], 0.0);
         while expected < PATIENCE {

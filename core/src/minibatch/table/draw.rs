@@ -7,6 +7,7 @@ use super::mixture::{Mixture, Ways};
 use super::tree::{self, CHILDREN, Levels, Node};
 use crate::Error;
 use crate::rng::Rng;
+use crate::slices::halves;
 
 /// How many draws go down the tree together: enough to hide the latency of memory, few enough for the first cache.
 pub(super) const CHUNK: usize = 64;
@@ -54,7 +55,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// variance than independent draws wherever neighbouring items are alike; weights and their use are the same.
     ///
     /// Those drawn uniformly come first, and both in the order of the data set: use the batch as a whole.
-    #[inline(always)]
+    #[inline]
     pub fn draw_stratified(&self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
         check_lengths(index, &weight)?;
         if index.is_empty() {
@@ -224,7 +225,7 @@ impl<'a> Descent<'a> {
         // Levels that the first cache holds in one go, the others one by one, so that many accesses are under way at a
         // time.
         let near = starts.iter().position(|&start| self.nodes.len() - start <= NEAR).unwrap_or(0).max(1);
-        let (far, near) = starts.split_at_checked(near).unwrap_or_default();
+        let (far, near) = halves(starts, near);
         for (place, rest) in place.iter_mut().zip(rest.iter_mut()).take(draws) {
             let mut at = (0, *rest);
             for start in near.iter().rev() {
@@ -251,7 +252,7 @@ impl<'a> Descent<'a> {
         *place = *place * CHILDREN as u32 + child as u32;
     }
 
-    #[inline(always)]
+    #[inline]
     fn prefetch<K: Kernel>(&self, start: Option<&usize>, place: u32) {
         if let Some(node) = start.and_then(|start| self.nodes.get(start + place as usize)) {
             K::prefetch(node);
@@ -259,7 +260,7 @@ impl<'a> Descent<'a> {
     }
 
     /// 1 / (factor p), with one division, for an item of importance `q` in a block of this sum and weight.
-    #[inline(always)]
+    #[inline]
     fn weight(&self, q: f32, total: f64, weight: f64) -> f32 {
         (total / (self.by_weight * weight * f64::from(q) + self.by_item * total)) as f32
     }
@@ -277,13 +278,13 @@ pub(super) fn check_lengths(index: &[u32], weight: &Option<&mut [f32]>) -> Resul
 }
 
 /// The upper half of a product: `bits` scaled to 0..`n`.
-#[inline(always)]
+#[inline]
 fn high_product(bits: u64, n: u64) -> u64 {
     ((u128::from(bits) * u128::from(n)) >> 64) as u64
 }
 
 /// The `k`-th number of the SplitMix64 stream that starts behind `seed`: draws need no order.
-#[inline(always)]
+#[inline]
 fn noise(seed: u64, k: u64) -> u64 {
     let mut z = seed.wrapping_add(k.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

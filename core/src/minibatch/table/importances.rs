@@ -5,6 +5,7 @@ use super::kernel::{Kernel, Portable};
 use super::mixture::Mixture;
 use super::tree::{self, CHILDREN, Levels, MAX_BLOCKS, Node};
 use crate::Error;
+use crate::slices::{at, first};
 use core::marker::PhantomData;
 
 /// The uniform fraction of a new table: no weight above 5. Measured best on classification (.2 to .5 are close).
@@ -107,7 +108,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>> Table<I, S> {
     }
 
     /// The same table, drawn from and updated by other code, which gives the same bits.
-    #[inline(always)]
+    #[inline]
     pub fn with_kernel<K: Kernel>(self) -> Table<I, S, K> {
         let Table { importance, sums, blocks, levels, state, .. } = self;
         Table { importance, sums, blocks, levels, state, kernel: PhantomData }
@@ -153,8 +154,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
 
     /// The importance of an item; 0 for an item that does not exist.
     pub fn importance(&self, item: u32) -> f32 {
-        let importance = self.importance.as_ref().get(item as usize);
-        if item < self.state.items { importance.copied().unwrap_or(0.0) } else { 0.0 }
+        if item < self.state.items { at(self.importance.as_ref(), item as usize) } else { 0.0 }
     }
 
     /// The probability of drawing an item, as f32; 0 for an item that does not exist, or if nothing can be drawn.
@@ -197,13 +197,13 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     pub(super) fn probability_in(&self, mixture: &Mixture, item: u32) -> f64 {
         let item = item as usize;
         let block = self.blocks().get(item / ARITY);
-        let q = self.importance.as_ref().get(item).copied().unwrap_or(0.0);
+        let q = at(self.importance.as_ref(), item);
         let (begin, end) = self.span(item / ARITY);
         mixture.probability(q, block.map_or(0.0, Portable::total), end.wrapping_sub(begin))
     }
 
     /// Whether the table has these items: else [`Error::Range`].
-    #[inline(always)]
+    #[inline]
     pub fn check_items(&self, index: &[u32]) -> Result<(), Error> {
         let beyond = index.iter().fold(false, |beyond, &item| beyond | (item >= self.state.items));
         if beyond { Err(Error::Range) } else { Ok(()) }
@@ -224,17 +224,17 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     }
 
     /// The blocks there is room for.
-    #[inline(always)]
+    #[inline]
     pub(super) fn blocks(&self) -> &[Block] {
         let (blocks, _) = self.importance.as_ref().as_chunks();
-        blocks.get(..self.blocks).unwrap_or_default()
+        first(blocks, self.blocks)
     }
 
     /// The nodes, those of the lowest level first; the root is the last.
-    #[inline(always)]
+    #[inline]
     pub(super) fn nodes(&self) -> &[Node] {
         let (nodes, _) = self.sums.as_ref().as_chunks();
-        nodes.get(..self.levels.nodes()).unwrap_or_default()
+        first(nodes, self.levels.nodes())
     }
 }
 

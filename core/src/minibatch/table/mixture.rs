@@ -30,7 +30,7 @@ impl Mixture {
     }
 
     /// The probability of an item of importance `q` in a block of sum `total` that weighs `weight`.
-    #[inline(always)]
+    #[inline]
     pub(super) fn probability(&self, q: f32, total: f64, weight: i64) -> f64 {
         let (by_weight, by_item) = self.factors(1.0);
         let q = f64::from(if q > 0.0 { q } else { 0.0 });
@@ -88,7 +88,7 @@ impl Scale {
     }
 
     /// The place, and the bits behind its point.
-    #[inline(always)]
+    #[inline]
     pub(super) fn map(&self, x: u64) -> (u64, u64) {
         let product =
             (u128::from(x.wrapping_sub(self.first) << self.left) * u128::from(self.factor)) >> (self.right % 64);

@@ -7,6 +7,7 @@ use super::importances::{State, Table, is_scale};
 use super::kernel::Kernel;
 use crate::Error;
 use crate::checksum::Crc;
+use crate::slices::{first, from, from_mut};
 
 /// Bytes before the importances.
 pub const HEADER_BYTES: usize = 32;
@@ -49,7 +50,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
         for (to, from) in bytes.iter_mut().zip(fields.into_iter().flatten()) {
             *to = *from;
         }
-        for (to, q) in bytes.get_mut(HEADER_BYTES..).unwrap_or_default().chunks_exact_mut(4).zip(importances) {
+        for (to, q) in from_mut(bytes, HEADER_BYTES).chunks_exact_mut(4).zip(importances) {
             to.iter_mut().zip(q.to_le_bytes()).for_each(|(to, from)| *to = from);
         }
         let checksum = checksum(bytes).to_le_bytes();
@@ -103,7 +104,7 @@ fn check(bytes: &[u8]) -> Result<State, Error> {
     if bytes.len() != saved_len(items) {
         return Err(Error::Length);
     }
-    let mut reader = Reader(bytes.get(16..).unwrap_or_default());
+    let mut reader = Reader(from(bytes, 16));
     let scale = f64::from_le_bytes(reader.take().ok_or(Error::Length)?);
     let uniform_fraction = f32::from_le_bytes(reader.take().ok_or(Error::Length)?);
     let stored = u32::from_le_bytes(reader.take().ok_or(Error::Length)?);
@@ -116,13 +117,12 @@ fn check(bytes: &[u8]) -> Result<State, Error> {
 }
 
 fn values(bytes: &[u8]) -> impl Iterator<Item = f32> {
-    bytes.get(HEADER_BYTES..).unwrap_or_default().as_chunks().0.iter().map(|&q| f32::from_le_bytes(q))
+    from(bytes, HEADER_BYTES).as_chunks().0.iter().map(|&q| f32::from_le_bytes(q))
 }
 
 /// That of all bytes but the checksum's own.
 fn checksum(bytes: &[u8]) -> u32 {
-    let before = bytes.get(..CHECKSUM).unwrap_or_default();
-    Crc::new().add(before).add(bytes.get(HEADER_BYTES..).unwrap_or_default()).finish()
+    Crc::new().add(first(bytes, CHECKSUM)).add(from(bytes, HEADER_BYTES)).finish()
 }
 
 /// Takes fields off the front of bytes.

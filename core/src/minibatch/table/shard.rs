@@ -141,7 +141,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// assert!(index.iter().zip(weight).all(|(&i, w)| i != 0 || (w - 1.0 / (4.0 * 0.2)).abs() < 1e-5));
     /// # Ok::<(), noisefloor::Error>(())
     /// ```
-    #[inline(always)]
+    #[inline]
     pub fn draw_shard(
         &self,
         all: &Shard,

@@ -4,6 +4,7 @@
 //! adds a difference to some of them, and as integers lose nothing the sums are those of a tree built afresh, bit for
 //! bit.
 
+use crate::slices::{first, from};
 use core::hint::select_unpredictable;
 
 /// How many children a node has.
@@ -48,15 +49,15 @@ impl Levels {
     }
 
     /// The first node of each level, from the lowest to the highest.
-    #[inline(always)]
+    #[inline]
     pub(super) fn starts(&self) -> &[usize] {
-        self.start.get(..self.depth).unwrap_or_default()
+        first(&self.start, self.depth)
     }
 }
 
 /// How many children end at or before `r`: the child that `r`, below the node's weight, falls on. Never one of
 /// weight 0.
-#[inline(always)]
+#[inline]
 pub(super) fn find(node: &Node, r: i64) -> usize {
     let mut count = 0;
     for &end in node {
@@ -66,7 +67,7 @@ pub(super) fn find(node: &Node, r: i64) -> usize {
 }
 
 /// Where a child begins and ends.
-#[inline(always)]
+#[inline]
 pub(super) fn span(node: &Node, child: usize) -> (i64, i64) {
     // A branch would be mispredicted once in 16 times.
     let begin = select_unpredictable(child == 0, 0, node[child.wrapping_sub(1) % CHILDREN]);
@@ -74,7 +75,7 @@ pub(super) fn span(node: &Node, child: usize) -> (i64, i64) {
 }
 
 /// Changes a child's weight by `difference`.
-#[inline(always)]
+#[inline]
 pub(super) fn add(node: &mut Node, child: usize, difference: i64) {
     let mut ends = *node;
     for (i, end) in ends.iter_mut().enumerate() {
@@ -84,7 +85,7 @@ pub(super) fn add(node: &mut Node, child: usize, difference: i64) {
 }
 
 /// Changes each child's weight by its difference.
-#[inline(always)]
+#[inline]
 pub(super) fn add_all(node: &mut Node, differences: &Node) {
     let mut sum = 0i64;
     for (end, difference) in node.iter_mut().zip(differences) {
@@ -98,7 +99,7 @@ pub(super) fn raise(nodes: &mut [Node], levels: &Levels) {
     for pair in levels.starts().windows(2) {
         let &[below, above] = pair else { return };
         let Some((lower, upper)) = nodes.split_at_mut_checked(above) else { return };
-        let lower = lower.get(below..).unwrap_or_default();
+        let lower = from(lower, below);
         for (node, children) in upper.iter_mut().zip(lower.chunks(CHILDREN)) {
             let mut sum = 0;
             let mut children = children.iter();

@@ -5,6 +5,7 @@ use super::importances::{Table, check_importances, power_of_two};
 use super::kernel::{Kernel, Portable};
 use super::tree::{self, CHILDREN, Levels, Node};
 use crate::Error;
+use crate::slices::{first_mut, halves_mut};
 
 /// How many changes go up the tree together.
 const CHUNK: usize = 64;
@@ -27,7 +28,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     ///
     /// Errors, which change nothing: [`Error::Range`] for different lengths, an item that does not exist, a negative
     /// importance, or a momentum outside 0..=1; [`Error::NotFinite`].
-    #[inline(always)]
+    #[inline]
     pub fn update(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
         check_importances(importance)?;
         if !momentum.is_finite() {
@@ -89,14 +90,14 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     /// every importance is the f32 sum. Takes time for every item; the uniform fraction does the same for nothing.
     ///
     /// Errors: [`Error::NotFinite`]; [`Error::Range`] for a negative number.
-    #[inline(always)]
+    #[inline]
     pub fn add_epsilon(&mut self, epsilon: f32) -> Result<(), Error> {
         check_importances(&[epsilon])?;
         let items = self.state.items as usize;
         let scale = self.state.scale;
         let levels = self.levels;
         let (blocks, nodes) = self.parts();
-        let (full, rest) = blocks.split_at_mut_checked(items / ARITY).unwrap_or_default();
+        let (full, rest) = halves_mut(blocks, items / ARITY);
         for block in full.iter_mut() {
             *block = block.map(|q| (q + epsilon).min(f32::MAX));
         }
@@ -109,7 +110,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     }
 
     /// Makes the sums follow an item whose importance has been changed.
-    #[inline(always)]
+    #[inline]
     pub(super) fn refresh(&mut self, item: u32) {
         let in_range = self.change(core::iter::once((item, |q| q)));
         self.restore_scale(in_range);
@@ -117,7 +118,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
 
     /// At most [`CHUNK`] changes: an item, and its new importance from the old. False if the sums are beyond their
     /// range, and wrong until they are built again.
-    #[inline(always)]
+    #[inline]
     fn change<F: Fn(f32) -> f32>(&mut self, changes: impl Iterator<Item = (u32, F)>) -> bool {
         let scale = self.state.scale;
         let levels = self.levels;
@@ -144,7 +145,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
             *pending = ((which / CHILDREN) as u32, difference);
             count += 1;
         }
-        let pending = pending.get_mut(..count).unwrap_or_default();
+        let pending = first_mut(&mut pending, count);
         // All changes meet in the root: they are added up first, or each would wait for the one before it.
         let (root, between) = upper.split_last().map_or((None, upper), |(root, between)| (Some(root), between));
         for start in between {
@@ -167,7 +168,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     }
 
     /// Builds the table again if its sum has left the range of its scale.
-    #[inline(always)]
+    #[inline]
     pub(super) fn restore_scale(&mut self, in_range: bool) {
         let sum = self.sum();
         let least = i64::from(self.state.items / ARITY as u32 + 1) * LEAST_WEIGHT;
@@ -197,11 +198,11 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     }
 
     /// The blocks and the nodes, to write.
-    #[inline(always)]
+    #[inline]
     fn parts(&mut self) -> (&mut [Block], &mut [Node]) {
         let (blocks, _) = self.importance.as_mut().as_chunks_mut();
         let (nodes, _) = self.sums.as_mut().as_chunks_mut();
-        (blocks.get_mut(..self.blocks).unwrap_or_default(), nodes.get_mut(..self.levels.nodes()).unwrap_or_default())
+        (first_mut(blocks, self.blocks), first_mut(nodes, self.levels.nodes()))
     }
 }
 
@@ -209,7 +210,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
 const MOST_WEIGHT: f64 = 9_223_372_036_854_774_784.0;
 
 /// The weight of a block: its sum times the scale, rounded, at least 1 if it is not 0.
-#[inline(always)]
+#[inline]
 fn weight(total: f64, scale: f64) -> i64 {
     // A number that no i64 holds is an invalid operation on some processors, though the cast saturates.
     let rounded = (total * scale + 0.5).min(MOST_WEIGHT) as i64;
@@ -217,7 +218,7 @@ fn weight(total: f64, scale: f64) -> i64 {
 }
 
 /// All sums. False if they are beyond their range.
-#[inline(always)]
+#[inline]
 fn build<K: Kernel>(blocks: &[Block], nodes: &mut [Node], levels: &Levels, scale: f64) -> bool {
     let mut in_range = true;
     let mut sum_of_all = 0i64;

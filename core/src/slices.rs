@@ -1,0 +1,62 @@
+//! Parts of slices. What lies outside reads as zero, or as an empty part, so that no index can be out of bounds: the
+//! sizes are checked where memory comes in.
+
+/// Row `index` of `width` entries.
+#[inline]
+pub(crate) fn row_at<T>(matrix: &[T], width: usize, index: usize) -> &[T] {
+    matrix.get(index * width..(index + 1) * width).unwrap_or_default()
+}
+
+/// Row `index` of `width` entries.
+#[inline]
+pub(crate) fn row_at_mut<T>(matrix: &mut [T], width: usize, index: usize) -> &mut [T] {
+    matrix.get_mut(index * width..(index + 1) * width).unwrap_or_default()
+}
+
+/// One entry of a vector.
+#[inline]
+pub(crate) fn at<T: Copy + Default>(vector: &[T], j: usize) -> T {
+    vector.get(j).copied().unwrap_or_default()
+}
+
+/// The entries of a vector from entry `start` on.
+#[inline]
+pub(crate) fn from<T>(vector: &[T], start: usize) -> &[T] {
+    vector.get(start..).unwrap_or_default()
+}
+
+/// The entries of a vector from entry `start` on.
+#[inline]
+pub(crate) fn from_mut<T>(vector: &mut [T], start: usize) -> &mut [T] {
+    vector.get_mut(start..).unwrap_or_default()
+}
+
+/// The first `len` entries of a vector.
+#[inline]
+pub(crate) fn first<T>(vector: &[T], len: usize) -> &[T] {
+    vector.get(..len).unwrap_or_default()
+}
+
+/// The first `len` entries of a vector.
+#[inline]
+pub(crate) fn first_mut<T>(vector: &mut [T], len: usize) -> &mut [T] {
+    vector.get_mut(..len).unwrap_or_default()
+}
+
+/// The first `len` entries of a vector, and the others.
+#[inline]
+pub(crate) fn halves<T>(vector: &[T], len: usize) -> (&[T], &[T]) {
+    vector.split_at_checked(len).unwrap_or_default()
+}
+
+/// The first `len` entries of a vector, and the others.
+#[inline]
+pub(crate) fn halves_mut<T>(vector: &mut [T], len: usize) -> (&mut [T], &mut [T]) {
+    vector.split_at_mut_checked(len).unwrap_or_default()
+}
+
+/// The first N entries of a vector that has as many.
+#[inline]
+pub(crate) fn chunk<T: Copy + Default, const N: usize>(vector: &[T]) -> [T; N] {
+    vector.first_chunk().copied().unwrap_or([T::default(); N])
+}
