@@ -5,6 +5,7 @@ use super::functions;
 use super::limits::{MAX_DIMS, MAX_ORDER, MAX_TERMS};
 use crate::lanes::{self, Lanes};
 use crate::real::Real;
+use core::hint::black_box;
 use heapless::Vec;
 
 /// A column number that stands for the constant function.
@@ -47,8 +48,9 @@ impl Term {
         // The constant is no column: reading past the end gives it.
         let [a, b] = self.sources;
         let constant = lanes::splat(R::ONE);
-        let a = columns.get(usize::from(a)).unwrap_or(&constant);
-        let b = columns.get(usize::from(b)).unwrap_or(&constant);
+        // Behind a black box, or compilers choose anew for every lane.
+        let a = black_box(columns.get(usize::from(a)).unwrap_or(&constant));
+        let b = black_box(columns.get(usize::from(b)).unwrap_or(&constant));
         if self.product {
             return lanes::zip(a, b, |a, b| a * b);
         }

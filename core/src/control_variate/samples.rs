@@ -289,22 +289,35 @@ impl<'a> Reader<'a> {
         values
     }
 
-    /// Writes the position of sample `index` to lane `lane`.
-    #[inline]
-    pub(crate) fn put_position<R: Real, const L: usize>(
+    /// Writes the positions of samples from each `first` on to the lanes from `lane` on, a group of lanes for each step.
+    #[inline(always)]
+    pub(crate) fn put_positions<R: Real, const L: usize>(
         &self,
-        index: usize,
+        first: &[usize; LANES],
+        count: usize,
         lane: usize,
         x: &mut [Lanes<R, L>; MAX_DIMS],
     ) {
-        let row = from(self.samples.u, index * self.stride);
-        match (self.dims, row) {
-            (2, &[a, b, ..]) => [x[0][lane % L], x[1][lane % L]] = [a, b].map(R::from_f32),
-            (3, &[a, b, c, ..]) => {
-                [x[0][lane % L], x[1][lane % L], x[2][lane % L]] = [a, b, c].map(R::from_f32);
+        for (own, first) in first.iter().enumerate() {
+            let mut rows = from(self.samples.u, first * self.stride);
+            for step in 0..count {
+                let lane = lane + step * LANES + own;
+                match (self.dims, rows) {
+                    (2, &[a, b, ..]) => [x[0][lane % L], x[1][lane % L]] = [a, b].map(R::from_f32),
+                    (3, &[a, b, c, ..]) => {
+                        [x[0][lane % L], x[1][lane % L], x[2][lane % L]] = [a, b, c].map(R::from_f32);
+                    }
+                    _ => x.iter_mut().zip(rows).take(self.dims).for_each(|(x, &u)| x[lane % L] = R::from_f32(u)),
+                }
+                rows = from(rows, self.stride);
             }
-            _ => x.iter_mut().zip(row).take(self.dims).for_each(|(x, &u)| x[lane % L] = R::from_f32(u)),
         }
+    }
+
+    /// All values, as they were given.
+    #[inline(always)]
+    pub(crate) fn inputs(&self) -> &'a [f32] {
+        self.samples.f
     }
 
     /// One channel of a sample.

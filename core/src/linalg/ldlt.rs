@@ -1,7 +1,7 @@
 //! A = L D L' for symmetric positive semidefinite matrices: the direct solver of (4.27).
 
 use crate::lanes::{self, LANES, Lanes, dot};
-use crate::matrix::{Triangle, split_at};
+use crate::matrix::{Triangle, from, split_at};
 use crate::real::Real;
 
 /// A pivot below this fraction of its diagonal entry, in units of the type's epsilon, is rounding noise. Its column
@@ -118,9 +118,13 @@ pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
         for k in 0..j {
             let Some((before, v_k)) = split_at(row, k) else { return };
             let mut sum = *v_k;
-            for (a, b) in before.iter().zip(l.left(k)) {
-                sum = lanes::minus_product(sum, *a, *b);
+            let ((pairs, rest), (others, last)) = (before.as_chunks::<2>(), l.left(k).as_chunks::<2>());
+            for ([a, b], [c, d]) in pairs.iter().zip(others) {
+                sum = lanes::minus_product(lanes::minus_product(sum, *a, *c), *b, *d);
                 lanes::keep_together();
+            }
+            if let ([a], [c]) = (rest, last) {
+                sum = lanes::minus_product(sum, *a, *c);
             }
             *v_k = sum;
         }
@@ -144,11 +148,19 @@ pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first:
     for (j, row) in factors.rows().enumerate().skip(first) {
         let Some((before, x_j)) = split_at(x, j) else { return };
         let mut sums = *x_j;
-        for (x, l) in before.iter().zip(row).skip(first) {
+        // Two at a time, or going through them takes as long as the arithmetic.
+        let (pairs, rest) = from(before, first).as_chunks::<2>();
+        let (row, last) = row.get(first..j).unwrap_or_default().as_chunks::<2>();
+        for ([x, y], [l, m]) in pairs.iter().zip(row) {
+            for n in 0..N {
+                sums[n] = lanes::minus_product(lanes::minus_product(sums[n], x[n], *l), y[n], *m);
+            }
+            lanes::keep_together();
+        }
+        if let ([x], [l]) = (rest, last) {
             for n in 0..N {
                 sums[n] = lanes::minus_product(sums[n], x[n], *l);
             }
-            lanes::keep_together();
         }
         *x_j = sums;
     }

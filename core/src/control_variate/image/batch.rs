@@ -1,33 +1,24 @@
-//! Eight groups side by side, a lane each: their samples, and the sums of products that fits are made from.
+//! Eight groups side by side, a lane each: their pixels and samples.
 //!
-//! Slot after slot holds one pixel of each group. Every fourth slot is of one colour: with several samples in each, the
-//! pixels of a colour are corrected by fits to the other three.
+//! A slot holds one pixel of each group, and a block four slots. Every fourth slot is of one colour. Where colours are
+//! corrected by fits to the others, so are the slots of a block: that of the block's own number.
 
 use super::super::config::Config;
-use super::fit::Colours;
-use super::groups::{Group, Groups};
+use super::groups::{Group, Groups, Place};
 use super::known::RELATIVE;
-use super::pixels::Rectangle;
+use super::pixels::Image;
+use super::products::{
+    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sums, add_products, only, plus, plus_four, zip_four,
+};
 use super::terms::{MAX_AXES, Terms};
 use super::{Call, Layout};
 use crate::arena::Arena;
-use crate::basis::MAX_DIMS;
 use crate::error::Error;
-use crate::lanes::{self, LANES, Lanes};
-use crate::matrix::{packed_len, row_at, row_at_mut};
+use crate::lanes::{self, LANES};
+use crate::matrix::{copy, from, from_mut, halves_mut, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 
-/// A number for each of eight groups.
-pub(super) type Eight = Lanes<f32>;
-/// The same for four samples or pixels of each.
-pub(super) type Four = [Eight; AT_ONCE];
-/// Nothing in any lane.
-pub(super) const NONE: Eight = [0.0; LANES];
-/// How many colours there are.
-pub(super) const COLOURS: usize = 4;
-/// Samples whose products are added, or pixels that are corrected, at a time.
-pub(super) const AT_ONCE: usize = 4;
 /// The most numbers of a place.
 pub(super) const MAX_FIXED: usize = 1 + MAX_AXES;
 /// Uniform coordinates from -1 to 1 times this have unit variance.
@@ -50,107 +41,62 @@ pub(super) struct Units {
 /// Eight groups, or eight parts of one.
 pub(super) struct Batch<'a> {
     pub(super) lanes: [Group; LANES],
-    /// The image's numbers of their windows' first pixels.
-    corners: [usize; LANES],
     pub(super) is_joined: bool,
-    /// Pixels of the largest group.
-    pub(super) slots: usize,
+    /// Whether the slots of a block are of one colour.
+    has_colours: bool,
     pub(super) units: [Units; Config::MAX_CHANNELS],
     /// Whether some pixels are in no fit.
     pub(super) leaves_out: bool,
-    /// For each slot, 1 and the pixel's place along each axis, of unit variance; 0 where there is no pixel.
-    pub(super) places: &'a mut [Eight],
-    /// For each slot 1 where a pixel is that fits are made to, else 0.
-    pub(super) inside: &'a mut [Eight],
-    /// For each slot and channel, the lowest and the highest value.
-    pub(super) ranges: &'a mut [Eight],
-    /// For each slot and channel, the coefficient of what is known, and its integral.
-    pub(super) coefficients: &'a mut [Eight],
-    pub(super) integrals: &'a mut [Eight],
+    /// For each block, the given pixels' numbers, as bits; another's where there is none.
+    numbers: &'a mut [Four],
+    /// For each block, 1 and the pixels' places along each axis, of unit variance; 0 where there is no pixel.
+    pub(super) places: &'a mut [Four],
+    /// For each block 1 where a pixel is that fits are made to, else 0.
+    pub(super) inside: &'a mut [Four],
+    /// For each block and channel, the lowest and the highest value.
+    pub(super) ranges: &'a mut [Four],
+    /// For each block and channel, the coefficient of what is known, and its integral.
+    pub(super) coefficients: &'a mut [Four],
+    pub(super) integrals: &'a mut [Four],
     /// Values of a sample.
     pub(super) values: usize,
-    /// For each slot and value, its mean in units.
-    pub(super) means: &'a mut [Eight],
-    /// For each slot the columns of its sample; of several, their means, without the fixed columns.
-    pub(super) columns: &'a mut [Eight],
-    pub(super) sums: Sums<'a>,
+    /// For each block and value, its mean in units.
+    pub(super) means: &'a mut [Four],
+    /// For each block and function, its mean over the pixels' samples.
+    pub(super) functions: &'a mut [Four],
+    /// Of pixels' means, times the root of the number of samples.
+    pub(super) between: Sums<'a>,
+    /// Of several samples in each pixel, of how far they are from their pixel's mean.
+    pub(super) within: Sums<'a>,
 }
 
-/// The sums of products of each part of the pixels.
-pub(super) struct Sums<'a> {
-    /// How many parts there are: colours, halves, or one where nothing is left out but in closed form.
-    parts: usize,
-    /// Of samples. Of several in each pixel, the values are differences from the pixel's first.
-    pub(super) samples: Products<'a>,
-    /// Of pixels with several samples: their means, times the root of their number. The values are those of the samples
-    /// above, then whole.
-    pub(super) pixels: Products<'a>,
-}
-
-/// Sums of products, part after part.
-pub(super) struct Products<'a> {
-    parts: usize,
-    /// Of columns with columns, packed.
-    grams: &'a mut [Eight],
-    /// Of each value with columns.
-    sides: &'a mut [Eight],
-    /// Of each value with itself.
-    squares: &'a mut [Eight],
-}
-
-/// Those of one part.
-pub(super) struct Part<'a> {
-    pub(super) grams: &'a [Eight],
-    pub(super) sides: &'a [Eight],
-    pub(super) squares: &'a [Eight],
-}
-
-/// Sums of products of some parts.
-pub(super) struct Total<'a> {
-    pub(super) gram: &'a mut [Eight],
-    pub(super) sides: &'a mut [Eight],
-    pub(super) squares: &'a mut [Eight],
-}
-
-impl<'a> Total<'a> {
-    pub(super) fn new(columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        Ok(Self {
-            gram: arena.take_lanes(packed_len(columns))?,
-            sides: arena.take_lanes(values * columns)?,
-            squares: arena.take_lanes(values)?,
-        })
-    }
-}
-
-/// Lanes of sums of products of so many columns and values.
-pub(super) fn products_len(columns: usize, values: usize) -> usize {
-    packed_len(columns) + values * columns + values
+/// Blocks of so many slots.
+pub(super) fn blocks(layout: &Layout<'_>, slots: usize) -> usize {
+    if layout.has_colours() { COLOURS * slots.div_ceil(COLOURS * AT_ONCE) } else { slots.div_ceil(AT_ONCE) }
 }
 
 /// Numbers that a batch of so many slots takes.
 pub(super) fn batch_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
-    let (columns, fixed) = (terms.columns(), terms.fixed());
+    let (columns, functions) = (terms.columns(), terms.functions);
     let (channels, values) = (layout.config.channels, layout.values());
     let known = if layout.image.has_known() { 2 * channels + RELATIVE } else { 0 };
-    let each = fixed + 1 + 2 * channels + values + columns + known;
-    let products = products_len(columns, values) + products_len(columns, 2 * values);
-    let sums = COLOURS * products + AT_ONCE * (2 * columns + 3 * values) + values;
-    slots.checked_mul(each)?.checked_add(sums)?.checked_mul(LANES)
-}
-
-/// The lanes where `mask` is not 0; 0 elsewhere, whatever is there.
-#[inline(always)]
-pub(super) fn only(mask: &Eight, value: &Eight) -> Eight {
-    lanes::zip(value, mask, |value, mask| if mask > 0.0 { value } else { 0.0 })
-}
-
-/// The sum lane by lane.
-#[inline(always)]
-pub(super) fn plus(a: &Eight, b: &Eight) -> Eight {
-    lanes::zip(a, b, |a, b| a + b)
+    let each = 2 + terms.fixed() + 2 * channels + values + functions + known;
+    let rows = AT_ONCE * (functions + columns + 2 * values);
+    let pixel = Sums::len(functions, values) + functions + 2 * values;
+    let apart = AT_ONCE * (functions + values) * functions + AT_ONCE * values;
+    let sums = 2 * COLOURS * Sums::len(columns, values) + rows + pixel + apart;
+    blocks(layout, slots).checked_mul(AT_ONCE * each)?.checked_add(sums)?.checked_mul(LANES)
 }
 
 impl Units {
+    /// A value in units. Only what no fit is made to, or is known of it, is far beyond them; its square fits too.
+    #[inline(always)]
+    pub(super) fn apply(&self, value: &Eight) -> Eight {
+        let limited = lanes::zip(value, &self.limits, |value, most| Real::min(Real::max(value, -most), most));
+        let scaled = lanes::zip(&limited, &self.scales, |value, scale| value * scale);
+        lanes::zip(&scaled, &self.offsets, |value, offset| value - offset)
+    }
+
     /// Two to the powers of the exponents.
     #[inline(always)]
     pub(super) fn powers(&self) -> Eight {
@@ -163,118 +109,10 @@ fn power_of_two(exponent: i32) -> f32 {
     f32::from_bits(((exponent + 127).clamp(0, 254) as u32) << 23)
 }
 
-/// Which of the parts a slot, or its colour, belongs to.
-#[inline(always)]
-fn part_of(parts: usize, slot: usize) -> usize {
-    match parts {
-        1 => 0,
-        2 => usize::from(Colours::HALVES[1].has(slot)),
-        _ => slot % COLOURS,
-    }
-}
-
-impl Sums<'_> {
-    /// Whether a part is of some colours.
-    #[inline(always)]
-    fn is_of(&self, part: usize, colours: Colours) -> bool {
-        (0..COLOURS).any(|colour| colours.has(colour) && part_of(self.parts, colour) == part)
-    }
-
-    /// Joins the lanes, in all of them.
-    fn join(&mut self) {
-        let products = [&mut self.samples, &mut self.pixels];
-        products.into_iter().flat_map(Products::each).for_each(|sum| *sum = [lanes::sum(sum); LANES]);
-    }
-
-    /// The sums of the pixels of some colours.
-    #[inline(always)]
-    pub(super) fn total(&self, colours: Colours, products: &Products<'_>, total: &mut Total<'_>) {
-        let sums = [(&mut *total.gram, &*products.grams), (total.sides, &*products.sides)];
-        for (out, sums) in sums.into_iter().chain([(&mut *total.squares, &*products.squares)]) {
-            let mut is_first = true;
-            for (_, sums) in rows(sums, out.len()).enumerate().filter(|&(part, _)| self.is_of(part, colours)) {
-                if is_first {
-                    out.iter_mut().zip(sums).for_each(|(out, sum)| *out = *sum);
-                } else {
-                    for (out, sum) in out.iter_mut().zip(sums) {
-                        *out = plus(out, sum);
-                        lanes::keep_together();
-                    }
-                }
-                is_first = false;
-            }
-        }
-    }
-}
-
-impl<'a> Products<'a> {
-    fn new(parts: usize, columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        Ok(Self {
-            parts,
-            grams: arena.take_lanes(parts * packed_len(columns))?,
-            sides: arena.take_lanes(parts * values * columns)?,
-            squares: arena.take_lanes(parts * values)?,
-        })
-    }
-
-    /// The sums of a part.
-    pub(super) fn part(&self, part: usize) -> Part<'_> {
-        let values = self.squares.len().checked_div(self.parts).unwrap_or(0);
-        let columns = self.sides.len().checked_div(self.parts * values).unwrap_or(0);
-        Part {
-            grams: row_at(self.grams, packed_len(columns), part),
-            sides: row_at(self.sides, values * columns, part),
-            squares: row_at(self.squares, values, part),
-        }
-    }
-
-    fn each(&mut self) -> impl Iterator<Item = &mut Eight> {
-        self.grams.iter_mut().chain(self.sides.iter_mut()).chain(self.squares.iter_mut())
-    }
-
-    /// Adds the rows of a block: its columns, and its values.
-    #[inline(always)]
-    fn add(&mut self, part: usize, columns: &[Four], values: &[Four]) {
-        let (width, count) = (columns.len(), values.len());
-        let mut gram = row_at_mut(self.grams, packed_len(width), part);
-        for (i, column) in columns.iter().enumerate() {
-            let Some((row, rest)) = gram.split_at_mut_checked(i + 1) else { return };
-            gram = rest;
-            add_products(row, column, columns);
-        }
-        let squares = row_at_mut(self.squares, count, part);
-        let sides = row_at_mut(self.sides, count * width, part);
-        for ((value, sides), square) in values.iter().zip(rows_mut(sides, width)).zip(squares) {
-            add_products(sides, value, columns);
-            *square = plus_four(*square, value, value);
-        }
-    }
-}
-
-/// Adds to each sum the products of a column with one of `columns`.
-#[inline(always)]
-fn add_products(sums: &mut [Eight], column: &Four, columns: &[Four]) {
-    let column = *column;
-    for (sum, other) in sums.iter_mut().zip(columns) {
-        *sum = plus_four(*sum, &column, other);
-        lanes::keep_together();
-    }
-}
-
-/// A sum and four products, one after the other.
-#[inline(always)]
-fn plus_four(mut sum: Eight, a: &Four, b: &Four) -> Eight {
-    for row in 0..AT_ONCE {
-        sum = lanes::plus_product(sum, a[row], b[row]);
-    }
-    sum
-}
-
 impl<'a> Batch<'a> {
     /// Room for groups of which none is larger than the first.
     pub(super) fn new(
         call: &Call<'_>,
-        groups: &Groups<'_>,
         terms: &Terms,
         lanes: [Group; LANES],
         arena: &mut Arena<'a, f32>,
@@ -282,54 +120,64 @@ impl<'a> Batch<'a> {
         let [Group { len, .. }, ..] = lanes;
         let slots = if call.is_joined() { len.div_ceil(LANES) } else { len };
         let (columns, channels, values) = (terms.columns(), call.config.channels, call.values());
-        let known = if call.image.has_known() { slots * channels } else { 0 };
-        let parts = if call.n > 1 { COLOURS } else { call.turns() };
+        let (blocks, parts) = (blocks(call, slots), if call.has_colours() { COLOURS } else { 1 });
+        let known = if call.image.has_known() { blocks * channels } else { 0 };
         Ok(Self {
             lanes,
-            corners: lanes.map(|group| call.corner(groups, &group)),
             is_joined: call.is_joined(),
-            slots,
+            has_colours: call.has_colours(),
             units: [Units { exponents: [0; LANES], scales: NONE, offsets: NONE, limits: NONE }; Config::MAX_CHANNELS],
             leaves_out: false,
-            places: arena.take_lanes(slots * terms.fixed())?,
-            inside: arena.take_lanes(slots)?,
-            ranges: arena.take_lanes(slots * 2 * channels)?,
-            coefficients: arena.take_lanes(known)?,
-            integrals: arena.take_lanes(known)?,
+            numbers: arena.take_fours(blocks)?,
+            places: arena.take_fours(blocks * terms.fixed())?,
+            inside: arena.take_fours(blocks)?,
+            ranges: arena.take_fours(blocks * 2 * channels)?,
+            coefficients: arena.take_fours(known)?,
+            integrals: arena.take_fours(known)?,
             values,
-            means: arena.take_lanes(slots * values)?,
-            columns: arena.take_lanes(slots * columns)?,
-            sums: Sums {
-                parts,
-                samples: Products::new(parts, columns, values, arena)?,
-                pixels: Products::new(if call.n > 1 { parts } else { 0 }, columns, 2 * values, arena)?,
-            },
+            means: arena.take_fours(blocks * values)?,
+            functions: arena.take_fours(blocks * terms.functions)?,
+            between: Sums::new(parts, columns, values, arena)?,
+            within: Sums::new(if call.n > 1 { parts } else { 0 }, columns, values, arena)?,
         })
     }
 
-    /// Where in a lane's group the pixel of a slot is; None if it has no more.
+    /// The blocks that have pixels of some colours.
     #[inline(always)]
-    pub(super) fn member(&self, lane: usize, slot: usize) -> Option<usize> {
-        let index = if self.is_joined { slot * LANES + lane } else { slot };
-        (index < self.lanes[lane % LANES].len).then_some(index)
+    pub(super) fn blocks(&self, colours: Colours) -> impl Iterator<Item = usize> + use<> {
+        let has_colours = self.has_colours;
+        (0..self.inside.len()).filter(move |&block| !has_colours || colours.has(block))
     }
 
-    /// The image's number of a slot's pixel in a lane, and its column, row and frame in its window.
+    /// Where in its group the pixel of a slot is.
     #[inline(always)]
-    pub(super) fn pixel(
-        &self,
-        call: &Call<'_>,
-        groups: &Groups<'_>,
-        lane: usize,
-        slot: usize,
-    ) -> Option<(usize, [usize; 3])> {
-        let index = self.member(lane, slot)?;
-        if self.is_joined {
-            return Some((index, [0; 3]));
+    pub(super) fn member(&self, (block, row): (usize, usize), lane: usize) -> usize {
+        let slot = if self.has_colours {
+            COLOURS * AT_ONCE * (block / COLOURS) + block % COLOURS + COLOURS * row
+        } else {
+            AT_ONCE * block + row
+        };
+        if self.is_joined { slot * LANES + lane } else { slot }
+    }
+
+    /// The given pixels of a slot; another's where a lane has none.
+    #[inline(always)]
+    pub(super) fn pixels(&self, (block, row): (usize, usize)) -> [usize; LANES] {
+        let numbers = self.numbers.get(block).map_or(NONE, |numbers| numbers[row % AT_ONCE]);
+        numbers.map(|number| number.to_bits() as usize)
+    }
+
+    /// Zero in the lanes of a block's slots without a pixel.
+    #[inline(always)]
+    pub(super) fn empty_missing<'f>(&self, block: usize, columns: impl Iterator<Item = &'f mut Four>) {
+        let fixed = self.places.len().checked_div(self.inside.len()).unwrap_or(0);
+        let Some(one) = row_at(self.places, fixed, block).first() else { return };
+        if *one != [[1.0; LANES]; AT_ONCE] {
+            for column in columns {
+                *column = zip_four(one, column, only);
+                lanes::keep_together();
+            }
         }
-        let [x, y, frame] = groups.place(&self.lanes[lane % LANES], index).split();
-        let Rectangle { width, height, .. } = call.windows.given;
-        Some((self.corners[lane % LANES] + (frame * height + y) * width + x, [x, y, frame]))
     }
 
     /// Where the lanes' pixels are, and between what values theirs lie.
@@ -338,36 +186,47 @@ impl<'a> Batch<'a> {
         let (fixed, channels) = (terms.fixed(), call.config.channels);
         let axes = call.windows.used_axes();
         let scales = axes.map(|axis| (SQRT_3 / call.windows.extent[axis % MAX_AXES].max(1) as f64) as f32);
-        for slot in 0..self.slots {
-            let mut one = NONE;
-            // Of each axis twice where they are, and 1.
-            let mut halves = [[0_i32; LANES]; MAX_AXES];
-            for lane in 0..LANES {
-                let Some((pixel, at)) = self.pixel(call, groups, lane, slot) else { continue };
-                one[lane] = 1.0;
-                for (halves, at) in halves.iter_mut().zip(at) {
-                    halves[lane] = 2 * at as i32 + 1;
-                }
-                let ranges = row_at_mut(self.ranges, 2 * channels, slot);
-                for (channel, range) in rows_mut(ranges, 2).enumerate() {
-                    if let [low, high] = range {
-                        [low[lane], high[lane]] = call.range(pixel, channel);
+        let [width, height] = [call.windows.given.width, call.windows.given.height].map(|extent| extent as u32);
+        let corners = self.lanes.map(|group| call.corner(groups, &group) as u32);
+        let members = self.lanes.map(|group| groups.members(&group));
+        let mut other = None;
+        for block in 0..self.inside.len() {
+            for row in 0..AT_ONCE {
+                let (mut one, mut places) = (NONE, [0.0; LANES].map(Place::read));
+                let mut numbers = [0; LANES];
+                for lane in 0..LANES {
+                    let index = self.member((block, row), lane);
+                    numbers[lane] = index as u32;
+                    one[lane] = if index < self.lanes[lane].len { 1.0 } else { 0.0 };
+                    if let Some(&place) = members[lane].get(index) {
+                        places[lane] = Place::read(place);
                     }
                 }
-            }
-            if let Some((first, places)) = row_at_mut(self.places, fixed, slot).split_first_mut() {
-                *first = one;
-                for (place, (axis, scale)) in places.iter_mut().zip(axes.iter().zip(scales)) {
-                    *place = only(&one, &halves[axis % MAX_AXES].map(|at| at as f32 * scale - SQRT_3 as f32));
-                    lanes::keep_together();
+                let along = Place::split_each(&places);
+                for l in 0..LANES {
+                    if !self.is_joined {
+                        numbers[l] = corners[l] + (along[2][l] * height + along[1][l]) * width + along[0][l];
+                    }
+                    let other = *other.get_or_insert(numbers[l]);
+                    numbers[l] = if one[l] > 0.0 { numbers[l] } else { other };
                 }
-            }
-            for range in row_at_mut(self.ranges, 2 * channels, slot) {
-                *range = only(&one, range);
+                let pixels = numbers.map(|number| (number & Image::MAX_PIXELS) as usize);
+                for (channel, range) in
+                    row_at_mut(self.ranges, 2 * channels, block).as_chunks_mut().0.iter_mut().enumerate()
+                {
+                    let [low, high]: &mut [Four; 2] = range;
+                    [low[row], high[row]] = call.range(&pixels, channel).map(|value| only(&one, &value));
+                }
+                if let (Some(out), Some(inside)) = (self.numbers.get_mut(block), self.inside.get_mut(block)) {
+                    (out[row], inside[row]) = (pixels.map(|pixel| f32::from_bits(pixel as u32)), one);
+                }
+                let Some((first, places)) = row_at_mut(self.places, fixed, block).split_first_mut() else { continue };
+                first[row] = one;
+                for (place, (axis, scale)) in places.iter_mut().zip(axes.iter().zip(scales)) {
+                    let halves = along[axis % MAX_AXES].map(|at| (2 * at + 1) as i32);
+                    place[row] = only(&one, &halves.map(|at| at as f32 * scale - SQRT_3 as f32));
+                }
                 lanes::keep_together();
-            }
-            if let Some(inside) = self.inside.get_mut(slot) {
-                *inside = one;
             }
         }
     }
@@ -383,10 +242,12 @@ impl<'a> Batch<'a> {
                 }
             }
             for (inside, ranges) in self.inside.iter_mut().zip(rows(self.ranges, 2 * channels)) {
-                let &[low, high] = row_at(ranges, 2, channel) else { continue };
-                for l in 0..LANES {
-                    let is_within = lowest[l] <= low[l] && high[l] <= highest[l];
-                    inside[l] = if is_within { inside[l] } else { 0.0 };
+                let [low, high] = row_at(ranges, 2, channel) else { continue };
+                for (inside, (low, high)) in inside.iter_mut().zip(low.iter().zip(high)) {
+                    for l in 0..LANES {
+                        let is_within = lowest[l] <= low[l] && high[l] <= highest[l];
+                        inside[l] = if is_within { inside[l] } else { 0.0 };
+                    }
                 }
             }
         }
@@ -399,13 +260,15 @@ impl<'a> Batch<'a> {
             let mut largest = NONE;
             let mut first = [f32::INFINITY; LANES];
             for (inside, ranges) in self.inside.iter().zip(rows(self.ranges, 2 * channels)) {
-                let &[low, high] = row_at(ranges, 2, channel) else { continue };
-                for l in 0..LANES {
-                    let most = Real::max(Real::abs(low[l]), Real::abs(high[l]));
-                    largest[l] = if inside[l] > 0.0 { Real::max(most, largest[l]) } else { largest[l] };
-                    first[l] = if inside[l] > 0.0 && first[l] == f32::INFINITY { low[l] } else { first[l] };
+                let [low, high] = row_at(ranges, 2, channel) else { continue };
+                for (inside, (low, high)) in inside.iter().zip(low.iter().zip(high)) {
+                    for l in 0..LANES {
+                        let most = Real::max(Real::abs(low[l]), Real::abs(high[l]));
+                        largest[l] = if inside[l] > 0.0 { Real::max(most, largest[l]) } else { largest[l] };
+                        first[l] = if inside[l] > 0.0 && first[l] == f32::INFINITY { low[l] } else { first[l] };
+                    }
+                    lanes::keep_together();
                 }
-                lanes::keep_together();
             }
             if self.is_joined {
                 largest = [largest.into_iter().fold(0.0, Real::max); LANES];
@@ -420,352 +283,223 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// The image's numbers of a slot's pixels; where a lane has none, that of another.
-    #[inline(always)]
-    fn numbers(&self, call: &Call<'_>, groups: &Groups<'_>, slot: usize) -> [usize; LANES] {
-        let first = self.pixel(call, groups, 0, 0).map_or(0, |(pixel, _)| pixel);
-        let mut numbers = [first; LANES];
-        for (lane, number) in numbers.iter_mut().enumerate() {
-            if let Some((pixel, _)) = self.pixel(call, groups, lane, slot) {
-                *number = pixel;
-            }
-        }
-        numbers
-    }
-
     /// Reads all samples and sums their products.
     #[inline(always)]
-    pub(super) fn load(
-        &mut self,
-        call: &Call<'_>,
-        groups: &Groups<'_>,
-        terms: &Terms,
-        arena: &mut Arena<'_, f32>,
-    ) -> Result<(), Error> {
+    pub(super) fn load(&mut self, call: &Call<'_>, terms: &Terms, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
         let mut arena = arena.scratch();
-        let mut samples = Block::new(terms.columns(), self.values, &mut arena)?;
-        let mut pixels = Block::new(terms.columns(), 2 * self.values, &mut arena)?;
-        let first = arena.take_lanes(self.values)?;
+        let mut samples = Rows::new(terms.functions, self.values, &mut arena)?;
+        let mut pixels = Rows::new(terms.columns(), self.values, &mut arena)?;
+        let mut pixel = Pixel::new(terms.functions, self.values, &mut arena)?;
+        let mut apart = Apart::new(terms.functions, self.values, &mut arena)?;
         self.set_units(call.config.channels);
-        self.sums.samples.each().chain(self.sums.pixels.each()).for_each(|sum| *sum = NONE);
-        for part in 0..self.sums.parts {
-            let slots = self.slots;
-            let parts = self.sums.parts;
-            let mut slots = (0..slots).filter(move |&slot| part_of(parts, slot) == part);
+        self.between.empty();
+        self.within.empty();
+        for block in 0..self.inside.len() {
+            let part = if self.has_colours { block % COLOURS } else { 0 };
             if call.n == 1 {
-                while let Some(four) = next_four(&mut slots) {
-                    self.load_singles(call, groups, terms, &mut samples, &four);
-                    self.sums.samples.add(part, samples.columns, samples.values);
-                }
-                continue;
-            }
-            let mut held = 0;
-            for slot in slots {
-                self.load_several(call, groups, terms, &mut samples, (part, slot), first);
-                self.put_means(call, terms, &mut pixels, (slot, held), first);
-                held += 1;
-                if held == AT_ONCE {
-                    self.sums.pixels.add(part, pixels.columns, pixels.values);
-                    held = 0;
+                call.read(self, (block, 0..AT_ONCE), 0..1, &mut samples);
+                copy(row_at_mut(self.functions, terms.functions, block), samples.columns);
+                copy(row_at_mut(self.means, self.values, block), samples.values);
+            } else {
+                for row in 0..AT_ONCE {
+                    self.load_several(call, terms, (block, row), &mut samples, &mut pixel, &mut apart);
                 }
             }
-            if held > 0 {
-                for four in pixels.columns.iter_mut().chain(pixels.values.iter_mut()) {
-                    four.iter_mut().skip(held).for_each(|row| *row = NONE);
+            self.put_means(call, terms, block, &mut pixels);
+            self.between.add(part, pixels.columns, pixels.values);
+            if call.n > 1 {
+                let inside = self.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
+                let mut places = [[NONE; AT_ONCE]; MAX_FIXED];
+                for (out, place) in places.iter_mut().zip(row_at(self.places, terms.fixed(), block)) {
+                    *out = zip_four(&inside, place, only);
                 }
-                self.sums.pixels.add(part, pixels.columns, pixels.values);
+                apart.mirror(terms.functions);
+                self.within.add_apart(part, terms, places.get(..terms.fixed()).unwrap_or_default(), &apart);
             }
         }
         if self.is_joined {
-            self.sums.join();
+            self.between.join();
+            self.within.join();
         }
         Ok(())
     }
 
-    /// Reads the samples of four slots, and keeps their columns and values.
-    #[inline(always)]
-    fn load_singles(
-        &mut self,
-        call: &Call<'_>,
-        groups: &Groups<'_>,
-        terms: &Terms,
-        block: &mut Block<'_>,
-        slots: &[Option<usize>; AT_ONCE],
-    ) {
-        let mut rows = [None; AT_ONCE];
-        for (row, slot) in rows.iter_mut().zip(slots) {
-            *row = slot.map(|slot| Row { slot, sample: 0, pixels: self.numbers(call, groups, slot) });
-        }
-        call.read(self, terms, &rows, block);
-        for (row, slot) in slots.iter().enumerate() {
-            let Some(slot) = *slot else { continue };
-            keep_row(row_at_mut(self.columns, terms.columns(), slot), block.columns, row);
-            keep_row(row_at_mut(self.means, self.values, slot), block.values, row);
-        }
-        self.mask(block, &rows);
-    }
-
-    /// Reads the samples of one slot, adds their products, and keeps the sums of their columns, the values of the first
-    /// and how far the others are from them.
+    /// Reads the samples of one slot: their means, and the products of how far they are from those.
     #[inline(always)]
     fn load_several(
         &mut self,
         call: &Call<'_>,
-        groups: &Groups<'_>,
         terms: &Terms,
-        block: &mut Block<'_>,
-        (part, slot): (usize, usize),
-        first: &mut [Eight],
+        (block, row): (usize, usize),
+        samples: &mut Rows<'_>,
+        pixel: &mut Pixel<'_>,
+        apart: &mut Apart<'_>,
     ) {
-        let pixels = self.numbers(call, groups, slot);
+        let inside = self.inside.get(block).map_or(NONE, |inside| inside[row]);
+        let is_full = inside == [1.0; LANES];
+        pixel.sums.empty();
+        pixel.totals.iter_mut().for_each(|sum| *sum = NONE);
         for begin in (0..call.n).step_by(AT_ONCE) {
-            let mut rows = [None; AT_ONCE];
-            for (row, out) in rows.iter_mut().enumerate() {
-                *out = (begin + row < call.n).then_some(Row { slot, sample: begin + row, pixels });
-            }
-            call.read(self, terms, &rows, block);
+            let count = AT_ONCE.min(call.n - begin);
+            call.read(self, (block, row..row + 1), begin..begin + count, samples);
             if begin == 0 {
-                keep_row(first, block.values, 0);
+                pixel.first.iter_mut().zip(samples.values.iter()).for_each(|(first, values)| *first = values[0]);
             }
             // Differences tell equal values from such as are nearly so.
-            for (values, first) in block.values.iter_mut().zip(first.iter()) {
-                for value in values.iter_mut().take(call.n - begin) {
-                    *value = lanes::zip(value, first, |value, first| value - first);
-                }
+            for (values, first) in samples.values.iter_mut().zip(pixel.first.iter()) {
+                *values = values.map(|value| lanes::zip(&value, first, |value, first| value - first));
             }
-            let sums = row_at_mut(self.columns, terms.columns(), slot).iter_mut().zip(block.columns.iter());
-            let means = row_at_mut(self.means, self.values, slot).iter_mut().zip(block.values.iter());
-            for (sum, [a, b, c, d]) in sums.chain(means) {
-                let before = if begin == 0 { *a } else { plus(sum, a) };
-                *sum = plus(&plus(&plus(&before, b), c), d);
+            let columns = samples.columns.iter_mut().chain(samples.values.iter_mut());
+            for (sum, four) in pixel.totals.iter_mut().zip(columns) {
+                four.iter_mut().skip(count).for_each(|row| *row = NONE);
+                let [a, b, c, d] = &*four;
+                *sum = plus(sum, &plus(&plus(a, b), &plus(c, d)));
                 lanes::keep_together();
             }
-            self.mask(block, &rows);
-            self.sums.samples.add(part, block.columns, block.values);
+            if !is_full {
+                for values in samples.values.iter_mut() {
+                    *values = values.map(|value| only(&inside, &value));
+                }
+            }
+            pixel.sums.add(0, samples.columns, samples.values);
         }
-    }
-
-    /// Makes means of a slot's sums, and a row of them.
-    #[inline(always)]
-    fn put_means(
-        &mut self,
-        call: &Call<'_>,
-        terms: &Terms,
-        block: &mut Block<'_>,
-        (slot, row): (usize, usize),
-        first: &[Eight],
-    ) {
-        let (inverse, root) = (1.0 / call.n as f32, Real::sqrt(call.n as f32));
-        let inside = self.inside.get(slot).copied().unwrap_or(NONE);
-        let put = |out: &mut Four, mean: &Eight| {
-            out[row % AT_ONCE] = only(&inside, &mean.map(|mean| mean * root));
-        };
-        let columns = row_at_mut(self.columns, terms.columns(), slot);
-        for (out, sum) in block.columns.iter_mut().zip(columns.iter_mut()) {
-            *sum = sum.map(|sum| sum * inverse);
-            put(out, sum);
+        let inverse = 1.0 / call.n as f32;
+        let (sums, values) = pixel.totals.split_at_mut_checked(terms.functions).unwrap_or_default();
+        let one = row_at(self.places, terms.fixed(), block).first().map_or(NONE, |one| one[row]);
+        let mean = |sum: &Eight| only(&one, &sum.map(|sum| sum * inverse));
+        for (out, sum) in row_at_mut(self.functions, terms.functions, block).iter_mut().zip(sums.iter()) {
+            out[row] = mean(sum);
             lanes::keep_together();
         }
-        let (differences, whole) = block.values.split_at_mut_checked(self.values).unwrap_or_default();
-        let means = row_at_mut(self.means, self.values, slot).iter_mut().zip(first);
-        for ((mean, first), (difference, whole)) in means.zip(differences.iter_mut().zip(whole)) {
-            *mean = mean.map(|sum| sum * inverse);
-            put(difference, mean);
-            *mean = plus(mean, first);
-            put(whole, mean);
+        for (out, (sum, first)) in
+            row_at_mut(self.means, self.values, block).iter_mut().zip(values.iter().zip(pixel.first.iter()))
+        {
+            out[row] = only(&one, &plus(&mean(sum), first));
         }
-        columns.iter_mut().take(terms.fixed()).for_each(|column| *column = NONE);
+        apart.put(row, &inside, inverse, pixel, terms.functions);
     }
 
-    /// Empties the lanes of pixels that no fit is made to.
+    /// The columns and values of a block's pixels that fits are made to.
     #[inline(always)]
-    fn mask(&self, block: &mut Block<'_>, rows: &[Option<Row>; AT_ONCE]) {
-        if !self.leaves_out {
-            return;
-        }
-        for (row, at) in rows.iter().enumerate() {
-            let inside = at.and_then(|at| self.inside.get(at.slot)).copied().unwrap_or(NONE);
-            for four in block.columns.iter_mut().chain(block.values.iter_mut()) {
-                four[row] = only(&inside, &four[row]);
+    fn put_means(&self, call: &Call<'_>, terms: &Terms, block: usize, pixels: &mut Rows<'_>) {
+        let places = row_at(self.places, terms.fixed(), block);
+        let (fixed, rest) = pixels.columns.split_at_mut_checked(terms.fixed()).unwrap_or_default();
+        let (functions, products) = rest.split_at_mut_checked(terms.functions).unwrap_or_default();
+        copy(fixed, places);
+        copy(functions, row_at(self.functions, terms.functions, block));
+        copy(pixels.values, row_at(self.means, self.values, block));
+        let inside = self.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
+        if self.leaves_out || call.n > 1 {
+            let root = Real::sqrt(call.n as f32);
+            for four in fixed.iter_mut().chain(&mut *functions).chain(pixels.values.iter_mut()) {
+                *four = zip_four(&inside, four, |inside, value| only(inside, &value.map(|value| value * root)));
+                lanes::keep_together();
             }
         }
+        terms.multiply(places, functions, products);
     }
 }
 
-/// The next four slots, or fewer.
-#[inline(always)]
-pub(super) fn next_four(slots: &mut impl Iterator<Item = usize>) -> Option<[Option<usize>; AT_ONCE]> {
-    let first = slots.next()?;
-    Some([Some(first), slots.next(), slots.next(), slots.next()])
+/// Sums over the samples of one pixel of each group.
+struct Pixel<'a> {
+    sums: Sums<'a>,
+    /// Of the functions and values themselves.
+    totals: &'a mut [Eight],
+    /// The first sample's values.
+    first: &'a mut [Eight],
 }
 
-/// Copies a row of a block.
-#[inline(always)]
-fn keep_row(out: &mut [Eight], block: &[Four], row: usize) {
-    for (out, four) in out.iter_mut().zip(block) {
-        *out = four[row % AT_ONCE];
-        lanes::keep_together();
-    }
-}
-
-/// Samples of a slot: those of its pixels with one number.
-#[derive(Clone, Copy)]
-struct Row {
-    slot: usize,
-    sample: usize,
-    /// The image's numbers of the pixels; of another where a lane has none.
-    pixels: [usize; LANES],
-}
-
-/// Columns and values of four rows.
-struct Block<'a> {
-    /// Where they are, and their control functions: what is left of others where there is no row.
-    x: [Lanes<f32, AT_ONCE_LANES>; MAX_DIMS],
-    h: [Lanes<f32, AT_ONCE_LANES>; Config::MAX_CONTROLS],
-    columns: &'a mut [Four],
-    values: &'a mut [Four],
-}
-
-/// Numbers of a [`Four`].
-const AT_ONCE_LANES: usize = AT_ONCE * LANES;
-
-impl<'a> Block<'a> {
-    fn new(columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+impl<'a> Pixel<'a> {
+    fn new(functions: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
         Ok(Self {
-            x: [[0.0; AT_ONCE_LANES]; MAX_DIMS],
-            h: [[0.0; AT_ONCE_LANES]; Config::MAX_CONTROLS],
-            columns: arena.take_lanes(AT_ONCE * columns)?.as_chunks_mut().0,
-            values: arena.take_lanes(AT_ONCE * values)?.as_chunks_mut().0,
+            sums: Sums::new(1, functions, values, arena)?,
+            totals: arena.take_lanes(functions + values)?,
+            first: arena.take_lanes(values)?,
         })
     }
 }
 
-impl Call<'_> {
-    /// A pixel's lowest and highest value, as fits see them.
-    #[inline(always)]
-    fn range(&self, pixel: usize, channel: usize) -> [f32; 2] {
-        let mut range = [f32::INFINITY, f32::NEG_INFINITY];
-        for sample in pixel * self.n..(pixel + 1) * self.n {
-            let value = self.value(pixel, sample, channel);
-            range = [Real::min(value, range[0]), Real::max(value, range[1])];
-        }
-        range
+/// Of four pixels, sums of products of how far samples are from their pixel's mean.
+struct Apart<'a> {
+    /// Of each function and value with each function.
+    functions: &'a mut [Four],
+    values: &'a mut [Four],
+    squares: &'a mut [Four],
+}
+
+impl<'a> Apart<'a> {
+    fn new(functions: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+        Ok(Self {
+            functions: arena.take_fours(functions * functions)?,
+            values: arena.take_fours(values * functions)?,
+            squares: arena.take_fours(values)?,
+        })
     }
 
-    /// A channel of a sample, divided by its pixel's factor.
+    /// Sets those of one pixel: the sums of products less those of means.
     #[inline(always)]
-    pub(super) fn value(&self, pixel: usize, sample: usize, channel: usize) -> f32 {
-        self.over_factor(self.reader.input(sample, channel), pixel, channel)
-    }
-
-    /// What is known of it, divided likewise.
-    #[inline(always)]
-    pub(super) fn known(&self, pixel: usize, sample: usize, channel: usize) -> f32 {
-        let known = self.image.known.get(sample * self.config.channels + channel).copied().unwrap_or(0.0);
-        self.over_factor(known, pixel, channel)
-    }
-
-    /// The integral of what is known, divided likewise.
-    #[inline(always)]
-    pub(super) fn integral(&self, pixel: usize, channel: usize) -> f32 {
-        let integral = self.image.known_integrals.get(pixel * self.config.channels + channel).copied().unwrap_or(0.0);
-        self.over_factor(integral, pixel, channel)
-    }
-
-    /// Divides by a pixel's factor.
-    #[inline(always)]
-    fn over_factor(&self, value: f32, pixel: usize, channel: usize) -> f32 {
-        if self.image.factors.is_empty() {
-            return value;
-        }
-        let most = f64::from(f32::MAX);
-        (f64::from(value) / self.factor(pixel, channel)).clamp(-most, most) as f32
-    }
-
-    /// What a pixel's values are divided by. Black says nothing about what it multiplies: 1.
-    #[inline(always)]
-    pub(super) fn factor(&self, pixel: usize, channel: usize) -> f64 {
-        let factor = self.image.factors.get(pixel * self.config.channels + channel).copied().unwrap_or(1.0);
-        if factor > 0.0 { f64::from(factor) } else { 1.0 }
-    }
-
-    /// Reads four rows of samples: their columns, and their values in units. Zero where there is no pixel.
-    #[inline(always)]
-    fn read(&self, batch: &Batch<'_>, terms: &Terms, rows: &[Option<Row>; AT_ONCE], block: &mut Block<'_>) {
-        let Block { x, h, columns, values } = block;
-        let (fixed, functions) = columns.split_at_mut_checked(terms.fixed()).unwrap_or_default();
-        let mut is_full = true;
-        for (row, at) in rows.iter().enumerate() {
-            let places = at.as_ref().map_or(&[][..], |at| row_at(batch.places, terms.fixed(), at.slot));
-            for (j, column) in fixed.iter_mut().enumerate() {
-                column[row] = places.get(j).copied().unwrap_or(NONE);
+    fn put(&mut self, at: usize, inside: &Eight, inverse: f32, pixel: &Pixel<'_>, width: usize) {
+        let (totals, values) = pixel.totals.split_at_checked(width).unwrap_or_default();
+        let Part { gram, sides, squares } = pixel.sums.part(0);
+        let put = |out: &mut [Four], sums: &[Eight], total: &Eight| {
+            let mean = total.map(|total| total * inverse);
+            for (out, (sum, other)) in out.iter_mut().zip(sums.iter().zip(totals)) {
+                out[at % AT_ONCE] = lanes::minus_product(*sum, mean, *other);
                 lanes::keep_together();
             }
-            let one = places.first().copied().unwrap_or(NONE);
-            is_full &= one == [1.0; LANES];
-            let Some(at) = at else {
-                values.iter_mut().for_each(|value| value[row] = NONE);
-                continue;
-            };
-            for (lane, pixel) in at.pixels.iter().enumerate() {
-                self.reader.put_position(pixel * self.n + at.sample, row * LANES + lane, x);
-            }
-            if self.config.controls > 0 {
-                for (lane, pixel) in at.pixels.iter().enumerate() {
-                    self.reader.get(pixel * self.n + at.sample).put(row * LANES + lane, x, h);
-                }
-            }
-            self.read_values(batch, at, row, values);
-            for (value, units) in values.iter_mut().zip(batch.units.iter().take(self.config.channels).cycle()) {
-                // Only what no fit is made to, or is known of it, is far beyond the unit; its square fits too.
-                let limited =
-                    lanes::zip(&value[row], &units.limits, |value, most| Real::min(Real::max(value, -most), most));
-                let scaled = lanes::zip(&only(&one, &limited), &units.scales, |value, scale| value * scale);
-                value[row] = only(&one, &lanes::zip(&scaled, &units.offsets, |value, offset| value - offset));
-                lanes::keep_together();
-            }
+        };
+        for (j, (out, total)) in rows_mut(self.functions, width).zip(totals).enumerate() {
+            put(out, row(gram, j), total);
         }
-        let (functions, products) = functions.split_at_mut_checked(terms.functions).unwrap_or_default();
-        let wide = functions.as_flattened_mut().as_flattened_mut().as_chunks_mut::<AT_ONCE_LANES>().0;
-        self.reader.columns(self.basis, x, h, wide);
-        if let (false, Some(one)) = (is_full, fixed.first()) {
-            for column in functions.iter_mut() {
-                for row in 0..AT_ONCE {
-                    column[row] = only(&one[row], &column[row]);
+        let each = values.iter().zip(squares.iter().zip(rows(sides, width)));
+        let out = self.squares.iter_mut().zip(rows_mut(self.values, width));
+        for ((total, (square, sides)), (out, others)) in each.zip(out) {
+            let left = lanes::minus_product(*square, total.map(|total| total * inverse), *total);
+            out[at % AT_ONCE] = only(inside, &left.map(|square| Real::max(square, 0.0)));
+            put(others, sides, total);
+        }
+    }
+
+    /// Copies what is below the diagonal to above it.
+    #[inline(always)]
+    fn mirror(&mut self, width: usize) {
+        for j in 0..width {
+            for k in 0..j {
+                let product = self.functions.get(j * width + k).copied();
+                if let (Some(product), Some(out)) = (product, self.functions.get_mut(k * width + j)) {
+                    *out = product;
                 }
                 lanes::keep_together();
             }
         }
+    }
+}
+
+impl Sums<'_> {
+    /// Adds what four pixels' samples say within their pixels. A pixel's place is the same for all of them, so that
+    /// products with it are made here. The fixed columns do not change within a pixel.
+    #[inline(always)]
+    fn add_apart(&mut self, part: usize, terms: &Terms, places: &[Four], apart: &Apart<'_>) {
+        let (fixed, width, columns) = (terms.fixed(), terms.functions, terms.columns());
         let (first, count) = terms.moving;
-        let moving = functions.get(first..first + count).unwrap_or(&[]);
-        for (products, axis) in rows_mut(products, count).zip(fixed.iter().skip(1)) {
-            for (out, function) in products.iter_mut().zip(moving) {
-                for row in 0..AT_ONCE {
-                    out[row] = lanes::zip(&function[row], &axis[row], |function, axis| function * axis);
+        let Part { gram, sides, squares } = self.part_mut(part);
+        for (i, (factor, function)) in terms.changing(places).enumerate() {
+            let others = row_at(apart.functions, width, function);
+            let (plain, products) = halves_mut(from_mut(row_mut(gram, fixed + i), fixed), width.min(i + 1));
+            add_products(plain, factor, others);
+            for (out, axis) in products.chunks_mut(count.max(1)).zip(places.iter().skip(1)) {
+                let factor = zip_four(factor, axis, |a, b| lanes::zip(a, b, |a, b| a * b));
+                add_products(out, &factor, from(others, first));
+            }
+        }
+        let values = rows(apart.values, width).zip(apart.squares.iter());
+        for ((products, square), (sides, out)) in values.zip(rows_mut(sides, columns).zip(squares)) {
+            for (side, (factor, function)) in from_mut(sides, fixed).iter_mut().zip(terms.changing(places)) {
+                if let Some(product) = products.get(function) {
+                    *side = plus_four(*side, factor, product);
                 }
-                lanes::keep_together();
             }
-        }
-    }
-
-    /// A row's values, as they were given but for factors and what is known of them.
-    #[inline(always)]
-    fn read_values(&self, batch: &Batch<'_>, at: &Row, row: usize, values: &mut [Four]) {
-        let channels = self.config.channels;
-        let (inputs, rest) = values.split_at_mut_checked(channels).unwrap_or_default();
-        for (channel, value) in inputs.iter_mut().enumerate() {
-            for (lane, pixel) in at.pixels.iter().enumerate() {
-                value[row][lane] = self.value(*pixel, pixel * self.n + at.sample, channel);
-            }
-        }
-        let [coefficients, integrals] =
-            [&*batch.coefficients, &*batch.integrals].map(|all| row_at(all, channels, at.slot));
-        let known = coefficients.iter().zip(integrals).zip(rest.iter_mut()).zip(inputs.iter());
-        for (channel, (((coefficient, integral), out), value)) in known.enumerate() {
-            for (lane, pixel) in at.pixels.iter().enumerate() {
-                let apart = self.known(*pixel, pixel * self.n + at.sample, channel) - integral[lane];
-                out[row][lane] = value[row][lane] - coefficient[lane] * apart;
-            }
+            *out = square.iter().fold(*out, |sum, square| plus(&sum, square));
         }
     }
 }

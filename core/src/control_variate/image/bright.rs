@@ -3,8 +3,8 @@
 //! A fit has seen them, and even a fit that is hardly trusted then moves the other pixels by more than their own error.
 //! So where the mean is trusted most, such pixels are left out of the fits to others.
 
-use super::batch::{Batch, Eight, NONE, plus};
-use super::fit::Colours;
+use super::batch::Batch;
+use super::products::{Colours, Eight, NONE, plus};
 use crate::lanes::{self, LANES};
 use crate::matrix::row_at;
 
@@ -64,7 +64,7 @@ pub(super) type Limits = [Option<[f32; 2]>; LANES];
 pub(super) fn limits(batch: &Batch<'_>, channels: usize, channel: usize, judges: Colours, trust: &Eight) -> Limits {
     let is_halved = judges != Colours::ALL;
     let mut counts = NONE;
-    for (_, inside) in batch.inside.iter().enumerate().filter(|&(slot, _)| judges.has(slot)) {
+    for inside in batch.blocks(judges).filter_map(|block| batch.inside.get(block)).flatten() {
         counts = plus(&counts, inside);
     }
     if batch.is_joined {
@@ -74,19 +74,21 @@ pub(super) fn limits(batch: &Batch<'_>, channels: usize, channel: usize, judges:
     let kept = 1 + aside.into_iter().fold(0, usize::max);
     let (mut highest, mut lowest) = (Highest::new(), Highest::new());
     let (mut most, mut least) = (Highest::new(), Highest::new());
-    for (slot, inside) in batch.inside.iter().enumerate() {
-        let &[low, high] = row_at(batch.ranges, 2, slot * channels + channel) else { continue };
-        let seen = |value: Eight| {
-            lanes::zip(&value, inside, |value, inside| if inside > 0.0 { value } else { f32::NEG_INFINITY })
-        };
-        let (high, low) = (seen(high), seen(low.map(|low| -low)));
-        if judges.has(slot) {
-            highest.add(high, kept);
-            lowest.add(low, kept);
-        }
-        if is_halved {
-            most.add(high, 1);
-            least.add(low, 1);
+    for (block, inside) in batch.inside.iter().enumerate() {
+        let [low, high] = row_at(batch.ranges, 2, block * channels + channel) else { continue };
+        for (inside, (low, high)) in inside.iter().zip(low.iter().zip(high)) {
+            let seen = |value: Eight| {
+                lanes::zip(&value, inside, |value, inside| if inside > 0.0 { value } else { f32::NEG_INFINITY })
+            };
+            let (high, low) = (seen(*high), seen(low.map(|low| -low)));
+            if !is_halved || judges.has(block) {
+                highest.add(high, kept);
+                lowest.add(low, kept);
+            }
+            if is_halved {
+                most.add(high, 1);
+                least.add(low, 1);
+            }
         }
     }
     if batch.is_joined {

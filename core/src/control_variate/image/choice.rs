@@ -2,8 +2,11 @@
 
 use super::super::trust;
 use super::Layout;
-use super::batch::{Batch, COLOURS, Eight, MAX_FIXED, NONE, only, plus};
-use super::fit::{Colours, Fits};
+use super::batch::{Batch, MAX_FIXED};
+use super::fit::Fits;
+use super::products::{
+    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, add_products, combine, only, plus, plus_four, zip_four,
+};
 use super::terms::Terms;
 use crate::arena::Arena;
 use crate::error::Error;
@@ -36,7 +39,7 @@ impl Choices {
 
     /// Lanes of workspace.
     pub(super) fn len(&self) -> usize {
-        self.channels * self.count * (SPREADS + MAX_SHARES)
+        self.channels * self.count * (SPREADS + MAX_SHARES) + AT_ONCE * self.count
     }
 
     /// Which value of a sample a choice is of, and which fit it has: 0 for none.
@@ -45,16 +48,19 @@ impl Choices {
         if choice <= self.fits { (channel, choice) } else { (self.channels + channel, choice - self.fits - 1) }
     }
 
-    /// Writes the estimates of a channel of a slot's pixels, wherever they are.
+    /// Writes the estimates of a channel of a block's pixels that fits are made to.
     #[inline(always)]
-    fn estimate(&self, batch: &Batch<'_>, fits: &Fits<'_>, (slot, channel): (usize, usize), estimates: &mut [Eight]) {
+    fn estimate(&self, batch: &Batch<'_>, fits: &Fits<'_>, (block, channel): (usize, usize), estimates: &mut [Four]) {
+        let inside = batch.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
         for (kind, estimates) in rows_mut(estimates, 1 + self.fits).enumerate() {
             let value = channel + kind * self.channels;
-            let mean = batch.means.get(slot * batch.values + value).copied().unwrap_or(NONE);
+            let Some(mean) = row_at(batch.means, batch.values, block).get(value) else { return };
             let Some((plain, corrected)) = estimates.split_first_mut() else { return };
-            *plain = mean;
-            for (out, correction) in corrected.iter_mut().zip(fits.corrections(slot, value)) {
-                *out = plus(&mean, correction);
+            *plain = zip_four(&inside, mean, only);
+            for (out, correction) in corrected.iter_mut().zip(fits.corrections(block, value)) {
+                for row in 0..AT_ONCE {
+                    out[row] = only(&inside[row], &plus(&mean[row], &correction[row]));
+                }
                 lanes::keep_together();
             }
         }
@@ -62,7 +68,7 @@ impl Choices {
 }
 
 /// Lanes of each choice of [`Spreads`], with those that are needed to make them.
-const SPREADS: usize = 4 + MAX_FIXED;
+const SPREADS: usize = 3 + MAX_FIXED;
 /// How many shares of each choice are kept: those that either half, or all pixels, chose.
 const MAX_SHARES: usize = 2;
 
@@ -134,28 +140,21 @@ impl<'a> Spreads<'a> {
             *sum = NONE;
         }
         let mut factor = [NONE; packed_len(MAX_FIXED)];
-        let slots = || batch.inside.iter().enumerate().filter(|&(slot, _)| taken.has(slot));
-        let estimates = arena.take_lanes(choices.count)?;
-        for (slot, inside) in slots() {
-            let places = row_at(batch.places, fixed, slot);
+        let estimates = arena.take_fours(choices.count)?;
+        for block in batch.blocks(taken) {
+            let places = row_at(batch.places, fixed, block);
+            let Some(inside) = batch.inside.get(block) else { continue };
             for (j, place) in places.iter().enumerate() {
-                let place = lanes::zip(place, inside, |place, inside| place * inside);
-                for (sum, other) in row_mut(&mut factor, j).iter_mut().zip(places) {
-                    lanes::add_product(sum, &place, other);
-                    lanes::keep_together();
-                }
+                let place = zip_four(inside, place, only);
+                add_products(row_mut(&mut factor, j), &place, places);
             }
             for channel in 0..choices.channels {
-                choices.estimate(batch, fits, (slot, channel), estimates);
+                choices.estimate(batch, fits, (block, channel), estimates);
                 let squares = row_at_mut(squares, choices.count, channel);
                 let trends = rows_mut(row_at_mut(trends, choices.count * fixed, channel), fixed);
                 for ((estimate, square), trend) in estimates.iter().zip(squares).zip(trends) {
-                    let estimate = only(inside, estimate);
-                    lanes::add_product(square, &estimate, &estimate);
-                    for (sum, place) in trend.iter_mut().zip(places) {
-                        lanes::add_product(sum, &estimate, place);
-                        lanes::keep_together();
-                    }
+                    *square = plus_four(*square, estimate, estimate);
+                    add_products(trend, estimate, places);
                 }
             }
         }
@@ -174,19 +173,18 @@ impl<'a> Spreads<'a> {
             ldlt::solve_each(&factor, trend);
         }
         // The difference of the sums of squares would lose the digits that matter beside a strong trend.
-        for (slot, inside) in slots() {
-            let places = row_at(batch.places, fixed, slot);
+        for block in batch.blocks(taken) {
+            let places = row_at(batch.places, fixed, block);
+            let Some(inside) = batch.inside.get(block) else { continue };
             for channel in 0..choices.channels {
-                choices.estimate(batch, fits, (slot, channel), estimates);
+                choices.estimate(batch, fits, (block, channel), estimates);
                 let sums = row_at_mut(sums, choices.count, channel);
                 let trends = rows(row_at(trends, choices.count * fixed, channel), fixed);
-                for ((rest, sum), trend) in estimates.iter_mut().zip(sums).zip(trends) {
-                    for (place, slope) in places.iter().zip(trend) {
-                        *rest = lanes::minus_product(*rest, *place, *slope);
-                        lanes::keep_together();
-                    }
-                    let rest = only(inside, rest);
-                    lanes::add_product(sum, &rest, &rest);
+                for ((estimate, sum), trend) in estimates.iter().zip(sums).zip(trends) {
+                    let trend = combine([NONE; AT_ONCE], places, trend);
+                    let rest = zip_four(estimate, &trend, |estimate, trend| lanes::zip(estimate, trend, |a, b| a - b));
+                    let rest = zip_four(inside, &rest, only);
+                    *sum = plus_four(*sum, &rest, &rest);
                     lanes::keep_together();
                 }
             }

@@ -4,14 +4,15 @@
 
 use super::super::config::Ridge;
 use super::super::ridge;
-use super::batch::{AT_ONCE, Batch, COLOURS, Eight, MAX_FIXED, NONE, Total, next_four, only, products_len};
+use super::batch::{Batch, MAX_FIXED, blocks};
+use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only};
 use super::terms::Terms;
 use super::{Call, Layout};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
-use crate::matrix::{packed_len, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{copy, first_mut, from, from_mut, packed_len, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 
@@ -22,27 +23,6 @@ const ROUNDING: f32 = 1e-5;
 /// The least that 1 less a sample's leverage is taken for.
 const SINGULAR: f32 = 64.0 * f32::EPSILON;
 
-/// Some of the colours, a bit each.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) struct Colours(pub(super) u8);
-
-impl Colours {
-    pub(super) const ALL: Self = Self(0b1111);
-    /// Either half of them.
-    pub(super) const HALVES: [Self; 2] = [Self(0b1001), Self(0b0110)];
-
-    /// Whether the pixel of a slot is of one of these.
-    #[inline(always)]
-    pub(super) fn has(self, slot: usize) -> bool {
-        self.0 >> (slot % COLOURS) & 1 == 1
-    }
-
-    /// These without one.
-    fn without(self, colour: usize) -> Self {
-        Self(self.0 & !(1 << colour))
-    }
-}
-
 /// Lanes of [`Fits::within`].
 fn within_len(terms: &Terms, values: usize, n: usize) -> usize {
     if n > 1 { values * COLOURS * (1 + terms.ends.len()) } else { 0 }
@@ -50,8 +30,8 @@ fn within_len(terms: &Terms, values: usize, n: usize) -> usize {
 
 /// Fits to the pixels of a batch.
 pub(super) struct Fits<'a> {
-    /// For each slot and value, each candidate's correction of its mean.
-    corrections: &'a mut [Eight],
+    /// For each block and value, each candidate's correction of its mean.
+    corrections: &'a mut [Four],
     /// How many candidates there are.
     pub(super) count: usize,
     values: usize,
@@ -60,50 +40,50 @@ pub(super) struct Fits<'a> {
     within: &'a mut [Eight],
     /// Whether pixels have several samples.
     pub(super) has_several: bool,
-    /// A, then its factors; for each channel what the fit is to, then D^-1 L^-1 times it.
-    system: Total<'a>,
+    /// A, then its factors; for each value what the fit is to, then D^-1 L^-1 times it.
+    system: Sums<'a>,
     /// Sums of the pixels' means.
-    between: Total<'a>,
+    between: Sums<'a>,
+    /// Of each value and candidate.
     coefficients: &'a mut [Eight],
     /// 1 / D.
     pivots: &'a mut [Eight],
     /// L^-1 of the fixed columns of the unit matrix.
     units: &'a mut [Eight],
-    /// L^-1 of four slots' columns, and the same without the fixed ones.
-    solved: &'a mut [[Eight; AT_ONCE]],
-    moved: &'a mut [[Eight; AT_ONCE]],
-    /// For each value and four slots, what the columns so far leave of it, and what they explain.
-    residuals: &'a mut [[Eight; AT_ONCE]],
-    fitted: &'a mut [[Eight; AT_ONCE]],
+    /// L^-1 of a block's columns.
+    solved: &'a mut [Four],
     penalties: &'a mut [f32],
 }
 
 /// Numbers that fits take for so many slots.
 pub(super) fn fits_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
-    let (columns, values, n) = (terms.columns(), layout.values(), layout.n);
-    let totals = products_len(columns, values) + products_len(columns, 2 * values);
-    let once = totals + (MAX_FIXED + 2 + 2 * AT_ONCE) * columns + within_len(terms, values, n) + 2 * AT_ONCE * values;
-    slots.checked_mul(terms.ends.len() * values)?.checked_add(once)?.checked_mul(LANES)?.checked_add(columns)
+    let (columns, values, count) = (terms.columns(), layout.values(), terms.ends.len());
+    let totals = 2 * Sums::len(columns, values) + within_len(terms, values, layout.n);
+    let once = totals + (values * count + MAX_FIXED + 1 + AT_ONCE) * columns;
+    let each = AT_ONCE * count * values;
+    blocks(layout, slots).checked_mul(each)?.checked_add(once)?.checked_mul(LANES)?.checked_add(columns)
 }
 
 impl<'a> Fits<'a> {
-    pub(super) fn new(call: &Call<'_>, terms: &Terms, slots: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        let (columns, values) = (terms.columns(), call.values());
+    pub(super) fn new(
+        call: &Call<'_>,
+        terms: &Terms,
+        batch: &Batch<'_>,
+        arena: &mut Arena<'a, f32>,
+    ) -> Result<Self, Error> {
+        let (columns, values, count) = (terms.columns(), call.values(), terms.ends.len());
         let fits = Self {
-            corrections: arena.take_lanes(slots * terms.ends.len() * values)?,
-            count: terms.ends.len(),
+            corrections: arena.take_fours(batch.inside.len() * count * values)?,
+            count,
             values,
             within: arena.take_lanes(within_len(terms, values, call.n))?,
             has_several: call.n > 1,
-            system: Total::new(columns, values, arena)?,
-            between: Total::new(columns, 2 * values, arena)?,
-            coefficients: arena.take_lanes(columns)?,
+            system: Sums::new(1, columns, values, arena)?,
+            between: Sums::new(1, columns, values, arena)?,
+            coefficients: arena.take_lanes(values * count * columns)?,
             pivots: arena.take_lanes(columns)?,
             units: arena.take_lanes(terms.fixed() * columns)?,
-            solved: arena.take_lanes(AT_ONCE * columns)?.as_chunks_mut().0,
-            moved: arena.take_lanes(AT_ONCE * columns)?.as_chunks_mut().0,
-            residuals: arena.take_lanes(AT_ONCE * values)?.as_chunks_mut().0,
-            fitted: arena.take_lanes(AT_ONCE * values)?.as_chunks_mut().0,
+            solved: arena.take_fours(columns)?,
             penalties: arena.take(columns)?,
         };
         terms.penalties(call.config, call.basis, |_| 1.0, fits.penalties);
@@ -113,23 +93,19 @@ impl<'a> Fits<'a> {
     /// Corrects every pixel of the colours `taken`, of which it has seen no sample, by fits to the others of them.
     #[inline(always)]
     pub(super) fn correct(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, taken: Colours) {
-        let is_single = call.n == 1;
-        for colour in 0..if is_single { 1 } else { COLOURS } {
-            if !is_single && !taken.has(colour) {
-                continue;
+        if call.n == 1 {
+            self.factor(call, terms, batch, taken);
+            for block in batch.blocks(taken) {
+                self.apply(terms, batch, block);
+                self.leave_own(terms, batch, block);
             }
-            self.factor(call, terms, batch, if is_single { taken } else { taken.without(colour) });
-            let targets = if is_single { taken } else { Colours(1 << colour) };
-            if !is_single {
-                self.judge(terms, batch, colour);
-            }
-            let mut slots = (0..batch.slots).filter(|&slot| targets.has(slot));
-            while let Some(four) = next_four(&mut slots) {
-                if is_single {
-                    self.apply::<true>(terms, batch, &four);
-                } else {
-                    self.apply::<false>(terms, batch, &four);
-                }
+            return;
+        }
+        for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
+            self.factor(call, terms, batch, taken.without(colour));
+            self.judge(terms, batch, colour);
+            for block in batch.blocks(Colours(1 << colour)) {
+                self.apply(terms, batch, block);
             }
         }
     }
@@ -140,32 +116,37 @@ impl<'a> Fits<'a> {
         row_at(self.within, 1 + self.count, value * COLOURS + colour).get(fit).copied().unwrap_or(NONE)
     }
 
-    /// The candidates' corrections of a value of a slot.
+    /// The candidates' corrections of a value of a block.
     #[inline(always)]
-    pub(super) fn corrections(&self, slot: usize, value: usize) -> &[Eight] {
-        row_at(self.corrections, self.count, slot * self.values + value)
+    pub(super) fn corrections(&self, block: usize, value: usize) -> &[Four] {
+        row_at(self.corrections, self.count, block * self.values + value)
     }
 
     /// The fit to all pixels of some colours.
     #[inline(always)]
     fn factor(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, training: Colours) {
         let width = terms.columns();
-        batch.sums.total(training, &batch.sums.samples, &mut self.system);
-        if call.n > 1 {
-            batch.sums.total(training, &batch.sums.pixels, &mut self.between);
-            self.weigh_means(call, terms);
+        let (mut own, n) = (0.0, call.n as f32);
+        if call.n == 1 {
+            self.system.set_total(&batch.between, training);
+            // One sample less where a pixel's own is left out afterwards.
+            own = 1.0;
+        } else {
+            self.system.set_total(&batch.within, training);
+            self.between.set_total(&batch.between, training);
+            let weight = self.weight_of_means(n, terms.fixed());
+            self.system.add_weighted(&self.between, &weight);
         }
-        let system = &mut *self.system.gram;
+        let counted = if call.n == 1 { &self.system } else { &self.between };
+        let count = counted.part(0).gram.first().copied().unwrap_or(NONE);
         let strength = match call.config.ridge {
             Ridge::Fixed(_) => ridge::single::<f32>(call.config.ridge),
             Ridge::Default | Ridge::Auto => STRENGTH,
         } as f32;
-        // One sample less where a pixel's own is left out afterwards.
-        let (counted, own) = if call.n == 1 { (&*system, 1.0) } else { (&*self.between.gram, 0.0) };
-        let count = counted.first().copied().unwrap_or(NONE);
         let controls = terms.fixed()..terms.fixed() + call.config.controls;
+        let Part { gram, sides, .. } = self.system.part_mut(0);
         for (j, penalty) in self.penalties.iter().enumerate() {
-            let Some(diagonal) = row_mut(system, j).last_mut() else { continue };
+            let Some(diagonal) = row_mut(gram, j).last_mut() else { continue };
             let divisor = if controls.contains(&j) { lanes::divisor(&count) } else { *diagonal };
             for l in 0..LANES {
                 // What a control function is measured in is its maker's choice.
@@ -174,23 +155,35 @@ impl<'a> Fits<'a> {
             }
             lanes::keep_together();
         }
-        ldlt::factor_each(system, width);
+        ldlt::factor_each(gram, width);
         for (j, pivot) in self.pivots.iter_mut().enumerate() {
-            *pivot = row(system, j).last().copied().unwrap_or(NONE);
+            *pivot = row(gram, j).last().copied().unwrap_or(NONE);
         }
-        for side in rows_mut(self.system.sides, width) {
-            ldlt::forward_each::<f32, 1>(system, 0, ldlt::one_each_mut(side));
+        for (side, coefficients) in rows_mut(sides, width).zip(rows_mut(self.coefficients, self.count * width)) {
+            ldlt::forward_each::<f32, 1>(gram, 0, ldlt::one_each_mut(side));
             for (side, pivot) in side.iter_mut().zip(self.pivots.iter()) {
                 *side = lanes::zip(side, pivot, |side, pivot| side * pivot);
                 lanes::keep_together();
+            }
+            for (coefficients, &end) in rows_mut(coefficients, width).zip(&terms.ends) {
+                let coefficients = first_mut(coefficients, end);
+                copy(coefficients, side);
+                ldlt::backward_each(gram, coefficients);
             }
         }
         if call.n == 1 {
             for (k, unit) in rows_mut(self.units, width).enumerate() {
                 unit.iter_mut().enumerate().for_each(|(j, out)| *out = if j == k { [1.0; LANES] } else { NONE });
-                ldlt::forward_each::<f32, 1>(system, k, ldlt::one_each_mut(unit));
+                ldlt::forward_each::<f32, 1>(gram, k, ldlt::one_each_mut(unit));
             }
         }
+    }
+
+    /// A candidate's coefficients for a value.
+    #[inline(always)]
+    fn coefficients(&self, terms: &Terms, value: usize, fit: usize) -> &[Eight] {
+        let all = row_at(self.coefficients, terms.columns(), value * self.count + fit);
+        terms.ends.get(fit).and_then(|&end| all.get(..end)).unwrap_or_default()
     }
 
     /// Several samples in each pixel: weighs what tells pixels apart by how far it is the samples' noise.
@@ -199,24 +192,21 @@ impl<'a> Fits<'a> {
     /// texture's say, a pixel's mean of n samples says s / (s + n t) of what as many samples about it say: least
     /// squares for a random effect. Where samples are all alike, nothing is left to fit.
     #[inline(always)]
-    fn weigh_means(&mut self, call: &Call<'_>, terms: &Terms) {
-        let (width, fixed, values) = (terms.columns(), terms.fixed(), self.values);
-        let n = call.n as f32;
-        let pixels = self.between.gram.first().copied().unwrap_or(NONE).map(|count| count / n);
+    fn weight_of_means(&self, n: f32, fixed: usize) -> Eight {
+        let between = self.between.part(0);
+        let pixels = between.gram.first().copied().unwrap_or(NONE).map(|count| count / n);
         let mut trend = [NONE; packed_len(MAX_FIXED)];
-        trend.iter_mut().zip(self.between.gram.iter()).take(packed_len(fixed)).for_each(|(out, sum)| *out = *sum);
+        copy(first_mut(&mut trend, packed_len(fixed)), between.gram);
         ldlt::factor_each(&mut trend, fixed);
         let mut weight = [1.0; LANES];
-        for value in 0..values {
-            let get = |squares: &[Eight], index: usize| squares.get(index).copied().unwrap_or(NONE);
-            let inside = get(self.system.squares, value);
-            let (means, whole) = (get(self.between.squares, value), get(self.between.squares, values + value));
+        let squares = self.system.part(0).squares.iter().zip(between.squares);
+        let width = self.pivots.len();
+        for ((inside, whole), sides) in squares.zip(rows(between.sides, width)) {
             let mut explained = [NONE; MAX_FIXED];
-            let sides = row_at(self.between.sides, width, values + value);
-            explained.iter_mut().zip(sides).take(fixed).for_each(|(out, side)| *out = *side);
-            let explained = explained.get_mut(..fixed).unwrap_or(&mut []);
+            let explained = first_mut(&mut explained, fixed);
+            copy(explained, sides);
             ldlt::forward_each::<f32, 1>(&trend, 0, ldlt::one_each_mut(explained));
-            let mut apart = whole;
+            let mut apart = *whole;
             for (j, value) in explained.iter().enumerate() {
                 let pivot = row(&trend, j).last().copied().unwrap_or(NONE);
                 apart = lanes::minus_product(apart, lanes::zip(value, &pivot, |value, pivot| value * pivot), *value);
@@ -226,7 +216,7 @@ impl<'a> Fits<'a> {
             let per_freedom = lanes::zip(&apart, &lanes::divisor(&freedom), |apart, freedom| apart / freedom);
             let (mut within, mut largest) = (NONE, NONE);
             for l in 0..LANES {
-                within[l] = Real::max(inside[l] - means[l], 0.0) / samples[l];
+                within[l] = inside[l] / samples[l];
                 largest[l] = if freedom[l] > 0.0 { Real::max(per_freedom[l], within[l]) } else { within[l] };
             }
             let divisor = lanes::divisor(&largest);
@@ -236,154 +226,117 @@ impl<'a> Fits<'a> {
                 weight[l] = if largest[l] > 0.0 { Real::min(share, weight[l]) } else { weight[l] };
             }
         }
-        let (system, between) = (&mut *self.system.gram, &*self.between.gram);
-        for j in 0..width {
-            for (k, (out, means)) in row_mut(system, j).iter_mut().zip(row(between, j)).enumerate() {
-                for l in 0..LANES {
-                    // The fixed columns do not change within a pixel.
-                    let within = if k < fixed { 0.0 } else { out[l] - means[l] };
-                    out[l] = within + weight[l] * means[l];
-                }
-                lanes::keep_together();
-            }
-        }
-        for (value, sides) in rows_mut(self.system.sides, width).enumerate() {
-            let means = row_at(self.between.sides, width, value);
-            let whole = row_at(self.between.sides, width, values + value);
-            for (j, (out, (means, whole))) in sides.iter_mut().zip(means.iter().zip(whole)).enumerate() {
-                for l in 0..LANES {
-                    let within = if j < fixed { 0.0 } else { out[l] - means[l] };
-                    out[l] = within + weight[l] * whole[l];
-                }
-                lanes::keep_together();
-            }
-        }
+        weight
     }
 
     /// What the fit leaves of the samples of a colour that it has not seen, about their pixels' means.
     #[inline(always)]
     fn judge(&mut self, terms: &Terms, batch: &Batch<'_>, colour: usize) {
         let (width, fixed) = (terms.columns(), terms.fixed());
-        let samples = batch.sums.samples.part(colour);
-        let pixels = batch.sums.pixels.part(colour);
-        for value in 0..samples.squares.len() {
-            let within = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour);
-            let difference = |a: &[Eight], b: &[Eight], index: usize| {
-                let [a, b] = [a, b].map(|all| all.get(index).copied().unwrap_or(NONE));
-                lanes::zip(&a, &b, |a, b| a - b)
-            };
-            let whole = difference(samples.squares, pixels.squares, value).map(|whole| Real::max(whole, 0.0));
-            if let Some(out) = within.first_mut() {
-                *out = whole;
-            }
-            let [sides, means] = [samples.sides, pixels.sides].map(|sides| row_at(sides, width, value));
-            for (&end, out) in terms.ends.iter().zip(within.iter_mut().skip(1)) {
-                let coefficients = self.coefficients.get_mut(..end).unwrap_or(&mut []);
-                let solved = row_at(self.system.sides, width, value);
-                coefficients.iter_mut().zip(solved).for_each(|(out, side)| *out = *side);
-                ldlt::backward_each(self.system.gram, coefficients);
-                let mut left = whole;
+        let Part { gram, sides, squares } = batch.within.part(colour);
+        for (value, (whole, sides)) in squares.iter().zip(rows(sides, width)).enumerate() {
+            for fit in 0..=self.count {
+                let mut left = *whole;
+                let coefficients = fit.checked_sub(1).map_or(&[][..], |fit| self.coefficients(terms, value, fit));
                 for (j, b) in coefficients.iter().enumerate().skip(fixed) {
-                    // b_j (G_jj b_j + 2 sum_k G_jk b_k - 2 r_j).
-                    let mut sum = difference(sides, means, j).map(|side| -2.0 * side);
-                    let products = row(samples.grams, j).iter().zip(row(pixels.grams, j));
-                    for (k, ((samples, means), other)) in products.zip(coefficients.iter()).enumerate().skip(fixed) {
-                        let twice = if k < j { 2.0 } else { 1.0 };
-                        for l in 0..LANES {
-                            sum[l] += (samples[l] - means[l]) * (twice * other[l]);
-                        }
+                    let (Some((square, row)), Some(side)) = (row(gram, j).split_last(), sides.get(j)) else { break };
+                    // b_j (G_jj b_j + 2 (sum_k G_jk b_k - r_j)).
+                    let mut sum = side.map(|side| -side);
+                    for (product, other) in from(row, fixed).iter().zip(from(coefficients, fixed)) {
+                        lanes::add_product(&mut sum, product, other);
                         lanes::keep_together();
                     }
+                    let sum = lanes::plus_product(sum.map(|sum| sum + sum), *square, *b);
                     left = lanes::plus_product(left, sum, *b);
                 }
                 // A difference of sums has no more digits than they.
-                *out = lanes::zip(&left, &whole, |left, whole| Real::max(left, whole * ROUNDING));
+                left = lanes::zip(&left, whole, |left, whole| Real::max(left, whole * ROUNDING));
+                let within = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour);
+                if let Some(out) = within.get_mut(fit) {
+                    *out = if fit == 0 { *whole } else { left };
+                }
             }
         }
     }
 
-    /// Corrects four slots. With `OWN` the fit has seen their one sample, which is left out in closed form: with x its
+    /// Corrects a block by the fit. The fixed columns follow the signal, and correct nothing.
+    #[inline(always)]
+    fn apply(&mut self, terms: &Terms, batch: &Batch<'_>, block: usize) {
+        let functions = row_at(batch.functions, terms.functions, block);
+        let places = row_at(batch.places, terms.fixed(), block);
+        let (first, count) = terms.moving;
+        for value in 0..self.values {
+            for fit in 0..self.count {
+                let own = from(self.coefficients(terms, value, fit), terms.fixed());
+                let mut fitted = combine([NONE; AT_ONCE], functions, own);
+                for (axis, own) in places.iter().skip(1).zip(rows(from(own, terms.functions), count)) {
+                    let slope = combine([NONE; AT_ONCE], from(functions, first), own);
+                    for row in 0..AT_ONCE {
+                        fitted[row] = lanes::plus_product(fitted[row], axis[row], slope[row]);
+                    }
+                }
+                let corrections = row_at_mut(self.corrections, self.count, block * self.values + value);
+                if let Some(out) = corrections.get_mut(fit) {
+                    *out = fitted.map(|fitted| fitted.map(|fitted| -fitted));
+                }
+            }
+        }
+    }
+
+    /// Corrects a block further: the fit has seen the pixels' one sample, which is left out in closed form. With x its
     /// columns, h = x'A^-1 x and e its residual, the fit to the others has coefficients b - A^-1 x e / (1 - h).
     #[inline(always)]
-    fn apply<const OWN: bool>(&mut self, terms: &Terms, batch: &Batch<'_>, slots: &[Option<usize>; AT_ONCE]) {
+    fn leave_own(&mut self, terms: &Terms, batch: &Batch<'_>, block: usize) {
         let (width, fixed) = (terms.columns(), terms.fixed());
-        let values = self.values;
-        for (s, slot) in slots.iter().enumerate() {
-            let columns = slot.map_or(&[][..], |slot| row_at(batch.columns, width, slot));
-            for (j, solved) in self.solved.iter_mut().enumerate() {
-                solved[s] = columns.get(j).copied().unwrap_or(NONE);
-                lanes::keep_together();
-            }
-        }
-        ldlt::forward_each(self.system.gram, if OWN { 0 } else { fixed }, self.solved);
-        let moved = if OWN {
-            // The fixed columns follow the signal, and correct nothing.
-            for (moved, solved) in self.moved.iter_mut().zip(self.solved.iter()) {
-                *moved = *solved;
-                lanes::keep_together();
-            }
-            for (k, unit) in rows(self.units, width).enumerate() {
-                let place = slots.map(|slot| {
-                    slot.and_then(|slot| row_at(batch.places, fixed, slot).get(k)).copied().unwrap_or(NONE)
-                });
-                for (moved, unit) in self.moved.iter_mut().zip(unit) {
-                    for s in 0..AT_ONCE {
-                        moved[s] = lanes::minus_product(moved[s], place[s], *unit);
-                    }
-                    lanes::keep_together();
-                }
-            }
-            &*self.moved
-        } else {
-            &*self.solved
-        };
-        let inside = slots.map(|slot| slot.and_then(|slot| batch.inside.get(slot)).copied().unwrap_or(NONE));
-        for (s, slot) in slots.iter().enumerate() {
-            let means = slot.map_or(&[][..], |slot| row_at(batch.means, values, slot));
-            for (at, residual) in self.residuals.iter_mut().enumerate() {
-                residual[s] = means.get(at).copied().unwrap_or(NONE);
-            }
-        }
-        self.fitted.iter_mut().for_each(|fitted| *fitted = [NONE; AT_ONCE]);
-        let (mut leverage, mut reach) = ([NONE; AT_ONCE], [NONE; AT_ONCE]);
-        let mut begin = if OWN { 0 } else { fixed };
+        let places = row_at(batch.places, fixed, block);
+        let functions = row_at(batch.functions, terms.functions, block);
+        let inside = batch.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
+        copy(self.solved, places);
+        let (out, products) = self.solved.split_at_mut_checked(fixed + terms.functions).unwrap_or_default();
+        copy(from_mut(out, fixed), functions);
+        terms.multiply(places, functions, products);
+        ldlt::forward_each(self.system.part(0).gram, 0, self.solved);
+        let mut leverage = [NONE; AT_ONCE];
+        // A^-1 x of the fixed columns.
+        let mut shares = [[NONE; AT_ONCE]; MAX_FIXED];
+        let mut begin = 0;
         for (fit, &end) in terms.ends.iter().enumerate() {
-            let range = begin..end;
-            let (solved, moved) = (self.solved.get(range.clone()), moved.get(range.clone()));
-            let (Some(solved), Some(moved), Some(pivots)) = (solved, moved, self.pivots.get(range.clone())) else {
-                return;
-            };
+            let (solved, pivots) = (self.solved.get_mut(begin..end), self.pivots.get(begin..end));
+            let (Some(solved), Some(pivots)) = (solved, pivots) else { return };
+            for (z, pivot) in solved.iter_mut().zip(pivots) {
+                for row in 0..AT_ONCE {
+                    let scaled = lanes::zip(&z[row], pivot, |z, pivot| z * pivot);
+                    leverage[row] = lanes::plus_product(leverage[row], scaled, z[row]);
+                    z[row] = scaled;
+                }
+                lanes::keep_together();
+            }
+            for (share, unit) in shares.iter_mut().zip(rows(self.units, width)) {
+                *share = combine(*share, solved, unit.get(begin..end).unwrap_or_default());
+            }
             begin = end;
-            if OWN {
-                for ((z, moved), pivot) in solved.iter().zip(moved).zip(pivots) {
-                    for s in 0..AT_ONCE {
-                        let scaled = lanes::zip(&z[s], pivot, |z, pivot| z * pivot);
-                        leverage[s] = lanes::plus_product(leverage[s], scaled, z[s]);
-                        reach[s] = lanes::plus_product(reach[s], scaled, moved[s]);
-                    }
-                    lanes::keep_together();
+            let mut reach = leverage;
+            for (place, share) in places.iter().zip(&shares) {
+                for row in 0..AT_ONCE {
+                    reach[row] = lanes::minus_product(reach[row], place[row], share[row]);
                 }
             }
-            for (value, (residual, fitted)) in self.residuals.iter_mut().zip(self.fitted.iter_mut()).enumerate() {
-                let sides = row_at(self.system.sides, width, value).get(range.clone()).unwrap_or(&[]);
-                for ((z, moved), side) in solved.iter().zip(moved).zip(sides) {
-                    for s in 0..AT_ONCE {
-                        if OWN {
-                            residual[s] = lanes::minus_product(residual[s], *side, z[s]);
-                        }
-                        fitted[s] = lanes::plus_product(fitted[s], *side, moved[s]);
-                    }
-                    lanes::keep_together();
-                }
-                for (s, slot) in slots.iter().enumerate() {
-                    let Some(slot) = slot else { continue };
-                    let at = (slot * values + value) * self.count + fit;
-                    let Some(out) = self.corrections.get_mut(at) else { continue };
-                    // A pixel that no fit is made to is corrected by the fit to all.
-                    let own = if batch.leaves_out { only(&inside[s], &residual[s]) } else { residual[s] };
+            for value in 0..self.values {
+                let trend = self.coefficients(terms, value, fit).get(..fixed).unwrap_or_default();
+                let trend = combine([NONE; AT_ONCE], places, trend);
+                let mean = row_at(batch.means, self.values, block).get(value).copied().unwrap_or([NONE; AT_ONCE]);
+                let corrections = row_at_mut(self.corrections, self.count, block * self.values + value);
+                let Some(out) = corrections.get_mut(fit) else { return };
+                for row in 0..AT_ONCE {
+                    let mut residual = NONE;
                     for l in 0..LANES {
-                        let left = Real::max(1.0 - leverage[s][l], SINGULAR);
-                        out[l] = if OWN { reach[s][l] * (own[l] / left) - fitted[s][l] } else { -fitted[s][l] };
+                        residual[l] = mean[row][l] + out[row][l] - trend[row][l];
+                    }
+                    // A pixel that no fit is made to is corrected by the fit to all.
+                    let residual = if batch.leaves_out { only(&inside[row], &residual) } else { residual };
+                    for l in 0..LANES {
+                        let left = Real::max(1.0 - leverage[row][l], SINGULAR);
+                        out[row][l] += reach[row][l] * (residual[l] / left);
                     }
                     lanes::keep_together();
                 }

@@ -4,6 +4,7 @@ use super::Layout;
 use super::pixels::{Image, Window};
 use crate::arena::Arena;
 use crate::error::Error;
+use crate::lanes::LANES;
 use crate::matrix::{row_at, row_at_mut};
 use heapless::Vec;
 
@@ -32,6 +33,12 @@ impl Place {
     #[inline(always)]
     pub(super) fn split(self) -> [usize; 3] {
         [0, Self::BITS, 2 * Self::BITS].map(|shift| (self.0 >> shift & Self::MASK) as usize)
+    }
+
+    /// The same of eight.
+    #[inline(always)]
+    pub(super) fn split_each(places: &[Self; LANES]) -> [[u32; LANES]; 3] {
+        [0, Self::BITS, 2 * Self::BITS].map(|shift| places.map(|place| place.0 >> shift & Self::MASK))
     }
 
     #[inline(always)]
@@ -211,11 +218,8 @@ impl Layout<'_> {
     fn each_place(&self, mut visit: impl FnMut(Place)) {
         let [width, height, frames] = self.windows.extent;
         for frame in 0..frames {
-            for square in 0..height.div_ceil(2) * width.div_ceil(2) {
-                let row = square / width.div_ceil(2).max(1);
-                let column = square - row * width.div_ceil(2);
-                for part in 0..4 {
-                    let (x, y) = (2 * column + part % 2, 2 * row + part / 2);
+            for (y, x) in (0..height).step_by(2).flat_map(|y| (0..width).step_by(2).map(move |x| (y, x))) {
+                for (x, y) in [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)] {
                     if x < width && y < height {
                         visit(Place::new(x, y, frame));
                     }
@@ -309,9 +313,9 @@ impl Groups<'_> {
         self.limits(layout, group, turn).iter().any(|limit| limit.is_finite())
     }
 
-    /// The place of a group's pixel.
+    /// The places of a group's pixels, to be read; none where all pixels are one group.
     #[inline(always)]
-    pub(super) fn place(&self, group: &Group, pixel: usize) -> Place {
-        Place::read(self.list.get(group.start + pixel).copied().unwrap_or(0.0))
+    pub(super) fn members(&self, group: &Group) -> &[f32] {
+        self.list.get(group.start..group.start + group.len).unwrap_or_default()
     }
 }

@@ -6,8 +6,8 @@
 //! most v, and at most 1. Where more arrives than is known, v says little.
 
 use super::Call;
-use super::batch::{Batch, Eight, NONE, only, plus};
-use super::groups::Groups;
+use super::batch::Batch;
+use super::products::{AT_ONCE, Eight, Four, NONE, only, plus};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
@@ -72,48 +72,45 @@ fn coefficient([mean, known, square, mean_product, integral_product]: &Sums) -> 
 impl Batch<'_> {
     /// Computes the coefficient of each slot and channel.
     #[inline(always)]
-    pub(super) fn relate(
-        &mut self,
-        call: &Call<'_>,
-        groups: &Groups<'_>,
-        arena: &mut Arena<'_, f32>,
-    ) -> Result<(), Error> {
+    pub(super) fn relate(&mut self, call: &Call<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
         let channels = call.config.channels;
         let mut arena = arena.scratch();
+        let inside = self.inside.as_flattened();
         // Of each slot alone, and of all before it.
-        let own = arena.take_lanes(SUMS * self.slots)?.as_chunks_mut::<SUMS>().0;
-        let before = arena.take_lanes(SUMS * self.slots)?.as_chunks_mut::<SUMS>().0;
+        let own = arena.take_lanes(SUMS * inside.len())?.as_chunks_mut::<SUMS>().0;
+        let before = arena.take_lanes(SUMS * inside.len())?.as_chunks_mut::<SUMS>().0;
         let inverse = 1.0 / call.n as f32;
+        let place = |slot: usize, channel: usize| (slot / AT_ONCE * channels + channel, slot % AT_ONCE);
         for channel in 0..channels {
             let mut largest = NONE;
-            for slot in 0..self.slots {
-                let mut integral = NONE;
-                for (lane, integral) in integral.iter_mut().enumerate() {
-                    if let Some((pixel, _)) = self.pixel(call, groups, lane, slot) {
-                        *integral = call.integral(pixel, channel);
-                    }
-                }
-                let inside = self.inside.get(slot).copied().unwrap_or(NONE);
-                largest = lanes::zip(&largest, &only(&inside, &integral), Real::max);
-                if let Some(out) = self.integrals.get_mut(slot * channels + channel) {
-                    *out = integral;
+            for (slot, inside) in inside.iter().enumerate() {
+                let pixels = self.pixels((slot / AT_ONCE, slot % AT_ONCE));
+                let integral = call.integrals(&pixels, channel);
+                largest = lanes::zip(&largest, &only(inside, &integral), Real::max);
+                let (at, row) = place(slot, channel);
+                if let Some(out) = self.integrals.get_mut(at) {
+                    out[row] = integral;
                 }
             }
             if self.is_joined {
                 largest = [largest.into_iter().fold(0.0, Real::max); LANES];
             }
+            let get = |all: &[Four], slot: usize| {
+                let (at, row) = place(slot, channel);
+                all.get(at).map_or(NONE, |four| four[row])
+            };
             let mut all = [NONE; SUMS];
             for (slot, (own, before)) in own.iter_mut().zip(before.iter_mut()).enumerate() {
+                let inside = inside.get(slot).copied().unwrap_or(NONE);
                 let (mut mean, mut known) = (NONE, NONE);
-                for lane in 0..LANES {
-                    let Some((pixel, _)) = self.pixel(call, groups, lane, slot) else { continue };
-                    for sample in pixel * call.n..(pixel + 1) * call.n {
-                        mean[lane] += call.value(pixel, sample, channel) * inverse;
-                        known[lane] += call.known(pixel, sample, channel) * inverse;
+                let pixels = self.pixels((slot / AT_ONCE, slot % AT_ONCE));
+                for sample in 0..call.n {
+                    let each = [call.inputs(&pixels, sample, channel), call.known(&pixels, sample, channel)];
+                    for (sum, value) in [&mut mean, &mut known].into_iter().zip(each) {
+                        *sum = plus(sum, &value.map(|value| value * inverse));
                     }
                 }
-                let integral = self.integrals.get(slot * channels + channel).copied().unwrap_or(NONE);
-                let inside = self.inside.get(slot).copied().unwrap_or(NONE);
+                let integral = get(self.integrals, slot);
                 let unit = lanes::zip(&integral, &largest, |integral, largest| Real::max(integral, largest * LEAST));
                 let unit = lanes::divisor(&unit);
                 let over = |value: &Eight| lanes::zip(value, &unit, |value, unit| black_box(value / unit));
@@ -130,9 +127,10 @@ impl Batch<'_> {
             // Sums of all pixels but one, without a difference: that would hold digits of the one.
             let mut others = if self.is_joined { all.map(|sum| other_lanes(&sum)) } else { [NONE; SUMS] };
             for (slot, (own, before)) in own.iter().zip(before.iter()).enumerate().rev() {
-                let integral = self.integrals.get(slot * channels + channel).copied().unwrap_or(NONE);
-                if let Some(out) = self.coefficients.get_mut(slot * channels + channel) {
-                    *out = only(&integral, &coefficient(&both(before, &others)));
+                let (at, row) = place(slot, channel);
+                let integral = get(self.integrals, slot);
+                if let Some(out) = self.coefficients.get_mut(at) {
+                    out[row] = only(&integral, &coefficient(&both(before, &others)));
                 }
                 others = both(&others, own);
             }

@@ -34,6 +34,8 @@ mod groups;
 mod known;
 mod passes;
 mod pixels;
+mod products;
+mod read;
 mod sums;
 mod terms;
 
@@ -58,8 +60,10 @@ use terms::Terms;
 /// # Errors
 /// As for [`estimate_block`].
 pub fn block_workspace_len(config: &Config, pixels: usize, n: usize) -> Result<usize, Error> {
-    // More pixels than 32 bits count need more memory than there is.
-    u32::try_from(pixels).map_err(|_| Error::Memory)?;
+    // So many need more memory than there is.
+    if pixels > Image::MAX_PIXELS as usize {
+        return Err(Error::Memory);
+    }
     image_workspace_len(config, &Image::unordered(pixels), n)
 }
 
@@ -123,7 +127,7 @@ pub fn estimate_block(
 /// # Errors
 /// As for [`estimate`](super::estimate); [`Error::Unsupported`] also for a luminance ratio, for skipping samples, for
 /// estimators other than the robust, leave-one-out and K-fold ones, and for the last if something is known;
-/// [`Error::Range`] also for an image without pixels, for windows and parts that [`Image`] does not allow, for negative
+/// [`Error::Range`] also for an image without pixels or with more than [`Image::MAX_PIXELS`], for windows and parts that [`Image`] does not allow, for negative
 /// factors or integrals and for arrays of the wrong length; [`Error::NotFinite`] for factors, for what is known and for
 /// integrals that are not finite.
 ///
@@ -222,6 +226,11 @@ impl Layout<'_> {
     /// Whether halves of the pixels choose for each other.
     fn has_halves(&self) -> bool {
         self.config.estimator == Estimator::KFold && !self.is_single_fit()
+    }
+
+    /// Whether colours, or halves of them, are corrected by fits to others.
+    fn has_colours(&self) -> bool {
+        self.n > 1 || self.has_halves()
     }
 
     /// Which columns fits to so many pixels have.

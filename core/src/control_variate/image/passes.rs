@@ -2,14 +2,16 @@
 
 use super::super::config::Config;
 use super::Call;
-use super::batch::{Batch, NONE};
+use super::batch::Batch;
 use super::bright;
 use super::choice::{Choices, Shares, Spreads};
-use super::fit::{Colours, Fits};
+use super::fit::Fits;
 use super::groups::{Group, Groups};
+use super::products::{AT_ONCE, Colours, NONE, combine, plus, zip_four};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
+use crate::matrix::row_at;
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 use core::hint::black_box;
@@ -68,16 +70,16 @@ impl Call<'_> {
         if terms.ends.is_empty() && !self.image.has_known() {
             return Ok(());
         }
-        let mut batch = Batch::new(self, groups, &terms, lanes, arena)?;
+        let mut batch = Batch::new(self, &terms, lanes, arena)?;
         batch.survey(self, groups, &terms);
         if let Some(turn) = turn {
             batch.leave_out(channels, |group| groups.limits(self, group, turn));
         }
         if self.image.has_known() {
-            batch.relate(self, groups, arena)?;
+            batch.relate(self, arena)?;
         }
-        batch.load(self, groups, &terms, arena)?;
-        let mut fits = Fits::new(self, &terms, batch.slots, arena)?;
+        batch.load(self, &terms, arena)?;
+        let mut fits = Fits::new(self, &terms, &batch, arena)?;
         let choices = Choices::new(self, &terms);
         let mut shares = Shares::last(choices, arena)?;
         // Halves choose for each other, then fits to all correct; or fits to all do both.
@@ -155,39 +157,37 @@ impl Call<'_> {
         shares: &Shares<'_>,
     ) {
         let channels = self.config.channels;
-        for slot in 0..batch.slots {
-            let half = if self.turns() == 1 { 0 } else { usize::from(Colours::HALVES[1].has(slot)) };
+        for block in 0..batch.inside.len() {
+            let half = if self.turns() == 1 { 0 } else { usize::from(Colours::HALVES[1].has(block)) };
             if turn.is_some_and(|turn| turn != half) {
                 continue;
             }
             for (channel, units) in batch.units.iter().enumerate().take(channels) {
-                let shares = shares.of(half, channel);
-                let mut sum = [0.0; LANES];
-                let mean = batch.means.get(slot * batch.values + channel).copied().unwrap_or(NONE);
-                for (kind, shares) in rows(shares, 1 + fits.count).enumerate() {
+                let mut sum = [NONE; AT_ONCE];
+                let means = row_at(batch.means, batch.values, block);
+                for (kind, shares) in rows(shares.of(half, channel), 1 + fits.count).enumerate() {
                     let Some((plain, shares)) = shares.split_first() else { continue };
                     let value = channel + kind * channels;
-                    let other = batch.means.get(slot * batch.values + value).copied().unwrap_or(NONE);
-                    let known = lanes::zip(&other, &mean, |other, mean| other - mean);
-                    if kind > 0 {
-                        lanes::add_product(&mut sum, &known, plain);
-                    }
-                    for (correction, share) in fits.corrections(slot, value).iter().zip(shares) {
-                        if kind > 0 {
-                            lanes::add_product(&mut sum, &known, share);
-                        }
-                        lanes::add_product(&mut sum, correction, share);
-                        lanes::keep_together();
+                    sum = combine(sum, fits.corrections(block, value), shares);
+                    if let (1, Some(mean), Some(other)) = (kind, means.get(channel), means.get(value)) {
+                        let known = zip_four(other, mean, |other, mean| lanes::zip(other, mean, |a, b| a - b));
+                        let share = shares.iter().fold(*plain, |sum, share| plus(&sum, share));
+                        sum = combine(sum, &[known], &[share]);
                     }
                 }
                 // What is too large is no number, and found at the end.
-                let sum =
-                    lanes::zip(&sum, &units.powers(), |sum, power| if sum.is_finite() { sum * power } else { 0.0 });
-                for (lane, value) in sum.into_iter().enumerate() {
-                    let Some(index) = batch.member(lane, slot) else { continue };
-                    let at = (batch.lanes[lane].start + index) * channels + channel;
-                    if let Some(out) = groups.corrections.get_mut(at) {
-                        *out = value;
+                let powers = units.powers();
+                let sum = sum
+                    .map(|sum| lanes::zip(&sum, &powers, |sum, power| if sum.is_finite() { sum * power } else { 0.0 }));
+                for (lane, group) in batch.lanes.iter().enumerate() {
+                    for (row, sum) in sum.iter().enumerate() {
+                        let index = batch.member((block, row), lane);
+                        let at = (group.start + index) * channels + channel;
+                        if index < group.len
+                            && let Some(out) = groups.corrections.get_mut(at)
+                        {
+                            *out = sum[lane % LANES];
+                        }
                     }
                 }
             }

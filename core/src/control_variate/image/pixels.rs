@@ -102,6 +102,9 @@ impl Image<'_> {
     /// The most pixels of a window, all frames counted.
     pub const MAX_WINDOW: usize = 1024;
 
+    /// The most pixels of a picture, or of the part of it that is given, all frames counted.
+    pub const MAX_PIXELS: u32 = (1 << 30) - 1;
+
     /// An image of which nothing is known but its size.
     #[inline]
     pub const fn new(width: usize, height: usize) -> Self {
@@ -131,7 +134,8 @@ impl Image<'_> {
     /// How many pixels the arrays hold, and how many are estimated, in all frames.
     ///
     /// # Errors
-    /// [`Error::Range`] for an image without pixels and for windows and parts that are not allowed.
+    /// [`Error::Range`] for an image without pixels or with more than [`Image::MAX_PIXELS`], and for windows and parts that
+    /// are not allowed.
     pub fn counts(&self) -> Result<[usize; 2], Error> {
         let windows = self.windows()?;
         let estimated = windows.wanted.pixels().and_then(|pixels| pixels.checked_mul(windows.frames()));
@@ -208,7 +212,7 @@ impl Image<'_> {
         let all = Rectangle::new(0, 0, self.width, self.height);
         let given = if self.given.is_empty() { all } else { self.given };
         let pixels = given.pixels().and_then(|pixels| pixels.checked_mul(self.frames()));
-        pixels.filter(|&pixels| u32::try_from(pixels).is_ok()).ok_or(Error::Range)
+        pixels.filter(|&pixels| pixels <= Self::MAX_PIXELS as usize).ok_or(Error::Range)
     }
 
     /// Checks everything but the windows.

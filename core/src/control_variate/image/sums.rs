@@ -3,13 +3,13 @@
 use super::super::config::Estimate;
 use super::super::result::{mean_divisor, saturate, standard_error};
 use super::Call;
-use super::groups::Groups;
+use super::groups::{Groups, Place};
 use super::pixels::Rectangle;
 use crate::arena::Arena;
 use crate::error::Error;
-use crate::matrix::{row_at, row_at_mut};
+use crate::matrix::{from, from_mut, row_at_mut};
 use crate::real::Real;
-use crate::rows::{rows, rows_mut};
+use crate::rows::rows;
 use core::hint::black_box;
 
 /// Sums of a pixel that are not a channel's: the weight of the groups that it was in, of those with an error, and their
@@ -82,25 +82,27 @@ impl Call<'_> {
             let Some(([gain, has_error], errors)) = groups.told(self, &group).split_first_chunk() else { continue };
             let window = self.window(first + group.window);
             let top = window.y.checked_rem(band.rows).unwrap_or(0);
-            for index in 0..group.len {
-                let place = groups.place(&group, index);
+            let left = window.x - given.x;
+            let members = groups.members(&group);
+            let corrections = from(groups.corrections, group.start * channels);
+            for (index, corrections) in rows(corrections, channels).enumerate().take(group.len) {
+                let place = Place::read(members.get(index).copied().unwrap_or(0.0));
                 let [x, y, frame] = place.split();
                 let (mut at, mut near) = (index, 1.0);
                 if self.windows.is_ordered {
                     let row = if top + y < band.rows { top + y } else { top + y - band.rows };
-                    at = (frame * band.rows + row) * given.width + window.x + x - given.x;
+                    at = (frame * band.rows + row) * given.width + left + x;
                     near = hat(x, inverse[0]) * hat(y, inverse[1]);
                 } else if !self.is_joined() {
                     at = x;
                 }
-                let sums = row_at_mut(band.sums, sums_len(channels), at);
+                let sums = from_mut(band.sums, at * sums_len(channels));
                 let Some((common, each)) = sums.split_first_chunk_mut::<COMMON>() else { continue };
-                for (sum, value) in common.iter_mut().zip([1.0, *has_error, *gain]) {
-                    *sum += near * value;
-                }
-                let corrections = row_at(groups.corrections, channels, group.start + index);
+                common[0] += near;
+                common[1] += near * has_error;
+                common[2] += near * gain;
                 let values = corrections.iter().zip(errors).enumerate();
-                for (each, (channel, (&correction, &error))) in rows_mut(each, 2).zip(values) {
+                for (each, (channel, (&correction, &error))) in each.as_chunks_mut::<2>().0.iter_mut().zip(values) {
                     let mut both = [correction, error];
                     if has_factors {
                         let factor = self.factor(self.pixel(window, place, index), channel);
@@ -110,10 +112,10 @@ impl Call<'_> {
                             *value = (f64::from(*value) * factor).clamp(-most, most) as f32;
                         });
                     }
-                    for (sum, value) in each.iter_mut().zip(both) {
-                        // What cannot be added up is no number, and found at the end.
-                        *sum += near * if Real::abs(value) < MOST { value } else { f32::NAN };
-                    }
+                    // What cannot be added up is no number, and found at the end.
+                    let [correction, error] = both.map(|value| if Real::abs(value) < MOST { value } else { f32::NAN });
+                    each[0] += near * correction;
+                    each[1] += near * error;
                 }
             }
         }
@@ -124,15 +126,14 @@ impl Call<'_> {
     fn write(&self, frame: usize, y: usize, band: &mut Band<'_>, out: &mut impl FnMut(usize, Estimate)) {
         let (given, wanted) = (self.windows.given, self.windows.wanted);
         let row = frame * band.rows + y.checked_rem(band.rows).unwrap_or(0);
-        if y >= wanted.y {
-            for x in 0..wanted.width {
-                let column = wanted.x - given.x + x;
-                let sums = row_at(band.sums, sums_len(self.config.channels), row * given.width + column);
+        let sums = row_at_mut(band.sums, given.width * sums_len(self.config.channels), row);
+        for (column, sums) in rows(sums, sums_len(self.config.channels)).enumerate() {
+            let x = (given.x + column).wrapping_sub(wanted.x);
+            if y >= wanted.y && x < wanted.width {
                 let estimate = self.estimate(self.windows.number(wanted.x + x, y, frame), sums);
                 out((frame * wanted.height + y - wanted.y) * wanted.width + x, estimate);
             }
         }
-        let sums = row_at_mut(band.sums, given.width * sums_len(self.config.channels), row);
         sums.iter_mut().for_each(|sum| *sum = 0.0);
     }
 

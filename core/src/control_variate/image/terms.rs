@@ -2,8 +2,11 @@
 
 use super::super::config::Config;
 use super::super::ridge;
+use super::products::{Four, zip_four};
 use crate::basis::{Basis, MAX_ORDER, Shape};
+use crate::lanes;
 use crate::real::Real;
+use crate::rows::rows_mut;
 use heapless::Vec;
 
 /// The most candidates: one for each degree, one with every slice's own functions, one with all columns.
@@ -84,6 +87,29 @@ impl Terms {
     #[inline(always)]
     pub(super) fn columns(&self) -> usize {
         self.fixed() + self.functions + self.axes * self.moving.1
+    }
+
+    /// The columns that change within a pixel: what the function is multiplied by, and which function it is.
+    #[inline(always)]
+    pub(super) fn changing<'p>(&self, places: &'p [Four]) -> impl Iterator<Item = (&'p Four, usize)> + use<'p> {
+        let (functions, (first, count)) = (self.functions, self.moving);
+        places.iter().enumerate().flat_map(move |(axis, place)| {
+            let range = if axis == 0 { 0..functions } else { first..first + count };
+            range.map(move |function| (place, function))
+        })
+    }
+
+    /// Makes the products of functions with the pixels' places along each axis.
+    #[inline(always)]
+    pub(super) fn multiply(&self, places: &[Four], functions: &[Four], products: &mut [Four]) {
+        let (first, count) = self.moving;
+        let moving = functions.get(first..first + count).unwrap_or_default();
+        for (products, axis) in rows_mut(products, count).zip(places.iter().skip(1)) {
+            for (out, function) in products.iter_mut().zip(moving) {
+                *out = zip_four(function, axis, |function, axis| lanes::zip(function, axis, |a, b| a * b));
+                lanes::keep_together();
+            }
+        }
     }
 
     /// The penalty of each column, relative to the strength times the number of samples.

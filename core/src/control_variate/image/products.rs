@@ -1,0 +1,231 @@
+//! Sums of products, of eight groups side by side: what fits are made from.
+
+use super::super::config::Config;
+use crate::arena::Arena;
+use crate::basis::MAX_DIMS;
+use crate::error::Error;
+use crate::lanes::{self, LANES, Lanes};
+use crate::matrix::{copy, halves_mut, packed_len, row_at, row_at_mut};
+use crate::rows::{rows, rows_mut};
+
+/// A number for each of eight groups.
+pub(super) type Eight = Lanes<f32>;
+/// The same for four samples or pixels of each.
+pub(super) type Four = [Eight; AT_ONCE];
+/// Nothing in any lane.
+pub(super) const NONE: Eight = [0.0; LANES];
+/// How many colours there are.
+pub(super) const COLOURS: usize = 4;
+/// Samples or pixels that are worked on at a time.
+pub(super) const AT_ONCE: usize = 4;
+
+impl<'a> Arena<'a, f32> {
+    /// The next groups of eight, by fours.
+    pub(super) fn take_fours(&mut self, count: usize) -> Result<&'a mut [Four], Error> {
+        Ok(self.take_lanes(count * AT_ONCE)?.as_chunks_mut().0)
+    }
+}
+
+/// The lanes where `mask` is not 0; 0 elsewhere, whatever is there.
+#[inline(always)]
+pub(super) fn only(mask: &Eight, value: &Eight) -> Eight {
+    lanes::zip(value, mask, |value, mask| if mask > 0.0 { value } else { 0.0 })
+}
+
+/// The sum lane by lane.
+#[inline(always)]
+pub(super) fn plus(a: &Eight, b: &Eight) -> Eight {
+    lanes::zip(a, b, |a, b| a + b)
+}
+
+/// `f(a, b)` for each of four.
+#[inline(always)]
+pub(super) fn zip_four(a: &Four, b: &Four, f: impl Fn(&Eight, &Eight) -> Eight) -> Four {
+    core::array::from_fn(|row| f(&a[row], &b[row]))
+}
+
+/// A sum and four products, one after the other.
+#[inline(always)]
+pub(super) fn plus_four(mut sum: Eight, a: &Four, b: &Four) -> Eight {
+    for row in 0..AT_ONCE {
+        sum = lanes::plus_product(sum, a[row], b[row]);
+    }
+    sum
+}
+
+/// Adds to each sum the products of a column with one of `columns`.
+#[inline(always)]
+pub(super) fn add_products(sums: &mut [Eight], column: &Four, columns: &[Four]) {
+    let column = *column;
+    let (pairs, rest) = sums.as_chunks_mut::<2>();
+    let (others, last) = columns.as_chunks::<2>();
+    let odd = rest.first_mut().zip(others.get(pairs.len()).map_or(last.first(), |[other, _]| Some(other)));
+    for ([a, b], [c, d]) in pairs.iter_mut().zip(others) {
+        *a = plus_four(*a, &column, c);
+        *b = plus_four(*b, &column, d);
+        lanes::keep_together();
+    }
+    if let Some((sum, other)) = odd {
+        *sum = plus_four(*sum, &column, other);
+    }
+}
+
+/// Four sums, and the products of columns with their coefficients.
+#[inline(always)]
+pub(super) fn combine(mut sums: Four, columns: &[Four], coefficients: &[Eight]) -> Four {
+    for (column, coefficient) in columns.iter().zip(coefficients) {
+        for row in 0..AT_ONCE {
+            sums[row] = lanes::plus_product(sums[row], column[row], *coefficient);
+        }
+        lanes::keep_together();
+    }
+    sums
+}
+
+/// Some of the colours, a bit each.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Colours(pub(super) u8);
+
+impl Colours {
+    pub(super) const ALL: Self = Self(0b1111);
+    /// Either half of them.
+    pub(super) const HALVES: [Self; 2] = [Self(0b1001), Self(0b0110)];
+
+    /// Whether a block, or a part, is of one of these.
+    #[inline(always)]
+    pub(super) fn has(self, index: usize) -> bool {
+        self.0 >> (index % COLOURS) & 1 == 1
+    }
+
+    /// These without one.
+    pub(super) fn without(self, colour: usize) -> Self {
+        Self(self.0 & !(1 << colour))
+    }
+}
+
+/// Numbers of a [`Four`].
+pub(super) const AT_ONCE_LANES: usize = AT_ONCE * LANES;
+
+/// Four rows of samples or pixels.
+pub(super) struct Rows<'a> {
+    /// Where samples are, and their control functions: what is left of others where there is no row.
+    pub(super) x: [Lanes<f32, AT_ONCE_LANES>; MAX_DIMS],
+    pub(super) h: [Lanes<f32, AT_ONCE_LANES>; Config::MAX_CONTROLS],
+    pub(super) columns: &'a mut [Four],
+    pub(super) values: &'a mut [Four],
+}
+
+impl<'a> Rows<'a> {
+    pub(super) fn new(columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+        let (columns, values) = (arena.take_fours(columns)?, arena.take_fours(values)?);
+        values.iter_mut().for_each(|four| *four = [NONE; AT_ONCE]);
+        let (x, h) = ([[0.0; AT_ONCE_LANES]; MAX_DIMS], [[0.0; AT_ONCE_LANES]; Config::MAX_CONTROLS]);
+        Ok(Self { x, h, columns, values })
+    }
+}
+
+/// Sums of products, part after part.
+pub(super) struct Sums<'a> {
+    all: &'a mut [Eight],
+    columns: usize,
+    values: usize,
+}
+
+/// Those of one part: of columns with columns, packed; of each value with columns, and with itself.
+pub(super) struct Part<S> {
+    pub(super) gram: S,
+    pub(super) sides: S,
+    pub(super) squares: S,
+}
+
+impl<'a> Sums<'a> {
+    /// Lanes of one part.
+    pub(super) fn len(columns: usize, values: usize) -> usize {
+        packed_len(columns) + values * columns + values
+    }
+
+    /// Room for them.
+    pub(super) fn new(parts: usize, columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+        Ok(Self { all: arena.take_lanes(parts * Self::len(columns, values))?, columns, values })
+    }
+
+    /// Makes them zero.
+    pub(super) fn empty(&mut self) {
+        for sum in self.all.iter_mut() {
+            *sum = NONE;
+            lanes::keep_together();
+        }
+    }
+
+    /// Joins the lanes, in all of them.
+    pub(super) fn join(&mut self) {
+        self.all.iter_mut().for_each(|sum| *sum = [lanes::sum(sum); LANES]);
+    }
+
+    #[inline(always)]
+    pub(super) fn part(&self, part: usize) -> Part<&[Eight]> {
+        let sums = row_at(self.all, Self::len(self.columns, self.values), part);
+        let (gram, rest) = sums.split_at_checked(packed_len(self.columns)).unwrap_or_default();
+        let (sides, squares) = rest.split_at_checked(self.values * self.columns).unwrap_or_default();
+        Part { gram, sides, squares }
+    }
+
+    #[inline(always)]
+    pub(super) fn part_mut(&mut self, part: usize) -> Part<&mut [Eight]> {
+        let sums = row_at_mut(self.all, Self::len(self.columns, self.values), part);
+        let (gram, rest) = halves_mut(sums, packed_len(self.columns));
+        let (sides, squares) = halves_mut(rest, self.values * self.columns);
+        Part { gram, sides, squares }
+    }
+
+    /// Adds those of a block: its columns, and its values.
+    #[inline(always)]
+    pub(super) fn add(&mut self, part: usize, columns: &[Four], values: &[Four]) {
+        let (width, Part { mut gram, sides, squares }) = (columns.len(), self.part_mut(part));
+        for (i, column) in columns.iter().enumerate() {
+            let (row, rest) = halves_mut(gram, i + 1);
+            gram = rest;
+            add_products(row, column, columns);
+        }
+        for ((value, sides), square) in values.iter().zip(rows_mut(sides, width)).zip(squares) {
+            add_products(sides, value, columns);
+            *square = plus_four(*square, value, value);
+        }
+    }
+
+    /// Makes its one part the sum of another's parts of some colours.
+    #[inline(always)]
+    pub(super) fn set_total(&mut self, of: &Sums<'_>, colours: Colours) {
+        let len = Self::len(self.columns, self.values);
+        let parts = rows(of.all, len).enumerate().filter(|&(part, _)| colours.has(part));
+        let mut parts = parts.map(|(_, sums)| sums);
+        match [parts.next(), parts.next(), parts.next(), parts.next()] {
+            // All but one colour, where each has a fit of its own.
+            [Some(a), Some(b), Some(c), None] => {
+                for (out, ((a, b), c)) in self.all.iter_mut().zip(a.iter().zip(b).zip(c)) {
+                    *out = plus(&plus(a, b), c);
+                    lanes::keep_together();
+                }
+            }
+            [first, others @ ..] => {
+                copy(self.all, first.unwrap_or_default());
+                for sums in others.into_iter().flatten() {
+                    for (out, sum) in self.all.iter_mut().zip(sums) {
+                        *out = plus(out, sum);
+                        lanes::keep_together();
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds another's one part, times a weight.
+    #[inline(always)]
+    pub(super) fn add_weighted(&mut self, other: &Sums<'_>, weight: &Eight) {
+        let weight = *weight;
+        for (out, sum) in self.all.iter_mut().zip(other.all.iter()) {
+            *out = lanes::plus_product(*out, *sum, weight);
+            lanes::keep_together();
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Reading samples, as fits see them.
+
+use super::Call;
+use super::batch::Batch;
+use super::products::{AT_ONCE, AT_ONCE_LANES, Eight, Four, Rows};
+use crate::lanes::{self, LANES};
+use crate::matrix::{at, row_at};
+use crate::real::Real;
+use core::ops::Range;
+
+impl Call<'_> {
+    /// The pixels' lowest and highest values, as fits see them.
+    #[inline(always)]
+    pub(super) fn range(&self, pixels: &[usize; LANES], channel: usize) -> [Eight; 2] {
+        let [mut low, mut high] = [self.inputs(pixels, 0, channel); 2];
+        for sample in 1..self.n {
+            let value = self.inputs(pixels, sample, channel);
+            low = lanes::zip(&value, &low, Real::min);
+            high = lanes::zip(&value, &high, Real::max);
+            lanes::keep_together();
+        }
+        [low, high]
+    }
+
+    /// A channel of a sample of each pixel, divided by the pixels' factors.
+    #[inline(always)]
+    pub(super) fn inputs(&self, pixels: &[usize; LANES], sample: usize, channel: usize) -> Eight {
+        self.gather(self.reader.inputs(), pixels, (self.n, sample), channel)
+    }
+
+    /// What is known of it, divided likewise.
+    #[inline(always)]
+    pub(super) fn known(&self, pixels: &[usize; LANES], sample: usize, channel: usize) -> Eight {
+        self.gather(self.image.known, pixels, (self.n, sample), channel)
+    }
+
+    /// The integral of what is known, divided likewise.
+    #[inline(always)]
+    pub(super) fn integrals(&self, pixels: &[usize; LANES], channel: usize) -> Eight {
+        self.gather(self.image.known_integrals, pixels, (1, 0), channel)
+    }
+
+    /// One of a pixel's so many rows of numbers, for eight pixels.
+    #[inline(always)]
+    fn gather(&self, rows: &[f32], pixels: &[usize; LANES], (each, row): (usize, usize), channel: usize) -> Eight {
+        let channels = self.config.channels;
+        let mut values = pixels.map(|pixel| at(rows, (pixel * each + row) * channels + channel));
+        if !self.image.factors.is_empty() {
+            for (value, pixel) in values.iter_mut().zip(pixels) {
+                *value = self.over_factor(*value, *pixel, channel);
+            }
+        }
+        values
+    }
+
+    /// Divides by a pixel's factor.
+    #[inline(always)]
+    fn over_factor(&self, value: f32, pixel: usize, channel: usize) -> f32 {
+        let most = f64::from(f32::MAX);
+        (f64::from(value) / self.factor(pixel, channel)).clamp(-most, most) as f32
+    }
+
+    /// What a pixel's values are divided by. Black says nothing about what it multiplies: 1.
+    #[inline(always)]
+    pub(super) fn factor(&self, pixel: usize, channel: usize) -> f64 {
+        let factor = self.image.factors.get(pixel * self.config.channels + channel).copied().unwrap_or(1.0);
+        if factor > 0.0 { f64::from(factor) } else { 1.0 }
+    }
+
+    /// Reads some samples of the pixels of some slots of a block, four in all: functions at them, and their values in
+    /// units. Zero where there is no pixel.
+    #[inline(always)]
+    pub(super) fn read(
+        &self,
+        batch: &Batch<'_>,
+        (block, slots): (usize, Range<usize>),
+        samples: Range<usize>,
+        rows: &mut Rows<'_>,
+    ) {
+        let channels = self.config.channels;
+        let Rows { x, h, columns, values } = rows;
+        for (run, slot) in slots.enumerate() {
+            let pixels = batch.pixels((block, slot));
+            let first = pixels.map(|pixel| pixel * self.n + samples.start);
+            self.reader.put_positions(&first, samples.len(), run * LANES, x);
+            if self.config.controls > 0 {
+                for (lane, first) in first.iter().enumerate() {
+                    for sample in 0..samples.len() {
+                        self.reader.get(first + sample).put((run + sample) * LANES + lane, x, h);
+                    }
+                }
+            }
+            for (row, sample) in (run..AT_ONCE).zip(samples.clone()) {
+                self.read_values(batch, (block, slot), &pixels, sample, row, values);
+            }
+        }
+        for (value, units) in values.iter_mut().zip(batch.units.iter().take(channels).cycle()) {
+            *value = value.map(|value| units.apply(&value));
+            lanes::keep_together();
+        }
+        let wide = columns.as_flattened_mut().as_flattened_mut().as_chunks_mut::<AT_ONCE_LANES>().0;
+        self.reader.columns(self.basis, x, h, wide);
+        if self.n == 1 {
+            batch.empty_missing(block, columns.iter_mut().chain(values.iter_mut()));
+        }
+    }
+
+    /// Values of a sample of each pixel, as they were given but for factors and what is known of them.
+    #[inline(always)]
+    fn read_values(
+        &self,
+        batch: &Batch<'_>,
+        (block, slot): (usize, usize),
+        pixels: &[usize; LANES],
+        sample: usize,
+        row: usize,
+        values: &mut [Four],
+    ) {
+        let channels = self.config.channels;
+        let (inputs, rest) = values.split_at_mut_checked(channels).unwrap_or_default();
+        for (channel, value) in inputs.iter_mut().enumerate() {
+            value[row % AT_ONCE] = self.inputs(pixels, sample, channel);
+        }
+        let [coefficients, integrals] =
+            [&*batch.coefficients, &*batch.integrals].map(|all| row_at(all, channels, block));
+        let known = coefficients.iter().zip(integrals).zip(rest.iter_mut()).zip(inputs.iter());
+        for (channel, (((coefficient, integral), out), value)) in known.enumerate() {
+            let known = self.known(pixels, sample, channel);
+            let apart = lanes::zip(&known, &integral[slot % AT_ONCE], |known, integral| known - integral);
+            out[row % AT_ONCE] = lanes::minus_product(value[row % AT_ONCE], coefficient[slot % AT_ONCE], apart);
+        }
+    }
+}
