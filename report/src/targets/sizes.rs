@@ -3,7 +3,7 @@
 
 use super::platform::{Platform, Service};
 use anyhow::{Context, Result, bail};
-use object::{Object, ObjectSection, SectionKind};
+use object::{BinaryFormat, Object, ObjectSection, SectionKind};
 use std::fs;
 use std::path::{Path, PathBuf};
 use xtask::{c_tests, paths, run};
@@ -25,7 +25,7 @@ pub(crate) fn measure(platform: &Platform, archive: &Path, service: &Service) ->
     }
     let output = c_tests::output("sizes")?;
     link(platform, archive, &functions, &output)?;
-    sections(&output)
+    sections(&fs::read(&output).with_context(|| format!("cannot read {}", output.display()))?)
 }
 
 /// Links the archive for these functions alone.
@@ -54,15 +54,15 @@ pub(crate) fn program(path: &Path) -> Result<u64> {
 }
 
 /// Sums of the sections that a program would load.
-fn sections(path: &Path) -> Result<[u64; 3]> {
-    let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
-    let file = object::File::parse(&*bytes).context("the linker wrote no program")?;
+fn sections(bytes: &[u8]) -> Result<[u64; 3]> {
+    let file = object::File::parse(bytes).context("the linker wrote no program")?;
     let mut sizes = [0; 3];
     for section in file.sections() {
         let kind = match section.kind() {
             SectionKind::Text => 0,
-            // A module's constants are data, too; it has no other.
-            SectionKind::Data if file.format() == object::BinaryFormat::Wasm => 1,
+            // A module's constants and variables are one; what else is data there are numbers of the module's own.
+            _ if file.format() == BinaryFormat::Wasm && section.name() != Ok("<data>") => continue,
+            SectionKind::Data if file.format() == BinaryFormat::Wasm => 1,
             SectionKind::ReadOnlyData | SectionKind::ReadOnlyString | SectionKind::ReadOnlyDataWithRel
                 if section.name() != Ok(".eh_frame") =>
             {
@@ -85,4 +85,18 @@ fn linker() -> Result<PathBuf> {
         bail!("no {}: rustup's Rust brings it", linker.display());
     }
     Ok(linker)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sections;
+
+    #[test]
+    fn sections_of_a_module_are_counted() {
+        let global = [6, 6, 1, 0x7f, 1, 0x41, 0, 11];
+        let module = [&b"\0asm\x01\0\0\0"[..], &[1, 1, 0], &global, &[10, 1, 0, 11, 1, 0]].concat();
+        assert_eq!(sections(&module).unwrap(), [1, 1, 0]);
+        assert!(sections(&module[..module.len() - 1]).is_err());
+        assert!(sections(b"no program").is_err());
+    }
 }
