@@ -59,7 +59,7 @@ pub fn mitsuba() -> Result<Command> {
     let wanted = paths::read(MITSUBA)?;
     if fs::read_to_string(&installed).ok().as_deref() != Some(&wanted) {
         println!("   installing Mitsuba into {}", folder.display());
-        python::create(&folder, &[])?;
+        python::create(&folder, &["--clear"])?;
         python::fetch(&interpreter, &["--requirement", MITSUBA])?;
         fs::write(&installed, wanted).with_context(|| format!("cannot write {}", installed.display()))?;
     }
