@@ -24,11 +24,6 @@ impl Reading {
         let all = fs::read_to_string("/proc/stat").ok().and_then(|text| busy_seconds(&text));
         Self { time: Instant::now(), own: processor_seconds(), all }
     }
-
-    fn other_work(&self, since: &Self) -> Option<f64> {
-        let seconds = (self.time - since.time).as_secs_f64();
-        other_work(self.all? - since.all?, self.own? - since.own?, seconds)
-    }
 }
 
 impl Clock {
@@ -51,7 +46,8 @@ impl Clock {
 
     /// How many cores others kept busy meanwhile, on average; None where the system does not say.
     pub(super) fn other_work(&self) -> Option<f64> {
-        Reading::now().other_work(&self.0.get())
+        let (since, now) = (self.0.get(), Reading::now());
+        other_work(now.all? - since.all?, now.own? - since.own?, (now.time - since.time).as_secs_f64())
     }
 }
 

@@ -26,6 +26,7 @@ use xtask::paths;
 struct Runs {
     scenes: BTreeMap<String, Scene>,
     names: BTreeMap<String, String>,
+    public: BTreeMap<String, String>,
     section: Vec<Section>,
 }
 
@@ -146,7 +147,6 @@ impl<'a> Harness<'a> {
     }
 
     fn measure(&self, section: &Section, run: &'a Run, all: &mut Table) -> Result<()> {
-        let public = public::Public::new(&self.measurement);
         let estimators: Vec<&str> = run.estimators.iter().map(String::as_str).collect();
         let plain = [(String::new(), Vec::new())].into();
         let variants = if run.variants.is_empty() { &plain } else { &run.variants };
@@ -155,8 +155,8 @@ impl<'a> Harness<'a> {
             for &spp in &run.spp {
                 let mut jobs: Vec<(Job, [String; 3])> = Vec::new();
                 for sampler in &run.samplers {
-                    let of = match public.file(sampler, spp, self.runs.scenes[scene].dims)? {
-                        Some(file) => Some(file),
+                    let of = match self.runs.public.get(sampler) {
+                        Some(name) => Some(public::points(&self.measurement, name, spp, self.runs.scenes[scene].dims)?),
                         None => self.measurement.renderer.sampler(sampler, spp),
                     };
                     // There is no such tile.

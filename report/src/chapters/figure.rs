@@ -9,27 +9,19 @@ pub(crate) enum Unit {
     /// One error, time or variance over another.
     #[default]
     Ratio,
-    /// As the thesis prints it.
-    RelMseE3,
     Percent,
     Nanoseconds,
-    /// Of a step of training.
-    Microseconds,
-    /// Nanoseconds, of a pass over all items.
-    PerItem,
-    BytesPerItem,
     /// Of the processor.
     Instructions,
-    /// A number of any size.
-    Scientific,
-    Seconds,
     Count,
     /// Of any size: three digits.
     Number,
-    /// Standard deviations.
-    Sigmas,
+    Hundredths,
+    Thousandths,
     /// Of any size, in the integrand's unit or relative, with an exponent.
     Error,
+    /// The same with a digit less.
+    Scientific,
 }
 
 impl Unit {
@@ -38,10 +30,10 @@ impl Unit {
             _ if value.is_nan() => "-".to_owned(),
             _ if value.is_infinite() => "infinite".to_owned(),
             Self::Ratio if value.abs() < 10.0 => format!("{value:.3}"),
-            Self::RelMseE3 | Self::Number | Self::Seconds | Self::Microseconds => significant(value, 3),
+            Self::Number => significant(value, 3),
             Self::Percent if value.abs() < 10.0 => format!("{value:.2}"),
-            Self::Sigmas | Self::BytesPerItem => format!("{value:.2}"),
-            Self::PerItem => format!("{value:.3}"),
+            Self::Hundredths => format!("{value:.2}"),
+            Self::Thousandths => format!("{value:.3}"),
             Self::Instructions if value.abs() < 1000.0 => significant(value, 4),
             Self::Instructions => format!("{value:.0}"),
             Self::Error | Self::Scientific if value == 0.0 => "0".to_owned(),
@@ -109,8 +101,8 @@ mod tests {
         assert_eq!(Figure::new(estimate, Unit::Ratio).text, "0.400 [0.380, 0.415]");
         assert_eq!(Figure::brief(estimate, Unit::Ratio).text, "0.400");
         assert_eq!(Figure::exact(12.34, Unit::Percent).text, "12.3");
-        assert_eq!(Unit::RelMseE3.text(12.345), "12.3");
-        assert_eq!(Unit::RelMseE3.text(0.012_345), "0.0123");
+        assert_eq!(Unit::Number.text(12.345), "12.3");
+        assert_eq!(Unit::Number.text(0.012_345), "0.0123");
         assert_eq!(Unit::Nanoseconds.text(123.4), "123");
         assert_eq!(Figure::exact(f64::NAN, Unit::Ratio).text, "-");
         assert_eq!(Figure::exact(f64::INFINITY, Unit::Ratio).text, "infinite");

@@ -177,7 +177,7 @@ fn error_plot(network: &Network, table: &Table) -> Result<String> {
     }
     let Network { title, rate, seeds, .. } = network;
     let title = format!("{title}, rate {rate}: mean of {seeds} seeds, 95 % confidence intervals");
-    Plot { title: &title, x: "seconds of training", y: "test error, %", logarithmic: true, series: &series }.svg()
+    Plot { title: &title, x: "seconds of training", y: "test error, %", series: &series }.svg()
 }
 
 fn variance_plot(network: &Network, table: &Table, methods: &[Method]) -> Result<String> {
@@ -188,5 +188,5 @@ fn variance_plot(network: &Network, table: &Table, methods: &[Method]) -> Result
     let series: Vec<Series> = methods.iter().map(line).collect::<Result<_>>()?;
     let Network { title, rate, .. } = network;
     let title = format!("{title}, rate {rate}: variance of the gradient estimate, one network trained uniformly");
-    Plot { title: &title, x: "epoch", y: "variance / uniform's", logarithmic: true, series: &series }.svg()
+    Plot { title: &title, x: "epoch", y: "variance / uniform's", series: &series }.svg()
 }

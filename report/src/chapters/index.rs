@@ -10,6 +10,7 @@ use super::{described::Description, list::chapters as all_chapters};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -35,6 +36,7 @@ pub(super) struct Facts {
 struct Summary {
     title: String,
     run: Facts,
+    quoted: BTreeMap<String, Value>,
     tables: Vec<Value>,
 }
 
@@ -106,25 +108,19 @@ fn machines(index: &mut Chapter, all: &[Summary]) {
 /// The chapters' own tables.
 fn targets(index: &mut Chapter, all: &[Summary]) {
     index.section("What was to be reached");
-    let text = |cell: &Value| cell["text"].as_str().or(cell.as_str()).unwrap_or("-").to_owned();
     let mut rows: Vec<Vec<Cell>> = Vec::new();
-    let mut reached = [0, 0];
     for one in all {
         for table in one.tables.iter().filter(|table| table["name"] == "targets") {
             for cells in list(&table["rows"]) {
-                let cells: Vec<String> = list(cells).iter().map(text).collect();
-                for (count, at) in reached.iter_mut().zip([2, 3]) {
-                    *count += u32::from(cells.get(at) == cells.get(4));
-                }
-                rows.push(row![format!("[{0}]({0}.md)", one.run.name)]);
-                rows.last_mut().into_iter().for_each(|row| row.extend(cells.iter().cloned().map(Cell::from)));
+                let cells = list(cells).iter().map(|cell| Cell::from(template::word(cell)));
+                rows.push(row![format!("[{0}]({0}.md)", one.run.name)].into_iter().chain(cells).collect());
             }
         }
     }
-    let [everywhere, by_value] = reached.map(|count| Figure::exact(count.into(), Unit::Count));
-    index.quote("targets", Figure::exact(rows.len() as f64, Unit::Count));
-    index.quote("targets reached everywhere", everywhere);
-    index.quote("targets reached everywhere by the value", by_value);
+    for name in ["targets", "targets reached everywhere", "targets reached everywhere by the value"] {
+        let numbers = all.iter().filter_map(|one| one.quoted.get(name)?["value"].as_f64());
+        index.quote(name, Figure::exact(numbers.sum(), Unit::Count));
+    }
     let columns = "chapter | target | bound | reached | by value | of | worst place | measured there | verdict there";
     index.table("targets", columns, 3, rows);
 }

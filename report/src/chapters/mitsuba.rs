@@ -2,6 +2,7 @@
 
 use super::prelude::*;
 use super::report::Report;
+use super::statistics::moments;
 use crate::measure::running;
 use std::path::PathBuf;
 use xtask::renderers;
@@ -39,10 +40,6 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     Ok(chapter)
 }
 
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
-}
-
 /// The geometric mean over all scenes of the error over that of Mitsuba's best sampler, seed by seed.
 fn over_scenes(statement: &str, table: &Table, measure: &str, targets: &mut Targets, bound: (Side, f64)) -> Result<()> {
     let samplers = table.distinct("sampler")?;
@@ -52,23 +49,17 @@ fn over_scenes(statement: &str, table: &Table, measure: &str, targets: &mut Targ
             let of = |sampler| table.numbers_of(measure, &[("scene", scene), ("spp", spp), ("sampler", sampler)]);
             let others = samplers.iter().filter(|name| !name.starts_with(DEFAULT));
             let others = others.map(|name| of(name)).collect::<Result<Vec<_>>>()?;
-            let means = others.iter().filter(|numbers| !numbers.is_empty()).map(|numbers| mean(numbers));
+            let means = others.iter().filter(|numbers| !numbers.is_empty()).map(|numbers| moments(numbers).0);
             let best = means.fold(f64::INFINITY, f64::min);
             ratios.push(of(DEFAULT)?.into_iter().map(|own| own / best).collect());
         }
         let seeds = ratios.iter().map(Vec::len).min().unwrap_or(0);
         let logarithms = |seed: usize| ratios.iter().map(move |scene| scene[seed].max(1e-9).ln());
-        let means = (0..seeds).map(|seed| mean(&logarithms(seed).collect::<Vec<_>>()).exp());
+        let means = (0..seeds).map(|seed| moments(&logarithms(seed).collect::<Vec<_>>()).0.exp());
         let estimate = Estimate::mean(&means.collect::<Vec<_>>());
         targets.add(statement, &format!("{spp} spp"), estimate, Unit::Ratio, bound);
     }
     Ok(())
-}
-
-/// Mean and standard deviation.
-fn moments(values: &[f64]) -> (f64, f64) {
-    let (count, mean) = (values.len() as f64, values.iter().sum::<f64>() / values.len() as f64);
-    (mean, (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt())
 }
 
 fn derivatives(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
@@ -112,7 +103,7 @@ fn derivatives(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> R
                         seeds,
                     };
                     targets.at_most("gradient: spread over independent's", parameter, ratio, Unit::Ratio, 0.75);
-                    targets.below("gradient: bias, per cent", parameter, size, Unit::Percent, 0.1);
+                    targets.add("gradient: bias, per cent", parameter, size, Unit::Percent, (Side::Below, 0.1));
                 }
             }
         }

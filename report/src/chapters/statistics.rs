@@ -66,10 +66,8 @@ impl Estimate {
 
     /// The mean, and Student's interval of it: for few values, each itself a mean of many things.
     pub(crate) fn mean(values: &[f64]) -> Self {
-        let count = values.len() as f64;
-        let value = values.iter().sum::<f64>() / count;
-        let variance = values.iter().map(|x| (x - value) * (x - value)).sum::<f64>() / (count - 1.0);
-        let half = if values.len() < 2 { 0.0 } else { student(count - 1.0) * (variance / count).sqrt() };
+        let (count, (value, deviation)) = (values.len() as f64, moments(values));
+        let half = if values.len() < 2 { 0.0 } else { student(0.025, count - 1.0) * deviation / count.sqrt() };
         Self { value, low: value - half, high: value + half, seeds: values.len() }
     }
 
@@ -79,13 +77,14 @@ impl Estimate {
     }
 }
 
-/// What Student's t exceeds with 2.5 %.
-pub(crate) fn student(freedom: f64) -> f64 {
-    student_quantile(0.025, freedom)
+/// Mean and standard deviation.
+pub(crate) fn moments(values: &[f64]) -> (f64, f64) {
+    let (count, mean) = (values.len() as f64, values.iter().sum::<f64>() / values.len() as f64);
+    (mean, (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0)).sqrt())
 }
 
 /// What Student's t exceeds with probability `tail`.
-pub(crate) fn student_quantile(tail: f64, freedom: f64) -> f64 {
+pub(crate) fn student(tail: f64, freedom: f64) -> f64 {
     -StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, |distribution| distribution.inverse_cdf(tail))
 }
 
@@ -151,7 +150,7 @@ mod tests {
             (23.0, 2.0687),
             (120.0, 1.9799),
         ] {
-            assert!((student(freedom) - expected).abs() < 5e-4, "{freedom}: {}", student(freedom));
+            assert!((student(0.025, freedom) - expected).abs() < 5e-4, "{freedom}: {}", student(0.025, freedom));
         }
         let mean = Estimate::mean(&[1.0, 2.0, 3.0]);
         assert!(mean.value == 2.0 && (mean.high - 2.0 - 4.302_652_729_911_275 / 3.0_f64.sqrt()).abs() < 1e-9);

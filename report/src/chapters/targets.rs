@@ -84,11 +84,6 @@ impl Targets {
         self.add(statement, scene, estimate, unit, (Side::AtMost, bound));
     }
 
-    /// The figure shall be less than `bound`.
-    pub(crate) fn below(&mut self, statement: &str, scene: &str, estimate: Estimate, unit: Unit, bound: f64) {
-        self.add(statement, scene, estimate, unit, (Side::Below, bound));
-    }
-
     /// Targets of the same statement, in the order in which they were measured.
     fn groups(&self) -> Vec<Vec<&Target>> {
         let mut groups: Vec<Vec<&Target>> = Vec::new();
@@ -155,7 +150,7 @@ mod tests {
         let mut targets = Targets::default();
         targets.at_most("error", "kitchen", estimate(0.3), Unit::Ratio, 0.5);
         targets.at_most("error", "garden", estimate(0.7), Unit::Ratio, 0.5);
-        targets.below("strictly", "garden", estimate(0.45), Unit::Ratio, 0.5);
+        targets.add("strictly", "garden", estimate(0.45), Unit::Ratio, (Side::Below, 0.5));
         targets.at_most("time", "garden", estimate(0.35), Unit::Ratio, 0.5);
         let mut chapter = Chapter::new("Title");
         targets.write(&mut chapter);

@@ -125,7 +125,7 @@ fn holes(text: &str, json: &Value) -> Option<String> {
     Some(out + rest)
 }
 
-fn word(value: &Value) -> Option<String> {
+pub(crate) fn word(value: &Value) -> Option<String> {
     match value {
         Value::String(text) => Some(text.clone()),
         Value::Number(number) => number.as_f64().map(|number| number.to_string()),
@@ -135,12 +135,12 @@ fn word(value: &Value) -> Option<String> {
 }
 
 fn table(table: &Value) -> String {
-    let text = |cell: &Value| word(cell).unwrap_or_else(|| "-".to_owned());
-    let columns: Vec<String> = list(&table["columns"]).iter().map(text).collect();
-    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
-    let words: Vec<usize> = (0..table["words"].as_u64().unwrap_or(1) as usize).collect();
-    let rows = list(&table["rows"]).iter().map(|row| list(row).iter().map(text).collect()).collect();
-    markdown::lines(&columns, &words, rows).trim_end().to_owned()
+    let texts = |cells: &Value| -> Vec<String> {
+        list(cells).iter().map(|cell| word(cell).unwrap_or_else(|| "-".to_owned())).collect()
+    };
+    let rows: Vec<Vec<String>> = list(&table["rows"]).iter().map(texts).collect();
+    let words = table["words"].as_u64().unwrap_or(1) as usize;
+    markdown::lines(&texts(&table["columns"]), words, &rows).trim_end().to_owned()
 }
 
 pub(crate) fn list(json: &Value) -> &[Value] {

@@ -8,7 +8,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
 
 /// One line of a plot.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Series {
     pub(crate) name: String,
     /// (x, y) in the order in which they are joined; what a logarithmic axis cannot show is left out.
@@ -20,13 +20,11 @@ pub(crate) struct Series {
     pub(crate) colour: Option<usize>,
 }
 
-/// One plot: labels of its axes, the horizontal one linear.
+/// One plot: labels of its axes, the horizontal one linear, the vertical one logarithmic if what it shows spans enough.
 pub(crate) struct Plot<'a> {
     pub(crate) title: &'a str,
     pub(crate) x: &'a str,
     pub(crate) y: &'a str,
-    /// Of the vertical axis, if what it shows spans enough.
-    pub(crate) logarithmic: bool,
     pub(crate) series: &'a [Series],
 }
 
@@ -57,7 +55,7 @@ impl Plot<'_> {
         let mut text = String::new();
         let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
         // A logarithmic axis of less than half a decade would have hardly a label.
-        let drawn = if self.logarithmic && y.end > 3.0 * y.start {
+        let drawn = if y.end > 3.0 * y.start {
             let axis = (y.start..y.end).log_scale().with_key_points(ticks(&y));
             self.draw(&root, x, axis, " (logarithmic)")
         } else {
@@ -69,7 +67,7 @@ impl Plot<'_> {
     }
 
     fn shows(&self, y: f64) -> bool {
-        y.is_finite() && (!self.logarithmic || y > 0.0)
+        y.is_finite() && y > 0.0
     }
 
     fn shown(&self, series: &Series) -> Vec<(f64, f64)> {
@@ -175,12 +173,13 @@ mod tests {
             },
             Series { name: "two".to_owned(), points: vec![(1.0, 0.1)], dashed: true, ..Series::default() },
         ];
-        for logarithmic in [false, true] {
-            let (x, y) = ("n", "what");
-            let text = Plot { title: "plot", x, y, logarithmic, series: &series }.svg().expect("a drawing");
-            assert_eq!(text.contains("what (logarithmic)"), logarithmic);
+        for (low, is_logarithmic) in [(0.1, true), (0.4, false)] {
+            let (x, y, mut series) = ("n", "what", series.clone());
+            series[1].points[0].1 = low;
+            let text = Plot { title: "plot", x, y, series: &series }.svg().expect("a drawing");
+            assert_eq!(text.contains("what (logarithmic)"), is_logarithmic);
             assert!(text.starts_with("<svg") && text.contains("one") && text.contains("two"));
-            assert!(Plot { title: "empty", x, y, logarithmic, series: &[] }.svg().is_ok());
+            assert!(Plot { title: "empty", x, y, series: &[] }.svg().is_ok());
         }
     }
 }

@@ -1,6 +1,6 @@
 //! One estimator against another, pixel by pixel: how many pixels are served worse, and how sure that is.
 
-use crate::chapters::statistics::{Random, student, student_quantile};
+use crate::chapters::statistics::{Random, moments, student};
 
 /// Ratios of mean squared errors beyond it are too many.
 pub(crate) const TOO_MUCH: f64 = 1.2;
@@ -59,7 +59,7 @@ impl Shares {
             pixels: noisy.len(),
             batches: batches.len() as f64,
             raw: share(&|pixel| ratio(&all, pixel) > TOO_MUCH),
-            error: deviation(&resampled),
+            error: moments(&resampled).1,
             twice: share(&|pixel| ratio(first, pixel) > TOO_MUCH && ratio(second, pixel) > TOO_MUCH),
             sure: share(&|pixel| is_sure(batches, pixel)),
             ratios: noisy.iter().map(|&pixel| ratio(&all, pixel)).collect(),
@@ -75,7 +75,7 @@ impl Shares {
     pub(crate) fn interval(&self) -> [f64; 2] {
         // Resampling n values spreads less than they do, by (n - 1) / n, and their spread is itself an estimate.
         let n = self.batches;
-        let half = student(n - 1.0) * (n / (n - 1.0)).sqrt() * self.error;
+        let half = student(0.025, n - 1.0) * (n / (n - 1.0)).sqrt() * self.error;
         [(self.raw - half).max(0.0), (self.raw + half).min(100.0)]
     }
 }
@@ -85,20 +85,13 @@ fn means(batches: &[Batch], chosen: &[usize], pixel: usize) -> [f64; 2] {
     [0, 1].map(|which| chosen.iter().map(|&batch| batches[batch][which][pixel]).sum::<f64>() / chosen.len() as f64)
 }
 
-fn deviation(values: &[f64]) -> f64 {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0)).sqrt()
-}
-
 /// Is the mean over the batches of (own - limit * plain) above 0? Of 8 batches, Student's distribution: its quantile at
 /// 1 % is 3.00 for 7 degrees of freedom, the normal one 2.33.
 fn is_sure(batches: &[Batch], pixel: usize) -> bool {
     let excess: Vec<f64> = batches.iter().map(|[plain, own]| own[pixel] - TOO_MUCH * plain[pixel]).collect();
     let n = excess.len() as f64;
-    let mean = excess.iter().sum::<f64>() / n;
-    let limit = student_quantile(SIGNIFICANCE, (n - 1.0).max(1.0));
-    mean > limit * deviation(&excess) / n.sqrt() && mean > 0.0
+    let (mean, deviation) = moments(&excess);
+    mean > student(SIGNIFICANCE, (n - 1.0).max(1.0)) * deviation / n.sqrt() && mean > 0.0
 }
 
 #[cfg(test)]

@@ -90,7 +90,7 @@ pub(super) fn write(harness: &Harness, chapter: &mut Chapter, targets: &mut Targ
                 targets.at_most(&statement, &place, estimate, Unit::Ratio, 1.0);
             }
             let [largest, chance, median, image] =
-                [found[0], allowed[0], scores.median, scores.image].map(|value| Figure::exact(value, Unit::Sigmas));
+                [found[0], allowed[0], scores.median, scores.image].map(|value| Figure::exact(value, Unit::Hundredths));
             let [square, square_chance] = [found[1], allowed[1]].map(|value| Figure::exact(value, Unit::Ratio));
             let count = Figure::count(scores.count);
             rows.push(row![
