@@ -1,7 +1,7 @@
 """What the report's chapter is made of: times.csv, gradients.csv, fits.csv, errors.csv and pictures.png in a folder.
 
 python3 measure.py FOLDER [--parts times,gradients,fits,errors] [--scenes cornell,...] [--size 128] [--seeds 32]
-    [--many 8] [--reference 4096] [--frames 4096] [--rounds 15]
+    [--many 8] [--reference 4096] [--frames 4096] [--rounds 15] [--scalar build]
 """
 
 import argparse
@@ -178,16 +178,34 @@ def measure_gradients(options, out):
 def measure_times(options, out, spp=16):
     """By turns, so that other work on the machine is shared alike."""
     out.write("scene;sampler;round;seconds\n")
-    for name, make in options.chosen.items():
-        loaded = {sampler: load(make, dict(plugin), options.size) for sampler, plugin in SAMPLERS.items()}
+
+    def measure(name, loaded, render):
         loaded = {sampler: scene for sampler, scene in loaded.items() if takes(scene, spp)}
         for turn in range(-1, options.rounds):
             for sampler, scene in loaded.items():
                 start = time.perf_counter()
-                dr.eval(mi.render(scene, spp=spp, seed=turn + 1))
-                dr.sync_thread()
+                render(scene, turn + 1)
                 if turn >= 0:  # the first compiles
                     out.write(f"{name};{sampler};{turn};{time.perf_counter() - start:.6g}\n")
+
+    def recorded(scene, seed):
+        dr.eval(mi.render(scene, spp=spp, seed=seed))
+        dr.sync_thread()
+
+    for name, make in options.chosen.items():
+        measure(name, {s: load(make, dict(plugin), options.size) for s, plugin in SAMPLERS.items()}, recorded)
+    if options.scalar is None:
+        return
+    variant = mi.variant()
+    mi.set_variant("scalar_rgb")
+    mi.file_resolver().append(options.scalar)
+    for name, make in options.chosen.items():
+        scenes = {s: described(make, dict(p), options.size) for s, p in SAMPLERS.items() if not s.startswith("noise")}
+        ours = described(make, {"type": "independent"}, options.size)
+        ours["integrator"] = {"type": "noisefloor_scalar", "inner": ours["integrator"]}
+        loaded = {s: mi.load_dict(scene) for s, scene in (scenes | {"noisefloor": ours}).items()}
+        measure(f"{name}, scalar", loaded, lambda scene, seed: mi.render(scene, spp=spp, seed=seed))
+    mi.set_variant(variant)
 
 
 def main():
@@ -195,6 +213,7 @@ def main():
     parser.add_argument("folder")
     parser.add_argument("--parts", default="times,gradients,fits,errors")
     parser.add_argument("--scenes", default=",".join(scenes.SCENES))
+    parser.add_argument("--scalar", metavar="FOLDER", help="where noisefloor_scalar was built: times it, too")
     defaults = {"size": 128, "seeds": 32, "many": 8, "reference": 4096, "frames": 4096, "rounds": 15}
     for option, default in defaults.items():
         parser.add_argument(f"--{option}", type=int, default=default)
