@@ -177,7 +177,7 @@ def measure_gradients(options, out):
 
 def measure_times(options, out, spp=16):
     """By turns, so that other work on the machine is shared alike."""
-    out.write("scene;sampler;round;seconds\n")
+    out.write("variant;scene;sampler;round;seconds\n")
 
     def measure(name, loaded, render):
         loaded = {sampler: scene for sampler, scene in loaded.items() if takes(scene, spp)}
@@ -186,7 +186,7 @@ def measure_times(options, out, spp=16):
                 start = time.perf_counter()
                 render(scene, turn + 1)
                 if turn >= 0:  # the first compiles
-                    out.write(f"{name};{sampler};{turn};{time.perf_counter() - start:.6g}\n")
+                    out.write(f"{mi.variant()};{name};{sampler};{turn};{time.perf_counter() - start:.6g}\n")
 
     def recorded(scene, seed):
         dr.eval(mi.render(scene, spp=spp, seed=seed))
@@ -200,11 +200,11 @@ def measure_times(options, out, spp=16):
     mi.set_variant("scalar_rgb")
     mi.file_resolver().append(options.scalar)
     for name, make in options.chosen.items():
-        scenes = {s: described(make, dict(p), options.size) for s, p in SAMPLERS.items() if not s.startswith("noise")}
+        others = {s: described(make, dict(p), options.size) for s, p in SAMPLERS.items() if not s.startswith("noise")}
         ours = described(make, {"type": "independent"}, options.size)
         ours["integrator"] = {"type": "noisefloor_scalar", "inner": ours["integrator"]}
-        loaded = {s: mi.load_dict(scene) for s, scene in (scenes | {"noisefloor": ours}).items()}
-        measure(f"{name}, scalar", loaded, lambda scene, seed: mi.render(scene, spp=spp, seed=seed))
+        loaded = {s: mi.load_dict(scene) for s, scene in (others | {"noisefloor": ours}).items()}
+        measure(name, loaded, lambda scene, seed: mi.render(scene, spp=spp, seed=seed))
     mi.set_variant(variant)
 
 
