@@ -7,6 +7,8 @@ use crate::measure::running;
 use std::path::PathBuf;
 use xtask::renderers;
 
+/// One scene: the kernels of each take seconds to compile.
+const QUICK: &str = "--scenes cornell --size 32 --seeds 3 --many 2 --reference 512 --frames 16 --rounds 3";
 const PLAIN: &str = "independent";
 const DEFAULT: &str = "noisefloor";
 /// Of gradients, as integrations/mitsuba/README.md recommends.
@@ -22,7 +24,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
         report.compiled();
         command.arg("integrations/mitsuba/measure.py").arg(&folder);
         if report.plan.is_quick() {
-            command.args("--size 32 --seeds 3 --many 2 --reference 512 --frames 16 --rounds 3".split(' '));
+            command.args(QUICK.split(' '));
         }
         running::run(command, |_| Ok(()))?;
     }
