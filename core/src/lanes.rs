@@ -14,16 +14,19 @@ pub(crate) const LANES: usize = 8;
 pub(crate) type Lanes<R, const L: usize = LANES> = [R; L];
 
 /// The same value in every lane.
-#[inline]
+#[inline(always)]
 pub(crate) fn splat<R: Real, const L: usize>(value: R) -> Lanes<R, L> {
     [value; L]
 }
+
+// Always inlined, and so before anything else is: what is inlined later is scalar in places, and image fits take a
+// tenth more instructions.
 
 // The operations copy their operands before they store: compilers then know that no store changes an operand, without
 // which they would not use vector instructions.
 
 /// `f(a, b)` lane by lane.
-#[inline]
+#[inline(always)]
 pub(crate) fn zip<R: Real, const L: usize>(a: &Lanes<R, L>, b: &Lanes<R, L>, f: impl Fn(R, R) -> R) -> Lanes<R, L> {
     let (mut out, b) = (*a, *b);
     for l in 0..L {
@@ -34,13 +37,13 @@ pub(crate) fn zip<R: Real, const L: usize>(a: &Lanes<R, L>, b: &Lanes<R, L>, f: 
 
 /// Ends an iteration of a loop over groups of lanes. Compilers would else unroll the lanes and go through several
 /// iterations at once, with shuffles that take longer than the arithmetic.
-#[inline]
+#[inline(always)]
 pub(crate) fn keep_together() {
     black_box(());
 }
 
 /// `a + b * c` lane by lane.
-#[inline]
+#[inline(always)]
 pub(crate) fn plus_product<R: Real, const L: usize>(a: Lanes<R, L>, b: Lanes<R, L>, c: Lanes<R, L>) -> Lanes<R, L> {
     let mut out = a;
     for l in 0..L {
@@ -50,7 +53,7 @@ pub(crate) fn plus_product<R: Real, const L: usize>(a: Lanes<R, L>, b: Lanes<R, 
 }
 
 /// `a - b * c` lane by lane.
-#[inline]
+#[inline(always)]
 pub(crate) fn minus_product<R: Real, const L: usize>(a: Lanes<R, L>, b: Lanes<R, L>, c: Lanes<R, L>) -> Lanes<R, L> {
     let mut out = a;
     for l in 0..L {
@@ -60,13 +63,13 @@ pub(crate) fn minus_product<R: Real, const L: usize>(a: Lanes<R, L>, b: Lanes<R,
 }
 
 /// `a += b * c` lane by lane.
-#[inline]
+#[inline(always)]
 pub(crate) fn add_product<R: Real, const L: usize>(a: &mut Lanes<R, L>, b: &Lanes<R, L>, c: &Lanes<R, L>) {
     *a = plus_product(*a, *b, *c);
 }
 
 /// `a += s * b` lane by lane.
-#[inline]
+#[inline(always)]
 pub(crate) fn add_scaled<R: Real, const L: usize>(a: &mut Lanes<R, L>, s: R, b: &Lanes<R, L>) {
     let (mut out, b) = (*a, *b);
     for l in 0..L {
@@ -76,7 +79,7 @@ pub(crate) fn add_scaled<R: Real, const L: usize>(a: &mut Lanes<R, L>, s: R, b: 
 }
 
 /// `a -= s * b` lane by lane.
-#[inline]
+#[inline(always)]
 pub(crate) fn subtract_scaled<R: Real, const L: usize>(a: &mut Lanes<R, L>, s: R, b: &Lanes<R, L>) {
     let (mut out, b) = (*a, *b);
     for l in 0..L {
@@ -89,20 +92,20 @@ pub(crate) fn subtract_scaled<R: Real, const L: usize>(a: &mut Lanes<R, L>, s: R
 ///
 /// Behind a black box: a compiler that knew where the ones come from would divide by zero there and drop the result,
 /// which hosts that trap that do not survive.
-#[inline]
+#[inline(always)]
 pub(crate) fn divisor<R: Real, const L: usize>(a: &Lanes<R, L>) -> Lanes<R, L> {
     black_box(a.map(Real::or_one))
 }
 
 /// The sum of the eight lanes, always as ((0+4)+(2+6)) + ((1+5)+(3+7)).
-#[inline]
+#[inline(always)]
 pub(crate) fn sum<R: Real>(a: &Lanes<R>) -> R {
     let [a0, a1, a2, a3, a4, a5, a6, a7] = *a;
     ((a0 + a4) + (a2 + a6)) + ((a1 + a5) + (a3 + a7))
 }
 
 /// The dot product of two rows, with eight partial sums; the shorter row sets the length.
-#[inline]
+#[inline(always)]
 pub(crate) fn dot<R: Real>(a: &[R], b: &[R]) -> R {
     let (a_panels, a_rest) = a.as_chunks::<LANES>();
     let (b_panels, b_rest) = b.as_chunks::<LANES>();
@@ -121,7 +124,7 @@ pub(crate) fn dot<R: Real>(a: &[R], b: &[R]) -> R {
 }
 
 /// The base-2 logarithm lane by lane, of positive normal numbers; within 3e-7 of it, or of its magnitude if larger.
-#[inline]
+#[inline(always)]
 pub(crate) fn log2(x: &Lanes<f32>) -> Lanes<f32> {
     // x = m 2^e with m from sqrt(1/2) to sqrt(2), and ln m = 2 (t + t^3 / 3 + ...) with t = (m - 1) / (m + 1).
     const SMALLEST: u32 = 0x3f35_04f3;
@@ -138,7 +141,7 @@ pub(crate) fn log2(x: &Lanes<f32>) -> Lanes<f32> {
 }
 
 /// 2 to the power of x lane by lane, for x from -126 to 126, what is beyond counted as that; within 3e-7 of it.
-#[inline]
+#[inline(always)]
 pub(crate) fn exp2(x: &Lanes<f32>) -> Lanes<f32> {
     // Adding this rounds to an integer, which is then in the low bits.
     const ROUND: f32 = 12_582_912.0;
