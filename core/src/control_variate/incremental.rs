@@ -139,7 +139,8 @@ impl<R: Real> Progress<R> {
             self.next_fit = samples.saturating_add((samples / 16).max(1));
             Some(())
         };
-        // The buffer was measured for this, so there is nothing to fail; fits that are not renewed are still valid ones.
+        // The buffer was measured for this, so there is nothing to fail; fits that are not renewed are still valid
+        // ones.
         let _: Option<()> = solve();
     }
 

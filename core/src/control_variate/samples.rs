@@ -289,7 +289,8 @@ impl<'a> Reader<'a> {
         values
     }
 
-    /// Writes the positions of samples from each `first` on to the lanes from `lane` on, a group of lanes for each step.
+    /// Writes the positions of samples from each `first` on to the lanes from `lane` on, a group of lanes for each
+    /// step.
     #[inline(always)]
     pub(crate) fn put_positions<R: Real, const L: usize>(
         &self,

@@ -1,8 +1,8 @@
 //! Fixed-size sums over samples, from which every fit of the streaming estimators is made.
 //!
 //! For rows p = (1, functions) and values f the sums are P'P (packed), P'f (a row for each term) and f'f: the
-//! [`Form::Products`]. Of badly placed samples they lose digits that [`Form::Factor`] keeps: in the same places stand R'
-//! for P = Q R, Q'f, and what of f'f is left.
+//! [`Form::Products`]. Of badly placed samples they lose digits that [`Form::Factor`] keeps: in the same places stand
+//! R' for P = Q R, Q'f, and what of f'f is left.
 
 use super::per_channel::PerChannel;
 use crate::basis::MAX_TERMS;

@@ -127,9 +127,9 @@ pub fn estimate_block(
 /// # Errors
 /// As for [`estimate`](super::estimate); [`Error::Unsupported`] also for a luminance ratio, for skipping samples, for
 /// estimators other than the robust, leave-one-out and K-fold ones, and for the last if something is known;
-/// [`Error::Range`] also for an image without pixels or with more than [`Image::MAX_PIXELS`], for windows and parts that [`Image`] does not allow, for negative
-/// factors or integrals and for arrays of the wrong length; [`Error::NotFinite`] for factors, for what is known and for
-/// integrals that are not finite.
+/// [`Error::Range`] also for an image without pixels or with more than [`Image::MAX_PIXELS`], for windows and parts
+/// that [`Image`] does not allow, for negative factors or integrals and for arrays of the wrong length;
+/// [`Error::NotFinite`] for factors, for what is known and for integrals that are not finite.
 ///
 /// ```
 /// use noisefloor::control_variate::{Config, Image, Samples, estimate_image, image_workspace_len};

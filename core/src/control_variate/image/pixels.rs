@@ -134,8 +134,8 @@ impl Image<'_> {
     /// How many pixels the arrays hold, and how many are estimated, in all frames.
     ///
     /// # Errors
-    /// [`Error::Range`] for an image without pixels or with more than [`Image::MAX_PIXELS`], and for windows and parts that
-    /// are not allowed.
+    /// [`Error::Range`] for an image without pixels or with more than [`Image::MAX_PIXELS`], and for windows and parts
+    /// that are not allowed.
     pub fn counts(&self) -> Result<[usize; 2], Error> {
         let windows = self.windows()?;
         let estimated = windows.wanted.pixels().and_then(|pixels| pixels.checked_mul(windows.frames()));
