@@ -4,14 +4,13 @@
 //! corrected by fits to the others, so are the slots of a block: that of the block's own number.
 
 use super::super::config::Config;
+use super::call::{Call, Layout};
 use super::groups::{Group, Groups, Place};
-use super::known::RELATIVE;
 use super::pixels::Image;
 use super::products::{
     AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sums, add_products, only, plus, plus_four, zip_four,
 };
 use super::terms::{MAX_AXES, Terms};
-use super::{Call, Layout};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
@@ -21,6 +20,8 @@ use crate::rows::{rows, rows_mut};
 
 /// The most numbers of a place.
 pub(super) const MAX_FIXED: usize = 1 + MAX_AXES;
+/// Sums of each slot from which the coefficients of what is known come.
+pub(super) const KNOWN_SUMS: usize = 5;
 /// Uniform coordinates from -1 to 1 times this have unit variance.
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 /// The largest value of a pixel that no fit is made to, in units of the largest that one is made to, is 2 to the power
@@ -79,7 +80,7 @@ pub(super) fn blocks(layout: &Layout<'_>, slots: usize) -> usize {
 pub(super) fn batch_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
     let (columns, functions) = (terms.columns(), terms.functions);
     let (channels, values) = (layout.config.channels, layout.values());
-    let known = if layout.image.has_known() { 2 * channels + RELATIVE } else { 0 };
+    let known = if layout.image.has_known() { 2 * (channels + KNOWN_SUMS) } else { 0 };
     let each = 2 + terms.fixed() + 2 * channels + values + functions + known;
     let rows = AT_ONCE * (functions + columns + 2 * values);
     let pixel = Sums::len(functions, values) + functions + 2 * values;

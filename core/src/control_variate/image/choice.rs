@@ -1,8 +1,8 @@
 //! How far each fit of a group is trusted.
 
 use super::super::trust;
-use super::Layout;
 use super::batch::{Batch, MAX_FIXED};
+use super::call::Layout;
 use super::fit::Fits;
 use super::products::{
     AT_ONCE, COLOURS, Colours, Eight, Four, NONE, add_products, combine, only, plus, plus_four, zip_four,

@@ -5,9 +5,9 @@
 use super::super::config::Ridge;
 use super::super::ridge;
 use super::batch::{Batch, MAX_FIXED, blocks};
+use super::call::{Call, Layout};
 use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only};
 use super::terms::Terms;
-use super::{Call, Layout};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};

@@ -1,6 +1,6 @@
 //! Groups: the pixels of one window and one surface, which share fits.
 
-use super::Layout;
+use super::call::Layout;
 use super::pixels::{Image, Window};
 use crate::arena::Arena;
 use crate::error::Error;

@@ -5,8 +5,8 @@
 //! w (a - A)^2 with w = 1 / A^2 and v = sum f / A over sum a / A, the share of the light that arrives: at least 0, at
 //! most v, and at most 1. Where more arrives than is known, v says little.
 
-use super::Call;
-use super::batch::Batch;
+use super::batch::{Batch, KNOWN_SUMS};
+use super::call::Call;
 use super::products::{AT_ONCE, Eight, Four, NONE, only, plus};
 use crate::arena::Arena;
 use crate::error::Error;
@@ -20,12 +20,9 @@ const LEAST: f32 = 0.01;
 const MOST: f32 = (1_u64 << 20) as f32;
 /// The least sum of known values, relative to integrals, that something can follow.
 const FAINT: f32 = 1.0 / MOST;
-/// Numbers for each slot while the coefficients of a channel are computed.
-pub(super) const RELATIVE: usize = 2 * SUMS;
-const SUMS: usize = 5;
 
 /// Of some pixels, relative to their integrals, sums of: f; a; (a - A)^2; f (a - A); A (a - A).
-type Sums = [Eight; SUMS];
+type Sums = [Eight; KNOWN_SUMS];
 
 /// Of one pixel, by its f, its a and a - A.
 #[inline(always)]
@@ -77,8 +74,8 @@ impl Batch<'_> {
         let mut arena = arena.scratch();
         let inside = self.inside.as_flattened();
         // Of each slot alone, and of all before it.
-        let own = arena.take_lanes(SUMS * inside.len())?.as_chunks_mut::<SUMS>().0;
-        let before = arena.take_lanes(SUMS * inside.len())?.as_chunks_mut::<SUMS>().0;
+        let own = arena.take_lanes(KNOWN_SUMS * inside.len())?.as_chunks_mut::<KNOWN_SUMS>().0;
+        let before = arena.take_lanes(KNOWN_SUMS * inside.len())?.as_chunks_mut::<KNOWN_SUMS>().0;
         let inverse = 1.0 / call.n as f32;
         let place = |slot: usize, channel: usize| (slot / AT_ONCE * channels + channel, slot % AT_ONCE);
         for channel in 0..channels {
@@ -99,7 +96,7 @@ impl Batch<'_> {
                 let (at, row) = place(slot, channel);
                 all.get(at).map_or(NONE, |four| four[row])
             };
-            let mut all = [NONE; SUMS];
+            let mut all = [NONE; KNOWN_SUMS];
             for (slot, (own, before)) in own.iter_mut().zip(before.iter_mut()).enumerate() {
                 let inside = inside.get(slot).copied().unwrap_or(NONE);
                 let (mut mean, mut known) = (NONE, NONE);
@@ -125,7 +122,7 @@ impl Batch<'_> {
                 (*before, all) = (all, both(&all, own));
             }
             // Sums of all pixels but one, without a difference: that would hold digits of the one.
-            let mut others = if self.is_joined { all.map(|sum| other_lanes(&sum)) } else { [NONE; SUMS] };
+            let mut others = if self.is_joined { all.map(|sum| other_lanes(&sum)) } else { [NONE; KNOWN_SUMS] };
             for (slot, (own, before)) in own.iter().zip(before.iter()).enumerate().rev() {
                 let (at, row) = place(slot, channel);
                 let integral = get(self.integrals, slot);

@@ -28,6 +28,7 @@
 
 mod batch;
 mod bright;
+mod call;
 mod choice;
 mod fit;
 mod groups;
@@ -41,19 +42,17 @@ mod terms;
 
 pub use pixels::{Image, Rectangle};
 
-use super::config::{Color, Config, Estimate, Estimator, NonFinite, Ridge};
+use super::config::{Color, Config, Estimate, Estimator, NonFinite};
 use super::samples::{Reader, Samples};
 use crate::arena::Arena;
-use crate::basis::{Basis, Shape};
+use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::LANES;
 use batch::batch_len;
+use call::{Call, Layout};
 use choice::Choices;
-use core::ops::Deref;
 use fit::fits_len;
-use pixels::Windows;
 use sums::sums_len;
-use terms::Terms;
 
 /// Numbers of workspace that [`estimate_block`] needs for `pixels` pixels of `n` samples.
 ///
@@ -176,78 +175,7 @@ pub fn estimate_image(
     Call { layout, basis: &basis, reader }.run(&mut Arena::new(workspace), &mut out)
 }
 
-/// What all groups of a call have in common.
-#[derive(Clone, Copy)]
-struct Layout<'a> {
-    config: &'a Config,
-    image: &'a Image<'a>,
-    windows: Windows,
-    shape: Shape,
-    /// Samples of a pixel.
-    n: usize,
-}
-
-/// A call, with its samples.
-struct Call<'a> {
-    layout: Layout<'a>,
-    basis: &'a Basis,
-    reader: Reader<'a>,
-}
-
-impl<'a> Deref for Call<'a> {
-    type Target = Layout<'a>;
-
-    fn deref(&self) -> &Layout<'a> {
-        &self.layout
-    }
-}
-
 impl Layout<'_> {
-    /// Whether there is one candidate, all of whose columns are used.
-    fn is_single_fit(&self) -> bool {
-        self.config.estimator == Estimator::LeaveOneOut || matches!(self.config.ridge, Ridge::Fixed(_))
-    }
-
-    /// Whether what is known alone corrects: a fit to values that depend on it has seen its own pixel.
-    fn is_known_alone(&self) -> bool {
-        self.image.has_known() && self.config.estimator == Estimator::LeaveOneOut
-    }
-
-    /// Values of a sample that fits are made to: of each channel f and, with something known, f less its part of that.
-    fn values(&self) -> usize {
-        if self.image.has_known() { 2 * self.config.channels } else { self.config.channels }
-    }
-
-    /// In how many turns pixels are chosen for.
-    fn turns(&self) -> usize {
-        if self.has_halves() { 2 } else { 1 }
-    }
-
-    /// Whether halves of the pixels choose for each other.
-    fn has_halves(&self) -> bool {
-        self.config.estimator == Estimator::KFold && !self.is_single_fit()
-    }
-
-    /// Whether colours, or halves of them, are corrected by fits to others.
-    fn has_colours(&self) -> bool {
-        self.n > 1 || self.has_halves()
-    }
-
-    /// Which columns fits to so many pixels have.
-    fn terms(&self, pixels: usize) -> Terms {
-        if self.is_known_alone() {
-            return Terms::without_fits(self.windows.axes());
-        }
-        let samples = pixels.saturating_mul(self.n);
-        Terms::new(self.config, &self.shape, self.windows.axes(), samples, self.is_single_fit())
-    }
-
-    /// Whether the standard error is that of the group's estimates, instead of the pixel's plain mean times the root of
-    /// the gain: one sample has none, and stratified samples a smaller one than they seem to.
-    fn error_is_the_groups(&self) -> bool {
-        self.n == 1 || self.config.stratified
-    }
-
     /// How many rows of windows are worked on before pixels are written, and how many rows of pixels those touch.
     fn band(&self) -> [usize; 2] {
         let [across, down] = self.windows.counts();

@@ -1,9 +1,9 @@
 //! Which fits are made to a group, and what becomes of them.
 
 use super::super::config::Config;
-use super::Call;
 use super::batch::Batch;
 use super::bright;
+use super::call::Call;
 use super::choice::{Choices, Shares, Spreads};
 use super::fit::Fits;
 use super::groups::{Group, Groups};

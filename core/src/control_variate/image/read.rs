@@ -1,7 +1,7 @@
 //! Reading samples, as fits see them.
 
-use super::Call;
 use super::batch::Batch;
+use super::call::Call;
 use super::products::{AT_ONCE, AT_ONCE_LANES, Eight, Four, Rows};
 use crate::lanes::{self, LANES};
 use crate::matrix::{at, row_at};

@@ -2,7 +2,7 @@
 
 use super::super::config::Estimate;
 use super::super::result::{mean_divisor, saturate, standard_error};
-use super::Call;
+use super::call::Call;
 use super::groups::{Groups, Place};
 use super::pixels::Rectangle;
 use crate::arena::Arena;

@@ -1,0 +1,81 @@
+//! What a call computes, and of what.
+
+use super::super::config::{Config, Estimator, Ridge};
+use super::super::samples::Reader;
+use super::pixels::{Image, Windows};
+use super::terms::Terms;
+use crate::basis::{Basis, Shape};
+use core::ops::Deref;
+
+/// What all groups of a call have in common.
+#[derive(Clone, Copy)]
+pub(super) struct Layout<'a> {
+    pub(super) config: &'a Config,
+    pub(super) image: &'a Image<'a>,
+    pub(super) windows: Windows,
+    pub(super) shape: Shape,
+    /// Samples of a pixel.
+    pub(super) n: usize,
+}
+
+/// A call, with its samples.
+pub(super) struct Call<'a> {
+    pub(super) layout: Layout<'a>,
+    pub(super) basis: &'a Basis,
+    pub(super) reader: Reader<'a>,
+}
+
+impl<'a> Deref for Call<'a> {
+    type Target = Layout<'a>;
+
+    fn deref(&self) -> &Layout<'a> {
+        &self.layout
+    }
+}
+
+impl Layout<'_> {
+    /// Whether there is one candidate, all of whose columns are used.
+    pub(super) fn is_single_fit(&self) -> bool {
+        self.config.estimator == Estimator::LeaveOneOut || matches!(self.config.ridge, Ridge::Fixed(_))
+    }
+
+    /// Whether what is known alone corrects: a fit to values that depend on it has seen its own pixel.
+    pub(super) fn is_known_alone(&self) -> bool {
+        self.image.has_known() && self.config.estimator == Estimator::LeaveOneOut
+    }
+
+    /// Values of a sample that fits are made to: of each channel f and, with something known, f less its part of that.
+    pub(super) fn values(&self) -> usize {
+        if self.image.has_known() { 2 * self.config.channels } else { self.config.channels }
+    }
+
+    /// In how many turns pixels are chosen for.
+    pub(super) fn turns(&self) -> usize {
+        if self.has_halves() { 2 } else { 1 }
+    }
+
+    /// Whether halves of the pixels choose for each other.
+    pub(super) fn has_halves(&self) -> bool {
+        self.config.estimator == Estimator::KFold && !self.is_single_fit()
+    }
+
+    /// Whether colours, or halves of them, are corrected by fits to others.
+    pub(super) fn has_colours(&self) -> bool {
+        self.n > 1 || self.has_halves()
+    }
+
+    /// Which columns fits to so many pixels have.
+    pub(super) fn terms(&self, pixels: usize) -> Terms {
+        if self.is_known_alone() {
+            return Terms::without_fits(self.windows.axes());
+        }
+        let samples = pixels.saturating_mul(self.n);
+        Terms::new(self.config, &self.shape, self.windows.axes(), samples, self.is_single_fit())
+    }
+
+    /// Whether the standard error is that of the group's estimates, instead of the pixel's plain mean times the root of
+    /// the gain: one sample has none, and stratified samples a smaller one than they seem to.
+    pub(super) fn error_is_the_groups(&self) -> bool {
+        self.n == 1 || self.config.stratified
+    }
+}
