@@ -6,10 +6,9 @@ use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::PathBuf;
 
-pub const PYTHON: Package = Package { name: "python3", file: "/usr/bin/python3" };
+pub const PYTHON: Package = Package { name: "python3", file: "python3" };
 /// Debian's cmake does without make unless asked.
-pub const CMAKE: [Package; 2] =
-    [Package { name: "cmake", file: "/usr/bin/cmake" }, Package { name: "make", file: "/usr/bin/make" }];
+pub const CMAKE: [Package; 2] = [Package { name: "cmake", file: "cmake" }, Package { name: "make", file: "make" }];
 
 /// Builds and runs the tests with this label of a preset of tests/CMakePresets.json, which need these packages.
 pub fn run(preset: &str, label: &str, needed: &[Package]) -> Result<()> {

@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-pub const PACKAGES: [Package; 1] = [Package { name: "valgrind", file: "/usr/bin/valgrind" }];
+pub const PACKAGES: [Package; 1] = [Package { name: "valgrind", file: "valgrind" }];
 /// The committed counts.
 const REPORT: &str = "docs/report/instructions.json";
 /// By how much a count may exceed the committed one, percent.

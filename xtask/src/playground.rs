@@ -14,7 +14,7 @@ const COMPILER: [Package; 4] = [
     Package { name: "rust-web-src", file: "/usr/share/doc/rust-web-src" },
     Package { name: "lld-19", file: "/usr/bin/wasm-ld-19" },
 ];
-const BROWSER: [Package; 2] = [Package { name: "chromium", file: "/usr/bin/chromium" }, PYTHON];
+const BROWSER: [Package; 2] = [Package { name: "chromium", file: "chromium" }, PYTHON];
 const MANIFEST: &str = "docs/playground/Cargo.toml";
 
 /// Makes target/demo/playground.html.

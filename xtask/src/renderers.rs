@@ -16,13 +16,13 @@ const EMBREE_4: [&str; 2] = ["/usr/include/embree4/rtcore.h", "/usr/local/includ
 /// POV-Ray as it is, and what reads its pictures.
 pub const POVRAY: [Package; 3] = [
     PYTHON,
-    Package { name: "povray", file: "/usr/bin/povray" },
+    Package { name: "povray", file: "povray" },
     Package { name: "povray-includes", file: "/usr/share/povray-3.7/include/woods.inc" },
 ];
 const POVRAY_BUILD: [Package; 3] = [
-    Package { name: "dpkg-dev", file: "/usr/bin/dpkg-source" },
-    Package { name: "patch", file: "/usr/bin/patch" },
-    Package { name: "make", file: "/usr/bin/make" },
+    Package { name: "dpkg-dev", file: "dpkg-source" },
+    Package { name: "patch", file: "patch" },
+    Package { name: "make", file: "make" },
 ];
 
 /// Mitsuba's Dr.Jit compiles with it.

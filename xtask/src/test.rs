@@ -7,14 +7,14 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use std::time::Instant;
 
-const PKG_CONFIG: Package = Package { name: "pkg-config", file: "/usr/bin/pkg-config" };
+const PKG_CONFIG: Package = Package { name: "pkg-config", file: "pkg-config" };
 /// Devices in software, and what programs for them are made with.
 const DEVICES: [Package; 11] = [
     PYTHON,
-    Package { name: "clang", file: "/usr/bin/clang" },
-    Package { name: "spirv-cross", file: "/usr/bin/spirv-cross" },
-    Package { name: "spirv-tools", file: "/usr/bin/spirv-opt" },
-    Package { name: "glslang-tools", file: "/usr/bin/glslangValidator" },
+    Package { name: "clang", file: "clang" },
+    Package { name: "spirv-cross", file: "spirv-cross" },
+    Package { name: "spirv-tools", file: "spirv-opt" },
+    Package { name: "glslang-tools", file: "glslangValidator" },
     Package { name: "libvulkan-dev", file: "/usr/include/vulkan/vulkan.h" },
     Package { name: "mesa-vulkan-drivers", file: "/usr/share/doc/mesa-vulkan-drivers/copyright" },
     Package { name: "chromium-common", file: "/usr/lib/chromium/vk_swiftshader_icd.json" },

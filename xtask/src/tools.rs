@@ -50,8 +50,8 @@ pub fn compilers() -> Result<()> {
     Ok(())
 }
 
-/// A Debian package, and a file that it brings: if that is there, or a program of its name in another folder of the
-/// path, the package or an equal of it is installed.
+/// A Debian package, and a file that it brings: if that is there, the package is installed. A name without folders is
+/// that of a program in any folder of the path: its equal from elsewhere will do.
 #[derive(Clone, Copy)]
 pub struct Package {
     pub name: &'static str,
@@ -80,10 +80,8 @@ pub fn packages(wanted: &[Package]) -> Result<()> {
 }
 
 fn is_there(file: &str) -> bool {
-    let program = file.strip_prefix("/usr/bin/");
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    Path::new(file).exists()
-        || program.is_some_and(|program| std::env::split_paths(&path).any(|folder| folder.join(program).is_file()))
+    // An absolute path stays as it is.
+    std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()).any(|folder| folder.join(file).exists())
 }
 
 /// Debian's package manager is there and this user may use it.
