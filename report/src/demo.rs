@@ -59,6 +59,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     println!("building the library and the path tracer");
     let renderer = Renderer::build()?;
     let output = Output::new(&folder)?;
+    println!("rendering");
     scenes(options, &renderer, &output)?;
     output.commit()?;
     match xtask::playground::build() {

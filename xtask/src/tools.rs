@@ -94,7 +94,8 @@ fn install(packages: &[&str]) -> Result<()> {
     run::check(run::command("apt-get").args(["update", "-qq"]))?;
     let mut install = run::command("apt-get");
     install.env("DEBIAN_FRONTEND", "noninteractive").args(["install", "-y", "-qq", "--no-install-recommends"]);
-    run::check(install.args(packages))
+    // What it says of each package would hide what comes before and after.
+    run::check(install.args(packages).stdout(Stdio::null()))
 }
 
 fn missing_compilers() -> Vec<String> {
