@@ -24,7 +24,7 @@
  *    dims, order and channels are optional), an unknown value is NF_ERR_RANGE. Zero or NULL is what is not there.
  *  - Not listed with each function: NF_ERR_NULL and NF_ERR_ALIGNMENT of any pointer, NF_ERR_STATE of any object.
  *  - NF_ERR_RANGE does not say which argument it means: a function's comment lists those that it can mean, with their
- *    ranges there or where they are declared. nf_cv_check() names the field of a configuration.
+ *    ranges there or where they are declared. nf_check() names the field of a configuration.
  *  - References such as (4.22) are to C. Salaun, "Toward Improving Monte Carlo Estimator for Rendering and
  *    Machine Learning", 2025.
  */
@@ -59,6 +59,8 @@ NF_ASSERT_STRUCT(nf_estimate, 40, samples, 32, float);
 NF_ASSERT_LAYOUT(sizeof(nf_cv_image) == 24 + 2 * sizeof(void *) + 32 && offsetof(nf_cv_image, surfaces) == 24);
 NF_ASSERT_STRUCT(nf_cv_rectangle, 16, width, 8, uint32_t);
 NF_ASSERT_STRUCT(nf_recommendation, 92, config, 32, uint32_t);
+NF_ASSERT_STRUCT(nf_omis_arguments, 2 * sizeof(void *) + 16, beta, sizeof(void *) + 16, void *);
+NF_ASSERT_LAYOUT(sizeof(nf_importance_arguments) == 12);
 NF_ASSERT_STRUCT(nf_tile, 2 * sizeof(void *) + 24, size, 2 * sizeof(void *), void *);
 NF_ASSERT_STRUCT(nf_tile_sampler, sizeof(void *) + 16, domain, sizeof(void *), void *);
 NF_ASSERT_STRUCT(nf_sampler, 16, x, 8, uint32_t);

@@ -105,6 +105,16 @@ enum class status : nf_status {
 
 inline const char *message(status code) noexcept { return nf_status_message(static_cast<nf_status>(code)); }
 
+// What is wrong with one of these, in words: the field and its range. nullptr if nothing is.
+inline const char *check(const nf_cv_config &what) noexcept { return nf_check(NF_CHECK_CV_CONFIG, &what); }
+inline const char *check(const nf_cv_image &what) noexcept { return nf_check(NF_CHECK_CV_IMAGE, &what); }
+inline const char *check(const nf_cv_descent &what) noexcept { return nf_check(NF_CHECK_CV_DESCENT, &what); }
+inline const char *check(const nf_omis_arguments &what) noexcept { return nf_check(NF_CHECK_OMIS, &what); }
+inline const char *check(const nf_importance_arguments &what) noexcept { return nf_check(NF_CHECK_IMPORTANCE, &what); }
+inline const char *check(const nf_table &what) noexcept { return nf_check(NF_CHECK_TABLE, &what); }
+inline const char *check(const nf_tile &what) noexcept { return nf_check(NF_CHECK_TILE, &what); }
+inline const char *check(const nf_tile_sampler &what) noexcept { return nf_check(NF_CHECK_TILE_SAMPLER, &what); }
+
 #ifndef NOISEFLOOR_NO_EXCEPTIONS
 
 class error final : public std::exception {
@@ -241,10 +251,7 @@ struct config : nf_cv_config {
 
     // 0 for a configuration that is out of range.
     std::uint32_t terms() const noexcept { return nf_cv_terms(this); }
-    bool valid() const noexcept { return check() == nullptr; }
-    // What is wrong with it, or nullptr.
-    const char *check() const noexcept { return nf_cv_check(this, nullptr, nullptr); }
-    const char *check(const nf_cv_image &where) const noexcept { return nf_cv_check(this, &where, nullptr); }
+    bool valid() const noexcept { return check(*this) == nullptr; }
     // Bytes; 0 for a configuration that is out of range.
     std::size_t workspace_size(std::size_t n) const noexcept { return nf_cv_workspace_size(this, n); }
     // For n samples in each pixel, of which something may be known.

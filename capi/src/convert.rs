@@ -29,15 +29,6 @@ pub(crate) unsafe fn reference<'a, T>(pointer: *const T) -> Result<&'a T, nf_sta
     Ok(unsafe { &*pointer })
 }
 
-/// [`reference`], or nothing for NULL.
-///
-/// # Safety
-/// As for [`reference`].
-pub(crate) unsafe fn optional<'a, T>(pointer: *const T) -> Result<Option<&'a T>, nf_status> {
-    // SAFETY: passed on to the caller.
-    if pointer.is_null() { Ok(None) } else { unsafe { reference(pointer) }.map(Some) }
-}
-
 /// An exclusive reference to one object that already exists; [`room`] is for one that may not.
 ///
 /// # Safety

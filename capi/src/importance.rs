@@ -1,7 +1,9 @@
 //! How important an item is, from the output layer.
 
 use crate::convert;
+use crate::mis::NF_MIS_MAX_TECHNIQUES;
 use crate::status::*;
+use crate::wrong::{Wrong, pick, rule};
 use noisefloor_core::minibatch::importance::{self, Split};
 
 /// nf_importance_gradient split: one importance per group of nodes, the norm over it.
@@ -113,26 +115,42 @@ pub unsafe extern "C" fn nf_importance_gradient(
     importance: *mut f32,
 ) -> nf_status {
     status((|| {
-        let split = match split {
-            NF_NODES_NORM => Split::Norm,
-            NF_NODES_SIGN => Split::Sign,
-            _ => return Err(NF_ERR_RANGE),
-        };
-        if !(1..=crate::NF_MIS_MAX_TECHNIQUES).contains(&techniques) || outputs == 0 {
-            return Err(NF_ERR_RANGE);
-        }
+        let split = check_importance(&nf_importance_arguments { outputs, split, techniques })?;
         let (rows, outputs, techniques) = (rows as usize, outputs as usize, techniques as usize);
         let (len, all) = (convert::product(rows, outputs)?, convert::product(rows, techniques)?);
         // SAFETY: the caller passes arrays of these lengths, of which the written one is no part of the other.
         let (gradient, importance) = unsafe { (convert::slice(gradient, len)?, convert::outputs(importance, all)?) };
         finite(gradient)?;
-        // What else is refused is refused of the first item.
         for i in 0..rows {
             let out = row_mut(importance, techniques, i);
             importance::nodes(row(gradient, outputs, i), split, out).map_err(status_of)?;
         }
         Ok(())
     })())
+}
+
+/// What nf_importance_gradient takes, for nf_check().
+#[repr(C)]
+#[derive(Clone, Copy)]
+#[allow(non_camel_case_types)]
+pub struct nf_importance_arguments {
+    /// At least one for each group.
+    pub outputs: u32,
+    /// NF_NODES_*
+    pub split: u32,
+    /// 1 to NF_MIS_MAX_TECHNIQUES, with NF_NODES_SIGN an even number.
+    pub techniques: u32,
+}
+
+/// What is wrong with arguments, or the split.
+pub(crate) fn check_importance(of: &nf_importance_arguments) -> Result<Split, Wrong> {
+    let split = pick(of.split, &[Split::Norm, Split::Sign], c"split must be one of NF_NODES_*, 0 or 1")?;
+    rule((1..=NF_MIS_MAX_TECHNIQUES).contains(&of.techniques), c"techniques must be 1 to 16")?;
+    let each = if split == Split::Sign { 2 } else { 1 };
+    rule(of.techniques.is_multiple_of(each), c"techniques must be even with NF_NODES_SIGN")?;
+    let words = c"outputs must be at least techniques, with NF_NODES_SIGN half as many";
+    rule(of.outputs >= of.techniques / each, words)?;
+    Ok(split)
 }
 
 // `chunks` divides by its width, which panics for zero: not every compiler sees that there is none.

@@ -9,6 +9,7 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+mod check;
 mod convert;
 mod cv;
 mod dispatch;
@@ -25,7 +26,9 @@ mod shard;
 mod status;
 mod table;
 mod tile;
+mod wrong;
 
+pub use check::*;
 pub use cv::*;
 pub use gradient::*;
 pub use importance::*;

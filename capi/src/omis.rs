@@ -2,7 +2,9 @@
 
 use crate::convert;
 use crate::magic::{self, magic};
+use crate::mis::NF_MIS_MAX_TECHNIQUES;
 use crate::status::*;
+use crate::wrong::{Wrong, fraction, pick, rule};
 use noisefloor_core::minibatch::{self, Batch};
 use noisefloor_core::mis::{self, DEFAULT_RIDGE, MAX_TECHNIQUES, OptimalMis, Solver};
 
@@ -61,15 +63,10 @@ pub unsafe extern "C" fn nf_omis_init(
     out: *mut *mut nf_omis,
 ) -> nf_status {
     status((|| {
-        let size = nf_omis_size(techniques, integrals);
-        if size == 0 {
-            return Err(NF_ERR_RANGE);
-        }
-        // SAFETY: the caller passes `techniques` counts, which a size other than 0 says are at most 16.
+        let size = checked_size(techniques, integrals)?;
+        // SAFETY: the caller passes `techniques` counts, at most 16 as just checked.
         let counts = unsafe { convert::slice(counts, techniques as usize) }?;
-        if counts.contains(&0) {
-            return Err(NF_ERR_RANGE);
-        }
+        check_counts(counts)?;
         let mut header = Header { magic: MAGIC, techniques, integrals, counts: [0; MAX_TECHNIQUES] };
         header.counts.iter_mut().zip(counts).for_each(|(to, &from)| *to = from);
         // SAFETY: the caller passes a place for a pointer.
@@ -153,12 +150,7 @@ pub unsafe extern "C" fn nf_omis_next_batch(omis: *mut nf_omis, solver: u32, rid
     status((|| {
         // SAFETY: the caller passes an object that no one else uses meanwhile.
         let mut omis = unsafe { open_mut(omis) }?;
-        if !beta.is_finite() {
-            return Err(NF_ERR_NOT_FINITE);
-        }
-        if !(0.0..=1.0).contains(&beta) {
-            return Err(NF_ERR_RANGE);
-        }
+        check_beta(beta)?;
         omis.next_batch(solver_of(solver, ridge)?).map_err(status_of)?;
         omis.decay(beta).map_err(status_of)
     })())
@@ -265,13 +257,60 @@ fn used_counts(header: &Header) -> Result<&[u32], nf_status> {
     header.counts.get(..header.techniques as usize).ok_or(NF_ERR_STATE)
 }
 
-pub(crate) fn solver_of(solver: u32, ridge: f32) -> Result<Solver, nf_status> {
-    match solver {
-        NF_OMIS_RIDGE if ridge == 0.0 => Ok(Solver::Ridge(DEFAULT_RIDGE)),
-        NF_OMIS_RIDGE => Ok(Solver::Ridge(ridge)),
-        NF_OMIS_PLAIN => Ok(Solver::Plain),
-        NF_OMIS_PROGRESSIVE => Ok(Solver::Progressive),
-        NF_OMIS_BALANCE => Ok(Solver::Balance),
-        _ => Err(NF_ERR_RANGE),
+/// What nf_omis_init, nf_omis_solve, nf_omis_next_batch, nf_omis_weights and nf_gradient_estimate take, for nf_check();
+/// zero where a function does not take it.
+#[repr(C)]
+#[derive(Clone, Copy)]
+#[allow(non_camel_case_types)]
+pub struct nf_omis_arguments {
+    /// Samples of each technique in a round, each at least 1; or NULL.
+    pub counts: *const u32,
+    /// 1 to NF_MIS_MAX_TECHNIQUES.
+    pub techniques: u32,
+    /// At most as many as memory can hold sums of.
+    pub integrals: u32,
+    /// NF_OMIS_*
+    pub solver: u32,
+    /// 1e-8 to 1e8, or 0 for the default.
+    pub ridge: f32,
+    /// 0 to 1.
+    pub beta: f32,
+}
+
+/// What is wrong with arguments.
+///
+/// # Safety
+/// Aligned `counts` must be NULL or `techniques` of them, if that is in its range.
+pub(crate) unsafe fn check_omis(of: &nf_omis_arguments) -> Result<(), Wrong> {
+    checked_size(of.techniques, of.integrals.max(1))?;
+    if !of.counts.is_null() {
+        // SAFETY: passed on to the caller.
+        let counts = unsafe { convert::slice(of.counts, of.techniques as usize) };
+        check_counts(counts.map_err(|status| Wrong(status, c"counts are misaligned"))?)?;
     }
+    solver_of(of.solver, of.ridge)?;
+    check_beta(of.beta)
+}
+
+fn checked_size(techniques: u32, integrals: u32) -> Result<usize, Wrong> {
+    rule((1..=NF_MIS_MAX_TECHNIQUES).contains(&techniques), c"techniques must be 1 to 16")?;
+    let size = nf_omis_size(techniques, integrals);
+    rule(size > 0, c"integrals must be at least 1, and no more than memory can hold sums of")?;
+    Ok(size)
+}
+
+fn check_counts(counts: &[u32]) -> Result<(), Wrong> {
+    rule(!counts.contains(&0), c"counts must be at least 1")
+}
+
+fn check_beta(beta: f32) -> Result<(), Wrong> {
+    fraction(beta, c"beta must be 0 to 1")
+}
+
+pub(crate) fn solver_of(solver: u32, ridge: f32) -> Result<Solver, Wrong> {
+    let ridge = if ridge == 0.0 { DEFAULT_RIDGE } else { ridge };
+    let solvers = [Solver::Ridge(ridge), Solver::Plain, Solver::Progressive, Solver::Balance];
+    let solver = pick(solver, &solvers, c"solver must be one of NF_OMIS_*, 0 to 3")?;
+    solver.check().map_err(|error| Wrong(status_of(error), c"ridge must be 1e-8 to 1e8, or 0 for the default 2"))?;
+    Ok(solver)
 }

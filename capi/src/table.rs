@@ -4,6 +4,7 @@ use crate::convert;
 use crate::dispatch::{self, Reader, Writer};
 use crate::rng::{self, nf_rng};
 use crate::status::*;
+use crate::wrong::{Wrong, rule};
 use core::ffi::c_void;
 use noisefloor_core::minibatch::table::{self, State, Table};
 
@@ -367,18 +368,28 @@ fn state(table: &nf_table) -> State {
     State { scale: table.scale, items: table.items, uniform_fraction: table.uniform_fraction + 0.0 }
 }
 
+const NO_TABLE: Wrong = Wrong(NF_ERR_STATE, c"all fields but uniform_fraction must be as nf_table_init() made them");
+
+/// What is wrong with a table.
+///
+/// # Safety
+/// As for [`open`].
+pub(crate) unsafe fn check_table(table: &nf_table) -> Result<(), Wrong> {
+    lengths(table)?;
+    // SAFETY: passed on to the caller.
+    unsafe { open(table) }.map(|_| ()).map_err(|_| NO_TABLE)
+}
+
 /// How many importances and sums a table's memory has.
-fn lengths(table: &nf_table) -> Result<(usize, usize), nf_status> {
-    if !(0.0..=1.0).contains(&table.uniform_fraction) {
-        return Err(NF_ERR_RANGE);
-    }
+fn lengths(table: &nf_table) -> Result<(usize, usize), Wrong> {
+    rule((0.0..=1.0).contains(&table.uniform_fraction), c"uniform_fraction must be 0 to 1")?;
     if table.magic != MAGIC || table.importance.is_null() || table.blocks > MAX_BLOCKS {
-        return Err(NF_ERR_STATE);
+        return Err(NO_TABLE);
     }
-    let (importance, sums) = parts(table.blocks).ok_or(NF_ERR_STATE)?;
+    let (importance, sums) = parts(table.blocks).ok_or(NO_TABLE)?;
     // nf_table_init put the sums right behind: where that no longer holds, pointers or lengths have been changed since.
     if table.sums.addr() != table.importance.addr().wrapping_add(importance) {
-        return Err(NF_ERR_STATE);
+        return Err(NO_TABLE);
     }
     Ok((importance / size_of::<f32>(), sums / size_of::<i64>()))
 }

@@ -7,7 +7,7 @@ mod support;
 use arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
 use noisefloor_c::*;
-use std::ptr::{null, null_mut};
+use std::ptr::{from_ref, null, null_mut};
 use support::{Array, Source};
 
 /// Bytes beyond which no workspace is allocated.
@@ -80,7 +80,7 @@ fn samples(source: &mut Source<'_>, config: &nf_cv_config, n: usize) -> Result<S
     // SAFETY: a reference is a valid pointer.
     let valid = unsafe { nf_cv_terms(config) } > 0;
     // SAFETY: as above.
-    assert!(valid || !unsafe { nf_cv_check(config, null(), null()) }.is_null());
+    assert!(valid || !unsafe { nf_check(NF_CHECK_CV_CONFIG, from_ref(config).cast()) }.is_null());
     let len = |width: u32| if valid { n * width as usize } else { 0 };
     let stride = if config.stride == 0 { config.dims } else { config.stride };
     let used =
@@ -125,7 +125,7 @@ fn batch(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
             assert!(each.iter().skip(count).all(|out| out.samples == UNTOUCHED.samples));
         }
         let steps = descent(source)?;
-        nf_cv_check(config, null(), &steps);
+        nf_check(NF_CHECK_CV_DESCENT, from_ref(&steps).cast());
         let rows = if config.color == NF_COLOR_LUMINANCE_RATIO { 1 } else { config.channels };
         let terms = nf_cv_terms(config).saturating_sub(1);
         let mut start = source.array((terms * rows.min(4)) as usize, Source::number)?;
@@ -186,7 +186,7 @@ fn shared(source: &mut Source<'_>, config: &nf_cv_config) -> Result<()> {
     // SAFETY: as in `batch`.
     unsafe {
         let bytes = nf_cv_image_workspace_size(config, &image, &samples);
-        assert!(bytes == 0 || nf_cv_check(config, &image, null()).is_null());
+        assert!(bytes == 0 || nf_check(NF_CHECK_CV_IMAGE, from_ref(&image).cast()).is_null());
         if bytes > MOST {
             return Ok(());
         }

@@ -14,11 +14,9 @@ extern "C" {
 
 #define NF_ABI_VERSION 1 // The version of this header. `nf_abi_version()` returns the library's.
 
-// The ABI version the library was built with; it must equal `NF_ABI_VERSION`.
-uint32_t nf_abi_version(void);
+uint32_t nf_abi_version(void); // The ABI version the library was built with; it must equal `NF_ABI_VERSION`.
 
-// 0 is success, a negative value an error; `nf_status_message` explains it.
-typedef int32_t nf_status;
+typedef int32_t nf_status; // 0 is success, a negative value an error; `nf_status_message` explains it.
 
 #define NF_OK 0 // Success.
 #define NF_ERR_NULL (-1) // A required pointer is NULL.
@@ -38,6 +36,21 @@ typedef int32_t nf_status;
 // A static, NUL-terminated sentence for a status; never NULL, also for values that are no status.
 const char *nf_status_message(nf_status status);
 
+#define NF_CHECK_CV_CONFIG 0 // nf_check: an nf_cv_config.
+#define NF_CHECK_CV_IMAGE 1 // nf_check: an nf_cv_image.
+#define NF_CHECK_CV_DESCENT 2 // nf_check: an nf_cv_descent.
+#define NF_CHECK_OMIS 3 // nf_check: an nf_omis_arguments.
+#define NF_CHECK_IMPORTANCE 4 // nf_check: an nf_importance_arguments.
+#define NF_CHECK_TABLE 5 // nf_check: an nf_table.
+#define NF_CHECK_TILE 6 // nf_check: an nf_tile.
+#define NF_CHECK_TILE_SAMPLER 7 // nf_check: an nf_tile_sampler, its tile included.
+#define NF_CHECK_DIMS 8 // nf_check: a uint32_t, the `dims` that any sampler is to draw.
+
+// What is wrong with the configuration that `what` points to, of a kind NF_CHECK_*: a static sentence that names the
+// first field that is out of its range, and the range, or NULL. Arrays are not read, and options that only some
+// functions take, NF_ERR_UNSUPPORTED elsewhere, pass. Any nf_sampler is a valid one.
+const char *nf_check(uint32_t kind, const void *what);
+
 /* Random numbers. */
 
 // A PCG32 random number generator (O'Neill 2014), for minibatches, examples and tests: the same numbers on every
@@ -54,11 +67,9 @@ typedef struct nf_rng {
 // nothing if `rng` is NULL.
 void nf_rng_seed(nf_rng *rng, uint64_t seed);
 
-// The next 32 random bits; 0 if `rng` is NULL.
-uint32_t nf_rng_next(nf_rng *rng);
+uint32_t nf_rng_next(nf_rng *rng); // The next 32 random bits; 0 if `rng` is NULL.
 
-// The next number uniform in [0, 1), a multiple of 2^-24; 0 if `rng` is NULL.
-float nf_rng_uniform(nf_rng *rng);
+float nf_rng_uniform(nf_rng *rng); // The next number uniform in [0, 1), a multiple of 2^-24; 0 if `rng` is NULL.
 
 #ifdef __cplusplus
 }

@@ -112,7 +112,7 @@ typedef struct nf_estimate {
     float gain; // Estimated variance relative to the plain mean's, averaged over the channels; 1 is no gain.
 } nf_estimate;
 
-// Bytes of workspace for n samples of each integral; 0 for a configuration that nf_cv_check() refuses, for
+// Bytes of workspace for n samples of each integral; 0 for a configuration that nf_check() refuses, for
 // options that exclude each other, or where no memory could be large enough.
 size_t nf_cv_workspace_size(const nf_cv_config *config, size_t n);
 
@@ -163,11 +163,11 @@ typedef struct nf_cv_image {
 
 // Writes which pixels must be given for `image->wanted`, and all zero, for all, where pixels have no places. Reads no
 // array; `out` may be `&image->given`.
-// NF_ERR_RANGE: what nf_cv_check() says of the windows and `wanted`.
+// NF_ERR_RANGE: what nf_check() says of the windows and `wanted`.
 nf_status nf_cv_image_needed(const nf_cv_image *image, nf_cv_rectangle *out);
 
 // Bytes of workspace that nf_cv_image_estimate() needs for `samples->n` samples in each pixel, more with `known`; 0 as
-// for nf_cv_workspace_size(), and for an image that nf_cv_check() refuses. No array is read.
+// for nf_cv_workspace_size(), and for an image that nf_check() refuses. No array is read.
 size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image *image, const nf_cv_samples *samples);
 
 // Estimates the pixels of an image from `samples->n` samples in each: out[wanted pixels]. Pixels of one window and
@@ -209,11 +209,6 @@ typedef struct nf_cv_descent {
 // NF_ERR_UNSUPPORTED for another estimator and `controls`.
 nf_status nf_cv_gradient_descent(const nf_cv_config *config, const nf_cv_samples *samples, const nf_cv_descent *descent,
     float *coefficients, void *workspace, size_t bytes, nf_estimate *out);
-
-// What is wrong with a configuration, and with an image and a descent unless they are NULL: a static sentence that
-// names the first field that is out of its range, or NULL. Arrays are not read, and options that only some functions
-// take, NF_ERR_UNSUPPORTED elsewhere, pass.
-const char *nf_cv_check(const nf_cv_config *config, const nf_cv_image *image, const nf_cv_descent *descent);
 
 // A streaming estimate of fixed size, in caller memory. It may be moved or copied as bytes between calls, among
 // processes that run the same library file.
@@ -277,7 +272,6 @@ typedef struct nf_recommendation {
 
 // Which estimator, order and tile to use for `spp` samples per pixel of `dims` coordinates, both at least 1
 // (docs/choosing.md).
-//
 // sampling: NF_SAMPLING_*. can_share: 1 if neighbouring pixels' samples are at hand together and integrate similar
 // functions, else 0. sample_cost: nanoseconds to trace a sample, above 0; INFINITY compares errors at equal samples.
 // NF_ERR_RANGE; NF_ERR_NOT_FINITE: a NaN.

@@ -25,7 +25,6 @@ extern "C" {
 
 // The weight of technique j at one point by a heuristic. The sum over all samples of weight * f / (n_j p_j) is
 // unbiased (2.10).
-//
 // parameter: beta or epsilon, else not read. pdf[techniques]: p_k, the density of each technique at the point, at
 // least 0; infinite ones (delta distributions) are equally dense, and finite ones then count as 0. counts[techniques]:
 // n_k, samples of each technique; one with 0 has no part. techniques: 1..NF_MIS_MAX_TECHNIQUES. technique: j.
@@ -41,7 +40,6 @@ nf_status nf_mis_weight(uint32_t heuristic, float parameter, const float *pdf, c
 //
 // Unbiased if alpha came from other samples. The term is not 0 where f is: add those samples too. Times the number of
 // samples, it is what a regression is fitted to (4.3.3).
-//
 // pdf[techniques]: finite, at least 0, that of the technique positive. counts[techniques]: at least 1.
 // alpha[techniques]: from nf_omis_solve. value: f, not divided by a density. All finite.
 // NF_ERR_RANGE: an argument, or the term in float; NF_ERR_NOT_FINITE.
@@ -81,7 +79,6 @@ nf_status nf_omis_init(void *memory, size_t bytes, uint32_t techniques, uint32_t
 
 // Adds one sample, drawn by `technique`: every one, those of value 0 too, in whole rounds of the counts or from
 // technique k with probability n_k / sum n.
-//
 // pdf[techniques]: the density of each technique at the point, finite, at least 0, that of the technique positive.
 // value[integrals]: each integrand there, not divided by any density, finite.
 // NF_ERR_RANGE: technique, or a density; NF_ERR_NOT_FINITE.
@@ -89,7 +86,6 @@ nf_status nf_omis_add(nf_omis *omis, uint32_t technique, const float *pdf, const
 
 // Estimates the integrals from all samples so far, or the weights' coefficients alpha (2.15); NULL for what is not
 // wanted.
-//
 // solver: NF_OMIS_*. ridge: for NF_OMIS_RIDGE, as many samples that know nothing of the integrand: 1e-8..1e8, or 0 for
 // the default 2. It adds ridge (tr(N A) - 1) / n N^-1 to A, N being the counts and n the samples, and at least 1e-8
 // tr(N A) N^-1. estimate[integrals], alpha[integrals * techniques]: outputs; one beyond the range of float becomes the
@@ -108,6 +104,17 @@ nf_status nf_omis_next_batch(nf_omis *omis, uint32_t solver, float ridge, float 
 // Adds the samples of `other`, of another thread or pass; alpha of NF_OMIS_PROGRESSIVE stays that of `omis`.
 // NF_ERR_RANGE: both are the same object; NF_ERR_MISMATCH: other techniques, integrals or counts.
 nf_status nf_omis_merge(nf_omis *omis, const nf_omis *other);
+
+// What nf_omis_init, nf_omis_solve, nf_omis_next_batch, nf_omis_weights and nf_gradient_estimate take, for nf_check();
+// zero where a function does not take it.
+typedef struct nf_omis_arguments {
+    const uint32_t *counts; // Samples of each technique in a round, each at least 1; or NULL.
+    uint32_t techniques; // 1 to NF_MIS_MAX_TECHNIQUES.
+    uint32_t integrals; // At most as many as memory can hold sums of.
+    uint32_t solver; // NF_OMIS_*
+    float ridge; // 1e-8 to 1e8, or 0 for the default.
+    float beta; // 0 to 1.
+} nf_omis_arguments;
 
 #ifdef __cplusplus
 }

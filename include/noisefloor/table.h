@@ -41,7 +41,6 @@ size_t nf_table_size(uint32_t items);
 nf_status nf_table_init(nf_table *table, void *memory, size_t bytes, uint32_t items, const float *importance);
 
 // Draws `batch` items with replacement, independently, in proportion to importance.
-//
 // index[batch]: the items. weight[batch]: 1 / (N p) of each: gradients times weights, averaged over the batch,
 // estimate the gradient of the mean loss without bias (6.3). NULL where they are not wanted: adaptive sampling (w = p
 // in Algorithm 3), which favours important items, a bias by design.
@@ -64,7 +63,6 @@ nf_status nf_table_draw_distinct(nf_table *table, nf_rng *rng, uint32_t batch, u
 
 // Sets the importance of visited items, one after the other: q = momentum q + (1 - momentum) importance (line 13 of
 // Algorithm 3, (6.11)). An item that comes twice is changed twice.
-//
 // index[batch]; importance[batch]: at least 0, finite. momentum: 0..1; 0 forgets the old value, .3 is a good choice.
 // NF_ERR_RANGE: an item, an importance, momentum; NF_ERR_NOT_FINITE.
 nf_status nf_table_update(nf_table *table, const uint32_t *index, const float *importance, uint32_t batch,
@@ -100,8 +98,7 @@ typedef struct nf_shard {
     uint64_t items; // The number of items.
 } nf_shard;
 
-// What the other processes must know of this table.
-nf_status nf_table_shard(const nf_table *table, nf_shard *out);
+nf_status nf_table_shard(const nf_table *table, nf_shard *out); // What the other processes must know of this table.
 
 // How many of a batch's items each process draws: counts[shards], in proportion to the shards' probabilities, each
 // right on average. They sum to batch. Every process calls it with the same shards and a generator of the same seed.
@@ -132,7 +129,6 @@ uint32_t nf_shuffle(uint64_t seed, uint32_t items, uint32_t position);
 // Of each of `rows` items: || softmax(logits) - onehot(label) ||, the norm of the cross-entropy loss's derivative by
 // the logits (6.10), 0 to 1.4143; the loss; and that derivative, where backpropagation starts. NULL for what is not
 // wanted.
-//
 // logits[rows * classes]: finite, of any size. label[rows]: below classes. importance[rows], loss[rows], gradient[rows
 // * classes]: outputs; a loss beyond the range of float becomes the largest finite float.
 // NF_ERR_RANGE: a label, or no classes; NF_ERR_NOT_FINITE: a logit.
@@ -140,7 +136,6 @@ nf_status nf_importance_cross_entropy(const float *logits, const uint32_t *label
     float *importance, float *loss, float *gradient);
 
 // Of each of `rows` items || 2 (output - target) ||, the norm of the derivative of the loss sum (output - target)^2.
-//
 // output[rows * outputs], target[rows * outputs]: finite. importance[rows]: outputs, at most the largest finite float.
 // NF_ERR_RANGE: no outputs; NF_ERR_NOT_FINITE.
 nf_status nf_importance_squared_error(const float *output, const float *target, uint32_t rows, uint32_t outputs,
@@ -148,7 +143,6 @@ nf_status nf_importance_squared_error(const float *output, const float *target, 
 
 // Of each of `rows` items one importance for each of `techniques` tables, from any derivative of the loss by the
 // output nodes: || dL/dm || of (6.1.4) for one table, those of (6.2.3) for several.
-//
 // gradient[rows * outputs]: dL/dm, finite. Node k belongs to group k % groups, groups being techniques with
 // NF_NODES_NORM and half as many with NF_NODES_SIGN: importance[g] is the norm over group g, or importance[2 g],
 // importance[2 g + 1] those of max(gradient, 0) and max(-gradient, 0). techniques: 1..NF_MIS_MAX_TECHNIQUES.
@@ -157,9 +151,15 @@ nf_status nf_importance_squared_error(const float *output, const float *target, 
 nf_status nf_importance_gradient(const float *gradient, uint32_t rows, uint32_t outputs, uint32_t split,
     uint32_t techniques, float *importance);
 
+// What nf_importance_gradient takes, for nf_check().
+typedef struct nf_importance_arguments {
+    uint32_t outputs; // At least one for each group.
+    uint32_t split; // NF_NODES_*
+    uint32_t techniques; // 1 to NF_MIS_MAX_TECHNIQUES, with NF_NODES_SIGN an even number.
+} nf_importance_arguments;
+
 // The optimal MIS gradient of a minibatch as one weight per drawn item (6.2): (1 / batch) sum_s weight[s] * gradient_s
 // is the gradient of the mean loss for every parameter at once, by one backward pass over weighted losses.
-//
 // solver: NF_OMIS_RIDGE or NF_OMIS_PLAIN, consistent, of weights that may be negative, or NF_OMIS_BALANCE, unbiased.
 // ridge: as for nf_omis_solve. techniques: J, 1..NF_MIS_MAX_TECHNIQUES. items: N, of the data set, at least 1.
 // pdf[batch * J]: the probability, above 0 to 1, with which technique j draws the item of sample s, at s * J + j,

@@ -51,7 +51,6 @@ void nf_sampler_draw(nf_sampler sampler, uint32_t dims, float *u);
 const uint32_t *nf_sampler_table(void);
 
 // Draws for many pixels and samples at once, with the bits of single draws.
-//
 // samplers[domains]: all at the first pixel and sample. dims[domains]: how many numbers of each, 1..4. width, height:
 // pixels to the right and down. samples: of each pixel, by ascending index. u[height][width][samples][sum of dims], of
 // which `len` numbers are there.
@@ -72,30 +71,20 @@ typedef struct nf_tile {
     uint32_t progressive; // 1 if the first 1, 2, 4, ... samples of a pixel are well distributed too, otherwise 0.
 } nf_tile;
 
-// 128 x 128 pixels, 1 sample, 2 dims.
-extern const nf_tile nf_tile_128_1spp_2d;
-// The same, 4 samples.
-extern const nf_tile nf_tile_128_4spp_2d;
-// The same, 16 samples.
-extern const nf_tile nf_tile_128_16spp_2d;
+extern const nf_tile nf_tile_128_1spp_2d; // 128 x 128 pixels, 1 sample, 2 dims.
+extern const nf_tile nf_tile_128_4spp_2d; // The same, 4 samples.
+extern const nf_tile nf_tile_128_16spp_2d; // The same, 16 samples.
 // The same, 16 samples, of which the first 1, 2, 4 and 8 are well distributed too.
 extern const nf_tile nf_tile_128_16spp_2d_progressive;
-// 128 x 128 pixels, 1 sample, 4 dims.
-extern const nf_tile nf_tile_128_1spp_4d;
-// The same, 4 samples.
-extern const nf_tile nf_tile_128_4spp_4d;
+extern const nf_tile nf_tile_128_1spp_4d; // 128 x 128 pixels, 1 sample, 4 dims.
+extern const nf_tile nf_tile_128_4spp_4d; // The same, 4 samples.
 // 128 x 128 pixels, 1 sample, 2 dims, for images reconstructed with a Gaussian filter (figures 5.21, 5.22).
 extern const nf_tile nf_tile_128_1spp_2d_gaussian;
-// The same, 4 samples.
-extern const nf_tile nf_tile_128_4spp_2d_gaussian;
-// 128 x 128 pixels, 1 sample, 2 dims, 16 frames.
-extern const nf_tile nf_tile_128_1spp_2d_temporal;
-// 64 x 64 pixels, 1 sample, 2 dims.
-extern const nf_tile nf_tile_64_1spp_2d;
-// The same, 4 samples.
-extern const nf_tile nf_tile_64_4spp_2d;
-// The same, 4 samples, 16 frames.
-extern const nf_tile nf_tile_64_4spp_2d_temporal;
+extern const nf_tile nf_tile_128_4spp_2d_gaussian; // The same, 4 samples.
+extern const nf_tile nf_tile_128_1spp_2d_temporal; // 128 x 128 pixels, 1 sample, 2 dims, 16 frames.
+extern const nf_tile nf_tile_64_1spp_2d; // 64 x 64 pixels, 1 sample, 2 dims.
+extern const nf_tile nf_tile_64_4spp_2d; // The same, 4 samples.
+extern const nf_tile nf_tile_64_4spp_2d_temporal; // The same, 4 samples, 16 frames.
 
 // The tile of an .nft file's bytes, all of them checked: about 3 ms for a megabyte. They must outlive the tile,
 // unchanged.
@@ -119,8 +108,7 @@ typedef struct nf_tile_sampler {
 // 0.
 nf_tile_sampler nf_tile_sampler_pixel(const nf_tile *tile, uint32_t x, uint32_t y, uint32_t frame, uint32_t index);
 
-// As nf_sampler_domain().
-nf_tile_sampler nf_tile_sampler_domain(nf_tile_sampler sampler, uint32_t key);
+nf_tile_sampler nf_tile_sampler_domain(nf_tile_sampler sampler, uint32_t key); // As nf_sampler_domain().
 
 // As nf_sampler_scramble(): the tile at another place, and shifted.
 nf_tile_sampler nf_tile_sampler_scramble(nf_tile_sampler sampler, uint32_t seed);

@@ -115,6 +115,9 @@ ESTIMATE = numpy.dtype(Estimate)
 
 CONSTANTS = dict(
     NF_ABI_VERSION=ABI_VERSION,
+    NF_CHECK_CV_CONFIG=0,
+    NF_CHECK_CV_IMAGE=1,
+    NF_CHECK_TABLE=5,
     NF_CV_ROBUST=0,
     NF_CV_LEAST_SQUARES=1,
     NF_CV_LEAVE_ONE_OUT=2,
@@ -140,12 +143,12 @@ def _names(prefix):
 
 
 ESTIMATORS, BASES, METHODS = _names("NF_CV_"), _names("NF_BASIS_"), _names("NF_METHOD_")
-MAX_DIMS, MAX_ORDER, MAX_CHANNELS, MAX_TERMS, MAX_ITEMS = 16, 7, 4, 136, 2**32 - 1
+MAX_DIMS, MAX_ORDER, MAX_CHANNELS, MAX_ITEMS = 16, 7, 4, 2**32 - 1
 
 FUNCTIONS = """
 uint32_t nf_abi_version(void);
 const char *nf_status_message(nf_status);
-uint32_t nf_cv_terms(const nf_cv_config *);
+const char *nf_check(uint32_t, const void *);
 size_t nf_cv_workspace_size(const nf_cv_config *, size_t);
 nf_status nf_cv_estimate(const nf_cv_config *, const nf_cv_samples *, size_t, void *, size_t, nf_estimate *);
 size_t nf_cv_image_workspace_size(const nf_cv_config *, const nf_cv_image *, const nf_cv_samples *);
@@ -216,6 +219,13 @@ DRAWS = {"iid": table_draw, "stratified": table_draw_stratified, "distinct": tab
 def message(status):
     """The library's sentence for a status."""
     return status_message(status).decode()  # noqa: F821
+
+
+def wrong(what):
+    """What is wrong with a configuration, an image or a table: the field and its range in words, or None."""
+    kinds = {Config: "CV_CONFIG", Image: "CV_IMAGE", Table: "TABLE"}
+    words = check(CONSTANTS[f"NF_CHECK_{kinds[type(what)]}"], address(what))  # noqa: F821
+    return words and words.decode()
 
 
 def default_config():

@@ -140,6 +140,9 @@ def image_estimate(
     image = _c.Image(width=pixels[-1], height=pixels[-2], frames=pixels[0] if len(pixels) == 3 else 1)
     image.window = _arrays.integer("window", window, 1, 32)
     image.stride = 0 if stride is None else _arrays.integer("stride", stride, 1, window)
+    words = _c.wrong(image)
+    if words:
+        raise ValueError(f"{words}; u has the shape {u.shape}")
     samples = _c.Samples(u=_c.data(u), f=_c.data(f), n=n)
     kept = []
 
@@ -189,11 +192,9 @@ def configure(order, estimator, basis, d, dims, slices, stratified, channels=1):
     config.dims = d if dims is None else _arrays.integer("dims", dims, 1, min(d, _c.MAX_DIMS))
     config.stride = d
     config.channels = _arrays.integer("the number of f's channels", channels, 1, _c.MAX_CHANNELS)
-    if not _c.cv_terms(_c.address(config)):
-        raise ValueError(
-            f"order {order} in {config.dims} dims with {slices} slices has more than {_c.MAX_TERMS} terms: lower the "
-            "order, or regress fewer dims"
-        )
+    words = _c.wrong(config)
+    if words:
+        raise ValueError(f"order {order} in {config.dims} dims with {slices} slices: {words}")
     return config
 
 

@@ -135,7 +135,7 @@ def test_no_integrals_and_very_many():
         ((samples(4, 2), numpy.full(4, "a")), {}, "f holds <U1: real numbers"),
         ((samples(4, 17), samples(4)), {}, "u has 17 coordinates: 1 to 16 can be regressed; `dims`"),
         ((samples(4, 0), samples(4)), {}, "u has 0 coordinates"),
-        ((samples(4, 12), samples(4)), {"order": 4}, "order 4 in 12 dims with 1 slices has more than 136 terms"),
+        ((samples(4, 12), samples(4)), {"order": 4}, "order 4 in 12 dims with 1 slices: .* more than 136 terms"),
         ((samples(4, 2), samples(4)), {"order": 8}, "order is 8: it must be 0 to 7"),
         ((samples(4, 2), samples(4)), {"order": 1.5}, "order is 1.5: an integer"),
         ((samples(4, 2), samples(4)), {"dims": 3}, "dims is 3: it must be 1 to 2"),

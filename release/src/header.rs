@@ -34,7 +34,15 @@ const CHAPTERS: [Chapter; 8] = [
         file: BASE,
         title: "Version and status",
         guides: "",
-        prefixes: &["NF_ABI_VERSION", "nf_abi_version", "nf_status", "NF_OK|NF_ERR_", "nf_status_message"],
+        prefixes: &[
+            "NF_ABI_VERSION",
+            "nf_abi_version",
+            "nf_status",
+            "NF_OK|NF_ERR_",
+            "nf_status_message",
+            "NF_CHECK_",
+            "nf_check",
+        ],
     },
     Chapter { file: BASE, title: "Random numbers", guides: "", prefixes: &["nf_rng", "nf_rng_"] },
     Chapter {
@@ -61,7 +69,6 @@ const CHAPTERS: [Chapter; 8] = [
             "NF_OPTIMIZER_",
             "nf_cv_descent",
             "nf_cv_gradient_descent",
-            "nf_cv_check",
             "nf_cv_accumulator",
             "nf_cv_accumulator_",
         ],
@@ -82,7 +89,7 @@ const CHAPTERS: [Chapter; 8] = [
         file: "mis.h",
         title: "Optimal multiple importance sampling: weights of least variance, found from the samples",
         guides: "mis.md",
-        prefixes: &["NF_OMIS_", "nf_omis", "nf_omis_"],
+        prefixes: &["NF_OMIS_", "nf_omis", "nf_omis_", "nf_omis_arguments"],
     },
     Chapter {
         file: "tile.h",
@@ -122,6 +129,7 @@ const CHAPTERS: [Chapter; 8] = [
             "nf_shuffle",
             "NF_NODES_",
             "nf_importance_",
+            "nf_importance_arguments",
             "nf_omis_weights",
             "nf_gradient",
             "nf_gradient_",
@@ -231,11 +239,12 @@ impl Item {
             best.with_context(|| format!("release/src/header.rs has no chapter for `{name}`: add its prefix"))?;
         let is_function = code.first().is_some_and(|line| line.contains('(') && !line.starts_with("#define"));
         let mut text = String::new();
-        for line in block.lines().filter(|line| !is_function || line.trim_start().starts_with("//")) {
-            text += &format!("{}\n", tidy(line));
+        let mut lines = block.lines().filter(|line| !is_function || line.trim_start().starts_with("//")).peekable();
+        while let Some(line) = lines.next() {
+            if line != "//" || !lines.peek().is_some_and(|next| names_something(next)) {
+                text += &format!("{}\n", tidy(line));
+            }
         }
-        // Errors begin a line of their own, and need no empty one before.
-        let mut text = text.replace("//\n// NF_ERR_", "// NF_ERR_");
         if is_function {
             text += &filled(&code);
         }
@@ -243,7 +252,7 @@ impl Item {
     }
 
     fn is_constant(&self) -> bool {
-        self.text.contains("#define ") || self.text.contains("\nextern const ")
+        self.text.lines().any(|line| line.starts_with("#define ") || line.starts_with("extern const "))
     }
 }
 
@@ -272,7 +281,16 @@ fn name<'a>(code: &[&'a str]) -> Option<&'a str> {
     }
 }
 
-/// Comments of one line go beside the constant or field that they describe, where there is room.
+/// Whether a line of a comment begins with an error, or with an argument: these begin a line of their own, and need no
+/// empty one before.
+fn names_something(line: &str) -> bool {
+    let words = line.trim_start_matches("// ");
+    let argument = words.split([':', '[']).next().filter(|name| name.len() < words.len());
+    words.starts_with("NF_ERR_")
+        || argument.is_some_and(|name| name.chars().all(|c| c.is_ascii_lowercase() || c == '_'))
+}
+
+/// Comments of one line go beside the constant, field or function that they describe, where there is room.
 fn beside(text: &str) -> String {
     let comment = |line: &str| line.trim_start().starts_with("//");
     let mut result = String::new();
@@ -282,7 +300,7 @@ fn beside(text: &str) -> String {
             waiting.push(line);
             continue;
         }
-        let is_short = line.starts_with("#define") || line.starts_with("    ");
+        let is_short = line.starts_with("#define") || line.ends_with(';');
         match waiting[..] {
             [words] if is_short && line.len() + words.trim().len() < WIDTH => {
                 result += &format!("{line} {}\n", words.trim());

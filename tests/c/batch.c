@@ -393,9 +393,10 @@ static void sample_errors(void)
     for (i = 0; i < sizeof odd / sizeof *odd; ++i) {
         CHECK_REFUSED(descend(&config, u, f, N, &odd[i], coefficients, work.start, work.bytes, &out), NF_ERR_RANGE,
                       out);
-        CHECK(nf_cv_check(&config, NULL, &odd[i]) != NULL);
+        CHECK(nf_check(NF_CHECK_CV_DESCENT, &odd[i]) != NULL);
     }
-    CHECK(nf_cv_check(&config, NULL, &steps) == NULL);
+    CHECK_NAMED(NF_CHECK_CV_DESCENT, &steps, NULL);
+    CHECK_NAMED(NF_CHECK_CV_DESCENT, &odd[0], "optimizer must be");
     samples.known = f;
     CHECK_REFUSED(nf_cv_estimate(&config, &samples, 1, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
     samples.known = NULL;

@@ -34,7 +34,19 @@ static inline void check_status_at(nf_status actual, nf_status expected, const c
     }
 }
 
+static inline void check_named_at(const char *found, const char *words, const char *text, const char *file, int line)
+{
+    ++nf_checks;
+    if (words ? !found || !strstr(found, words) : found != NULL) {
+        ++nf_failures;
+        fprintf(stderr, "%s:%d: %s: \"%s\" is found wrong, not \"%s\"\n", file, line, text, found ? found : "nothing",
+                words ? words : "nothing");
+    }
+}
+
 #define CHECK(condition) check_at((condition) ? 1 : 0, #condition, __FILE__, __LINE__)
+/* nf_check() says nothing, or a sentence that contains the words. */
+#define CHECK_NAMED(kind, what, words) check_named_at(nf_check((kind), (what)), (words), #what, __FILE__, __LINE__)
 #define CHECK_STATUS(call, expected) check_status_at((call), (expected), #call, __FILE__, __LINE__)
 /* The call must fail with `expected` and leave the object `out` as it was. */
 #define CHECK_REFUSED(call, expected, out)                     \

@@ -44,41 +44,43 @@ static void checked(void)
     nf_cv_image image;
     nf_estimate out;
     memset(&image, 0, sizeof image);
-    CHECK(nf_cv_check(&config, NULL, NULL) == NULL);
-    CHECK(strstr(nf_cv_check(&config, &image, NULL), "width") != NULL);
+    CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, NULL);
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "width");
     image.width = image.height = 64;
-    CHECK(nf_cv_check(&config, &image, NULL) == NULL);
-    CHECK(nf_cv_check(&config, (const nf_cv_image *)misaligned(&image), NULL) != NULL);
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, NULL);
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, misaligned(&image), "misaligned");
     image.unordered = 2;
-    CHECK(strstr(nf_cv_check(&config, &image, NULL), "unordered") != NULL);
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "unordered must be 0 or 1");
     image.unordered = 1;
-    CHECK(nf_cv_check(&config, &image, NULL) == NULL);
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, NULL);
     image.wanted.width = image.wanted.height = 8;
-    CHECK(strstr(nf_cv_check(&config, &image, NULL), "all zero") != NULL);
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "all zero");
     image.unordered = 0;
     image.window = 33;
-    CHECK(strstr(nf_cv_check(&config, &image, NULL), "1024 pixels") != NULL);
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "1024 pixels");
     image.window = 8;
     image.stride = 9;
-    CHECK(strstr(nf_cv_check(&config, &image, NULL), "stride") != NULL);
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "stride");
     image.stride = 0;
     image.given.width = 65;
     image.given.height = 1;
-    CHECK(strstr(nf_cv_check(&config, &image, NULL), "given must lie") != NULL);
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "given must lie");
     image.given = image.wanted;
-    CHECK(strstr(nf_cv_check(&config, &image, NULL), "nf_cv_image_needed") != NULL);
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "nf_cv_image_needed");
     CHECK_STATUS(nf_cv_image_needed(&image, &image.given), NF_OK);
-    CHECK(nf_cv_check(&config, &image, NULL) == NULL);
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, NULL);
     config.dims = 17;
-    CHECK(strcmp(nf_cv_check(&config, NULL, NULL), "dims must be 1 to 16") == 0);
+    CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, "dims must be 1 to 16");
     config = make_config(7, 4, 1, NF_CV_ROBUST);
-    CHECK(strstr(nf_cv_check(&config, NULL, NULL), "136 terms") != NULL);
-    CHECK(nf_cv_check(NULL, NULL, NULL) != NULL);
+    CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, "136 terms");
+    CHECK_NAMED(NF_CHECK_CV_CONFIG, NULL, "NULL");
+    CHECK_NAMED(NF_CHECK_DIMS + 1, &config, "NF_CHECK_*");
+    CHECK_NAMED(UINT32_MAX, NULL, "NF_CHECK_*");
     config = make_config(3, 1, 3, NF_CV_ROBUST);
     config.color = NF_COLOR_LUMINANCE_RATIO;
     config.stride = 4;
     config.folds = 16;
-    CHECK(nf_cv_check(&config, NULL, NULL) == NULL);
+    CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, NULL);
     CHECK_STATUS(estimate_one(&config, u, f, 8, work.start, work.bytes, &out), NF_OK);
     memory_free(&work);
 }
@@ -148,7 +150,7 @@ static void refused(const nf_cv_config *config, nf_status status)
         change;                                                 \
         refused(&config, status);                               \
         CHECK(nf_cv_terms(&config) == 0);                       \
-        CHECK(nf_cv_check(&config, NULL, NULL) != NULL);             \
+        CHECK(nf_check(NF_CHECK_CV_CONFIG, &config) != NULL);   \
     } while (0)
 /* The number of terms does not depend on these fields, so that nf_cv_terms() need not look at them. */
 #define REFUSED_AFTER_TERMS(change, status)                     \

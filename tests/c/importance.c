@@ -59,6 +59,7 @@ static void any_size(void)
 static void nodes(void)
 {
     static const float gradient[5] = {3.0f, -1.0f, 4.0f, -1.0f, -5.0f};
+    nf_importance_arguments of = {5, NF_NODES_SIGN, 10};
     float q[10];
     CHECK_STATUS(nf_importance_gradient(gradient, 1, 5, NF_NODES_NORM, 2, q), NF_OK);
     CHECK(close_to(q[0], sqrt(50.0)) && close_to(q[1], sqrt(2.0)));
@@ -75,6 +76,17 @@ static void nodes(void)
     CHECK_STATUS(nf_importance_gradient(gradient, 1, 5, NF_NODES_NORM, 2, NULL), NF_ERR_NULL);
     CHECK_REFUSED(nf_importance_gradient((const float *)misaligned(q), 1, 1, NF_NODES_NORM, 1, q + 4),
                   NF_ERR_ALIGNMENT, q);
+    CHECK_NAMED(NF_CHECK_IMPORTANCE, &of, NULL);
+    of.split = 2;
+    CHECK_NAMED(NF_CHECK_IMPORTANCE, &of, "split must be one of NF_NODES_*, 0 or 1");
+    of.split = NF_NODES_SIGN;
+    of.techniques = 3;
+    CHECK_NAMED(NF_CHECK_IMPORTANCE, &of, "techniques must be even");
+    of.techniques = 12;
+    CHECK_NAMED(NF_CHECK_IMPORTANCE, &of, "outputs must be at least techniques");
+    of.techniques = 17;
+    CHECK_NAMED(NF_CHECK_IMPORTANCE, &of, "techniques must be 1 to 16");
+    CHECK_NAMED(NF_CHECK_IMPORTANCE, misaligned(&of), "misaligned");
     CHECK_REFUSED(nf_importance_gradient(gradient, 1, 5, 2, 2, q), NF_ERR_RANGE, q);
     CHECK_REFUSED(nf_importance_gradient(gradient, 1, 5, UINT32_MAX, 2, q), NF_ERR_RANGE, q);
     CHECK_REFUSED(nf_importance_gradient(gradient, 1, 5, NF_NODES_NORM, 0, q), NF_ERR_RANGE, q);

@@ -219,9 +219,44 @@ static void another_build(void)
     memory_free(&m);
 }
 
+/* What is wrong is named, with its range. */
+static void checked(void)
+{
+    static const uint32_t zero[2] = {1, 0};
+    nf_omis_arguments of;
+    memset(&of, 0, sizeof of);
+    CHECK_NAMED(NF_CHECK_OMIS, &of, "techniques must be 1 to 16");
+    of.techniques = 17;
+    CHECK_NAMED(NF_CHECK_OMIS, &of, "techniques must be 1 to 16");
+    of.techniques = 2;
+    CHECK_NAMED(NF_CHECK_OMIS, &of, NULL);
+    of.counts = zero;
+    CHECK_NAMED(NF_CHECK_OMIS, &of, "counts must be at least 1");
+    of.counts = (const uint32_t *)misaligned(&of);
+    CHECK_NAMED(NF_CHECK_OMIS, &of, "counts are misaligned");
+    of.counts = counts;
+    of.integrals = 3;
+    of.solver = 4;
+    CHECK_NAMED(NF_CHECK_OMIS, &of, "solver must be one of NF_OMIS_*, 0 to 3");
+    of.solver = NF_OMIS_PROGRESSIVE;
+    of.ridge = -1.0f;
+    CHECK_NAMED(NF_CHECK_OMIS, &of, NULL); /* read with NF_OMIS_RIDGE alone */
+    of.solver = NF_OMIS_RIDGE;
+    CHECK_NAMED(NF_CHECK_OMIS, &of, "ridge must be 1e-8 to 1e8");
+    of.ridge = not_a_number();
+    CHECK_NAMED(NF_CHECK_OMIS, &of, "ridge must be 1e-8 to 1e8");
+    of.ridge = 1e8f;
+    of.beta = 1.5f;
+    CHECK_NAMED(NF_CHECK_OMIS, &of, "beta must be 0 to 1");
+    of.beta = 1.0f;
+    CHECK_NAMED(NF_CHECK_OMIS, &of, NULL);
+    CHECK_NAMED(NF_CHECK_OMIS, NULL, "NULL");
+}
+
 int main(void)
 {
     normal_use();
+    checked();
     sizes_and_init();
     errors();
     another_build();

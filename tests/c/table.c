@@ -268,6 +268,27 @@ static void errors(void)
     memory_free(&m);
 }
 
+/* What is wrong is named. */
+static void checked(void)
+{
+    nf_table table;
+    memory m = memory_new(nf_table_size(17));
+    CHECK_STATUS(nf_table_init(&table, m.start, m.bytes, 17, NULL), NF_OK);
+    CHECK_NAMED(NF_CHECK_TABLE, &table, NULL);
+    table.uniform_fraction = 1.5f;
+    CHECK_NAMED(NF_CHECK_TABLE, &table, "uniform_fraction must be 0 to 1");
+    table.uniform_fraction = not_a_number();
+    CHECK_NAMED(NF_CHECK_TABLE, &table, "uniform_fraction must be 0 to 1");
+    table.uniform_fraction = 0.0f;
+    CHECK_NAMED(NF_CHECK_TABLE, &table, NULL);
+    table.items = 0;
+    CHECK_NAMED(NF_CHECK_TABLE, &table, "as nf_table_init() made them");
+    table.items = 33;
+    CHECK_NAMED(NF_CHECK_TABLE, &table, "as nf_table_init() made them");
+    CHECK_NAMED(NF_CHECK_TABLE, NULL, "NULL");
+    memory_free(&m);
+}
+
 static void no_table(void)
 {
     nf_table table;
@@ -282,6 +303,7 @@ static void no_table(void)
         table.uniform_fraction = 0.5f;
         if (k == 1)
             table.importance = value;
+        CHECK_NAMED(NF_CHECK_TABLE, &table, "as nf_table_init() made them");
         CHECK_REFUSED(nf_table_draw(&table, &rng, 2, index, NULL), NF_ERR_STATE, index);
         CHECK_REFUSED(nf_table_draw_stratified(&table, &rng, 2, index, NULL), NF_ERR_STATE, index);
         CHECK_REFUSED(nf_table_draw_distinct(&table, &rng, 2, index, NULL), NF_ERR_STATE, index);
@@ -485,6 +507,7 @@ int main(void)
     normal_use();
     sizes_and_init();
     errors();
+    checked();
     no_table();
     zeros();
     growing();

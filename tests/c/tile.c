@@ -124,8 +124,38 @@ static void from_bytes(void)
     memory_free(&file);
 }
 
+/* What is wrong is named, with its range. */
+static void checked(void)
+{
+    memory file = tile_file("plain.nft");
+    nf_tile good, tile;
+    memset(&tile, 0, sizeof tile);
+    CHECK_NAMED(NF_CHECK_TILE, &tile, NULL);
+    CHECK_NAMED(NF_CHECK_TILE, &nf_tile_64_1spp_2d, NULL);
+    CHECK_NAMED(NF_CHECK_TILE, NULL, "NULL");
+    CHECK_STATUS(nf_tile_from_bytes(file.start, file.bytes, &good), NF_OK);
+    CHECK_NAMED(NF_CHECK_TILE, &good, NULL);
+#define NAMED(change, words)                          \
+    do {                                              \
+        tile = good;                                  \
+        tile.change;                                  \
+        CHECK_NAMED(NF_CHECK_TILE, &tile, words);     \
+    } while (0)
+    NAMED(size = 12, "size must be a power of two, 1 to 1024");
+    NAMED(size = 2048, "size must be a power of two, 1 to 1024");
+    NAMED(spp = 0, "spp must be a power of two, 1 to 256");
+    NAMED(dims = 9, "dims must be 1 to 8");
+    NAMED(frames = 257, "frames must be 1 to 256");
+    NAMED(bits = 12, "bits must be 8 or 16");
+    NAMED(progressive = 2, "progressive must be 0 or 1");
+    NAMED(values = NULL, "values must not be NULL");
+    NAMED(bytes = good.bytes - 1, "bytes must be");
+    memory_free(&file);
+}
+
 int main(void)
 {
+    checked();
     built_in();
     from_bytes();
     return report("tile");

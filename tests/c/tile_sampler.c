@@ -86,6 +86,32 @@ static void nothing(const nf_tile *tile)
     CHECK(is_poisoned(u, sizeof u));
 }
 
+/* What is wrong is named, with its range. */
+static void checked(const nf_tile *tile)
+{
+    const nf_tile_sampler good = nf_tile_sampler_scramble(nf_tile_sampler_pixel(tile, 7, 7, 0, 3), 1);
+    nf_tile_sampler s = good;
+    nf_tile wrong = *tile;
+    uint32_t dims;
+    CHECK_NAMED(NF_CHECK_TILE_SAMPLER, &s, NULL);
+    s.scrambled = 2;
+    CHECK_NAMED(NF_CHECK_TILE_SAMPLER, &s, "scrambled must be 0 or 1");
+    s = good;
+    s.y = (uint16_t)tile->size;
+    CHECK_NAMED(NF_CHECK_TILE_SAMPLER, &s, "below the tile's size");
+    s = good;
+    s.frame = (uint16_t)tile->frames;
+    CHECK_NAMED(NF_CHECK_TILE_SAMPLER, &s, "below the tile's frames");
+    wrong.bits = 9;
+    s.tile = &wrong;
+    CHECK_NAMED(NF_CHECK_TILE_SAMPLER, &s, "bits must be 8 or 16");
+    s = nf_tile_sampler_pixel(NULL, 1, 2, 3, 4);
+    CHECK_NAMED(NF_CHECK_TILE_SAMPLER, &s, NULL);
+    CHECK_NAMED(NF_CHECK_TILE_SAMPLER, NULL, "NULL");
+    for (dims = 0; dims < 6; ++dims)
+        CHECK_NAMED(NF_CHECK_DIMS, &dims, dims < 1 || dims > 4 ? "dims must be 1 to 4" : NULL);
+}
+
 static void fill(const nf_tile *tile)
 {
     static const uint32_t dims[3] = {2, 4, 1};
@@ -146,6 +172,7 @@ int main(void)
         if (i == 0)
             places(&tile);
         nothing(&tile);
+        checked(&tile);
         fill(&tile);
         memory_free(&file);
     }

@@ -97,6 +97,13 @@ static void configurations()
     CHECK(config.with_automatic_ridge().ridge == NF_RIDGE_AUTO);
     CHECK(config.with_luminance_ratio().color == NF_COLOR_LUMINANCE_RATIO);
     CHECK(config.terms() == nf_cv_terms(&config) && config.valid());
+    CHECK(nf::check(config) == nullptr && std::strstr(nf::check(nf::config(0, 1)), "dims must be 1 to 16") != nullptr);
+    CHECK(nf::check(nf::image(64, 64)) == nullptr && std::strstr(nf::check(nf::image(0, 64)), "width") != nullptr);
+    CHECK(std::strstr(nf::check(nf_cv_descent{3, 0, 0.0f, 0.0f}), "optimizer") != nullptr);
+    CHECK(std::strstr(nf::check(nf_omis_arguments{}), "techniques") != nullptr);
+    CHECK(std::strstr(nf::check(nf_importance_arguments{1, 0, 2}), "outputs") != nullptr);
+    CHECK(std::strstr(nf::check(nf_table{}), "nf_table_init") != nullptr);
+    CHECK(nf::check(nf_tile{}) == nullptr && nf::check(nf_tile_sampler{}) == nullptr);
     CHECK(!nf::config(0, 1).valid() && nf::config(17, 1).workspace_size(4) == 0);
     CHECK(config.workspace_size(64) == nf_cv_workspace_size(&config, 64) &&
           config.accumulator_size() == nf_cv_accumulator_size(&config, nullptr));
@@ -209,7 +216,7 @@ static void images()
                               nf::samples{u, f, {}, {}, short_known, exact},
                               nf::samples{u, f, {}, {}, known, short_exact}})
         CHECK(CODE(nf::estimate_image(config, image, wrong, workspace, pixels)) == status::range);
-    CHECK(config.check(image) == nullptr && config.check(image.with_window(4, 5)) != nullptr);
+    CHECK(nf::check(image) == nullptr && nf::check(image.with_window(4, 5)) != nullptr);
 
     const span<const std::uint32_t> few(surfaces.data(), 15);
     CHECK(CODE(nf::estimate_image(config, image.with_surfaces(few), {u, f}, workspace, pixels)) == status::range);

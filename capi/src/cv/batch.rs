@@ -14,7 +14,7 @@ pub(super) type Best = f64;
 #[cfg(not(feature = "double"))]
 pub(super) type Best = f32;
 
-/// Bytes of workspace for n samples of each integral; 0 for a configuration that nf_cv_check() refuses, for
+/// Bytes of workspace for n samples of each integral; 0 for a configuration that nf_check() refuses, for
 /// options that exclude each other, or where no memory could be large enough.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_workspace_size(config: *const nf_cv_config, n: usize) -> usize {
@@ -78,23 +78,18 @@ fn each(
     out: &mut [Room<nf_estimate>],
 ) -> Result<(), nf_status> {
     let stride = if config.stride == 0 { config.dims } else { config.stride };
-    check(samples, n * out.len(), stride, config.dims)?;
-    for (integral, out) in out.iter_mut().enumerate() {
+    let integral = |integral: usize| {
         let (first, end) = (integral * n, (integral + 1) * n);
         // The last row may end early.
         let u = samples.u.get(first * stride..(end * stride).min(samples.u.len()));
         let f = samples.f.get(first * config.channels..end * config.channels);
-        let samples = Samples::new(u.unwrap_or_default(), f.unwrap_or_default());
-        out.write(c_estimate(&dispatch::estimate(config, samples, workspace).map_err(status_of)?));
+        Samples::new(u.unwrap_or_default(), f.unwrap_or_default())
+    };
+    // Before anything is written.
+    (0..out.len()).try_for_each(|index| integral(index).check(config)).map_err(status_of)?;
+    for (index, out) in out.iter_mut().enumerate() {
+        let estimate = dispatch::estimate(config, integral(index), workspace).map_err(status_of)?;
+        out.write(c_estimate(&estimate));
     }
     Ok(())
-}
-
-/// Refuses, before anything is written, what a later integral's estimate would refuse.
-fn check(samples: Samples<'_>, rows: usize, stride: usize, dims: usize) -> Result<(), nf_status> {
-    let u = || (0..rows).filter_map(|row| samples.u.get(row * stride..row * stride + dims)).flatten();
-    if !u().chain(samples.f).all(|value| value.is_finite()) {
-        return Err(NF_ERR_NOT_FINITE);
-    }
-    if u().all(|u| (0.0..=1.0).contains(u)) { Ok(()) } else { Err(NF_ERR_RANGE) }
 }

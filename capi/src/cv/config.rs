@@ -2,7 +2,7 @@
 
 use crate::convert;
 use crate::status::*;
-use core::ffi::CStr;
+use crate::wrong::{Wrong, pick};
 use noisefloor_core::basis::Family;
 use noisefloor_core::control_variate::{Color, Config, Estimate, Estimator, NonFinite, Ridge, Solver};
 
@@ -142,17 +142,29 @@ pub(crate) fn default_config() -> nf_cv_config {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_terms(config: *const nf_cv_config) -> u32 {
     // SAFETY: the caller's pointer, checked there for NULL and alignment.
-    let config = unsafe { convert::reference(config) }.and_then(core_config);
+    let config = unsafe { convert::reference(config) }.and_then(|config| Ok(core_config(config)?));
     config.ok().and_then(|config| config.terms().ok()).map_or(0, |terms| terms as u32)
 }
 
-/// The core's configuration; precision apart, see [`is_narrow`].
-pub(super) fn core_config(config: &nf_cv_config) -> Result<Config, nf_status> {
-    read(config).map_err(|_| NF_ERR_RANGE)
+/// What is wrong with a configuration.
+pub(crate) fn check_config(config: &nf_cv_config) -> Result<(), Wrong> {
+    check_core(&core_config(config)?)?;
+    is_narrow(config).map(|_| ()).map_err(|status| match status {
+        NF_ERR_UNSUPPORTED => {
+            Wrong(status, c"precision must be NF_PRECISION_F32: this library was built for float alone")
+        }
+        _ => Wrong(status, c"precision must be one of NF_PRECISION_*, 0 or 1"),
+    })
 }
 
-/// The same, or what is wrong with a number that stands for a choice.
-pub(super) fn read(config: &nf_cv_config) -> Result<Config, &'static CStr> {
+/// What the core finds wrong.
+pub(super) fn check_core(config: &Config) -> Result<(), Wrong> {
+    config.check().map_err(|(error, words)| Wrong(status_of(error), words))
+}
+
+/// The core's configuration, precision apart, see [`is_narrow`]; no more is checked than the numbers that stand for a
+/// choice.
+pub(super) fn core_config(config: &nf_cv_config) -> Result<Config, Wrong> {
     Ok(Config {
         dims: config.dims as usize,
         order: config.order as usize,
@@ -209,10 +221,6 @@ pub(super) fn is_narrow(config: &nf_cv_config) -> Result<bool, nf_status> {
         NF_PRECISION_F64 => Err(NF_ERR_UNSUPPORTED),
         _ => Err(NF_ERR_RANGE),
     }
-}
-
-pub(super) fn pick<T: Copy>(value: u32, choices: &[T], words: &'static CStr) -> Result<T, &'static CStr> {
-    choices.get(value as usize).copied().ok_or(words)
 }
 
 pub(super) fn c_estimate(estimate: &Estimate) -> nf_estimate {

@@ -1,11 +1,12 @@
 //! The fit by gradient descent, with its options and its solution.
 
 use super::batch::Best;
-use super::config::{c_estimate, core_config, is_narrow, nf_cv_config, nf_estimate, pick};
+use super::config::{c_estimate, check_core, core_config, default_config, is_narrow, nf_cv_config, nf_estimate};
 use super::samples::{self, nf_cv_samples};
 use crate::convert;
 use crate::status::*;
-use core::ffi::{CStr, c_void};
+use crate::wrong::{Wrong, pick};
+use core::ffi::c_void;
 use noisefloor_core::control_variate::{self as cv, Color, Config, Estimator, Optimizer};
 
 /// Heavy-ball momentum. The default.
@@ -53,7 +54,7 @@ pub unsafe extern "C" fn nf_cv_gradient_descent(
             let (config, samples) = (convert::reference(config)?, convert::reference(samples)?);
             (config, samples, convert::reference(descent)?, convert::room(out)?)
         };
-        let core = with(core_config(config)?, descent).map_err(|_| NF_ERR_RANGE)?;
+        let core = with(core_config(config)?, descent)?;
         is_narrow(config)?;
         if core.estimator != Estimator::GradientDescent || core.controls > 0 {
             return Err(NF_ERR_UNSUPPORTED);
@@ -73,8 +74,13 @@ pub unsafe extern "C" fn nf_cv_gradient_descent(
     })())
 }
 
-/// The core's configuration with that of a descent, or what is wrong with a number that stands for a choice.
-pub(super) fn with(config: Config, descent: &nf_cv_descent) -> Result<Config, &'static CStr> {
+/// What is wrong with a descent.
+pub(crate) fn check_descent(descent: &nf_cv_descent) -> Result<(), Wrong> {
+    check_core(&with(core_config(&default_config())?, descent)?)
+}
+
+/// The core's configuration with that of a descent.
+fn with(config: Config, descent: &nf_cv_descent) -> Result<Config, Wrong> {
     Ok(Config {
         optimizer: pick(
             descent.optimizer,

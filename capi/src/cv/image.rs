@@ -5,7 +5,7 @@ use super::samples::{self, nf_cv_samples};
 use crate::convert;
 use crate::dispatch;
 use crate::status::*;
-use core::ffi::CStr;
+use crate::wrong::{Wrong, pick};
 use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Rectangle, Samples};
 
 /// The pixels of an image, or of a part of one, and what is known of them. All zero but width and height: nothing.
@@ -61,7 +61,7 @@ pub struct nf_cv_rectangle {
 /// Writes which pixels must be given for `image->wanted`, and all zero, for all, where pixels have no places. Reads no
 /// array; `out` may be `&image->given`.
 ///
-/// NF_ERR_RANGE: what nf_cv_check() says of the windows and `wanted`.
+/// NF_ERR_RANGE: what nf_check() says of the windows and `wanted`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_needed(image: *const nf_cv_image, out: *mut nf_cv_rectangle) -> nf_status {
     status((|| {
@@ -75,7 +75,7 @@ pub unsafe extern "C" fn nf_cv_image_needed(image: *const nf_cv_image, out: *mut
 }
 
 /// Bytes of workspace that nf_cv_image_estimate() needs for `samples->n` samples in each pixel, more with `known`; 0 as
-/// for nf_cv_workspace_size(), and for an image that nf_cv_check() refuses. No array is read.
+/// for nf_cv_workspace_size(), and for an image that nf_check() refuses. No array is read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_workspace_size(
     config: *const nf_cv_config,
@@ -146,18 +146,15 @@ unsafe fn array<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], nf_stat
     if pointer.is_null() { Ok(&[]) } else { unsafe { convert::slice(pointer, len) } }
 }
 
-/// What is wrong with an image, in words. Whether something is, the core decides.
-pub(super) fn check_image(image: &nf_cv_image) -> Result<(), &'static CStr> {
-    let Err(_) = core_image(image, &NO_SAMPLES).and_then(|image| image.counts().map_err(status_of)) else {
-        return Ok(());
-    };
+/// What is wrong with an image. Whether something is, the core decides.
+pub(crate) fn check_image(image: &nf_cv_image) -> Result<(), Wrong> {
+    let Err(error) = core_image(image, &NO_SAMPLES)?.counts() else { return Ok(()) };
     let side = if image.window == 0 { 8 } else { image.window };
     let in_window = [side.min(image.width), side.min(image.height), image.frames.max(1)];
     let end = |of: &nf_cv_rectangle| [u64::from(of.x) + u64::from(of.width), u64::from(of.y) + u64::from(of.height)];
     let [right, below] = end(&image.given);
-    Err(match image {
+    let words = match image {
         nf_cv_image { width: 0, .. } | nf_cv_image { height: 0, .. } => c"width and height must be at least 1",
-        nf_cv_image { unordered: 2.., .. } => c"unordered must be 0 or 1",
         nf_cv_image { unordered: 1, .. } => {
             c"given and wanted must be all zero, and pixels with surfaces at most 1024, where unordered is 1"
         }
@@ -167,7 +164,8 @@ pub(super) fn check_image(image: &nf_cv_image) -> Result<(), &'static CStr> {
         _ if image.stride > side => c"stride must be at most window",
         _ if right > u64::from(image.width) || below > u64::from(image.height) => c"given must lie in the image",
         _ => c"wanted must have pixels, and given hold its windows whole: see nf_cv_image_needed()",
-    })
+    };
+    Err(Wrong(status_of(error), words))
 }
 
 const NO_SAMPLES: nf_cv_samples = nf_cv_samples {
@@ -189,14 +187,10 @@ fn supported(config: &nf_cv_config) -> Result<Config, nf_status> {
 }
 
 /// The image without its arrays; of `known` only whether there is one, on which the workspace depends.
-fn core_image(image: &nf_cv_image, samples: &nf_cv_samples) -> Result<Image<'static>, nf_status> {
+fn core_image(image: &nf_cv_image, samples: &nf_cv_samples) -> Result<Image<'static>, Wrong> {
     let [width, height, frames, window, stride] =
         [image.width, image.height, image.frames, image.window, image.stride].map(|value| value as usize);
-    let unordered = match image.unordered {
-        0 => false,
-        1 => true,
-        _ => return Err(NF_ERR_RANGE),
-    };
+    let unordered = pick(image.unordered, &[false, true], c"unordered must be 0 or 1")?;
     let known: &[f32] = if samples.known.is_null() { &[] } else { &[0.0] };
     let rectangle = |of: &nf_cv_rectangle| {
         let [x, y, width, height] = [of.x, of.y, of.width, of.height].map(|value| value as usize);

@@ -2,7 +2,6 @@
 
 mod accumulator;
 mod batch;
-mod check;
 mod config;
 mod descent;
 mod image;
@@ -10,7 +9,6 @@ mod samples;
 
 pub use accumulator::*;
 pub use batch::*;
-pub use check::*;
 pub use config::*;
 pub use descent::*;
 pub use image::*;

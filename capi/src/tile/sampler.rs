@@ -1,7 +1,8 @@
 //! The sampler, by value.
 
-use super::view::{core_view, nf_tile};
+use super::view::{check_tile, core_view, nf_tile};
 use crate::convert;
+use crate::wrong::{Wrong, rule};
 use noisefloor_core::tile::{Sampler, State};
 
 /// One sample of one pixel, as nf_sampler is, drawn from a tile. Made by nf_tile_sampler_pixel.
@@ -53,6 +54,21 @@ fn later(tile: *const nf_tile, x: u32, y: u32, frame: u32, index: u32) -> nf_til
     // SAFETY: as in nf_tile_sampler_pixel.
     let state = unsafe { core_view(tile) }.map(|view| State::pixel(&view, x, y, frame, index));
     sampler(tile, state.unwrap_or_default())
+}
+
+/// What is wrong with a sampler, or its tile.
+///
+/// # Safety
+/// The tile must be NULL or live.
+pub(crate) unsafe fn check_sampler(sampler: &nf_tile_sampler) -> Result<(), Wrong> {
+    rule(sampler.scrambled <= 1, c"scrambled must be 0 or 1")?;
+    rule(sampler.tile.is_aligned(), c"tile must be aligned")?;
+    // SAFETY: passed on to the caller; it is aligned.
+    let Some(tile) = (unsafe { sampler.tile.as_ref() }) else { return Ok(()) };
+    check_tile(tile)?;
+    let side = tile.size.max(1);
+    rule(u32::from(sampler.x) < side && u32::from(sampler.y) < side, c"x and y must be below the tile's size")?;
+    rule(u32::from(sampler.frame) < tile.frames.max(1), c"frame must be below the tile's frames")
 }
 
 /// As nf_sampler_domain().

@@ -2,6 +2,7 @@
 
 use crate::convert;
 use crate::status::*;
+use crate::wrong::{Wrong, pick, rule};
 use core::ffi::c_void;
 use noisefloor_core::tile::{Shape, Tile};
 
@@ -54,6 +55,19 @@ pub(super) const fn view(tile: Tile<'_>) -> nf_tile {
     let (Shape { size, spp, dims, frames, bits, progressive }, payload) = (tile.shape(), tile.payload());
     let (values, bytes) = (payload.as_ptr().cast(), payload.len());
     nf_tile { values, bytes, size, spp, dims, frames, bits, progressive: progressive as u32 }
+}
+
+/// What is wrong with a tile.
+pub(crate) fn check_tile(tile: &nf_tile) -> Result<(), Wrong> {
+    let &nf_tile { values, bytes, size, spp, dims, frames, bits, progressive } = tile;
+    if (values.is_null(), bytes, size, spp, dims, frames, bits, progressive) == (true, 0, 0, 0, 0, 0, 0, 0) {
+        return Ok(());
+    }
+    let progressive = pick(progressive, &[false, true], c"progressive must be 0 or 1")?;
+    let shape = Shape { size, spp, dims, frames, bits, progressive };
+    shape.check().map_err(|words| Wrong(NF_ERR_RANGE, words))?;
+    rule(!values.is_null(), c"values must not be NULL")?;
+    rule(bytes as u64 == shape.payload_bytes(), c"bytes must be size * size * spp * dims * frames * bits / 8")
 }
 
 /// The tile as the core sees it; `None` for one without samples, NULL among them, of which every draw is 0.

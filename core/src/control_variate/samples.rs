@@ -42,6 +42,14 @@ impl<'a> Samples<'a> {
     pub const fn new(u: &'a [f32], f: &'a [f32]) -> Self {
         Self { u, f, controls: &[], control_integrals: &[] }
     }
+
+    /// Checks the arrays' lengths and every number.
+    ///
+    /// # Errors
+    /// What [`estimate`](super::estimate) says of its samples.
+    pub fn check(&self, config: &Config) -> Result<(), Error> {
+        Reader::new(config, *self)?.check()
+    }
 }
 
 /// Which samples of the arrays are meant.

@@ -59,8 +59,10 @@ impl Default for Solver {
 }
 
 impl Solver {
-    /// Refuses a ridge that is no number, or outside [`RIDGE_RANGE`].
-    pub(crate) fn check(self) -> Result<(), Error> {
+    /// Checks the ridge.
+    ///
+    /// Errors: [`Error::NotFinite`] for a ridge that is NaN or infinite, [`Error::Range`] outside [`RIDGE_RANGE`].
+    pub fn check(self) -> Result<(), Error> {
         match self {
             Solver::Ridge(ridge) if !ridge.is_finite() => Err(Error::NotFinite),
             Solver::Ridge(ridge) if !RIDGE_RANGE.contains(&ridge) => Err(Error::Range),

@@ -1,5 +1,7 @@
 //! How large a tile is.
 
+use core::ffi::CStr;
+
 /// The largest side, in pixels.
 pub const MAX_SIZE: u32 = 1024;
 /// The most samples of a pixel.
@@ -36,15 +38,26 @@ pub struct Shape {
 impl Shape {
     /// Whether every field is in its range.
     pub const fn is_valid(&self) -> bool {
-        self.size.is_power_of_two()
-            && self.size <= MAX_SIZE
-            && self.spp.is_power_of_two()
-            && self.spp <= MAX_SPP
-            && 0 < self.dims
-            && self.dims <= MAX_DIMS
-            && 0 < self.frames
-            && self.frames <= MAX_FRAMES
-            && (self.bits == 8 || self.bits == 16)
+        self.check().is_ok()
+    }
+
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// The rule that is broken in words, with the NUL that C needs.
+    pub const fn check(&self) -> Result<(), &'static CStr> {
+        match self {
+            Shape { size, .. } if !size.is_power_of_two() || *size > MAX_SIZE => {
+                Err(c"size must be a power of two, 1 to 1024")
+            }
+            Shape { spp, .. } if !spp.is_power_of_two() || *spp > MAX_SPP => {
+                Err(c"spp must be a power of two, 1 to 256")
+            }
+            Shape { dims: 0 | 9.., .. } => Err(c"dims must be 1 to 8"),
+            Shape { frames: 0 | 257.., .. } => Err(c"frames must be 1 to 256"),
+            Shape { bits: 8 | 16, .. } => Ok(()),
+            _ => Err(c"bits must be 8 or 16"),
+        }
     }
 
     /// How many coordinates a tile of this shape has; meaningless unless [`is_valid`](Shape::is_valid).
