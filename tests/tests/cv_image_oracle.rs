@@ -259,6 +259,9 @@ fn slices_and_controls() {
             for order in [1, 2] {
                 let sliced = Config { slices: 3, dims: 3, order, ..base };
                 Case::new(sliced, shape, n, &mut rng).check("slices");
+                // So many that those of one sample in each pixel are factored apart.
+                let many = Config { slices: 12, channels: 2, ..sliced };
+                Case::new(many, shape, n, &mut rng).with_surfaces(2, &mut rng).check("many slices");
                 Case::new(Config { order, ..base }, shape, n, &mut rng).with_controls(2).check("controls");
                 let both = Case::new(sliced, shape, n, &mut rng).with_controls(1);
                 let both = both.with_surfaces(2, &mut rng).with_factors(&mut rng);
@@ -268,6 +271,9 @@ fn slices_and_controls() {
             Case::new(Config { order: 0, ..base }, shape, n, &mut rng).with_controls(1).check("controls alone");
         }
     }
+    // So many pixels that indicators have products with the axes.
+    let sliced = Config { slices: 14, estimator: Estimator::LeaveOneOut, ..Config::new(3, 1, 1) };
+    Case::new(sliced, [13, 13, 1], 1, &mut rng).with_controls(1).check("slopes of many slices");
 }
 
 /// The tests above can fail: by a ridge of .051 instead of .05.

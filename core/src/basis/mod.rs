@@ -61,6 +61,8 @@ pub(crate) struct Shape {
     shared: usize,
     /// Functions that each slice has its own copy of.
     copies: usize,
+    /// Whether only the shared functions are columns: who knows the slices makes their own from those.
+    is_apart: bool,
 }
 
 impl Shape {
@@ -83,19 +85,43 @@ impl Shape {
             .map(|degree| count(continuous, degree))
             .find(fits)
             .unwrap_or(0);
-        Ok(Self { continuous, order, slices, shared, copies })
+        Ok(Self { continuous, order, slices, shared, copies, is_apart: false })
+    }
+
+    /// The same with the shared functions alone as columns, where the others are so many more that this pays.
+    pub(crate) fn apart(self) -> Self {
+        const FEW: usize = 32;
+        Self { is_apart: self.slices * (1 + self.copies) > FEW.max(2 * self.shared), ..self }
+    }
+
+    /// Slices whose own functions are no columns, and how many functions each has a copy of.
+    #[inline]
+    pub(crate) fn slices_apart(&self) -> (usize, usize) {
+        if self.is_apart { (self.slices, self.copies) } else { (0, 0) }
+    }
+
+    /// Slices whose indicators are columns.
+    #[inline]
+    fn indicators(&self) -> usize {
+        if self.is_apart { 0 } else { self.slices }
     }
 
     /// All functions; the constant is not one of them.
     #[inline]
     pub(crate) fn columns(&self) -> usize {
-        self.shared + self.slices + self.slices * self.copies
+        self.shared + self.indicators() * (1 + self.copies)
+    }
+
+    /// The functions of degree 1: their number is their penalty.
+    pub(crate) fn linear(&self) -> usize {
+        let copied = if self.copies > 0 { self.slices } else { 0 };
+        self.continuous * (1 + copied) + self.slices
     }
 
     /// How many leading functions are of at most this degree. Slices' copies of functions come last and do not count.
     pub(crate) fn up_to_degree(&self, degree: usize) -> usize {
         let degree = degree.min(self.order);
-        if degree == 0 { 0 } else { count(self.continuous, degree) + self.slices }
+        if degree == 0 { 0 } else { count(self.continuous, degree) + self.indicators() }
     }
 }
 
@@ -131,7 +157,7 @@ impl Basis {
     pub(crate) fn set(&mut self, family: Family, shape: Shape) -> Result<(), Error> {
         self.family = family;
         self.shape = shape;
-        terms::total_degree(shape.continuous, shape.order, shape.slices, &mut self.terms).ok_or(Error::Range)?;
+        terms::total_degree(shape.continuous, shape.order, shape.indicators(), &mut self.terms).ok_or(Error::Range)?;
         self.gaussians = (family == Family::Gaussian).then(|| Gaussians::new(shape.continuous, shape.shared));
         Ok(())
     }
@@ -148,11 +174,14 @@ impl Basis {
     pub(crate) fn penalties<R: Real>(&self, out: &mut [R]) {
         let mut counts = [0usize; MAX_ORDER + 1];
         let degree = |column: usize| self.degree(column);
+        // Slices apart have their functions all the same.
+        let (slices, copies) = self.shape.slices_apart();
         for column in 0..self.columns() {
             if let Some(count) = counts.get_mut(degree(column)) {
-                *count += 1;
+                *count += if column < copies { 1 + slices } else { 1 };
             }
         }
+        counts[1] += slices;
         for (column, penalty) in out.iter_mut().enumerate().take(self.columns()) {
             let degree = degree(column);
             let count = at(&counts, degree);
@@ -169,7 +198,8 @@ impl Basis {
 
     /// The total degree of a column; indicators count as one, a slice's copy of a function as the function.
     fn degree(&self, column: usize) -> usize {
-        let Shape { continuous, slices, shared, copies, .. } = self.shape;
+        let Shape { continuous, shared, copies, .. } = self.shape;
+        let slices = self.shape.indicators();
         let term = if column < continuous {
             column
         } else if column < continuous + slices {
@@ -191,7 +221,7 @@ impl Basis {
     /// column. Coordinates are taken to be in [0, 1].
     #[inline(always)]
     pub(crate) fn evaluate<R: Real, const L: usize>(&self, x: &[Lanes<R, L>], out: &mut [Lanes<R, L>]) {
-        let Shape { continuous, slices, .. } = self.shape;
+        let (Shape { continuous, .. }, slices) = (self.shape, self.shape.indicators());
         match &self.gaussians {
             Some(gaussians) => gaussians.evaluate(x, continuous, slices, out),
             None => {
@@ -212,6 +242,13 @@ impl Basis {
         {
             self.evaluate_slices(choice, out);
         }
+    }
+
+    /// The slices of `L` points.
+    #[inline(always)]
+    pub(crate) fn slices_at<R: Real, const L: usize>(&self, x: &[Lanes<R, L>]) -> [usize; L] {
+        let choice = x.get(self.shape.continuous).copied().unwrap_or([R::ZERO; L]);
+        choice.map(|u| slice_of(u, self.shape.slices))
     }
 
     /// The indicators (S [k = s] - 1) / sqrt(S - 1), and sqrt(S) [k = s] times each copied function.

@@ -109,7 +109,7 @@ impl<'a, R: Real> Ldlt<'a, R> {
 }
 
 /// [`Ldlt::new`] of eight matrices side by side, packed triangles of `n` rows.
-#[inline]
+#[inline(always)]
 pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
     let tolerance = R::from_f64(DEPENDENT) * R::EPSILON;
     let Ok(mut matrices) = Triangle::new(matrices, n) else { return };
@@ -142,7 +142,7 @@ pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
 }
 
 /// X := L^-1 X for eight systems side by side, of `N` right-hand sides each; rows before `first` are zero and stay so.
-#[inline]
+#[inline(always)]
 pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first: usize, x: &mut [[Lanes<R>; N]]) {
     let Ok(factors) = Triangle::new(factors, x.len()) else { return };
     for (j, row) in factors.rows().enumerate().skip(first) {

@@ -59,6 +59,8 @@ pub(super) struct Batch<'a> {
     /// For each block and channel, the coefficient of what is known, and its integral.
     pub(super) coefficients: &'a mut [Four],
     pub(super) integrals: &'a mut [Four],
+    /// For each block, the slices of the pixels' samples, where slices are apart.
+    pub(super) slices: &'a mut [Four],
     /// Values of a sample.
     pub(super) values: usize,
     /// For each block and value, its mean in units.
@@ -81,11 +83,13 @@ pub(super) fn batch_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Opt
     let (columns, functions) = (terms.columns(), terms.functions);
     let (channels, values) = (layout.config.channels, layout.values());
     let known = if layout.image.has_known() { 2 * (channels + KNOWN_SUMS) } else { 0 };
-    let each = 2 + terms.fixed() + 2 * channels + values + functions + known;
+    let (slices, apart) = (terms.slices.max(1), usize::from(terms.slices > 0));
+    let each = 2 + apart + terms.fixed() + 2 * channels + values + functions + known;
     let rows = AT_ONCE * (functions + columns + 2 * values);
     let pixel = Sums::len(functions, values) + functions + 2 * values;
-    let apart = AT_ONCE * (functions + values) * functions + AT_ONCE * values;
-    let sums = 2 * COLOURS * Sums::len(columns, values) + rows + pixel + apart;
+    let deviations = AT_ONCE * (functions + values) * functions + AT_ONCE * values;
+    let of_slices = apart * Sums::len(columns, values);
+    let sums = 2 * COLOURS * slices * Sums::len(columns, values) + rows + pixel + deviations + of_slices;
     blocks(layout, slots).checked_mul(AT_ONCE * each)?.checked_add(sums)?.checked_mul(LANES)
 }
 
@@ -135,10 +139,11 @@ impl<'a> Batch<'a> {
             ranges: arena.take_fours(blocks * 2 * channels)?,
             coefficients: arena.take_fours(known)?,
             integrals: arena.take_fours(known)?,
+            slices: arena.take_fours(if terms.slices > 0 { blocks } else { 0 })?,
             values,
             means: arena.take_fours(blocks * values)?,
             functions: arena.take_fours(blocks * terms.functions)?,
-            between: Sums::new(parts, columns, values, arena)?,
+            between: Sums::sliced(parts, terms.slices.max(1), columns, values, arena)?,
             within: Sums::new(if call.n > 1 { parts } else { 0 }, columns, values, arena)?,
         })
     }
@@ -179,6 +184,17 @@ impl<'a> Batch<'a> {
                 lanes::keep_together();
             }
         }
+    }
+
+    /// The columns of a block's pixels.
+    #[inline(always)]
+    pub(super) fn put_columns(&self, terms: &Terms, block: usize, columns: &mut [Four]) {
+        let places = row_at(self.places, terms.fixed(), block);
+        let functions = row_at(self.functions, terms.functions, block);
+        copy(columns, places);
+        let (out, products) = columns.split_at_mut_checked(terms.fixed() + terms.functions).unwrap_or_default();
+        copy(from_mut(out, terms.fixed()), functions);
+        terms.multiply(places, functions, products);
     }
 
     /// Where the lanes' pixels are, and between what values theirs lie.
@@ -292,6 +308,7 @@ impl<'a> Batch<'a> {
         let mut pixels = Rows::new(terms.columns(), self.values, &mut arena)?;
         let mut pixel = Pixel::new(terms.functions, self.values, &mut arena)?;
         let mut apart = Apart::new(terms.functions, self.values, &mut arena)?;
+        let products = arena.take_lanes(if terms.slices > 0 { Sums::len(terms.columns(), self.values) } else { 0 })?;
         self.set_units(call.config.channels);
         self.between.empty();
         self.within.empty();
@@ -307,7 +324,15 @@ impl<'a> Batch<'a> {
                 }
             }
             self.put_means(call, terms, block, &mut pixels);
-            self.between.add(part, pixels.columns, pixels.values);
+            if let Some(slices) = self.slices.get_mut(block) {
+                let at = call.basis.slices_at(&samples.x);
+                for (slices, at) in slices.iter_mut().zip(at.as_chunks::<LANES>().0) {
+                    *slices = at.map(|slice| slice as f32);
+                }
+                self.between.add_sliced(part, slices, pixels.columns, pixels.values, products);
+            } else {
+                self.between.add(part, pixels.columns, pixels.values);
+            }
             if call.n > 1 {
                 let inside = self.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
                 let mut places = [[NONE; AT_ONCE]; MAX_FIXED];

@@ -2,26 +2,21 @@
 //!
 //! One factorisation A = L D L' serves every candidate, as each is a prefix of the columns and so of L.
 
-use super::super::config::Ridge;
-use super::super::ridge;
 use super::batch::{Batch, MAX_FIXED, blocks};
 use super::call::{Call, Layout};
 use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only};
-use super::terms::Terms;
+use super::slices::Apart;
+use super::terms::{SINGULAR, Terms, strength};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
-use crate::matrix::{copy, first_mut, from, from_mut, packed_len, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{copy, first_mut, from, packed_len, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 
-/// Ridge strength per sample if the caller gives none.
-const STRENGTH: f64 = 0.003;
 /// What a fit leaves of a sum of squares is at least this of it.
 const ROUNDING: f32 = 1e-5;
-/// The least that 1 less a sample's leverage is taken for.
-const SINGULAR: f32 = 64.0 * f32::EPSILON;
 
 /// Lanes of [`Fits::within`].
 fn within_len(terms: &Terms, values: usize, n: usize) -> usize {
@@ -53,13 +48,15 @@ pub(super) struct Fits<'a> {
     /// L^-1 of a block's columns.
     solved: &'a mut [Four],
     penalties: &'a mut [f32],
+    /// Where slices are apart, what takes the place of most of these.
+    apart: Option<Apart<'a>>,
 }
 
 /// Numbers that fits take for so many slots.
 pub(super) fn fits_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
     let (columns, values, count) = (terms.columns(), layout.values(), terms.ends.len());
     let totals = 2 * Sums::len(columns, values) + within_len(terms, values, layout.n);
-    let once = totals + (values * count + MAX_FIXED + 1 + AT_ONCE) * columns;
+    let once = totals + Apart::len(terms, values) + (values * count + MAX_FIXED + 1 + AT_ONCE) * columns;
     let each = AT_ONCE * count * values;
     blocks(layout, slots).checked_mul(each)?.checked_add(once)?.checked_mul(LANES)?.checked_add(columns)
 }
@@ -85,6 +82,7 @@ impl<'a> Fits<'a> {
             units: arena.take_lanes(terms.fixed() * columns)?,
             solved: arena.take_fours(columns)?,
             penalties: arena.take(columns)?,
+            apart: if terms.slices > 0 { Some(Apart::new(terms, values, call, arena)?) } else { None },
         };
         terms.penalties(call.config, call.basis, |_| 1.0, fits.penalties);
         Ok(fits)
@@ -93,6 +91,10 @@ impl<'a> Fits<'a> {
     /// Corrects every pixel of the colours `taken`, of which it has seen no sample, by fits to the others of them.
     #[inline(always)]
     pub(super) fn correct(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, taken: Colours) {
+        if let Some(apart) = &mut self.apart {
+            apart.correct(terms, batch, self.penalties, taken, self.corrections);
+            return;
+        }
         if call.n == 1 {
             self.factor(call, terms, batch, taken);
             for block in batch.blocks(taken) {
@@ -139,10 +141,7 @@ impl<'a> Fits<'a> {
         }
         let counted = if call.n == 1 { &self.system } else { &self.between };
         let count = counted.part(0).gram.first().copied().unwrap_or(NONE);
-        let strength = match call.config.ridge {
-            Ridge::Fixed(_) => ridge::single::<f32>(call.config.ridge),
-            Ridge::Default | Ridge::Auto => STRENGTH,
-        } as f32;
+        let strength = strength(call.config);
         let controls = terms.fixed()..terms.fixed() + call.config.controls;
         let Part { gram, sides, .. } = self.system.part_mut(0);
         for (j, penalty) in self.penalties.iter().enumerate() {
@@ -289,12 +288,8 @@ impl<'a> Fits<'a> {
     fn leave_own(&mut self, terms: &Terms, batch: &Batch<'_>, block: usize) {
         let (width, fixed) = (terms.columns(), terms.fixed());
         let places = row_at(batch.places, fixed, block);
-        let functions = row_at(batch.functions, terms.functions, block);
         let inside = batch.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
-        copy(self.solved, places);
-        let (out, products) = self.solved.split_at_mut_checked(fixed + terms.functions).unwrap_or_default();
-        copy(from_mut(out, fixed), functions);
-        terms.multiply(places, functions, products);
+        batch.put_columns(terms, block, self.solved);
         ldlt::forward_each(self.system.part(0).gram, 0, self.solved);
         let mut leverage = [NONE; AT_ONCE];
         // A^-1 x of the fixed columns.

@@ -37,6 +37,7 @@ mod passes;
 mod pixels;
 mod products;
 mod read;
+mod slices;
 mod sums;
 mod terms;
 
@@ -73,6 +74,7 @@ pub fn block_workspace_len(config: &Config, pixels: usize, n: usize) -> Result<u
 pub fn image_workspace_len(config: &Config, image: &Image<'_>, n: usize) -> Result<usize, Error> {
     check_supported(config, image)?;
     let shape = config.checked_shape()?;
+    let shape = if n == 1 { shape.apart() } else { shape };
     let windows = image.windows()?;
     image.pixels()?;
     Layout { config, image, windows, shape, n }.workspace_len().ok_or(Error::Memory)
@@ -154,8 +156,6 @@ pub fn estimate_image(
     mut out: impl FnMut(usize, Estimate),
 ) -> Result<(), Error> {
     let shape = config.checked_shape()?;
-    let mut basis = Basis::empty();
-    basis.set(config.basis, shape)?;
     check_supported(config, image)?;
     let reader = Reader::new(config, samples)?;
     let (windows, pixels) = (image.windows()?, image.pixels()?);
@@ -164,6 +164,9 @@ pub fn estimate_image(
     if n == 0 || n * pixels != reader.len() {
         return Err(Error::Range);
     }
+    let shape = if n == 1 { shape.apart() } else { shape };
+    let mut basis = Basis::empty();
+    basis.set(config.basis, shape)?;
     if image.has_known() && image.known.len() != samples.f.len() {
         return Err(Error::Range);
     }

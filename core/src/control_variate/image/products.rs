@@ -124,11 +124,12 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Sums of products, part after part.
+/// Sums of products, part after part; of slices each part holds those of every slice.
 pub(super) struct Sums<'a> {
     all: &'a mut [Eight],
     columns: usize,
     values: usize,
+    slices: usize,
 }
 
 /// Those of one part: of columns with columns, packed; of each value with columns, and with itself.
@@ -146,7 +147,19 @@ impl<'a> Sums<'a> {
 
     /// Room for them.
     pub(super) fn new(parts: usize, columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        Ok(Self { all: arena.take_lanes(parts * Self::len(columns, values))?, columns, values })
+        Self::sliced(parts, 1, columns, values, arena)
+    }
+
+    /// Room for parts of so many slices.
+    pub(super) fn sliced(
+        parts: usize,
+        slices: usize,
+        columns: usize,
+        values: usize,
+        arena: &mut Arena<'a, f32>,
+    ) -> Result<Self, Error> {
+        let all = arena.take_lanes(parts * slices * Self::len(columns, values))?;
+        Ok(Self { all, columns, values, slices })
     }
 
     /// Makes them zero.
@@ -193,10 +206,45 @@ impl<'a> Sums<'a> {
         }
     }
 
+    /// Adds four rows of samples, each to the sums of its lanes' slices. `products` is scratch, of one slice.
+    #[inline(always)]
+    pub(super) fn add_sliced(
+        &mut self,
+        part: usize,
+        picked: &Four,
+        columns: &[Four],
+        values: &[Four],
+        products: &mut [Eight],
+    ) {
+        let (len, slices) = (Self::len(self.columns, self.values), self.slices);
+        for (row, picked) in picked.iter().enumerate() {
+            let mut out = products.iter_mut();
+            let mut put = |a: &Four, b: &Four| {
+                if let Some(out) = out.next() {
+                    *out = lanes::zip(&a[row], &b[row], |a, b| a * b);
+                }
+                lanes::keep_together();
+            };
+            for (i, a) in columns.iter().enumerate() {
+                columns.iter().take(i + 1).for_each(|b| put(a, b));
+            }
+            for value in values {
+                columns.iter().for_each(|column| put(value, column));
+            }
+            values.iter().for_each(|value| put(value, value));
+            for lane in 0..LANES {
+                let sums = row_at_mut(self.all, len, part * slices + picked[lane] as usize);
+                for (sum, product) in sums.iter_mut().zip(&*products) {
+                    sum[lane] += product[lane];
+                }
+            }
+        }
+    }
+
     /// Makes its one part the sum of another's parts of some colours.
     #[inline(always)]
     pub(super) fn set_total(&mut self, of: &Sums<'_>, colours: Colours) {
-        let len = Self::len(self.columns, self.values);
+        let len = self.slices * Self::len(self.columns, self.values);
         let parts = rows(of.all, len).enumerate().filter(|&(part, _)| colours.has(part));
         let mut parts = parts.map(|(_, sums)| sums);
         match [parts.next(), parts.next(), parts.next(), parts.next()] {

@@ -1,10 +1,11 @@
 //! Which columns a shared fit has, and which of them each candidate uses.
 
-use super::super::config::Config;
+use super::super::config::{Config, Ridge};
 use super::super::ridge;
 use super::products::{Four, zip_four};
 use crate::basis::{Basis, MAX_ORDER, Shape};
 use crate::lanes;
+use crate::matrix::at;
 use crate::real::Real;
 use crate::rows::rows_mut;
 use heapless::Vec;
@@ -22,6 +23,20 @@ const TREND_PENALTY: f64 = 1e-3;
 /// Penalty of a product with an axis, relative to that of the function.
 const MOVING_PENALTY: f64 = 8.0;
 
+/// Ridge strength per sample if the caller gives none.
+const STRENGTH: f64 = 0.003;
+/// The least that 1 less a sample's leverage is taken for.
+pub(super) const SINGULAR: f32 = 64.0 * f32::EPSILON;
+
+/// Ridge strength per sample.
+pub(super) fn strength(config: &Config) -> f32 {
+    let strength = match config.ridge {
+        Ridge::Fixed(_) => ridge::single::<f32>(config.ridge),
+        Ridge::Default | Ridge::Auto => STRENGTH,
+    };
+    strength as f32
+}
+
 /// Columns of a fit, in this order, so that each candidate is a prefix: the constant and the pixels' axes, which follow
 /// the signal and correct nothing; control functions and basis, degree by degree; and low-degree functions times each
 /// axis, for integrands that change across the block.
@@ -35,6 +50,13 @@ pub(super) struct Terms {
     pub(super) moving: (usize, usize),
     /// For each candidate the number of columns.
     pub(super) ends: Vec<usize, MAX_FITS>,
+    /// Slices whose own columns are none of these, and how many columns of its own each has, for each candidate.
+    pub(super) slices: usize,
+    pub(super) own: Vec<usize, MAX_FITS>,
+    /// How many functions a slice has copies of.
+    copies: usize,
+    /// Whether slices' indicators have products with the axes.
+    has_slopes: bool,
 }
 
 impl Terms {
@@ -43,32 +65,36 @@ impl Terms {
     pub(super) fn new(config: &Config, shape: &Shape, axes: usize, samples: usize, all: bool) -> Self {
         let functions = config.controls + shape.columns();
         let fixed = 1 + axes;
-        let mut terms = Self { axes, functions, moving: (config.controls, 0), ends: Vec::new() };
-        if functions == 0 {
+        let (slices, copies) = shape.slices_apart();
+        let moving = (config.controls, 0);
+        let mut terms = Self { axes, functions, moving, slices, copies, ..Self::default() };
+        if functions + slices == 0 {
             return terms;
         }
         // As many degrees as leave two samples to each column.
         for degree in 1..=MOVING_DEGREE.min(config.order.saturating_sub(1)).max(1) {
             let moving = shape.up_to_degree(degree);
-            let columns = fixed + functions + axes * moving;
+            let columns = fixed + functions + slices * (1 + copies) + axes * (moving + slices);
             if axes > 0 && columns <= MOST_COLUMNS && 2 * columns <= samples {
                 terms.moving.1 = moving;
+                terms.has_slopes = slices > 0;
             }
         }
-        let mut end = |columns: usize| {
-            if !all && terms.ends.last().is_none_or(|&last| last < columns) {
+        let (last, all_own) = (terms.columns(), terms.all_own());
+        let mut end = |columns: usize, own: usize| {
+            if terms.ends.last().is_none_or(|&last| last < columns) || terms.own.last().is_none_or(|&last| last < own) {
                 // There is room for all: degrees, copies, products.
-                let _ = terms.ends.push(columns);
+                let _ = (terms.ends.push(columns), terms.own.push(own));
             }
         };
-        for degree in 1..=config.order {
-            end(fixed + config.controls + shape.up_to_degree(degree));
+        if !all {
+            let own = usize::from(slices > 0);
+            for degree in 1..=config.order {
+                end(fixed + config.controls + shape.up_to_degree(degree), own);
+            }
+            end(fixed + functions, if slices > 0 { 1 + copies } else { 0 });
         }
-        end(fixed + functions);
-        end(fixed + functions + axes * terms.moving.1);
-        if all {
-            let _ = terms.ends.push(terms.columns());
-        }
+        end(last, all_own);
         terms
     }
 
@@ -87,6 +113,23 @@ impl Terms {
     #[inline(always)]
     pub(super) fn columns(&self) -> usize {
         self.fixed() + self.functions + self.axes * self.moving.1
+    }
+
+    /// A slice's own columns: its indicator, its copies, and its indicator times each axis.
+    pub(super) fn all_own(&self) -> usize {
+        let slopes = if self.has_slopes { self.axes } else { 0 };
+        if self.slices > 0 { 1 + self.copies + slopes } else { 0 }
+    }
+
+    /// Which column a slice's own one is, but for a factor, where a sample is of the slice; and the square of that.
+    #[inline(always)]
+    pub(super) fn source(&self, own: usize) -> (usize, f32) {
+        let count = self.slices as f32;
+        match own.checked_sub(1) {
+            Some(copy) if copy < self.copies => (self.fixed() + self.moving.0 + copy, count),
+            Some(after) => (1 + after - self.copies, count * count / (count - 1.0)),
+            None => (0, count * count / (count - 1.0)),
+        }
     }
 
     /// The columns that change within a pixel: what the function is multiplied by, and which function it is.
@@ -132,6 +175,15 @@ impl Terms {
         let moving = functions.get(first..first + count).unwrap_or(&[]);
         for (penalty, &function) in products.iter_mut().zip(moving.iter().cycle()) {
             *penalty = R::from_f64(MOVING_PENALTY) * function;
+        }
+    }
+
+    /// The penalty of a slice's own column, by those of the others and that of a function of degree 1.
+    pub(super) fn own_penalty(&self, own: usize, penalties: &[f32], linear: f32) -> f32 {
+        match self.source(own) {
+            (0, _) => linear,
+            (source, _) if source < self.fixed() => MOVING_PENALTY as f32 * linear,
+            (source, _) => at(penalties, source),
         }
     }
 }

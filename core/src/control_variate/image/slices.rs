@@ -1,0 +1,381 @@
+//! Fits to one sample in each pixel, where the last coordinate picks a slice.
+//!
+//! A slice's own columns are zero at the samples of others. The matrix is then an arrow: a block for each slice, and a
+//! border of the columns that slices share. Each block is made of its own samples' sums alone, takes its share of the
+//! border with it, and what is left of that is a system of the shared columns.
+//!
+//! Indicators are not centred here. The constant, which has no penalty, and the trends, which have next to none, take
+//! the difference.
+
+use super::batch::{Batch, MAX_FIXED};
+use super::call::Call;
+use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, only, plus};
+use super::terms::{SINGULAR, Terms, strength};
+use crate::arena::Arena;
+use crate::error::Error;
+use crate::lanes::{self, LANES};
+use crate::linalg::ldlt;
+use crate::matrix::{at, copy, first_mut, from, halves_mut, packed_len, row, row_at, row_at_mut, row_mut, split_at};
+use crate::real::Real;
+use crate::rows::{rows, rows_mut};
+use crate::slices::{first, halves};
+use core::ops::Range;
+
+/// Fits of candidates that have as many own columns of each slice.
+pub(super) struct Apart<'a> {
+    slices: usize,
+    values: usize,
+    fits: usize,
+    /// Columns that slices share, constant and axes among them.
+    width: usize,
+    /// Own columns of a slice.
+    own: usize,
+    strength: f32,
+    /// The penalty of a function of degree 1.
+    linear: f32,
+    controls: Range<usize>,
+    /// The sums of each slice.
+    totals: Sums<'a>,
+    /// For each slice rows of L, as wide as its own columns: of these, with 1 / D on the diagonal, of the shared ones,
+    /// of values, and of units of the fixed columns.
+    blocks: &'a mut [Eight],
+    /// What all blocks leave of the shared columns, then its factors.
+    border: &'a mut [Eight],
+    /// Rows of L of values and units, as wide as the shared columns.
+    sides: &'a mut [Eight],
+    /// What each lane has of its slice.
+    gathered: &'a mut [Eight],
+    /// L^-1 of a row's columns; coefficients while these are made.
+    solved: &'a mut [Eight],
+    /// A block's shared columns.
+    columns: &'a mut [Four],
+    /// For each value and candidate those of the fixed columns.
+    trends: &'a mut [Eight],
+    /// For each value, candidate and slice, what shared columns are multiplied by at a sample of the slice. The fixed
+    /// ones are without what all slices have in common.
+    coefficients: &'a mut [Eight],
+}
+
+/// Puts a row together, each lane of another's.
+#[inline(always)]
+fn gather(out: &mut [Eight], of: &[&[Eight]; LANES]) {
+    for lane in 0..LANES {
+        for (out, entry) in out.iter_mut().zip(of[lane]) {
+            out[lane] = entry[lane];
+        }
+    }
+}
+
+/// Entry (i, k) of a symmetric matrix.
+#[inline(always)]
+fn symmetric(triangle: &[Eight], i: usize, k: usize) -> Eight {
+    at(triangle, packed_len(i.max(k)) + i.min(k))
+}
+
+/// A number less products, one after the other.
+#[inline(always)]
+fn minus_products(mut sum: Eight, a: &[Eight], b: &[Eight]) -> Eight {
+    let ((pairs, rest), (others, last)) = (a.as_chunks::<2>(), b.as_chunks::<2>());
+    for ([a, b], [c, d]) in pairs.iter().zip(others) {
+        sum = lanes::minus_product(lanes::minus_product(sum, *a, *c), *b, *d);
+        lanes::keep_together();
+    }
+    for (a, b) in rest.iter().zip(last) {
+        sum = lanes::minus_product(sum, *a, *b);
+    }
+    sum
+}
+
+impl<'a> Apart<'a> {
+    /// Rows of a slice's block.
+    fn order(terms: &Terms, values: usize) -> usize {
+        terms.all_own() + terms.columns() + values + terms.fixed()
+    }
+
+    /// Lanes of workspace.
+    pub(super) fn len(terms: &Terms, values: usize) -> usize {
+        let (slices, width, order) = (terms.slices, terms.columns(), Self::order(terms, values));
+        if slices == 0 {
+            return 0;
+        }
+        let each = Sums::len(width, values) + order * terms.all_own();
+        let coefficients = values * terms.ends.len() * (terms.fixed() + slices * width);
+        let border = packed_len(width) + (values + terms.fixed()) * width;
+        slices * each + border + order * (1 + terms.all_own()) + width + AT_ONCE * width + coefficients
+    }
+
+    pub(super) fn new(
+        terms: &Terms,
+        values: usize,
+        call: &Call<'_>,
+        arena: &mut Arena<'a, f32>,
+    ) -> Result<Self, Error> {
+        let (slices, width, order) = (terms.slices, terms.columns(), Self::order(terms, values));
+        let fits = terms.ends.len();
+        Ok(Self {
+            slices,
+            values,
+            fits,
+            width,
+            own: 0,
+            strength: strength(call.config),
+            linear: call.shape.linear() as f32,
+            controls: terms.fixed()..terms.fixed() + call.config.controls,
+            totals: Sums::sliced(1, slices, width, values, arena)?,
+            blocks: arena.take_lanes(slices * order * terms.all_own())?,
+            border: arena.take_lanes(packed_len(width))?,
+            sides: arena.take_lanes((values + terms.fixed()) * width)?,
+            gathered: arena.take_lanes(order * terms.all_own() + width)?,
+            solved: arena.take_lanes(order)?,
+            columns: arena.take_fours(width)?,
+            trends: arena.take_lanes(values * fits * terms.fixed())?,
+            coefficients: arena.take_lanes(values * fits * slices * width)?,
+        })
+    }
+
+    /// Corrects every pixel of the colours `taken` by fits to the others of them.
+    #[inline(always)]
+    pub(super) fn correct(
+        &mut self,
+        terms: &Terms,
+        batch: &Batch<'_>,
+        penalties: &[f32],
+        taken: Colours,
+        corrections: &mut [Four],
+    ) {
+        self.totals.set_total(&batch.between, taken);
+        let mut begin = 0;
+        for fit in 0..self.fits {
+            // The last of those with as many own columns has all the shared ones that these have.
+            if terms.own.get(fit) == terms.own.get(fit + 1) {
+                continue;
+            }
+            (self.own, self.width) = (at(&terms.own, fit), at(&terms.ends, fit));
+            self.factor(terms, penalties);
+            for fit in begin..=fit {
+                for value in 0..self.values {
+                    self.solve(terms, value, fit);
+                }
+            }
+            for block in batch.blocks(taken) {
+                self.apply(terms, batch, block, begin..fit + 1, corrections);
+            }
+            begin = fit + 1;
+        }
+    }
+
+    /// Lanes of a slice's block.
+    #[inline(always)]
+    fn block_len(&self, terms: &Terms) -> usize {
+        packed_len(self.own) + (self.width + self.values + terms.fixed()) * self.own
+    }
+
+    #[inline(always)]
+    fn factor(&mut self, terms: &Terms, penalties: &[f32]) {
+        let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(terms));
+        let diagonal = |totals: &Sums<'_>, column: usize| {
+            let each = (0..self.slices).map(|slice| at(row(totals.part(slice).gram, column), column));
+            each.fold(NONE, |sum, square| plus(&sum, &square))
+        };
+        let count = diagonal(&self.totals, 0);
+        let mut scale = NONE;
+        for l in 0..LANES {
+            scale[l] = self.strength * Real::max(count[l] - 1.0, 0.0);
+        }
+        for (j, penalty) in penalties.iter().enumerate().take(width) {
+            let out = row_mut(self.border, j);
+            out.iter_mut().for_each(|out| *out = NONE);
+            let Some(out) = out.last_mut() else { continue };
+            *out = lanes::plus_product(NONE, scale, [*penalty; LANES]);
+            if self.controls.contains(&j) {
+                // What a control function is measured in is its maker's choice.
+                let square = diagonal(&self.totals, j);
+                let unit = lanes::zip(&square, &lanes::divisor(&count), |square, count| square / count);
+                *out = lanes::zip(out, &unit, |penalty, unit| penalty * unit);
+            }
+        }
+        for (i, side) in rows_mut(self.sides, width).enumerate() {
+            side.iter_mut().for_each(|out| *out = NONE);
+            if let Some(out) = i.checked_sub(self.values).and_then(|unit| side.get_mut(unit)) {
+                *out = [1.0; LANES];
+            }
+        }
+        for slice in 0..self.slices {
+            let Part { gram, sides, .. } = self.totals.part(slice);
+            let (triangle, rows) = halves_mut(row_at_mut(self.blocks, len, slice), packed_len(own));
+            for i in 0..own {
+                let (source, factor) = terms.source(i);
+                let line = row_mut(triangle, i);
+                for (k, out) in line.iter_mut().enumerate() {
+                    *out = symmetric(gram, source, terms.source(k).0);
+                }
+                if let Some(out) = line.last_mut() {
+                    let penalty = terms.own_penalty(i, penalties, self.linear) / factor;
+                    *out = lanes::plus_product(*out, scale, [penalty; LANES]);
+                }
+            }
+            ldlt::factor_each(triangle, own);
+            let solved = first_mut(self.solved, own);
+            for i in 0..width + self.values + fixed {
+                let (sums, out) = match i.checked_sub(width) {
+                    None => (row(gram, i), row_mut(self.border, i)),
+                    Some(side) => (row_at(sides, terms.columns(), side), row_at_mut(self.sides, width, side)),
+                };
+                for (k, out) in solved.iter_mut().enumerate() {
+                    let other = terms.source(k).0;
+                    *out = if i < width {
+                        symmetric(gram, i, other)
+                    } else if i < width + self.values {
+                        at(sums, other)
+                    } else {
+                        [if other == i - width - self.values { 1.0 / self.slices as f32 } else { 0.0 }; LANES]
+                    };
+                }
+                for (k, l) in row_at_mut(rows, own, i).iter_mut().enumerate() {
+                    let (Some((before, out)), Some((inverse, left))) =
+                        (split_at(solved, k), row(triangle, k).split_last())
+                    else {
+                        break;
+                    };
+                    *out = minus_products(*out, before, left);
+                    *l = lanes::zip(out, inverse, |value, inverse| value * inverse);
+                }
+                // What the block leaves.
+                for (c, out) in out.iter_mut().enumerate() {
+                    *out = minus_products(plus(out, &at(sums, c)), solved, row_at(rows, own, c));
+                }
+            }
+        }
+        ldlt::factor_each(self.border, width);
+        for side in rows_mut(self.sides, width) {
+            ldlt::forward_each::<f32, 1>(self.border, 0, ldlt::one_each_mut(side));
+            for (j, side) in side.iter_mut().enumerate() {
+                *side = lanes::zip(side, &at(self.border, packed_len(j) + j), |side, inverse| side * inverse);
+            }
+        }
+    }
+
+    /// A candidate's coefficients for a value.
+    #[inline(always)]
+    fn solve(&mut self, terms: &Terms, value: usize, fit: usize) {
+        let (own, fixed, len) = (self.own, terms.fixed(), self.block_len(terms));
+        let (end, which) = (at(&terms.ends, fit), value * self.fits + fit);
+        let Some((shared, solved)) = self.solved.split_at_mut_checked(end) else { return };
+        copy(shared, row_at(self.sides, self.width, value));
+        ldlt::backward_each(self.border, shared);
+        let trend = row_at_mut(self.trends, fixed, which);
+        trend.iter_mut().for_each(|sum| *sum = NONE);
+        let each = self.slices * terms.columns();
+        let coefficients = row_at_mut(self.coefficients, each, which);
+        for slice in 0..self.slices {
+            let (triangle, lines) = halves(row_at(self.blocks, len, slice), packed_len(own));
+            let solved = first_mut(solved, own);
+            copy(solved, row_at(lines, own, self.width + value));
+            for (shared, line) in shared.iter().zip(rows(lines, own)) {
+                for (out, l) in solved.iter_mut().zip(line) {
+                    *out = lanes::minus_product(*out, *l, *shared);
+                }
+            }
+            ldlt::backward_each(triangle, solved);
+            let out = row_at_mut(coefficients, terms.columns(), slice);
+            copy(out, shared);
+            first_mut(out, fixed).iter_mut().for_each(|out| *out = NONE);
+            for (j, value) in solved.iter().enumerate() {
+                if let Some(out) = out.get_mut(terms.source(j).0) {
+                    *out = plus(out, value);
+                }
+            }
+            for (sum, own) in trend.iter_mut().zip(&*out) {
+                *sum = plus(sum, own);
+            }
+        }
+        let inverse = [1.0 / self.slices as f32; LANES];
+        trend.iter_mut().for_each(|sum| *sum = lanes::plus_product(NONE, *sum, inverse));
+        for slice in 0..self.slices {
+            for (out, mean) in row_at_mut(coefficients, terms.columns(), slice).iter_mut().zip(&*trend) {
+                *out = lanes::zip(out, mean, |own, mean| own - mean);
+            }
+        }
+        trend.iter_mut().zip(&*shared).for_each(|(trend, shared)| *trend = plus(trend, shared));
+    }
+
+    /// Corrects a block by the fit to the other pixels; see `Fits::leave_own`.
+    #[inline(always)]
+    fn apply(&mut self, terms: &Terms, batch: &Batch<'_>, block: usize, fits: Range<usize>, corrections: &mut [Four]) {
+        let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(terms));
+        let places = row_at(batch.places, fixed, block);
+        batch.put_columns(terms, block, self.columns);
+        let (Some(slices), Some(inside)) = (batch.slices.get(block), batch.inside.get(block)) else { return };
+        for (line, slices) in slices.iter().enumerate() {
+            let slices = slices.map(|slice| slice as usize);
+            gather(self.gathered, &slices.map(|slice| row_at(self.blocks, len, slice)));
+            let (mut leverage, mut shares) = (NONE, [NONE; MAX_FIXED]);
+            for j in 0..own + width {
+                let (source, start) = match j.checked_sub(own) {
+                    None => (terms.source(j).0, packed_len(j)),
+                    Some(shared) => (shared, packed_len(own) + shared * own),
+                };
+                let Some((before, out)) = split_at(self.solved, j) else { return };
+                let (of_slice, of_border) = halves(before, own.min(j));
+                let own_row = first(from(self.gathered, start), of_slice.len());
+                let z = minus_products(at(self.columns, source)[line], of_slice, own_row);
+                *out = minus_products(z, of_border, first(row(self.border, j.saturating_sub(own)), of_border.len()));
+                if j < own {
+                    let scaled = lanes::zip(out, &at(self.gathered, start + j), |z, inverse| z * inverse);
+                    leverage = lanes::plus_product(leverage, scaled, *out);
+                    for (unit, share) in shares.iter_mut().enumerate().take(fixed) {
+                        let unit = packed_len(own) + (width + self.values + unit) * own + j;
+                        *share = lanes::plus_product(*share, at(self.gathered, unit), *out);
+                    }
+                }
+            }
+            let of_border = self.solved.get(own..own + width).unwrap_or_default();
+            let mut begin = 0;
+            for fit in fits.clone() {
+                let end = at(&terms.ends, fit);
+                for (b, z) in of_border.iter().enumerate().take(end).skip(begin) {
+                    let scaled = lanes::zip(z, &at(self.border, packed_len(b) + b), |z, inverse| z * inverse);
+                    leverage = lanes::plus_product(leverage, scaled, *z);
+                    for (unit, share) in shares.iter_mut().enumerate().take(fixed) {
+                        let entry = at(row_at(self.sides, width, self.values + unit), b);
+                        *share = lanes::plus_product(*share, entry, *z);
+                    }
+                }
+                begin = end;
+                let mut reach = leverage;
+                for (place, share) in places.iter().zip(&shares) {
+                    reach = lanes::minus_product(reach, place[line], *share);
+                }
+                for value in 0..self.values {
+                    let which = value * self.fits + fit;
+                    let all = from(self.coefficients, which * self.slices * terms.columns());
+                    let coefficients = first_mut(self.gathered, end);
+                    gather(coefficients, &slices.map(|slice| row_at(all, terms.columns(), slice)));
+                    let mut fitted = NONE;
+                    for (column, coefficient) in self.columns.iter().zip(&*coefficients) {
+                        fitted = lanes::plus_product(fitted, column[line], *coefficient);
+                        lanes::keep_together();
+                    }
+                    let mut trend = NONE;
+                    for (place, coefficient) in places.iter().zip(row_at(self.trends, fixed, which)) {
+                        trend = lanes::plus_product(trend, place[line], *coefficient);
+                    }
+                    let mean = at(row_at(batch.means, self.values, block), value)[line];
+                    let mut residual = NONE;
+                    for l in 0..LANES {
+                        residual[l] = mean[l] - fitted[l] - trend[l];
+                    }
+                    // A pixel that no fit is made to is corrected by the fit to all.
+                    let residual = if batch.leaves_out { only(&inside[line], &residual) } else { residual };
+                    let corrections = row_at_mut(corrections, self.fits, block * self.values + value);
+                    let Some(out) = corrections.get_mut(fit) else { return };
+                    for l in 0..LANES {
+                        let left = Real::max(1.0 - leverage[l], SINGULAR);
+                        out[line][l] = reach[l] * (residual[l] / left) - fitted[l];
+                    }
+                    lanes::keep_together();
+                }
+            }
+        }
+    }
+}
