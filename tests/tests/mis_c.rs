@@ -6,19 +6,21 @@ extern crate noisefloor as noisefloor_core;
 
 #[path = "../../capi/src/convert.rs"]
 mod convert;
-#[path = "../../capi/src/mis.rs"]
-mod door;
 #[path = "../../capi/src/magic.rs"]
 mod magic;
+#[path = "../../capi/src/mis.rs"]
+mod mis;
 #[path = "../../capi/src/omis.rs"]
 mod omis;
 #[path = "../../capi/src/rng.rs"]
 mod rng;
 #[path = "../../capi/src/status.rs"]
 mod status;
+#[path = "../../capi/src/wrong.rs"]
+mod wrong;
 
-use door::*;
-use noisefloor::mis::{self, OptimalMis, Solver};
+use mis::*;
+use noisefloor::mis::{self as core_mis, OptimalMis, Solver};
 use omis::*;
 use rng::*;
 use std::ptr::{null, null_mut};
@@ -53,11 +55,11 @@ const WEIGHTS: [Weight; 5] = [
 fn weights_are_those_of_the_core() {
     for j in 0..3 {
         let expected = [
-            mis::balance(&PDF, &COUNTS, j),
-            mis::power(&PDF, &COUNTS, j, 2.0),
-            mis::cutoff(&PDF, &COUNTS, j, 0.1),
-            mis::maximum(&PDF, &COUNTS, j),
-            mis::optimal_contribution(&PDF, &COUNTS, j, &ALPHA, 2.0),
+            core_mis::balance(&PDF, &COUNTS, j),
+            core_mis::power(&PDF, &COUNTS, j, 2.0),
+            core_mis::cutoff(&PDF, &COUNTS, j, 0.1),
+            core_mis::maximum(&PDF, &COUNTS, j),
+            core_mis::optimal_contribution(&PDF, &COUNTS, j, &ALPHA, 2.0),
         ];
         for (weight, expected) in WEIGHTS.iter().zip(expected) {
             let answer = call(|out| weight(PDF.as_ptr(), COUNTS.as_ptr(), 3, j as u32, out));
@@ -130,7 +132,7 @@ fn sample(i: u32) -> ([f32; 3], [f32; 2]) {
 fn the_accumulator_is_the_core_s() {
     let (mut memory, mut other_memory) = (Memory::new(), Memory::new());
     let (omis, other) = (memory.init(), other_memory.init());
-    let make = || OptimalMis::new(vec![0.0; mis::len(3, 2)], &COUNTS, 2).unwrap();
+    let make = || OptimalMis::new(vec![0.0; core_mis::len(3, 2)], &COUNTS, 2).unwrap();
     let (mut expected, mut expected_other) = (make(), make());
     for i in 0..30 {
         let (pdf, value) = sample(i);
@@ -172,11 +174,11 @@ fn the_accumulator_is_the_core_s() {
 #[test]
 fn sizes() {
     assert_eq!(nf_omis_size(2, 1) % 8, 0);
-    assert!(nf_omis_size(2, 1) > 8 * mis::len(2, 1));
+    assert!(nf_omis_size(2, 1) > 8 * core_mis::len(2, 1));
     assert_eq!([nf_omis_size(0, 1), nf_omis_size(17, 1), nf_omis_size(1, 0), nf_omis_size(u32::MAX, u32::MAX)], [0; 4]);
     assert_eq!(
         nf_omis_size(16, u32::MAX),
-        if usize::BITS == 64 { 80 + 8 * mis::len(16, u32::MAX as usize) } else { 0 }
+        if usize::BITS == 64 { 80 + 8 * core_mis::len(16, u32::MAX as usize) } else { 0 }
     );
 }
 
