@@ -6,6 +6,8 @@ import numpy
 def array(name, value):
     """NumPy's view of a NumPy, PyTorch or JAX array, of anything with a buffer, DLPack or an array interface, or a copy
     of numbers in lists. Tensors on other devices are copied."""
+    if isinstance(value, numpy.ma.MaskedArray):
+        raise TypeError(f"{name} is a masked array: fill it, or leave out what is masked")
     if isinstance(value, numpy.ndarray):
         return value
     if type(value).__module__.partition(".")[0] == "torch":
@@ -24,7 +26,8 @@ def array(name, value):
 def floats(name, value):
     """float32 numbers, row after row. What is beyond float32 becomes infinite, which the library refuses."""
     view = array(name, value)
-    if view.dtype.kind not in "fiub":
+    # JAX's bfloat16 is none of NumPy's kinds.
+    if view.dtype.kind not in "fiub" and view.dtype.name != "bfloat16":
         raise TypeError(f"{name} holds {view.dtype}: real numbers are expected")
     with numpy.errstate(over="ignore"):
         return numpy.asarray(view, numpy.float32, order="C")
@@ -55,8 +58,8 @@ def integer(name, value, least, most):
 def number(name, value, least, most):
     """A float from least to most."""
     try:
-        result = float(value)
-    except (TypeError, ValueError):
+        result = value.__float__()
+    except (AttributeError, TypeError, ValueError):
         raise TypeError(f"{name} is {value!r}: a number is expected") from None
     if not least <= result <= most:
         raise ValueError(f"{name} is {result}: it must be {least} to {most}")
@@ -80,9 +83,9 @@ def check(name, values, good, allowed):
 
 
 def check_shape(name, values, expected, meaning):
-    """Refuses an array of another shape."""
-    if values.shape != expected:
-        raise ValueError(f"{name} has the shape {values.shape}: it must be {expected}, {meaning}")
+    """Refuses an array or tensor of another shape."""
+    if tuple(values.shape) != expected:
+        raise ValueError(f"{name} has the shape {tuple(values.shape)}: it must be {expected}, {meaning}")
 
 
 def check_finite(name, values):

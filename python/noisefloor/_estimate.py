@@ -21,9 +21,10 @@ class Estimate(NamedTuple):
         gain: estimated variance relative to the plain mean's, without that axis; 1 is no gain.
     """
 
-    mean: numpy.ndarray | float
-    std_error: numpy.ndarray | float
-    gain: numpy.ndarray | float
+    # Any: which of the two it is depends on shapes, which types do not tell.
+    mean: Any
+    std_error: Any
+    gain: Any
 
 
 def estimate(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import secrets
 
 import numpy
+from numpy.typing import NDArray
 
 from . import _arrays, _c
 
@@ -41,12 +42,12 @@ class Sampler:
 
     def image(
         self, width: int, height: int, samples: int, dims: int = 2, *, x: int = 0, y: int = 0, first: int = 0
-    ) -> numpy.ndarray:
+    ) -> NDArray[numpy.float32]:
         """Numbers for many pixels.
 
         Args:
-            width, height: how many pixels, from column x and row y on.
-            samples: of each pixel, from number `first` on.
+            width, height: how many pixels, from column x and row y on. Of both the last 16 bits count.
+            samples: of each pixel, from number `first` on, up to number 2**32 - 1.
             dims: numbers of each sample, at least 1. The first four are stratified together, the first two arranged
                 across pixels. Further ones come by fours from the domains with the keys 1, 2, ...
 
@@ -58,13 +59,15 @@ class Sampler:
             for name, value in (("width", width), ("height", height), ("samples", samples), ("dims", dims))
         ]
         width, height, samples, dims = sizes
-        place = [_arrays.integer(name, value, 0, LAST) for name, value in (("x", x), ("y", y), ("first", first))]
+        most = (("x", x, LAST), ("y", y, LAST), ("first", first, LAST + 1 - samples))
+        place = [_arrays.integer(name, value, 0, top) for name, value, top in most]
+        # Before anything else that grows with dims: what memory has not is refused at once.
+        u = numpy.empty((height, width, samples, dims), numpy.float32)
         groups = -(-dims // 4)
         samplers, parts = (_c.Sampler * groups)(), (_c.u32 * groups)()
         for group in range(groups):
             keys = self._keys + ((group,) if group else ())
             samplers[group], parts[group] = self._at(*place, keys), min(4, dims - 4 * group)
-        u = numpy.empty((height, width, samples, dims), numpy.float32)
         status = _c.sampler_fill(
             _c.address(samplers), _c.address(parts), groups, width, height, samples, _c.data(u), u.size
         )
@@ -72,7 +75,7 @@ class Sampler:
             raise ValueError(f"{_c.message(status)}: {width} x {height} pixels, {samples} samples, {dims} dims")
         return u
 
-    def pixel(self, x: int, y: int, samples: int, dims: int = 2, *, first: int = 0) -> numpy.ndarray:
+    def pixel(self, x: int, y: int, samples: int, dims: int = 2, *, first: int = 0) -> NDArray[numpy.float32]:
         """The numbers of one pixel's samples, float32 of shape (samples, dims); arguments as for `image`."""
         return self.image(1, 1, samples, dims, x=x, y=y, first=first)[0, 0]
 
@@ -85,7 +88,8 @@ class Sampler:
 
 
 class QMCEngine:
-    """The same points as a sequence, with the methods of the engines of `scipy.stats.qmc`.
+    """The same points as a sequence, with `random`, `fast_forward` and `reset` as the engines of `scipy.stats.qmc` have
+    them. No subclass of theirs: what scipy itself does with engines takes its own only.
 
     Args:
         d: dims, 1 to 4. In 2 it is as good as `scipy.stats.qmc.Sobol`; in more that is the better engine.
@@ -98,7 +102,7 @@ class QMCEngine:
         self.num_generated = 0
         self._sampler = Sampler(frame=self.seed, white=True)
 
-    def random(self, n: int = 1) -> numpy.ndarray:
+    def random(self, n: int = 1) -> NDArray[numpy.float64]:
         """The next n points, float64 of shape (n, d), at least 0 and below 1; best where n is a power of two."""
         n = _arrays.integer("n", n, 0, LAST - self.num_generated)
         if n == 0:

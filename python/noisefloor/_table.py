@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy
+from numpy.typing import NDArray
 
 from . import _arrays, _c
 
@@ -72,7 +73,7 @@ class Table:
         with self._lock:
             self._table.uniform_fraction = value
 
-    def draw(self, batch: int, method: str = "iid") -> tuple[numpy.ndarray, numpy.ndarray]:
+    def draw(self, batch: int, method: str = "iid") -> tuple[NDArray[numpy.int64], NDArray[numpy.float32]]:
         """Draws items in proportion to importance.
 
         Args:
@@ -149,7 +150,7 @@ class Table:
             _arrays.check_positive("importance", importance)
             raise ValueError(_c.message(status))
 
-    def probabilities(self, index: Any = None) -> numpy.ndarray:
+    def probabilities(self, index: Any = None) -> NDArray[numpy.float32]:
         """The probability of drawing each of these items, float32, of index's shape; of all items for None."""
         if index is None:
             index = numpy.arange(self._n, dtype=numpy.uint32)
@@ -173,17 +174,22 @@ class Table:
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Becomes the table that `state_dict` saw, of as many items."""
-        saved = numpy.ascontiguousarray(_arrays.array("table", state["table"]), numpy.uint8)
+        saved = _arrays.array("table", state["table"])
+        if saved.dtype != numpy.uint8:
+            raise TypeError(f"table holds {saved.dtype}: uint8 is expected")
+        saved = numpy.ascontiguousarray(saved)
         # What is no table at all, the library says.
         items = int.from_bytes(saved[12:16].tobytes(), "little") if saved[:8].tobytes() == b"nf_table" else 0
         if items not in (0, self._n):
             raise ValueError(f"the state has {items} items, this table {self._n}")
-        first, second = (_arrays.integer("rng", number, 0, 2**64 - 1) for number in state["rng"])
+        rng = [_arrays.integer("rng", number, 0, 2**64 - 1) for number in state["rng"]]
+        if len(rng) != 2:
+            raise ValueError(f"rng is {rng}: it must be two integers")
         with self._lock:
             status = _c.table_load(self._at, _c.data(self._memory), self._memory.nbytes, _c.data(saved), saved.nbytes)
             if status:
                 raise ValueError(f"the state's table, {saved.nbytes} bytes: {_c.message(status)}")
-            self._rng.state, self._rng.increment = first, second
+            self._rng.state, self._rng.increment = rng
 
     def __getstate__(self):
         return {"n": self._n, **self.state_dict()}

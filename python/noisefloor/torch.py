@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy
 import torch
 import torch.distributed
+import torch.nn.functional
 from torch.utils.data import Sampler
 
 from . import _arrays, _c
@@ -31,7 +33,8 @@ class ImportanceBatchSampler(Sampler):
             optimizer.step()
             sampler.update_from(logits)              # how large each item's gradient was
 
-    The first epoch visits every item once, with weights of 1. Later ones draw with replacement.
+    The first epoch visits every item once, with weights of 1; its last batch is filled up with items from its start.
+    Later ones draw with replacement. An epoch counts once `batch` was called for all of its batches.
 
     In data-parallel training every process makes the same sampler and gets its part of each batch; what `update` is
     told is gathered, so that all have the same table. Gradients are averaged over processes, as
@@ -178,16 +181,22 @@ class ImportanceBatchSampler(Sampler):
     def _learn(self, importance, index=None, skip=False):
         """`update`; skip: leaves out items that are NaN for a table."""
         first = self._last is not None and self._last[2] and index is None
-        own = self._own(0) if index is None else torch.as_tensor(index)
-        importance = torch.as_tensor(importance).detach().float()
+        if index is None:
+            own = self._own(0)
+        else:
+            own = torch.from_numpy(_arrays.integers("index", index, self._n - 1).astype(numpy.int64))
+        if not isinstance(importance, torch.Tensor) or importance.is_complex():
+            importance = torch.tensor(_arrays.floats("importance", importance))
+        importance = importance.detach().float()
         techniques = len(self._tables)
-        shape = own.shape if techniques == 1 else own.shape + (techniques,)
-        if importance.shape != shape or own.dim() != 1:
-            raise ValueError(f"importance has the shape {tuple(importance.shape)}: it must be {tuple(shape)}")
+        shape = (own.numel(),) if techniques == 1 else (own.numel(), techniques)
+        _arrays.check_shape("index", own, shape[:1], "one item after the other")
+        _arrays.check_shape("importance", importance, shape, "a number for each index and technique")
         if index is None:
             index = torch.from_numpy(self._last[0])
         else:
-            index = self._gather(own)
+            # The other processes are reached from the importances' device.
+            index = self._gather(own.to(importance.device))
         importance = self._gather(importance).reshape(len(index), techniques)
         known = ~torch.isnan(importance).any(1) if skip else slice(None)
         index, importance = index[known].numpy(), importance[known].numpy()
@@ -211,17 +220,19 @@ class ImportanceBatchSampler(Sampler):
         `logits.retain_grad()` before it.
 
         Args:
-            logits: the model's outputs, (batch_size, ...), any loss's.
+            logits: the model's outputs, (batch_size,) or (batch_size, ...), any loss's.
             reduction: "mean" or "sum": how the weighted losses of the batch were added up.
-            scale: what the loss was multiplied by besides, by a GradScaler say.
+            scale: what the loss was multiplied by besides, above 0, by a GradScaler say. Derivatives that are infinite,
+                for which that leaves a step out, are refused.
         """
+        scale = _arrays.number("scale", scale, 1e-30, math.inf)
         if logits.grad is None:
             raise ValueError("logits.grad is None: call logits.retain_grad() before the backward pass")
         weight = self._own(1).to(logits.device)
         if len(logits) != len(weight):
             raise ValueError(f"logits has the shape {tuple(logits.shape)}: the last batch has {len(weight)} items")
         count = _arrays.one_of("reduction", reduction, {"mean": len(weight), "sum": 1})
-        gradient = logits.grad.float().flatten(1) * (count / scale) / weight[:, None]
+        gradient = logits.grad.float().reshape(len(weight), -1) * (count / scale) / weight[:, None]
         if len(self._tables) == 1:
             self._learn(gradient.norm(dim=1))
             return
@@ -258,13 +269,14 @@ class ImportanceBatchSampler(Sampler):
         its = {"n": state["n"], "whole_batch": state["whole_batch"], "tables": len(state["tables"])}
         if mine != its:
             raise ValueError(f"the state is another sampler's: it has {its}, this one {mine}")
-        for table, saved, rng in zip(self._tables, state["tables"], state["rng"]):
+        # Nothing of this sampler changes before all of the state has been read.
+        tables = [Table(self._n) for _ in self._tables]
+        for table, saved, rng in zip(tables, state["tables"], state["rng"]):
             table.load_state_dict({"table": saved, "rng": rng})
-        self.epoch, self._drawn, self._step = state["epoch"], state["drawn"], state["step"]
-        self._seed = state["seed"]
+        replay = deque((index.numpy(), weight.numpy(), first) for index, weight, first in state["ahead"])
+        self._seed, self.epoch, self._drawn, self._step = (state[name] for name in ("seed", "epoch", "drawn", "step"))
+        self._tables, self._replay, self._last = tables, replay, None
         self._ahead.clear()
-        self._replay = deque((index.numpy(), weight.numpy(), first) for index, weight, first in state["ahead"])
-        self._last = None
         # At the end of an epoch the next begins.
         self._resumed = bool(self._replay) or self._step < self._steps
 
@@ -283,6 +295,5 @@ def cross_entropy_importance(logits: torch.Tensor, target: torch.Tensor) -> torc
         float32 of shape (batch,), 0 to 1.4143.
     """
     with torch.no_grad():
-        derivative = torch.softmax(logits.float(), 1)
-        derivative[torch.arange(len(target), device=target.device), target] -= 1
+        derivative = torch.softmax(logits.float(), 1) - torch.nn.functional.one_hot(target, logits.shape[1])
         return derivative.norm(dim=1)

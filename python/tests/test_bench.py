@@ -10,6 +10,7 @@ FOLDER = pathlib.Path(__file__).resolve().parent.parent / "bench"
 TABLES = {
     "overhead": ("versions", "draws", "steps", "integrals"),
     "integration": ("integration",),
+    "memory": ("memory",),
     "training": ("tasks", "training"),
 }
 

@@ -1,19 +1,25 @@
-"""The code in docs/python.md, run from top to bottom as a reader would."""
+"""The code in docs/python.md, run from top to bottom as a reader would, and its types."""
 
 import doctest
+import os
 import pathlib
 import re
+import subprocess
+import sys
 
 import pytest
 
+import noisefloor
+
 PAGE = pathlib.Path(__file__).resolve().parent.parent.parent / "docs/python.md"
+BLOCK = re.compile(r"^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
 def test_docs_python_md():
     pytest.importorskip("torch")
     text, names, examples = PAGE.read_text(), {}, 0
     runner = doctest.DocTestRunner()
-    for block in re.finditer(r"^```python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
+    for block in BLOCK.finditer(text):
         line = text[: block.start(1)].count("\n")
         if ">>>" in block[1]:
             test = doctest.DocTestParser().get_doctest(block[1], names, PAGE.name, str(PAGE), line)
@@ -26,4 +32,33 @@ def test_docs_python_md():
     assert runner.summarize().failed == 0
     assert examples > 20
     assert names["sampler"].epoch == 2
-    assert abs(names["fitted"] - 1.317902) < abs(names["mean"] - 1.317902) < 1e-3
+    assert abs(names["better"].mean - 1.317902) < abs(names["mean"] - 1.317902) < 1e-3
+
+
+def check_types(tmp_path, *sources):
+    """What mypy says of programs, by the package's types as they are installed."""
+    files = [tmp_path / f"example{k}.py" for k in range(len(sources))]
+    for file, source in zip(files, sources):
+        file.write_text(source)
+    # Without what PyTorch says of itself, which takes a minute to read.
+    (tmp_path / "mypy.ini").write_text(
+        "[mypy]\nstrict = True\nfollow_imports = silent\nignore_missing_imports = True\n"
+        "[mypy-torch.*]\nfollow_imports = skip\n"
+    )
+    environment = {**os.environ, "MYPYPATH": os.path.dirname(os.path.dirname(noisefloor.__file__))}
+    command = [sys.executable, "-m", "mypy", *files]
+    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path, env=environment).stdout
+
+
+def test_its_types_are_the_packages(tmp_path):
+    pytest.importorskip("mypy")
+    sources = []
+    for block in BLOCK.finditer(PAGE.read_text()):
+        source = block[1]
+        if ">>>" in source:
+            source = "".join(example.source for example in doctest.DocTestParser().get_examples(source))
+        sources.append("import numpy as np\nimport noisefloor\n" + source)
+    assert "Success" in check_types(tmp_path, *sources)
+    wrong = "import noisefloor\nnoisefloor.Table(10).draw('10')\nnoisefloor.estimate([], []).variance\n"
+    said = check_types(tmp_path, wrong)
+    assert 'has incompatible type "str"' in said and 'has no attribute "variance"' in said

@@ -144,6 +144,7 @@ def test_no_integrals_and_very_many():
         ((samples(4, 2), samples(4)), {"slices": 0}, "slices is 0"),
         ((samples(4, 2), samples(4, 5)), {"channels": True}, "number of f's channels is 5: it must be 1 to 4"),
         (([[1.0, 2.0], [1.0]], [1.0, 2.0]), {}, "u is no array of numbers"),
+        ((samples(4, 2), numpy.ma.array(samples(4), mask=[0, 1, 0, 0])), {}, "f is a masked array"),
     ],
 )
 def test_refusals_name_argument_value_and_range(arguments, options, said):

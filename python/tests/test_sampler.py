@@ -62,6 +62,11 @@ def test_engines_are_unbiased_over_seeds():
     assert abs(z) < 4.5
 
 
+def test_what_memory_has_not_is_refused_at_once():
+    with pytest.raises((MemoryError, ValueError)):
+        noisefloor.Sampler().image(2**31, 2**31, 1, 2**32 - 1)
+
+
 @pytest.mark.parametrize(
     "call, said",
     [
@@ -69,6 +74,7 @@ def test_engines_are_unbiased_over_seeds():
         (lambda: noisefloor.Sampler().domain(2**32), "key is 4294967296"),
         (lambda: noisefloor.Sampler().image(0, 1, 1), "width is 0: it must be 1 to"),
         (lambda: noisefloor.Sampler().image(1, 1, 1, 0), "dims is 0"),
+        (lambda: noisefloor.Sampler().image(1, 1, 4, first=2**32 - 3), "first is 4294967293: it must be 0 to"),
         (lambda: noisefloor.Sampler().pixel(1, 1, 1.0), "samples is 1.0: an integer"),
         (lambda: noisefloor.QMCEngine(5), "d is 5: it must be 1 to 4"),
         (lambda: noisefloor.QMCEngine(1).random(-1), "n is -1"),

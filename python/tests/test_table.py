@@ -1,8 +1,10 @@
 """Tables: what they draw, what they refuse, and that they survive copies, processes and threads."""
 
 import copy
+import json
 import math
 import multiprocessing
+import pathlib
 import pickle
 import subprocess
 import sys
@@ -149,6 +151,8 @@ def test_arrays_of_anybody():
         (lambda t: t.update([1.5], [1.0]), "index holds float64: integers"),
         (lambda t: t.update([1], [1j]), "importance holds complex128: real numbers"),
         (lambda t: t.update([1], ["a"]), "importance holds <U1"),
+        (lambda t: t.update([1], numpy.ma.array([1.0], mask=[True])), "importance is a masked array"),
+        (lambda t: t.update([1], [1.0], "0.5"), "momentum is '0.5': a number"),
         (lambda t: t.update([1, 2], [1.0]), r"importance has the shape \(1,\): it must be \(2,\)"),
         (lambda t: t.update([[1]], [[1.0]]), r"index has the shape \(1, 1\)"),
         (lambda t: t.update([1], [1.0], 1.5), r"momentum is 1.5: it must be 0 to 1"),
@@ -166,6 +170,12 @@ def test_arrays_of_anybody():
             lambda t: t.load_state_dict({"table": numpy.zeros(300, numpy.uint8), "rng": (0, 0)}),
             "300 bytes: the bytes are not",
         ),
+        (lambda t: t.load_state_dict({**t.state_dict(), "rng": (1,)}), r"rng is \[1\]: it must be two integers"),
+        (
+            lambda t: t.load_state_dict({**t.state_dict(), "table": t.state_dict()["table"].astype(numpy.int16)}),
+            "table holds int16: uint8 is expected",
+        ),
+        (lambda t: t.load_state_dict({**t.state_dict(), "table": bytes(72)}), "table holds .*: uint8 is expected"),
         (lambda t: noisefloor.Table(0), "n is 0: it must be 1 to 4294967295"),
         (lambda t: noisefloor.Table(2**32), "n is 4294967296"),
         (lambda t: noisefloor.Table("7"), "n is '7': an integer"),
@@ -276,21 +286,12 @@ def test_a_hundred_million_bits_of_index_are_reached():
     assert (index == items - 1).mean() > 0.99 and weight.min() > 0
 
 
-LARGE = """
-import os, resource, sys
-import numpy, noisefloor
-peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-items, file, before = int(sys.argv[1]), sys.argv[2], peak()
-table = noisefloor.Table(items)
-table.update(*table.draw(128))
-numpy.save(file, table.state_dict()["table"])
-table.load_state_dict({"table": numpy.load(file), "rng": (0, 1)})
-print((peak() - before) / items)
-"""
-
-
 def test_saving_takes_a_copy_and_no_more(tmp_path):
     """Bytes for an item: 4.6 of the table, 4 of what is saved; so .4 GB beyond a table of a hundred million items."""
-    command = [sys.executable, "-c", LARGE, "20000000", str(tmp_path / "table.npy")]
-    said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    assert float(said) < 4.6 + 4.6
+    items, program = 20_000_000, pathlib.Path(__file__).parent.parent / "bench/memory.py"
+    command = [sys.executable, program, "--use", str(items), tmp_path / "table.npy"]
+    # What this process holds is none of the other's.
+    held = numpy.ones(30_000_000)
+    table, whole = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    assert held[0] and 4.4 < table / items < 4.65
+    assert 8 < whole / items < 4.6 + 4.6

@@ -7,6 +7,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import warnings
 
 import numpy
 import pytest
@@ -33,6 +34,16 @@ def run(sampler, workers=0, stop=None):
         if len(seen) == stop:
             break
     return seen
+
+
+def run_techniques(sampler):
+    """An epoch's batches, of several techniques."""
+    batches = []
+    for _ in sampler:
+        index, weight = sampler.batch()
+        sampler.update(torch.stack([index, index + 1], 1))
+        batches.append((index, weight))
+    return batches
 
 
 def equal(a, b):
@@ -87,6 +98,20 @@ def test_a_loaded_state_goes_on_with_the_same_batches(workers, stop):
     while resumed.epoch < 2:
         seen += run(resumed, workers)
     assert equal(seen, expected)
+
+
+def test_a_refused_state_changes_nothing():
+    sampler, same = (ImportanceBatchSampler(40, 4, seed=5, techniques=2, warmup=None) for _ in range(2))
+    state = ImportanceBatchSampler(40, 4, seed=6, techniques=2, warmup=None).state_dict()
+    damaged = state["tables"][1].clone()
+    damaged[40] ^= 1
+    for wrong, error in (
+        ({**state, "tables": [state["tables"][0], damaged]}, ValueError),
+        ({name: part for name, part in state.items() if name != "step"}, KeyError),
+    ):
+        with pytest.raises(error):
+            sampler.load_state_dict(wrong)
+    assert equal(run_techniques(sampler), run_techniques(same))
 
 
 def test_copies_give_the_same_batches():
@@ -150,6 +175,41 @@ def importances(reduction, techniques=1, scale=1.0):
         sampler.update_from(logits, reduction=reduction, scale=scale)
         break
     return sampler, index, logits, target
+
+
+def test_any_numbers_update():
+    """Of any type and stride, NumPy's that PyTorch has not and read-only ones included."""
+    norms, index = numpy.array([3.0, 1.0, 2.0]), numpy.array([4, 5, 6])
+    fixed = norms.astype(numpy.float32)
+    fixed.setflags(write=False)
+    expected = noisefloor.Table(10)
+    expected.update(index, norms)
+    for of, at in (
+        (norms.tolist(), index.tolist()),
+        (norms[::-1].copy()[::-1], index.astype(numpy.uint32)),
+        (fixed, index[::-1].copy()[::-1]),
+        (torch.tensor(norms, requires_grad=True), torch.tensor(index)),
+        (torch.tensor(norms).bfloat16(), torch.tensor(index).int()),
+    ):
+        sampler = ImportanceBatchSampler(10, 2)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            sampler.update(of, at)
+        assert numpy.array_equal(sampler._tables[0].probabilities(), expected.probabilities())
+
+
+def test_one_output_may_have_an_axis_or_none():
+    found = []
+    for shape in ((20,), (20, 1), (20, 1, 1)):
+        sampler = ImportanceBatchSampler(50, 20, warmup=None, seed=3)
+        next(iter(sampler))
+        sampler.batch()
+        logits = torch.arange(20.0).reshape(shape).requires_grad_()
+        (logits**2).mean().backward()
+        sampler.update_from(logits)
+        found.append(sampler._tables[0].probabilities())
+    assert numpy.array_equal(found[0], found[1]) and numpy.array_equal(found[0], found[2])
+    assert found[0].max() > 1.5 * found[0].min()
 
 
 @pytest.mark.parametrize("reduction", ["mean", "sum"])
@@ -233,6 +293,11 @@ def test_replicas_stay_the_same_and_share_each_batch(tmp_path, world, workers):
         (lambda s: s.update(torch.ones(3)), r"importance has the shape \(3,\): it must be \(2,\)"),
         (lambda s: s.update(torch.tensor([1.0, float("nan")])), r"importance\[1\] is nan"),
         (lambda s: s.update(torch.ones(2), [10, 1]), r"index\[0\] is 10: it must be 0 to 9"),
+        (lambda s: s.update(1.0, 1), r"index has the shape \(\): it must be \(1,\)"),
+        (lambda s: s.update_from(torch.ones(2, 3), scale=0), "scale is 0.0: it must be 1e-30 to inf"),
+        (lambda s: s.update_from(torch.ones(2, 3), scale="1"), "scale is '1': a number"),
+        (lambda s: s.update(torch.tensor([1j, 1])), "importance holds complex64: real numbers"),
+        (lambda s: s.update(None), "importance holds object: real numbers"),
         (lambda s: s.update_from(torch.ones(2, 3)), "call logits.retain_grad"),
         (lambda s: s.load_state_dict(ImportanceBatchSampler(9, 2).state_dict()), "another sampler's: it has .*'n': 9"),
     ],
@@ -241,8 +306,14 @@ def test_refusals_name_argument_value_and_range(call, said):
     sampler = ImportanceBatchSampler(10, 2)
     next(iter(sampler))
     sampler.batch()
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises((ValueError, TypeError), match=said):
         call(sampler)
+
+
+def test_labels_that_are_no_class_are_refused():
+    for label in (-1, 3):
+        with pytest.raises(RuntimeError, match="Class values must be"):
+            cross_entropy_importance(torch.zeros(2, 3), torch.tensor([0, label]))
 
 
 def test_what_comes_first_is_said():
