@@ -139,8 +139,7 @@ class Table:
         is_plain = 0 < batch <= ROOM and not numpy.bitwise_or.reduce(index) >> 32
         if is_plain:
             with self._lock:
-                numpy.copyto(self._index[:batch], index, "unsafe")
-                numpy.copyto(self._value[:batch], importance, "unsafe")
+                self._index[:batch], self._value[:batch] = index, importance
                 if not _c.table_update(self._at, self._index_at, self._value_at, batch, momentum):
                     return
         index, importance = _arrays.integers("index", index, self._n - 1), _arrays.floats("importance", importance)
