@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -9,6 +10,7 @@ import zipfile
 
 import pytest
 
+from noisefloor import _c
 from noisefloor.__main__ import PLACES
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -39,6 +41,15 @@ def test_it_is_small_and_has_all():
     (metadata,) = (name for name in names if name.endswith("dist-info/METADATA"))
     text = zipfile.ZipFile(WHEEL).read(metadata).decode()
     assert [line for line in text.splitlines() if line.startswith("Requires-Dist")] == ["Requires-Dist: numpy>=1.22"]
+
+
+def test_any_linux_since_glibc_2_17_runs_it():
+    """What manylinux_2_17 promises, and docs/python.md."""
+    wanted = set(re.findall(rb"GLIBC_([0-9.]+)\0", pathlib.Path(_c.LIBRARY).read_bytes()))
+    assert wanted and max(tuple(map(int, version.split(b"."))) for version in wanted) <= (2, 17)
+    if shutil.which("readelf"):
+        needed = re.findall(r"NEEDED.*\[(.*)\]", run("readelf", "--dynamic", _c.LIBRARY))
+        assert needed == ["libc.so.6"]
 
 
 @needs_wheel

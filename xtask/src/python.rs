@@ -10,10 +10,11 @@ use std::path::{Path, PathBuf};
 /// What a wheel is built with.
 pub const BUILD: [Package; 4] =
     [PYTHON, Package { name: "python3-venv", file: "/usr/share/doc/python3-venv" }, CMAKE[0], CMAKE[1]];
-const TESTED_WITH: [Package; 4] = [
+const TESTED_WITH: [Package; 5] = [
     Package { name: "python3-pytest", file: "/usr/lib/python3/dist-packages/pytest/__init__.py" },
     Package { name: "python3-hypothesis", file: "/usr/lib/python3/dist-packages/hypothesis/__init__.py" },
     Package { name: "python3-scipy", file: "/usr/lib/python3/dist-packages/scipy/__init__.py" },
+    Package { name: "python3-mypy", file: "/usr/lib/python3/dist-packages/mypy/__init__.py" },
     Package { name: "python3-torch", file: "/usr/lib/python3/dist-packages/torch/__init__.py" },
 ];
 

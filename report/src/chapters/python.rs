@@ -36,7 +36,8 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
         fetch(&debian, &data);
     }
     report.compiled();
-    for (program, python) in [("overhead", &peers), ("integration", &peers), ("training", &debian)] {
+    let programs = [("overhead", &peers), ("memory", &peers), ("integration", &peers), ("training", &debian)];
+    for (program, python) in programs {
         let mut command = run::command(python);
         command.args(["-W", "ignore"]).arg(format!("python/bench/{program}.py")).arg("--output").arg(folder.path());
         if program == "training" {
