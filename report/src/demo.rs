@@ -2,19 +2,22 @@
 //! trainers, as the report's chapter of gradients.
 
 use crate::chapters;
-use crate::chapters::chapter::{Chapter, row};
+use crate::chapters::chapter::Chapter;
 use crate::chapters::figure::{Figure, Unit};
 use crate::chapters::measurement::Measurement;
+use crate::chapters::template;
 use crate::measure::filter::SIGMA;
 use crate::measure::metric::Reference;
 use crate::measure::output::Output;
 use crate::measure::part::Part;
 use crate::measure::renderer::{Job, Renderer, View};
-use crate::measure::{progress, score, text};
+use crate::measure::{progress, running, score, text};
 use anyhow::{Context, Result};
 use clap::Args;
 use image::imageops::replace;
 use image::{Rgb, Rgb32FImage, RgbImage};
+use itertools::{Itertools, iproduct};
+use serde_json::json;
 use std::fs;
 use std::path::{Path, PathBuf};
 use xtask::paths;
@@ -57,7 +60,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let folder = options.out.clone().unwrap_or_else(|| paths::target().join("demo"));
     let folder = std::path::absolute(&folder).with_context(|| format!("{} is no folder", folder.display()))?;
     println!("building the library and the path tracer");
-    let renderer = Renderer::build()?;
+    let renderer = Renderer::new(running::example("pathtracer.cpp", &["-O2"])?)?;
     let output = Output::new(&folder)?;
     println!("rendering");
     scenes(options, &renderer, &output)?;
@@ -86,7 +89,7 @@ fn scenes(options: &Options, renderer: &Renderer, output: &Output) -> Result<()>
     for (scene, domain, order) in SCENES {
         let view = View { scene, size, frame: 0, reference };
         let mut all = Vec::new();
-        for (spp, name) in SPP.into_iter().flat_map(|spp| SAMPLERS.map(|name| (spp, name))) {
+        for (spp, name) in iproduct!(SPP, SAMPLERS) {
             let sampler = renderer.sampler(name, spp).with_context(|| format!("the path tracer has no {name}"))?;
             let job = Job { sampler, order, ..Job::new(view, spp, &ESTIMATORS) };
             let outcome = measurement.run(&[job])?.pop().context("a rendering was lost")?;
@@ -101,8 +104,8 @@ fn scenes(options: &Options, renderer: &Renderer, output: &Output) -> Result<()>
         }
         for one in &all {
             let [raw, filtered] = ratios(one, &all).map(|ratio| Figure::exact(ratio, Unit::Ratio));
-            let time = Figure::exact(one.nanoseconds, Unit::Nanoseconds);
-            rows.push(row![scene, domain, one.spp, one.sampler, one.estimator, raw, filtered, time]);
+            let (spp, time) = (one.spp.to_string(), Figure::exact(one.nanoseconds, Unit::Nanoseconds));
+            rows.push(json!([scene, domain, spp, one.sampler, one.estimator, raw, filtered, time]));
         }
         if scene == SCENES[0].0 {
             output.write_picture("shared.png", &draw(&all, &*measurement.reference(view)?))?;
@@ -112,7 +115,7 @@ fn scenes(options: &Options, renderer: &Renderer, output: &Output) -> Result<()>
     let columns = "scene | integral over | spp | sampler | estimator | error over random's | filtered | ns per \
                    sample";
     chapter.table("demo", columns, 2, rows);
-    let table = chapter.render(include_str!("../templates/demo.md"), &|_| true)?;
+    let table = template::chapter("demo", &chapter.json(), &|_| true)?;
     output.write_text("demo.md", &table)?;
     println!("{table}");
     Ok(())
@@ -134,7 +137,7 @@ fn index(folder: &Path) -> Result<()> {
     let tables = TABLES.into_iter().filter(there).map(|file| format!("<p><a href=\"{file}\">{file}</a></p>\n"));
     let page = Some(PAGE).filter(there).map(|file| format!("<p><a href=\"{file}\">A page to play with</a></p>\n"));
     let html = "<!doctype html><meta charset=\"utf-8\"><title>noisefloor: demo</title>\n".to_owned()
-        + &pictures.chain(tables).chain(page).collect::<String>();
+        + &pictures.chain(tables).chain(page).join("");
     fs::write(folder.join("index.html"), html).context("cannot write index.html")
 }
 

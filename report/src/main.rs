@@ -1,7 +1,6 @@
 //! What `cargo xtask demo`, `report` and `targets` start: they measure, and make tables, plots and pictures of it.
 
 mod chapters;
-mod check;
 mod demo;
 mod measure;
 mod targets;
@@ -28,7 +27,10 @@ enum Command {
     Targets(targets::Options),
     /// A step of `cargo xtask test`
     #[command(hide = true)]
-    Check(check::Options),
+    Check {
+        #[arg(value_parser = ["chapters", "embree", "mitsuba", "python"])]
+        step: String,
+    },
 }
 
 fn main() -> ExitCode {
@@ -36,6 +38,6 @@ fn main() -> ExitCode {
         Command::Demo(options) => demo::run(&options),
         Command::Report(options) => chapters::run(&options),
         Command::Targets(options) => targets::run(&options),
-        Command::Check(options) => check::run(&options),
+        Command::Check { step } => chapters::check(&step),
     })
 }

@@ -7,14 +7,16 @@ mod frontier;
 use super::prelude::*;
 use super::program;
 use super::report::Report;
-use cells::{Cells, DEFAULT, MEAN, Summary};
+use cells::{Cells, MEAN};
+use itertools::{Itertools, iproduct};
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     let tables = program::measure(report)?;
     let cells = Cells::new(&tables.read("grid")?, &tables.read("recommended")?)?;
-    let (mut chapter, _) = report.described(&|_| Ok(grid(&cells)))?;
+    let mut chapter = report.described(&|_| Ok(grid(&cells)))?;
     chapter.setting("dims of the table of estimators, at most", DIMS);
-    judge(&tables.read("must_reach")?)?.write(&mut chapter);
+    bounds(&mut chapter, &tables.read("must_reach")?)?;
+    chapter.judge();
     frontier::write(&mut chapter, &cells);
     integrands(&mut chapter, &cells);
     precision(&mut chapter, &tables.read("cells")?)?;
@@ -22,16 +24,15 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
 }
 
 /// What was to be reached: the bounds that the project has set itself, as the benchmark `speed_error` judges them.
-fn judge(table: &Table) -> Result<Targets> {
-    let mut targets = Targets::default();
+fn bounds(chapter: &mut Chapter, table: &Table) -> Result<()> {
     for row in table.rows() {
         let half = row.optional("half_width")?.unwrap_or(0.0);
         let estimate = Estimate::of_logarithm(row.number("value")?, half, if half > 0.0 { 2 } else { 1 });
         let unit = if row.word("unit")? == "ns" { Unit::Nanoseconds } else { Unit::Ratio };
         let place = Some(row.word("note")?).filter(|note| !note.is_empty()).unwrap_or("all");
-        targets.at_most(row.word("target")?, place, estimate, unit, row.number("bound")?);
+        chapter.target(row.word("target")?, place, estimate, unit, Bound::AtMost(row.number("bound")?));
     }
-    Ok(targets)
+    Ok(())
 }
 
 /// Up to so many dims orders 1, 2, 3 and 5 have at most as many terms as the library admits.
@@ -41,10 +42,10 @@ const DIMS: usize = 3;
 fn grid(cells: &Cells) -> Table {
     let mut all = Table::new("settings", "n | estimator | basis | order | errors");
     for &n in &cells.counts {
-        for Summary { setting, ratio, worst, .. } in cells.summaries(|dims| dims <= DIMS, n) {
-            let errors = [ratio.value, worst.value].map(|value| Unit::Ratio.text(value)).join("; ");
-            let (n, order) = (n.to_string(), setting.order.to_string());
-            all.push(vec![n, setting.estimator, setting.basis, order, errors]);
+        for of in cells.summaries(|dims| dims <= DIMS, n) {
+            let errors = [of.ratio(), of.worst().ratio].map(|ratio| Unit::Ratio.text(ratio.value)).join("; ");
+            let (n, order) = (n.to_string(), of.setting.order.to_string());
+            all.push([&n, &of.setting.estimator, &of.setting.basis, &order, &errors]);
         }
     }
     all
@@ -61,19 +62,20 @@ fn integrands(chapter: &mut Chapter, cells: &Cells) {
         let Some(best) = here().min_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value)) else { continue };
         let square = own.ratio.value.powi(2);
         let cost = (square < 1.0).then(|| ((square * own.ns - own.mean_ns) / (1.0 - square)).max(0.0));
-        let small = |value: f64| if value < 0.0095 { Unit::Error } else { Unit::Ratio };
-        rows.push(row![
-            mean.integrand.clone(),
-            mean.dims as u32,
-            mean.n as u32,
-            if advised.estimator == DEFAULT { format!("order {}", advised.order) } else { "MC".to_owned() },
-            Figure::new(own.ratio, small(own.ratio.value)),
-            Figure::exact(own.ns, Unit::Nanoseconds),
-            cost.map(|cost| Figure::exact(cost, Unit::Nanoseconds)),
+        let unit = |ratio: Estimate| if ratio.value < 0.0095 { Unit::Error } else { Unit::Ratio };
+        let ns = |of: f64| Figure::exact(of, Unit::Nanoseconds);
+        rows.push(json!([
+            mean.integrand,
+            mean.dims.to_string(),
+            mean.n.to_string(),
+            if advised.estimator == MEAN { "MC".to_owned() } else { format!("order {}", advised.order) },
+            Figure::new(own.ratio, unit(own.ratio)),
+            ns(own.ns),
+            cost.map(ns),
             best.setting.name(),
-            Figure::brief(best.ratio, small(best.ratio.value)),
-            Figure::exact(best.ns, Unit::Nanoseconds),
-        ]);
+            Figure::brief(best.ratio, unit(best.ratio)),
+            ns(best.ns),
+        ]));
     }
     let columns = "integrand | dims | samples | recommended | its error | its ns | pays from, ns | least error by | \
                    that error | its ns";
@@ -84,36 +86,36 @@ fn integrands(chapter: &mut Chapter, cells: &Cells) {
 fn precision(chapter: &mut Chapter, table: &Table) -> Result<()> {
     chapter.section("f32 against f64");
     let mut rows = Vec::new();
-    for (method, degree) in ["robust", "least squares"].into_iter().flat_map(|of| ["2", "3"].map(|degree| (of, degree)))
-    {
+    for (method, degree) in iproduct!(["robust", "least squares"], ["2", "3"]) {
         let narrow = table.of(&[("method", &format!("{method} f32")), ("degree", degree)]);
         let wide = table.of(&[("method", method), ("degree", degree)]);
-        let place = |row: &Row| -> Result<String> { Ok(format!("{}, n = {}", row.word("integrand")?, row.word("n")?)) };
-        let largest = |column: &str| -> Result<Option<(f64, String)>> {
+        // Numbers that say something, and where they are from.
+        let measured = |column: &str| -> Result<Vec<(f64, String)>> {
+            let place =
+                |row: &Row| Ok::<_, anyhow::Error>(format!("{}, n = {}", row.word("integrand")?, row.word("n")?));
             let each = narrow.rows().map(|row| Ok((row.number::<f64>(column)?, place(&row)?)));
-            let mut each = each.collect::<Result<Vec<_>>>()?;
-            each.retain(|(value, _)| value.is_finite() && *value > 0.0);
-            // Of equal ones the first.
-            Ok(each.into_iter().rev().max_by(|a, b| a.0.total_cmp(&b.0)))
+            each.filter_ok(|(number, _)| number.is_finite() && *number > 0.0).collect()
         };
-        let Some((worst, at_worst)) = largest("rmse_to_f64")? else { continue };
-        let (difference, at_difference) = largest("difference_from_f64")?.unwrap_or_default();
-        let ratios = narrow.numbers("rmse_to_f64")?.into_iter().filter(|ratio| ratio.is_finite() && *ratio > 0.0);
+        // Of equal ones the first.
+        let largest = |of: &[(f64, String)]| of.iter().rev().max_by(|a, b| a.0.total_cmp(&b.0)).cloned();
+        let (errors, differences) = (measured("rmse_to_f64")?, measured("difference_from_f64")?);
+        let Some((worst, at_worst)) = largest(&errors) else { continue };
+        let (difference, at_difference) = largest(&differences).unwrap_or_default();
         let times = narrow.numbers("ns_per_sample")?.into_iter().zip(wide.numbers("ns_per_sample")?);
-        let (ratios, times): (Vec<f64>, Vec<f64>) =
-            (ratios.collect(), times.map(|(narrow, wide)| narrow / wide).collect());
+        let times: Vec<f64> = times.map(|(narrow, wide)| narrow / wide).collect();
         let ratio = |value: f64| Figure::exact(value, Unit::Ratio);
-        rows.push(row![
+        let mean = |of: &[f64]| ratio(Estimate::geometric_mean(of).value);
+        rows.push(json!([
             method,
             degree,
-            ratio(Estimate::geometric_mean(&ratios).value),
+            mean(&errors.iter().map(|(error, _)| *error).collect::<Vec<_>>()),
             ratio(worst),
             at_worst,
             Figure::exact(difference, Unit::Error),
             at_difference,
-            ratio(Estimate::geometric_mean(&times).value),
+            mean(&times),
             ratio(times.iter().copied().fold(0.0, f64::max)),
-        ]);
+        ]));
     }
     let columns =
         "estimator | order | RMSE over f64's | worst | where | difference | where | time over f64's | largest";

@@ -5,15 +5,16 @@
 //! - Whatever key is not named below is a column, and its value what the rows of a figure have there: a word, or a list
 //!   of which any will do.
 
-use super::chapter::{Cell, Chapter};
+use super::chapter::Chapter;
 use super::figure::{Figure, Unit};
 use super::plan::Plan;
 use super::statistics::Estimate;
-use super::targets::{Side, Targets};
+use super::targets::Bound;
 use crate::measure::table::{Filter, Row, Table, Words};
 use anyhow::{Context, Result};
+use itertools::Itertools;
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use xtask::paths;
 
@@ -208,9 +209,9 @@ impl Description {
         }
     }
 
-    pub(crate) fn write(&self, measured: Measured, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
+    pub(crate) fn write(&self, measured: Measured, chapter: &mut Chapter) -> Result<()> {
         for (name, value) in &self.settings {
-            chapter.setting(name, value.clone());
+            chapter.setting(name, value);
         }
         // What was not measured has no columns.
         let measured = |name: &str| measured(name).map(|table| Some(table).filter(|table| !table.headings.is_empty()));
@@ -226,7 +227,8 @@ impl Description {
         }
         for Quote { name, from, of } in &self.quote {
             let Some(table) = measured(from)? else { continue };
-            if let Cell::Figure(figure) = of.cell(&table, &Filter::new())? {
+            let figure = of.cell(&table, &Filter::new())?;
+            if !figure.is_null() {
                 chapter.quote(name, figure);
             }
         }
@@ -234,7 +236,7 @@ impl Description {
             measured(&described.from)?.map(|table| described.write(table, chapter)).transpose()?;
         }
         for target in &self.target {
-            measured(&target.from)?.map(|table| target.write(table, targets)).transpose()?;
+            measured(&target.from)?.map(|table| target.write(table, chapter)).transpose()?;
         }
         Ok(())
     }
@@ -246,10 +248,7 @@ impl Described {
         for each in table.combinations(&self.each, &self.rows)? {
             chapter.section(&filled(&self.section, &each));
             let (headings, rows) = match self.columns.is_empty() {
-                true => (
-                    table.headings.clone(),
-                    table.rows().map(|row| row.cells.iter().cloned().map(Cell::from).collect()).collect(),
-                ),
+                true => (table.headings.clone(), table.rows().map(|row| json!(row.cells)).collect()),
                 false => self.cells(&table.only(&each)?)?,
             };
             if !rows.is_empty() {
@@ -260,50 +259,50 @@ impl Described {
     }
 
     /// Headings and rows. What was not measured, rows and columns of `across`, is left out.
-    fn cells(&self, table: &Table) -> Result<(Vec<String>, Vec<Vec<Cell>>)> {
+    fn cells(&self, table: &Table) -> Result<(Vec<String>, Vec<Value>)> {
         let down: Vec<_> = self.down.iter().map(|down| down.split_once(": ").unwrap_or((down, down))).collect();
         let names: Vec<&str> = down.iter().map(|(name, _)| *name).collect();
         let order =
             self.order.as_ref().map_or_else(|| names.clone(), |order| order.iter().map(String::as_str).collect());
         let kinds = table.only(&self.lines)?.combinations(&order, &joined(&self.rows, &self.lines))?;
-        let is_measured = |cell: &Cell| !matches!(cell, Cell::Missing);
-        let mut columns: Vec<(String, Vec<Cell>)> = Vec::new();
+        let mut columns: Vec<(String, Vec<Value>)> = Vec::new();
         for (name, heading) in &down {
-            let words = kinds.iter().map(|of| Cell::from(of[*name].to_string()));
+            let words = kinds.iter().map(|of| json!(of[*name].to_string()));
             columns.push(((*heading).to_owned(), words.collect()));
         }
         for column in &self.columns {
             for at in table.combinations(&column.across, &self.rows)? {
                 let cells = kinds.iter().map(|of| column.of.cell(table, &joined(of, &at)));
                 let cells = cells.collect::<Result<Vec<_>>>()?;
-                if column.across.is_empty() || cells.iter().any(is_measured) {
+                if column.across.is_empty() || !cells.iter().all(Value::is_null) {
                     columns.push((filled(&column.heading, &at), cells));
                 }
             }
         }
-        let (headings, columns): (Vec<String>, Vec<Vec<Cell>>) = columns.into_iter().unzip();
-        let row = |at: usize| columns.iter().map(|cells| cells[at].clone()).collect::<Vec<_>>();
-        let rows = (0..kinds.len()).map(row).filter(|row| row[down.len()..].iter().any(is_measured));
-        Ok((headings, rows.collect()))
+        let (headings, columns): (Vec<String>, Vec<Vec<Value>>) = columns.into_iter().unzip();
+        let row = |at: usize| columns.iter().map(|cells| &cells[at]).collect::<Vec<_>>();
+        let rows = (0..kinds.len()).map(row).filter(|row| !row[down.len()..].iter().all(|cell| cell.is_null()));
+        Ok((headings, rows.map(|row| json!(row)).collect()))
     }
 }
 
 impl Target {
-    fn write(&self, table: Table, targets: &mut Targets) -> Result<()> {
+    fn write(&self, table: Table, chapter: &mut Chapter) -> Result<()> {
         let table = table.melted(&self.melt)?.only(&self.rows)?;
-        let limits = [(&self.at_most, Side::AtMost), (&self.at_least, Side::AtLeast), (&self.below, Side::Below)];
+        let limits = [&self.at_most, &self.at_least, &self.below];
+        let bounds = [Bound::AtMost, Bound::AtLeast, Bound::Below];
         for each in table.combinations(&self.each, &self.rows)? {
             let words = self.each.iter().map(|column| each[column].to_string());
             let key = self.by.as_ref().map_or_else(|| words.collect::<Vec<_>>().join(", "), |by| filled(by, &each));
-            for (limit, side) in limits {
-                let bound = match limit {
-                    Some(Limit::One(bound)) => Some(bound),
-                    Some(Limit::Of(bounds)) => bounds.get(&key),
+            for (limit, bound) in limits.into_iter().zip(bounds) {
+                let limit = match limit {
+                    Some(Limit::One(limit)) => Some(limit),
+                    Some(Limit::Of(limits)) => limits.get(&key),
                     None => None,
                 };
-                if let (Some(&bound), Some(estimate)) = (bound, self.figure.estimate(&table, &each)?) {
+                if let (Some(&limit), Some(estimate)) = (limit, self.figure.estimate(&table, &each)?) {
                     let (statement, place) = (filled(&self.statement, &each), filled(&self.place, &each));
-                    targets.add(&statement, &place, estimate, self.figure.unit, (side, bound));
+                    chapter.target(&statement, &place, estimate, self.figure.unit, bound(limit));
                 }
             }
         }
@@ -312,19 +311,19 @@ impl Target {
 }
 
 impl Query {
-    fn cell(&self, table: &Table, of: &Filter) -> Result<Cell> {
+    fn cell(&self, table: &Table, of: &Filter) -> Result<Value> {
         if self.show == Show::Word {
             let words = table.only(&joined(of, &self.rows))?.distinct(&self.of)?.concat();
-            return Ok(Some(words).filter(|words| !words.is_empty()).into());
+            return Ok(json!(Some(words).filter(|words| !words.is_empty())));
         }
         let show = if self.brief { Figure::brief } else { Figure::new };
-        let Some(mut estimate) = self.estimate(table, of)? else { return Ok(Cell::Missing) };
+        let Some(mut estimate) = self.estimate(table, of)? else { return Ok(Value::Null) };
         if let Some(factor) = &self.by {
             let value = factor.estimate(table, of)?.map_or(f64::NAN, |of| of.value);
             let odds = if value < 1.0 { value / (1.0 - value) } else { f64::INFINITY };
             estimate = Estimate::exact(estimate.value * if factor.odds { odds } else { value });
         }
-        Ok(show(estimate, self.unit).into())
+        Ok(json!(show(estimate, self.unit)))
     }
 
     /// None of what was not measured.
@@ -393,11 +392,10 @@ fn joined(one: &Filter, other: &Filter) -> Filter {
 
 /// Each combination of one word of every column.
 fn choices(filter: &Filter) -> Vec<Filter> {
-    filter.iter().fold(vec![Filter::new()], |all, (column, words)| {
-        let with =
-            |choice: &Filter, word: &String| joined(choice, &[(column.clone(), Words::One(word.clone()))].into());
-        all.iter().flat_map(|choice| words.list().iter().map(move |word| with(choice, word))).collect()
-    })
+    let cells = |(column, words): (&String, &Words)| {
+        words.list().iter().map(|word| (column.clone(), Words::One(word.clone()))).collect::<Vec<_>>()
+    };
+    filter.iter().map(cells).multi_cartesian_product().map(Filter::from_iter).collect()
 }
 
 /// The text with columns' cells for their names in braces.

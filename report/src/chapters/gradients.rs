@@ -8,7 +8,7 @@ use indicatif::ProgressBar;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use xtask::{library, paths, run};
+use xtask::{paths, run};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -58,13 +58,13 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let text = report.plan.filled(&paths::read("report/chapters/gradients_runs.toml")?);
     let runs: Runs = toml::from_str(&text).context("report/chapters/gradients_runs.toml")?;
     let further: Vec<&Run> = runs.run.iter().filter(|run| report.plan.is_full() || !run.full).collect();
-    let (archive, bar) = (library::build()?, progress::bar((2 * runs.network.len() + further.len()) as u64)?);
-    let mnist = (!report.plan.is_quick())
-        .then(mnist)
-        .and_then(|mnist| mnist.inspect_err(|error| println!("without MNIST, which could not be had: {error:#}")).ok());
+    let bar = progress::bar((2 * runs.network.len() + further.len()) as u64)?;
+    let missing = |error: &anyhow::Error| println!("without MNIST, which could not be had: {error:#}");
+    let mnist = if report.plan.is_quick() { None } else { mnist().inspect_err(missing).ok() };
     let mut programs = BTreeMap::new();
     for source in further.iter().map(|run| run.program.as_str()).chain(["train_mlp.c"]) {
-        programs.insert(source, compile(source, &archive)?);
+        // For this machine: what is measured is time. Without errno the compiler vectorises square roots.
+        programs.insert(source, running::example(source, &["-O3", "-march=native", "-fno-math-errno"])?);
     }
     report.compiled();
     let mut tables = BTreeMap::new();
@@ -76,19 +76,18 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
             run_one(&programs["train_mlp.c"], name, &[&network[..], more].concat(), &bar)
         };
         let (csv, said) = train(&network.epochs, &["--modes", &MODES.join(","), "--seeds", &network.seeds])?;
-        let plot = error_plot(network, &Table::parse(&csv, name, ',')?)?;
+        let plot = error_plot(network, &Table::parse(&csv, name)?)?;
         report.output.write_text(&format!("{}-{name}-time.svg", report.names[0]), &plot)?;
         tables.insert(name.clone(), summary(&said)?);
 
         let scratch = tempfile::tempdir()?;
-        let path = scratch.path().join("variance.csv");
-        train(&network.variance, &["--variance", path.to_str().context("a folder whose name is not Unicode")?])?;
+        train(&network.variance, &["--variance", &scratch.path().join("variance.csv").to_string_lossy()])?;
         let named = |row: &Row| {
             let is = [row.word("method")?, row.word("uniform_fraction")?];
             let method = runs.method.iter().find(|method| method.is == is);
             Ok(method.map_or(String::new(), |method| method.name.clone()))
         };
-        let variance = Table::read(&path, ',')?.with("line", named)?;
+        let variance = Table::read(scratch.path(), "variance")?.with("line", named)?;
         if network.data.is_none() {
             let plot = variance_plot(network, &variance, &runs.method)?;
             report.output.write_text(&format!("{}-{name}-variance.svg", report.names[0]), &plot)?;
@@ -101,9 +100,9 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     }
     bar.finish_and_clear();
     // What was not run has no columns.
-    let (mut chapter, targets) =
+    let mut chapter =
         report.described(&|name| Ok(tables.get(name).cloned().unwrap_or_else(|| Table::new(name, ""))))?;
-    targets.write(&mut chapter);
+    chapter.judge();
     Ok(chapter)
 }
 
@@ -112,20 +111,6 @@ fn mnist() -> Result<PathBuf> {
     let folder = paths::target().join("data/mnist");
     run::check(run::command("sh").arg("report/mnist.sh").arg(&folder))?;
     Ok(folder)
-}
-
-/// Compiles `examples_c/SOURCE` against the library, for this machine: what is measured is time. Without errno the
-/// compiler vectorises square roots.
-fn compile(source: &str, archive: &Path) -> Result<PathBuf> {
-    let path = paths::output().join(Path::new(source).with_extension(""));
-    let (mut compiler, standard) = match source.ends_with(".c") {
-        true => (run::compiler("CC", "cc"), "-std=c99"),
-        false => (run::compiler("CXX", "c++"), "-std=c++17"),
-    };
-    compiler.args([standard, "-O3", "-march=native", "-fno-math-errno", "-Wall", "-Wextra", "-Iinclude"]);
-    compiler.arg(Path::new("examples_c").join(source)).arg(archive);
-    run::check(compiler.args(["-lm", "-o"]).arg(&path))?;
-    Ok(path)
 }
 
 /// Runs to the end: the standard output, CSV, and the standard error, a summary.

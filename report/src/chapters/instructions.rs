@@ -13,9 +13,8 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let mut chapter = Chapter::new(report.names[1]);
     chapter.setting("compiler", counted.compiler.as_str());
     chapter.setting("vector units", counted.vector_units.as_str());
-    let rows = counted.counts.into_iter().map(|count| -> Vec<Cell> {
-        row![count.name, count.unit, Figure::exact(count.instructions, Unit::Instructions)]
-    });
-    chapter.table("counts", "function | per | instructions", 2, rows.collect());
+    let counts = counted.counts.iter();
+    let rows = counts.map(|of| json!([of.name, of.unit, Figure::exact(of.instructions, Unit::Instructions)]));
+    chapter.table("counts", "function | per | instructions", 2, rows.collect::<Vec<_>>());
     Ok(chapter)
 }

@@ -1,5 +1,6 @@
 //! How a chapter's JSON is written: small, and a row of a table to a line, so that a difference is readable.
 
+use itertools::Itertools;
 use serde_json::Value;
 
 /// Significant digits of a number.
@@ -7,41 +8,25 @@ const DIGITS: usize = 6;
 
 /// The text of a chapter's file.
 pub(crate) fn written(value: &Value) -> String {
-    let mut out = String::new();
-    write(value, 0, &mut out);
-    out + "\n"
+    write(value, 0) + "\n"
 }
 
-fn write(value: &Value, depth: usize, out: &mut String) {
+fn write(value: &Value, depth: usize) -> String {
     let is_list =
         value.as_array().is_some_and(|values| values.iter().any(|value| value.is_array() || value.is_object()));
     let separator = if depth < 2 || (is_list && depth < 4) { ",\n" } else { "," };
     match value {
-        Value::Array(values) => {
-            out.push('[');
-            for (index, value) in values.iter().enumerate() {
-                out.push_str(if index > 0 { separator } else { "" });
-                write(value, depth + 1, out);
-            }
-            out.push(']');
-        }
+        Value::Array(values) => format!("[{}]", values.iter().map(|value| write(value, depth + 1)).join(separator)),
         Value::Object(fields) => {
-            out.push('{');
-            for (index, (name, value)) in fields.iter().enumerate() {
-                out.push_str(if index > 0 { separator } else { "" });
-                *out += &format!("{}:", Value::from(name.as_str()));
-                write(value, depth + 1, out);
-            }
-            out.push('}');
+            let field = |(name, value)| format!("{}:{}", Value::from(name), write(value, depth + 1));
+            format!("{{{}}}", fields.iter().map(|(name, value)| (name.as_str(), value)).map(field).join(separator))
         }
-        Value::Number(number) if number.is_f64() => *out += &rounded(number.as_f64().unwrap_or(0.0)),
-        _ => *out += &value.to_string(),
+        Value::Number(number) if number.is_f64() => {
+            let short = format!("{:.*e}", DIGITS - 1, number.as_f64().unwrap_or(0.0));
+            short.parse::<f64>().map_or(Value::Null, Value::from).to_string()
+        }
+        _ => value.to_string(),
     }
-}
-
-fn rounded(value: f64) -> String {
-    let short: f64 = format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value);
-    Value::from(short).to_string()
 }
 
 #[cfg(test)]

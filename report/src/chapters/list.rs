@@ -24,6 +24,9 @@ const CHAPTERS: [(&str, Write); 10] = [
     ("points", program::write),
 ];
 
+/// What needs nothing but a compiler.
+pub(super) const ALONE: [&str; 6] = ["tables", "gradients", "control_variates", "analytic", "samplers", "points"];
+
 /// Those that were asked for: all, if none was.
 pub(crate) fn chapters(only: &[String]) -> Vec<(&'static str, Write)> {
     let is_wanted = |(name, _): &(&str, Write)| only.is_empty() || only.iter().any(|wanted| wanted == name);

@@ -1,40 +1,29 @@
 //! What the figures are measured on.
 
-use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use std::fs;
 use xtask::run;
 
 const UNKNOWN: &str = "unknown";
 
-/// What stays as it is between two runs on one machine.
-#[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Machine {
-    pub(super) processor: String,
-    pub(super) cores: usize,
-    /// How the clock is governed, and its limits.
-    pub(super) clock: String,
-    pub(super) kernel: String,
-    /// Of rustc, of the C and of the C++ compiler.
-    pub(super) compilers: [String; 3],
-}
-
-impl Machine {
-    pub(super) fn read() -> Self {
-        let information = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-        let model = information.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
-        let kernel = fs::read_to_string("/proc/sys/kernel/osrelease").unwrap_or_default();
-        let compilers = [run::command("rustc"), run::compiler("CC", "cc"), run::compiler("CXX", "c++")];
-        Self {
-            processor: model.map_or(std::env::consts::ARCH, |(_, name)| name).trim().to_owned(),
-            cores: std::thread::available_parallelism().map_or(1, usize::from),
-            clock: clock(),
-            kernel: format!("{} {}", std::env::consts::OS, kernel.trim()),
-            compilers: compilers.map(|mut compiler| {
-                let text = run::read(compiler.arg("--version")).unwrap_or_default();
-                text.lines().next().unwrap_or(UNKNOWN).to_owned()
-            }),
-        }
-    }
+/// What stays as it is between two runs on one machine: how the clock is governed, and its limits; the compilers of
+/// Rust, C and C++.
+pub(super) fn read() -> Value {
+    let information = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = information.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
+    let kernel = fs::read_to_string("/proc/sys/kernel/osrelease").unwrap_or_default();
+    let compilers = [run::command("rustc"), run::compiler("CC", "cc"), run::compiler("CXX", "c++")];
+    let compilers = compilers.map(|mut compiler| {
+        let text = run::read(compiler.arg("--version")).unwrap_or_default();
+        text.lines().next().unwrap_or(UNKNOWN).to_owned()
+    });
+    json!({
+        "processor": model.map_or(std::env::consts::ARCH, |(_, name)| name).trim(),
+        "cores": std::thread::available_parallelism().map_or(1, usize::from),
+        "clock": clock(),
+        "kernel": format!("{} {}", std::env::consts::OS, kernel.trim()),
+        "compilers": compilers,
+    })
 }
 
 /// The first core's governor and limits. A guest of a virtual machine sees none of them.

@@ -2,7 +2,7 @@
 
 use crate::measure::image::read_pfm;
 use crate::measure::metric::Reference;
-use crate::measure::renderer::{Job, Renderer, Sampler, Timing, View, images, threads};
+use crate::measure::renderer::{Job, Renderer, Timing, View, images, threads};
 use crate::measure::score;
 use anyhow::{Context, Result};
 use image::Rgb32FImage;
@@ -179,6 +179,5 @@ impl<'a> Measurement<'a> {
 /// Tells jobs of random samples apart.
 fn key(job: &Job) -> Option<String> {
     let Job { view, spp, order, seeds, options, .. } = job;
-    let is_random = matches!(job.sampler, Sampler::Random);
-    is_random.then(|| format!("{view:?} {spp} {order} {seeds} {options:?}"))
+    job.is_random().then(|| format!("{view:?} {spp} {order} {seeds} {options:?}"))
 }

@@ -4,6 +4,7 @@ use super::prelude::*;
 use super::report::Report;
 use super::statistics::moments;
 use crate::measure::running;
+use itertools::iproduct;
 use std::path::PathBuf;
 use xtask::renderers;
 
@@ -11,8 +12,8 @@ use xtask::renderers;
 const QUICK: &str = "--scenes cornell --size 32 --seeds 3 --many 2 --reference 512 --frames 16 --rounds 3";
 const PLAIN: &str = "independent";
 const DEFAULT: &str = "noisefloor";
-/// Of gradients, as integrations/mitsuba/README.md recommends.
-const SCRAMBLED: &str = "noisefloor, scrambled";
+/// Samples per pixel of the reference of the gradients.
+const REFERENCE: &str = "256";
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     // What was measured before, by hand: it takes a quarter of an hour.
@@ -30,87 +31,65 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     }
     let picture = image::open(folder.join("pictures.png")).context("measure.py wrote no picture")?;
     report.output.write_picture("mitsuba.png", &picture.to_rgb8())?;
-    let table = |name: &str| Table::read(&folder.join(format!("{name}.csv")), ';');
-    let (mut chapter, mut targets) = report.described(&table)?;
-    let errors = table("errors")?;
-    over_scenes("raw error over the best's, geometric mean", &errors, "raw", &mut targets, (Side::AtMost, 1.03))?;
-    let statement = "error after OIDN over the best's, geometric mean";
-    over_scenes(statement, &errors, "denoised", &mut targets, (Side::Below, 1.0))?;
-    chapter.section("Gradients");
-    derivatives(&table("gradients")?, &mut chapter, &mut targets)?;
-    targets.write(&mut chapter);
+    let read = |name: &str| Table::read(&folder, name);
+    let mut chapter = report.described(&|name| match name {
+        "over scenes" => over_scenes(&read("errors")?),
+        "gradients" => gradients(&read("gradients")?),
+        _ => read(name),
+    })?;
+    chapter.judge();
     Ok(chapter)
 }
 
 /// The geometric mean over all scenes of the error over that of Mitsuba's best sampler, seed by seed.
-fn over_scenes(statement: &str, table: &Table, measure: &str, targets: &mut Targets, bound: (Side, f64)) -> Result<()> {
-    let samplers = table.distinct("sampler")?;
-    for spp in table.distinct("spp")? {
+fn over_scenes(errors: &Table) -> Result<Table> {
+    let mut all = Table::new("over scenes", "error | spp | ratio");
+    let samplers = errors.distinct("sampler")?;
+    for (error, spp) in iproduct!(["raw", "denoised"], errors.distinct("spp")?) {
         let mut ratios: Vec<Vec<f64>> = Vec::new();
-        for scene in table.distinct("scene")? {
-            let of = |sampler| table.numbers_of(measure, &[("scene", scene), ("spp", spp), ("sampler", sampler)]);
+        for scene in errors.distinct("scene")? {
+            let of = |sampler| errors.of(&[("scene", scene), ("spp", spp), ("sampler", sampler)]).numbers(error);
             let others = samplers.iter().filter(|name| !name.starts_with(DEFAULT));
             let others = others.map(|name| of(name)).collect::<Result<Vec<_>>>()?;
-            let means = others.iter().filter(|numbers| !numbers.is_empty()).map(|numbers| moments(numbers).0);
-            let best = means.fold(f64::INFINITY, f64::min);
+            // Of a sampler that was not measured it is no number, which `min` passes over.
+            let best = others.iter().map(|numbers| moments(numbers).0).fold(f64::INFINITY, f64::min);
             ratios.push(of(DEFAULT)?.into_iter().map(|own| own / best).collect());
         }
-        let seeds = ratios.iter().map(Vec::len).min().unwrap_or(0);
-        let logarithms = |seed: usize| ratios.iter().map(move |scene| scene[seed].max(1e-9).ln());
-        let means = (0..seeds).map(|seed| moments(&logarithms(seed).collect::<Vec<_>>()).0.exp());
-        let estimate = Estimate::mean(&means.collect::<Vec<_>>());
-        targets.add(statement, &format!("{spp} spp"), estimate, Unit::Ratio, bound);
-    }
-    Ok(())
-}
-
-fn derivatives(table: &Table, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
-    let column = |parameter, spp, sampler| {
-        table.numbers_of("gradient", &[("parameter", parameter), ("spp", spp), ("sampler", sampler)])
-    };
-    let mut rows = Vec::new();
-    for spp in table.distinct("spp")?.into_iter().filter(|&spp| spp != "256") {
-        for parameter in table.distinct("parameter")? {
-            let reference = column(parameter, "256", "reference")?;
-            let (exact, spread) = moments(&reference);
-            let reference_error = spread / (reference.len() as f64).sqrt();
-            let (_, plain) = moments(&column(parameter, spp, PLAIN)?);
-            for sampler in table.distinct("sampler")?.into_iter().filter(|&name| name != "reference") {
-                let found = column(parameter, spp, sampler)?;
-                if found.is_empty() {
-                    continue;
-                }
-                let (mean, spread) = moments(&found);
-                let error = (spread * spread / found.len() as f64 + reference_error * reference_error).sqrt();
-                let percent = 100.0 / exact.abs();
-                let (bias, half) = ((mean - exact) * percent, 1.96 * error * percent);
-                let seeds = found.len();
-                let bias = Estimate { value: bias, low: bias - half, high: bias + half, seeds };
-                // Of the ratio of two deviations of normal numbers.
-                let ratio = spread / plain;
-                let half = 1.96 * ratio / (seeds as f64 - 1.0).sqrt();
-                let ratio = Estimate { value: ratio, low: ratio - half, high: ratio + half, seeds };
-                rows.push(row![
-                    parameter,
-                    spp,
-                    sampler,
-                    Figure::new(ratio, Unit::Ratio),
-                    Figure::new(bias, Unit::Percent)
-                ]);
-                if sampler == SCRAMBLED && spp == "1" {
-                    let size = Estimate {
-                        value: bias.value.abs(),
-                        low: if bias.low * bias.high < 0.0 { 0.0 } else { bias.low.abs().min(bias.high.abs()) },
-                        high: bias.low.abs().max(bias.high.abs()),
-                        seeds,
-                    };
-                    targets.at_most("gradient: spread over independent's", parameter, ratio, Unit::Ratio, 0.75);
-                    targets.add("gradient: bias, per cent", parameter, size, Unit::Percent, (Side::Below, 0.1));
-                }
-            }
+        for seed in 0..ratios.iter().map(Vec::len).min().unwrap_or(0) {
+            let scenes: Vec<f64> = ratios.iter().map(|scene| scene[seed].max(1e-9)).collect();
+            all.push([error, spp, &Estimate::geometric_mean(&scenes).value.to_string()]);
         }
     }
-    let columns = "parameter | spp | sampler | spread over independent's | bias, %";
-    chapter.table("gradients", columns, 3, rows);
-    Ok(())
+    Ok(all)
+}
+
+/// Of each derivative the spread over that of independent samples, and the bias in per cent, with its size.
+fn gradients(measured: &Table) -> Result<Table> {
+    let ends = |name: &str| ["", "_low", "_high"].map(|end| format!("{name}{end}")).join(" | ");
+    let headings = ["spread", "bias", "size"].map(ends).join(" | ");
+    let mut all = Table::new("gradients", &format!("parameter | spp | sampler | {headings}"));
+    let of = |parameter, spp, sampler| {
+        measured.of(&[("parameter", parameter), ("spp", spp), ("sampler", sampler)]).numbers("gradient")
+    };
+    let [counts, parameters, samplers] = ["spp", "parameter", "sampler"].map(|column| measured.distinct(column));
+    for (spp, parameter, sampler) in iproduct!(counts?, parameters?, samplers?) {
+        let (found, reference) = (of(parameter, spp, sampler)?, of(parameter, REFERENCE, "reference")?);
+        if spp == REFERENCE || sampler == "reference" || found.is_empty() {
+            continue;
+        }
+        let ((exact, reference_spread), (mean, spread)) = (moments(&reference), moments(&found));
+        let reference_error = reference_spread / (reference.len() as f64).sqrt();
+        let error = (spread * spread / found.len() as f64 + reference_error * reference_error).sqrt();
+        let percent = 100.0 / exact.abs();
+        let bias = Estimate::about((mean - exact) * percent, 1.96 * error * percent, found.len());
+        // Of the ratio of two deviations of normal numbers.
+        let ratio = spread / moments(&of(parameter, spp, PLAIN)?).1;
+        let ratio = Estimate::about(ratio, 1.96 * ratio / (found.len() as f64 - 1.0).sqrt(), found.len());
+        let [near, far] = [f64::min, f64::max].map(|of| of(bias.low.abs(), bias.high.abs()));
+        let least = if bias.low * bias.high < 0.0 { 0.0 } else { near };
+        let size = Estimate { value: bias.value.abs(), low: least, high: far, ..bias };
+        let ends = [ratio, bias, size].map(|of| [of.value, of.low, of.high].map(|end| end.to_string()));
+        all.push([parameter, spp, sampler].into_iter().chain(ends.iter().flatten().map(String::as_str)));
+    }
+    Ok(all)
 }

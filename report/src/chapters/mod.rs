@@ -26,4 +26,4 @@ pub(crate) mod statistics;
 pub(crate) mod targets;
 pub(crate) mod template;
 
-pub(crate) use run::{Options, check_quick, run, write_chapter};
+pub(crate) use run::{Options, check, run, write_chapter};

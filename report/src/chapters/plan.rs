@@ -41,11 +41,7 @@ impl Plan {
 
     /// As the index calls it.
     pub(crate) fn name(&self) -> &'static str {
-        match self.extent {
-            Extent::Quick => "quick",
-            Extent::Default => "default",
-            Extent::Full => "full",
-        }
+        ["quick", "default", "full"][self.extent as usize]
     }
 
     pub(crate) fn is_quick(&self) -> bool {

@@ -4,17 +4,16 @@ use super::plan::Plan;
 use super::prelude::*;
 use super::report::Report;
 use crate::measure::running;
-use serde_json::Value;
-use std::path::PathBuf;
-use std::process::Stdio;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 use tempfile::TempDir;
 use xtask::{library, run};
 
 /// A chapter that is its description.
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     let tables = measure(report)?;
-    let (mut chapter, targets) = report.described(&|name| tables.read(name))?;
-    targets.write(&mut chapter);
+    let mut chapter = report.described(&|name| tables.read(name))?;
+    chapter.judge();
     Ok(chapter)
 }
 
@@ -37,25 +36,34 @@ pub(super) fn build(names: &[String], plan: &Plan) -> Result<Vec<PathBuf>> {
     names.iter().map(find).collect()
 }
 
-/// The folder that programs have written their tables to.
+/// The folder that programs write their tables to.
 pub(super) struct Tables(TempDir);
 
 impl Tables {
+    pub(super) fn new() -> Result<Self> {
+        Ok(Self(tempfile::tempdir().context("cannot create a temporary folder")?))
+    }
+
+    pub(super) fn folder(&self) -> &Path {
+        self.0.path()
+    }
+
+    /// As large as the report is to be. What a program prints is for people; what is needed is in the tables.
+    pub(super) fn run(&self, mut program: Command, plan: &Plan) -> Result<()> {
+        program.arg("--output").arg(self.folder()).args(plan.option());
+        running::run(program, |_| Ok(())).map(drop)
+    }
+
     pub(super) fn read(&self, name: &str) -> Result<Table> {
-        Table::of_file(&self.0.path().join(format!("{name}.csv")))
+        Table::read(self.folder(), name)
     }
 }
 
-/// Compiles and runs the chapter's programs, as large as the report is to be. Their output is for people; what is needed
-/// is in the tables.
+/// Compiles and runs the chapter's programs.
 pub(super) fn measure(report: &Report) -> Result<Tables> {
     let programs = build(&report.description.programs, report.plan)?;
     report.compiled();
-    let tables = Tables(tempfile::tempdir().context("cannot create a temporary folder")?);
-    for program in &programs {
-        let mut program = run::command(program);
-        program.arg("--output").arg(tables.0.path()).args(report.plan.option());
-        running::run(program, |_| Ok(()))?;
-    }
+    let tables = Tables::new()?;
+    programs.iter().try_for_each(|program| tables.run(run::command(program), report.plan))?;
     Ok(tables)
 }

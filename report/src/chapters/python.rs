@@ -1,8 +1,8 @@
 //! The chapter of the Python package: what python/bench measures.
 
 use super::prelude::*;
+use super::program::Tables;
 use super::report::Report;
-use crate::measure::running;
 use std::path::{Path, PathBuf};
 use xtask::tools::{self, Package};
 use xtask::{paths, python, run};
@@ -26,8 +26,8 @@ const WORDS: [Package; 10] = [
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     let debian = python::environment()?;
-    let folder = tempfile::tempdir().context("cannot create a temporary folder")?;
-    let package = folder.path().join("package");
+    let tables = Tables::new()?;
+    let package = tables.folder().join("package");
     let install = ["-m", "pip", "install", "--quiet", "--no-deps", "--target"];
     run::read(run::command(&debian).args(install).arg(&package).arg(python::wheel()?))?;
     let peers = std::env::var_os(PEERS).map_or_else(|| debian.clone(), PathBuf::from);
@@ -39,15 +39,14 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let programs = [("overhead", &peers), ("memory", &peers), ("integration", &peers), ("training", &debian)];
     for (program, python) in programs {
         let mut command = run::command(python);
-        command.args(["-W", "ignore"]).arg(format!("python/bench/{program}.py")).arg("--output").arg(folder.path());
+        command.args(["-W", "ignore"]).arg(format!("python/bench/{program}.py"));
         if program == "training" {
             command.arg("--data").arg(&data);
         }
-        command.args(report.plan.option()).env("PYTHONPATH", &package).env("PYTHONDONTWRITEBYTECODE", "1");
-        running::run(command, |_| Ok(()))?;
+        command.env("PYTHONPATH", &package).env("PYTHONDONTWRITEBYTECODE", "1");
+        tables.run(command, report.plan)?;
     }
-    let table = |name: &str| Table::read(&folder.path().join(format!("{name}.csv")), ';');
-    Ok(report.described(&table)?.0)
+    report.described(&|name| tables.read(name))
 }
 
 /// What is trained on. What cannot be had is left out, and so is its part of the chapter.

@@ -23,9 +23,9 @@ impl Report<'_> {
     }
 
     /// The chapter as it is described.
-    pub(crate) fn described(&self, measured: Measured) -> Result<(Chapter, Targets)> {
-        let (mut chapter, mut targets) = (Chapter::new(self.names[1]), Targets::default());
-        self.description.write(measured, &mut chapter, &mut targets)?;
-        Ok((chapter, targets))
+    pub(crate) fn described(&self, measured: Measured) -> Result<Chapter> {
+        let mut chapter = Chapter::new(self.names[1]);
+        self.description.write(measured, &mut chapter)?;
+        Ok(chapter)
     }
 }

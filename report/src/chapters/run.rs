@@ -2,18 +2,16 @@
 
 use super::clock::Clock;
 use super::described::Description;
-use super::index::{self, Facts};
 use super::list::{self, Write};
-use super::machine::{self, Machine};
 use super::plan::{Extent, Plan};
 use super::report::Report;
-use super::{json, program, template};
+use super::template::Exists;
+use super::{index, json, machine, program, template};
 use crate::measure::output::Output;
 use crate::measure::progress;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use serde_json::{Value, json};
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use xtask::paths;
@@ -59,10 +57,9 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     if options.render {
         return render(&folder);
     }
-    let (plan, machine) = (options.plan()?, Machine::read());
+    let (plan, machine) = (options.plan()?, machine::read());
     let describe = |(name, write)| Ok((name, write, Description::read(name, &plan)?));
-    let wanted: Vec<(&str, Write, Description)> =
-        list::chapters(&options.only).into_iter().map(describe).collect::<Result<_>>()?;
+    let wanted: Vec<Wanted> = list::chapters(&options.only).into_iter().map(describe).collect::<Result<_>>()?;
     let programs: Vec<String> = wanted.iter().flat_map(|(.., of)| &of.programs).cloned().collect();
     if wanted.len() > 1 && !programs.is_empty() {
         println!("building the programs that measure: {}", programs.join(", "));
@@ -71,9 +68,9 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     }
     let bar = progress::bar(wanted.iter().map(|(.., of)| of.seconds).sum())?;
     let (mut written, mut failed) = (Vec::new(), Vec::new());
-    for (number, (name, write, description)) in (1..).zip(&wanted) {
+    for (number, one @ (name, _, description)) in (1..).zip(&wanted) {
         bar.set_message(format!("chapter {number} of {}: {name}", wanted.len()));
-        match write_one(name, *write, description, &plan, &folder, &machine) {
+        match write_one(one, &plan, &folder, &machine) {
             Ok(()) => written.push(*name),
             // An error that says what is missing stays one.
             Err(error) if wanted.len() == 1 => return Err(error),
@@ -91,67 +88,60 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// One chapter and the index, both or neither.
-fn write_one(
-    name: &str,
-    write: Write,
-    description: &Description,
-    plan: &Plan,
-    folder: &Path,
-    machine: &Machine,
-) -> Result<()> {
+/// A chapter that was asked for.
+type Wanted = (&'static str, Write, Description);
+
+/// One chapter and the index, both or neither. Beside what was measured its JSON says how it came about: seconds are
+/// without compiling; what the system does not say is null.
+fn write_one((name, write, description): &Wanted, plan: &Plan, folder: &Path, machine: &Value) -> Result<()> {
     let (output, date) = (Output::new(folder)?, machine::date());
-    let names = description.names(name, plan);
+    let names @ [name, _, about] = description.names(name, plan);
     let report = Report { names, description, plan, output: &output, clock: Clock::start() };
     let mut chapter = write(&report)?.json();
-    let [name, _, about] = names.map(str::to_owned);
-    chapter["run"] = json!(Facts {
-        name: name.clone(),
-        description: about,
-        sizes: plan.name().to_owned(),
-        seconds: Some(report.clock.seconds()),
-        processor_seconds: report.clock.processor_seconds(),
-        other_work: report.clock.other_work(),
-        date,
-        machine: machine.clone(),
+    chapter["run"] = json!({
+        "name": name,
+        "description": about,
+        "sizes": plan.name(),
+        "seconds": report.clock.seconds(),
+        "processor_seconds": report.clock.processor_seconds(),
+        "other_work": report.clock.other_work(),
+        "date": date,
+        "machine": machine,
     });
-    write_chapter(&output, &name, &chapter)?;
-    output.write_text("README.md", &index::write(folder, Some((&name, &chapter)))?)?;
+    let pictures = output.names()?;
+    write_chapter(&output, name, &chapter, &|file| pictures.iter().any(|picture| picture == file))?;
+    output.write_text("README.md", &index::write(folder, Some((name, &chapter)))?)?;
     output.commit()
 }
 
-/// NAME.json and NAME.md, beside the plots that were written before.
-pub(crate) fn write_chapter(output: &Output, name: &str, chapter: &Value) -> Result<()> {
-    let plots = output.names()?;
-    let text = template::chapter(name, chapter, &|file| plots.iter().any(|plot| plot == file))?;
-    output.write_text(&format!("{name}.md"), &text)?;
+/// NAME.json and NAME.md.
+pub(crate) fn write_chapter(output: &Output, name: &str, chapter: &Value, exists: Exists) -> Result<()> {
+    output.write_text(&format!("{name}.md"), &template::chapter(name, chapter, exists)?)?;
     output.write_text(&format!("{name}.json"), &json::written(chapter))
 }
 
 /// The texts of all chapters that are there, and the index.
 fn render(folder: &Path) -> Result<()> {
     let output = Output::new(folder)?;
-    for entry in fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))? {
-        let path = entry?.path();
+    for path in paths::list(folder)? {
         let Some(name) = path.file_name().and_then(|name| name.to_str()?.strip_suffix(".json")) else { continue };
-        let chapter: Value = serde_json::from_str(&fs::read_to_string(&path)?).with_context(|| name.to_owned())?;
-        let text = template::chapter(name, &chapter, &|file| folder.join(file).exists())?;
-        output.write_text(&format!("{name}.md"), &text)?;
-        output.write_text(&format!("{name}.json"), &json::written(&chapter))?;
+        let chapter: Value = serde_json::from_str(&paths::read(&path)?).with_context(|| name.to_owned())?;
+        write_chapter(&output, name, &chapter, &|file| folder.join(file).exists())?;
     }
     output.write_text("README.md", &index::write(folder, None)?)?;
     output.commit()
 }
 
-/// Quick chapters: whether they can be measured, and their templates show every table.
-pub(crate) fn check_quick(chapters: &[&str]) -> Result<()> {
+/// Steps of the tests, quick chapters: whether they can be measured, and their templates show every table.
+pub(crate) fn check(step: &str) -> Result<()> {
+    let chapters = if step == "chapters" { &list::ALONE[..] } else { &[step] };
     let scratch = tempfile::tempdir().context("cannot create a temporary folder")?;
     let folder = scratch.path().join("report");
     let only = chapters.iter().map(|&chapter| chapter.to_owned()).collect();
     run(&Options { quick: true, only, out: Some(folder.clone()), ..Options::default() })?;
-    let index = fs::read_to_string(folder.join("README.md")).context("there is no index")?;
+    let index = paths::read(folder.join("README.md"))?;
     for chapter in chapters {
-        let text = fs::read_to_string(folder.join(format!("{chapter}.md"))).context("a chapter has no text")?;
+        let text = paths::read(folder.join(format!("{chapter}.md")))?;
         if !text.contains("\n| ") || !index.contains(&format!("]({chapter}.md)")) {
             bail!("{chapter}.md has no table, or the index does not link it");
         }

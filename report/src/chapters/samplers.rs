@@ -11,7 +11,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let decisions = tables.read("decisions")?.with("shown", shown)?;
     let decisions = decisions.with("better", |row| choice(row, "best", ["best_raw", "best_filtered"]))?;
     let better = decisions.filtered(|row| row.number::<f64>("excess_low").is_ok_and(|low| low > 1.0));
-    let (mut chapter, targets) = report.described(&|name| match name {
+    let mut chapter = report.described(&|name| match name {
         "decisions" => Ok(decisions.clone()),
         "better" => Ok(better.clone()),
         _ => tables.read(name),
@@ -23,7 +23,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     chapter.quote("decisions where another was better", Figure::count(better.rows().count()));
     let largest = decisions.numbers("excess")?.into_iter().fold(1.0, f64::max);
     chapter.quote("largest excess of a recommendation", Figure::exact(largest, Unit::Ratio));
-    targets.write(&mut chapter);
+    chapter.judge();
     Ok(chapter)
 }
 

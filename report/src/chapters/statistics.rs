@@ -25,6 +25,11 @@ impl Estimate {
         Self { value, low: value, high: value, seeds: 1 }
     }
 
+    /// With as much on either side.
+    pub(crate) fn about(value: f64, half: f64, seeds: usize) -> Self {
+        Self { value, low: value - half, high: value + half, seeds }
+    }
+
     /// A ratio by an interval of its logarithm, whose upper end is `above` it; infinite if nothing is known.
     pub(crate) fn of_logarithm(value: f64, above: f64, seeds: usize) -> Self {
         let high = value + above;
@@ -38,7 +43,7 @@ impl Estimate {
         let Self { value, low, high, seeds } = Self::mean(&logarithms);
         let value = value.exp();
         if values.len() < 3 {
-            return Self { value, low: value, high: value, seeds };
+            return Self { seeds, ..Self::exact(value) };
         }
         Self { value, low: low.exp(), high: high.exp(), seeds }
     }
@@ -48,7 +53,7 @@ impl Estimate {
     pub(crate) fn median(values: &[f64]) -> Self {
         let value = median(values.iter().copied());
         if values.len() < FEWEST {
-            return Self { value, low: value, high: value, seeds: values.len() };
+            return Self { seeds: values.len(), ..Self::exact(value) };
         }
         let mut random = Random::new(0x6e6f_6973_6566_6c6f);
         let mut medians: Vec<f64> =
@@ -68,7 +73,7 @@ impl Estimate {
     pub(crate) fn mean(values: &[f64]) -> Self {
         let (count, (value, deviation)) = (values.len() as f64, moments(values));
         let half = if values.len() < 2 { 0.0 } else { student(0.025, count - 1.0) * deviation / count.sqrt() };
-        Self { value, low: value - half, high: value + half, seeds: values.len() }
+        Self::about(value, half, values.len())
     }
 
     /// Of a / b, pair by pair: both of a pair had the same seed.
@@ -141,15 +146,8 @@ mod tests {
 
     #[test]
     fn students_interval_of_a_mean() {
-        for (freedom, expected) in [
-            (1.0, 12.7062),
-            (5.0, 2.5706),
-            (7.0, 2.3646),
-            (15.0, 2.1314),
-            (16.0, 2.1199),
-            (23.0, 2.0687),
-            (120.0, 1.9799),
-        ] {
+        let quantiles = [12.7062, 2.5706, 2.3646, 2.1314, 2.1199, 2.0687, 1.9799];
+        for (freedom, expected) in [1.0, 5.0, 7.0, 15.0, 16.0, 23.0, 120.0].into_iter().zip(quantiles) {
             assert!((student(0.025, freedom) - expected).abs() < 5e-4, "{freedom}: {}", student(0.025, freedom));
         }
         let mean = Estimate::mean(&[1.0, 2.0, 3.0]);

@@ -10,21 +10,19 @@
 use crate::measure::markdown;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
-use std::fs;
 use xtask::paths;
 
-/// The text of a chapter; `exists` says which pictures there are.
-pub(crate) fn chapter(name: &str, json: &Value, exists: &dyn Fn(&str) -> bool) -> Result<String> {
+/// Which pictures there are.
+pub(crate) type Exists<'a> = &'a dyn Fn(&str) -> bool;
+
+/// The text of a chapter.
+pub(crate) fn chapter(name: &str, json: &Value, exists: Exists) -> Result<String> {
     // A long run is told in the same words.
+    let read = |name: &str| paths::read(format!("report/templates/{name}.md"));
     let template = format!("\n\n{}\n", read(name.trim_end_matches("_full"))?);
     let template = template.replace("\n\n{{targets}}\n", &format!("\n\n{}", read("targets")?));
     let text = fill(&template, json, exists);
     text.with_context(|| format!("report/templates/{name}.md"))
-}
-
-fn read(name: &str) -> Result<String> {
-    let path = paths::root().join(format!("report/templates/{name}.md"));
-    fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
 }
 
 /// Blocks that stand below one heading.
@@ -35,7 +33,7 @@ struct Section {
     found: usize,
 }
 
-pub(crate) fn fill(template: &str, json: &Value, exists: &dyn Fn(&str) -> bool) -> Result<String> {
+fn fill(template: &str, json: &Value, exists: Exists) -> Result<String> {
     let mut tables: Vec<&Value> = list(&json["tables"]).iter().collect();
     let (mut heading, mut sections) = (String::new(), vec![Section::default()]);
     for block in template.trim().split("\n\n").map(str::trim) {
@@ -151,6 +149,7 @@ pub(crate) fn list(json: &Value) -> &[Value] {
 mod tests {
     use super::*;
     use serde_json::json;
+    use std::fs;
 
     #[test]
     fn holes_are_filled_and_what_was_not_measured_is_left_out() {

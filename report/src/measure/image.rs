@@ -12,29 +12,16 @@ pub(crate) fn read_pfm(path: &Path) -> Result<Rgb32FImage> {
 }
 
 fn parse_pfm(bytes: &[u8]) -> Result<Rgb32FImage> {
-    let mut rest = bytes;
-    let mut line = || -> Result<String> {
-        let end = rest.iter().position(|&byte| byte == b'\n').context("no header")?;
-        let (text, tail) = rest.split_at(end);
-        rest = &tail[1..];
-        Ok(String::from_utf8_lossy(text).into_owned())
-    };
-    if line()? != "PF" {
-        bail!("not a colour PFM file");
-    }
-    let size = line()?;
-    let (width, height) = size.split_once(' ').context("no size")?;
+    let parts: Vec<&[u8]> = bytes.splitn(4, |&byte| byte == b'\n').collect();
+    let [b"PF", size, scale, data] = parts[..] else { bail!("not a colour PFM file") };
+    let (width, height) = str::from_utf8(size)?.split_once(' ').context("no size")?;
     let (width, height): (u32, u32) = (width.parse()?, height.parse()?);
-    let little = line()?.parse::<f32>()? < 0.0;
-    if rest.len() as u64 != u64::from(width) * u64::from(height) * 12 {
-        bail!("{} bytes of data for {width}x{height} pixels", rest.len());
+    if data.len() as u64 != u64::from(width) * u64::from(height) * 12 {
+        bail!("{} bytes of data for {width}x{height} pixels", data.len());
     }
-    let values: Vec<f32> = rest
-        .as_chunks::<4>()
-        .0
-        .iter()
-        .map(|&bytes| if little { f32::from_le_bytes(bytes) } else { f32::from_be_bytes(bytes) })
-        .collect();
+    // The sign of the scale tells the order of the bytes.
+    let read = if str::from_utf8(scale)?.parse::<f32>()? < 0.0 { f32::from_le_bytes } else { f32::from_be_bytes };
+    let values: Vec<f32> = data.as_chunks().0.iter().map(|&bytes| read(bytes)).collect();
     if let Some(value) = values.iter().find(|value| !value.is_finite()) {
         bail!("it contains {value}");
     }

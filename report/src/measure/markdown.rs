@@ -1,4 +1,6 @@
-//! Tables as Markdown, aligned as plain text too, and as CSV.
+//! Tables as Markdown, aligned as plain text too.
+
+use itertools::Itertools;
 
 /// The first `words` columns are words and aligned left; columns of numbers are aligned right. A row that is too short
 /// ends early.
@@ -12,14 +14,13 @@ pub(crate) fn lines(headings: &[String], words: usize, rows: &[Vec<String>]) -> 
         let padded = cells.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {
             if column < words { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
         });
-        format!("| {} |\n", padded.collect::<Vec<_>>().join(" | "))
+        format!("| {} |\n", padded.format(" | "))
     };
     let mut text = line(headings);
-    let rule = widths
-        .iter()
-        .enumerate()
-        .map(|(column, &width)| if column < words { "-".repeat(width) } else { "-".repeat(width.max(2) - 1) + ":" });
-    text += &format!("| {} |\n", rule.collect::<Vec<_>>().join(" | "));
+    let rule = |(column, &width): (usize, &usize)| {
+        if column < words { "-".repeat(width) } else { "-".repeat(width.max(2) - 1) + ":" }
+    };
+    text += &format!("| {} |\n", widths.iter().enumerate().map(rule).join(" | "));
     text.extend(rows.iter().map(|cells| line(cells)));
     text
 }

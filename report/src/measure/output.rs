@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result};
 use image::RgbImage;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -30,9 +31,13 @@ impl Output {
 
     /// With six bits of each channel: the eye sees no more, and noise takes little more than half of the space.
     pub(crate) fn write_picture(&self, name: &str, picture: &RgbImage) -> Result<()> {
-        let mut picture = picture.clone();
+        let (mut picture, mut bytes) = (picture.clone(), Vec::new());
         picture.iter_mut().for_each(|value| *value = value.saturating_add(2) & !3);
-        picture.save(self.pending.path().join(name)).with_context(|| format!("cannot write {name}"))
+        // Of noise differences are larger than what they are made of: without a filter it is 461 kB, with that which
+        // seems best for each line 560, and by default, which is fast, 768.
+        let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::NoFilter);
+        picture.write_with_encoder(encoder).with_context(|| format!("cannot encode {name}"))?;
+        fs::write(self.pending.path().join(name), bytes).with_context(|| format!("cannot write {name}"))
     }
 
     /// The names of what was written, in order.

@@ -4,7 +4,7 @@ use super::running;
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
-use xtask::{library, paths, run};
+use xtask::run;
 
 /// The compiled program.
 pub(crate) struct Renderer {
@@ -60,21 +60,24 @@ impl<'a> Job<'a> {
     /// Order 2, random samples, one seed.
     pub(crate) fn new(view: View<'a>, spp: u32, estimators: &[&'a str]) -> Self {
         let (estimators, options) = (estimators.to_vec(), Vec::new());
-        Self { view, spp, order: 2, sampler: Sampler::Random, estimators, seed: 1, seeds: 1, options }
+        Self { view, spp, order: 2, sampler: sampler(&["random"]), estimators, seed: 1, seeds: 1, options }
+    }
+
+    pub(crate) fn is_random(&self) -> bool {
+        self.sampler == sampler(&["random"])
     }
 }
 
-/// Where the sample points come from.
-#[derive(Clone)]
-pub(crate) enum Sampler {
-    /// The library's own.
-    Default,
-    Random,
-    Sobol,
-    /// A built-in tile's name, or a file.
-    Tile(String),
-    /// A file of points that another program made.
-    Table(PathBuf),
+/// Where the sample points come from: words of the command line.
+pub(crate) type Sampler = Vec<String>;
+
+fn sampler(words: &[&str]) -> Sampler {
+    [&["--sampler"], words].concat().into_iter().map(str::to_owned).collect()
+}
+
+/// A file of points that another program made.
+pub(crate) fn table(file: &Path) -> Sampler {
+    sampler(&["table", "--table", &file.to_string_lossy()])
 }
 
 /// As many threads as there are cores.
@@ -92,17 +95,7 @@ pub(crate) fn images(prefix: &Path, estimator: &str, job: &Job) -> impl Iterator
 }
 
 impl Renderer {
-    /// Builds the library and the program that links it.
-    pub(crate) fn build() -> Result<Self> {
-        let archive = library::build()?;
-        let program = paths::output().join("pathtracer");
-        let mut compiler = run::compiler("CXX", "c++");
-        compiler.args(["-O2", "-std=c++17", "-Wall", "-Wextra", "-Iinclude", "examples_c/pathtracer.cpp"]);
-        run::compile(compiler.arg(&archive).args(["-pthread", "-o"]).arg(&program))?;
-        Self::new(program)
-    }
-
-    /// Runs a program that is there already.
+    /// Takes a compiled program.
     pub(crate) fn new(program: PathBuf) -> Result<Self> {
         let help = run::read(run::command(&program).arg("--help"))?;
         let tiles = help.lines().find_map(|line| line.strip_prefix("tiles:")).unwrap_or_default();
@@ -112,15 +105,12 @@ impl Renderer {
     /// A sampler as tables call it; None if there is no such tile. `tile 2D`: that of so many dimensions which has as
     /// many samples as are drawn, or the next fewer.
     pub(crate) fn sampler(&self, name: &str, spp: u32) -> Option<Sampler> {
-        let tile = |name: String| self.tiles.contains(&name).then_some(Sampler::Tile(name));
-        match name.strip_prefix("tile ") {
-            Some(dims) => (0..=spp.ilog2()).rev().find_map(|power| tile(format!("128_{}SPP_{dims}", 1 << power))),
-            None => match name {
-                "default" => Some(Sampler::Default),
-                "random" => Some(Sampler::Random),
-                "Owen-Sobol" => Some(Sampler::Sobol),
-                _ => tile(name.to_owned()),
-            },
+        let tile = |name: &str| self.tiles.iter().any(|tile| tile == name).then(|| sampler(&["tile", "--tile", name]));
+        match (name, name.strip_prefix("tile ")) {
+            (_, Some(dims)) => (0..=spp.ilog2()).rev().find_map(|power| tile(&format!("128_{}SPP_{dims}", 1 << power))),
+            ("default" | "random", _) => Some(sampler(&[name])),
+            ("Owen-Sobol", _) => Some(sampler(&["sobol"])),
+            _ => tile(name),
         }
     }
 
@@ -132,17 +122,10 @@ impl Renderer {
         command.args(["--scene", scene, "--width", &size, "--height", &size]);
         command.args(["--spp", &job.spp.to_string(), "--order", &job.order.to_string()]);
         command.args(["--seed", &job.seed.to_string(), "--frame", &frame.to_string()]);
-        match &job.sampler {
-            Sampler::Default => command.args(["--sampler", "default"]),
-            Sampler::Random => command.args(["--sampler", "random"]),
-            Sampler::Sobol => command.args(["--sampler", "sobol"]),
-            Sampler::Tile(tile) => command.args(["--sampler", "tile", "--tile", tile]),
-            Sampler::Table(file) => command.args(["--sampler", "table", "--table"]).arg(file),
-        };
+        command.args(&job.sampler).args(&job.options);
         if job.seeds > 1 {
             command.args(["--seeds", &job.seeds.to_string()]);
         }
-        command.args(&job.options);
         command.args(["--threads", &threads.to_string(), "--output"]).arg(prefix);
         if job.estimators.is_empty() {
             command.arg("--reference");

@@ -1,9 +1,24 @@
-//! A program that runs: its lines are read as they come.
+//! Programs of examples_c, compiled; and a program that runs: its lines are read as they come.
 
 use anyhow::{Context, Result, bail};
 use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread;
+use xtask::{library, paths};
+
+/// Compiles `examples_c/SOURCE` against the library.
+pub(crate) fn example(source: &str, options: &[&str]) -> Result<PathBuf> {
+    let program = paths::output().join(Path::new(source).with_extension(""));
+    let (mut compiler, standard) = match source.ends_with(".c") {
+        true => (xtask::run::compiler("CC", "cc"), "-std=c99"),
+        false => (xtask::run::compiler("CXX", "c++"), "-std=c++17"),
+    };
+    compiler.args([standard, "-Wall", "-Wextra", "-Iinclude"]).args(options);
+    compiler.arg(Path::new("examples_c").join(source)).arg(library::build()?);
+    xtask::run::compile(compiler.args(["-pthread", "-lm", "-o"]).arg(&program))?;
+    Ok(program)
+}
 
 /// Runs a program to its end, and returns what it wrote to the standard error. `take` sees each line of the standard
 /// output as it comes; where that fails, the program is ended.

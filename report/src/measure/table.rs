@@ -2,11 +2,13 @@
 
 use crate::chapters::statistics::Estimate;
 use anyhow::{Context, Result, bail};
+use itertools::Itertools;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
+use xtask::paths;
 
 /// What rows must have, by the names of columns.
 pub(crate) type Filter = BTreeMap<String, Words>;
@@ -56,30 +58,23 @@ impl Table {
         Self { name: name.to_owned(), headings, rows: Vec::new() }
     }
 
-    pub(crate) fn push(&mut self, row: Vec<String>) {
-        self.rows.push(row);
+    pub(crate) fn push(&mut self, row: impl IntoIterator<Item: ToString>) {
+        self.rows.push(row.into_iter().map(|cell| cell.to_string()).collect());
     }
 
-    /// Of a file whose cells are divided by `separator` and hold none.
-    pub(crate) fn read(path: &Path, separator: char) -> Result<Self> {
-        let name = path.display().to_string();
-        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
-        Self::parse(&text, &name, separator)
+    /// NAME.csv. Its cells are divided by semicolons if the headings are, otherwise by commas, and hold none.
+    pub(crate) fn read(folder: &Path, name: &str) -> Result<Self> {
+        let path = folder.join(format!("{name}.csv"));
+        Self::parse(&paths::read(&path)?, &path.display().to_string())
     }
 
-    /// The same, divided by semicolons if the headings are, otherwise by commas.
-    pub(crate) fn of_file(path: &Path) -> Result<Self> {
-        let headings = std::fs::read_to_string(path).unwrap_or_default();
-        let has_semicolons = headings.lines().next().is_some_and(|line| line.contains(';'));
-        Self::read(path, if has_semicolons { ';' } else { ',' })
-    }
-
-    /// As [`Table::read`], of what was read already.
-    pub(crate) fn parse(text: &str, name: &str, separator: char) -> Result<Self> {
-        let cells = |line: &str| line.split(separator).map(str::to_owned).collect::<Vec<_>>();
-        let mut lines = text.lines().map(cells);
+    /// The same, of what was read already.
+    pub(crate) fn parse(text: &str, name: &str) -> Result<Self> {
+        let mut lines = text.lines();
         let headings = lines.next().with_context(|| format!("{name} is empty"))?;
-        let rows: Vec<_> = lines.collect();
+        let separator = if headings.contains(';') { ';' } else { ',' };
+        let cells = |line: &str| line.split(separator).map(str::to_owned).collect::<Vec<_>>();
+        let (headings, rows) = (cells(headings), lines.map(cells).collect::<Vec<_>>());
         if let Some((line, row)) = (2..).zip(&rows).find(|(_, row)| row.len() != headings.len()) {
             bail!("{name}, line {line}: {} cells under {} headings: {row:?}", row.len(), headings.len());
         }
@@ -92,7 +87,7 @@ impl Table {
 
     /// The rows with these cells under these headings.
     pub(crate) fn of(&self, wanted: &[(&str, &str)]) -> Self {
-        self.filtered(|row| row.has(wanted))
+        self.filtered(|row| wanted.iter().all(|(heading, cell)| row.word(heading).is_ok_and(|word| word == *cell)))
     }
 
     /// The rows that a filter lets through.
@@ -165,11 +160,6 @@ impl Table {
         self.rows().map(|row| row.number(heading)).collect()
     }
 
-    /// The numbers of a column in the rows with these cells under these headings.
-    pub(crate) fn numbers_of(&self, heading: &str, wanted: &[(&str, &str)]) -> Result<Vec<f64>> {
-        self.rows().filter(|row| row.has(wanted)).map(|row| row.number(heading)).collect()
-    }
-
     /// The different cells of a column, in the order in which they come.
     pub(crate) fn distinct(&self, heading: &str) -> Result<Vec<&str>> {
         Ok(self.kinds(&[heading])?.concat())
@@ -177,14 +167,9 @@ impl Table {
 
     /// The different cells of some columns together, in the order in which they come.
     pub(crate) fn kinds(&self, headings: &[&str]) -> Result<Vec<Vec<&str>>> {
-        let mut kinds = Vec::new();
-        for row in self.rows() {
-            let kind = headings.iter().map(|heading| row.word(heading)).collect::<Result<Vec<_>>>()?;
-            if !kinds.contains(&kind) {
-                kinds.push(kind);
-            }
-        }
-        Ok(kinds)
+        let columns = headings.iter().map(|heading| self.column(heading)).collect::<Result<Vec<_>>>()?;
+        let kinds = self.rows.iter().map(|cells| columns.iter().map(|&column| &*cells[column]).collect());
+        Ok(kinds.unique().collect())
     }
 
     /// `NAME[2]` is the second column of this name.
@@ -218,7 +203,7 @@ impl<'a> Row<'a> {
         let (value, half) = word.split_once(" +- ").unwrap_or((word, "0"));
         let [value, half] = [value, half].map(|word| word.trim().parse::<f64>());
         let (value, half) = (value?, half?);
-        Ok(Estimate { value, low: value - half, high: value + half, seeds: 2 })
+        Ok(Estimate::about(value, half, 2))
     }
 
     /// A number whose interval's ends have columns of their own.
@@ -231,11 +216,6 @@ impl<'a> Row<'a> {
     pub(crate) fn optional(&self, heading: &str) -> Result<Option<f64>> {
         if self.word(heading)?.is_empty() { Ok(None) } else { self.number(heading).map(Some) }
     }
-
-    /// Whether the cells under these headings are these.
-    pub(crate) fn has(&self, wanted: &[(&str, &str)]) -> bool {
-        wanted.iter().all(|(heading, value)| self.word(heading).is_ok_and(|word| word == *value))
-    }
 }
 
 #[cfg(test)]
@@ -244,7 +224,7 @@ mod tests {
 
     #[test]
     fn cells_are_found_by_their_headings() -> Result<()> {
-        let table = Table::parse("name;n;x\na, b;1;2.5e-1\nc;2;\na, b;4;3\n", "t.csv", ';')?;
+        let table = Table::parse("name;n;x\na, b;1;2.5e-1\nc;2;\na, b;4;3\n", "t.csv")?;
         assert_eq!(table.distinct("name")?, ["a, b", "c"]);
         let some = table.of(&[("name", "a, b")]);
         assert_eq!((some.distinct("n")?, some.numbers("x")?), (vec!["1", "4"], vec![0.25, 3.0]));

@@ -74,7 +74,7 @@ fn compile(
     program: &Path,
 ) -> Result<()> {
     compiler.args(WARNINGS).args(ARITHMETIC).arg("-Iinclude").arg(format!("-DTILE_FILE=\"{}\"", tile().display()));
-    if !platform.has_double {
+    if platform.float_alone {
         compiler.arg("-DFLOAT_ALONE");
     }
     compiler.args(sources.iter().map(|source| format!("{FOLDER}/{source}")));

@@ -18,7 +18,7 @@ pub(crate) fn archive(platform: &Platform) -> Result<PathBuf> {
     let mut cargo = run::command(CARGO);
     environment(&mut cargo).env("CARGO_PROFILE_RELEASE_OPT_LEVEL", &platform.opt_level);
     cargo.args(["rustc", "--quiet", "--package", "noisefloor-capi", "--release", "--crate-type", "staticlib"]);
-    if !platform.has_double {
+    if platform.float_alone {
         cargo.arg("--no-default-features");
     }
     run::check(cargo.args(BUILD_CORE).args(["--target", &platform.triple, "--target-dir"]).arg(&folder))?;

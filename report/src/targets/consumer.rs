@@ -17,13 +17,14 @@ pub(crate) fn run(platform: &Platform) -> Result<bool> {
         fs::remove_dir_all(&folder).with_context(|| format!("cannot remove {}", folder.display()))?;
     }
     let mut configure = run::command("cmake");
-    configure.args(["-S", "tests/package/subproject", "-B"]).arg(&folder);
-    configure.arg(format!("-DNOISEFLOOR_SOURCE={}", root.display()));
-    configure.arg(format!("-DNOISEFLOOR_CARGO={}", build::CARGO));
-    configure.arg(format!("-DNOISEFLOOR_CARGO_TARGET_DIR={}", build::folder(platform).display()));
-    configure.arg(format!("-DNOISEFLOOR_CARGO_OPTIONS={}", build::BUILD_CORE.join(";")));
-    // CMake takes a relative path for one in the build folder.
-    configure.arg(format!("-DCMAKE_TOOLCHAIN_FILE={}", root.join("tests/package/aarch64.cmake").display()));
+    configure.args(["-S", "tests/package/subproject", "-B"]).arg(&folder).args([
+        format!("-DNOISEFLOOR_SOURCE={}", root.display()),
+        format!("-DNOISEFLOOR_CARGO={}", build::CARGO),
+        format!("-DNOISEFLOOR_CARGO_TARGET_DIR={}", build::folder(platform).display()),
+        format!("-DNOISEFLOOR_CARGO_OPTIONS={}", build::BUILD_CORE.join(";")),
+        // CMake takes a relative path for one in the build folder.
+        format!("-DCMAKE_TOOLCHAIN_FILE={}", root.join("tests/package/aarch64.cmake").display()),
+    ]);
     run::read(&mut configure)?;
     let mut compile = run::command("cmake");
     run::read(build::environment(compile.arg("--build").arg(&folder).args(["--parallel", "2"])))?;

@@ -54,14 +54,14 @@ fn write(tables: &[Table]) -> Result<()> {
     let description = Description::read("sizes", &plan)?;
     let mut chapter = Chapter::new(description.names("sizes", &plan)[1]);
     let find = |name: &str| tables.iter().find(|table| table.name == name).cloned().context("no such table");
-    description.write(&find, &mut chapter, &mut Default::default())?;
+    description.write(&find, &mut chapter)?;
     let compiler = run::read(run::command(build::RUSTC).arg("--version"))?;
     chapter.setting("compiler", compiler.trim().split(" (").next().unwrap_or_default());
     if !find("sizes")?.distinct("kind")?.contains(&sizes::KINDS[2]) {
         chapter.setting("variables", "none");
     }
     let output = Output::new(&paths::root().join("docs/report"))?;
-    write_chapter(&output, "sizes", &chapter.json())?;
+    write_chapter(&output, "sizes", &chapter.json(), &|_| true)?;
     output.commit()?;
     println!("wrote docs/report/sizes.md and sizes.json");
     Ok(())
@@ -73,16 +73,13 @@ fn one(platform: &Platform, all: &Targets, ran: &mut Table, sizes: &mut Table, e
     for service in &all.services {
         let found = sizes::measure(platform, &raw, service)?;
         // A line of variables stands there only if there are any.
-        for (kind, bytes) in
-            sizes::KINDS.into_iter().zip(found).filter(|(kind, bytes)| *kind != "variables" || *bytes > 0)
-        {
-            sizes.push([&platform.name, kind, &service.name, &bytes.to_string()].map(str::to_owned).to_vec());
-        }
+        let found = sizes::KINDS.into_iter().zip(found).filter(|(kind, bytes)| *kind != "variables" || *bytes > 0);
+        found.for_each(|(kind, bytes)| sizes.push([&platform.name, kind, &service.name, &bytes.to_string()]));
     }
     let (told, what) = there(platform, all, &raw)?;
     let calls = told.stacks.into_iter().map(|(call, depth)| (format!("`{call}`"), depth.into()));
     for (call, bytes) in calls.chain(told.image.map(|bytes| ("image".to_owned(), bytes))) {
-        example.push([&platform.name, &call, &bytes.to_string()].map(String::clone).to_vec());
+        example.push([&platform.name, &call, &bytes.to_string()]);
     }
     let version = run::read(run::command(&platform.emulator).arg("--version"))?;
     // QEMU says much more in parentheses and further lines.
@@ -90,7 +87,7 @@ fn one(platform: &Platform, all: &Targets, ran: &mut Table, sizes: &mut Table, e
     let emulator = format!("`{}`: {version}", platform.emulator);
     println!("   ran on {emulator}");
     let triple = format!("`{}`", platform.triple);
-    ran.push([&platform.name, &triple, &platform.opt_level, &what, &emulator].map(String::clone).to_vec());
+    ran.push([&platform.name, &triple, &platform.opt_level, &what, &emulator]);
     Ok(())
 }
 

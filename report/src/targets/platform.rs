@@ -26,8 +26,9 @@ pub(crate) struct Platform {
     pub(crate) binutils: Option<String>,
     pub(crate) emulator: String,
     pub(crate) opt_level: String,
-    #[serde(rename = "double", default = "yes")]
-    pub(crate) has_double: bool,
+    /// Without control variates in double precision.
+    #[serde(default)]
+    pub(crate) float_alone: bool,
     pub(crate) board: Option<Board>,
     #[serde(deserialize_with = "packages")]
     pub(crate) packages: Vec<Package>,
@@ -52,10 +53,6 @@ pub(crate) struct Service {
     pub(crate) except: Vec<String>,
 }
 
-fn yes() -> bool {
-    true
-}
-
 fn packages<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Package>, D::Error> {
     let all = Vec::<[String; 2]>::deserialize(from)?;
     Ok(all.into_iter().map(|[name, file]| Package { name: name.leak(), file: file.leak() }).collect())
@@ -74,6 +71,6 @@ impl Platform {
 
     /// The triple, and what else tells it from others of the same.
     pub(crate) fn id(&self) -> String {
-        format!("{}{}", self.triple, if self.has_double { "" } else { "-float" })
+        format!("{}{}", self.triple, if self.float_alone { "-float" } else { "" })
     }
 }

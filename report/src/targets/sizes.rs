@@ -56,19 +56,16 @@ pub(crate) fn program(path: &Path) -> Result<u64> {
 /// Sums of the sections that a program would load.
 fn sections(bytes: &[u8]) -> Result<[u64; 3]> {
     let file = object::File::parse(bytes).context("the linker wrote no program")?;
-    let mut sizes = [0; 3];
+    let (mut sizes, is_module) = ([0; 3], file.format() == BinaryFormat::Wasm);
     for section in file.sections() {
-        let kind = match section.kind() {
-            SectionKind::Text => 0,
+        let kind = match (section.kind(), section.name()) {
+            (SectionKind::Text, _) => 0,
             // A module's constants and variables are one; what else is data there are numbers of the module's own.
-            _ if file.format() == BinaryFormat::Wasm && section.name() != Ok("<data>") => continue,
-            SectionKind::Data if file.format() == BinaryFormat::Wasm => 1,
-            SectionKind::ReadOnlyData | SectionKind::ReadOnlyString | SectionKind::ReadOnlyDataWithRel
-                if section.name() != Ok(".eh_frame") =>
-            {
-                1
-            }
-            SectionKind::Data | SectionKind::UninitializedData => 2,
+            (SectionKind::Data, Ok("<data>")) if is_module => 1,
+            (SectionKind::ReadOnlyData, Ok(".eh_frame")) => continue,
+            _ if is_module => continue,
+            (SectionKind::ReadOnlyData | SectionKind::ReadOnlyString | SectionKind::ReadOnlyDataWithRel, _) => 1,
+            (SectionKind::Data | SectionKind::UninitializedData, _) => 2,
             _ => continue,
         };
         sizes[kind] += section.size();

@@ -6,6 +6,7 @@ use crate::measure::metric::Reference;
 use crate::measure::renderer::{Job, View};
 use crate::measure::score;
 use image::Rgb32FImage;
+use itertools::iproduct;
 use std::rc::Rc;
 
 /// The first is the thesis's, and what the temporal tile of [`CHOSEN`] samples had its settings chosen on; the second
@@ -62,21 +63,13 @@ fn filtered(frames: &[&Rgb32FImage], weights: &[f64]) -> Rgb32FImage {
 pub(super) fn measure(harness: &Harness) -> Result<Table> {
     let (plan, seeds) = (harness.plan, harness.plan.of("animation_seeds"));
     let mut all = Table::new("animation", "scene | spp | frame | filter | sampler | error");
-    let sizes: Vec<(&str, u32, &str, u32)> = SCENES
-        .into_iter()
-        .flat_map(|scene| plan.some(&TEMPORAL).iter().map(move |&(spp, tile, last)| (scene, spp, tile, plan.of(last))))
-        .collect();
-    for (scene, spp, temporal, last) in sizes {
+    for (scene, &(spp, temporal, last)) in iproduct!(SCENES, plan.some(&TEMPORAL)) {
+        let last = plan.of(last);
         let view = |frame| Ok(View { frame, ..harness.view(scene, plan.of("animation_size"), 1)? });
         let views = (0..last).map(view).collect::<Result<Vec<View>>>()?;
         let references = views.iter().map(|&view| harness.measurement.reference(view)).collect::<Result<Vec<_>>>()?;
-        let samplers = [
-            ("random", "random"),
-            ("Owen-Sobol", "Owen-Sobol"),
-            ("shifted tile", "tile 2D"),
-            ("temporal tile", temporal),
-        ];
-        for (label, sampler) in samplers {
+        let tiles = [("shifted tile", "tile 2D"), ("temporal tile", temporal)];
+        for (label, sampler) in ["random", "Owen-Sobol"].map(|name| (name, name)).into_iter().chain(tiles) {
             let Some(sampler) = harness.measurement.renderer.sampler(sampler, spp) else { continue };
             let job = |&view: &View<'static>| Job { sampler: sampler.clone(), seeds, ..Job::new(view, spp, &["mc"]) };
             let jobs: Vec<Job> = views.iter().map(job).collect();
@@ -88,8 +81,7 @@ pub(super) fn measure(harness: &Harness) -> Result<Table> {
                 for seed in 0..seeds as usize {
                     let sequence: Vec<&Rgb32FImage> = frames.iter().map(|images| &images[seed]).collect();
                     let error = score::errors(&filtered(&sequence, &weights), &reference)[1];
-                    let words = [scene, &spp.to_string(), &last.to_string(), name, label, &error.to_string()];
-                    all.push(words.map(str::to_owned).to_vec());
+                    all.push([scene, &spp.to_string(), &last.to_string(), name, label, &error.to_string()]);
                 }
             }
         }

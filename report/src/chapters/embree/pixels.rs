@@ -1,41 +1,79 @@
-//! One estimator against another, pixel by pixel: how many pixels are served worse, and how sure that is.
+//! Is the default ever worse than plain Monte Carlo? Pixel by pixel: how many are served worse, and how sure that is.
 
+use super::Harness;
+use crate::chapters::prelude::*;
 use crate::chapters::statistics::{Random, moments, student};
+use crate::measure::renderer::Job;
+use image::Rgb32FImage;
 
+const SPP: u32 = 16;
 /// Ratios of mean squared errors beyond it are too many.
-pub(crate) const TOO_MUCH: f64 = 1.2;
+const TOO_MUCH: f64 = 1.2;
 /// The seeds come in as many batches, or in fewer if they are few, whose spread says how sure a figure is.
-pub(crate) const BATCHES: u32 = 8;
+const BATCHES: u32 = 8;
 /// Of the test of each pixel, one-sided.
-pub(crate) const SIGNIFICANCE: f64 = 0.01;
+const SIGNIFICANCE: f64 = 0.01;
 /// A pixel has noise if either error is more than this part of the largest of any pixel.
 const NOISE: f64 = 1e-9;
 const RESAMPLES: usize = 200;
 
+pub(super) fn write(harness: &Harness, chapter: &mut Chapter) -> Result<()> {
+    chapter.section("The default against plain Monte Carlo, pixel by pixel");
+    let seeds = harness.plan.of("pixel_seeds");
+    let batches = BATCHES.min(seeds / 2);
+    chapter.setting("a pixel's ratio that is too much", TOO_MUCH);
+    chapter.setting("batches of seeds", batches);
+    chapter.setting("significance of a pixel's test, percent", 100.0 * SIGNIFICANCE);
+    let mut rows = Vec::new();
+    let section = harness.runs.section.iter().find(|section| section.name == "never worse");
+    let runs = section.context("no section `never worse`")?.runs.iter();
+    for (scene, order) in runs.flat_map(|run| harness.plan.some(&run.scenes).iter().map(|scene| (scene, run.order[0])))
+    {
+        let view = harness.view(scene, harness.plan.of("pixels_size"), 1)?;
+        let job = Job { order, seeds: seeds / batches, ..Job::new(view, SPP, &["mc", "robust"]) };
+        let mut errors = Vec::new();
+        for batch in harness.measurement.statistics(&job, batches)? {
+            let [plain, own] = &batch[..] else { bail!("statistics of other estimators than were asked for") };
+            errors.push([sums(&plain[1]), sums(&own[1])]);
+        }
+        let Shares { pixels, raw, twice, sure, largest } = Shares::new(&errors, seeds as usize);
+        let statement = format!("share of pixels beyond {TOO_MUCH} as measured, {SPP} spp, percent");
+        chapter.target(&statement, scene, raw, Unit::Percent, Bound::AtMost(1.0));
+        let [twice, sure] = [twice, sure].map(|share| Figure::exact(share, Unit::Percent));
+        let (raw, largest) = (Figure::new(raw, Unit::Percent), Figure::exact(largest, Unit::Ratio));
+        rows.push(json!([scene, Figure::count(pixels), raw, twice, sure, largest]));
+    }
+    let columns = "scene | pixels | as measured, % | in both halves, % | significantly, % | largest ratio";
+    chapter.table("never worse, pixels", columns, 1, rows);
+    Ok(())
+}
+
+/// Of the three channels of each pixel.
+fn sums(image: &Rgb32FImage) -> Vec<f64> {
+    image.pixels().map(|pixel| pixel.0.iter().map(|&value| f64::from(value)).sum()).collect()
+}
+
 /// Mean squared errors of each pixel in one batch of seeds: the plain mean's, and the estimator's.
-pub(crate) type Batch = [Vec<f64>; 2];
+type Batch = [Vec<f64>; 2];
 
 /// The shares of the pixels with noise whose ratio of mean squared errors is beyond [`TOO_MUCH`], in per cent.
-pub(crate) struct Shares {
+struct Shares {
     /// With noise.
-    pub(crate) pixels: usize,
-    /// Batches of seeds.
-    pub(crate) batches: f64,
+    pixels: usize,
     /// As measured; noise throws some pixels beyond.
-    pub(crate) raw: f64,
-    /// The standard error of `raw`: the bootstrap's, over batches of seeds.
-    pub(crate) error: f64,
+    raw: Estimate,
     /// Beyond in both halves of the seeds.
-    pub(crate) twice: f64,
+    twice: f64,
     /// Beyond, significantly.
-    pub(crate) sure: f64,
-    /// Ratios of all pixels with noise. Where the plain mean has no error it counts as [`NOISE`], so that an error of
-    /// the other shows as a large ratio.
-    pub(crate) ratios: Vec<f64>,
+    sure: f64,
+    /// The largest ratio of a pixel. Where the plain mean has no error it counts as [`NOISE`], so that an error of the
+    /// other shows as a large ratio.
+    largest: f64,
 }
 
 impl Shares {
-    pub(crate) fn new(batches: &[Batch]) -> Self {
+    /// `seeds`: of all batches together.
+    fn new(batches: &[Batch], seeds: usize) -> Self {
         let all: Vec<usize> = (0..batches.len()).collect();
         let pixels = batches.first().map_or(0, |[plain, _]| plain.len());
         let means: Vec<[f64; 2]> = (0..pixels).map(|pixel| means(batches, &all, pixel)).collect();
@@ -54,29 +92,21 @@ impl Shares {
             let chosen: Vec<usize> = all.iter().map(|_| random.below(batches.len())).collect();
             share(&|pixel| ratio(&chosen, pixel) > TOO_MUCH)
         });
-        let resampled: Vec<f64> = resampled.collect();
+        let error = moments(&resampled.collect::<Vec<f64>>()).1;
+        // 95 %, by Student's distribution: the percentile bootstrap would count the noise that throws pixels beyond a
+        // second time. Resampling n values spreads less than they do, by (n - 1) / n, and their spread is itself an
+        // estimate.
+        let n = batches.len() as f64;
+        let half = student(0.025, n - 1.0) * (n / (n - 1.0)).sqrt() * error;
+        let Estimate { value, low, high, .. } =
+            Estimate::about(share(&|pixel| ratio(&all, pixel) > TOO_MUCH), half, seeds);
         Self {
             pixels: noisy.len(),
-            batches: batches.len() as f64,
-            raw: share(&|pixel| ratio(&all, pixel) > TOO_MUCH),
-            error: moments(&resampled).1,
+            raw: Estimate { value, low: low.max(0.0), high: high.min(100.0), seeds },
             twice: share(&|pixel| ratio(first, pixel) > TOO_MUCH && ratio(second, pixel) > TOO_MUCH),
             sure: share(&|pixel| is_sure(batches, pixel)),
-            ratios: noisy.iter().map(|&pixel| ratio(&all, pixel)).collect(),
+            largest: noisy.iter().map(|&pixel| ratio(&all, pixel)).fold(0.0, f64::max),
         }
-    }
-
-    pub(crate) fn largest(&self) -> f64 {
-        self.ratios.iter().copied().fold(0.0, f64::max)
-    }
-
-    /// 95 % about `raw`, by Student's distribution: the percentile bootstrap would count the noise that throws pixels
-    /// beyond a second time.
-    pub(crate) fn interval(&self) -> [f64; 2] {
-        // Resampling n values spreads less than they do, by (n - 1) / n, and their spread is itself an estimate.
-        let n = self.batches;
-        let half = student(0.025, n - 1.0) * (n / (n - 1.0)).sqrt() * self.error;
-        [(self.raw - half).max(0.0), (self.raw + half).min(100.0)]
     }
 }
 
@@ -107,15 +137,15 @@ mod tests {
             let plain = (0..1000).map(|_| vary(1.0)).collect();
             [plain, (0..1000).map(|pixel| vary(if pixel < bad { 2.0 } else { 0.5 })).collect()]
         });
-        Shares::new(&batches.collect::<Vec<Batch>>())
+        Shares::new(&batches.collect::<Vec<Batch>>(), 8)
     }
 
     #[test]
     fn bad_pixels_are_counted() {
         let shares = shares(100, 0.5);
-        assert_eq!((shares.pixels, shares.raw, shares.twice, shares.sure), (1000, 10.0, 10.0, 10.0));
-        assert!(shares.largest() > 1.8 && shares.largest() < 2.5);
-        assert_eq!(shares.interval(), [10.0, 10.0], "so clear a share does not vary");
+        assert_eq!((shares.pixels, shares.raw.value, shares.twice, shares.sure), (1000, 10.0, 10.0, 10.0));
+        assert!(shares.largest > 1.8 && shares.largest < 2.5);
+        assert_eq!([shares.raw.low, shares.raw.high], [10.0, 10.0], "so clear a share does not vary");
     }
 
     #[test]
@@ -123,16 +153,16 @@ mod tests {
         let mut random = Random::new(5);
         let mut vary = || 0.5 + random.below(1 << 20) as f64 / f64::from(1 << 20);
         let batch = |_| [vec![1.0; 400], (0..400).map(|_| 1.2 * vary()).collect()];
-        let shares = Shares::new(&(0..8).map(batch).collect::<Vec<Batch>>());
-        let [low, high] = shares.interval();
-        assert!(low > 20.0 && low < shares.raw - 1.0 && high > shares.raw + 1.0 && high < 80.0, "{low} {high}");
+        let shares = Shares::new(&(0..8).map(batch).collect::<Vec<Batch>>(), 8);
+        let Estimate { value, low, high, .. } = shares.raw;
+        assert!(low > 20.0 && low < value - 1.0 && high > value + 1.0 && high < 80.0, "{low} {high}");
         assert!(shares.sure < 5.0, "{}", shares.sure);
     }
 
     #[test]
     fn an_error_where_the_plain_mean_has_none_is_bad_and_no_error_at_all_does_not_count() {
-        let shares = Shares::new(&vec![[vec![1.0, 0.0, 0.0, 1.0], vec![1.0, 0.1, 0.0, 1.0]]; 8]);
-        assert_eq!((shares.pixels, shares.raw), (3, 100.0 / 3.0));
-        assert!(shares.largest() > 1e6 && shares.largest().is_finite());
+        let shares = Shares::new(&vec![[vec![1.0, 0.0, 0.0, 1.0], vec![1.0, 0.1, 0.0, 1.0]]; 8], 8);
+        assert_eq!((shares.pixels, shares.raw.value), (3, 100.0 / 3.0));
+        assert!(shares.largest > 1e6 && shares.largest.is_finite());
     }
 }

@@ -1,7 +1,7 @@
 //! Public samplers, as tables of points that a program of `bench/` writes from permissively licensed crates.
 
 use crate::chapters::measurement::Measurement;
-use crate::measure::renderer::Sampler;
+use crate::measure::renderer::{Sampler, table};
 use anyhow::Result;
 use xtask::{paths, run};
 
@@ -19,5 +19,5 @@ pub(super) fn points(measurement: &Measurement, name: &str, spp: u32, dims: u32)
         let mut program = run::command(paths::target().join("xtask/examples/points"));
         run::check(program.args([name, &*spp.to_string(), &dims.to_string()]).arg(&file))?;
     }
-    Ok(Sampler::Table(file))
+    Ok(table(&file))
 }

@@ -7,6 +7,7 @@ use crate::chapters::statistics::normal_quantile;
 use crate::measure::metric::median;
 use crate::measure::renderer::Job;
 use image::Rgb32FImage;
+use itertools::iproduct;
 
 const SCENES: [&str; 2] = ["dining", "killeroos"];
 const SPP: [u32; 2] = [1, 4];
@@ -48,7 +49,7 @@ impl Frames {
     }
 }
 
-pub(super) fn write(harness: &Harness, chapter: &mut Chapter, targets: &mut Targets) -> Result<()> {
+pub(super) fn write(harness: &Harness, chapter: &mut Chapter) -> Result<()> {
     chapter.section("Are shared fits unbiased?");
     let (plan, measurement) = (harness.plan, &harness.measurement);
     let count = plan.of("frames") / BATCHES * BATCHES;
@@ -56,21 +57,21 @@ pub(super) fn write(harness: &Harness, chapter: &mut Chapter, targets: &mut Targ
     chapter.setting("significance of the test of biases, percent", 100.0 * SIGNIFICANCE);
     chapter.setting("frames with light, at least", LIT.min(plan.of("frames") / 4));
     chapter.setting("batches of the test of biases", BATCHES);
-    let samplers = |spp| [("random", "random"), ("tile, scrambled", "tile 2D")].map(|(name, of)| (spp, name, of));
-    let kinds = plan.some(&SPP).iter().flat_map(|&spp| samplers(spp));
-    let kinds = kinds.filter_map(|(spp, name, of)| Some((spp, name, measurement.renderer.sampler(of, spp)?)));
-    let tests: Vec<_> = kinds.collect();
-    let tests: Vec<_> = plan.some(&SCENES).iter().flat_map(|&scene| tests.iter().map(move |of| (scene, of))).collect();
+    let samplers = [("random", "random"), ("tile, scrambled", "tile 2D")];
+    let tests = iproduct!(plan.some(&SCENES), plan.some(&SPP), samplers);
+    let tests: Vec<_> = tests
+        .filter_map(|(&scene, &spp, (label, of))| Some((scene, spp, label, measurement.renderer.sampler(of, spp)?)))
+        .collect();
     // Of two estimators, the largest z and the mean of z^2.
     let level = SIGNIFICANCE / (4 * tests.len()) as f64;
     let mut rows = Vec::new();
-    for (scene, (spp, label, sampler)) in tests {
+    for (scene, spp, label, sampler) in tests {
         // The reference's error must be small beside that of the mean of so many frames.
         let view = harness.view(scene, plan.of("bias_size"), 8)?;
         // A tile at other places keeps its own small error, which a thousand frames can show.
         let options = vec!["--scramble"];
-        let job = Job::new(view, *spp, &["mc", "shared", "shared_k_fold"]);
-        let job = Job { sampler: sampler.clone(), seeds: count / BATCHES, options, ..job };
+        let job = Job::new(view, spp, &["mc", "shared", "shared_k_fold"]);
+        let job = Job { sampler, seeds: count / BATCHES, options, ..job };
         let batches = measurement.statistics(&job, BATCHES)?;
         let halves = measurement.reference(view)?.images.each_ref().map(values);
         let frames = |estimator: usize| {
@@ -85,27 +86,14 @@ pub(super) fn write(harness: &Harness, chapter: &mut Chapter, targets: &mut Targ
             for (at, what) in ["largest z", "mean z^2"].into_iter().enumerate().filter(|_| index > 0) {
                 let statement =
                     format!("{estimator} unbiased: {what} of the mean of independent frames, over what chance allows");
-                let (place, estimate) =
-                    (format!("{scene}, {label}, {spp} spp"), Estimate::exact(found[at] / allowed[at]));
-                targets.at_most(&statement, &place, estimate, Unit::Ratio, 1.0);
+                let (place, ratio) = (format!("{scene}, {label}, {spp} spp"), Estimate::exact(found[at] / allowed[at]));
+                chapter.target(&statement, &place, ratio, Unit::Ratio, Bound::AtMost(1.0));
             }
             let [largest, chance, median, image] =
                 [found[0], allowed[0], scores.median, scores.image].map(|value| Figure::exact(value, Unit::Hundredths));
-            let [square, square_chance] = [found[1], allowed[1]].map(|value| Figure::exact(value, Unit::Ratio));
-            let count = Figure::count(scores.count);
-            rows.push(row![
-                scene,
-                *spp,
-                *label,
-                estimator,
-                count,
-                largest,
-                chance,
-                square,
-                square_chance,
-                median,
-                image
-            ]);
+            let [square, by_chance] = [found[1], allowed[1]].map(|value| Figure::exact(value, Unit::Ratio));
+            let (spp, count) = (spp.to_string(), Figure::count(scores.count));
+            rows.push(json!([scene, spp, label, estimator, count, largest, chance, square, by_chance, median, image]));
         }
     }
     let columns = "scene | samples | sampler | estimator | numbers | largest z | chance allows | mean z^2 | chance \
