@@ -66,12 +66,10 @@ pub mod real;
 #[cfg(feature = "control-variate")]
 pub mod recommend;
 pub mod rng;
-#[cfg(any(feature = "control-variate", feature = "mis"))]
+#[allow(dead_code, reason = "each feature uses some of them")]
 mod rows;
 #[cfg(feature = "sampler")]
 pub mod sampler;
-#[allow(dead_code, reason = "each feature uses some of them")]
-mod slices;
 #[cfg(feature = "tile")]
 pub mod tile;
 #[cfg(feature = "warp")]

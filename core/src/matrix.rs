@@ -7,8 +7,8 @@
 
 use crate::error::Error;
 use crate::real::Real;
-use crate::rows::{Rows, RowsMut, rows, rows_mut};
-pub(crate) use crate::slices::{at, first_mut, from, from_mut, halves_mut, row_at, row_at_mut};
+use crate::rows::{Rows, part, part_mut, rows, rows_mut};
+pub(crate) use crate::rows::{at, first_mut, from, from_mut, halves_mut, row_at, row_at_mut};
 use core::ops::{Deref, DerefMut};
 
 /// The count of numbers in a packed triangle of `order` rows.
@@ -20,15 +20,13 @@ pub(crate) const fn packed_len(order: usize) -> usize {
 /// Row `j` of a packed triangle, diagonal included.
 #[inline]
 pub(crate) fn row<T>(triangle: &[T], j: usize) -> &[T] {
-    let start = packed_len(j);
-    triangle.get(start..start + j + 1).unwrap_or_default()
+    part(triangle, packed_len(j), j + 1)
 }
 
 /// Row `j` of a packed triangle, diagonal included.
 #[inline]
 pub(crate) fn row_mut<T>(triangle: &mut [T], j: usize) -> &mut [T] {
-    let start = packed_len(j);
-    triangle.get_mut(start..start + j + 1).unwrap_or_default()
+    part_mut(triangle, packed_len(j), j + 1)
 }
 
 /// Entry `j` of a vector, and the entries before it: what a substitution works on.
@@ -90,8 +88,7 @@ impl<T, S: Deref<Target = [T]>> Triangle<S> {
     /// Row `j` left of the diagonal.
     #[inline]
     pub(crate) fn left(&self, j: usize) -> &[T] {
-        let start = packed_len(j);
-        self.entries.get(start..start + j).unwrap_or_default()
+        part(&self.entries, packed_len(j), j)
     }
 
     /// The rows from the first on.
@@ -188,7 +185,7 @@ impl<'a, T> Panel<&'a mut [T]> {
     pub(crate) fn truncate(&mut self, count: usize) {
         let entries = core::mem::take(&mut self.entries);
         let len = entries.len().min(count * self.width);
-        self.entries = entries.get_mut(..len).unwrap_or_default();
+        self.entries = first_mut(entries, len);
     }
 
     /// The same, from now on only to be read.
@@ -226,7 +223,7 @@ impl<T, S: Deref<Target = [T]>> Panel<S> {
 
     /// The rows from the first on.
     #[inline]
-    pub(crate) fn rows(&self) -> Rows<'_, T> {
+    pub(crate) fn rows(&self) -> Rows<&[T]> {
         rows(&self.entries, self.width)
     }
 
@@ -257,7 +254,7 @@ impl<T, S: DerefMut<Target = [T]>> Panel<S> {
 
     /// The rows from the first on.
     #[inline]
-    pub(crate) fn rows_mut(&mut self) -> RowsMut<'_, T> {
+    pub(crate) fn rows_mut(&mut self) -> Rows<&mut [T]> {
         rows_mut(&mut self.entries, self.width)
     }
 

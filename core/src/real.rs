@@ -197,3 +197,8 @@ impl Real for f32 {
         libm::frexpf(self).1
     }
 }
+
+/// The nearest finite `f32`.
+pub(crate) fn saturate(value: f64) -> f32 {
+    value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
+}

@@ -39,16 +39,6 @@ pub enum Method {
 }
 
 /// What [`recommend`] says.
-///
-/// ```
-/// use noisefloor::control_variate::Image;
-/// use noisefloor::recommend::{Sampling, recommend};
-///
-/// let best = recommend(2, 4, Sampling::Stratified, true, f32::INFINITY)?;
-/// let image = Image { stride: best.image_stride, ..Image::new(640, 480) };
-/// assert!(best.error < 0.1 && image.stride == 8);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recommendation {
     /// How to make estimates of the samples.

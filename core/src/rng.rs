@@ -129,7 +129,8 @@ const fn step(state: u64, increment: u64) -> u64 {
 }
 
 /// The `index`-th output (from 1) of SplitMix64 seeded with `seed`.
-const fn split_mix(seed: u64, index: u64) -> u64 {
+#[inline]
+pub(crate) const fn split_mix(seed: u64, index: u64) -> u64 {
     let mut z = seed.wrapping_add(index.wrapping_mul(0x9e37_79b9_7f4a_7c15));
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -1,10 +1,10 @@
 //! Many pixels and samples in one call.
 
-use super::sampler::{nf_tile_sampler, state};
+use super::sampler::{nf_tile_sampler, of};
 use super::view::core_view;
 use crate::fill;
 use crate::status::*;
-use noisefloor_core::tile::{PixelSampler, Sampler};
+use noisefloor_core::tile::PixelSampler;
 
 /// As nf_sampler_fill(), of tiles' samplers. Those without a tile draw zeros.
 #[unsafe(no_mangle)]
@@ -30,7 +30,7 @@ impl PixelSampler for Live<'_> {
     fn draw_pixel(&self, [x, y]: [u32; 2], dims: usize, stride: usize, u: &mut [f32]) {
         // SAFETY: what makes a `Live` says so.
         match unsafe { core_view(self.0.tile) } {
-            Some(tile) => Sampler::resume(&tile, state(self.0)).moved(x, y, 0).draw_samples(dims, stride, u),
+            Some(tile) => of(&tile, self.0).moved(x, y, 0).draw_samples(dims, stride, u),
             None => u.chunks_mut(stride.max(1)).filter_map(|u| u.get_mut(..dims)).for_each(|u| u.fill(0.0)),
         }
     }

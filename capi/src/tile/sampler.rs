@@ -3,7 +3,7 @@
 use super::view::{check_tile, core_view, nf_tile};
 use crate::convert;
 use crate::wrong::{Wrong, rule};
-use noisefloor_core::tile::{Sampler, State};
+use noisefloor_core::tile::{Sampler, Shape, Tile};
 
 /// One sample of one pixel, as nf_sampler is, drawn from a tile. Made by nf_tile_sampler_pixel.
 #[repr(C)]
@@ -44,17 +44,30 @@ pub unsafe extern "C" fn nf_tile_sampler_pixel(
         return later(tile, x, y, frame, index);
     }
     // SAFETY: the caller passes NULL or a tile that lives on; it is aligned, as just checked.
-    let state = unsafe { core_view(tile) }.map(|view| State::pixel(&view, x, y, 0, index));
-    sampler(tile, state.unwrap_or_default())
+    unsafe { pixel(tile, x, y, 0, index) }
 }
 
 /// nf_tile_sampler_pixel of a frame other than the first: apart, so that the first is fast.
 #[inline(never)]
 fn later(tile: *const nf_tile, x: u32, y: u32, frame: u32, index: u32) -> nf_tile_sampler {
     // SAFETY: as in nf_tile_sampler_pixel.
-    let state = unsafe { core_view(tile) }.map(|view| State::pixel(&view, x, y, frame, index));
-    sampler(tile, state.unwrap_or_default())
+    unsafe { pixel(tile, x, y, frame, index) }
 }
+
+/// # Safety
+/// `tile` must be NULL or live.
+#[inline(always)]
+unsafe fn pixel(tile: *const nf_tile, x: u32, y: u32, frame: u32, index: u32) -> nf_tile_sampler {
+    // SAFETY: passed on to the caller.
+    match unsafe { core_view(tile) } {
+        Some(view) => put(tile, Sampler::pixel(&view, x, y, frame, index)),
+        None => put(tile, Sampler::pixel(&NO_TILE, 0, 0, 0, 0)),
+    }
+}
+
+/// What stands in for a tile that is not looked at.
+static NO_TILE: Tile<'static> =
+    Tile::resume(Shape { size: 1, spp: 1, dims: 1, frames: 1, bits: 8, progressive: false }, &[]);
 
 /// What is wrong with a sampler, or its tile.
 ///
@@ -74,13 +87,13 @@ pub(crate) unsafe fn check_sampler(sampler: &nf_tile_sampler) -> Result<(), Wron
 /// As nf_sampler_domain().
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_tile_sampler_domain(sampler: nf_tile_sampler, key: u32) -> nf_tile_sampler {
-    self::sampler(sampler.tile, state(&sampler).domain(key))
+    put(sampler.tile, of(&NO_TILE, &sampler).domain(key))
 }
 
 /// As nf_sampler_scramble(): the tile at another place, and shifted.
 #[unsafe(no_mangle)]
 pub extern "C" fn nf_tile_sampler_scramble(sampler: nf_tile_sampler, seed: u32) -> nf_tile_sampler {
-    self::sampler(sampler.tile, state(&sampler).scramble(seed))
+    put(sampler.tile, of(&NO_TILE, &sampler).scramble(seed))
 }
 
 /// Writes the first `dims` coordinates, 1..4, as nf_sampler_draw() does. Up to tile->dims are optimised together, more
@@ -133,15 +146,14 @@ unsafe fn stored<const N: usize>(sampler: &nf_tile_sampler, u: *mut f32) -> bool
     let Some(tile) = (unsafe { core_view(sampler.tile) }) else { return false };
     // SAFETY: passed on to the caller.
     let Ok(u) = (unsafe { convert::room(u.cast::<[f32; N]>()) }) else { return false };
-    let sampler = Sampler::resume(&tile, state(sampler));
     let mut drawn = [0.0; N];
-    sampler.draw_stored(&mut drawn) && put(u, drawn)
+    of(&tile, sampler).draw_stored(&mut drawn) && write(u, drawn)
 }
 
 /// Writes the numbers, four at once: a caller that reads them as one vector would have to wait for four writes to reach
 /// the cache.
 #[inline(always)]
-fn put<const N: usize>(u: &mut convert::Room<[f32; N]>, drawn: [f32; N]) -> bool {
+fn write<const N: usize>(u: &mut convert::Room<[f32; N]>, drawn: [f32; N]) -> bool {
     match drawn[..] {
         #[cfg(target_arch = "x86_64")]
         [a, b, c, d] => {
@@ -164,15 +176,16 @@ unsafe fn computed<const N: usize>(sampler: &nf_tile_sampler, u: *mut f32) {
     let Ok(u) = (unsafe { convert::room(u.cast::<[f32; N]>()) }) else { return };
     // SAFETY: passed on to the caller.
     u.write(match unsafe { core_view(sampler.tile) } {
-        Some(tile) => Sampler::resume(&tile, state(sampler)).draw(),
+        Some(tile) => of(&tile, sampler).draw(),
         None => [0.0; N],
     });
 }
 
+/// As the core sees it, of a tile.
 #[inline(always)]
-pub(crate) fn state(sampler: &nf_tile_sampler) -> State {
+pub(crate) fn of<'a>(tile: &'a Tile<'a>, sampler: &nf_tile_sampler) -> Sampler<'a> {
     let nf_tile_sampler { domain, index, x, y, frame, scrambled, .. } = *sampler;
-    State { domain, index, x, y, frame, scrambled }
+    Sampler { tile, domain, index, x, y, frame, scrambled }
 }
 
 /// The struct, written so that a caller's copy of it is fast.
@@ -181,7 +194,8 @@ pub(crate) fn state(sampler: &nf_tile_sampler) -> State {
 /// but has to wait for several to reach the cache: 15 ns where the struct was written field by field.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn sampler(tile: *const nf_tile, State { domain, index, x, y, frame, scrambled }: State) -> nf_tile_sampler {
+fn put(tile: *const nf_tile, sampler: Sampler<'_>) -> nf_tile_sampler {
+    let Sampler { domain, index, x, y, frame, scrambled, .. } = sampler;
     use core::arch::x86_64::{_mm_set_epi64x, _mm_storeu_si128};
     const _: () = assert!(size_of::<nf_tile_sampler>() == 24 && core::mem::offset_of!(nf_tile_sampler, x) == 16);
     let first = u64::from(domain) | u64::from(index) << 32;
@@ -199,6 +213,7 @@ fn sampler(tile: *const nf_tile, State { domain, index, x, y, frame, scrambled }
 /// The struct.
 #[cfg(not(target_arch = "x86_64"))]
 #[inline(always)]
-fn sampler(tile: *const nf_tile, State { domain, index, x, y, frame, scrambled }: State) -> nf_tile_sampler {
+fn put(tile: *const nf_tile, sampler: Sampler<'_>) -> nf_tile_sampler {
+    let Sampler { domain, index, x, y, frame, scrambled, .. } = sampler;
     nf_tile_sampler { tile, domain, index, x, y, frame, scrambled }
 }

@@ -1,12 +1,6 @@
 //! The kinds of one-dimensional functions.
 
 /// Which one-dimensional functions a basis is made of.
-///
-/// ```
-/// use noisefloor::{basis::Family, control_variate::Config};
-/// let config = Config { basis: Family::Step, ..Config::new(2, 2, 1) };
-/// assert_eq!(config.terms(), Ok(6));
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Family {
     /// Orthonormal shifted Legendre polynomials.

@@ -80,11 +80,8 @@ impl Shape {
         }
         // As many whole degrees of per-slice copies as fit.
         let fits = |&copies: &usize| 1 + shared + slices + slices * copies <= MAX_TERMS;
-        let copies = (1..=if slices > 0 { order } else { 0 })
-            .rev()
-            .map(|degree| count(continuous, degree))
-            .find(fits)
-            .unwrap_or(0);
+        let degrees = 0..=if slices > 0 { order } else { 0 };
+        let copies = degrees.map(|degree| count(continuous, degree)).filter(fits).fold(0, usize::max);
         Ok(Self { continuous, order, slices, shared, copies, is_apart: false })
     }
 
@@ -268,8 +265,8 @@ impl Basis {
         let (shared, blocks) = halves_mut(out, shared + slices);
         for (s, block) in rows_mut(blocks, copies).enumerate().take(slices) {
             for (term, column) in self.terms.iter().zip(block) {
-                let source = *shared.get(term.column()).unwrap_or(&[R::ZERO; L]);
-                for ((value, source), &k) in column.iter_mut().zip(source).zip(&picked) {
+                let Some(source) = shared.get(term.column()) else { continue };
+                for ((value, &source), &k) in column.iter_mut().zip(source).zip(&picked) {
                     *value = if k == s { scale * source } else { R::ZERO };
                 }
             }

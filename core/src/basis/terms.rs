@@ -5,6 +5,7 @@ use super::functions;
 use super::limits::{MAX_DIMS, MAX_ORDER, MAX_TERMS};
 use crate::lanes::{self, Lanes};
 use crate::real::Real;
+use crate::rows::at;
 use core::hint::black_box;
 use heapless::Vec;
 
@@ -69,7 +70,8 @@ pub(crate) fn total_degree(dims: usize, order: usize, gap: usize, terms: &mut Ve
     for degree in 1..=order {
         for (dim, pure) in pure.iter_mut().enumerate().take(dims) {
             let column = column(terms.len())?;
-            let below = |steps: usize| degree.checked_sub(steps).and_then(|d| pure.get(d)).copied().unwrap_or(CONSTANT);
+            // Below degree 1 is the constant.
+            let below = |steps: usize| at(pure, degree.saturating_sub(steps));
             let sources = [below(1), below(2)];
             push(terms, Term { column, degree: degree as u8, dim: dim as u8, product: false, sources })?;
             *pure.get_mut(degree)? = column;

@@ -15,7 +15,7 @@ use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
 use crate::error::Error;
 use crate::lanes::Lanes;
 use crate::real::Real;
-use crate::slices::{first_mut, from, from_mut, halves_mut};
+use crate::rows::{first_mut, from, from_mut, halves_mut};
 use core::num::NonZeroUsize;
 
 /// The most samples of an accumulator in `f32`.

@@ -11,7 +11,7 @@ use crate::arena::Arena;
 use crate::basis::{Basis, Family};
 use crate::error::Error;
 use crate::matrix::{Panel, Triangle};
-use crate::slices::{first_mut, from_mut};
+use crate::rows::{first_mut, from_mut};
 use core::iter;
 
 /// A streaming least-squares regressor (Alg. 1) over `DIMS` coordinates with `TERMS` terms, constant included, and

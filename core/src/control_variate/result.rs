@@ -6,6 +6,7 @@ use super::per_channel::PerChannel;
 use super::samples::Reader;
 use super::trust::Centre;
 use crate::real::Real;
+pub(crate) use crate::real::saturate;
 use core::hint::black_box;
 
 /// What an estimator found, in a design's units.
@@ -139,7 +140,7 @@ pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estim
     Estimate {
         mean: mean.map(saturate),
         std_error: error.map(standard_error),
-        samples: u32::try_from(summary.samples).unwrap_or(u32::MAX),
+        samples: summary.samples.min(u32::MAX.into()) as u32,
         gain: if counted > 0.0 { (gain / counted) as f32 } else { 1.0 },
     }
 }
@@ -147,9 +148,4 @@ pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estim
 /// As an `f32`: infinite if unknown or, as of values at the end of a narrow type's range, no number.
 pub(crate) fn standard_error(value: f64) -> f32 {
     if value.is_finite() { saturate(value) } else { f32::INFINITY }
-}
-
-/// The nearest finite `f32`: a fit to values near the type's end can reach beyond it.
-pub(crate) fn saturate(value: f64) -> f32 {
-    value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
 }

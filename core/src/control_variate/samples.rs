@@ -5,7 +5,7 @@ use crate::basis::{Basis, MAX_DIMS};
 use crate::error::Error;
 use crate::lanes::{LANES, Lanes};
 use crate::real::Real;
-use crate::slices::{at, first, from, halves_mut, row_at};
+use crate::rows::{at, first, from, halves_mut, row_at};
 
 use super::config::{Color, NonFinite};
 use super::folds::Fold;
@@ -373,7 +373,7 @@ impl<'a> Reader<'a> {
         }
         let mut sums = [0.0; 4];
         let used = self.each(Subset::All, |sample| {
-            for (sum, value) in sums.iter_mut().zip(self.colour(sample).unwrap_or_default()) {
+            for (sum, value) in sums.iter_mut().zip(self.colour(sample).into_iter().flatten()) {
                 *sum += value;
             }
         });

@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::linalg::givens;
 use crate::matrix::{Panel, Triangle, packed_len};
 use crate::real::Real;
-use crate::slices::{at, first_mut, row_at, row_at_mut};
+use crate::rows::{at, first_mut, row_at, row_at_mut};
 use core::ops::{Deref, DerefMut};
 
 /// What is kept of the samples' rows.

@@ -3,6 +3,7 @@
 use crate::lanes::{self, LANES, Lanes, dot};
 use crate::matrix::{Triangle, from, split_at};
 use crate::real::Real;
+use crate::rows::part;
 
 /// A pivot below this fraction of its diagonal entry, in units of the type's epsilon, is rounding noise. Its column
 /// then depends on earlier ones and gets coefficient zero.
@@ -150,7 +151,7 @@ pub(crate) fn forward_each<R: Real, const N: usize>(factors: &[Lanes<R>], first:
         let mut sums = *x_j;
         // Two at a time, or going through them takes as long as the arithmetic.
         let (pairs, rest) = from(before, first).as_chunks::<2>();
-        let (row, last) = row.get(first..j).unwrap_or_default().as_chunks::<2>();
+        let (row, last) = part(row, first, j - first).as_chunks::<2>();
         for ([x, y], [l, m]) in pairs.iter().zip(row) {
             for n in 0..N {
                 sums[n] = lanes::minus_product(lanes::minus_product(sums[n], x[n], *l), y[n], *m);

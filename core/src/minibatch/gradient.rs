@@ -5,8 +5,8 @@ use super::batch::Sample;
 use super::system::System;
 use crate::Error;
 use crate::mis::linear::Vector;
-use crate::mis::optimal::to_f32;
 use crate::mis::{MAX_TECHNIQUES, Solver};
+use crate::real::saturate;
 
 /// Parameters that are worked on together: their sums and a few rows of gradients stay in the first-level cache.
 const BLOCK: usize = 512;
@@ -223,7 +223,7 @@ fn add<'a>(averages: &mut [f32], len: usize, coefficients: &Coefficients, mut ro
 }
 
 /// Adds in an order that is the same on every processor.
-#[inline(always)]
+#[inline]
 fn add_four(sums: &mut [f32], rows: [&[f32]; ROWS], coefficients: &[f32; ROWS]) {
     let [a, b, c, d] = rows;
     let [ca, cb, cc, cd] = *coefficients;
@@ -242,5 +242,5 @@ fn solve(averages: &[f32], correction: &Vector, estimate: &mut [f32]) {
     for (average, c) in averages.chunks_exact(len.max(1)).zip(coefficients) {
         value.iter_mut().zip(average).for_each(|(value, &average)| *value -= c * f64::from(average));
     }
-    estimate.iter_mut().zip(value).for_each(|(out, value)| *out = to_f32(value));
+    estimate.iter_mut().zip(value).for_each(|(out, value)| *out = saturate(value));
 }

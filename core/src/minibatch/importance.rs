@@ -7,7 +7,7 @@
 
 use crate::Error;
 use crate::mis::MAX_TECHNIQUES;
-use crate::mis::optimal::to_f32;
+use crate::real::saturate;
 
 /// `|| softmax(logits) - onehot(label) ||`, the norm of (6.10): from 0 to the square root of 2.
 ///
@@ -20,7 +20,7 @@ use crate::mis::optimal::to_f32;
 /// ```
 pub fn cross_entropy(logits: &[f32], label: usize) -> f32 {
     match Softmax::new(logits, label) {
-        Some(s) => to_f32(libm::sqrt(s.others_squared + s.others * s.others) / s.sum),
+        Some(s) => saturate(libm::sqrt(s.others_squared + s.others * s.others) / s.sum),
         None => f32::NAN,
     }
 }
@@ -29,7 +29,7 @@ pub fn cross_entropy(logits: &[f32], label: usize) -> f32 {
 pub fn cross_entropy_loss(logits: &[f32], label: usize) -> f32 {
     match Softmax::new(logits, label) {
         // ln sum exp(z) - z_label, where the largest exp is 1: log1p of the others keeps a loss near 0 accurate.
-        Some(s) => to_f32(libm::log1p(s.not_largest) - s.label),
+        Some(s) => saturate(libm::log1p(s.not_largest) - s.label),
         None => f32::NAN,
     }
 }
@@ -64,14 +64,6 @@ pub fn gradient(gradient: &[f32]) -> f32 {
 }
 
 /// How [`nodes`] makes several importances of one derivative.
-///
-/// ```
-/// use noisefloor::minibatch::importance::{Split, nodes};
-/// let mut importance = [0.0; 2];
-/// nodes(&[3.0, 4.0, -2.0], Split::Norm, &mut importance)?; // nodes 0 and 2; node 1
-/// assert_eq!(importance, [13.0_f32.sqrt(), 4.0]);
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Split {
     /// One importance per group of output nodes: the norm over the group.
@@ -110,7 +102,7 @@ pub fn nodes(gradient: &[f32], split: Split, importance: &mut [f32]) -> Result<(
         for g in gradient.iter().skip(group).step_by(groups).map(|&g| f64::from(g)) {
             *(if split == Split::Sign && g < 0.0 { &mut *negative } else { &mut *positive }) += g * g;
         }
-        out.iter_mut().zip(squares).for_each(|(out, square)| *out = to_f32(libm::sqrt(square)));
+        out.iter_mut().zip(squares).for_each(|(out, square)| *out = saturate(libm::sqrt(square)));
     });
     Ok(())
 }

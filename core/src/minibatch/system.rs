@@ -90,9 +90,7 @@ impl System {
         let n = self.techniques;
         let samples = self.weight * self.counts.iter().sum::<f64>();
         let scale = self.counts.map(libm::sqrt);
-        Ok(match solver.factor(|| linear::scaled(&self.cells, 1.0, &scale, n), &scale, n, samples) {
-            Some(factor) => factor.solve_scaled(&scale, &self.error, 1.0),
-            None => Vector::default(),
-        })
+        let factor = solver.factor(|| linear::scaled(&self.cells, 1.0, &scale, n), &scale, n, samples);
+        Ok(factor.solve_scaled(&scale, &self.error, 1.0))
     }
 }

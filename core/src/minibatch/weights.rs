@@ -4,7 +4,7 @@ use super::Batch;
 use super::system::System;
 use crate::Error;
 use crate::mis::Solver;
-use crate::mis::optimal::to_f32;
+use crate::real::saturate;
 
 /// The optimal MIS gradient as weights: the gradient of the mean loss is `(1 / batch) sum_s weight[s] gradient_s`, for
 /// every parameter at once. One backward pass over the weighted losses computes it; no per-item gradient is needed
@@ -45,7 +45,7 @@ pub fn weights(batch: &Batch<'_>, solver: Solver, weight: &mut [f32]) -> Result<
     let scale = batch.len() as f64 / batch.items();
     for (weight, sample) in weight.iter_mut().zip(batch.samples()) {
         let control: f64 = correction.iter().zip(&sample.ratio).map(|(c, ratio)| c * ratio).sum();
-        *weight = to_f32((1.0 - control) * sample.balance * scale);
+        *weight = saturate((1.0 - control) * sample.balance * scale);
     }
     Ok(())
 }

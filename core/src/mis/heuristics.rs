@@ -3,7 +3,7 @@
 use super::limits::MAX_TECHNIQUES;
 use crate::Error;
 use crate::real::Real;
-use crate::slices::at;
+use crate::rows::at;
 
 /// The exponent that Veach recommends for [`power`].
 pub const DEFAULT_BETA: f32 = 2.0;

@@ -7,8 +7,17 @@ pub(crate) type Matrix = [Vector; MAX_TECHNIQUES];
 
 /// Something that solves M x = b for any number of right-hand sides; only the first `n` unknowns are used.
 pub(crate) enum Factor {
-    Cholesky { lower: Matrix, n: usize },
-    Spectral { vectors: Matrix, inverse: Vector, n: usize },
+    /// Of x = 0, whatever b is.
+    Zero,
+    Cholesky {
+        lower: Matrix,
+        n: usize,
+    },
+    Spectral {
+        vectors: Matrix,
+        inverse: Vector,
+        n: usize,
+    },
 }
 
 /// Eigenvalues below this part of the largest are taken for rounding errors of 0.
@@ -68,6 +77,7 @@ impl Factor {
     pub(crate) fn solve(&self, b: &Vector) -> Vector {
         let mut x = Vector::default();
         match self {
+            Factor::Zero => {}
             Factor::Cholesky { lower, n } => {
                 let n = (*n).min(MAX_TECHNIQUES);
                 // L y = b, then L' x = y with one row of L at a time.

@@ -16,6 +16,7 @@ use super::limits::MAX_TECHNIQUES;
 use super::linear::{self, Factor, Matrix, Vector};
 use super::memory::{Sums, SumsMut, len, sums_len};
 use crate::Error;
+use crate::real::saturate;
 use crate::rows::{rows, rows_mut};
 
 /// The ridge of [`Solver::default`], in samples: less loses to the balance heuristic where a few samples must tell
@@ -70,18 +71,12 @@ impl Solver {
         }
     }
 
-    /// The factorised `matrix` of [`linear::scaled`] with `scale`, for a solver that needs it. It was estimated from so
-    /// many `samples`.
-    pub(crate) fn factor(
-        self,
-        matrix: impl FnOnce() -> Matrix,
-        scale: &Vector,
-        n: usize,
-        samples: f64,
-    ) -> Option<Factor> {
+    /// The factorised `matrix` of [`linear::scaled`] with `scale`, which was estimated from so many `samples`; one that
+    /// makes every alpha 0 where a solver needs none.
+    pub(crate) fn factor(self, matrix: impl FnOnce() -> Matrix, scale: &Vector, n: usize, samples: f64) -> Factor {
         match self {
-            Solver::Balance | Solver::Progressive => None,
-            Solver::Plain => Some(Factor::spectral(matrix(), n)),
+            Solver::Balance | Solver::Progressive => Factor::Zero,
+            Solver::Plain => Factor::spectral(matrix(), n),
             Solver::Ridge(ridge) => {
                 let mut matrix = matrix();
                 let trace: f64 = matrix.iter().enumerate().map(|(i, row)| row[i]).sum();
@@ -89,7 +84,7 @@ impl Solver {
                 let diagonal = f64::from(ridge) * differences / samples.max(LEAST_SAMPLES);
                 let diagonal = diagonal.max(LEAST_RIDGE * trace);
                 matrix.iter_mut().enumerate().for_each(|(i, row)| row[i] += diagonal);
-                Some(Factor::cholesky(matrix, n))
+                Factor::cholesky(matrix, n)
             }
         }
     }
@@ -164,14 +159,14 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         let factor = self.factor(solver)?;
         let scale = root_counts(&self.counts);
         for (out, record) in estimate.iter_mut().zip(sums.records()) {
-            *out = to_f32(match (&factor, solver) {
-                (Some(factor), _) => {
+            *out = saturate(match solver {
+                Solver::Progressive => record.progressive / rounds,
+                Solver::Balance => record.balance / rounds,
+                Solver::Plain | Solver::Ridge(_) => {
                     let alpha = factor.solve_scaled(&scale, record.moment, rounds);
                     let error = sums.ratio.iter().zip(&alpha).map(|(ratio, alpha)| (ratio / rounds - 1.0) * alpha);
                     record.balance / rounds - error.sum::<f64>()
                 }
-                (None, Solver::Progressive) => record.progressive / rounds,
-                (None, _) => record.balance / rounds,
             });
         }
         Ok(())
@@ -190,19 +185,19 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         let factor = self.factor(solver)?;
         let (_, current) = self.split()?;
         if solver == Solver::Progressive {
-            alpha.iter_mut().zip(current).for_each(|(out, &alpha)| *out = to_f32(alpha));
+            alpha.iter_mut().zip(current).for_each(|(out, &alpha)| *out = saturate(alpha));
             return Ok(());
         }
         let scale = root_counts(&self.counts);
         for (row, record) in rows_mut(alpha, self.techniques).zip(sums.records()) {
-            let solved = factor.as_ref().map(|factor| factor.solve_scaled(&scale, record.moment, rounds));
-            row.iter_mut().zip(solved.unwrap_or_default()).for_each(|(out, alpha)| *out = to_f32(alpha));
+            let solved = factor.solve_scaled(&scale, record.moment, rounds);
+            row.iter_mut().zip(solved).for_each(|(out, alpha)| *out = saturate(alpha));
         }
         Ok(())
     }
 
-    /// The factorised system of a solver that needs one.
-    fn factor(&self, solver: Solver) -> Result<Option<Factor>, Error> {
+    /// The factorised system.
+    fn factor(&self, solver: Solver) -> Result<Factor, Error> {
         solver.check()?;
         let (sums, rounds) = self.sums()?;
         let (n, scale) = (self.techniques, root_counts(&self.counts));
@@ -296,21 +291,6 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     ///
     /// Errors, which change nothing: [`Error::Unsupported`] for [`Solver::Progressive`]; others as for
     /// [`OptimalMis::solve`].
-    ///
-    /// ```
-    /// use noisefloor::mis::{self, OptimalMis, Solver};
-    ///
-    /// let mut omis = OptimalMis::new([0.0; mis::len(2, 1)], &[1, 1], 1)?;
-    /// omis.add(0, &[1.0, 0.5], &[3.0])?; // f = 3 p_0
-    /// omis.add(1, &[1.0, 1.5], &[3.0])?;
-    /// omis.next_batch(Solver::default())?; // its alpha serves the samples that follow
-    /// omis.add(0, &[1.0, 0.7], &[3.0])?;
-    /// omis.add(1, &[1.0, 1.2], &[3.0])?;
-    /// let mut estimate = [0.0];
-    /// omis.solve(Solver::Progressive, &mut estimate)?;
-    /// # assert!((estimate[0] - 3.0).abs() < 1.0);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn next_batch(&mut self, solver: Solver) -> Result<(), Error> {
         if solver == Solver::Progressive {
             return Err(Error::Unsupported);
@@ -321,8 +301,8 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         let (sums, alphas) = self.split_mut()?;
         let sums = Sums::of(sums, techniques).ok_or(Error::Memory)?;
         for (alpha, record) in rows_mut(alphas, techniques).zip(sums.records()) {
-            let solved = factor.as_ref().map(|factor| factor.solve_scaled(&scale, record.moment, rounds));
-            alpha.iter_mut().zip(solved.unwrap_or_default()).for_each(|(alpha, solved)| *alpha = solved);
+            let solved = factor.solve_scaled(&scale, record.moment, rounds);
+            alpha.iter_mut().zip(solved).for_each(|(alpha, solved)| *alpha = solved);
         }
         Ok(())
     }
@@ -345,20 +325,6 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// Adds the samples of `other`, of another thread or pass. The progressive estimator's alpha stays this one's.
     ///
     /// Errors: [`Error::Mismatch`] unless both have the same counts and number of integrals.
-    ///
-    /// ```
-    /// use noisefloor::mis::{self, OptimalMis, Solver};
-    ///
-    /// let mut omis = OptimalMis::new([0.0; mis::len(2, 1)], &[1, 1], 1)?;
-    /// let mut other = omis.clone(); // another thread's
-    /// other.add(0, &[1.0, 0.5], &[3.0])?;
-    /// omis.add(1, &[1.0, 1.5], &[3.0])?;
-    /// omis.merge(&other)?;
-    /// let mut estimate = [0.0];
-    /// omis.solve(Solver::Balance, &mut estimate)?;
-    /// # assert!(estimate[0] > 0.0);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn merge<N: AsRef<[f64]>>(&mut self, other: &OptimalMis<N>) -> Result<(), Error> {
         let like = self.techniques == other.techniques && self.integrals == other.integrals;
         if !like || !same(&self.counts, &other.counts) {
@@ -382,9 +348,4 @@ fn same(a: &[u32; MAX_TECHNIQUES], b: &[u32; MAX_TECHNIQUES]) -> bool {
 
 fn root_counts(counts: &[u32; MAX_TECHNIQUES]) -> Vector {
     counts.map(|count| libm::sqrt(f64::from(count)))
-}
-
-/// Rounds to f32, a value beyond its range to the largest finite one.
-pub(crate) fn to_f32(value: f64) -> f32 {
-    value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
 }

@@ -28,7 +28,7 @@ pub mod table;
 pub use crate::pixels::{PixelSampler, fill, fill_len};
 
 use crate::hash::{GOLDEN, child, mix};
-use crate::slices::first_mut;
+use crate::rows::first_mut;
 
 /// One sample of one pixel: 16 bytes, to be copied freely. Drawing does not change it. Any value of the fields is
 /// valid.
@@ -36,15 +36,6 @@ use crate::slices::first_mut;
 /// A sampler stands for a point of a cube with as many dimensions as are asked for, by domain: each decision of a path
 /// has its own, [`domain`](Sampler::domain) with a key of its own. A domain's numbers depend on nothing but pixel,
 /// frame, index and the keys, so samples can be had in any order and on any thread.
-///
-/// ```
-/// use noisefloor::sampler::Sampler;
-///
-/// let sampler = Sampler::pixel(10, 20, 0, 3);
-/// let [a, b, c] = sampler.domain(7).draw(); // a decision, as many numbers as it needs
-/// assert!([a, b, c].iter().all(|u| (0.0..1.0).contains(u)));
-/// assert_eq!(Sampler::pixel(10, 20, 0, 0).moved(0, 0, 3), sampler);
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Sampler {
     /// The domain: 0 is the root, others are hashes of the keys that led there.

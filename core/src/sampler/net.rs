@@ -7,7 +7,7 @@
 use super::table::{BITS, SIZE, TABLE, fine, pascal};
 use super::{HASHED, Sampler};
 use crate::hash::{GOLDEN, mix};
-use crate::slices::chunk;
+use crate::rows::chunk;
 
 /// The point in 32-bit fixed point.
 #[inline(always)]
@@ -34,7 +34,7 @@ pub(super) fn point<const N: usize>(sampler: &Sampler) -> [u32; N] {
 
 /// Where in the table a domain's pixel is: at another place, and mirrored and transposed or not, which keeps neighbours
 /// neighbours.
-#[inline(always)]
+#[inline]
 const fn place(domain: u32, x: u32, y: u32) -> (u32, u32) {
     let (x, y) = if domain >> 31 == 0 { (x, y) } else { (y, x) };
     let (across, down) = ((domain >> 30 & 1).wrapping_neg(), (domain >> 29 & 1).wrapping_neg());
@@ -46,7 +46,7 @@ const fn place(domain: u32, x: u32, y: u32) -> (u32, u32) {
 /// domains would be the same function of its number in all pixels.
 ///
 /// Each digit is exclusive-or a function of the digits after it, as both steps take bits upwards only.
-#[inline(always)]
+#[inline]
 const fn reorder(first: u32, domain: u32, x: u32, y: u32) -> u32 {
     let mut random = domain.wrapping_add(x.wrapping_mul(0x2c1b_3c6d)).wrapping_add(y.wrapping_mul(0x297a_2d39));
     random = (random ^ random >> 15).wrapping_mul(0x735a_2d97);
@@ -67,7 +67,7 @@ fn pair(x: u32, y: u32, first: u32) -> [u32; 2] {
 /// The reversed number at which the third and the fourth number are drawn: the first nine digits times a unit
 /// triangular matrix. Found by search: of points in four dimensions the first 4 to 512 are (t, m, 4)-nets, t from 1 to
 /// 3, and of such matrices this one has the best projections on two of the four.
-#[inline(always)]
+#[inline]
 fn second(first: u32) -> u32 {
     first & 0x007f_ffff | u32::from(SECOND[(first >> 23) as usize]) << 16
 }

@@ -27,16 +27,15 @@
 //! ```
 
 mod builtin;
+mod draw;
 mod format;
 mod hash;
 mod net;
 mod point;
-mod run;
 mod sampler;
 mod sequence;
 mod shape;
 mod site;
-mod state;
 mod view;
 
 pub use crate::pixels::{PixelSampler, fill, fill_len};
@@ -44,5 +43,4 @@ pub use builtin::Builtin;
 pub use format::{HEADER_BYTES, Header, KERNEL_BYTES, MAGIC, VERSION, quantize};
 pub use sampler::Sampler;
 pub use shape::{MAX_DIMS, MAX_FRAMES, MAX_SIZE, MAX_SPP, Shape};
-pub use state::State;
 pub use view::Tile;

@@ -1,9 +1,7 @@
 //! The sampler: one sample of one pixel, and the domains below it.
 
-use super::point::point;
-use super::site::Site;
-use super::state::State;
-use super::view::{Tile, unit};
+use super::view::Tile;
+use crate::hash::child;
 
 /// One sample of one pixel: 24 bytes, to be copied freely. Drawing does not change it.
 ///
@@ -25,9 +23,25 @@ use super::view::{Tile, unit};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sampler<'a> {
-    tile: &'a Tile<'a>,
-    state: State,
+    /// The tile it draws from.
+    pub tile: &'a Tile<'a>,
+    /// The domain: 0 is the root, others are hashes of the keys that led there.
+    pub domain: u32,
+    /// The sample of the pixel.
+    pub index: u32,
+    /// The pixel's column, modulo the tile's size.
+    pub x: u16,
+    /// The pixel's row, modulo the tile's size.
+    pub y: u16,
+    /// The frame, modulo the tile's frames.
+    pub frame: u16,
+    /// 1 if scrambled, otherwise 0.
+    pub scrambled: u16,
 }
+
+/// Keeps domains of frames and scrambles apart from those of keys.
+const FRAMES: u32 = 0x6672_616d;
+const SCRAMBLE: u32 = 0x7363_7261;
 
 impl<'a> Sampler<'a> {
     /// Sample `index` of pixel (x, y), any values: pixels repeat with the tile's size.
@@ -39,25 +53,12 @@ impl<'a> Sampler<'a> {
     /// tile at another place, unrelated to it.
     #[inline]
     pub const fn pixel(tile: &'a Tile<'a>, x: u32, y: u32, frame: u32, index: u32) -> Sampler<'a> {
-        Sampler { tile, state: State::pixel(tile, x, y, frame, index) }
-    }
-
-    /// The sampler of a state that was kept: [`Sampler::state`].
-    #[inline]
-    pub const fn resume(tile: &'a Tile<'a>, state: State) -> Sampler<'a> {
-        Sampler { tile, state }
-    }
-
-    /// What remains when the tile is known.
-    #[inline]
-    pub const fn state(&self) -> State {
-        self.state
-    }
-
-    /// The tile it draws from.
-    #[inline]
-    pub const fn tile(&self) -> &'a Tile<'a> {
-        self.tile
+        let shape = tile.shape();
+        let mask = shape.size.wrapping_sub(1);
+        let (frame, cycle) = if shape.frames > 1 { (frame % shape.frames, frame / shape.frames) } else { (0, frame) };
+        let domain = if cycle == 0 { 0 } else { child(FRAMES, cycle) };
+        let (x, y, frame) = ((x & mask) as u16, (y & mask) as u16, frame as u16);
+        Sampler { tile, domain, index, x, y, frame, scrambled: 0 }
     }
 
     /// The child domain of a key. Children of different keys are unrelated to each other and to their parent; keys mean
@@ -65,7 +66,7 @@ impl<'a> Sampler<'a> {
     #[inline]
     #[must_use]
     pub const fn domain(self, key: u32) -> Sampler<'a> {
-        Sampler { state: self.state.domain(key), ..self }
+        Sampler { domain: child(self.domain, key), ..self }
     }
 
     /// An independent version for each seed but 0; seed 0 changes nothing.
@@ -77,7 +78,10 @@ impl<'a> Sampler<'a> {
     #[inline]
     #[must_use]
     pub const fn scramble(self, seed: u32) -> Sampler<'a> {
-        Sampler { state: self.state.scramble(seed), ..self }
+        if seed == 0 {
+            return self;
+        }
+        Sampler { domain: child(self.domain ^ SCRAMBLE, seed), scrambled: 1, ..self }
     }
 
     /// The same domain of the pixel `x` columns to the right and `y` rows down, and of the sample `index` further.
@@ -85,48 +89,8 @@ impl<'a> Sampler<'a> {
     #[must_use]
     pub const fn moved(self, x: u32, y: u32, index: u32) -> Sampler<'a> {
         let mask = self.tile.shape().size.wrapping_sub(1);
-        let State { x: from_x, y: from_y, index: from, .. } = self.state;
-        let x = ((from_x as u32).wrapping_add(x) & mask) as u16;
-        let y = ((from_y as u32).wrapping_add(y) & mask) as u16;
-        Sampler { state: State { x, y, index: from.wrapping_add(index), ..self.state }, ..self }
-    }
-
-    /// The first N coordinates, 1 to 4, of this domain's point; each in [0, 1), a multiple of 2^-24.
-    ///
-    /// Up to the tile's dims they are optimised together; further ones come from other places of the tile. If it has at
-    /// least two dimensions and samples, and is not progressive, each further coordinate of its samples is stratified,
-    /// and the third of a tile of two dimensions with those two, as far as the samples are in the order in which `fsot`
-    /// writes them.
-    #[inline(always)]
-    pub fn draw<const N: usize>(&self) -> [f32; N] {
-        let mut u = [0.0; N];
-        if self.draw_stored(&mut u) { u } else { point(self.tile, &self.state).map(unit) }
-    }
-
-    /// [`draw`](Sampler::draw), if that needs little but to look up stored values: for indices below the tile's spp, at
-    /// most 16, in unscrambled samplers, with no more dimensions than the tile has. Otherwise returns false and writes
-    /// nothing; the root's are stored at any spp.
-    #[inline(always)]
-    pub fn draw_stored<const N: usize>(&self, u: &mut [f32; N]) -> bool {
-        const { assert!(0 < N && N <= 4, "a domain has 1 to 4 dimensions") };
-        let (shape, state) = (self.tile.shape(), &self.state);
-        if N > shape.dims as usize || state.index >= shape.spp || state.scrambled != 0 {
-            return false;
-        }
-        let site = Site::new(self.tile, state);
-        let Some(sample) = site.looked_up(shape, state.domain, state.index) else { return false };
-        self.tile.values(site.at(shape, sample), u)
-    }
-
-    /// As [`draw`](Sampler::draw), as many coordinates as `u` has room for, at most 4; more stay as they are.
-    #[inline]
-    pub fn draw_into(&self, u: &mut [f32]) {
-        match u {
-            [a] => [*a] = self.draw(),
-            [a, b] => [*a, *b] = self.draw(),
-            [a, b, c] => [*a, *b, *c] = self.draw(),
-            [a, b, c, d, ..] => [*a, *b, *c, *d] = self.draw(),
-            [] => {}
-        }
+        let x = ((self.x as u32).wrapping_add(x) & mask) as u16;
+        let y = ((self.y as u32).wrapping_add(y) & mask) as u16;
+        Sampler { x, y, index: self.index.wrapping_add(index), ..self }
     }
 }

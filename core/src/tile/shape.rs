@@ -12,13 +12,6 @@ pub const MAX_DIMS: u32 = 8;
 pub const MAX_FRAMES: u32 = 256;
 
 /// How many values a tile has, and how they are stored.
-///
-/// ```
-/// use noisefloor::tile::Shape;
-/// let shape = Shape { size: 128, spp: 4, dims: 2, frames: 1, bits: 16, progressive: false };
-/// assert!(shape.is_valid());
-/// assert_eq!(shape.payload_bytes(), 128 * 128 * 4 * 2 * 2);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
     /// Pixels on a side: a power of two, 1 to [`MAX_SIZE`].

@@ -2,8 +2,8 @@
 
 use super::hash::{permute, permute_few, permute_octave, permute_octave_few};
 use super::net;
+use super::sampler::Sampler;
 use super::shape::Shape;
-use super::state::State;
 use super::view::Tile;
 use crate::hash::mix;
 
@@ -18,11 +18,11 @@ pub(super) struct Site {
 
 impl Site {
     #[inline(always)]
-    pub(super) const fn new(tile: &Tile<'_>, state: &State) -> Site {
-        let (x, y) = place(state, tile.shape().size);
-        let pixel = x | y << 10 | (state.frame as u32) << 20;
-        let random = mix(state.domain ^ pixel.wrapping_mul(0x9e37_79b1));
-        Site { start: tile.place(state.frame as u32, y, x, 0), random }
+    pub(super) const fn new(of: &Sampler<'_>) -> Site {
+        let (x, y) = place(of);
+        let pixel = x | y << 10 | (of.frame as u32) << 20;
+        let random = mix(of.domain ^ pixel.wrapping_mul(0x9e37_79b1));
+        Site { start: of.tile.place(of.frame as u32, y, x, 0), random }
     }
 
     /// Where one of the tile's samples begins.
@@ -74,9 +74,9 @@ impl Site {
 /// Where in the tile a domain finds the pixel: a shift and one of the eight symmetries of the square; for the root
 /// neither.
 #[inline(always)]
-const fn place(state: &State, size: u32) -> (u32, u32) {
-    let State { domain, x, y, .. } = *state;
-    let (x, y, mask) = (x as u32, y as u32, size.wrapping_sub(1));
+const fn place(of: &Sampler<'_>) -> (u32, u32) {
+    let Sampler { tile, domain, x, y, .. } = *of;
+    let (x, y, mask) = (x as u32, y as u32, tile.shape().size.wrapping_sub(1));
     if domain == 0 {
         return (x, y);
     }

@@ -99,7 +99,7 @@ impl<'a, R: Real> Normal<'a, R> {
     }
 
     /// Writes the coefficients of a fit, a row for each channel, and returns the factored matrix.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn solve<'f>(
         &self,
         penalty: Penalty<'_, R>,

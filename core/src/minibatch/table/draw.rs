@@ -6,8 +6,8 @@ use super::kernel::Kernel;
 use super::mixture::{Mixture, Ways};
 use super::tree::{self, CHILDREN, Levels, Node};
 use crate::Error;
-use crate::rng::Rng;
-use crate::slices::halves;
+use crate::rng::{Rng, split_mix};
+use crate::rows::{from, halves};
 
 /// How many draws go down the tree together: enough to hide the latency of memory, few enough for the first cache.
 pub(super) const CHUNK: usize = 64;
@@ -234,8 +234,7 @@ impl<'a> Descent<'a> {
             (*place, *rest) = at;
             self.prefetch::<K>(far.last(), *place);
         }
-        let (_, between) = far.split_first().unwrap_or((&0, &[]));
-        for (below, start) in far.iter().zip(between).rev() {
+        for (below, start) in far.iter().zip(from(far, 1)).rev() {
             for (place, rest) in place.iter_mut().zip(rest.iter_mut()).take(draws) {
                 self.step::<K>(*start, place, rest);
                 self.prefetch::<K>(Some(below), *place);
@@ -244,7 +243,7 @@ impl<'a> Descent<'a> {
     }
 
     /// From a node of the level that starts at `start` to one of its children.
-    #[inline(always)]
+    #[inline]
     fn step<K: Kernel>(&self, start: usize, place: &mut u32, rest: &mut i64) {
         let Some(node) = self.nodes.get(start + *place as usize) else { return };
         let child = K::find_child(node, *rest) % CHILDREN;
@@ -283,11 +282,8 @@ fn high_product(bits: u64, n: u64) -> u64 {
     ((u128::from(bits) * u128::from(n)) >> 64) as u64
 }
 
-/// The `k`-th number of the SplitMix64 stream that starts behind `seed`: draws need no order.
+/// The bits of draw `k`: draws need no order.
 #[inline]
 fn noise(seed: u64, k: u64) -> u64 {
-    let mut z = seed.wrapping_add(k.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
+    split_mix(seed, k.wrapping_add(1))
 }

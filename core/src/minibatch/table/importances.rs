@@ -5,7 +5,7 @@ use super::kernel::{Kernel, Portable};
 use super::mixture::Mixture;
 use super::tree::{self, CHILDREN, Levels, MAX_BLOCKS, Node};
 use crate::Error;
-use crate::slices::{at, first};
+use crate::rows::{at, first};
 use core::marker::PhantomData;
 
 /// The uniform fraction of a new table: no weight above 5. Measured best on classification (.2 to .5 are close).
@@ -24,16 +24,6 @@ pub const fn sums_len(items: u32) -> usize {
 }
 
 /// What a table knows besides its memory; see [`Table::resume`].
-///
-/// ```
-/// use noisefloor::minibatch::{Table, table};
-///
-/// let (mut importance, mut sums) = ([0.0; table::importance_len(4)], [0; table::sums_len(4)]);
-/// let state = Table::new(&mut importance, &mut sums, 4, None)?.state(); // with the memory, all there is of a table
-/// let table = Table::resume(&mut importance, &mut sums, state)?;
-/// assert_eq!((table.items(), table.total()), (4, 4.0));
-/// # Ok::<(), noisefloor::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     /// What an importance is multiplied by to give its weight in the sums: a power of two.
@@ -144,7 +134,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
 
     /// How many items there is room for.
     pub fn capacity(&self) -> u32 {
-        u32::try_from(self.blocks * ARITY).unwrap_or(u32::MAX)
+        (self.blocks * ARITY).min(u32::MAX as usize) as u32
     }
 
     /// The sum of all importances, as the tree has it: each block's sum is rounded, by 1 / 2^50 of all or so.
@@ -168,18 +158,6 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     ///
     /// Errors: [`Error::Range`] for an item that does not exist, `stride` 0, or a `probability` that ends before its
     /// last element; [`Error::NoSamples`] as for [`Table::draw`].
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let memory = ([0.0; table::importance_len(4)], [0; table::sums_len(4)]);
-    /// let table = Table::new(memory.0, memory.1, 4, Some(&[1.0, 2.0, 3.0, 4.0]))?;
-    /// // Rows for two techniques, of which this is the first.
-    /// let mut rows = [0.0; 4];
-    /// table.probabilities(&[3, 0], 2, &mut rows)?;
-    /// assert_eq!((rows[0], rows[2]), (table.probability(3), table.probability(0)));
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn probabilities(&self, index: &[u32], stride: usize, probability: &mut [f32]) -> Result<(), Error> {
         let Some(last) = index.len().checked_sub(1) else { return Ok(()) };
         let fits = last.checked_mul(stride).is_some_and(|last| last < probability.len());

@@ -83,7 +83,7 @@ impl Scale {
         let right = n.leading_zeros().clamp(2, 64) - 2;
         // Rounded up, so that the last number is reached.
         let factor = (u128::from(n << right) << 64) / stretched + 1;
-        let factor = u64::try_from(factor).unwrap_or(u64::MAX);
+        let factor = factor.min(u64::MAX.into()) as u64;
         Scale { first, left, factor, right, last: n.saturating_sub(1) }
     }
 

@@ -7,7 +7,7 @@ use super::importances::{State, Table, is_scale};
 use super::kernel::Kernel;
 use crate::Error;
 use crate::checksum::Crc;
-use crate::slices::{first, from, from_mut};
+use crate::rows::{first, from, from_mut};
 
 /// Bytes before the importances.
 pub const HEADER_BYTES: usize = 32;
@@ -27,17 +27,6 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// generator.
     ///
     /// Errors: [`Error::Length`] for another number of bytes.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    ///
-    /// let table = Table::new([0.0; table::importance_len(4)], [0; table::sums_len(4)], 4, None)?;
-    /// let mut bytes = [0; table::saved_len(4)];
-    /// table.save(&mut bytes)?;
-    /// let (importance, sums) = ([0.0; table::importance_len(4)], [0; table::sums_len(4)]);
-    /// assert_eq!(Table::load(importance, sums, &bytes)?.importance(3), 1.0);
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     pub fn save(&self, bytes: &mut [u8]) -> Result<(), Error> {
         let items = self.state.items;
         if bytes.len() != saved_len(items) {

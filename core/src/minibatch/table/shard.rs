@@ -126,21 +126,6 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// Errors: [`Error::Range`] for another number of weights, or if `all` is less than this table alone;
     /// [`Error::NotFinite`]; [`Error::NoSamples`] if nothing can be drawn from any,
     /// or from this table and `index` is not empty. Where `all` dwarfs this table a weight may be infinite.
-    ///
-    /// ```
-    /// use noisefloor::minibatch::{Table, table};
-    /// use noisefloor::rng::Rng;
-    ///
-    /// let memory = || ([0.0; table::importance_len(2)], [0; table::sums_len(2)]);
-    /// let part = |importance: &[f32]| Table::new(memory().0, memory().1, 2, Some(importance));
-    /// let (mine, other) = (part(&[3.0, 1.0])?, part(&[4.0, 8.0])?);
-    /// let all = table::Shard::sum([mine.shard(), other.shard()])?;
-    /// let (mut index, mut weight) = ([0; 4], [0.0; 4]);
-    /// mine.draw_shard(&all, &mut Rng::seed(1), &mut index, Some(&mut weight))?;
-    /// // Of 4 items in all: (1 - .2) * 3 / 16 + .2 / 4 is item 0's probability.
-    /// assert!(index.iter().zip(weight).all(|(&i, w)| i != 0 || (w - 1.0 / (4.0 * 0.2)).abs() < 1e-5));
-    /// # Ok::<(), noisefloor::Error>(())
-    /// ```
     #[inline]
     pub fn draw_shard(
         &self,

@@ -5,7 +5,7 @@ use super::importances::{Table, check_importances, power_of_two};
 use super::kernel::{Kernel, Portable};
 use super::tree::{self, CHILDREN, Levels, Node};
 use crate::Error;
-use crate::slices::{first_mut, halves_mut};
+use crate::rows::{first_mut, from, halves_mut};
 
 /// How many changes go up the tree together.
 const CHUNK: usize = 64;
@@ -123,7 +123,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
         let scale = self.state.scale;
         let levels = self.levels;
         let (blocks, nodes) = self.parts();
-        let (lowest, upper) = levels.starts().split_first().unwrap_or((&0, &[]));
+        let upper = from(levels.starts(), 1);
         // For each change the block and by how much its weight differs.
         let mut pending = [(0u32, 0i64); CHUNK];
         let mut count = 0;
@@ -132,7 +132,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
         let mut fresh = 0i64;
         for (pending, (item, change)) in pending.iter_mut().zip(changes) {
             let which = item as usize / ARITY;
-            let (Some(block), Some(node)) = (blocks.get_mut(which), nodes.get_mut(lowest + which / CHILDREN)) else {
+            let (Some(block), Some(node)) = (blocks.get_mut(which), nodes.get_mut(which / CHILDREN)) else {
                 continue;
             };
             let item = item as usize % ARITY;
