@@ -32,7 +32,7 @@ inline Image read_pfm(const std::string &path)
 {
     std::unique_ptr<FILE, int (*)(FILE *)> file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (!file)
-        throw std::runtime_error("cannot read " + path);
+        throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno));
     uint32_t width = 0, height = 0;
     float scale = 0;
     if (std::fscanf(file.get(), "PF %u %u %f", &width, &height, &scale) != 3 || std::fgetc(file.get()) == EOF)
@@ -67,7 +67,7 @@ public:
         std::string temporary = path + ".partial";
         FILE *file = std::fopen(temporary.c_str(), "wb");
         if (!file)
-            throw std::runtime_error("cannot create " + temporary);
+            throw std::runtime_error("cannot create " + temporary + ": " + std::strerror(errno));
         files_.emplace_back(temporary, path);
         // The sign of the scale tells the byte order.
         bool good =

@@ -8,6 +8,7 @@
 #include "tile_sampler.hpp"
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <thread>
 
 namespace demo {
@@ -200,6 +201,10 @@ inline bool parse(int argc, char **argv, const Program &program, Options &option
         else
             throw std::runtime_error("unknown option `" + name + "`; --help lists them");
     }
+    const std::filesystem::path folder = std::filesystem::path(options.output).parent_path();
+    if (!folder.empty() && !std::filesystem::is_directory(folder))
+        throw std::runtime_error("--output " + options.output + ": there is no folder " + folder.string() +
+                                 "; create it first");
     if (options.mis && !named) {
         options.estimators.clear();
         for (const MisEstimatorName &estimator : mis_estimator_names)

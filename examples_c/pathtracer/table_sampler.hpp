@@ -2,6 +2,7 @@
 #pragma once
 
 #include "samplers.hpp"
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -23,7 +24,7 @@ struct PointTable {
             throw std::runtime_error("the sampler `table` needs --table FILE");
         std::unique_ptr<FILE, int (*)(FILE *)> file(std::fopen(path.c_str(), "rb"), std::fclose);
         if (!file)
-            throw std::runtime_error("cannot read " + path);
+            throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno));
         char line[128];
         if (!std::fgets(line, sizeof line, file.get()) ||
             std::sscanf(line, "noisefloor-points %u %u %u %u", &width, &height, &samples, &dims) != 4 ||

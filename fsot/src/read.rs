@@ -190,7 +190,8 @@ fn json(text: &str) -> std::result::Result<Table, String> {
 
 fn csv(text: &str) -> std::result::Result<Table, String> {
     let mut builder = csv::ReaderBuilder::new();
-    builder.has_headers(false).comment(Some(b'#')).trim(csv::Trim::All);
+    // Rows of other lengths get the sentence of `rows`.
+    builder.has_headers(false).flexible(true).comment(Some(b'#')).trim(csv::Trim::All);
     let mut wrong = None;
     let records = builder.from_reader(text.as_bytes()).into_records().map_while(|record| {
         let record: csv::StringRecord = record.map_err(|error| wrong = Some(error.to_string())).ok()?;

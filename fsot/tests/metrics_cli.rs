@@ -130,6 +130,8 @@ fn bad_input_is_refused_and_nothing_written() {
     let nan = file(&folder, "nan.txt", "0.1 0.2\nNaN 0.5\n");
     let word = file(&folder, "word.txt", "0.1 0.2\n0.3 zero\n");
     let ragged = file(&folder, "ragged.txt", "0.1 0.2\n0.3\n");
+    let ragged_csv = file(&folder, "ragged.csv", "0.1,0.2\n0.3\n");
+    let table = file(&folder, "table.bin", "no table");
     let empty = file(&folder, "empty.txt", "");
     let tile = file(&folder, "tile.nft", "not a tile");
     let out = folder.path().join("out.png");
@@ -140,6 +142,8 @@ fn bad_input_is_refused_and_nothing_written() {
     fail(&folder, &["measure", &nan], &["nan.txt", "line 2", "NaN"]);
     fail(&folder, &["measure", &word], &["word.txt", "line 2", "zero"]);
     fail(&folder, &["measure", &ragged], &["ragged.txt", "line 2"]);
+    fail(&folder, &["measure", &ragged_csv], &["ragged.csv", "line 2 has 1 column"]);
+    fail(&folder, &["measure", "--scenes", "/nowhere", &table], &["table.bin", "table.toml", "fsot sampler"]);
     fail(&folder, &["measure", &empty], &["empty.txt"]);
     fail(&folder, &["measure", &tile], &["tile.nft"]);
     fail(&folder, &["measure", "--size", "7", &good], &["64 points", "7x7"]);

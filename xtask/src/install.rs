@@ -1,7 +1,7 @@
 //! `cargo xtask install`: what capi/CMakeLists.txt describes, with cargo's target folder shared.
 
 use crate::{library, paths, run, tools};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -16,10 +16,7 @@ pub struct Options {
 }
 
 pub fn run(options: &Options) -> Result<()> {
-    let missing = tools::missing(["cmake", "cc", "ld", "nm", "objcopy"].map(run::command));
-    if !missing.is_empty() {
-        bail!("missing: {}. On Debian: apt-get install cmake gcc libc6-dev binutils", missing.join(", "));
-    }
+    tools::need(&["cmake", "cc", "ld", "nm", "objcopy"], "cmake gcc libc6-dev binutils")?;
     // A relative prefix is the caller's, not the workspace's.
     let prefix = std::path::absolute(&options.prefix)
         .with_context(|| format!("cannot install into {}", options.prefix.display()))?;

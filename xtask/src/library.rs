@@ -1,6 +1,6 @@
 //! The C library: one relocatable object, so that nothing but `nf_*` is visible and nothing is undefined.
 
-use crate::{paths, run};
+use crate::{paths, run, tools};
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,6 +15,7 @@ const RISC_V_32: (&str, &str) = ("LDEMULATION", "elf32lriscv");
 ///
 /// capi/cmake/one_object.sh, which the CMake build uses too, says why cargo's own archive is not the one.
 pub fn build() -> Result<PathBuf> {
+    tools::need(&["cc", "ld", "ar", "nm", "objcopy"], "gcc libc6-dev binutils")?;
     run::compile(run::cargo().args(["build", "--release", "--package", "noisefloor-capi"]))?;
     one_object(&paths::target().join("release/libnoisefloor.a"), &paths::output(), "")
 }

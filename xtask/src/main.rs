@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use xtask::*;
 
 #[derive(Parser)]
-#[command(name = "cargo xtask", about = "Build, test and demonstrate noisefloor")]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", about = "Build, test and demonstrate noisefloor")]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -22,16 +22,20 @@ struct Passed {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Build target/noisefloor/libnoisefloor.a, the archive that C and C++ programs link
+    Library,
+    /// Install headers, libraries, CMake package and pkg-config file
+    Install(install::Options),
     /// Render with every estimator: pictures and a table in target/demo
     Demo(Passed),
-    /// Build POV-Ray with our patch, and check it against POV-Ray as it is
-    Povray,
-    /// Measure errors and times of everything, and write docs/report: chapters with their tables, plots and pictures
-    Report(Passed),
-    /// Write the report's figures into the documents
-    Fill,
     /// Run every test; installs what it needs when it may
     Test(test::Options),
+    /// Measure errors and times of everything, and write docs/report: chapters with their tables, plots and pictures
+    Report(Passed),
+    /// Build POV-Ray with our patch, and check it against POV-Ray as it is
+    Povray,
+    /// Write the report's figures into the documents
+    Fill,
     /// Run the fuzz targets for a while; inputs that crash go to fuzz/regressions
     Fuzz(fuzz::Options),
     /// Regenerate include/noisefloor.h and its parts
@@ -44,10 +48,6 @@ enum Command {
     },
     /// Rewrite THIRD_PARTY.md, the list of other people's packages and their licences
     Licences,
-    /// Install headers, libraries, CMake package and pkg-config file
-    Install(install::Options),
-    /// Build target/noisefloor/libnoisefloor.a, the archive that C and C++ programs link
-    Library,
     /// Build the page to play with, target/demo/playground.html
     Playground,
     /// Build the path tracer on Embree with the thesis's scenes, and print where it is

@@ -3,7 +3,7 @@
 use crate::c_tests::{self, PYTHON};
 use crate::tools::{self, Missing, Package};
 use crate::{fuzz, instructions, library, playground, python, renderers, run, start, texts};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use std::time::Instant;
 
@@ -40,7 +40,7 @@ pub fn run(options: &Options) -> Result<()> {
     // Before the steps: many of them link it, and the benches compile to more with it. Where that fails, they say so.
     println!("building the C library");
     _ = library::build();
-    let mut steps = Steps { options, passed: 0, failed: Vec::new(), not_run: Vec::new(), left_out: 0 };
+    let mut steps = Steps { options, passed: 0, failed: Vec::new(), not_run: Vec::new(), left_out: Vec::new() };
     steps.cargo("formatting (cargo fmt --check)", &["fmt", "--all", "--check"], None);
     steps.run("lines of at most 120 columns", texts::columns);
     let clippy = ["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"];
@@ -139,14 +139,14 @@ struct Steps<'a> {
     failed: Vec<&'static str>,
     /// What this machine lacks something for.
     not_run: Vec<&'static str>,
-    left_out: usize,
+    left_out: Vec<&'static str>,
 }
 
 impl Steps<'_> {
     /// Runs one step; the others follow even if it fails.
     fn run(&mut self, heading: &'static str, action: impl FnOnce() -> Result<()>) {
         if self.options.filter.as_ref().is_some_and(|filter| !heading.contains(filter.as_str())) {
-            self.left_out += 1;
+            self.left_out.push(heading);
             return;
         }
         println!("\n== {heading}");
@@ -184,8 +184,8 @@ impl Steps<'_> {
 
     fn finish(self, start: Instant) -> Result<()> {
         println!("\ntotal {:.0} s", start.elapsed().as_secs_f64());
-        if self.left_out > 0 {
-            println!("{} steps left out, as asked", self.left_out);
+        if !self.left_out.is_empty() {
+            println!("{} steps left out, as asked", self.left_out.len());
         }
         for heading in &self.failed {
             println!("failed: {heading}");
@@ -198,11 +198,10 @@ impl Steps<'_> {
             bail!("{} steps could not run, and --strict was given", self.not_run.len());
         }
         if self.passed == 0 && self.failed.is_empty() && self.not_run.is_empty() {
-            bail!("no step ran: no heading contains the word that was given");
+            let word = self.options.filter.as_deref().unwrap_or_default();
+            bail!("no heading contains `{word}`; they are\n   {}", self.left_out.join("\n   "));
         }
-        if !self.failed.is_empty() {
-            bail!("{} of the steps above failed", self.failed.len());
-        }
+        ensure!(self.failed.is_empty(), "{} of the steps above failed", self.failed.len());
         Ok(())
     }
 }

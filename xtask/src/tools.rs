@@ -1,7 +1,7 @@
 //! What the tests need besides cargo: found, installed where that is allowed, or named.
 
 use crate::run;
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use std::fmt;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -40,13 +40,12 @@ pub fn compilers() -> Result<()> {
         install(&["gcc", "g++", "libc6-dev", "binutils"])?;
         missing = missing_compilers();
     }
-    if !missing.is_empty() {
-        bail!(
-            "missing: {}. What is compiled needs a C99 and a C++17 compiler and binutils (Debian: apt-get install \
-             gcc g++ libc6-dev binutils); $CC and $CXX name other compilers",
-            missing.join(", ")
-        );
-    }
+    ensure!(
+        missing.is_empty(),
+        "missing: {}. What is compiled needs a C99 and a C++17 compiler and binutils (Debian: apt-get install gcc g++ \
+         libc6-dev binutils); $CC and $CXX name other compilers",
+        missing.join(", ")
+    );
     Ok(())
 }
 
@@ -103,8 +102,15 @@ fn missing_compilers() -> Vec<String> {
     missing(compilers.into_iter().chain(["ld", "ar", "nm", "objcopy"].map(run::command)))
 }
 
+/// Fails unless these programs start; `packages` of Debian have them.
+pub fn need(programs: &[&str], packages: &str) -> Result<()> {
+    let missing = missing(programs.iter().map(run::command)).join(", ");
+    ensure!(missing.is_empty(), "missing: {missing} (Debian: apt-get install {packages})");
+    Ok(())
+}
+
 /// The names of those that do not start.
-pub fn missing(programs: impl IntoIterator<Item = Command>) -> Vec<String> {
+fn missing(programs: impl IntoIterator<Item = Command>) -> Vec<String> {
     let mut missing: Vec<_> = programs.into_iter().collect();
     missing.retain_mut(|program| !works(program.arg("--version")));
     missing.iter().map(|program| program.get_program().to_string_lossy().into_owned()).collect()

@@ -61,8 +61,12 @@ pub fn integration(points: &Points) -> Integration {
 pub fn prefix_errors(sets: &[Points], counts: &[usize], integrands: usize) -> Result<Vec<PrefixError>> {
     let Some(first) = sets.first() else { return Err(Error::input("no point set")) };
     sets.iter().try_for_each(super::check)?;
-    if sets.iter().any(|s| s.len() != first.len() || s.dims() != first.dims()) {
-        return Err(Error::input("point sets of different sizes: their errors cannot be averaged"));
+    if let Some(other) = sets.iter().find(|s| s.len() != first.len() || s.dims() != first.dims()) {
+        let size = |set: &Points| format!("{} in {} dims", counted(set.len(), "point"), set.dims());
+        let (first, other) = (size(first), size(other));
+        return Err(Error::Input(format!(
+            "point sets of different sizes, {first} and {other}: their errors cannot be averaged"
+        )));
     }
     if integrands == 0 {
         return Err(Error::input("0 integrands: give at least 1"));

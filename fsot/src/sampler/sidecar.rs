@@ -9,6 +9,7 @@ use crate::export::sidecar;
 use crate::read;
 use serde::{Deserialize, Serialize};
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// A sidecar.
@@ -100,7 +101,13 @@ impl SamplerSidecar {
 /// One of the two cannot be read, or is none, or describes another.
 pub fn read(path: &Path) -> Result<SamplerTable> {
     let beside = SamplerSidecar::path(path);
-    let text = read::text(&beside, "a sidecar")?;
+    let text = read::text(&beside, "a sidecar").map_err(|error| match error {
+        Error::Io { path: missing, source } if source.kind() == ErrorKind::NotFound => {
+            let (table, missing) = (path.display(), missing.display());
+            Error::Input(format!("{table} needs its sidecar {missing}, which `fsot sampler` writes beside it"))
+        }
+        error => error,
+    })?;
     let sidecar: SamplerSidecar = toml::from_str(&text)
         .map_err(|error| Error::Input(format!("{} is no sidecar of a sampler: {error}", beside.display())))?;
     let SamplerSidecar { size, bits, .. } = sidecar;

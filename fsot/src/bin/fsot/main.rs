@@ -31,6 +31,7 @@ const FAILURE: u8 = 2;
 
 #[derive(Parser)]
 #[command(name = "fsot", version, about = "Optimises point sets and sample tiles by filtered sliced optimal transport")]
+#[command(after_help = "To begin: fsot points -n 4096 --out p.txt\nOptions: fsot COMMAND --help\nManual: docs/fsot.md")]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
