@@ -64,7 +64,7 @@ static std::vector<nf_estimate> estimate(std::vector<float> &f)
     }
     nf_cv_config config = {};
     config.dims = dims, config.order = 2, config.channels = 1;
-    config.stratified = 1;                              // this sampler's samples are
+    config.stratified = 1;                              // nf_sampler spreads samples evenly
     nf_cv_samples traced = {};
     traced.u = u.data(), traced.f = f.data(), traced.n = samples;
     nf_cv_image image = {};

@@ -1,4 +1,15 @@
 //! The sampler: one sample of one pixel, and the domains below it.
+//!
+//! | | |
+//! |---|---|
+//! | pixel | x and y modulo `size` |
+//! | root, index < spp | the tile's sample `index`: the value v of b bits is (v + 1/2) / 2^b |
+//! | frame | `frame % frames` is the tile's; every later run of `frames` frames is a domain of its own |
+//! | domain | a hash of parent and key: the tile shifted, flipped, transposed, its samples in another order |
+//! | domain of a progressive tile | the same, but the order changes within octaves only |
+//! | further dims | stratified; of progressive tiles, and those of 1 dim or sample, those of one more domain |
+//! | index ≥ spp | sample 0 ⊕ o(index), o an Owen-scrambled Sobol sequence of the domain's own, o(0) = 0 |
+//! | scramble(seed) | the domain of that seed, its values shifted modulo 1 by a hash of domain and dimension |
 
 use super::view::Tile;
 use crate::hash::child;

@@ -18,7 +18,8 @@ pub struct Discrepancy {
 }
 
 /// The L2 star discrepancy by Warnock's formula (1972),
-/// `3^-d - 2/n sum_i prod_k (1 - x_ik^2)/2 + 1/n^2 sum_ij prod_k (1 - max(x_ik, x_jk))`.
+/// `3^-d - 2/n sum_i prod_k (1 - x_ik^2)/2 + 1/n^2 sum_ij prod_k (1 - max(x_ik, x_jk))`; of random points its square is
+/// `(2^-d - 3^-d) / n` in the mean.
 ///
 /// The double sum is exact for every number of points, by divide and conquer over the dimensions (Heinrich 1996): about
 /// n (log n)^d operations, never more than n^2 d. None above 65,536 points in more than 3 dimensions.

@@ -1,4 +1,7 @@
-//! Power spectra in the plane, their radial average and anisotropy.
+//! Power spectra in the plane, their radial average and anisotropy (figures 5.7 to 5.9, 5.14).
+//!
+//! Of n points `P(k) = |sum_j exp(-2 pi i k . x_j)|^2 / n`, on integer frequencies up to twice the principal one: above
+//! 2 dims one spectrum for each pair of coordinates.
 
 use super::exponential_sums;
 use crate::counted::counted;
