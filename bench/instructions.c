@@ -114,6 +114,17 @@ static void prepare_bright_image(void)
         f[(SIDE * SIDE / 2 + SIDE / 2) * SPP + i] *= 1000.0f;
 }
 
+/* Every window has lit and dark samples. */
+static void prepare_edges(void)
+{
+    prepare_image();
+    config.edges = 1;
+    bytes = nf_cv_image_workspace_size(&config, &image, &pixels);
+    workspace = allocate(bytes, "nf_cv_image_workspace_size");
+    for (size_t i = 0; i < SAMPLES; ++i)
+        f[i] = u[2 * i] + u[2 * i + 1] < 1.0f ? f[i] : 0;
+}
+
 static void call_image(void)
 {
     check(nf_cv_image_estimate(&config, &image, &pixels, workspace, bytes, estimates), "nf_cv_image_estimate");
@@ -260,6 +271,7 @@ static const struct {
     {"nf_cv_accumulator_add", prepare_accumulator, call_accumulator, 20, 64, "sample"},
     {"nf_cv_image_estimate", prepare_image, call_image, 1, SAMPLES, "sample"},
     {"nf_cv_image_estimate bright pixel", prepare_bright_image, call_image, 1, SAMPLES, "sample"},
+    {"nf_cv_image_estimate edges", prepare_edges, call_image, 1, SAMPLES, "sample"},
     {"nf_sampler_draw", nothing, call_sampler, 100, 64, "draw"},
     {"nf_sampler_draw domain", nothing, call_sampler_domain, 100, 64, "draw"},
     {"nf_sampler_draw 4 domain", nothing, call_sampler_4, 100, 64, "draw"},

@@ -229,6 +229,7 @@ struct config : nf_cv_config {
         return set(&nf_cv_config::stratified, value ? 1u : 0u);
     }
     config with_slices(std::uint32_t count) const noexcept { return set(&nf_cv_config::slices, count); }
+    config with_edges(std::uint32_t first) const noexcept { return set(&nf_cv_config::edges, first); }
     config with_controls(std::uint32_t count) const noexcept { return set(&nf_cv_config::controls, count); }
     config with_stride(std::uint32_t floats) const noexcept { return set(&nf_cv_config::stride, floats); }
     config with_single_precision(bool value = true) const noexcept

@@ -25,6 +25,7 @@ pub struct Config {
     pub basis: u32,
     pub stratified: u32,
     pub slices: u32,
+    pub edges: u32,
     pub controls: u32,
     pub stride: u32,
     pub solver: u32,

@@ -228,6 +228,7 @@ inline const EstimatorName estimator_names[] = {
     {"shared_blocks", NF_CV_ROBUST, "the same in windows side by side, not half over each other: a fourth of the time"},
     {"shared_k_fold", NF_CV_K_FOLD, "shared, unbiased: halves of the neighbours choose fits for each other"},
     {"shared_blind", NF_CV_ROBUST, "shared, but not told which pixels show the same surface, in windows side by side"},
+    {"shared_edges", NF_CV_ROBUST, "shared, told which numbers pick a point of a light: follows shadows' edges in them"},
     {"shared_known", NF_CV_ROBUST, "shared, told what direct light would be with nothing in its way"},
     {"known", NF_CV_LEAVE_ONE_OUT, "each pixel against that alone, as far as its neighbours follow it; unbiased"},
     {"luminance", NF_CV_LEAST_SQUARES, "a fit to the luminance of all samples, which scales the plain mean",
@@ -241,6 +242,7 @@ struct EstimatorSetup {
     uint32_t regressed; // of them, from the first; at most 16
     uint32_t order, basis, lights;
     uint32_t choice; // numbers of u up to the first that picks a light; 0 if none does
+    uint32_t point;  // the first number, counted from 1, that picks a point of a light; 0 if none does
     uint32_t side;   // of the rectangles that pixels come in, at most
     size_t samples;  // of a pixel
     bool stratified;
@@ -254,7 +256,7 @@ inline bool needs_known(const std::string &name) { return name == "shared_known"
 inline bool shares(const std::string &name)
 {
     return name == "shared" || name == "shared_blocks" || name == "shared_k_fold" || name == "shared_blind" ||
-           needs_known(name);
+           name == "shared_edges" || needs_known(name);
 }
 
 // Throws if the name is unknown.
@@ -286,6 +288,8 @@ inline nf_cv_config configure(const EstimatorName &known, const EstimatorSetup &
         config.dims = setup.choice;
         config.slices = setup.lights;
     }
+    if (name == "shared_edges" && setup.point < config.dims)
+        config.edges = setup.point;
     return config;
 }
 

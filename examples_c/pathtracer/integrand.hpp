@@ -51,6 +51,18 @@ inline uint32_t dims(const std::vector<Domain> &domains)
     return sum;
 }
 
+// The first number of the sample vector, counted from 1, that picks a point of a light; 0 if none does.
+inline uint32_t light_point(const std::vector<Domain> &domains)
+{
+    uint32_t sum = 0;
+    for (const Domain &domain : domains) {
+        if (domain.kind == Domain::light)
+            return sum + 1;
+        sum += domain.dims;
+    }
+    return 0;
+}
+
 // How many numbers of the sample vector there are up to the first that picks a light; 0 if none does.
 inline uint32_t choice(const std::vector<Domain> &domains)
 {

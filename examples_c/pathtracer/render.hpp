@@ -21,6 +21,7 @@ inline EstimatorSetup estimator_setup(const Integrand &integrand, const Options 
     setup.basis = options.basis.id;
     setup.lights = integrand.lights();
     setup.choice = choice(domains);
+    setup.point = light_point(domains);
     setup.side = side;
     setup.samples = options.spp;
     setup.stratified = options.sampler != "random";

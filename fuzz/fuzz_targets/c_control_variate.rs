@@ -24,6 +24,7 @@ fn config(source: &mut Source<'_>) -> Result<nf_cv_config> {
         basis: source.small(4)?,
         stratified: u32::from(source.rarely(8)?),
         slices: source.small(4)?.saturating_sub(2),
+        edges: source.small(4)?.saturating_sub(2),
         controls: source.small(6)?.saturating_sub(3),
         stride: source.small(12)?.saturating_sub(6),
         solver: source.small(4)?,

@@ -69,6 +69,7 @@ impl<'a> Arbitrary<'a> for Input {
             basis: *bytes.choose(&Family::ALL)?,
             stratified: bool::arbitrary(bytes)?,
             slices: small(bytes, 8)?.saturating_sub(3),
+            edges: small(bytes, 6)?.saturating_sub(3),
             controls: small(bytes, 6)?.saturating_sub(2),
             stride: small(bytes, 18)?.saturating_sub(10),
             non_finite: if rarely(bytes)? { NonFinite::Skip } else { NonFinite::Error },

@@ -32,7 +32,8 @@ class Config(ctypes.Structure):
     C_NAME = "nf_cv_config"
     _fields_ = _fields(
         u32,
-        "dims order channels estimator basis stratified slices controls stride solver precision nonfinite color folds",
+        "dims order channels estimator basis stratified slices edges controls stride solver precision nonfinite color "
+        "folds",
     ) + _fields(f32, "ridge")
 
 

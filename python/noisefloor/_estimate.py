@@ -106,6 +106,7 @@ def image_estimate(
     estimator: str = "robust",
     dims: int | None = None,
     slices: int = 1,
+    edges: int = 0,
     stratified: bool = False,
     channels: bool = False,
     window: int = 8,
@@ -122,6 +123,8 @@ def image_estimate(
         known: of f's shape: what each sample would be with nothing in the way.
         known_integrals: of `factors`' shape, at least 0: the exact integrals of that.
         order, estimator, dims, slices, channels: as for `estimate`; "robust", "leave_one_out" or "k_fold".
+        edges: where two coordinates that pick a point of a light begin, counted from 1; 0: nowhere. With 4 and more
+            samples fits then follow shadows' edges in them. "robust" and "k_fold" use it.
         stratified: whether each pixel's points are, `Sampler`'s say.
         window: width and height of the windows that share a fit, 1 to 32 pixels.
         stride: pixels from one window to the next; None: half of a window.
@@ -138,6 +141,7 @@ def image_estimate(
         raise ValueError(f"f has the shape {f.shape}: with this u it must be {u.shape[:-1] + ('c',) * values}")
     own = f.shape[u.ndim - 1 :]
     config = configure(order, estimator, "legendre", d, dims, slices, stratified, *own)
+    config.edges = _arrays.integer("edges", edges, 0, config.dims - 1)
     image = _c.Image(width=pixels[-1], height=pixels[-2], frames=pixels[0] if len(pixels) == 3 else 1)
     image.window = _arrays.integer("window", window, 1, 32)
     image.stride = 0 if stride is None else _arrays.integer("stride", stride, 1, window)

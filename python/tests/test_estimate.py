@@ -190,6 +190,16 @@ def test_images_of_channels_frames_surfaces_and_factors():
     assert numpy.allclose(textured.mean / albedo, noisefloor.image_estimate(u, f[..., 0]).mean, rtol=1e-3)
 
 
+def test_edges_of_shadows():
+    u, f, _ = image(4)
+    shadowed = numpy.where(u[..., 0] + 0.3 * u[..., 1] < 0.6, f, 0)
+    plain, edges = (noisefloor.image_estimate(u, shadowed, edges=first).mean for first in (0, 1))
+    assert numpy.isfinite(edges).all() and not numpy.array_equal(edges, plain)
+    assert numpy.array_equal(
+        *(noisefloor.image_estimate(u[..., :3, :], shadowed[..., :3], edges=first).mean for first in (0, 1))
+    )
+
+
 def test_known_light_leaves_no_error():
     u, f, exact = image(1)
     estimate = noisefloor.image_estimate(u, f, known=f, known_integrals=exact, estimator="leave_one_out")
@@ -205,6 +215,7 @@ def test_known_light_leaves_no_error():
         ({"factors": numpy.full((24, 24), -1)}, r"factors\[0, 0\] is -1.0: it must be at least 0"),
         ({"known": numpy.zeros((24, 24, 1))}, "known and known_integrals belong together"),
         ({"known": numpy.zeros((24, 24, 2))}, r"known has the shape \(24, 24, 2\)"),
+        ({"edges": 2}, "edges is 2: it must be 0 to 1"),
         ({"window": 33}, "window is 33: it must be 1 to 32"),
         ({"stride": 9}, "stride is 9: it must be 1 to 8"),
         ({"estimator": "incremental"}, "estimator 'incremental', order 2, 2 dims"),

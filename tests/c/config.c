@@ -69,6 +69,12 @@ static void checked(void)
     CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "nf_cv_image_needed");
     CHECK_STATUS(nf_cv_image_needed(&image, &image.given), NF_OK);
     CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, NULL);
+    config.edges = 2;
+    CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, "edges must be");
+    config.edges = 1;
+    CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, NULL);
+    config.dims = 1;
+    CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, "edges must be");
     config.dims = 17;
     CHECK_NAMED(NF_CHECK_CV_CONFIG, &config, "dims must be 1 to 16");
     config = make_config(7, 4, 1, NF_CV_ROBUST);
@@ -178,6 +184,8 @@ static void ranges(void)
     REFUSED(config.stratified = 2, NF_ERR_RANGE);
     REFUSED(config.slices = 136, NF_ERR_RANGE);
     REFUSED(config.slices = UINT32_MAX, NF_ERR_RANGE);
+    REFUSED(config.edges = config.dims, NF_ERR_RANGE);
+    REFUSED(config.edges = UINT32_MAX, NF_ERR_RANGE);
     REFUSED(config.controls = 5, NF_ERR_RANGE);
     REFUSED(config.controls = UINT32_MAX, NF_ERR_RANGE);
     REFUSED(config.stride = 1, NF_ERR_RANGE);

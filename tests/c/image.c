@@ -178,6 +178,32 @@ static void unordered(void)
     memory_free(&work);
 }
 
+/* Edges: the same bits below 4 samples, and where none is dark; a workspace of their own above. */
+static void edges(void)
+{
+    nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST), with = config;
+    const nf_cv_image image = make_image(WIDTH, HEIGHT);
+    nf_estimate out[PIXELS], expected[PIXELS];
+    size_t i;
+    with.edges = 1;
+    fill_pixels(1);
+    CHECK(image_workspace_size(&with, &image, 3) == image_workspace_size(&config, &image, 3));
+    CHECK(image_workspace_size(&with, &image, N) > image_workspace_size(&config, &image, N));
+    estimate(&config, &image, N, expected);
+    estimate(&with, &image, N, out);
+    CHECK(memcmp(out, expected, sizeof out) == 0);
+    for (i = 0; i < PIXELS * N; ++i)
+        f[i] = u[2 * i] < .6f ? f[i] : 0;
+    estimate(&config, &image, 3, expected);
+    estimate(&with, &image, 3, out);
+    CHECK(memcmp(out, expected, sizeof out) == 0);
+    estimate(&config, &image, N, expected);
+    estimate(&with, &image, N, out);
+    CHECK(memcmp(out, expected, sizeof out) != 0);
+    with.edges = 2;
+    CHECK(image_workspace_size(&with, &image, N) == 0);
+}
+
 #define REFUSED_BY(bytes, expected)                                                                                    \
     CHECK_REFUSED(estimate_image(&config, &image, u, f, N, work.start, bytes, out), expected, out)
 #define REFUSED(expected)                                                                                              \
@@ -421,6 +447,9 @@ static void errors(void)
     REFUSED(NF_ERR_UNSUPPORTED);
     config = make_config(0, 2, 1, NF_CV_ROBUST);
     REFUSED(NF_ERR_RANGE);
+    config = make_config(1, 2, 1, NF_CV_ROBUST);
+    config.edges = 1;
+    REFUSED(NF_ERR_RANGE);
     config = make_config(2, 2, 1, NF_CV_ROBUST);
     CHECK(image_workspace_size(NULL, &image, N) == 0);
     CHECK(image_workspace_size(&config, NULL, N) == 0);
@@ -435,6 +464,7 @@ int main(void)
     defaults_and_trivial_knowledge();
     constant_pixels_are_exact();
     unordered();
+    edges();
     parts();
     errors();
     return report("image");

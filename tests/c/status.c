@@ -34,7 +34,7 @@ static void messages(void)
 static void layouts(void)
 {
     CHECK(sizeof(nf_status) == 4);
-    CHECK(sizeof(nf_cv_config) == 15 * 4);
+    CHECK(sizeof(nf_cv_config) == 16 * 4);
     CHECK(offsetof(nf_cv_config, dims) == 0);
     CHECK(offsetof(nf_cv_config, order) == 4);
     CHECK(offsetof(nf_cv_config, channels) == 8);
@@ -42,7 +42,7 @@ static void layouts(void)
     CHECK(offsetof(nf_cv_config, basis) == 16);
     CHECK(offsetof(nf_cv_config, stratified) == 20);
     CHECK(offsetof(nf_cv_config, slices) == 24);
-    CHECK(offsetof(nf_cv_config, ridge) == 56);
+    CHECK(offsetof(nf_cv_config, ridge) == 60);
     CHECK(sizeof(nf_cv_descent) == 16);
     CHECK(offsetof(nf_cv_samples, n) == 2 * sizeof(void *));
     CHECK(sizeof(nf_estimate) == 40);

@@ -325,6 +325,7 @@ fn any_call() -> impl Strategy<Value = (Config, [usize; 5], usize, u64)> {
         basis: [Family::Legendre, Family::Step, Family::Sine, Family::Gaussian][family],
         ridge: [Ridge::Default, Ridge::Auto, Ridge::Fixed(0.01)][ridge],
         slices: if dims > 1 { slices } else { 0 },
+        edges: slices.min(dims - 1),
         stratified,
         ..Config::new(dims, order, channels)
     });

@@ -100,10 +100,10 @@ fn parts_have_the_bits_of_the_whole() {
     let windows = [(0, 0), (8, 8), (5, 3), (7, 1), (4, 3), (16, 9)];
     for (case, shape) in [[37, 29, 1], [9, 40, 1], [16, 16, 2], [6, 5, 1]].into_iter().enumerate() {
         for (window, stride) in windows {
-            for n in [1, 3] {
+            for n in [1, 3, 4] {
                 let picture = Picture::new(shape, n, case % 2 == 0, &mut rng);
                 let estimator = if case == 3 { Estimator::KFold } else { Estimator::Robust };
-                let config = Config { estimator, ..Config::new(2, 2, 2) };
+                let config = Config { estimator, edges: n / 4, ..Config::new(2, 2, 2) };
                 let base = Image { window, stride, ..Image::new(shape[0], shape[1]) };
                 let whole = picture.image(&picture.arrays, &base);
                 let expected = estimates(&config, &whole, &picture.arrays).unwrap();

@@ -40,6 +40,7 @@ fn valid() -> impl Strategy<Value = Config> {
 /// Any configuration, mostly invalid ones.
 fn any_config() -> impl Strategy<Value = Config> {
     let size = || prop_oneof![6 => 0_usize..=4, 1 => 5_usize..=20, 1 => any::<usize>()];
+    let some = || prop_oneof![3 => Just(0), 1 => size()];
     let number = || {
         prop_oneof![
             4 => Just(0.0_f32),
@@ -60,7 +61,7 @@ fn any_config() -> impl Strategy<Value = Config> {
             estimators(),
             prop::sample::select(FAMILIES.to_vec()),
         ),
-        (any::<bool>(), size(), prop_oneof![3 => Just(0), 1 => size()], prop_oneof![3 => Just(0), 1 => size()]),
+        (any::<bool>(), size(), some(), some(), some()),
         (
             prop::sample::select(solvers),
             any::<bool>(),
@@ -71,7 +72,7 @@ fn any_config() -> impl Strategy<Value = Config> {
         (prop::sample::select(optimizers), ridge, number(), number()),
     )
         .prop_map(|((dims, order, channels, estimator, basis), second, third, fourth)| {
-            let (stratified, slices, controls, stride) = second;
+            let (stratified, slices, edges, controls, stride) = second;
             let (solver, skip, luminance, folds, iterations) = third;
             let (optimizer, ridge, learning_rate, momentum) = fourth;
             Config {
@@ -82,6 +83,7 @@ fn any_config() -> impl Strategy<Value = Config> {
                 basis,
                 stratified,
                 slices,
+                edges,
                 controls,
                 stride,
                 solver,

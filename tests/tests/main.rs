@@ -9,6 +9,7 @@ mod cv_block;
 mod cv_hard;
 mod cv_image;
 mod cv_image_bright;
+mod cv_image_edges;
 mod cv_image_known;
 mod cv_image_mixture;
 mod cv_image_never_worse;

@@ -81,6 +81,9 @@ pub struct nf_cv_config {
     /// At most 136 less binomial(dims - 1 + order, order) and less `controls`: 130 at 3 dims, order 2. Of more
     /// alternatives let each slice stand for several.
     pub slices: u32,
+    /// Of two coordinates that pick a point of a light the first, counted from 1, below dims; 0: none. From 4 samples on
+    /// nf_cv_image_estimate() then also follows shadows' edges in them, among values above 0 and others.
+    pub edges: u32,
     /// User-supplied control functions with known integrals (4.18), 0 to 4.
     pub controls: u32,
     /// Floats from one sample's u to the next; 0 means dims. A path may be longer than what is regressed (4.3.5); its
@@ -127,6 +130,7 @@ pub(crate) fn default_config() -> nf_cv_config {
         basis: NF_BASIS_LEGENDRE,
         stratified: 0,
         slices: 0,
+        edges: 0,
         controls: 0,
         stride: 0,
         solver: NF_SOLVER_AUTO,
@@ -184,6 +188,7 @@ pub(super) fn core_config(config: &nf_cv_config) -> Result<Config, Wrong> {
         basis: pick(config.basis, &Family::ALL, c"basis must be one of NF_BASIS_*, 0 to 3")?,
         stratified: pick(config.stratified, &[false, true], c"stratified must be 0 or 1")?,
         slices: config.slices as usize,
+        edges: config.edges as usize,
         controls: config.controls as usize,
         stride: config.stride as usize,
         solver: pick(

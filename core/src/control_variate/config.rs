@@ -117,6 +117,10 @@ pub struct Config {
     /// term: at most 136 less binomial(dims - 1 + order, order), the terms of the other coordinates, less `controls`.
     /// That is 130 at 3 dims and order 2, of which up to 43 have functions of their own as well.
     pub slices: usize,
+    /// Of two coordinates that pick a point of a light the first, counted from 1, below `dims`; 0 for none. With 4 and
+    /// more samples in each pixel [`Estimator::Robust`] and [`Estimator::KFold`] then fit to images also a shadow's
+    /// edge in the two, in groups of pixels with lit (above 0) and dark samples. Nothing else uses it.
+    pub edges: usize,
     /// User-supplied control functions with known integrals (4.18), 0 to 4.
     pub controls: usize,
     /// Numbers from one sample's coordinates to the next; 0 means `dims`. A path may be longer than what is regressed
@@ -163,6 +167,7 @@ impl Config {
             basis: Family::Legendre,
             stratified: false,
             slices: 0,
+            edges: 0,
             controls: 0,
             stride: 0,
             solver: Solver::Auto,
@@ -205,6 +210,7 @@ impl Config {
         rule((1..=MAX_DIMS).contains(&self.dims), c"dims must be 1 to 16")?;
         rule(self.order <= MAX_ORDER, c"order must be 0 to 7")?;
         rule((1..=Self::MAX_CHANNELS).contains(&self.channels), c"channels must be 1 to 4")?;
+        rule(self.edges == 0 || self.edges < self.dims, c"edges must be 0, or at least 1 and below dims")?;
         rule(self.controls <= Self::MAX_CONTROLS, c"controls must be 0 to 4")?;
         rule(self.stride == 0 || self.stride >= self.dims, c"stride must be 0 or at least dims")?;
         rule(self.folds != 1 && self.folds <= Self::MAX_FOLDS, c"folds must be 0, or 2 to 16")?;

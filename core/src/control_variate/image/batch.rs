@@ -97,9 +97,14 @@ impl Units {
     /// A value in units. Only what no fit is made to, or is known of it, is far beyond them; its square fits too.
     #[inline(always)]
     pub(super) fn apply(&self, value: &Eight) -> Eight {
+        lanes::zip(&self.scale(value), &self.offsets, |value, offset| value - offset)
+    }
+
+    /// The same with the zero at 0.
+    #[inline(always)]
+    pub(super) fn scale(&self, value: &Eight) -> Eight {
         let limited = lanes::zip(value, &self.limits, |value, most| Real::min(Real::max(value, -most), most));
-        let scaled = lanes::zip(&limited, &self.scales, |value, scale| value * scale);
-        lanes::zip(&scaled, &self.offsets, |value, offset| value - offset)
+        lanes::zip(&limited, &self.scales, |value, scale| value * scale)
     }
 
     /// Two to the powers of the exponents.

@@ -28,18 +28,31 @@ pub(super) struct Choices {
     channels: usize,
     /// Candidates for each value.
     fits: usize,
+    /// Whether the last of them is an edge.
+    has_edges: bool,
     pub(super) count: usize,
 }
 
 impl Choices {
     pub(super) fn new(layout: &Layout<'_>, terms: &Terms) -> Self {
-        let (channels, fits) = (layout.config.channels, terms.ends.len());
-        Self { channels, fits, count: (1 + fits) * (layout.values() / channels.max(1)) }
+        let (channels, fits, has_edges) = (layout.config.channels, terms.candidates(), terms.has_edges);
+        Self { channels, fits, has_edges, count: (1 + fits) * (layout.values() / channels.max(1)) }
     }
 
     /// Lanes of workspace.
     pub(super) fn len(&self) -> usize {
         self.channels * self.count * (SPREADS + MAX_SHARES) + AT_ONCE * self.count
+    }
+
+    /// Whether a choice is an edge.
+    fn is_edge(&self, choice: usize) -> bool {
+        self.has_edges && [self.fits, 2 * self.fits + 1].contains(&choice)
+    }
+
+    /// How many choices the trust in the plain mean counts: those that every group has.
+    fn counted(&self) -> usize {
+        let edges = (0..self.count).filter(|&choice| self.is_edge(choice)).count();
+        (self.count - 1 - edges).max(1)
     }
 
     /// Which value of a sample a choice is of, and which fit it has: 0 for none.
@@ -213,13 +226,14 @@ impl<'a> Spreads<'a> {
 
     /// Chooses for a turn.
     #[inline(always)]
-    pub(super) fn choose(&self, turn: usize, is_stratified: bool, shares: &mut Shares<'_>) {
+    pub(super) fn choose(&self, turn: usize, is_stratified: bool, present: &Eight, shares: &mut Shares<'_>) {
         // Stratified samples' means differ by less than their variance within pixels tells: it may only warn.
         let part = if is_stratified { 0.0 } else { WITHIN };
         for channel in 0..self.choices.channels {
             let [sums, within] = [&*self.sums, &*self.within].map(|all| row_at(all, self.choices.count, channel));
             let within = Within { sums: within, pixels: &self.pixels, part, has_several: self.has_several };
-            share(sums, &self.freedom, &within, shares.of_mut(turn, channel));
+            let edges = (&self.choices, present);
+            share(sums, &self.freedom, &within, edges, shares.of_mut(turn, channel));
         }
     }
 
@@ -270,7 +284,13 @@ fn no_more(sums: &Eight) -> Eight {
 
 /// Trust by spreads, of the plain mean first: [`trust::weigh`] in each lane.
 #[inline(always)]
-fn share(spreads: &[Eight], freedom: &Eight, within: &Within<'_>, shares: &mut [Eight]) {
+fn share(
+    spreads: &[Eight],
+    freedom: &Eight,
+    within: &Within<'_>,
+    (choices, present): (&Choices, &Eight),
+    shares: &mut [Eight],
+) {
     let &Within { sums: within, pixels, part, has_several } = within;
     let ([plain, spreads @ ..], [noise, within @ ..], [mean, rest @ ..]) = (spreads, within, shares) else { return };
     let [least, least_noise] = [plain, noise].map(no_less);
@@ -292,15 +312,19 @@ fn share(spreads: &[Eight], freedom: &Eight, within: &Within<'_>, shares: &mut [
         }
         largest = lanes::zip(&largest, share, |largest, share| if share > largest { share } else { largest });
     }
-    let prior = Real::ln(trust::PRIOR as f32 * rest.len() as f32) * LOG2_E;
+    let prior = Real::ln(trust::PRIOR as f32 * choices.counted() as f32) * LOG2_E;
     *mean = lanes::zip(&largest, freedom, |largest, freedom| {
         let caution = largest - freedom * freedom * (LOG2_E / trust::CAUTION as f32);
         if caution > 0.0 { prior + caution } else { prior }
     });
     largest = lanes::zip(&largest, mean, |largest, mean| if mean > largest { mean } else { largest });
     let mut total = NONE;
-    for share in [&mut *mean].into_iter().chain(rest.iter_mut()) {
+    for (choice, share) in [&mut *mean].into_iter().chain(rest.iter_mut()).enumerate() {
         *share = lanes::exp2(&lanes::zip(share, &largest, |share, largest| share - largest));
+        if choices.is_edge(choice) {
+            // Where there is none, it is the plain mean.
+            *share = only(if choice > choices.fits { &NONE } else { present }, share);
+        }
         total = plus(&total, share);
     }
     // Without a spread, or noise within pixels, the mean is exact.

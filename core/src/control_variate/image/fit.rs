@@ -20,7 +20,7 @@ const ROUNDING: f32 = 1e-5;
 
 /// Lanes of [`Fits::within`].
 fn within_len(terms: &Terms, values: usize, n: usize) -> usize {
-    if n > 1 { values * COLOURS * (1 + terms.ends.len()) } else { 0 }
+    if n > 1 { values * COLOURS * (1 + terms.candidates()) } else { 0 }
 }
 
 /// Fits to the pixels of a batch.
@@ -54,7 +54,7 @@ pub(super) struct Fits<'a> {
 
 /// Numbers that fits take for so many slots.
 pub(super) fn fits_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
-    let (columns, values, count) = (terms.columns(), layout.values(), terms.ends.len());
+    let (columns, values, count) = (terms.columns(), layout.values(), terms.candidates());
     let totals = 2 * Sums::len(columns, values) + within_len(terms, values, layout.n);
     let once = totals + Apart::len(terms, values) + (values * count + MAX_FIXED + 1 + AT_ONCE) * columns;
     let each = AT_ONCE * count * values;
@@ -68,7 +68,7 @@ impl<'a> Fits<'a> {
         batch: &Batch<'_>,
         arena: &mut Arena<'a, f32>,
     ) -> Result<Self, Error> {
-        let (columns, values, count) = (terms.columns(), call.values(), terms.ends.len());
+        let (columns, values, count) = (terms.columns(), call.values(), terms.candidates());
         let fits = Self {
             corrections: arena.take_fours(batch.inside.len() * count * values)?,
             count,
@@ -122,6 +122,20 @@ impl<'a> Fits<'a> {
     #[inline(always)]
     pub(super) fn corrections(&self, block: usize, value: usize) -> &[Four] {
         row_at(self.corrections, self.count, block * self.values + value)
+    }
+
+    /// The same, to be written.
+    #[inline(always)]
+    pub(super) fn corrections_mut(&mut self, block: usize, value: usize) -> &mut [Four] {
+        row_at_mut(self.corrections, self.count, block * self.values + value)
+    }
+
+    /// Sets what the last candidate leaves of the samples of a colour.
+    #[inline(always)]
+    pub(super) fn set_last_within(&mut self, value: usize, colour: usize, left: Eight) {
+        if let Some(out) = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour).last_mut() {
+            *out = left;
+        }
     }
 
     /// The fit to all pixels of some colours.
@@ -234,7 +248,7 @@ impl<'a> Fits<'a> {
         let (width, fixed) = (terms.columns(), terms.fixed());
         let Part { gram, sides, squares } = batch.within.part(colour);
         for (value, (whole, sides)) in squares.iter().zip(rows(sides, width)).enumerate() {
-            for fit in 0..=self.count {
+            for fit in 0..=terms.ends.len() {
                 let mut left = *whole;
                 let coefficients = fit.checked_sub(1).map_or(&[][..], |fit| self.coefficients(terms, value, fit));
                 for (j, b) in coefficients.iter().enumerate().skip(fixed) {
@@ -265,7 +279,7 @@ impl<'a> Fits<'a> {
         let places = row_at(batch.places, terms.fixed(), block);
         let (first, count) = terms.moving;
         for value in 0..self.values {
-            for fit in 0..self.count {
+            for fit in 0..terms.ends.len() {
                 let own = from(self.coefficients(terms, value, fit), terms.fixed());
                 let mut fitted = combine([NONE; AT_ONCE], functions, own);
                 for (axis, own) in places.iter().skip(1).zip(rows(from(own, terms.functions), count)) {

@@ -64,6 +64,8 @@ pub(super) struct Group {
     pub(super) start: usize,
     /// How many pixels it has.
     pub(super) len: usize,
+    /// Whether it has lit and dark samples, if that matters.
+    pub(super) has_edges: bool,
 }
 
 /// Numbers of a group: window, start, length.
@@ -72,7 +74,7 @@ const RECORD: usize = 3;
 /// The groups of some windows, and what was found for them.
 pub(super) struct Groups<'a> {
     /// The number of the first of the windows.
-    first: usize,
+    pub(super) first: usize,
     /// How many groups there are.
     count: usize,
     /// The pixels' places, group after group.
@@ -85,6 +87,8 @@ pub(super) struct Groups<'a> {
     /// For each group and turn, the lowest and the highest value of each channel that fits are made to; infinite where
     /// all are.
     limits: &'a mut [f32],
+    /// For each group 1 if it has lit and dark samples; none unless edges are looked for.
+    pub(super) edges: &'a mut [f32],
     /// For each pixel of the list and each channel, what is added to the mean.
     pub(super) corrections: &'a mut [f32],
 }
@@ -103,7 +107,7 @@ impl Layout<'_> {
 
     /// All pixels.
     fn whole(&self) -> Group {
-        Group { index: 0, window: 0, start: 0, len: self.windows.pixels() }
+        Group { len: self.windows.pixels(), ..Group::default() }
     }
 
     /// The fewest pixels of a group for which a fit can do more than the mean. Of one sample in each, fewer would leave
@@ -126,7 +130,7 @@ impl Layout<'_> {
         let channels = self.config.channels;
         let pixels = self.windows_at_once().checked_mul(self.windows.pixels())?;
         let listed = if self.is_joined() { 0 } else { pixels };
-        let each = RECORD + 1 + self.told_len() + self.limits_len();
+        let each = RECORD + 1 + self.told_len() + self.limits_len() + usize::from(self.has_edges());
         pixels.checked_mul(channels)?.checked_add(listed)?.checked_add(self.most_groups().checked_mul(each)?)
     }
 
@@ -152,6 +156,7 @@ impl Layout<'_> {
             order: arena.take(most)?,
             told: arena.take(most * self.told_len())?,
             limits: arena.take(most * self.limits_len())?,
+            edges: arena.take(if self.has_edges() { most } else { 0 })?,
             corrections: arena.take(pixels * self.config.channels)?,
         })
     }
@@ -242,7 +247,8 @@ impl Groups<'_> {
         match self.records.get(index * RECORD..) {
             Some(&[window, start, len, ..]) => {
                 let [window, start, len] = [window, start, len].map(count);
-                Group { index, window, start, len }
+                let has_edges = self.edges.get(index).is_some_and(|&found| found > 0.0);
+                Group { index, window, start, len, has_edges }
             }
             _ => Group::default(),
         }
@@ -274,10 +280,19 @@ impl Groups<'_> {
     #[inline(always)]
     pub(super) fn by_size(&self, layout: &Layout<'_>, place: usize) -> Option<Group> {
         if layout.is_joined() {
-            return (place == 0).then(|| layout.whole());
+            return self.numbered(layout, place);
         }
         let &index = self.order.get(..self.count)?.get(place)?;
         Some(self.record(count(index)))
+    }
+
+    /// A group, by its number.
+    pub(super) fn numbered(&self, layout: &Layout<'_>, index: usize) -> Option<Group> {
+        if layout.is_joined() {
+            let has_edges = self.edges.first().is_some_and(|&found| found > 0.0);
+            return (index == 0).then(|| Group { has_edges, ..layout.whole() });
+        }
+        (index < self.count).then(|| self.record(index))
     }
 
     /// The groups in the order of their windows.

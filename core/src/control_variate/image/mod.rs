@@ -30,6 +30,7 @@ mod batch;
 mod bright;
 mod call;
 mod choice;
+mod edges;
 mod fit;
 mod groups;
 mod known;
@@ -52,6 +53,7 @@ use crate::lanes::LANES;
 use batch::batch_len;
 use call::{Call, Layout};
 use choice::Choices;
+use edges::edges_len;
 use fit::fits_len;
 use sums::sums_len;
 
@@ -202,8 +204,9 @@ impl Layout<'_> {
         let sums = width.checked_mul(rows)?.checked_mul(frames)?.checked_mul(sums_len(channels))?;
         let pixels = self.windows.pixels();
         let slots = if self.is_joined() { pixels.div_ceil(LANES) } else { pixels };
-        let terms = self.terms(pixels);
+        let terms = self.terms(pixels).with_edges(self.has_edges());
         let batch = batch_len(self, &terms, slots)?.checked_add(fits_len(self, &terms, slots)?)?;
+        let batch = batch.checked_add(edges_len(self, &terms, slots)?)?;
         let choices = Choices::new(self, &terms).len().checked_mul(LANES)?;
         sums.checked_add(self.groups_len()?)?.checked_add(batch)?.checked_add(choices)
     }

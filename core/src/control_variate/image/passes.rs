@@ -5,6 +5,7 @@ use super::batch::Batch;
 use super::bright;
 use super::call::Call;
 use super::choice::{Choices, Shares, Spreads};
+use super::edges::Edges;
 use super::fit::Fits;
 use super::groups::{Group, Groups};
 use super::products::{AT_ONCE, Colours, NONE, combine, plus, zip_four};
@@ -21,7 +22,8 @@ impl Call<'_> {
     #[inline(always)]
     pub(super) fn fit(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
         let later = if self.is_single_fit() { 0 } else { self.turns() };
-        for pass in 0..=later {
+        let kinds = if self.has_edges() { 2 } else { 1 };
+        for (pass, kind) in (0..=later).flat_map(|pass| (0..kinds).map(move |kind| (pass, kind))) {
             let turn = pass.checked_sub(1);
             let mut place = 0;
             loop {
@@ -30,7 +32,8 @@ impl Call<'_> {
                 let mut columns = 0;
                 // Eight, or fewer if the next have other columns.
                 while let Some(group) = groups.by_size(self, place).filter(|_| used < LANES) {
-                    let is_wanted = turn.is_none_or(|turn| groups.has_limits(self, &group, turn));
+                    let is_kind = group.has_edges == (kind == 1);
+                    let is_wanted = is_kind && turn.is_none_or(|turn| groups.has_limits(self, &group, turn));
                     let terms = if used == 0 || is_wanted { self.terms(group.len).columns() } else { columns };
                     if is_wanted && used > 0 && terms != columns {
                         break;
@@ -65,9 +68,9 @@ impl Call<'_> {
         arena: &mut Arena<'_, f32>,
     ) -> Result<(), Error> {
         let channels = self.config.channels;
-        let [Group { len, .. }, ..] = lanes;
-        let terms = self.terms(len);
-        if terms.ends.is_empty() && !self.image.has_known() {
+        let [Group { len, has_edges, .. }, ..] = lanes;
+        let terms = self.terms(len).with_edges(has_edges);
+        if terms.candidates() == 0 && !self.image.has_known() {
             return Ok(());
         }
         let mut batch = Batch::new(self, &terms, lanes, arena)?;
@@ -80,6 +83,7 @@ impl Call<'_> {
         }
         batch.load(self, &terms, arena)?;
         let mut fits = Fits::new(self, &terms, &batch, arena)?;
+        let mut edges = if has_edges { Some(Edges::new(self, &terms, &batch, arena)?) } else { None };
         let choices = Choices::new(self, &terms);
         let mut shares = Shares::last(choices, arena)?;
         // Halves choose for each other, then fits to all correct; or fits to all do both.
@@ -91,10 +95,15 @@ impl Call<'_> {
             }
             let judges = if is_last { Colours::ALL } else { Colours::HALVES[(step + 1) % 2] };
             fits.correct(self, &terms, &batch, judges);
+            let mut present = NONE;
+            if let Some(edges) = &mut edges {
+                edges.correct(&batch, judges, &mut fits);
+                present = edges.present;
+            }
             let spreads = Spreads::new(choices, &terms, &batch, &fits, judges, &mut arena.scratch())?;
             let chooses = !self.is_single_fit() && (turns == 1 || !is_last);
             if chooses {
-                spreads.choose(step, self.config.stratified, &mut shares);
+                spreads.choose(step, self.config.stratified, &present, &mut shares);
                 if turn.is_none() {
                     self.find_limits(groups, &batch, (step, judges), &shares);
                 }

@@ -45,7 +45,7 @@ impl Call<'_> {
         sums.iter_mut().for_each(|sum| *sum = 0.0);
         let mut band = Band { sums, rows: touched };
         let mut groups = self.groups(arena)?;
-        let has_fits = self.image.has_known() || !self.terms(self.windows.pixels()).ends.is_empty();
+        let has_fits = self.image.has_known() || self.has_edges() || !self.terms(self.windows.pixels()).ends.is_empty();
         let mut done = self.windows.top(0);
         for row in (0..down).step_by(rows.max(1)) {
             let last = (row + rows).min(down);
@@ -55,6 +55,7 @@ impl Call<'_> {
                 }
                 let end = (first + self.windows_at_once()).min(last * across);
                 self.divide(first, end, &mut groups);
+                self.find_edges(&mut groups);
                 self.fit(&mut groups, arena)?;
                 self.add(first, &groups, &mut band);
             }

@@ -57,6 +57,8 @@ pub(super) struct Terms {
     copies: usize,
     /// Whether slices' indicators have products with the axes.
     has_slopes: bool,
+    /// Whether an edge is the last candidate.
+    pub(super) has_edges: bool,
 }
 
 impl Terms {
@@ -101,6 +103,16 @@ impl Terms {
     /// The constant and the axes alone: no candidates.
     pub(super) fn without_fits(axes: usize) -> Self {
         Self { axes, ..Self::default() }
+    }
+
+    /// The same, and perhaps an edge as the last candidate.
+    pub(super) fn with_edges(self, has_edges: bool) -> Self {
+        Self { has_edges, ..self }
+    }
+
+    /// How many candidates there are.
+    pub(super) fn candidates(&self) -> usize {
+        self.ends.len() + usize::from(self.has_edges)
     }
 
     /// The constant and the axes.

@@ -1,0 +1,600 @@
+//! Light that arrives for some u and not for others: a candidate whose boundary in two coordinates is a conic.
+//!
+//! Polynomials follow no edge. Where a group has lit and dark samples, f is modelled as h = A / (1 + e^-q). q is a
+//! logistic regression of whether a sample is lit, of degree 2 in the two coordinates and 1 in the pixel's place, so
+//! that the boundary, q = 0, moves across the group. A, of degree 1 in all, is least squares to the lit samples, and
+//! kept from 0 to the largest of them. What corrects is h's bilinear interpolant between 17 x 17 points of the two
+//! coordinates, whose integral the trapezoid rule gives: the correction's mean is 0 whatever was fitted.
+
+use super::batch::{Batch, MAX_FIXED, blocks};
+use super::call::{Call, Layout};
+use super::fit::Fits;
+use super::groups::{Groups, Place};
+use super::products::{
+    AT_ONCE, AT_ONCE_LANES, COLOURS, Colours, Eight, Four, NONE, Sums, add_products, combine, only, plus, plus_four,
+};
+use super::terms::Terms;
+use crate::arena::Arena;
+use crate::basis::MAX_DIMS;
+use crate::control_variate::Config;
+use crate::error::Error;
+use crate::lanes::{self, LANES, Lanes};
+use crate::linalg::ldlt;
+use crate::matrix::{copy, first_mut, from, from_mut, packed_len, row, row_at, row_at_mut, row_mut};
+use crate::real::Real;
+use core::f32::consts::{LN_2, LOG2_E};
+
+/// The fewest samples of a pixel that say whether it is cut by an edge.
+const FEWEST_SAMPLES: usize = 4;
+/// The fewest pixels of a group.
+const FEWEST_PIXELS: usize = 8;
+/// Functions of the coordinates: of degree 1, then of degree 2.
+const FUNCTIONS: usize = 5;
+/// Those that A has.
+const SLOPES: usize = 2;
+const MAX_COLUMNS: usize = MAX_FIXED + FUNCTIONS;
+/// The most steps of the regression, the longest, and the shortest after which there is another.
+const STEPS: usize = 8;
+const LONGEST: f32 = 4.0;
+const SHORTEST: f32 = 0.02;
+/// Penalties of the constant, of places and of functions, in q and in A, where places have unit variance.
+const PENALTIES: [f32; 2 + FUNCTIONS] = [1e-4, 0.03, 0.05, 0.05, 0.2, 0.2, 0.2];
+const PENALTIES_OF_A: [f32; 2 + SLOPES] = [2e-3, 0.3, 0.5, 0.5];
+/// q counts as no further from 0.
+const MOST: f32 = 30.0;
+/// The least variance of whether a sample is lit.
+const LEAST_VARIANCE: f32 = 1e-3;
+/// Points along a coordinate, and cells between them.
+const POINTS: usize = CELLS + 1;
+const CELLS: usize = 16;
+/// What is left of samples is at least this of their sum of squares.
+const ROUNDING: f32 = 1e-5;
+const SQRT_3: f32 = 1.732_050_8;
+const HALF_SQRT_5: f32 = 1.118_034;
+
+impl Layout<'_> {
+    /// Whether edges are looked for.
+    pub(super) fn has_edges(&self) -> bool {
+        self.config.edges > 0 && self.n >= FEWEST_SAMPLES && !self.is_single_fit()
+    }
+}
+
+impl Call<'_> {
+    /// Notes which groups have lit and dark samples.
+    pub(super) fn find_edges(&self, groups: &mut Groups<'_>) {
+        let channels = self.config.channels;
+        let mut index = 0;
+        while let Some(group) = groups.numbered(self, index).filter(|_| self.has_edges()) {
+            let window = self.window(groups.first + group.window);
+            let members = groups.members(&group);
+            let is_lit = |member: usize, sample: usize| {
+                let place = Place::read(members.get(member).copied().unwrap_or(0.0));
+                let pixel = self.pixel(window, place, member);
+                row_at(self.reader.inputs(), channels, pixel * self.n + sample).iter().any(|&value| value > 0.0)
+            };
+            let first = is_lit(0, 0);
+            let mut all = (0..group.len).flat_map(|member| (0..self.n).map(move |sample| (member, sample)));
+            let has_both = all.any(|(member, sample)| is_lit(member, sample) != first);
+            if let Some(out) = groups.edges.get_mut(index) {
+                *out = if has_both && group.len >= FEWEST_PIXELS { 1.0 } else { 0.0 };
+            }
+            index += 1;
+        }
+    }
+}
+
+/// Numbers that the samples of so many slots, and fits to them, take.
+pub(super) fn edges_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
+    if !terms.has_edges {
+        return Some(0);
+    }
+    let (channels, fixed) = (layout.config.channels, terms.fixed());
+    let sums = Sums::len(fixed + FUNCTIONS, 1) + Sums::len(fixed + SLOPES, channels);
+    let once = (COLOURS + 1) * sums + 2 * POINTS * POINTS;
+    let samples = blocks(layout, slots).checked_mul(layout.n)?.checked_mul(AT_ONCE * (3 + channels))?;
+    samples.checked_add(once)?.checked_mul(LANES)
+}
+
+/// The fits to a batch whose groups have lit and dark samples.
+pub(super) struct Edges<'a> {
+    fixed: usize,
+    n: usize,
+    channels: usize,
+    /// For each block and sample: its two coordinates, 1 if it is lit, and its values in units.
+    samples: &'a mut [Four],
+    /// Of each colour: all samples, with whether they are lit; lit ones, with their values.
+    all: Sums<'a>,
+    lit: Sums<'a>,
+    /// The same of what a fit is to.
+    training: Sums<'a>,
+    training_lit: Sums<'a>,
+    /// The largest value of each colour and channel.
+    most: [[Eight; Config::MAX_CHANNELS]; COLOURS],
+    /// How much of the light arrives, and how much light arrives, at the points.
+    shares: &'a mut [Eight],
+    points: &'a mut [Eight],
+    /// 1 where the pixels of the colours that are judged have lit and dark samples, else 0.
+    pub(super) present: Eight,
+}
+
+/// The orthonormal Legendre polynomials of degree 1 and 2 of a coordinate.
+#[inline(always)]
+const fn legendre(u: f32) -> [f32; 2] {
+    let x = (u + u - 1.0) * SQRT_3;
+    [x, (x * x - 1.0) * HALF_SQRT_5]
+}
+
+/// The same at the points of a line.
+const LINE: [[f32; 2]; POINTS] = {
+    let mut line = [[0.0; 2]; POINTS];
+    let mut i = 0;
+    while i < POINTS {
+        line[i] = legendre(i as f32 / CELLS as f32);
+        i += 1;
+    }
+    line
+};
+
+/// The functions of two coordinates.
+#[inline(always)]
+fn functions(x: &Four, y: &Four) -> [Four; FUNCTIONS] {
+    let mut out = [[NONE; AT_ONCE]; FUNCTIONS];
+    for row in 0..AT_ONCE {
+        for l in 0..LANES {
+            let ([x, xx], [y, yy]) = (legendre(x[row][l]), legendre(y[row][l]));
+            [out[0][row][l], out[1][row][l]] = [x, y];
+            [out[2][row][l], out[3][row][l], out[4][row][l]] = [xx, x * y, yy];
+        }
+    }
+    out
+}
+
+/// The products of four numbers with others.
+#[inline(always)]
+fn times(a: &Four, b: &Four) -> Four {
+    let mut out = *a;
+    for row in 0..AT_ONCE {
+        for l in 0..LANES {
+            out[row][l] *= b[row][l];
+        }
+    }
+    out
+}
+
+/// 1 / (1 + e^-q)
+#[inline(always)]
+fn logistic(q: &Eight) -> Eight {
+    let mut out = *q;
+    for value in &mut out {
+        *value = Real::max(Real::min(*value, MOST), -MOST) * -LOG2_E;
+    }
+    out = lanes::exp2(&out);
+    for value in &mut out {
+        *value = 1.0 / (1.0 + *value);
+    }
+    out
+}
+
+impl<'a> Edges<'a> {
+    /// Reads the samples and sums their products.
+    #[inline(always)]
+    pub(super) fn new(
+        call: &Call<'_>,
+        terms: &Terms,
+        batch: &Batch<'_>,
+        arena: &mut Arena<'a, f32>,
+    ) -> Result<Self, Error> {
+        let (n, channels, fixed) = (call.n, call.config.channels, terms.fixed());
+        let (columns, columns_of_a) = (fixed + FUNCTIONS, fixed + SLOPES);
+        let mut edges = Self {
+            fixed,
+            n,
+            channels,
+            samples: arena.take_fours(batch.inside.len() * n * (3 + channels))?,
+            all: Sums::new(COLOURS, columns, 1, arena)?,
+            lit: Sums::new(COLOURS, columns_of_a, channels, arena)?,
+            training: Sums::new(1, columns, 1, arena)?,
+            training_lit: Sums::new(1, columns_of_a, channels, arena)?,
+            most: [[NONE; Config::MAX_CHANNELS]; COLOURS],
+            shares: arena.take_lanes(POINTS * POINTS)?,
+            points: arena.take_lanes(POINTS * POINTS)?,
+            present: NONE,
+        };
+        edges.all.empty();
+        edges.lit.empty();
+        for block in 0..batch.inside.len() {
+            edges.read(call, batch, block);
+            edges.add(batch, block);
+        }
+        if batch.is_joined {
+            edges.all.join();
+            edges.lit.join();
+            for most in edges.most.as_flattened_mut() {
+                *most = [most.iter().copied().fold(0.0, Real::max); LANES];
+            }
+        }
+        Ok(edges)
+    }
+
+    /// The samples of a block.
+    #[inline(always)]
+    fn samples(&self, block: usize) -> impl Iterator<Item = (&Four, &Four, &Four, &[Four])> {
+        let width = 3 + self.channels;
+        (block * self.n..(block + 1) * self.n).filter_map(move |sample| {
+            let [x, y, lit, values @ ..] = row_at(self.samples, width, sample) else { return None };
+            Some((x, y, lit, values))
+        })
+    }
+
+    #[inline(always)]
+    fn read(&mut self, call: &Call<'_>, batch: &Batch<'_>, block: usize) {
+        let width = 3 + self.channels;
+        let inside = batch.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
+        let mut x = [[0.0; AT_ONCE_LANES]; MAX_DIMS];
+        for sample in 0..self.n {
+            let out = row_at_mut(self.samples, width, block * self.n + sample);
+            let [u, v, lit, values @ ..] = out else { return };
+            for row in 0..AT_ONCE {
+                let pixels = batch.pixels((block, row));
+                call.reader.put_positions(&pixels.map(|pixel| pixel * self.n + sample), 1, row * LANES, &mut x);
+                lit[row] = NONE;
+                for (channel, (value, units)) in values.iter_mut().zip(&batch.units).enumerate() {
+                    let input = call.inputs(&pixels, sample, channel);
+                    lit[row] = lanes::zip(&lit[row], &input, |lit, input| if input > 0.0 { 1.0 } else { lit });
+                    value[row] = units.scale(&input);
+                }
+                lit[row] = only(&inside[row], &lit[row]);
+            }
+            let place = |axis: usize| -> Four {
+                let wide: &Lanes<f32, AT_ONCE_LANES> = x.get(axis).unwrap_or(&[0.0; AT_ONCE_LANES]);
+                core::array::from_fn(|row| core::array::from_fn(|lane| wide[row * LANES + lane]))
+            };
+            let first = call.config.edges.saturating_sub(1);
+            (*u, *v) = (place(first), place(first + 1));
+        }
+    }
+
+    /// Adds a block's samples to the sums of its colour.
+    #[inline(always)]
+    fn add(&mut self, batch: &Batch<'_>, block: usize) {
+        let (fixed, colour) = (self.fixed, block % COLOURS);
+        let inside = batch.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
+        let mut columns = [[NONE; AT_ONCE]; MAX_COLUMNS];
+        let columns = first_mut(&mut columns, fixed + FUNCTIONS);
+        for (out, place) in columns.iter_mut().zip(row_at(batch.places, fixed, block)) {
+            *out = times(&inside, place);
+        }
+        for sample in block * self.n..(block + 1) * self.n {
+            let [x, y, lit, values @ ..] = row_at(self.samples, 3 + self.channels, sample) else { return };
+            for (out, function) in from_mut(columns, fixed).iter_mut().zip(functions(x, y)) {
+                *out = times(&inside, &function);
+            }
+            self.all.add(colour, columns, &[*lit]);
+            let mut columns_of_lit = [[NONE; AT_ONCE]; MAX_FIXED + SLOPES];
+            let mut values_of_lit = [[NONE; AT_ONCE]; Config::MAX_CHANNELS];
+            let columns_of_lit = first_mut(&mut columns_of_lit, fixed + SLOPES);
+            let values_of_lit = first_mut(&mut values_of_lit, self.channels);
+            let most = self.most.get_mut(colour).into_iter().flatten();
+            for (out, column) in columns_of_lit.iter_mut().zip(columns.iter()) {
+                *out = times(lit, column);
+            }
+            for ((out, value), most) in values_of_lit.iter_mut().zip(values).zip(most) {
+                *out = times(lit, value);
+                *most = out.iter().fold(*most, |most, value| lanes::zip(value, &most, Real::max));
+            }
+            self.lit.add(colour, columns_of_lit, values_of_lit);
+        }
+    }
+
+    /// Corrects every pixel of the colours `taken` by fits to the other of them, as the last candidate.
+    #[inline(always)]
+    pub(super) fn correct(&mut self, batch: &Batch<'_>, taken: Colours, fits: &mut Fits<'_>) {
+        self.training.set_total(&self.all, taken);
+        self.present = self.has_both();
+        for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
+            let others = taken.without(colour);
+            self.training.set_total(&self.all, others);
+            self.training_lit.set_total(&self.lit, others);
+            let has_both = self.has_both();
+            let is_needed = has_both != NONE;
+            let mut q = [NONE; MAX_COLUMNS];
+            let mut a = [[NONE; MAX_FIXED + SLOPES]; Config::MAX_CHANNELS];
+            let mut most = [NONE; Config::MAX_CHANNELS];
+            if is_needed {
+                self.regress(batch, others, &has_both, first_mut(&mut q, self.fixed + FUNCTIONS));
+                self.fit_lit(&mut a);
+                for (_, colour) in self.most.iter().enumerate().filter(|&(colour, _)| others.has(colour)) {
+                    most.iter_mut().zip(colour).for_each(|(most, value)| *most = lanes::zip(value, most, Real::max));
+                }
+            }
+            let mut within = [NONE; Config::MAX_CHANNELS];
+            for block in batch.blocks(Colours(1 << colour)) {
+                for row in 0..AT_ONCE {
+                    if is_needed {
+                        self.share_out(batch, (block, row), &q);
+                    }
+                    for channel in 0..self.channels {
+                        let corrections = fits.corrections_mut(block, channel).last_mut();
+                        let (Some(out), Some(a), Some(most), Some(within)) =
+                            (corrections, a.get(channel), most.get(channel), within.get_mut(channel))
+                        else {
+                            return;
+                        };
+                        let integral = if is_needed { self.light(batch, (block, row), a, most) } else { NONE };
+                        out[row] = self.compare((block, row), channel, &integral, &has_both, batch.inside, within);
+                    }
+                }
+            }
+            for value in 0..batch.values {
+                let whole = fits.within(value, colour, 0);
+                let left = within.get(value).filter(|_| value < self.channels).unwrap_or(&whole);
+                let left = lanes::zip(left, &whole, |left, whole| Real::max(left, whole * ROUNDING));
+                fits.set_last_within(value, colour, left);
+            }
+        }
+        // Of what is left of values without what is known nothing is dark.
+        for (block, value) in batch.blocks(taken).flat_map(|b| (self.channels..batch.values).map(move |v| (b, v))) {
+            fits.corrections_mut(block, value).last_mut().into_iter().for_each(|out| *out = [NONE; AT_ONCE]);
+        }
+    }
+
+    /// Where samples of the training set are lit, and others are not.
+    fn has_both(&self) -> Eight {
+        let sums = self.training.part(0);
+        let [count, lit] = [sums.gram, sums.sides].map(|sums| sums.first().copied().unwrap_or(NONE));
+        lanes::zip(&lit, &count, |lit, count| if lit > 0.0 && lit < count { 1.0 } else { 0.0 })
+    }
+
+    /// The logistic regression, by Newton's steps, where `wanted`.
+    #[inline(always)]
+    fn regress(&self, batch: &Batch<'_>, training: Colours, wanted: &Eight, weights: &mut [Eight]) {
+        let width = weights.len();
+        let sums = self.training.part(0);
+        let [count, lit] = [sums.gram, sums.sides].map(|sums| sums.first().copied().unwrap_or(NONE));
+        let odds = lanes::zip(&lit, &count, |lit, count| (lit + 0.5) / (count - lit + 0.5));
+        let share = odds.map(|odds| odds / (1.0 + odds));
+        if let Some(first) = weights.first_mut() {
+            *first = lanes::log2(&odds).map(|logarithm| logarithm * LN_2);
+        }
+        let mut all = [NONE; packed_len(MAX_COLUMNS)];
+        let matrix = first_mut(&mut all, packed_len(width));
+        let mut sides = [NONE; MAX_COLUMNS];
+        let sides = first_mut(&mut sides, width);
+        let mut left = *wanted;
+        for step in 0..STEPS {
+            if step == 0 {
+                // All are as likely to be lit, so that the sums are at hand.
+                let variance = share.map(|share| Real::max(share * (1.0 - share), LEAST_VARIANCE));
+                for (out, sum) in matrix.iter_mut().zip(sums.gram) {
+                    *out = lanes::zip(sum, &variance, |sum, variance| sum * variance);
+                }
+                for (j, (out, side)) in sides.iter_mut().zip(sums.sides).enumerate() {
+                    *out = lanes::minus_product(*side, row(sums.gram, j).first().copied().unwrap_or(NONE), share);
+                }
+            } else {
+                matrix.iter_mut().chain(sides.iter_mut()).for_each(|sum| *sum = NONE);
+                for block in batch.blocks(training) {
+                    self.add_slopes(batch, block, weights, matrix, sides);
+                }
+                if batch.is_joined {
+                    matrix.iter_mut().chain(sides.iter_mut()).for_each(|sum| *sum = [lanes::sum(sum); LANES]);
+                }
+            }
+            for (j, (side, weight)) in sides.iter_mut().zip(weights.iter()).enumerate() {
+                let penalty = penalty(&PENALTIES, self.fixed, j);
+                *side = lanes::minus_product(*side, *weight, [penalty; LANES]);
+                if let Some(diagonal) = row_mut(matrix, j).last_mut() {
+                    *diagonal = diagonal.map(|value| value + penalty);
+                }
+            }
+            ldlt::factor_each(matrix, width);
+            ldlt::solve_each(matrix, sides);
+            let mut longest = NONE;
+            for side in sides.iter() {
+                longest = lanes::zip(&longest, side, |longest, side| Real::max(Real::abs(side), longest));
+            }
+            let scale = longest.map(|longest| LONGEST / Real::max(longest, LONGEST));
+            let scale = only(&left, &scale);
+            for (weight, side) in weights.iter_mut().zip(sides.iter()) {
+                *weight = lanes::plus_product(*weight, *side, scale);
+            }
+            left = lanes::zip(&left, &longest, |left, longest| if longest >= SHORTEST { left } else { 0.0 });
+            if left == NONE {
+                break;
+            }
+        }
+    }
+
+    /// Adds what a block's samples say of the next step.
+    #[inline(always)]
+    fn add_slopes(
+        &self,
+        batch: &Batch<'_>,
+        block: usize,
+        weights: &[Eight],
+        matrix: &mut [Eight],
+        sides: &mut [Eight],
+    ) {
+        let fixed = self.fixed;
+        let places = row_at(batch.places, fixed, block);
+        let inside = batch.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
+        let base = combine([NONE; AT_ONCE], places, weights);
+        // A pixel's place is the same for all of its samples.
+        let (mut total, mut totals) = ([NONE; AT_ONCE], [[NONE; AT_ONCE]; FUNCTIONS]);
+        let mut rest = [NONE; AT_ONCE];
+        for (x, y, lit, _) in self.samples(block) {
+            let functions = functions(x, y);
+            let q = combine(base, &functions, from(weights, fixed));
+            let (mut variance, mut apart) = (q, *lit);
+            for row in 0..AT_ONCE {
+                let share = logistic(&q[row]);
+                for l in 0..LANES {
+                    variance[row][l] = Real::max(share[l] * (1.0 - share[l]), LEAST_VARIANCE) * inside[row][l];
+                    apart[row][l] = (lit[row][l] - share[l]) * inside[row][l];
+                    total[row][l] += variance[row][l];
+                    rest[row][l] += apart[row][l];
+                }
+                lanes::keep_together();
+            }
+            for (i, (function, total)) in functions.iter().zip(&mut totals).enumerate() {
+                let weighted = times(function, &variance);
+                for row in 0..AT_ONCE {
+                    total[row] = plus(&total[row], &weighted[row]);
+                }
+                add_products(from_mut(row_mut(matrix, fixed + i), fixed), &weighted, &functions);
+                if let Some(side) = sides.get_mut(fixed + i) {
+                    *side = plus_four(*side, &apart, function);
+                }
+            }
+        }
+        for (j, (place, side)) in places.iter().zip(sides.iter_mut()).enumerate() {
+            let weighted = times(place, &total);
+            add_products(row_mut(matrix, j), &weighted, places);
+            *side = plus_four(*side, &rest, place);
+        }
+        for (i, total) in totals.iter().enumerate() {
+            add_products(first_mut(row_mut(matrix, fixed + i), fixed), total, places);
+        }
+    }
+
+    /// Least squares to the lit samples of the training set.
+    #[inline(always)]
+    fn fit_lit(&self, a: &mut [[Eight; MAX_FIXED + SLOPES]; Config::MAX_CHANNELS]) {
+        let width = self.fixed + SLOPES;
+        let sums = self.training_lit.part(0);
+        let count = sums.gram.first().copied().unwrap_or(NONE);
+        let mut matrix = [NONE; packed_len(MAX_FIXED + SLOPES)];
+        let matrix = first_mut(&mut matrix, packed_len(width));
+        copy(matrix, sums.gram);
+        for j in 0..width {
+            let penalty = penalty(&PENALTIES_OF_A, self.fixed, j);
+            if let Some(diagonal) = row_mut(matrix, j).last_mut() {
+                *diagonal = diagonal.map(|value| value + penalty);
+            }
+        }
+        ldlt::factor_each(matrix, width);
+        let divisor = lanes::divisor(&count);
+        for (channel, out) in a.iter_mut().enumerate().take(self.channels) {
+            let out = first_mut(out, width);
+            copy(out, row_at(sums.sides, width, channel));
+            // About their mean, which is not held back.
+            let mean = out.first().map_or(NONE, |sum| lanes::zip(sum, &divisor, |sum, count| sum / count));
+            for (j, out) in out.iter_mut().enumerate() {
+                *out = lanes::minus_product(*out, row(sums.gram, j).first().copied().unwrap_or(NONE), mean);
+            }
+            ldlt::solve_each(matrix, out);
+            if let Some(first) = out.first_mut() {
+                *first = plus(first, &mean);
+            }
+        }
+    }
+
+    /// How much of the light arrives, at the points.
+    #[inline(always)]
+    fn share_out(&mut self, batch: &Batch<'_>, at: (usize, usize), q: &[Eight]) {
+        let base = self.place_part(batch, at, q);
+        let Some(&[x, y, xx, xy, yy]) = q.get(self.fixed..).and_then(<[Eight]>::first_chunk) else { return };
+        for (line, [first, second]) in self.shares.as_chunks_mut::<POINTS>().0.iter_mut().zip(LINE) {
+            let constant = lanes::plus_product(base, y, [first; LANES]);
+            let constant = lanes::plus_product(constant, yy, [second; LANES]);
+            let slope = lanes::plus_product(x, xy, [first; LANES]);
+            for (out, [first, second]) in line.iter_mut().zip(LINE) {
+                let sum = lanes::plus_product(constant, slope, [first; LANES]);
+                *out = logistic(&lanes::plus_product(sum, xx, [second; LANES]));
+                lanes::keep_together();
+            }
+        }
+    }
+
+    /// How much light of a channel arrives at the points, and the interpolant's integral.
+    #[inline(always)]
+    fn light(&mut self, batch: &Batch<'_>, at: (usize, usize), a: &[Eight], most: &Eight) -> Eight {
+        let base = self.place_part(batch, at, a);
+        let Some(&[x, y]) = a.get(self.fixed..).and_then(<[Eight]>::first_chunk) else { return NONE };
+        let mut integral = NONE;
+        let lines = self.points.as_chunks_mut::<POINTS>().0.iter_mut();
+        for (j, ((line, shares), [first, _])) in lines.zip(self.shares.as_chunks::<POINTS>().0).zip(LINE).enumerate() {
+            let constant = lanes::plus_product(base, y, [first; LANES]);
+            let mut sum = NONE;
+            for (i, ((out, share), [first, _])) in line.iter_mut().zip(shares).zip(LINE).enumerate() {
+                let light = lanes::plus_product(constant, x, [first; LANES]);
+                let light = lanes::zip(&light, most, |light, most| Real::max(Real::min(light, most), 0.0));
+                *out = lanes::zip(&light, share, |light, share| light * share);
+                sum = lanes::plus_product(sum, *out, [trapezoid(i); LANES]);
+                lanes::keep_together();
+            }
+            integral = lanes::plus_product(integral, sum, [trapezoid(j); LANES]);
+        }
+        integral
+    }
+
+    /// The part of a polynomial that the pixels' places decide.
+    #[inline(always)]
+    fn place_part(&self, batch: &Batch<'_>, (block, row): (usize, usize), coefficients: &[Eight]) -> Eight {
+        let places = row_at(batch.places, self.fixed, block).iter().zip(coefficients);
+        places.fold(NONE, |sum, (place, coefficient)| lanes::plus_product(sum, place[row % AT_ONCE], *coefficient))
+    }
+
+    /// The integral less the mean at the samples; adds to `within` what is left of these about their pixel's mean.
+    #[inline(always)]
+    fn compare(
+        &self,
+        (block, row): (usize, usize),
+        channel: usize,
+        integral: &Eight,
+        wanted: &Eight,
+        inside: &[Four],
+        within: &mut Eight,
+    ) -> Eight {
+        let (mut sum, mut square) = (NONE, NONE);
+        let (mut total, mut first) = (NONE, None);
+        for (x, y, _, values) in self.samples(block) {
+            let value = values.get(channel).map_or(NONE, |value| value[row % AT_ONCE]);
+            let light = only(wanted, &self.interpolate(&x[row % AT_ONCE], &y[row % AT_ONCE]));
+            total = plus(&total, &light);
+            let apart = lanes::zip(&value, &light, |value, light| value - light);
+            let first = *first.get_or_insert(apart);
+            let apart = lanes::zip(&apart, &first, |apart, first| apart - first);
+            sum = plus(&sum, &apart);
+            square = lanes::plus_product(square, apart, apart);
+        }
+        let inverse = 1.0 / self.n as f32;
+        let left = lanes::minus_product(square, sum.map(|sum| sum * inverse), sum);
+        let inside = inside.get(block).map_or(NONE, |inside| inside[row % AT_ONCE]);
+        *within = plus(within, &only(&inside, &left.map(|left| Real::max(left, 0.0))));
+        only(wanted, &lanes::zip(integral, &total, |integral, total| integral - total * inverse))
+    }
+
+    /// The interpolant between the points.
+    #[inline(always)]
+    fn interpolate(&self, x: &Eight, y: &Eight) -> Eight {
+        let mut out = NONE;
+        for lane in 0..LANES {
+            let [(i, a), (j, b)] = [x[lane], y[lane]].map(|u| {
+                let at = u * CELLS as f32;
+                let cell = (at as usize).min(CELLS - 1);
+                (cell, at - cell as f32)
+            });
+            let pair = |j: usize| match self.points.get(j * POINTS + i..) {
+                Some([left, right, ..]) => left[lane] + a * (right[lane] - left[lane]),
+                _ => 0.0,
+            };
+            let (below, above) = (pair(j), pair(j + 1));
+            out[lane] = below + b * (above - below);
+        }
+        out
+    }
+}
+
+/// The weight of a point of a line in its integral.
+#[inline(always)]
+fn trapezoid(point: usize) -> f32 {
+    if point == 0 || point == CELLS { 0.5 / CELLS as f32 } else { 1.0 / CELLS as f32 }
+}
+
+/// The penalty of a column.
+#[inline(always)]
+fn penalty(penalties: &[f32], fixed: usize, column: usize) -> f32 {
+    let index = if column < fixed { column.min(1) } else { 2 + column - fixed };
+    penalties.get(index).copied().unwrap_or(0.0)
+}

@@ -1,0 +1,229 @@
+//! Shared fits that follow the edge of a shadow in two coordinates: `Config::edges`.
+//!
+//! Seeds are fixed. A z-test is at |z| < 4.75, two-sided probability 2e-6; there are 160 of them.
+
+use crate::cv_support::points;
+use noisefloor::Error;
+use noisefloor::control_variate::{Config, Estimate, Estimator, Image, Ridge, Samples, image_workspace_len};
+use noisefloor_tests::random::SplitMix64;
+use noisefloor_tests::shared::image;
+use noisefloor_tests::statistics::Moments;
+use std::f64::consts::PI;
+
+const Z_LIMIT: f64 = 4.75;
+const SIDE: usize = 8;
+const PIXELS: usize = SIDE * SIDE;
+
+/// What hides the light: it is seen within a disc, or before a line, that move from pixel to pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Shadow {
+    Disc,
+    Line,
+    /// Light that few samples see: whether a group has any is chance.
+    Glint,
+}
+
+impl Shadow {
+    fn along(pixel: usize) -> [f64; 2] {
+        [(pixel % SIDE) as f64 / SIDE as f64, (pixel / SIDE) as f64 / SIDE as f64]
+    }
+
+    fn at(self, pixel: usize, [u, v]: [f64; 2]) -> f64 {
+        let [x, y] = Self::along(pixel);
+        match self {
+            Self::Disc if (u - 0.4 - 0.2 * x).hypot(v - 0.4 - 0.2 * y) < 0.35 => 1.0 + u,
+            Self::Line if u + 0.4 * v < 0.5 + 0.3 * x => 2.0 + x,
+            Self::Glint if u < 0.01 => 1.0 + v,
+            _ => 0.0,
+        }
+    }
+
+    fn integral(self, pixel: usize) -> f64 {
+        let [x, _] = Self::along(pixel);
+        match self {
+            Self::Disc => PI * 0.35 * 0.35 * (1.4 + 0.2 * x),
+            Self::Line => (0.3 + 0.3 * x) * (2.0 + x),
+            Self::Glint => 0.015,
+        }
+    }
+
+    fn values(self, n: usize, u: &[f32]) -> Vec<f32> {
+        let at = |(i, u): (usize, &[f32])| self.at(i / n, [u[0], u[1]].map(f64::from)) as f32;
+        u.chunks(2).enumerate().map(at).collect()
+    }
+}
+
+/// One sample in each of n = k x k cells of every pixel.
+fn jittered(n: usize, rng: &mut SplitMix64) -> Vec<f32> {
+    let side = n.isqrt();
+    let mut at = |cell: usize| ((cell as f64 + rng.uniform()) / side as f64).min(0.999_999) as f32;
+    (0..PIXELS * n).flat_map(|i| [at(i % n % side), at(i % n / side)]).collect()
+}
+
+fn estimates(config: &Config, u: &[f32], f: &[f32]) -> Vec<Estimate> {
+    image(config, &Image::new(SIDE, SIDE), Samples::new(u, f)).unwrap()
+}
+
+fn bits(estimates: &[Estimate]) -> Vec<u32> {
+    estimates.iter().flat_map(|e| [e.mean[0], e.std_error[0], e.gain].map(f32::to_bits)).collect()
+}
+
+/// Squared errors with edges against those without, frame by frame.
+#[test]
+fn they_lower_the_error() {
+    for (index, shadow) in [Shadow::Disc, Shadow::Line].into_iter().enumerate() {
+        for n in [4, 16] {
+            for stratified in [false, true] {
+                let config = Config { stratified, ..Config::new(2, 3, 1) };
+                let with = Config { edges: 1, ..config };
+                let mut rng = SplitMix64::new(300 + index as u64);
+                let (mut gained, mut all) = (Moments::default(), [Moments::default(); 2]);
+                for _ in 0..60 {
+                    let u = if stratified { jittered(n, &mut rng) } else { points(PIXELS * n, 2, &mut rng) };
+                    let f = shadow.values(n, &u);
+                    let [plain, edges] = [config, with].map(|config| {
+                        let of =
+                            |(pixel, e): (usize, &Estimate)| (f64::from(e.mean[0]) - shadow.integral(pixel)).powi(2);
+                        estimates(&config, &u, &f).iter().enumerate().map(of).sum::<f64>()
+                    });
+                    gained.add(edges - plain);
+                    all.iter_mut().zip([plain, edges]).for_each(|(moments, error)| moments.add(error));
+                }
+                let (z, ratio) = (gained.z(0.0), all[1].mean() / all[0].mean());
+                println!("{shadow:?}, {n} samples, stratified {stratified}: {ratio:.3} of the error, z {z:.1}");
+                assert!(z < -Z_LIMIT && ratio < 0.95, "{shadow:?} {n} {stratified}: {ratio} {z}");
+            }
+        }
+    }
+}
+
+/// Halves that choose for each other: the mean of the pixels, that of the left less the right half, and five pixels.
+#[test]
+fn k_fold_is_unbiased() {
+    for (index, shadow) in [Shadow::Disc, Shadow::Line, Shadow::Glint].into_iter().enumerate() {
+        for window in [4, SIDE] {
+            let config = Config { estimator: Estimator::KFold, edges: 1, ..Config::new(2, 2, 1) };
+            let of = Image { window, ..Image::new(SIDE, SIDE) };
+            let mut rng = SplitMix64::new(310 + index as u64);
+            let mut tested = [Moments::default(); 7];
+            for _ in 0..1000 {
+                let u = points(PIXELS * 4, 2, &mut rng);
+                let f = shadow.values(4, &u);
+                let all: Vec<f64> = image(&config, &of, Samples::new(&u, &f))
+                    .unwrap()
+                    .iter()
+                    .enumerate()
+                    .map(|(pixel, e)| f64::from(e.mean[0]) - shadow.integral(pixel))
+                    .collect();
+                let half = |right: usize| {
+                    (0..PIXELS).filter(|pixel| pixel % SIDE / 4 == right).map(|pixel| all[pixel]).sum::<f64>()
+                };
+                let [left, right] = [half(0), half(1)];
+                let errors = [left + right, left - right, all[0], all[7], all[27], all[36], all[PIXELS - 1]];
+                tested.iter_mut().zip(errors).for_each(|(moments, error)| moments.add(error));
+            }
+            let z = tested.iter().map(|moments| moments.z(0.0).abs()).fold(0.0, f64::max);
+            println!("{shadow:?}, window {window}: |z| <= {z:.2}");
+            assert!(z < Z_LIMIT, "{shadow:?} {window}: {z}");
+        }
+    }
+}
+
+/// No bit changes where there is nothing to follow, below 4 samples, and for estimators that do not choose.
+#[test]
+fn elsewhere_nothing_changes() {
+    let mut rng = SplitMix64::new(320);
+    let single = Config { estimator: Estimator::LeaveOneOut, ..Config::new(2, 2, 1) };
+    let fixed = Config { ridge: Ridge::Fixed(0.1), ..Config::new(2, 2, 1) };
+    for (config, n, light) in [
+        (Config::new(2, 2, 1), 4, 0.1),
+        (Config::new(2, 2, 1), 3, 0.0),
+        (single, 4, 0.0),
+        (fixed, 4, 0.0),
+        (Config::new(2, 2, 1), 4, -9.0),
+    ] {
+        let u = points(PIXELS * n, 2, &mut rng);
+        let f: Vec<f32> = Shadow::Disc.values(n, &u).iter().map(|f| f + light).collect();
+        let with = Config { edges: 1, ..config };
+        assert!(bits(&estimates(&with, &u, &f)) == bits(&estimates(&config, &u, &f)), "{n} {light}");
+        let of = Image::new(SIDE, SIDE);
+        let [len, more] = [config, with].map(|config| image_workspace_len(&config, &of, n).unwrap());
+        assert_eq!(more > len, n > 3 && config == Config::new(2, 2, 1));
+    }
+}
+
+/// Other coordinates, channels, frames, orders and pixels without places; values of any size.
+#[test]
+fn every_form_is_finite() {
+    let mut rng = SplitMix64::new(330);
+    for round in 0..200 {
+        let [dims, channels, frames] = [2 + rng.below(4), 1 + rng.below(4), 1 + rng.below(2)];
+        let estimator = [Estimator::Robust, Estimator::KFold][round % 2];
+        let edges = 1 + rng.below(dims - 1);
+        let config = Config { edges, estimator, ..Config::new(dims, rng.below(4), channels) };
+        let unordered = rng.below(4) == 0;
+        let of = Image { unordered, frames, stride: 1 + rng.below(8), ..Image::new(9 + rng.below(8), 9) };
+        let pixels = of.width * of.height * frames;
+        let mut u = points(pixels * 4, dims, &mut rng);
+        u.iter_mut().step_by(7).for_each(|u| *u = u.round());
+        let scale = [1.0, 1e-38, 1e30, f32::MAX / 8.0][rng.below(4)];
+        let bright = rng.below(pixels);
+        let f: Vec<f32> = (0..pixels * 4 * channels)
+            .map(|i| {
+                let (sample, lit) = (i / channels, rng.below(3) > 0);
+                let factor = if sample / 4 == bright { 8.0 } else { 1.0 };
+                if lit && u[sample * dims] < 0.6 { scale * factor * (rng.uniform_f32() - 0.1) } else { 0.0 }
+            })
+            .collect();
+        for estimate in image(&config, &of, Samples::new(&u, &f)).unwrap() {
+            let numbers = [estimate.mean, estimate.std_error].concat();
+            assert!(numbers.iter().all(|value| value.is_finite()), "{config:?} {of:?} {scale}: {estimate:?}");
+        }
+    }
+}
+
+/// Powers of two scale estimates, exactly.
+#[test]
+fn units_do_not_matter() {
+    let mut rng = SplitMix64::new(340);
+    let config = Config { edges: 1, ..Config::new(2, 2, 1) };
+    let u = points(PIXELS * 4, 2, &mut rng);
+    let f = Shadow::Line.values(4, &u);
+    let larger: Vec<f32> = f.iter().map(|f| f * 1024.0).collect();
+    let all = estimates(&config, &u, &f);
+    for (a, b) in all.iter().zip(estimates(&config, &u, &larger)) {
+        assert_eq!((a.mean[0] * 1024.0).to_bits(), b.mean[0].to_bits());
+    }
+}
+
+#[test]
+fn coordinates_must_be_there() {
+    let u = [0.5; 8];
+    for (dims, edges) in [(1, 1), (2, 2), (2, usize::MAX)] {
+        let config = Config { edges, ..Config::new(dims, 1, 1) };
+        assert_eq!(image_workspace_len(&config, &Image::new(SIDE, SIDE), 4), Err(Error::Range));
+        assert_eq!(config.check().unwrap_err().1, c"edges must be 0, or at least 1 and below dims");
+        assert!(image(&config, &Image::new(1, 1), Samples::new(&u[..4 * dims], &u[..4])).is_err());
+    }
+}
+
+/// Outputs to the bit, on every target: means of some pixels.
+#[test]
+fn outputs_are_the_pinned_ones() {
+    let mut found = vec![];
+    for (n, estimator, channels) in [(4, Estimator::Robust, 1), (4, Estimator::KFold, 1), (16, Estimator::Robust, 2)] {
+        let mut rng = SplitMix64::new(350);
+        let u = points(PIXELS * n, 2, &mut rng);
+        let f: Vec<f32> = Shadow::Disc.values(n, &u).iter().flat_map(|&f| vec![f; channels]).collect();
+        let config = Config { estimator, edges: 1, ..Config::new(2, 2, channels) };
+        let all = estimates(&config, &u, &f);
+        found.push([0, 9, 30, 63].map(|pixel: usize| all[pixel].mean[0].to_bits()));
+    }
+    assert_eq!(found, PINNED, "{found:#010x?}");
+}
+
+const PINNED: [[u32; 4]; 3] = [
+    [0x3f2c_33ed, 0x3f10_9f49, 0x3f0b_20c7, 0x3f66_513c],
+    [0x3f2c_4320, 0x3f10_a961, 0x3f05_1893, 0x3f66_8adc],
+    [0x3f1e_95f6, 0x3efb_083d, 0x3f37_c296, 0x3efc_5a06],
+];
