@@ -228,7 +228,7 @@ inline const EstimatorName estimator_names[] = {
     {"shared_blocks", NF_CV_ROBUST, "the same in windows side by side, not half over each other: a fourth of the time"},
     {"shared_k_fold", NF_CV_K_FOLD, "shared, unbiased: halves of the neighbours choose fits for each other"},
     {"shared_blind", NF_CV_ROBUST, "shared, but not told which pixels show the same surface, in windows side by side"},
-    {"shared_edges", NF_CV_ROBUST, "shared, told which numbers pick a point of a light: follows shadows' edges in them"},
+    {"shared_edges", NF_CV_ROBUST, "shared, told which numbers pick a point of a light: follows the edges of shadows"},
     {"shared_known", NF_CV_ROBUST, "shared, told what direct light would be with nothing in its way"},
     {"known", NF_CV_LEAVE_ONE_OUT, "each pixel against that alone, as far as its neighbours follow it; unbiased"},
     {"luminance", NF_CV_LEAST_SQUARES, "a fit to the luminance of all samples, which scales the plain mean",

@@ -66,8 +66,8 @@ typedef struct nf_cv_config {
     // At most 136 less binomial(dims - 1 + order, order) and less `controls`: 130 at 3 dims, order 2. Of more
     // alternatives let each slice stand for several.
     uint32_t slices;
-    // Of two coordinates that pick a point of a light the first, counted from 1, below dims; 0: none. From 4 samples on
-    // nf_cv_image_estimate() then also follows shadows' edges in them, among values above 0 and others.
+    // Of two coordinates that pick a point of a light the first, counted from 1, below dims; 0: none. From 4 samples
+    // on nf_cv_image_estimate() then also follows shadows' edges in them, among values above 0 and others.
     uint32_t edges;
     uint32_t controls; // User-supplied control functions with known integrals (4.18), 0 to 4.
     // Floats from one sample's u to the next; 0 means dims. A path may be longer than what is regressed (4.3.5); its

@@ -22,13 +22,12 @@ impl fmt::Display for Missing {
 pub fn ensure() -> Result<()> {
     let components: Vec<_> =
         ["fmt", "clippy"].into_iter().filter(|name| !works(run::cargo().args([name, "--version"]))).collect();
-    if !components.is_empty() {
-        bail!(
-            "missing: cargo {}. The tests check formatting and lints: `rustup component add rustfmt clippy` (Debian's \
-             own Rust: apt-get install rustfmt rust-clippy)",
-            components.join(", cargo ")
-        );
-    }
+    ensure!(
+        components.is_empty(),
+        "missing: cargo {}. The tests check formatting and lints: `rustup component add rustfmt clippy` (Debian's own \
+         Rust: apt-get install rustfmt rust-clippy)",
+        components.join(", cargo ")
+    );
     compilers()
 }
 

@@ -81,8 +81,8 @@ pub struct nf_cv_config {
     /// At most 136 less binomial(dims - 1 + order, order) and less `controls`: 130 at 3 dims, order 2. Of more
     /// alternatives let each slice stand for several.
     pub slices: u32,
-    /// Of two coordinates that pick a point of a light the first, counted from 1, below dims; 0: none. From 4 samples on
-    /// nf_cv_image_estimate() then also follows shadows' edges in them, among values above 0 and others.
+    /// Of two coordinates that pick a point of a light the first, counted from 1, below dims; 0: none. From 4 samples
+    /// on nf_cv_image_estimate() then also follows shadows' edges in them, among values above 0 and others.
     pub edges: u32,
     /// User-supplied control functions with known integrals (4.18), 0 to 4.
     pub controls: u32,
