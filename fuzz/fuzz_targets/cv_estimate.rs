@@ -54,6 +54,7 @@ impl<'a> Arbitrary<'a> for Input {
             basis: *bytes.choose(&Family::ALL)?,
             stratified: u8::arbitrary(bytes)? < 16,
             slices: small(bytes, 8)?.saturating_sub(3),
+            edges: 0,
             controls: small(bytes, 6)?.saturating_sub(2),
             stride: small(bytes, 18)?.saturating_sub(10),
             solver: *bytes.choose(&[Solver::Auto, Solver::NormalEquations, Solver::SquareRoot, Solver::Dual])?,
