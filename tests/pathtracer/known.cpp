@@ -308,7 +308,7 @@ void estimates(const LitScene &lit)
     Mean plain, known;
     double plain_square = 0, known_square = 0; // of differences from the other passes' mean, summed over pixels
     constexpr size_t n = 2, passes = 4000;
-    EstimatorSetup setup{count, count, 1, NF_BASIS_LEGENDRE, integrand.lights(), choice(domains), size, n, false};
+    EstimatorSetup setup{count, count, 1, NF_BASIS_LEGENDRE, integrand.lights(), choice(domains), 0, size, n, false};
     auto estimator = make_estimator("known", setup);
     std::vector<float> u(pixels * n * count), f(3 * pixels * n), values(f.size()), integrals(3 * pixels);
     std::vector<float> images(3 * pixels), sums(2 * pixels), squares(2 * pixels);

@@ -95,7 +95,7 @@ void estimates(const LitScene &lit, bool several)
         return luminance({f[0], f[1], f[2]});
     });
     for (const MisEstimatorName &kind : mis_estimator_names) {
-        EstimatorSetup setup{4, 4, 2, NF_BASIS_LEGENDRE, 1, 0, 1, pairs, false};
+        EstimatorSetup setup{4, 4, 2, NF_BASIS_LEGENDRE, 1, 0, 0, 1, pairs, false};
         auto estimator = make_mis_estimator(kind.name, setup);
         Estimate actual = render(size, 1500, [&](uint32_t x, uint32_t y) {
             draw();
