@@ -13,6 +13,10 @@ pub(crate) const fn mix(mut h: u32) -> u32 {
 /// The fractional part of the golden ratio, odd: multiples of it differ in many bits.
 pub(crate) const GOLDEN: u32 = 0x9e37_79b9;
 
+/// Keep domains of frames and of scrambles apart from those of keys.
+pub(crate) const FRAMES: u32 = 0x6672_616d;
+pub(crate) const SCRAMBLE: u32 = 0x7363_7261;
+
 /// The domain that `key` leads to from `domain`; never the root, 0. For either argument fixed, a bijection of the other
 /// but for that exception.
 #[inline]

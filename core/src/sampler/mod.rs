@@ -27,7 +27,7 @@ pub mod table;
 
 pub use crate::pixels::{PixelSampler, fill, fill_len};
 
-use crate::hash::{GOLDEN, child, mix};
+use crate::hash::{FRAMES, GOLDEN, SCRAMBLE, child, mix};
 use crate::rows::first_mut;
 
 /// One sample of one pixel: 16 bytes, to be copied freely. Drawing does not change it. Any value of the fields is
@@ -50,9 +50,6 @@ pub struct Sampler {
     pub flags: u32,
 }
 
-/// Keep domains of frames and of scrambles apart from those of keys.
-const FRAMES: u32 = 0x6672_616d;
-const SCRAMBLE: u32 = 0x7363_7261;
 /// Values are shifted by hashes of the domain.
 const SCRAMBLED: u32 = 1;
 /// Pixels are anywhere in the table.

@@ -12,7 +12,7 @@
 //! | scramble(seed) | the domain of that seed, its values shifted modulo 1 by a hash of domain and dimension |
 
 use super::view::Tile;
-use crate::hash::child;
+use crate::hash::{FRAMES, SCRAMBLE, child};
 
 /// One sample of one pixel: 24 bytes, to be copied freely. Drawing does not change it.
 ///
@@ -49,10 +49,6 @@ pub struct Sampler<'a> {
     /// 1 if scrambled, otherwise 0.
     pub scrambled: u16,
 }
-
-/// Keeps domains of frames and scrambles apart from those of keys.
-const FRAMES: u32 = 0x6672_616d;
-const SCRAMBLE: u32 = 0x7363_7261;
 
 impl<'a> Sampler<'a> {
     /// Sample `index` of pixel (x, y), any values: pixels repeat with the tile's size.

@@ -12,6 +12,7 @@ use super::fit::Fits;
 use super::groups::{Groups, Place};
 use super::products::{
     AT_ONCE, AT_ONCE_LANES, COLOURS, Colours, Eight, Four, NONE, Sums, add_products, combine, only, plus, plus_four,
+    zip_four,
 };
 use super::terms::Terms;
 use crate::arena::Arena;
@@ -20,7 +21,7 @@ use crate::control_variate::Config;
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::ldlt;
-use crate::matrix::{copy, first_mut, from, from_mut, packed_len, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{at, copy, first_mut, from, from_mut, packed_len, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
 use core::f32::consts::{LN_2, LOG2_E};
 
@@ -62,13 +63,16 @@ impl Layout<'_> {
 impl Call<'_> {
     /// Notes which groups have lit and dark samples.
     pub(super) fn find_edges(&self, groups: &mut Groups<'_>) {
+        if !self.has_edges() {
+            return;
+        }
         let channels = self.config.channels;
         let mut index = 0;
-        while let Some(group) = groups.numbered(self, index).filter(|_| self.has_edges()) {
+        while let Some(group) = groups.numbered(self, index) {
             let window = self.window(groups.first + group.window);
             let members = groups.members(&group);
             let is_lit = |member: usize, sample: usize| {
-                let place = Place::read(members.get(member).copied().unwrap_or(0.0));
+                let place = Place::read(at(members, member));
                 let pixel = self.pixel(window, place, member);
                 row_at(self.reader.inputs(), channels, pixel * self.n + sample).iter().any(|&value| value > 0.0)
             };
@@ -152,13 +156,7 @@ fn functions(x: &Four, y: &Four) -> [Four; FUNCTIONS] {
 /// The products of four numbers with others.
 #[inline(always)]
 fn times(a: &Four, b: &Four) -> Four {
-    let mut out = *a;
-    for row in 0..AT_ONCE {
-        for l in 0..LANES {
-            out[row][l] *= b[row][l];
-        }
-    }
-    out
+    zip_four(a, b, |a, b| lanes::zip(a, b, |a, b| a * b))
 }
 
 /// 1 / (1 + e^-q)
@@ -229,7 +227,7 @@ impl<'a> Edges<'a> {
     #[inline(always)]
     fn read(&mut self, call: &Call<'_>, batch: &Batch<'_>, block: usize) {
         let width = 3 + self.channels;
-        let inside = batch.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
+        let inside = at(batch.inside, block);
         let mut x = [[0.0; AT_ONCE_LANES]; MAX_DIMS];
         for sample in 0..self.n {
             let out = row_at_mut(self.samples, width, block * self.n + sample);
@@ -258,7 +256,7 @@ impl<'a> Edges<'a> {
     #[inline(always)]
     fn add(&mut self, batch: &Batch<'_>, block: usize) {
         let (fixed, colour) = (self.fixed, block % COLOURS);
-        let inside = batch.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
+        let inside = at(batch.inside, block);
         let mut columns = [[NONE; AT_ONCE]; MAX_COLUMNS];
         let columns = first_mut(&mut columns, fixed + FUNCTIONS);
         for (out, place) in columns.iter_mut().zip(row_at(batch.places, fixed, block)) {
@@ -341,7 +339,7 @@ impl<'a> Edges<'a> {
     /// Where samples of the training set are lit, and others are not.
     fn has_both(&self) -> Eight {
         let sums = self.training.part(0);
-        let [count, lit] = [sums.gram, sums.sides].map(|sums| sums.first().copied().unwrap_or(NONE));
+        let [count, lit] = [sums.gram, sums.sides].map(|sums| at(sums, 0));
         lanes::zip(&lit, &count, |lit, count| if lit > 0.0 && lit < count { 1.0 } else { 0.0 })
     }
 
@@ -350,7 +348,7 @@ impl<'a> Edges<'a> {
     fn regress(&self, batch: &Batch<'_>, training: Colours, wanted: &Eight, weights: &mut [Eight]) {
         let width = weights.len();
         let sums = self.training.part(0);
-        let [count, lit] = [sums.gram, sums.sides].map(|sums| sums.first().copied().unwrap_or(NONE));
+        let [count, lit] = [sums.gram, sums.sides].map(|sums| at(sums, 0));
         let odds = lanes::zip(&lit, &count, |lit, count| (lit + 0.5) / (count - lit + 0.5));
         let share = odds.map(|odds| odds / (1.0 + odds));
         if let Some(first) = weights.first_mut() {
@@ -369,7 +367,7 @@ impl<'a> Edges<'a> {
                     *out = lanes::zip(sum, &variance, |sum, variance| sum * variance);
                 }
                 for (j, (out, side)) in sides.iter_mut().zip(sums.sides).enumerate() {
-                    *out = lanes::minus_product(*side, row(sums.gram, j).first().copied().unwrap_or(NONE), share);
+                    *out = lanes::minus_product(*side, at(row(sums.gram, j), 0), share);
                 }
             } else {
                 matrix.iter_mut().chain(sides.iter_mut()).for_each(|sum| *sum = NONE);
@@ -417,7 +415,7 @@ impl<'a> Edges<'a> {
     ) {
         let fixed = self.fixed;
         let places = row_at(batch.places, fixed, block);
-        let inside = batch.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
+        let inside = at(batch.inside, block);
         let base = combine([NONE; AT_ONCE], places, weights);
         // A pixel's place is the same for all of its samples.
         let (mut total, mut totals) = ([NONE; AT_ONCE], [[NONE; AT_ONCE]; FUNCTIONS]);
@@ -462,7 +460,7 @@ impl<'a> Edges<'a> {
     fn fit_lit(&self, a: &mut [[Eight; MAX_FIXED + SLOPES]; Config::MAX_CHANNELS]) {
         let width = self.fixed + SLOPES;
         let sums = self.training_lit.part(0);
-        let count = sums.gram.first().copied().unwrap_or(NONE);
+        let count = at(sums.gram, 0);
         let mut matrix = [NONE; packed_len(MAX_FIXED + SLOPES)];
         let matrix = first_mut(&mut matrix, packed_len(width));
         copy(matrix, sums.gram);
@@ -480,7 +478,7 @@ impl<'a> Edges<'a> {
             // About their mean, which is not held back.
             let mean = out.first().map_or(NONE, |sum| lanes::zip(sum, &divisor, |sum, count| sum / count));
             for (j, out) in out.iter_mut().enumerate() {
-                *out = lanes::minus_product(*out, row(sums.gram, j).first().copied().unwrap_or(NONE), mean);
+                *out = lanes::minus_product(*out, at(row(sums.gram, j), 0), mean);
             }
             ldlt::solve_each(matrix, out);
             if let Some(first) = out.first_mut() {
@@ -596,5 +594,5 @@ fn trapezoid(point: usize) -> f32 {
 #[inline(always)]
 fn penalty(penalties: &[f32], fixed: usize, column: usize) -> f32 {
     let index = if column < fixed { column.min(1) } else { 2 + column - fixed };
-    penalties.get(index).copied().unwrap_or(0.0)
+    at(penalties, index)
 }

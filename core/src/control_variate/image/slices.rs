@@ -17,8 +17,7 @@ use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
 use crate::matrix::{at, copy, first_mut, from, halves_mut, packed_len, row, row_at, row_at_mut, row_mut, split_at};
 use crate::real::Real;
-use crate::rows::{first, halves};
-use crate::rows::{rows, rows_mut};
+use crate::rows::{first, halves, rows, rows_mut};
 use core::ops::Range;
 
 /// Fits of candidates that have as many own columns of each slice.
