@@ -35,6 +35,17 @@ pub(crate) fn zip<R: Real, const L: usize>(a: &Lanes<R, L>, b: &Lanes<R, L>, f: 
     out
 }
 
+/// `f(a)` lane by lane, as a loop: compilers do not inline an array's `map` that has so much in it, and then it does
+/// not use the vector units that its caller may.
+#[inline(always)]
+fn each(a: &Lanes<f32>, f: impl Fn(f32) -> f32) -> Lanes<f32> {
+    let mut out = *a;
+    for value in &mut out {
+        *value = f(*value);
+    }
+    out
+}
+
 /// Ends an iteration of a loop over groups of lanes. Compilers would else unroll the lanes and go through several
 /// iterations at once, with shuffles that take longer than the arithmetic.
 #[inline(always)]
@@ -129,7 +140,7 @@ pub(crate) fn log2(x: &Lanes<f32>) -> Lanes<f32> {
     // x = m 2^e with m from sqrt(1/2) to sqrt(2), and ln m = 2 (t + t^3 / 3 + ...) with t = (m - 1) / (m + 1).
     const SMALLEST: u32 = 0x3f35_04f3;
     const TWICE: f32 = 2.0 * core::f32::consts::LOG2_E;
-    x.map(|x| {
+    each(x, |x| {
         let bits = x.to_bits().wrapping_sub(SMALLEST) as i32;
         let exponent = bits >> 23;
         let m = f32::from_bits(((bits & 0x7f_ffff) as u32).wrapping_add(SMALLEST));
@@ -146,7 +157,7 @@ pub(crate) fn exp2(x: &Lanes<f32>) -> Lanes<f32> {
     // Adding this rounds to an integer, which is then in the low bits.
     const ROUND: f32 = 12_582_912.0;
     const LN_2: f32 = core::f32::consts::LN_2;
-    x.map(|x| {
+    each(x, |x| {
         let x = if x > -126.0 { x } else { -126.0 };
         let x = if x < 126.0 { x } else { 126.0 };
         let rounded = x + ROUND;

@@ -41,8 +41,8 @@ const SHORTEST: f32 = 0.02;
 /// Penalties of the constant, of places and of functions, in q and in A, where places have unit variance.
 const PENALTIES: [f32; 2 + FUNCTIONS] = [1e-4, 0.03, 0.05, 0.05, 0.2, 0.2, 0.2];
 const PENALTIES_OF_A: [f32; 2 + SLOPES] = [2e-3, 0.3, 0.5, 0.5];
-/// q counts as no further from 0.
-const MOST: f32 = 30.0;
+/// q is no further from 0.
+const MOST: f32 = 50.0;
 /// The least variance of whether a sample is lit.
 const LEAST_VARIANCE: f32 = 1e-3;
 /// Points along a coordinate, and cells between them.
@@ -51,7 +51,7 @@ const CELLS: usize = 16;
 /// What is left of samples is at least this of their sum of squares.
 const ROUNDING: f32 = 1e-5;
 const SQRT_3: f32 = 1.732_050_8;
-const HALF_SQRT_5: f32 = 1.118_034;
+const SQRT_5: f32 = 2.236_068;
 
 impl Layout<'_> {
     /// Whether edges are looked for.
@@ -121,19 +121,18 @@ pub(super) struct Edges<'a> {
     pub(super) present: Eight,
 }
 
-/// The orthonormal Legendre polynomials of degree 1 and 2 of a coordinate.
+/// The orthonormal Legendre polynomial of degree 1 of a coordinate.
 #[inline(always)]
-const fn legendre(u: f32) -> [f32; 2] {
-    let x = (u + u - 1.0) * SQRT_3;
-    [x, (x * x - 1.0) * HALF_SQRT_5]
+const fn linear(u: f32) -> f32 {
+    (u + u - 1.0) * SQRT_3
 }
 
-/// The same at the points of a line.
-const LINE: [[f32; 2]; POINTS] = {
-    let mut line = [[0.0; 2]; POINTS];
+/// It at the points of a line.
+const LINE: [f32; POINTS] = {
+    let mut line = [0.0; POINTS];
     let mut i = 0;
     while i < POINTS {
-        line[i] = legendre(i as f32 / CELLS as f32);
+        line[i] = linear(i as f32 / CELLS as f32);
         i += 1;
     }
     line
@@ -143,11 +142,12 @@ const LINE: [[f32; 2]; POINTS] = {
 #[inline(always)]
 fn functions(x: &Four, y: &Four) -> [Four; FUNCTIONS] {
     let mut out = [[NONE; AT_ONCE]; FUNCTIONS];
+    let square = |x: &Eight| lanes::zip(x, x, |a, b| (a * b - 1.0) * (0.5 * SQRT_5));
     for row in 0..AT_ONCE {
-        for l in 0..LANES {
-            let ([x, xx], [y, yy]) = (legendre(x[row][l]), legendre(y[row][l]));
-            [out[0][row][l], out[1][row][l]] = [x, y];
-            [out[2][row][l], out[3][row][l], out[4][row][l]] = [xx, x * y, yy];
+        let [x, y] = [x, y].map(|u| lanes::zip(&u[row], &u[row], |u, _| linear(u)));
+        let xy = lanes::zip(&x, &y, |x, y| x * y);
+        for (out, function) in out.iter_mut().zip([x, y, square(&x), xy, square(&y)]) {
+            out[row] = function;
         }
     }
     out
@@ -488,19 +488,43 @@ impl<'a> Edges<'a> {
     }
 
     /// How much of the light arrives, at the points.
+    ///
+    /// Along a line e^-q is multiplied by a factor from point to point, which is multiplied by one that does not change,
+    /// as q is of degree 2; and so are the first values of lines. Where q is large all of it is less, and 0 where it was.
     #[inline(always)]
     fn share_out(&mut self, batch: &Batch<'_>, at: (usize, usize), q: &[Eight]) {
+        // Between points, the difference of the function of degree 1; of that of degree 2 the first, and its own.
+        const STEP: f32 = 2.0 * SQRT_3 / CELLS as f32;
+        const CHANGE: f32 = SQRT_5 * STEP * STEP;
+        const FIRST: f32 = 0.5 * CHANGE - SQRT_5 * SQRT_3 * STEP;
         let base = self.place_part(batch, at, q);
         let Some(&[x, y, xx, xy, yy]) = q.get(self.fixed..).and_then(<[Eight]>::first_chunk) else { return };
-        for (line, [first, second]) in self.shares.as_chunks_mut::<POINTS>().0.iter_mut().zip(LINE) {
-            let constant = lanes::plus_product(base, y, [first; LANES]);
-            let constant = lanes::plus_product(constant, yy, [second; LANES]);
-            let slope = lanes::plus_product(x, xy, [first; LANES]);
-            for (out, [first, second]) in line.iter_mut().zip(LINE) {
-                let sum = lanes::plus_product(constant, slope, [first; LANES]);
-                *out = logistic(&lanes::plus_product(sum, xx, [second; LANES]));
+        let mut largest = base.map(Real::abs);
+        for (weight, most) in [(x, SQRT_3), (y, SQRT_3), (xx, SQRT_5), (xy, 3.0), (yy, SQRT_5)] {
+            largest = lanes::zip(&largest, &weight, |sum, weight| sum + most * Real::abs(weight));
+        }
+        let scale = largest.map(|largest| -LOG2_E * (MOST / Real::max(largest, MOST)));
+        let power = |terms: &[(Eight, f32)]| {
+            let sum = terms.iter().fold(NONE, |sum, (weight, f)| lanes::plus_product(sum, *weight, [*f; LANES]));
+            lanes::exp2(&lanes::zip(&sum, &scale, |sum, scale| sum * scale))
+        };
+        let times = |a: &mut Eight, b: &Eight| *a = lanes::zip(a, b, |a, b| a * b);
+        let corner = [(base, 1.0), (x, -SQRT_3), (y, -SQRT_3), (xx, SQRT_5), (xy, 3.0), (yy, SQRT_5)];
+        let (mut begin, mut down) = (power(&corner), power(&[(y, STEP), (xy, -SQRT_3 * STEP), (yy, FIRST)]));
+        let mut along = power(&[(x, STEP), (xy, -SQRT_3 * STEP), (xx, FIRST)]);
+        let [down_change, along_down, change] =
+            [(yy, CHANGE), (xy, STEP * STEP), (xx, CHANGE)].map(|term| power(&[term]));
+        for line in self.shares.as_chunks_mut::<POINTS>().0 {
+            let (mut value, mut factor) = (begin, along);
+            for out in line {
+                *out = value.map(|value| 1.0 / (1.0 + value));
+                times(&mut value, &factor);
+                times(&mut factor, &change);
                 lanes::keep_together();
             }
+            times(&mut begin, &down);
+            times(&mut down, &down_change);
+            times(&mut along, &along_down);
         }
     }
 
@@ -511,17 +535,21 @@ impl<'a> Edges<'a> {
         let Some(&[x, y]) = a.get(self.fixed..).and_then(<[Eight]>::first_chunk) else { return NONE };
         let mut integral = NONE;
         let lines = self.points.as_chunks_mut::<POINTS>().0.iter_mut();
-        for (j, ((line, shares), [first, _])) in lines.zip(self.shares.as_chunks::<POINTS>().0).zip(LINE).enumerate() {
+        for (j, ((line, shares), first)) in lines.zip(self.shares.as_chunks::<POINTS>().0).zip(LINE).enumerate() {
             let constant = lanes::plus_product(base, y, [first; LANES]);
             let mut sum = NONE;
-            for (i, ((out, share), [first, _])) in line.iter_mut().zip(shares).zip(LINE).enumerate() {
+            for ((out, share), first) in line.iter_mut().zip(shares).zip(LINE) {
                 let light = lanes::plus_product(constant, x, [first; LANES]);
                 let light = lanes::zip(&light, most, |light, most| Real::max(Real::min(light, most), 0.0));
                 *out = lanes::zip(&light, share, |light, share| light * share);
-                sum = lanes::plus_product(sum, *out, [trapezoid(i); LANES]);
+                sum = plus(&sum, out);
                 lanes::keep_together();
             }
-            integral = lanes::plus_product(integral, sum, [trapezoid(j); LANES]);
+            // Points at the ends count half.
+            let [first, .., last] = line;
+            sum = lanes::minus_product(sum, plus(first, last), [0.5; LANES]);
+            let weight = if j == 0 || j == CELLS { 0.5 } else { 1.0 };
+            integral = lanes::plus_product(integral, sum, [weight / (CELLS * CELLS) as f32; LANES]);
         }
         integral
     }
@@ -582,12 +610,6 @@ impl<'a> Edges<'a> {
         }
         out
     }
-}
-
-/// The weight of a point of a line in its integral.
-#[inline(always)]
-fn trapezoid(point: usize) -> f32 {
-    if point == 0 || point == CELLS { 0.5 / CELLS as f32 } else { 1.0 / CELLS as f32 }
 }
 
 /// The penalty of a column.
