@@ -69,3 +69,77 @@ pub fn of_tile(builtin: Builtin) -> impl Fn(&mut SplitMix64) -> Vec<f32> {
         (0..64).flat_map(|pixel| (0..samples).flat_map(move |i| root(pixel).moved(0, 0, i).draw::<2>())).collect()
     }
 }
+
+/// Pixels on a side of an image whose integrands differ from pixel to pixel.
+const SIDE: usize = 24;
+
+/// The value of a pixel, by its column and row, at u.
+type Scene = fn([usize; 2], [f64; 2]) -> f64;
+
+/// A penumbra, a lobe that moves, two surfaces, a texture, squares.
+const SCENES: [Scene; 5] = [
+    |pixel, [a, b]| {
+        let [x, y] = along(pixel);
+        if 0.8 * a + 0.6 * b > 1.8 * y - 0.4 { 0.3 + 0.7 * x } else { 0.0 }
+    },
+    |pixel, [a, b]| {
+        let [x, y] = along(pixel);
+        let square = (a - 0.2 - 0.5 * x).powi(2) + (b - 0.7 + 0.3 * y).powi(2);
+        0.2 + (1.0 + y) * (-square / 0.045).exp()
+    },
+    |pixel, [a, b]| {
+        let [x, y] = along(pixel);
+        let is_left = pixel[0] < SIDE / 2;
+        let edge = if is_left { 0.6 * y - 0.5 } else { -1.0 };
+        let value = 1.0 + 0.8 * (a - 0.5) + 0.5 * (b - 0.5).powi(3) * (1.0 + x);
+        if 0.6 * a - 0.8 * b <= edge {
+            0.0
+        } else if is_left {
+            value
+        } else {
+            0.3 * value
+        }
+    },
+    |[x, y], [a, b]| (0.5 + 0.2 * ((x * 7 + y * 13) % 5) as f64) * (1.0 + 0.9 * (a - 0.5) + 0.6 * (b - 0.5)),
+    |pixel, [a, b]| if ((6.0 * a) as u32 + (5.0 * b) as u32) % 2 == 1 { 1.0 + 0.3 * along(pixel)[0] } else { 0.1 },
+];
+
+fn along(pixel: [usize; 2]) -> [f64; 2] {
+    pixel.map(|at| (at as f64 + 0.5) / SIDE as f64)
+}
+
+/// The same pixel by pixel, over images of integrands that differ between pixels, which have independent samples.
+pub fn bias_of_pixels(config: &Config, n: usize, frames: usize) -> Bias {
+    /// Cells of the midpoint rule; squares have their borders between cells.
+    const CELLS: usize = 240;
+    let mut rng = SplitMix64::new(31);
+    let (mut squares, mut largest) = (Moments::default(), 0.0_f64);
+    for scene in SCENES {
+        let at = |pixel: usize, u: [f64; 2]| scene([pixel % SIDE, pixel / SIDE], u);
+        let middle = |cell: usize| (cell as f64 + 0.5) / CELLS as f64;
+        let truth = |pixel: usize| {
+            let cells = (0..CELLS * CELLS).map(|cell| at(pixel, [middle(cell % CELLS), middle(cell / CELLS)]));
+            cells.sum::<f64>() / (CELLS * CELLS) as f64
+        };
+        let truth: Vec<f64> = (0..SIDE * SIDE).map(truth).collect();
+        let mut errors = vec![Moments::default(); SIDE * SIDE];
+        let mut all = Moments::default();
+        for _ in 0..frames {
+            let u: Vec<f32> = (0..2 * n * SIDE * SIDE).map(|_| rng.uniform_f32()).collect();
+            let samples = u.chunks(2).enumerate();
+            let f: Vec<f32> = samples.map(|(i, u)| at(i / n, [f64::from(u[0]), f64::from(u[1])]) as f32).collect();
+            let estimates = image(config, &Image::new(SIDE, SIDE), Samples::new(&u, &f)).unwrap();
+            for ((errors, estimate), truth) in errors.iter_mut().zip(estimates).zip(&truth) {
+                let error = f64::from(estimate.mean[0]) - truth;
+                errors.add(error);
+                all.add(error * error);
+            }
+        }
+        let own = |errors: &Moments| errors.mean().powi(2) - errors.standard_error().powi(2);
+        let square = errors.iter().map(own).sum::<f64>() / errors.len() as f64 / all.mean();
+        squares.add(square);
+        largest = largest.max(square);
+    }
+    let chance = (1.0 / frames as f64).sqrt();
+    Bias { typical: squares.mean().max(0.0).sqrt(), largest: largest.sqrt(), chance }
+}

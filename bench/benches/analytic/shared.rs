@@ -76,6 +76,8 @@ pub(crate) fn bias(size: Extent) -> String {
         let bias = shared_bias::bias(&Config::new(2, 3, 1), side, 1, size.of(repetitions), independent(side * side));
         row("independent", 1, "robust", side, &bias);
     }
+    let bias = shared_bias::bias_of_pixels(&Config::new(2, 3, 1), 1, size.of(2500));
+    row("independent, scenes", 1, "robust", 8, &bias);
     for (builtin, n) in [(Builtin::Size128Spp1Dims2, 1), (Builtin::Size128Spp4Dims2, 4)] {
         for (name, estimator) in
             [("robust", Estimator::Robust), ("leave-one-out", Estimator::LeaveOneOut), ("K-fold", Estimator::KFold)]
