@@ -142,9 +142,10 @@ const LINE: [f32; POINTS] = {
 #[inline(always)]
 fn functions(x: &Four, y: &Four) -> [Four; FUNCTIONS] {
     let mut out = [[NONE; AT_ONCE]; FUNCTIONS];
+    let place = |u: &Eight| lanes::zip(u, u, |u, _| linear(u));
     let square = |x: &Eight| lanes::zip(x, x, |a, b| (a * b - 1.0) * (0.5 * SQRT_5));
     for row in 0..AT_ONCE {
-        let [x, y] = [x, y].map(|u| lanes::zip(&u[row], &u[row], |u, _| linear(u)));
+        let (x, y) = (place(&x[row]), place(&y[row]));
         let xy = lanes::zip(&x, &y, |x, y| x * y);
         for (out, function) in out.iter_mut().zip([x, y, square(&x), xy, square(&y)]) {
             out[row] = function;
@@ -512,8 +513,8 @@ impl<'a> Edges<'a> {
         let corner = [(base, 1.0), (x, -SQRT_3), (y, -SQRT_3), (xx, SQRT_5), (xy, 3.0), (yy, SQRT_5)];
         let (mut begin, mut down) = (power(&corner), power(&[(y, STEP), (xy, -SQRT_3 * STEP), (yy, FIRST)]));
         let mut along = power(&[(x, STEP), (xy, -SQRT_3 * STEP), (xx, FIRST)]);
-        let [down_change, along_down, change] =
-            [(yy, CHANGE), (xy, STEP * STEP), (xx, CHANGE)].map(|term| power(&[term]));
+        let (down_change, change) = (power(&[(yy, CHANGE)]), power(&[(xx, CHANGE)]));
+        let along_down = power(&[(xy, STEP * STEP)]);
         for line in self.shares.as_chunks_mut::<POINTS>().0 {
             let (mut value, mut factor) = (begin, along);
             for out in line {
