@@ -73,32 +73,6 @@ pub(crate) fn minus_product<R: Real, const L: usize>(a: Lanes<R, L>, b: Lanes<R,
     out
 }
 
-/// `a += b * c` lane by lane.
-#[inline(always)]
-pub(crate) fn add_product<R: Real, const L: usize>(a: &mut Lanes<R, L>, b: &Lanes<R, L>, c: &Lanes<R, L>) {
-    *a = plus_product(*a, *b, *c);
-}
-
-/// `a += s * b` lane by lane.
-#[inline(always)]
-pub(crate) fn add_scaled<R: Real, const L: usize>(a: &mut Lanes<R, L>, s: R, b: &Lanes<R, L>) {
-    let (mut out, b) = (*a, *b);
-    for l in 0..L {
-        out[l] += s * b[l];
-    }
-    *a = out;
-}
-
-/// `a -= s * b` lane by lane.
-#[inline(always)]
-pub(crate) fn subtract_scaled<R: Real, const L: usize>(a: &mut Lanes<R, L>, s: R, b: &Lanes<R, L>) {
-    let (mut out, b) = (*a, *b);
-    for l in 0..L {
-        out[l] -= s * b[l];
-    }
-    *a = out;
-}
-
 /// The lanes that are positive, elsewhere 1: what may be divided by.
 ///
 /// Behind a black box: a compiler that knew where the ones come from would divide by zero there and drop the result,
@@ -124,7 +98,7 @@ pub(crate) fn dot<R: Real>(a: &[R], b: &[R]) -> R {
     if !a_panels.is_empty() {
         let mut partial = splat(R::ZERO);
         for (a, b) in a_panels.iter().zip(b_panels) {
-            add_product(&mut partial, a, b);
+            partial = plus_product(partial, *a, *b);
         }
         total = sum(&partial);
     }

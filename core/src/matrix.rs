@@ -7,9 +7,10 @@
 
 use crate::error::Error;
 use crate::real::Real;
-use crate::rows::{Rows, part, part_mut, rows, rows_mut};
 pub(crate) use crate::rows::{at, first_mut, from, from_mut, halves_mut, row_at, row_at_mut};
+use crate::rows::{part, part_mut, rows, rows_mut};
 use core::ops::{Deref, DerefMut};
+use core::slice::{ChunksExact, ChunksExactMut};
 
 /// The count of numbers in a packed triangle of `order` rows.
 #[inline]
@@ -27,6 +28,12 @@ pub(crate) fn row<T>(triangle: &[T], j: usize) -> &[T] {
 #[inline]
 pub(crate) fn row_mut<T>(triangle: &mut [T], j: usize) -> &mut [T] {
     part_mut(triangle, packed_len(j), j + 1)
+}
+
+/// Entry (j, j) of a packed triangle.
+#[inline]
+pub(crate) fn diagonal<T: Copy + Default>(triangle: &[T], j: usize) -> T {
+    at(triangle, packed_len(j) + j)
 }
 
 /// Entry `j` of a vector, and the entries before it: what a substitution works on.
@@ -116,7 +123,7 @@ impl<T: Copy + Default, S: Deref<Target = [T]>> Triangle<S> {
     /// Entry (j, j).
     #[inline]
     pub(crate) fn diagonal(&self, j: usize) -> T {
-        at(&self.entries, packed_len(j) + j)
+        diagonal(&self.entries, j)
     }
 }
 
@@ -223,7 +230,7 @@ impl<T, S: Deref<Target = [T]>> Panel<S> {
 
     /// The rows from the first on.
     #[inline]
-    pub(crate) fn rows(&self) -> Rows<&[T]> {
+    pub(crate) fn rows(&self) -> ChunksExact<'_, T> {
         rows(&self.entries, self.width)
     }
 
@@ -254,7 +261,7 @@ impl<T, S: DerefMut<Target = [T]>> Panel<S> {
 
     /// The rows from the first on.
     #[inline]
-    pub(crate) fn rows_mut(&mut self) -> Rows<&mut [T]> {
+    pub(crate) fn rows_mut(&mut self) -> ChunksExactMut<'_, T> {
         rows_mut(&mut self.entries, self.width)
     }
 

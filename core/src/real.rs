@@ -27,6 +27,8 @@ pub trait Real:
     + AddAssign
     + SubAssign
     + MulAssign
+    + From<f32>
+    + Into<f64>
     + 'static
 {
     /// 0
@@ -43,13 +45,19 @@ pub trait Real:
     /// Rounds to nearest.
     fn from_f64(value: f64) -> Self;
     /// Exact.
-    fn from_f32(value: f32) -> Self;
+    #[inline]
+    fn from_f32(value: f32) -> Self {
+        value.into()
+    }
     /// Exact for `f32`, and up to 2^53 for `f64`.
     fn from_usize(value: usize) -> Self;
     /// Rounds to nearest; what is too large becomes infinite.
     fn to_f32(self) -> f32;
     /// Exact.
-    fn to_f64(self) -> f64;
+    #[inline]
+    fn to_f64(self) -> f64 {
+        self.into()
+    }
     /// The square root.
     fn sqrt(self) -> Self;
     /// e to the power of `self`.
@@ -90,111 +98,47 @@ pub trait Real:
     }
 }
 
-impl Real for f64 {
-    const ZERO: Self = 0.0;
-    const ONE: Self = 1.0;
-    const INFINITY: Self = f64::INFINITY;
-    const EPSILON: Self = f64::EPSILON;
-    const NARROW: bool = false;
+/// What is alike in both types, with the names that `libm` has for it.
+macro_rules! real {
+    ($type:ident, $narrow:literal, $sqrt:ident $exp:ident $cos:ident $abs:ident $exponent:ident; $($own:item)*) => {
+        impl Real for $type {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const INFINITY: Self = $type::INFINITY;
+            const EPSILON: Self = $type::EPSILON;
+            const NARROW: bool = $narrow;
 
-    #[inline]
-    fn from_f64(value: f64) -> Self {
-        value
-    }
-    #[inline]
-    fn from_f32(value: f32) -> Self {
-        Self::from(value)
-    }
-    #[inline]
-    fn from_usize(value: usize) -> Self {
-        value as Self
-    }
-    #[inline]
-    fn to_f32(self) -> f32 {
-        self as f32
-    }
-    #[inline]
-    fn to_f64(self) -> f64 {
-        self
-    }
-    #[inline]
-    fn sqrt(self) -> Self {
-        libm::sqrt(self)
-    }
-    fn exp(self) -> Self {
-        libm::exp(self)
-    }
-    fn ln(self) -> Self {
-        libm::log(self)
-    }
-    fn cos(self) -> Self {
-        libm::cos(self)
-    }
-    #[inline]
-    fn abs(self) -> Self {
-        libm::fabs(self)
-    }
-    fn scale(self, exponent: i32) -> Self {
-        libm::scalbn(self, exponent)
-    }
-    fn exponent(self) -> i32 {
-        libm::frexp(self).1
-    }
+            #[inline]
+            fn from_f64(value: f64) -> Self { value as Self }
+            #[inline]
+            fn from_usize(value: usize) -> Self { value as Self }
+            #[inline]
+            fn to_f32(self) -> f32 { self as f32 }
+            #[inline]
+            fn sqrt(self) -> Self { libm::$sqrt(self) }
+            fn exp(self) -> Self { libm::$exp(self) }
+            fn cos(self) -> Self { libm::$cos(self) }
+            #[inline]
+            fn abs(self) -> Self { libm::$abs(self) }
+            fn exponent(self) -> i32 { libm::$exponent(self).1 }
+            $($own)*
+        }
+    };
 }
 
-impl Real for f32 {
-    const ZERO: Self = 0.0;
-    const ONE: Self = 1.0;
-    const INFINITY: Self = f32::INFINITY;
-    const EPSILON: Self = f32::EPSILON;
-    const NARROW: bool = true;
+real! { f64, false, sqrt exp cos fabs frexp;
+    fn ln(self) -> Self { libm::log(self) }
+    fn scale(self, exponent: i32) -> Self { libm::scalbn(self, exponent) }
+}
 
-    #[inline]
-    fn from_f64(value: f64) -> Self {
-        value as Self
-    }
-    #[inline]
-    fn from_f32(value: f32) -> Self {
-        value
-    }
-    #[inline]
-    fn from_usize(value: usize) -> Self {
-        value as Self
-    }
-    #[inline]
-    fn to_f32(self) -> f32 {
-        self
-    }
-    #[inline]
-    fn to_f64(self) -> f64 {
-        f64::from(self)
-    }
-    #[inline]
-    fn sqrt(self) -> Self {
-        libm::sqrtf(self)
-    }
-    fn exp(self) -> Self {
-        libm::expf(self)
-    }
-    fn ln(self) -> Self {
-        // Of logf the compiler may compute what it returns for a negative number before it knows that there is none, an
-        // invalid operation.
-        libm::log(f64::from(self)) as f32
-    }
-    fn cos(self) -> Self {
-        libm::cosf(self)
-    }
-    #[inline]
-    fn abs(self) -> Self {
-        libm::fabsf(self)
-    }
+real! { f32, true, sqrtf expf cosf fabsf frexpf;
+    // Of logf the compiler may compute what it returns for a negative number before it knows that there is none, an
+    // invalid operation.
+    fn ln(self) -> Self { libm::log(f64::from(self)) as f32 }
+    // Rounded once, by the last cast. scalbnf multiplies in steps, and a compiler may take one more than there are.
     fn scale(self, exponent: i32) -> Self {
-        // Rounded once, by the last cast. scalbnf multiplies in steps, and a compiler may take one more than there are.
         let power = f64::from_bits(((exponent.clamp(-1022, 1023) + 1023) as u64) << 52);
         (f64::from(self) * power) as f32
-    }
-    fn exponent(self) -> i32 {
-        libm::frexpf(self).1
     }
 }
 

@@ -157,9 +157,9 @@ impl<'a, R: Real> Design<'a, R> {
         for (panel, values) in self.each_panel() {
             let mut residual = at(values, channel);
             for (column, &b) in panel.iter().zip(b) {
-                lanes::subtract_scaled(&mut residual, b, column);
+                residual = lanes::minus_product(residual, [b; LANES], *column);
             }
-            lanes::add_product(&mut total, &residual, &residual);
+            total = lanes::plus_product(total, residual, residual);
         }
         lanes::sum(&total)
     }
@@ -215,7 +215,7 @@ fn put<R: Real>(row: &mut [R], first: usize, sums: &[Lanes<R>; 2]) {
 fn square<R: Real>(panels: &Panel<&[Lanes<R>]>, index: usize) -> R {
     let mut total = [R::ZERO; LANES];
     for values in panels.column(index) {
-        lanes::add_product(&mut total, values, values);
+        total = lanes::plus_product(total, *values, *values);
     }
     lanes::sum(&total)
 }

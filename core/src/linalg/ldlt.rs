@@ -60,7 +60,7 @@ impl<'a, R: Real> Ldlt<'a, R> {
             let Some((before, x_j)) = split_at(x, j) else { return };
             let mut sum = *x_j;
             for (x, &l) in before.iter().zip(self.0.left(j)) {
-                lanes::subtract_scaled(&mut sum, l, x);
+                sum = lanes::minus_product(sum, [l; LANES], *x);
             }
             *x_j = sum;
         }

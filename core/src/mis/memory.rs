@@ -5,7 +5,8 @@
 //! All before the alphas are sums over the samples: they decay and are merged as they lie there.
 
 use super::limits::MAX_TECHNIQUES;
-use crate::rows::{Rows, rows, rows_mut};
+use crate::rows::{rows, rows_mut};
+use core::slice::ChunksExactMut;
 
 /// The f64 that [`OptimalMis`](super::OptimalMis) needs; 0 if `techniques` is not in 1..=16, `integrals` is 0, or no
 /// memory could hold them.
@@ -40,7 +41,7 @@ pub(super) struct SumsMut<'a> {
     pub(super) ratio: &'a mut [f64],
     pub(super) matrix: &'a mut [f64],
     /// Of each integral balance, progressive and moment.
-    pub(super) records: Rows<&'a mut [f64]>,
+    pub(super) records: ChunksExactMut<'a, f64>,
 }
 
 /// The sums of one integral.

@@ -285,7 +285,7 @@ impl<R: Real> Objective<R> for Design<'_, R> {
         for (panel, values) in self.each_panel() {
             let mut residual = [R::ZERO; LANES];
             for (column, &b) in panel.iter().zip(b) {
-                lanes::add_scaled(&mut residual, b, column);
+                residual = lanes::plus_product(residual, [b; LANES], *column);
             }
             if let Some(values) = channel.and_then(|channel| values.get(channel)) {
                 residual = lanes::zip(values, &residual, |f, g| f - g);

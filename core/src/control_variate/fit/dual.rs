@@ -34,7 +34,7 @@ impl<'a, R: Real> Dual<'a, R> {
                 for ((left, right), &penalty) in left.iter().zip(right).zip(penalties) {
                     let weight = R::ONE / penalty;
                     for (row, &value) in tile.iter_mut().zip(left) {
-                        lanes::add_scaled(row, weight * value, right);
+                        *row = lanes::plus_product(*row, [weight * value; LANES], *right);
                     }
                 }
                 for (i, tile_row) in tile.iter().enumerate() {

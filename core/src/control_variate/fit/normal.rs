@@ -177,7 +177,7 @@ fn residuals<R: Real>(
             }
         }
         freedom = lanes::zip(&freedom, &leverage, |a, b| a + b);
-        lanes::add_product(&mut eccentricity, &shift, &shift);
+        eccentricity = lanes::plus_product(eccentricity, shift, shift);
         let (mut gap, mut weight) = (zero, zero);
         for l in 0..LANES {
             gap[l] = R::ONE / (R::ONE - inverse_n - leverage[l]).max(smallest_gap);
@@ -187,7 +187,7 @@ fn residuals<R: Real>(
         for ((values, solution), ((press, influences), corrections)) in values.iter().zip(solution.rows()).zip(sums) {
             let mut residual = *values;
             for (z, &weight) in z.iter().zip(solution) {
-                lanes::subtract_scaled(&mut residual, weight, z);
+                residual = lanes::minus_product(residual, [weight; LANES], *z);
             }
             let (mut press_sum, mut influence_sum, mut correction_sum) = (*press, *influences, *corrections);
             for l in 0..LANES {

@@ -8,15 +8,16 @@ use super::call::{Call, Layout};
 use super::groups::{Group, Groups, Place};
 use super::pixels::Image;
 use super::products::{
-    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sums, add_products, only, plus, plus_four, zip_four,
+    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sums, add_products, only, plus, plus_four, times,
+    zip_four,
 };
 use super::terms::{MAX_AXES, Terms};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
-use crate::matrix::{copy, from, from_mut, halves_mut, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{at, copy, from, from_mut, halves_mut, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
-use crate::rows::{rows, rows_mut};
+use crate::rows::{first, halves, rows, rows_mut};
 
 /// The most numbers of a place.
 pub(super) const MAX_FIXED: usize = 1 + MAX_AXES;
@@ -174,14 +175,13 @@ impl<'a> Batch<'a> {
     /// The given pixels of a slot; another's where a lane has none.
     #[inline(always)]
     pub(super) fn pixels(&self, (block, row): (usize, usize)) -> [usize; LANES] {
-        let numbers = self.numbers.get(block).map_or(NONE, |numbers| numbers[row % AT_ONCE]);
-        numbers.map(|number| number.to_bits() as usize)
+        at(self.numbers, block)[row % AT_ONCE].map(|number| number.to_bits() as usize)
     }
 
     /// Zero in the lanes of a block's slots without a pixel.
     #[inline(always)]
     pub(super) fn empty_missing<'f>(&self, block: usize, columns: impl Iterator<Item = &'f mut Four>) {
-        let fixed = self.places.len().checked_div(self.inside.len()).unwrap_or(0);
+        let fixed = self.places.len() / self.inside.len().max(1);
         let Some(one) = row_at(self.places, fixed, block).first() else { return };
         if *one != [[1.0; LANES]; AT_ONCE] {
             for column in columns {
@@ -197,7 +197,7 @@ impl<'a> Batch<'a> {
         let places = row_at(self.places, terms.fixed(), block);
         let functions = row_at(self.functions, terms.functions, block);
         copy(columns, places);
-        let (out, products) = columns.split_at_mut_checked(terms.fixed() + terms.functions).unwrap_or_default();
+        let (out, products) = halves_mut(columns, terms.fixed() + terms.functions);
         copy(from_mut(out, terms.fixed()), functions);
         terms.multiply(places, functions, products);
     }
@@ -339,13 +339,13 @@ impl<'a> Batch<'a> {
                 self.between.add(part, pixels.columns, pixels.values);
             }
             if call.n > 1 {
-                let inside = self.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
+                let inside = at(self.inside, block);
                 let mut places = [[NONE; AT_ONCE]; MAX_FIXED];
                 for (out, place) in places.iter_mut().zip(row_at(self.places, terms.fixed(), block)) {
                     *out = zip_four(&inside, place, only);
                 }
                 apart.mirror(terms.functions);
-                self.within.add_apart(part, terms, places.get(..terms.fixed()).unwrap_or_default(), &apart);
+                self.within.add_apart(part, terms, first(&places, terms.fixed()), &apart);
             }
         }
         if self.is_joined {
@@ -366,7 +366,7 @@ impl<'a> Batch<'a> {
         pixel: &mut Pixel<'_>,
         apart: &mut Apart<'_>,
     ) {
-        let inside = self.inside.get(block).map_or(NONE, |inside| inside[row]);
+        let inside = at(self.inside, block)[row % AT_ONCE];
         let is_full = inside == [1.0; LANES];
         pixel.sums.empty();
         pixel.totals.iter_mut().for_each(|sum| *sum = NONE);
@@ -374,10 +374,10 @@ impl<'a> Batch<'a> {
             let count = AT_ONCE.min(call.n - begin);
             call.read(self, (block, row..row + 1), begin..begin + count, samples);
             if begin == 0 {
-                pixel.first.iter_mut().zip(samples.values.iter()).for_each(|(first, values)| *first = values[0]);
+                pixel.firsts.iter_mut().zip(samples.values.iter()).for_each(|(first, values)| *first = values[0]);
             }
             // Differences tell equal values from such as are nearly so.
-            for (values, first) in samples.values.iter_mut().zip(pixel.first.iter()) {
+            for (values, first) in samples.values.iter_mut().zip(pixel.firsts.iter()) {
                 *values = values.map(|value| lanes::zip(&value, first, |value, first| value - first));
             }
             let columns = samples.columns.iter_mut().chain(samples.values.iter_mut());
@@ -395,15 +395,15 @@ impl<'a> Batch<'a> {
             pixel.sums.add(0, samples.columns, samples.values);
         }
         let inverse = 1.0 / call.n as f32;
-        let (sums, values) = pixel.totals.split_at_mut_checked(terms.functions).unwrap_or_default();
-        let one = row_at(self.places, terms.fixed(), block).first().map_or(NONE, |one| one[row]);
+        let (sums, values) = halves(pixel.totals, terms.functions);
+        let one = at(row_at(self.places, terms.fixed(), block), 0)[row % AT_ONCE];
         let mean = |sum: &Eight| only(&one, &sum.map(|sum| sum * inverse));
         for (out, sum) in row_at_mut(self.functions, terms.functions, block).iter_mut().zip(sums.iter()) {
             out[row] = mean(sum);
             lanes::keep_together();
         }
         for (out, (sum, first)) in
-            row_at_mut(self.means, self.values, block).iter_mut().zip(values.iter().zip(pixel.first.iter()))
+            row_at_mut(self.means, self.values, block).iter_mut().zip(values.iter().zip(pixel.firsts.iter()))
         {
             out[row] = only(&one, &plus(&mean(sum), first));
         }
@@ -414,12 +414,12 @@ impl<'a> Batch<'a> {
     #[inline(always)]
     fn put_means(&self, call: &Call<'_>, terms: &Terms, block: usize, pixels: &mut Rows<'_>) {
         let places = row_at(self.places, terms.fixed(), block);
-        let (fixed, rest) = pixels.columns.split_at_mut_checked(terms.fixed()).unwrap_or_default();
-        let (functions, products) = rest.split_at_mut_checked(terms.functions).unwrap_or_default();
+        let (fixed, rest) = halves_mut(pixels.columns, terms.fixed());
+        let (functions, products) = halves_mut(rest, terms.functions);
         copy(fixed, places);
         copy(functions, row_at(self.functions, terms.functions, block));
         copy(pixels.values, row_at(self.means, self.values, block));
-        let inside = self.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
+        let inside = at(self.inside, block);
         if self.leaves_out || call.n > 1 {
             let root = Real::sqrt(call.n as f32);
             for four in fixed.iter_mut().chain(&mut *functions).chain(pixels.values.iter_mut()) {
@@ -437,7 +437,7 @@ struct Pixel<'a> {
     /// Of the functions and values themselves.
     totals: &'a mut [Eight],
     /// The first sample's values.
-    first: &'a mut [Eight],
+    firsts: &'a mut [Eight],
 }
 
 impl<'a> Pixel<'a> {
@@ -445,7 +445,7 @@ impl<'a> Pixel<'a> {
         Ok(Self {
             sums: Sums::new(1, functions, values, arena)?,
             totals: arena.take_lanes(functions + values)?,
-            first: arena.take_lanes(values)?,
+            firsts: arena.take_lanes(values)?,
         })
     }
 }
@@ -469,13 +469,13 @@ impl<'a> Apart<'a> {
 
     /// Sets those of one pixel: the sums of products less those of means.
     #[inline(always)]
-    fn put(&mut self, at: usize, inside: &Eight, inverse: f32, pixel: &Pixel<'_>, width: usize) {
-        let (totals, values) = pixel.totals.split_at_checked(width).unwrap_or_default();
+    fn put(&mut self, slot: usize, inside: &Eight, inverse: f32, pixel: &Pixel<'_>, width: usize) {
+        let (totals, values) = halves(pixel.totals, width);
         let Part { gram, sides, squares } = pixel.sums.part(0);
         let put = |out: &mut [Four], sums: &[Eight], total: &Eight| {
             let mean = total.map(|total| total * inverse);
             for (out, (sum, other)) in out.iter_mut().zip(sums.iter().zip(totals)) {
-                out[at % AT_ONCE] = lanes::minus_product(*sum, mean, *other);
+                out[slot % AT_ONCE] = lanes::minus_product(*sum, mean, *other);
                 lanes::keep_together();
             }
         };
@@ -486,7 +486,7 @@ impl<'a> Apart<'a> {
         let out = self.squares.iter_mut().zip(rows_mut(self.values, width));
         for ((total, (square, sides)), (out, others)) in each.zip(out) {
             let left = lanes::minus_product(*square, total.map(|total| total * inverse), *total);
-            out[at % AT_ONCE] = only(inside, &left.map(|square| Real::max(square, 0.0)));
+            out[slot % AT_ONCE] = only(inside, &left.map(|square| Real::max(square, 0.0)));
             put(others, sides, total);
         }
     }
@@ -496,8 +496,8 @@ impl<'a> Apart<'a> {
     fn mirror(&mut self, width: usize) {
         for j in 0..width {
             for k in 0..j {
-                let product = self.functions.get(j * width + k).copied();
-                if let (Some(product), Some(out)) = (product, self.functions.get_mut(k * width + j)) {
+                let product = at(self.functions, j * width + k);
+                if let Some(out) = self.functions.get_mut(k * width + j) {
                     *out = product;
                 }
                 lanes::keep_together();
@@ -519,7 +519,7 @@ impl Sums<'_> {
             let (plain, products) = halves_mut(from_mut(row_mut(gram, fixed + i), fixed), width.min(i + 1));
             add_products(plain, factor, others);
             for (out, axis) in products.chunks_mut(count.max(1)).zip(places.iter().skip(1)) {
-                let factor = zip_four(factor, axis, |a, b| lanes::zip(a, b, |a, b| a * b));
+                let factor = times(factor, axis);
                 add_products(out, &factor, from(others, first));
             }
         }

@@ -12,7 +12,7 @@ use super::fit::Fits;
 use super::groups::{Groups, Place};
 use super::products::{
     AT_ONCE, AT_ONCE_LANES, COLOURS, Colours, Eight, Four, NONE, Sums, add_products, combine, only, plus, plus_four,
-    zip_four,
+    times,
 };
 use super::terms::Terms;
 use crate::arena::Arena;
@@ -152,12 +152,6 @@ fn functions(x: &Four, y: &Four) -> [Four; FUNCTIONS] {
         }
     }
     out
-}
-
-/// The products of four numbers with others.
-#[inline(always)]
-fn times(a: &Four, b: &Four) -> Four {
-    zip_four(a, b, |a, b| lanes::zip(a, b, |a, b| a * b))
 }
 
 /// 1 / (1 + e^-q)
@@ -477,7 +471,7 @@ impl<'a> Edges<'a> {
             let out = first_mut(out, width);
             copy(out, row_at(sums.sides, width, channel));
             // About their mean, which is not held back.
-            let mean = out.first().map_or(NONE, |sum| lanes::zip(sum, &divisor, |sum, count| sum / count));
+            let mean = lanes::zip(&at(out, 0), &divisor, |sum, count| sum / count);
             for (j, out) in out.iter_mut().enumerate() {
                 *out = lanes::minus_product(*out, at(row(sums.gram, j), 0), mean);
             }
@@ -576,7 +570,7 @@ impl<'a> Edges<'a> {
         let (mut sum, mut square) = (NONE, NONE);
         let (mut total, mut first) = (NONE, None);
         for (x, y, _, values) in self.samples(block) {
-            let value = values.get(channel).map_or(NONE, |value| value[row % AT_ONCE]);
+            let value = at(values, channel)[row % AT_ONCE];
             let light = only(wanted, &self.interpolate(&x[row % AT_ONCE], &y[row % AT_ONCE]));
             total = plus(&total, &light);
             let apart = lanes::zip(&value, &light, |value, light| value - light);
@@ -587,8 +581,7 @@ impl<'a> Edges<'a> {
         }
         let inverse = 1.0 / self.n as f32;
         let left = lanes::minus_product(square, sum.map(|sum| sum * inverse), sum);
-        let inside = inside.get(block).map_or(NONE, |inside| inside[row % AT_ONCE]);
-        *within = plus(within, &only(&inside, &left.map(|left| Real::max(left, 0.0))));
+        *within = plus(within, &only(&at(inside, block)[row % AT_ONCE], &left.map(|left| Real::max(left, 0.0))));
         only(wanted, &lanes::zip(integral, &total, |integral, total| integral - total * inverse))
     }
 

@@ -11,9 +11,9 @@ use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
-use crate::matrix::{copy, first_mut, from, packed_len, row, row_at, row_at_mut, row_mut};
+use crate::matrix::{at, copy, diagonal, first_mut, from, packed_len, row, row_at, row_at_mut, row_mut};
 use crate::real::Real;
-use crate::rows::{rows, rows_mut};
+use crate::rows::{first, part, rows, rows_mut};
 
 /// What a fit leaves of a sum of squares is at least this of it.
 const ROUNDING: f32 = 1e-5;
@@ -115,7 +115,7 @@ impl<'a> Fits<'a> {
     /// What a fit, or without one the mean, leaves of the samples of a colour about their pixels' means.
     #[inline(always)]
     pub(super) fn within(&self, value: usize, colour: usize, fit: usize) -> Eight {
-        row_at(self.within, 1 + self.count, value * COLOURS + colour).get(fit).copied().unwrap_or(NONE)
+        at(row_at(self.within, 1 + self.count, value * COLOURS + colour), fit)
     }
 
     /// The candidates' corrections of a value of a block.
@@ -154,7 +154,7 @@ impl<'a> Fits<'a> {
             self.system.add_weighted(&self.between, &weight);
         }
         let counted = if call.n == 1 { &self.system } else { &self.between };
-        let count = counted.part(0).gram.first().copied().unwrap_or(NONE);
+        let count = at(counted.part(0).gram, 0);
         let strength = strength(call.config);
         let controls = terms.fixed()..terms.fixed() + call.config.controls;
         let Part { gram, sides, .. } = self.system.part_mut(0);
@@ -170,7 +170,7 @@ impl<'a> Fits<'a> {
         }
         ldlt::factor_each(gram, width);
         for (j, pivot) in self.pivots.iter_mut().enumerate() {
-            *pivot = row(gram, j).last().copied().unwrap_or(NONE);
+            *pivot = diagonal(gram, j);
         }
         for (side, coefficients) in rows_mut(sides, width).zip(rows_mut(self.coefficients, self.count * width)) {
             ldlt::forward_each::<f32, 1>(gram, 0, ldlt::one_each_mut(side));
@@ -195,8 +195,7 @@ impl<'a> Fits<'a> {
     /// A candidate's coefficients for a value.
     #[inline(always)]
     fn coefficients(&self, terms: &Terms, value: usize, fit: usize) -> &[Eight] {
-        let all = row_at(self.coefficients, terms.columns(), value * self.count + fit);
-        terms.ends.get(fit).and_then(|&end| all.get(..end)).unwrap_or_default()
+        first(row_at(self.coefficients, terms.columns(), value * self.count + fit), at(&terms.ends, fit))
     }
 
     /// Several samples in each pixel: weighs what tells pixels apart by how far it is the samples' noise.
@@ -207,7 +206,7 @@ impl<'a> Fits<'a> {
     #[inline(always)]
     fn weight_of_means(&self, n: f32, fixed: usize) -> Eight {
         let between = self.between.part(0);
-        let pixels = between.gram.first().copied().unwrap_or(NONE).map(|count| count / n);
+        let pixels = at(between.gram, 0).map(|count| count / n);
         let mut trend = [NONE; packed_len(MAX_FIXED)];
         copy(first_mut(&mut trend, packed_len(fixed)), between.gram);
         ldlt::factor_each(&mut trend, fixed);
@@ -221,8 +220,8 @@ impl<'a> Fits<'a> {
             ldlt::forward_each::<f32, 1>(&trend, 0, ldlt::one_each_mut(explained));
             let mut apart = *whole;
             for (j, value) in explained.iter().enumerate() {
-                let pivot = row(&trend, j).last().copied().unwrap_or(NONE);
-                apart = lanes::minus_product(apart, lanes::zip(value, &pivot, |value, pivot| value * pivot), *value);
+                let scaled = lanes::zip(value, &diagonal(&trend, j), |value, pivot| value * pivot);
+                apart = lanes::minus_product(apart, scaled, *value);
             }
             let samples = lanes::divisor(&pixels.map(|count| count * (n - 1.0)));
             let freedom = pixels.map(|count| Real::max(count - fixed as f32, 0.0));
@@ -256,7 +255,7 @@ impl<'a> Fits<'a> {
                     // b_j (G_jj b_j + 2 (sum_k G_jk b_k - r_j)).
                     let mut sum = side.map(|side| -side);
                     for (product, other) in from(row, fixed).iter().zip(from(coefficients, fixed)) {
-                        lanes::add_product(&mut sum, product, other);
+                        sum = lanes::plus_product(sum, *product, *other);
                         lanes::keep_together();
                     }
                     let sum = lanes::plus_product(sum.map(|sum| sum + sum), *square, *b);
@@ -302,7 +301,7 @@ impl<'a> Fits<'a> {
     fn leave_own(&mut self, terms: &Terms, batch: &Batch<'_>, block: usize) {
         let (width, fixed) = (terms.columns(), terms.fixed());
         let places = row_at(batch.places, fixed, block);
-        let inside = batch.inside.get(block).copied().unwrap_or([NONE; AT_ONCE]);
+        let inside = at(batch.inside, block);
         batch.put_columns(terms, block, self.solved);
         ldlt::forward_each(self.system.part(0).gram, 0, self.solved);
         let mut leverage = [NONE; AT_ONCE];
@@ -321,7 +320,7 @@ impl<'a> Fits<'a> {
                 lanes::keep_together();
             }
             for (share, unit) in shares.iter_mut().zip(rows(self.units, width)) {
-                *share = combine(*share, solved, unit.get(begin..end).unwrap_or_default());
+                *share = combine(*share, solved, part(unit, begin, end - begin));
             }
             begin = end;
             let mut reach = leverage;
@@ -331,9 +330,9 @@ impl<'a> Fits<'a> {
                 }
             }
             for value in 0..self.values {
-                let trend = self.coefficients(terms, value, fit).get(..fixed).unwrap_or_default();
+                let trend = first(self.coefficients(terms, value, fit), fixed);
                 let trend = combine([NONE; AT_ONCE], places, trend);
-                let mean = row_at(batch.means, self.values, block).get(value).copied().unwrap_or([NONE; AT_ONCE]);
+                let mean = at(row_at(batch.means, self.values, block), value);
                 let corrections = row_at_mut(self.corrections, self.count, block * self.values + value);
                 let Some(out) = corrections.get_mut(fit) else { return };
                 for row in 0..AT_ONCE {

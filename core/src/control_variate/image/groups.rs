@@ -5,7 +5,8 @@ use super::pixels::{Image, Window};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::LANES;
-use crate::matrix::{row_at, row_at_mut};
+use crate::matrix::{at, row_at, row_at_mut};
+use crate::rows::part;
 use heapless::Vec;
 
 /// Windows that are worked on together hold at most so many pixels, or are eight.
@@ -118,11 +119,7 @@ impl Layout<'_> {
 
     /// The most groups.
     fn most_groups(&self) -> usize {
-        if self.is_joined() {
-            1
-        } else {
-            self.windows_at_once() * self.windows.pixels().checked_div(self.least()).unwrap_or(0)
-        }
+        if self.is_joined() { 1 } else { self.windows_at_once() * (self.windows.pixels() / self.least().max(1)) }
     }
 
     /// Numbers that the groups of all turns take.
@@ -164,7 +161,7 @@ impl Layout<'_> {
     /// A window, by its number.
     pub(super) fn window(&self, index: usize) -> Window {
         let [across, _] = self.windows.counts();
-        let row = index.checked_div(across).unwrap_or(0);
+        let row = index / across.max(1);
         self.windows.window(index - row * across, row)
     }
 
@@ -194,7 +191,7 @@ impl Layout<'_> {
             let window = self.window(index);
             let mut left: Vec<(Place, u32), { Image::MAX_WINDOW }> = Vec::new();
             self.each_place(|place| {
-                let surface = self.image.surfaces.get(self.pixel(window, place, 0)).copied().unwrap_or(0);
+                let surface = at(self.image.surfaces, self.pixel(window, place, 0));
                 // A window has no more pixels than that.
                 let _ = left.push((place, surface));
             });
@@ -247,7 +244,7 @@ impl Groups<'_> {
         match self.records.get(index * RECORD..) {
             Some(&[window, start, len, ..]) => {
                 let [window, start, len] = [window, start, len].map(count);
-                let has_edges = self.edges.get(index).is_some_and(|&found| found > 0.0);
+                let has_edges = at(self.edges, index) > 0.0;
                 Group { index, window, start, len, has_edges }
             }
             _ => Group::default(),
@@ -289,7 +286,7 @@ impl Groups<'_> {
     /// A group, by its number.
     pub(super) fn numbered(&self, layout: &Layout<'_>, index: usize) -> Option<Group> {
         if layout.is_joined() {
-            let has_edges = self.edges.first().is_some_and(|&found| found > 0.0);
+            let has_edges = at(self.edges, 0) > 0.0;
             return (index == 0).then(|| Group { has_edges, ..layout.whole() });
         }
         (index < self.count).then(|| self.record(index))
@@ -331,6 +328,6 @@ impl Groups<'_> {
     /// The places of a group's pixels, to be read; none where all pixels are one group.
     #[inline(always)]
     pub(super) fn members(&self, group: &Group) -> &[f32] {
-        self.list.get(group.start..group.start + group.len).unwrap_or_default()
+        part(self.list, group.start, group.len)
     }
 }

@@ -11,6 +11,7 @@ use super::products::{AT_ONCE, Eight, Four, NONE, only, plus};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
+use crate::matrix;
 use crate::real::Real;
 use core::hint::black_box;
 
@@ -94,11 +95,11 @@ impl Batch<'_> {
             }
             let get = |all: &[Four], slot: usize| {
                 let (at, row) = place(slot, channel);
-                all.get(at).map_or(NONE, |four| four[row])
+                matrix::at(all, at)[row]
             };
             let mut all = [NONE; KNOWN_SUMS];
             for (slot, (own, before)) in own.iter_mut().zip(before.iter_mut()).enumerate() {
-                let inside = inside.get(slot).copied().unwrap_or(NONE);
+                let inside = matrix::at(inside, slot);
                 let (mut mean, mut known) = (NONE, NONE);
                 let pixels = self.pixels((slot / AT_ONCE, slot % AT_ONCE));
                 for sample in 0..call.n {

@@ -12,7 +12,7 @@ use super::products::{AT_ONCE, Colours, NONE, combine, plus, zip_four};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
-use crate::matrix::row_at;
+use crate::matrix::{at, row_at};
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 use core::hint::black_box;
@@ -214,7 +214,7 @@ impl Call<'_> {
     ) {
         let channels = self.config.channels;
         for channel in 0..channels {
-            let trust = shares.of(turn, channel).first().copied().unwrap_or(NONE);
+            let trust = at(shares.of(turn, channel), 0);
             let limits = bright::limits(batch, channels, channel, judges, &trust);
             for (lane, group) in batch.lanes.iter().enumerate().filter(|(_, group)| group.len > 0) {
                 let out = groups.limits_mut(self, group, turn);

@@ -6,7 +6,7 @@ use crate::basis::MAX_DIMS;
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::matrix::{copy, halves_mut, packed_len, row_at, row_at_mut};
-use crate::rows::{rows, rows_mut};
+use crate::rows::{halves, rows, rows_mut};
 
 /// A number for each of eight groups.
 pub(super) type Eight = Lanes<f32>;
@@ -42,6 +42,12 @@ pub(super) fn plus(a: &Eight, b: &Eight) -> Eight {
 #[inline(always)]
 pub(super) fn zip_four(a: &Four, b: &Four, f: impl Fn(&Eight, &Eight) -> Eight) -> Four {
     core::array::from_fn(|row| f(&a[row], &b[row]))
+}
+
+/// The products of four numbers with others.
+#[inline(always)]
+pub(super) fn times(a: &Four, b: &Four) -> Four {
+    zip_four(a, b, |a, b| lanes::zip(a, b, |a, b| a * b))
 }
 
 /// A sum and four products, one after the other.
@@ -178,8 +184,8 @@ impl<'a> Sums<'a> {
     #[inline(always)]
     pub(super) fn part(&self, part: usize) -> Part<&[Eight]> {
         let sums = row_at(self.all, Self::len(self.columns, self.values), part);
-        let (gram, rest) = sums.split_at_checked(packed_len(self.columns)).unwrap_or_default();
-        let (sides, squares) = rest.split_at_checked(self.values * self.columns).unwrap_or_default();
+        let (gram, rest) = halves(sums, packed_len(self.columns));
+        let (sides, squares) = halves(rest, self.values * self.columns);
         Part { gram, sides, squares }
     }
 

@@ -4,7 +4,7 @@ use super::batch::Batch;
 use super::call::Call;
 use super::products::{AT_ONCE, AT_ONCE_LANES, Eight, Four, Rows};
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, row_at};
+use crate::matrix::{at, halves_mut, row_at};
 use crate::real::Real;
 use core::ops::Range;
 
@@ -117,7 +117,7 @@ impl Call<'_> {
         values: &mut [Four],
     ) {
         let channels = self.config.channels;
-        let (inputs, rest) = values.split_at_mut_checked(channels).unwrap_or_default();
+        let (inputs, rest) = halves_mut(values, channels);
         for (channel, value) in inputs.iter_mut().enumerate() {
             value[row % AT_ONCE] = self.inputs(pixels, sample, channel);
         }

@@ -7,7 +7,7 @@ use super::groups::{Groups, Place};
 use super::pixels::Rectangle;
 use crate::arena::Arena;
 use crate::error::Error;
-use crate::matrix::{from, from_mut, row_at_mut};
+use crate::matrix::{self, from, from_mut, row_at_mut};
 use crate::real::Real;
 use crate::rows::rows;
 use core::hint::black_box;
@@ -82,12 +82,12 @@ impl Call<'_> {
         for group in groups.in_order(self) {
             let Some(([gain, has_error], errors)) = groups.told(self, &group).split_first_chunk() else { continue };
             let window = self.window(first + group.window);
-            let top = window.y.checked_rem(band.rows).unwrap_or(0);
+            let top = window.y % band.rows.max(1);
             let left = window.x - given.x;
             let members = groups.members(&group);
             let corrections = from(groups.corrections, group.start * channels);
             for (index, corrections) in rows(corrections, channels).enumerate().take(group.len) {
-                let place = Place::read(members.get(index).copied().unwrap_or(0.0));
+                let place = Place::read(matrix::at(members, index));
                 let [x, y, frame] = place.split();
                 let (mut at, mut near) = (index, 1.0);
                 if self.windows.is_ordered {
@@ -126,7 +126,7 @@ impl Call<'_> {
     #[inline(always)]
     fn write(&self, frame: usize, y: usize, band: &mut Band<'_>, out: &mut impl FnMut(usize, Estimate)) {
         let (given, wanted) = (self.windows.given, self.windows.wanted);
-        let row = frame * band.rows + y.checked_rem(band.rows).unwrap_or(0);
+        let row = frame * band.rows + y % band.rows.max(1);
         let sums = row_at_mut(band.sums, given.width * sums_len(self.config.channels), row);
         for (column, sums) in rows(sums, sums_len(self.config.channels)).enumerate() {
             let x = (given.x + column).wrapping_sub(wanted.x);
@@ -141,7 +141,7 @@ impl Call<'_> {
     /// The estimate of a pixel.
     #[inline(always)]
     fn estimate(&self, pixel: usize, sums: &[f32]) -> Estimate {
-        let samples = u32::try_from(self.n).unwrap_or(u32::MAX);
+        let samples = self.n.min(u32::MAX as usize) as u32;
         let mut estimate = Estimate { mean: [0.0; 4], std_error: [0.0; 4], samples, gain: 1.0 };
         let Some(([weight, error_weight, gain], each)) = sums.split_first_chunk() else { return estimate };
         // Without a weight all sums are zero.

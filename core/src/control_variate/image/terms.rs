@@ -2,12 +2,12 @@
 
 use super::super::config::{Config, Ridge};
 use super::super::ridge;
-use super::products::{Four, zip_four};
+use super::products::{Four, times};
 use crate::basis::{Basis, MAX_ORDER, Shape};
 use crate::lanes;
-use crate::matrix::at;
+use crate::matrix::{at, halves_mut};
 use crate::real::Real;
-use crate::rows::rows_mut;
+use crate::rows::{part, rows_mut};
 use heapless::Vec;
 
 /// The most candidates: one for each degree, one with every slice's own functions, one with all columns.
@@ -158,10 +158,10 @@ impl Terms {
     #[inline(always)]
     pub(super) fn multiply(&self, places: &[Four], functions: &[Four], products: &mut [Four]) {
         let (first, count) = self.moving;
-        let moving = functions.get(first..first + count).unwrap_or_default();
+        let moving = part(functions, first, count);
         for (products, axis) in rows_mut(products, count).zip(places.iter().skip(1)) {
             for (out, function) in products.iter_mut().zip(moving) {
-                *out = zip_four(function, axis, |function, axis| lanes::zip(function, axis, |a, b| a * b));
+                *out = times(function, axis);
                 lanes::keep_together();
             }
         }
@@ -177,14 +177,14 @@ impl Terms {
         out: &mut [R],
     ) {
         let fixed = self.fixed();
-        let (own, rest) = out.split_at_mut_checked(fixed).unwrap_or((&mut [], &mut []));
+        let (own, rest) = halves_mut(out, fixed);
         for (index, penalty) in own.iter_mut().enumerate() {
             *penalty = if index == 0 { R::ZERO } else { R::from_f64(TREND_PENALTY) };
         }
-        let (functions, products) = rest.split_at_mut_checked(self.functions).unwrap_or((&mut [], &mut []));
+        let (functions, products) = halves_mut(rest, self.functions);
         ridge::penalties(config, basis, |j| mean_square(fixed + j), functions);
         let (first, count) = self.moving;
-        let moving = functions.get(first..first + count).unwrap_or(&[]);
+        let moving = part(functions, first, count);
         for (penalty, &function) in products.iter_mut().zip(moving.iter().cycle()) {
             *penalty = R::from_f64(MOVING_PENALTY) * function;
         }
