@@ -53,6 +53,16 @@ impl Error {
     }
 }
 
+/// Whether an argument is a number from 0 to 1.
+#[allow(dead_code, reason = "each feature uses some of it")]
+pub(crate) fn check_part(value: f32) -> Result<(), Error> {
+    match value.is_finite() {
+        false => Err(Error::NotFinite),
+        true if (0.0..=1.0).contains(&value) => Ok(()),
+        true => Err(Error::Range),
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.message())

@@ -13,7 +13,6 @@ pub(crate) const LANES: usize = 8;
 /// One value for each of eight samples.
 pub(crate) type Lanes<R, const L: usize = LANES> = [R; L];
 
-/// The same value in every lane.
 #[inline(always)]
 pub(crate) fn splat<R: Real, const L: usize>(value: R) -> Lanes<R, L> {
     [value; L]
@@ -71,6 +70,21 @@ pub(crate) fn minus_product<R: Real, const L: usize>(a: Lanes<R, L>, b: Lanes<R,
         out[l] -= b[l] * c[l];
     }
     out
+}
+
+/// A sum less products, one after the other.
+#[inline(always)]
+pub(crate) fn minus_products<R: Real>(mut sum: Lanes<R>, a: &[Lanes<R>], b: &[Lanes<R>]) -> Lanes<R> {
+    // Two at a time, or going through them takes as long as the arithmetic.
+    let ((pairs, rest), (others, last)) = (a.as_chunks::<2>(), b.as_chunks::<2>());
+    for ([a, b], [c, d]) in pairs.iter().zip(others) {
+        sum = minus_product(minus_product(sum, *a, *c), *b, *d);
+        keep_together();
+    }
+    if let ([a], [b]) = (rest, last) {
+        sum = minus_product(sum, *a, *b);
+    }
+    sum
 }
 
 /// The lanes that are positive, elsewhere 1: what may be divided by.

@@ -49,11 +49,14 @@ pub mod control_variate;
 pub mod error;
 #[cfg(any(feature = "sampler", feature = "tile"))]
 mod hash;
-#[cfg(feature = "control-variate")]
+#[cfg(any(feature = "control-variate", feature = "mis"))]
+#[allow(dead_code, reason = "each feature uses some of it")]
 mod lanes;
-#[cfg(feature = "control-variate")]
+#[cfg(any(feature = "control-variate", feature = "mis"))]
+#[allow(dead_code, reason = "each feature uses some of it")]
 mod linalg;
-#[cfg(feature = "control-variate")]
+#[cfg(any(feature = "control-variate", feature = "mis"))]
+#[allow(dead_code, unused_imports, reason = "each feature uses some of it")]
 mod matrix;
 #[cfg(feature = "minibatch")]
 pub mod minibatch;

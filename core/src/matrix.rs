@@ -24,7 +24,6 @@ pub(crate) fn row<T>(triangle: &[T], j: usize) -> &[T] {
     part(triangle, packed_len(j), j + 1)
 }
 
-/// Row `j` of a packed triangle, diagonal included.
 #[inline]
 pub(crate) fn row_mut<T>(triangle: &mut [T], j: usize) -> &mut [T] {
     part_mut(triangle, packed_len(j), j + 1)
@@ -68,7 +67,6 @@ impl<T, S: Deref<Target = [T]>> Triangle<S> {
         if entries.len() < packed_len(order) { Err(Error::Memory) } else { Ok(Self { entries, order }) }
     }
 
-    /// The number of rows.
     #[inline]
     pub(crate) fn order(&self) -> usize {
         self.order
@@ -153,25 +151,21 @@ impl<R: Real, S: Deref<Target = [R]>> Triangle<S> {
 }
 
 impl<T, S: DerefMut<Target = [T]>> Triangle<S> {
-    /// All entries, row after row.
     #[inline]
     pub(crate) fn entries_mut(&mut self) -> &mut [T] {
         &mut self.entries
     }
 
-    /// Row `j`, diagonal included.
     #[inline]
     pub(crate) fn row_mut(&mut self, j: usize) -> &mut [T] {
         row_mut(&mut self.entries, j)
     }
 
-    /// Entry (j, k), k <= j.
     #[inline]
     pub(crate) fn at_mut(&mut self, j: usize, k: usize) -> Option<&mut T> {
         self.row_mut(j).get_mut(k)
     }
 
-    /// Entry (j, j).
     #[inline]
     pub(crate) fn diagonal_mut(&mut self, j: usize) -> Option<&mut T> {
         self.entries.get_mut(packed_len(j) + j)
@@ -216,7 +210,6 @@ impl<T, S: Deref<Target = [T]>> Panel<S> {
         Self { entries, width }
     }
 
-    /// The same, to be read.
     #[inline]
     pub(crate) fn view(&self) -> Panel<&[T]> {
         Panel { entries: &self.entries, width: self.width }
@@ -228,7 +221,6 @@ impl<T, S: Deref<Target = [T]>> Panel<S> {
         row_at(&self.entries, self.width, i)
     }
 
-    /// The rows from the first on.
     #[inline]
     pub(crate) fn rows(&self) -> ChunksExact<'_, T> {
         rows(&self.entries, self.width)
@@ -253,19 +245,16 @@ impl<T: Copy + Default, S: Deref<Target = [T]>> Panel<S> {
 }
 
 impl<T, S: DerefMut<Target = [T]>> Panel<S> {
-    /// Row `i`.
     #[inline]
     pub(crate) fn row_mut(&mut self, i: usize) -> &mut [T] {
         row_at_mut(&mut self.entries, self.width, i)
     }
 
-    /// The rows from the first on.
     #[inline]
     pub(crate) fn rows_mut(&mut self) -> ChunksExactMut<'_, T> {
         rows_mut(&mut self.entries, self.width)
     }
 
-    /// The entries at place `j` of every row.
     #[inline]
     pub(crate) fn column_mut<'a>(&'a mut self, j: usize) -> impl Iterator<Item = &'a mut T>
     where

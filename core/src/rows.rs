@@ -9,7 +9,6 @@ pub(crate) fn rows<T>(matrix: &[T], width: usize) -> ChunksExact<'_, T> {
     (if width == 0 { &[] } else { matrix }).chunks_exact(width.max(1))
 }
 
-/// The whole rows of `width` entries, none of no width.
 #[inline]
 pub(crate) fn rows_mut<T>(matrix: &mut [T], width: usize) -> ChunksExactMut<'_, T> {
     (if width == 0 { &mut [] } else { matrix }).chunks_exact_mut(width.max(1))
@@ -21,7 +20,6 @@ pub(crate) fn row_at<T>(matrix: &[T], width: usize, index: usize) -> &[T] {
     part(matrix, index * width, width)
 }
 
-/// Row `index` of `width` entries.
 #[inline]
 pub(crate) fn row_at_mut<T>(matrix: &mut [T], width: usize, index: usize) -> &mut [T] {
     part_mut(matrix, index * width, width)
@@ -39,7 +37,6 @@ pub(crate) fn part<T>(vector: &[T], start: usize, len: usize) -> &[T] {
     vector.get(start..start + len).unwrap_or_default()
 }
 
-/// `len` entries of a vector from entry `start` on.
 #[inline]
 pub(crate) fn part_mut<T>(vector: &mut [T], start: usize, len: usize) -> &mut [T] {
     vector.get_mut(start..start + len).unwrap_or_default()
@@ -51,7 +48,6 @@ pub(crate) fn from<T>(vector: &[T], start: usize) -> &[T] {
     vector.get(start..).unwrap_or_default()
 }
 
-/// The entries of a vector from entry `start` on.
 #[inline]
 pub(crate) fn from_mut<T>(vector: &mut [T], start: usize) -> &mut [T] {
     vector.get_mut(start..).unwrap_or_default()
@@ -63,7 +59,6 @@ pub(crate) fn first<T>(vector: &[T], len: usize) -> &[T] {
     vector.get(..len).unwrap_or_default()
 }
 
-/// The first `len` entries of a vector.
 #[inline]
 pub(crate) fn first_mut<T>(vector: &mut [T], len: usize) -> &mut [T] {
     vector.get_mut(..len).unwrap_or_default()
@@ -75,7 +70,6 @@ pub(crate) fn halves<T>(vector: &[T], len: usize) -> (&[T], &[T]) {
     vector.split_at_checked(len).unwrap_or_default()
 }
 
-/// The first `len` entries of a vector, and the others.
 #[inline]
 pub(crate) fn halves_mut<T>(vector: &mut [T], len: usize) -> (&mut [T], &mut [T]) {
     vector.split_at_mut_checked(len).unwrap_or_default()

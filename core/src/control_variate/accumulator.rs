@@ -9,7 +9,7 @@ use super::incremental;
 use super::per_channel::PerChannel;
 use super::plan::{self, Method};
 use super::samples::{Reader, Samples, Subset};
-use super::sums::{Form, Layout, Sums};
+use super::sums::{Change, Form, Layout};
 use super::totals::Totals;
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
 use crate::error::Error;
@@ -232,24 +232,23 @@ impl<R: Real> Accumulator<R> {
             self.units = other.units;
         }
         self.raise_exponents(&other.units.map(|unit| unit.exponent), sums);
-        let mut factors = PerChannel([R::ONE; Config::MAX_CHANNELS]);
-        let mut shift = PerChannel::default();
-        let units = other.units.iter().zip(&self.units);
-        for (((theirs, ours), factor), shift) in units.zip(&mut factors).zip(&mut shift) {
-            *factor = R::ONE.scale(theirs.exponent - ours.exponent);
-            *shift = theirs.offset * *factor - ours.offset;
+        let mut change = Change::none();
+        for (channel, (theirs, ours)) in other.units.iter().zip(&self.units).enumerate() {
+            let factor = R::ONE.scale(theirs.exponent - ours.exponent);
+            change.factors[channel] = factor;
+            change.shift[channel] = theirs.offset * factor - ours.offset;
         }
         let (layout, groups) = (self.layout, self.groups());
         let size = |sums: &[R], fold| layout.group(sums, fold).map_or(0.0, |group| group.count().to_f64());
         let rotation = folds::rotation(groups, |fold| size(sums, fold), |fold| size(other_sums, fold));
         for fold in 0..groups.get() {
             let theirs = layout.group(other_sums, (fold + groups.get() - rotation) % groups)?;
-            layout.group_mut(sums, fold)?.merge(&theirs, &factors, &shift);
+            layout.group_mut(sums, fold)?.merge(&theirs, &change);
         }
         for (sum, value) in self.colour.iter_mut().zip(other.colour) {
             *sum += value;
         }
-        self.incremental.merge(&other.incremental, &factors, &shift, other.samples);
+        self.incremental.merge(&other.incremental, &change, other.samples);
         let before = self.samples;
         self.samples = self.samples.saturating_add(other.samples);
         self.move_zero(before, sums);
@@ -274,13 +273,12 @@ impl<R: Real> Accumulator<R> {
     #[inline(never)]
     fn move_zero_to_mean(&mut self, sums: &mut [R]) {
         let units = self.totals(sums).units;
-        let mut shift = PerChannel::default();
-        for ((shift, before), after) in shift.iter_mut().zip(&self.units).zip(&units) {
+        let mut change = Change::none();
+        for ((shift, before), after) in change.shift.iter_mut().zip(&self.units).zip(&units) {
             *shift = before.offset - after.offset;
         }
         self.units = units;
-        self.each_group(sums, |group| group.shift(&shift));
-        self.incremental.shift(&shift, self.samples);
+        self.change(sums, &change);
     }
 
     /// What the sums say about the plain mean.
@@ -289,12 +287,13 @@ impl<R: Real> Accumulator<R> {
         Totals::new(groups, self.samples, self.units)
     }
 
-    fn each_group(&self, sums: &mut [R], mut change: impl FnMut(&mut Sums<&mut [R]>)) {
+    fn change(&mut self, sums: &mut [R], change: &Change<R>) {
         for fold in 0..self.groups().get() {
             if let Ok(mut group) = self.layout.group_mut(sums, fold) {
-                change(&mut group);
+                group.change(change);
             }
         }
+        self.incremental.change(change, self.samples, from_mut(sums, self.sums_len()), self.layout);
     }
 
     /// Sets the units at the first sample, and keeps values of a narrow type near one.
@@ -311,10 +310,10 @@ impl<R: Real> Accumulator<R> {
 
     /// Raises the units' exponents to at least those given, and rescales what was summed.
     fn raise_exponents(&mut self, exponents: &[i32; Config::MAX_CHANNELS], sums: &mut [R]) {
-        let mut factors = PerChannel([R::ONE; Config::MAX_CHANNELS]);
+        let mut change = Change::none();
         let mut any = false;
         let fresh = self.samples == 0;
-        for ((unit, &exponent), factor) in self.units.iter_mut().zip(exponents).zip(&mut factors) {
+        for ((unit, &exponent), factor) in self.units.iter_mut().zip(exponents).zip(&mut change.factors) {
             let exponent = exponent.clamp(-126, 126);
             if exponent > unit.exponent || (fresh && R::NARROW) {
                 // Of nothing yet there is nothing to rescale.
@@ -327,9 +326,7 @@ impl<R: Real> Accumulator<R> {
             }
         }
         if any {
-            self.each_group(sums, |group| group.rescale(&factors));
-            let coefficients = from_mut(sums, self.sums_len());
-            self.incremental.rescale(&factors, coefficients, self.layout);
+            self.change(sums, &change);
         }
     }
 }

@@ -238,7 +238,6 @@ impl Config {
         if self.stride == 0 { self.dims } else { self.stride }
     }
 
-    /// The number of folds.
     #[inline]
     pub(crate) fn fold_count(&self) -> NonZeroUsize {
         NonZeroUsize::new(self.folds).unwrap_or(FOLDS)

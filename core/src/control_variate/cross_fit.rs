@@ -63,7 +63,6 @@ impl<'a, R: Real> Groups<'a, R> {
     }
 }
 
-/// What both estimates work with.
 struct Candidates<'p, 'a, R> {
     groups: &'p Groups<'a, R>,
     config: &'p Config,
@@ -241,7 +240,6 @@ fn row_of<'c, R>(coefficients: &'c [R], candidate: usize, channel: usize, groups
     row_at(coefficients, groups.layout.columns, candidate * groups.layout.channels + channel)
 }
 
-/// Held-out errors.
 #[derive(Clone, Copy)]
 struct Judge<R> {
     errors: Errors<R>,

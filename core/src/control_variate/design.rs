@@ -141,17 +141,14 @@ impl<'a, R: Real> Design<'a, R> {
         self.panels.rows().zip(self.values.rows())
     }
 
-    /// The sum of squares of a column.
     pub(crate) fn column_square(&self, column: usize) -> R {
         square(&self.panels, column)
     }
 
-    /// The sum of squares of a channel.
     pub(crate) fn sum_of_squares(&self, channel: usize) -> R {
         square(&self.values, channel)
     }
 
-    /// The sum of squared residuals of coefficients.
     pub(crate) fn residual_square(&self, channel: usize, b: &[R]) -> R {
         let mut total = [R::ZERO; LANES];
         for (panel, values) in self.each_panel() {

@@ -29,7 +29,6 @@ pub(crate) enum Rule {
     LeastSquares(Ridge),
 }
 
-/// Fits and their weights.
 pub(crate) struct Blend<R> {
     fits: [Fit<R>; MAX_FITS],
     /// What each fit adds to the mean.

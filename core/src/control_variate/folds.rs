@@ -15,14 +15,12 @@ pub(crate) struct Fold {
 }
 
 impl Fold {
-    /// Fold `index` of `folds`.
     pub(crate) fn new(index: usize, folds: NonZeroUsize, n: usize) -> Self {
         let (each, more) = (n / folds, n % folds);
         let start = |index: usize| index * each + index.min(more);
         Self { start: start(index), end: start(index + 1) }
     }
 
-    /// How many samples it has.
     pub(crate) fn len(&self) -> usize {
         self.end - self.start
     }

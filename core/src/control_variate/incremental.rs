@@ -10,7 +10,7 @@ use super::fit::Penalty;
 use super::fit::normal::{self, Centred};
 use super::per_channel::PerChannel;
 use super::result::{self, Outcome};
-use super::sums::{self, Layout};
+use super::sums::{self, Change, Layout};
 use super::{ridge, trust};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -144,59 +144,43 @@ impl<R: Real> Progress<R> {
         let _: Option<()> = solve();
     }
 
-    /// Adds another estimate's corrected values, of values that are `shift` + `factors` times as they were.
-    pub(crate) fn merge(&mut self, other: &Self, factors: &PerChannel<R>, shift: &PerChannel<R>, samples: u64) {
+    /// Adds another estimate's corrected values, of `samples` values that were changed since.
+    pub(crate) fn merge(&mut self, other: &Self, change: &Change<R>, samples: u64) {
         let n = R::from_f64(samples as f64);
         for (channel, (total, square)) in self.total.iter_mut().zip(&mut self.square).enumerate() {
-            let (factor, shift) = (factors[channel], shift[channel]);
-            let added = factor * other.total[channel];
-            *total += added + shift * n;
-            *square += factor * factor * other.square[channel] + shift * (added + added + shift * n);
+            *total += change.total(channel, other.total[channel], n);
+            *square += change.square(channel, other.square[channel], other.total[channel], n);
             let squares = self.errors.iter_mut().chain([&mut self.plain_error]);
             for (ours, theirs) in squares.zip(other.errors.iter().chain([&other.plain_error])) {
-                ours[channel] += factor * factor * theirs[channel];
+                ours[channel] += change.square(channel, theirs[channel], R::ZERO, R::ZERO);
             }
         }
         self.predictions += other.predictions;
     }
 
-    /// Adds `shift` to the values of `samples` samples.
-    pub(crate) fn shift(&mut self, shift: &PerChannel<R>, samples: u64) {
+    /// Changes the values of `samples` samples, and with them the coefficients in front of `rest`.
+    pub(crate) fn change(&mut self, change: &Change<R>, samples: u64, rest: &mut [R], layout: Layout) {
         let n = R::from_f64(samples as f64);
-        for (channel, &shift) in shift.iter().enumerate() {
-            let total = self.total[channel];
-            self.square[channel] += shift * (total + total + shift * n);
-            for values in self.intercepts.iter_mut().chain([&mut self.mean]) {
-                values[channel] += shift;
+        for (channel, (total, square)) in self.total.iter_mut().zip(&mut self.square).enumerate() {
+            *square = change.square(channel, *square, *total, n);
+            *total = change.total(channel, *total, n);
+            for value in self.intercepts.iter_mut().chain([&mut self.mean]) {
+                value[channel] = change.total(channel, value[channel], R::ONE);
             }
-            self.total[channel] += shift * n;
+            for error in self.errors.iter_mut().chain([&mut self.plain_error]) {
+                error[channel] = change.square(channel, error[channel], R::ZERO, R::ZERO);
+            }
+        }
+        for fit in rows_mut(rest, layout.columns * layout.channels).take(FITS) {
+            for (coefficients, &factor) in rows_mut(fit, layout.columns).zip(&change.factors) {
+                coefficients.iter_mut().for_each(|value| *value *= factor);
+            }
         }
     }
 
     /// Makes the next fits due at once.
     pub(crate) fn refit_now(&mut self) {
         self.next_fit = 0;
-    }
-
-    /// Multiplies values, and with them the coefficients in front of `rest`.
-    pub(crate) fn rescale(&mut self, factors: &PerChannel<R>, rest: &mut [R], layout: Layout) {
-        for (channel, &factor) in factors.iter().enumerate().take(layout.channels) {
-            for values in self.intercepts.iter_mut().chain([&mut self.total, &mut self.mean]) {
-                let value = values[channel];
-                values[channel] = value * factor;
-            }
-            for values in self.errors.iter_mut().chain([&mut self.square, &mut self.plain_error]) {
-                let value = values[channel];
-                values[channel] = value * factor * factor;
-            }
-        }
-        for fit in rows_mut(rest, layout.columns * layout.channels).take(FITS) {
-            for (coefficients, &factor) in rows_mut(fit, layout.columns).zip(factors) {
-                for value in coefficients {
-                    *value *= factor;
-                }
-            }
-        }
     }
 }
 

@@ -3,7 +3,6 @@
 use super::config::Config;
 use core::ops::{Deref, DerefMut, Index, IndexMut};
 
-/// A number for each channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PerChannel<R>(pub(crate) [R; Config::MAX_CHANNELS]);
 

@@ -3,9 +3,8 @@
 use super::config::{Config, Estimate};
 use super::design::Units;
 use super::fit::{Penalty, normal};
-use super::per_channel::PerChannel;
 use super::result::{self, Outcome, Summary};
-use super::sums::{Form, Sums};
+use super::sums::{Change, Form, Sums};
 use super::totals::Totals;
 use crate::arena::Arena;
 use crate::basis::{Basis, Family};
@@ -137,12 +136,11 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         if self.samples == 0 {
             self.offset = other.offset;
         }
-        let mut shift = PerChannel::default();
-        for (shift, (theirs, ours)) in shift.iter_mut().zip(other.offset.iter().zip(&self.offset)) {
+        let mut change = Change::none();
+        for (shift, (theirs, ours)) in change.shift.iter_mut().zip(other.offset.iter().zip(&self.offset)) {
             *shift = f64::from(*theirs) - f64::from(*ours);
         }
-        let factors = PerChannel([1.0; Config::MAX_CHANNELS]);
-        self.sums_mut()?.merge(&other.sums()?, &factors, &shift);
+        self.sums_mut()?.merge(&other.sums()?, &change);
         self.samples = self.samples.saturating_add(other.samples);
         Ok(())
     }

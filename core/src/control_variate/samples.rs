@@ -86,7 +86,6 @@ pub(crate) struct Reader<'a> {
     skip: bool,
 }
 
-/// One sample's numbers.
 pub(crate) struct Sample<'a> {
     u: &'a [f32],
     f: &'a [f32],
@@ -329,7 +328,6 @@ impl<'a> Reader<'a> {
         self.samples.f
     }
 
-    /// One channel of a sample.
     #[inline]
     pub(crate) fn value(&self, index: usize, channel: usize) -> f64 {
         f64::from(self.input(index, channel))

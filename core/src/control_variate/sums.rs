@@ -4,6 +4,7 @@
 //! [`Form::Products`]. Of badly placed samples they lose digits that [`Form::Factor`] keeps: in the same places stand
 //! R' for P = Q R, Q'f, and what of f'f is left.
 
+use super::config::Config;
 use super::per_channel::PerChannel;
 use crate::basis::MAX_TERMS;
 use crate::error::Error;
@@ -77,7 +78,6 @@ impl Layout {
 }
 
 impl<R: Real, S: Deref<Target = [R]>> Sums<S> {
-    /// How they lie in memory.
     pub(crate) fn layout(&self) -> Layout {
         Layout { form: self.form, columns: self.gram.order().saturating_sub(1), channels: self.channels() }
     }
@@ -87,7 +87,6 @@ impl<R: Real, S: Deref<Target = [R]>> Sums<S> {
         self.square.len()
     }
 
-    /// The number of samples.
     pub(crate) fn count(&self) -> R {
         // Of a factor the constant's column is the first.
         let first = self.gram.at(0, 0);
@@ -100,7 +99,6 @@ impl<R: Real, S: Deref<Target = [R]>> Sums<S> {
         if self.form == Form::Factor { self.gram.at(0, 0) * first } else { first }
     }
 
-    /// The sum of the values' squares.
     pub(crate) fn square(&self, channel: usize) -> R {
         let last = at(&self.square, channel);
         if self.form == Form::Products {
@@ -109,17 +107,19 @@ impl<R: Real, S: Deref<Target = [R]>> Sums<S> {
         self.rhs.column(channel).fold(last, |sum, &z| sum + z * z)
     }
 
-    /// The sum of column j.
     pub(crate) fn column_total(&self, j: usize) -> R {
         self.gram.at(j + 1, 0)
     }
 
-    /// The sum of the squares of column j.
+    /// What a row of the right-hand sides holds of a constant: the column's sum, of a factor its entry in that row.
+    fn first_column(&self, j: usize) -> R {
+        if self.form == Form::Factor && j > 0 { R::ZERO } else { self.gram.at(j, 0) }
+    }
+
     pub(crate) fn column_square(&self, j: usize) -> R {
         self.gram.diagonal(j + 1)
     }
 
-    /// The mean of the squares of column j.
     pub(crate) fn mean_square(&self, j: usize) -> R {
         self.column_square(j) / self.count()
     }
@@ -167,74 +167,84 @@ impl<R: Real, S: DerefMut<Target = [R]>> Sums<S> {
         }
     }
 
-    /// Adds another group's sums, of values that are `shift` + `factors` times as they were summed.
-    pub(crate) fn merge(&mut self, other: &Sums<&[R]>, factors: &PerChannel<R>, shift: &PerChannel<R>) {
+    /// Adds another group's sums, of values that were changed since.
+    pub(crate) fn merge(&mut self, other: &Sums<&[R]>, change: &Change<R>) {
         if self.form == Form::Factor {
-            return self.merge_factor(other, factors, shift);
+            return self.merge_factor(other, change);
         }
         for (channel, square) in self.square.iter_mut().enumerate() {
-            let (factor, shift) = (factors[channel], shift[channel]);
-            let total = factor * other.total(channel);
-            *square += factor * factor * other.square(channel) + shift * (total + total + shift * other.count());
+            *square += change.square(channel, other.square(channel), other.total(channel), other.count());
         }
         for (j, (ours, theirs)) in self.rhs.rows_mut().zip(other.rhs.rows()).enumerate() {
-            let column = other.gram.at(j, 0);
             for (channel, (out, &value)) in ours.iter_mut().zip(theirs).enumerate() {
-                *out += factors[channel] * value + shift[channel] * column;
+                *out += change.total(channel, value, other.gram.at(j, 0));
             }
         }
         add(self.gram.entries_mut(), other.gram.entries());
     }
 
     /// Rotates the rows of another factor into this one.
-    fn merge_factor(&mut self, other: &Sums<&[R]>, factors: &PerChannel<R>, shift: &PerChannel<R>) {
+    fn merge_factor(&mut self, other: &Sums<&[R]>, change: &Change<R>) {
         let mut x = [R::ZERO; MAX_TERMS];
         let x = first_mut(&mut x, other.gram.order());
         for (j, z) in other.rhs.rows().enumerate() {
             for (k, x) in x.iter_mut().enumerate() {
                 *x = if k < j { R::ZERO } else { other.gram.at(k, j) };
             }
-            // The constant's column is the first, so a shift of the values is that many times column 0 of R.
-            let first = if j == 0 { at(x, 0) } else { R::ZERO };
+            let first = other.first_column(j);
             let mut y = PerChannel::default();
             for (channel, &z) in z.iter().enumerate() {
-                y[channel] = factors[channel] * z + shift[channel] * first;
+                y[channel] = change.total(channel, z, first);
             }
             self.add(x, first_mut(&mut *y, other.channels()));
         }
-        for ((square, &other), &factor) in self.square.iter_mut().zip(other.square).zip(factors.iter()) {
-            *square += factor * factor * other;
+        for (channel, (square, &other)) in self.square.iter_mut().zip(other.square).enumerate() {
+            *square += change.square(channel, other, R::ZERO, R::ZERO);
         }
     }
 
-    /// Makes the sums those of `shift` + f.
-    pub(crate) fn shift(&mut self, shift: &PerChannel<R>) {
-        let (gram, rhs) = (self.gram.view(), &mut self.rhs);
-        if self.form == Form::Products {
-            for (channel, square) in self.square.iter_mut().enumerate() {
-                let (shift, total) = (shift[channel], rhs.at(0, channel));
-                *square += shift * (total + total + shift * gram.at(0, 0));
+    /// Makes the sums those of changed values.
+    pub(crate) fn change(&mut self, change: &Change<R>) {
+        for channel in 0..self.channels() {
+            // What is left of a factor's squares does not depend on where zero is.
+            let is_products = self.form == Form::Products;
+            let (total, n) = if is_products { (self.total(channel), self.count()) } else { (R::ZERO, R::ZERO) };
+            if let Some(square) = self.square.get_mut(channel) {
+                *square = change.square(channel, *square, total, n);
             }
         }
-        for (j, out) in rhs.rows_mut().enumerate() {
-            // Of the constant's column a factor holds something in the first row alone.
-            let column = if self.form == Form::Factor && j > 0 { R::ZERO } else { gram.at(j, 0) };
-            for (out, &shift) in out.iter_mut().zip(shift.iter()) {
-                *out += shift * column;
+        for j in 0..self.gram.order() {
+            let column = self.first_column(j);
+            for (channel, out) in self.rhs.row_mut(j).iter_mut().enumerate() {
+                *out = change.total(channel, *out, column);
             }
         }
     }
+}
 
-    /// Makes the sums those of `factors` times f.
-    pub(crate) fn rescale(&mut self, factors: &PerChannel<R>) {
-        for out in self.rhs.rows_mut() {
-            for (out, &factor) in out.iter_mut().zip(factors.iter()) {
-                *out *= factor;
-            }
-        }
-        for (out, &factor) in self.square.iter_mut().zip(factors.iter()) {
-            *out *= factor * factor;
-        }
+/// What becomes of values: `factors` f + `shift`.
+#[derive(Clone, Copy)]
+pub(crate) struct Change<R> {
+    pub(crate) factors: PerChannel<R>,
+    pub(crate) shift: PerChannel<R>,
+}
+
+impl<R: Real> Change<R> {
+    /// None.
+    pub(crate) fn none() -> Self {
+        Self { factors: PerChannel([R::ONE; Config::MAX_CHANNELS]), shift: PerChannel::default() }
+    }
+
+    /// A sum of `n` values.
+    pub(crate) fn total(&self, channel: usize, total: R, n: R) -> R {
+        self.factors[channel] * total + self.shift[channel] * n
+    }
+
+    /// The sum of their squares.
+    pub(crate) fn square(&self, channel: usize, square: R, total: R, n: R) -> R {
+        let (factor, shift) = (self.factors[channel], self.shift[channel]);
+        let total = factor * total;
+        factor * factor * square + shift * (total + total + shift * n)
     }
 }
 

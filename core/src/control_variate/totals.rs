@@ -42,7 +42,6 @@ impl<R: Real> Totals<R> {
         result
     }
 
-    /// The plain mean as an estimate.
     pub(crate) fn plain(&self) -> Outcome<R> {
         Outcome::plain(self.variance)
     }

@@ -4,6 +4,7 @@ use crate::lanes::{self, LANES, Lanes, dot};
 use crate::matrix::{Triangle, from, split_at};
 use crate::real::Real;
 use crate::rows::part;
+use core::ops::{Deref, DerefMut};
 
 /// A pivot below this fraction of its diagonal entry, in units of the type's epsilon, is rounding noise. Its column
 /// then depends on earlier ones and gets coefficient zero.
@@ -12,12 +13,12 @@ const DEPENDENT: f64 = 64.0;
 /// A factored matrix: L below the diagonal, and on it 1 / D.
 ///
 /// 1 / d_j is 0 for a column that depends on the columns before it: the solution then does not use it.
-pub(crate) struct Ldlt<'a, R>(Triangle<&'a mut [R]>);
+pub(crate) struct Ldlt<S>(Triangle<S>);
 
-impl<'a, R: Real> Ldlt<'a, R> {
+impl<R: Real, S: DerefMut<Target = [R]>> Ldlt<S> {
     /// Factors a matrix in place.
     #[inline(always)]
-    pub(crate) fn new(mut matrix: Triangle<&'a mut [R]>) -> Self {
+    pub(crate) fn new(mut matrix: Triangle<S>) -> Self {
         let tolerance = R::from_f64(DEPENDENT) * R::EPSILON;
         for j in 0..matrix.order() {
             let Some((l, row, diagonal)) = matrix.split(j) else { break };
@@ -35,6 +36,13 @@ impl<'a, R: Real> Ldlt<'a, R> {
             }
             *diagonal = if pivot > tolerance * *diagonal { R::ONE / pivot } else { R::ZERO };
         }
+        Self(matrix)
+    }
+}
+
+impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
+    /// Takes up what [`Ldlt::new`] has factored.
+    pub(crate) fn factored(matrix: Triangle<S>) -> Self {
         Self(matrix)
     }
 
@@ -118,16 +126,7 @@ pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
         let Some((l, row, diagonal)) = matrices.split(j) else { return };
         for k in 0..j {
             let Some((before, v_k)) = split_at(row, k) else { return };
-            let mut sum = *v_k;
-            let ((pairs, rest), (others, last)) = (before.as_chunks::<2>(), l.left(k).as_chunks::<2>());
-            for ([a, b], [c, d]) in pairs.iter().zip(others) {
-                sum = lanes::minus_product(lanes::minus_product(sum, *a, *c), *b, *d);
-                lanes::keep_together();
-            }
-            if let ([a], [c]) = (rest, last) {
-                sum = lanes::minus_product(sum, *a, *c);
-            }
-            *v_k = sum;
+            *v_k = lanes::minus_products(*v_k, before, l.left(k));
         }
         let mut pivot = *diagonal;
         for (k, value) in row.iter_mut().enumerate() {

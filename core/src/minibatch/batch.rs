@@ -78,7 +78,6 @@ impl<'a> Batch<'a> {
         self.techniques
     }
 
-    /// N.
     pub(super) fn items(&self) -> f64 {
         self.items
     }

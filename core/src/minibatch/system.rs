@@ -13,11 +13,11 @@
 //! the counts, so that its sum of alpha is that of N^-1 A^-1 b: too small by n_j.
 
 use super::Batch;
-use crate::Error;
-use crate::mis::linear::{self, Vector};
+use crate::error::{Error, check_part};
+use crate::matrix::packed_len;
+use crate::mis::linear::{self, Cells, Vector};
 use crate::mis::{MAX_TECHNIQUES, Solver};
-
-const CELLS: usize = MAX_TECHNIQUES * (MAX_TECHNIQUES + 1) / 2;
+use crate::rows::first;
 
 /// Averages of A, q - 1 and the counts over the batches so far, newer ones counting for more.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,7 @@ pub struct System {
     /// q_j - 1, which is 0 in a batch where technique j drew nothing.
     error: Vector,
     /// A, its lower triangle by rows.
-    cells: [f64; CELLS],
+    cells: Cells,
 }
 
 impl System {
@@ -40,7 +40,7 @@ impl System {
             weight: 0.0,
             counts: [0.0; MAX_TECHNIQUES],
             error: [0.0; MAX_TECHNIQUES],
-            cells: [0.0; CELLS],
+            cells: [0.0; packed_len(MAX_TECHNIQUES)],
         }
     }
 
@@ -51,10 +51,8 @@ impl System {
     /// Multiplies the weights of the earlier batches by `beta` in 0..=1 and adds `batch`. Returned are the parts that
     /// the old averages and the batch have in the new ones, which sum to 1.
     pub(super) fn add(&mut self, batch: &Batch<'_>, beta: f32) -> Result<(f64, f64), Error> {
-        if !beta.is_finite() {
-            return Err(Error::NotFinite);
-        }
-        if !(0.0..=1.0).contains(&beta) || batch.techniques() != self.techniques {
+        check_part(beta)?;
+        if batch.techniques() != self.techniques {
             return Err(Error::Range);
         }
         let earlier = f64::from(beta) * self.weight;
@@ -69,17 +67,12 @@ impl System {
         }
         for sample in batch.samples() {
             self.error.iter_mut().zip(&sample.ratio).for_each(|(error, ratio)| *error += part * ratio);
-            let mut cells = self.cells.iter_mut();
-            for (j, row) in sample.ratio.iter().enumerate().take(self.techniques) {
-                for (column, cell) in sample.ratio.iter().take(j + 1).zip(&mut cells) {
-                    *cell += part * (row * column);
-                }
-            }
+            linear::add_products(&mut self.cells, first(&sample.ratio, self.techniques), part);
         }
         Ok((keep, part))
     }
 
-    /// c, solved in the scale of [`linear::scaled`]: zeros for [`Solver::Balance`].
+    /// c: zeros for [`Solver::Balance`].
     ///
     /// A technique that never drew has a row of zeros there, and gets a c of 0.
     pub(super) fn correction(&self, solver: Solver) -> Result<Vector, Error> {
@@ -87,10 +80,9 @@ impl System {
         if solver == Solver::Progressive {
             return Err(Error::Unsupported);
         }
-        let n = self.techniques;
         let samples = self.weight * self.counts.iter().sum::<f64>();
         let scale = self.counts.map(libm::sqrt);
-        let factor = solver.factor(|| linear::scaled(&self.cells, 1.0, &scale, n), &scale, n, samples);
-        Ok(factor.solve_scaled(&scale, &self.error, 1.0))
+        let system = linear::System::new(solver, &self.cells, 1.0, scale, self.techniques, samples);
+        Ok(system.solve(&self.error))
     }
 }

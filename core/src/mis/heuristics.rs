@@ -1,7 +1,7 @@
 //! The balance, power, cutoff and maximum heuristics (2.12-2.14).
 
-use super::limits::MAX_TECHNIQUES;
-use crate::Error;
+use super::linear::MAX_TECHNIQUES;
+use crate::error::{Error, check_part};
 use crate::real::Real;
 use crate::rows::at;
 
@@ -62,12 +62,7 @@ pub fn power(pdf: &[f32], counts: &[u32], technique: usize, beta: f32) -> Result
 /// counts the weights ignore how often each technique was used. This is Veach's form, which always keeps the best
 /// technique. Other arguments and errors as for [`balance`].
 pub fn cutoff(pdf: &[f32], counts: &[u32], technique: usize, epsilon: f32) -> Result<f32, Error> {
-    if !epsilon.is_finite() {
-        return Err(Error::NotFinite);
-    }
-    if !(0.0..=1.0).contains(&epsilon) {
-        return Err(Error::Range);
-    }
+    check_part(epsilon)?;
     let shares = Shares::new(pdf, counts, technique)?;
     let kept = |share: f64| if share >= f64::from(epsilon) { share } else { 0.0 };
     Ok(shares.weight(kept))

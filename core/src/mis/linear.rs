@@ -1,142 +1,151 @@
-//! Symmetric systems of at most 16 unknowns, two ways.
+//! The symmetric systems of optimal MIS.
 
-use super::limits::MAX_TECHNIQUES;
+use super::optimal::Solver;
+use crate::linalg::ldlt::Ldlt;
+use crate::matrix::{Triangle, copy, first_mut, packed_len};
+use crate::rows::first;
+
+/// The most techniques that one call combines.
+pub const MAX_TECHNIQUES: usize = 16;
 
 pub(crate) type Vector = [f64; MAX_TECHNIQUES];
-pub(crate) type Matrix = [Vector; MAX_TECHNIQUES];
-
-/// Something that solves M x = b for any number of right-hand sides; only the first `n` unknowns are used.
-pub(crate) enum Factor {
-    /// Of x = 0, whatever b is.
-    Zero,
-    Cholesky {
-        lower: Matrix,
-        n: usize,
-    },
-    Spectral {
-        vectors: Matrix,
-        inverse: Vector,
-        n: usize,
-    },
-}
+/// A packed triangle.
+pub(crate) type Cells = [f64; packed_len(MAX_TECHNIQUES)];
+type Matrix = [Vector; MAX_TECHNIQUES];
 
 /// Eigenvalues below this part of the largest are taken for rounding errors of 0.
 const RANK_TOLERANCE: f64 = 1e-12;
+/// The least ridge, as a part of the trace: densities are `f32`, and what they differ by is divided by its size. Where
+/// they are less than about a part in 10,000 apart their rounding would be most of it.
+const LEAST_RIDGE: f64 = 1e-8;
+/// Samples that have decayed to fewer count as so many, which leaves a ridge that is large, and finite.
+const LEAST_SAMPLES: f64 = 1e-8;
 
-impl Factor {
-    /// M = L L', for a positive definite M of which the lower triangle is read.
-    pub(crate) fn cholesky(mut lower: Matrix, n: usize) -> Factor {
-        let n = n.min(MAX_TECHNIQUES);
-        for j in 0..n {
-            let pivot = lower[j].iter().take(j).fold(lower[j][j], |sum, &x| sum - x * x);
-            // Never met with the ridge this crate adds; it only keeps nonsense finite.
-            let root = libm::sqrt(pivot.max(f64::MIN_POSITIVE));
-            lower[j][j] = root;
-            for i in j + 1..n {
-                let sum = dot(&lower[i], &lower[j], j);
-                lower[i][j] = (lower[i][j] - sum) / root;
-            }
-        }
-        Factor::Cholesky { lower, n }
-    }
-
-    /// M = V D V' by Jacobi rotations, for any symmetric M given in full. It then solves in the least-squares sense of
-    /// least norm: the pseudo-inverse.
-    pub(crate) fn spectral(mut m: Matrix, n: usize) -> Factor {
-        let n = n.min(MAX_TECHNIQUES);
-        let mut vectors = Matrix::default();
-        for (i, row) in vectors.iter_mut().enumerate() {
-            row[i] = 1.0;
-        }
-        // Convergence is quadratic: 16 unknowns need about 8 sweeps.
-        for _ in 0..30 {
-            let mut rotated = false;
-            for p in 0..n {
-                for q in p + 1..n {
-                    rotated |= rotate(&mut m, &mut vectors, p, q, n);
-                }
-            }
-            if !rotated {
-                break;
-            }
-        }
-        let mut values = Vector::default();
-        for (i, (value, row)) in values.iter_mut().zip(&m).enumerate() {
-            *value = row[i];
-        }
-        let largest = values.iter().take(n).fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        let mut inverse = Vector::default();
-        for (inverse, value) in
-            inverse.iter_mut().zip(values).filter(|(_, value)| value.abs() > RANK_TOLERANCE * largest)
-        {
-            *inverse = 1.0 / value;
-        }
-        Factor::Spectral { vectors, inverse, n }
-    }
-
-    pub(crate) fn solve(&self, b: &Vector) -> Vector {
-        let mut x = Vector::default();
-        match self {
-            Factor::Zero => {}
-            Factor::Cholesky { lower, n } => {
-                let n = (*n).min(MAX_TECHNIQUES);
-                // L y = b, then L' x = y with one row of L at a time.
-                for i in 0..n {
-                    x[i] = (b[i] - dot(&lower[i], &x, i)) / lower[i][i];
-                }
-                for i in (0..n).rev().map(|i| i % MAX_TECHNIQUES) {
-                    let solved = x[i] / lower[i][i];
-                    x.iter_mut().zip(&lower[i]).take(i).for_each(|(x, l)| *x -= l * solved);
-                    x[i] = solved;
-                }
-            }
-            Factor::Spectral { vectors, inverse, n } => {
-                for (row, inverse) in vectors.iter().zip(inverse).take(*n) {
-                    let along = dot(row, b, *n) * inverse;
-                    x.iter_mut().zip(row).take(*n).for_each(|(x, v)| *x += along * v);
-                }
-            }
-        }
-        x
-    }
-
-    /// N^1/2 M^-1 N^1/2 b / divisor, for `scale`, the diagonal of N^1/2: with M from [`scaled`], A^-1 b.
-    pub(crate) fn solve_scaled(&self, scale: &Vector, b: &[f64], divisor: f64) -> Vector {
-        let mut right = Vector::default();
-        right.iter_mut().zip(b.iter().zip(scale)).for_each(|(out, (b, scale))| *out = scale * (b / divisor));
-        let mut x = self.solve(&right);
-        x.iter_mut().zip(scale).for_each(|(x, scale)| *x *= scale);
-        x
-    }
-}
-
-/// N^1/2 (A / divisor) N^1/2, for the lower triangle of A by rows and `scale`, the diagonal of N^1/2.
+/// A system A x = b for any number of right-hand sides, solved as M = N^1/2 A N^1/2 / `divisor`.
 ///
-/// With N the counts, and A per round, its largest eigenvalue tends to 1, with the counts' square roots as its vector,
-/// whatever the techniques and counts are: the scale on which a ridge or a rank means the same everywhere.
-pub(crate) fn scaled(cells: &[f64], divisor: f64, scale: &Vector, n: usize) -> Matrix {
-    let mut matrix = Matrix::default();
-    let mut cells = cells.iter();
-    for j in 0..n.min(MAX_TECHNIQUES) {
-        for (k, &cell) in (0..=j).zip(&mut cells) {
-            let value = scale[j] * scale[k] * (cell / divisor);
-            matrix[j][k] = value;
-            matrix[k][j] = value;
+/// With N the counts, `scale` the diagonal of N^1/2, and A / `divisor` per round, M's largest eigenvalue tends to 1,
+/// with `scale` as its vector, whatever the techniques and counts are: the scale on which a ridge or a rank means the
+/// same everywhere.
+pub(crate) struct System {
+    factor: Factor,
+    scale: Vector,
+    n: usize,
+    divisor: f64,
+}
+
+#[allow(clippy::large_enum_variant, reason = "there is no allocator for a box")]
+enum Factor {
+    /// x is 0.
+    Zero,
+    /// M = L D L'.
+    Definite(Cells),
+    /// M = V D V', the rows of V', and 1 / D.
+    Spectral(Matrix, Vector),
+}
+
+impl System {
+    /// For the packed triangle A of `n` rows, which was estimated from so many `samples`.
+    pub(crate) fn new(solver: Solver, a: &[f64], divisor: f64, scale: Vector, n: usize, samples: f64) -> Self {
+        let mut cells = [0.0; packed_len(MAX_TECHNIQUES)];
+        copy(&mut cells, a);
+        each_product(&mut cells, first(&scale, n), |cell, product| *cell = product * (*cell / divisor));
+        let factor = match (solver, Triangle::new(&mut cells[..], n)) {
+            (Solver::Plain, Ok(m)) => spectral(&m),
+            (Solver::Ridge(ridge), Ok(mut m)) => {
+                let trace = (0..n).map(|j| m.diagonal(j)).sum::<f64>();
+                // Of it, about 1 belongs to what all densities have in common: the counts' weighted sum of the
+                // densities over S is 1 at every sample.
+                let scale = first(&scale, n);
+                let common = m.quadratic(scale) / scale.iter().map(|entry| entry * entry).sum::<f64>();
+                let penalty = f64::from(ridge) * (trace - common) / samples.max(LEAST_SAMPLES);
+                for j in 0..n {
+                    if let Some(diagonal) = m.diagonal_mut(j) {
+                        *diagonal += penalty.max(LEAST_RIDGE * trace);
+                    }
+                }
+                Ldlt::new(m);
+                Factor::Definite(cells)
+            }
+            _ => Factor::Zero,
+        };
+        Self { factor, scale, n, divisor }
+    }
+
+    /// x = N^1/2 M^-1 N^1/2 b / divisor.
+    pub(crate) fn solve(&self, b: &[f64]) -> Vector {
+        let mut x = Vector::default();
+        x.iter_mut().zip(b.iter().zip(&self.scale)).for_each(|(x, (b, scale))| *x = scale * (b / self.divisor));
+        match &self.factor {
+            Factor::Zero => return Vector::default(),
+            Factor::Definite(cells) => {
+                if let Ok(factors) = Triangle::new(&cells[..], self.n) {
+                    Ldlt::factored(factors).solve(first_mut(&mut x, self.n));
+                }
+            }
+            Factor::Spectral(vectors, inverse) => {
+                let b = core::mem::take(&mut x);
+                for (row, inverse) in vectors.iter().zip(inverse).take(self.n) {
+                    let along = inverse * row.iter().zip(&b).take(self.n).map(|(v, b)| v * b).sum::<f64>();
+                    x.iter_mut().zip(row).take(self.n).for_each(|(x, v)| *x += along * v);
+                }
+            }
+        }
+        x.iter_mut().zip(&self.scale).for_each(|(x, scale)| *x *= scale);
+        x
+    }
+}
+
+/// Adds `part` x x' to a packed triangle.
+pub(crate) fn add_products(cells: &mut [f64], x: &[f64], part: f64) {
+    each_product(cells, x, |cell, product| *cell += part * product);
+}
+
+/// Calls `change` with each entry of a packed triangle and that of x x'.
+fn each_product(cells: &mut [f64], x: &[f64], change: impl Fn(&mut f64, f64)) {
+    let mut cells = cells.iter_mut();
+    for (j, row) in x.iter().enumerate() {
+        for (column, cell) in x.iter().take(j + 1).zip(&mut cells) {
+            change(cell, row * column);
         }
     }
-    matrix
 }
 
-/// v' M v, for v the direction of `scale`: the part of the trace of [`scaled`]'s matrix, about 1, that belongs to what
-/// all densities have in common. The counts' weighted sum of the densities over S is 1 at every sample.
-pub(crate) fn along(matrix: &Matrix, scale: &Vector, n: usize) -> f64 {
-    let sum: f64 = matrix.iter().zip(scale).take(n).map(|(row, entry)| entry * dot(row, scale, n)).sum();
-    sum / dot(scale, scale, n)
-}
-
-/// The dot product of the first `n` entries.
-fn dot(a: &Vector, b: &Vector, n: usize) -> f64 {
-    a.iter().zip(b).take(n).map(|(a, b)| a * b).sum()
+/// By Jacobi rotations. It solves in the least-squares sense of least norm: the pseudo-inverse.
+fn spectral(triangle: &Triangle<&mut [f64]>) -> Factor {
+    let n = triangle.order().min(MAX_TECHNIQUES);
+    let mut m = Matrix::default();
+    for (j, row) in triangle.rows().enumerate() {
+        for (k, &value) in row.iter().enumerate() {
+            let (j, k) = (j % MAX_TECHNIQUES, k % MAX_TECHNIQUES);
+            (m[j][k], m[k][j]) = (value, value);
+        }
+    }
+    let mut vectors = Matrix::default();
+    for (i, row) in vectors.iter_mut().enumerate() {
+        row[i] = 1.0;
+    }
+    // Convergence is quadratic: 16 unknowns need about 8 sweeps.
+    for _ in 0..30 {
+        let mut rotated = false;
+        for p in 0..n {
+            for q in p + 1..n {
+                rotated |= rotate(&mut m, &mut vectors, p, q, n);
+            }
+        }
+        if !rotated {
+            break;
+        }
+    }
+    let mut values = Vector::default();
+    for (i, (value, row)) in values.iter_mut().zip(&m).enumerate() {
+        *value = row[i];
+    }
+    let largest = values.iter().take(n).fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let mut inverse = Vector::default();
+    for (inverse, value) in inverse.iter_mut().zip(values).filter(|(_, value)| value.abs() > RANK_TOLERANCE * largest) {
+        *inverse = 1.0 / value;
+    }
+    Factor::Spectral(vectors, inverse)
 }
 
 /// One Jacobi rotation that makes `m[p][q]` zero; the rows of `vectors` turn with it. False if it already was

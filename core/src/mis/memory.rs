@@ -4,7 +4,8 @@
 //!
 //! All before the alphas are sums over the samples: they decay and are merged as they lie there.
 
-use super::limits::MAX_TECHNIQUES;
+use super::linear::MAX_TECHNIQUES;
+use crate::matrix::packed_len;
 use crate::rows::{rows, rows_mut};
 use core::slice::ChunksExactMut;
 
@@ -15,13 +16,13 @@ pub const fn len(techniques: usize, integrals: usize) -> usize {
         return 0;
     }
     let Some(of_integrals) = integrals.checked_mul(record_len(techniques) + techniques) else { return 0 };
-    let Some(len) = of_integrals.checked_add(1 + techniques + pairs(techniques)) else { return 0 };
+    let Some(len) = of_integrals.checked_add(1 + techniques + packed_len(techniques)) else { return 0 };
     if len <= isize::MAX as usize / size_of::<f64>() { len } else { 0 }
 }
 
 /// How much of a memory that is long enough are sums.
 pub(super) const fn sums_len(techniques: usize, integrals: usize) -> usize {
-    1 + techniques + pairs(techniques) + integrals * record_len(techniques)
+    1 + techniques + packed_len(techniques) + integrals * record_len(techniques)
 }
 
 /// The sums over the samples s, with S = sum_k n_k p_k.
@@ -58,7 +59,7 @@ impl<'a> Sums<'a> {
     pub(super) fn of(sums: &'a [f64], techniques: usize) -> Option<Self> {
         let (&samples, rest) = sums.split_first()?;
         let (ratio, rest) = rest.split_at_checked(techniques)?;
-        let (matrix, records) = rest.split_at_checked(pairs(techniques))?;
+        let (matrix, records) = rest.split_at_checked(packed_len(techniques))?;
         Some(Sums { samples, ratio, matrix, records })
     }
 
@@ -74,15 +75,11 @@ impl<'a> SumsMut<'a> {
     pub(super) fn of(sums: &'a mut [f64], techniques: usize) -> Option<Self> {
         let (samples, rest) = sums.split_first_mut()?;
         let (ratio, rest) = rest.split_at_mut_checked(techniques)?;
-        let (matrix, records) = rest.split_at_mut_checked(pairs(techniques))?;
+        let (matrix, records) = rest.split_at_mut_checked(packed_len(techniques))?;
         Some(SumsMut { samples, ratio, matrix, records: rows_mut(records, record_len(techniques)) })
     }
 }
 
 const fn record_len(techniques: usize) -> usize {
     2 + techniques
-}
-
-const fn pairs(techniques: usize) -> usize {
-    techniques * (techniques + 1) / 2
 }

@@ -9,14 +9,13 @@
 //! weights of Veach and Guibas (1995); [`OptimalMis`] finds those of least variance, (2.15), from the samples.
 
 mod heuristics;
-mod limits;
 pub(crate) mod linear;
 mod memory;
 pub(crate) mod optimal;
 mod weight;
 
 pub use heuristics::{DEFAULT_BETA, balance, cutoff, maximum, power};
-pub use limits::MAX_TECHNIQUES;
+pub use linear::MAX_TECHNIQUES;
 pub use memory::len;
 pub use optimal::{DEFAULT_RIDGE, OptimalMis, RIDGE_RANGE, Solver};
 pub use weight::{optimal, optimal_contribution};

@@ -12,12 +12,11 @@
 //!
 //! the balance estimate less what the samples got wrong about the densities' integrals, each of which is 1.
 
-use super::limits::MAX_TECHNIQUES;
-use super::linear::{self, Factor, Matrix, Vector};
+use super::linear::{self, MAX_TECHNIQUES, System, Vector};
 use super::memory::{Sums, SumsMut, len, sums_len};
-use crate::Error;
+use crate::error::{Error, check_part};
 use crate::real::saturate;
-use crate::rows::{rows, rows_mut};
+use crate::rows::{first, rows, rows_mut};
 
 /// The ridge of [`Solver::default`], in samples: less loses to the balance heuristic where a few samples must tell
 /// apart densities that bring little, more gives away gain where they bring much.
@@ -25,13 +24,6 @@ pub const DEFAULT_RIDGE: f32 = 2.0;
 
 /// The ridges that [`Solver::Ridge`] accepts.
 pub const RIDGE_RANGE: core::ops::RangeInclusive<f32> = 1e-8..=1e8;
-
-/// The least ridge, as a part of the trace: densities are `f32`, and what they differ by is divided by its size. Where
-/// they are less than about a part in 10,000 apart their rounding would be most of it.
-const LEAST_RIDGE: f64 = 1e-8;
-
-/// Samples that have decayed to fewer count as so many, which leaves a ridge that is large, and finite.
-const LEAST_SAMPLES: f64 = 1e-8;
 
 /// How [`OptimalMis::solve`] turns its sums into an estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,24 +60,6 @@ impl Solver {
             Solver::Ridge(ridge) if !ridge.is_finite() => Err(Error::NotFinite),
             Solver::Ridge(ridge) if !RIDGE_RANGE.contains(&ridge) => Err(Error::Range),
             _ => Ok(()),
-        }
-    }
-
-    /// The factorised `matrix` of [`linear::scaled`] with `scale`, which was estimated from so many `samples`; one that
-    /// makes every alpha 0 where a solver needs none.
-    pub(crate) fn factor(self, matrix: impl FnOnce() -> Matrix, scale: &Vector, n: usize, samples: f64) -> Factor {
-        match self {
-            Solver::Balance | Solver::Progressive => Factor::Zero,
-            Solver::Plain => Factor::spectral(matrix(), n),
-            Solver::Ridge(ridge) => {
-                let mut matrix = matrix();
-                let trace: f64 = matrix.iter().enumerate().map(|(i, row)| row[i]).sum();
-                let differences = trace - linear::along(&matrix, scale, n);
-                let diagonal = f64::from(ridge) * differences / samples.max(LEAST_SAMPLES);
-                let diagonal = diagonal.max(LEAST_RIDGE * trace);
-                matrix.iter_mut().enumerate().for_each(|(i, row)| row[i] += diagonal);
-                Factor::cholesky(matrix, n)
-            }
         }
     }
 }
@@ -156,14 +130,13 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
             return Err(Error::Range);
         }
         let (sums, rounds) = self.sums()?;
-        let factor = self.factor(solver)?;
-        let scale = root_counts(&self.counts);
+        let system = self.system(solver)?;
         for (out, record) in estimate.iter_mut().zip(sums.records()) {
             *out = saturate(match solver {
                 Solver::Progressive => record.progressive / rounds,
                 Solver::Balance => record.balance / rounds,
                 Solver::Plain | Solver::Ridge(_) => {
-                    let alpha = factor.solve_scaled(&scale, record.moment, rounds);
+                    let alpha = system.solve(record.moment);
                     let error = sums.ratio.iter().zip(&alpha).map(|(ratio, alpha)| (ratio / rounds - 1.0) * alpha);
                     record.balance / rounds - error.sum::<f64>()
                 }
@@ -181,27 +154,24 @@ impl<M: AsRef<[f64]>> OptimalMis<M> {
         if self.integrals.checked_mul(self.techniques) != Some(alpha.len()) {
             return Err(Error::Range);
         }
-        let (sums, rounds) = self.sums()?;
-        let factor = self.factor(solver)?;
-        let (_, current) = self.split()?;
+        let (sums, _) = self.sums()?;
+        let system = self.system(solver)?;
         if solver == Solver::Progressive {
+            let (_, current) = self.split()?;
             alpha.iter_mut().zip(current).for_each(|(out, &alpha)| *out = saturate(alpha));
             return Ok(());
         }
-        let scale = root_counts(&self.counts);
         for (row, record) in rows_mut(alpha, self.techniques).zip(sums.records()) {
-            let solved = factor.solve_scaled(&scale, record.moment, rounds);
-            row.iter_mut().zip(solved).for_each(|(out, alpha)| *out = saturate(alpha));
+            row.iter_mut().zip(system.solve(record.moment)).for_each(|(out, alpha)| *out = saturate(alpha));
         }
         Ok(())
     }
 
-    /// The factorised system.
-    fn factor(&self, solver: Solver) -> Result<Factor, Error> {
+    fn system(&self, solver: Solver) -> Result<System, Error> {
         solver.check()?;
         let (sums, rounds) = self.sums()?;
-        let (n, scale) = (self.techniques, root_counts(&self.counts));
-        Ok(solver.factor(|| linear::scaled(sums.matrix, rounds, &scale, n), &scale, n, sums.samples))
+        let scale = self.counts.map(|count| libm::sqrt(f64::from(count)));
+        Ok(System::new(solver, sums.matrix, rounds, scale, self.techniques, sums.samples))
     }
 
     fn sum_counts(&self) -> f64 {
@@ -265,12 +235,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         let sums = SumsMut::of(sums, techniques).ok_or(Error::Memory)?;
         *sums.samples += 1.0;
         sums.ratio.iter_mut().zip(&ratio).for_each(|(sum, ratio)| *sum += ratio);
-        let mut cells = sums.matrix.iter_mut();
-        for (j, row) in ratio.iter().enumerate().take(techniques) {
-            for (column, cell) in ratio.iter().take(j + 1).zip(&mut cells) {
-                *cell += row * column;
-            }
-        }
+        linear::add_products(sums.matrix, first(&ratio, techniques), 1.0);
         let of_integrals = sums.records.zip(rows(alphas, techniques));
         for (&value, (record, alpha)) in value.iter().zip(of_integrals) {
             let [balance, progressive, moment @ ..] = record else { break };
@@ -295,14 +260,11 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
         if solver == Solver::Progressive {
             return Err(Error::Unsupported);
         }
-        let (_, rounds) = self.sums()?;
-        let factor = self.factor(solver)?;
-        let (techniques, scale) = (self.techniques, root_counts(&self.counts));
+        let (techniques, system) = (self.techniques, self.system(solver)?);
         let (sums, alphas) = self.split_mut()?;
         let sums = Sums::of(sums, techniques).ok_or(Error::Memory)?;
         for (alpha, record) in rows_mut(alphas, techniques).zip(sums.records()) {
-            let solved = factor.solve_scaled(&scale, record.moment, rounds);
-            alpha.iter_mut().zip(solved).for_each(|(alpha, solved)| *alpha = solved);
+            alpha.iter_mut().zip(system.solve(record.moment)).for_each(|(alpha, solved)| *alpha = solved);
         }
         Ok(())
     }
@@ -312,12 +274,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
     /// With beta = 0 nothing is left but the progressive estimator's alpha. Errors: [`Error::NotFinite`] for NaN or
     /// infinity, [`Error::Range`] outside 0..=1.
     pub fn decay(&mut self, beta: f32) -> Result<(), Error> {
-        if !beta.is_finite() {
-            return Err(Error::NotFinite);
-        }
-        if !(0.0..=1.0).contains(&beta) {
-            return Err(Error::Range);
-        }
+        check_part(beta)?;
         self.split_mut()?.0.iter_mut().for_each(|sum| *sum *= f64::from(beta));
         Ok(())
     }
@@ -344,8 +301,4 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> OptimalMis<M> {
 /// Equality without `bcmp`, which a freestanding target need not have.
 fn same(a: &[u32; MAX_TECHNIQUES], b: &[u32; MAX_TECHNIQUES]) -> bool {
     a.iter().zip(b).fold(0, |difference, (a, b)| difference | (a ^ b)) == 0
-}
-
-fn root_counts(counts: &[u32; MAX_TECHNIQUES]) -> Vector {
-    counts.map(|count| libm::sqrt(f64::from(count)))
 }

@@ -1,6 +1,6 @@
 //! The optimal weights at a point, for a known alpha (2.15).
 
-use super::limits::MAX_TECHNIQUES;
+use super::linear::MAX_TECHNIQUES;
 use crate::Error;
 
 /// The optimal weight of one technique (2.15), for alpha from [`OptimalMis::alpha`](super::OptimalMis::alpha):

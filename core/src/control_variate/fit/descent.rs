@@ -44,15 +44,12 @@ const FLOOR: [f64; 2] = [1e-6, 1e-2];
 pub(crate) trait Objective<R> {
     /// Half the negative gradient of the mean squared residual, P'(f - P b) / n; without a channel, P'P b / n.
     fn gradient(&self, channel: Option<usize>, b: &[R], out: &mut [R]);
-    /// The sum of squared values.
     fn square(&self, channel: usize) -> R;
     /// The sum of squared residuals, |f - P b|^2.
     fn residual_square(&self, channel: usize, b: &[R]) -> R;
     /// The sum of squares of a function.
     fn column_square(&self, column: usize) -> R;
-    /// The number of samples.
     fn count(&self) -> usize;
-    /// The functions' means.
     fn means(&self) -> &[R];
 }
 

@@ -48,7 +48,7 @@ impl<'a, R: Real> Normal<'a, R> {
 
     /// P'P + L, factored.
     #[inline(always)]
-    fn factor<'f>(&self, penalty: Penalty<'_, R>, arena: &mut Arena<'f, R>) -> Result<Ldlt<'f, R>, Error> {
+    fn factor<'f>(&self, penalty: Penalty<'_, R>, arena: &mut Arena<'f, R>) -> Result<Ldlt<&'f mut [R]>, Error> {
         let mut matrix = arena.triangle(self.gram.order())?;
         copy(matrix.entries_mut(), self.gram.entries());
         let strength = penalty.strength * self.count;
@@ -105,7 +105,7 @@ impl<'a, R: Real> Normal<'a, R> {
         penalty: Penalty<'_, R>,
         coefficients: &mut [R],
         arena: &mut Arena<'f, R>,
-    ) -> Result<Ldlt<'f, R>, Error> {
+    ) -> Result<Ldlt<&'f mut [R]>, Error> {
         let factor = self.factor(penalty, arena)?;
         for (out, rhs) in Panel::new(coefficients, self.gram.order()).rows_mut().zip(self.rhs.rows()) {
             copy(out, rhs);
@@ -115,7 +115,7 @@ impl<'a, R: Real> Normal<'a, R> {
     }
 
     /// n sum_i (m'A^-1 p_i)^2 = n x'P'P x for x = A^-1 m.
-    pub(crate) fn eccentricity(&self, factor: &Ldlt<'_, R>, arena: &mut Arena<'_, R>) -> Result<R, Error> {
+    pub(crate) fn eccentricity(&self, factor: &Ldlt<&mut [R]>, arena: &mut Arena<'_, R>) -> Result<R, Error> {
         let x = arena.take(self.gram.order())?;
         copy(x, self.means);
         factor.solve(x);
@@ -125,7 +125,7 @@ impl<'a, R: Real> Normal<'a, R> {
     /// Where the samples of a fit lie, for two or more.
     pub(crate) fn centre(
         &self,
-        factor: &Ldlt<'_, R>,
+        factor: &Ldlt<&mut [R]>,
         penalty: Penalty<'_, R>,
         mut arena: Arena<'_, R>,
     ) -> Result<Option<Centre<R>>, Error> {
@@ -150,7 +150,7 @@ impl<'a, R: Real> Normal<'a, R> {
 #[inline(always)]
 fn residuals<R: Real>(
     design: &Design<'_, R>,
-    factor: &Ldlt<'_, R>,
+    factor: &Ldlt<&mut [R]>,
     means: &[R],
     solution: &Panel<&mut [R]>,
     z: &mut [Lanes<R>],

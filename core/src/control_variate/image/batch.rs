@@ -74,7 +74,6 @@ pub(super) struct Batch<'a> {
     pub(super) within: Sums<'a>,
 }
 
-/// Blocks of so many slots.
 pub(super) fn blocks(layout: &Layout<'_>, slots: usize) -> usize {
     if layout.has_colours() { COLOURS * slots.div_ceil(COLOURS * AT_ONCE) } else { slots.div_ceil(AT_ONCE) }
 }

@@ -18,7 +18,6 @@ pub(super) struct Layout<'a> {
     pub(super) n: usize,
 }
 
-/// A call, with its samples.
 pub(super) struct Call<'a> {
     pub(super) layout: Layout<'a>,
     pub(super) basis: &'a Basis,

@@ -209,7 +209,6 @@ impl<'a> Edges<'a> {
         Ok(edges)
     }
 
-    /// The samples of a block.
     #[inline(always)]
     fn samples(&self, block: usize) -> impl Iterator<Item = (&Four, &Four, &Four, &[Four])> {
         let width = 3 + self.channels;

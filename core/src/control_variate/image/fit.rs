@@ -23,7 +23,6 @@ fn within_len(terms: &Terms, values: usize, n: usize) -> usize {
     if n > 1 { values * COLOURS * (1 + terms.candidates()) } else { 0 }
 }
 
-/// Fits to the pixels of a batch.
 pub(super) struct Fits<'a> {
     /// For each block and value, each candidate's correction of its mean.
     corrections: &'a mut [Four],
@@ -124,7 +123,6 @@ impl<'a> Fits<'a> {
         row_at(self.corrections, self.count, block * self.values + value)
     }
 
-    /// The same, to be written.
     #[inline(always)]
     pub(super) fn corrections_mut(&mut self, block: usize, value: usize) -> &mut [Four] {
         row_at_mut(self.corrections, self.count, block * self.values + value)

@@ -36,7 +36,6 @@ impl Place {
         [0, Self::BITS, 2 * Self::BITS].map(|shift| (self.0 >> shift & Self::MASK) as usize)
     }
 
-    /// The same of eight.
     #[inline(always)]
     pub(super) fn split_each(places: &[Self; LANES]) -> [[u32; LANES]; 3] {
         [0, Self::BITS, 2 * Self::BITS].map(|shift| places.map(|place| place.0 >> shift & Self::MASK))
@@ -54,7 +53,6 @@ fn count(number: f32) -> usize {
     number as usize
 }
 
-/// A group.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Group {
     /// Its number.
@@ -106,7 +104,6 @@ impl Layout<'_> {
         !self.windows.is_ordered && self.image.surfaces.is_empty() && self.windows.pixels() >= MANY
     }
 
-    /// All pixels.
     fn whole(&self) -> Group {
         Group { len: self.windows.pixels(), ..Group::default() }
     }
@@ -117,7 +114,6 @@ impl Layout<'_> {
         if self.is_single_fit() && self.n > 1 { 2 } else { self.windows.axes() + 3 }
     }
 
-    /// The most groups.
     fn most_groups(&self) -> usize {
         if self.is_joined() { 1 } else { self.windows_at_once() * (self.windows.pixels() / self.least().max(1)) }
     }
@@ -136,7 +132,6 @@ impl Layout<'_> {
         2 + self.config.channels
     }
 
-    /// Numbers of a group's limits.
     pub(super) fn limits_len(&self) -> usize {
         self.turns() * 2 * self.config.channels
     }
@@ -158,7 +153,6 @@ impl Layout<'_> {
         })
     }
 
-    /// A window, by its number.
     pub(super) fn window(&self, index: usize) -> Window {
         let [across, _] = self.windows.counts();
         let row = index / across.max(1);
@@ -283,7 +277,6 @@ impl Groups<'_> {
         Some(self.record(count(index)))
     }
 
-    /// A group, by its number.
     pub(super) fn numbered(&self, layout: &Layout<'_>, index: usize) -> Option<Group> {
         if layout.is_joined() {
             let has_edges = at(self.edges, 0) > 0.0;
@@ -303,7 +296,6 @@ impl Groups<'_> {
         row_at(self.told, layout.told_len(), group.index)
     }
 
-    /// The same, to be written.
     pub(super) fn told_mut(&mut self, layout: &Layout<'_>, group: &Group) -> &mut [f32] {
         row_at_mut(self.told, layout.told_len(), group.index)
     }

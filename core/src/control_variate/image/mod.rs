@@ -194,7 +194,6 @@ impl Layout<'_> {
         [rows, most + self.windows.extent[1]]
     }
 
-    /// Numbers of workspace.
     fn workspace_len(&self) -> Option<usize> {
         // More samples than 32 bits count need more memory than there is.
         u32::try_from(self.image.pixels().ok()?.checked_mul(self.n)?).ok()?;

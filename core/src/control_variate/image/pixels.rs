@@ -324,14 +324,12 @@ impl Windows {
         ((self.used.y + row) * self.stride).min(height.saturating_sub(down))
     }
 
-    /// A used window.
     pub(super) fn window(&self, column: usize, row: usize) -> Window {
         let [[width, ..], [across, ..]] = [self.image, self.extent];
         let x = ((self.used.x + column) * self.stride).min(width.saturating_sub(across));
         Window { x, y: self.top(row) }
     }
 
-    /// The number of a given pixel.
     #[inline(always)]
     pub(super) fn number(&self, x: usize, y: usize, frame: usize) -> usize {
         (frame * self.given.height + y - self.given.y) * self.given.width + x - self.given.x

@@ -32,7 +32,6 @@ pub(super) fn only(mask: &Eight, value: &Eight) -> Eight {
     lanes::zip(value, mask, |value, mask| if mask > 0.0 { value } else { 0.0 })
 }
 
-/// The sum lane by lane.
 #[inline(always)]
 pub(super) fn plus(a: &Eight, b: &Eight) -> Eight {
     lanes::zip(a, b, |a, b| a + b)
@@ -151,7 +150,6 @@ impl<'a> Sums<'a> {
         packed_len(columns) + values * columns + values
     }
 
-    /// Room for them.
     pub(super) fn new(parts: usize, columns: usize, values: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
         Self::sliced(parts, 1, columns, values, arena)
     }
@@ -168,7 +166,6 @@ impl<'a> Sums<'a> {
         Ok(Self { all, columns, values, slices })
     }
 
-    /// Makes them zero.
     pub(super) fn empty(&mut self) {
         for sum in self.all.iter_mut() {
             *sum = NONE;

@@ -53,7 +53,6 @@ impl Call<'_> {
         values
     }
 
-    /// Divides by a pixel's factor.
     #[inline(always)]
     fn over_factor(&self, value: f32, pixel: usize, channel: usize) -> f32 {
         let most = f64::from(f32::MAX);

@@ -71,20 +71,6 @@ fn symmetric(triangle: &[Eight], i: usize, k: usize) -> Eight {
     at(triangle, packed_len(i.max(k)) + i.min(k))
 }
 
-/// A number less products, one after the other.
-#[inline(always)]
-fn minus_products(mut sum: Eight, a: &[Eight], b: &[Eight]) -> Eight {
-    let ((pairs, rest), (others, last)) = (a.as_chunks::<2>(), b.as_chunks::<2>());
-    for ([a, b], [c, d]) in pairs.iter().zip(others) {
-        sum = lanes::minus_product(lanes::minus_product(sum, *a, *c), *b, *d);
-        lanes::keep_together();
-    }
-    for (a, b) in rest.iter().zip(last) {
-        sum = lanes::minus_product(sum, *a, *b);
-    }
-    sum
-}
-
 impl<'a> Apart<'a> {
     /// Rows of a slice's block.
     fn order(terms: &Terms, values: usize) -> usize {
@@ -236,12 +222,12 @@ impl<'a> Apart<'a> {
                     else {
                         break;
                     };
-                    *out = minus_products(*out, before, left);
+                    *out = lanes::minus_products(*out, before, left);
                     *l = lanes::zip(out, inverse, |value, inverse| value * inverse);
                 }
                 // What the block leaves.
                 for (c, out) in out.iter_mut().enumerate() {
-                    *out = minus_products(plus(out, &at(sums, c)), solved, row_at(rows, own, c));
+                    *out = lanes::minus_products(plus(out, &at(sums, c)), solved, row_at(rows, own, c));
                 }
             }
         }
@@ -317,8 +303,12 @@ impl<'a> Apart<'a> {
                 let Some((before, out)) = split_at(self.solved, j) else { return };
                 let (of_slice, of_border) = halves(before, own.min(j));
                 let own_row = first(from(self.gathered, start), of_slice.len());
-                let z = minus_products(at(self.columns, source)[line], of_slice, own_row);
-                *out = minus_products(z, of_border, first(row(self.border, j.saturating_sub(own)), of_border.len()));
+                let z = lanes::minus_products(at(self.columns, source)[line], of_slice, own_row);
+                *out = lanes::minus_products(
+                    z,
+                    of_border,
+                    first(row(self.border, j.saturating_sub(own)), of_border.len()),
+                );
                 if j < own {
                     let scaled = lanes::zip(out, &at(self.gathered, start + j), |z, inverse| z * inverse);
                     leverage = lanes::plus_product(leverage, scaled, *out);

@@ -138,7 +138,6 @@ impl Call<'_> {
         sums.iter_mut().for_each(|sum| *sum = 0.0);
     }
 
-    /// The estimate of a pixel.
     #[inline(always)]
     fn estimate(&self, pixel: usize, sums: &[f32]) -> Estimate {
         let samples = self.n.min(u32::MAX as usize) as u32;

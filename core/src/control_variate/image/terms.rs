@@ -28,7 +28,6 @@ const STRENGTH: f64 = 0.003;
 /// The least that 1 less a sample's leverage is taken for.
 pub(super) const SINGULAR: f32 = 64.0 * f32::EPSILON;
 
-/// Ridge strength per sample.
 pub(super) fn strength(config: &Config) -> f32 {
     let strength = match config.ridge {
         Ridge::Fixed(_) => ridge::single::<f32>(config.ridge),
@@ -110,7 +109,6 @@ impl Terms {
         Self { has_edges, ..self }
     }
 
-    /// How many candidates there are.
     pub(super) fn candidates(&self) -> usize {
         self.ends.len() + usize::from(self.has_edges)
     }
@@ -121,7 +119,6 @@ impl Terms {
         1 + self.axes
     }
 
-    /// All columns.
     #[inline(always)]
     pub(super) fn columns(&self) -> usize {
         self.fixed() + self.functions + self.axes * self.moving.1

@@ -22,7 +22,6 @@ fn columns(block: &Block) -> (Row, f64) {
     (sums, ((sums[0] + sums[1]) + sums[2]) + sums[3])
 }
 
-/// The sum of a block.
 #[inline]
 pub(super) fn total(block: &Block) -> f64 {
     columns(block).1

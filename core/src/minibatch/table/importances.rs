@@ -4,7 +4,7 @@ use super::block::{ARITY, Block};
 use super::kernel::{Kernel, Portable};
 use super::mixture::Mixture;
 use super::tree::{self, CHILDREN, Levels, MAX_BLOCKS, Node};
-use crate::Error;
+use crate::error::{Error, check_part};
 use crate::rows::{at, first};
 use core::marker::PhantomData;
 
@@ -111,12 +111,7 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     ///
     /// Errors: [`Error::NotFinite`], [`Error::Range`].
     pub fn set_uniform_fraction(&mut self, fraction: f32) -> Result<(), Error> {
-        if !fraction.is_finite() {
-            return Err(Error::NotFinite);
-        }
-        if !(0.0..=1.0).contains(&fraction) {
-            return Err(Error::Range);
-        }
+        check_part(fraction)?;
         // Turns -0 into 0.
         self.state.uniform_fraction = fraction + 0.0;
         Ok(())
@@ -201,7 +196,6 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
         self.nodes().last().map_or(0, |root| root[CHILDREN - 1]).max(0)
     }
 
-    /// The blocks there is room for.
     #[inline]
     pub(super) fn blocks(&self) -> &[Block] {
         let (blocks, _) = self.importance.as_ref().as_chunks();

@@ -4,7 +4,7 @@ use super::draw::{CHUNK, check_lengths};
 use super::importances::Table;
 use super::kernel::Kernel;
 use super::mixture::Mixture;
-use crate::Error;
+use crate::error::{Error, check_part};
 use crate::rng::Rng;
 
 /// What the others must know of one process's table: 16 bytes that all processes exchange before a draw.
@@ -80,10 +80,8 @@ pub fn allocate(
     batch: u32,
     counts: &mut [u32],
 ) -> Result<(), Error> {
-    if !uniform_fraction.is_finite() {
-        return Err(Error::NotFinite);
-    }
-    if shards.clone().count() != counts.len() || !(0.0..=1.0).contains(&uniform_fraction) {
+    check_part(uniform_fraction)?;
+    if shards.clone().count() != counts.len() {
         return Err(Error::Range);
     }
     let all = Shard::sum(shards.clone())?;

@@ -43,7 +43,6 @@ impl Levels {
         Levels { start, depth }
     }
 
-    /// How many nodes there are.
     pub(super) const fn nodes(&self) -> usize {
         self.start[self.depth % (MAX_LEVELS + 1)]
     }

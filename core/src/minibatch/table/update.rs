@@ -4,7 +4,7 @@ use super::block::{ARITY, Block};
 use super::importances::{Table, check_importances, power_of_two};
 use super::kernel::{Kernel, Portable};
 use super::tree::{self, CHILDREN, Levels, Node};
-use crate::Error;
+use crate::error::{Error, check_part};
 use crate::rows::{first_mut, from, halves_mut};
 
 /// How many changes go up the tree together.
@@ -31,10 +31,8 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     #[inline]
     pub fn update(&mut self, index: &[u32], importance: &[f32], momentum: f32) -> Result<(), Error> {
         check_importances(importance)?;
-        if !momentum.is_finite() {
-            return Err(Error::NotFinite);
-        }
-        if !(0.0..=1.0).contains(&momentum) || index.len() != importance.len() {
+        check_part(momentum)?;
+        if index.len() != importance.len() {
             return Err(Error::Range);
         }
         self.check_items(index)?;
