@@ -29,7 +29,7 @@ fn binomial(dims: usize, order: usize) -> usize {
 fn values_are_those_of_the_definition() {
     let mut rng = SplitMix64::new(101);
     let shapes = [(1, 7, 0), (2, 7, 0), (3, 4, 0), (5, 2, 0), (16, 1, 0), (3, 2, 4), (2, 3, 5), (1, 2, 6), (3, 1, 9)];
-    for family in FAMILIES {
+    for family in Family::ALL {
         for (dims, order, slices) in shapes {
             let config = with_basis(family, dims, order, slices);
             let mut places: Vec<Vec<f32>> = (0..6).map(|_| points(1, dims, &mut rng)).collect();
@@ -75,7 +75,7 @@ fn quadrature(family: Family) -> Vec<(f32, f64)> {
 /// products have integral 0 or 1; Gaussians and copies have unit variance. Within 3e-6.
 #[test]
 fn integrals_and_products_by_quadrature() {
-    for family in FAMILIES {
+    for family in Family::ALL {
         for (dims, order, slices) in [(1, 7, 0), (2, 7, 0), (2, 4, 3), (3, 2, 4)] {
             let config = with_basis(family, dims, order, slices);
             let columns = config.terms().unwrap() - 1;
@@ -120,7 +120,7 @@ fn integrals_and_products_by_quadrature() {
 /// Every number of coordinates and order: C(dims + order, order) terms, refused beyond 136.
 #[test]
 fn term_counts() {
-    for family in FAMILIES {
+    for family in Family::ALL {
         for dims in 1..=16 {
             for order in 0..=7 {
                 let count = binomial(dims, order);

@@ -78,7 +78,7 @@ fn everything_is_finite() {
     let mut rng = SplitMix64::new(1);
     let shapes = [(1, 2), (2, 3), (1, 7), (5, 2), (2, 0)];
     for (dims, order) in shapes {
-        for family in FAMILIES {
+        for family in Family::ALL {
             for n in [1, 2, 3, 5, 10, 17] {
                 for (name, u) in placements(n, dims, &mut rng) {
                     let noise: Vec<f32> = (0..n).map(|_| rng.normal() as f32).collect();

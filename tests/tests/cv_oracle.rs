@@ -235,7 +235,7 @@ fn k_fold_with_a_fixed_ridge() {
 fn every_basis_and_slices() {
     let rule = RobustRule::standard();
     let cases = [(2, 3, 0), (1, 7, 0), (5, 2, 0), (3, 2, 4), (2, 3, 6), (3, 1, 20)];
-    for family in FAMILIES {
+    for family in Family::ALL {
         for (index, (dims, order, slices)) in cases.into_iter().enumerate() {
             let (u, f) = noisy(60, dims, 700 + index as u64);
             let base = Config { basis: family, slices, ..config(dims, order, Estimator::Robust) };

@@ -26,7 +26,7 @@ fn streaming() -> impl Strategy<Value = Estimator> {
 
 /// Valid configurations of one channel with a basis of at most 136 terms.
 fn valid() -> impl Strategy<Value = Config> {
-    let shape = (1_usize..=5, 0_usize..=4, prop::sample::select(FAMILIES.to_vec()), 0_usize..=6);
+    let shape = (1_usize..=5, 0_usize..=4, prop::sample::select(Family::ALL.to_vec()), 0_usize..=6);
     (shape, estimators(), 0_usize..=7).prop_filter_map(
         "too many terms",
         |((dims, order, basis, slices), estimator, folds)| {
@@ -59,7 +59,7 @@ fn any_config() -> impl Strategy<Value = Config> {
             size(),
             prop_oneof![6 => 1_usize..=4, 1 => size()],
             estimators(),
-            prop::sample::select(FAMILIES.to_vec()),
+            prop::sample::select(Family::ALL.to_vec()),
         ),
         (any::<bool>(), size(), some(), some(), some()),
         (

@@ -11,8 +11,6 @@ use noisefloor_tests::oracle::Design;
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::stream::Stream;
 
-pub const FAMILIES: [Family; 4] = Family::ALL;
-
 /// The batch estimators' workspace for `n` samples, full of NaN.
 pub fn workspace<R: Real>(config: &Config, n: usize) -> Vec<R> {
     vec![R::from_f64(f64::NAN); control_variate::workspace_len::<R>(config, n).unwrap()]

@@ -13,7 +13,6 @@ use noisefloor_tests::stream::Stream;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-const FAMILIES: [Family; 4] = [Family::Legendre, Family::Step, Family::Sine, Family::Gaussian];
 const SOLVERS: [Solver; 4] = [Solver::Auto, Solver::NormalEquations, Solver::SquareRoot, Solver::Dual];
 
 const HEAD: &str = "\
@@ -73,7 +72,7 @@ fn cases() -> Vec<Case> {
                 }
             }
         }
-        for basis in 1..FAMILIES.len() {
+        for basis in 1..Family::ALL.len() {
             cases.push(Case { estimator, basis, ..PLAIN });
         }
         cases.push(Case { estimator, dims: 3, slices: 4, n: 128, ..PLAIN });
@@ -105,7 +104,7 @@ fn samples(case: &Case) -> (Vec<f32>, Vec<f32>) {
 fn compute<R: Real>(case: &Case) -> Estimate {
     let config = Config {
         estimator: ESTIMATORS[case.estimator],
-        basis: FAMILIES[case.basis],
+        basis: Family::ALL[case.basis],
         slices: case.slices,
         solver: SOLVERS[case.solver],
         color: if case.luminance { Color::LuminanceRatio } else { Color::PerChannel },

@@ -9,7 +9,6 @@ use noisefloor_tests::integrands;
 
 pub(crate) const COUNTS: [usize; 3] = [16, 64, 256];
 const ESTIMATORS: [Method; 6] = [ROBUST, LEAST_SQUARES, LEAVE_ONE_OUT, K_FOLD, GRADIENT_DESCENT, INCREMENTAL];
-const BASES: [Family; 4] = [Family::Legendre, Family::Step, Family::Sine, Family::Gaussian];
 const ORDERS: [usize; 5] = [1, 2, 3, 5, 7];
 /// Order 7 of three coordinates has 120 terms.
 const DIMS_OF_ORDER_7: usize = 2;
@@ -30,7 +29,7 @@ pub(crate) fn functions() -> Vec<Function> {
 fn settings(dims: usize) -> Vec<Setting> {
     let mut settings = Vec::new();
     for estimator in ESTIMATORS {
-        for basis in BASES {
+        for basis in Family::ALL {
             let orders = ORDERS.into_iter().filter(|&order| order < 7 || dims <= DIMS_OF_ORDER_7);
             settings.extend(orders.map(|order| Setting { method: Method { basis, ..estimator }, order }));
         }
