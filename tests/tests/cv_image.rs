@@ -319,7 +319,8 @@ fn errors() {
 
 /// A configuration, an image and samples that belong together.
 fn any_call() -> impl Strategy<Value = (Config, [usize; 5], usize, u64)> {
-    let config = (1..5_usize, 0..5_usize, 1..5_usize, 0..3_usize, 0..Family::ALL.len(), 0..3_usize, 0..5_usize, any::<bool>());
+    let config =
+        (1..5_usize, 0..5_usize, 1..5_usize, 0..3_usize, 0..Family::ALL.len(), 0..3_usize, 0..5_usize, any::<bool>());
     let config = config.prop_map(|(dims, order, channels, estimator, family, ridge, slices, stratified)| Config {
         estimator: SHARED[estimator],
         basis: Family::ALL[family],

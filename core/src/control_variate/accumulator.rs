@@ -191,7 +191,7 @@ impl<R: Real> Accumulator<R> {
     fn add_row(&mut self, sums: &mut [R], p: &mut [Lanes<R, 1>], values: PerChannel<R>) {
         self.fit_units(&values, sums);
         let mut f = PerChannel::default();
-        for ((f, &value), unit) in f.iter_mut().zip(&values).zip(&self.units) {
+        for ((f, &value), unit) in f.iter_mut().zip(values.iter()).zip(&self.units) {
             *f = value * R::ONE.scale(-unit.exponent) - unit.offset;
         }
         let (p, f) = (p.as_flattened_mut(), first_mut(&mut *f, self.layout.channels));
@@ -302,7 +302,7 @@ impl<R: Real> Accumulator<R> {
             self.raise_exponents(&values.map(|value| if value == R::ZERO { -126 } else { value.exponent() }), sums);
         }
         if self.samples == 0 {
-            for (unit, &value) in self.units.iter_mut().zip(values) {
+            for (unit, &value) in self.units.iter_mut().zip(values.iter()) {
                 unit.offset = value * R::ONE.scale(-unit.exponent);
             }
         }
@@ -313,7 +313,7 @@ impl<R: Real> Accumulator<R> {
         let mut change = Change::none();
         let mut any = false;
         let fresh = self.samples == 0;
-        for ((unit, &exponent), factor) in self.units.iter_mut().zip(exponents).zip(&mut change.factors) {
+        for ((unit, &exponent), factor) in self.units.iter_mut().zip(exponents).zip(change.factors.iter_mut()) {
             let exponent = exponent.clamp(-126, 126);
             if exponent > unit.exponent || (fresh && R::NARROW) {
                 // Of nothing yet there is nothing to rescale.

@@ -200,7 +200,7 @@ pub(crate) fn nested<R: Real>(
         }
     }
     let mut correction = PerChannel::default();
-    for ((correction, &sum), &mean) in correction.iter_mut().zip(&sums).zip(mean) {
+    for ((correction, &sum), &mean) in correction.iter_mut().zip(sums.iter()).zip(mean.iter()) {
         *correction = sum / count - mean;
     }
     let factor = result::press_factor(count);

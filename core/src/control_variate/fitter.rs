@@ -148,7 +148,7 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         let power = n * R::from_f64(trust::SHARPNESS);
         let shares = centres.map(|centre| centre.share());
         for ((correction, fit), share) in blend.corrections.iter_mut().zip(&fits).zip(shares) {
-            for (all, one) in correction.iter_mut().zip(&fit.in_sample) {
+            for (all, one) in correction.iter_mut().zip(fit.in_sample.iter()) {
                 *all = *one + share * (*all - *one);
             }
         }
@@ -185,7 +185,7 @@ fn best_of<R: Real>(fits: &[Fit<R>; MAX_FITS], plain: &PerChannel<R>) -> usize {
     let error = |fit: &Fit<R>| {
         // Of a channel that is constant nothing counts.
         let ratio = |press: R, plain: R| press.to_f64() / if plain > R::ZERO { plain.to_f64() } else { f64::INFINITY };
-        fit.press.iter().zip(plain).map(|(&press, &plain)| ratio(press, plain)).sum::<f64>()
+        fit.press.iter().zip(plain.iter()).map(|(&press, &plain)| ratio(press, plain)).sum::<f64>()
     };
     let mut best = (0, 0.0);
     for (index, fit) in fits.iter().enumerate() {
@@ -202,7 +202,7 @@ impl<R: Real> Blend<R> {
     pub(crate) fn correction(&self) -> PerChannel<R> {
         let mut total = PerChannel::default();
         for (correction, weights) in self.corrections.iter().zip(&self.weights) {
-            for ((total, &correction), &weight) in total.iter_mut().zip(correction).zip(weights) {
+            for ((total, &correction), &weight) in total.iter_mut().zip(correction.iter()).zip(weights.iter()) {
                 *total += weight * correction;
             }
         }

@@ -53,7 +53,7 @@ pub(crate) fn outcome<R: Real>(progress: &Progress<R>, samples: u64) -> Outcome<
     let n = R::from_f64(samples as f64);
     let mut correction = PerChannel::default();
     let mut variance = PerChannel::default();
-    for (channel, (correction, variance)) in correction.iter_mut().zip(&mut variance).enumerate() {
+    for (channel, (correction, variance)) in correction.iter_mut().zip(variance.iter_mut()).enumerate() {
         let total = progress.total[channel];
         *correction = total / n;
         *variance = sums::spread(progress.square[channel], total, *correction) / result::mean_divisor(n);
@@ -110,11 +110,8 @@ impl<R: Real> Progress<R> {
         if samples < self.next_fit.max(2) {
             return;
         }
-        let strengths = match config.ridge {
-            Ridge::Fixed(_) => [R::from_f64(ridge::single::<R>(config.ridge)); FITS],
-            // `Centred::solve` takes strengths per sample.
-            Ridge::Default | Ridge::Auto => STRENGTHS.map(|strength| R::from_f64(strength / samples as f64)),
-        };
+        // `Centred::solve` takes strengths per sample.
+        let strengths = STRENGTHS.map(|own| R::from_f64(ridge::strength::<R>(config.ridge, own / samples as f64)));
         let mut solve = || {
             let (Layout { columns, channels, .. }, sums) = (layout, layout.group(sums, 0).ok()?);
             let mut arena = Arena::new(rest);
@@ -147,7 +144,7 @@ impl<R: Real> Progress<R> {
     /// Adds another estimate's corrected values, of `samples` values that were changed since.
     pub(crate) fn merge(&mut self, other: &Self, change: &Change<R>, samples: u64) {
         let n = R::from_f64(samples as f64);
-        for (channel, (total, square)) in self.total.iter_mut().zip(&mut self.square).enumerate() {
+        for (channel, (total, square)) in self.total.iter_mut().zip(self.square.iter_mut()).enumerate() {
             *total += change.total(channel, other.total[channel], n);
             *square += change.square(channel, other.square[channel], other.total[channel], n);
             let squares = self.errors.iter_mut().chain([&mut self.plain_error]);
@@ -161,7 +158,7 @@ impl<R: Real> Progress<R> {
     /// Changes the values of `samples` samples, and with them the coefficients in front of `rest`.
     pub(crate) fn change(&mut self, change: &Change<R>, samples: u64, rest: &mut [R], layout: Layout) {
         let n = R::from_f64(samples as f64);
-        for (channel, (total, square)) in self.total.iter_mut().zip(&mut self.square).enumerate() {
+        for (channel, (total, square)) in self.total.iter_mut().zip(self.square.iter_mut()).enumerate() {
             *square = change.square(channel, *square, *total, n);
             *total = change.total(channel, *total, n);
             for value in self.intercepts.iter_mut().chain([&mut self.mean]) {
@@ -172,7 +169,7 @@ impl<R: Real> Progress<R> {
             }
         }
         for fit in rows_mut(rest, layout.columns * layout.channels).take(FITS) {
-            for (coefficients, &factor) in rows_mut(fit, layout.columns).zip(&change.factors) {
+            for (coefficients, &factor) in rows_mut(fit, layout.columns).zip(change.factors.iter()) {
                 coefficients.iter_mut().for_each(|value| *value *= factor);
             }
         }

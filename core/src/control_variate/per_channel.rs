@@ -29,26 +29,6 @@ impl<R> DerefMut for PerChannel<R> {
     }
 }
 
-impl<'a, R> IntoIterator for &'a PerChannel<R> {
-    type Item = &'a R;
-    type IntoIter = core::slice::Iter<'a, R>;
-
-    #[inline]
-    fn into_iter(self) -> Self::IntoIter {
-        self.0.iter()
-    }
-}
-
-impl<'a, R> IntoIterator for &'a mut PerChannel<R> {
-    type Item = &'a mut R;
-    type IntoIter = core::slice::IterMut<'a, R>;
-
-    #[inline]
-    fn into_iter(self) -> Self::IntoIter {
-        self.0.iter_mut()
-    }
-}
-
 // No channel is beyond the last; the remainder shows that to the compiler.
 
 impl<R> Index<usize> for PerChannel<R> {

@@ -1,7 +1,6 @@
 //! Ridge strengths and penalties.
 
-use super::config::Config;
-use super::config::{Estimator, Ridge};
+use super::config::{Config, Estimator, Ridge};
 use crate::basis::Basis;
 use crate::matrix::halves_mut;
 use crate::real::Real;
@@ -25,33 +24,27 @@ const SMALLEST: [f64; 2] = [1e-12, 1e-5];
 /// How much stronger control functions are held where a fit is judged by what it says of samples left out: with less,
 /// the leverage of a sample that alone moves one would be lost in rounding.
 pub(crate) fn control_factor<R: Real>(config: &Config) -> R {
-    let strength = match config.ridge {
-        Ridge::Fixed(strength) => fixed::<R>(strength),
-        Ridge::Default | Ridge::Auto => MIXED[0],
-    };
+    let strength = strength::<R>(config.ridge, MIXED[0]);
     let least = if config.estimator == Estimator::LeastSquares { 0.0 } else { SMALLEST[usize::from(R::NARROW)] };
     R::from_f64((least / (strength * CONTROL_PENALTY)).max(1.0))
 }
 
-/// A strength of the caller's.
-fn fixed<R: Real>(strength: f32) -> f64 {
-    f64::from(strength).max(SMALLEST[usize::from(R::NARROW)])
+/// The caller's strength, or without one `otherwise`.
+pub(crate) fn strength<R: Real>(ridge: Ridge, otherwise: f64) -> f64 {
+    match ridge {
+        Ridge::Fixed(strength) => f64::from(strength).max(SMALLEST[usize::from(R::NARROW)]),
+        Ridge::Default | Ridge::Auto => otherwise,
+    }
 }
 
 /// The strength where there is one fit.
 pub(crate) fn single<R: Real>(ridge: Ridge) -> f64 {
-    match ridge {
-        Ridge::Fixed(strength) => fixed::<R>(strength),
-        Ridge::Default | Ridge::Auto => DEFAULT,
-    }
+    strength::<R>(ridge, DEFAULT)
 }
 
 /// The strength of least squares: next to none.
 pub(crate) fn least_squares<R: Real>(ridge: Ridge) -> f64 {
-    match ridge {
-        Ridge::Fixed(strength) => fixed::<R>(strength),
-        Ridge::Default | Ridge::Auto => FLOOR[usize::from(R::NARROW)],
-    }
+    strength::<R>(ridge, FLOOR[usize::from(R::NARROW)])
 }
 
 /// Relative penalties of control functions and basis, where `mean_square` is that of a control function's column.

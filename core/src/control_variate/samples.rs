@@ -241,7 +241,8 @@ impl<'a> Reader<'a> {
         f: &mut [Lanes<R>; Config::MAX_CHANNELS],
     ) -> usize {
         if matches!(subset, Subset::All) && self.is_simple() && self.n - *next >= LANES {
-            self.rows(*next, 1, x, f);
+            transpose(from(self.samples.u, *next * self.stride), self.stride, self.dims, x);
+            transpose(from(self.samples.f, *next * self.inputs), self.inputs, self.inputs, f);
             *next += LANES;
             return LANES;
         }
@@ -267,19 +268,6 @@ impl<'a> Reader<'a> {
     #[inline]
     pub(crate) fn is_simple(&self) -> bool {
         !self.skip && !self.luminance && self.controls == 0
-    }
-
-    /// Reads `LANES` samples from `first` on, `step` apart; zero where there are none.
-    #[inline(always)]
-    pub(crate) fn rows<R: Real>(
-        &self,
-        first: usize,
-        step: usize,
-        x: &mut [Lanes<R>; MAX_DIMS],
-        f: &mut [Lanes<R>; Config::MAX_CHANNELS],
-    ) {
-        transpose(from(self.samples.u, first * self.stride), step * self.stride, self.dims, x);
-        transpose(from(self.samples.f, first * self.inputs), step * self.inputs, self.inputs, f);
     }
 
     /// The values of a sample that are regressed: its channels, or its luminance.
@@ -326,11 +314,6 @@ impl<'a> Reader<'a> {
     #[inline(always)]
     pub(crate) fn inputs(&self) -> &'a [f32] {
         self.samples.f
-    }
-
-    #[inline]
-    pub(crate) fn value(&self, index: usize, channel: usize) -> f64 {
-        f64::from(self.input(index, channel))
     }
 
     /// One channel of a sample as it was given.

@@ -48,7 +48,7 @@ impl<R: Real> Totals<R> {
 
     /// Turns an estimate in the sums' units into a correction of the plain mean.
     pub(crate) fn corrected(&self, mut outcome: Outcome<R>) -> Outcome<R> {
-        for (correction, &mean) in outcome.correction.iter_mut().zip(&self.mean) {
+        for (correction, &mean) in outcome.correction.iter_mut().zip(self.mean.iter()) {
             *correction -= mean;
         }
         outcome

@@ -1,6 +1,6 @@
 //! Least squares by Givens rotations, for samples so badly placed that normal equations lose their digits.
 
-use super::super::config::{Config, Ridge};
+use super::super::config::Config;
 use super::super::per_channel::PerChannel;
 use super::super::result::{self, Outcome};
 use super::super::ridge;
@@ -45,7 +45,8 @@ pub(crate) fn least_squares<R: Real>(
     for (square, column) in solution.iter_mut().zip(system.gram.rows()) {
         *square = column.iter().fold(R::ZERO, |sum, &r| sum + r * r);
     }
-    add_penalty(&mut system, penalties, strength::<R>(config.ridge)? * count, solution, x);
+    let strength = R::from_f64(ridge::strength::<R>(config.ridge, FLOOR[usize::from(R::NARROW)]));
+    add_penalty(&mut system, penalties, strength * count, solution, x);
     let (mut correction, mut residuals) = (PerChannel::default(), PerChannel::default());
     for channel in 0..layout.channels {
         for (out, &z) in solution.iter_mut().zip(system.rhs.column(channel)) {
@@ -69,14 +70,6 @@ pub(crate) fn least_squares<R: Real>(
     let eccentricity = not_below_zero(count * givens::inverse_square(&system.gram.view(), x) - R::ONE);
     let variance = result::residual_variance(residuals, layout.columns, count, eccentricity);
     Ok(Outcome { correction, variance })
-}
-
-fn strength<R: Real>(ridge: Ridge) -> Result<R, Error> {
-    match ridge {
-        Ridge::Default => Ok(R::from_f64(FLOOR[usize::from(R::NARROW)])),
-        Ridge::Fixed(_) => Ok(R::from_f64(ridge::least_squares::<R>(ridge))),
-        Ridge::Auto => Err(Error::Unsupported),
-    }
 }
 
 /// x := `value` e_j

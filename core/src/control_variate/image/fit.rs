@@ -83,7 +83,7 @@ impl<'a> Fits<'a> {
             penalties: arena.take(columns)?,
             apart: if terms.slices > 0 { Some(Apart::new(terms, values, call, arena)?) } else { None },
         };
-        terms.penalties(call.config, call.basis, |_| 1.0, fits.penalties);
+        terms.penalties(call.config, call.basis, fits.penalties);
         Ok(fits)
     }
 

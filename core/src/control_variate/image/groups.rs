@@ -286,9 +286,8 @@ impl Groups<'_> {
     }
 
     /// The groups in the order of their windows.
-    pub(super) fn in_order(&self, layout: &Layout<'_>) -> impl Iterator<Item = Group> + '_ {
-        let whole = layout.is_joined().then(|| layout.whole());
-        (0..self.count.max(1)).filter_map(move |index| whole.or((index < self.count).then(|| self.record(index))))
+    pub(super) fn in_order(&self, layout: &Layout<'_>) -> impl Iterator<Item = Group> {
+        (0..).map_while(|index| self.numbered(layout, index))
     }
 
     /// What is told of a group: its gain, whether it has an error, and the error of each channel.

@@ -153,12 +153,12 @@ impl Call<'_> {
         for (channel, ((mean, error), sums)) in outputs.zip(rows(each, 2)).enumerate() {
             let &[correction, spread] = sums else { continue };
             let (correction, spread) = (f64::from(correction) * inverse, f64::from(spread) * error_inverse);
-            let first = self.reader.value(pixel * self.n, channel);
+            let first = f64::from(self.reader.input(pixel * self.n, channel));
             let (mut plain, mut variance) = (first, f64::INFINITY);
             if self.n > 1 {
                 let (mut total, mut square) = (0.0, 0.0);
                 for sample in pixel * self.n + 1..(pixel + 1) * self.n {
-                    let value = self.reader.value(sample, channel) - first;
+                    let value = f64::from(self.reader.input(sample, channel)) - first;
                     total += value;
                     square += value * value;
                 }

@@ -1,12 +1,11 @@
 //! Which columns a shared fit has, and which of them each candidate uses.
 
-use super::super::config::{Config, Ridge};
+use super::super::config::Config;
 use super::super::ridge;
 use super::products::{Four, times};
 use crate::basis::{Basis, MAX_ORDER, Shape};
 use crate::lanes;
 use crate::matrix::{at, halves_mut};
-use crate::real::Real;
 use crate::rows::{part, rows_mut};
 use heapless::Vec;
 
@@ -19,9 +18,9 @@ const MOVING_DEGREE: usize = 2;
 /// No products that make more columns than this.
 const MOST_COLUMNS: usize = 192;
 /// Relative penalty of the values' trend along an axis: next to none.
-const TREND_PENALTY: f64 = 1e-3;
+const TREND_PENALTY: f32 = 1e-3;
 /// Penalty of a product with an axis, relative to that of the function.
-const MOVING_PENALTY: f64 = 8.0;
+const MOVING_PENALTY: f32 = 8.0;
 
 /// Ridge strength per sample if the caller gives none.
 const STRENGTH: f64 = 0.003;
@@ -29,11 +28,7 @@ const STRENGTH: f64 = 0.003;
 pub(super) const SINGULAR: f32 = 64.0 * f32::EPSILON;
 
 pub(super) fn strength(config: &Config) -> f32 {
-    let strength = match config.ridge {
-        Ridge::Fixed(_) => ridge::single::<f32>(config.ridge),
-        Ridge::Default | Ridge::Auto => STRENGTH,
-    };
-    strength as f32
+    ridge::strength::<f32>(config.ridge, STRENGTH) as f32
 }
 
 /// Columns of a fit, in this order, so that each candidate is a prefix: the constant and the pixels' axes, which follow
@@ -166,24 +161,17 @@ impl Terms {
 
     /// The penalty of each column, relative to the strength times the number of samples.
     #[inline(always)]
-    pub(super) fn penalties<R: Real>(
-        &self,
-        config: &Config,
-        basis: &Basis,
-        mean_square: impl Fn(usize) -> R,
-        out: &mut [R],
-    ) {
-        let fixed = self.fixed();
-        let (own, rest) = halves_mut(out, fixed);
+    pub(super) fn penalties(&self, config: &Config, basis: &Basis, out: &mut [f32]) {
+        let (own, rest) = halves_mut(out, self.fixed());
         for (index, penalty) in own.iter_mut().enumerate() {
-            *penalty = if index == 0 { R::ZERO } else { R::from_f64(TREND_PENALTY) };
+            *penalty = if index == 0 { 0.0 } else { TREND_PENALTY };
         }
         let (functions, products) = halves_mut(rest, self.functions);
-        ridge::penalties(config, basis, |j| mean_square(fixed + j), functions);
+        ridge::penalties(config, basis, |_| 1.0, functions);
         let (first, count) = self.moving;
         let moving = part(functions, first, count);
         for (penalty, &function) in products.iter_mut().zip(moving.iter().cycle()) {
-            *penalty = R::from_f64(MOVING_PENALTY) * function;
+            *penalty = MOVING_PENALTY * function;
         }
     }
 
@@ -191,7 +179,7 @@ impl Terms {
     pub(super) fn own_penalty(&self, own: usize, penalties: &[f32], linear: f32) -> f32 {
         match self.source(own) {
             (0, _) => linear,
-            (source, _) if source < self.fixed() => MOVING_PENALTY as f32 * linear,
+            (source, _) if source < self.fixed() => MOVING_PENALTY * linear,
             (source, _) => at(penalties, source),
         }
     }
