@@ -7,10 +7,9 @@
 
 use crate::error::Error;
 use crate::real::Real;
+use crate::rows::{Rows, part, part_mut, rows, rows_mut};
 pub(crate) use crate::rows::{at, first_mut, from, from_mut, halves_mut, row_at, row_at_mut};
-use crate::rows::{part, part_mut, rows, rows_mut};
 use core::ops::{Deref, DerefMut};
-use core::slice::{ChunksExact, ChunksExactMut};
 
 /// The count of numbers in a packed triangle of `order` rows.
 #[inline]
@@ -222,7 +221,7 @@ impl<T, S: Deref<Target = [T]>> Panel<S> {
     }
 
     #[inline]
-    pub(crate) fn rows(&self) -> ChunksExact<'_, T> {
+    pub(crate) fn rows(&self) -> Rows<&[T]> {
         rows(&self.entries, self.width)
     }
 
@@ -251,7 +250,7 @@ impl<T, S: DerefMut<Target = [T]>> Panel<S> {
     }
 
     #[inline]
-    pub(crate) fn rows_mut(&mut self) -> ChunksExactMut<'_, T> {
+    pub(crate) fn rows_mut(&mut self) -> Rows<&mut [T]> {
         rows_mut(&mut self.entries, self.width)
     }
 

@@ -1,17 +1,49 @@
 //! Parts of slices, and rows of matrices that are stored row after row. What lies outside reads as zero, or as an empty
 //! part, so that no index can be out of bounds: the sizes are checked where memory comes in.
 
-use core::slice::{ChunksExact, ChunksExactMut};
-
-/// The whole rows of `width` entries, none of no width.
-#[inline]
-pub(crate) fn rows<T>(matrix: &[T], width: usize) -> ChunksExact<'_, T> {
-    (if width == 0 { &[] } else { matrix }).chunks_exact(width.max(1))
+/// The whole rows of `width` entries, none of no width, for which `chunks_exact` and its length panic.
+#[derive(Clone)]
+pub(crate) struct Rows<S> {
+    rest: S,
+    width: usize,
 }
 
 #[inline]
-pub(crate) fn rows_mut<T>(matrix: &mut [T], width: usize) -> ChunksExactMut<'_, T> {
-    (if width == 0 { &mut [] } else { matrix }).chunks_exact_mut(width.max(1))
+pub(crate) fn rows<T>(rest: &[T], width: usize) -> Rows<&[T]> {
+    Rows { rest, width }
+}
+
+#[inline]
+pub(crate) fn rows_mut<T>(rest: &mut [T], width: usize) -> Rows<&mut [T]> {
+    Rows { rest, width }
+}
+
+impl<'a, T> Iterator for Rows<&'a [T]> {
+    type Item = &'a [T];
+
+    #[inline]
+    fn next(&mut self) -> Option<&'a [T]> {
+        if self.width == 0 {
+            return None;
+        }
+        let (row, rest) = self.rest.split_at_checked(self.width)?;
+        self.rest = rest;
+        Some(row)
+    }
+}
+
+impl<'a, T> Iterator for Rows<&'a mut [T]> {
+    type Item = &'a mut [T];
+
+    #[inline]
+    fn next(&mut self) -> Option<&'a mut [T]> {
+        if self.width == 0 || self.rest.len() < self.width {
+            return None;
+        }
+        let (row, rest) = core::mem::take(&mut self.rest).split_at_mut_checked(self.width)?;
+        self.rest = rest;
+        Some(row)
+    }
 }
 
 /// Row `index` of `width` entries.

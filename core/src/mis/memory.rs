@@ -6,8 +6,7 @@
 
 use super::linear::MAX_TECHNIQUES;
 use crate::matrix::packed_len;
-use crate::rows::{rows, rows_mut};
-use core::slice::ChunksExactMut;
+use crate::rows::{Rows, rows, rows_mut};
 
 /// The f64 that [`OptimalMis`](super::OptimalMis) needs; 0 if `techniques` is not in 1..=16, `integrals` is 0, or no
 /// memory could hold them.
@@ -42,7 +41,7 @@ pub(super) struct SumsMut<'a> {
     pub(super) ratio: &'a mut [f64],
     pub(super) matrix: &'a mut [f64],
     /// Of each integral balance, progressive and moment.
-    pub(super) records: ChunksExactMut<'a, f64>,
+    pub(super) records: Rows<&'a mut [f64]>,
 }
 
 /// The sums of one integral.
