@@ -17,9 +17,8 @@ fn made(problem: SamplerProblem) -> SamplerTable {
     optimizer.table()
 }
 
-fn on(threads: usize, problem: &SamplerProblem) -> SamplerTable {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| made(problem.clone()))
+fn on<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
 }
 
 /// Every elementary interval of 2^m cells has one of the first 2^m points, and of every further 2^m.
@@ -42,7 +41,7 @@ fn assert_nets(table: &SamplerTable, pixels: impl Iterator<Item = usize>) {
 
 #[test]
 fn every_prefix_of_every_pixel_is_a_net_whatever_the_offsets() {
-    let table = made(SamplerProblem { candidates: 2, iterations: 2, bits: 4, size: 64, ..small() });
+    let table = made(SamplerProblem { candidates: 2, iterations: 1, bits: 4, size: 64, ..small() });
     assert_nets(&table, (0..64 * 64).step_by(31));
     let start = SamplerOptimizer::new(SamplerProblem { bits: 1, ..small() }).unwrap().table();
     assert_nets(&start, (0..32 * 32).step_by(31));
@@ -64,19 +63,19 @@ fn the_net_is_sobols() {
 #[test]
 fn threads_and_interruptions_do_not_show() {
     let problem = small();
-    let expected = on(1, &problem);
-    assert_eq!(on(2, &problem), expected);
-    let mut first = SamplerOptimizer::new(problem.clone()).unwrap();
-    for _ in 0..2 {
-        first.step();
-    }
-    let mut second = SamplerOptimizer::new(problem.clone()).unwrap();
-    assert!(second.restore(first.iteration(), first.coordinates()));
-    while second.iteration() < second.iterations() {
-        second.step();
-    }
-    assert_eq!(second.table(), expected);
-    assert_ne!(made(SamplerProblem { seed: 2, ..problem }), expected);
+    let new = |problem: &SamplerProblem| SamplerOptimizer::new(problem.clone()).unwrap();
+    let (mut whole, mut resumed, mut other) =
+        (new(&problem), new(&problem), new(&SamplerProblem { seed: 2, ..small() }));
+    on(1, || whole.step());
+    other.step();
+    assert_ne!(other.table(), whole.table());
+    on(1, || whole.step());
+    assert!(resumed.restore(whole.iteration(), whole.coordinates()));
+    on(1, || whole.step());
+    resumed.step();
+    assert_eq!((resumed.iteration(), resumed.iterations()), (3, 3));
+    assert_eq!(resumed.table(), whole.table());
+    assert_eq!(on(2, || made(problem)), whole.table());
 }
 
 #[test]
@@ -148,7 +147,8 @@ fn the_shipped_sampler_is_nets_of_uniform_marginals() {
 #[test]
 fn the_command_writes_a_table_and_its_sidecar() {
     let place = Place::new();
-    let text = place.succeed("sampler --iterations 1 --bits 1 --out s.bin");
+    // Of two octaves: of all it is three minutes.
+    let text = place.succeed("sampler --iterations 1 --bits 1 --weights 1,1,0,0,0,0,0 --out s.bin");
     assert!(text.contains("border") && text.contains("1 step"), "{text}");
     let table = sidecar::read(&place.path("s.bin")).unwrap();
     assert_eq!((table.size, table.bits, table.offsets.len()), (32, 1, 2048));
