@@ -183,8 +183,9 @@ fn draw(all: &[Rendered], reference: &Reference) -> RgbImage {
         };
         let cells = COLUMNS.map(find);
         let scale = cells[0].map_or(1.0, |one| part.error_scale(&one.image));
-        let samples = text::samples_per_pixel(spp);
-        text::draw(&mut picture, GAP, y, &format!("{samples}; below, errors from -{scale:.2} to {scale:.2}"));
+        let samples = if spp == 1 { "sample" } else { "samples" };
+        let words = format!("{spp} {samples} per pixel; below, errors from -{scale:.2} to {scale:.2}");
+        text::draw(&mut picture, GAP, y, &words);
         let [images, errors] = [y + text::LINE, y + text::LINE + height + GAP / 2];
         for (index, one) in cells.into_iter().enumerate() {
             let Some(one) = one else { continue };

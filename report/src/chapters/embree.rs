@@ -11,6 +11,7 @@ use super::clock::Clock;
 use super::measurement::{Measurement, Outcome};
 use super::plan::Plan;
 use super::prelude::*;
+use super::program;
 use super::report::Report;
 use crate::measure::metric::Reference;
 use crate::measure::renderer::{Job, Renderer, View, threads};
@@ -20,6 +21,7 @@ use indicatif::ProgressBar;
 use itertools::iproduct;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 use xtask::paths;
 
 /// What is rendered.
@@ -73,20 +75,22 @@ struct Harness<'a> {
     plan: &'a Plan,
     runs: &'a Runs,
     measurement: Measurement<'a>,
+    /// What writes points of public samplers.
+    points: PathBuf,
 }
 
 /// What comes after the runs, and roughly its seconds.
 const FURTHER: [u64; 3] = [55, 28, 23];
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
-    let program = xtask::renderers::embree()?;
-    public::build()?;
+    let renderer = Renderer::new(xtask::renderers::embree()?)?;
+    let points = program::build("--example", &["points".to_owned()], report.plan)?.remove(0);
     report.compiled();
     let text = report.plan.filled(&paths::read("report/chapters/embree_runs.toml")?);
     let runs: Runs = toml::from_str(&text).context("report/chapters/embree_runs.toml")?;
     let bar = progress::bar(runs.section.iter().map(|of| of.seconds).chain(FURTHER).sum())?;
-    let renderer = Renderer::new(program)?;
-    let harness = Harness { plan: report.plan, runs: &runs, measurement: Measurement::new(&renderer, &bar)? };
+    let measurement = Measurement::new(&renderer, &bar)?;
+    let harness = Harness { plan: report.plan, runs: &runs, measurement, points };
     let mut all = Table::new("runs", COLUMNS);
     for section in &runs.section {
         timed(&bar, section.seconds, &section.name, || {
@@ -143,7 +147,10 @@ impl<'a> Harness<'a> {
                 let mut jobs: Vec<(Job, [String; 3])> = Vec::new();
                 for (sampler, (variant, options), &order) in iproduct!(&run.samplers, variants, &run.order) {
                     let of = match self.runs.public.get(sampler) {
-                        Some(name) => Some(public::points(&self.measurement, name, spp, self.runs.scenes[scene].dims)?),
+                        Some(name) => {
+                            let dims = self.runs.scenes[scene].dims;
+                            Some(public::points(&self.points, &self.measurement, name, spp, dims)?)
+                        }
                         None => self.measurement.renderer.sampler(sampler, spp),
                     };
                     // There is no such tile.

@@ -17,14 +17,14 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     Ok(chapter)
 }
 
-/// Compiles bench targets, all in one call so that they compile side by side, and returns the programs, in the order of
-/// the names.
-pub(super) fn build(names: &[String], plan: &Plan) -> Result<Vec<PathBuf>> {
+/// Compiles targets of noisefloor-bench, each behind the option `kind`, and returns the programs in the order of the
+/// names. One call: so they compile side by side.
+pub(super) fn build(kind: &str, names: &[String], plan: &Plan) -> Result<Vec<PathBuf>> {
     // The programs link it, so that what ships is what is measured.
     library::build()?;
     let mut cargo = run::cargo();
     cargo.args(["build", "--profile", plan.profile(), "--package", "noisefloor-bench"]);
-    names.iter().for_each(|name| _ = cargo.args(["--bench", name]));
+    names.iter().for_each(|name| _ = cargo.args([kind, name]));
     let messages = run::read(cargo.args(["--message-format", "json-render-diagnostics"]).stderr(Stdio::inherit()))?;
     let artifacts: Vec<Value> = messages.lines().filter_map(|line| serde_json::from_str(line).ok()).collect();
     let find = |name: &String| -> Result<PathBuf> {
@@ -61,7 +61,7 @@ impl Tables {
 
 /// Compiles and runs the chapter's programs.
 pub(super) fn measure(report: &Report) -> Result<Tables> {
-    let programs = build(&report.description.programs, report.plan)?;
+    let programs = build("--bench", &report.description.programs, report.plan)?;
     report.compiled();
     let tables = Tables::new()?;
     programs.iter().try_for_each(|program| tables.run(run::command(program), report.plan))?;

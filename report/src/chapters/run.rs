@@ -64,7 +64,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     if wanted.len() > 1 && !programs.is_empty() {
         println!("building the programs that measure: {}", programs.join(", "));
         // Side by side, for all chapters. What does not compile is said again by the chapter that needs it.
-        _ = program::build(&programs, &plan);
+        _ = program::build("--bench", &programs, &plan);
     }
     let bar = progress::bar(wanted.iter().map(|(.., of)| of.seconds).sum())?;
     let (mut written, mut failed) = (Vec::new(), Vec::new());

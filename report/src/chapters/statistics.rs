@@ -1,7 +1,7 @@
 //! Medians with bootstrap confidence intervals, and tests of many hypotheses at once.
 
-use crate::measure::metric::median;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::statistics::{Data, OrderStatistics};
 
 /// A value measured once for each of several seeds: their median, and where it lies with 95 % confidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,6 +80,11 @@ impl Estimate {
     pub(crate) fn ratio(a: &[f64], b: &[f64]) -> Self {
         Self::median(&a.iter().zip(b).map(|(a, b)| a / b).collect::<Vec<_>>())
     }
+}
+
+/// The middle value; of an even number of values, the mean of the two in the middle.
+pub(crate) fn median(values: impl IntoIterator<Item = f64>) -> f64 {
+    Data::new(values.into_iter().collect::<Vec<_>>()).median()
 }
 
 /// Mean and standard deviation.

@@ -53,17 +53,6 @@ impl Reference {
     }
 }
 
-/// The middle value; of an even number of values, the mean of the two in the middle.
-pub(crate) fn median(values: impl IntoIterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.into_iter().collect();
-    values.sort_by(f64::total_cmp);
-    match values.len() {
-        0 => f64::NAN,
-        n if n % 2 == 1 => values[n / 2],
-        n => 0.5 * (values[n / 2 - 1] + values[n / 2]),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -83,12 +72,5 @@ mod tests {
     fn noise_of_the_reference_cancels() {
         // (3 - 1)(3 - 3) + (3 - 3)(3 - 1) = 0, while (3 - 2)^2 is not.
         assert!(Reference::new(&flat(1.0), &flat(3.0)).rel_mse(&flat(3.0)).abs() < 1e-12);
-    }
-
-    #[test]
-    fn medians() {
-        assert_eq!(median([3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median([4.0, 1.0, 2.0, 3.0]), 2.5);
-        assert!(median([]).is_nan());
     }
 }

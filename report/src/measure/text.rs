@@ -8,11 +8,6 @@ pub(crate) const LINE: u32 = 20;
 
 const SIZE: RasterHeight = RasterHeight::Size16;
 
-/// "1 sample per pixel", "4 samples per pixel".
-pub(crate) fn samples_per_pixel(spp: u32) -> String {
-    format!("{spp} {} per pixel", if spp == 1 { "sample" } else { "samples" })
-}
-
 /// Draws white text on whatever is there; (x, y) is its top left corner. What would lie outside the picture is cut off.
 pub(crate) fn draw(picture: &mut RgbImage, x: u32, y: u32, text: &str) {
     let advance = get_raster_width(FontWeight::Regular, SIZE) as u32;

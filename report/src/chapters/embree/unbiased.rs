@@ -3,8 +3,7 @@
 use super::Harness;
 use super::sign_flips::SignFlips;
 use crate::chapters::prelude::*;
-use crate::chapters::statistics::normal_quantile;
-use crate::measure::metric::median;
+use crate::chapters::statistics::{median, normal_quantile};
 use crate::measure::renderer::Job;
 use image::Rgb32FImage;
 use itertools::iproduct;
