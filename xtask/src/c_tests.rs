@@ -15,7 +15,12 @@ pub fn run(preset: &str, label: &str, needed: &[Package]) -> Result<()> {
     build(preset, label, needed)?;
     let mut test = run::command("ctest");
     test.args(["--verbose", "--no-tests=error", "--label-regex", &format!("^{label}$"), "--test-dir"]);
-    let output = test.arg(folder(preset)).output().context("cannot start ctest")?;
+    test.arg(folder(preset));
+    if preset == "valgrind" {
+        // One thread runs at a time, and slowly; nothing is written.
+        test.args(["--parallel", "2"]);
+    }
+    let output = test.output().context("cannot start ctest")?;
     let text = String::from_utf8_lossy(&output.stdout);
     // What the programs say follows the number of their test, and what ctest does with them too.
     let said = text.lines().filter_map(|line| line.split_once(": ")).filter(|(number, line)| {

@@ -48,10 +48,10 @@ pub fn test() -> Result<()> {
     tools::packages(&BROWSER)?;
     let page = build()?;
     let mut cargo = run::cargo();
-    cargo.args(["build", "--quiet", "--release", "--manifest-path", MANIFEST, "--target-dir"]);
+    cargo.args(["build", "--quiet", "--manifest-path", MANIFEST, "--target-dir"]);
     let folder = paths::target().join("playground");
     run::check(cargo.arg(&folder))?;
     let mut python = run::command("python3");
-    python.args(["-B", "tests/programs/playground.py"]).arg(page).arg(folder.join("release/numbers"));
+    python.args(["-B", "tests/programs/playground.py"]).arg(page).arg(folder.join("debug/numbers"));
     run::check(python.arg(paths::target().join("demo/playground.png")))
 }

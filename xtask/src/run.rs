@@ -2,7 +2,8 @@
 
 use anyhow::{Context, Result, bail};
 use std::ffi::OsStr;
-use std::process::{Command, ExitStatus};
+use std::io::{self, Read};
+use std::process::{Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -50,6 +51,17 @@ fn judge(status: ExitStatus, command: &Command) -> Result<()> {
         bail!("failed ({status}): {}", line(command));
     }
     Ok(())
+}
+
+/// As [`check`], and returns what the command said instead of showing it.
+pub fn hear(command: &mut Command) -> Result<(String, Result<()>)> {
+    let (mut reader, writer) = io::pipe()?;
+    let mut child = command.stdout(writer.try_clone()?).stderr(writer).spawn().with_context(|| missing(command))?;
+    // The pipe ends where nobody can write to it.
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    let mut said = Vec::new();
+    reader.read_to_end(&mut said)?;
+    Ok((String::from_utf8_lossy(&said).into_owned(), judge(child.wait()?, command)))
 }
 
 /// As [`check`], and returns what the command wrote to standard output.

@@ -5,7 +5,8 @@ use crate::tools::{self, Missing, Package};
 use crate::{fuzz, instructions, library, playground, python, renderers, run, start, texts};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use std::time::Instant;
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
 const PKG_CONFIG: Package = Package { name: "pkg-config", file: "pkg-config" };
 /// Devices in software, and what programs for them are made with.
@@ -22,7 +23,7 @@ const DEVICES: [Package; 11] = [
     Package { name: "ocl-icd-opencl-dev", file: "/usr/share/doc/ocl-icd-opencl-dev/copyright" },
     Package { name: "pocl-opencl-icd", file: "/etc/OpenCL/vendors/pocl.icd" },
 ];
-/// The packages that do not measure: their profile is `xtask`.
+/// The packages that do not measure: their profile is `xtask`, which lints and documents share with them.
 const COMPILED_FAST: [&str; 3] = ["xtask", "noisefloor-release", "noisefloor-report"];
 
 #[derive(Args)]
@@ -37,28 +38,27 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<()> {
     let start = Instant::now();
     tools::ensure()?;
+    let mut steps = Steps { options, passed: 0, failed: Vec::new(), not_run: Vec::new(), left_out: Vec::new() };
+    let mut test = vec!["test", "--profile", "suite", "--workspace", "--no-fail-fast", "--exclude", "noisefloor-bench"];
+    test.extend(COMPILED_FAST.iter().flat_map(|name| ["--exclude", name]));
+    let library_tests = steps.begin("Rust tests of the library (cargo test)", &test);
     // Before the steps: many of them link it, and the benches compile to more with it. Where that fails, they say so.
     println!("building the C library");
     _ = library::build();
-    let mut steps = Steps { options, passed: 0, failed: Vec::new(), not_run: Vec::new(), left_out: Vec::new() };
     steps.cargo("formatting (cargo fmt --check)", &["fmt", "--all", "--check"], None);
     steps.run("lines of at most 120 columns", texts::columns);
-    let clippy = ["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"];
+    let clippy = ["clippy", "--quiet", "--profile", "xtask", "--workspace", "--all-targets", "--", "-D", "warnings"];
     steps.cargo("lints (cargo clippy, warnings are errors)", &clippy, None);
     steps.start("the headers are what capi/ generates", "release", "header");
     steps.start("capi/abi.txt: functions, layouts and constants of the C ABI are as promised", "release", "abi");
     steps.c("headers alone: C99, C11, C++11, C++17, C++20, every warning an error", "default", "headers", &[]);
     let heading = "the C library: no panic, no undefined symbol but mem*, only nf_* visible";
     steps.run(heading, || library::check(&library::build()?));
-    // The benches have none.
-    let mut test = vec!["test", "--profile", "suite", "--workspace", "--no-fail-fast", "--exclude", "noisefloor-bench"];
-    test.extend(COMPILED_FAST.iter().flat_map(|name| ["--exclude", name]));
-    steps.cargo("Rust tests of the library (cargo test)", &test, None);
     // Their dependencies are compiled already, in the profile that compiles fast, not the one that runs fast.
     let mut test = vec!["test", "--profile", "xtask"];
     test.extend(COMPILED_FAST.iter().flat_map(|name| ["--package", name]));
     steps.cargo("Rust tests of xtask, release and the report (cargo test)", &test, None);
-    let doc = ["doc", "--quiet", "--workspace", "--no-deps", "--document-private-items"];
+    let doc = ["doc", "--quiet", "--profile", "xtask", "--workspace", "--no-deps", "--document-private-items"];
     steps.cargo("Rust documentation, warnings are errors", &doc, Some(("RUSTDOCFLAGS", "-D warnings")));
     steps.run("each feature of the core alone, without std", each_feature);
     steps.run("fuzz targets: committed inputs", fuzz::replay);
@@ -130,7 +130,18 @@ pub fn run(options: &Options) -> Result<()> {
     steps.run("sizes: product, tools, documents", texts::sizes);
     steps.run("README.md opens with a part of examples_c/image.cpp", texts::readme);
     steps.c("C code in docs/ that includes the header compiles", "default", "documents", &[PYTHON]);
+    steps.end(library_tests);
     steps.finish(start)
+}
+
+/// What a command said and how it ended; after how long.
+type Heard = (Result<(String, Result<()>)>, Duration);
+
+/// What goes on beside other steps: many of these leave a core idle.
+struct Beside {
+    heading: &'static str,
+    /// None: it was left out.
+    running: Option<JoinHandle<Heard>>,
 }
 
 struct Steps<'a> {
@@ -143,9 +154,32 @@ struct Steps<'a> {
 }
 
 impl Steps<'_> {
+    fn is_wanted(&self, heading: &str) -> bool {
+        self.options.filter.as_ref().is_none_or(|filter| heading.contains(filter.as_str()))
+    }
+
+    /// Begins a command of cargo's.
+    fn begin(&self, heading: &'static str, arguments: &[&str]) -> Beside {
+        let (mut cargo, start) = (run::cargo(), Instant::now());
+        cargo.args(arguments);
+        let hear = move || (run::hear(&mut cargo), start.elapsed());
+        Beside { heading, running: self.is_wanted(heading).then(|| thread::spawn(hear)) }
+    }
+
+    /// Waits for what was begun.
+    fn end(&mut self, Beside { heading, running }: Beside) {
+        self.run(heading, || {
+            let ended = running.and_then(|thread| thread.join().ok());
+            let (heard, taken) = ended.context("it did not end")?;
+            let (said, result) = heard?;
+            println!("{said}   {:.1} s, most of them beside the steps above", taken.as_secs_f64());
+            result
+        });
+    }
+
     /// Runs one step; the others follow even if it fails.
     fn run(&mut self, heading: &'static str, action: impl FnOnce() -> Result<()>) {
-        if self.options.filter.as_ref().is_some_and(|filter| !heading.contains(filter.as_str())) {
+        if !self.is_wanted(heading) {
             self.left_out.push(heading);
             return;
         }
@@ -214,7 +248,8 @@ fn each_feature() -> Result<()> {
     for feature in [""].into_iter().chain(names) {
         println!("   --no-default-features --features \"{feature}\"");
         let mut build = run::cargo();
-        build.args(["build", "--quiet", "--package", "noisefloor", "--no-default-features", "--features", feature]);
+        build.args(["build", "--quiet", "--profile", "xtask", "--package", "noisefloor", "--no-default-features"]);
+        build.args(["--features", feature]);
         run::check(build.env("RUSTFLAGS", "-D warnings"))?;
     }
     Ok(())
