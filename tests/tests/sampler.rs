@@ -4,6 +4,7 @@
 
 use noisefloor::Error;
 use noisefloor::sampler::{Sampler, fill, table};
+use noisefloor_tests::planar::{Blur, Planar};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::statistics::Moments;
 use proptest::prelude::*;
@@ -170,6 +171,29 @@ fn strata_are_filled() {
             let tolerance = if n > 64 { 0.25 } else { 0.1 };
             assert!((density - 1.0).abs() <= tolerance, "{n} samples: {density}, of {counts:?}");
         }
+    }
+}
+
+/// The error of half-planes, the same in all pixels, through a Gaussian of 2.1 pixels, over that of white noise.
+#[test]
+fn half_planes_vanish_through_a_filter() {
+    let blur = Blur::new(table::SIZE as usize);
+    for (n, most) in [(1, 0.145), (4, 0.082), (16, 0.052)] {
+        let mut rng = SplitMix64::new(7);
+        let points: Vec<Vec<[f32; 2]>> =
+            (0..PIXELS).map(|pixel| (0..n).map(|i| root(pixel).moved(0, 0, i).draw()).collect()).collect();
+        let (mut sum, mut white) = (0.0, 0.0);
+        for _ in 0..400 {
+            let plane = Planar::half_plane(&mut rng);
+            let [mean, variance] = plane.integral();
+            let value = |point: &[f32; 2]| plane.at(point.map(f64::from)) - mean;
+            let error = |points: &Vec<[f32; 2]>| points.iter().map(value).sum::<f64>() / f64::from(n);
+            let image = blur.apply(&points.iter().map(error).collect::<Vec<_>>());
+            sum += image.iter().map(|error| error * error).sum::<f64>() / f64::from(PIXELS);
+            white += variance / f64::from(n) * blur.of_noise();
+        }
+        println!("{n}: {:.4}", sum / white);
+        assert!(sum / white < most, "{n} samples: {}", sum / white);
     }
 }
 
