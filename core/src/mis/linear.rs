@@ -1,6 +1,6 @@
 //! The symmetric systems of optimal MIS.
 
-use super::optimal::Solver;
+use super::solver::Solver;
 use crate::linalg::ldlt::Ldlt;
 use crate::matrix::{Triangle, copy, first_mut, packed_len};
 use crate::rows::first;

@@ -12,10 +12,12 @@ mod heuristics;
 pub(crate) mod linear;
 mod memory;
 pub(crate) mod optimal;
+mod solver;
 mod weight;
 
 pub use heuristics::{DEFAULT_BETA, balance, cutoff, maximum, power};
 pub use linear::MAX_TECHNIQUES;
 pub use memory::len;
-pub use optimal::{DEFAULT_RIDGE, OptimalMis, RIDGE_RANGE, Solver};
+pub use optimal::OptimalMis;
+pub use solver::{DEFAULT_RIDGE, RIDGE_RANGE, Solver};
 pub use weight::{optimal, optimal_contribution};
