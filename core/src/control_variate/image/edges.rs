@@ -483,8 +483,9 @@ impl<'a> Edges<'a> {
 
     /// How much of the light arrives, at the points.
     ///
-    /// Along a line e^-q is multiplied by a factor from point to point, which is multiplied by one that does not change,
-    /// as q is of degree 2; and so are the first values of lines. Where q is large all of it is less, and 0 where it was.
+    /// Along a line e^-q is multiplied by a factor from point to point, which is multiplied by one that does not
+    /// change, as q is of degree 2; and so are the first values of lines. Where q is large all of it is less, and 0
+    /// where it was.
     #[inline(always)]
     fn share_out(&mut self, batch: &Batch<'_>, at: (usize, usize), q: &[Eight]) {
         // Between points, the difference of the function of degree 1; of that of degree 2 the first, and its own.
