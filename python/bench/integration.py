@@ -145,6 +145,7 @@ def main():
     options = output.arguments(__doc__)
     repetitions, samples = (4, SAMPLES[:2]) if options.quick else (256, SAMPLES)
     warnings.filterwarnings("ignore")
+    output.versions(options, "numpy", "scipy", "vegas")
     named, ratios = methods(), {}
     for problem, dims, function, exact in problems():
         for n in samples:

@@ -150,7 +150,7 @@ def integrals(runs, count=100_000, n=16, dims=2):
 def main():
     """Writes the tables."""
     options = output.arguments(__doc__)
-    output.versions(options, "numpy", "torch", "torchrl", "scipy", "vegas")
+    output.versions(options, "numpy", "torch", "torchrl")
     torch.set_num_threads(1)
     runs = 1 if options.quick else 7
     names = "C calls", "package", "torch.multinomial", "torchrl"

@@ -9,7 +9,7 @@ import pytest
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "bench"
 TABLES = {
     "overhead": ("versions", "draws", "steps", "integrals"),
-    "integration": ("integration",),
+    "integration": ("versions", "integration"),
     "memory": ("memory",),
     "training": ("tasks", "training"),
 }

