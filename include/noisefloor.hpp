@@ -960,10 +960,14 @@ inline returned<void> omis_weights(std::uint32_t techniques, std::uint32_t items
                                : NF_ERR_RANGE);
 }
 
-// nf_shuffle(): the element at `position` of a random permutation.
-inline std::uint32_t shuffle(std::uint64_t seed, std::uint32_t items, std::uint32_t position) noexcept
+// nf_shuffle(): the elements from `position` on of a random permutation.
+inline returned<void> shuffle(std::uint64_t seed, std::uint32_t items, std::uint64_t position,
+                              span<std::uint32_t> index)
 {
-    return nf_shuffle(seed, items, position);
+    const bool fits = index.size() <= UINT32_MAX;
+    return detail::finish(
+        fits ? nf_shuffle(seed, items, position, static_cast<std::uint32_t>(index.size()), index.data())
+             : NF_ERR_RANGE);
 }
 
 // Importances of many items at once; rows are the items. Lengths that do not agree are status::range.

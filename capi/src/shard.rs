@@ -96,9 +96,19 @@ fn shared(shards: &[nf_shard]) -> impl Iterator<Item = Shard> + Clone {
     shards.iter().map(|&nf_shard { importance, items }| Shard { importance, items })
 }
 
-/// The element at `position` of a random permutation of 0..items-1, which seed chooses: an epoch's order (Algorithm 4)
-/// with no array of indices. 0 if there are no items; positions beyond the last start again.
+/// The elements from `position` on of a random permutation of 0..items-1, which seed chooses: an epoch's order
+/// (Algorithm 4) with no array of all. Positions beyond the last start again. index[count]: the output.
+///
+/// NF_ERR_RANGE: no items.
 #[unsafe(no_mangle)]
-pub extern "C" fn nf_shuffle(seed: u64, items: u32, position: u32) -> u32 {
-    minibatch::shuffle(seed, items, position)
+pub unsafe extern "C" fn nf_shuffle(seed: u64, items: u32, position: u64, count: u32, index: *mut u32) -> nf_status {
+    status((|| {
+        // SAFETY: the caller passes room for `count` indices.
+        let index = unsafe { convert::outputs(index, count as usize) }?;
+        let first = position.checked_rem(items.into()).ok_or(NF_ERR_RANGE)?;
+        for (at, index) in (first..).zip(index) {
+            *index = minibatch::shuffle(seed, items, (at % u64::from(items)) as u32);
+        }
+        Ok(())
+    })())
 }

@@ -71,8 +71,7 @@ public:
     {
         if (!started_) { // The initial epoch, and uniform sampling: without replacement, all weights 1.
             for (std::uint32_t k = 0; k < batch_; ++k, ++position_) {
-                const std::uint32_t in_epoch = std::uint32_t(position_ % items_);
-                index_[k] = nf_shuffle(shuffle_ + position_ / items_, items_, in_epoch);
+                check(nf_shuffle(shuffle_ + position_ / items_, items_, position_, 1, &index_[k]), "nf_shuffle");
                 weight_[k] = 1.0f;
             }
             return;

@@ -113,7 +113,7 @@ static void draw_batch(sampler *s)
     if (!s->started) { /* The initial epoch, and uniform sampling: without replacement, all weights 1. */
         for (uint32_t k = 0; k < batch; ++k, ++s->position) {
             uint64_t epoch = s->position / items;
-            s->index[k] = nf_shuffle(s->shuffle + epoch, items, (uint32_t)(s->position % items));
+            check(nf_shuffle(s->shuffle + epoch, items, s->position, 1, &s->index[k]), "nf_shuffle");
             s->weight[k] = 1.0f;
         }
         return;

@@ -91,10 +91,9 @@ static void sampler_draw(sampler *s, uint32_t epoch, uint32_t position, uint32_t
         sampler_draw_weighted(s, count, index, weight);
         return;
     }
-    for (uint32_t r = 0; r < count; ++r) {
-        index[r] = nf_shuffle(s->seed * MAX_EPOCHS + epoch, s->items, position + r);
+    check(nf_shuffle(s->seed * MAX_EPOCHS + epoch, s->items, position, count, index), "nf_shuffle");
+    for (uint32_t r = 0; r < count; ++r)
         weight[r] = 1.0f;
-    }
 }
 
 /* Remembers how important the items were, from the forward pass that training needed anyway: the space holds their

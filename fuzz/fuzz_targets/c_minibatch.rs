@@ -140,8 +140,12 @@ fn importances(source: &mut Source<'_>) -> Result<()> {
             gradient.values.iter().all(|&g| if status == NF_OK { to.is_null() || g.abs() <= 1.0 } else { g == -7.0 });
         assert!(good, "{status}: {:?}", gradient.values);
     }
-    let (items, position) = (source.any::<u32>()?, source.any::<u32>()?);
-    assert!(items == 0 || nf_shuffle(source.any()?, items, position) < items);
+    let (seed, items, position) = (source.any()?, source.any::<u32>()?, source.any()?);
+    let mut index = source.array(len, |_| Ok(u32::MAX))?;
+    let to = index.pointer_mut();
+    // SAFETY: as in `operation`.
+    let status = unsafe { nf_shuffle(seed, items, position, len as u32, to) };
+    assert!(index.values.iter().all(|&i| if status == NF_OK { i < items } else { i == u32::MAX }));
     Ok(())
 }
 

@@ -117,9 +117,10 @@ nf_status nf_shards_allocate(const nf_shard *shard, uint32_t shards, float unifo
 nf_status nf_table_draw_shard(const nf_table *table, const nf_shard *shard, uint32_t shards, nf_rng *rng,
     uint32_t batch, uint32_t *index, float *weight);
 
-// The element at `position` of a random permutation of 0..items-1, which seed chooses: an epoch's order (Algorithm 4)
-// with no array of indices. 0 if there are no items; positions beyond the last start again.
-uint32_t nf_shuffle(uint64_t seed, uint32_t items, uint32_t position);
+// The elements from `position` on of a random permutation of 0..items-1, which seed chooses: an epoch's order
+// (Algorithm 4) with no array of all. Positions beyond the last start again. index[count]: the output.
+// NF_ERR_RANGE: no items.
+nf_status nf_shuffle(uint64_t seed, uint32_t items, uint64_t position, uint32_t count, uint32_t *index);
 
 #define NF_NODES_NORM 0 // nf_importance_gradient split: one importance per group of nodes, the norm over it.
 // nf_importance_gradient split: two per group, the norms of the positive and of the negative parts, which can combine

@@ -1,5 +1,7 @@
 """Arrays of anybody's, made into those that the library reads, and refusals that name what is wrong."""
 
+import warnings
+
 import numpy
 
 
@@ -23,14 +25,28 @@ def array(name, value):
         raise ValueError(f"{name} is no array of numbers: {error}") from None
 
 
-def floats(name, value):
-    """float32 numbers, row after row. What is beyond float32 becomes infinite, which the library refuses."""
+def floats(name, value, kind=numpy.float32):
+    """Numbers of float32, or of another kind, row after row. What is beyond that becomes infinite, and is refused: by
+    `check_finite` as it was given."""
     view = array(name, value)
     # JAX's bfloat16 is none of NumPy's kinds.
     if view.dtype.kind not in "fiub" and view.dtype.name != "bfloat16":
         raise TypeError(f"{name} holds {view.dtype}: real numbers are expected")
     with numpy.errstate(over="ignore"):
-        return numpy.asarray(view, numpy.float32, order="C")
+        return numpy.asarray(view, kind, order="C")
+
+
+def warn_of_lost_digits(name, view):
+    """Warns where numbers as float32 are some thousand different ones at most, though they need not be."""
+    if view.dtype.kind in "fiu" and view.itemsize > 4 and view.size:
+        low, high = float(view.min()), float(view.max())
+        if 0 < high - low < 2**-14 * max(abs(low), abs(high)):
+            warnings.warn(
+                f"{name} is {low:.9g} to {high:.9g}, and rounded to float32, which has 7 digits: subtract a constant, "
+                "and add it to the mean",
+                RuntimeWarning,
+                stacklevel=3,
+            )
 
 
 def integers(name, value, most):
@@ -88,11 +104,12 @@ def check_shape(name, values, expected, meaning):
         raise ValueError(f"{name} has the shape {tuple(values.shape)}: it must be {expected}, {meaning}")
 
 
-def check_finite(name, values):
-    """Refuses NaN and infinity."""
-    check(name, values, numpy.isfinite(values), "finite, and within float32's range")
+def check_finite(name, view):
+    """Refuses what is not finite as float32."""
+    check(name, view, numpy.isfinite(floats(name, view)), "finite, and within float32's range, 3.4e38")
 
 
-def check_positive(name, values):
-    """Refuses what is no finite number of at least 0."""
-    check(name, values, numpy.isfinite(values) & (values >= 0), "at least 0 and finite, within float32's range")
+def check_positive(name, view):
+    """Refuses what is no finite number of at least 0 as float32."""
+    narrow = floats(name, view)
+    check(name, view, numpy.isfinite(narrow) & (narrow >= 0), "at least 0 and finite, within float32's range, 3.4e38")

@@ -173,7 +173,7 @@ nf_status nf_table_update(nf_table *, const uint32_t *, const float *, uint32_t,
 nf_status nf_table_probabilities(const nf_table *, const uint32_t *, uint32_t, uint32_t, float *);
 nf_status nf_table_save(const nf_table *, void *, size_t);
 nf_status nf_table_load(nf_table *, void *, size_t, const void *, size_t);
-uint32_t nf_shuffle(uint64_t, uint32_t, uint32_t);
+nf_status nf_shuffle(uint64_t, uint32_t, uint64_t, uint32_t, uint32_t *);
 nf_status nf_omis_weights(uint32_t, float, uint32_t, uint32_t, const float *, const uint32_t *, uint32_t, float *);
 """
 

@@ -57,9 +57,12 @@ def estimate(
         channels: whether f's last axis holds the values of a sample.
 
     Returns:
-        An `Estimate` with u's and f's leading dimensions. All is computed from float32.
+        An `Estimate` with u's and f's leading dimensions. u and f are rounded to float32: of f = 1e8 + g nothing of g
+        is left, and the standard error is that of what is left. A warning says so of float64; estimate g.
     """
-    u, f = _arrays.floats("u", u), _arrays.floats("f", f)
+    given = _arrays.array("u", u), _arrays.array("f", f)
+    u, f = _arrays.floats("u", given[0]), _arrays.floats("f", given[1])
+    _arrays.warn_of_lost_digits("f", given[1])
     values = 1 if channels else 0
     if u.ndim < 2 or f.ndim < 1 + values:
         raise ValueError(
@@ -90,7 +93,7 @@ def estimate(
             _c.address(config), _c.address(samples), some, _c.data(workspace), workspace.nbytes, at[2]
         )
         if status:
-            _refuse(status, u, f, config)
+            _refuse(status, *given, config)
     return _result(out, channels, config.channels)
 
 
@@ -116,7 +119,7 @@ def image_estimate(
 
     Args:
         u: shape (height, width, n, d), 0 to 1, as for `estimate`, or (frames, height, width, n, d).
-        f: shape (height, width, n), or with `channels` (height, width, n, c); frames as u.
+        f: shape (height, width, n), or with `channels` (height, width, n, c); frames as u. Rounded to float32.
         surfaces: integers of shape (height, width): only pixels with the same number share fits.
         factors: shape (height, width), with `channels` (height, width, c), at least 0: what a pixel's values are
             proportional to, an albedo say.
@@ -132,7 +135,9 @@ def image_estimate(
     Returns:
         An `Estimate`, of shape (height, width), with `channels` of (height, width, c); frames as u.
     """
-    u, f = _arrays.floats("u", u), _arrays.floats("f", f)
+    given = _arrays.array("u", u), _arrays.array("f", f)
+    u, f = _arrays.floats("u", given[0]), _arrays.floats("f", given[1])
+    _arrays.warn_of_lost_digits("f", given[1])
     values = 1 if channels else 0
     if u.ndim not in (4, 5) or 0 in u.shape:
         raise ValueError(f"u has the shape {u.shape}: (height, width, n, d) or (frames, height, width, n, d) is needed")
@@ -164,9 +169,9 @@ def image_estimate(
         (samples, "known_integrals", known_integrals, (*pixels, *own)),
     ):
         if array is not None:
-            array = _arrays.floats(name, array)
+            array = _arrays.array(name, array)
             (_arrays.check_finite if name == "known" else _arrays.check_positive)(name, array)
-            give(place, name, array, shape)
+            give(place, name, _arrays.floats(name, array), shape)
     if (known is None) != (known_integrals is None):
         raise ValueError("known and known_integrals belong together: one of them is None")
     out = numpy.empty(pixels, _c.ESTIMATE)
@@ -180,7 +185,7 @@ def image_estimate(
         _c.data(out),
     )
     if status:
-        _refuse(status, u, f, config)
+        _refuse(status, *given, config)
     return _result(out, channels, config.channels)
 
 
@@ -204,9 +209,10 @@ def configure(order, estimator, basis, d, dims, slices, stratified, channels=1):
 
 
 def _refuse(status, u, f, config):
-    """Says what the library refused."""
+    """Says what the library refused, of arrays as they were given."""
     seen = u[..., : config.dims]
-    _arrays.check("u", seen, (seen >= 0) & (seen <= 1), "0 to 1")
+    narrow = _arrays.floats("u", seen)
+    _arrays.check("u", seen, (narrow >= 0) & (narrow <= 1), "0 to 1")
     _arrays.check_finite("f", f)
     names = {number: name for name, number in _c.ESTIMATORS.items()}
     raise ValueError(

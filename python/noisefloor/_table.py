@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Mapping
 from typing import Any
@@ -28,18 +29,21 @@ class Table:
         n: how many items, 1 to 2**32 - 1.
         importance: shape (n,), finite, at least 0 and not all 0; None makes all 1.
         uniform_fraction: the part of draws that are uniform, 0 to 1. No weight is above 1 / uniform_fraction.
-        seed: of the table's own random numbers, 0 to 2**64 - 1.
+        seed: of the table's own random numbers, 0 to 2**64 - 1. The same by default, so that a program does the same
+            each time: tables that are to differ need seeds that do.
     """
 
     def __init__(self, n: int, *, importance: Any = None, uniform_fraction: float = 0.2, seed: int = 0) -> None:
         n = _arrays.integer("n", n, 1, _c.MAX_ITEMS)
         fraction = _arrays.number("uniform_fraction", uniform_fraction, 0, 1)
         seed = _arrays.integer("seed", seed, 0, 2**64 - 1)
+        values = None
         if importance is not None:
-            importance = _arrays.floats("importance", importance)
-            _arrays.check_shape("importance", importance, (n,), "a number for each item")
+            importance = _arrays.array("importance", importance)
+            values = _arrays.floats("importance", importance)
+            _arrays.check_shape("importance", values, (n,), "a number for each item")
         self._prepare(n)
-        status = _c.table_init(self._at, _c.data(self._memory), self._memory.nbytes, n, _c.data(importance))
+        status = _c.table_init(self._at, _c.data(self._memory), self._memory.nbytes, n, _c.data(values))
         if status:
             _arrays.check_positive("importance", importance)
             raise ValueError(f"importance: {_c.message(status)}: all {n} are 0")
@@ -73,19 +77,23 @@ class Table:
         with self._lock:
             self._table.uniform_fraction = value
 
-    def draw(self, batch: int, method: str = "iid") -> tuple[NDArray[numpy.int64], NDArray[numpy.float32]]:
+    def draw(
+        self, batch: int | tuple[int, ...], method: str = "iid"
+    ) -> tuple[NDArray[numpy.int64], NDArray[numpy.float32]]:
         """Draws items in proportion to importance.
 
         Args:
-            batch: how many, 0 to 2**32 - 1.
+            batch: how many, 0 to 2**32 - 1; (k, b) for k minibatches of b, and so on.
             method: "iid", independently and with replacement; "stratified", one from each of `batch` equal parts of the
                 probabilities, in the order of the data set: use the batch as a whole; "distinct", without replacement,
                 at most n.
 
         Returns:
             index, int64, and weight, float32, both of shape (batch,): the mean of weight times gradient estimates the
-            gradient of the mean loss over all items.
+            gradient of the mean loss over all items. For a tuple they have that shape.
         """
+        if isinstance(batch, tuple):
+            return self._draw_many(batch, method)
         try:
             draw = _c.DRAWS[method]
         except (KeyError, TypeError):
@@ -105,6 +113,20 @@ class Table:
                     return self._index[:batch].astype(numpy.int64), self._value[:batch].copy()
         raise self._draw_error(status, batch, method)
 
+    def _draw_many(self, shape, method):
+        """Minibatches, in arrays of this shape."""
+        shape = tuple(_arrays.integer("batch", size, 0, _c.MAX_ITEMS) for size in shape)
+        if not shape:
+            raise ValueError("batch is (): it must be a number, or several")
+        if method == "iid":
+            # Independent of each other they may be drawn as one.
+            index, weight = self.draw(math.prod(shape))
+            return index.reshape(shape), weight.reshape(shape)
+        index, weight = numpy.empty(shape, numpy.int64), numpy.empty(shape, numpy.float32)
+        for at in numpy.ndindex(*shape[:-1]):
+            index[at], weight[at] = self.draw(shape[-1], method)
+        return index, weight
+
     def _draw_error(self, status, batch, method):
         if method == "distinct" and batch > self._n:
             return ValueError(f"batch is {batch}: a distinct draw takes 0 to {self._n}, as many as there are items")
@@ -117,22 +139,25 @@ class Table:
         """Sets the importance of items: q = momentum q + (1 - momentum) importance.
 
         Args:
-            index: integers of shape (batch,), 0 to n - 1. An item that comes twice is changed twice.
-            importance: shape (batch,), finite and at least 0: the norm of each item's gradient, say. Only ratios count.
+            index: integers, 0 to n - 1, of shape (batch,) or any other. An item that comes twice is changed twice.
+            importance: of index's shape, finite and at least 0: the norm of each item's gradient, say. Only ratios
+                count.
             momentum: 0 to 1. 0 forgets the old value.
         """
         if type(index) is not numpy.ndarray:
             index = _arrays.array("index", index)
         if type(importance) is not numpy.ndarray:
             importance = _arrays.array("importance", importance)
+        given = importance
         if index.dtype.char != "l":
             index = _arrays.integers("index", index, self._n - 1).astype(numpy.int64)
         if importance.dtype.char != "f":
             importance = _arrays.floats("importance", importance)
         batch = index.size
-        if importance.shape != index.shape or index.ndim != 1:
-            _arrays.check_shape("index", index, (batch,), "one item after the other")
-            _arrays.check_shape("importance", importance, (batch,), "a number for each index")
+        if importance.shape != index.shape:
+            _arrays.check_shape("importance", importance, index.shape, "a number for each index")
+        if index.ndim != 1:
+            index, importance = index.reshape(-1), importance.reshape(-1)
         if type(momentum) is not float or not 0 <= momentum <= 1:
             momentum = _arrays.number("momentum", momentum, 0, 1)
         # What is no number of 32 bits would become another item's.
@@ -146,7 +171,7 @@ class Table:
         with self._lock:
             status = _c.table_update(self._at, _c.data(index), _c.data(importance), batch, momentum)
         if status:
-            _arrays.check_positive("importance", importance)
+            _arrays.check_positive("importance", given)
             raise ValueError(_c.message(status))
 
     def probabilities(self, index: Any = None) -> NDArray[numpy.float32]:

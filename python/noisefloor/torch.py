@@ -50,7 +50,8 @@ class ImportanceBatchSampler(Sampler):
         techniques: 1 to 16 tables; more than 1 is optimal multiple importance sampling of the output's derivatives.
             Even, and at most twice as many as outputs. Weights are then slightly biased and may be negative.
         weighted: False gives weights of 1: adaptive sampling, which is biased towards difficult items.
-        seed: 0 to 2**63 - 1, the same in all processes.
+        seed: 0 to 2**63 - 1, the same in all processes, which is why it has a default. PyTorch's `manual_seed` changes
+            nothing here.
         process_group: which processes share batches. None: all, where torch.distributed is initialised.
     """
 
@@ -91,7 +92,7 @@ class ImportanceBatchSampler(Sampler):
             Table(self._n, uniform_fraction=uniform_fraction, seed=self._seed + j) for j in range(techniques)
         ]
         self.epoch = 0
-        self._drawn = self._step = 0
+        self._drawn = self._step = self._unasked = 0
         self._ahead, self._replay, self._last, self._resumed = deque(), deque(), None, False
 
     def __len__(self) -> int:
@@ -99,8 +100,15 @@ class ImportanceBatchSampler(Sampler):
 
     def __iter__(self) -> Iterator[list[int]]:
         """The batches of an epoch, or what is left of it after `load_state_dict`: a list of indices for each."""
+        if self._unasked == 2:
+            raise RuntimeError(
+                "batch() was not called for any batch of two epochs: it is for each batch of the loader, once, and "
+                f"without it `epoch` stays {self.epoch}"
+            )
         if not self._resumed:
             self._step = 0
+            # First visits that did not come about, because the loader was left, are made up for.
+            self._drawn -= sum(first for *_, first in (*self._ahead, *self._replay))
             self._replay.clear()
         self._resumed = False
         self._ahead.clear()
@@ -108,15 +116,16 @@ class ImportanceBatchSampler(Sampler):
             batch = self._replay.popleft() if self._replay else self._draw()
             self._ahead.append(batch)
             yield batch[0][self._rank :: self._processes].tolist()
+        self._unasked += 1
 
     def _draw(self):
         """Indices and weights of the next batch of all processes, and whether it is the first visit of its items."""
         first = self._drawn < self._warmup
         if first:
-            places = range(self._drawn * self._whole, (self._drawn + 1) * self._whole)
+            order = numpy.empty(self._whole, numpy.uint32)
             # After the last item the permutation starts again.
-            index = numpy.array([_c.shuffle(self._seed, self._n, place % self._n) for place in places])
-            weight = numpy.ones(self._whole, numpy.float32)
+            _c.shuffle(self._seed, self._n, self._drawn * self._whole, self._whole, _c.data(order))
+            index, weight = order.astype(numpy.int64), numpy.ones(self._whole, numpy.float32)
         elif len(self._tables) == 1:
             index, weight = self._tables[0].draw(self._whole)
         else:
@@ -156,7 +165,7 @@ class ImportanceBatchSampler(Sampler):
             raise RuntimeError(
                 "batch() is for each batch of the loader, once: there is none that it was not called for"
             )
-        self._last = self._ahead.popleft()
+        self._last, self._unasked = self._ahead.popleft(), 0
         if not self._ahead and not self._replay and self._step >= self._steps:
             self.epoch += 1
         return self._own(0), self._own(1)
@@ -186,8 +195,9 @@ class ImportanceBatchSampler(Sampler):
         else:
             own = torch.from_numpy(_arrays.integers("index", index, self._n - 1).astype(numpy.int64))
         if not isinstance(importance, torch.Tensor) or importance.is_complex():
-            importance = torch.tensor(_arrays.floats("importance", importance))
-        importance = importance.detach().float()
+            importance = torch.tensor(_arrays.floats("importance", importance, numpy.float64))
+        # NumPy has no bfloat16; of what is beyond float32 the table says how large it is.
+        importance = importance.detach().to(torch.promote_types(importance.dtype, torch.float32))
         techniques = len(self._tables)
         shape = (own.numel(),) if techniques == 1 else (own.numel(), techniques)
         _arrays.check_shape("index", own, shape[:1], "one item after the other")
@@ -277,6 +287,7 @@ class ImportanceBatchSampler(Sampler):
         self._seed, self.epoch, self._drawn, self._step = (state[name] for name in ("seed", "epoch", "drawn", "step"))
         self._tables, self._replay, self._last = tables, replay, None
         self._ahead.clear()
+        self._unasked = 0
         # At the end of an epoch the next begins.
         self._resumed = bool(self._replay) or self._step < self._steps
 

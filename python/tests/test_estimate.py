@@ -3,6 +3,7 @@
 import math
 import threading
 import time
+import warnings
 
 import hypothesis
 import numpy
@@ -131,7 +132,7 @@ def test_no_integrals_and_very_many():
         ((samples(2, 4, 2), samples(3, 4)), {}, "do not broadcast"),
         ((2 * samples(4, 2) + 1, samples(4)), {}, r"u\[0, 0\] is .*: it must be 0 to 1"),
         ((samples(4, 2), numpy.full(4, math.nan)), {}, r"f\[0\] is nan: it must be finite"),
-        ((samples(4, 2), numpy.full(4, 1e39)), {}, r"f\[0\] is inf: .*within float32's range"),
+        ((samples(4, 2), numpy.full(4, 1e39)), {}, r"f\[0\] is 1e\+39: .*within float32's range"),
         ((samples(4, 2), numpy.full(4, "a")), {}, "f holds <U1: real numbers"),
         ((samples(4, 17), samples(4)), {}, "u has 17 coordinates: 1 to 16 can be regressed; `dims`"),
         ((samples(4, 0), samples(4)), {}, "u has 0 coordinates"),
@@ -150,6 +151,22 @@ def test_no_integrals_and_very_many():
 def test_refusals_name_argument_value_and_range(arguments, options, said):
     with pytest.raises((ValueError, TypeError), match=said):
         noisefloor.estimate(*arguments, **options)
+
+
+def test_lost_digits_are_told():
+    """float64 of which float32 keeps too little; not float32's own, nor constants, nor what is only small."""
+    u = samples(64, 2)
+    f = smooth(u)
+    for lost in (f + 1e8, -f - 1e8, (1e8 * f).astype(numpy.int64) + 10**14):
+        with pytest.warns(RuntimeWarning, match="subtract a constant, and add it to the mean") as told:
+            noisefloor.estimate(u, lost)
+        assert told[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for kept in (f + 1e3, 1e-30 * f, (f + 1e8).astype(numpy.float32), numpy.full(64, 1e8), numpy.full(64, math.pi)):
+            noisefloor.estimate(u, kept)
+        with pytest.raises(ValueError, match=r"f\[1\] is nan"):
+            noisefloor.estimate(u[:3], [1.0, math.nan, math.inf])
 
 
 def test_of_longer_paths_the_first_dims_count():
@@ -190,6 +207,28 @@ def test_images_of_channels_frames_surfaces_and_factors():
     assert numpy.allclose(textured.mean / albedo, noisefloor.image_estimate(u, f[..., 0]).mean, rtol=1e-3)
 
 
+@hypothesis.given(
+    strategies.lists(strategies.integers(1, 9), min_size=2, max_size=2),
+    strategies.sampled_from([(), (1,), (2,)]),
+    strategies.integers(1, 5),
+    strategies.integers(1, 3),
+    strategies.integers(0, 4),
+    strategies.sampled_from([numpy.float16, numpy.float32, numpy.float64]),
+    strategies.booleans(),
+)
+def test_images_of_any_shape_type_and_stride(size, frames, n, dims, channels, kind, is_reversed):
+    generator = numpy.random.default_rng(8)
+    u = generator.random((*frames, *size, n, dims)).astype(kind)
+    f = generator.random((*frames, *size, n) + ((channels,) if channels else ())).astype(kind)
+    u, f = (u[..., ::-1, :, :], f[..., ::-1]) if is_reversed else (u, f)
+    estimate = noisefloor.image_estimate(u, f, order=1, channels=channels > 0)
+    plain = (array.astype(numpy.float32, order="C") for array in (u, f))
+    again = noisefloor.image_estimate(*plain, order=1, channels=channels > 0)
+    assert estimate.gain.shape == (*frames, *size) and numpy.isfinite(estimate.mean).all()
+    assert estimate.mean.shape == estimate.std_error.shape == f.shape[: len(frames) + 2] + f.shape[len(frames) + 3 :]
+    assert all(numpy.array_equal(a, b, equal_nan=True) for a, b in zip(estimate, again))
+
+
 def test_edges_of_shadows():
     u, f, _ = image(4)
     shadowed = numpy.where(u[..., 0] + 0.3 * u[..., 1] < 0.6, f, 0)
@@ -212,7 +251,7 @@ def test_known_light_leaves_no_error():
         ({"surfaces": numpy.zeros((24, 23), int)}, r"surfaces has the shape \(24, 23\): it must be \(24, 24\)"),
         ({"surfaces": numpy.full((24, 24), -1)}, r"surfaces\[0, 0\] is -1"),
         ({"surfaces": numpy.zeros((24, 24))}, "surfaces holds float64: integers"),
-        ({"factors": numpy.full((24, 24), -1)}, r"factors\[0, 0\] is -1.0: it must be at least 0"),
+        ({"factors": numpy.full((24, 24), -1)}, r"factors\[0, 0\] is -1: it must be at least 0"),
         ({"known": numpy.zeros((24, 24, 1))}, "known and known_integrals belong together"),
         ({"known": numpy.zeros((24, 24, 2))}, r"known has the shape \(24, 24, 2\)"),
         ({"edges": 2}, "edges is 2: it must be 0 to 1"),

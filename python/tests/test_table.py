@@ -70,6 +70,23 @@ def test_batches_of_all_sizes(batch):
     assert same(table, again)
 
 
+def test_many_minibatches_at_once():
+    table, again = (noisefloor.Table(500, importance=numpy.arange(500), seed=6) for _ in range(2))
+    for method in METHODS:
+        index, weight = table.draw((3, 2, 40), method)
+        assert index.shape == weight.shape == (3, 2, 40)
+        assert index.dtype == numpy.int64 and weight.dtype == numpy.float32
+        parts = [again.draw(40, method) for _ in range(6)] if method != "iid" else [again.draw(240)]
+        for found, expected in zip((index, weight), zip(*parts)):
+            assert numpy.array_equal(found.reshape(-1), numpy.concatenate(expected))
+        table.update(index, weight)
+        again.update(index.reshape(-1), weight.reshape(-1))
+    table.update(7, 0.5)
+    again.update([7], [0.5])
+    assert same(table, again)
+    assert table.draw((0, 4), "distinct")[0].shape == (0, 4)
+
+
 @hypothesis.given(
     arrays.arrays(
         strategies.sampled_from(
@@ -134,6 +151,8 @@ def test_arrays_of_anybody():
         except ImportError:
             continue
         others.append((getattr(module, make)(index), getattr(module, make)(weight)))
+        if hasattr(module, "from_dlpack"):
+            assert (module.from_dlpack(weight) == module.asarray(weight)).all()
     plain.update(index, weight)
     for other_index, other_weight in others:
         table = noisefloor.Table(100, importance=None, seed=7)
@@ -154,7 +173,12 @@ def test_arrays_of_anybody():
         (lambda t: t.update([1], numpy.ma.array([1.0], mask=[True])), "importance is a masked array"),
         (lambda t: t.update([1], [1.0], "0.5"), "momentum is '0.5': a number"),
         (lambda t: t.update([1, 2], [1.0]), r"importance has the shape \(1,\): it must be \(2,\)"),
-        (lambda t: t.update([[1]], [[1.0]]), r"index has the shape \(1, 1\)"),
+        (lambda t: t.update([[1]], [1.0]), r"importance has the shape \(1,\): it must be \(1, 1\)"),
+        (lambda t: t.update([1, 2], [1, 1e300]), r"importance\[1\] is 1e\+300: it must be at least 0 and finite"),
+        (lambda t: t.draw(()), r"batch is \(\)"),
+        (lambda t: t.draw((2, -1)), "batch is -1"),
+        (lambda t: t.draw((2, 1.5)), "batch is 1.5: an integer"),
+        (lambda t: t.draw((2, 11), "distinct"), "batch is 11: a distinct draw takes 0 to 10"),
         (lambda t: t.update([1], [1.0], 1.5), r"momentum is 1.5: it must be 0 to 1"),
         (lambda t: t.update([1], [1.0], math.nan), "momentum is nan"),
         (lambda t: t.draw(-1), "batch is -1: it must be 0 to"),
@@ -181,7 +205,7 @@ def test_arrays_of_anybody():
         (lambda t: noisefloor.Table("7"), "n is '7': an integer"),
         (lambda t: noisefloor.Table(3, importance=[1, 2]), r"importance has the shape \(2,\): it must be \(3,\)"),
         (lambda t: noisefloor.Table(3, importance=[0, 0, 0]), "all 3 are 0"),
-        (lambda t: noisefloor.Table(3, importance=[1, -2, 0]), r"importance\[1\] is -2.0: it must be at least 0"),
+        (lambda t: noisefloor.Table(3, importance=[1, -2, 0]), r"importance\[1\] is -2: it must be at least 0"),
         (lambda t: noisefloor.Table(3, seed=-1), "seed is -1"),
         (lambda t: noisefloor.Table(1, importance=numpy.float64(1)), r"importance has the shape \(\)"),
     ],
@@ -254,11 +278,31 @@ def test_threads_share_a_table():
     assert sorted(found) == sorted((*index, *weight) for index, weight in expected)
 
 
-def test_a_million_calls_take_no_memory():
-    def pages():
-        with open("/proc/self/statm", encoding="ascii") as file:
-            return int(file.read().split()[1])
+def pages():
+    """Of this process in memory."""
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1])
 
+
+def test_estimates_and_points_take_no_memory():
+    u = noisefloor.Sampler().image(4, 4, 8)
+    f, flat = numpy.exp(u.sum(-1)), u.reshape(-1, 2)
+
+    def work(calls):
+        for _ in range(calls):
+            noisefloor.estimate(flat, f.reshape(-1))
+            noisefloor.image_estimate(u, f)
+            noisefloor.Sampler(frame=3).image(2, 2, 4, 9)
+            with pytest.raises(ValueError):
+                noisefloor.estimate(flat, f)
+
+    work(500)
+    before = pages()
+    work(5000)
+    assert (pages() - before) * 4096 < 2e6
+
+
+def test_a_million_calls_take_no_memory():
     table, importance = noisefloor.Table(1000, seed=1), numpy.ones(1, numpy.float32)
 
     def work(calls):

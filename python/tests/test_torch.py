@@ -137,6 +137,23 @@ def test_leaving_an_epoch_begins_another():
         sampler.batch()
 
 
+@pytest.mark.parametrize("workers", [0, 2])
+def test_a_glance_at_a_batch_leaves_no_item_out(workers):
+    sampler, loader = ImportanceBatchSampler(64, 8, seed=3), None
+    loader = DataLoader(TensorDataset(torch.arange(64)), batch_sampler=sampler, num_workers=workers)
+    next(iter(loader))
+    assert set(torch.cat([index for index, _ in run(sampler, workers)]).tolist()) == set(range(64))
+
+
+def test_a_loop_that_forgets_batch_ends():
+    sampler = ImportanceBatchSampler(64, 8)
+    loader = DataLoader(TensorDataset(torch.arange(64)), batch_sampler=sampler)
+    with pytest.raises(RuntimeError, match=r"batch\(\) was not called .* `epoch` stays 0"):
+        while sampler.epoch < 2:
+            for _ in loader:
+                pass
+
+
 def finish(arguments, kill_after=None):
     """Runs train.py; kills it after so many steps. Returns its last line."""
     process = subprocess.Popen([sys.executable, PROGRAM, *arguments], stdout=subprocess.PIPE, text=True)
@@ -292,6 +309,8 @@ def test_replicas_stay_the_same_and_share_each_batch(tmp_path, world, workers):
         (lambda s: ImportanceBatchSampler(10, 6, momentum=2), "momentum is 2.0"),
         (lambda s: s.update(torch.ones(3)), r"importance has the shape \(3,\): it must be \(2,\)"),
         (lambda s: s.update(torch.tensor([1.0, float("nan")])), r"importance\[1\] is nan"),
+        (lambda s: s.update(torch.tensor([1.0, 1e300], dtype=torch.float64)), r"importance\[1\] is 1e\+300"),
+        (lambda s: s.update([1.0, 1e300]), r"importance\[1\] is 1e\+300"),
         (lambda s: s.update(torch.ones(2), [10, 1]), r"index\[0\] is 10: it must be 0 to 9"),
         (lambda s: s.update(1.0, 1), r"index has the shape \(\): it must be \(1,\)"),
         (lambda s: s.update_from(torch.ones(2, 3), scale=0), "scale is 0.0: it must be 1e-30 to inf"),

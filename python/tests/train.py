@@ -39,16 +39,17 @@ def digest(model, sampler):
     return hashlib.sha256(b"".join(tensor.numpy().tobytes() for tensor in tensors)).hexdigest()
 
 
-def network(width=16, outputs=2):
+def network(width=16, outputs=2, dropout=0.0):
     """A small model, the same each time."""
     torch.set_num_threads(1)
     torch.manual_seed(0)
-    return torch.nn.Sequential(torch.nn.Linear(8, width), torch.nn.ReLU(), torch.nn.Linear(width, outputs))
+    hidden = torch.nn.Linear(8, width), torch.nn.ReLU(), torch.nn.Dropout(dropout)
+    return torch.nn.Sequential(*hidden, torch.nn.Linear(width, outputs))
 
 
 def main(checkpoint, workers, techniques=1):
     """Trains, and prints each step once its checkpoint is whole; at the end the digest."""
-    model = network()
+    model = network(dropout=0.1)
     optimizer = torch.optim.Adam(model.parameters(), 1e-2)
     sampler = ImportanceBatchSampler(ITEMS, BATCH, seed=3, techniques=techniques)
     groups = optimizer.state_dict()["param_groups"]
@@ -57,14 +58,15 @@ def main(checkpoint, workers, techniques=1):
         model.load_state_dict(state["model"])
         optimizer.load_state_dict({"state": state["optimizer"], "param_groups": groups})
         sampler.load_state_dict(state["sampler"])
-    loader = DataLoader(data(), batch_sampler=sampler, num_workers=workers)
+        torch.set_rng_state(state["rng"])
+    loader = DataLoader(data(), batch_sampler=sampler, num_workers=workers, generator=torch.Generator())
     for _ in range(sampler.epoch, EPOCHS):
         for x, y in loader:
             _, weight = sampler.batch()
             step(model, optimizer, sampler, x, y, weight)
             # Without numbers that are no tensors, which PyTorch 1.13 does not read with weights_only.
             state = {"model": model.state_dict(), "optimizer": optimizer.state_dict()["state"]}
-            torch.save({**state, "sampler": sampler.state_dict()}, checkpoint + ".new")
+            torch.save({**state, "sampler": sampler.state_dict(), "rng": torch.get_rng_state()}, checkpoint + ".new")
             os.replace(checkpoint + ".new", checkpoint)
             print("step", flush=True)
     print(digest(model, sampler))

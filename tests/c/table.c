@@ -492,13 +492,20 @@ static void damaged(void)
 static void shuffling(void)
 {
     unsigned char seen[1000] = {0};
-    uint32_t i;
+    uint32_t order[1003], again[4], i;
+    CHECK_STATUS(nf_shuffle(7, 1000, 0, 1003, order), NF_OK);
     for (i = 0; i < 1000; ++i) {
-        const uint32_t item = nf_shuffle(7, 1000, i);
-        CHECK(item < 1000 && !seen[item % 1000]);
-        seen[item % 1000] = 1;
+        CHECK(order[i] < 1000 && !seen[order[i] % 1000]);
+        seen[order[i] % 1000] = 1;
     }
-    CHECK(nf_shuffle(7, 0, 3) == 0 && nf_shuffle(7, 1, 3) == 0 && nf_shuffle(7, 1000, 1003) == nf_shuffle(7, 1000, 3));
+    CHECK(memcmp(order, order + 1000, 3 * sizeof *order) == 0);
+    CHECK_STATUS(nf_shuffle(7, 1000, UINT64_MAX / 1000 * 1000 + 2, 4, again), NF_OK);
+    CHECK(memcmp(order + 2, again, sizeof again) == 0);
+    CHECK_STATUS(nf_shuffle(7, 1, 3, 4, again), NF_OK);
+    CHECK(again[0] == 0 && again[3] == 0);
+    CHECK_REFUSED(nf_shuffle(7, 0, 3, 4, again), NF_ERR_RANGE, again);
+    CHECK_STATUS(nf_shuffle(7, 9, 3, 4, NULL), NF_ERR_NULL);
+    CHECK_STATUS(nf_shuffle(7, 9, 3, 0, NULL), NF_OK);
 }
 
 int main(void)
