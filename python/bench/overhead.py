@@ -157,8 +157,9 @@ def main():
     rows = []
     for items in (20_000,) if options.quick else (20_000, 1_000_000, 10_000_000, 100_000_000):
         times = draws(items, runs)
-        rows.append([f"{items:,} items", *(f"{times[name]:.1f}" if name in times else "-" for name in names)])
-    output.write(options, "draws", ["table of", *names], rows)
+        cells = [f"{times[name]:.1f}" if name in times else "-" for name in names]
+        rows.append([f"{items:,} items", *cells, f"{times['package'] - times['C calls']:.1f}"])
+    output.write(options, "draws", ["table of", *names, "package beyond C"], rows)
     rows = []
     for batch in (32,) if options.quick else (32, 128, 512):
         times = steps(batch, runs)

@@ -19,14 +19,15 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let package = tables.folder().join("package");
     let install = ["-m", "pip", "install", "--quiet", "--no-deps", "--target"];
     run::read(run::command(&debian).args(install).arg(&package).arg(python::wheel()?))?;
-    let (name, data) = (report.names[0], paths::target().join("data"));
+    let (names @ [name, ..], data) = (report.names, paths::target().join("data"));
     let is_training = name == "training";
+    let programs = if name == "python" { &["overhead", "memory"][..] } else { &names[..1] };
     let python = std::env::var_os(PEERS).filter(|_| !is_training).map_or(debian, PathBuf::from);
     if is_training && !report.plan.is_quick() {
         fetch(&python, &data);
     }
     report.compiled();
-    for program in if name == "python" { &["overhead", "memory"][..] } else { &[name] } {
+    for program in programs {
         let mut command = run::command(&python);
         command.args(["-W", "ignore"]).arg(format!("python/bench/{program}.py"));
         if is_training {
@@ -35,7 +36,11 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
         command.env("PYTHONPATH", &package).env("PYTHONDONTWRITEBYTECODE", "1");
         tables.run(command, report.plan)?;
     }
-    report.described(&|name| tables.read(name))
+    let mut chapter = report.described(&|name| tables.read(name))?;
+    if name == "python" {
+        chapter.judge();
+    }
+    Ok(chapter)
 }
 
 /// What is trained on. What cannot be had is left out, and so is its part of the chapter.
