@@ -56,11 +56,10 @@ impl Error {
 /// Whether an argument is a number from 0 to 1.
 #[allow(dead_code, reason = "each feature uses some of it")]
 pub(crate) fn check_part(value: f32) -> Result<(), Error> {
-    match value.is_finite() {
-        false => Err(Error::NotFinite),
-        true if (0.0..=1.0).contains(&value) => Ok(()),
-        true => Err(Error::Range),
+    if !value.is_finite() {
+        return Err(Error::NotFinite);
     }
+    if (0.0..=1.0).contains(&value) { Ok(()) } else { Err(Error::Range) }
 }
 
 impl fmt::Display for Error {

@@ -37,7 +37,7 @@ pub(crate) fn zip<R: Real, const L: usize>(a: &Lanes<R, L>, b: &Lanes<R, L>, f: 
 /// `f(a)` lane by lane, as a loop: compilers do not inline an array's `map` that has so much in it, and then it does
 /// not use the vector units that its caller may.
 #[inline(always)]
-fn each(a: &Lanes<f32>, f: impl Fn(f32) -> f32) -> Lanes<f32> {
+pub(crate) fn each(a: &Lanes<f32>, f: impl Fn(f32) -> f32) -> Lanes<f32> {
     let mut out = *a;
     for value in &mut out {
         *value = f(*value);

@@ -50,13 +50,13 @@ pub mod error;
 #[cfg(any(feature = "sampler", feature = "tile"))]
 mod hash;
 #[cfg(any(feature = "control-variate", feature = "mis"))]
-#[allow(dead_code, reason = "each feature uses some of it")]
+#[cfg_attr(not(feature = "control-variate"), allow(dead_code, reason = "the fits use the rest"))]
 mod lanes;
 #[cfg(any(feature = "control-variate", feature = "mis"))]
-#[allow(dead_code, reason = "each feature uses some of it")]
+#[cfg_attr(not(feature = "control-variate"), allow(dead_code, reason = "the fits use the rest"))]
 mod linalg;
 #[cfg(any(feature = "control-variate", feature = "mis"))]
-#[allow(dead_code, unused_imports, reason = "each feature uses some of it")]
+#[cfg_attr(not(feature = "control-variate"), allow(dead_code, unused_imports, reason = "the fits use the rest"))]
 mod matrix;
 #[cfg(feature = "minibatch")]
 pub mod minibatch;

@@ -105,11 +105,14 @@ def check_shape(name, values, expected, meaning):
 
 
 def check_finite(name, view):
-    """Refuses what is not finite as float32."""
-    check(name, view, numpy.isfinite(floats(name, view)), "finite, and within float32's range, 3.4e38")
+    """The numbers as float32; refuses what is then not finite."""
+    narrow = floats(name, view)
+    check(name, view, numpy.isfinite(narrow), "finite, and within float32's range, 3.4e38")
+    return narrow
 
 
 def check_positive(name, view):
-    """Refuses what is no finite number of at least 0 as float32."""
+    """The numbers as float32; refuses what is then no finite number of at least 0."""
     narrow = floats(name, view)
     check(name, view, numpy.isfinite(narrow) & (narrow >= 0), "at least 0 and finite, within float32's range, 3.4e38")
+    return narrow

@@ -170,8 +170,8 @@ def image_estimate(
     ):
         if array is not None:
             array = _arrays.array(name, array)
-            (_arrays.check_finite if name == "known" else _arrays.check_positive)(name, array)
-            give(place, name, _arrays.floats(name, array), shape)
+            checked = _arrays.check_finite if name == "known" else _arrays.check_positive
+            give(place, name, checked(name, array), shape)
     if (known is None) != (known_integrals is None):
         raise ValueError("known and known_integrals belong together: one of them is None")
     out = numpy.empty(pixels, _c.ESTIMATE)

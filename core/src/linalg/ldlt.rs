@@ -42,6 +42,7 @@ impl<R: Real, S: DerefMut<Target = [R]>> Ldlt<S> {
 
 impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
     /// Takes up what [`Ldlt::new`] has factored.
+    #[cfg(feature = "mis")]
     pub(crate) fn factored(matrix: Triangle<S>) -> Self {
         Self(matrix)
     }

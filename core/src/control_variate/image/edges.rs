@@ -142,8 +142,8 @@ const LINE: [f32; POINTS] = {
 #[inline(always)]
 fn functions(x: &Four, y: &Four) -> [Four; FUNCTIONS] {
     let mut out = [[NONE; AT_ONCE]; FUNCTIONS];
-    let place = |u: &Eight| lanes::zip(u, u, |u, _| linear(u));
-    let square = |x: &Eight| lanes::zip(x, x, |a, b| (a * b - 1.0) * (0.5 * SQRT_5));
+    let place = |u: &Eight| lanes::each(u, linear);
+    let square = |x: &Eight| lanes::each(x, |x| (x * x - 1.0) * (0.5 * SQRT_5));
     for row in 0..AT_ONCE {
         let (x, y) = (place(&x[row]), place(&y[row]));
         let xy = lanes::zip(&x, &y, |x, y| x * y);
@@ -503,7 +503,7 @@ impl<'a> Edges<'a> {
             let sum = terms.iter().fold(NONE, |sum, (weight, f)| lanes::plus_product(sum, *weight, [*f; LANES]));
             lanes::exp2(&lanes::zip(&sum, &scale, |sum, scale| sum * scale))
         };
-        let times = |a: &mut Eight, b: &Eight| *a = lanes::zip(a, b, |a, b| a * b);
+        let multiply = |a: &mut Eight, b: &Eight| *a = lanes::zip(a, b, |a, b| a * b);
         let corner = [(base, 1.0), (x, -SQRT_3), (y, -SQRT_3), (xx, SQRT_5), (xy, 3.0), (yy, SQRT_5)];
         let (mut begin, mut down) = (power(&corner), power(&[(y, STEP), (xy, -SQRT_3 * STEP), (yy, FIRST)]));
         let mut along = power(&[(x, STEP), (xy, -SQRT_3 * STEP), (xx, FIRST)]);
@@ -513,13 +513,13 @@ impl<'a> Edges<'a> {
             let (mut value, mut factor) = (begin, along);
             for out in line {
                 *out = value.map(|value| 1.0 / (1.0 + value));
-                times(&mut value, &factor);
-                times(&mut factor, &change);
+                multiply(&mut value, &factor);
+                multiply(&mut factor, &change);
                 lanes::keep_together();
             }
-            times(&mut begin, &down);
-            times(&mut down, &down_change);
-            times(&mut along, &along_down);
+            multiply(&mut begin, &down);
+            multiply(&mut down, &down_change);
+            multiply(&mut along, &along_down);
         }
     }
 
