@@ -53,8 +53,8 @@ macro_rules! by_processor {
 by_processor! {
     /// [`cv::estimate`] in the precision of the workspace.
     fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
-        "avx2" => cv::estimate(config, samples, workspace),
-        _ => cv::estimate(config, samples, workspace),
+        "avx2" => cv::estimate_inlined(config, samples, workspace),
+        _ => cv::estimate_inlined(config, samples, workspace),
     }
 
     /// [`cv::estimate_image`].
@@ -63,10 +63,10 @@ by_processor! {
         image: &Image<'_>,
         samples: Samples<'_>,
         workspace: &mut [f32],
-        out: impl FnMut(usize, Estimate),
+        out: &mut dyn FnMut(usize, Estimate),
     ) -> Result<(), Error> {
-        "avx2" => cv::estimate_image(config, image, samples, workspace, out),
-        _ => cv::estimate_image(config, image, samples, workspace, out),
+        "avx2" => cv::estimate_image_inlined(config, image, samples, workspace, out),
+        _ => cv::estimate_image_inlined(config, image, samples, workspace, out),
     }
 
     /// [`Reader::draw`].

@@ -210,7 +210,7 @@ unsafe fn estimate(
     (workspace, bytes): (*mut core::ffi::c_void, usize),
     out: &mut [convert::Room<nf_estimate>],
 ) -> Result<(), nf_status> {
-    let write = |pixel: usize, estimate: Estimate| {
+    let mut write = |pixel: usize, estimate: Estimate| {
         if let Some(out) = out.get_mut(pixel) {
             out.write(c_estimate(&estimate));
         }
@@ -218,5 +218,5 @@ unsafe fn estimate(
     let needed = cv::image_workspace_len(config, image, n).map_err(status_of)?;
     // SAFETY: the caller's promise, see above.
     let workspace = unsafe { convert::workspace::<f32>(workspace, bytes, needed)? };
-    dispatch::estimate_image(config, image, samples, workspace, write).map_err(status_of)
+    dispatch::estimate_image(config, image, samples, workspace, &mut write).map_err(status_of)
 }

@@ -62,8 +62,20 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
 /// assert!((estimate.mean[0] - 1.5).abs() < 1e-4);
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
-#[inline(always)]
 pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
+    estimate_inlined(config, samples, workspace)
+}
+
+/// [`estimate`], compiled anew into each function that calls it, for the vector registers that this has.
+///
+/// # Errors
+/// As for [`estimate`].
+#[inline(always)]
+pub fn estimate_inlined<R: Real>(
+    config: &Config,
+    samples: Samples<'_>,
+    workspace: &mut [R],
+) -> Result<Estimate, Error> {
     let shape = config.checked_shape()?;
     if matches!(Method::of(config, config.controls + shape.columns()), Method::Incremental | Method::SquareRoot) {
         return streamed(config, samples, workspace);

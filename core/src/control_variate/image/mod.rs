@@ -110,7 +110,6 @@ fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
 /// })?;
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
-#[inline(always)]
 pub fn estimate_block(
     config: &Config,
     samples: Samples<'_>,
@@ -149,13 +148,38 @@ pub fn estimate_block(
 /// assert!((pixels[10] - 2.5).abs() < 0.05);
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
-#[inline(always)]
 pub fn estimate_image(
     config: &Config,
     image: &Image<'_>,
     samples: Samples<'_>,
     workspace: &mut [f32],
     mut out: impl FnMut(usize, Estimate),
+) -> Result<(), Error> {
+    compiled_once(config, image, samples, workspace, &mut out)
+}
+
+/// What programs that call [`estimate_image`] with one `out` or another have in common.
+fn compiled_once(
+    config: &Config,
+    image: &Image<'_>,
+    samples: Samples<'_>,
+    workspace: &mut [f32],
+    out: &mut dyn FnMut(usize, Estimate),
+) -> Result<(), Error> {
+    estimate_image_inlined(config, image, samples, workspace, out)
+}
+
+/// [`estimate_image`], compiled anew into each function that calls it, for the vector registers that this has.
+///
+/// # Errors
+/// As for [`estimate_image`].
+#[inline(always)]
+pub fn estimate_image_inlined(
+    config: &Config,
+    image: &Image<'_>,
+    samples: Samples<'_>,
+    workspace: &mut [f32],
+    out: &mut dyn FnMut(usize, Estimate),
 ) -> Result<(), Error> {
     let shape = config.checked_shape()?;
     check_supported(config, image)?;
@@ -177,7 +201,7 @@ pub fn estimate_image(
     if workspace.len() < layout.workspace_len().ok_or(Error::Memory)? {
         return Err(Error::Memory);
     }
-    Call { layout, basis: &basis, reader }.run(&mut Arena::new(workspace), &mut out)
+    Call { layout, basis: &basis, reader }.run(&mut Arena::new(workspace), out)
 }
 
 impl Layout<'_> {

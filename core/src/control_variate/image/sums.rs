@@ -36,7 +36,7 @@ struct Band<'a> {
 impl Call<'_> {
     /// All of it: windows some rows at a time, and pixels as soon as no later window has them.
     #[inline(always)]
-    pub(super) fn run(&self, arena: &mut Arena<'_, f32>, out: &mut impl FnMut(usize, Estimate)) -> Result<(), Error> {
+    pub(super) fn run(&self, arena: &mut Arena<'_, f32>, out: &mut dyn FnMut(usize, Estimate)) -> Result<(), Error> {
         let (Rectangle { width, .. }, wanted) = (self.windows.given, self.windows.wanted);
         let frames = self.windows.frames();
         let [across, down] = self.windows.counts();
@@ -124,7 +124,7 @@ impl Call<'_> {
 
     /// Writes a row of pixels, and empties its sums.
     #[inline(always)]
-    fn write(&self, frame: usize, y: usize, band: &mut Band<'_>, out: &mut impl FnMut(usize, Estimate)) {
+    fn write(&self, frame: usize, y: usize, band: &mut Band<'_>, out: &mut dyn FnMut(usize, Estimate)) {
         let (given, wanted) = (self.windows.given, self.windows.wanted);
         let row = frame * band.rows + y % band.rows.max(1);
         let sums = row_at_mut(band.sums, given.width * sums_len(self.config.channels), row);
