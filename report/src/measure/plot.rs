@@ -142,8 +142,10 @@ fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
 /// Labels of a logarithmic axis: the fewest round numbers that are four at least.
 fn ticks(range: &Range<f64>) -> Vec<f64> {
     let decades = || range.start.log10().floor() as i32..=range.end.log10() as i32 + 1;
+    // Divided, 7 tenths are .7; multiplied by .1 they have a label of 18 digits.
+    let tick = |digit: f64, decade: i32| digit * 10_f64.powi(decade.max(0)) / 10_f64.powi((-decade).max(0));
     let of = |digits: &[f64]| -> Vec<f64> {
-        let all = decades().flat_map(|decade| digits.iter().map(move |digit| digit * 10_f64.powi(decade)));
+        let all = decades().flat_map(|decade| digits.iter().map(move |&digit| tick(digit, decade)));
         all.filter(|tick| range.contains(tick)).collect()
     };
     let digits: [&[f64]; 3] = [&[1.0], &[1.0, 2.0, 5.0], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]];
@@ -159,6 +161,7 @@ mod tests {
     fn logarithmic_axes_have_labels() {
         assert_eq!(ticks(&(2.2..6.9)), [3.0, 4.0, 5.0, 6.0]);
         assert_eq!(ticks(&(0.09..1.05)), [0.1, 0.2, 0.5, 1.0]);
+        assert_eq!(ticks(&(0.025..0.075)), [0.03, 0.04, 0.05, 0.06, 0.07]);
         assert_eq!(ticks(&(0.5..2e4)), [1.0, 10.0, 100.0, 1000.0, 10000.0]);
         assert_eq!(ticks(&(2.1..6.31)).len(), 4);
     }
