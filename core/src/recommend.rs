@@ -188,10 +188,10 @@ impl Cell {
     /// dims by their cost. Of one pixel's fits: they leave .78 in those frames.
     fn time(&self, sampling: Sampling, samples: usize) -> (f32, f32) {
         let (unit, cost, independent, stratified) = match samples {
-            ..4 => (164.0, 280.0, 1540.0, 2580.0),
-            4..16 => (83.0, 166.0, 968.0, 5420.0),
-            16..64 => (45.0, 62.0, 313.0, 43800.0),
-            _ => (45.0, 62.0, 313.0, f32::INFINITY),
+            ..4 => (164.0, 259.0, 1440.0, 1540.0),
+            4..16 => (83.0, 161.0, 974.0, 3860.0),
+            16..64 => (45.0, 49.0, 248.0, 25400.0),
+            _ => (45.0, 49.0, 248.0, f32::INFINITY),
         };
         let scale = self.cost / unit;
         match (self.method, sampling) {
