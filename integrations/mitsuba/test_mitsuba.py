@@ -3,6 +3,7 @@
 import ctypes
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -21,6 +22,8 @@ import noisefloor
 import noisefloor.mitsuba as nf
 from noisefloor import _c
 from noisefloor.mitsuba import _fits, _known, _sampler
+
+FOLDER = pathlib.Path(__file__).resolve().parent
 
 # Of a z-test; there are fewer than twenty, on fixed seeds.
 LIMIT = 4.5
@@ -57,6 +60,14 @@ def z_of_means(a, b):
     return (np.mean(a) - np.mean(b)) / np.sqrt(spread)
 
 
+def show(page, *numbers):
+    """The picture that these blocks of a page's code end with, run one after the other."""
+    blocks, names = re.findall(r"^```python\n(.*?)^```$", (FOLDER / page).read_text(), re.DOTALL | re.MULTILINE), {}
+    for number in numbers:
+        exec(compile(blocks[number], page, "exec"), names)
+    return np.array(names["picture"])
+
+
 class Recorded(unittest.TestCase):
     """A variant of Dr.Jit."""
 
@@ -78,6 +89,12 @@ class Recorded(unittest.TestCase):
             expected = fill([0, 1], width, height, samples, frame, samples, white, scramble).reshape(-1, 2, 2)
             np.testing.assert_array_equal(np.array(one.next_1d()), expected[:, 0, 0])
             np.testing.assert_array_equal(np.array(one.next_2d()), expected[:, 1].T)
+
+    def test_the_guides_code_runs(self):
+        picture = show("README.md", 0)
+        self.assertEqual(picture.shape, (256, 256, 3))
+        np.testing.assert_array_equal(show("../../docs/renderer.md", 0), picture)
+        self.assertGreater(np.abs(show("README.md", 0, 2) - picture).mean(), 0)
 
     def test_large_indices_and_the_root(self):
         index = np.random.default_rng(1).integers(0, 2**32, 2048, np.uint32)
@@ -327,13 +344,13 @@ class Scalar(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
-        source, build = pathlib.Path(__file__).parent / "plugin", cls.folder.name
+        source, build = FOLDER / "plugin", pathlib.Path(cls.folder.name) / "build"
         configure = ["cmake", "-S", source, "-B", build, f"-DPython_EXECUTABLE={sys.executable}"]
         for command in ([*configure, "-DCMAKE_BUILD_TYPE=Release"], ["cmake", "--build", build]):
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             if done.returncode != 0:
                 raise RuntimeError(f"the plugin is not built: {done.stdout}{done.stderr}")
-        mi.file_resolver().append(build)
+        mi.file_resolver().append(str(build))
 
     @classmethod
     def tearDownClass(cls):
@@ -368,6 +385,16 @@ class Scalar(unittest.TestCase):
                     # A path whose ray touches an edge may go elsewhere.
                     same = np.isclose(ours, theirs, rtol=1e-3, atol=1e-4).all(-1).mean()
                     self.assertGreater(same, 0.98, f"{variant} {case} {spp}")
+
+    def test_the_guides_code_runs(self):
+        recorded, here = show("README.md", 0), os.getcwd()
+        os.chdir(self.folder.name)
+        try:
+            scalar = show("README.md", 0, 1)
+        finally:
+            os.chdir(here)
+        self.assertEqual(scalar.shape, recorded.shape)
+        self.assertLess(abs(scalar.mean() / recorded.mean() - 1), 0.01)
 
     def test_films_with_borders(self):
         # Scalar and recorded variants weigh a filter differently, whatever the sampler.

@@ -19,6 +19,7 @@ def arguments(text, more=lambda add: None):
 def write(options, name, headings, rows):
     """Prints a table, and writes it where it was asked for; cells are text."""
     table = [headings, *rows]
+    assert rows and all(len(row) == len(headings) and all(row) for row in rows)
     assert all(";" not in cell for row in table for cell in row)
     widths = [max(map(len, column)) for column in zip(*table)]
     print(f"\n{name}")

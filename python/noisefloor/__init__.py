@@ -9,6 +9,7 @@ from ._estimate import Estimate, estimate, image_estimate
 from ._recommend import Recommendation, recommend
 from ._sampler import QMCEngine, Sampler
 from ._table import Table
+from ._version import __version__
 
 __all__ = [
     "Estimate",
@@ -16,6 +17,7 @@ __all__ = [
     "Recommendation",
     "Sampler",
     "Table",
+    "__version__",
     "estimate",
     "image_estimate",
     "recommend",

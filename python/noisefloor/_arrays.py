@@ -1,5 +1,6 @@
 """Arrays of anybody's, made into those that the library reads, and refusals that name what is wrong."""
 
+import sys
 import warnings
 
 import numpy
@@ -12,17 +13,18 @@ def array(name, value):
         raise TypeError(f"{name} is a masked array: fill it, or leave out what is masked")
     if isinstance(value, numpy.ndarray):
         return value
-    if type(value).__module__.partition(".")[0] == "torch":
-        value = value.detach().cpu()
-        # NumPy has no bfloat16.
-        value = value.float() if value.is_floating_point() and value.element_size() < 4 else value
-        return value.numpy()
-    if not hasattr(value, "__array__") and hasattr(value, "__dlpack__"):
-        return numpy.from_dlpack(value)
     try:
+        if isinstance(value, getattr(sys.modules.get("torch"), "Tensor", ())):
+            value = value.detach().cpu().resolve_conj().resolve_neg()
+            # NumPy has no bfloat16.
+            value = value.float() if value.is_floating_point() and value.element_size() < 4 else value
+            return value.numpy()
+        if not hasattr(value, "__array__") and hasattr(value, "__dlpack__"):
+            return numpy.from_dlpack(value)
         return numpy.asarray(value)
-    except ValueError as error:
-        raise ValueError(f"{name} is no array of numbers: {error}") from None
+    except (BufferError, RuntimeError, TypeError, ValueError) as error:
+        kind = ValueError if isinstance(error, ValueError) else TypeError
+        raise kind(f"{name} is no array of numbers: {error}") from None
 
 
 def floats(name, value, kind=numpy.float32):

@@ -20,8 +20,8 @@ class Table:
     """The importances of a data set's items, from which minibatches are drawn.
 
     Item i is drawn with probability p_i = (1 - d) q_i / sum(q) + d / n, where q_i is its importance and d the uniform
-    fraction. Its weight is 1 / (n p_i): the mean of weight times gradient estimates the gradient of the mean loss
-    without bias. A draw and an update take time of O(log n). 4.6 bytes per item.
+    fraction. Its weight is 1 / (n p_i), but for "distinct": the mean of weight times gradient estimates the gradient of
+    the mean loss without bias. A draw and an update take time of O(log n). 4.6 bytes per item.
 
     Any number of threads may use one table. Tables can be pickled and copied; a copy draws the same minibatches.
 
@@ -46,7 +46,7 @@ class Table:
         status = _c.table_init(self._at, _c.data(self._memory), self._memory.nbytes, n, _c.data(values))
         if status:
             _arrays.check_positive("importance", importance)
-            raise ValueError(f"importance: {_c.message(status)}: all {n} are 0")
+            raise ValueError(f"importance is 0 for all of {n} items, as float32: at least one must be above 0")
         self._table.uniform_fraction = fraction
         _c.rng_seed(self._rng_at, seed)
 
@@ -86,7 +86,8 @@ class Table:
             batch: how many, 0 to 2**32 - 1; (k, b) for k minibatches of b, and so on.
             method: "iid", independently and with replacement; "stratified", one from each of `batch` equal parts of the
                 probabilities, in the order of the data set: use the batch as a whole; "distinct", without replacement,
-                at most n.
+                at most n: use that as a whole, too. Its weights depend on the place in the batch (D. Raj, 1956), and
+                are at most 1 / uniform_fraction + 1.
 
         Returns:
             index, int64, and weight, float32, both of shape (batch,): the mean of weight times gradient estimates the
@@ -116,8 +117,8 @@ class Table:
     def _draw_many(self, shape, method):
         """Minibatches, in arrays of this shape."""
         shape = tuple(_arrays.integer("batch", size, 0, _c.MAX_ITEMS) for size in shape)
-        if not shape:
-            raise ValueError("batch is (): it must be a number, or several")
+        if not shape or math.prod(shape) > _c.MAX_ITEMS:
+            raise ValueError(f"batch is {shape}: it must be one number or several, of a product up to {_c.MAX_ITEMS}")
         if method == "iid":
             # Independent of each other they may be drawn as one.
             index, weight = self.draw(math.prod(shape))

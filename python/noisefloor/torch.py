@@ -73,6 +73,8 @@ class ImportanceBatchSampler(Sampler):
         self._group = process_group
         self._rank = torch.distributed.get_rank(process_group) if distributed else 0
         self._processes = torch.distributed.get_world_size(process_group) if distributed else 1
+        if self._rank < 0:
+            raise ValueError(f"process_group is {process_group}: it must be one that this process belongs to")
         self._n = _arrays.integer("n", n, 1, _c.MAX_ITEMS)
         self.batch_size = _arrays.integer("batch_size", batch_size, 1, _c.MAX_ITEMS // self._processes)
         self._whole = self.batch_size * self._processes
@@ -238,6 +240,8 @@ class ImportanceBatchSampler(Sampler):
         scale = _arrays.number("scale", scale, 1e-30, math.inf)
         if logits.grad is None:
             raise ValueError("logits.grad is None: call logits.retain_grad() before the backward pass")
+        if logits.is_complex():
+            raise TypeError(f"logits holds {logits.dtype}: real numbers are expected")
         weight = self._own(1).to(logits.device)
         if len(logits) != len(weight):
             raise ValueError(f"logits has the shape {tuple(logits.shape)}: the last batch has {len(weight)} items")

@@ -65,7 +65,8 @@ def test_its_types_are_the_packages(tmp_path):
             source = loop + source
         loop = source
         sources.append("import numpy as np\nimport noisefloor\n" + source)
-    assert "Success" in check_types(tmp_path, *sources)
+    sources.append("import noisefloor.mitsuba as nf\nnf.register()\nnf.prepare(None)\n")
     wrong = "import noisefloor\nnoisefloor.Table(10).draw('10')\nnoisefloor.estimate([], []).variance\n"
-    said = check_types(tmp_path, wrong)
+    said = check_types(tmp_path, *sources, wrong)
     assert 'has incompatible type "str"' in said and 'has no attribute "variance"' in said
+    assert f"Found 2 errors in 1 file (checked {len(sources) + 1} source files)" in said, said

@@ -40,8 +40,13 @@ def test_the_weighted_mean_is_unbiased(method):
 
 
 def test_distinct_items_are_distinct():
-    index, _ = noisefloor.Table(40, seed=1).draw(40, "distinct")
-    assert sorted(index) == list(range(40))
+    """Weights are at most 1 / uniform_fraction + 1."""
+    table, most = noisefloor.Table(40, importance=[1e6] + 39 * [1], seed=1), []
+    for _ in range(100):
+        index, weight = table.draw(40, "distinct")
+        assert sorted(index) == list(range(40))
+        most.append(weight.max())
+    assert 5 < max(most) < 6
 
 
 def test_probabilities_follow_importance():
@@ -175,7 +180,9 @@ def test_arrays_of_anybody():
         (lambda t: t.update([1, 2], [1.0]), r"importance has the shape \(1,\): it must be \(2,\)"),
         (lambda t: t.update([[1]], [1.0]), r"importance has the shape \(1,\): it must be \(1, 1\)"),
         (lambda t: t.update([1, 2], [1, 1e300]), r"importance\[1\] is 1e\+300: it must be at least 0 and finite"),
-        (lambda t: t.draw(()), r"batch is \(\)"),
+        (lambda t: t.draw(()), r"batch is \(\): it must be one number or several, of a product up to 4294967295"),
+        (lambda t: t.draw((2**20, 2**20)), r"batch is \(1048576, 1048576\): it must be"),
+        (lambda t: t.draw((2**31, 2**31, 3), "distinct"), r"batch is \(2147483648, 2147483648, 3\): it must be"),
         (lambda t: t.draw((2, -1)), "batch is -1"),
         (lambda t: t.draw((2, 1.5)), "batch is 1.5: an integer"),
         (lambda t: t.draw((2, 11), "distinct"), "batch is 11: a distinct draw takes 0 to 10"),
@@ -204,7 +211,7 @@ def test_arrays_of_anybody():
         (lambda t: noisefloor.Table(2**32), "n is 4294967296"),
         (lambda t: noisefloor.Table("7"), "n is '7': an integer"),
         (lambda t: noisefloor.Table(3, importance=[1, 2]), r"importance has the shape \(2,\): it must be \(3,\)"),
-        (lambda t: noisefloor.Table(3, importance=[0, 0, 0]), "all 3 are 0"),
+        (lambda t: noisefloor.Table(3, importance=[0, 1e-60, 0]), "importance is 0 for all of 3 items, as float32: at"),
         (lambda t: noisefloor.Table(3, importance=[1, -2, 0]), r"importance\[1\] is -2: it must be at least 0"),
         (lambda t: noisefloor.Table(3, seed=-1), "seed is -1"),
         (lambda t: noisefloor.Table(1, importance=numpy.float64(1)), r"importance has the shape \(\)"),

@@ -5,8 +5,6 @@ import io
 import os
 import pickle
 import signal
-import subprocess
-import sys
 import warnings
 
 import numpy
@@ -20,13 +18,15 @@ from torch.utils.data import DataLoader, TensorDataset
 import noisefloor
 from noisefloor.torch import ImportanceBatchSampler, cross_entropy_importance
 
-PROGRAM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "train.py")
+# Each is new, though PyTorch is loaded once for all.
+PROCESSES = torch.multiprocessing.get_context("forkserver")
+PROCESSES.set_forkserver_preload(["noisefloor.torch"])
 
 
-def run(sampler, workers=0, stop=None):
+def run(sampler, workers=0, stop=None, loader=None):
     """What the loader gives in an epoch; each item is its own number, whose square is its importance."""
     data, seen = TensorDataset(torch.arange(sampler._n)), []
-    for (items,) in DataLoader(data, batch_sampler=sampler, num_workers=workers):
+    for (items,) in loader or DataLoader(data, batch_sampler=sampler, num_workers=workers):
         index, weight = sampler.batch()
         assert torch.equal(index, items)
         sampler.update(items.float() ** 2)
@@ -129,6 +129,16 @@ def test_spawned_workers_give_the_same_batches():
     assert [items.tolist() for (items,) in loader] == [index.tolist() for index, _ in run(alone)]
 
 
+def test_workers_that_stay_give_the_same_batches():
+    data, options = TensorDataset(torch.arange(500)), {"num_workers": 2, "prefetch_factor": 4}
+    sampler, same = (ImportanceBatchSampler(500, 32, seed=4) for _ in range(2))
+    staying = DataLoader(data, batch_sampler=sampler, persistent_workers=True, **options)
+    for stop in (None, 5, None, None):
+        fresh = DataLoader(data, batch_sampler=same, **options)
+        assert equal(run(sampler, stop=stop, loader=staying), run(same, stop=stop, loader=fresh))
+    assert sampler.epoch == same.epoch == 3
+
+
 def test_leaving_an_epoch_begins_another():
     sampler = ImportanceBatchSampler(64, 8)
     run(sampler, 2, stop=3)
@@ -154,29 +164,32 @@ def test_a_loop_that_forgets_batch_ends():
                 pass
 
 
-def finish(arguments, kill_after=None):
-    """Runs train.py; kills it after so many steps. Returns its last line."""
-    process = subprocess.Popen([sys.executable, PROGRAM, *arguments], stdout=subprocess.PIPE, text=True)
-    line, steps = "", 0
-    for line in process.stdout:
-        steps += line == "step\n"
+def finish(checkpoint, workers, techniques, kill_after=None):
+    """Trains in a process of its own; kills it after so many steps. Returns the last that it said."""
+    hears, says = PROCESSES.Pipe(duplex=False)
+    process = PROCESSES.Process(target=train.main, args=(checkpoint, workers, techniques, says.send))
+    process.start()
+    says.close()
+    steps, said = 0, ""
+    while said in ("", "step"):
+        said = hears.recv()
+        steps += 1
         if steps == kill_after:
-            process.send_signal(signal.SIGKILL)
+            process.kill()
             break
-    process.stdout.close()
-    process.wait()
-    assert kill_after or process.returncode == 0
-    return line
+    process.join()
+    assert process.exitcode == (-signal.SIGKILL if kill_after else 0)
+    return said
 
 
-@pytest.mark.parametrize("workers, techniques", [("0", "1"), ("2", "1"), ("0", "2")])
+@pytest.mark.parametrize("workers, techniques", [(0, 1), (2, 1), (0, 2)])
 def test_killed_runs_end_as_others_do(tmp_path, workers, techniques):
     """kill -9 in the first epoch, at its end, and in the third: the same network and tables to the bit."""
-    expected = finish([str(tmp_path / "whole"), workers, techniques])
-    killed = [str(tmp_path / "killed"), workers, techniques]
+    expected = finish(str(tmp_path / "whole"), workers, techniques)
+    killed = str(tmp_path / "killed"), workers, techniques
     for steps in (7, 25, 50):
-        finish(killed, steps)
-    assert finish(killed) == expected and len(expected) == 65
+        assert finish(*killed, steps) == "step"
+    assert finish(*killed) == expected and len(expected) == 64
 
 
 def importances(reduction, techniques=1, scale=1.0):
@@ -213,6 +226,26 @@ def test_any_numbers_update():
             warnings.simplefilter("error")
             sampler.update(of, at)
         assert numpy.array_equal(sampler._tables[0].probabilities(), expected.probabilities())
+
+
+class Other(torch.Tensor):
+    """A tensor of another's class."""
+
+
+def test_any_tensor_is_read():
+    """Of a class of one's own, with derivatives, seen through a change of sign; or refused by the argument's name."""
+    plain, index = noisefloor.Table(10), torch.tensor([4, 5])
+    plain.update(index, torch.tensor([3.0, 1.0]))
+    norms = torch.tensor([3.0, 1.0], requires_grad=True)
+    for of in (norms.as_subclass(Other), norms.bfloat16().as_subclass(Other), torch.complex(norms, -norms).conj().imag):
+        table = noisefloor.Table(10)
+        table.update(index, of)
+        assert numpy.array_equal(table.probabilities(), plain.probabilities())
+    for of in (norms.detach().to_sparse(), norms.to("meta"), [norms[0], norms[1]]):
+        with pytest.raises(TypeError, match="importance is no array of numbers: "):
+            plain.update(index, of)
+    with pytest.raises(TypeError, match="importance holds complex64: real numbers"):
+        plain.update(index, torch.complex(norms, norms).conj())
 
 
 def test_one_output_may_have_an_axis_or_none():
@@ -264,6 +297,10 @@ def test_several_techniques_weigh_and_learn():
 
 def _replica(rank, world, file, results, workers):
     torch.distributed.init_process_group("gloo", f"file://{file}", rank=rank, world_size=world)
+    group = torch.distributed.new_group([0])
+    if rank > 0:
+        with pytest.raises(ValueError, match="process_group is .*: it must be one that this process belongs to"):
+            ImportanceBatchSampler(train.ITEMS, train.BATCH, process_group=group)
     model = torch.nn.parallel.DistributedDataParallel(train.network())
     sampler = ImportanceBatchSampler(train.ITEMS, train.BATCH // world, seed=6)
     optimizer, seen = torch.optim.SGD(model.parameters(), 0.1), []
@@ -282,10 +319,11 @@ def _replica(rank, world, file, results, workers):
 
 @pytest.mark.parametrize("world, workers", [(2, 0), (2, 1), (4, 0)])
 def test_replicas_stay_the_same_and_share_each_batch(tmp_path, world, workers):
-    context = torch.multiprocessing.get_context("spawn")
-    results = context.Queue()
+    results = PROCESSES.Queue()
     file = str(tmp_path / "meeting")
-    processes = [context.Process(target=_replica, args=(rank, world, file, results, workers)) for rank in range(world)]
+    processes = [
+        PROCESSES.Process(target=_replica, args=(rank, world, file, results, workers)) for rank in range(world)
+    ]
     for process in processes:
         process.start()
     found = sorted(results.get(timeout=120) for _ in processes)
@@ -318,6 +356,7 @@ def test_replicas_stay_the_same_and_share_each_batch(tmp_path, world, workers):
         (lambda s: s.update(torch.tensor([1j, 1])), "importance holds complex64: real numbers"),
         (lambda s: s.update(None), "importance holds object: real numbers"),
         (lambda s: s.update_from(torch.ones(2, 3)), "call logits.retain_grad"),
+        (lambda s: s.update_from(differentiated(torch.complex64)), "logits holds torch.complex64: real numbers"),
         (lambda s: s.load_state_dict(ImportanceBatchSampler(9, 2).state_dict()), "another sampler's: it has .*'n': 9"),
     ],
 )
@@ -327,6 +366,13 @@ def test_refusals_name_argument_value_and_range(call, said):
     sampler.batch()
     with pytest.raises((ValueError, TypeError), match=said):
         call(sampler)
+
+
+def differentiated(kind):
+    """Outputs after a backward pass."""
+    logits = torch.ones(2, 3, dtype=kind, requires_grad=True)
+    logits.abs().sum().backward()
+    return logits
 
 
 def test_labels_that_are_no_class_are_refused():

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import platform
 import re
 import shutil
 import subprocess
@@ -10,10 +11,12 @@ import zipfile
 
 import pytest
 
+import noisefloor
 from noisefloor import _c
 from noisefloor.__main__ import PLACES
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+TAGS = f"py3-none-manylinux_2_17_{platform.machine()}"
 WHEEL = os.environ.get("NOISEFLOOR_WHEEL")
 needs_wheel = pytest.mark.skipif(
     not WHEEL, reason="NOISEFLOOR_WHEEL does not name the wheel: `cargo xtask test python`"
@@ -30,17 +33,23 @@ def run(*command, **options):
 @needs_wheel
 def test_it_is_small_and_has_all():
     assert os.path.getsize(WHEEL) <= 2_000_000
-    assert os.path.basename(WHEEL).startswith("noisefloor-") and "-py3-none-" in WHEEL
+    assert os.path.basename(WHEEL) == f"noisefloor-{noisefloor.__version__}-{TAGS}.whl"
     names = set(zipfile.ZipFile(WHEEL).namelist())
     native = "noisefloor/native/"
     headers = "include/noisefloor.h", "include/noisefloor/cv.h", "include/noisefloor.hpp"
     for name in (*headers, "lib/cmake/noisefloor/noisefloorConfig.cmake"):
         assert native + name in names
-    assert {"noisefloor/py.typed", "noisefloor/torch.py"} <= names
+    assert {"noisefloor/py.typed", "noisefloor/torch.py", "noisefloor/mitsuba/__init__.py"} <= names
     assert sum(".so" in name for name in names) == 1 and not any("tests" in name for name in names)
     (metadata,) = (name for name in names if name.endswith("dist-info/METADATA"))
     text = zipfile.ZipFile(WHEEL).read(metadata).decode()
     assert [line for line in text.splitlines() if line.startswith("Requires-Dist")] == ["Requires-Dist: numpy>=1.22"]
+
+
+def test_it_does_not_say_where_it_was_built():
+    """Else clones in other folders would give other bytes."""
+    library = pathlib.Path(_c.LIBRARY).read_bytes()
+    assert not any(str(path).encode() in library for path in (ROOT, pathlib.Path.home() / ".cargo"))
 
 
 def test_any_linux_since_glibc_2_17_runs_it():
@@ -56,7 +65,7 @@ def test_any_linux_since_glibc_2_17_runs_it():
 def test_a_second_build_has_the_same_bytes(tmp_path):
     run(
         *(sys.executable, "-m", "pip", "wheel", ROOT / "python", "--no-deps", "--no-build-isolation", "-w", tmp_path),
-        *("--config-settings", f"build-dir={tmp_path / 'build'}"),
+        *("--config-settings", f"wheel.tags={TAGS}", "--config-settings", f"build-dir={tmp_path / 'build'}"),
         env={**os.environ, "SOURCE_DATE_EPOCH": "1700000000"},
     )
     (again,) = tmp_path.glob("*.whl")

@@ -1,11 +1,7 @@
-"""A training run that can be killed at any time and goes on where it was: test_torch.py starts it.
-
-python train.py CHECKPOINT WORKERS [TECHNIQUES]
-"""
+"""A training run that can be killed at any time and goes on where it was: test_torch.py starts it."""
 
 import hashlib
 import os
-import sys
 
 import torch
 from torch.utils.data import DataLoader, TensorDataset
@@ -47,8 +43,8 @@ def network(width=16, outputs=2, dropout=0.0):
     return torch.nn.Sequential(*hidden, torch.nn.Linear(width, outputs))
 
 
-def main(checkpoint, workers, techniques=1):
-    """Trains, and prints each step once its checkpoint is whole; at the end the digest."""
+def main(checkpoint, workers, techniques, say):
+    """Trains, and says "step" once its checkpoint is whole; at the end the digest."""
     model = network(dropout=0.1)
     optimizer = torch.optim.Adam(model.parameters(), 1e-2)
     sampler = ImportanceBatchSampler(ITEMS, BATCH, seed=3, techniques=techniques)
@@ -68,9 +64,5 @@ def main(checkpoint, workers, techniques=1):
             state = {"model": model.state_dict(), "optimizer": optimizer.state_dict()["state"]}
             torch.save({**state, "sampler": sampler.state_dict(), "rng": torch.get_rng_state()}, checkpoint + ".new")
             os.replace(checkpoint + ".new", checkpoint)
-            print("step", flush=True)
-    print(digest(model, sampler))
-
-
-if __name__ == "__main__":
-    main(sys.argv[1], int(sys.argv[2]), *map(int, sys.argv[3:]))
+            say("step")
+    say(digest(model, sampler))

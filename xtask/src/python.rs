@@ -36,16 +36,20 @@ pub fn environment() -> Result<PathBuf> {
 
 /// Builds a new wheel, with the Python that it returns. The packages of `BUILD` must be there.
 pub fn build() -> Result<PathBuf> {
-    let python = create(&paths::output().join("venv"), &["--system-site-packages"])?;
-    if run::read(run::command(&python).args(["-c", "import scikit_build_core"])).is_err() {
+    let folder = paths::output().join("venv");
+    let python = folder.join("bin/python");
+    if run::read(run::command(&python).args(["-c", "import pip, scikit_build_core"])).is_err() {
+        create(&folder, &["--system-site-packages"])?;
         fetch(&python, &["scikit-build-core"])?;
     }
     if wheels().exists() {
         fs::remove_dir_all(wheels()).with_context(|| format!("cannot remove {}", wheels().display()))?;
     }
     let [cargo, target] = library::settings().map(|setting| format!("--config-settings=cmake.define.{setting}"));
+    // As docs/python.md says.
+    let tags = format!("--config-settings=wheel.tags=py3-none-manylinux_2_17_{}", std::env::consts::ARCH);
     let folder = format!("--wheel-dir={}", wheels().display());
-    pip(&python, &["wheel", "./python", "--no-deps", "--no-build-isolation", &cargo, &target, &folder])?;
+    pip(&python, &["wheel", "./python", "--no-deps", "--no-build-isolation", &cargo, &target, &tags, &folder])?;
     Ok(python)
 }
 

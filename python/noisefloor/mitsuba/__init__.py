@@ -3,6 +3,8 @@
 `register()` makes both known to the variant that is set; `prepare(scene)` tells samplers how large their films are.
 """
 
+from __future__ import annotations
+
 import mitsuba as mi
 
 from . import _fits, _sampler
@@ -10,7 +12,7 @@ from . import _fits, _sampler
 __all__ = ["prepare", "register"]
 
 
-def register():
+def register() -> None:
     """Makes the plugins known to the variant that is set."""
     sampler = _sampler.kind()
     mi.register_sampler("noisefloor", lambda props: sampler(props))
@@ -19,7 +21,7 @@ def register():
         mi.register_integrator("noisefloor_fits", lambda props: integrator(props))
 
 
-def prepare(scene):
+def prepare(scene: mi.Scene) -> mi.Scene:
     """Tells the samplers of the scene's sensors how large their films are, and whether there is a lens; returns the
     scene."""
     for sensor in scene.sensors():
