@@ -93,7 +93,8 @@ class Recorded(unittest.TestCase):
     def test_the_guides_code_runs(self):
         picture = show("README.md", 0)
         self.assertEqual(picture.shape, (256, 256, 3))
-        np.testing.assert_array_equal(show("../../docs/renderer.md", 0), picture)
+        # Up to the order in which threads add.
+        np.testing.assert_allclose(show("../../docs/renderer.md", 0), picture, rtol=1e-4, atol=1e-6)
         self.assertGreater(np.abs(show("README.md", 0, 2) - picture).mean(), 0)
 
     def test_large_indices_and_the_root(self):

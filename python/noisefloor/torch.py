@@ -89,10 +89,9 @@ class ImportanceBatchSampler(Sampler):
                 f"techniques is {techniques}: it must be 1, or even and a divisor of the whole batch, {self._whole}"
             )
         self._warmup = -(-self._n // self._whole) if _arrays.one_of("warmup", warmup, WARMUPS) else 0
-        # Neighbouring seeds are unrelated.
-        self._tables = [
-            Table(self._n, uniform_fraction=uniform_fraction, seed=self._seed + j) for j in range(techniques)
-        ]
+        # Seeds that no other sampler's tables have, unless its seed is as far away as nobody counts.
+        seeds = [(self._seed + j * 0x9E3779B97F4A7C15) % 2**64 for j in range(techniques)]
+        self._tables = [Table(self._n, uniform_fraction=uniform_fraction, seed=own) for own in seeds]
         self.epoch = 0
         self._drawn = self._step = self._unasked = 0
         self._ahead, self._replay, self._last, self._resumed = deque(), deque(), None, False

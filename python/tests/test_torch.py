@@ -129,6 +129,12 @@ def test_spawned_workers_give_the_same_batches():
     assert [items.tolist() for (items,) in loader] == [index.tolist() for index, _ in run(alone)]
 
 
+def test_neighbouring_seeds_share_no_draws():
+    samplers = [ImportanceBatchSampler(1000, 8, seed=seed, techniques=4) for seed in range(3)]
+    draws = {tuple(table.draw(8)[0]) for sampler in samplers for table in sampler._tables}
+    assert len(draws) == 12
+
+
 def test_workers_that_stay_give_the_same_batches():
     data, options = TensorDataset(torch.arange(500)), {"num_workers": 2, "prefetch_factor": 4}
     sampler, same = (ImportanceBatchSampler(500, 32, seed=4) for _ in range(2))
