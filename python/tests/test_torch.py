@@ -302,6 +302,7 @@ def test_several_techniques_weigh_and_learn():
 
 
 def _replica(rank, world, file, results, workers):
+    train.begin()
     torch.distributed.init_process_group("gloo", f"file://{file}", rank=rank, world_size=world)
     group = torch.distributed.new_group([0])
     if rank > 0:

@@ -43,8 +43,14 @@ def network(width=16, outputs=2, dropout=0.0):
     return torch.nn.Sequential(*hidden, torch.nn.Linear(width, outputs))
 
 
+def begin():
+    """What a process of its own does first: its workers are not to be a server's, which would outlive it."""
+    torch.multiprocessing.set_start_method("fork", force=True)
+
+
 def main(checkpoint, workers, techniques, say):
     """Trains, and says "step" once its checkpoint is whole; at the end the digest."""
+    begin()
     model = network(dropout=0.1)
     optimizer = torch.optim.Adam(model.parameters(), 1e-2)
     sampler = ImportanceBatchSampler(ITEMS, BATCH, seed=3, techniques=techniques)
