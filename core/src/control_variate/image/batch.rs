@@ -517,9 +517,12 @@ impl Sums<'_> {
             let others = row_at(apart.functions, width, function);
             let (plain, products) = halves_mut(from_mut(row_mut(gram, fixed + i), fixed), width.min(i + 1));
             add_products(plain, factor, others);
-            for (out, axis) in products.chunks_mut(count.max(1)).zip(places.iter().skip(1)) {
-                let factor = times(factor, axis);
-                add_products(out, &factor, from(others, first));
+            // One by one: zipped, the chunks would be counted, and a division may panic.
+            let mut products = products.chunks_mut(count.max(1));
+            for axis in places.iter().skip(1) {
+                if let Some(out) = products.next() {
+                    add_products(out, &times(factor, axis), from(others, first));
+                }
             }
         }
         let values = rows(apart.values, width).zip(apart.squares.iter());

@@ -595,11 +595,14 @@ impl<'a> Edges<'a> {
                 let cell = (at as usize).min(CELLS - 1);
                 (cell, at - cell as f32)
             });
-            let pair = |j: usize| match self.points.get(j * POINTS + i..) {
-                Some([left, right, ..]) => left[lane] + a * (right[lane] - left[lane]),
-                _ => 0.0,
-            };
-            let (below, above) = (pair(j), pair(j + 1));
+            // Loops, not closures: these may stay calls, which check `lane` again.
+            let mut ends = [0.0; 2];
+            for (row, end) in ends.iter_mut().enumerate() {
+                if let Some([left, right, ..]) = self.points.get((j + row) * POINTS + i..) {
+                    *end = left[lane] + a * (right[lane] - left[lane]);
+                }
+            }
+            let [below, above] = ends;
             out[lane] = below + b * (above - below);
         }
         out

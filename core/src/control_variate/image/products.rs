@@ -222,19 +222,25 @@ impl<'a> Sums<'a> {
         let (len, slices) = (Self::len(self.columns, self.values), self.slices);
         for (row, picked) in picked.iter().enumerate() {
             let mut out = products.iter_mut();
-            let mut put = |a: &Four, b: &Four| {
+            let mut put = |a: &Eight, b: &Eight| {
                 if let Some(out) = out.next() {
-                    *out = lanes::zip(&a[row], &b[row], |a, b| a * b);
+                    *out = lanes::zip(a, b, |a, b| a * b);
                 }
                 lanes::keep_together();
             };
             for (i, a) in columns.iter().enumerate() {
-                columns.iter().take(i + 1).for_each(|b| put(a, b));
+                for b in columns.iter().take(i + 1) {
+                    put(&a[row], &b[row]);
+                }
             }
             for value in values {
-                columns.iter().for_each(|column| put(value, column));
+                for column in columns {
+                    put(&value[row], &column[row]);
+                }
             }
-            values.iter().for_each(|value| put(value, value));
+            for value in values {
+                put(&value[row], &value[row]);
+            }
             for lane in 0..LANES {
                 let sums = row_at_mut(self.all, len, part * slices + picked[lane] as usize);
                 for (sum, product) in sums.iter_mut().zip(&*products) {
