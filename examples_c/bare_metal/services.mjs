@@ -4,7 +4,11 @@ import { readFileSync } from "node:fs";
 
 const SAMPLES = 64, ITEMS = 100, BATCH = 8, WORKSPACE_BYTES = 32768;
 const PRECISION_F64 = 0, PRECISION_F32 = 1, OMIS_RIDGE = 0;
-const PAINT = 0xc0dec0de, STRUCT_BYTES = 256, PRECISION_OFFSET = 40, STD_ERROR_OFFSET = 16;
+const PAINT = 0xc0dec0de, STRUCT_BYTES = 256;
+
+const abi = readFileSync(new URL("../../capi/abi.txt", import.meta.url), "utf8");
+const offset = (field) => Number(abi.match(new RegExp(`^ *${field}: offset (\\d+)`, "m"))[1]);
+const PRECISION_OFFSET = offset("nf_cv_config.precision"), STD_ERROR_OFFSET = offset("nf_estimate.std_error");
 
 const [, , module, tileFile] = process.argv;
 const { instance } = await WebAssembly.instantiate(readFileSync(module));
