@@ -3,8 +3,6 @@
 //! A renderer links `libnoisefloor.a`, so its figures are the ones that count. Where the archive had not been built,
 //! nothing here can be called and [`STATE`] says "missing".
 
-use noisefloor::basis::Family;
-use noisefloor::control_variate::Estimator;
 use std::ffi::c_void;
 
 /// "up to date", "older than the sources" or "missing".
@@ -34,28 +32,6 @@ pub struct Config {
     pub color: u32,
     pub folds: u32,
     pub ridge: f32,
-}
-
-/// The `NF_CV_*` value of an estimator.
-pub fn estimator(estimator: Estimator) -> u32 {
-    match estimator {
-        Estimator::Robust => 0,
-        Estimator::LeastSquares => 1,
-        Estimator::LeaveOneOut => 2,
-        Estimator::KFold => 3,
-        Estimator::GradientDescent => 4,
-        Estimator::Incremental => 5,
-    }
-}
-
-/// The `NF_BASIS_*` value of a basis.
-pub fn basis(family: Family) -> u32 {
-    match family {
-        Family::Legendre => 0,
-        Family::Step => 1,
-        Family::Sine => 2,
-        Family::Gaussian => 3,
-    }
 }
 
 /// `nf_cv_samples`.

@@ -84,13 +84,14 @@ impl Method {
 
     /// The C configuration for one channel.
     pub fn c_config(&self, dims: usize, order: usize) -> c_abi::Config {
+        // Estimators and bases are in the order of their numbers in C.
         c_abi::Config {
             dims: dims as u32,
             order: self.order(order) as u32,
             channels: 1,
-            estimator: c_abi::estimator(self.estimator.unwrap_or_default()),
+            estimator: self.estimator.unwrap_or_default() as u32,
             precision: self.narrow.into(),
-            basis: c_abi::basis(self.basis),
+            basis: self.basis as u32,
             slices: self.slices as u32,
             folds: self.folds as u32,
             ..c_abi::Config::default()

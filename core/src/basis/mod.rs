@@ -170,17 +170,16 @@ impl Basis {
     /// High degrees are less often needed, and the more functions share a degree the less each one explains.
     pub(crate) fn penalties<R: Real>(&self, out: &mut [R]) {
         let mut counts = [0usize; MAX_ORDER + 1];
-        let degree = |column: usize| self.degree(column);
         // Slices apart have their functions all the same.
         let (slices, copies) = self.shape.slices_apart();
         for column in 0..self.columns() {
-            if let Some(count) = counts.get_mut(degree(column)) {
+            if let Some(count) = counts.get_mut(self.degree(column)) {
                 *count += if column < copies { 1 + slices } else { 1 };
             }
         }
         counts[1] += slices;
         for (column, penalty) in out.iter_mut().enumerate().take(self.columns()) {
-            let degree = degree(column);
+            let degree = self.degree(column);
             let count = at(&counts, degree);
             *penalty = R::from_usize(count) * R::from_usize(1).scale(2 * (degree as i32 - 1));
         }

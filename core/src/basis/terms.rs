@@ -73,7 +73,7 @@ pub(crate) fn total_degree(dims: usize, order: usize, gap: usize, terms: &mut Ve
             // Below degree 1 is the constant.
             let below = |steps: usize| at(pure, degree.saturating_sub(steps));
             let sources = [below(1), below(2)];
-            push(terms, Term { column, degree: degree as u8, dim: dim as u8, product: false, sources })?;
+            terms.push(Term { column, degree: degree as u8, dim: dim as u8, product: false, sources }).ok()?;
             *pure.get_mut(degree)? = column;
         }
         // A product is a lower-degree function of the coordinates before `dim` times a one-dimensional one of `dim`.
@@ -86,13 +86,9 @@ pub(crate) fn total_degree(dims: usize, order: usize, gap: usize, terms: &mut Ve
             for (dim, pure) in pure.iter().enumerate().take(dims).skip(usize::from(left.dim) + 1) {
                 let sources = [left.column, *pure.get(power)?];
                 let column = column(terms.len())?;
-                push(terms, Term { column, degree: degree as u8, dim: dim as u8, product: true, sources })?;
+                terms.push(Term { column, degree: degree as u8, dim: dim as u8, product: true, sources }).ok()?;
             }
         }
     }
     Some(())
-}
-
-fn push(terms: &mut Vec<Term, MAX_TERMS>, term: Term) -> Option<()> {
-    terms.push(term).ok()
 }

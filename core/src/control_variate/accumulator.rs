@@ -142,13 +142,8 @@ impl<R: Real> Accumulator<R> {
     /// [`Error::Memory`].
     pub fn reset(&mut self, sums: &mut [R]) -> Result<(), Error> {
         self.check_length(sums)?;
-        self.samples = 0;
-        self.units = [Units::default(); Config::MAX_CHANNELS];
-        self.colour = [0.0; 4];
-        self.incremental = incremental::Progress::default();
-        for value in sums {
-            *value = R::ZERO;
-        }
+        *self = Self::new(&self.config)?;
+        sums.fill(R::ZERO);
         Ok(())
     }
 

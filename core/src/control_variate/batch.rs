@@ -93,11 +93,19 @@ pub fn estimate_inlined<R: Real>(
     let rule = match method {
         Method::Robust => Some(Rule::Robust),
         Method::LeaveOneOut => Some(Rule::Single(config.ridge)),
+        // Algorithm 1: the residuals' mean is zero, so the estimate is the fit's constant term.
         Method::LeastSquares => Some(Rule::LeastSquares(config.ridge)),
         Method::Plain | Method::Incremental | Method::KFold | Method::Descent | Method::SquareRoot => None,
     };
     let outcome = match (rule, method) {
-        (Some(rule), _) => fit(&design, config, &basis, plan, rule, &mut arena)?,
+        (Some(rule), _) => {
+            let fitter = Fitter::new(&design, config, &basis, plan.dual, &mut arena)?;
+            let outcome = fitter.solve(rule, None, &mut arena)?.outcome(&design);
+            // As many terms as samples leave nothing to tell the error from.
+            let is_told = method != Method::LeastSquares || design.n > design.columns + 1;
+            let variance = if is_told { outcome.variance } else { result::plain_variance(&design) };
+            Outcome { variance, ..outcome }
+        }
         (None, Method::KFold) => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
         (None, Method::Descent) => descent::estimate(&design, config, &basis, None, &mut arena)?,
         // What streams went its own way above.
@@ -113,25 +121,4 @@ fn streamed<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R])
     stream.reset(sums)?;
     stream.add(sums, samples)?;
     stream.estimate_of_array(sums, workspace)
-}
-
-/// The estimators that fit all samples at once through the normal equations or their dual.
-#[inline(always)]
-fn fit<'a, R: Real>(
-    design: &Design<'a, R>,
-    config: &Config,
-    basis: &Basis,
-    plan: Plan,
-    rule: Rule,
-    arena: &mut Arena<'a, R>,
-) -> Result<Outcome<R>, Error> {
-    let fitter = Fitter::new(design, config, basis, plan.dual, arena)?;
-    let blend = fitter.solve(rule, None, arena)?;
-    // Algorithm 1 for least squares: its residuals have mean zero, so the estimate is the fit's constant term.
-    let correction = blend.correction();
-    let variance = match rule {
-        Rule::LeastSquares(_) if design.n <= design.columns + 1 => result::plain_variance(design),
-        _ => blend.variance(design, &correction),
-    };
-    Ok(Outcome { correction, variance })
 }

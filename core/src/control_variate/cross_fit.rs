@@ -13,13 +13,13 @@ use super::per_channel::PerChannel;
 use super::result::{self, Outcome};
 use super::ridge::{self, MIXED};
 use super::sums::{self, Layout, Sums};
-use super::trust::{self, Centre};
+use super::trust::{self, Centre, Judge, Mixture};
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
-use crate::matrix::{at, row_at};
+use crate::matrix::at;
 use crate::real::Real;
-use crate::rows::{rows, rows_mut};
+use crate::rows::{first, rows, rows_mut};
 
 /// The number of candidates besides the plain mean.
 const FITS: usize = MIXED.len();
@@ -31,15 +31,17 @@ pub(crate) struct Groups<'a, R> {
     pub(crate) layout: Layout,
 }
 
-/// Candidate fits and their squared errors.
-type Errors<R> = [PerChannel<R>; FITS];
-
 /// Numbers that an estimate takes from its arena beyond one fit.
 pub(crate) fn len(layout: Layout) -> usize {
     FITS * layout.columns * layout.channels + layout.len()
 }
 
 impl<'a, R: Real> Groups<'a, R> {
+    /// How many coefficients a fit has, a row for each channel.
+    fn coefficients(&self) -> usize {
+        self.layout.columns * self.layout.channels
+    }
+
     /// The folds that hold samples.
     fn each(&self) -> impl Iterator<Item = (usize, Sums<&'a [R]>)> {
         let filled = |fold| self.layout.group(self.sums, fold).ok().filter(|group| group.count() > R::ZERO);
@@ -72,68 +74,52 @@ struct Candidates<'p, 'a, R> {
     is_fixed: bool,
 }
 
-/// What is added to the plain mean, robust, of two folds or more; `plain` is the mean and its variance in the sums'
-/// units.
+/// What is added to the plain `mean`, robust, of two folds or more; `variance` is the mean's.
 pub(crate) fn pooled<R: Real>(
     groups: &Groups<'_, R>,
     config: &Config,
     basis: &Basis,
-    plain: (&PerChannel<R>, &PerChannel<R>),
+    mean: PerChannel<R>,
+    variance: PerChannel<R>,
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
     let candidates = Candidates { groups, config, basis, strengths: &MIXED, is_fixed: false };
-    let Layout { columns, channels, .. } = groups.layout;
-    let coefficients = arena.take(FITS * columns * channels)?;
+    let each = groups.coefficients();
+    let coefficients = arena.take(FITS * each)?;
     let train = arena.take(groups.layout.len())?;
-    let mut judge = Judge::default();
+    let mut errors = Errors::default();
     // Sums of f - b'p over the folds, b from the others.
-    let mut crossed = Errors::<R>::default();
+    let mut crossed = [PerChannel::default(); FITS];
     for (fold, held_out) in groups.each() {
         let train = groups.train(&[fold], train)?;
         candidates.fit(&train, coefficients, arena)?;
-        judge.add(&train, &held_out, groups, coefficients);
-        for channel in 0..channels {
-            for (candidate, crossed) in crossed.iter_mut().enumerate() {
-                let b = row_of(coefficients, candidate, channel, groups);
-                crossed[channel] += held_out.residual_total(channel, b);
-            }
+        errors.add(&train, &held_out, rows(coefficients, each));
+        for (crossed, b) in crossed.iter_mut().zip(rows(coefficients, each)) {
+            *crossed += held_out.residual_totals(b);
         }
     }
     let all = groups.train(&[], train)?;
     let centres = candidates.fit(&all, coefficients, arena)?;
     let (n, inverse) = (all.count(), R::ONE / all.count());
-    let factor = result::press_factor(n);
-    let mut outcome = Outcome { correction: PerChannel::default(), variance: None };
-    let mut variance = PerChannel::default();
-    for channel in 0..channels {
-        let (mean, mean_variance) = (plain.0[channel], plain.1[channel]);
-        let mut corrections = [R::ZERO; FITS];
-        let mut discounts = [R::ZERO; FITS];
-        let each = corrections.iter_mut().zip(&mut discounts).zip(&centres).zip(&crossed).enumerate();
-        for (candidate, (((correction, discount), centre), crossed)) in each {
-            let b = row_of(coefficients, candidate, channel, groups);
-            let whole = all.residual_total(channel, b) * inverse - mean;
-            let share = centre.map_or(R::ZERO, |centre| centre.share());
-            *correction = whole + share * (crossed[channel] * inverse - mean - whole);
-            *discount = trust::surprise(*correction, mean_variance);
-            *discount += centre.map_or(R::ZERO, |centre| centre.discount());
-        }
-        let (plain_weight, weights) = judge.weigh(channel, &candidates, &discounts);
-        let mut total = R::ZERO;
-        for (&weight, &correction) in weights.iter().zip(&corrections) {
-            total += weight * correction;
-        }
-        let mut sum = plain_weight * (judge.plain[channel] * factor + total * total);
-        for (candidate, (&weight, &correction)) in weights.iter().zip(&corrections).enumerate() {
-            let inflation = centres.get(candidate).copied().flatten().map_or(R::ONE, |centre| centre.inflation);
-            let error = judge.errors.get(candidate).map_or(R::ZERO, |errors| errors[channel]);
-            sum += weight * (error * factor * inflation + (correction - total) * (correction - total));
-        }
-        outcome.correction[channel] = total;
-        variance[channel] = sum;
+    let mut corrections = [PerChannel::default(); FITS];
+    let mut discounts = [PerChannel::default(); FITS];
+    let fits = corrections.iter_mut().zip(&mut discounts).zip(&centres).zip(crossed).zip(rows(coefficients, each));
+    for ((((correction, discount), centre), crossed), b) in fits {
+        let whole = all.residual_totals(b) * inverse - mean;
+        let share = centre.map_or(R::ZERO, |centre| centre.share());
+        *correction = whole + (crossed * inverse - mean - whole) * share;
+        let aside = centre.map_or(R::ZERO, |centre| centre.discount());
+        *discount = correction.zip(variance, |correction, variance| trust::surprise(correction, variance) + aside);
     }
-    outcome.variance = Some(variance);
-    Ok(outcome)
+    let (plain_weight, weights) = candidates.weigh(&errors, &discounts);
+    let mixture = Mixture { plain_weight, weights, corrections };
+    let factor = result::press_factor(n);
+    let mut own = errors.fits;
+    for (own, centre) in own.iter_mut().zip(centres) {
+        *own = *own * factor * centre.map_or(R::ONE, |centre| centre.inflation);
+    }
+    let (correction, variance) = mixture.estimate(errors.plain * factor, own);
+    Ok(Outcome { correction, variance: Some(variance) })
 }
 
 /// What is added to the plain `mean`, unbiased, of two folds, or three or more.
@@ -141,7 +127,7 @@ pub(crate) fn nested<R: Real>(
     groups: &Groups<'_, R>,
     config: &Config,
     basis: &Basis,
-    mean: &PerChannel<R>,
+    mean: PerChannel<R>,
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
     // With two folds no third is left to judge a fit: one ridge it is.
@@ -149,62 +135,53 @@ pub(crate) fn nested<R: Real>(
     let fixed = [ridge::single::<R>(config.ridge)];
     let strengths: &[f64] = if is_fixed { &fixed } else { &MIXED };
     let candidates = Candidates { groups, config, basis, strengths, is_fixed };
-    let Layout { columns, channels, .. } = groups.layout;
-    let coefficients = arena.take(FITS * columns * channels)?;
+    let (each, columns) = (groups.coefficients(), groups.layout.columns);
+    let coefficients = arena.take(FITS * each)?;
     let train = arena.take(groups.layout.len())?;
-    let mut sums = PerChannel::<R>::default();
-    let mut press = PerChannel::<R>::default();
+    let (mut sums, mut press) = (PerChannel::default(), PerChannel::default());
     let mut count = R::ZERO;
     for (fold, held_out) in groups.each() {
         count += held_out.count();
-        let mut judge = Judge::default();
+        let mut errors = Errors::default();
         let mut discounts = [R::ZERO; FITS];
         for (other, judging) in groups.each().filter(|&(other, _)| other != fold) {
             let train = groups.train(&[fold, other], train)?;
             let centres = candidates.fit(&train, coefficients, arena)?;
-            judge.add(&train, &judging, groups, coefficients);
+            errors.add(&train, &judging, rows(coefficients, each));
             for (discount, centre) in discounts.iter_mut().zip(centres) {
                 *discount += centre.map_or(R::ZERO, |centre| centre.discount());
             }
         }
-        let discounts = discounts.map(|total| total / judge.fits.max(R::ONE));
+        let discounts = discounts.map(|total| PerChannel::all(total / errors.judged.max(R::ONE)));
         let train = groups.train(&[fold], train)?;
         let centres = candidates.fit(&train, coefficients, arena)?;
-        let inverse = if train.count() > R::ZERO { R::ONE / train.count() } else { R::ZERO };
-        for channel in 0..channels {
-            let (mut inflation, mut weights) = judge.weigh(channel, &candidates, &discounts);
-            for (weight, centre) in weights.iter_mut().zip(&centres) {
-                let (mut share, mut factor) = (R::ONE, R::ONE);
-                if let Some(centre) = centre {
-                    factor = centre.inflation;
-                    share = if is_fixed { R::ONE } else { centre.independence() };
-                }
-                let kept = *weight * share;
-                inflation += *weight - kept + kept * factor;
-                *weight = kept;
+        let (mut inflation, mut weights) = candidates.weigh(&errors, &discounts);
+        for (weights, centre) in weights.iter_mut().zip(centres) {
+            let (mut share, mut factor) = (R::ONE, R::ONE);
+            if let Some(centre) = centre {
+                factor = centre.inflation;
+                share = if is_fixed { R::ONE } else { centre.independence() };
             }
-            // The mixture's coefficients, in place of the first candidate's.
-            for j in 0..columns {
-                let mut mixed = R::ZERO;
-                for (candidate, &weight) in weights.iter().enumerate() {
-                    mixed += weight * at(row_of(coefficients, candidate, channel, groups), j);
-                }
-                if let Some(out) = coefficients.get_mut(channel * columns + j) {
-                    *out = mixed;
-                }
-            }
-            let b = row_of(coefficients, 0, channel, groups);
-            let a = train.residual_total(channel, b) * inverse;
-            sums[channel] += held_out.residual_total(channel, b);
-            press[channel] += held_out.residual_square(channel, a, b) * inflation;
+            let kept = *weights * share;
+            inflation += *weights - kept + kept * factor;
+            *weights = kept;
         }
+        // The mixture's coefficients, in place of the first candidate's.
+        for index in 0..each {
+            let mut mixed = R::ZERO;
+            for (b, weights) in rows(coefficients, each).zip(&weights) {
+                mixed += weights[index / columns.max(1)] * at(b, index);
+            }
+            if let Some(out) = coefficients.get_mut(index) {
+                *out = mixed;
+            }
+        }
+        let b = first(coefficients, each);
+        sums += held_out.residual_totals(b);
+        press += held_out.residual_squares(train.intercepts(b), b) * inflation;
     }
-    let mut correction = PerChannel::default();
-    for ((correction, &sum), &mean) in correction.iter_mut().zip(sums.iter()).zip(mean.iter()) {
-        *correction = sum / count - mean;
-    }
-    let factor = result::press_factor(count);
-    Ok(Outcome { correction, variance: Some(press.map(|press| press * factor)) })
+    let correction = sums.map(|sum| sum / count) - mean;
+    Ok(Outcome { correction, variance: Some(press * result::press_factor(count)) })
 }
 
 impl<R: Real> Candidates<'_, '_, R> {
@@ -219,13 +196,12 @@ impl<R: Real> Candidates<'_, '_, R> {
         let mut arena = arena.scratch();
         let mut centres = [None; FITS];
         coefficients.fill(R::ZERO);
-        let Layout { columns, channels, .. } = self.groups.layout;
-        let penalties = arena.take(columns)?;
+        let penalties = arena.take(self.groups.layout.columns)?;
         if let Some(centred) = Centred::new(train, &mut arena)? {
             // From the training set alone, as the coefficients.
             ridge::penalties(self.config, self.basis, |j| train.mean_square(j), penalties);
-            let candidates = self.strengths.iter().zip(rows_mut(coefficients, columns * channels)).zip(&mut centres);
-            for ((&strength, coefficients), centre) in candidates {
+            let each = rows_mut(coefficients, self.groups.coefficients());
+            for ((&strength, coefficients), centre) in self.strengths.iter().zip(each).zip(&mut centres) {
                 let mut arena = arena.scratch();
                 let penalty = Penalty { strength: R::from_f64(strength), relative: penalties };
                 let factor = centred.normal.solve(penalty, coefficients, &mut arena)?;
@@ -234,57 +210,42 @@ impl<R: Real> Candidates<'_, '_, R> {
         }
         Ok(centres)
     }
+
+    /// The weights of the plain mean and of the candidates; a ridge of the caller's choice gets all.
+    fn weigh(&self, errors: &Errors<R>, discounts: &[PerChannel<R>; FITS]) -> (PerChannel<R>, [PerChannel<R>; FITS]) {
+        if self.is_fixed {
+            return (PerChannel::default(), [R::ONE, R::ZERO].map(PerChannel::all));
+        }
+        Judge::informed(errors.count).weigh(errors.plain, &errors.fits, discounts, FITS)
+    }
 }
 
-fn row_of<'c, R>(coefficients: &'c [R], candidate: usize, channel: usize, groups: &Groups<'_, R>) -> &'c [R] {
-    row_at(coefficients, groups.layout.columns, candidate * groups.layout.channels + channel)
-}
-
-#[derive(Clone, Copy)]
-struct Judge<R> {
-    errors: Errors<R>,
+/// Squared errors on groups that the fits have not seen, of how many samples.
+struct Errors<R> {
+    fits: [PerChannel<R>; FITS],
     plain: PerChannel<R>,
     count: R,
-    /// How many fits were judged.
-    fits: R,
+    /// How many groups.
+    judged: R,
 }
 
-impl<R: Real> Default for Judge<R> {
+impl<R: Real> Default for Errors<R> {
     fn default() -> Self {
-        Self { errors: Default::default(), plain: Default::default(), count: R::ZERO, fits: R::ZERO }
+        Self { fits: Default::default(), plain: Default::default(), count: R::ZERO, judged: R::ZERO }
     }
 }
 
-impl<R: Real> Judge<R> {
-    /// Adds the errors on one group of the fits to another.
-    fn add(&mut self, train: &Sums<&[R]>, judging: &Sums<&[R]>, groups: &Groups<'_, R>, coefficients: &[R]) {
+impl<R: Real> Errors<R> {
+    /// Adds those on one group of the fits to another.
+    fn add<'c>(&mut self, train: &Sums<&[R]>, judging: &Sums<&[R]>, fits: impl Iterator<Item = &'c [R]>)
+    where
+        R: 'c,
+    {
         self.count += judging.count();
-        self.fits += R::ONE;
-        let inverse = if train.count() > R::ZERO { R::ONE / train.count() } else { R::ZERO };
-        for channel in 0..groups.layout.channels {
-            let mean = train.total(channel) * inverse;
-            let error = judging.residual_square(channel, mean, &[]);
-            self.plain[channel] += error;
-            for (candidate, errors) in self.errors.iter_mut().enumerate() {
-                let b = row_of(coefficients, candidate, channel, groups);
-                let a = train.residual_total(channel, b) * inverse;
-                let error = judging.residual_square(channel, a, b);
-                errors[channel] += error;
-            }
+        self.judged += R::ONE;
+        self.plain += judging.residual_squares(train.intercepts(&[]), &[]);
+        for (errors, b) in self.fits.iter_mut().zip(fits) {
+            *errors += judging.residual_squares(train.intercepts(b), b);
         }
-    }
-
-    /// A channel's weights of the plain mean and of the candidates; a ridge of the caller's choice gets all.
-    fn weigh(&self, channel: usize, candidates: &Candidates<'_, '_, R>, discounts: &[R; FITS]) -> (R, [R; FITS]) {
-        let mut weights = [R::ZERO; FITS];
-        if candidates.is_fixed {
-            weights[0] = R::ONE;
-            return (R::ZERO, weights);
-        }
-        let power = self.count * R::from_f64(trust::SHARPNESS);
-        let errors = self.errors.map(|errors| errors[channel]);
-        let prior = trust::prior(self.count);
-        let plain = trust::weigh(self.plain[channel], &errors, discounts, power, self.count, prior, &mut weights);
-        (plain, weights)
     }
 }

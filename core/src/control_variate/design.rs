@@ -7,7 +7,7 @@ use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS};
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
-use crate::matrix::{Panel, Triangle, at, first_mut, from};
+use crate::matrix::{Panel, Triangle, first_mut, from};
 use crate::real::Real;
 
 /// The size of a control function about its mean, in epsilons of its size about zero, that is rounding noise.
@@ -141,24 +141,9 @@ impl<'a, R: Real> Design<'a, R> {
         self.panels.rows().zip(self.values.rows())
     }
 
-    pub(crate) fn column_square(&self, column: usize) -> R {
-        square(&self.panels, column)
-    }
-
-    pub(crate) fn sum_of_squares(&self, channel: usize) -> R {
-        square(&self.values, channel)
-    }
-
-    pub(crate) fn residual_square(&self, channel: usize, b: &[R]) -> R {
-        let mut total = [R::ZERO; LANES];
-        for (panel, values) in self.each_panel() {
-            let mut residual = at(values, channel);
-            for (column, &b) in panel.iter().zip(b) {
-                residual = lanes::minus_product(residual, [b; LANES], *column);
-            }
-            total = lanes::plus_product(total, residual, residual);
-        }
-        lanes::sum(&total)
+    /// The values' sums of squares.
+    pub(crate) fn squares(&self) -> PerChannel<R> {
+        PerChannel::of(self.channels, |channel| square(&self.values, channel))
     }
 
     /// Writes the packed matrix of column products (4.28), and for each channel the products with its values.
@@ -209,7 +194,7 @@ fn put<R: Real>(row: &mut [R], first: usize, sums: &[Lanes<R>; 2]) {
 
 /// The sum of squares of group `index` of every panel.
 #[inline]
-fn square<R: Real>(panels: &Panel<&[Lanes<R>]>, index: usize) -> R {
+pub(crate) fn square<R: Real>(panels: &Panel<&[Lanes<R>]>, index: usize) -> R {
     let mut total = [R::ZERO; LANES];
     for values in panels.column(index) {
         total = lanes::plus_product(total, *values, *values);

@@ -6,15 +6,16 @@ use super::fit::dual::{self, Dual};
 use super::fit::normal::{self, Normal};
 use super::fit::{Fit, Penalty};
 use super::per_channel::PerChannel;
-use super::result;
+use super::result::{self, Outcome};
 use super::ridge::{self, CHOICES, MAX_FITS, MIXED};
-use super::trust::{self, Centre};
+use super::trust::{self, Centre, Judge, Mixture};
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
-use crate::matrix::{at, first_mut, packed_len};
+use crate::matrix::{at, packed_len};
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
+use core::array;
 
 /// Which fits are made and how one is made of them.
 #[derive(Clone, Copy, PartialEq)]
@@ -31,10 +32,7 @@ pub(crate) enum Rule {
 
 pub(crate) struct Blend<R> {
     fits: [Fit<R>; MAX_FITS],
-    /// What each fit adds to the mean.
-    corrections: [PerChannel<R>; MAX_FITS],
-    weights: [PerChannel<R>; MAX_FITS],
-    plain_weight: PerChannel<R>,
+    mixture: Mixture<R, MAX_FITS>,
 }
 
 /// The system that all fits to a design start from.
@@ -121,7 +119,7 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
         for (channel, out) in coefficients.into_iter().flat_map(|all| rows_mut(all, design.columns)).enumerate() {
             for (j, out) in out.iter_mut().enumerate() {
                 *out = R::ZERO;
-                for (kept, weights) in rows(kept, each).zip(&blend.weights) {
+                for (kept, weights) in rows(kept, each).zip(&blend.mixture.weights) {
                     let b = at(kept, channel * design.columns + j);
                     *out += weights[channel] * b;
                 }
@@ -131,52 +129,36 @@ impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
     }
 
     fn weigh(&self, rule: Rule, fits: [Fit<R>; MAX_FITS], used: usize) -> Blend<R> {
-        let corrections =
+        let mut corrections =
             fits.map(|fit| if let Rule::LeastSquares(_) = rule { fit.in_sample } else { fit.leave_one_out });
-        let (weights, plain_weight) = Default::default();
-        let mut blend = Blend { fits, corrections, weights, plain_weight };
         let plain = plain_press(self.design);
         if !matches!(rule, Rule::Robust | Rule::Fold) {
             let best = if used > 1 { best_of(&fits, &plain) } else { 0 };
-            if let Some(weights) = blend.weights.get_mut(best) {
-                *weights = PerChannel([R::ONE; Config::MAX_CHANNELS]);
-            }
-            return blend;
+            let weights = array::from_fn(|fit| PerChannel::all(if fit == best { R::ONE } else { R::ZERO }));
+            return Blend { fits, mixture: Mixture { plain_weight: PerChannel::default(), weights, corrections } };
         }
         let n = R::from_usize(self.design.n);
-        let centres = fits.map(|fit| Centre::new(fit.eccentricity, fit.freedom, n));
-        let power = n * R::from_f64(trust::SHARPNESS);
-        let shares = centres.map(|centre| centre.share());
-        for ((correction, fit), share) in blend.corrections.iter_mut().zip(&fits).zip(shares) {
-            for (all, one) in correction.iter_mut().zip(fit.in_sample.iter()) {
-                *all = *one + share * (*all - *one);
-            }
-        }
-        let discounts = centres.map(|centre| centre.discount());
-        for channel in 0..self.design.channels {
-            let press = fits.map(|fit| fit.press[channel]);
-            let plain = plain[channel];
-            let variance = plain * result::press_factor(n);
-            let mut discounts = discounts;
-            for (discount, correction) in discounts.iter_mut().zip(&blend.corrections) {
-                *discount += trust::surprise(correction[channel], variance);
-            }
-            let mut weights = [R::ZERO; MAX_FITS];
-            let each = first_mut(&mut weights, used);
-            let mut plain_weight = trust::weigh(plain, &press, &discounts, power, n, trust::prior(n), each);
+        let variance = plain * result::press_factor(n);
+        let mut discounts = [PerChannel::default(); MAX_FITS];
+        let mut parts = [R::ONE; MAX_FITS];
+        let each = fits.iter().zip(&mut corrections).zip(&mut discounts).zip(&mut parts);
+        for (((fit, correction), discount), part) in each {
+            let centre = Centre::new(fit.eccentricity, fit.freedom, n);
+            *correction = fit.in_sample + (*correction - fit.in_sample) * centre.share();
+            let aside = centre.discount();
+            *discount = correction.zip(variance, |correction, variance| aside + trust::surprise(correction, variance));
             if rule == Rule::Fold {
-                for (weight, centre) in weights.iter_mut().zip(&centres) {
-                    let kept = *weight * centre.independence();
-                    plain_weight += *weight - kept;
-                    *weight = kept;
-                }
-            }
-            blend.plain_weight[channel] = plain_weight;
-            for (slot, weight) in blend.weights.iter_mut().zip(weights) {
-                slot[channel] = weight;
+                *part = centre.independence();
             }
         }
-        blend
+        let press = fits.map(|fit| fit.press);
+        let (mut plain_weight, mut weights) = Judge::informed(n).weigh(plain, &press, &discounts, used);
+        for (weights, part) in weights.iter_mut().zip(parts) {
+            let kept = *weights * part;
+            plain_weight += *weights - kept;
+            *weights = kept;
+        }
+        Blend { fits, mixture: Mixture { plain_weight, weights, corrections } }
     }
 }
 
@@ -198,43 +180,21 @@ fn best_of<R: Real>(fits: &[Fit<R>; MAX_FITS], plain: &PerChannel<R>) -> usize {
 }
 
 impl<R: Real> Blend<R> {
-    /// What the mixture adds to the plain mean.
-    pub(crate) fn correction(&self) -> PerChannel<R> {
-        let mut total = PerChannel::default();
-        for (correction, weights) in self.corrections.iter().zip(&self.weights) {
-            for ((total, &correction), &weight) in total.iter_mut().zip(correction.iter()).zip(weights.iter()) {
-                *total += weight * correction;
-            }
-        }
-        total
-    }
-
-    /// The variance of the mixture's estimate, which adds `total` to the mean: of what it is made of, and of what its
-    /// parts disagree in.
-    pub(crate) fn variance(&self, design: &Design<'_, R>, total: &PerChannel<R>) -> Option<PerChannel<R>> {
+    /// What is added to the plain mean, and the variance of that.
+    pub(crate) fn outcome(&self, design: &Design<'_, R>) -> Outcome<R> {
         let n = R::from_usize(design.n);
         let factor = result::press_factor(n);
-        let plain = plain_press(design);
-        let mut variance = PerChannel::default();
-        for channel in 0..design.channels {
-            let spread = |value: R| (value - total[channel]) * (value - total[channel]);
-            let mut sum = self.plain_weight[channel] * (plain[channel] * factor + spread(R::ZERO));
-            let fits = self.fits.iter().zip(&self.corrections).zip(&self.weights);
-            for ((fit, correction), weights) in fits {
-                let own = fit.influence[channel] * factor * trust::few_left(fit.freedom, n);
-                sum += weights[channel] * (own + spread(correction[channel]));
-            }
-            variance[channel] = sum;
-        }
-        (design.n > 1).then_some(variance)
+        let own = |fit: Fit<R>| fit.influence * factor * trust::few_left(fit.freedom, n);
+        let (correction, variance) = self.mixture.estimate(plain_press(design) * factor, self.fits.map(own));
+        Outcome { correction, variance: (design.n > 1).then_some(variance) }
     }
 
     /// What the error of the mixture's coefficients adds to the variance of an estimate that is corrected by them, as a
     /// factor, of fits to `n` samples.
-    pub(crate) fn inflation(&self, channel: usize, n: R) -> R {
-        let fits = self.fits.iter().zip(&self.weights);
-        fits.fold(self.plain_weight[channel], |sum, (fit, weights)| {
-            sum + weights[channel] * Centre::new(fit.eccentricity, fit.freedom, n).inflation
+    pub(crate) fn inflation(&self, n: R) -> PerChannel<R> {
+        let fits = self.fits.iter().zip(&self.mixture.weights);
+        fits.fold(self.mixture.plain_weight, |sum, (fit, &weights)| {
+            sum + weights * Centre::new(fit.eccentricity, fit.freedom, n).inflation
         })
     }
 }
@@ -245,9 +205,5 @@ pub(crate) fn plain_press<R: Real>(design: &Design<'_, R>) -> PerChannel<R> {
     let n = R::from_usize(design.n);
     // f_i minus the mean of the others is n / (n - 1) times f_i minus the mean.
     let factor = if design.n > 1 { n / (n - R::ONE) } else { R::ZERO };
-    let mut press = PerChannel::default();
-    for channel in 0..design.channels {
-        press[channel] = design.sum_of_squares(channel) * factor * factor;
-    }
-    press
+    design.squares() * factor * factor
 }

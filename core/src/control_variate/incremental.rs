@@ -51,58 +51,42 @@ pub(crate) fn len(layout: Layout) -> usize {
 /// The mean of the corrected values.
 pub(crate) fn outcome<R: Real>(progress: &Progress<R>, samples: u64) -> Outcome<R> {
     let n = R::from_f64(samples as f64);
-    let mut correction = PerChannel::default();
-    let mut variance = PerChannel::default();
-    for (channel, (correction, variance)) in correction.iter_mut().zip(variance.iter_mut()).enumerate() {
-        let total = progress.total[channel];
-        *correction = total / n;
-        *variance = sums::spread(progress.square[channel], total, *correction) / result::mean_divisor(n);
-    }
+    let correction = progress.total.map(|total| total / n);
+    let spread = sums::spread(progress.square, progress.total, correction);
+    let variance = spread.map(|spread| spread / result::mean_divisor(n));
     Outcome { correction, variance: (samples > 1).then_some(variance) }
 }
 
 impl<R: Real> Progress<R> {
     /// Adds a sample's value, corrected by the fits so far.
     pub(crate) fn correct(&mut self, ridge: Ridge, coefficients: &[R], p: &[R], f: &[R]) {
-        let fitted = self.next_fit > 0;
-        let channels = f.len();
-        for (channel, &f) in f.iter().enumerate() {
-            let mut slopes = [R::ZERO; FITS];
-            for (fit, slope) in slopes.iter_mut().enumerate() {
-                let b = row_at(coefficients, p.len(), fit * channels + channel);
-                *slope = b.iter().zip(p).fold(R::ZERO, |sum, (&b, &p)| sum + b * p);
-            }
-            let mut value = f;
-            if fitted {
-                let errors = self.errors.map(|errors| errors[channel]);
-                let weights = match ridge {
-                    Ridge::Fixed(_) => [R::ONE, R::ZERO],
-                    Ridge::Default | Ridge::Auto => {
-                        let n = self.predictions;
-                        let power = n * R::from_f64(SHARPNESS);
-                        let plain = self.plain_error[channel];
-                        let mut weights = [R::ZERO; FITS];
-                        let prior = R::from_f64(trust::PRIOR);
-                        trust::weigh(plain, &errors, &[], power, n, prior, &mut weights);
-                        weights
-                    }
-                };
-                for (&weight, &slope) in weights.iter().zip(&slopes) {
-                    value -= weight * slope;
+        let (channels, f) = (f.len(), PerChannel::from_row(f));
+        let mut value = f;
+        if self.next_fit > 0 {
+            let weights = match ridge {
+                Ridge::Fixed(_) => [R::ONE, R::ZERO].map(PerChannel::all),
+                Ridge::Default | Ridge::Auto => {
+                    let n = self.predictions;
+                    let judge = trust::Judge { n, power: n * R::from_f64(SHARPNESS), prior: R::from_f64(trust::PRIOR) };
+                    judge.weigh(self.plain_error, &self.errors, &Default::default(), FITS).1
                 }
-                for ((errors, intercepts), &slope) in self.errors.iter_mut().zip(&self.intercepts).zip(&slopes) {
-                    let error = f - intercepts[channel] - slope;
-                    errors[channel] += error * error;
-                }
-                let error = f - self.mean[channel];
-                self.plain_error[channel] += error * error;
+            };
+            let fits = self.errors.iter_mut().zip(&self.intercepts).zip(weights).enumerate();
+            for (fit, ((errors, &intercepts), weights)) in fits {
+                let slopes = PerChannel::of(channels, |channel| {
+                    let b = row_at(coefficients, p.len(), fit * channels + channel);
+                    b.iter().zip(p).fold(R::ZERO, |sum, (&b, &p)| sum + b * p)
+                });
+                value = value - weights * slopes;
+                let error = f - intercepts - slopes;
+                *errors += error * error;
             }
-            self.total[channel] += value;
-            self.square[channel] += value * value;
-        }
-        if fitted {
+            let error = f - self.mean;
+            self.plain_error += error * error;
             self.predictions += R::ONE;
         }
+        self.total += value;
+        self.square += value * value;
     }
 
     /// Renews the fits if they are due.
@@ -128,9 +112,7 @@ impl<R: Real> Progress<R> {
             for ((coefficients, strength), intercepts) in fits {
                 let penalty = Penalty { strength, relative: penalties };
                 centred.normal.solve(penalty, coefficients, &mut arena.scratch()).ok()?;
-                for (channel, b) in rows_mut(coefficients, columns).enumerate() {
-                    intercepts[channel] = centred.intercept(channel, b);
-                }
+                *intercepts = centred.intercepts(coefficients);
             }
             self.mean = centred.value_means;
             self.next_fit = samples.saturating_add((samples / 16).max(1));
@@ -144,13 +126,11 @@ impl<R: Real> Progress<R> {
     /// Adds another estimate's corrected values, of `samples` values that were changed since.
     pub(crate) fn merge(&mut self, other: &Self, change: &Change<R>, samples: u64) {
         let n = R::from_f64(samples as f64);
-        for (channel, (total, square)) in self.total.iter_mut().zip(self.square.iter_mut()).enumerate() {
-            *total += change.total(channel, other.total[channel], n);
-            *square += change.square(channel, other.square[channel], other.total[channel], n);
-            let squares = self.errors.iter_mut().chain([&mut self.plain_error]);
-            for (ours, theirs) in squares.zip(other.errors.iter().chain([&other.plain_error])) {
-                ours[channel] += change.square(channel, theirs[channel], R::ZERO, R::ZERO);
-            }
+        self.total += change.totals(other.total, n);
+        self.square += change.squares(other.square, other.total, n);
+        let errors = self.errors.iter_mut().chain([&mut self.plain_error]);
+        for (ours, &theirs) in errors.zip(other.errors.iter().chain([&other.plain_error])) {
+            *ours += change.squares(theirs, PerChannel::default(), R::ZERO);
         }
         self.predictions += other.predictions;
     }
@@ -158,15 +138,13 @@ impl<R: Real> Progress<R> {
     /// Changes the values of `samples` samples, and with them the coefficients in front of `rest`.
     pub(crate) fn change(&mut self, change: &Change<R>, samples: u64, rest: &mut [R], layout: Layout) {
         let n = R::from_f64(samples as f64);
-        for (channel, (total, square)) in self.total.iter_mut().zip(self.square.iter_mut()).enumerate() {
-            *square = change.square(channel, *square, *total, n);
-            *total = change.total(channel, *total, n);
-            for value in self.intercepts.iter_mut().chain([&mut self.mean]) {
-                value[channel] = change.total(channel, value[channel], R::ONE);
-            }
-            for error in self.errors.iter_mut().chain([&mut self.plain_error]) {
-                error[channel] = change.square(channel, error[channel], R::ZERO, R::ZERO);
-            }
+        self.square = change.squares(self.square, self.total, n);
+        self.total = change.totals(self.total, n);
+        for value in self.intercepts.iter_mut().chain([&mut self.mean]) {
+            *value = change.totals(*value, R::ONE);
+        }
+        for error in self.errors.iter_mut().chain([&mut self.plain_error]) {
+            *error = change.squares(*error, PerChannel::default(), R::ZERO);
         }
         for fit in rows_mut(rest, layout.columns * layout.channels).take(FITS) {
             for (coefficients, &factor) in rows_mut(fit, layout.columns).zip(change.factors.iter()) {

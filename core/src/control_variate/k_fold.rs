@@ -15,7 +15,7 @@ use super::sums;
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::{self, LANES};
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 
@@ -41,9 +41,7 @@ pub(crate) fn estimate<R: Real>(
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
     let channels = whole.channels;
-    let mut totals = PerChannel::<R>::default();
-    let mut squares = PerChannel::<R>::default();
-    let mut inflations = PerChannel::default();
+    let [mut totals, mut squares, mut inflations] = [PerChannel::default(); 3];
     let coefficients = arena.take(whole.columns * channels)?;
     for index in 0..config.fold_count().get() {
         let fold = Fold::new(index, config.fold_count(), reader.len());
@@ -57,35 +55,31 @@ pub(crate) fn estimate<R: Real>(
             other => Some(other?),
         };
         coefficients.fill(R::ZERO);
-        let mut inflation = [R::ONE; Config::MAX_CHANNELS];
+        let mut inflation = PerChannel::all(R::ONE);
         if let Some(train) = train.filter(|train| train.n > 1) {
             let plan = Plan::new(config, basis.columns(), train.n)?;
             let fitter = Fitter::new(&train, config, basis, plan.dual, &mut arena)?;
             let rule = if config.ridge == Ridge::Default { Rule::Fold } else { Rule::Single(config.ridge) };
             let blend = fitter.solve(rule, Some(coefficients), &mut arena)?;
-            for (channel, inflation) in inflation.iter_mut().enumerate().take(channels) {
-                *inflation = blend.inflation(channel, R::from_usize(train.n));
-            }
+            inflation = blend.inflation(R::from_usize(train.n));
             // Everything meets in the units of all samples, which are the largest.
-            for (coefficients, (from, to)) in
-                rows_mut(coefficients, whole.columns).zip(train.units.iter().zip(&whole.units))
-            {
-                for value in coefficients {
-                    *value = to.converted(*value, from);
-                }
+            let units = train.units.iter().zip(&whole.units);
+            for (coefficients, (from, to)) in rows_mut(coefficients, whole.columns).zip(units) {
+                coefficients.iter_mut().for_each(|value| *value = to.converted(*value, from));
             }
         }
-        for (total, inflation) in inflations.iter_mut().zip(inflation) {
-            *total += R::from_usize(held_out.n) * inflation;
-        }
+        inflations += inflation * R::from_usize(held_out.n);
         for (panel_index, (panel, values)) in held_out.each_panel().enumerate() {
             let used = held_out.n.saturating_sub(panel_index * LANES);
-            for (channel, (values, coefficients)) in values.iter().zip(rows(coefficients, whole.columns)).enumerate() {
-                let (Some(from), Some(to)) = (held_out.units.get(channel), whole.units.get(channel)) else {
-                    continue;
-                };
+            let units = held_out.units.iter().zip(&whole.units);
+            let each = values.iter().zip(rows(coefficients, whole.columns)).zip(units).enumerate();
+            for (channel, ((values, coefficients), (from, to))) in each {
                 // Relative to the whole design's mean.
-                let residuals = residuals(panel, &values.map(|value| to.relative(value, from)), coefficients);
+                let mut residuals = values.map(|value| to.relative(value, from));
+                // f - b'p, where the columns' integrals are zero.
+                for (column, &b) in panel.iter().zip(coefficients) {
+                    residuals = lanes::minus_product(residuals, [b; LANES], *column);
+                }
                 for &residual in residuals.iter().take(used) {
                     totals[channel] += residual;
                     squares[channel] += residual * residual;
@@ -94,17 +88,10 @@ pub(crate) fn estimate<R: Real>(
         }
     }
     let n = R::from_usize(whole.n);
-    let mut outcome = Outcome { correction: PerChannel::default(), variance: None };
-    let mut variance = PerChannel::default();
-    for channel in 0..channels {
-        let (total, mean) = (totals[channel], totals[channel] / n);
-        outcome.correction[channel] = mean;
-        let spread = sums::spread(squares[channel], total, mean);
-        // Not `mean_divisor`: with that, the compiler divides by zero in lanes of a vector that nobody reads.
-        variance[channel] = spread * inflations[channel] / (n * n * (n - R::ONE).max(R::ONE));
-    }
-    outcome.variance = (whole.n > 1).then_some(variance);
-    Ok(outcome)
+    let correction = totals.map(|total| total / n);
+    let spread = sums::spread(squares, totals, correction) * inflations;
+    let variance = spread.map(|spread| spread / (n * n * (n - R::ONE).max(R::ONE)));
+    Ok(Outcome { correction, variance: (whole.n > 1).then_some(variance) })
 }
 
 /// [`Design::load`], of which the two callers share one copy.
@@ -118,16 +105,4 @@ fn load<'a, R: Real>(
     arena: &mut Arena<'a, R>,
 ) -> Result<Design<'a, R>, Error> {
     Design::load(reader, basis, columns, subset, centre, arena)
-}
-
-/// f - b'p, where the columns' integrals are zero.
-#[inline]
-fn residuals<R: Real>(panel: &[Lanes<R>], values: &Lanes<R>, coefficients: &[R]) -> Lanes<R> {
-    let mut residuals = *values;
-    for (column, &weight) in panel.iter().zip(coefficients) {
-        for (residual, &value) in residuals.iter_mut().zip(column) {
-            *residual -= weight * value;
-        }
-    }
-    residuals
 }

@@ -1,7 +1,10 @@
-//! A number for each channel; those of channels that are not there are zero and ignored.
+//! A number for each channel, and arithmetic channel by channel; those of channels that are not there are zero and
+//! ignored.
 
 use super::config::Config;
-use core::ops::{Deref, DerefMut, Index, IndexMut};
+use crate::matrix::copy;
+use crate::real::Real;
+use core::ops::{Add, AddAssign, Deref, DerefMut, Index, IndexMut, Mul, Sub};
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PerChannel<R>(pub(crate) [R; Config::MAX_CHANNELS]);
@@ -10,6 +13,74 @@ impl<R> PerChannel<R> {
     #[inline]
     pub(crate) fn map<T>(self, f: impl FnMut(R) -> T) -> PerChannel<T> {
         PerChannel(self.0.map(f))
+    }
+}
+
+impl<R: Real> PerChannel<R> {
+    /// The same for all.
+    #[inline]
+    pub(crate) fn all(value: R) -> Self {
+        Self([value; Config::MAX_CHANNELS])
+    }
+
+    /// What `f` says of each of so many channels.
+    #[inline]
+    pub(crate) fn of(channels: usize, f: impl Fn(usize) -> R) -> Self {
+        let mut all = Self::default();
+        for (channel, out) in all.iter_mut().enumerate().take(channels) {
+            *out = f(channel);
+        }
+        all
+    }
+
+    /// A row that has one number for each channel.
+    #[inline]
+    pub(crate) fn from_row(row: &[R]) -> Self {
+        let mut all = Self::default();
+        copy(&mut *all, row);
+        all
+    }
+
+    /// What `f` makes of two numbers of each channel.
+    #[inline]
+    pub(crate) fn zip(mut self, other: Self, f: impl Fn(R, R) -> R) -> Self {
+        for (a, b) in self.iter_mut().zip(other.0) {
+            *a = f(*a, b);
+        }
+        self
+    }
+}
+
+macro_rules! operator {
+    ($trait:ident $name:ident) => {
+        impl<R: Real> $trait for PerChannel<R> {
+            type Output = Self;
+
+            #[inline]
+            fn $name(self, other: Self) -> Self {
+                self.zip(other, R::$name)
+            }
+        }
+    };
+}
+
+operator! { Add add }
+operator! { Sub sub }
+operator! { Mul mul }
+
+impl<R: Real> Mul<R> for PerChannel<R> {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, factor: R) -> Self {
+        self.map(|value| value * factor)
+    }
+}
+
+impl<R: Real> AddAssign for PerChannel<R> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
     }
 }
 

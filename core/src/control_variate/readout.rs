@@ -89,11 +89,11 @@ impl<R: Real> Accumulator<R> {
         let k_fold = self.method == Method::KFold;
         // One fold to fit to and one to judge by, and for K-fold one to correct.
         let needed = if k_fold && !matches!(config.ridge, Ridge::Fixed(_)) { groups.folds.min(3) } else { 2 };
-        let Some(variance) = total.variance.as_ref().filter(|_| groups.has(needed)) else { return Ok(total.plain()) };
+        let Some(variance) = total.variance.filter(|_| groups.has(needed)) else { return Ok(total.plain()) };
         if k_fold {
-            cross_fit::nested(&groups, config, &basis, &total.mean, arena)
+            cross_fit::nested(&groups, config, &basis, total.mean, arena)
         } else {
-            cross_fit::pooled(&groups, config, &basis, (&total.mean, variance), arena)
+            cross_fit::pooled(&groups, config, &basis, total.mean, variance, arena)
         }
     }
 

@@ -26,13 +26,8 @@ impl<R: Real> Outcome<R> {
 
 /// The variance of the plain mean, None for one sample.
 pub(crate) fn plain_variance<R: Real>(design: &Design<'_, R>) -> Option<PerChannel<R>> {
-    let n = R::from_usize(design.n);
-    let factor = R::ONE / mean_divisor(n);
-    let mut variance = PerChannel::default();
-    for (channel, variance) in variance.iter_mut().enumerate().take(design.channels) {
-        *variance = design.sum_of_squares(channel) * factor;
-    }
-    (design.n > 1).then_some(variance)
+    let factor = R::ONE / mean_divisor(R::from_usize(design.n));
+    (design.n > 1).then_some(design.squares() * factor)
 }
 
 /// What a sum of squared deviations of `n` values is divided by to be the variance of their mean; for one, which has
@@ -69,7 +64,7 @@ pub(crate) fn residual_variance<R: Real>(
     }
     let (all, square) = (n - R::ONE, freedom * freedom);
     let factor = Centre::new(eccentricity, columns, n).inflation * all * all * all / (n * square * square);
-    Some(residual.map(|residual| residual * factor))
+    Some(residual * factor)
 }
 
 /// What an [`Estimate`] is put together from, besides the outcome.
@@ -98,36 +93,32 @@ impl<R: Real> Summary<R> {
 ///
 /// A correction that left the type's range, as control functions of extreme size can make it, is none: the plain mean.
 pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estimate {
-    let mut mean = [0.0f64; Config::MAX_CHANNELS];
-    let mut error = [0.0f64; Config::MAX_CHANNELS];
+    let (mut mean, mut error) = (PerChannel::<f64>::default(), PerChannel::<f64>::default());
     let (mut gain, mut counted) = (0.0, 0.0);
     for (channel, unit) in summary.units.iter().enumerate().take(summary.channels) {
-        if let (Some(mean), Some(error)) = (mean.get_mut(channel), error.get_mut(channel)) {
-            let correction = outcome.correction[channel];
-            let is_usable = correction.is_finite();
-            *mean = unit.value(if is_usable { correction } else { R::ZERO });
-            *error = f64::INFINITY;
-            if let (Some(variance), Some(plain)) = (&outcome.variance, &summary.plain_variance) {
-                let plain = plain[channel];
-                let variance = variance[channel];
-                // Of what is no number all that is known is the mean's.
-                let is_known = is_usable && (variance >= R::ZERO || variance < R::ZERO);
-                let variance = if is_known { variance.max(R::ZERO) } else { plain };
-                *error = unit.length(variance.sqrt());
-                if plain > R::ZERO {
-                    // Behind a black box, so that no compiler divides by zero ahead of the decision.
-                    gain += (variance / black_box(plain)).to_f64();
-                    counted += 1.0;
-                }
+        let correction = outcome.correction[channel];
+        let is_usable = correction.is_finite();
+        mean[channel] = unit.value(if is_usable { correction } else { R::ZERO });
+        error[channel] = f64::INFINITY;
+        if let (Some(variance), Some(plain)) = (&outcome.variance, &summary.plain_variance) {
+            let (variance, plain) = (variance[channel], plain[channel]);
+            // Of what is no number all that is known is the mean's.
+            let is_known = is_usable && (variance >= R::ZERO || variance < R::ZERO);
+            let variance = if is_known { variance.max(R::ZERO) } else { plain };
+            error[channel] = unit.length(variance.sqrt());
+            if plain > R::ZERO {
+                // Behind a black box, so that no compiler divides by zero ahead of the decision.
+                gain += (variance / black_box(plain)).to_f64();
+                counted += 1.0;
             }
         }
     }
     if let Some((colour, luminance)) = summary.colour {
         // (4.3): the colour of the plain mean, with the regressed luminance.
-        let ([regressed, ..], [deviation, ..]) = (mean, error);
+        let (regressed, deviation) = (mean[0], error[0]);
         let divisor = black_box(if luminance == 0.0 { 1.0 } else { luminance });
         let ratio = if luminance == 0.0 { 1.0 } else { regressed / divisor };
-        for ((mean, error), colour) in mean.iter_mut().zip(&mut error).zip(colour) {
+        for ((mean, error), colour) in mean.iter_mut().zip(error.iter_mut()).zip(colour) {
             *mean = ratio * colour;
             // One sample's error is unknown in every channel, also where its colour is 0.
             if deviation.is_finite() {
@@ -138,8 +129,8 @@ pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estim
         }
     }
     Estimate {
-        mean: mean.map(saturate),
-        std_error: error.map(standard_error),
+        mean: mean.0.map(saturate),
+        std_error: error.0.map(standard_error),
         samples: summary.samples.min(u32::MAX.into()) as u32,
         gain: if counted > 0.0 { (gain / counted) as f32 } else { 1.0 },
     }

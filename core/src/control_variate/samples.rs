@@ -254,9 +254,7 @@ impl<'a> Reader<'a> {
                 let sample = self.get(index);
                 sample.put(lane, x, h);
                 for (f, value) in f.iter_mut().zip(self.values::<R>(&sample)) {
-                    if let Some(f) = f.get_mut(lane) {
-                        *f = value;
-                    }
+                    f[lane % LANES] = value;
                 }
                 lane += 1;
             }
@@ -377,14 +375,10 @@ impl Sample<'_> {
         h: &mut [Lanes<R, L>; Config::MAX_CONTROLS],
     ) {
         for (x, &u) in x.iter_mut().zip(self.u) {
-            if let Some(x) = x.get_mut(lane) {
-                *x = R::from_f32(u);
-            }
+            x[lane % L] = R::from_f32(u);
         }
         for (h, &value) in h.iter_mut().zip(self.h) {
-            if let Some(h) = h.get_mut(lane) {
-                *h = R::from_f32(value);
-            }
+            h[lane % L] = R::from_f32(value);
         }
     }
 }

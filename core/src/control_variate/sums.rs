@@ -9,7 +9,7 @@ use super::per_channel::PerChannel;
 use crate::basis::MAX_TERMS;
 use crate::error::Error;
 use crate::linalg::givens;
-use crate::matrix::{Panel, Triangle, packed_len};
+use crate::matrix::{Panel, Triangle, copy, packed_len};
 use crate::real::Real;
 use crate::rows::{at, first_mut, row_at, row_at_mut};
 use core::ops::{Deref, DerefMut};
@@ -56,11 +56,7 @@ impl Layout {
     /// # Errors
     /// [`Error::Memory`] if there are too few numbers.
     pub(crate) fn group<'a, R>(&self, sums: &'a [R], index: usize) -> Result<Sums<&'a [R]>, Error> {
-        let (gram, rest) =
-            row_at(sums, self.len(), index).split_at_checked(packed_len(self.terms())).ok_or(Error::Memory)?;
-        let (rhs, square) = rest.split_at_checked(self.terms() * self.channels).ok_or(Error::Memory)?;
-        let (gram, rhs) = (Triangle::new(gram, self.terms())?, Panel::new(rhs, self.channels));
-        Ok(Sums { form: self.form, gram, rhs, square })
+        self.parts(row_at(sums, self.len(), index), <[R]>::split_at_checked)
     }
 
     /// Group `index`, to be changed.
@@ -69,9 +65,17 @@ impl Layout {
     /// As for [`Layout::group`].
     #[inline]
     pub(crate) fn group_mut<'a, R>(&self, sums: &'a mut [R], index: usize) -> Result<Sums<&'a mut [R]>, Error> {
-        let group = row_at_mut(sums, self.len(), index);
-        let (gram, rest) = group.split_at_mut_checked(packed_len(self.terms())).ok_or(Error::Memory)?;
-        let (rhs, square) = rest.split_at_mut_checked(self.terms() * self.channels).ok_or(Error::Memory)?;
+        self.parts(row_at_mut(sums, self.len(), index), <[R]>::split_at_mut_checked)
+    }
+
+    #[inline]
+    fn parts<R, S: Deref<Target = [R]>>(
+        &self,
+        group: S,
+        split: impl Fn(S, usize) -> Option<(S, S)>,
+    ) -> Result<Sums<S>, Error> {
+        let (gram, rest) = split(group, packed_len(self.terms())).ok_or(Error::Memory)?;
+        let (rhs, square) = split(rest, self.terms() * self.channels).ok_or(Error::Memory)?;
         let (gram, rhs) = (Triangle::new(gram, self.terms())?, Panel::new(rhs, self.channels));
         Ok(Sums { form: self.form, gram, rhs, square })
     }
@@ -93,18 +97,21 @@ impl<R: Real, S: Deref<Target = [R]>> Sums<S> {
         if self.form == Form::Factor { first * first } else { first }
     }
 
-    /// The sum of the values of a channel.
-    pub(crate) fn total(&self, channel: usize) -> R {
-        let first = self.rhs.at(0, channel);
-        if self.form == Form::Factor { self.gram.at(0, 0) * first } else { first }
+    /// The sums of the values.
+    pub(crate) fn totals(&self) -> PerChannel<R> {
+        let of_first = if self.form == Form::Factor { self.gram.at(0, 0) } else { R::ONE };
+        PerChannel::of(self.channels(), |channel| of_first * self.rhs.at(0, channel))
     }
 
-    pub(crate) fn square(&self, channel: usize) -> R {
-        let last = at(&self.square, channel);
-        if self.form == Form::Products {
-            return last;
-        }
-        self.rhs.column(channel).fold(last, |sum, &z| sum + z * z)
+    /// The sums of their squares.
+    pub(crate) fn squares(&self) -> PerChannel<R> {
+        PerChannel::of(self.channels(), |channel| {
+            let last = at(&self.square, channel);
+            if self.form == Form::Products {
+                return last;
+            }
+            self.rhs.column(channel).fold(last, |sum, &z| sum + z * z)
+        })
     }
 
     pub(crate) fn column_total(&self, j: usize) -> R {
@@ -124,24 +131,39 @@ impl<R: Real, S: Deref<Target = [R]>> Sums<S> {
         self.column_square(j) / self.count()
     }
 
-    /// The sum of f - b'p over the samples.
-    pub(crate) fn residual_total(&self, channel: usize, b: &[R]) -> R {
-        b.iter().enumerate().fold(self.total(channel), |total, (j, &b)| total - b * self.column_total(j))
+    /// The sums of f - b'p over the samples, for coefficients b, a row for each channel.
+    pub(crate) fn residual_totals(&self, b: &[R]) -> PerChannel<R> {
+        let (totals, columns) = (self.totals(), self.layout().columns);
+        PerChannel::of(self.channels(), |channel| {
+            let b = row_at(b, columns, channel).iter().enumerate();
+            b.fold(totals[channel], |total, (j, &b)| total - b * self.column_total(j))
+        })
     }
 
-    /// The sum of (f - a - b'p)^2 over the samples: theta'G theta - 2 theta'r + s with theta = (a, b).
-    pub(crate) fn residual_square(&self, channel: usize, a: R, b: &[R]) -> R {
-        let theta = |j: usize| if j == 0 { a } else { at(b, j - 1) };
-        let mut total = self.square(channel);
-        for (j, row) in self.gram.rows().enumerate().take(b.len() + 1) {
-            let mut product = R::ZERO;
-            for (k, &value) in row.iter().enumerate() {
-                product += theta(k) * if k == j { value } else { value + value };
+    /// The intercepts that go with those coefficients; zero without a sample.
+    pub(crate) fn intercepts(&self, b: &[R]) -> PerChannel<R> {
+        let inverse = if self.count() > R::ZERO { R::ONE / self.count() } else { R::ZERO };
+        self.residual_totals(b) * inverse
+    }
+
+    /// The sums of (f - a - b'p)^2 over the samples: theta'G theta - 2 theta'r + s with theta = (a, b); of a alone
+    /// without any b.
+    pub(crate) fn residual_squares(&self, a: PerChannel<R>, b: &[R]) -> PerChannel<R> {
+        let (squares, columns) = (self.squares(), self.layout().columns);
+        PerChannel::of(self.channels(), |channel| {
+            let b = row_at(b, columns, channel);
+            let theta = |j: usize| if j == 0 { a[channel] } else { at(b, j - 1) };
+            let mut total = squares[channel];
+            for (j, row) in self.gram.rows().enumerate().take(b.len() + 1) {
+                let mut product = R::ZERO;
+                for (k, &value) in row.iter().enumerate() {
+                    product += theta(k) * if k == j { value } else { value + value };
+                }
+                let rhs = self.rhs.at(j, channel);
+                total += theta(j) * (product - rhs - rhs);
             }
-            let rhs = self.rhs.at(j, channel);
-            total += theta(j) * (product - rhs - rhs);
-        }
-        not_below_zero(total)
+            not_below_zero(total)
+        })
     }
 }
 
@@ -172,13 +194,9 @@ impl<R: Real, S: DerefMut<Target = [R]>> Sums<S> {
         if self.form == Form::Factor {
             return self.merge_factor(other, change);
         }
-        for (channel, square) in self.square.iter_mut().enumerate() {
-            *square += change.square(channel, other.square(channel), other.total(channel), other.count());
-        }
+        add(&mut self.square, &*change.squares(other.squares(), other.totals(), other.count()));
         for (j, (ours, theirs)) in self.rhs.rows_mut().zip(other.rhs.rows()).enumerate() {
-            for (channel, (out, &value)) in ours.iter_mut().zip(theirs).enumerate() {
-                *out += change.total(channel, value, other.gram.at(j, 0));
-            }
+            add(ours, &*change.totals(PerChannel::from_row(theirs), other.gram.at(j, 0)));
         }
         add(self.gram.entries_mut(), other.gram.entries());
     }
@@ -191,33 +209,23 @@ impl<R: Real, S: DerefMut<Target = [R]>> Sums<S> {
             for (k, x) in x.iter_mut().enumerate() {
                 *x = if k < j { R::ZERO } else { other.gram.at(k, j) };
             }
-            let first = other.first_column(j);
-            let mut y = PerChannel::default();
-            for (channel, &z) in z.iter().enumerate() {
-                y[channel] = change.total(channel, z, first);
-            }
+            let mut y = change.totals(PerChannel::from_row(z), other.first_column(j));
             self.add(x, first_mut(&mut *y, other.channels()));
         }
-        for (channel, (square, &other)) in self.square.iter_mut().zip(other.square).enumerate() {
-            *square += change.square(channel, other, R::ZERO, R::ZERO);
-        }
+        add(&mut self.square, &*change.squares(PerChannel::from_row(other.square), PerChannel::default(), R::ZERO));
     }
 
     /// Makes the sums those of changed values.
     pub(crate) fn change(&mut self, change: &Change<R>) {
-        for channel in 0..self.channels() {
-            // What is left of a factor's squares does not depend on where zero is.
-            let is_products = self.form == Form::Products;
-            let (total, n) = if is_products { (self.total(channel), self.count()) } else { (R::ZERO, R::ZERO) };
-            if let Some(square) = self.square.get_mut(channel) {
-                *square = change.square(channel, *square, total, n);
-            }
-        }
+        // What is left of a factor's squares does not depend on where zero is.
+        let is_products = self.form == Form::Products;
+        let (totals, n) = if is_products { (self.totals(), self.count()) } else { (PerChannel::default(), R::ZERO) };
+        let squares = change.squares(PerChannel::from_row(&self.square), totals, n);
+        copy(&mut self.square, &*squares);
         for j in 0..self.gram.order() {
             let column = self.first_column(j);
-            for (channel, out) in self.rhs.row_mut(j).iter_mut().enumerate() {
-                *out = change.total(channel, *out, column);
-            }
+            let row = self.rhs.row_mut(j);
+            copy(row, &*change.totals(PerChannel::from_row(row), column));
         }
     }
 }
@@ -235,16 +243,15 @@ impl<R: Real> Change<R> {
         Self { factors: PerChannel([R::ONE; Config::MAX_CHANNELS]), shift: PerChannel::default() }
     }
 
-    /// A sum of `n` values.
-    pub(crate) fn total(&self, channel: usize, total: R, n: R) -> R {
-        self.factors[channel] * total + self.shift[channel] * n
+    /// Sums of `n` values.
+    pub(crate) fn totals(&self, totals: PerChannel<R>, n: R) -> PerChannel<R> {
+        self.factors * totals + self.shift * n
     }
 
-    /// The sum of their squares.
-    pub(crate) fn square(&self, channel: usize, square: R, total: R, n: R) -> R {
-        let (factor, shift) = (self.factors[channel], self.shift[channel]);
-        let total = factor * total;
-        factor * factor * square + shift * (total + total + shift * n)
+    /// The sums of their squares.
+    pub(crate) fn squares(&self, squares: PerChannel<R>, totals: PerChannel<R>, n: R) -> PerChannel<R> {
+        let totals = self.factors * totals;
+        self.factors * self.factors * squares + self.shift * (totals + totals + self.shift * n)
     }
 }
 
@@ -255,9 +262,9 @@ pub(crate) fn add<R: Real>(into: &mut [R], other: &[R]) {
     }
 }
 
-/// The sum of squares about the mean, from those about zero.
-pub(crate) fn spread<R: Real>(square: R, total: R, mean: R) -> R {
-    not_below_zero(square - total * mean)
+/// The sums of squares about the means, from those about zero.
+pub(crate) fn spread<R: Real>(squares: PerChannel<R>, totals: PerChannel<R>, means: PerChannel<R>) -> PerChannel<R> {
+    (squares - totals * means).map(not_below_zero)
 }
 
 /// What rounding took below zero is zero; what is no number stays so, and is not taken for a perfect fit.

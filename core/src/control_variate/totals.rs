@@ -21,25 +21,20 @@ impl<R: Real> Totals<R> {
     pub(crate) fn new<'a>(
         groups: impl Iterator<Item = Sums<&'a [R]>>,
         samples: u64,
-        units: [Units<R>; Config::MAX_CHANNELS],
+        mut units: [Units<R>; Config::MAX_CHANNELS],
     ) -> Self {
-        let (mut totals, mut squares) = (PerChannel::<R>::default(), PerChannel::<R>::default());
+        let (mut totals, mut squares) = (PerChannel::default(), PerChannel::default());
         for group in groups {
-            for channel in 0..group.channels() {
-                totals[channel] += group.total(channel);
-                squares[channel] += group.square(channel);
-            }
+            totals += group.totals();
+            squares += group.squares();
         }
         let n = R::from_f64(samples as f64);
-        let (mean, mut variance) = (totals.map(|total| total / n), PerChannel::default());
-        let mut result = Self { units, mean, variance: None };
-        for (channel, unit) in result.units.iter_mut().enumerate() {
-            unit.offset += mean[channel];
-            let spread = sums::spread(squares[channel], totals[channel], mean[channel]);
-            variance[channel] = spread / result::mean_divisor(n);
+        let mean = totals.map(|total| total / n);
+        for (unit, &mean) in units.iter_mut().zip(mean.iter()) {
+            unit.offset += mean;
         }
-        result.variance = (samples > 1).then_some(variance);
-        result
+        let variance = sums::spread(squares, totals, mean).map(|spread| spread / result::mean_divisor(n));
+        Self { units, mean, variance: (samples > 1).then_some(variance) }
     }
 
     pub(crate) fn plain(&self) -> Outcome<R> {
@@ -47,10 +42,7 @@ impl<R: Real> Totals<R> {
     }
 
     /// Turns an estimate in the sums' units into a correction of the plain mean.
-    pub(crate) fn corrected(&self, mut outcome: Outcome<R>) -> Outcome<R> {
-        for (correction, &mean) in outcome.correction.iter_mut().zip(self.mean.iter()) {
-            *correction -= mean;
-        }
-        outcome
+    pub(crate) fn corrected(&self, outcome: Outcome<R>) -> Outcome<R> {
+        Outcome { correction: outcome.correction - self.mean, ..outcome }
     }
 }

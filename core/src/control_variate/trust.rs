@@ -9,7 +9,8 @@
 //!   that follows noise by more;
 //! - how few samples there are ([`prior`]).
 
-use crate::matrix::at;
+use super::per_channel::PerChannel;
+use crate::matrix::{at, first_mut};
 use crate::real::Real;
 
 /// Trust in a candidate is its error, relative to the mean's, to the power of minus this times the number of samples
@@ -125,24 +126,80 @@ pub(crate) fn surprise<R: Real>(correction: R, variance: R) -> R {
 
 /// The trust in the mean of `n` samples where fits were discounted.
 #[inline]
-pub(crate) fn prior<R: Real>(n: R) -> R {
+fn prior<R: Real>(n: R) -> R {
     let square = n * n;
     R::from_f64(INFORMED_PRIOR) * (R::ONE + R::from_f64(FEW) / (square * square))
 }
 
+/// How errors on samples that a fit has not seen become trust.
+#[derive(Clone, Copy)]
+pub(crate) struct Judge<R> {
+    /// How many samples.
+    pub(crate) n: R,
+    /// Trust is the error, relative to the mean's, to the power of minus this.
+    pub(crate) power: R,
+    /// The trust in the plain mean before anything is seen.
+    pub(crate) prior: R,
+}
+
+impl<R: Real> Judge<R> {
+    /// Where fits are discounted for where their samples lie and how far they move the mean.
+    #[inline]
+    pub(crate) fn informed(n: R) -> Self {
+        Self { n, power: n * R::from_f64(SHARPNESS), prior: prior(n) }
+    }
+
+    /// The weights of the plain mean and of the first `used` fits, from their errors and what else tells against a fit.
+    #[inline]
+    pub(crate) fn weigh<const C: usize>(
+        &self,
+        plain: PerChannel<R>,
+        errors: &[PerChannel<R>; C],
+        discounts: &[PerChannel<R>; C],
+        used: usize,
+    ) -> (PerChannel<R>, [PerChannel<R>; C]) {
+        let (mut plain_weight, mut weights) = (PerChannel::default(), [PerChannel::default(); C]);
+        for (channel, plain_weight) in plain_weight.iter_mut().enumerate() {
+            let of = |all: &[PerChannel<R>; C]| all.map(|each| each[channel]);
+            let mut each = [R::ZERO; C];
+            *plain_weight = weigh(self, plain[channel], &of(errors), &of(discounts), first_mut(&mut each, used));
+            for (weights, weight) in weights.iter_mut().zip(each) {
+                weights[channel] = weight;
+            }
+        }
+        (plain_weight, weights)
+    }
+}
+
+/// The plain mean and fits, weighed in each channel.
+pub(crate) struct Mixture<R, const C: usize> {
+    pub(crate) plain_weight: PerChannel<R>,
+    pub(crate) weights: [PerChannel<R>; C],
+    /// What each fit adds to the mean.
+    pub(crate) corrections: [PerChannel<R>; C],
+}
+
+impl<R: Real, const C: usize> Mixture<R, C> {
+    /// What the mixture adds to the mean, and the variance of its estimate from the plain mean's and each fit's: of what
+    /// it is made of, and of what its parts disagree in.
+    pub(crate) fn estimate(&self, plain: PerChannel<R>, fits: [PerChannel<R>; C]) -> (PerChannel<R>, PerChannel<R>) {
+        let parts = || self.weights.iter().zip(&self.corrections);
+        let total = parts().fold(PerChannel::default(), |sum, (&weights, &correction)| sum + weights * correction);
+        let mut variance = self.plain_weight * (plain + total * total);
+        for ((&weights, &correction), own) in parts().zip(fits) {
+            let apart = correction - total;
+            variance += weights * (own + apart * apart);
+        }
+        (total, variance)
+    }
+}
+
 /// Sets `weights` to those of C candidates, (error / plain error)^(-power) / C less a discount, and returns the plain
-/// mean's, `prior`, all normalised. Errors are sums of squares over `n` samples.
+/// mean's, all normalised. Errors are sums of squares.
 // On its own, of two weights, it is compiled to a division in four lanes, two of them 0 / 0: FE_INVALID.
 #[inline(always)]
-pub(crate) fn weigh<R: Real>(
-    plain: R,
-    errors: &[R],
-    discounts: &[R],
-    power: R,
-    n: R,
-    prior: R,
-    weights: &mut [R],
-) -> R {
+fn weigh<R: Real>(judge: &Judge<R>, plain: R, errors: &[R], discounts: &[R], weights: &mut [R]) -> R {
+    let Judge { n, power, prior } = *judge;
     // Constant values: the mean is exact. A NaN cannot come from finite samples, but trust would go to the mean.
     let varies = plain > R::ZERO;
     if !varies {

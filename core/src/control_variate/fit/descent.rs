@@ -5,7 +5,7 @@
 //! this is safer than least squares, with no matrix at all.
 
 use super::super::config::{Config, Estimate, Optimizer};
-use super::super::design::Design;
+use super::super::design::{Design, square};
 use super::super::per_channel::PerChannel;
 use super::super::plan::Plan;
 use super::super::result::{self, Outcome};
@@ -14,7 +14,7 @@ use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
-use crate::matrix::{copy, from_mut};
+use crate::matrix::{at, copy, from_mut};
 use crate::real::Real;
 use crate::rows::rows_mut;
 
@@ -44,7 +44,8 @@ const FLOOR: [f64; 2] = [1e-6, 1e-2];
 pub(crate) trait Objective<R> {
     /// Half the negative gradient of the mean squared residual, P'(f - P b) / n; without a channel, P'P b / n.
     fn gradient(&self, channel: Option<usize>, b: &[R], out: &mut [R]);
-    fn square(&self, channel: usize) -> R;
+    /// The values' sums of squares.
+    fn squares(&self) -> PerChannel<R>;
     /// The sum of squared residuals, |f - P b|^2.
     fn residual_square(&self, channel: usize, b: &[R]) -> R;
     /// The sum of squares of a function.
@@ -146,8 +147,9 @@ pub(crate) fn descend<R: Real>(
     let n = R::from_usize(objective.count());
     let variance_factor = variance_factor(objective, units);
     let mut outcome = Outcome { correction: PerChannel::default(), variance: plain };
+    let squares = objective.squares();
     for (channel, solution) in rows_mut(coefficients, columns).enumerate() {
-        let square = objective.square(channel);
+        let square = squares[channel];
         let descent = Descent::new(config, (square / n).sqrt(), curvature);
         first.fill(R::ZERO);
         second.fill(R::ZERO);
@@ -293,16 +295,24 @@ impl<R: Real> Objective<R> for Design<'_, R> {
         }
     }
 
-    fn square(&self, channel: usize) -> R {
-        self.sum_of_squares(channel)
+    fn squares(&self) -> PerChannel<R> {
+        Design::squares(self)
     }
 
     fn residual_square(&self, channel: usize, b: &[R]) -> R {
-        Design::residual_square(self, channel, b)
+        let mut total = [R::ZERO; LANES];
+        for (panel, values) in self.each_panel() {
+            let mut residual = at(values, channel);
+            for (column, &b) in panel.iter().zip(b) {
+                residual = lanes::minus_product(residual, [b; LANES], *column);
+            }
+            total = lanes::plus_product(total, residual, residual);
+        }
+        lanes::sum(&total)
     }
 
     fn column_square(&self, column: usize) -> R {
-        Design::column_square(self, column)
+        square(&self.panels, column)
     }
 
     fn count(&self) -> usize {

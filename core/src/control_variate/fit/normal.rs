@@ -14,6 +14,7 @@ use crate::lanes::{self, LANES, Lanes};
 use crate::linalg::ldlt::Ldlt;
 use crate::matrix::{Panel, Triangle, copy, packed_len, row_at};
 use crate::real::Real;
+use crate::rows::rows;
 
 /// A column whose sum of squares about its mean is below this fraction of that about zero, in units of the type's
 /// epsilon, is constant.
@@ -237,12 +238,9 @@ pub(crate) fn least_squares<R: Real>(
     let factor = centred.normal.solve(penalty, coefficients, arena)?;
     let eccentricity = centred.normal.eccentricity(&factor, arena)?;
     // Its residuals have mean zero: its intercept is the estimate.
-    let (mut correction, mut residual) = (PerChannel::default(), PerChannel::default());
-    for channel in 0..channels {
-        let b = row_at(coefficients, columns, channel);
-        correction[channel] = centred.intercept(channel, b) - centred.value_means[channel];
-        residual[channel] = centred.residual_square(channel, b);
-    }
+    let correction = centred.intercepts(coefficients) - centred.value_means;
+    let b = |channel| row_at(coefficients, columns, channel);
+    let residual = PerChannel::of(channels, |channel| centred.residual_square(channel, b(channel)));
     let variance = result::residual_variance(residual, columns, centred.normal.count, eccentricity);
     Ok(Some(Outcome { correction, variance }))
 }
@@ -269,12 +267,10 @@ impl<'a, R: Real> Centred<'a, R> {
                 *out = value - total * mean;
             }
         }
-        let (mut value_means, mut squares) = (PerChannel::default(), PerChannel::default());
-        for channel in 0..channels {
-            let mean = sums.total(channel) * inverse;
-            value_means[channel] = mean;
-            squares[channel] = spread(sums.square(channel), sums.total(channel), mean);
-            for (j, out) in rhs.row_mut(channel).iter_mut().enumerate() {
+        let value_means = sums.totals() * inverse;
+        let squares = spread(sums.squares(), sums.totals(), value_means);
+        for (channel, (row, &mean)) in rhs.rows_mut().zip(value_means.iter()).enumerate() {
+            for (j, out) in row.iter_mut().enumerate() {
                 *out = sums.rhs.at(j + 1, channel) - sums.column_total(j) * mean;
             }
         }
@@ -296,9 +292,13 @@ impl<'a, R: Real> Centred<'a, R> {
         Ok(Some(Self { normal: Normal { count, gram, rhs, means }, value_means, squares }))
     }
 
-    /// The intercept that goes with coefficients.
-    pub(crate) fn intercept(&self, channel: usize, b: &[R]) -> R {
-        b.iter().zip(self.normal.means).fold(self.value_means[channel], |sum, (&b, &m)| sum - b * m)
+    /// The intercepts that go with coefficients, a row for each channel.
+    pub(crate) fn intercepts(&self, coefficients: &[R]) -> PerChannel<R> {
+        let mut intercepts = self.value_means;
+        for (intercept, b) in intercepts.iter_mut().zip(rows(coefficients, self.normal.means.len())) {
+            *intercept = b.iter().zip(self.normal.means).fold(*intercept, |sum, (&b, &m)| sum - b * m);
+        }
+        intercepts
     }
 }
 
@@ -327,8 +327,8 @@ impl<R: Real> Objective<R> for Centred<'_, R> {
         }
     }
 
-    fn square(&self, channel: usize) -> R {
-        self.squares[channel]
+    fn squares(&self) -> PerChannel<R> {
+        self.squares
     }
 
     /// f'f - 2 b'c + b'G b
