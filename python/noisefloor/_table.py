@@ -149,7 +149,7 @@ class Table:
             index = _arrays.array("index", index)
         if type(importance) is not numpy.ndarray:
             importance = _arrays.array("importance", importance)
-        given = importance
+        given = index, importance
         if index.dtype.char != "l":
             index = _arrays.integers("index", index, self._n - 1).astype(numpy.int64)
         if importance.dtype.char != "f":
@@ -168,11 +168,11 @@ class Table:
                 self._index[:batch], self._value[:batch] = index, importance
                 if not _c.table_update(self._at, self._index_at, self._value_at, batch, momentum):
                     return
-        index, importance = _arrays.integers("index", index, self._n - 1), _arrays.floats("importance", importance)
+        index, importance = _arrays.integers("index", given[0], self._n - 1), _arrays.floats("importance", importance)
         with self._lock:
             status = _c.table_update(self._at, _c.data(index), _c.data(importance), batch, momentum)
         if status:
-            _arrays.check_positive("importance", given)
+            _arrays.check_positive("importance", given[1])
             raise ValueError(_c.message(status))
 
     def probabilities(self, index: Any = None) -> NDArray[numpy.float32]:

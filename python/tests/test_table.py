@@ -172,6 +172,7 @@ def test_arrays_of_anybody():
         (lambda t: t.update([10], [1.0]), r"index\[0\] is 10: it must be 0 to 9"),
         (lambda t: t.update([2**32 + 1], [1.0]), r"index\[0\] is 4294967297: it must be 0 to 9"),
         (lambda t: t.update([1, -1], [1.0, 1.0]), r"index\[1\] is -1"),
+        (lambda t: t.update([[1, 2], [-1, 3]], [[1.0, 1.0], [1.0, 1.0]]), r"index\[1, 0\] is -1"),
         (lambda t: t.update([1.5], [1.0]), "index holds float64: integers"),
         (lambda t: t.update([1], [1j]), "importance holds complex128: real numbers"),
         (lambda t: t.update([1], ["a"]), "importance holds <U1"),

@@ -6,6 +6,7 @@ use crate::{library, paths, run};
 use anyhow::{Context, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 /// What a wheel is built with.
 pub const BUILD: [Package; 4] =
@@ -26,12 +27,16 @@ pub fn test() -> Result<()> {
     run::check(test.env("NOISEFLOOR_WHEEL", wheel()?).env("PYTHONDONTWRITEBYTECODE", "1"))
 }
 
-/// A Python in which the package is installed from a new wheel, beside Debian's packages.
+/// A Python in which the package is installed from a new wheel, beside Debian's packages; made once.
 pub fn environment() -> Result<PathBuf> {
+    static MADE: OnceLock<PathBuf> = OnceLock::new();
+    if let Some(python) = MADE.get() {
+        return Ok(python.clone());
+    }
     tools::packages(&[&BUILD[..], &TESTED_WITH].concat())?;
     let python = build()?;
     install(&python)?;
-    Ok(python)
+    Ok(MADE.get_or_init(|| python).clone())
 }
 
 /// Builds a new wheel, with the Python that it returns. The packages of `BUILD` must be there.

@@ -155,11 +155,12 @@ pub fn estimate_image(
     workspace: &mut [f32],
     mut out: impl FnMut(usize, Estimate),
 ) -> Result<(), Error> {
-    compiled_once(config, image, samples, workspace, &mut out)
+    compiled_once::<true>(config, image, samples, workspace, &mut out)
 }
 
-/// What programs that call [`estimate_image`] with one `out` or another have in common.
-fn compiled_once(
+/// What calls of [`estimate_image`] with one `out` or another have in common. Generic, so that a crate that calls it
+/// compiles it, once, and others, the C library among them, do not.
+fn compiled_once<const CALLED: bool>(
     config: &Config,
     image: &Image<'_>,
     samples: Samples<'_>,
