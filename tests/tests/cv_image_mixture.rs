@@ -36,6 +36,12 @@ struct Rule {
     share: usize,
     /// What samples say for a fit within their pixels counts as much of what the pixels' spread says.
     within: f64,
+    /// What a colour's own pixels say where it is chosen for that colour counts as much of what the others say.
+    own: f64,
+    /// How much sharper that choice is.
+    sharper: f64,
+    /// With less freedom there is none.
+    enough: f64,
 }
 
 const RULE: Rule = Rule {
@@ -50,6 +56,9 @@ const RULE: Rule = Rule {
     doubt: 0.5,
     share: 16,
     within: 0.25,
+    own: 0.85,
+    sharper: 1.05,
+    enough: 16.0,
 };
 
 /// A pixel within a window.
@@ -67,11 +76,11 @@ struct Member {
 struct Fits {
     /// The plain means of all members, then each candidate's estimates.
     estimates: Vec<Vec<f64>>,
-    /// Sums of squares about the trend, of each.
-    spreads: Vec<f64>,
+    /// Sums of squares about the trend, of each, by colour.
+    spreads: Vec<[f64; 4]>,
     freedom: f64,
     /// What each leaves of the samples' squares about their pixel's mean, of colours that it has not seen.
-    within: Vec<f64>,
+    within: Vec<[f64; 4]>,
     /// Pixels, if they have several samples.
     pixels: f64,
 }
@@ -262,13 +271,13 @@ impl Case {
         let (n, axes) = (self.n, group[0].at.len());
         let basis = design(&self.config, &wide(&self.u));
         let scaled = |at: &[f64]| at.iter().map(|at| 3.0_f64.sqrt() * at).collect::<Vec<f64>>();
-        let (mut rows, mut values, mut estimates, mut within) = (vec![], vec![], vec![vec![]], vec![0.0]);
+        let (mut rows, mut values, mut estimates, mut within) = (vec![], vec![], vec![vec![]], vec![[0.0; 4]]);
         for member in group {
             let own = self.quotients(member.pixel, channel);
             let mean = own.iter().sum::<f64>() / n as f64;
             estimates[0].push(mean);
             if !self.is_far(member.pixel, limits) {
-                within[0] += own.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+                within[0][member.colour] += own.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
             }
             values.extend(own);
             for functions in &basis.rows[member.pixel * n..(member.pixel + 1) * n] {
@@ -312,7 +321,7 @@ impl Case {
                 1 => vec![],
                 _ => (0..4).map(|colour| fit_to(&|index| group[index].colour != colour, 0)).collect(),
             };
-            let mut left = 0.0;
+            let mut left = [0.0; 4];
             let mut each = vec![];
             for (index, member) in group.iter().enumerate() {
                 // A pixel that is in no fit leaves none.
@@ -323,7 +332,7 @@ impl Case {
                     .collect();
                 let mean = residuals.iter().sum::<f64>() / n as f64;
                 if !far[index] {
-                    left += residuals.iter().map(|residual| (residual - mean).powi(2)).sum::<f64>();
+                    left[member.colour] += residuals.iter().map(|residual| (residual - mean).powi(2)).sum::<f64>();
                 }
                 each.push(mean);
             }
@@ -348,7 +357,12 @@ impl Case {
         let freedom = (only_near(&estimates[0]).len() - trend.len()) as f64;
         let spread = |estimates: &Vec<f64>| {
             let rest = trend.iter().fold(only_near(estimates), |rest, unit| without(rest, unit));
-            if freedom > 0.0 { dot(&rest, &rest) } else { 0.0 }
+            let mut spread = [0.0; 4];
+            let near = group.iter().zip(&far).filter(|&(_, far)| !far);
+            for ((member, _), value) in near.zip(rest).filter(|_| freedom > 0.0) {
+                spread[member.colour] += value * value;
+            }
+            spread
         };
         let spreads = estimates.iter().map(spread).collect();
         let pixels = if n > 1 { far.iter().filter(|&&far| !far).count() as f64 } else { 0.0 };
@@ -385,9 +399,11 @@ impl Case {
                     let judges = if rule.crossed { 1 - turn } else { turn };
                     let half: Vec<Member> = group.iter().filter(|member| half_of(member) == judges).cloned().collect();
                     let judges = if halves { &half } else { &group };
-                    let chosen = |limits: Option<&Limits>| fits(judges, limits).map(|fits| weights(rule, &fits));
+                    let chosen =
+                        |limits: Option<&Limits>| fits(judges, limits).map(|fits| Weights::new(rule, &fits, halves));
                     let first = chosen(None);
-                    match self.limits(rule, judges, &group, &first) {
+                    let trust = first.each_ref().map(|weights| weights.all.clone());
+                    match self.limits(rule, judges, &group, &trust) {
                         Some(limits) => (first, chosen(Some(&limits)), fits(&group, Some(&limits))),
                         None => (first.clone(), first, all.clone()),
                     }
@@ -395,13 +411,15 @@ impl Case {
                 for channel in 0..2 {
                     for (index, member) in group.iter().enumerate() {
                         let (_, weights, fits) = &choices[half_of(member)];
-                        let (weights, fits, all) = (&weights[channel], &fits[channel], &all[channel]);
-                        let judged = if self.n > 1 { &all.within } else { &all.spreads };
+                        let (fits, all) = (&fits[channel], &all[channel]);
+                        let weights = &weights[channel].of_colours[member.colour];
+                        let spreads = summed(&all.spreads, None, rule);
+                        let judged = if self.n > 1 { summed(&all.within, None, rule) } else { spreads.clone() };
                         let ratio = |first: &[f64]| {
-                            if judged[0] > 0.0 { dot(first, judged) / judged[0] } else { 1.0 }
+                            if judged[0] > 0.0 { dot(first, &judged) / judged[0] } else { 1.0 }
                         };
-                        let ratio = choices.iter().map(|(first, ..)| ratio(&first[channel])).sum::<f64>() / 2.0;
-                        let mixed = ratio * all.spreads[0];
+                        let ratio = choices.iter().map(|(first, ..)| ratio(&first[channel].all)).sum::<f64>() / 2.0;
+                        let mixed = ratio * spreads[0];
                         let near: f64 = member.at.iter().map(|at| 1.0 - at.abs()).product();
                         let near = if rule.hat { near } else { 1.0 };
                         let estimate: f64 = weights.iter().zip(&fits.estimates).map(|(w, each)| w * each[index]).sum();
@@ -483,25 +501,50 @@ impl Case {
     }
 }
 
-/// How far the mean and the candidates are trusted.
-fn weights(rule: &Rule, fits: &Fits) -> Vec<f64> {
-    let (plain, candidates) = fits.spreads.split_first().unwrap();
-    let mut trust = vec![0.0; fits.spreads.len()];
+/// Of each estimate the sum over colours; of one that is chosen for less.
+fn summed(of: &[[f64; 4]], colour: Option<usize>, rule: &Rule) -> Vec<f64> {
+    let weight = |each: usize| if colour == Some(each) { rule.own } else { 1.0 };
+    of.iter().map(|each| each.iter().enumerate().map(|(each, sum)| weight(each) * sum).sum()).collect()
+}
+
+/// How far the mean and the candidates are trusted: by all pixels, and for each colour.
+#[derive(Clone)]
+struct Weights {
+    all: Vec<f64>,
+    of_colours: [Vec<f64>; 4],
+}
+
+impl Weights {
+    /// Where halves choose for each other, colours do not.
+    fn new(rule: &Rule, fits: &Fits, halves: bool) -> Self {
+        let all = weights(rule, fits, None);
+        let of_colour = |colour| if halves { all.clone() } else { weights(rule, fits, Some(colour)) };
+        Self { of_colours: [0, 1, 2, 3].map(of_colour), all }
+    }
+}
+
+fn weights(rule: &Rule, fits: &Fits, colour: Option<usize>) -> Vec<f64> {
+    // Of few pixels all choose alike.
+    let colour = colour.filter(|_| fits.freedom >= rule.enough);
+    let [spreads, within] = [&fits.spreads, &fits.within].map(|of| summed(of, colour, rule));
+    let (plain, candidates) = spreads.split_first().unwrap();
+    let mut trust = vec![0.0; spreads.len()];
     trust[0] = 1.0;
-    if *plain > 0.0 && (fits.pixels == 0.0 || fits.within[0] > 0.0) {
-        let power = rule.sharpness * fits.freedom;
+    if *plain > 0.0 && (fits.pixels == 0.0 || within[0] > 0.0) {
+        let freedom = fits.freedom * if colour.is_some() { rule.sharper } else { 1.0 };
+        let power = rule.sharpness * freedom;
         let inside = |fit: usize| {
             if fits.pixels == 0.0 {
                 return 0.0;
             }
-            let gain = (fits.within[1 + fit] / fits.within[0]).ln();
+            let gain = (within[1 + fit] / within[0]).ln();
             rule.sharpness * fits.pixels * if gain < 0.0 { rule.within * gain } else { gain }
         };
         let spreads = candidates.iter().enumerate();
         let logarithms: Vec<f64> = spreads.map(|(fit, spread)| -power * (spread / plain).ln() - inside(fit)).collect();
         let highest = logarithms.iter().copied().fold(0.0, f64::max);
         let count = candidates.len() as f64;
-        let cautious = (highest - fits.freedom.powi(2) / rule.caution).max(0.0);
+        let cautious = (highest - freedom.powi(2) / rule.caution).max(0.0);
         trust[0] = rule.prior * count * (cautious - highest).exp();
         trust.iter_mut().skip(1).zip(logarithms).for_each(|(trust, logarithm)| *trust = (logarithm - highest).exp());
     }
@@ -585,6 +628,8 @@ fn the_oracle_is_sharp() {
         (&image, Rule { trend: false, ..RULE }),
         (&block, Rule { caution: 17.0, ..RULE }),
         (&block, Rule { within: 1.0, ..RULE }),
+        (&bright, Rule { own: 1.0, ..RULE }),
+        (&bright, Rule { sharper: 1.0, ..RULE }),
     ] {
         let errors = case.errors(&rule);
         println!("{rule:?}: {errors:?}");

@@ -160,6 +160,12 @@ impl<'a> Batch<'a> {
         (0..self.inside.len()).filter(move |&block| !has_colours || colours.has(block))
     }
 
+    /// Of which colour a slot is.
+    #[inline(always)]
+    pub(super) fn colour(&self, (block, row): (usize, usize)) -> usize {
+        (if self.has_colours { block } else { row }) % COLOURS
+    }
+
     /// Where in its group the pixel of a slot is.
     #[inline(always)]
     pub(super) fn member(&self, (block, row): (usize, usize), lane: usize) -> usize {

@@ -21,6 +21,12 @@ use core::hint::black_box;
 /// How much what independent samples say for a fit within their pixels counts, beside what the pixels' spread says.
 /// What they say against one counts whole.
 const WITHIN: f32 = 0.25;
+/// How much what a colour's own pixels say counts where it is chosen for it.
+const OWN: f32 = 0.85;
+/// How much sharper that choice is.
+const SHARPER: f32 = 1.05;
+/// With less freedom a colour has too few pixels to do without any: all choose alike.
+const ENOUGH: f32 = 16.0;
 
 /// The estimates to choose from: the plain mean and that with each fit, then the same less what is known.
 #[derive(Clone, Copy)]
@@ -41,7 +47,7 @@ impl Choices {
 
     /// Lanes of workspace.
     pub(super) fn len(&self) -> usize {
-        self.channels * self.count * (SPREADS + MAX_SHARES) + AT_ONCE * self.count
+        self.channels * self.count * (SPREADS + CHOSEN) + AT_ONCE * self.count
     }
 
     /// Whether a choice is an edge.
@@ -80,12 +86,12 @@ impl Choices {
     }
 }
 
+/// How often is chosen: for all pixels, and for those of each colour; or, as the first two, for either half.
+const CHOSEN: usize = 1 + COLOURS;
 /// Lanes of each choice of [`Spreads`], with those that are needed to make them.
-const SPREADS: usize = 3 + MAX_FIXED;
-/// How many shares of each choice are kept: those that either half, or all pixels, chose.
-const MAX_SHARES: usize = 2;
+const SPREADS: usize = 2 * CHOSEN + COLOURS + 1 + MAX_FIXED;
 
-/// How far each choice is trusted: of each turn, channel and choice.
+/// How far each choice is trusted: of each time that is chosen, channel and choice.
 pub(super) struct Shares<'a> {
     all: &'a mut [Eight],
     choices: Choices,
@@ -94,7 +100,7 @@ pub(super) struct Shares<'a> {
 impl<'a> Shares<'a> {
     /// All trust in the last choice.
     pub(super) fn last(choices: Choices, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
-        let all = arena.take_lanes(MAX_SHARES * choices.channels * choices.count)?;
+        let all = arena.take_lanes(CHOSEN * choices.channels * choices.count)?;
         for shares in rows_mut(all, choices.count) {
             shares.iter_mut().rev().enumerate().for_each(|(k, share)| *share = [if k == 0 { 1.0 } else { 0.0 }; LANES]);
         }
@@ -103,14 +109,14 @@ impl<'a> Shares<'a> {
 
     /// How a channel's correction is shared out.
     #[inline(always)]
-    pub(super) fn of(&self, turn: usize, channel: usize) -> &[Eight] {
-        row_at(self.all, self.choices.count, turn * self.choices.channels + channel)
+    pub(super) fn of(&self, time: usize, channel: usize) -> &[Eight] {
+        row_at(self.all, self.choices.count, time * self.choices.channels + channel)
     }
 
     /// The same, to be written.
     #[inline(always)]
-    fn of_mut(&mut self, turn: usize, channel: usize) -> &mut [Eight] {
-        row_at_mut(self.all, self.choices.count, turn * self.choices.channels + channel)
+    fn of_mut(&mut self, time: usize, channel: usize) -> &mut [Eight] {
+        row_at_mut(self.all, self.choices.count, time * self.choices.channels + channel)
     }
 }
 
@@ -119,10 +125,9 @@ impl<'a> Shares<'a> {
 /// The signal's own spread is common to all candidates, so that the difference is the error's, however the samples are
 /// correlated; what the trend takes away is almost only signal.
 pub(super) struct Spreads<'a> {
-    /// Of each channel and choice.
+    /// As all pixels, then as each colour counts them: of each channel and choice.
     sums: &'a mut [Eight],
-    /// Of each channel and choice, what it leaves of the samples of the colours about their pixels' means; see
-    /// [`Fits::within`].
+    /// The same of what a choice leaves of the samples about their pixels' means; see [`Fits::within`].
     within: &'a mut [Eight],
     /// Pixels less the trend's coefficients, at least 0.
     pub(super) freedom: Eight,
@@ -147,9 +152,10 @@ impl<'a> Spreads<'a> {
         let fixed = terms.fixed();
         let joined = |sum: &Eight| if batch.is_joined { [lanes::sum(sum); LANES] } else { *sum };
         let all = choices.channels * choices.count;
-        let [sums, within, squares] = [arena.take_lanes(all)?, arena.take_lanes(all)?, arena.take_lanes(all)?];
-        let trends = arena.take_lanes(all * fixed)?;
-        for sum in [&mut *sums, within, squares, trends].into_iter().flatten() {
+        let [sums, within] = [arena.take_lanes(CHOSEN * all)?, arena.take_lanes(CHOSEN * all)?];
+        let [squares, trends] = [arena.take_lanes(all)?, arena.take_lanes(all * fixed)?];
+        let of_colours = arena.take_fours(all)?;
+        for sum in [&mut *squares, trends, of_colours.as_flattened_mut()].into_iter().flatten() {
             *sum = NONE;
         }
         let mut factor = [NONE; packed_len(MAX_FIXED)];
@@ -191,49 +197,78 @@ impl<'a> Spreads<'a> {
             let Some(inside) = batch.inside.get(block) else { continue };
             for channel in 0..choices.channels {
                 choices.estimate(batch, fits, (block, channel), estimates);
-                let sums = row_at_mut(sums, choices.count, channel);
+                let sums = row_at_mut(of_colours, choices.count, channel);
                 let trends = rows(row_at(trends, choices.count * fixed, channel), fixed);
                 for ((estimate, sum), trend) in estimates.iter().zip(sums).zip(trends) {
                     let trend = combine([NONE; AT_ONCE], places, trend);
                     let rest = zip_four(estimate, &trend, |estimate, trend| lanes::zip(estimate, trend, |a, b| a - b));
                     let rest = zip_four(inside, &rest, only);
-                    *sum = plus_four(*sum, &rest, &rest);
+                    for (row, rest) in rest.iter().enumerate() {
+                        let sum = &mut sum[batch.colour((block, row))];
+                        *sum = lanes::plus_product(*sum, *rest, *rest);
+                    }
                     lanes::keep_together();
                 }
             }
         }
-        for (sum, square) in sums.iter_mut().zip(squares) {
+        // What a colour's own pixels say of fits to the others is biased by them, and counts less.
+        let own = lanes::each(&freedom, |freedom| if freedom < ENOUGH { 1.0 } else { OWN });
+        let count = |out: &mut [Eight], index: usize, mut each: Four| {
+            for time in 0..CHOSEN {
+                let whole = each;
+                if let Some(each) = time.checked_sub(1).and_then(|colour| each.get_mut(colour)) {
+                    *each = lanes::zip(each, &own, |each, own| each * own);
+                }
+                if let Some(out) = out.get_mut(time * all + index) {
+                    *out = total(&each);
+                }
+                each = whole;
+            }
+        };
+        for (index, (each, square)) in of_colours.iter().zip(squares).enumerate() {
+            let mut each = *each;
+            each.iter_mut().for_each(|sum| *sum = joined(sum));
             // What is left of a signal that is its trend is rounding noise.
-            let (left, square) = (joined(sum), joined(square));
+            let (left, square) = (total(&each), joined(square));
             for l in 0..LANES {
                 let noise = square[l] * (f32::EPSILON * f32::EPSILON * 4096.0);
-                sum[l] = if left[l] > noise && freedom[l] > 0.0 { left[l] } else { 0.0 };
-            }
-        }
-        let has_several = fits.has_several;
-        if has_several {
-            for channel in 0..choices.channels {
-                for (choice, sum) in row_at_mut(within, choices.count, channel).iter_mut().enumerate() {
-                    let (value, fit) = choices.value_and_fit(channel, choice);
-                    for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
-                        *sum = plus(sum, &fits.within(value, colour, fit));
-                    }
+                let counts = left[l] > noise && freedom[l] > 0.0;
+                for each in &mut each {
+                    each[l] = if counts { each[l] } else { 0.0 };
                 }
             }
+            count(sums, index, each);
         }
-        Ok(Self { sums, within, freedom, pixels, has_several, choices })
+        for (channel, choice) in (0..choices.channels).flat_map(|c| (0..choices.count).map(move |choice| (c, choice))) {
+            let (value, fit) = choices.value_and_fit(channel, choice);
+            let mut each = [NONE; COLOURS];
+            for (colour, each) in each.iter_mut().enumerate().filter(|&(colour, _)| taken.has(colour)) {
+                *each = fits.within(value, colour, fit);
+            }
+            count(within, channel * choices.count + choice, each);
+        }
+        Ok(Self { sums, within, freedom, pixels, has_several: fits.has_several, choices })
     }
 
-    /// Chooses for a turn.
+    /// Chooses, for all pixels or for a colour, and keeps that as one of the times that is chosen.
     #[inline(always)]
-    pub(super) fn choose(&self, turn: usize, is_stratified: bool, present: &Eight, shares: &mut Shares<'_>) {
+    pub(super) fn choose(
+        &self,
+        colour: Option<usize>,
+        time: usize,
+        is_stratified: bool,
+        present: &Eight,
+        shares: &mut Shares<'_>,
+    ) {
         // Stratified samples' means differ by less than their variance within pixels tells: it may only warn.
         let part = if is_stratified { 0.0 } else { WITHIN };
+        let sharper = if colour.is_some() { SHARPER } else { 1.0 };
+        let freedom = lanes::each(&self.freedom, |freedom| freedom * if freedom < ENOUGH { 1.0 } else { sharper });
         for channel in 0..self.choices.channels {
-            let [sums, within] = [&*self.sums, &*self.within].map(|all| row_at(all, self.choices.count, channel));
+            let row = colour.map_or(0, |colour| 1 + colour) * self.choices.channels + channel;
+            let [sums, within] = [&*self.sums, &*self.within].map(|all| row_at(all, self.choices.count, row));
             let within = Within { sums: within, pixels: &self.pixels, part, has_several: self.has_several };
-            let edges = (&self.choices, present);
-            share(sums, &self.freedom, &within, edges, shares.of_mut(turn, channel));
+            share(sums, &freedom, &within, (&self.choices, present), shares.of_mut(time, channel));
         }
     }
 
@@ -260,10 +295,16 @@ impl<'a> Spreads<'a> {
     }
 }
 
+/// The sum over colours.
+#[inline(always)]
+fn total([a, b, c, d]: &Four) -> Eight {
+    plus(&plus(a, b), &plus(c, d))
+}
+
 /// Sums of squares, none below what is nothing beside the unit and yet has quotients that are numbers.
 #[inline(always)]
 fn no_less(sums: &Eight) -> Eight {
-    sums.map(|sum| Real::max(sum, 1e-24))
+    lanes::each(sums, |sum| Real::max(sum, 1e-24))
 }
 
 /// What samples within pixels say.
@@ -279,7 +320,7 @@ struct Within<'a> {
 /// What is told of a sum of squares beside one of those; of what is no number, too.
 #[inline(always)]
 fn no_more(sums: &Eight) -> Eight {
-    sums.map(|sum| Real::min(sum, 1e7) * 1e30)
+    lanes::each(sums, |sum| Real::min(sum, 1e7) * 1e30)
 }
 
 /// Trust by spreads, of the plain mean first: [`trust::weigh`] in each lane.
@@ -294,9 +335,11 @@ fn share(
     let &Within { sums: within, pixels, part, has_several } = within;
     let ([plain, spreads @ ..], [noise, within @ ..], [mean, rest @ ..]) = (spreads, within, shares) else { return };
     let [least, least_noise] = [plain, noise].map(no_less);
-    let [inverse, inverse_noise] = [least, least_noise].map(|least| lanes::divisor(&least).map(|least| 1.0 / least));
+    let [inverse, inverse_noise] =
+        [least, least_noise].map(|least| lanes::each(&lanes::divisor(&least), |least| 1.0 / least));
     let [most, most_noise] = [least, least_noise].map(|least| no_more(&least));
-    let [power, power_within] = [freedom, pixels].map(|count| count.map(|count| count * -trust::SHARPNESS as f32));
+    let [power, power_within] =
+        [freedom, pixels].map(|count| lanes::each(count, |count| count * -trust::SHARPNESS as f32));
     let mut largest = NONE;
     for ((share, spread), within) in rest.iter_mut().zip(spreads).zip(within) {
         let over = |sum: &Eight, most: &Eight, inverse: &Eight| {
@@ -307,7 +350,7 @@ fn share(
         *share = lanes::zip(&lanes::log2(&ratio), &power, |logarithm, power| logarithm * power);
         if has_several {
             let ratio = over(within, &most_noise, &inverse_noise);
-            let logarithm = lanes::log2(&ratio).map(|value| if value < 0.0 { part * value } else { value });
+            let logarithm = lanes::each(&lanes::log2(&ratio), |value| if value < 0.0 { part * value } else { value });
             *share = lanes::plus_product(*share, logarithm, power_within);
         }
         largest = lanes::zip(&largest, share, |largest, share| if share > largest { share } else { largest });
@@ -331,7 +374,7 @@ fn share(
     let varies =
         lanes::zip(plain, noise, |plain, noise| if plain > 0.0 && (noise > 0.0 || !has_several) { 1.0 } else { 0.0 });
     let scale = lanes::zip(&varies, &lanes::divisor(&total), |varies, total| varies / total);
-    let exact = varies.map(|varies| 1.0 - varies);
+    let exact = lanes::each(&varies, |varies| 1.0 - varies);
     *mean = plus(&exact, &lanes::zip(mean, &scale, |share, scale| share * scale));
     for share in rest {
         *share = lanes::zip(share, &scale, |share, scale| share * scale);

@@ -12,7 +12,7 @@
 //!   never saw the pixel's own samples. With [`Image::known`] only the first is: it then fits nothing else.
 //! - [`Estimator::Robust`]: fits of rising degree and the plain mean, weighted by the variance of their estimates
 //!   across the pixels and, with several samples, by what they leave of the variance within pixels that they have not
-//!   seen. The choice has seen the pixel's own samples: unbiased as the window grows.
+//!   seen. The choice has seen the pixel's own samples, though they count less: unbiased as the window grows.
 //! - [`Estimator::KFold`]: the same with two halves of the pixels, each weighted by what the other half's fits to
 //!   itself say. Exactly unbiased, at twice the time.
 //!

@@ -8,7 +8,7 @@ use super::choice::{Choices, Shares, Spreads};
 use super::edges::Edges;
 use super::fit::Fits;
 use super::groups::{Group, Groups};
-use super::products::{AT_ONCE, Colours, NONE, combine, plus, zip_four};
+use super::products::{AT_ONCE, COLOURS, Colours, NONE, plus};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
@@ -103,7 +103,11 @@ impl Call<'_> {
             let spreads = Spreads::new(choices, &terms, &batch, &fits, judges, &mut arena.scratch())?;
             let chooses = !self.is_single_fit() && (turns == 1 || !is_last);
             if chooses {
-                spreads.choose(step, self.config.stratified, &present, &mut shares);
+                let is_stratified = self.config.stratified;
+                spreads.choose(None, step, is_stratified, &present, &mut shares);
+                for colour in 0..if turns == 1 { COLOURS } else { 0 } {
+                    spreads.choose(Some(colour), 1 + colour, is_stratified, &present, &mut shares);
+                }
                 if turn.is_none() {
                     self.find_limits(groups, &batch, (step, judges), &shares);
                 }
@@ -174,14 +178,20 @@ impl Call<'_> {
             for (channel, units) in batch.units.iter().enumerate().take(channels) {
                 let mut sum = [NONE; AT_ONCE];
                 let means = row_at(batch.means, batch.values, block);
-                for (kind, shares) in rows(shares.of(half, channel), 1 + fits.count).enumerate() {
-                    let Some((plain, shares)) = shares.split_first() else { continue };
-                    let value = channel + kind * channels;
-                    sum = combine(sum, fits.corrections(block, value), shares);
-                    if let (1, Some(mean), Some(other)) = (kind, means.get(channel), means.get(value)) {
-                        let known = zip_four(other, mean, |other, mean| lanes::zip(other, mean, |a, b| a - b));
-                        let share = shares.iter().fold(*plain, |sum, share| plus(&sum, share));
-                        sum = combine(sum, &[known], &[share]);
+                for (row, sum) in sum.iter_mut().enumerate() {
+                    let time = if self.turns() == 1 { 1 + batch.colour((block, row)) } else { half };
+                    for (kind, shares) in rows(shares.of(time, channel), 1 + fits.count).enumerate() {
+                        let Some((plain, shares)) = shares.split_first() else { continue };
+                        let value = channel + kind * channels;
+                        for (correction, share) in fits.corrections(block, value).iter().zip(shares) {
+                            *sum = lanes::plus_product(*sum, correction[row % AT_ONCE], *share);
+                        }
+                        if let (1, Some(mean), Some(other)) = (kind, means.get(channel), means.get(value)) {
+                            let known =
+                                lanes::zip(&other[row % AT_ONCE], &mean[row % AT_ONCE], |other, mean| other - mean);
+                            let share = shares.iter().fold(*plain, |sum, share| plus(&sum, share));
+                            *sum = lanes::plus_product(*sum, known, share);
+                        }
                     }
                 }
                 // What is too large is no number, and found at the end.

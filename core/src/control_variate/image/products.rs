@@ -40,7 +40,11 @@ pub(super) fn plus(a: &Eight, b: &Eight) -> Eight {
 /// `f(a, b)` for each of four.
 #[inline(always)]
 pub(super) fn zip_four(a: &Four, b: &Four, f: impl Fn(&Eight, &Eight) -> Eight) -> Four {
-    core::array::from_fn(|row| f(&a[row], &b[row]))
+    let mut out = *a;
+    for (out, b) in out.iter_mut().zip(b) {
+        *out = f(out, b);
+    }
+    out
 }
 
 /// The products of four numbers with others.
