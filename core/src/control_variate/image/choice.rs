@@ -267,8 +267,72 @@ impl<'a> Spreads<'a> {
         for channel in 0..self.choices.channels {
             let row = colour.map_or(0, |colour| 1 + colour) * self.choices.channels + channel;
             let [sums, within] = [&*self.sums, &*self.within].map(|all| row_at(all, self.choices.count, row));
-            let within = Within { sums: within, pixels: &self.pixels, part, has_several: self.has_several };
-            share(sums, &freedom, &within, (&self.choices, present), shares.of_mut(time, channel));
+            self.share([sums, within], (&freedom, part), present, shares.of_mut(time, channel));
+        }
+    }
+
+    /// Trust by spreads, of the plain mean first: [`trust::weigh`] in each lane. As `part` counts what samples within
+    /// pixels say for a fit.
+    #[inline(always)]
+    fn share(
+        &self,
+        [spreads, within]: [&[Eight]; 2],
+        (freedom, part): (&Eight, f32),
+        present: &Eight,
+        shares: &mut [Eight],
+    ) {
+        let &Self { choices, pixels, has_several, .. } = self;
+        let ([plain, spreads @ ..], [noise, within @ ..], [mean, rest @ ..]) = (spreads, within, shares) else {
+            return;
+        };
+        let [least, least_noise] = [plain, noise].map(no_less);
+        let [inverse, inverse_noise] =
+            [least, least_noise].map(|least| lanes::each(&lanes::divisor(&least), |least| 1.0 / least));
+        let [most, most_noise] = [least, least_noise].map(|least| no_more(&least));
+        let [power, power_within] =
+            [freedom, &pixels].map(|count| lanes::each(count, |count| count * -trust::SHARPNESS as f32));
+        let mut largest = NONE;
+        for ((share, spread), within) in rest.iter_mut().zip(spreads).zip(within) {
+            let over = |sum: &Eight, most: &Eight, inverse: &Eight| {
+                let told = lanes::zip(sum, most, Real::min);
+                lanes::zip(&told, inverse, |told, inverse| Real::max(told * inverse, 1e-30))
+            };
+            let ratio = over(spread, &most, &inverse);
+            *share = lanes::zip(&lanes::log2(&ratio), &power, |logarithm, power| logarithm * power);
+            if has_several {
+                let ratio = over(within, &most_noise, &inverse_noise);
+                let logarithm =
+                    lanes::each(&lanes::log2(&ratio), |value| if value < 0.0 { part * value } else { value });
+                *share = lanes::plus_product(*share, logarithm, power_within);
+            }
+            largest = lanes::zip(&largest, share, |largest, share| if share > largest { share } else { largest });
+        }
+        let prior = Real::ln(trust::PRIOR as f32 * choices.counted() as f32) * LOG2_E;
+        *mean = lanes::zip(&largest, freedom, |largest, freedom| {
+            let caution = largest - freedom * freedom * (LOG2_E / trust::CAUTION as f32);
+            if caution > 0.0 { prior + caution } else { prior }
+        });
+        largest = lanes::zip(&largest, mean, |largest, mean| if mean > largest { mean } else { largest });
+        let mut total = NONE;
+        for (choice, share) in [&mut *mean].into_iter().chain(rest.iter_mut()).enumerate() {
+            *share = lanes::exp2(&lanes::zip(share, &largest, |share, largest| share - largest));
+            if choices.is_edge(choice) {
+                // Where there is none, it is the plain mean.
+                *share = only(if choice > choices.fits { &NONE } else { present }, share);
+            }
+            total = plus(&total, share);
+        }
+        // Without a spread, or noise within pixels, the mean is exact.
+        let varies = lanes::zip(
+            plain,
+            noise,
+            |plain, noise| if plain > 0.0 && (noise > 0.0 || !has_several) { 1.0 } else { 0.0 },
+        );
+        let scale = lanes::zip(&varies, &lanes::divisor(&total), |varies, total| varies / total);
+        let exact = lanes::each(&varies, |varies| 1.0 - varies);
+        *mean = plus(&exact, &lanes::zip(mean, &scale, |share, scale| share * scale));
+        for share in rest {
+            *share = lanes::zip(share, &scale, |share, scale| share * scale);
         }
     }
 
@@ -307,76 +371,8 @@ fn no_less(sums: &Eight) -> Eight {
     lanes::each(sums, |sum| Real::max(sum, 1e-24))
 }
 
-/// What samples within pixels say.
-struct Within<'a> {
-    /// What each choice leaves of them.
-    sums: &'a [Eight],
-    pixels: &'a Eight,
-    /// How much it counts where it speaks for a fit.
-    part: f32,
-    has_several: bool,
-}
-
 /// What is told of a sum of squares beside one of those; of what is no number, too.
 #[inline(always)]
 fn no_more(sums: &Eight) -> Eight {
     lanes::each(sums, |sum| Real::min(sum, 1e7) * 1e30)
-}
-
-/// Trust by spreads, of the plain mean first: [`trust::weigh`] in each lane.
-#[inline(always)]
-fn share(
-    spreads: &[Eight],
-    freedom: &Eight,
-    within: &Within<'_>,
-    (choices, present): (&Choices, &Eight),
-    shares: &mut [Eight],
-) {
-    let &Within { sums: within, pixels, part, has_several } = within;
-    let ([plain, spreads @ ..], [noise, within @ ..], [mean, rest @ ..]) = (spreads, within, shares) else { return };
-    let [least, least_noise] = [plain, noise].map(no_less);
-    let [inverse, inverse_noise] =
-        [least, least_noise].map(|least| lanes::each(&lanes::divisor(&least), |least| 1.0 / least));
-    let [most, most_noise] = [least, least_noise].map(|least| no_more(&least));
-    let [power, power_within] =
-        [freedom, pixels].map(|count| lanes::each(count, |count| count * -trust::SHARPNESS as f32));
-    let mut largest = NONE;
-    for ((share, spread), within) in rest.iter_mut().zip(spreads).zip(within) {
-        let over = |sum: &Eight, most: &Eight, inverse: &Eight| {
-            let told = lanes::zip(sum, most, Real::min);
-            lanes::zip(&told, inverse, |told, inverse| Real::max(told * inverse, 1e-30))
-        };
-        let ratio = over(spread, &most, &inverse);
-        *share = lanes::zip(&lanes::log2(&ratio), &power, |logarithm, power| logarithm * power);
-        if has_several {
-            let ratio = over(within, &most_noise, &inverse_noise);
-            let logarithm = lanes::each(&lanes::log2(&ratio), |value| if value < 0.0 { part * value } else { value });
-            *share = lanes::plus_product(*share, logarithm, power_within);
-        }
-        largest = lanes::zip(&largest, share, |largest, share| if share > largest { share } else { largest });
-    }
-    let prior = Real::ln(trust::PRIOR as f32 * choices.counted() as f32) * LOG2_E;
-    *mean = lanes::zip(&largest, freedom, |largest, freedom| {
-        let caution = largest - freedom * freedom * (LOG2_E / trust::CAUTION as f32);
-        if caution > 0.0 { prior + caution } else { prior }
-    });
-    largest = lanes::zip(&largest, mean, |largest, mean| if mean > largest { mean } else { largest });
-    let mut total = NONE;
-    for (choice, share) in [&mut *mean].into_iter().chain(rest.iter_mut()).enumerate() {
-        *share = lanes::exp2(&lanes::zip(share, &largest, |share, largest| share - largest));
-        if choices.is_edge(choice) {
-            // Where there is none, it is the plain mean.
-            *share = only(if choice > choices.fits { &NONE } else { present }, share);
-        }
-        total = plus(&total, share);
-    }
-    // Without a spread, or noise within pixels, the mean is exact.
-    let varies =
-        lanes::zip(plain, noise, |plain, noise| if plain > 0.0 && (noise > 0.0 || !has_several) { 1.0 } else { 0.0 });
-    let scale = lanes::zip(&varies, &lanes::divisor(&total), |varies, total| varies / total);
-    let exact = lanes::each(&varies, |varies| 1.0 - varies);
-    *mean = plus(&exact, &lanes::zip(mean, &scale, |share, scale| share * scale));
-    for share in rest {
-        *share = lanes::zip(share, &scale, |share, scale| share * scale);
-    }
 }
