@@ -95,20 +95,20 @@ pub(super) fn batch_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Opt
 
 impl Units {
     /// A value in units. Only what no fit is made to, or is known of it, is far beyond them; its square fits too.
-    #[inline(always)]
+    #[inline]
     pub(super) fn apply(&self, value: &Eight) -> Eight {
         lanes::zip(&self.scale(value), &self.offsets, |value, offset| value - offset)
     }
 
     /// The same with the zero at 0.
-    #[inline(always)]
+    #[inline]
     pub(super) fn scale(&self, value: &Eight) -> Eight {
         let limited = lanes::zip(value, &self.limits, |value, most| Real::min(Real::max(value, -most), most));
         lanes::zip(&limited, &self.scales, |value, scale| value * scale)
     }
 
     /// Two to the powers of the exponents.
-    #[inline(always)]
+    #[inline]
     pub(super) fn powers(&self) -> Eight {
         self.exponents.map(power_of_two)
     }
@@ -154,7 +154,7 @@ impl<'a> Batch<'a> {
     }
 
     /// The blocks that have pixels of some colours.
-    #[inline(always)]
+    #[inline]
     pub(super) fn blocks(&self, colours: Colours) -> impl Iterator<Item = usize> + use<> {
         let has_colours = self.has_colours;
         (0..self.inside.len()).filter(move |&block| !has_colours || colours.has(block))
@@ -167,7 +167,7 @@ impl<'a> Batch<'a> {
     }
 
     /// Where in its group the pixel of a slot is.
-    #[inline(always)]
+    #[inline]
     pub(super) fn member(&self, (block, row): (usize, usize), lane: usize) -> usize {
         let slot = if self.has_colours {
             COLOURS * AT_ONCE * (block / COLOURS) + block % COLOURS + COLOURS * row
@@ -178,7 +178,7 @@ impl<'a> Batch<'a> {
     }
 
     /// The given pixels of a slot; another's where a lane has none.
-    #[inline(always)]
+    #[inline]
     pub(super) fn pixels(&self, (block, row): (usize, usize)) -> [usize; LANES] {
         at(self.numbers, block)[row % AT_ONCE].map(|number| number.to_bits() as usize)
     }

@@ -62,7 +62,7 @@ impl Choices {
     }
 
     /// Which value of a sample a choice is of, and which fit it has: 0 for none.
-    #[inline(always)]
+    #[inline]
     pub(super) fn value_and_fit(&self, channel: usize, choice: usize) -> (usize, usize) {
         if choice <= self.fits { (channel, choice) } else { (self.channels + channel, choice - self.fits - 1) }
     }
@@ -108,13 +108,13 @@ impl<'a> Shares<'a> {
     }
 
     /// How a channel's correction is shared out.
-    #[inline(always)]
+    #[inline]
     pub(super) fn of(&self, time: usize, channel: usize) -> &[Eight] {
         row_at(self.all, self.choices.count, time * self.choices.channels + channel)
     }
 
     /// The same, to be written.
-    #[inline(always)]
+    #[inline]
     fn of_mut(&mut self, time: usize, channel: usize) -> &mut [Eight] {
         row_at_mut(self.all, self.choices.count, time * self.choices.channels + channel)
     }
@@ -366,13 +366,13 @@ fn total([a, b, c, d]: &Four) -> Eight {
 }
 
 /// Sums of squares, none below what is nothing beside the unit and yet has quotients that are numbers.
-#[inline(always)]
+#[inline]
 fn no_less(sums: &Eight) -> Eight {
     lanes::each(sums, |sum| Real::max(sum, 1e-24))
 }
 
 /// What is told of a sum of squares beside one of those; of what is no number, too.
-#[inline(always)]
+#[inline]
 fn no_more(sums: &Eight) -> Eight {
     lanes::each(sums, |sum| Real::min(sum, 1e7) * 1e30)
 }

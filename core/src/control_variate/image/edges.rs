@@ -122,7 +122,7 @@ pub(super) struct Edges<'a> {
 }
 
 /// The orthonormal Legendre polynomial of degree 1 of a coordinate.
-#[inline(always)]
+#[inline]
 const fn linear(u: f32) -> f32 {
     (u + u - 1.0) * SQRT_3
 }
@@ -209,7 +209,7 @@ impl<'a> Edges<'a> {
         Ok(edges)
     }
 
-    #[inline(always)]
+    #[inline]
     fn samples(&self, block: usize) -> impl Iterator<Item = (&Four, &Four, &Four, &[Four])> {
         let width = 3 + self.channels;
         (block * self.n..(block + 1) * self.n).filter_map(move |sample| {
@@ -550,7 +550,7 @@ impl<'a> Edges<'a> {
     }
 
     /// The part of a polynomial that the pixels' places decide.
-    #[inline(always)]
+    #[inline]
     fn place_part(&self, batch: &Batch<'_>, (block, row): (usize, usize), coefficients: &[Eight]) -> Eight {
         let places = row_at(batch.places, self.fixed, block).iter().zip(coefficients);
         places.fold(NONE, |sum, (place, coefficient)| lanes::plus_product(sum, place[row % AT_ONCE], *coefficient))
@@ -610,7 +610,7 @@ impl<'a> Edges<'a> {
 }
 
 /// The penalty of a column.
-#[inline(always)]
+#[inline]
 fn penalty(penalties: &[f32], fixed: usize, column: usize) -> f32 {
     let index = if column < fixed { column.min(1) } else { 2 + column - fixed };
     at(penalties, index)

@@ -112,24 +112,24 @@ impl<'a> Fits<'a> {
     }
 
     /// What a fit, or without one the mean, leaves of the samples of a colour about their pixels' means.
-    #[inline(always)]
+    #[inline]
     pub(super) fn within(&self, value: usize, colour: usize, fit: usize) -> Eight {
         at(row_at(self.within, 1 + self.count, value * COLOURS + colour), fit)
     }
 
     /// The candidates' corrections of a value of a block.
-    #[inline(always)]
+    #[inline]
     pub(super) fn corrections(&self, block: usize, value: usize) -> &[Four] {
         row_at(self.corrections, self.count, block * self.values + value)
     }
 
-    #[inline(always)]
+    #[inline]
     pub(super) fn corrections_mut(&mut self, block: usize, value: usize) -> &mut [Four] {
         row_at_mut(self.corrections, self.count, block * self.values + value)
     }
 
     /// Sets what the last candidate leaves of the samples of a colour.
-    #[inline(always)]
+    #[inline]
     pub(super) fn set_last_within(&mut self, value: usize, colour: usize, left: Eight) {
         if let Some(out) = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour).last_mut() {
             *out = left;
@@ -191,7 +191,7 @@ impl<'a> Fits<'a> {
     }
 
     /// A candidate's coefficients for a value.
-    #[inline(always)]
+    #[inline]
     fn coefficients(&self, terms: &Terms, value: usize, fit: usize) -> &[Eight] {
         first(row_at(self.coefficients, terms.columns(), value * self.count + fit), at(&terms.ends, fit))
     }

@@ -31,24 +31,24 @@ impl Place {
     }
 
     /// Column, row and frame.
-    #[inline(always)]
+    #[inline]
     pub(super) fn split(self) -> [usize; 3] {
         [0, Self::BITS, 2 * Self::BITS].map(|shift| (self.0 >> shift & Self::MASK) as usize)
     }
 
-    #[inline(always)]
+    #[inline]
     pub(super) fn split_each(places: &[Self; LANES]) -> [[u32; LANES]; 3] {
         [0, Self::BITS, 2 * Self::BITS].map(|shift| places.map(|place| place.0 >> shift & Self::MASK))
     }
 
-    #[inline(always)]
+    #[inline]
     pub(super) fn read(number: f32) -> Self {
         Self(number.to_bits() & ((1 << (3 * Self::BITS)) - 1))
     }
 }
 
 /// A count below 2^24, which is exact in `f32`.
-#[inline(always)]
+#[inline]
 fn count(number: f32) -> usize {
     number as usize
 }
@@ -166,14 +166,14 @@ impl Layout<'_> {
     }
 
     /// The image's number of pixel `index` of a group, which is at `place` in its window.
-    #[inline(always)]
+    #[inline]
     pub(super) fn pixel(&self, window: Window, place: Place, index: usize) -> usize {
         let [x, y, frame] = place.split();
         if self.is_joined() { index } else { self.windows.number(window.x + x, window.y + y, frame) }
     }
 
     /// Divides windows `first` to before `end` into groups.
-    #[inline(always)]
+    #[inline]
     pub(super) fn divide(&self, first: usize, end: usize, groups: &mut Groups<'_>) {
         groups.first = first;
         groups.count = 0;
@@ -268,7 +268,7 @@ impl Groups<'_> {
     }
 
     /// The groups from the largest to the smallest.
-    #[inline(always)]
+    #[inline]
     pub(super) fn by_size(&self, layout: &Layout<'_>, place: usize) -> Option<Group> {
         if layout.is_joined() {
             return self.numbered(layout, place);
@@ -300,13 +300,13 @@ impl Groups<'_> {
     }
 
     /// For each channel the lowest and the highest value that fits are made to in a turn.
-    #[inline(always)]
+    #[inline]
     pub(super) fn limits(&self, layout: &Layout<'_>, group: &Group, turn: usize) -> &[f32] {
         row_at(self.limits, 2 * layout.config.channels, group.index * layout.turns() + turn)
     }
 
     /// The same, to be written.
-    #[inline(always)]
+    #[inline]
     pub(super) fn limits_mut(&mut self, layout: &Layout<'_>, group: &Group, turn: usize) -> &mut [f32] {
         row_at_mut(self.limits, 2 * layout.config.channels, group.index * layout.turns() + turn)
     }
@@ -317,7 +317,7 @@ impl Groups<'_> {
     }
 
     /// The places of a group's pixels, to be read; none where all pixels are one group.
-    #[inline(always)]
+    #[inline]
     pub(super) fn members(&self, group: &Group) -> &[f32] {
         part(self.list, group.start, group.len)
     }

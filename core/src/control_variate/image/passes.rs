@@ -124,7 +124,7 @@ impl Call<'_> {
 
     /// What is told of the groups' errors. Bright pixels count: without them the error would be told too small where
     /// every pixel has rare bright samples.
-    #[inline(always)]
+    #[inline]
     fn tell(&self, groups: &mut Groups<'_>, batch: &Batch<'_>, spreads: &Spreads<'_>, shares: &Shares<'_>) {
         let channels = self.config.channels;
         let by_groups = self.error_is_the_groups();
@@ -214,7 +214,7 @@ impl Call<'_> {
     }
 
     /// Finds the limits of the groups' values for a turn, where any is too far from those of the `judges`.
-    #[inline(always)]
+    #[inline]
     fn find_limits(
         &self,
         groups: &mut Groups<'_>,

@@ -330,7 +330,7 @@ impl Windows {
         Window { x, y: self.top(row) }
     }
 
-    #[inline(always)]
+    #[inline]
     pub(super) fn number(&self, x: usize, y: usize, frame: usize) -> usize {
         (frame * self.given.height + y - self.given.y) * self.given.width + x - self.given.x
     }

@@ -101,7 +101,7 @@ impl Colours {
     pub(super) const HALVES: [Self; 2] = [Self(0b1001), Self(0b0110)];
 
     /// Whether a block, or a part, is of one of these.
-    #[inline(always)]
+    #[inline]
     pub(super) fn has(self, index: usize) -> bool {
         self.0 >> (index % COLOURS) & 1 == 1
     }
@@ -182,7 +182,7 @@ impl<'a> Sums<'a> {
         self.all.iter_mut().for_each(|sum| *sum = [lanes::sum(sum); LANES]);
     }
 
-    #[inline(always)]
+    #[inline]
     pub(super) fn part(&self, part: usize) -> Part<&[Eight]> {
         let sums = row_at(self.all, Self::len(self.columns, self.values), part);
         let (gram, rest) = halves(sums, packed_len(self.columns));
@@ -190,7 +190,7 @@ impl<'a> Sums<'a> {
         Part { gram, sides, squares }
     }
 
-    #[inline(always)]
+    #[inline]
     pub(super) fn part_mut(&mut self, part: usize) -> Part<&mut [Eight]> {
         let sums = row_at_mut(self.all, Self::len(self.columns, self.values), part);
         let (gram, rest) = halves_mut(sums, packed_len(self.columns));

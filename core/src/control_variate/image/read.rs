@@ -23,19 +23,19 @@ impl Call<'_> {
     }
 
     /// A channel of a sample of each pixel, divided by the pixels' factors.
-    #[inline(always)]
+    #[inline]
     pub(super) fn inputs(&self, pixels: &[usize; LANES], sample: usize, channel: usize) -> Eight {
         self.gather(self.reader.inputs(), pixels, (self.n, sample), channel)
     }
 
     /// What is known of it, divided likewise.
-    #[inline(always)]
+    #[inline]
     pub(super) fn known(&self, pixels: &[usize; LANES], sample: usize, channel: usize) -> Eight {
         self.gather(self.image.known, pixels, (self.n, sample), channel)
     }
 
     /// The integral of what is known, divided likewise.
-    #[inline(always)]
+    #[inline]
     pub(super) fn integrals(&self, pixels: &[usize; LANES], channel: usize) -> Eight {
         self.gather(self.image.known_integrals, pixels, (1, 0), channel)
     }
@@ -53,14 +53,14 @@ impl Call<'_> {
         values
     }
 
-    #[inline(always)]
+    #[inline]
     fn over_factor(&self, value: f32, pixel: usize, channel: usize) -> f32 {
         let most = f64::from(f32::MAX);
         (f64::from(value) / self.factor(pixel, channel)).clamp(-most, most) as f32
     }
 
     /// What a pixel's values are divided by. Black says nothing about what it multiplies: 1.
-    #[inline(always)]
+    #[inline]
     pub(super) fn factor(&self, pixel: usize, channel: usize) -> f64 {
         let factor = self.image.factors.get(pixel * self.config.channels + channel).copied().unwrap_or(1.0);
         if factor > 0.0 { f64::from(factor) } else { 1.0 }

@@ -66,7 +66,7 @@ fn gather(out: &mut [Eight], of: &[&[Eight]; LANES]) {
 }
 
 /// Entry (i, k) of a symmetric matrix.
-#[inline(always)]
+#[inline]
 fn symmetric(triangle: &[Eight], i: usize, k: usize) -> Eight {
     at(triangle, packed_len(i.max(k)) + i.min(k))
 }
@@ -150,7 +150,7 @@ impl<'a> Apart<'a> {
     }
 
     /// Lanes of a slice's block.
-    #[inline(always)]
+    #[inline]
     fn block_len(&self, terms: &Terms) -> usize {
         packed_len(self.own) + (self.width + self.values + terms.fixed()) * self.own
     }

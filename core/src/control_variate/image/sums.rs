@@ -123,7 +123,7 @@ impl Call<'_> {
     }
 
     /// Writes a row of pixels, and empties its sums.
-    #[inline(always)]
+    #[inline]
     fn write(&self, frame: usize, y: usize, band: &mut Band<'_>, out: &mut dyn FnMut(usize, Estimate)) {
         let (given, wanted) = (self.windows.given, self.windows.wanted);
         let row = frame * band.rows + y % band.rows.max(1);
@@ -138,7 +138,7 @@ impl Call<'_> {
         sums.iter_mut().for_each(|sum| *sum = 0.0);
     }
 
-    #[inline(always)]
+    #[inline]
     fn estimate(&self, pixel: usize, sums: &[f32]) -> Estimate {
         let samples = self.n.min(u32::MAX as usize) as u32;
         let mut estimate = Estimate { mean: [0.0; 4], std_error: [0.0; 4], samples, gain: 1.0 };

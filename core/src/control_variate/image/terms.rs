@@ -57,7 +57,7 @@ pub(super) struct Terms {
 
 impl Terms {
     /// For a fit to `samples` samples of pixels that differ along `axes` axes. With `all`, one candidate: every column.
-    #[inline(always)]
+    #[inline]
     pub(super) fn new(config: &Config, shape: &Shape, axes: usize, samples: usize, all: bool) -> Self {
         let functions = config.controls + shape.columns();
         let fixed = 1 + axes;
@@ -109,12 +109,12 @@ impl Terms {
     }
 
     /// The constant and the axes.
-    #[inline(always)]
+    #[inline]
     pub(super) fn fixed(&self) -> usize {
         1 + self.axes
     }
 
-    #[inline(always)]
+    #[inline]
     pub(super) fn columns(&self) -> usize {
         self.fixed() + self.functions + self.axes * self.moving.1
     }
@@ -126,7 +126,7 @@ impl Terms {
     }
 
     /// Which column a slice's own one is, but for a factor, where a sample is of the slice; and the square of that.
-    #[inline(always)]
+    #[inline]
     pub(super) fn source(&self, own: usize) -> (usize, f32) {
         let count = self.slices as f32;
         match own.checked_sub(1) {
@@ -137,7 +137,7 @@ impl Terms {
     }
 
     /// The columns that change within a pixel: what the function is multiplied by, and which function it is.
-    #[inline(always)]
+    #[inline]
     pub(super) fn changing<'p>(&self, places: &'p [Four]) -> impl Iterator<Item = (&'p Four, usize)> + use<'p> {
         let (functions, (first, count)) = (self.functions, self.moving);
         places.iter().enumerate().flat_map(move |(axis, place)| {
@@ -160,7 +160,7 @@ impl Terms {
     }
 
     /// The penalty of each column, relative to the strength times the number of samples.
-    #[inline(always)]
+    #[inline]
     pub(super) fn penalties(&self, config: &Config, basis: &Basis, out: &mut [f32]) {
         let (own, rest) = halves_mut(out, self.fixed());
         for (index, penalty) in own.iter_mut().enumerate() {
