@@ -18,8 +18,7 @@ pub(crate) fn splat<R: Real, const L: usize>(value: R) -> Lanes<R, L> {
     [value; L]
 }
 
-// Always inlined, and so before anything else is: what is inlined later is scalar in places, and image fits take a
-// tenth more instructions.
+// Always inlined, and so before anything else is: what is inlined later is scalar in places.
 
 // The operations copy their operands before they store: compilers then know that no store changes an operand, without
 // which they would not use vector instructions.

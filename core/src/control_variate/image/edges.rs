@@ -48,8 +48,6 @@ const LEAST_VARIANCE: f32 = 1e-3;
 /// Points along a coordinate, and cells between them.
 const POINTS: usize = CELLS + 1;
 const CELLS: usize = 16;
-/// What is left of samples is at least this of their sum of squares.
-const ROUNDING: f32 = 1e-5;
 const SQRT_3: f32 = 1.732_050_8;
 const SQRT_5: f32 = 2.236_068;
 
@@ -320,8 +318,7 @@ impl<'a> Edges<'a> {
             for value in 0..batch.values {
                 let whole = fits.within(value, colour, 0);
                 let left = within.get(value).filter(|_| value < self.channels).unwrap_or(&whole);
-                let left = lanes::zip(left, &whole, |left, whole| Real::max(left, whole * ROUNDING));
-                fits.set_last_within(value, colour, left);
+                fits.set_within(value, colour, fits.count, left);
             }
         }
         // Of what is left of values without what is known nothing is dark.

@@ -128,11 +128,13 @@ impl<'a> Fits<'a> {
         row_at_mut(self.corrections, self.count, block * self.values + value)
     }
 
-    /// Sets what the last candidate leaves of the samples of a colour.
+    /// Sets what a fit leaves of the samples of a colour. A difference of sums has no more digits than they.
     #[inline]
-    pub(super) fn set_last_within(&mut self, value: usize, colour: usize, left: Eight) {
-        if let Some(out) = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour).last_mut() {
-            *out = left;
+    pub(super) fn set_within(&mut self, value: usize, colour: usize, fit: usize, left: &Eight) {
+        let row = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour);
+        let whole = at(row, 0);
+        if let Some(out) = row.get_mut(fit) {
+            *out = lanes::zip(left, &whole, |left, whole| Real::max(left, whole * ROUNDING));
         }
     }
 
@@ -245,9 +247,12 @@ impl<'a> Fits<'a> {
         let (width, fixed) = (terms.columns(), terms.fixed());
         let Part { gram, sides, squares } = batch.within.part(colour);
         for (value, (whole, sides)) in squares.iter().zip(rows(sides, width)).enumerate() {
-            for fit in 0..=terms.ends.len() {
+            if let Some(out) = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour).first_mut() {
+                *out = *whole;
+            }
+            for fit in 0..terms.ends.len() {
                 let mut left = *whole;
-                let coefficients = fit.checked_sub(1).map_or(&[][..], |fit| self.coefficients(terms, value, fit));
+                let coefficients = self.coefficients(terms, value, fit);
                 for (j, b) in coefficients.iter().enumerate().skip(fixed) {
                     let (Some((square, row)), Some(side)) = (row(gram, j).split_last(), sides.get(j)) else { break };
                     // b_j (G_jj b_j + 2 (sum_k G_jk b_k - r_j)).
@@ -259,12 +264,7 @@ impl<'a> Fits<'a> {
                     let sum = lanes::plus_product(sum.map(|sum| sum + sum), *square, *b);
                     left = lanes::plus_product(left, sum, *b);
                 }
-                // A difference of sums has no more digits than they.
-                left = lanes::zip(&left, whole, |left, whole| Real::max(left, whole * ROUNDING));
-                let within = row_at_mut(self.within, 1 + self.count, value * COLOURS + colour);
-                if let Some(out) = within.get_mut(fit) {
-                    *out = if fit == 0 { *whole } else { left };
-                }
+                self.set_within(value, colour, 1 + fit, &left);
             }
         }
     }
