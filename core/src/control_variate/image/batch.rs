@@ -281,7 +281,7 @@ impl<'a> Batch<'a> {
     }
 
     /// As for one pixel's samples: the zero at a value, the unit near the largest.
-    #[inline(always)]
+    #[inline]
     fn set_units(&mut self, channels: usize) {
         for (channel, units) in self.units.iter_mut().enumerate().take(channels) {
             let mut largest = NONE;

@@ -342,7 +342,7 @@ impl<'a> Spreads<'a> {
     }
 
     /// A mixture's spread relative to the plain mean's, by the samples within pixels where `inside`.
-    #[inline(always)]
+    #[inline]
     pub(super) fn ratio(&self, channel: usize, shares: &[Eight], inside: bool) -> Eight {
         let sums = row_at(if inside { &*self.within } else { &*self.sums }, self.choices.count, channel);
         let plain = sums.first().copied().unwrap_or(NONE);

@@ -216,7 +216,7 @@ impl<'a> Edges<'a> {
         })
     }
 
-    #[inline(always)]
+    #[inline]
     fn read(&mut self, call: &Call<'_>, batch: &Batch<'_>, block: usize) {
         let width = 3 + self.channels;
         let inside = at(batch.inside, block);
@@ -447,7 +447,7 @@ impl<'a> Edges<'a> {
     }
 
     /// Least squares to the lit samples of the training set.
-    #[inline(always)]
+    #[inline]
     fn fit_lit(&self, a: &mut [[Eight; MAX_FIXED + SLOPES]; Config::MAX_CHANNELS]) {
         let width = self.fixed + SLOPES;
         let sums = self.training_lit.part(0);
@@ -583,7 +583,7 @@ impl<'a> Edges<'a> {
     }
 
     /// The interpolant between the points.
-    #[inline(always)]
+    #[inline]
     fn interpolate(&self, x: &Eight, y: &Eight) -> Eight {
         let mut out = NONE;
         for lane in 0..LANES {

@@ -56,7 +56,7 @@ pub(super) struct Apart<'a> {
 }
 
 /// Puts a row together, each lane of another's.
-#[inline(always)]
+#[inline]
 fn gather(out: &mut [Eight], of: &[&[Eight]; LANES]) {
     for lane in 0..LANES {
         for (out, entry) in out.iter_mut().zip(of[lane]) {

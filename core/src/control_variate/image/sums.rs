@@ -71,7 +71,7 @@ impl Call<'_> {
     }
 
     /// Adds the groups' corrections to the sums of their pixels, in the order of the windows.
-    #[inline(always)]
+    #[inline]
     fn add(&self, first: usize, groups: &Groups<'_>, band: &mut Band<'_>) {
         let channels = self.config.channels;
         let given = self.windows.given;
