@@ -11,7 +11,7 @@ use crate::measure::metric::Reference;
 use crate::measure::output::Output;
 use crate::measure::part::Part;
 use crate::measure::renderer::{Job, Renderer, View};
-use crate::measure::{progress, running, score, text};
+use crate::measure::{progress, running, text};
 use anyhow::{Context, Result};
 use clap::Args;
 use image::imageops::replace;
@@ -96,7 +96,7 @@ fn scenes(options: &Options, renderer: &Renderer, output: &Output) -> Result<()>
             for estimator in ESTIMATORS {
                 let of = outcome.of(estimator)?;
                 let image = of.images.first().context("no image")?.clone();
-                let errors = score::errors(&image, &outcome.reference);
+                let errors = outcome.reference.errors(&image);
                 let nanoseconds = of.timings.first().context("the path tracer printed no times")?.frame();
                 all.push(Rendered { spp, sampler: name, estimator, image, errors, nanoseconds });
             }
@@ -122,23 +122,24 @@ fn scenes(options: &Options, renderer: &Renderer, output: &Output) -> Result<()>
 }
 
 /// What `index.html` shows, if it is there already.
-const PICTURES: [(&str, &str); 3] = [
+const SHOWN: [(&str, &str); 6] = [
     ("shared.png", "Samplers and shared fits at equal samples: each image with its error below"),
     ("gradients-digits-time.svg", "Test error of small digits against seconds of training"),
     ("gradients-mnist-time.svg", "Test error of MNIST against seconds of training"),
+    ("demo.md", "The table of samplers and fits"),
+    ("gradients.md", "The tables of trainers"),
+    (PAGE, "A page to play with"),
 ];
-const TABLES: [&str; 2] = ["demo.md", "gradients.md"];
 const PAGE: &str = "playground.html";
 
 fn index(folder: &Path) -> Result<()> {
-    let there = |file: &&str| folder.join(file).exists();
-    let pictures = PICTURES.into_iter().filter(|(file, _)| there(file));
-    let pictures = pictures.map(|(file, words)| format!("<p>{words}</p>\n<img src=\"{file}\">\n"));
-    let tables = TABLES.into_iter().filter(there).map(|file| format!("<p><a href=\"{file}\">{file}</a></p>\n"));
-    let page = Some(PAGE).filter(there).map(|file| format!("<p><a href=\"{file}\">A page to play with</a></p>\n"));
-    let html = "<!doctype html><meta charset=\"utf-8\"><title>noisefloor: demo</title>\n".to_owned()
-        + &pictures.chain(tables).chain(page).join("");
-    fs::write(folder.join("index.html"), html).context("cannot write index.html")
+    let show = |(file, words): (&str, &str)| match file.ends_with('g') {
+        true => format!("<p>{words}</p>\n<img src=\"{file}\">\n"),
+        false => format!("<p><a href=\"{file}\">{words}</a></p>\n"),
+    };
+    let mut shown = SHOWN.into_iter().filter(|(file, _)| folder.join(file).exists()).map(show);
+    let head = "<!doctype html><meta charset=\"utf-8\"><title>noisefloor: demo</title>\n";
+    fs::write(folder.join("index.html"), head.to_owned() + &shown.join("")).context("cannot write index.html")
 }
 
 /// Raw and filtered errors over those of the plain mean of as many random samples.

@@ -53,7 +53,8 @@ elseif(TESTS_UNDER STREQUAL "tsan")
     set(NOISEFLOOR_RUST_TARGET "${CMAKE_MATCH_1}" CACHE STRING "" FORCE)
     set(NOISEFLOOR_OPT_LEVEL 1 CACHE STRING "" FORCE)
     set(NOISEFLOOR_SHARED OFF CACHE BOOL "" FORCE)
-    set(NOISEFLOOR_CARGO_ENVIRONMENT RUSTC_BOOTSTRAP=1
+    # Nor does it run long enough to pay for link-time optimisation.
+    set(NOISEFLOOR_CARGO_ENVIRONMENT RUSTC_BOOTSTRAP=1 CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16
         "RUSTFLAGS=-Zsanitizer=thread -Cunsafe-allow-abi-mismatch=sanitizer" CACHE STRING "" FORCE)
     string(APPEND CMAKE_CXX_FLAGS " -g -fsanitize=thread -pthread")
 elseif(TESTS_UNDER STREQUAL "valgrind")
@@ -63,6 +64,7 @@ elseif(TESTS_UNDER STREQUAL "valgrind")
     endif()
     string(APPEND CMAKE_C_FLAGS " -g")
     string(APPEND CMAKE_CXX_FLAGS " -g")
+    add_compile_definitions(UNDER_VALGRIND)
     # It exits with 99 for its own findings, whatever the program's status.
     set(memcheck "${valgrind}" --quiet --tool=memcheck --error-exitcode=99 --leak-check=full)
     set(comparisons "${CMAKE_CURRENT_SOURCE_DIR}/valgrind/comparisons.c")

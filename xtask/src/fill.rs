@@ -19,7 +19,7 @@ use crate::paths;
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Fills all documents.
 pub fn run() -> Result<()> {
@@ -34,12 +34,11 @@ pub fn run() -> Result<()> {
 
 /// Every document with its text as it is and as it should be.
 fn documents() -> Result<Vec<(PathBuf, String, String)>> {
-    let root = paths::root();
-    let mut all = vec![root.join("README.md"), root.join("examples_c/README.md")];
+    let mut all = vec![paths::root().join("README.md"), paths::root().join("examples_c/README.md")];
     all.extend(paths::of_kind("docs", "md")?);
     let filled = all.into_iter().map(|path| {
-        let old = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-        let new = fill(&old, &|cell| measured(root, cell)).with_context(|| path.display().to_string())?;
+        let old = paths::read(&path)?;
+        let new = fill(&old, &measured).with_context(|| path.display().to_string())?;
         Ok((path, old, new))
     });
     filled.collect()
@@ -85,7 +84,7 @@ fn written(value: f64, like: &str) -> String {
 }
 
 /// What a marker names.
-fn measured(root: &Path, marker: &str) -> Result<f64> {
+fn measured(marker: &str) -> Result<f64> {
     let (marker, factor) = match marker.split_once(" * ") {
         Some((marker, factor)) => (marker, factor.parse()?),
         None => (marker, 1.0),
@@ -100,13 +99,11 @@ fn measured(root: &Path, marker: &str) -> Result<f64> {
     let (source, cell) = marker.split_once(": ").context("not SOURCE: CELL")?;
     let (chapter, table) = source.split_once('/').context("not CHAPTER/TABLE")?;
     let value = if chapter == "tiles" {
-        let text = fs::read_to_string(root.join(format!("core/tiles/{table}.toml")))?;
+        let text = paths::read(format!("core/tiles/{table}.toml"))?;
         let line = text.lines().find_map(|line| line.strip_prefix(cell)?.strip_prefix(" = "));
         Value::String(line.context("no such key")?.to_owned())
     } else {
-        let path = root.join(format!("docs/report/{chapter}.json"));
-        let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-        let json: Value = serde_json::from_str(&text)?;
+        let json = paths::json(format!("docs/report/{chapter}.json"))?;
         match table {
             "quoted" | "settings" => json[table][cell].clone(),
             _ => in_table(&json, table, cell)?,
@@ -134,7 +131,7 @@ fn in_table(json: &Value, table: &str, cell: &str) -> Result<Value> {
 }
 
 /// The elements of an array; none of anything else.
-fn list(json: &Value) -> &[Value] {
+pub fn list(json: &Value) -> &[Value] {
     json.as_array().map_or(&[], Vec::as_slice)
 }
 

@@ -1,5 +1,6 @@
 //! `cargo xtask install`: what capi/CMakeLists.txt describes, with cargo's target folder shared.
 
+use crate::c_tests::CMAKE;
 use crate::{library, paths, run, tools};
 use anyhow::{Context, Result};
 use clap::Args;
@@ -16,7 +17,7 @@ pub struct Options {
 }
 
 pub fn run(options: &Options) -> Result<()> {
-    tools::need(&["cmake", "cc", "ld", "nm", "objcopy"], "cmake gcc libc6-dev binutils")?;
+    tools::packages(&[tools::C, CMAKE].concat())?;
     // A relative prefix is the caller's, not the workspace's.
     let prefix = std::path::absolute(&options.prefix)
         .with_context(|| format!("cannot install into {}", options.prefix.display()))?;

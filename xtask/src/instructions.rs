@@ -1,5 +1,6 @@
 //! How many instructions the library's hottest functions take: counted by callgrind, so the same on a busy machine.
 
+use crate::fill::list;
 use crate::tools::{self, Package};
 use crate::{paths, run};
 use anyhow::{Context, Result, bail};
@@ -78,8 +79,7 @@ fn count_case(program: &Path, line: &str) -> Result<Count> {
 /// told.
 pub fn check(archive: &Path) -> Result<()> {
     tools::packages(&PACKAGES)?;
-    let committed: Value =
-        serde_json::from_str(&paths::read(REPORT)?).with_context(|| format!("{REPORT} is damaged"))?;
+    let committed = paths::json(REPORT)?;
     let now = count(&compile(archive)?)?;
     let changes = changes(&committed, &now)?;
     changes.iter().for_each(|change| println!("   {change}"));
@@ -103,9 +103,8 @@ const WORSE: &str = "more than the report's";
 
 /// What differs by more than the tolerance, as sentences.
 fn changes(committed: &Value, now: &Counts) -> Result<Vec<String>> {
-    let tables = committed["tables"].as_array().map_or(&[][..], Vec::as_slice);
-    let table = tables.iter().find(|table| table["name"] == "counts").context("the report has no table of counts")?;
-    let rows = table["rows"].as_array().map_or(&[][..], Vec::as_slice);
+    let table = list(&committed["tables"]).iter().find(|table| table["name"] == "counts");
+    let rows = list(&table.context("the report has no table of counts")?["rows"]);
     let mut sentences = Vec::new();
     for Count { name, instructions, .. } in &now.counts {
         let row = rows.iter().find(|row| row[0] == name.as_str());

@@ -19,6 +19,7 @@ pub mod tools;
 /// Where things are.
 pub mod paths {
     use anyhow::{Context, Result};
+    use serde_json::Value;
     use std::path::{Path, PathBuf};
 
     /// The workspace root.
@@ -30,6 +31,11 @@ pub mod paths {
     pub fn read(name: impl AsRef<Path>) -> Result<String> {
         let path = root().join(name);
         std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
+    }
+
+    /// The same of JSON.
+    pub fn json(name: impl AsRef<Path>) -> Result<Value> {
+        serde_json::from_str(&read(&name)?).with_context(|| format!("{} is no JSON", name.as_ref().display()))
     }
 
     /// Cargo's target folder, wherever the user put it.

@@ -1,7 +1,7 @@
 //! The C library: one relocatable object, so that nothing but `nf_*` is visible and nothing is undefined.
 
 use crate::{paths, run, tools};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, ensure};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ const RISC_V_32: (&str, &str) = ("LDEMULATION", "elf32lriscv");
 ///
 /// capi/cmake/one_object.sh, which the CMake build uses too, says why cargo's own archive is not the one.
 pub fn build() -> Result<PathBuf> {
-    tools::need(&["cc", "ld", "ar", "nm", "objcopy"], "gcc libc6-dev binutils")?;
+    tools::packages(&tools::C)?;
     run::compile(run::cargo().args(["build", "--release", "--package", "noisefloor-capi"]))?;
     one_object(&paths::target().join("release/libnoisefloor.a"), &paths::output(), "")
 }
@@ -56,20 +56,15 @@ pub fn one_object(raw: &Path, output: &Path, prefix: &str) -> Result<PathBuf> {
 pub fn check(archive: &Path) -> Result<()> {
     let symbols = names(archive, &[])?;
     let panics: Vec<_> = symbols.iter().filter(|(_, name)| name.contains("panic")).collect();
-    if !panics.is_empty() {
-        bail!("the library can panic: {panics:?}");
-    }
+    ensure!(panics.is_empty(), "the library can panic: {panics:?}");
     for (kind, name) in &symbols {
-        if kind == "U" && !ALLOWED_UNDEFINED.contains(&name.as_str()) {
-            bail!("the library needs `{name}` from elsewhere");
-        }
-        if kind.chars().all(char::is_uppercase) && kind != "U" && !name.starts_with("nf_") {
-            bail!("the library exports `{name}`");
-        }
+        let (is_needed, is_seen) = (kind == "U", kind.chars().all(char::is_uppercase));
+        let may_be_needed = ALLOWED_UNDEFINED.contains(&name.as_str());
+        ensure!(!is_needed || may_be_needed, "the library needs `{name}` from elsewhere");
+        ensure!(is_needed || !is_seen || name.starts_with("nf_"), "the library exports `{name}`");
     }
-    if !symbols.iter().any(|(kind, name)| kind == "T" && name == "nf_abi_version") {
-        bail!("no nf_abi_version in {}: the symbol check looked at the wrong file", archive.display());
-    }
+    let is_there = symbols.iter().any(|(kind, name)| kind == "T" && name == "nf_abi_version");
+    ensure!(is_there, "no nf_abi_version in {}: the symbol check looked at the wrong file", archive.display());
     Ok(())
 }
 

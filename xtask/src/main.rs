@@ -40,12 +40,9 @@ enum Command {
     Fuzz(fuzz::Options),
     /// Regenerate include/noisefloor.h and its parts
     Header,
-    /// Rewrite capi/abi.txt, the list of what the C ABI promises
-    Abi {
-        /// Allow what breaks programs without a new NF_ABI_VERSION: no release has had the present one yet
-        #[arg(long)]
-        unreleased: bool,
-    },
+    /// Rewrite capi/abi.txt, the list of what the C ABI promises. --unreleased: also what breaks programs without a new
+    /// NF_ABI_VERSION, as no release has had the present one yet
+    Abi(Passed),
     /// Rewrite THIRD_PARTY.md, the list of other people's packages and their licences
     Licences,
     /// Build the page to play with, target/demo/playground.html
@@ -69,9 +66,7 @@ fn main() -> ExitCode {
         Command::Report(passed) => start::start("report", "report", &passed.arguments),
         Command::Targets(passed) => start::start("report", "targets", &passed.arguments),
         Command::Header => start::start("release", "header", &[]),
-        Command::Abi { unreleased } => {
-            start::start("release", "abi", unreleased.then(|| "--unreleased".into()).as_slice())
-        }
+        Command::Abi(passed) => start::start("release", "abi", &passed.arguments),
         Command::Fill => fill::run(),
         Command::Test(options) => test::run(&options),
         Command::Fuzz(options) => fuzz::run(&options),

@@ -7,10 +7,9 @@ use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::PathBuf;
 
-/// Debian's compiler: rustup's has only the targets that its user installed.
 const COMPILER: [Package; 4] = [
-    Package { name: "rustc-web", file: "/usr/bin/rustc" },
-    Package { name: "cargo-web", file: "/usr/bin/cargo" },
+    Package { name: "rustc-web", file: run::DEBIANS[1] },
+    Package { name: "cargo-web", file: run::DEBIANS[0] },
     Package { name: "rust-web-src", file: "/usr/share/doc/rust-web-src" },
     Package { name: "lld-19", file: "/usr/bin/wasm-ld-19" },
 ];
@@ -22,10 +21,8 @@ pub fn build() -> Result<PathBuf> {
     tools::packages(&COMPILER)?;
     println!("building the page to play with");
     let (target, triple) = (paths::target().join("playground"), "wasm32-unknown-unknown");
-    let mut cargo = run::command(COMPILER[1].file);
-    // What rustup's cargo set for us is not for Debian's.
-    cargo.env("RUSTC_BOOTSTRAP", "1").env("RUSTC", COMPILER[0].file).env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO");
-    cargo.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", COMPILER[3].file);
+    let mut cargo = run::command(run::DEBIANS[0]);
+    run::with_debians(&mut cargo).env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", COMPILER[3].file);
     cargo.args(["rustc", "--quiet", "--release", "--lib", "--crate-type", "cdylib", "--manifest-path", MANIFEST]);
     run::compile(cargo.args(["-Z", "build-std=core", "--target", triple, "--target-dir"]).arg(&target))?;
     let module = target.join(triple).join("release/noisefloor_playground.wasm");

@@ -19,6 +19,14 @@ pub fn cargo() -> Command {
     command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
+/// Debian's cargo and compiler of Rust, since rustup's have only the targets that their user installed.
+pub const DEBIANS: [&str; 2] = ["/usr/bin/cargo", "/usr/bin/rustc"];
+
+/// Lets a command compile with Debian's, also with unstable options. What rustup's cargo set for us is not for these.
+pub fn with_debians(command: &mut Command) -> &mut Command {
+    command.env("RUSTC_BOOTSTRAP", "1").env("RUSTC", DEBIANS[1]).env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO")
+}
+
 /// The C or C++ compiler: `$CC` / `$CXX`, or the system's.
 pub fn compiler(variable: &str, default: &str) -> Command {
     command(std::env::var_os(variable).filter(|name| !name.is_empty()).unwrap_or_else(|| default.into()))

@@ -9,6 +9,13 @@ use std::process::{Command, ExitCode, Stdio};
 /// The exit status of a program that is a step of the tests and cannot run here.
 const NOT_RUN: u8 = 77;
 
+/// These packages, which do not measure; and all others. The tests always name them so: packages that are compiled
+/// together decide with which features those are that they share, and with others these would be compiled again.
+pub const TOOLS: [&str; 6] =
+    ["--package", "xtask", "--package", "noisefloor-release", "--package", "noisefloor-report"];
+pub const OTHERS: [&str; 7] =
+    ["--workspace", "--exclude", "xtask", "--exclude", "noisefloor-release", "--exclude", "noisefloor-report"];
+
 fn program(cargo: &str, folder: &str) -> Command {
     let mut program = run::cargo();
     program.args([cargo, "--profile", "xtask", "--manifest-path"]).arg(paths::root().join(folder).join("Cargo.toml"));
@@ -41,8 +48,9 @@ pub fn exit(result: Result<()>) -> ExitCode {
 
 /// Runs a step of the tests.
 pub fn check(folder: &str, step: &str) -> Result<()> {
-    let mut program = program("run", folder);
-    program.args(["--quiet", "--", "check", step]).stderr(Stdio::piped());
+    run::check(run::cargo().args(["build", "--quiet", "--profile", "xtask"]).args(TOOLS))?;
+    let mut program = run::command(paths::target().join("xtask").join(format!("noisefloor-{folder}")));
+    program.args(["check", step]).stderr(Stdio::piped());
     let output = program.spawn()?.wait_with_output()?;
     let errors = String::from_utf8_lossy(&output.stderr);
     if output.status.code() == Some(NOT_RUN.into()) {

@@ -5,6 +5,7 @@ use crate::tools::{self, Missing, Package};
 use crate::{fuzz, instructions, library, playground, python, renderers, run, start, texts};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
+use std::process::Command;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -23,8 +24,6 @@ const DEVICES: [Package; 11] = [
     Package { name: "ocl-icd-opencl-dev", file: "/usr/share/doc/ocl-icd-opencl-dev/copyright" },
     Package { name: "pocl-opencl-icd", file: "/etc/OpenCL/vendors/pocl.icd" },
 ];
-/// The packages that do not measure: their profile is `xtask`, which lints and documents share with them.
-const COMPILED_FAST: [&str; 3] = ["xtask", "noisefloor-release", "noisefloor-report"];
 
 #[derive(Args)]
 pub struct Options {
@@ -33,18 +32,28 @@ pub struct Options {
     /// A step that cannot run here is a failure
     #[arg(long)]
     strict: bool,
+    /// Those steps alone that go on beside the others
+    #[arg(long, hide = true)]
+    beside: bool,
 }
 
 pub fn run(options: &Options) -> Result<()> {
     let start = Instant::now();
     tools::ensure()?;
     let mut steps = Steps { options, passed: 0, failed: Vec::new(), not_run: Vec::new(), left_out: Vec::new() };
-    let mut test = vec!["test", "--profile", "suite", "--workspace", "--no-fail-fast", "--exclude", "noisefloor-bench"];
-    test.extend(COMPILED_FAST.iter().flat_map(|name| ["--exclude", name]));
-    let library_tests = steps.begin("Rust tests of the library (cargo test)", &test);
+    if options.beside {
+        beside(&mut steps);
+        return steps.finish(start);
+    }
+    let mut cargo = run::cargo();
+    cargo.args(["test", "--profile", "suite", "--no-fail-fast"]).args(start::OTHERS);
+    let library_tests = steps.begin("Rust tests of the library (cargo test)", cargo);
     // Before the steps: many of them link it, and the benches compile to more with it. Where that fails, they say so.
     println!("building the C library");
     _ = library::build();
+    let mut xtask = run::command(std::env::current_exe()?);
+    xtask.args(["test", "--beside"]).args(options.strict.then_some("--strict"));
+    let others = options.filter.is_none().then(|| steps.begin("steps that went on beside those above", xtask));
     steps.cargo("formatting (cargo fmt --check)", &["fmt", "--all", "--check"], None);
     steps.run("lines of at most 120 columns", texts::columns);
     let clippy = ["clippy", "--quiet", "--profile", "xtask", "--workspace", "--all-targets", "--", "-D", "warnings"];
@@ -52,86 +61,71 @@ pub fn run(options: &Options) -> Result<()> {
     steps.start("the headers are what capi/ generates", "release", "header");
     steps.start("capi/abi.txt: functions, layouts and constants of the C ABI are as promised", "release", "abi");
     steps.c("headers alone: C99, C11, C++11, C++17, C++20, every warning an error", "default", "headers", &[]);
-    let heading = "the C library: no panic, no undefined symbol but mem*, only nf_* visible";
-    steps.run(heading, || library::check(&library::build()?));
+    steps.run("the C library: no panic, only mem* undefined, only nf_* visible", || library::check(&library::build()?));
     // Their dependencies are compiled already, in the profile that compiles fast, not the one that runs fast.
-    let mut test = vec!["test", "--profile", "xtask"];
-    test.extend(COMPILED_FAST.iter().flat_map(|name| ["--package", name]));
+    let test = [&["test", "--profile", "xtask"][..], &start::TOOLS].concat();
     steps.cargo("Rust tests of xtask, release and the report (cargo test)", &test, None);
     let doc = ["doc", "--quiet", "--profile", "xtask", "--workspace", "--no-deps", "--document-private-items"];
     steps.cargo("Rust documentation, warnings are errors", &doc, Some(("RUSTDOCFLAGS", "-D warnings")));
     steps.run("each feature of the core alone, without std", each_feature);
-    steps.run("fuzz targets: committed inputs", fuzz::replay);
     steps.c("C tests as C99", "default", "c99", &[]);
     steps.c("C tests under the address and undefined-behaviour sanitizers", "asan", "c99", &[]);
-    let valgrind = instructions::PACKAGES;
-    steps.c("C tests under valgrind: no wrong address, no undefined value, no leak", "valgrind", "c99", &valgrind);
-    let heading = "threads under valgrind: an accumulator each is no race, a shared one is";
-    steps.c(heading, "valgrind", "threads", &valgrind);
-    let heading = "threads under ThreadSanitizer: the rules kept, each of them broken, and a renderer";
-    steps.c(heading, "tsan", "tsan", &[]);
     steps.c("C tests as C++17, including noisefloor.hpp", "default", "cpp17", &[]);
-    steps.c(
-        "noisefloor_sampler.h on devices: GLSL, HLSL, OpenCL C, CUDA and HIP draw the bits of the library",
-        "default",
-        "gpu",
-        &DEVICES,
-    );
+    steps.c("noisefloor_sampler.h on devices: the bits of the library", "default", "gpu", &DEVICES);
     steps.c("C++ wrapper, with and without exceptions", "default", "wrapper", &[]);
-    let heading = "installed: CMake and pkg-config projects, C and C++, shared and static, either alone, part of \
-                   another project";
-    steps.c(heading, "default", "installed_projects", &[PKG_CONFIG]);
+    steps.c("installed: projects of CMake and pkg-config, C, C++", "default", "installed_projects", &[PKG_CONFIG]);
     steps.c("installed: examples_c as a project of its own", "default", "installed_examples", &[]);
     steps.c("examples_c/integrate.c", "default", "integrate", &[]);
     steps.c("examples_c/image.cpp", "default", "image", &[]);
     steps.c("examples_c/shared.c", "default", "shared", &[]);
     steps.c("examples_c/strips.cpp: threads get the bits of one call", "default", "strips", &[]);
     steps.c("examples_c/shards.c: four processes", "default", "shards", &[]);
-    let heading = "examples_c/pathtracer.cpp: every scene, estimator, sampler and tile, 32 x 32 pixels";
-    steps.c(heading, "default", "pathtracer", &[PYTHON]);
-    let heading =
-        "parts of examples_c/pathtracer: intersections, lights, surfaces, the image plane, paths, MIS, the program";
-    steps.c(heading, "default", "pathtracer_parts", &[]);
+    steps.c("examples_c/pathtracer: every scene, estimator, sampler and tile", "default", "pathtracer", &[PYTHON]);
+    steps.c("examples_c/pathtracer: its parts one by one", "default", "pathtracer_parts", &[]);
     let (rays, all) = (renderers::embree_packages(), [&renderers::embree_packages()[..], &[PYTHON]].concat());
-    let heading = "tests/embree: Embree meets the same surfaces as the path tracer's own tree";
-    steps.c(heading, "default", "embree_agreement", &rays);
+    steps.c("tests/embree: the surfaces of the path tracer's own tree", "default", "embree_agreement", &rays);
     steps.c("tests/embree: every scene, three samplers, 32 x 32 pixels", "default", "embree_scenes", &all);
-    let heading = "tests/povray: POV-Ray's pictures as integrands, every estimator and sampler, 32 x 32 pixels";
-    steps.c(heading, "default", "povray", &renderers::POVRAY);
+    steps.c("tests/povray: pictures as integrands, every estimator", "default", "povray", &renderers::POVRAY);
     steps.start("cargo xtask report --quick: the path tracer on Embree", "report", "embree");
-    steps.start("cargo xtask report --quick: the Python package", "report", "python");
-    steps.start("cargo xtask report --quick: Mitsuba 3", "report", "mitsuba");
-    let heading = "examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces";
-    steps.run(heading, || c_tests::run_twice("renderers", &[]));
-    let heading = "integrations/mitsuba: Mitsuba 3 from the package index draws the library's bits";
-    steps.run(heading, || run::check(renderers::mitsuba()?.arg("integrations/mitsuba/test_mitsuba.py")));
-    let heading = "docs/playground in headless Chromium: small, fast, and the numbers of the native library";
-    steps.run(heading, playground::test);
-    steps.run("python: the wheel, its tests with NumPy and PyTorch, docs/python.md, examples_c/python", python::test);
-    let heading = "cargo xtask report --quick: tables, gradients, estimators, known integrands, samplers, point sets";
-    steps.start(heading, "report", "chapters");
-    steps.run("instruction counts: none above the committed report's by 3 %", || {
-        instructions::check(&library::build()?)
-    });
+    steps.start("cargo xtask report --quick: tables, gradients, estimators, samplers, points", "report", "chapters");
+    steps.run("instruction counts: at most the report's and 3 %", || instructions::check(&library::build()?));
     for (heading, label) in [
+        ("examples_c/renderers: samplers behind pbrt-v4's and Mitsuba 3's interfaces", "renderers"),
         ("examples_c/train_mlp.c: digits", "train_mlp"),
         ("examples_c/fit_polynomial.c: short runs", "fit_polynomial"),
         ("examples_c/fit_image.cpp: short runs", "fit_image"),
     ] {
         steps.run(heading, || c_tests::run_twice(label, &[PYTHON]));
     }
-    let heading = "POV-Ray's patch: well formed, its licence stated, and our side of it compiles";
-    steps.c(heading, "default", "povray_patch", &[PYTHON]);
+    steps.c("POV-Ray's patch: well formed, licensed, our side compiles", "default", "povray_patch", &[PYTHON]);
     steps.run("links between documents lead somewhere", texts::links);
-    let heading = "cargo package: every published package is complete and below the registry's limit";
-    steps.start(heading, "release", "packages");
+    steps.start("cargo package: each is complete and below the registry's limit", "release", "packages");
     steps.start("THIRD_PARTY.md: the licences of all dependencies, each allowed", "release", "licences");
     steps.start("versions: Rust's and the project's, as the texts say", "release", "versions");
     steps.run("sizes: product, tools, documents", texts::sizes);
     steps.run("README.md opens with a part of examples_c/image.cpp", texts::readme);
     steps.c("C code in docs/ that includes the header compiles", "default", "documents", &[PYTHON]);
+    match others {
+        Some(others) => steps.end(others),
+        None => beside(&mut steps),
+    }
     steps.end(library_tests);
     steps.finish(start)
+}
+
+/// Steps that write nowhere where the others do.
+fn beside(steps: &mut Steps) {
+    let valgrind = instructions::PACKAGES;
+    steps.run("fuzz targets: committed inputs", fuzz::replay);
+    steps.c("C tests under valgrind: no wrong address, no undefined value, no leak", "valgrind", "c99", &valgrind);
+    steps.c("threads under valgrind: an accumulator each, and a shared one", "valgrind", "threads", &valgrind);
+    steps.c("threads under ThreadSanitizer: rules kept, rules broken, a renderer", "tsan", "tsan", &[]);
+    steps.run("docs/playground in headless Chromium: small, fast, the library's numbers", playground::test);
+    steps.run("python: the wheel, its tests with NumPy and PyTorch, docs/python.md, examples_c/python", python::test);
+    steps.start("cargo xtask report --quick: the Python package", "report", "python");
+    steps.start("cargo xtask report --quick: Mitsuba 3", "report", "mitsuba");
+    let heading = "integrations/mitsuba: Mitsuba 3 from the package index draws the library's bits";
+    steps.run(heading, || run::check(renderers::mitsuba()?.arg("integrations/mitsuba/test_mitsuba.py")));
 }
 
 /// What a command said and how it ended; after how long.
@@ -158,11 +152,9 @@ impl Steps<'_> {
         self.options.filter.as_ref().is_none_or(|filter| heading.contains(filter.as_str()))
     }
 
-    /// Begins a command of cargo's.
-    fn begin(&self, heading: &'static str, arguments: &[&str]) -> Beside {
-        let (mut cargo, start) = (run::cargo(), Instant::now());
-        cargo.args(arguments);
-        let hear = move || (run::hear(&mut cargo), start.elapsed());
+    fn begin(&self, heading: &'static str, mut command: Command) -> Beside {
+        let start = Instant::now();
+        let hear = move || (run::hear(&mut command), start.elapsed());
         Beside { heading, running: self.is_wanted(heading).then(|| thread::spawn(hear)) }
     }
 
@@ -173,7 +165,8 @@ impl Steps<'_> {
             let (heard, taken) = ended.context("it did not end")?;
             let (said, result) = heard?;
             println!("{said}   {:.1} s, most of them beside the steps above", taken.as_secs_f64());
-            result
+            let lacks = said.contains("\n   NOT RUN: ").then(|| Missing("some of them, as said above".to_owned()));
+            result.and(lacks.map_or(Ok(()), |lacks| Err(lacks.into())))
         });
     }
 
@@ -239,7 +232,7 @@ impl Steps<'_> {
     }
 }
 
-/// Builds the core with no feature, and with each alone.
+/// Checks the core with no feature, and with each alone.
 fn each_feature() -> Result<()> {
     let packages = run::packages()?;
     let core = packages.iter().find(|package| package["name"] == "noisefloor").context("there is no `noisefloor`")?;
@@ -247,10 +240,10 @@ fn each_feature() -> Result<()> {
     let names = features.keys().map(String::as_str).filter(|name| *name != "default");
     for feature in [""].into_iter().chain(names) {
         println!("   --no-default-features --features \"{feature}\"");
-        let mut build = run::cargo();
-        build.args(["build", "--quiet", "--profile", "xtask", "--package", "noisefloor", "--no-default-features"]);
-        build.args(["--features", feature]);
-        run::check(build.env("RUSTFLAGS", "-D warnings"))?;
+        let mut check = run::cargo();
+        check.args(["check", "--quiet", "--profile", "xtask", "--package", "noisefloor", "--no-default-features"]);
+        check.args(["--features", feature]);
+        run::check(check.env("RUSTFLAGS", "-D warnings"))?;
     }
     Ok(())
 }

@@ -3,10 +3,11 @@
 
 use crate::tools::{self, Missing};
 use crate::{c_tests, library, paths, run};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
 
-const WIDTH: usize = 120;
+/// Columns of a line.
+pub const WIDTH: usize = 120;
 const KINDS: [&str; 6] = ["rs", "c", "h", "hpp", "cpp", "md"];
 const APART: [&str; 3] = ["docs/report/", "THIRD_PARTY.md", "report/"];
 
@@ -21,9 +22,7 @@ pub fn columns() -> Result<()> {
         let is_long = |line: &str| if is_document { columns_of_text(line) } else { line.chars().count() } > WIDTH;
         long.extend(text.lines().zip(1..).filter(|(line, _)| is_long(line)).map(|(_, at)| format!("{name}:{at}")));
     }
-    if !long.is_empty() {
-        bail!("lines of more than {WIDTH} columns:\n   {}", long.join("\n   "));
-    }
+    ensure!(long.is_empty(), "lines of more than {WIDTH} columns:\n   {}", long.join("\n   "));
     Ok(())
 }
 
@@ -59,9 +58,7 @@ pub fn links() -> Result<()> {
             }
         }
     }
-    if !broken.is_empty() {
-        bail!("links to no file or no heading:\n   {}", broken.join("\n   "));
-    }
+    ensure!(broken.is_empty(), "links to no file or no heading:\n   {}", broken.join("\n   "));
     println!("   {links} links in {} documents", documents.len());
     Ok(())
 }
@@ -100,13 +97,9 @@ pub fn readme() -> Result<()> {
     let part: String = part.lines().map(|line| format!("{}\n", line.strip_prefix("    ").unwrap_or(line))).collect();
     let block = text.split_once("```cpp\n").and_then(|(before, rest)| (!before.contains("```")).then_some(rest));
     let block = block.and_then(|rest| rest.split_once("```")).context("README.md does not open with a block of C++")?;
-    if block.0 != part {
-        bail!("README.md's first block of code is not the part of examples_c/image.cpp that it shows");
-    }
+    ensure!(block.0 == part, "README.md's first block of code is not the part of examples_c/image.cpp that it shows");
     for command in ["\ncargo xtask demo ", "\ncargo xtask test "] {
-        if !block.1.contains(command) {
-            bail!("README.md does not say `{}`", command.trim());
-        }
+        ensure!(block.1.contains(command), "README.md does not say `{}`", command.trim());
     }
     Ok(())
 }

@@ -18,7 +18,7 @@ impl fmt::Display for Missing {
     }
 }
 
-/// Fails unless every tool is there; on Debian, as root, missing compilers are installed first.
+/// Fails unless every tool is there.
 pub fn ensure() -> Result<()> {
     let components: Vec<_> =
         ["fmt", "clippy"].into_iter().filter(|name| !works(run::cargo().args([name, "--version"]))).collect();
@@ -31,21 +31,15 @@ pub fn ensure() -> Result<()> {
     compilers()
 }
 
-/// Fails unless there are C and C++ compilers and binutils; on Debian, as root, missing ones are installed first.
+/// What C is compiled with.
+pub const C: [Package; 2] = [Package { name: "gcc", file: "cc" }, Package { name: "binutils", file: "objcopy" }];
+const CPP: Package = Package { name: "g++", file: "c++" };
+
+/// Fails unless there are C and C++ compilers, or $CC and $CXX name others, and binutils.
 pub fn compilers() -> Result<()> {
-    let mut missing = missing_compilers();
-    if !missing.is_empty() && can_install() {
-        println!("missing: {}; installing gcc, g++ and binutils", missing.join(", "));
-        install(&["gcc", "g++", "libc6-dev", "binutils"])?;
-        missing = missing_compilers();
-    }
-    ensure!(
-        missing.is_empty(),
-        "missing: {}. What is compiled needs a C99 and a C++17 compiler and binutils (Debian: apt-get install gcc g++ \
-         libc6-dev binutils); $CC and $CXX name other compilers",
-        missing.join(", ")
-    );
-    Ok(())
+    let is_named = |variable| std::env::var_os(variable).is_some_and(|name| !name.is_empty());
+    let wanted = [(C[0], is_named("CC")), (CPP, is_named("CXX")), (C[1], false)];
+    packages(&wanted.into_iter().filter(|(_, is_named)| !is_named).map(|(package, _)| package).collect::<Vec<_>>())
 }
 
 /// A Debian package, and a file that it brings: if that is there, the package is installed. A name without folders is
@@ -94,25 +88,6 @@ fn install(packages: &[&str]) -> Result<()> {
     install.env("DEBIAN_FRONTEND", "noninteractive").args(["install", "-y", "-qq", "--no-install-recommends"]);
     // What it says of each package would hide what comes before and after.
     run::check(install.args(packages).stdout(Stdio::null()))
-}
-
-fn missing_compilers() -> Vec<String> {
-    let compilers = [("CC", "cc"), ("CXX", "c++")].map(|(variable, default)| run::compiler(variable, default));
-    missing(compilers.into_iter().chain(["ld", "ar", "nm", "objcopy"].map(run::command)))
-}
-
-/// Fails unless these programs start; `packages` of Debian have them.
-pub fn need(programs: &[&str], packages: &str) -> Result<()> {
-    let missing = missing(programs.iter().map(run::command)).join(", ");
-    ensure!(missing.is_empty(), "missing: {missing} (Debian: apt-get install {packages})");
-    Ok(())
-}
-
-/// The names of those that do not start.
-fn missing(programs: impl IntoIterator<Item = Command>) -> Vec<String> {
-    let mut missing: Vec<_> = programs.into_iter().collect();
-    missing.retain_mut(|program| !works(program.arg("--version")));
-    missing.iter().map(|program| program.get_program().to_string_lossy().into_owned()).collect()
 }
 
 fn works(command: &mut Command) -> bool {

@@ -180,8 +180,8 @@ pub(crate) struct Mixture<R, const C: usize> {
 }
 
 impl<R: Real, const C: usize> Mixture<R, C> {
-    /// What the mixture adds to the mean, and the variance of its estimate from the plain mean's and each fit's: of what
-    /// it is made of, and of what its parts disagree in.
+    /// What the mixture adds to the mean, and the variance of its estimate from the plain mean's and each fit's: of
+    /// what it is made of, and of what its parts disagree in.
     pub(crate) fn estimate(&self, plain: PerChannel<R>, fits: [PerChannel<R>; C]) -> (PerChannel<R>, PerChannel<R>) {
         let parts = || self.weights.iter().zip(&self.corrections);
         let total = parts().fold(PerChannel::default(), |sum, (&weights, &correction)| sum + weights * correction);

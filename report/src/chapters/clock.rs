@@ -61,19 +61,20 @@ fn other_work(all: f64, own: f64, seconds: f64) -> Option<f64> {
 /// iowait is work; stolen time is that of other guests of the same computer. The guests of this machine, which follow,
 /// are in the user's time already.
 fn busy_seconds(text: &str) -> Option<f64> {
-    let fields = text.lines().next()?.strip_prefix("cpu ")?;
-    let ticks: Option<Vec<f64>> = fields.split_whitespace().take(8).map(|field| field.parse().ok()).collect();
-    let ticks = ticks.filter(|ticks| ticks.len() == 8)?;
-    Some((ticks.iter().sum::<f64>() - ticks[3] - ticks[4]) / TICKS_PER_SECOND)
+    seconds(text.lines().next()?.strip_prefix("cpu ")?, &[0, 1, 2, 5, 6, 7])
 }
 
 /// proc(5): fields 14 to 17 are the user's and the system's time, and the same of children that were waited for.
 fn processor_seconds() -> Option<f64> {
-    let line = fs::read_to_string("/proc/self/stat").ok()?;
     // The second field, the program's name in parentheses, may hold spaces.
-    let (_, fields) = line.rsplit_once(')')?;
-    let ticks: Option<Vec<f64>> = fields.split_whitespace().skip(11).take(4).map(|field| field.parse().ok()).collect();
-    Some(ticks.filter(|ticks| ticks.len() == 4)?.iter().sum::<f64>() / TICKS_PER_SECOND)
+    seconds(fs::read_to_string("/proc/self/stat").ok()?.rsplit_once(')')?.1, &[11, 12, 13, 14])
+}
+
+/// The sum of these fields.
+fn seconds(fields: &str, counted: &[usize]) -> Option<f64> {
+    let fields: Vec<&str> = fields.split_whitespace().collect();
+    let ticks = counted.iter().map(|&at| fields.get(at)?.parse::<f64>().ok());
+    Some(ticks.sum::<Option<f64>>()? / TICKS_PER_SECOND)
 }
 
 #[cfg(test)]

@@ -6,7 +6,6 @@ mod frontier;
 
 use super::prelude::*;
 use super::program;
-use super::report::Report;
 use cells::{Cells, MEAN};
 use itertools::{Itertools, iproduct};
 

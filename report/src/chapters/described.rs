@@ -7,16 +7,16 @@
 
 use super::chapter::Chapter;
 use super::figure::{Figure, Unit};
-use super::plan::Plan;
+use super::plan::{Plan, packages};
 use super::statistics::Estimate;
 use super::targets::Bound;
 use crate::measure::table::{Filter, Row, Table, Words};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use itertools::Itertools;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use xtask::paths;
+use xtask::tools::Package;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
@@ -28,6 +28,9 @@ pub(crate) struct Description {
     pub(crate) seconds: u64,
     /// Bench targets of noisefloor-bench that it runs.
     pub(crate) programs: Vec<String>,
+    /// Of Debian's, that have what is measured on.
+    #[serde(deserialize_with = "packages")]
+    pub(crate) packages: Vec<Package>,
     /// Where a `--full` run measures other things: a chapter of its own, which other runs leave as it is.
     pub(crate) full: Option<Full>,
     /// What was chosen.
@@ -195,12 +198,6 @@ enum Limit {
 pub(crate) type Measured<'a> = &'a dyn Fn(&str) -> Result<Table>;
 
 impl Description {
-    /// With the numbers of a plan, if there is one.
-    pub(crate) fn read(name: &str, plan: &Plan) -> Result<Self> {
-        let text = paths::read(format!("report/chapters/{name}.toml"))?;
-        toml::from_str(&plan.filled(&text)).with_context(|| format!("report/chapters/{name}.toml"))
-    }
-
     /// What a run writes: the name of the files, the title, and the index's line.
     pub(crate) fn names<'a>(&'a self, name: &'a str, plan: &Plan) -> [&'a str; 3] {
         match &self.full {

@@ -3,7 +3,6 @@
 
 mod animation;
 mod pixels;
-mod public;
 mod sign_flips;
 mod unbiased;
 
@@ -12,17 +11,16 @@ use super::measurement::{Measurement, Outcome};
 use super::plan::Plan;
 use super::prelude::*;
 use super::program;
-use super::report::Report;
-use crate::measure::metric::Reference;
-use crate::measure::renderer::{Job, Renderer, View, threads};
-use crate::measure::{filter, progress, score};
+use crate::measure::metric::{LIMIT, Reference};
+use crate::measure::renderer::{Job, Renderer, Sampler, View, table, threads};
+use crate::measure::{filter, progress};
 use image::Rgb32FImage;
 use indicatif::ProgressBar;
 use itertools::iproduct;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
-use xtask::paths;
+use xtask::run;
 
 /// What is rendered.
 #[derive(Deserialize)]
@@ -86,8 +84,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let renderer = Renderer::new(xtask::renderers::embree()?)?;
     let points = program::build("--example", &["points".to_owned()], report.plan)?.remove(0);
     report.compiled();
-    let text = report.plan.filled(&paths::read("report/chapters/embree_runs.toml")?);
-    let runs: Runs = toml::from_str(&text).context("report/chapters/embree_runs.toml")?;
+    let runs: Runs = report.plan.read("embree_runs")?;
     let bar = progress::bar(runs.section.iter().map(|of| of.seconds).chain(FURTHER).sum())?;
     let measurement = Measurement::new(&renderer, &bar)?;
     let harness = Harness { plan: report.plan, runs: &runs, measurement, points };
@@ -102,7 +99,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let table = |name: &str| Ok(if name == "runs" { all.clone() } else { animation.clone() });
     let mut chapter = report.described(&table)?;
     chapter.setting("threads", threads());
-    chapter.setting("relative errors are limited to", score::LIMIT);
+    chapter.setting("relative errors are limited to", LIMIT);
     chapter.setting("filter's standard deviation, pixels", filter::SIGMA);
     chapter.setting("weight of the newest frame", animation::ALPHA);
     chapter.setting("samples per pixel of the tile whose settings were chosen", animation::CHOSEN);
@@ -137,6 +134,15 @@ impl<'a> Harness<'a> {
         Ok(View { scene, size, frame: 0, reference: (factor * of.reference / divisor).max(16) })
     }
 
+    /// The points of a public sampler, as the program calls it.
+    fn points(&self, name: &str, spp: u32, dims: u32) -> Result<Sampler> {
+        let file = self.measurement.path(&format!("{name}-{spp}-{dims}.points"));
+        if !file.exists() {
+            run::check(run::command(&self.points).args([name, &*spp.to_string(), &dims.to_string()]).arg(&file))?;
+        }
+        Ok(table(&file))
+    }
+
     fn measure(&self, section: &Section, run: &'a Run, all: &mut Table) -> Result<()> {
         let estimators: Vec<&str> = run.estimators.iter().map(String::as_str).collect();
         let plain = [(String::new(), Vec::new())].into();
@@ -149,7 +155,7 @@ impl<'a> Harness<'a> {
                     let of = match self.runs.public.get(sampler) {
                         Some(name) => {
                             let dims = self.runs.scenes[scene].dims;
-                            Some(public::points(&self.points, &self.measurement, name, spp, dims)?)
+                            Some(self.points(name, spp, dims)?)
                         }
                         None => self.measurement.renderer.sampler(sampler, spp),
                     };

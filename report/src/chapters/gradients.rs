@@ -1,7 +1,6 @@
 //! The chapter on gradients of minibatches: the trainers of examples_c, run as report/chapters/gradients_runs.toml says.
 
 use super::prelude::*;
-use super::report::Report;
 use crate::measure::plot::{Plot, Series};
 use crate::measure::{progress, running};
 use indicatif::ProgressBar;
@@ -55,8 +54,7 @@ struct Method {
 const MODES: [&str; 5] = ["uniform", "importance", "adaptive", "balance", "omis"];
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
-    let text = report.plan.filled(&paths::read("report/chapters/gradients_runs.toml")?);
-    let runs: Runs = toml::from_str(&text).context("report/chapters/gradients_runs.toml")?;
+    let runs: Runs = report.plan.read("gradients_runs")?;
     let further: Vec<&Run> = runs.run.iter().filter(|run| report.plan.is_full() || !run.full).collect();
     let bar = progress::bar((2 * runs.network.len() + further.len()) as u64)?;
     let missing = |error: &anyhow::Error| println!("without MNIST, which could not be had: {error:#}");
@@ -107,7 +105,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
 }
 
 /// The folder with MNIST's four files.
-fn mnist() -> Result<PathBuf> {
+pub(super) fn mnist() -> Result<PathBuf> {
     let folder = paths::target().join("data/mnist");
     run::check(run::command("sh").arg("report/mnist.sh").arg(&folder))?;
     Ok(folder)

@@ -6,25 +6,24 @@ use super::described::Description;
 use super::figure::{Figure, Unit};
 use super::list::chapters as all_chapters;
 use super::plan::{Extent, Plan};
-use super::template::{self, list, word};
+use super::template::{self, word};
 use anyhow::Result;
 use itertools::Itertools;
 use serde_json::{Value, json};
-use std::fs;
 use std::path::Path;
+use xtask::fill::list;
+use xtask::paths;
 
 /// The index of the chapters in `folder`, and of one that has just been written and is not there yet.
 pub(super) fn write(folder: &Path, new: Option<(&str, &Value)>) -> Result<String> {
     let (mut all, plan): (Vec<Value>, _) = (Vec::new(), Plan::new(Extent::Full)?);
     for (name, _) in all_chapters(&[]) {
-        let description = Description::read(name, &plan)?;
+        let description: Description = plan.read(name)?;
         for name in [name, description.names(name, &plan)[0]].into_iter().unique() {
             let json = match new {
                 Some((written, json)) if written == name => Some(json.clone()),
                 // A chapter that was never written is not there.
-                _ => fs::read_to_string(folder.join(format!("{name}.json")))
-                    .ok()
-                    .and_then(|text| serde_json::from_str(&text).ok()),
+                _ => paths::json(folder.join(format!("{name}.json"))).ok(),
             };
             all.extend(json.filter(|json| json["run"].is_object()));
         }
@@ -95,6 +94,7 @@ mod tests {
     use super::*;
     use crate::chapters::statistics::Estimate;
     use crate::chapters::targets::Bound;
+    use std::fs;
 
     fn chapter(name: &str, title: &str, value: f64) -> Value {
         let mut chapter = Chapter::new(title);

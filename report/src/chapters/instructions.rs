@@ -1,7 +1,6 @@
 //! The chapter of instruction counts.
 
 use super::prelude::*;
-use super::report::Report;
 use xtask::{instructions, library, tools};
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {

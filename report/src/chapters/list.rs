@@ -3,7 +3,6 @@
 use super::described::Description;
 use super::plan::{Extent, Plan};
 use super::prelude::*;
-use super::report::Report;
 use super::{control_variates, embree, gradients, instructions, mitsuba, program, python, samplers};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
@@ -38,7 +37,7 @@ pub(crate) fn chapters(only: &[String]) -> Vec<(&'static str, Write)> {
 /// The chapters that can be asked for.
 pub(crate) fn names() -> PossibleValuesParser {
     let plan = Plan::new(Extent::Default);
-    let read = |name| Description::read(name, plan.as_ref().ok()?).ok();
+    let read = |name| plan.as_ref().ok()?.read::<Description>(name).ok();
     let value = |(name, _)| PossibleValue::new(name).help(read(name).map_or_else(String::new, |of| of.about));
     PossibleValuesParser::new(CHAPTERS.map(value))
 }

@@ -3,7 +3,6 @@
 use crate::measure::image::read_pfm;
 use crate::measure::metric::Reference;
 use crate::measure::renderer::{Job, Renderer, Timing, View, images, threads};
-use crate::measure::score;
 use anyhow::{Context, Result};
 use image::Rgb32FImage;
 use indicatif::ProgressBar;
@@ -42,15 +41,12 @@ impl Outcome {
 impl Renderings {
     /// Raw and filtered errors of each seed, highlights limited: on all threads, since images of samplers are large.
     pub(crate) fn seen(&self, reference: &Reference) -> Vec<[f64; 2]> {
-        self.images.par_iter().map(|image| score::errors(image, reference)).collect()
+        self.images.par_iter().map(|image| reference.errors(image)).collect()
     }
 }
 
 /// A reference that was rendered, and the files of its halves.
-struct Known {
-    reference: Rc<Reference>,
-    halves: [PathBuf; 2],
-}
+type Known = (Rc<Reference>, [PathBuf; 2]);
 
 /// Renders, and remembers references.
 pub(crate) struct Measurement<'a> {
@@ -79,15 +75,15 @@ impl<'a> Measurement<'a> {
 
     pub(crate) fn reference(&self, view: View) -> Result<Rc<Reference>> {
         let key = format!("{view:?}");
-        if let Some(known) = self.references.borrow().get(&key) {
-            return Ok(known.reference.clone());
+        if let Some((known, _)) = self.references.borrow().get(&key) {
+            return Ok(known.clone());
         }
         let job = Job::new(view, view.reference, &[]);
         let runs = self.side_by_side(&REFERENCE_SEEDS.map(|seed| Job { seed, ..job.clone() }))?;
         let halves: Vec<PathBuf> = runs.into_iter().map(|(prefix, _)| prefix.with_extension("reference.pfm")).collect();
         let halves: [PathBuf; 2] = halves.try_into().ok().context("a reference was lost")?;
         let reference = Rc::new(Reference::new(&read_pfm(&halves[0])?, &read_pfm(&halves[1])?));
-        self.references.borrow_mut().insert(key, Known { reference: reference.clone(), halves });
+        self.references.borrow_mut().insert(key, (reference.clone(), halves));
         Ok(reference)
     }
 
@@ -161,8 +157,8 @@ impl<'a> Measurement<'a> {
     pub(crate) fn statistics(&self, job: &Job, batches: u32) -> Result<Vec<Vec<[Rgb32FImage; 2]>>> {
         self.reference(job.view)?;
         let references = self.references.borrow();
-        let known = references.get(&format!("{:?}", job.view)).context("the reference was lost")?;
-        let files = known.halves.each_ref().map(|file| file.display().to_string()).join(",");
+        let (_, halves) = references.get(&format!("{:?}", job.view)).context("the reference was lost")?;
+        let files = halves.each_ref().map(|file| file.display().to_string()).join(",");
         let options = [&job.options[..], &["--statistics", &files]].concat();
         let batch =
             |batch: u32| Job { seed: job.seed + u64::from(batch * job.seeds), options: options.clone(), ..job.clone() };

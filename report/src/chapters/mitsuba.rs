@@ -1,7 +1,6 @@
 //! The chapter of Mitsuba 3, which integrations/mitsuba/measure.py measures.
 
 use super::prelude::*;
-use super::report::Report;
 use super::statistics::moments;
 use crate::measure::running;
 use itertools::iproduct;

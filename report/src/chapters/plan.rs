@@ -1,9 +1,12 @@
 //! How much is measured: report/chapters/plan.toml.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use xtask::paths;
+use xtask::tools::Package;
+use xtask::{paths, start};
 
 /// What a run is for.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -32,11 +35,14 @@ impl Plan {
         self.values[name].as_u64().and_then(|number| u32::try_from(number).ok()).unwrap_or(0)
     }
 
-    /// The text with what stands in plan.toml for its names behind a dollar sign.
-    pub(crate) fn filled(&self, text: &str) -> String {
+    /// report/chapters/NAME.toml, with what stands in plan.toml for its names behind a dollar sign.
+    pub(crate) fn read<T: DeserializeOwned>(&self, name: &str) -> Result<T> {
+        let path = format!("report/chapters/{name}.toml");
         // No name is the beginning of one that comes before it.
         let values = self.values.iter().rev();
-        values.fold(text.to_owned(), |text, (name, value)| text.replace(&format!("${name}"), &value.to_string()))
+        let text = values
+            .fold(paths::read(&path)?, |text, (name, value)| text.replace(&format!("${name}"), &value.to_string()));
+        toml::from_str(&text).context(path)
     }
 
     /// As the index calls it.
@@ -53,13 +59,16 @@ impl Plan {
         self.extent == Extent::Full
     }
 
-    /// What measurement programs are compiled with. A quick report tests the report: most of its time would go into
-    /// link-time optimisation, and with this profile the dependencies are those of the tests.
-    pub(crate) fn profile(&self) -> &'static str {
-        if self.is_quick() { "suite" } else { "bench" }
+    /// Cargo's options for measurement programs. A quick report tests the report: most of its time would go into
+    /// link-time optimisation, and so the programs share what the tests have compiled.
+    pub(crate) fn compiled(&self) -> Vec<&'static str> {
+        match self.is_quick() {
+            true => [&["--profile", "suite"][..], &start::OTHERS].concat(),
+            false => vec!["--profile", "bench", "--package", "noisefloor-bench"],
+        }
     }
 
-    /// The same for a measurement program.
+    /// The same as a measurement program takes it.
     pub(crate) fn option(&self) -> Option<String> {
         (self.extent != Extent::Default).then(|| format!("--{}", self.name()))
     }
@@ -68,4 +77,10 @@ impl Plan {
     pub(crate) fn some<'a, T>(&self, all: &'a [T]) -> &'a [T] {
         if self.is_quick() { &all[..all.len().min(1)] } else { all }
     }
+}
+
+/// Debian's packages, each with a file that it brings.
+pub(crate) fn packages<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Package>, D::Error> {
+    let all = Vec::<[String; 2]>::deserialize(from)?;
+    Ok(all.into_iter().map(|[name, file]| Package { name: name.leak(), file: file.leak() }).collect())
 }

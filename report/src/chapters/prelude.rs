@@ -2,6 +2,7 @@
 
 pub(crate) use super::chapter::Chapter;
 pub(crate) use super::figure::{Figure, Unit};
+pub(crate) use super::report::Report;
 pub(crate) use super::statistics::Estimate;
 pub(crate) use super::targets::Bound;
 pub(crate) use crate::measure::table::{Row, Table};

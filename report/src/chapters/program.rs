@@ -2,7 +2,6 @@
 
 use super::plan::Plan;
 use super::prelude::*;
-use super::report::Report;
 use crate::measure::running;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -23,7 +22,7 @@ pub(super) fn build(kind: &str, names: &[String], plan: &Plan) -> Result<Vec<Pat
     // The programs link it, so that what ships is what is measured.
     library::build()?;
     let mut cargo = run::cargo();
-    cargo.args(["build", "--profile", plan.profile(), "--package", "noisefloor-bench"]);
+    cargo.arg("build").args(plan.compiled());
     names.iter().for_each(|name| _ = cargo.args([kind, name]));
     let messages = run::read(cargo.args(["--message-format", "json-render-diagnostics"]).stderr(Stdio::inherit()))?;
     let artifacts: Vec<Value> = messages.lines().filter_map(|line| serde_json::from_str(line).ok()).collect();

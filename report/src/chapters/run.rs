@@ -58,7 +58,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         return render(&folder);
     }
     let (plan, machine) = (options.plan()?, machine::read());
-    let describe = |(name, write)| Ok((name, write, Description::read(name, &plan)?));
+    let describe = |(name, write)| Ok((name, write, plan.read(name)?));
     let wanted: Vec<Wanted> = list::chapters(&options.only).into_iter().map(describe).collect::<Result<_>>()?;
     let programs: Vec<String> = wanted.iter().flat_map(|(.., of)| &of.programs).cloned().collect();
     if wanted.len() > 1 && !programs.is_empty() {
@@ -125,7 +125,7 @@ fn render(folder: &Path) -> Result<()> {
     let output = Output::new(folder)?;
     for path in paths::list(folder)? {
         let Some(name) = path.file_name().and_then(|name| name.to_str()?.strip_suffix(".json")) else { continue };
-        let chapter: Value = serde_json::from_str(&paths::read(&path)?).with_context(|| name.to_owned())?;
+        let chapter = paths::json(&path)?;
         write_chapter(&output, name, &chapter, &|file| folder.join(file).exists())?;
     }
     output.write_text("README.md", &index::write(folder, None)?)?;

@@ -3,7 +3,6 @@
 use super::figure::significant;
 use super::prelude::*;
 use super::program;
-use super::report::Report;
 
 pub(super) fn write(report: &Report) -> Result<Chapter> {
     let tables = program::measure(report)?;

@@ -1,5 +1,6 @@
 //! Medians with bootstrap confidence intervals, and tests of many hypotheses at once.
 
+use fastrand::Rng;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use statrs::statistics::{Data, OrderStatistics};
 
@@ -55,9 +56,9 @@ impl Estimate {
         if values.len() < FEWEST {
             return Self { seeds: values.len(), ..Self::exact(value) };
         }
-        let mut random = Random::new(0x6e6f_6973_6566_6c6f);
+        let mut random = Rng::with_seed(0x6e6f_6973_6566_6c6f);
         let mut medians: Vec<f64> =
-            (0..RESAMPLES).map(|_| median((0..values.len()).map(|_| values[random.below(values.len())]))).collect();
+            (0..RESAMPLES).map(|_| median((0..values.len()).map(|_| values[random.usize(..values.len())]))).collect();
         medians.sort_by(f64::total_cmp);
         let at = |part: f64| medians[((RESAMPLES - 1) as f64 * part).round() as usize];
         Self { value, low: at(0.025), high: at(0.975), seeds: values.len() }
@@ -82,6 +83,11 @@ impl Estimate {
     }
 }
 
+/// What so many per cent of the values are below.
+pub(crate) fn percentile(values: impl IntoIterator<Item = f64>, percent: usize) -> f64 {
+    Data::new(values.into_iter().collect::<Vec<_>>()).percentile(percent)
+}
+
 /// The middle value; of an even number of values, the mean of the two in the middle.
 pub(crate) fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     Data::new(values.into_iter().collect::<Vec<_>>()).median()
@@ -101,25 +107,6 @@ pub(crate) fn student(tail: f64, freedom: f64) -> f64 {
 /// What a standard normal variable exceeds with probability `tail`.
 pub(crate) fn normal_quantile(tail: f64) -> f64 {
     -Normal::standard().inverse_cdf(tail)
-}
-
-/// SplitMix64 (G. Steele, D. Lea, C. Flood 2014).
-pub(crate) struct Random(u64);
-
-impl Random {
-    pub(crate) fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// Of 0 to `count` - 1; the bias of a count that is no power of two is below 1e-15.
-    pub(crate) fn below(&mut self, count: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut bits = self.0;
-        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        bits ^= bits >> 31;
-        ((u128::from(bits) * count as u128) >> 64) as usize
-    }
 }
 
 #[cfg(test)]
@@ -188,10 +175,9 @@ mod tests {
     fn about_95_in_100_intervals_hold_the_truth() {
         // Medians of 9 uniform numbers: 1/2 is the truth. The bootstrap's ends are the second number and the second to
         // last, between which it is unless fewer than 2 of 9 are on a side: with 1 - 2 (1 + 9) / 2^9 = .961.
-        let mut random = Random::new(7);
-        let mut uniform = || random.below(1 << 30) as f64 / f64::from(1 << 30);
+        let mut random = Rng::with_seed(7);
         let held = (0..2000).filter(|_| {
-            let values: Vec<f64> = (0..9).map(|_| uniform()).collect();
+            let values: Vec<f64> = (0..9).map(|_| random.f64()).collect();
             let estimate = Estimate::median(&values);
             estimate.low <= 0.5 && 0.5 <= estimate.high
         });

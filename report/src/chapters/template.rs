@@ -10,7 +10,9 @@
 use crate::measure::markdown;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
+use xtask::fill::list;
 use xtask::paths;
+use xtask::texts::WIDTH;
 
 /// Which pictures there are.
 pub(crate) type Exists<'a> = &'a dyn Fn(&str) -> bool;
@@ -38,7 +40,7 @@ fn fill(template: &str, json: &Value, exists: Exists) -> Result<String> {
     let (mut heading, mut sections) = (String::new(), vec![Section::default()]);
     for block in template.trim().split("\n\n").map(str::trim) {
         let name = block.strip_prefix("{{table ").and_then(|rest| rest.strip_suffix("}}"));
-        let filled: Vec<String> = items(block).into_iter().filter_map(|item| holes(item, json)).collect();
+        let filled: Vec<String> = items(block).iter().filter_map(|item| holes(item, json)).collect();
         let filled = filled.iter().map(|text| wrap(text)).collect::<Vec<_>>().join("\n");
         if block.starts_with('#') {
             sections.push(Section::default());
@@ -65,43 +67,30 @@ fn fill(template: &str, json: &Value, exists: Exists) -> Result<String> {
 }
 
 /// The items of a list, or the whole block.
-fn items(block: &str) -> Vec<&str> {
-    if !block.starts_with("- ") {
-        return vec![block];
-    }
-    let starts = block.match_indices("\n- ").map(|(at, _)| at);
-    let ends: Vec<usize> = starts.chain([block.len()]).collect();
-    let begins = [0].into_iter().chain(ends.iter().map(|end| end + 1));
-    begins.zip(&ends).map(|(begin, &end)| &block[begin..end]).collect()
+fn items(block: &str) -> Vec<String> {
+    let list = block.strip_prefix("- ").map(|items| items.split("\n- ").map(|item| format!("- {item}")).collect());
+    list.unwrap_or_else(|| vec![block.to_owned()])
 }
-
-/// Columns of a line of text.
-const WIDTH: usize = 120;
 
 /// Breaks lines between words, but before none that would begin a list.
 fn wrap(text: &str) -> String {
     let indent = if text.starts_with("- ") { "  " } else { "" };
-    let (mut out, mut column) = (String::new(), 0);
+    let begins_list =
+        |word: &&str| matches!(*word, "-" | "+" | "*") || word.trim_end_matches('.').parse::<u32>().is_ok();
+    let mut lines: Vec<String> = Vec::new();
     let mut words = text.split_whitespace().peekable();
     while let Some(word) = words.next() {
         let mut unit = word.to_owned();
-        let begins_list =
-            |word: &&str| matches!(*word, "-" | "+" | "*") || word.trim_end_matches('.').parse::<u32>().is_ok();
         while let Some(next) = words.next_if(begins_list) {
             unit += &format!(" {next}");
         }
-        let length = unit.chars().count();
-        if column > 0 && column + 1 + length > WIDTH {
-            out += &format!("\n{indent}");
-            column = indent.len();
-        } else if column > 0 {
-            out.push(' ');
-            column += 1;
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + unit.chars().count() <= WIDTH => *line += &format!(" {unit}"),
+            Some(_) => lines.push(format!("{indent}{unit}")),
+            None => lines.push(unit),
         }
-        out += &unit;
-        column += length;
     }
-    out
+    lines.join("\n")
 }
 
 fn picture(block: &str) -> Option<&str> {
@@ -141,10 +130,6 @@ fn table(table: &Value) -> String {
     markdown::lines(&texts(&table["columns"]), words, &rows).trim_end().to_owned()
 }
 
-pub(crate) fn list(json: &Value) -> &[Value] {
-    json.as_array().map_or(&[], Vec::as_slice)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -171,7 +156,7 @@ mod tests {
         let folder = paths::root().join("docs/report");
         for path in paths::of_kind("docs/report", "json").expect("the report is committed") {
             let name = path.file_stem().expect("a name").to_string_lossy();
-            let json = serde_json::from_str(&fs::read_to_string(&path).expect("readable")).expect("JSON");
+            let json = paths::json(&path).expect("JSON");
             let text = chapter(&name, &json, &|file| folder.join(file).exists()).expect("a text");
             let committed = fs::read_to_string(path.with_extension("md")).expect("readable");
             assert!(committed == text, "{name}.md is not current: `cargo xtask report --render` writes it");

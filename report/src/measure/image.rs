@@ -1,5 +1,6 @@
 //! Linear images: read from PFM, compared, shown as sRGB.
 
+use crate::chapters::statistics::percentile;
 use anyhow::{Context, Result, bail};
 use image::{Rgb, Rgb32FImage, RgbImage};
 use std::fs;
@@ -37,9 +38,7 @@ pub(crate) fn luminance(pixel: &Rgb<f32>) -> f64 {
 
 /// Brightness at which a scene is shown: the 90th percentile of the reference's luminance becomes 0.7.
 pub(crate) fn exposure(reference: &Rgb32FImage) -> f32 {
-    let mut values: Vec<f64> = reference.pixels().map(luminance).collect();
-    values.sort_by(f64::total_cmp);
-    let bright = values.get(values.len() * 9 / 10).copied().unwrap_or(1.0);
+    let bright = percentile(reference.pixels().map(luminance), 90);
     if bright > 0.0 { (0.7 / bright) as f32 } else { 1.0 }
 }
 

@@ -1,7 +1,12 @@
-//! relMSE, equation (2.32) of the thesis, on luminance.
+//! How an image errs, on luminance: relMSE, equation (2.32) of the thesis, and how much of it the eye sees.
 
+use super::filter::gaussian;
 use super::image::luminance;
 use image::{Rgb, Rgb32FImage};
+
+/// Relative errors beyond it count as this. One rare highlight in a dark pixel, a hundred times too bright, would
+/// otherwise outweigh all other pixels, and whether a frame has one is chance.
+pub(crate) const LIMIT: f64 = 5.0;
 
 /// What images are compared with.
 ///
@@ -25,8 +30,7 @@ impl Reference {
             Rgb(std::array::from_fn(|channel| 0.5 * (a[channel] + b[channel])))
         });
         let values: Vec<f64> = image.pixels().map(luminance).collect();
-        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-        let epsilon = 0.01 * mean * mean;
+        let epsilon = 0.01 * mean(&values).powi(2);
         let denominators = values.iter().map(|value| value * value + epsilon).collect();
         let halves = [a, b].map(|half| half.pixels().map(luminance).collect());
         Self { image, images: [a.clone(), b.clone()], halves, denominators }
@@ -34,23 +38,49 @@ impl Reference {
 
     /// The mean over all pixels of (I - A)(I - B) / (R^2 + epsilon).
     pub(crate) fn rel_mse(&self, image: &Rgb32FImage) -> f64 {
-        self.terms(image).iter().sum::<f64>() / self.denominators.len().max(1) as f64
+        mean(&self.terms(image))
     }
 
     /// (I - A)(I - B) / (R^2 + epsilon) of each pixel, row after row.
     pub(crate) fn terms(&self, image: &Rgb32FImage) -> Vec<f64> {
-        let [a, b] = &self.halves;
-        let values = image.pixels().map(luminance).zip(a.iter().zip(b)).zip(&self.denominators);
-        values.map(|((i, (a, b)), d)| (i - a) * (i - b) / d).collect()
+        products(&self.relative_errors(image))
     }
 
     /// (I - A) / sqrt(R^2 + epsilon) and the same with B, row after row: the mean of their product is the relMSE.
-    pub(crate) fn relative_errors(&self, image: &Rgb32FImage) -> [Vec<f64>; 2] {
+    fn relative_errors(&self, image: &Rgb32FImage) -> [Vec<f64>; 2] {
         self.halves.each_ref().map(|half| {
             let values = image.pixels().map(luminance).zip(half).zip(&self.denominators);
             values.map(|((i, half), d)| (i - half) / d.sqrt()).collect()
         })
     }
+
+    /// The same, none larger than [`LIMIT`].
+    fn limited_errors(&self, image: &Rgb32FImage) -> [Vec<f64>; 2] {
+        let limited = |errors: Vec<f64>| errors.into_iter().map(|error| error.clamp(-LIMIT, LIMIT)).collect();
+        self.relative_errors(image).map(limited)
+    }
+
+    /// The relMSE, errors limited; and that of the image as it is seen: the errors are filtered, then squared.
+    pub(crate) fn errors(&self, image: &Rgb32FImage) -> [f64; 2] {
+        let limited = self.limited_errors(image);
+        let seen = limited.each_ref().map(|errors| gaussian(errors, image.width() as usize));
+        [limited, seen].map(|errors| mean(&products(&errors)))
+    }
+
+    /// (I - R) / sqrt(R^2 + epsilon), limited, row after row.
+    pub(crate) fn signed_errors(&self, image: &Rgb32FImage) -> Vec<f64> {
+        let [a, b] = self.limited_errors(image);
+        a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect()
+    }
+}
+
+/// Of the errors from either half: so the reference's own noise stays out.
+fn products([a, b]: &[Vec<f64>; 2]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a * b).collect()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
 #[cfg(test)]

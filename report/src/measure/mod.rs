@@ -10,6 +10,5 @@ pub(crate) mod plot;
 pub(crate) mod progress;
 pub(crate) mod renderer;
 pub(crate) mod running;
-pub(crate) mod score;
 pub(crate) mod table;
 pub(crate) mod text;

@@ -1,6 +1,6 @@
 //! A part of the images, enlarged: as it looks, and how it errs.
 
-use super::score::signed_errors;
+use crate::chapters::statistics::percentile;
 use crate::measure::image::{exposure, tone_map};
 use crate::measure::metric::Reference;
 use image::imageops::{FilterType, crop_imm, resize};
@@ -38,16 +38,15 @@ impl<'a> Part<'a> {
 
     /// The part's own errors, row after row.
     fn values(&self, image: &Rgb32FImage) -> Vec<f64> {
-        let (errors, whole) = (signed_errors(image, self.reference), image.width() as usize);
+        let (errors, whole) = (self.reference.signed_errors(image), image.width() as usize);
         let [x, y, width, height] = [self.x, self.y, self.width, self.height].map(|value| value as usize);
         errors.chunks(whole.max(1)).skip(y).take(height).flat_map(|row| row[x..x + width].iter().copied()).collect()
     }
 
     /// The 95th percentile of the errors' sizes.
     pub(crate) fn error_scale(&self, image: &Rgb32FImage) -> f64 {
-        let mut errors: Vec<f64> = self.values(image).into_iter().map(f64::abs).collect();
-        errors.sort_by(f64::total_cmp);
-        errors.get(errors.len() * 95 / 100).copied().filter(|&scale| scale > 0.0).unwrap_or(1.0)
+        let scale = percentile(self.values(image).into_iter().map(f64::abs), 95);
+        if scale > 0.0 { scale } else { 1.0 }
     }
 
     /// Signed errors in greys, from -`scale` to `scale`.

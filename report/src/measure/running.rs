@@ -1,10 +1,9 @@
 //! Programs of examples_c, compiled; and a program that runs: its lines are read as they come.
 
 use anyhow::{Context, Result, bail};
-use std::io::{BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Seek};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::thread;
 use xtask::{library, paths};
 
 /// Compiles `examples_c/SOURCE` against the library.
@@ -23,16 +22,12 @@ pub(crate) fn example(source: &str, options: &[&str]) -> Result<PathBuf> {
 /// Runs a program to its end, and returns what it wrote to the standard error. `take` sees each line of the standard
 /// output as it comes; where that fails, the program is ended.
 pub(crate) fn run(mut command: Command, mut take: impl FnMut(&str) -> Result<()>) -> Result<String> {
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    // A pipe that nobody empties would stop the program at 64 kB of errors.
+    let mut errors = tempfile::tempfile()?;
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(errors.try_clone()?);
     let line = format!("{command:?}");
     let mut child = command.spawn().with_context(|| format!("cannot start {line}"))?;
-    let (stdout, stderr) = child.stdout.take().zip(child.stderr.take()).context("the program has no output")?;
-    // Left in the pipe, errors beyond 64 kB would stop the program.
-    let errors = thread::spawn(move || {
-        let mut bytes = Vec::new();
-        BufReader::new(stderr).read_to_end(&mut bytes).map(|_| String::from_utf8_lossy(&bytes).into_owned())
-    });
-    let mut lines = BufReader::new(stdout).lines();
+    let mut lines = BufReader::new(child.stdout.take().context("the program has no output")?).lines();
     let taken = lines.try_for_each(|line| take(&line.context("cannot read the program's output")?));
     if taken.is_err() {
         // It may have ended by itself.
@@ -40,7 +35,8 @@ pub(crate) fn run(mut command: Command, mut take: impl FnMut(&str) -> Result<()>
     }
     let status = child.wait().context("the program was lost")?;
     taken?;
-    let errors = errors.join().unwrap_or_else(|_| Ok(String::new())).context("cannot read the program's errors")?;
+    errors.rewind()?;
+    let errors = io::read_to_string(errors).context("cannot read the program's errors")?;
     if !status.success() {
         bail!("{line} failed, {status}\n{}", errors.trim());
     }

@@ -1,32 +1,25 @@
-//! The C library for another target, as cargo's archive.
+//! The C library for another target: as cargo's archive, and as a part of another project.
 
 use super::platform::Platform;
-use anyhow::{Result, bail};
+use anyhow::{Context, Result};
+use std::fs;
 use std::path::PathBuf;
-use std::process::Command;
 use xtask::{paths, run};
 
-/// Debian's compiler, as rustup's has only the targets that its user installed, and not always a way to get more.
-pub(crate) const CARGO: &str = "/usr/bin/cargo";
-pub(crate) const RUSTC: &str = "/usr/bin/rustc";
 /// Compiles what the target needs of Rust itself.
 pub(crate) const BUILD_CORE: [&str; 2] = ["-Z", "build-std=core"];
 
 /// Builds it.
 pub(crate) fn archive(platform: &Platform) -> Result<PathBuf> {
     let folder = folder(platform);
-    let mut cargo = run::command(CARGO);
-    environment(&mut cargo).env("CARGO_PROFILE_RELEASE_OPT_LEVEL", &platform.opt_level);
+    let mut cargo = run::command(run::DEBIANS[0]);
+    run::with_debians(&mut cargo).env("CARGO_PROFILE_RELEASE_OPT_LEVEL", &platform.opt_level);
     cargo.args(["rustc", "--quiet", "--package", "noisefloor-capi", "--release", "--crate-type", "staticlib"]);
     if platform.float_alone {
         cargo.arg("--no-default-features");
     }
     run::check(cargo.args(BUILD_CORE).args(["--target", &platform.triple, "--target-dir"]).arg(&folder))?;
-    let archive = folder.join(&platform.triple).join("release/libnoisefloor.a");
-    if !archive.exists() {
-        bail!("cargo wrote no {}", archive.display());
-    }
-    Ok(archive)
+    Ok(folder.join(&platform.triple).join("release/libnoisefloor.a"))
 }
 
 /// Cargo's target folder: one for each, so that several may be built at a time and none undoes what another made.
@@ -34,7 +27,31 @@ pub(crate) fn folder(platform: &Platform) -> PathBuf {
     paths::target().join("cross").join(platform.id())
 }
 
-/// `-Z` is not stable; this lets a stable compiler accept it. What rustup's cargo set for us is not for this one.
-pub(crate) fn environment(command: &mut Command) -> &mut Command {
-    command.env("RUSTC_BOOTSTRAP", "1").env("RUSTC", RUSTC).env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO")
+/// tests/package/subproject, a CMake project that compiles the library as a part of itself, and its programs run there;
+/// or not, if there is no toolchain file for the target.
+pub(crate) fn consumer(platform: &Platform) -> Result<bool> {
+    if !platform.triple.starts_with("aarch64") {
+        return Ok(false);
+    }
+    let (root, project) = (paths::root(), paths::output().join("test/cross-compiled project"));
+    if project.exists() {
+        fs::remove_dir_all(&project).with_context(|| format!("cannot remove {}", project.display()))?;
+    }
+    let mut configure = run::command("cmake");
+    configure.args(["-S", "tests/package/subproject", "-B"]).arg(&project).args([
+        format!("-DNOISEFLOOR_SOURCE={}", root.display()),
+        format!("-DNOISEFLOOR_CARGO={}", run::DEBIANS[0]),
+        format!("-DNOISEFLOOR_CARGO_TARGET_DIR={}", folder(platform).display()),
+        format!("-DNOISEFLOOR_CARGO_OPTIONS={}", BUILD_CORE.join(";")),
+        // CMake takes a relative path for one in the build folder.
+        format!("-DCMAKE_TOOLCHAIN_FILE={}", root.join("tests/package/aarch64.cmake").display()),
+    ]);
+    run::read(&mut configure)?;
+    let mut compile = run::command("cmake");
+    run::read(run::with_debians(compile.arg("--build").arg(&project).args(["--parallel", "2"])))?;
+    let mut test = run::command("ctest");
+    test.arg("--test-dir").arg(&project).args(["--quiet", "--output-on-failure", "--no-tests=error"]);
+    run::check(&mut test)?;
+    println!("   a CMake project with a toolchain file: shared and static under {}", platform.emulator);
+    Ok(true)
 }

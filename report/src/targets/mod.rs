@@ -3,7 +3,6 @@
 
 mod bare_metal;
 mod build;
-mod consumer;
 mod platform;
 mod sizes;
 
@@ -51,11 +50,11 @@ pub(crate) fn run(options: &Options) -> Result<()> {
 /// docs/report/sizes.md and .json.
 fn write(tables: &[Table]) -> Result<()> {
     let plan = Plan::new(Extent::Default)?;
-    let description = Description::read("sizes", &plan)?;
+    let description: Description = plan.read("sizes")?;
     let mut chapter = Chapter::new(description.names("sizes", &plan)[1]);
     let find = |name: &str| tables.iter().find(|table| table.name == name).cloned().context("no such table");
     description.write(&find, &mut chapter)?;
-    let compiler = run::read(run::command(build::RUSTC).arg("--version"))?;
+    let compiler = run::read(run::command(run::DEBIANS[1]).arg("--version"))?;
     chapter.setting("compiler", compiler.trim().split(" (").next().unwrap_or_default());
     if !find("sizes")?.distinct("kind")?.contains(&sizes::KINDS[2]) {
         chapter.setting("variables", "none");
@@ -108,7 +107,7 @@ fn there(platform: &Platform, all: &Targets, raw: &Path) -> Result<(bare_metal::
     let mut ran = c_tests_there(binutils, &platform.emulator, &archive)?;
     let told = bare_metal::hosted(platform, binutils, &archive)?;
     ran += ", the example";
-    if consumer::run(platform)? {
+    if build::consumer(platform)? {
         ran += ", a CMake project";
     }
     Ok((told, ran))

@@ -1,7 +1,8 @@
 //! The targets, and what is measured of each: report/targets.toml.
 
+use crate::chapters::plan::packages;
 use anyhow::{Context, Result};
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 use xtask::paths;
 use xtask::tools::Package;
 
@@ -51,11 +52,6 @@ pub(crate) struct Service {
     pub(crate) functions: Vec<String>,
     #[serde(default)]
     pub(crate) except: Vec<String>,
-}
-
-fn packages<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Package>, D::Error> {
-    let all = Vec::<[String; 2]>::deserialize(from)?;
-    Ok(all.into_iter().map(|[name, file]| Package { name: name.leak(), file: file.leak() }).collect())
 }
 
 impl Targets {

@@ -4,7 +4,6 @@ use super::Harness;
 use crate::chapters::prelude::*;
 use crate::measure::metric::Reference;
 use crate::measure::renderer::{Job, View};
-use crate::measure::score;
 use image::Rgb32FImage;
 use itertools::iproduct;
 use std::rc::Rc;
@@ -80,7 +79,7 @@ pub(super) fn measure(harness: &Harness) -> Result<Table> {
                 let reference = seen(&references, &weights);
                 for seed in 0..seeds as usize {
                     let sequence: Vec<&Rgb32FImage> = frames.iter().map(|images| &images[seed]).collect();
-                    let error = score::errors(&filtered(&sequence, &weights), &reference)[1];
+                    let error = reference.errors(&filtered(&sequence, &weights))[1];
                     all.push([scene, &spp.to_string(), &last.to_string(), name, label, &error.to_string()]);
                 }
             }

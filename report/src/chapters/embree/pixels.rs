@@ -2,8 +2,9 @@
 
 use super::Harness;
 use crate::chapters::prelude::*;
-use crate::chapters::statistics::{Random, moments, student};
+use crate::chapters::statistics::{moments, student};
 use crate::measure::renderer::Job;
+use fastrand::Rng;
 use image::Rgb32FImage;
 
 const SPP: u32 = 16;
@@ -87,9 +88,9 @@ impl Shares {
             100.0 * noisy.iter().filter(|&&pixel| of(pixel)).count() as f64 / noisy.len().max(1) as f64
         };
         let (first, second) = all.split_at(all.len() / 2);
-        let mut random = Random::new(0x7069_7865_6c73);
+        let mut random = Rng::with_seed(0x7069_7865_6c73);
         let resampled = (0..RESAMPLES).map(|_| {
-            let chosen: Vec<usize> = all.iter().map(|_| random.below(batches.len())).collect();
+            let chosen: Vec<usize> = all.iter().map(|_| random.usize(..batches.len())).collect();
             share(&|pixel| ratio(&chosen, pixel) > TOO_MUCH)
         });
         let error = moments(&resampled.collect::<Vec<f64>>()).1;
@@ -131,8 +132,8 @@ mod tests {
     /// 1000 pixels, of which the first `bad` are twice as bad as the plain mean's; errors vary by `noise` from batch to
     /// batch.
     fn shares(bad: usize, noise: f64) -> Shares {
-        let mut random = Random::new(3);
-        let mut vary = |value: f64| value * (1.0 + noise * (random.below(1 << 20) as f64 / f64::from(1 << 20) - 0.5));
+        let mut random = Rng::with_seed(3);
+        let mut vary = |value: f64| value * (1.0 + noise * (random.f64() - 0.5));
         let batches = (0..8).map(|_| {
             let plain = (0..1000).map(|_| vary(1.0)).collect();
             [plain, (0..1000).map(|pixel| vary(if pixel < bad { 2.0 } else { 0.5 })).collect()]
@@ -150,8 +151,8 @@ mod tests {
 
     #[test]
     fn the_interval_widens_with_noise_at_the_limit() {
-        let mut random = Random::new(5);
-        let mut vary = || 0.5 + random.below(1 << 20) as f64 / f64::from(1 << 20);
+        let mut random = Rng::with_seed(5);
+        let mut vary = || 0.5 + random.f64();
         let batch = |_| [vec![1.0; 400], (0..400).map(|_| 1.2 * vary()).collect()];
         let shares = Shares::new(&(0..8).map(batch).collect::<Vec<Batch>>(), 8);
         let Estimate { value, low, high, .. } = shares.raw;

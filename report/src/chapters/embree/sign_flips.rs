@@ -63,14 +63,14 @@ impl SignFlips {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chapters::statistics::Random;
+    use fastrand::Rng;
 
     /// 12 batches of 300 numbers of variance 1/3, the same in neighbouring `shared`, and a reference whose variance is
     /// that of their mean times `reference`.
     fn flips(seed: u64, bias: f64, shared: usize, reference: f64) -> SignFlips {
-        let mut random = Random::new(seed);
+        let mut random = Rng::with_seed(seed);
         let mut noise = |scale: f64| -> Vec<f64> {
-            let uniform = || scale * (2.0 * random.below(1 << 30) as f64 / f64::from(1 << 30) - 1.0);
+            let uniform = || scale * (2.0 * random.f64() - 1.0);
             let noise: Vec<f64> = std::iter::repeat_with(uniform).take(300 / shared).collect();
             (0..300).map(|number| noise[number / shared]).collect()
         };
@@ -102,8 +102,13 @@ mod tests {
 
     #[test]
     fn a_small_bias_all_over_shows() {
-        let flips = flips(9, 0.1, 1, 0.0);
-        // A sum of 12 has 1.2 of bias and 2 of deviation: a mean square of 1.36 where 1 is expected.
-        assert!(flips.measured() > 1.2 && flips.measured() > flips.allowed(0.001), "{}", flips.measured());
+        // A sum of 12 has 1.2 of bias and 2 of deviation: a mean square of 1.36 where 1 is expected. Six seeds in ten
+        // show it at this level.
+        let shows = |seed: &u64| {
+            let flips = flips(*seed, 0.1, 1, 0.0);
+            flips.measured() > 1.2 && flips.measured() > flips.allowed(0.001)
+        };
+        let shown = (1..=30).filter(shows).count();
+        assert!(shown >= 10, "{shown} of 30");
     }
 }
