@@ -13,7 +13,7 @@ static void constants(void)
     uint32_t estimator, basis, precision;
     size_t v, i;
     for (estimator = 0; estimator < estimators; ++estimator)
-        for (basis = 0; basis < 4; ++basis)
+        for (basis = 0; basis < BASES; ++basis)
             for (precision = 0; precision < 2; ++precision)
                 for (v = 0; v < sizeof values / sizeof *values; ++v) {
                     nf_cv_config config = make_config(2, 2, 1, estimator);

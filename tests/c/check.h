@@ -44,6 +44,9 @@ static inline void check_named_at(const char *found, const char *words, const ch
     }
 }
 
+/* How many bases there are: their numbers are 0 and up. */
+#define BASES (NF_BASIS_GAUSSIAN + 1u)
+
 #define CHECK(condition) check_at((condition) ? 1 : 0, #condition, __FILE__, __LINE__)
 /* nf_check() says nothing, or a sentence that contains the words. */
 #define CHECK_NAMED(kind, what, words) check_named_at(nf_check((kind), (what)), (words), #what, __FILE__, __LINE__)

@@ -18,7 +18,7 @@ static void terms(void)
 {
     uint32_t dims, order, basis;
     nf_cv_config config;
-    for (basis = 0; basis < 4; ++basis)
+    for (basis = 0; basis < BASES; ++basis)
         for (dims = 1; dims <= 16; ++dims)
             for (order = 0; order <= 7; ++order) {
                 config = make_config(dims, order, 1, NF_CV_ROBUST);
@@ -180,7 +180,7 @@ static void ranges(void)
     REFUSED(config.channels = UINT32_MAX, NF_ERR_RANGE);
     REFUSED(config.estimator = 6, NF_ERR_RANGE);
     REFUSED(config.estimator = UINT32_MAX, NF_ERR_RANGE);
-    REFUSED(config.basis = 4, NF_ERR_RANGE);
+    REFUSED(config.basis = BASES, NF_ERR_RANGE);
     REFUSED(config.stratified = 2, NF_ERR_RANGE);
     REFUSED(config.slices = 136, NF_ERR_RANGE);
     REFUSED(config.slices = UINT32_MAX, NF_ERR_RANGE);

@@ -6,6 +6,7 @@ use crate::matrix::at;
 use crate::real::Real;
 
 /// What the recurrences of a family run on. Legendre: 2x - 1. Sine: cos(pi x). Otherwise x.
+// As all that evaluates a basis: without, estimates of one pixel take 2 to 5 % more instructions, image fits 3 %.
 #[inline(always)]
 pub(crate) fn argument<R: Real, const L: usize>(family: Family, x: &Lanes<R, L>) -> Lanes<R, L> {
     match family {

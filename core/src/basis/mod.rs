@@ -215,6 +215,7 @@ impl Basis {
 
     /// Evaluates every function at `L` points: `x` has a group of lanes for each coordinate, `out` gets one for each
     /// column. Coordinates are taken to be in [0, 1].
+    // See `functions.rs`.
     #[inline(always)]
     pub(crate) fn evaluate<R: Real, const L: usize>(&self, x: &[Lanes<R, L>], out: &mut [Lanes<R, L>]) {
         let (Shape { continuous, .. }, slices) = (self.shape, self.shape.indicators());
@@ -241,7 +242,7 @@ impl Basis {
     }
 
     /// The slices of `L` points.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn slices_at<R: Real, const L: usize>(&self, x: &[Lanes<R, L>]) -> [usize; L] {
         let choice = x.get(self.shape.continuous).copied().unwrap_or([R::ZERO; L]);
         choice.map(|u| slice_of(u, self.shape.slices))

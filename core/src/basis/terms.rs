@@ -39,6 +39,7 @@ impl Term {
         usize::from(self.column)
     }
 
+    // See `functions.rs`.
     #[inline(always)]
     pub(crate) fn value<R: Real, const L: usize>(
         &self,

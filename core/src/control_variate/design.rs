@@ -76,6 +76,7 @@ impl<'a, R: Real> Design<'a, R> {
 
     /// Evaluates the basis at the samples of a subset, which were checked before. With `centre`, columns and values
     /// have mean zero; without, columns are as they are, and values relative to the first sample.
+    // See `Reader`; without it on what follows, estimates of one pixel take 9 to 19 % more instructions.
     #[inline(always)]
     pub(crate) fn load(
         reader: &Reader<'_>,

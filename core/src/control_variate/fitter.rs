@@ -57,6 +57,7 @@ pub(crate) fn size(n: usize, dual: bool, columns: usize, channels: usize) -> Opt
 }
 
 impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
+    // Without, and without it on `Normal::of`, estimates of one pixel take 20 to 29 % more instructions.
     #[inline(always)]
     pub(crate) fn new(
         design: &'d Design<'a, R>,

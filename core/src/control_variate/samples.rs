@@ -231,6 +231,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads up to `LANES` used samples from index `next` on, and returns how many there were.
+    // As `Design::load`: without, estimates of one pixel take 3 to 7 % more instructions, image fits 3 %.
     #[inline(always)]
     pub(crate) fn panel<R: Real>(
         &self,
@@ -284,7 +285,7 @@ impl<'a> Reader<'a> {
 
     /// Writes the positions of samples from each `first` on to the lanes from `lane` on, a group of lanes for each
     /// step.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn put_positions<R: Real, const L: usize>(
         &self,
         first: &[usize; LANES],
@@ -309,7 +310,7 @@ impl<'a> Reader<'a> {
     }
 
     /// All values, as they were given.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn inputs(&self) -> &'a [f32] {
         self.samples.f
     }

@@ -119,6 +119,7 @@ impl<R: Real, S: Deref<Target = [R]>> Ldlt<S> {
 }
 
 /// [`Ldlt::new`] of eight matrices side by side, packed triangles of `n` rows.
+// Without, and without it on `forward_each`, image fits take 2 % more instructions.
 #[inline(always)]
 pub(crate) fn factor_each<R: Real>(matrices: &mut [Lanes<R>], n: usize) {
     let tolerance = R::from_f64(DEPENDENT) * R::EPSILON;

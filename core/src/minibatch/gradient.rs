@@ -207,7 +207,7 @@ fn fade(averages: &mut [f32], keep: f32) {
 }
 
 /// Adds a group of samples to the averages of one block of `len` parameters.
-#[inline(always)]
+#[inline]
 fn add<'a>(averages: &mut [f32], len: usize, coefficients: &Coefficients, mut rows: impl Iterator<Item = &'a [f32]>) {
     for coefficients in &coefficients.0 {
         let Some(first) = rows.next() else { break };
@@ -234,7 +234,7 @@ fn add_four(sums: &mut [f32], rows: [&[f32]; ROWS], coefficients: &[f32; ROWS]) 
 }
 
 /// `balance - c' b` of one block, in f64: with similar techniques the terms can be large and cancel.
-#[inline(always)]
+#[inline]
 fn solve(averages: &[f32], correction: &Vector, estimate: &mut [f32]) {
     let len = estimate.len();
     let mut value = [0.0_f64; BLOCK];

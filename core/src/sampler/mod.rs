@@ -109,6 +109,7 @@ impl Sampler {
     ///
     /// The first two are optimised together. All four are stratified together, as a net is, as far as that is possible;
     /// across pixels the last two are as good as the first, but with these they are not arranged.
+    // As `net::point`: without, draws take 6 to 9 % more instructions.
     #[inline(always)]
     pub fn draw<const N: usize>(&self) -> [f32; N] {
         const { assert!(0 < N && N <= 4, "a domain has 1 to 4 numbers") };

@@ -10,6 +10,7 @@ use crate::hash::{GOLDEN, mix};
 use crate::rows::chunk;
 
 /// The point in 32-bit fixed point.
+// See `Sampler::draw`.
 #[inline(always)]
 pub(super) fn point<const N: usize>(sampler: &Sampler) -> [u32; N] {
     let Sampler { domain, index, x, y, flags } = *sampler;
@@ -56,7 +57,7 @@ const fn reorder(first: u32, domain: u32, x: u32, y: u32) -> u32 {
 }
 
 /// The point of a place, by the reversed number.
-#[inline(always)]
+#[inline]
 fn pair(x: u32, y: u32, first: u32) -> [u32; 2] {
     let pixel = (y & (SIZE - 1)) * SIZE + (x & (SIZE - 1));
     let second = pascal(first);

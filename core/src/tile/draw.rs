@@ -14,6 +14,7 @@ impl Sampler<'_> {
     /// least two dimensions and samples, and is not progressive, each further coordinate of its samples is stratified,
     /// and the third of a tile of two dimensions with those two, as far as the samples are in the order in which `fsot`
     /// writes them.
+    // Without, a draw of stored values takes 53 % more instructions.
     #[inline(always)]
     pub fn draw<const N: usize>(&self) -> [f32; N] {
         let mut u = [0.0; N];

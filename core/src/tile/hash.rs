@@ -15,6 +15,7 @@ pub(super) fn permute(index: u32, samples: u32, random: u32) -> u32 {
 }
 
 /// [`permute`] by a look-up, for at most 16 samples.
+// Without, a draw in a domain takes 7 % more instructions.
 #[inline(always)]
 pub(super) fn permute_few(index: u32, samples: u32, random: u32) -> Option<u32> {
     let (mask, scale) = mask_and_scale(samples, random);

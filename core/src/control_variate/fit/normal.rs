@@ -39,6 +39,7 @@ pub(crate) fn fit_len(columns: usize, channels: usize) -> usize {
 
 impl<'a, R: Real> Normal<'a, R> {
     /// Of the samples of a design.
+    // Without, estimates of one pixel take 9 to 14 % more instructions.
     #[inline(always)]
     pub(crate) fn of(design: &Design<'a, R>, arena: &mut Arena<'a, R>) -> Result<Self, Error> {
         let mut gram = arena.triangle(design.columns)?;
