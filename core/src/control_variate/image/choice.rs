@@ -271,8 +271,8 @@ impl<'a> Spreads<'a> {
         }
     }
 
-    /// Trust by spreads, of the plain mean first: [`trust::weigh`] in each lane. As `part` counts what samples within
-    /// pixels say for a fit.
+    /// Trust by spreads, of the plain mean first: [`Judge::weigh`](trust::Judge::weigh) in each lane. As `part` counts
+    /// what samples within pixels say for a fit.
     #[inline(always)]
     fn share(
         &self,
