@@ -1,5 +1,5 @@
-// services.c's calls from JavaScript: node services.mjs MODULE.wasm TILE.nft. Prints the same lines; the stack is the part of it
-// that lies in the module's memory, as what WebAssembly keeps of it elsewhere cannot be seen.
+// services.c's calls from JavaScript: node services.mjs MODULE.wasm TILE.nft. Prints the same lines; the stack is the
+// part of it that lies in the module's memory, as what WebAssembly keeps of it elsewhere cannot be seen.
 import { readFileSync } from "node:fs";
 
 const SAMPLES = 64, ITEMS = 100, BATCH = 8, WORKSPACE_BYTES = 32768;
@@ -38,7 +38,8 @@ function stackUsed() {
 
 function line(name, status, first, second) {
     const stack = stackUsed(), hex = (bits) => bits.toString(16).padStart(8, "0");
-    console.log(`${name} ${hex(first)} ${hex(second)}` + (stack ? ` stack ${stack}` : "") + (status ? ` FAILED: ${status}` : ""));
+    const rest = (stack ? ` stack ${stack}` : "") + (status ? ` FAILED: ${status}` : "");
+    console.log(`${name} ${hex(first)} ${hex(second)}` + rest);
     if (status) ++failures;
 }
 
@@ -112,7 +113,8 @@ function mis() {
 }
 
 function minibatch() {
-    const rng = structure(), table = structure(), importance = allocate(4 * ITEMS), weight = structure(), index = structure();
+    const rng = structure(), table = structure(), importance = allocate(4 * ITEMS);
+    const weight = structure(), index = structure();
     nf.nf_rng_seed(rng, 1n);
     for (let i = 0; i < ITEMS; ++i) floats[importance / 4 + i] = nf.nf_rng_uniform(rng);
     paint();

@@ -1,6 +1,7 @@
 """The bits pinned in tests/vectors, which Rust's and C's tests read too."""
 
 import concurrent.futures
+import ctypes
 import pathlib
 
 import numpy
@@ -10,6 +11,8 @@ from noisefloor import _c
 
 FOLDER = pathlib.Path(__file__).resolve().parent.parent.parent / "tests/vectors"
 ESTIMATORS, BASES = tuple(_c.ESTIMATORS), tuple(_c.BASES)
+NEXT = ctypes.CDLL(_c.LIBRARY).nf_rng_next
+NEXT.argtypes, NEXT.restype = [ctypes.c_void_p], ctypes.c_uint32
 
 
 def lines(name):
@@ -24,11 +27,8 @@ def floats(words):
 
 
 def next_u32(rng):
-    """nf_rng_next."""
-    old = rng.state
-    rng.state = (old * 6364136223846793005 + (rng.increment | 1)) % 2**64
-    shifted, turn = ((old >> 18 ^ old) >> 27) % 2**32, old >> 59
-    return (shifted >> turn | shifted << (32 - turn)) % 2**32
+    """The library's next number."""
+    return NEXT(_c.address(rng))
 
 
 def importance(rng):

@@ -33,15 +33,10 @@ pub(crate) struct Groups<'a, R> {
 
 /// Numbers that an estimate takes from its arena beyond one fit.
 pub(crate) fn len(layout: Layout) -> usize {
-    FITS * layout.columns * layout.channels + layout.len()
+    FITS * layout.coefficients() + layout.len()
 }
 
 impl<'a, R: Real> Groups<'a, R> {
-    /// How many coefficients a fit has, a row for each channel.
-    fn coefficients(&self) -> usize {
-        self.layout.columns * self.layout.channels
-    }
-
     /// The folds that hold samples.
     fn each(&self) -> impl Iterator<Item = (usize, Sums<&'a [R]>)> {
         let filled = |fold| self.layout.group(self.sums, fold).ok().filter(|group| group.count() > R::ZERO);
@@ -84,7 +79,7 @@ pub(crate) fn pooled<R: Real>(
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
     let candidates = Candidates { groups, config, basis, strengths: &MIXED, is_fixed: false };
-    let each = groups.coefficients();
+    let each = groups.layout.coefficients();
     let coefficients = arena.take(FITS * each)?;
     let train = arena.take(groups.layout.len())?;
     let mut errors = Errors::default();
@@ -135,7 +130,7 @@ pub(crate) fn nested<R: Real>(
     let fixed = [ridge::single::<R>(config.ridge)];
     let strengths: &[f64] = if is_fixed { &fixed } else { &MIXED };
     let candidates = Candidates { groups, config, basis, strengths, is_fixed };
-    let (each, columns) = (groups.coefficients(), groups.layout.columns);
+    let (each, columns) = (groups.layout.coefficients(), groups.layout.columns);
     let coefficients = arena.take(FITS * each)?;
     let train = arena.take(groups.layout.len())?;
     let (mut sums, mut press) = (PerChannel::default(), PerChannel::default());
@@ -200,7 +195,7 @@ impl<R: Real> Candidates<'_, '_, R> {
         if let Some(centred) = Centred::new(train, &mut arena)? {
             // From the training set alone, as the coefficients.
             ridge::penalties(self.config, self.basis, |j| train.mean_square(j), penalties);
-            let each = rows_mut(coefficients, self.groups.coefficients());
+            let each = rows_mut(coefficients, self.groups.layout.coefficients());
             for ((&strength, coefficients), centre) in self.strengths.iter().zip(each).zip(&mut centres) {
                 let mut arena = arena.scratch();
                 let penalty = Penalty { strength: R::from_f64(strength), relative: penalties };

@@ -45,7 +45,7 @@ pub(crate) struct Progress<R> {
 
 /// Numbers that follow the sums in an accumulator's buffer: coefficients, and room to renew them.
 pub(crate) fn len(layout: Layout) -> usize {
-    FITS * layout.columns * layout.channels + normal::len(layout)
+    FITS * layout.coefficients() + normal::len(layout)
 }
 
 /// The mean of the corrected values.
@@ -97,10 +97,10 @@ impl<R: Real> Progress<R> {
         // `Centred::solve` takes strengths per sample.
         let strengths = STRENGTHS.map(|own| R::from_f64(ridge::strength::<R>(config.ridge, own / samples as f64)));
         let mut solve = || {
-            let (Layout { columns, channels, .. }, sums) = (layout, layout.group(sums, 0).ok()?);
+            let sums = layout.group(sums, 0).ok()?;
             let mut arena = Arena::new(rest);
-            let coefficients = arena.take(FITS * columns * channels).ok()?;
-            let penalties = arena.take(columns).ok()?;
+            let coefficients = arena.take(FITS * layout.coefficients()).ok()?;
+            let penalties = arena.take(layout.columns).ok()?;
             if self.next_fit == 0 || config.controls > 0 {
                 // They stay in the buffer: only those of control functions depend on the samples.
                 let mut basis = Basis::empty();
@@ -108,7 +108,7 @@ impl<R: Real> Progress<R> {
                 ridge::penalties(config, &basis, |j| sums.mean_square(j), penalties);
             }
             let centred = Centred::new(&sums, &mut arena).ok()??;
-            let fits = rows_mut(coefficients, columns * channels).zip(strengths).zip(&mut self.intercepts);
+            let fits = rows_mut(coefficients, layout.coefficients()).zip(strengths).zip(&mut self.intercepts);
             for ((coefficients, strength), intercepts) in fits {
                 let penalty = Penalty { strength, relative: penalties };
                 centred.normal.solve(penalty, coefficients, &mut arena.scratch()).ok()?;
@@ -146,7 +146,7 @@ impl<R: Real> Progress<R> {
         for error in self.errors.iter_mut().chain([&mut self.plain_error]) {
             *error = change.squares(*error, PerChannel::default(), R::ZERO);
         }
-        for fit in rows_mut(rest, layout.columns * layout.channels).take(FITS) {
+        for fit in rows_mut(rest, layout.coefficients()).take(FITS) {
             for (coefficients, &factor) in rows_mut(fit, layout.columns).zip(change.factors.iter()) {
                 coefficients.iter_mut().for_each(|value| *value *= factor);
             }

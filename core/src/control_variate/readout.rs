@@ -113,7 +113,7 @@ impl<R: Real> Accumulator<R> {
 
     fn descend(&self, group: &Sums<&[R]>, total: &Totals<R>, arena: &mut Arena<'_, R>) -> Result<Outcome<R>, Error> {
         let Some(centred) = normal::Centred::new(group, arena)? else { return Ok(total.plain()) };
-        let coefficients = arena.zeros(self.layout.columns * self.layout.channels)?;
+        let coefficients = arena.zeros(self.layout.coefficients())?;
         descent::descend(&centred, &self.config, &self.basis()?, coefficients, total.variance, arena)
     }
 }

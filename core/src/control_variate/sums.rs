@@ -46,6 +46,11 @@ impl Layout {
         self.columns + 1
     }
 
+    /// How many coefficients a fit has, a row for each channel.
+    pub(crate) fn coefficients(&self) -> usize {
+        self.columns * self.channels
+    }
+
     /// How many numbers a group takes.
     pub(crate) fn len(&self) -> usize {
         packed_len(self.terms()) + self.terms() * self.channels + self.channels

@@ -8,7 +8,7 @@ use super::call::{Call, Layout};
 use super::groups::{Group, Groups, Place};
 use super::pixels::Image;
 use super::products::{
-    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sums, add_products, only, plus, plus_four, times,
+    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sums, add_products, only, plus, plus_four, times, total,
     zip_four,
 };
 use super::terms::{MAX_AXES, Terms};
@@ -388,8 +388,7 @@ impl<'a> Batch<'a> {
             let columns = samples.columns.iter_mut().chain(samples.values.iter_mut());
             for (sum, four) in pixel.totals.iter_mut().zip(columns) {
                 four.iter_mut().skip(count).for_each(|row| *row = NONE);
-                let [a, b, c, d] = &*four;
-                *sum = plus(sum, &plus(&plus(a, b), &plus(c, d)));
+                *sum = plus(sum, &total(four));
                 lanes::keep_together();
             }
             if !is_full {

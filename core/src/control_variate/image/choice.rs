@@ -5,7 +5,7 @@ use super::batch::{Batch, MAX_FIXED};
 use super::call::Layout;
 use super::fit::Fits;
 use super::products::{
-    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, add_products, combine, only, plus, plus_four, zip_four,
+    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, add_products, combine, only, plus, plus_four, total, zip_four,
 };
 use super::terms::Terms;
 use crate::arena::Arena;
@@ -213,16 +213,15 @@ impl<'a> Spreads<'a> {
         }
         // What a colour's own pixels say of fits to the others is biased by them, and counts less.
         let own = lanes::each(&freedom, |freedom| if freedom < ENOUGH { 1.0 } else { OWN });
-        let count = |out: &mut [Eight], index: usize, mut each: Four| {
+        let count = |out: &mut [Eight], index: usize, each: &Four| {
             for time in 0..CHOSEN {
-                let whole = each;
+                let mut each = *each;
                 if let Some(each) = time.checked_sub(1).and_then(|colour| each.get_mut(colour)) {
                     *each = lanes::zip(each, &own, |each, own| each * own);
                 }
                 if let Some(out) = out.get_mut(time * all + index) {
                     *out = total(&each);
                 }
-                each = whole;
             }
         };
         for (index, (each, square)) in of_colours.iter().zip(squares).enumerate() {
@@ -237,7 +236,7 @@ impl<'a> Spreads<'a> {
                     each[l] = if counts { each[l] } else { 0.0 };
                 }
             }
-            count(sums, index, each);
+            count(sums, index, &each);
         }
         for (channel, choice) in (0..choices.channels).flat_map(|c| (0..choices.count).map(move |choice| (c, choice))) {
             let (value, fit) = choices.value_and_fit(channel, choice);
@@ -245,7 +244,7 @@ impl<'a> Spreads<'a> {
             for (colour, each) in each.iter_mut().enumerate().filter(|&(colour, _)| taken.has(colour)) {
                 *each = fits.within(value, colour, fit);
             }
-            count(within, channel * choices.count + choice, each);
+            count(within, channel * choices.count + choice, &each);
         }
         Ok(Self { sums, within, freedom, pixels, has_several: fits.has_several, choices })
     }
@@ -357,12 +356,6 @@ impl<'a> Spreads<'a> {
         }
         ratio
     }
-}
-
-/// The sum over colours.
-#[inline(always)]
-fn total([a, b, c, d]: &Four) -> Eight {
-    plus(&plus(a, b), &plus(c, d))
 }
 
 /// Sums of squares, none below what is nothing beside the unit and yet has quotients that are numbers.

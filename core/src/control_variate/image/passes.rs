@@ -105,8 +105,10 @@ impl Call<'_> {
             if chooses {
                 let is_stratified = self.config.stratified;
                 spreads.choose(None, step, is_stratified, &present, &mut shares);
-                for colour in 0..if turns == 1 { COLOURS } else { 0 } {
-                    spreads.choose(Some(colour), 1 + colour, is_stratified, &present, &mut shares);
+                if turns == 1 {
+                    for colour in 0..COLOURS {
+                        spreads.choose(Some(colour), 1 + colour, is_stratified, &present, &mut shares);
+                    }
                 }
                 if turn.is_none() {
                     self.find_limits(groups, &batch, (step, judges), &shares);

@@ -37,6 +37,12 @@ pub(super) fn plus(a: &Eight, b: &Eight) -> Eight {
     lanes::zip(a, b, |a, b| a + b)
 }
 
+/// The sum of four.
+#[inline(always)]
+pub(super) fn total([a, b, c, d]: &Four) -> Eight {
+    plus(&plus(a, b), &plus(c, d))
+}
+
 /// `f(a, b)` for each of four.
 #[inline(always)]
 pub(super) fn zip_four(a: &Four, b: &Four, f: impl Fn(&Eight, &Eight) -> Eight) -> Four {
