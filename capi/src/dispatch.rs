@@ -14,6 +14,8 @@ use noisefloor_core::control_variate::{self as cv, Config, Estimate, Image, Samp
 use noisefloor_core::minibatch::table::{Kernel, Portable, Shard, State, Table};
 use noisefloor_core::minibatch::{Batch, Gradient};
 use noisefloor_core::mis::Solver;
+#[cfg(target_arch = "x86_64")]
+use noisefloor_core::processor::{Processor, Step};
 use noisefloor_core::real::Real;
 use noisefloor_core::rng::Rng;
 
@@ -65,8 +67,8 @@ by_processor! {
         workspace: &mut [f32],
         out: &mut dyn FnMut(usize, Estimate),
     ) -> Result<(), Error> {
-        "avx2" => cv::estimate_image_inlined(config, image, samples, workspace, out),
-        _ => cv::estimate_image_inlined(config, image, samples, workspace, out),
+        "avx2" => cv::estimate_image_by::<Avx2>(config, image, samples, workspace, out),
+        _ => cv::estimate_image(config, image, samples, workspace, out),
     }
 
     /// [`Reader::draw`].
@@ -137,6 +139,19 @@ by_processor! {
     ) -> Result<(), Error> {
         "avx2" => state.estimate(batch, solver, beta, gradient, estimate),
         _ => state.estimate(batch, solver, beta, gradient, estimate),
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Processor for Avx2 {
+    #[inline(always)]
+    fn run<S: Step>(step: S) -> S::Output {
+        #[target_feature(enable = "avx2")]
+        fn fast<S: Step>(step: S) -> S::Output {
+            step.run()
+        }
+        // SAFETY: this type is used where the processor has AVX2 and POPCNT.
+        unsafe { fast(step) }
     }
 }
 

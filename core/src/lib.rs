@@ -64,6 +64,8 @@ pub mod minibatch;
 pub mod mis;
 #[cfg(any(feature = "sampler", feature = "tile"))]
 mod pixels;
+#[cfg(feature = "control-variate")]
+pub mod processor;
 #[cfg(any(feature = "control-variate", feature = "mis"))]
 pub mod real;
 #[cfg(feature = "control-variate")]

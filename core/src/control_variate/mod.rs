@@ -30,7 +30,7 @@ pub use batch::{estimate, estimate_inlined, workspace_len};
 pub use config::{Color, Config, Estimate, Estimator, NonFinite, Optimizer, Ridge, Solver};
 pub use fit::descent::estimate_from as gradient_descent;
 pub use image::{
-    Image, Rectangle, block_workspace_len, estimate_block, estimate_image, estimate_image_inlined, image_workspace_len,
+    Image, Rectangle, block_workspace_len, estimate_block, estimate_image, estimate_image_by, image_workspace_len,
 };
 pub use regressor::Regressor;
 pub use samples::Samples;

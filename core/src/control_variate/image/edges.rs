@@ -167,8 +167,6 @@ fn logistic(q: &Eight) -> Eight {
 }
 
 impl<'a> Edges<'a> {
-    /// Reads the samples and sums their products.
-    #[inline(always)]
     pub(super) fn new(
         call: &Call<'_>,
         terms: &Terms,
@@ -177,7 +175,7 @@ impl<'a> Edges<'a> {
     ) -> Result<Self, Error> {
         let (n, channels, fixed) = (call.n, call.config.channels, terms.fixed());
         let (columns, columns_of_a) = (fixed + FUNCTIONS, fixed + SLOPES);
-        let mut edges = Self {
+        Ok(Self {
             fixed,
             n,
             channels,
@@ -190,21 +188,25 @@ impl<'a> Edges<'a> {
             shares: arena.take_lanes(POINTS * POINTS)?,
             points: arena.take_lanes(POINTS * POINTS)?,
             present: NONE,
-        };
-        edges.all.empty();
-        edges.lit.empty();
+        })
+    }
+
+    /// Reads the samples and sums their products.
+    #[inline(always)]
+    pub(super) fn load(&mut self, call: &Call<'_>, batch: &Batch<'_>) {
+        self.all.empty();
+        self.lit.empty();
         for block in 0..batch.inside.len() {
-            edges.read(call, batch, block);
-            edges.add(batch, block);
+            self.read(call, batch, block);
+            self.add(batch, block);
         }
         if batch.is_joined {
-            edges.all.join();
-            edges.lit.join();
-            for most in edges.most.as_flattened_mut() {
+            self.all.join();
+            self.lit.join();
+            for most in self.most.as_flattened_mut() {
                 *most = [most.iter().copied().fold(0.0, Real::max); LANES];
             }
         }
-        Ok(edges)
     }
 
     #[inline]

@@ -6,12 +6,14 @@ use super::batch::{Batch, MAX_FIXED, blocks};
 use super::call::{Call, Layout};
 use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only};
 use super::slices::Apart;
+use super::steps;
 use super::terms::{SINGULAR, Terms, strength};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
 use crate::matrix::{at, copy, diagonal, first_mut, from, packed_len, row, row_at, row_at_mut, row_mut};
+use crate::processor::Processor;
 use crate::real::Real;
 use crate::rows::{first, part, rows, rows_mut};
 
@@ -88,20 +90,29 @@ impl<'a> Fits<'a> {
     }
 
     /// Corrects every pixel of the colours `taken`, of which it has seen no sample, by fits to the others of them.
-    #[inline(always)]
-    pub(super) fn correct(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, taken: Colours) {
+    pub(super) fn correct<P: Processor>(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, taken: Colours) {
         if let Some(apart) = &mut self.apart {
-            apart.correct(terms, batch, self.penalties, taken, self.corrections);
-            return;
+            steps::correct_slices::<P>(apart, terms, batch, self.penalties, taken, self.corrections);
+        } else if call.n == 1 {
+            steps::correct_single::<P>(self, call, terms, batch, taken);
+        } else {
+            steps::correct_several::<P>(self, call, terms, batch, taken);
         }
-        if call.n == 1 {
-            self.factor(call, terms, batch, taken);
-            for block in batch.blocks(taken) {
-                self.apply(terms, batch, block);
-                self.leave_own(terms, batch, block);
-            }
-            return;
+    }
+
+    /// Of one sample in each pixel.
+    #[inline(always)]
+    pub(super) fn correct_single(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, taken: Colours) {
+        self.factor(call, terms, batch, taken);
+        for block in batch.blocks(taken) {
+            self.apply(terms, batch, block);
+            self.leave_own(terms, batch, block);
         }
+    }
+
+    /// Of several.
+    #[inline(always)]
+    pub(super) fn correct_several(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, taken: Colours) {
         for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
             self.factor(call, terms, batch, taken.without(colour));
             self.judge(terms, batch, colour);

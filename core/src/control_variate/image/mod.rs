@@ -39,6 +39,7 @@ mod pixels;
 mod products;
 mod read;
 mod slices;
+mod steps;
 mod sums;
 mod terms;
 
@@ -50,6 +51,7 @@ use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
 use crate::lanes::LANES;
+use crate::processor::{Portable, Processor};
 use batch::batch_len;
 use call::{Call, Layout};
 use choice::Choices;
@@ -155,27 +157,25 @@ pub fn estimate_image(
     workspace: &mut [f32],
     mut out: impl FnMut(usize, Estimate),
 ) -> Result<(), Error> {
-    compiled_once::<true>(config, image, samples, workspace, &mut out)
+    compiled(config, image, samples, workspace, &mut out)
 }
 
-/// What calls of [`estimate_image`] with one `out` or another have in common. Generic, so that a crate that calls it
-/// compiles it, once, and others, the C library among them, do not.
-fn compiled_once<const CALLED: bool>(
+/// What calls of [`estimate_image`] with one `out` or another have in common.
+fn compiled(
     config: &Config,
     image: &Image<'_>,
     samples: Samples<'_>,
     workspace: &mut [f32],
     out: &mut dyn FnMut(usize, Estimate),
 ) -> Result<(), Error> {
-    estimate_image_inlined(config, image, samples, workspace, out)
+    estimate_image_by::<Portable>(config, image, samples, workspace, out)
 }
 
-/// [`estimate_image`], compiled anew into each function that calls it, for the vector registers that this has.
+/// [`estimate_image`] in steps that are compiled for a processor.
 ///
 /// # Errors
 /// As for [`estimate_image`].
-#[inline(always)]
-pub fn estimate_image_inlined(
+pub fn estimate_image_by<P: Processor>(
     config: &Config,
     image: &Image<'_>,
     samples: Samples<'_>,
@@ -202,7 +202,7 @@ pub fn estimate_image_inlined(
     if workspace.len() < layout.workspace_len().ok_or(Error::Memory)? {
         return Err(Error::Memory);
     }
-    Call { layout, basis: &basis, reader }.run(&mut Arena::new(workspace), out)
+    Call { layout, basis: &basis, reader }.run::<P>(&mut Arena::new(workspace), out)
 }
 
 impl Layout<'_> {

@@ -9,18 +9,19 @@ use super::edges::Edges;
 use super::fit::Fits;
 use super::groups::{Group, Groups};
 use super::products::{AT_ONCE, COLOURS, Colours, NONE, plus};
+use super::steps;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::matrix::{at, row_at};
+use crate::processor::Processor;
 use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 use core::hint::black_box;
 
 impl Call<'_> {
     /// Fits to all groups: first to all of their pixels, then, where some are too bright, to the others.
-    #[inline(always)]
-    pub(super) fn fit(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+    pub(super) fn fit<P: Processor>(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
         let later = if self.is_single_fit() { 0 } else { self.turns() };
         let kinds = if self.has_edges() { 2 } else { 1 };
         for (pass, kind) in (0..=later).flat_map(|pass| (0..kinds).map(move |kind| (pass, kind))) {
@@ -52,15 +53,14 @@ impl Call<'_> {
                 if used == 0 {
                     break;
                 }
-                self.batch(lanes, turn, groups, &mut arena.scratch())?;
+                self.batch::<P>(lanes, turn, groups, &mut arena.scratch())?;
             }
         }
         Ok(())
     }
 
     /// Fits to eight groups. In a later `turn` only pixels within its limits are fitted to.
-    #[inline(always)]
-    fn batch(
+    fn batch<P: Processor>(
         &self,
         lanes: [Group; LANES],
         turn: Option<usize>,
@@ -74,16 +74,19 @@ impl Call<'_> {
             return Ok(());
         }
         let mut batch = Batch::new(self, &terms, lanes, arena)?;
-        batch.survey(self, groups, &terms);
+        steps::survey::<P>(&mut batch, self, groups, &terms);
         if let Some(turn) = turn {
             batch.leave_out(channels, |group| groups.limits(self, group, turn));
         }
         if self.image.has_known() {
-            batch.relate(self, arena)?;
+            steps::relate::<P>(&mut batch, self, arena)?;
         }
-        batch.load(self, &terms, arena)?;
+        steps::load::<P>(&mut batch, self, &terms, arena)?;
         let mut fits = Fits::new(self, &terms, &batch, arena)?;
         let mut edges = if has_edges { Some(Edges::new(self, &terms, &batch, arena)?) } else { None };
+        if let Some(edges) = &mut edges {
+            steps::load_edges::<P>(edges, self, &batch);
+        }
         let choices = Choices::new(self, &terms);
         let mut shares = Shares::last(choices, arena)?;
         // Halves choose for each other, then fits to all correct; or fits to all do both.
@@ -94,31 +97,26 @@ impl Call<'_> {
                 continue;
             }
             let judges = if is_last { Colours::ALL } else { Colours::HALVES[(step + 1) % 2] };
-            fits.correct(self, &terms, &batch, judges);
+            fits.correct::<P>(self, &terms, &batch, judges);
             let mut present = NONE;
             if let Some(edges) = &mut edges {
-                edges.correct(&batch, judges, &mut fits);
+                steps::correct_edges::<P>(edges, &batch, judges, &mut fits);
                 present = edges.present;
             }
-            let spreads = Spreads::new(choices, &terms, &batch, &fits, judges, &mut arena.scratch())?;
+            let spreads = steps::spreads::<P>(choices, &terms, &batch, &fits, judges, &mut arena.scratch())?;
             let chooses = !self.is_single_fit() && (turns == 1 || !is_last);
             if chooses {
-                let is_stratified = self.config.stratified;
-                spreads.choose(None, step, is_stratified, &present, &mut shares);
-                if turns == 1 {
-                    for colour in 0..COLOURS {
-                        spreads.choose(Some(colour), 1 + colour, is_stratified, &present, &mut shares);
-                    }
-                }
+                let colours = if turns == 1 { COLOURS } else { 0 };
+                steps::choose::<P>(&spreads, colours, step, self.config.stratified, &present, &mut shares);
                 if turn.is_none() {
-                    self.find_limits(groups, &batch, (step, judges), &shares);
+                    steps::find_limits::<P>(self, groups, &batch, (step, judges), &shares);
                 }
             }
             if is_last {
                 if turn.is_none() {
                     self.tell(groups, &batch, &spreads, &shares);
                 }
-                self.put(groups, &batch, &fits, turn, &shares);
+                steps::put::<P>(self, groups, &batch, &fits, turn, &shares);
             }
         }
         Ok(())
@@ -163,7 +161,7 @@ impl Call<'_> {
 
     /// Keeps the corrections of the pixels that are chosen for in a turn.
     #[inline(always)]
-    fn put(
+    pub(super) fn put(
         &self,
         groups: &mut Groups<'_>,
         batch: &Batch<'_>,
@@ -217,7 +215,7 @@ impl Call<'_> {
 
     /// Finds the limits of the groups' values for a turn, where any is too far from those of the `judges`.
     #[inline]
-    fn find_limits(
+    pub(super) fn find_limits(
         &self,
         groups: &mut Groups<'_>,
         batch: &Batch<'_>,

@@ -8,6 +8,7 @@ use super::pixels::Rectangle;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::matrix::{self, from, from_mut, row_at_mut};
+use crate::processor::Processor;
 use crate::real::Real;
 use crate::rows::rows;
 use core::hint::black_box;
@@ -35,8 +36,11 @@ struct Band<'a> {
 
 impl Call<'_> {
     /// All of it: windows some rows at a time, and pixels as soon as no later window has them.
-    #[inline(always)]
-    pub(super) fn run(&self, arena: &mut Arena<'_, f32>, out: &mut dyn FnMut(usize, Estimate)) -> Result<(), Error> {
+    pub(super) fn run<P: Processor>(
+        &self,
+        arena: &mut Arena<'_, f32>,
+        out: &mut dyn FnMut(usize, Estimate),
+    ) -> Result<(), Error> {
         let (Rectangle { width, .. }, wanted) = (self.windows.given, self.windows.wanted);
         let frames = self.windows.frames();
         let [across, down] = self.windows.counts();
@@ -56,7 +60,7 @@ impl Call<'_> {
                 let end = (first + self.windows_at_once()).min(last * across);
                 self.divide(first, end, &mut groups);
                 self.find_edges(&mut groups);
-                self.fit(&mut groups, arena)?;
+                self.fit::<P>(&mut groups, arena)?;
                 self.add(first, &groups, &mut band);
             }
             let end = if last < down { self.windows.top(last) } else { wanted.y + wanted.height };

@@ -1,0 +1,154 @@
+//! The work of a batch, in functions that are compiled for a processor, each by itself.
+
+use super::batch::Batch;
+use super::call::Call;
+use super::choice::{Choices, Shares, Spreads};
+use super::edges::Edges;
+use super::fit::Fits;
+use super::groups::Groups;
+use super::products::{Colours, Eight, Four};
+use super::slices::Apart;
+use super::terms::Terms;
+use crate::arena::Arena;
+use crate::error::Error;
+use crate::processor::{Processor, Step};
+
+macro_rules! steps {
+    ($(
+        $(#[$doc:meta])*
+        fn $name:ident($($argument:ident: $type:ty),* $(,)?) -> $result:ty $body:block
+    )*) => {$(
+        $(#[$doc])*
+        pub(super) fn $name<'s, 'a, P: Processor>($($argument: $type),*) -> $result {
+            struct Arguments<'s, 'a> {
+                $($argument: $type),*
+            }
+            impl<'s, 'a> Step for Arguments<'s, 'a> {
+                type Output = $result;
+
+                #[inline(always)]
+                fn run(self) -> $result {
+                    let Self { $($argument),* } = self;
+                    $body
+                }
+            }
+            P::run(Arguments { $($argument),* })
+        }
+    )*};
+}
+
+steps! {
+    /// [`Batch::survey`].
+    fn survey(batch: &'s mut Batch<'a>, call: &'s Call<'s>, groups: &'s Groups<'s>, terms: &'s Terms) -> () {
+        batch.survey(call, groups, terms);
+    }
+
+    /// [`Batch::relate`].
+    fn relate(batch: &'s mut Batch<'a>, call: &'s Call<'s>, arena: &'s mut Arena<'a, f32>) -> Result<(), Error> {
+        batch.relate(call, arena)
+    }
+
+    /// [`Batch::load`].
+    fn load(
+        batch: &'s mut Batch<'a>,
+        call: &'s Call<'s>,
+        terms: &'s Terms,
+        arena: &'s mut Arena<'a, f32>,
+    ) -> Result<(), Error> {
+        batch.load(call, terms, arena)
+    }
+
+    /// [`Fits::correct_single`].
+    fn correct_single(
+        fits: &'s mut Fits<'a>,
+        call: &'s Call<'s>,
+        terms: &'s Terms,
+        batch: &'s Batch<'s>,
+        taken: Colours,
+    ) -> () {
+        fits.correct_single(call, terms, batch, taken);
+    }
+
+    /// [`Fits::correct_several`].
+    fn correct_several(
+        fits: &'s mut Fits<'a>,
+        call: &'s Call<'s>,
+        terms: &'s Terms,
+        batch: &'s Batch<'s>,
+        taken: Colours,
+    ) -> () {
+        fits.correct_several(call, terms, batch, taken);
+    }
+
+    /// [`Apart::correct`].
+    fn correct_slices(
+        apart: &'s mut Apart<'a>,
+        terms: &'s Terms,
+        batch: &'s Batch<'s>,
+        penalties: &'s [f32],
+        taken: Colours,
+        corrections: &'s mut [Four],
+    ) -> () {
+        apart.correct(terms, batch, penalties, taken, corrections);
+    }
+
+    /// [`Edges::load`].
+    fn load_edges(edges: &'s mut Edges<'a>, call: &'s Call<'s>, batch: &'s Batch<'s>) -> () {
+        edges.load(call, batch);
+    }
+
+    /// [`Edges::correct`].
+    fn correct_edges(edges: &'s mut Edges<'a>, batch: &'s Batch<'s>, taken: Colours, fits: &'s mut Fits<'a>) -> () {
+        edges.correct(batch, taken, fits);
+    }
+
+    /// [`Spreads::new`].
+    fn spreads(
+        choices: Choices,
+        terms: &'s Terms,
+        batch: &'s Batch<'s>,
+        fits: &'s Fits<'s>,
+        taken: Colours,
+        arena: &'s mut Arena<'a, f32>,
+    ) -> Result<Spreads<'a>, Error> {
+        Spreads::new(choices, terms, batch, fits, taken, arena)
+    }
+
+    /// [`Spreads::choose`] for all pixels, and for those of each of so many colours.
+    fn choose(
+        spreads: &'s Spreads<'s>,
+        colours: usize,
+        time: usize,
+        is_stratified: bool,
+        present: &'s Eight,
+        shares: &'s mut Shares<'a>,
+    ) -> () {
+        spreads.choose(None, time, is_stratified, present, shares);
+        for colour in 0..colours {
+            spreads.choose(Some(colour), 1 + colour, is_stratified, present, shares);
+        }
+    }
+
+    /// [`Call::find_limits`].
+    fn find_limits(
+        call: &'s Call<'s>,
+        groups: &'s mut Groups<'a>,
+        batch: &'s Batch<'s>,
+        by: (usize, Colours),
+        shares: &'s Shares<'s>,
+    ) -> () {
+        call.find_limits(groups, batch, by, shares);
+    }
+
+    /// [`Call::put`].
+    fn put(
+        call: &'s Call<'s>,
+        groups: &'s mut Groups<'a>,
+        batch: &'s Batch<'s>,
+        fits: &'s Fits<'s>,
+        turn: Option<usize>,
+        shares: &'s Shares<'s>,
+    ) -> () {
+        call.put(groups, batch, fits, turn, shares);
+    }
+}
