@@ -62,6 +62,8 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
 /// assert!((estimate.mean[0] - 1.5).abs() < 1e-4);
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
+// Once for each precision: inlined, it is most of the code of whatever calls it.
+#[inline(never)]
 pub fn estimate<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R]) -> Result<Estimate, Error> {
     estimate_inlined(config, samples, workspace)
 }
