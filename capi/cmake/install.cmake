@@ -2,7 +2,8 @@
 include(CMakePackageConfigHelpers)
 foreach(folder IN ITEMS LIBDIR INCLUDEDIR)
     if(IS_ABSOLUTE "${CMAKE_INSTALL_${folder}}")
-        message(FATAL_ERROR "noisefloor: CMAKE_INSTALL_${folder} is ${CMAKE_INSTALL_${folder}}: it must be relative to the prefix")
+        message(FATAL_ERROR
+            "noisefloor: CMAKE_INSTALL_${folder} is ${CMAKE_INSTALL_${folder}}: it must be relative to the prefix")
     endif()
 endforeach()
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/noisefloor")
@@ -28,7 +29,8 @@ if(NOISEFLOOR_SHARED)
     install(EXPORT noisefloor_shared NAMESPACE noisefloor:: FILE noisefloorShared.cmake DESTINATION "${package_dir}")
 endif()
 
-configure_package_config_file(cmake/noisefloorConfig.cmake.in noisefloorConfig.cmake INSTALL_DESTINATION "${package_dir}")
+configure_package_config_file(cmake/noisefloorConfig.cmake.in noisefloorConfig.cmake
+    INSTALL_DESTINATION "${package_dir}")
 # 0.x: a minor version may break what an earlier one promised.
 if(PROJECT_VERSION_MAJOR EQUAL 0)
     set(compatibility SameMinorVersion)
@@ -36,8 +38,8 @@ else()
     set(compatibility SameMajorVersion)
 endif()
 write_basic_package_version_file(noisefloorConfigVersion.cmake COMPATIBILITY ${compatibility})
-install(FILES "${CMAKE_CURRENT_BINARY_DIR}/noisefloorConfig.cmake" "${CMAKE_CURRENT_BINARY_DIR}/noisefloorConfigVersion.cmake"
-    DESTINATION "${package_dir}")
+install(FILES "${CMAKE_CURRENT_BINARY_DIR}/noisefloorConfig.cmake"
+    "${CMAKE_CURRENT_BINARY_DIR}/noisefloorConfigVersion.cmake" DESTINATION "${package_dir}")
 
 file(RELATIVE_PATH prefix_from_pc "/prefix/${pkgconfig_dir}" "/prefix")
 string(REGEX REPLACE "/$" "" prefix_from_pc "${prefix_from_pc}")

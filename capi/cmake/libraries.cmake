@@ -17,7 +17,8 @@ set(profile CARGO_PROFILE_RELEASE_PANIC=abort CARGO_PROFILE_RELEASE_LTO=fat CARG
     "CARGO_PROFILE_RELEASE_OPT_LEVEL=${NOISEFLOOR_OPT_LEVEL}")
 add_custom_command(
     OUTPUT "${object}"
-    COMMAND "${CMAKE_COMMAND}" -E env --unset=MAKEFLAGS --unset=CARGO_BUILD_TARGET ${profile} ${NOISEFLOOR_CARGO_ENVIRONMENT} "${NOISEFLOOR_CARGO}" ${cargo_build} --quiet --release --locked --lib
+    COMMAND "${CMAKE_COMMAND}" -E env --unset=MAKEFLAGS --unset=CARGO_BUILD_TARGET ${profile}
+        ${NOISEFLOOR_CARGO_ENVIRONMENT} "${NOISEFLOOR_CARGO}" ${cargo_build} --quiet --release --locked --lib
         --manifest-path "${CMAKE_CURRENT_SOURCE_DIR}/Cargo.toml" --target-dir "${NOISEFLOOR_CARGO_TARGET_DIR}"
     COMMAND "${CMAKE_COMMAND}" -E env "LD=${CMAKE_LINKER}" "NM=${CMAKE_NM}" "OBJCOPY=${CMAKE_OBJCOPY}"
         sh "${CMAKE_CURRENT_SOURCE_DIR}/cmake/one_object.sh" "${archive}" "${object}"
@@ -45,7 +46,8 @@ if(NOISEFLOOR_SHARED)
     configure_file(cmake/noisefloor.map.in noisefloor.map @ONLY)
     set_target_properties(noisefloor PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${NOISEFLOOR_ABI_VERSION}
         LINK_DEPENDS "${CMAKE_CURRENT_BINARY_DIR}/noisefloor.map")
-    target_link_options(noisefloor PRIVATE "LINKER:--version-script=${CMAKE_CURRENT_BINARY_DIR}/noisefloor.map" LINKER:--no-undefined)
+    target_link_options(noisefloor PRIVATE LINKER:--no-undefined
+        "LINKER:--version-script=${CMAKE_CURRENT_BINARY_DIR}/noisefloor.map")
 else()
     # Who links noisefloor::noisefloor gets what there is.
     add_library(noisefloor::noisefloor ALIAS noisefloor_static)

@@ -9,7 +9,8 @@ archive=$1
 object=$2
 
 # Debian's nm loads LLVM's plugin, which then says "no symbols".
-symbols=$("${NM:-nm}" --plugin=/none --defined-only --extern-only "$archive" | sed -n 's/.* [A-Z] \(nf_[a-z0-9_]*\)$/-u \1/p')
+symbols=$("${NM:-nm}" --plugin=/none --defined-only --extern-only "$archive" |
+    sed -n 's/.* [A-Z] \(nf_[a-z0-9_]*\)$/-u \1/p')
 if [ -z "$symbols" ]; then
     echo "error: $archive defines no nf_*: is it the static library of noisefloor-capi?" >&2
     exit 1

@@ -1,6 +1,7 @@
 # What cargo compiles for: this machine, or what CMake compiles for.
 
-# CMake's names of systems and processors, in Rust's. The library calls nothing of the system, so that one C library is as good as another.
+# CMake's names of systems and processors, in Rust's. The library calls nothing of the system, so that one C library is
+# as good as another.
 function(noisefloor_rust_target result)
     string(TOLOWER "${CMAKE_SYSTEM_PROCESSOR}" processor)
     set(target "")
@@ -33,17 +34,20 @@ if(CMAKE_SYSTEM_NAME STREQUAL Generic)
     # Without an operating system memory is scarce: for size it is less than half of the code.
     set(opt_level s)
 endif()
-set(NOISEFLOOR_RUST_TARGET "${rust_target}" CACHE STRING "What cargo compiles for (a name that `rustc --print target-list` has); empty: this machine")
+set(NOISEFLOOR_RUST_TARGET "${rust_target}" CACHE STRING
+    "What cargo compiles for (a name that `rustc --print target-list` has); empty: this machine")
 set(NOISEFLOOR_OPT_LEVEL "${opt_level}" CACHE STRING "3: fast; s, z: small")
 option(NOISEFLOOR_DOUBLE "Control variates in double precision; without, only NF_PRECISION_F32" ON)
 set(NOISEFLOOR_CARGO_OPTIONS "" CACHE STRING "More options for cargo, separated by semicolons")
 set(NOISEFLOOR_CARGO_ENVIRONMENT "" CACHE STRING "More of cargo's environment, NAME=VALUE, separated by semicolons")
 if(CMAKE_CROSSCOMPILING AND NOT NOISEFLOOR_RUST_TARGET)
-    message(FATAL_ERROR "noisefloor: no Rust target is known for ${CMAKE_SYSTEM_NAME} on `${CMAKE_SYSTEM_PROCESSOR}`: name it, for example "
-        "-DNOISEFLOOR_RUST_TARGET=thumbv7em-none-eabihf (`rustc --print target-list` has all)")
+    message(FATAL_ERROR
+        "noisefloor: no Rust target is known for ${CMAKE_SYSTEM_NAME} on `${CMAKE_SYSTEM_PROCESSOR}`: name it, for "
+        "example -DNOISEFLOOR_RUST_TARGET=thumbv7em-none-eabihf (`rustc --print target-list` has all)")
 endif()
 if(NOT NOISEFLOOR_OPT_LEVEL MATCHES "^[0123sz]$")
-    message(FATAL_ERROR "noisefloor: NOISEFLOOR_OPT_LEVEL is `${NOISEFLOOR_OPT_LEVEL}`: it must be one of 0, 1, 2, 3, s and z")
+    message(FATAL_ERROR
+        "noisefloor: NOISEFLOOR_OPT_LEVEL is `${NOISEFLOOR_OPT_LEVEL}`: it must be one of 0, 1, 2, 3, s and z")
 endif()
 
 # Sets cargo's command, and the folder in cargo's target folder where its archive will be.

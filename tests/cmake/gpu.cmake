@@ -25,7 +25,8 @@ foreach(shader IN ITEMS "GLSL sampler.comp -V" "HLSL sampler.hlsl -D -V -S comp 
     list(POP_FRONT arguments language source)
     set(spirv "${CMAKE_CURRENT_BINARY_DIR}/${source}.spv")
     add_custom_command(OUTPUT "${spirv}" DEPENDS gpu/${source} gpu/sampler_of.h ../include/noisefloor_sampler.h
-        COMMAND "${glslang}" ${arguments} "-I${root}/include" "-I${root}/tests/gpu" -o "${spirv}" "${root}/tests/gpu/${source}" VERBATIM)
+        COMMAND "${glslang}" ${arguments} "-I${root}/include" "-I${root}/tests/gpu" -o "${spirv}"
+            "${root}/tests/gpu/${source}" VERBATIM)
     list(APPEND shaders "${spirv}")
     if(NOT language STREQUAL "ES")
         list(APPEND vulkan ${language} "${spirv}")
@@ -47,10 +48,11 @@ find_program(clang clang)
 if(clang)
     foreach(language IN ITEMS cuda hip)
         set(object "${CMAKE_CURRENT_BINARY_DIR}/gpu_${language}.o")
-        add_custom_command(OUTPUT "${object}" DEPENDS gpu/host.cu gpu/expected.h gpu/sampler_of.h ../include/noisefloor_sampler.h
-            COMMAND "${clang}" -x ${language} --cuda-host-only -nocudainc -nocudalib -nogpuinc -nogpulib -O2 -Wall -Wextra
-                -Werror -Wno-unused-function -Wno-unknown-cuda-version "-I${root}/include" -c "${root}/tests/gpu/host.cu"
-                -o "${object}" VERBATIM)
+        add_custom_command(OUTPUT "${object}"
+            DEPENDS gpu/host.cu gpu/expected.h gpu/sampler_of.h ../include/noisefloor_sampler.h
+            COMMAND "${clang}" -x ${language} --cuda-host-only -nocudainc -nocudalib -nogpuinc -nogpulib -O2 -Wall
+                -Wextra -Werror -Wno-unused-function -Wno-unknown-cuda-version "-I${root}/include"
+                -c "${root}/tests/gpu/host.cu" -o "${object}" VERBATIM)
         add_executable(gpu_${language} "${object}")
         set_target_properties(gpu_${language} PROPERTIES LINKER_LANGUAGE C)
         target_link_libraries(gpu_${language} PRIVATE noisefloor::noisefloor_static m)

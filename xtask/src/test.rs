@@ -48,9 +48,11 @@ pub fn run(options: &Options) -> Result<()> {
     let mut cargo = run::cargo();
     cargo.args(["test", "--profile", "suite", "--no-fail-fast"]).args(start::OTHERS);
     let library_tests = steps.begin("Rust tests of the library (cargo test)", cargo);
-    // Before the steps: many of them link it, and the benches compile to more with it. Where that fails, they say so.
-    println!("building the C library");
-    _ = library::build();
+    if options.filter.is_none() {
+        // Before the steps: many link it, and the benches compile to more with it. Where that fails, they say so.
+        println!("building the C library");
+        _ = library::build();
+    }
     let mut xtask = run::command(std::env::current_exe()?);
     xtask.args(["test", "--beside"]).args(options.strict.then_some("--strict"));
     let others = options.filter.is_none().then(|| steps.begin("steps that went on beside those above", xtask));

@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 
 /// Columns of a line.
 pub const WIDTH: usize = 120;
-const KINDS: [&str; 6] = ["rs", "c", "h", "hpp", "cpp", "md"];
-const APART: [&str; 3] = ["docs/report/", "THIRD_PARTY.md", "report/"];
+const KINDS: [&str; 10] = [".rs", ".c", ".h", ".hpp", ".cpp", ".md", ".py", ".sh", ".cmake", "CMakeLists.txt"];
+const APART: [&str; 3] = ["docs/report/", "THIRD_PARTY.md", "report/templates/"];
 
 /// Checks the lines of every file that git knows.
 pub fn columns() -> Result<()> {
     let files = tracked()?;
-    let of_a_kind = |name: &&String| name.rsplit_once('.').is_some_and(|(_, kind)| KINDS.contains(&kind));
+    let of_a_kind = |name: &&String| KINDS.iter().any(|kind| name.ends_with(kind));
     let mut long = Vec::new();
     for name in files.iter().filter(of_a_kind).filter(|name| !APART.iter().any(|apart| name.starts_with(apart))) {
         let text = paths::read(name)?;

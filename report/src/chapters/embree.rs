@@ -1,5 +1,5 @@
-//! The chapter of the Embree harness: what report/chapters/embree_runs.toml renders, a row for each image; and what needs
-//! more than that.
+//! The chapter of the Embree harness: what report/chapters/embree_runs.toml renders, a row for each image; and what
+//! needs more than that.
 
 mod animation;
 mod pixels;

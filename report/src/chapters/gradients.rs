@@ -1,4 +1,4 @@
-//! The chapter on gradients of minibatches: the trainers of examples_c, run as report/chapters/gradients_runs.toml says.
+//! The chapter on minibatches' gradients: the trainers of examples_c, run as report/chapters/gradients_runs.toml says.
 
 use super::prelude::*;
 use crate::measure::plot::{Plot, Series};

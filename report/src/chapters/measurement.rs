@@ -134,8 +134,8 @@ impl<'a> Measurement<'a> {
         jobs.iter().zip(runs).map(read).collect()
     }
 
-    /// Several runs of the program at the same time, which share the cores: of each its files' prefix and times. Loading
-    /// a scene and small images with shared fits, which are one bucket, keep one core of a run busy.
+    /// Several runs of the program at the same time, which share the cores: of each its files' prefix and times.
+    /// Loading a scene and small images with shared fits, which are one bucket, keep one core of a run busy.
     fn side_by_side(&self, jobs: &[Job]) -> Result<Vec<(PathBuf, Vec<Timing>)>> {
         let Some(job) = jobs.first() else { return Ok(Vec::new()) };
         let what = if job.estimators.is_empty() { "reference".to_owned() } else { format!("{} spp", job.spp) };

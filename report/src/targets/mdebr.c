@@ -1,4 +1,4 @@
-/* Succeeds if MDEBR multiplies two short numbers, as the s390x manual says. QEMU before 8.1 takes one of them for a long one. */
+/* Succeeds if MDEBR multiplies two short numbers, as the s390x manual says. QEMU before 8.1 takes one for long. */
 int main(void)
 {
     register double product __asm__("f0");
