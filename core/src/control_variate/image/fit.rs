@@ -6,14 +6,12 @@ use super::batch::{Batch, MAX_FIXED, blocks};
 use super::call::{Call, Layout};
 use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only};
 use super::slices::Apart;
-use super::steps;
 use super::terms::{SINGULAR, Terms, strength};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
 use crate::linalg::ldlt;
 use crate::matrix::{at, copy, diagonal, first_mut, from, packed_len, row, row_at, row_at_mut, row_mut};
-use crate::processor::Processor;
 use crate::real::Real;
 use crate::rows::{first, part, rows, rows_mut};
 
@@ -89,18 +87,12 @@ impl<'a> Fits<'a> {
         Ok(fits)
     }
 
-    /// Corrects every pixel of the colours `taken`, of which it has seen no sample, by fits to the others of them.
-    pub(super) fn correct<P: Processor>(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, taken: Colours) {
-        if let Some(apart) = &mut self.apart {
-            steps::correct_slices::<P>(apart, terms, batch, self.penalties, taken, self.corrections);
-        } else if call.n == 1 {
-            steps::correct_single::<P>(self, call, terms, batch, taken);
-        } else {
-            steps::correct_several::<P>(self, call, terms, batch, taken);
-        }
+    /// Where slices are apart, these; with the penalties, and where corrections are kept.
+    pub(super) fn apart(&mut self) -> Option<(&mut Apart<'a>, &[f32], &mut [Four])> {
+        self.apart.as_mut().map(|apart| (apart, &*self.penalties, &mut *self.corrections))
     }
 
-    /// Of one sample in each pixel.
+    /// Corrects pixels of one sample of the colours `taken`, by fits to all but that.
     #[inline(always)]
     pub(super) fn correct_single(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, taken: Colours) {
         self.factor(call, terms, batch, taken);
@@ -110,7 +102,7 @@ impl<'a> Fits<'a> {
         }
     }
 
-    /// Of several.
+    /// Corrects pixels of several samples of the colours `taken`, by fits to the others of them.
     #[inline(always)]
     pub(super) fn correct_several(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, taken: Colours) {
         for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {

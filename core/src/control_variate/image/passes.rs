@@ -97,7 +97,7 @@ impl Call<'_> {
                 continue;
             }
             let judges = if is_last { Colours::ALL } else { Colours::HALVES[(step + 1) % 2] };
-            fits.correct::<P>(self, &terms, &batch, judges);
+            steps::correct::<P>(&mut fits, self, &terms, &batch, judges);
             let mut present = NONE;
             if let Some(edges) = &mut edges {
                 steps::correct_edges::<P>(edges, &batch, judges, &mut fits);

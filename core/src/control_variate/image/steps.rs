@@ -13,6 +13,23 @@ use crate::arena::Arena;
 use crate::error::Error;
 use crate::processor::{Processor, Step};
 
+/// Corrects every pixel of the colours `taken`, of which fits have seen no sample, by those to the others of them.
+pub(super) fn correct<P: Processor>(
+    fits: &mut Fits<'_>,
+    call: &Call<'_>,
+    terms: &Terms,
+    batch: &Batch<'_>,
+    taken: Colours,
+) {
+    if let Some((apart, penalties, corrections)) = fits.apart() {
+        correct_slices::<P>(apart, terms, batch, penalties, taken, corrections);
+    } else if call.n == 1 {
+        correct_single::<P>(fits, call, terms, batch, taken);
+    } else {
+        correct_several::<P>(fits, call, terms, batch, taken);
+    }
+}
+
 macro_rules! steps {
     ($(
         $(#[$doc:meta])*
