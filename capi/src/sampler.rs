@@ -59,11 +59,16 @@ pub extern "C" fn nf_sampler_scramble(sampler: nf_sampler, seed: u32) -> nf_samp
 /// NULL. The first two are optimised together, across pixels too; all four are stratified together.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_sampler_draw(sampler: nf_sampler, dims: u32, u: *mut f32) {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        // What is drawn most often, apart from all else, so that it needs few registers.
-        if dims == 2 { draw::<2>(&sampler, u) } else { others(sampler, dims, u) }
+    // What is drawn most often, apart from all else, so that it needs few registers.
+    if dims != 2 {
+        // SAFETY: passed on to the caller.
+        return unsafe { others(sampler, dims, u) };
     }
+    // SAFETY: as above.
+    let Ok(u) = (unsafe { convert::rooms(u, 2) }) else { return };
+    // A pixel's own numbers without looking at domain and flags again.
+    let own = nf_sampler { domain: 0, flags: 0, ..sampler };
+    if sampler.domain | sampler.flags == 0 { write::<2>(&own, u) } else { write::<2>(&sampler, u) }
 }
 
 /// # Safety
@@ -86,8 +91,15 @@ unsafe fn others(sampler: nf_sampler, dims: u32, u: *mut f32) {
 #[inline(always)]
 unsafe fn draw<const N: usize>(sampler: &nf_sampler, u: *mut f32) {
     // SAFETY: passed on to the caller.
-    if let Ok(u) = unsafe { convert::room(u.cast::<[f32; N]>()) } {
-        u.write(to(sampler).draw());
+    if let Ok(u) = unsafe { convert::rooms(u, N) } {
+        write::<N>(sampler, u);
+    }
+}
+
+#[inline(always)]
+fn write<const N: usize>(sampler: &nf_sampler, u: &mut [convert::Room<f32>]) {
+    for (u, number) in u.iter_mut().zip(to(sampler).draw::<N>()) {
+        u.write(number);
     }
 }
 
