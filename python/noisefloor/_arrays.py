@@ -5,6 +5,9 @@ import warnings
 
 import numpy
 
+#: The largest number of 32 bits: of those that the library counts items in.
+MAX_U32 = 2**32 - 1
+
 
 def array(name, value):
     """NumPy's view of a NumPy, PyTorch or JAX array, of anything with a buffer, DLPack or an array interface, or a copy
@@ -35,7 +38,13 @@ def floats(name, value, kind=numpy.float32):
     if view.dtype.kind not in "fiub" and view.dtype.name != "bfloat16":
         raise TypeError(f"{name} holds {view.dtype}: real numbers are expected")
     with numpy.errstate(over="ignore"):
-        return numpy.asarray(view, kind, order="C")
+        return plain(view, kind)
+
+
+def plain(view, kind):
+    """Numbers of a kind, row after row, where the library reads them: at multiples of their size."""
+    numbers = numpy.asarray(view, kind, order="C")
+    return numbers if numbers.flags.aligned else numbers.copy()
 
 
 def warn_of_lost_digits(name, view):
@@ -52,14 +61,16 @@ def warn_of_lost_digits(name, view):
 
 
 def integers(name, value, most):
-    """uint32 numbers from 0 to most, row after row."""
+    """uint32 numbers from 0 to most, row after row, as many as the library counts."""
     view = array(name, value)
+    if view.size > MAX_U32:
+        raise ValueError(f"{name} has {view.size} numbers: {MAX_U32} are the most")
     if view.dtype.kind not in "iu":
         if view.size:
             raise TypeError(f"{name} holds {view.dtype}: integers are expected")
         view = view.astype(numpy.int64)
     check(name, view, (view >= 0) & (view <= most), f"0 to {most}")
-    return numpy.asarray(view, numpy.uint32, order="C")
+    return plain(view, numpy.uint32)
 
 
 def integer(name, value, least, most):

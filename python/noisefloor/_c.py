@@ -118,7 +118,6 @@ CONSTANTS = dict(
     NF_ABI_VERSION=ABI_VERSION,
     NF_CHECK_CV_CONFIG=0,
     NF_CHECK_CV_IMAGE=1,
-    NF_CHECK_TABLE=5,
     NF_CV_ROBUST=0,
     NF_CV_LEAST_SQUARES=1,
     NF_CV_LEAVE_ONE_OUT=2,
@@ -144,7 +143,7 @@ def _names(prefix):
 
 
 ESTIMATORS, BASES, METHODS = _names("NF_CV_"), _names("NF_BASIS_"), _names("NF_METHOD_")
-MAX_DIMS, MAX_ORDER, MAX_CHANNELS, MAX_ITEMS = 16, 7, 4, 2**32 - 1
+MAX_DIMS, MAX_ORDER, MAX_CHANNELS = 16, 7, 4
 
 FUNCTIONS = """
 uint32_t nf_abi_version(void);
@@ -223,9 +222,9 @@ def message(status):
 
 
 def wrong(what):
-    """What is wrong with a configuration, an image or a table: the field and its range in words, or None."""
-    kinds = {Config: "CV_CONFIG", Image: "CV_IMAGE", Table: "TABLE"}
-    words = check(CONSTANTS[f"NF_CHECK_{kinds[type(what)]}"], address(what))  # noqa: F821
+    """What is wrong with a configuration or an image: the field and its range in words, or None."""
+    kinds = {Config: "NF_CHECK_CV_CONFIG", Image: "NF_CHECK_CV_IMAGE"}
+    words = check(CONSTANTS[kinds[type(what)]], address(what))  # noqa: F821
     return words and words.decode()
 
 

@@ -162,7 +162,7 @@ def image_estimate(
         kept.append(array)
 
     if surfaces is not None:
-        give(image, "surfaces", _arrays.integers("surfaces", surfaces, 2**32 - 1), pixels)
+        give(image, "surfaces", _arrays.integers("surfaces", surfaces, _arrays.MAX_U32), pixels)
     for place, name, array, shape in (
         (image, "factors", factors, (*pixels, *own)),
         (samples, "known", known, f.shape),
@@ -195,7 +195,7 @@ def configure(order, estimator, basis, d, dims, slices, stratified, channels=1):
     config.estimator = _arrays.one_of("estimator", estimator, _c.ESTIMATORS)
     config.basis = _arrays.one_of("basis", basis, _c.BASES)
     config.order = _arrays.integer("order", order, 0, _c.MAX_ORDER)
-    config.slices = _arrays.integer("slices", slices, 1, 2**32 - 1)
+    config.slices = _arrays.integer("slices", slices, 1, _arrays.MAX_U32)
     config.stratified = bool(stratified)
     if dims is None and not 1 <= d <= _c.MAX_DIMS:
         raise ValueError(f"u has {d} coordinates: 1 to {_c.MAX_DIMS} can be regressed; `dims` says how many of them")

@@ -49,8 +49,8 @@ def recommend(
         mean: a fit may do a little better, and for some smooth integrands half as bad again.
     """
     out = _c.Recommendation()
-    dims = _arrays.integer("dims", dims, 1, 2**32 - 1)
-    samples = _arrays.integer("samples", samples, 1, 2**32 - 1)
+    dims = _arrays.integer("dims", dims, 1, _arrays.MAX_U32)
+    samples = _arrays.integer("samples", samples, 1, _arrays.MAX_U32)
     cost = _arrays.number("sample_cost", sample_cost, 1e-30, math.inf)
     status = _c.recommend(dims, samples, bool(stratified), bool(can_share), cost, _c.address(out))
     if status:

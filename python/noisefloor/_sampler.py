@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from . import _arrays, _c
 
-LAST = 2**32 - 1
-
 
 class Sampler:
     """The random numbers of a renderer: for any pixel and sample, in any order, with the least visible error.
@@ -26,8 +24,8 @@ class Sampler:
     """
 
     def __init__(self, *, frame: int = 0, seed: int = 0, white: bool = False) -> None:
-        self._frame = _arrays.integer("frame", frame, 0, LAST)
-        self._seed = _arrays.integer("seed", seed, 0, LAST)
+        self._frame = _arrays.integer("frame", frame, 0, _arrays.MAX_U32)
+        self._seed = _arrays.integer("seed", seed, 0, _arrays.MAX_U32)
         self._white, self._keys = bool(white), ()
 
     def __repr__(self):
@@ -37,7 +35,7 @@ class Sampler:
     def domain(self, key: int) -> Sampler:
         """The sampler of another decision, a child of this one; key: 0 to 2**32 - 1."""
         child = Sampler(frame=self._frame, seed=self._seed, white=self._white)
-        child._keys = self._keys + (_arrays.integer("key", key, 0, LAST),)
+        child._keys = self._keys + (_arrays.integer("key", key, 0, _arrays.MAX_U32),)
         return child
 
     def image(
@@ -55,11 +53,11 @@ class Sampler:
             float32 of shape (height, width, samples, dims), at least 0 and below 1.
         """
         sizes = [
-            _arrays.integer(name, value, 1, LAST)
+            _arrays.integer(name, value, 1, _arrays.MAX_U32)
             for name, value in (("width", width), ("height", height), ("samples", samples), ("dims", dims))
         ]
         width, height, samples, dims = sizes
-        most = (("x", x, LAST), ("y", y, LAST), ("first", first, LAST + 1 - samples))
+        most = (("x", x, _arrays.MAX_U32), ("y", y, _arrays.MAX_U32), ("first", first, _arrays.MAX_U32 + 1 - samples))
         place = [_arrays.integer(name, value, 0, top) for name, value, top in most]
         # Before anything else that grows with dims: what memory has not is refused at once.
         u = numpy.empty((height, width, samples, dims), numpy.float32)
@@ -98,13 +96,13 @@ class QMCEngine:
 
     def __init__(self, d: int, *, seed: int | None = None) -> None:
         self.d = _arrays.integer("d", d, 1, 4)
-        self.seed = secrets.randbits(32) if seed is None else _arrays.integer("seed", seed, 0, LAST)
+        self.seed = secrets.randbits(32) if seed is None else _arrays.integer("seed", seed, 0, _arrays.MAX_U32)
         self.num_generated = 0
         self._sampler = Sampler(frame=self.seed, white=True)
 
     def random(self, n: int = 1) -> NDArray[numpy.float64]:
         """The next n points, float64 of shape (n, d), at least 0 and below 1; best where n is a power of two."""
-        n = _arrays.integer("n", n, 0, LAST - self.num_generated)
+        n = _arrays.integer("n", n, 0, _arrays.MAX_U32 - self.num_generated)
         if n == 0:
             return numpy.empty((0, self.d))
         x, y = self.seed & 0xFFFF, self.seed >> 16
@@ -114,7 +112,7 @@ class QMCEngine:
 
     def fast_forward(self, n: int) -> QMCEngine:
         """Leaves n points out."""
-        self.num_generated += _arrays.integer("n", n, 0, LAST - self.num_generated)
+        self.num_generated += _arrays.integer("n", n, 0, _arrays.MAX_U32 - self.num_generated)
         return self
 
     def reset(self) -> QMCEngine:

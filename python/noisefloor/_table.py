@@ -34,7 +34,7 @@ class Table:
     """
 
     def __init__(self, n: int, *, importance: Any = None, uniform_fraction: float = 0.2, seed: int = 0) -> None:
-        n = _arrays.integer("n", n, 1, _c.MAX_ITEMS)
+        n = _arrays.integer("n", n, 1, _arrays.MAX_U32)
         fraction = _arrays.number("uniform_fraction", uniform_fraction, 0, 1)
         seed = _arrays.integer("seed", seed, 0, 2**64 - 1)
         values = None
@@ -100,7 +100,7 @@ class Table:
         except (KeyError, TypeError):
             draw = _arrays.one_of("method", method, _c.DRAWS)
         if type(batch) is not int or not 0 <= batch <= ROOM:
-            batch = _arrays.integer("batch", batch, 0, self._n if method == "distinct" else _c.MAX_ITEMS)
+            batch = _arrays.integer("batch", batch, 0, self._n if method == "distinct" else _arrays.MAX_U32)
         if batch > ROOM:
             index, weight = numpy.empty(batch, numpy.uint32), numpy.empty(batch, numpy.float32)
             with self._lock:
@@ -116,9 +116,9 @@ class Table:
 
     def _draw_many(self, shape, method):
         """Minibatches, in arrays of this shape."""
-        shape = tuple(_arrays.integer("batch", size, 0, _c.MAX_ITEMS) for size in shape)
-        if not shape or math.prod(shape) > _c.MAX_ITEMS:
-            raise ValueError(f"batch is {shape}: it must be one number or several, of a product up to {_c.MAX_ITEMS}")
+        shape = tuple(_arrays.integer("batch", size, 0, _arrays.MAX_U32) for size in shape)
+        if not shape or math.prod(shape) > _arrays.MAX_U32:
+            raise ValueError(f"batch is {shape}: it must be one number or several, of a product up to {_arrays.MAX_U32}")
         if method == "iid":
             # Independent of each other they may be drawn as one.
             index, weight = self.draw(math.prod(shape))

@@ -75,8 +75,8 @@ class ImportanceBatchSampler(Sampler):
         self._processes = torch.distributed.get_world_size(process_group) if distributed else 1
         if self._rank < 0:
             raise ValueError(f"process_group is {process_group}: it must be one that this process belongs to")
-        self._n = _arrays.integer("n", n, 1, _c.MAX_ITEMS)
-        self.batch_size = _arrays.integer("batch_size", batch_size, 1, _c.MAX_ITEMS // self._processes)
+        self._n = _arrays.integer("n", n, 1, _arrays.MAX_U32)
+        self.batch_size = _arrays.integer("batch_size", batch_size, 1, _arrays.MAX_U32 // self._processes)
         self._whole = self.batch_size * self._processes
         steps = -(-self._n // self._whole) if steps is None else steps
         self._steps = _arrays.integer("steps", steps, 1, 2**63 - 1)
@@ -308,6 +308,9 @@ def cross_entropy_importance(logits: torch.Tensor, target: torch.Tensor) -> torc
     Returns:
         float32 of shape (batch,), 0 to 1.4143.
     """
+    if logits.ndim != 2:
+        raise ValueError(f"logits has the shape {tuple(logits.shape)}: it must be (batch, classes)")
+    _arrays.check_shape("target", target, tuple(logits.shape[:1]), "a class for each item")
     with torch.no_grad():
         derivative = torch.softmax(logits.float(), 1) - torch.nn.functional.one_hot(target, logits.shape[1])
         return derivative.norm(dim=1)

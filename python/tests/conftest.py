@@ -1,4 +1,4 @@
-"""How the tests run: the same examples each time, one thread of PyTorch's."""
+"""How the tests run: the same examples each time."""
 
 import hypothesis
 

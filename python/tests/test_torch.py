@@ -382,10 +382,16 @@ def differentiated(kind):
     return logits
 
 
-def test_labels_that_are_no_class_are_refused():
+def test_labels_that_are_no_class_and_other_shapes_are_refused():
     for label in (-1, 3):
         with pytest.raises(RuntimeError, match="Class values must be"):
             cross_entropy_importance(torch.zeros(2, 3), torch.tensor([0, label]))
+
+    with pytest.raises(ValueError, match=r"logits has the shape \(2,\): it must be \(batch, classes\)"):
+        cross_entropy_importance(torch.zeros(2), torch.tensor([0, 1]))
+    for target in torch.tensor([0]), torch.zeros(2, 3):
+        with pytest.raises(ValueError, match=r"target has the shape \(.*\): it must be \(2,\), a class for each item"):
+            cross_entropy_importance(torch.zeros(2, 3), target)
 
 
 def test_what_comes_first_is_said():

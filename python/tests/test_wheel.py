@@ -43,7 +43,7 @@ def test_it_is_small_and_has_all():
     assert sum(".so" in name for name in names) == 1 and not any("tests" in name for name in names)
     (metadata,) = (name for name in names if name.endswith("dist-info/METADATA"))
     text = zipfile.ZipFile(WHEEL).read(metadata).decode()
-    assert [line for line in text.splitlines() if line.startswith("Requires-Dist")] == ["Requires-Dist: numpy>=1.22"]
+    assert [line for line in text.splitlines() if line.startswith("Requires-Dist")] == ["Requires-Dist: numpy>=1.23"]
 
 
 def test_it_does_not_say_where_it_was_built():
