@@ -117,8 +117,9 @@ class Table:
     def _draw_many(self, shape, method):
         """Minibatches, in arrays of this shape."""
         shape = tuple(_arrays.integer("batch", size, 0, _arrays.MAX_U32) for size in shape)
-        if not shape or math.prod(shape) > _arrays.MAX_U32:
-            raise ValueError(f"batch is {shape}: it must be one number or several, of a product up to {_arrays.MAX_U32}")
+        most = _arrays.MAX_U32
+        if not shape or math.prod(shape) > most:
+            raise ValueError(f"batch is {shape}: it must be one number or several, of a product up to {most}")
         if method == "iid":
             # Independent of each other they may be drawn as one.
             index, weight = self.draw(math.prod(shape))
