@@ -19,6 +19,7 @@ macro_rules! c_functions {
 }
 
 pub mod c_abi;
+pub mod c_sampler;
 pub mod c_table;
 pub mod c_tile;
 pub mod method;

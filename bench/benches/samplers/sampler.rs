@@ -3,6 +3,7 @@
 use anyhow::{Result, anyhow};
 use noisefloor::recommend::{Sampling, recommend};
 use noisefloor::rng::Rng;
+use noisefloor::sampler;
 use noisefloor::tile::{Builtin, Sampler as Draw, Tile};
 use openqmc::{LatticeBnSampler, PmjBnSampler, SobolBnSampler};
 
@@ -24,6 +25,8 @@ pub(crate) enum Sampler {
     OpenQmcSobol,
     OpenQmcPmj,
     OpenQmcLattice,
+    /// The library's default sampler; each seed is a frame.
+    Default,
     /// The tile that `recommend()` names for as many samples and dims.
     Tile,
     /// The progressive tile of 16 samples of two dims.
@@ -31,13 +34,14 @@ pub(crate) enum Sampler {
 }
 
 impl Sampler {
-    pub(crate) const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 9] = [
         Self::Random,
         Self::Sobol,
         Self::Heitz,
         Self::OpenQmcSobol,
         Self::OpenQmcPmj,
         Self::OpenQmcLattice,
+        Self::Default,
         Self::Tile,
         Self::Progressive,
     ];
@@ -50,6 +54,7 @@ impl Sampler {
             Self::OpenQmcSobol => "OpenQMC sobol-bn",
             Self::OpenQmcPmj => "OpenQMC pmj-bn",
             Self::OpenQmcLattice => "OpenQMC lattice-bn",
+            Self::Default => "default",
             Self::Tile => "tile",
             Self::Progressive => "progressive tile",
         }
@@ -102,6 +107,7 @@ impl Sampler {
                 (Self::OpenQmcSobol, _) => SobolBnSampler::new(column, row, frame, i).draw_sample_f32(),
                 (Self::OpenQmcPmj, _) => PmjBnSampler::new(column, row, frame, i).draw_sample_f32(),
                 (Self::OpenQmcLattice, _) => LatticeBnSampler::new(column, row, frame, i).draw_sample_f32(),
+                (Self::Default, _) => sampler::Sampler::pixel(x, y, seed, index).draw(),
                 _ => [(); 4].map(|()| rng.uniform_f32()),
             };
             u.copy_from_slice(&four[..dims]);

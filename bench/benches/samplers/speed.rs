@@ -3,8 +3,9 @@
 use crate::sampler::{DIMS, SIDE, Sampler, heitz, sobol};
 use anyhow::Result;
 use noisefloor::rng::Rng;
+use noisefloor::sampler;
 use noisefloor::tile::{Builtin, Sampler as Draw, Tile};
-use noisefloor_bench::{c_abi, c_tile};
+use noisefloor_bench::{c_abi, c_sampler, c_tile};
 use openqmc::{LatticeBnSampler, PmjBnSampler, SobolBnSampler};
 use std::fmt::Write;
 use std::hint::black_box;
@@ -98,6 +99,7 @@ fn boxed<const N: usize>(sampler: Sampler, spp: usize) -> Result<Box<dyn FnMut()
         (Sampler::OpenQmcLattice, _) => Box::new(move || {
             time(|x, y| sum(LatticeBnSampler::new(x as i32, y as i32, 0, index).draw_sample_f32::<N>()))
         }),
+        (Sampler::Default, _) => Box::new(move || time(|x, y| sum(sampler::Sampler::pixel(x, y, 0, last).draw::<N>()))),
         (_, Some(tile)) if tile.shape().dims as usize >= N => Box::new(move || draws::<N>(&tile, last)),
         (_, Some(tile)) => Box::new(move || {
             time(|x, y| {
@@ -118,14 +120,22 @@ fn draws<const N: usize>(tile: &Tile<'_>, last: u32) -> f64 {
 
 /// The same through the C functions of the archive that ships, of samplers that are the library's.
 fn c(sampler: Sampler, dims: usize, spp: usize) -> Result<Option<Timed>> {
+    let (name, door, last) = (sampler.name(), "C ABI", spp as u32 - 1);
+    if sampler == Sampler::Default {
+        let time: Box<dyn FnMut() -> f64> = match dims {
+            2 => Box::new(move || time(|x, y| c_sampler::root::<2>(x, y, last))),
+            _ => Box::new(move || time(|x, y| c_sampler::root::<4>(x, y, last))),
+        };
+        return Ok(Some(Timed { name, door, dims, spp, time }));
+    }
     let Some(bytes) = sampler.builtin(dims, spp)?.and_then(Builtin::bytes) else { return Ok(None) };
-    let (tile, last) = (c_tile::Tile::new(bytes), spp as u32 - 1);
+    let tile = c_tile::Tile::new(bytes);
     let time: Box<dyn FnMut() -> f64> = match dims {
         2 => Box::new(move || time(|x, y| tile.root(x, y, last))),
         _ if tile.dims() >= 4 => Box::new(move || time(|x, y| tile.root4(x, y, last))),
         _ => Box::new(move || time(|x, y| tile.children(x, y, last))),
     };
-    Ok(Some(Timed { name: sampler.name(), door: "C ABI", dims, spp, time }))
+    Ok(Some(Timed { name, door, dims, spp, time }))
 }
 
 /// The same, all samples of a pixel in a call; the time of one.
