@@ -41,7 +41,9 @@ fn assert_nets(table: &SamplerTable, pixels: impl Iterator<Item = usize>) {
 
 #[test]
 fn every_prefix_of_every_pixel_is_a_net_whatever_the_offsets() {
-    let table = made(SamplerProblem { candidates: 2, iterations: 1, bits: 4, ..small() });
+    // All points move for the first octave or the last: with those between it takes twelve times as long.
+    let weights = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let table = made(SamplerProblem { candidates: 2, iterations: 1, bits: 4, weights, ..small() });
     assert_nets(&table, (0..32 * 32).step_by(31));
     let start = SamplerOptimizer::new(SamplerProblem { bits: 1, size: 64, ..small() }).unwrap().table();
     assert_nets(&start, (0..64 * 64).step_by(31));
