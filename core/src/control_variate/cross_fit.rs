@@ -150,21 +150,16 @@ pub(crate) fn nested<R: Real>(
         let discounts = discounts.map(|total| PerChannel::all(total / errors.judged.max(R::ONE)));
         let train = groups.train(&[fold], train)?;
         let centres = candidates.fit(&train, coefficients, arena)?;
-        let (mut inflation, mut weights) = candidates.weigh(&errors, &discounts);
-        for (weights, centre) in weights.iter_mut().zip(centres) {
-            let (mut share, mut factor) = (R::ONE, R::ONE);
-            if let Some(centre) = centre {
-                factor = centre.inflation;
-                share = if is_fixed { R::ONE } else { centre.independence() };
-            }
-            let kept = *weights * share;
-            inflation += *weights - kept + kept * factor;
-            *weights = kept;
+        let (mut inflation, weights) = candidates.weigh(&errors, &discounts);
+        let mut kept = weights;
+        keep_independent(&mut kept, &centres, is_fixed);
+        for ((&weights, &kept), centre) in weights.iter().zip(&kept).zip(centres) {
+            inflation += weights - kept + kept * centre.map_or(R::ONE, |centre| centre.inflation);
         }
         // The mixture's coefficients, in place of the first candidate's.
         for index in 0..each {
             let mut mixed = R::ZERO;
-            for (b, weights) in rows(coefficients, each).zip(&weights) {
+            for (b, weights) in rows(coefficients, each).zip(&kept) {
                 mixed += weights[index / columns.max(1)] * at(b, index);
             }
             if let Some(out) = coefficients.get_mut(index) {
@@ -177,6 +172,18 @@ pub(crate) fn nested<R: Real>(
     }
     let correction = sums.map(|sum| sum / count) - mean;
     Ok(Outcome { correction, variance: Some(press * result::press_factor(count)) })
+}
+
+/// Takes from fits what [`Centre::independence`] says, unless there is one alone; the mean gets it.
+// Not inlined, as `weigh` is not: compilers order what they hold in vector registers now one way, now another, so that
+// the same source would not make the same bytes.
+#[inline(never)]
+fn keep_independent<R: Real>(weights: &mut [PerChannel<R>; FITS], centres: &[Option<Centre<R>>; FITS], is_alone: bool) {
+    for (weights, centre) in weights.iter_mut().zip(centres) {
+        if let Some(centre) = centre.filter(|_| !is_alone) {
+            *weights = *weights * centre.independence();
+        }
+    }
 }
 
 impl<R: Real> Candidates<'_, '_, R> {
@@ -207,6 +214,7 @@ impl<R: Real> Candidates<'_, '_, R> {
     }
 
     /// The weights of the plain mean and of the candidates; a ridge of the caller's choice gets all.
+    #[inline(never)]
     fn weigh(&self, errors: &Errors<R>, discounts: &[PerChannel<R>; FITS]) -> (PerChannel<R>, [PerChannel<R>; FITS]) {
         if self.is_fixed {
             return (PerChannel::default(), [R::ONE, R::ZERO].map(PerChannel::all));
