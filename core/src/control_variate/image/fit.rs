@@ -92,25 +92,21 @@ impl<'a> Fits<'a> {
         self.apart.as_mut().map(|apart| (apart, &*self.penalties, &mut *self.corrections))
     }
 
-    /// Corrects pixels of one sample of the colours `taken`, by fits to all but that.
+    /// Corrects pixels of one sample of the colours `taken`, which the fit to all of them has seen.
     #[inline(always)]
-    pub(super) fn correct_single(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, taken: Colours) {
-        self.factor(call, terms, batch, taken);
+    pub(super) fn leave_own(&mut self, terms: &Terms, batch: &Batch<'_>, taken: Colours) {
         for block in batch.blocks(taken) {
             self.apply(terms, batch, block);
-            self.leave_own(terms, batch, block);
+            self.leave_block(terms, batch, block);
         }
     }
 
-    /// Corrects pixels of several samples of the colours `taken`, by fits to the others of them.
+    /// Corrects pixels of several samples of a colour, which the fit has not seen.
     #[inline(always)]
-    pub(super) fn correct_several(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, taken: Colours) {
-        for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
-            self.factor(call, terms, batch, taken.without(colour));
-            self.judge(terms, batch, colour);
-            for block in batch.blocks(Colours(1 << colour)) {
-                self.apply(terms, batch, block);
-            }
+    pub(super) fn correct_colour(&mut self, terms: &Terms, batch: &Batch<'_>, colour: usize) {
+        self.judge(terms, batch, colour);
+        for block in batch.blocks(Colours(1 << colour)) {
+            self.apply(terms, batch, block);
         }
     }
 
@@ -143,7 +139,7 @@ impl<'a> Fits<'a> {
 
     /// The fit to all pixels of some colours.
     #[inline(always)]
-    fn factor(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, training: Colours) {
+    pub(super) fn factor(&mut self, call: &Call<'_>, terms: &Terms, batch: &Batch<'_>, training: Colours) {
         let width = terms.columns();
         let (mut own, n) = (0.0, call.n as f32);
         if call.n == 1 {
@@ -299,7 +295,7 @@ impl<'a> Fits<'a> {
     /// Corrects a block further: the fit has seen the pixels' one sample, which is left out in closed form. With x its
     /// columns, h = x'A^-1 x and e its residual, the fit to the others has coefficients b - A^-1 x e / (1 - h).
     #[inline(always)]
-    fn leave_own(&mut self, terms: &Terms, batch: &Batch<'_>, block: usize) {
+    fn leave_block(&mut self, terms: &Terms, batch: &Batch<'_>, block: usize) {
         let (width, fixed) = (terms.columns(), terms.fixed());
         let places = row_at(batch.places, fixed, block);
         let inside = at(batch.inside, block);

@@ -160,7 +160,7 @@ pub fn estimate_image(
     compiled(config, image, samples, workspace, &mut out)
 }
 
-/// What calls of [`estimate_image`] with one `out` or another have in common.
+/// What calls of [`estimate_image`] with one `out` or another have in common: compiled here, not by crates that call.
 fn compiled(
     config: &Config,
     image: &Image<'_>,

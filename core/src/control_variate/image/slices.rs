@@ -284,7 +284,7 @@ impl<'a> Apart<'a> {
         trend.iter_mut().zip(&*shared).for_each(|(trend, shared)| *trend = plus(trend, shared));
     }
 
-    /// Corrects a block by the fit to the other pixels; see `Fits::leave_own`.
+    /// Corrects a block by the fit to the other pixels; see `Fits::leave_block`.
     #[inline(always)]
     fn apply(&mut self, terms: &Terms, batch: &Batch<'_>, block: usize, fits: Range<usize>, corrections: &mut [Four]) {
         let (own, width, fixed, len) = (self.own, self.width, terms.fixed(), self.block_len(terms));

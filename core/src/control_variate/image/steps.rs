@@ -6,7 +6,7 @@ use super::choice::{Choices, Shares, Spreads};
 use super::edges::Edges;
 use super::fit::Fits;
 use super::groups::Groups;
-use super::products::{Colours, Eight, Four};
+use super::products::{COLOURS, Colours, Eight, Four};
 use super::slices::Apart;
 use super::terms::Terms;
 use crate::arena::Arena;
@@ -24,9 +24,13 @@ pub(super) fn correct<P: Processor>(
     if let Some((apart, penalties, corrections)) = fits.apart() {
         correct_slices::<P>(apart, terms, batch, penalties, taken, corrections);
     } else if call.n == 1 {
-        correct_single::<P>(fits, call, terms, batch, taken);
+        factor::<P>(fits, call, terms, batch, taken);
+        leave_own::<P>(fits, terms, batch, taken);
     } else {
-        correct_several::<P>(fits, call, terms, batch, taken);
+        for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
+            factor::<P>(fits, call, terms, batch, taken.without(colour));
+            correct_colour::<P>(fits, terms, batch, colour);
+        }
     }
 }
 
@@ -75,26 +79,25 @@ steps! {
         batch.load(call, terms, arena)
     }
 
-    /// [`Fits::correct_single`].
-    fn correct_single(
+    /// [`Fits::factor`].
+    fn factor(
         fits: &'s mut Fits<'a>,
         call: &'s Call<'s>,
         terms: &'s Terms,
         batch: &'s Batch<'s>,
-        taken: Colours,
+        training: Colours,
     ) -> () {
-        fits.correct_single(call, terms, batch, taken);
+        fits.factor(call, terms, batch, training);
     }
 
-    /// [`Fits::correct_several`].
-    fn correct_several(
-        fits: &'s mut Fits<'a>,
-        call: &'s Call<'s>,
-        terms: &'s Terms,
-        batch: &'s Batch<'s>,
-        taken: Colours,
-    ) -> () {
-        fits.correct_several(call, terms, batch, taken);
+    /// [`Fits::leave_own`].
+    fn leave_own(fits: &'s mut Fits<'a>, terms: &'s Terms, batch: &'s Batch<'s>, taken: Colours) -> () {
+        fits.leave_own(terms, batch, taken);
+    }
+
+    /// [`Fits::correct_colour`].
+    fn correct_colour(fits: &'s mut Fits<'a>, terms: &'s Terms, batch: &'s Batch<'s>, colour: usize) -> () {
+        fits.correct_colour(terms, batch, colour);
     }
 
     /// [`Apart::correct`].
