@@ -15,36 +15,37 @@ pub(crate) struct SignFlips {
 }
 
 impl SignFlips {
-    /// `deviations`: of each batch, from two independent halves of a reference, so that its own noise cancels;
-    /// `weights`: of each number's square, the reciprocal of the variance of the sum over all batches.
-    pub(crate) fn new(deviations: &[[Vec<f64>; 2]], weights: &[f64]) -> Self {
-        let numbers = weights.len().max(1) as f64;
-        let product = |a: &[f64], b: &[f64]| -> f64 {
-            a.iter().zip(b).zip(weights).map(|((a, b), weight)| a * b * weight).sum::<f64>() / numbers
-        };
+    /// `deviations`: of each batch, from two independent halves of a reference, so that its own noise cancels; each
+    /// number's in units of the standard deviation of its sum over all batches.
+    pub(crate) fn new(deviations: &[[Vec<f64>; 2]]) -> Self {
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / a.len().max(1) as f64;
         let both = |a: &[Vec<f64>; 2], b: &[Vec<f64>; 2]| 0.5 * (product(&a[0], &b[1]) + product(&a[1], &b[0]));
         // Of a batch's deviation from the mean of the halves, and of theirs from it, which is the same for all.
         let apart = |[a, b]: &[Vec<f64>; 2]| 0.25 * (product(a, a) - product(b, b));
         let apart: Vec<f64> = deviations.iter().map(apart).collect();
-        let products: Vec<Vec<f64>> =
-            deviations.iter().map(|a| deviations.iter().map(|b| both(a, b)).collect()).collect();
-        let sign = |choice: u32, batch: usize| if choice >> batch & 1 == 0 { 1.0 } else { -1.0 };
-        let square = |choice: u32| -> [f64; 2] {
-            let row = |(a, row): (usize, &Vec<f64>)| -> f64 {
-                row.iter().enumerate().map(|(b, product)| sign(choice, a) * sign(choice, b) * product).sum()
-            };
-            let square: f64 = products.iter().enumerate().map(row).sum();
-            let (mut sum, mut across) = (0.0, 0.0);
-            for (batch, apart) in apart.iter().enumerate() {
-                sum += sign(choice, batch);
-                across += sign(choice, batch) * apart;
+        let mut products = vec![vec![0.0; deviations.len()]; deviations.len()];
+        for (a, b) in (0..deviations.len()).flat_map(|a| (0..=a).map(move |b| (a, b))) {
+            products[a][b] = both(&deviations[a], &deviations[b]);
+            products[b][a] = products[a][b];
+        }
+        let mut signs = vec![1.0; deviations.len()];
+        let mut square: f64 = products.iter().flatten().sum();
+        let (mut sum, mut across) = (signs.iter().sum::<f64>(), apart.iter().sum::<f64>());
+        let mut squares = Vec::new();
+        // Negating all is the same: the last batch keeps its sign. One sign changes from a choice to the next.
+        for choice in 0..1_u32 << deviations.len().saturating_sub(1) {
+            if choice > 0 {
+                let batch = choice.trailing_zeros() as usize;
+                signs[batch] = -signs[batch];
+                let product: f64 = products[batch].iter().zip(&signs).map(|(product, sign)| product * sign).sum();
+                square += 4.0 * (signs[batch] * product - products[batch][batch]);
+                sum += 2.0 * signs[batch];
+                across += 2.0 * signs[batch] * apart[batch];
             }
             let missing = ((deviations.len() as f64).powi(2) - sum * sum).max(0.0).sqrt();
-            [square + 2.0 * missing * across, square - 2.0 * missing * across]
-        };
-        // Negating all is the same: the last batch keeps its sign.
-        let choices = 1 << deviations.len().saturating_sub(1);
-        Self { squares: (0..choices).flat_map(square).collect() }
+            squares.extend([square + 2.0 * missing * across, square - 2.0 * missing * across]);
+        }
+        Self { squares }
     }
 
     /// The measured mean square.
@@ -55,8 +56,8 @@ impl SignFlips {
     /// What at most a share `significance` of all choices of signs exceed.
     pub(crate) fn allowed(&self, significance: f64) -> f64 {
         let mut squares = self.squares.clone();
-        squares.sort_by(|a, b| b.total_cmp(a));
-        squares.get((significance * squares.len() as f64).floor() as usize).copied().unwrap_or(f64::NAN)
+        let exceed = (significance * squares.len() as f64).floor() as usize;
+        if exceed < squares.len() { *squares.select_nth_unstable_by(exceed, |a, b| b.total_cmp(a)).1 } else { f64::NAN }
     }
 }
 
@@ -77,10 +78,10 @@ mod tests {
         let halves = [(); 2].map(|()| noise((2.0 * reference / 12.0).sqrt()));
         let batch = |_| {
             let mean = noise(1.0);
-            halves.each_ref().map(|half| mean.iter().zip(half).map(|(mean, half)| bias + mean - half).collect())
+            halves.each_ref().map(|half| mean.iter().zip(half).map(|(mean, half)| (bias + mean - half) / 2.0).collect())
         };
         let deviations: Vec<[Vec<f64>; 2]> = (0..12).map(batch).collect();
-        SignFlips::new(&deviations, &[3.0 / 12.0; 300])
+        SignFlips::new(&deviations)
     }
 
     #[test]

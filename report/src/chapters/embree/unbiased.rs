@@ -126,7 +126,7 @@ fn lit_pixels(frames: &Frames, halves: &[Vec<f64>; 2]) -> Vec<bool> {
 
 fn scores(frames: &Frames, halves: &[Vec<f64>; 2], lit: &[bool]) -> Scores {
     let (variances, mean, [a, b]) = (variances(frames, halves), average(&frames.batches), halves);
-    let (mut all, mut weights, mut counted) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut all, mut counted) = (Vec::new(), Vec::new());
     for i in (0..mean.len()).filter(|&i| lit[i]) {
         let reference = 0.5 * (a[i] + b[i]);
         let own = 0.25 * (a[i] - b[i]).powi(2);
@@ -134,16 +134,16 @@ fn scores(frames: &Frames, halves: &[Vec<f64>; 2], lit: &[bool]) -> Scores {
         // Pixels that see the light have no noise but rounding.
         if variance > 1e-12 * reference * reference {
             all.push((mean[i] - reference) / variance.sqrt());
-            weights.push(1.0 / (variance * (frames.batches.len() as f64).powi(2)));
-            counted.push(i);
+            counted.push((i, variance.sqrt() * frames.batches.len() as f64));
         }
     }
-    let deviations = |batch: &Vec<f64>| [a, b].map(|half| counted.iter().map(|&i| batch[i] - half[i]).collect());
+    let deviations =
+        |batch: &Vec<f64>| [a, b].map(|half| counted.iter().map(|&(i, unit)| (batch[i] - half[i]) / unit).collect());
     let deviations: Vec<[Vec<f64>; 2]> = frames.batches.iter().map(deviations).collect();
     Scores {
         count: all.len(),
         largest: all.iter().map(|z| z.abs()).fold(0.0, f64::max),
-        flips: SignFlips::new(&deviations, &weights),
+        flips: SignFlips::new(&deviations),
         image: all.iter().sum::<f64>() / all.len().max(1) as f64,
         median: median(all.iter().copied()),
     }
