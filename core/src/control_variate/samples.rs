@@ -5,7 +5,7 @@ use crate::basis::{Basis, MAX_DIMS};
 use crate::error::Error;
 use crate::lanes::{LANES, Lanes};
 use crate::real::Real;
-use crate::rows::{at, first, from, halves_mut, row_at};
+use crate::rows::{first, from, halves_mut, row_at};
 
 use super::config::{Color, NonFinite};
 use super::folds::Fold;
@@ -313,12 +313,6 @@ impl<'a> Reader<'a> {
     #[inline]
     pub(crate) fn inputs(&self) -> &'a [f32] {
         self.samples.f
-    }
-
-    /// One channel of a sample as it was given.
-    #[inline]
-    pub(crate) fn input(&self, index: usize, channel: usize) -> f32 {
-        at(self.samples.f, index * self.inputs + channel)
     }
 
     /// Evaluates control functions and basis at `L` positions; `x` has a group of lanes for each coordinate, `h` one

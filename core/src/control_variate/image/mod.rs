@@ -222,10 +222,10 @@ impl Layout<'_> {
     fn workspace_len(&self) -> Option<usize> {
         // More samples than 32 bits count need more memory than there is.
         u32::try_from(self.image.pixels().ok()?.checked_mul(self.n)?).ok()?;
-        let (width, frames) = (self.windows.given.width, self.windows.frames());
+        let (eights, frames) = (self.eights(), self.windows.frames());
         let [_, rows] = self.band();
         let channels = self.config.channels;
-        let sums = width.checked_mul(rows)?.checked_mul(frames)?.checked_mul(sums_len(channels))?;
+        let sums = eights.checked_mul(rows)?.checked_mul(frames)?.checked_mul(sums_len(channels) * LANES)?;
         let pixels = self.windows.pixels();
         let slots = if self.is_joined() { pixels.div_ceil(LANES) } else { pixels };
         let terms = self.terms(pixels).with_edges(self.has_edges());

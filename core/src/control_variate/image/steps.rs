@@ -1,5 +1,6 @@
 //! The work of a batch, in functions that are compiled for a processor, each by itself.
 
+use super::super::config::Estimate;
 use super::batch::Batch;
 use super::call::Call;
 use super::choice::{Choices, Shares, Spreads};
@@ -8,6 +9,7 @@ use super::fit::Fits;
 use super::groups::Groups;
 use super::products::{COLOURS, Colours, Eight, Four};
 use super::slices::Apart;
+use super::sums::Band;
 use super::terms::Terms;
 use crate::arena::Arena;
 use crate::error::Error;
@@ -170,5 +172,20 @@ steps! {
         shares: &'s Shares<'s>,
     ) -> () {
         call.put(groups, batch, fits, turn, shares);
+    }
+
+    /// [`Call::add`].
+    fn add(call: &'s Call<'s>, first: usize, groups: &'s Groups<'a>, band: &'s mut Band<'a>) -> () {
+        call.add(first, groups, band);
+    }
+
+    /// [`Call::write`].
+    fn write(
+        call: &'s Call<'s>,
+        row: (usize, usize),
+        band: &'s mut Band<'a>,
+        out: &'s mut (dyn FnMut(usize, Estimate) + 'a),
+    ) -> () {
+        call.write(row, band, out);
     }
 }

@@ -1,17 +1,19 @@
 //! From the corrections of groups to the pixels' estimates.
 
-use super::super::config::Estimate;
+use super::super::config::{Config, Estimate};
 use super::super::result::{mean_divisor, saturate, standard_error};
-use super::call::Call;
+use super::call::{Call, Layout};
 use super::groups::{Groups, Place};
-use super::pixels::Rectangle;
+use super::pixels::Window;
+use super::products::{Eight, NONE};
+use super::steps;
 use crate::arena::Arena;
 use crate::error::Error;
-use crate::matrix::{self, from, from_mut, row_at_mut};
+use crate::lanes::{self, LANES, Lanes};
+use crate::matrix::{self, from, halves_mut, row_at_mut};
 use crate::processor::Processor;
 use crate::real::Real;
-use crate::rows::rows;
-use core::hint::black_box;
+use crate::rows::rows_mut;
 
 /// Sums of a pixel that are not a channel's: the weight of the groups that it was in, of those with an error, and their
 /// gain.
@@ -24,14 +26,65 @@ const UNLIKELY: f64 = 4.0;
 
 /// Numbers that are summed for each pixel over the groups that it was in; of each channel the correction and what the
 /// standard error comes from.
-pub(super) fn sums_len(channels: usize) -> usize {
+pub(super) const fn sums_len(channels: usize) -> usize {
     COMMON + 2 * channels
 }
 
-/// The sums of some rows of pixels: row y is row y modulo `rows`.
-struct Band<'a> {
-    sums: &'a mut [f32],
+/// The sums of some rows of pixels: row y is row y modulo `rows`, and has eight pixels side by side.
+pub(super) struct Band<'a> {
+    sums: &'a mut [Eight],
     rows: usize,
+}
+
+/// A number for each of eight pixels, with which the last operations are done.
+type Wide = Lanes<f64>;
+
+#[inline(always)]
+fn wide(a: &Eight) -> Wide {
+    let mut out = [0.0; LANES];
+    for l in 0..LANES {
+        out[l] = f64::from(a[l]);
+    }
+    out
+}
+
+/// `f(a)` lane by lane, as an `f32`.
+#[inline(always)]
+fn narrow(a: &Wide, f: impl Fn(f64) -> f32) -> Eight {
+    let mut out = NONE;
+    for l in 0..LANES {
+        out[l] = f(a[l]);
+    }
+    out
+}
+
+/// 1 / a lane by lane, where that is positive.
+#[inline(always)]
+fn inverse(a: &Eight) -> Wide {
+    lanes::zip(&[1.0; LANES], &lanes::divisor(&wide(a)), |one, a| one / a)
+}
+
+/// From 1 at the centre linearly to almost 0 at the ends.
+#[inline(always)]
+fn hat(at: u32, over_extent: f32) -> f32 {
+    1.0 - Real::abs((2 * at as i32 + 1) as f32 * over_extent - 1.0)
+}
+
+/// Eight numbers, each so many after the one before; 0 where there is none.
+#[inline(always)]
+fn every(step: usize, numbers: &[f32]) -> Eight {
+    match numbers.first_chunk() {
+        // One instruction, instead of eight and as many addresses.
+        Some(next) if step == 1 => *next,
+        _ => core::array::from_fn(|lane| matrix::at(numbers, lane * step)),
+    }
+}
+
+impl Layout<'_> {
+    /// Groups of eight in a row of pixels.
+    pub(super) fn eights(&self) -> usize {
+        self.windows.given.width.div_ceil(LANES)
+    }
 }
 
 impl Call<'_> {
@@ -41,12 +94,12 @@ impl Call<'_> {
         arena: &mut Arena<'_, f32>,
         out: &mut dyn FnMut(usize, Estimate),
     ) -> Result<(), Error> {
-        let (Rectangle { width, .. }, wanted) = (self.windows.given, self.windows.wanted);
+        let wanted = self.windows.wanted;
         let frames = self.windows.frames();
         let [across, down] = self.windows.counts();
         let [rows, touched] = self.band();
-        let sums = arena.take(width * touched * frames * sums_len(self.config.channels))?;
-        sums.iter_mut().for_each(|sum| *sum = 0.0);
+        let sums = arena.take_lanes(self.eights() * touched * frames * sums_len(self.config.channels))?;
+        sums.iter_mut().for_each(|sum| *sum = NONE);
         let mut band = Band { sums, rows: touched };
         let mut groups = self.groups(arena)?;
         let has_fits = self.image.has_known() || self.has_edges() || !self.terms(self.windows.pixels()).ends.is_empty();
@@ -61,12 +114,12 @@ impl Call<'_> {
                 self.divide(first, end, &mut groups);
                 self.find_edges(&mut groups);
                 self.fit::<P>(&mut groups, arena)?;
-                self.add(first, &groups, &mut band);
+                steps::add::<P>(self, first, &groups, &mut band);
             }
             let end = if last < down { self.windows.top(last) } else { wanted.y + wanted.height };
             for frame in 0..frames {
                 for y in done..end {
-                    self.write(frame, y, &mut band, out);
+                    steps::write::<P>(self, (frame, y), &mut band, out);
                 }
             }
             done = end;
@@ -75,116 +128,167 @@ impl Call<'_> {
     }
 
     /// Adds the groups' corrections to the sums of their pixels, in the order of the windows.
-    #[inline]
-    fn add(&self, first: usize, groups: &Groups<'_>, band: &mut Band<'_>) {
+    #[inline(always)]
+    pub(super) fn add(&self, first: usize, groups: &Groups<'_>, band: &mut Band<'_>) {
         let channels = self.config.channels;
-        let given = self.windows.given;
-        let has_factors = !self.image.factors.is_empty();
-        // How near a pixel is to its window's centre: 1 there, falling linearly along x and y to almost 0.
-        let inverse = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
-        let hat = |at: usize, inverse: f32| 1.0 - Real::abs((2 * at as i32 + 1) as f32 * inverse - 1.0);
+        let len = sums_len(channels);
+        let [rows, width] = [band.rows, self.eights() * LANES].map(|extent| extent as u32);
+        let [across, down, _] = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
         for group in groups.in_order(self) {
             let Some(([gain, has_error], errors)) = groups.told(self, &group).split_first_chunk() else { continue };
             let window = self.window(first + group.window);
-            let top = window.y % band.rows.max(1);
-            let left = window.x - given.x;
+            let (top, left) = (window.y % band.rows.max(1), window.x - self.windows.given.x);
             let members = groups.members(&group);
             let corrections = from(groups.corrections, group.start * channels);
-            for (index, corrections) in rows(corrections, channels).enumerate().take(group.len) {
-                let place = Place::read(matrix::at(members, index));
-                let [x, y, frame] = place.split();
-                let (mut at, mut near) = (index, 1.0);
+            for begin in (0..group.len).step_by(LANES) {
+                let mut places = [Place::read(0.0); LANES];
+                for (place, &member) in places.iter_mut().zip(from(members, begin)) {
+                    *place = Place::read(member);
+                }
+                // Where the pixels have their sums, and how near each is to its window's centre: 1 there, falling linearly
+                // along x and y to almost 0.
+                let mut at = core::array::from_fn(|lane| (begin + lane) as u32);
+                let mut near = [1.0; LANES];
+                let [x, y, frame] = Place::split_each(&places);
                 if self.windows.is_ordered {
-                    let row = if top + y < band.rows { top + y } else { top + y - band.rows };
-                    at = (frame * band.rows + row) * given.width + left + x;
-                    near = hat(x, inverse[0]) * hat(y, inverse[1]);
+                    for l in 0..LANES {
+                        let row = top as u32 + y[l];
+                        let row = frame[l] * rows + if row < rows { row } else { row - rows };
+                        at[l] = row * width + left as u32 + x[l];
+                        near[l] = hat(x[l], across) * hat(y[l], down);
+                    }
                 } else if !self.is_joined() {
                     at = x;
                 }
-                let sums = from_mut(band.sums, at * sums_len(channels));
-                let Some((common, each)) = sums.split_first_chunk_mut::<COMMON>() else { continue };
-                common[0] += near;
-                common[1] += near * has_error;
-                common[2] += near * gain;
-                let values = corrections.iter().zip(errors).enumerate();
-                for (each, (channel, (&correction, &error))) in each.as_chunks_mut::<2>().0.iter_mut().zip(values) {
-                    let mut both = [correction, error];
-                    if has_factors {
-                        let factor = self.factor(self.pixel(window, place, index), channel);
-                        let factors = [factor, if self.error_is_the_groups() { factor } else { 1.0 }];
-                        let most = f64::from(f32::MAX);
-                        both.iter_mut().zip(factors).for_each(|(value, factor)| {
-                            *value = (f64::from(*value) * factor).clamp(-most, most) as f32;
-                        });
+                let mut sums = [NONE; sums_len(Config::MAX_CHANNELS)];
+                sums[0] = near;
+                sums[1] = lanes::zip(&near, &[*has_error; LANES], |near, has_error| near * has_error);
+                sums[2] = lanes::zip(&near, &[*gain; LANES], |near, gain| near * gain);
+                let (_, each) = halves_mut(&mut sums, COMMON);
+                for (each, (channel, &error)) in each.as_chunks_mut().0.iter_mut().zip(errors.iter().enumerate()) {
+                    let mut both = [every(channels, from(corrections, begin * channels + channel)), [error; LANES]];
+                    if !self.image.factors.is_empty() {
+                        self.times_factors(window, &places, begin, channel, &mut both);
                     }
                     // What cannot be added up is no number, and found at the end.
-                    let [correction, error] = both.map(|value| if Real::abs(value) < MOST { value } else { f32::NAN });
-                    each[0] += near * correction;
-                    each[1] += near * error;
+                    *each = both.map(|values| {
+                        lanes::zip(&near, &values, |near, value| {
+                            near * if Real::abs(value) < MOST { value } else { f32::NAN }
+                        })
+                    });
+                }
+                for (lane, &at) in at.iter().enumerate().take(group.len - begin) {
+                    let at = at as usize;
+                    let out = row_at_mut(band.sums, len, at / LANES);
+                    for (out, sum) in out.iter_mut().zip(&sums) {
+                        out[at % LANES] += sum[lane];
+                    }
                 }
             }
+        }
+    }
+
+    /// Corrections and errors of pixels whose values were divided by factors.
+    fn times_factors(
+        &self,
+        window: Window,
+        places: &[Place; LANES],
+        begin: usize,
+        channel: usize,
+        [corrections, errors]: &mut [Eight; 2],
+    ) {
+        let most = f64::from(f32::MAX);
+        let times = |value: f32, factor: f64| (f64::from(value) * factor).clamp(-most, most) as f32;
+        for (lane, &place) in places.iter().enumerate() {
+            let factor = self.factor(self.pixel(window, place, begin + lane), channel);
+            corrections[lane] = times(corrections[lane], factor);
+            errors[lane] = times(errors[lane], if self.error_is_the_groups() { factor } else { 1.0 });
         }
     }
 
     /// Writes a row of pixels, and empties its sums.
-    #[inline]
-    fn write(&self, frame: usize, y: usize, band: &mut Band<'_>, out: &mut dyn FnMut(usize, Estimate)) {
+    #[inline(always)]
+    pub(super) fn write(&self, (frame, y): (usize, usize), band: &mut Band<'_>, out: &mut dyn FnMut(usize, Estimate)) {
         let (given, wanted) = (self.windows.given, self.windows.wanted);
+        let len = sums_len(self.config.channels);
         let row = frame * band.rows + y % band.rows.max(1);
-        let sums = row_at_mut(band.sums, given.width * sums_len(self.config.channels), row);
-        for (column, sums) in rows(sums, sums_len(self.config.channels)).enumerate() {
-            let x = (given.x + column).wrapping_sub(wanted.x);
-            if y >= wanted.y && x < wanted.width {
-                let estimate = self.estimate(self.windows.number(wanted.x + x, y, frame), sums);
-                out((frame * wanted.height + y - wanted.y) * wanted.width + x, estimate);
+        let sums = row_at_mut(band.sums, self.eights() * len, row);
+        for (eight, sums) in rows_mut(sums, len).enumerate() {
+            let column = given.x + eight * LANES;
+            if y >= wanted.y {
+                let begin = (frame * wanted.height + y - wanted.y) * wanted.width;
+                let estimates = self.estimate(self.windows.number(column, y, frame), sums);
+                for (lane, &estimate) in estimates.iter().enumerate() {
+                    let x = (column + lane).wrapping_sub(wanted.x);
+                    if x < wanted.width {
+                        out(begin + x, estimate);
+                    }
+                }
             }
+            sums.iter_mut().for_each(|sum| *sum = NONE);
         }
-        sums.iter_mut().for_each(|sum| *sum = 0.0);
     }
 
-    #[inline]
-    fn estimate(&self, pixel: usize, sums: &[f32]) -> Estimate {
+    /// Of eight pixels.
+    #[inline(always)]
+    fn estimate(&self, pixel: usize, sums: &[Eight]) -> [Estimate; LANES] {
         let samples = self.n.min(u32::MAX as usize) as u32;
-        let mut estimate = Estimate { mean: [0.0; 4], std_error: [0.0; 4], samples, gain: 1.0 };
-        let Some(([weight, error_weight, gain], each)) = sums.split_first_chunk() else { return estimate };
+        let mut out = [Estimate { mean: [0.0; 4], std_error: [0.0; 4], samples, gain: 1.0 }; LANES];
+        let Some(([weight, error_weight, gain], each)) = sums.split_first_chunk() else { return out };
         // Without a weight all sums are zero.
-        let inverse = 1.0 / black_box(f64::from(weight.or_one()));
-        let error_inverse = 1.0 / black_box(f64::from(error_weight.or_one()));
-        if *weight > 0.0 {
-            estimate.gain = (f64::from(*gain) * inverse) as f32;
+        let [over, error_over] = [weight, error_weight].map(inverse);
+        let gain = narrow(&lanes::zip(&wide(gain), &over, |gain, over| gain * over), |gain| gain as f32);
+        for l in 0..LANES {
+            out[l].gain = if weight[l] > 0.0 { gain[l] } else { 1.0 };
         }
-        let outputs = estimate.mean.iter_mut().zip(&mut estimate.std_error);
-        for (channel, ((mean, error), sums)) in outputs.zip(rows(each, 2)).enumerate() {
-            let &[correction, spread] = sums else { continue };
-            let (correction, spread) = (f64::from(correction) * inverse, f64::from(spread) * error_inverse);
-            let first = f64::from(self.reader.input(pixel * self.n, channel));
-            let (mut plain, mut variance) = (first, f64::INFINITY);
+        for (channel, [correction, spread]) in each.as_chunks().0.iter().enumerate() {
+            let correction = lanes::zip(&wide(correction), &over, |correction, over| correction * over);
+            let spread = lanes::zip(&wide(spread), &error_over, |spread, over| spread * over);
+            let first = self.given(pixel, 0, channel);
+            let (mut plain, mut variance) = (first, [f64::INFINITY; LANES]);
             if self.n > 1 {
-                let (mut total, mut square) = (0.0, 0.0);
-                for sample in pixel * self.n + 1..(pixel + 1) * self.n {
-                    let value = f64::from(self.reader.input(sample, channel)) - first;
-                    total += value;
-                    square += value * value;
+                let [mut total, mut square] = [[0.0; LANES]; 2];
+                for sample in 1..self.n {
+                    let value = lanes::zip(&self.given(pixel, sample, channel), &first, |value, first| value - first);
+                    total = lanes::zip(&total, &value, |total, value| total + value);
+                    square = lanes::plus_product(square, value, value);
+                    lanes::keep_together();
                 }
                 let n = self.n as f64;
-                plain += total / n;
-                variance = (square - total * total / n).max(0.0) / mean_divisor(n);
+                for l in 0..LANES {
+                    plain[l] += total[l] / n;
+                    variance[l] = (square[l] - total[l] * total[l] / n).max(0.0) / mean_divisor(n);
+                }
             }
             // In no group there is no correction; nor is one that left the type's range.
-            *mean = saturate(if correction.is_finite() { plain + correction } else { plain });
-            let has_error = *error_weight > 0.0;
-            let told = if has_error && self.error_is_the_groups() {
-                spread
-            } else if self.n > 1 {
-                let ratio = if has_error { spread * spread } else { 1.0 };
-                // A correction that the pixel's own samples make unlikely is an error.
-                let moved = if correction.is_finite() { correction * correction } else { 0.0 };
-                libm::sqrt(ratio * variance + (moved - UNLIKELY * variance).max(0.0))
-            } else {
-                f64::INFINITY
-            };
-            *error = standard_error(told);
+            let correction = lanes::zip(&correction, &correction, |c, _| if c.is_finite() { c } else { 0.0 });
+            let mean = narrow(&lanes::zip(&plain, &correction, |plain, correction| plain + correction), saturate);
+            let mut told = [f64::INFINITY; LANES];
+            for l in 0..LANES {
+                let has_error = error_weight[l] > 0.0;
+                if has_error && self.error_is_the_groups() {
+                    told[l] = spread[l];
+                } else if self.n > 1 {
+                    let ratio = if has_error { spread[l] * spread[l] } else { 1.0 };
+                    // A correction that the pixel's own samples make unlikely is an error.
+                    let unlikely = (correction[l] * correction[l] - UNLIKELY * variance[l]).max(0.0);
+                    told[l] = libm::sqrt(ratio * variance[l] + unlikely);
+                }
+            }
+            let error = narrow(&told, standard_error);
+            for l in 0..LANES {
+                let Estimate { mean: means, std_error: errors, .. } = &mut out[l];
+                (means[channel % means.len()], errors[channel % errors.len()]) = (mean[l], error[l]);
+            }
         }
-        estimate
+        out
+    }
+
+    /// A channel of a sample of each pixel, as it was given.
+    #[inline(always)]
+    fn given(&self, pixel: usize, sample: usize, channel: usize) -> Wide {
+        let channels = self.config.channels;
+        let values = from(self.reader.inputs(), (pixel * self.n + sample) * channels + channel);
+        wide(&every(self.n * channels, values))
     }
 }
