@@ -10,6 +10,8 @@
  *     nfs s = nfs_domain(nfs_pixel(x, y, 0u, index), LIGHT);
  *     nfs_floats u = nfs_draw2(s);      // u.x, u.y in [0, 1)
  *
+ * GPUs read faster what is stored elsewhere for each pixel of a row: entry i at i ^ (i >> 6 & 63u).
+ *
  * In OpenCL C and Metal, which have no global buffers, there is nothing to define, and the table is the last argument
  * of a draw: nfs_draw2(s, table), `global` or `device`.
  *

@@ -1,4 +1,5 @@
-"""Tests of noisefloor.mitsuba with the installed Mitsuba; $NOISEFLOOR_VARIANTS names others than the default."""
+"""Tests of noisefloor.mitsuba with the installed Mitsuba; $NOISEFLOOR_VARIANTS names others than the default, first a
+recorded RGB one."""
 
 import ctypes
 import os
@@ -64,7 +65,7 @@ def show(page, *numbers):
     """The picture that these blocks of a page's code end with, run one after the other."""
     blocks, names = re.findall(r"^```python\n(.*?)^```$", (FOLDER / page).read_text(), re.DOTALL | re.MULTILINE), {}
     for number in numbers:
-        exec(compile(blocks[number], page, "exec"), names)
+        exec(compile(blocks[number].replace("llvm_ad_rgb", VARIANTS[0]), page, "exec"), names)
     return np.array(names["picture"])
 
 
@@ -146,6 +147,16 @@ class Recorded(unittest.TestCase):
             self.assertTrue(first)
             for seed in (0, 2, 3, 2**31):
                 self.assertLessEqual(kernels(seed), first)
+
+    def test_frozen_functions_draw_the_same(self):
+        scene = box()
+        frame = dr.freeze(lambda scene, seed: mi.render(scene, spp=4, seed=seed), state_fn=lambda *_: nf.table())
+        for k in range(4):
+            seed = mi.UInt32(k)
+            dr.make_opaque(seed)
+            expected = np.array(mi.render(scene, spp=4, seed=k))
+            np.testing.assert_allclose(np.array(frame(scene, seed)), expected, rtol=1e-4, atol=1e-5)
+        self.assertLess(frame.n_recordings, 3)
 
     def test_clones_share_nothing(self):
         one = sampler(8, sample_count=4)
@@ -373,7 +384,7 @@ class Scalar(unittest.TestCase):
         return nf.prepare(mi.load_dict(scene))
 
     def both(self, variant, spp, seed, **case):
-        kinds = variant, variant.replace("scalar", "llvm_ad")
+        kinds = variant, variant.replace("scalar", VARIANTS[0].removesuffix("_rgb"))
         return [np.array(mi.render(self.scene(kind, **case), spp=spp, seed=seed)) for kind in kinds]
 
     def test_pictures_are_those_of_recorded_variants(self):

@@ -3,6 +3,22 @@
 if(TESTS_UNDER)
     return()
 endif()
+
+# A GPU by nvcc; where there is none the program says so.
+include(CheckLanguage)
+set(CMAKE_CUDA_ARCHITECTURES OFF)
+check_language(CUDA)
+if(CMAKE_CUDA_COMPILER)
+    set(CMAKE_CUDA_STANDARD 17)
+    enable_language(CUDA)
+    add_executable(gpu_nvcc gpu/cuda.cu)
+    target_compile_options(gpu_nvcc PRIVATE -O2 -arch=native)
+    target_link_libraries(gpu_nvcc PRIVATE noisefloor::noisefloor_static)
+    add_to(gpu gpu_nvcc)
+    add_check(gpu nvcc gpu_nvcc)
+    set_tests_properties(gpu.nvcc PROPERTIES SKIP_RETURN_CODE 77)
+endif()
+
 find_package(OpenCL QUIET)
 find_package(Vulkan QUIET)
 find_program(glslang glslangValidator)

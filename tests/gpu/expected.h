@@ -8,7 +8,9 @@
 #include <string.h>
 #include <time.h>
 
+#if !defined(NOISEFLOOR_TABLE)
 #define NOISEFLOOR_TABLE(i) nf_sampler_table()[i]
+#endif
 #include "noisefloor_sampler.h"
 
 /* Samplers at a time; each draws four numbers, then two and two zeros. */

@@ -1,4 +1,6 @@
-/* noisefloor_sampler.h as CUDA and as HIP, compiled by clang for the host alone: the draws of expected.h. */
+/* noisefloor_sampler.h as CUDA and as HIP, compiled by clang for the host alone: the draws of expected.h. cuda.cu is
+ * for GPUs.
+ */
 #if defined(__HIP__)
 #define __HIPCC__ 1
 #endif

@@ -9,7 +9,7 @@ import mitsuba as mi
 
 from . import _fits, _sampler
 
-__all__ = ["prepare", "register"]
+__all__ = ["prepare", "register", "table"]
 
 
 def register() -> None:
@@ -31,3 +31,8 @@ def prepare(scene: mi.Scene) -> mi.Scene:
             sampler.size = tuple(int(length) + border for length in film.crop_size())
             sampler.lens = sensor.needs_aperture_sample()
     return scene
+
+
+def table() -> mi.UInt32:
+    """The numbers that samplers read, on the variant's device: state of a function that `drjit.freeze` records."""
+    return _sampler.table()

@@ -21,7 +21,7 @@ COLUMNS = (0x80000000, 0x40000000, 0xA0000000, 0xD0000000, 0x68000000, 0xFC00000
 _tables = {}
 
 
-def _table():
+def table():
     variant = mi.variant()
     if variant not in _tables:
         numbers = ctypes.cast(_c.sampler_table(), ctypes.POINTER(ctypes.c_uint32))
@@ -85,7 +85,7 @@ def _pair(pixel, first):
         second ^= (second & mask) << shift
 
     def entry(value):
-        return dr.gather(mi.UInt32, _table(), (pixel << BITS) | (value >> (32 - BITS)))
+        return dr.gather(mi.UInt32, table(), (pixel << BITS) | (value >> (32 - BITS)))
 
     values = first ^ (entry(first) << 16), second ^ (entry(second) & 0xFFFF0000)
     return [v ^ ((((pixel << 8) | (v >> 24)) * factor) >> 8) for v, factor in zip(values, FINE)]
