@@ -18,7 +18,7 @@ const MANY: usize = 64;
 ///
 /// Kept as the bits of a number, as the workspace holds nothing else. All are below 2^30: no bits of a NaN, which a
 /// processor might change.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Place(u32);
 
 impl Place {
@@ -181,14 +181,20 @@ impl Layout<'_> {
             return;
         }
         let mut filled = 0;
+        // Of each pixel of a window its place, and its number less that of the window's first.
+        let mut places: Vec<(Place, u32), { Image::MAX_WINDOW }> = Vec::new();
+        let corner = self.window(first);
+        self.each_place(|place| {
+            let apart = self.pixel(corner, place, 0).wrapping_sub(self.pixel(corner, Place::default(), 0));
+            // A window has no more pixels than that.
+            let _ = places.push((place, apart as u32));
+        });
+        let mut left: Vec<(Place, u32), { Image::MAX_WINDOW }> = Vec::new();
         for index in first..end {
-            let window = self.window(index);
-            let mut left: Vec<(Place, u32), { Image::MAX_WINDOW }> = Vec::new();
-            self.each_place(|place| {
-                let surface = at(self.image.surfaces, self.pixel(window, place, 0));
-                // A window has no more pixels than that.
-                let _ = left.push((place, surface));
-            });
+            let corner = self.pixel(self.window(index), Place::default(), 0);
+            for &(place, apart) in &places {
+                let _ = left.push((place, at(self.image.surfaces, corner + apart as usize)));
+            }
             while let Some(&(_, surface)) = left.first() {
                 let start = filled;
                 left.retain(|&(place, other)| {

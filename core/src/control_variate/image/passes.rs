@@ -27,6 +27,8 @@ impl Call<'_> {
         for (pass, kind) in (0..=later).flat_map(|pass| (0..kinds).map(move |kind| (pass, kind))) {
             let turn = pass.checked_sub(1);
             let mut place = 0;
+            // Groups of one size, which come one after the other, have the same.
+            let mut last = (0, 0);
             loop {
                 let mut lanes = [Group::default(); LANES];
                 let mut used = 0;
@@ -35,13 +37,15 @@ impl Call<'_> {
                 while let Some(group) = groups.by_size(self, place).filter(|_| used < LANES) {
                     let is_kind = group.has_edges == (kind == 1);
                     let is_wanted = is_kind && turn.is_none_or(|turn| groups.has_limits(self, &group, turn));
-                    let terms = if used == 0 || is_wanted { self.terms(group.len).columns() } else { columns };
-                    if is_wanted && used > 0 && terms != columns {
+                    if last.0 != group.len {
+                        last = (group.len, self.terms(group.len).columns());
+                    }
+                    if is_wanted && used > 0 && last.1 != columns {
                         break;
                     }
                     place += 1;
                     if is_wanted {
-                        columns = terms;
+                        columns = last.1;
                         if self.is_joined() {
                             lanes = [group; LANES];
                         } else if let Some(lane) = lanes.get_mut(used) {

@@ -2,21 +2,26 @@
 
 use super::batch::Batch;
 use super::call::Call;
-use super::products::{AT_ONCE, AT_ONCE_LANES, Eight, Four, Rows};
+use super::products::{AT_ONCE, AT_ONCE_LANES, Eight, Four, NONE, Rows};
 use crate::lanes::{self, LANES};
-use crate::matrix::{at, halves_mut, row_at};
+use crate::matrix::{at, first_mut, from, halves_mut, row_at};
 use crate::real::Real;
+use crate::rows::part_mut;
 use core::ops::Range;
 
 impl Call<'_> {
     /// The pixels' lowest and highest values, as fits see them.
     #[inline(always)]
     pub(super) fn range(&self, pixels: &[usize; LANES], channel: usize) -> [Eight; 2] {
-        let [mut low, mut high] = [self.inputs(pixels, 0, channel); 2];
-        for sample in 1..self.n {
-            let value = self.inputs(pixels, sample, channel);
-            low = lanes::zip(&value, &low, Real::min);
-            high = lanes::zip(&value, &high, Real::max);
+        let (mut low, mut high) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
+        for begin in (0..self.n).step_by(AT_ONCE) {
+            let mut four = [NONE; AT_ONCE];
+            let values = first_mut(&mut four, AT_ONCE.min(self.n - begin));
+            self.put_rows(self.reader.inputs(), pixels, (self.n, begin), channel, values);
+            for value in values {
+                low = lanes::zip(value, &low, Real::min);
+                high = lanes::zip(value, &high, Real::max);
+            }
             lanes::keep_together();
         }
         [low, high]
@@ -45,12 +50,51 @@ impl Call<'_> {
     fn gather(&self, rows: &[f32], pixels: &[usize; LANES], (each, row): (usize, usize), channel: usize) -> Eight {
         let channels = self.config.channels;
         let mut values = pixels.map(|pixel| at(rows, (pixel * each + row) * channels + channel));
+        self.divide_by_factors(pixels, channel, &mut values);
+        values
+    }
+
+    #[inline(always)]
+    fn divide_by_factors(&self, pixels: &[usize; LANES], channel: usize, values: &mut Eight) {
         if !self.image.factors.is_empty() {
             for (value, pixel) in values.iter_mut().zip(pixels) {
                 *value = self.over_factor(*value, *pixel, channel);
             }
         }
-        values
+    }
+
+    /// As many of a pixel's so many rows of numbers as `out` holds, from one on, for eight pixels.
+    #[inline(always)]
+    fn put_rows(
+        &self,
+        rows: &[f32],
+        pixels: &[usize; LANES],
+        (each, first): (usize, usize),
+        channel: usize,
+        out: &mut [Eight],
+    ) {
+        let channels = self.config.channels;
+        if let [out] = out {
+            *out = self.gather(rows, pixels, (each, first), channel);
+            return;
+        }
+        for (lane, pixel) in pixels.iter().enumerate() {
+            let rows = from(rows, (pixel * each + first) * channels + channel);
+            match (rows.first_chunk::<AT_ONCE>(), out.as_chunks_mut::<AT_ONCE>().0) {
+                // One after the other, and looked for once.
+                (Some(rows), [out]) if channels == 1 => {
+                    for (out, row) in out.iter_mut().zip(rows) {
+                        out[lane] = *row;
+                    }
+                }
+                _ => {
+                    for (index, out) in out.iter_mut().enumerate() {
+                        out[lane] = at(rows, index * channels);
+                    }
+                }
+            }
+        }
+        out.iter_mut().for_each(|values| self.divide_by_factors(pixels, channel, values));
     }
 
     #[inline]
@@ -89,9 +133,7 @@ impl Call<'_> {
                     }
                 }
             }
-            for (row, sample) in (run..AT_ONCE).zip(samples.clone()) {
-                self.read_values(batch, (block, slot), &pixels, sample, row, values);
-            }
+            self.read_values(batch, (block, slot), &pixels, &samples, run, values);
         }
         for (value, units) in values.iter_mut().zip(batch.units.iter().take(channels).cycle()) {
             *value = value.map(|value| units.apply(&value));
@@ -104,29 +146,34 @@ impl Call<'_> {
         }
     }
 
-    /// Values of a sample of each pixel, as they were given but for factors and what is known of them.
+    /// Values of samples of each pixel, as they were given but for factors and what is known of them: in each column
+    /// from `row` on.
     #[inline(always)]
     fn read_values(
         &self,
         batch: &Batch<'_>,
         (block, slot): (usize, usize),
         pixels: &[usize; LANES],
-        sample: usize,
+        samples: &Range<usize>,
         row: usize,
         values: &mut [Four],
     ) {
         let channels = self.config.channels;
         let (inputs, rest) = halves_mut(values, channels);
-        for (channel, value) in inputs.iter_mut().enumerate() {
-            value[row % AT_ONCE] = self.inputs(pixels, sample, channel);
+        for (channel, values) in inputs.iter_mut().enumerate() {
+            let out = part_mut(values, row, samples.len());
+            self.put_rows(self.reader.inputs(), pixels, (self.n, samples.start), channel, out);
         }
         let [coefficients, integrals] =
             [&*batch.coefficients, &*batch.integrals].map(|all| row_at(all, channels, block));
         let known = coefficients.iter().zip(integrals).zip(rest.iter_mut()).zip(inputs.iter());
-        for (channel, (((coefficient, integral), out), value)) in known.enumerate() {
-            let known = self.known(pixels, sample, channel);
-            let apart = lanes::zip(&known, &integral[slot % AT_ONCE], |known, integral| known - integral);
-            out[row % AT_ONCE] = lanes::minus_product(value[row % AT_ONCE], coefficient[slot % AT_ONCE], apart);
+        for (channel, (((coefficient, integral), out), values)) in known.enumerate() {
+            let out = part_mut(out, row, samples.len());
+            self.put_rows(self.image.known, pixels, (self.n, samples.start), channel, out);
+            for (out, value) in out.iter_mut().zip(from(values, row)) {
+                let apart = lanes::zip(out, &integral[slot % AT_ONCE], |known, integral| known - integral);
+                *out = lanes::minus_product(*value, coefficient[slot % AT_ONCE], apart);
+            }
         }
     }
 }
