@@ -26,24 +26,6 @@ def smooth(u):
     return numpy.exp(u.sum(-1))
 
 
-@pytest.mark.parametrize("estimator", ESTIMATORS)
-def test_errors_are_smaller_than_the_means(estimator):
-    u = samples(2000, 64, 2)
-    f = smooth(u)
-    estimate = noisefloor.estimate(u, f, estimator=estimator, order=3)
-    exact = (math.e - 1) ** 2
-    mean_error, error = (numpy.sqrt(((x - exact) ** 2).mean()) for x in (f.mean(-1), estimate.mean))
-    assert error < 0.5 * mean_error
-    assert estimate.mean.shape == estimate.std_error.shape == estimate.gain.shape == (2000,)
-    assert estimate.gain.mean() < 0.5
-    bias = estimate.mean.mean() - exact
-    if estimator in ("leave_one_out", "k_fold", "incremental"):
-        # Two-sided, one false alarm in 150,000 seeds, and the seed is fixed.
-        assert abs(bias) < 4.5 * estimate.mean.std() / math.sqrt(2000)
-    else:
-        assert abs(bias) < 0.5 * error
-
-
 def test_order_0_is_the_mean():
     u, f = samples(7, 5, 3), samples(7, 5, seed=2)
     estimate = noisefloor.estimate(u, f, order=0)
@@ -234,9 +216,6 @@ def test_edges_of_shadows():
     shadowed = numpy.where(u[..., 0] + 0.3 * u[..., 1] < 0.6, f, 0)
     plain, edges = (noisefloor.image_estimate(u, shadowed, edges=first).mean for first in (0, 1))
     assert numpy.isfinite(edges).all() and not numpy.array_equal(edges, plain)
-    assert numpy.array_equal(
-        *(noisefloor.image_estimate(u[..., :3, :], shadowed[..., :3], edges=first).mean for first in (0, 1))
-    )
 
 
 def test_known_light_leaves_no_error():

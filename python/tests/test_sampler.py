@@ -36,13 +36,6 @@ def test_domains_frames_seeds_and_white_differ():
     assert repr(others[2]) == "Sampler(frame=0, seed=0, white=False).domain(1).domain(1)"
 
 
-def test_samples_of_a_pixel_are_a_net():
-    points = noisefloor.Sampler().pixel(3, 4, 64, 2)
-    for columns in (1, 2, 4, 8, 16, 32, 64):
-        cells = numpy.floor(points * (columns, 64 // columns)).astype(int)
-        assert len(set(map(tuple, cells))) == 64
-
-
 def test_engine_has_scipys_manners():
     engine, sobol = noisefloor.QMCEngine(3, seed=5), stats.qmc.Sobol(3, seed=5)
     points = engine.random(64)

@@ -6,162 +6,9 @@ static float u[N * 4], f[N * 4];
 static const uint32_t estimators = 6;
 static nf_cv_descent steps; /* by default */
 
-/* Constant values: every estimator, basis and precision gives them back exactly. */
-static void constants(void)
-{
-    static const float values[] = {0.0f, 1.0f, -3.7f, 1e-30f, 1e30f, 0.1f};
-    uint32_t estimator, basis, precision;
-    size_t v, i;
-    for (estimator = 0; estimator < estimators; ++estimator)
-        for (basis = 0; basis < BASES; ++basis)
-            for (precision = 0; precision < 2; ++precision)
-                for (v = 0; v < sizeof values / sizeof *values; ++v) {
-                    nf_cv_config config = make_config(2, 2, 1, estimator);
-                    nf_estimate out;
-                    memory work;
-                    config.basis = basis;
-                    config.precision = precision;
-                    for (i = 0; i < N; ++i)
-                        f[i] = values[v];
-                    work = memory_new(nf_cv_workspace_size(&config, N));
-                    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
-                    CHECK(out.mean[0] == values[v]);
-                    CHECK(out.std_error[0] == 0.0f);
-                    CHECK(out.samples == N);
-                    CHECK(out.mean[1] == 0.0f && out.mean[2] == 0.0f && out.mean[3] == 0.0f);
-                    memory_free(&work);
-                }
-}
-
-/* A linear integrand, which polynomials contain: least squares is exact, nobody is far off. */
-static void linear(void)
-{
-    uint32_t estimator, precision, channels, c;
-    for (estimator = 0; estimator < estimators; ++estimator)
-        for (precision = 0; precision < 2; ++precision)
-            for (channels = 1; channels <= 4; ++channels) {
-                nf_cv_config config = make_config(2, 2, channels, estimator);
-                nf_estimate out, again;
-                memory work;
-                config.precision = precision;
-                fill_linear(f, u, N, 2, channels);
-                work = memory_new(nf_cv_workspace_size(&config, N));
-                CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
-                /* Deterministic, and independent of what the workspace holds. */
-                CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &again), NF_OK);
-                CHECK(memcmp(&out, &again, sizeof out) == 0);
-                for (c = 0; c < 4; ++c) {
-                    const float scale = (float)(c + 1);
-                    if (c >= channels) {
-                        CHECK(out.mean[c] == 0.0f && out.std_error[c] == 0.0f);
-                        continue;
-                    }
-                    /* The plain mean's standard error is .051 (c + 1). */
-                    CHECK(fabsf(out.mean[c] - 2.0f * scale) < 4.0f * 0.051f * scale);
-                    if (estimator == NF_CV_LEAST_SQUARES)
-                        CHECK(fabsf(out.mean[c] - 2.0f * scale) < 1e-4f * scale);
-                    CHECK(out.std_error[c] >= 0.0f && out.std_error[c] < 0.06f * scale);
-                }
-                CHECK(out.gain >= 0.0f && out.gain < 1.0f);
-                memory_free(&work);
-            }
-}
-
-/* Every solver gives the same least-squares estimate. */
-static void solvers(void)
-{
-    uint32_t solver;
-    fill_linear(f, u, N, 2, 2);
-    for (solver = 0; solver < 4; ++solver) {
-        nf_cv_config config = make_config(2, 3, 2, NF_CV_LEAST_SQUARES);
-        nf_estimate out;
-        memory work;
-        config.solver = solver;
-        work = memory_new(nf_cv_workspace_size(&config, N));
-        CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
-        CHECK(fabsf(out.mean[0] - 2.0f) < 1e-4f && fabsf(out.mean[1] - 4.0f) < 1e-4f);
-        memory_free(&work);
-    }
-}
-
-/* Order 0, and the robust estimator of stratified samples, are the plain mean. */
-static void plain_means(void)
-{
-    nf_cv_config config = make_config(2, 0, 1, NF_CV_ROBUST);
-    memory work = memory_new(1 << 16);
-    nf_estimate plain, stratified, one;
-    double mean = 0.0;
-    size_t i;
-    fill_linear(f, u, N, 2, 1);
-    for (i = 0; i < N; ++i)
-        mean += f[i] / (double)N;
-    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &plain), NF_OK);
-    CHECK(fabs(plain.mean[0] - mean) < 1e-6);
-    CHECK(plain.gain == 1.0f);
-    config.order = 3;
-    config.stratified = 1;
-    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &stratified), NF_OK);
-    CHECK(memcmp(&plain, &stratified, sizeof plain) == 0);
-    config.stratified = 0;
-    CHECK_STATUS(estimate_one(&config, u, f, 1, work.start, work.bytes, &one), NF_OK);
-    CHECK(one.mean[0] == f[0] && one.samples == 1 && isinf(one.std_error[0]));
-    memory_free(&work);
-}
-
-/* Rows may be longer than what is regressed; the last may end early. */
-static void strides(void)
-{
-    static float wide[N * 5 - 3];
-    nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
-    memory work = memory_new(nf_cv_workspace_size(&config, N));
-    nf_estimate narrow_out, wide_out;
-    size_t i;
-    fill_linear(f, u, N, 2, 1);
-    for (i = 0; i < sizeof wide / sizeof *wide; ++i)
-        wide[i] = not_a_number(); /* between the rows: never looked at */
-    for (i = 0; i < N; ++i) {
-        wide[5 * i] = u[2 * i];
-        wide[5 * i + 1] = u[2 * i + 1];
-    }
-    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &narrow_out), NF_OK);
-    config.stride = 5;
-    CHECK(nf_cv_workspace_size(&config, N) == work.bytes);
-    CHECK_STATUS(estimate_one(&config, wide, f, N, work.start, work.bytes, &wide_out), NF_OK);
-    CHECK(memcmp(&narrow_out, &wide_out, sizeof wide_out) == 0);
-    memory_free(&work);
-}
-
-static void slices_and_colors(void)
-{
-    nf_cv_config config = make_config(3, 2, 3, NF_CV_ROBUST);
-    memory work = memory_new(1 << 18);
-    nf_estimate out;
-    fill_linear(f, u, N, 3, 3);
-    config.slices = 4;
-    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
-    CHECK(fabsf(out.mean[0] - 2.5f) < 0.3f);
-    config.slices = 0;
-    config.color = NF_COLOR_LUMINANCE_RATIO;
-    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_OK);
-    CHECK(fabsf(out.mean[0] - 2.5f) < 0.3f && fabsf(out.mean[2] - 3.0f * out.mean[0]) < 1e-4f);
-    config.channels = 2;
-    CHECK_REFUSED(estimate_one(&config, u, f, N, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
-    memory_free(&work);
-}
-
 /* The pointers, the workspace and the samples, for one function. */
 typedef nf_status (*estimate_function)(const nf_cv_config *, const float *, const float *, size_t, void *, size_t,
                                        nf_estimate *);
-static nf_status plain(const nf_cv_config *c, const float *pu, const float *pf, size_t n, void *w, size_t b,
-                       nf_estimate *out)
-{
-    return estimate_one(c, pu, pf, n, w, b, out);
-}
-static nf_status with_controls(const nf_cv_config *c, const float *pu, const float *pf, size_t n, void *w, size_t b,
-                               nf_estimate *out)
-{
-    return estimate_controlled(c, pu, pf, NULL, NULL, n, w, b, out);
-}
 static float start[64];
 static nf_status descent(const nf_cv_config *c, const float *pu, const float *pf, size_t n, void *w, size_t b,
                          nf_estimate *out)
@@ -175,7 +22,7 @@ static nf_status descent(const nf_cv_config *c, const float *pu, const float *pf
     return status;
 }
 
-static void errors(estimate_function call, uint32_t estimator, uint32_t precision)
+static void errors(estimate_function call, uint32_t estimator)
 {
     static const size_t huge[] = {SIZE_MAX,     SIZE_MAX - 1, SIZE_MAX / 2,  SIZE_MAX / 2 + 1, SIZE_MAX / 3,
                                   SIZE_MAX / 4, SIZE_MAX / 8, SIZE_MAX / 16, SIZE_MAX / 256,   SIZE_MAX / 65536};
@@ -184,7 +31,6 @@ static void errors(estimate_function call, uint32_t estimator, uint32_t precisio
     nf_estimate out;
     float saved;
     size_t i, bytes;
-    config.precision = precision;
     fill_linear(f, u, N, 2, 1);
     bytes = nf_cv_workspace_size(&config, N);
     work = memory_new(bytes);
@@ -227,10 +73,6 @@ static void errors(estimate_function call, uint32_t estimator, uint32_t precisio
         CHECK_REFUSED(call(&config, u, f, N, work.start, bytes, &out), NF_ERR_RANGE, out);
         u[i] = 1.00001f;
         CHECK_REFUSED(call(&config, u, f, N, work.start, bytes, &out), NF_ERR_RANGE, out);
-        u[i] = 1.0f;
-        CHECK_STATUS(call(&config, u, f, N, work.start, bytes, &out), NF_OK);
-        u[i] = -0.0f;
-        CHECK_STATUS(call(&config, u, f, N, work.start, bytes, &out), NF_OK);
         u[i] = saved;
     }
     for (i = 0; i < N; i += N - 1) {
@@ -274,6 +116,9 @@ static void combinations(void)
     config.controls = 0;
     CHECK(nf_cv_workspace_size(&config, 4096) > 0);
     CHECK(nf_cv_workspace_size(&config, 4097) == 0);
+    config = make_config(2, 2, 2, NF_CV_ROBUST);
+    config.color = NF_COLOR_LUMINANCE_RATIO;
+    CHECK_REFUSED(estimate_one(&config, u, f, N / 2, work.start, work.bytes, &out), NF_ERR_UNSUPPORTED, out);
     memory_free(&work);
 }
 
@@ -281,7 +126,7 @@ static void controls(void)
 {
     nf_cv_config config = make_config(2, 1, 1, NF_CV_LEAST_SQUARES);
     float h[N], integral = 0.25f, bad = not_a_number(), saved;
-    nf_estimate out, without;
+    nf_estimate out;
     memory work;
     size_t i;
     /* f = 5 h, h = u0 u1, whose integral is 1/4: order 1 does not contain it, h does. */
@@ -308,13 +153,6 @@ static void controls(void)
     CHECK_REFUSED(estimate_controlled(&config, u, f, h, &integral, N, work.start, work.bytes, &out),
                   NF_ERR_NOT_FINITE, out);
     h[3] = saved;
-    memory_free(&work);
-
-    config.controls = 0;
-    work = memory_new(nf_cv_workspace_size(&config, N));
-    CHECK_STATUS(estimate_controlled(&config, u, f, NULL, NULL, N, work.start, work.bytes, &out), NF_OK);
-    CHECK_STATUS(estimate_one(&config, u, f, N, work.start, work.bytes, &without), NF_OK);
-    CHECK(memcmp(&out, &without, sizeof out) == 0);
     memory_free(&work);
 }
 
@@ -360,12 +198,6 @@ static void many_integrals(void)
             config.controls = 0;
             CHECK_STATUS(estimate_many(&config, u, f, EACH, SIZE_MAX / 2, work.start, work.bytes, out),
                          NF_ERR_RANGE);
-            CHECK_STATUS(estimate_many(NULL, u, f, EACH, 1, work.start, work.bytes, out), NF_ERR_NULL);
-            CHECK_STATUS(estimate_many(&config, NULL, f, EACH, 1, work.start, work.bytes, out), NF_ERR_NULL);
-            CHECK_STATUS(estimate_many(&config, u, NULL, EACH, 1, work.start, work.bytes, out), NF_ERR_NULL);
-            CHECK_STATUS(estimate_many(&config, u, f, EACH, 1, work.start, work.bytes, NULL), NF_ERR_NULL);
-            CHECK_STATUS(estimate_many(&config, u, f, 0, 1, work.start, work.bytes, out), NF_ERR_NO_SAMPLES);
-            CHECK_STATUS(estimate_many(&config, u, f, EACH, 1, work.start, work.bytes - 1, out), NF_ERR_MEMORY);
             CHECK_STATUS(estimate_many(&config, u, f, EACH, 0, work.start, work.bytes, out), NF_OK);
             CHECK(is_poisoned(out, sizeof out));
             memory_free(&work);
@@ -450,21 +282,11 @@ static void warm_starts(void)
 
 int main(void)
 {
-    uint32_t estimator, precision;
+    uint32_t estimator;
     fill_uniform(u, N * 4, 3);
-    constants();
-    linear();
-    solvers();
-    plain_means();
-    strides();
-    slices_and_colors();
-    for (precision = 0; precision < 2; ++precision) {
-        for (estimator = 0; estimator < estimators; ++estimator) {
-            errors(plain, estimator, precision);
-            errors(with_controls, estimator, precision);
-        }
-        errors(descent, NF_CV_GRADIENT_DESCENT, precision);
-    }
+    for (estimator = 0; estimator < estimators; ++estimator)
+        errors(estimate_one, estimator);
+    errors(descent, NF_CV_GRADIENT_DESCENT);
     combinations();
     controls();
     many_integrals();

@@ -15,7 +15,6 @@ int main(void)
 {
     nf_rng rng, copy, reference;
     uint64_t seed;
-    double sum = 0.0;
     int i;
 
     for (seed = 0; seed < 4; ++seed) {
@@ -42,15 +41,7 @@ int main(void)
         uint32_t bits = nf_rng_next(&copy);
         CHECK(u >= 0.0f && u < 1.0f);
         CHECK(u == (float)(bits >> 8) / 16777216.0f);
-        sum += u;
     }
-    /* The mean of 10000 uniforms has standard deviation .0029; the seed is fixed. */
-    CHECK(fabs(sum / 10000.0 - 0.5) < 4 * 0.0029);
-
-    /* Neighbouring seeds differ from the first number on. */
-    nf_rng_seed(&rng, 1);
-    nf_rng_seed(&copy, 2);
-    CHECK(nf_rng_next(&rng) != nf_rng_next(&copy));
     nf_rng_seed(&rng, 1);
     nf_rng_seed(&copy, 1);
     CHECK(memcmp(&rng, &copy, sizeof rng) == 0);

@@ -2,8 +2,8 @@
 
 use crate::cv_support::*;
 use noisefloor::Error;
-use noisefloor::basis::Family;
-use noisefloor::control_variate::Config;
+use noisefloor::basis::{Basis, Family};
+use noisefloor::control_variate::{Color, Config, Estimator, Optimizer, Ridge, Solver};
 use noisefloor_tests::random::SplitMix64;
 
 /// 8-point Gauss-Legendre nodes and weights on [0, 1]: exact to degree 15.
@@ -129,6 +129,19 @@ fn term_counts() {
             }
         }
     }
+    // Whatever is estimated of it, and how.
+    let base = Config::new(2, 2, 3);
+    for config in [
+        Config { estimator: Estimator::KFold, ..base },
+        Config { estimator: Estimator::LeastSquares, solver: Solver::SquareRoot, ..base },
+        Config { color: Color::LuminanceRatio, ..base },
+        Config { estimator: Estimator::GradientDescent, optimizer: Optimizer::Adam, ..base },
+        Config { estimator: Estimator::LeaveOneOut, ridge: Ridge::Fixed(0.02), ..base },
+    ] {
+        assert_eq!(config.terms(), Ok(6));
+    }
+    assert_eq!(Basis::new(Family::Legendre, 2, 3, 0).unwrap().columns(), 9);
+    assert!(Basis::new(Family::Sine, 3, 2, 0).is_ok() && Basis::new(Family::Sine, 16, 7, 0).is_err());
     for (dims, order) in [(0, 1), (17, 1), (1, 8), (usize::MAX, 2), (2, usize::MAX)] {
         assert_eq!(Config::new(dims, order, 1).terms(), Err(Error::Range));
     }

@@ -117,6 +117,7 @@ fn constants() {
                     let f = vec![constant; pixels * n];
                     for estimate in image(&config, &of, Samples::new(&u, &f)).unwrap() {
                         assert_eq!((estimate.mean[0], estimate.gain), (constant, 1.0), "{pixels} {n} {order}");
+                        assert!(n == 1 || estimate.std_error[0] == 0.0, "{estimate:?}");
                     }
                 }
             }
@@ -129,6 +130,36 @@ fn constants() {
             let limit = if n > 1 { 1e-7 } else { 0.03 };
             assert!(error < limit, "{width} {height} {frames} {n}: {error}");
         }
+    }
+}
+
+/// Linear pixels that brighten across the image, of 4 samples: a hundredth of the mean's squared error. Of one sample,
+/// where all are alike, within .1 of 2.
+#[test]
+fn linear_pixels() {
+    let mut rng = SplitMix64::new(12);
+    let of = Image::new(11, 7);
+    let u = points(4 * 77, 2, &mut rng);
+    let linear = |i: usize| 1.0 + u[2 * i] + u[2 * i + 1];
+    for (channels, estimator) in SHARED.into_iter().flat_map(|estimator| (1..4).map(move |c| (c, estimator))) {
+        let truth = |pixel: usize| 2.0 + 2.0 * (pixel % 11) as f32 / 16.0;
+        let value = |i: usize| 0.5 * truth(i / 4) * linear(i);
+        let f: Vec<f32> = (0..4 * 77).flat_map(|i| (1..=channels).map(move |c| c as f32 * value(i))).collect();
+        let estimates = image(&Config { estimator, ..Config::new(2, 2, channels) }, &of, Samples::new(&u, &f)).unwrap();
+        let [mut plain, mut error] = [0.0; 2];
+        for (pixel, estimate) in estimates.iter().enumerate() {
+            let mean = (4 * pixel..4 * pixel + 4).map(value).sum::<f32>() / 4.0;
+            plain += (mean - truth(pixel)).powi(2);
+            error += (estimate.mean[0] - truth(pixel)).powi(2);
+            assert!(channels == 1 || (estimate.mean[1] - 2.0 * estimate.mean[0]).abs() < 1e-3, "{estimate:?}");
+            assert!(estimate.gain.is_finite() && estimate.samples == 4);
+            assert_eq!((estimate.mean[3], estimate.std_error[3]), (0.0, 0.0));
+        }
+        assert!(error < 0.01 * plain, "{estimator:?} {channels}: {error} {plain}");
+    }
+    let f: Vec<f32> = (0..77).map(linear).collect();
+    for estimate in image(&Config::new(2, 1, 1), &of, Samples::new(&u[..2 * 77], &f)).unwrap() {
+        assert!((estimate.mean[0] - 2.0).abs() < 0.1 && estimate.std_error[0].is_finite(), "{estimate:?}");
     }
 }
 
@@ -267,6 +298,7 @@ fn errors() {
         estimate_image(config, &image, Samples::new(u, f), &mut vec![f32::NAN; len], never)
     };
     let of = Image::new(3, 2);
+    assert_eq!((of.width, of.height, of.window), (3, 2, 0));
     let len = image_workspace_len(&config, &of, 2).unwrap();
     assert_eq!(run(&config, of, &u, &f, len - 1), Err(Error::Memory));
     assert_eq!(run(&config, Image::new(0, 2), &u, &f, 9999), Err(Error::Range));
@@ -374,5 +406,53 @@ proptest! {
             prop_assert!(is_sound(estimate), "{estimate:?}");
         }
         prop_assert_eq!(&estimates, &image(&config, &of, Samples::new(&u, &f)).unwrap());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 500,
+        rng_seed: proptest::test_runner::RngSeed::Fixed(3),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    /// But for the robust choice a pixel's own samples never shape its correction, and their order
+    /// never matters, within the rounding of a fit in `f32`.
+    #[test]
+    fn a_pixel_does_not_see_itself(
+        estimator in 0..3_usize,
+        width in 1..10_usize,
+        height in 1..10_usize,
+        n in 1..5_usize,
+        order in 1..3_usize,
+        in_order in any::<bool>(),
+        seed in any::<u64>(),
+    ) {
+        let estimator = [Estimator::LeaveOneOut, Estimator::KFold, Estimator::Robust][estimator];
+        let config = Config { estimator, ..Config::new(2, order, 1) };
+        let ridge = if estimator == Estimator::Robust { Ridge::Fixed(0.02) } else { config.ridge };
+        let config = Config { ridge, ..config };
+        let (mut rng, pixels) = (SplitMix64::new(seed), width * height);
+        let u = points(pixels * n, 2, &mut rng);
+        let f = wide(&u).chunks(2).map(|u| smooth(u) as f32).collect::<Vec<f32>>();
+        let call = |u: &[f32], f: &[f32]| match in_order {
+            true => image(&config, &Image::new(width, height), Samples::new(u, f)).unwrap(),
+            false => block(&config, pixels, Samples::new(u, f)).unwrap(),
+        };
+        let pixel = rng.below(pixels);
+        let own = pixel * n..(pixel + 1) * n;
+        let correction = |f: &[f32]| call(&u, f)[pixel].mean[0] - f[own.clone()].iter().sum::<f32>() / n as f32;
+        let mut other = f.clone();
+        other[own.clone()].iter_mut().for_each(|f| *f = 3.0 * rng.uniform_f32() - 1.0);
+        let (a, b) = (correction(&f), correction(&other));
+        prop_assert!((a - b).abs() < 3e-4, "{a} {b}");
+
+        let (mut turned_u, mut turned_f) = (u.clone(), f.clone());
+        turned_f[own.clone()].reverse();
+        turned_u[2 * own.start..2 * own.end].as_chunks_mut::<2>().0.reverse();
+        for (a, b) in call(&u, &f).iter().zip(call(&turned_u, &turned_f)) {
+            prop_assert!((a.mean[0] - b.mean[0]).abs() < 1e-4, "{:?} {:?}", a, b);
+        }
     }
 }

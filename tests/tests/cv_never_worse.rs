@@ -172,15 +172,3 @@ fn least_squares_is_worse() {
     let [ratio] = ratios(&integrand, [(least_squares, false)], 16, 4000, 7000);
     assert!(ratio.value - ratio.half_width > 1.1, "{ratio:?}");
 }
-
-/// Stratified samples: the robust estimate is the mean, to the bit.
-#[test]
-fn stratified_is_the_mean() {
-    let mut rng = SplitMix64::new(7100);
-    let u = points(16, 2, &mut rng);
-    let f = values(&u, 2, smooth);
-    let config = Config { stratified: true, ..config(2, 2, Estimator::Robust) };
-    let plain = Config { order: 0, ..config };
-    assert_eq!(batch::<f64>(&config, &u, &f), batch::<f64>(&plain, &u, &f));
-    assert_eq!(streamed::<f64>(&config, &u, &f), batch::<f64>(&plain, &u, &f));
-}

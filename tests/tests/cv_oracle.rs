@@ -4,6 +4,7 @@
 //! estimate's own rounding is 6e-8 of itself), an `f32` path within 1e-4 of it.
 
 use crate::cv_support::*;
+use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{
     self, Color, Config, Estimate, Estimator, NonFinite, Optimizer, Regressor, Ridge, Samples, Solver,
@@ -94,6 +95,11 @@ fn regressor() {
     check::<2, 6>(2, 5, 0.01, F64);
     check::<3, 20>(3, 80, 1e-9, F64);
     check::<1, 8>(7, 40, 1e-3, F64);
+    // Order 2 of 3 coordinates has 10 terms.
+    assert!(Regressor::<3, 10, 1>::new(Family::Legendre, 2).is_ok());
+    assert!(Regressor::<3, 9, 1>::new(Family::Legendre, 2).is_err());
+    let mut regressor = Regressor::<1, 2, 1>::new(Family::Legendre, 1).unwrap();
+    assert_eq!(regressor.add(&[1.5], &[2.0]), Err(Error::Range));
 }
 
 /// The closed form, through the normal equations and the dual, against refitting n times.
@@ -306,6 +312,8 @@ fn stride() {
     for estimator in ESTIMATORS {
         let tight = config(2, 2, estimator);
         let wide = Config { stride: 5, ..tight };
+        let len = |config| control_variate::workspace_len::<f64>(config, 33);
+        assert_eq!(len(&wide), len(&tight));
         assert_eq!(batch::<f64>(&wide, &longer, &f), batch::<f64>(&tight, &u, &f), "{estimator:?}");
         if estimator != Estimator::LeaveOneOut {
             assert_eq!(streamed::<f32>(&wide, &longer, &f), streamed::<f32>(&tight, &u, &f), "{estimator:?}");

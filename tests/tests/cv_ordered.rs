@@ -25,10 +25,14 @@ fn declared_is_the_mean() {
                     let config = Config { stratified: true, ..config(integrand.dims, order, estimator) };
                     let plain = Config { order: 0, ..config };
                     let mean = batch::<f64>(&Config { estimator: Estimator::Robust, ..plain }, &u, &f).unwrap();
-                    assert_eq!(batch::<f64>(&config, &u, &f).unwrap().mean, mean.mean, "{estimator:?} {n}");
+                    let found = batch::<f64>(&config, &u, &f).unwrap();
+                    assert_eq!(found.mean, mean.mean, "{estimator:?} {n}");
+                    assert!(estimator != Estimator::Robust || found == mean, "{n}: {found:?} {mean:?}");
                     if estimator != Estimator::LeaveOneOut {
-                        let streamed = streamed::<f64>(&config, &u, &f).unwrap().mean[0];
-                        assert!((streamed - mean.mean[0]).abs() <= 2e-7 * mean.mean[0].abs(), "{estimator:?} {n}");
+                        let streamed = streamed::<f64>(&config, &u, &f).unwrap();
+                        let error = (streamed.mean[0] - mean.mean[0]).abs();
+                        assert!(error <= 2e-7 * mean.mean[0].abs(), "{estimator:?} {n}");
+                        assert!(n > 16 || estimator != Estimator::Robust || streamed == mean, "{streamed:?} {mean:?}");
                     }
                 }
             }

@@ -237,17 +237,20 @@ proptest! {
         knock::<f32>(&config, Samples::new(&u, &f), &mut rng);
     }
 
-    /// Powers of two times f: the same times the estimate, to the bit.
+    /// Powers of two times f, of either sign: the same times the estimate, to the bit.
     #[test]
-    fn powers_of_two_are_exact(config in valid(), n in 1_usize..40, exponent in -90_i32..90, seed in any::<u64>()) {
+    fn powers_of_two_are_exact(
+        config in valid(), n in 1_usize..40, exponent in -90_i32..90, sign in any::<bool>(), seed in any::<u64>(),
+    ) {
         let mut rng = SplitMix64::new(seed);
         let u = points(n, config.dims, &mut rng);
         let f = values(&u, config.dims, smooth);
-        let factor = 2.0_f32.powi(exponent);
+        let size = 2.0_f32.powi(exponent);
+        let factor = if sign { size } else { -size };
         let scaled: Vec<f32> = f.iter().map(|f| f * factor).collect();
         let same = |base: Estimate, scaled: Estimate| {
             prop_assert_eq!(scaled.mean[0], base.mean[0] * factor);
-            prop_assert_eq!(scaled.std_error[0], base.std_error[0] * factor);
+            prop_assert_eq!(scaled.std_error[0], base.std_error[0] * size);
             prop_assert_eq!(scaled.gain, base.gain);
             Ok(())
         };
@@ -274,6 +277,27 @@ proptest! {
         let wide = error(batch::<f64>(&config, &u, &f).unwrap(), batch::<f64>(&config, &u, &shifted).unwrap());
         let mean = f64::from(batch::<f64>(&config, &u, &f).unwrap().mean[0]);
         prop_assert!(wide < 1e-5 * size.max(mean.abs()), "{}", wide);
+    }
+
+    /// Whole numbers times f: as many times the estimate, within 1e-5.
+    #[test]
+    fn factors_scale(config in valid(), n in 12_usize..60, factor in -100_i32..100, seed in any::<u64>()) {
+        let mut rng = SplitMix64::new(seed);
+        let u = points(n, config.dims, &mut rng);
+        // Dyadic values and an integer: products are exact, and only the estimate's own roundings are left.
+        let f: Vec<f32> = values(&u, config.dims, smooth).iter().map(|f| (f * 1024.0).round() / 1024.0).collect();
+        let factor = factor as f32;
+        let scaled: Vec<f32> = f.iter().map(|f| f * factor).collect();
+        let close = |base: Estimate, scaled: Estimate| {
+            let error = (scaled.mean[0] - factor * base.mean[0]).abs();
+            let size = factor.abs() * (base.mean[0].abs() + largest(&f) as f32);
+            prop_assert!(error <= 1e-5 * size, "{:?} {:?}", base, scaled);
+            Ok(())
+        };
+        close(batch::<f64>(&config, &u, &f).unwrap(), batch::<f64>(&config, &u, &scaled).unwrap())?;
+        if config.estimator != Estimator::LeaveOneOut {
+            close(streamed::<f64>(&config, &u, &f).unwrap(), streamed::<f64>(&config, &u, &scaled).unwrap())?;
+        }
     }
 
     /// The order of samples: no matter for estimators without folds and without a first and a next, within 1e-6.

@@ -131,20 +131,27 @@ fn one_slice_is_none() {
 fn most_slices() {
     let terms = |dims, order, slices| Config { slices, ..Config::new(dims, order, 1) }.terms();
     // dims, order; the most; up to degree 1, 2, ...
-    let expected: [(usize, usize, usize, &[usize]); 7] = [
+    let expected: [(usize, usize, usize, &[usize]); 12] = [
+        (1, 2, 135, &[]),
+        (2, 1, 134, &[]),
         (2, 2, 133, &[66, 44]),
+        (2, 7, 128, &[]),
         (3, 1, 133, &[44]),
         (3, 2, 130, &[43, 21]),
         (3, 3, 126, &[42, 21, 12]),
+        (3, 7, 100, &[]),
         (4, 2, 126, &[31, 12]),
         (5, 2, 121, &[24, 8]),
         (7, 3, 52, &[7, 1]),
+        (15, 2, 16, &[]),
     ];
     for (dims, order, most, with_own) in expected {
-        let others = Config::new(dims - 1, order, 1).terms().unwrap();
+        let others = if dims == 1 { 1 } else { Config::new(dims - 1, order, 1).terms().unwrap() };
         assert_eq!(most, 136 - others);
         assert_eq!(terms(dims, order, most), Ok(136), "{dims} dims, order {order}");
-        assert_eq!(terms(dims, order, most + 1), Err(Error::Range), "{dims} dims, order {order}");
+        for more in [most + 1, 256] {
+            assert_eq!(terms(dims, order, more), Err(Error::Range), "{dims} dims, order {order}");
+        }
         for (degree, &slices) in (1..).zip(with_own) {
             let own = Config::new(dims - 1, degree, 1).terms().unwrap();
             assert_eq!(slices, (136 - others) / own, "{dims} dims, order {order}");
@@ -155,6 +162,9 @@ fn most_slices() {
             assert!(terms(dims, order, slices + 1).unwrap() < others + (slices + 1) * own);
         }
     }
+    // Control functions take a term each.
+    let controlled = |slices| Config { slices, controls: 1, ..Config::new(3, 2, 1) }.terms();
+    assert_eq!((controlled(129), controlled(130)), (Ok(136), Err(Error::Range)));
     // Of order 0 nothing is regressed.
     assert_eq!(terms(3, 0, 135), Ok(1));
 }

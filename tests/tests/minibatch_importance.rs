@@ -100,6 +100,11 @@ fn limits() {
         importance::cross_entropy_gradient(logits, label, &mut gradient).unwrap();
         assert!(close(importance::gradient(&gradient), norm), "{logits:?} {gradient:?}");
     }
+    let mut gradient = [f32::NAN; 2];
+    importance::cross_entropy_gradient(&[1e38, -1e38], 1, &mut gradient).unwrap();
+    assert_eq!(gradient, [1.0, -1.0]);
+    assert_close(importance::gradient(&[1e38, -1e38]), 2f64.sqrt() * f64::from(1e38_f32));
+    assert_close(importance::squared_error(&[1e38], &[1.0]), 2.0 * f64::from(1e38_f32));
     assert_eq!(importance::squared_error(&[3e38, -3e38], &[-3e38, 3e38]), f32::MAX);
     assert_eq!(importance::gradient(&[f32::MAX; 3]), f32::MAX);
     assert_eq!(importance::gradient(&[1e-45]), 1e-45);

@@ -1,7 +1,7 @@
 //! Optimal MIS gradients: their algebra, their limits and their errors. Statistics are in minibatch_statistics.rs.
 
 use noisefloor::Error;
-use noisefloor::minibatch::{Batch, Gradient, gradient_len, weights};
+use noisefloor::minibatch::{Batch, Gradient, System, gradient_len, weights};
 use noisefloor::mis::{DEFAULT_RIDGE, Solver};
 use noisefloor::rng::Rng;
 use noisefloor_tests::minibatch::{Drawn, Problem};
@@ -127,18 +127,19 @@ fn weights_are_their_formulas() {
     }
 }
 
-/// One uniform technique: the plain mean.
+/// Uniform techniques, also of one sample or none each: the plain mean.
 #[test]
 fn uniform_sampling_has_weight_one() {
-    for solver in SOLVERS {
+    for (solver, techniques) in SOLVERS.into_iter().flat_map(|solver| [(solver, 1), (solver, 16)]) {
         let drawn = Drawn {
             items: 64,
-            techniques: 1,
-            pdf: vec![1.0 / 64.0; 10],
-            technique: vec![0; 10],
+            techniques,
+            pdf: vec![1.0 / 64.0; 10 * techniques],
+            technique: (0..10).map(|s| s % techniques as u32).collect(),
             gradient: vec![0.0; 10],
         };
-        assert!(drawn.weights(solver).iter().all(|w| (w - 1.0).abs() < 1e-6), "{:?}", drawn.weights(solver));
+        let tolerance = if techniques == 1 { 1e-6 } else { 1e-5 };
+        assert!(drawn.weights(solver).iter().all(|w| (w - 1.0).abs() < tolerance), "{:?}", drawn.weights(solver));
     }
 }
 
@@ -320,6 +321,9 @@ fn momentum_forgets() {
     state.reset();
     state.estimate(&drawn.batch(), RIDGE, 0.7, &drawn.gradient, &mut again).unwrap();
     assert_eq!((again, &state), (first, &fresh));
+    state.reset();
+    assert_eq!(state, Gradient::resume(vec![0.0; 9], System::new(2), 3).unwrap());
+    state.estimate(&drawn.batch(), RIDGE, 0.7, &drawn.gradient, &mut again).unwrap();
     // What is taken up goes on as if it had never been put down.
     let mut resumed = Gradient::resume(fresh_memory(&fresh, &drawn), *state.system(), 3).unwrap();
     let (mut a, mut b) = ([0.0; 3], [0.0; 3]);
@@ -418,7 +422,8 @@ fn batches_refuse() {
     let refuse = |items, techniques, pdf: &[f32], technique: &[u32], error| {
         assert_eq!(Batch::new(items, techniques, pdf, technique).unwrap_err(), error);
     };
-    assert!(Batch::new(1, 2, &pdf, &technique).is_ok());
+    let batch = Batch::new(1, 2, &pdf, &technique).unwrap();
+    assert_eq!((batch.len(), batch.techniques()), (2, 2));
     refuse(0, 2, &pdf, &technique, Error::Range);
     refuse(1, 0, &[], &technique, Error::Range);
     refuse(1, 17, &[0.5; 34], &technique, Error::Range);
@@ -472,7 +477,7 @@ fn estimates_refuse() {
         ),
         (0, 0, 0, 0, 0)
     );
-    assert_eq!(gradient_len(3, 5), 20);
+    assert_eq!((gradient_len(3, 5), gradient_len(4, 1000)), (20, 5000));
     assert_eq!(Gradient::new([0.0; 9], 17, 1).unwrap_err(), Error::Range);
     assert_eq!(Gradient::new([0.0; 9], 2, 0).unwrap_err(), Error::Range);
     assert_eq!(Gradient::new([0.0; 8], 2, 3).unwrap_err(), Error::Memory);

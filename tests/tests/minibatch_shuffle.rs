@@ -13,6 +13,8 @@ fn every_element_once() {
                 assert!(!seen[element], "{items} items, seed {seed}: {element} twice");
                 seen[element] = true;
             }
+            let turns = u32::MAX / items;
+            assert_eq!(shuffle(seed, items, (turns - 1) * items), shuffle(seed, items, 0));
             if items > 100_000 {
                 break;
             }

@@ -4,7 +4,8 @@ use crate::table_support::{Borrowed, lognormal, memory, reloaded, saved, table};
 use noisefloor::Error;
 use noisefloor::minibatch::Table;
 use noisefloor::minibatch::table::{
-    DEFAULT_UNIFORM_FRACTION, Shard, State, allocate, check_saved, importance_len, saved_items, saved_len, sums_len,
+    DEFAULT_UNIFORM_FRACTION, Kernel, Portable, Shard, State, allocate, check_importances, check_saved, importance_len,
+    saved_items, saved_len, sums_len,
 };
 use noisefloor::rng::Rng;
 use noisefloor_tests::random::SplitMix64;
@@ -18,6 +19,7 @@ fn memory_per_item() {
     assert_eq!((importance_len(0), sums_len(0), saved_len(0)), (0, 0, 32));
     assert_eq!((importance_len(1), sums_len(1), saved_len(1)), (16, 16, 36));
     assert_eq!((importance_len(257), sums_len(257)), (272, 3 * 16));
+    assert_eq!((importance_len(17), saved_len(1000)), (32, 4032));
     let most = 1 << 32;
     assert_eq!(importance_len(u32::MAX), most);
 }
@@ -173,6 +175,8 @@ fn bad_input_is_refused() {
         assert_eq!(table.set_uniform_fraction(bad), Err(Error::NotFinite));
     }
     assert_eq!(table.update(&[0, 4], &[1.0, 1.0], 0.0), Err(Error::Range));
+    assert_eq!((table.check_items(&[0, 3]), table.check_items(&[4])), (Ok(()), Err(Error::Range)));
+    assert_eq!((check_importances(&[0.0, 1.0]), check_importances(&[-1.0])), (Ok(()), Err(Error::Range)));
     assert_eq!(table.update(&[0, 1], &[1.0, -1.0], 0.0), Err(Error::Range));
     assert_eq!(table.update(&[0, 1], &[1.0], 0.0), Err(Error::Range));
     for bad in [-0.1, 1.1] {
@@ -210,6 +214,9 @@ fn bad_shards_are_refused() {
         result
     };
     let good = [shard(1.0, 4), shard(0.0, 5)];
+    assert_eq!((Shard::sum(good), Shard::sum([])), (Ok(shard(1.0, 9)), Err(Error::NoSamples)));
+    assert_eq!(Shard::sum([shard(-1.0, 10)]), Err(Error::Range));
+    assert_eq!(table(&[1.0, 2.0, 3.0, 4.0], 0.2).shard(), shard(10.0, 4));
     assert_eq!(call(&good, 0.2, 2), Ok(()));
     assert_eq!(call(&good, 0.2, 3), Err(Error::Range));
     assert_eq!(call(&good, 1.2, 2), Err(Error::Range));
@@ -300,4 +307,31 @@ fn memory_need_not_match() {
     assert_eq!(made(2000, sums), Ok(1024));
     assert_eq!(made(importance, 4000), Ok(1008));
     assert_eq!(made(importance, sums - 1), Err(Error::Memory));
+}
+
+/// A kernel that is named is the one that a table has from the start.
+#[test]
+fn the_portable_kernel() {
+    assert_eq!(Portable::total(&[0.5; 16]), 8.0);
+    let seed = || Rng::seed(1);
+    let (mut table, mut again) =
+        (table(&[1.0, 2.0, 3.0, 4.0], 0.2), table(&[1.0, 2.0, 3.0, 4.0], 0.2).with_kernel::<Portable>());
+    let (mut a, mut b) = ([0; 8], [0; 8]);
+    table.draw(&mut seed(), &mut a, None).unwrap();
+    again.draw(&mut seed(), &mut b, None).unwrap();
+    assert_eq!(a, b);
+    table.draw_stratified(&mut seed(), &mut a, None).unwrap();
+    again.draw_stratified(&mut seed(), &mut b, None).unwrap();
+    assert_eq!(a, b);
+    table.draw_shard(&table.shard(), &mut seed(), &mut a, None).unwrap();
+    again.draw_shard(&again.shard(), &mut seed(), &mut b, None).unwrap();
+    assert_eq!(a, b);
+    table.draw_distinct(&mut seed(), &mut a[..3], None).unwrap();
+    again.draw_distinct(&mut seed(), &mut b[..3], None).unwrap();
+    assert_eq!(a, b);
+    table.update(&[0], &[5.0], 0.3).unwrap();
+    again.update(&[0], &[5.0], 0.3).unwrap();
+    table.add_epsilon(0.5).unwrap();
+    again.add_epsilon(0.5).unwrap();
+    assert_eq!((table.importance(0), table.total()), (again.importance(0), again.total()));
 }

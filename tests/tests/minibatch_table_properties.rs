@@ -1,9 +1,12 @@
-//! Tables under random operations, against the obvious: a list of importances.
+//! Tables under random operations, against the obvious: a list of importances; and what docs/minibatch.md says of any
+//! table and shards.
 
-use crate::table_support::{Borrowed, ideal, memory, reloaded, saved};
+use crate::table_support::{Borrowed, Owned, ideal, memory, reloaded, saved, table};
 use noisefloor::Error;
 use noisefloor::minibatch::Table;
+use noisefloor::minibatch::table::{Shard, allocate};
 use noisefloor::rng::Rng;
+use noisefloor_tests::random::SplitMix64;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -262,5 +265,117 @@ proptest! {
         operations in prop::collection::vec(operation(), 1..25),
     ) {
         run(&start, room, &operations)?;
+    }
+}
+
+/// From the smallest f32 to the largest, and 0.
+fn any_size() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        4 => 0.0_f32..10.0,
+        2 => (-45.0_f32..38.5).prop_map(|e| 10f32.powf(e).min(f32::MAX)),
+        2 => Just(0.0),
+        1 => prop::sample::select(vec![f32::from_bits(1), f32::MIN_POSITIVE, f32::MAX]),
+    ]
+}
+
+fn valid_fraction() -> impl Strategy<Value = f32> {
+    prop_oneof![2 => Just(0.2_f32), 1 => Just(0.0), 1 => Just(1.0), 4 => 0.0_f32..1.0]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 1000,
+        rng_seed: RngSeed::Fixed(3),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    /// p_i = (1 - d) q_i / sum q + d / N are probabilities, and the weight 1 / (N p_i) is at most 1 / d,
+    /// drawn independently or stratified.
+    #[test]
+    fn probabilities_sum_to_one(
+        q in prop::collection::vec(any_size(), 1..400),
+        fraction in valid_fraction(),
+        seed in any::<u64>(),
+    ) {
+        let (table, items) = (table(&q, fraction), q.len());
+        let sum: f64 = (0..items).map(|item| f64::from(table.probability(item as u32))).sum();
+        let possible = fraction > 0.0 || q.iter().any(|&q| q > 0.0);
+        prop_assert!((sum - f64::from(u8::from(possible))).abs() < 1e-6, "{sum}");
+        let (mut index, mut weight) = ([0; 70], [0.0; 70]);
+        for stratified in [false, true] {
+            let drawn = match stratified {
+                true => table.draw_stratified(&mut Rng::seed(seed), &mut index, Some(&mut weight)),
+                false => table.draw(&mut Rng::seed(seed), &mut index, Some(&mut weight)),
+            };
+            prop_assert_eq!(drawn.is_ok(), possible);
+            for (&item, &weight) in index.iter().zip(&weight).filter(|_| possible) {
+                prop_assert!(f64::from(weight) * f64::from(fraction) <= 1.0 + 1e-6, "{} {}", fraction, weight);
+                let product = f64::from(weight) * f64::from(table.probability(item)) * items as f64;
+                prop_assert!((product - 1.0).abs() < 1e-6 || table.probability(item) < 1e-36, "{}", product);
+            }
+        }
+    }
+
+    /// Sums do not depend on the order of updates of different items, and only ratios of importances
+    /// count.
+    #[test]
+    fn order_and_unit_of_importances_do_not_matter(
+        q in prop::collection::vec(prop_oneof![4 => 1e-6_f32..1e6, 1 => Just(0.0)], 2..300),
+        new in prop::collection::vec(prop_oneof![4 => 1e-6_f32..1e6, 1 => Just(0.0)], 2..300),
+        momentum in 0.0_f32..1.0,
+        exponent in -60..60_i32,
+        seed in any::<u64>(),
+    ) {
+        let changed = q.len().min(new.len());
+        let mut rng = SplitMix64::new(seed);
+        let mut order: Vec<u32> = (0..q.len() as u32).collect();
+        order.sort_by_cached_key(|_| rng.next_u64());
+        order.truncate(changed);
+        let (mut forward, mut backward) = (table(&q, 0.2), table(&q, 0.2));
+        let unit = 2f32.powi(exponent);
+        let scale = |values: &[f32]| values.iter().map(|q| q * unit).collect::<Vec<f32>>();
+        let mut scaled = table(&scale(&q), 0.2);
+        forward.update(&order, &new[..changed], momentum).unwrap();
+        scaled.update(&order, &scale(&new[..changed]), momentum).unwrap();
+        let (order, new): (Vec<u32>, Vec<f32>) = order.iter().zip(&new).rev().map(|(&item, &q)| (item, q)).unzip();
+        backward.update(&order, &new, momentum).unwrap();
+        prop_assert!(saved(&forward) == saved(&backward));
+        let draw = |table: &Owned| {
+            let (mut index, mut weight) = ([0; 40], [0.0; 40]);
+            table.draw(&mut Rng::seed(seed), &mut index, Some(&mut weight)).unwrap();
+            (index, weight)
+        };
+        prop_assert_eq!(draw(&forward), draw(&backward));
+        prop_assert_eq!(draw(&forward), draw(&scaled));
+    }
+
+    /// The counts of shards are those of the whole batch, each its share rounded up or down.
+    #[test]
+    fn shards_share_out_the_batch(
+        shards in prop::collection::vec(
+            (prop_oneof![4 => 0.0..1e3_f64, 1 => Just(0.0), 1 => 0.0..1e30_f64], 0..1000_u64),
+            1..20,
+        ),
+        fraction in valid_fraction(),
+        batch in 0..5000_u32,
+        seed in any::<u64>(),
+    ) {
+        let shards: Vec<Shard> = shards.into_iter()
+            .map(|(importance, items)| Shard { importance: if items > 0 { importance } else { 0.0 }, items }).collect();
+        let mut counts = vec![0; shards.len()];
+        if allocate(shards.iter().copied(), fraction, &mut Rng::seed(seed), batch, &mut counts).is_err() {
+            let importance: f64 = shards.iter().map(|shard| shard.importance).sum();
+            prop_assert!(shards.iter().all(|shard| shard.items == 0) || importance == 0.0 && fraction == 0.0);
+            return Ok(());
+        }
+        prop_assert_eq!(counts.iter().sum::<u32>(), batch);
+        let all = Shard::sum(shards.iter().copied()).unwrap();
+        let d = if all.importance > 0.0 { f64::from(fraction) } else { 1.0 };
+        for (shard, &count) in shards.iter().zip(&counts) {
+            let by_importance = if all.importance > 0.0 { shard.importance / all.importance } else { 0.0 };
+            let share = f64::from(batch) * ((1.0 - d) * by_importance + d * shard.items as f64 / all.items as f64);
+            prop_assert!((f64::from(count) - share).abs() < 1.0 + 1e-6, "{} of {}", count, share);
+        }
     }
 }

@@ -89,6 +89,10 @@ fn values_by_hand() {
     close(|p, n, j| cutoff(p, n, j, 0.33), [0.25, 0.75, 0.0]);
     close(|p, n, j| cutoff(p, n, j, 0.34), [0.0, 1.0, 0.0]);
     close(maximum, [0.0, 1.0, 0.0]);
+    // To the bit.
+    let (pdf, counts) = ([1.0, 3.0], [1, 1]);
+    assert_eq!([balance(&pdf, &counts, 1), power(&pdf, &counts, 1, 2.0)], [Ok(0.75), Ok(0.9)]);
+    assert_eq!([cutoff(&pdf, &counts, 0, 0.5), maximum(&pdf, &counts, 1)], [Ok(0.0), Ok(1.0)]);
 }
 
 #[test]

@@ -18,6 +18,12 @@ fn add_all(omis: &mut OptimalMis<Vec<f64>>, samples: &[Sample]) {
     }
 }
 
+fn of(counts: &[u32], samples: &[Sample]) -> OptimalMis<Vec<f64>> {
+    let mut omis = empty(counts, 1);
+    add_all(&mut omis, samples);
+    omis
+}
+
 fn estimate(omis: &OptimalMis<Vec<f64>>, solver: Solver) -> f32 {
     let mut out = [f32::NAN];
     omis.solve(solver, &mut out).unwrap();
@@ -260,6 +266,41 @@ proptest! {
         }
     }
 
+    /// Merging is associative, the order of samples does not matter, and estimates scale with f, within 1e-5.
+    #[test]
+    fn merging_order_and_scale(
+        techniques in 1..6_usize,
+        sizes in prop::collection::vec(1..12_usize, 3),
+        factor in -50.0..50.0_f32,
+        seed in any::<u64>(),
+    ) {
+        let mut rng = Rng::seed(seed);
+        let counts: Vec<u32> = (0..techniques).map(|_| 1 + rng.below(3)).collect();
+        let mut samples: Vec<Sample> = (0..sizes.iter().sum()).map(|i: usize| {
+            let pdf = (0..techniques).map(|_| 0.1 + rng.uniform_f32()).collect();
+            Sample { technique: i % techniques, pdf, value: 2.0 * rng.uniform_f32() - 1.0 }
+        }).collect();
+        let solve =
+            |omis: &OptimalMis<Vec<f64>>| [Solver::default(), Solver::Balance].map(|solver| estimate(omis, solver));
+        let same = |a: [f32; 2], b: [f32; 2], size: f32| {
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-5 * size * (1.0 + a.abs()))
+        };
+        let whole = solve(&of(&counts, &samples));
+        let (first, rest) = samples.split_at(sizes[0]);
+        let (second, third) = rest.split_at(sizes[1]);
+        let [a, b, c] = [first, second, third].map(|part| of(&counts, part));
+        let (mut left, mut right, mut end) = (a.clone(), a, b.clone());
+        left.merge(&b).unwrap();
+        left.merge(&c).unwrap();
+        end.merge(&c).unwrap();
+        right.merge(&end).unwrap();
+        prop_assert!(same(solve(&left), whole, 1.0) && same(solve(&right), whole, 1.0));
+        samples.sort_by_cached_key(|_| rng.next_u64());
+        prop_assert!(same(solve(&of(&counts, &samples)), whole, 1.0));
+        samples.iter_mut().for_each(|sample| sample.value *= factor);
+        prop_assert!(same(solve(&of(&counts, &samples)), whole.map(|x| factor * x), 1.0 + factor.abs()));
+    }
+
     /// Powers of two scale exactly: densities do not matter at all, values come out as they went in.
     #[test]
     fn scales_are_exact(seed in any::<u64>(), density in -60..60_i32, value in -60..60_i32) {
@@ -388,6 +429,7 @@ fn memory_may_be_owned_borrowed_and_taken_up_again() {
 fn lengths() {
     assert_eq!(mis::len(1, 1), 1 + 1 + 1 + 4);
     assert_eq!(mis::len(16, 10), 1 + 16 + 136 + 10 * 34);
+    assert_eq!((mis::len(2, 1), Solver::default()), (12, Solver::Ridge(2.0)));
     for (techniques, integrals) in [(0, 1), (17, 1), (2, 0), (2, usize::MAX), (16, usize::MAX / 300), (usize::MAX, 1)] {
         assert_eq!(mis::len(techniques, integrals), 0);
     }
@@ -480,3 +522,33 @@ fn an_estimate_beyond_f32_is_its_largest() {
     omis.add(0, &[1e-30], &[-1e30]).unwrap();
     assert_eq!(estimate(&omis, Solver::Balance), f32::MIN);
 }
+
+/// Bits that tests/c/omis.c pins too.
+#[test]
+fn pinned_values() {
+    let mut rng = Rng::seed(31);
+    let [mut omis, mut other] = [(); 2].map(|()| empty(&[2, 1], 2));
+    for i in 0..30 {
+        let x = rng.uniform_f32();
+        let to = if i % 5 == 0 { &mut other } else { &mut omis };
+        to.add(i % 2, &[1.0, 0.5 + x], &[x * x, 1.0 - x]).unwrap();
+        if i == 14 {
+            omis.next_batch(Solver::Plain).unwrap();
+            omis.decay(0.5).unwrap();
+        }
+    }
+    omis.merge(&other).unwrap();
+    let mut hash = 0_u64;
+    for solver in [Solver::default(), Solver::Ridge(0.5), Solver::Plain, Solver::Progressive, Solver::Balance] {
+        let (mut both, mut alpha) = ([0.0; 6], [0.0; 4]);
+        omis.solve(solver, &mut both[..2]).unwrap();
+        omis.alpha(solver, &mut alpha).unwrap();
+        both[2..].copy_from_slice(&alpha);
+        for value in both {
+            hash = (hash ^ u64::from(value.to_bits())).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+    assert_eq!(hash, PINNED_HASH, "{hash:#x}");
+}
+
+const PINNED_HASH: u64 = 0x38ef_5b52_ff5e_f3cf;

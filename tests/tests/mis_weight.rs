@@ -45,6 +45,7 @@ fn alpha_zero_is_the_balance_heuristic() {
         let expected = balance(&pdf, &counts, j).unwrap();
         assert!((optimal(&pdf, &counts, j, &[0.0; 3], 1.7).unwrap() - expected).abs() < 1e-7);
     }
+    assert_eq!(optimal(&[1.0, 3.0], &[1, 1], 1, &[0.0; 2], 2.0), Ok(0.75));
 }
 
 #[test]

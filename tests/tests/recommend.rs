@@ -1,7 +1,8 @@
 //! What is recommended: valid everywhere, and consistent with itself.
 
 use noisefloor::Error;
-use noisefloor::recommend::{Method, Sampling, recommend};
+use noisefloor::control_variate::Config;
+use noisefloor::recommend::{Method, Recommendation, Sampling, recommend};
 
 const BOTH: [Sampling; 2] = [Sampling::Independent, Sampling::Stratified];
 
@@ -18,6 +19,7 @@ fn every_recommendation_is_valid() {
                 assert_eq!(of.config.stratified, sampling == Sampling::Stratified);
                 assert!(share || of.method != Method::Shared);
                 assert!((1..=samples).contains(&of.tile_samples) && [2, 4].contains(&of.tile_dims));
+                assert!([4, 8].contains(&of.image_stride));
                 assert!(of.error > 0.0 && of.error <= 1.05 && of.filtered_error > 0.0);
             }
         }
@@ -90,6 +92,10 @@ fn examples() {
     // One sample has nothing to be fitted to, but neighbours have.
     assert_eq!(recommend(4, 1, Sampling::Independent, false, f32::INFINITY).unwrap().method, Method::PlainMean);
     assert_eq!(recommend(4, 1, Sampling::Independent, true, f32::INFINITY).unwrap().method, Method::Shared);
+    assert_eq!(recommend(2, 64, Sampling::Independent, false, f32::INFINITY).unwrap().method, Method::PerPixel);
+    assert_eq!(recommend(2, 4, Sampling::Stratified, true, f32::INFINITY).unwrap().method, Method::Shared);
+    let filtered = |sampling| recommend(2, 16, sampling, true, f32::INFINITY).unwrap().filtered_error;
+    assert!(filtered(Sampling::Stratified) < filtered(Sampling::Independent));
     // Many samples bear more terms; in many dims there are too many of a high order.
     let order =
         |dims, samples| recommend(dims, samples, Sampling::Independent, false, f32::INFINITY).unwrap().config.order;
@@ -99,4 +105,20 @@ fn examples() {
     // Tiles of as many samples; beyond 16, a sequence.
     let tile = |samples| recommend(2, samples, Sampling::Stratified, true, f32::INFINITY).unwrap().tile_samples;
     assert_eq!([1, 3, 4, 15, 16, 63, 64, 4096].map(tile), [1, 1, 4, 4, 16, 16, 1, 1]);
+}
+
+/// Dims are rounded up, samples down, to what was measured.
+#[test]
+fn rounded() {
+    for (dims, samples) in (1..=15).flat_map(|dims| (1..3000).map(move |samples| (dims, samples))) {
+        let measured = [1, 2, 4, 5, 8, 15].into_iter().find(|&measured| measured >= dims).unwrap();
+        let fewer = [256, 64, 16, 4, 1].into_iter().find(|&fewer| fewer <= samples).unwrap();
+        for (sampling, share) in BOTH.into_iter().flat_map(|sampling| [(sampling, false), (sampling, true)]) {
+            let of = |dims, samples| recommend(dims, samples, sampling, share, f32::INFINITY).unwrap();
+            let (here, there) = (of(dims, samples), of(measured, fewer));
+            assert_eq!(here.config.dims, dims);
+            let config = Config { dims, stride: here.config.stride, ..there.config };
+            assert_eq!(here, Recommendation { config, ..there });
+        }
+    }
 }

@@ -8,6 +8,7 @@ use noisefloor_tests::planar::{Blur, Planar};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::statistics::Moments;
 use proptest::prelude::*;
+use std::collections::HashSet;
 
 const PIXELS: u32 = table::SIZE * table::SIZE;
 
@@ -257,14 +258,27 @@ fn filled_at_once() {
     assert_eq!(fill(samplers, 0, 3, 5, &mut []), Ok(()));
 }
 
+/// The table repeats; other pixels, frames, samples, domains, kinds and seeds draw other numbers.
+#[test]
+fn places() {
+    let s = Sampler::pixel(3, 5, 0, 1);
+    let far = Sampler::pixel(3 + table::SIZE, 5_u32.wrapping_sub(table::SIZE), 0, 1);
+    assert_eq!((s.draw::<3>(), s), (far.draw(), s.scramble(0)));
+    let [pixel, frame, sample] = [Sampler::pixel(4, 5, 0, 1), Sampler::pixel(3, 5, 1, 1), Sampler::pixel(3, 5, 0, 5)];
+    let domains = [s.domain(0), s.domain(1).domain(2), s.domain(2).domain(1)];
+    let all = [&[s, pixel, frame, sample, Sampler::white(3, 5, 0, 1), s.scramble(1)][..], &domains].concat();
+    let drawn: HashSet<_> = all.iter().map(|s| s.draw::<3>().map(f32::to_bits)).collect();
+    assert_eq!(drawn.len(), all.len());
+}
+
 proptest! {
-    /// Whatever the fields: values in [0, 1), the first of more numbers are those of fewer.
+    /// Whatever the fields: multiples of 2^-24 in [0, 1), the first of more numbers are those of fewer.
     #[test]
     fn anything_goes(domain: u32, index: u32, x: u16, y: u16, flags: u32, key: u32, seed: u32, moved: [u32; 3]) {
         let [across, down, further] = moved;
         let sampler = Sampler { domain, index, x, y, flags }.domain(key).scramble(seed).moved(across, down, further);
         let [a, b, c, d] = sampler.draw();
-        prop_assert!([a, b, c, d].iter().all(|u| (0.0..1.0).contains(u)));
+        prop_assert!([a, b, c, d].iter().all(|u| (0.0..1.0).contains(u) && (u * 16_777_216.0).fract() == 0.0));
         prop_assert_eq!([sampler.draw::<1>()[0], sampler.draw::<2>()[1], sampler.draw::<3>()[2]], [a, b, c]);
         let mut few = [9.0; 3];
         sampler.draw_into(&mut few);

@@ -46,7 +46,7 @@ fn layout() {
     assert_eq!((read.shape(), read.seed(), read.kernel()), (SHAPE, 0x0123_4567_89ab_cdef, "perceptual"));
     let tile = Tile::from_bytes(&all).unwrap();
     assert_eq!((tile.shape(), tile.payload()), (SHAPE, &payload[..]));
-    assert_eq!(Tile::new(SHAPE, &payload), Ok(tile));
+    assert_eq!((Tile::new(SHAPE, &payload), Tile::resume(SHAPE, &payload)), (Ok(tile), tile));
     assert_eq!(Tile::new(SHAPE, &payload[1..]), Err(Error::Length));
     assert_eq!(Tile::new(Shape { spp: 3, ..SHAPE }, &payload), Err(Error::Range));
 }
@@ -99,6 +99,9 @@ fn a_shape_out_of_range_is_refused() {
     ] {
         assert_eq!(Header::new(wrong, 0, ""), Err(Error::Range), "{wrong:?}");
     }
+    assert!(SHAPE.is_valid() && !Shape { spp: 3, ..SHAPE }.is_valid());
+    let shape = Shape { size: 64, spp: 4, dims: 2, frames: 1, bits: 16, progressive: false };
+    assert_eq!((shape.coordinates(), shape.payload_bytes()), (64 * 64 * 4 * 2, 64 * 64 * 4 * 2 * 2));
     let longest = "x".repeat(KERNEL_BYTES);
     assert_eq!(Header::new(SHAPE, 0, &longest).unwrap().kernel(), longest);
     for text in [&"x".repeat(KERNEL_BYTES + 1), "line\n", "é", "zero\0"] {
@@ -138,18 +141,30 @@ fn each_error() {
     for error in [Error::Foreign, Error::Version, Error::Length, Error::Corrupt] {
         assert!(!error.message().is_empty());
     }
+    let error: Box<dyn std::error::Error> = Error::Range.into();
+    assert!(error.to_string().contains("outside its documented range"));
+    assert_eq!(Error::NotFinite.message(), "an input value is NaN or infinite");
 }
 
 #[test]
 fn every_truncation_and_every_changed_bit_is_refused() {
     let good = noise(Shape { size: 2, spp: 1, dims: 1, frames: 1, bits: 8, progressive: false }, 4);
     for len in 0..good.len() {
-        assert!(Tile::from_bytes(&good[..len]).is_err());
+        let expected = if len == 0 { Error::Foreign } else { Error::Length };
+        assert_eq!(Tile::from_bytes(&good[..len]), Err(expected), "{len} bytes");
     }
     for bit in 0..8 * good.len() {
         let mut bytes = good.clone();
         bytes[bit / 8] ^= 1 << (bit % 8);
-        assert!(Tile::from_bytes(&bytes).is_err(), "bit {bit}");
+        let error = Tile::from_bytes(&bytes).unwrap_err();
+        let is_right = match bit / 8 {
+            0..8 => error == Error::Foreign,
+            8..12 => matches!(error, Error::Version | Error::Corrupt),
+            // Another shape may ask for another length.
+            32..40 => matches!(error, Error::Corrupt | Error::Length),
+            _ => error == Error::Corrupt,
+        };
+        assert!(is_right, "bit {bit}: {error:?}");
     }
 }
 
@@ -171,6 +186,7 @@ fn built_in_tiles() {
         assert_eq!(frames > 1, tile.name().ends_with("_TEMPORAL"));
     }
     assert!(present > 0);
+    assert_eq!((Builtin::from_id(10), Builtin::Size64Spp1Dims2.name()), (Some(Builtin::Size64Spp1Dims2), "64_1SPP_2D"));
     assert_eq!((Builtin::from_id(0), Builtin::from_id(13), Builtin::from_id(u32::MAX)), (None, None, None));
 }
 

@@ -5,6 +5,8 @@ use noisefloor::tile::{Builtin, Sampler, Shape, Tile, fill, fill_len};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::statistics::chi_square;
 use noisefloor_tests::tile::{file, noise, ordered};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use std::collections::HashSet;
 
 const SHAPE: Shape = Shape { size: 8, spp: 4, dims: 3, frames: 1, bits: 16, progressive: false };
@@ -22,52 +24,9 @@ fn the_root_draws_the_tile() {
             assert_eq!(sampler.draw::<1>(), [stored[0]]);
             assert_eq!(sampler.draw::<2>(), [stored[0], stored[1]]);
             assert_eq!(sampler.draw::<4>()[..3], stored);
-        }
-    }
-}
-
-#[test]
-fn pixels_repeat() {
-    let bytes = noise(SHAPE, 2);
-    let tile = Tile::from_bytes(&bytes).unwrap();
-    let far = u32::MAX - 7;
-    for index in [0, 3, 4, 100] {
-        for (x, y) in [(0, 0), (3, 5), (7, 7)] {
-            let near = Sampler::pixel(&tile, x, y, 0, index);
-            assert_eq!(near, Sampler::pixel(&tile, x + 8, y + 800, 0, index));
-            assert_eq!(near, Sampler::pixel(&tile, far + x, far + y, 0, index));
-        }
-    }
-}
-
-/// In a domain or another run of frames each pixel's first samples are those of some pixel of the tile, each pixel's
-/// once.
-#[test]
-fn domains_and_frames_are_the_tile_elsewhere() {
-    for progressive in [false, true] {
-        let shape = Shape { frames: 2, progressive, ..SHAPE };
-        let bytes = noise(shape, 3);
-        let tile = Tile::from_bytes(&bytes).unwrap();
-        let set = |sampler: Sampler<'_>| {
-            let mut set: Vec<_> =
-                (0..4).map(|index| sampler.moved(0, 0, index).draw::<3>().map(f32::to_bits)).collect();
-            set.sort();
-            set
-        };
-        for frame in [0, 1, 2, 3, 19] {
-            let pixels = |sampler: &dyn Fn(u32, u32) -> Vec<[u32; 3]>| -> HashSet<Vec<[u32; 3]>> {
-                (0..64).map(|pixel| sampler(pixel % 8, pixel / 8)).collect()
-            };
-            let own = pixels(&|x, y| set(Sampler::pixel(&tile, x, y, frame % 2, 0)));
-            assert_eq!(own.len(), 64);
-            let run = pixels(&|x, y| set(Sampler::pixel(&tile, x, y, frame, 0)));
-            assert_eq!(own, run);
-            for key in [0, 1, 77, u32::MAX] {
-                let child = pixels(&|x, y| set(Sampler::pixel(&tile, x, y, frame, 0).domain(key)));
-                assert_eq!(own, child);
-                let further = pixels(&|x, y| set(Sampler::pixel(&tile, x, y, frame, 0).domain(key).domain(key)));
-                assert_eq!(own, further);
-            }
+            let mut u = [0.0; 2];
+            assert!(sampler.draw_stored(&mut u) && u == stored[..2]);
+            assert!(!sampler.moved(0, 0, 4).draw_stored(&mut u));
         }
     }
 }
@@ -236,6 +195,17 @@ fn samples_of_a_pixel_give_the_same_bits() {
     }
 }
 
+/// Other frames, samples, domains and seeds draw other numbers; domains in another order, too.
+#[test]
+fn places_differ() {
+    let bytes = noise(SHAPE, 2);
+    let tile = Tile::from_bytes(&bytes).unwrap();
+    let s = Sampler::pixel(&tile, 3, 5, 0, 1);
+    let [frame, sample] = [Sampler::pixel(&tile, 3, 5, 1, 1), Sampler::pixel(&tile, 3, 5, 0, 5)];
+    let all = [s, frame, sample, s.domain(0), s.scramble(1), s.domain(1).domain(2), s.domain(2).domain(1)];
+    assert_eq!(HashSet::from(all.map(|s| s.draw::<3>().map(f32::to_bits))).len(), all.len());
+}
+
 /// Beyond the tile's dims come other places of the tile, not repetitions.
 #[test]
 fn further_dimensions_are_others() {
@@ -361,6 +331,110 @@ fn nonsense_is_harmless() {
                 assert!(sampler.draw::<4>().iter().all(|u| (0.0..1.0).contains(u)));
                 assert!(sampler.draw::<1>().iter().all(|u| (0.0..1.0).contains(u)));
             }
+        }
+    }
+}
+
+fn shapes() -> impl Strategy<Value = Shape> {
+    (0..5_u32, 0..4_u32, 1..=8_u32, 1..4_u32, any::<bool>(), any::<bool>()).prop_map(
+        |(size, spp, dims, frames, bits, progressive)| Shape {
+            size: 1 << size,
+            spp: 1 << spp,
+            dims,
+            frames,
+            bits: if bits { 16 } else { 8 },
+            progressive,
+        },
+    )
+}
+
+/// A sampler of any place, by a path through the tree of domains; every other step scrambles.
+fn walk<'a>(tile: &'a Tile<'a>, [x, y, frame, index]: [u32; 4], path: &[u32]) -> Sampler<'a> {
+    let step =
+        |sampler: Sampler<'a>, &key: &u32| if key % 2 == 0 { sampler.domain(key) } else { sampler.scramble(key) };
+    path.iter().fold(Sampler::pixel(tile, x, y, frame, index), step)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 1000,
+        rng_seed: RngSeed::Fixed(3),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    /// x and y modulo `size`, any 32-bit values, negative ones as C converts them; in every domain, frame and
+    /// sample, those beyond the tile's too. What is drawn is a multiple of 2^-24 in [0, 1).
+    #[test]
+    fn tile_draws_wrap(
+        shape in shapes(), place in any::<[u32; 4]>(), turns in any::<[i32; 2]>(), small in any::<bool>(),
+        path in prop::collection::vec(any::<u32>(), 0..4), seed in any::<u64>(),
+    ) {
+        let bytes = noise(shape, seed);
+        let tile = Tile::from_bytes(&bytes).unwrap();
+        let [x, y, frame, index] = place;
+        // The tile's own samples and those that follow.
+        let index = if small { index % (2 * shape.spp) } else { index };
+        let here = walk(&tile, [x, y, frame, index], &path);
+        let turn = |from: u32, turns: i32| from.wrapping_add_signed(turns.wrapping_mul(shape.size as i32));
+        let inside = [x % shape.size, y % shape.size];
+        let u = here.draw::<4>();
+        for [x, y] in [inside, inside.map(|c| c.wrapping_sub(shape.size)), [turn(x, turns[0]), turn(y, turns[1])]] {
+            prop_assert_eq!(walk(&tile, [x, y, frame, index], &path), here);
+            prop_assert_eq!(walk(&tile, [x, y, frame, index], &path).draw::<4>(), u);
+        }
+        prop_assert!(u.iter().all(|u| (0.0..1.0).contains(u) && (u * 16_777_216.0).fract() == 0.0), "{:?}", u);
+    }
+
+    /// Over the pixels, the sets of a domain's first `spp` samples are those of the tile,
+    /// so that the mean of any estimate is exactly the tile's.
+    #[test]
+    fn domains_are_toroidal_shifts(
+        shape in shapes(),
+        frame in any::<u32>(),
+        keys in prop::collection::vec(any::<u32>(), 0..3),
+        seed in any::<u64>(),
+    ) {
+        let bytes = noise(shape, seed);
+        let tile = Tile::from_bytes(&bytes).unwrap();
+        let dims = shape.dims.min(4) as usize;
+        let sets = |frame: u32, keys: &[u32]| {
+            let set = |pixel: u32| {
+                let sampler = Sampler::pixel(&tile, pixel % shape.size, pixel / shape.size, frame, 0);
+                let sampler = keys.iter().fold(sampler, |sampler, &key| sampler.domain(key));
+                let drawn = |i| sampler.moved(0, 0, i).draw::<4>().map(f32::to_bits)[..dims].to_vec();
+                let mut set: Vec<_> = (0..shape.spp).map(drawn).collect();
+                set.sort_unstable();
+                set
+            };
+            let mut sets: Vec<_> = (0..shape.size * shape.size).map(set).collect();
+            sets.sort_unstable();
+            sets
+        };
+        prop_assert!(sets(frame, &keys) == sets(frame % shape.frames, &[]));
+    }
+
+    /// A rectangle of pixels in one call, wherever it lies, is the same bits as single draws.
+    #[test]
+    fn filling_is_drawing(
+        shape in shapes(), place in any::<[u32; 4]>(), size in (1..6_usize, 1..6_usize, 1..5_usize),
+        path in prop::collection::vec(any::<u32>(), 0..3), dims in 1..=4_usize, at_the_end in any::<bool>(),
+    ) {
+        let bytes = noise(shape, 5);
+        let tile = Tile::from_bytes(&bytes).unwrap();
+        let [x, y, frame, index] = if at_the_end { place.map(|c| u32::MAX - c % 4) } else { place };
+        let (width, height, samples) = size;
+        let root = Sampler::pixel(&tile, x, y, frame, index);
+        let domains = [(walk(&tile, [x, y, frame, index], &path), dims), (root, 2)];
+        let mut u = vec![-1.0; fill_len(domains, width, height, samples).unwrap()];
+        fill(domains, width, height, samples, &mut u).unwrap();
+        let mut filled = u.chunks(dims + 2);
+        for i in 0..height * width * samples {
+            let [row, column, sample] = [i / samples / width, i / samples % width, i % samples].map(|k| k as u32);
+            let place = [x.wrapping_add(column), y.wrapping_add(row), frame, index.wrapping_add(sample)];
+            let own = walk(&tile, place, &path).draw::<4>();
+            let expected = [&own[..dims], &walk(&tile, place, &[]).draw::<2>()].concat();
+            prop_assert_eq!(filled.next(), Some(&expected[..]));
         }
     }
 }

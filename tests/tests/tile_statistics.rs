@@ -146,23 +146,6 @@ fn estimate(sampler: Sampler<'_>, n: u32, f: fn([f32; 2]) -> f64) -> f64 {
     (0..n).map(|index| f(sampler.moved(0, 0, index).draw())).sum::<f64>() / f64::from(n)
 }
 
-/// The mean over all toroidal shifts of a tile, that is over its pixels, of any domain's estimate is the tile's own
-/// mean, exactly.
-#[test]
-fn over_all_shifts_the_mean_is_the_tiles() {
-    let bytes = ordered(16, 4, false, 24);
-    let tile = Tile::from_bytes(&bytes).unwrap();
-    for (f, _) in INTEGRANDS {
-        let mean = |of: &dyn Fn(Sampler<'_>) -> f64| {
-            (0..256).map(|pixel| of(Sampler::pixel(&tile, pixel % 16, pixel / 16, 0, 0))).sum::<f64>() / 256.0
-        };
-        let own = mean(&|sampler| estimate(sampler, 4, f));
-        for key in 0..10 {
-            assert!((mean(&|sampler| estimate(sampler.domain(key), 4, f)) - own).abs() < 1e-12);
-        }
-    }
-}
-
 /// A pixel's estimate over 20,000 random shifts (frames, and domains) has the tile's mean: 24 deviates.
 #[test]
 fn over_random_shifts_the_mean_is_the_tiles() {

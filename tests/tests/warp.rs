@@ -233,6 +233,9 @@ fn known_points() {
     assert_eq!(concentric_disc(Vec2::new(0.5, 0.0)), Vec2::NEG_Y);
     assert_eq!(uniform_hemisphere(Vec2::ZERO), Vec3::Z);
     assert_eq!(uniform_hemisphere(Vec2::X), Vec3::X);
+    assert_eq!(uniform_hemisphere(Vec2::new(0.0, 0.5)), Vec3::Z);
+    assert_eq!(uniform_sphere(Vec2::new(0.0, 0.5)), Vec3::Z);
+    assert!((uniform_cone(Vec2::X, 0.5).z - 0.5).abs() < 1e-6);
     assert_eq!(uniform_sphere(Vec2::X), Vec3::NEG_Z);
     assert_eq!(cosine_hemisphere(Vec2::splat(0.5)), Vec3::Z);
     assert_eq!(cosine_hemisphere(Vec2::new(1.0, 0.5)), Vec3::X);

@@ -121,7 +121,7 @@ fn c_tests_there(binutils: &str, emulator: &str, archive: &Path) -> Result<Strin
     let mut options = Vec::new();
     if binutils.starts_with("s390x") && !multiplies(binutils, emulator)? {
         println!(
-            "   NOT RUN: two checks of importance.c. This {emulator} multiplies single precision into double wrongly \
+            "   NOT RUN: a check of importance.c. This {emulator} multiplies single precision into double wrongly \
              (MDEBR; mended in QEMU 8.1)"
         );
         options.push("-DMDEBR_IS_WRONG");
@@ -137,7 +137,7 @@ fn c_tests_there(binutils: &str, emulator: &str, archive: &Path) -> Result<Strin
         run::check(run::command(emulator).arg(&program))?;
     }
     println!("   {} C tests passed under {emulator}", sources.len());
-    let less = if options.is_empty() { "" } else { " without two checks, which this emulator computes wrongly" };
+    let less = if options.is_empty() { "" } else { " without one check, which this emulator computes wrongly" };
     Ok(format!("{} C tests{less}", sources.len()))
 }
 
