@@ -54,7 +54,7 @@ impl Call<'_> {
         values
     }
 
-    #[inline(always)]
+    #[inline]
     fn divide_by_factors(&self, pixels: &[usize; LANES], channel: usize, values: &mut Eight) {
         if !self.image.factors.is_empty() {
             for (value, pixel) in values.iter_mut().zip(pixels) {

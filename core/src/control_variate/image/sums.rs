@@ -39,7 +39,7 @@ pub(super) struct Band<'a> {
 /// A number for each of eight pixels, with which the last operations are done.
 type Wide = Lanes<f64>;
 
-#[inline(always)]
+#[inline]
 fn wide(a: &Eight) -> Wide {
     let mut out = [0.0; LANES];
     for l in 0..LANES {
@@ -49,7 +49,7 @@ fn wide(a: &Eight) -> Wide {
 }
 
 /// `f(a)` lane by lane, as an `f32`.
-#[inline(always)]
+#[inline]
 fn narrow(a: &Wide, f: impl Fn(f64) -> f32) -> Eight {
     let mut out = NONE;
     for l in 0..LANES {
@@ -59,19 +59,19 @@ fn narrow(a: &Wide, f: impl Fn(f64) -> f32) -> Eight {
 }
 
 /// 1 / a lane by lane, where that is positive.
-#[inline(always)]
+#[inline]
 fn inverse(a: &Eight) -> Wide {
     lanes::zip(&[1.0; LANES], &lanes::divisor(&wide(a)), |one, a| one / a)
 }
 
 /// From 1 at the centre linearly to almost 0 at the ends.
-#[inline(always)]
+#[inline]
 fn hat(at: u32, over_extent: f32) -> f32 {
     1.0 - Real::abs((2 * at as i32 + 1) as f32 * over_extent - 1.0)
 }
 
 /// Eight numbers, each so many after the one before; 0 where there is none.
-#[inline(always)]
+#[inline]
 fn every(step: usize, numbers: &[f32]) -> Eight {
     match numbers.first_chunk() {
         // One instruction, instead of eight and as many addresses.
@@ -145,8 +145,7 @@ impl Call<'_> {
                 for (place, &member) in places.iter_mut().zip(from(members, begin)) {
                     *place = Place::read(member);
                 }
-                // Where the pixels have their sums, and how near each is to its window's centre: 1 there, falling linearly
-                // along x and y to almost 0.
+                // Where the pixels have their sums, and how near each is to its window's centre.
                 let mut at = core::array::from_fn(|lane| (begin + lane) as u32);
                 let mut near = [1.0; LANES];
                 let [x, y, frame] = Place::split_each(&places);
@@ -285,7 +284,7 @@ impl Call<'_> {
     }
 
     /// A channel of a sample of each pixel, as it was given.
-    #[inline(always)]
+    #[inline]
     fn given(&self, pixel: usize, sample: usize, channel: usize) -> Wide {
         let channels = self.config.channels;
         let values = from(self.reader.inputs(), (pixel * self.n + sample) * channels + channel);
