@@ -1,6 +1,6 @@
-//! Which fits are made to a group, and what becomes of them.
+//! Windows by rows, which fits are made to their groups, and what becomes of them.
 
-use super::super::config::Config;
+use super::super::config::{Config, Estimate};
 use super::batch::Batch;
 use super::bright;
 use super::call::Call;
@@ -10,6 +10,7 @@ use super::fit::Fits;
 use super::groups::{Group, Groups};
 use super::products::{AT_ONCE, COLOURS, Colours, NONE, plus};
 use super::steps;
+use super::sums::Band;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
@@ -20,6 +21,43 @@ use crate::rows::{rows, rows_mut};
 use core::hint::black_box;
 
 impl Call<'_> {
+    /// All of it: windows some rows at a time, and pixels as soon as no later window has them.
+    pub(super) fn run<P: Processor>(
+        &self,
+        arena: &mut Arena<'_, f32>,
+        out: &mut dyn FnMut(usize, Estimate),
+    ) -> Result<(), Error> {
+        let wanted = self.windows.wanted;
+        let frames = self.windows.frames();
+        let [across, down] = self.windows.counts();
+        let [rows, touched] = self.band();
+        let mut band = Band::new(self, touched, arena)?;
+        let mut groups = self.groups(arena)?;
+        let has_fits = self.image.has_known() || self.has_edges() || !self.terms(self.windows.pixels()).ends.is_empty();
+        let mut done = self.windows.top(0);
+        for row in (0..down).step_by(rows.max(1)) {
+            let last = (row + rows).min(down);
+            for first in (row * across..last * across).step_by(self.windows_at_once().max(1)) {
+                if !has_fits {
+                    break;
+                }
+                let end = (first + self.windows_at_once()).min(last * across);
+                self.divide(first, end, &mut groups);
+                self.find_edges(&mut groups);
+                self.fit::<P>(&mut groups, arena)?;
+                steps::add::<P>(self, first, &groups, &mut band);
+            }
+            let end = if last < down { self.windows.top(last) } else { wanted.y + wanted.height };
+            for frame in 0..frames {
+                for y in done..end {
+                    steps::write::<P>(self, (frame, y), &mut band, out);
+                }
+            }
+            done = end;
+        }
+        Ok(())
+    }
+
     /// Fits to all groups: first to all of their pixels, then, where some are too bright, to the others.
     pub(super) fn fit<P: Processor>(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
         let later = if self.is_single_fit() { 0 } else { self.turns() };

@@ -64,7 +64,7 @@ impl Call<'_> {
     }
 
     /// As many of a pixel's so many rows of numbers as `out` holds, from one on, for eight pixels.
-    #[inline(always)]
+    #[inline]
     fn put_rows(
         &self,
         rows: &[f32],

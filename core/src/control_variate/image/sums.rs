@@ -6,12 +6,10 @@ use super::call::{Call, Layout};
 use super::groups::{Groups, Place};
 use super::pixels::Window;
 use super::products::{Eight, NONE};
-use super::steps;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES, Lanes};
 use crate::matrix::{self, from, halves_mut, row_at_mut};
-use crate::processor::Processor;
 use crate::real::Real;
 use crate::rows::rows_mut;
 
@@ -80,6 +78,16 @@ fn every(step: usize, numbers: &[f32]) -> Eight {
     }
 }
 
+impl<'a> Band<'a> {
+    /// Empty.
+    pub(super) fn new(call: &Call<'_>, rows: usize, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+        let rows_of_frames = rows * call.windows.frames();
+        let sums = arena.take_lanes(call.eights() * rows_of_frames * sums_len(call.config.channels))?;
+        sums.iter_mut().for_each(|sum| *sum = NONE);
+        Ok(Self { sums, rows })
+    }
+}
+
 impl Layout<'_> {
     /// Groups of eight in a row of pixels.
     pub(super) fn eights(&self) -> usize {
@@ -88,45 +96,6 @@ impl Layout<'_> {
 }
 
 impl Call<'_> {
-    /// All of it: windows some rows at a time, and pixels as soon as no later window has them.
-    pub(super) fn run<P: Processor>(
-        &self,
-        arena: &mut Arena<'_, f32>,
-        out: &mut dyn FnMut(usize, Estimate),
-    ) -> Result<(), Error> {
-        let wanted = self.windows.wanted;
-        let frames = self.windows.frames();
-        let [across, down] = self.windows.counts();
-        let [rows, touched] = self.band();
-        let sums = arena.take_lanes(self.eights() * touched * frames * sums_len(self.config.channels))?;
-        sums.iter_mut().for_each(|sum| *sum = NONE);
-        let mut band = Band { sums, rows: touched };
-        let mut groups = self.groups(arena)?;
-        let has_fits = self.image.has_known() || self.has_edges() || !self.terms(self.windows.pixels()).ends.is_empty();
-        let mut done = self.windows.top(0);
-        for row in (0..down).step_by(rows.max(1)) {
-            let last = (row + rows).min(down);
-            for first in (row * across..last * across).step_by(self.windows_at_once().max(1)) {
-                if !has_fits {
-                    break;
-                }
-                let end = (first + self.windows_at_once()).min(last * across);
-                self.divide(first, end, &mut groups);
-                self.find_edges(&mut groups);
-                self.fit::<P>(&mut groups, arena)?;
-                steps::add::<P>(self, first, &groups, &mut band);
-            }
-            let end = if last < down { self.windows.top(last) } else { wanted.y + wanted.height };
-            for frame in 0..frames {
-                for y in done..end {
-                    steps::write::<P>(self, (frame, y), &mut band, out);
-                }
-            }
-            done = end;
-        }
-        Ok(())
-    }
-
     /// Adds the groups' corrections to the sums of their pixels, in the order of the windows.
     #[inline(always)]
     pub(super) fn add(&self, first: usize, groups: &Groups<'_>, band: &mut Band<'_>) {
