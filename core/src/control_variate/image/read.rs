@@ -11,7 +11,7 @@ use core::ops::Range;
 
 impl Call<'_> {
     /// The pixels' lowest and highest values, as fits see them.
-    #[inline(always)]
+    #[inline]
     pub(super) fn range(&self, pixels: &[usize; LANES], channel: usize) -> [Eight; 2] {
         let (mut low, mut high) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
         for begin in (0..self.n).step_by(AT_ONCE) {
@@ -46,7 +46,7 @@ impl Call<'_> {
     }
 
     /// One of a pixel's so many rows of numbers, for eight pixels.
-    #[inline(always)]
+    #[inline]
     fn gather(&self, rows: &[f32], pixels: &[usize; LANES], (each, row): (usize, usize), channel: usize) -> Eight {
         let channels = self.config.channels;
         let mut values = pixels.map(|pixel| at(rows, (pixel * each + row) * channels + channel));
@@ -148,7 +148,7 @@ impl Call<'_> {
 
     /// Values of samples of each pixel, as they were given but for factors and what is known of them: in each column
     /// from `row` on.
-    #[inline(always)]
+    #[inline]
     fn read_values(
         &self,
         batch: &Batch<'_>,
