@@ -239,7 +239,7 @@ impl<'a> Edges<'a> {
             }
             let place = |axis: usize| -> Four {
                 let wide: &Lanes<f32, AT_ONCE_LANES> = x.get(axis).unwrap_or(&[0.0; AT_ONCE_LANES]);
-                core::array::from_fn(|row| core::array::from_fn(|lane| wide[row * LANES + lane]))
+                core::array::from_fn(|row| at(wide.as_chunks().0, row))
             };
             let first = call.config.edges.saturating_sub(1);
             (*u, *v) = (place(first), place(first + 1));

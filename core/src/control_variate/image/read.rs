@@ -84,12 +84,12 @@ impl Call<'_> {
                 // One after the other, and looked for once.
                 (Some(rows), [out]) if channels == 1 => {
                     for (out, row) in out.iter_mut().zip(rows) {
-                        out[lane] = *row;
+                        out[lane % LANES] = *row;
                     }
                 }
                 _ => {
                     for (index, out) in out.iter_mut().enumerate() {
-                        out[lane] = at(rows, index * channels);
+                        out[lane % LANES] = at(rows, index * channels);
                     }
                 }
             }

@@ -149,7 +149,7 @@ impl Call<'_> {
                     let at = at as usize;
                     let out = row_at_mut(band.sums, len, at / LANES);
                     for (out, sum) in out.iter_mut().zip(&sums) {
-                        out[at % LANES] += sum[lane];
+                        out[at % LANES] += sum[lane % LANES];
                     }
                 }
             }
@@ -169,8 +169,8 @@ impl Call<'_> {
         let times = |value: f32, factor: f64| (f64::from(value) * factor).clamp(-most, most) as f32;
         for (lane, &place) in places.iter().enumerate() {
             let factor = self.factor(self.pixel(window, place, begin + lane), channel);
-            corrections[lane] = times(corrections[lane], factor);
-            errors[lane] = times(errors[lane], if self.error_is_the_groups() { factor } else { 1.0 });
+            corrections[lane % LANES] = times(corrections[lane % LANES], factor);
+            errors[lane % LANES] = times(errors[lane % LANES], if self.error_is_the_groups() { factor } else { 1.0 });
         }
     }
 
