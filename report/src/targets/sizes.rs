@@ -62,8 +62,9 @@ fn sections(bytes: &[u8]) -> Result<[u64; 3]> {
             (SectionKind::Text, _) => 0,
             // A module's constants and variables are one; what else is data there are numbers of the module's own.
             (SectionKind::Data, Ok("<data>")) if is_module => 1,
-            (SectionKind::ReadOnlyData, Ok(".eh_frame")) => continue,
+            (SectionKind::ReadOnlyData, Ok(".eh_frame")) | (_, Ok(".relro_padding")) => continue,
             _ if is_module => continue,
+            (_, Ok(".data.rel.ro")) => 1,
             (SectionKind::ReadOnlyData | SectionKind::ReadOnlyString | SectionKind::ReadOnlyDataWithRel, _) => 1,
             (SectionKind::Data | SectionKind::UninitializedData, _) => 2,
             _ => continue,
