@@ -55,7 +55,7 @@ static std::vector<nf_estimate> estimate(std::vector<float> &f)
     std::vector<uint32_t> surfaces(pixels);
     std::vector<nf_estimate> out(pixels);
     // README begin
-    std::vector<float> u(pixels * dims);                // u[pixel][dim]
+    std::vector<float> u(pixels * dims);                // u[pixel][dim]: samples is 1
     nf_sampler first = nf_sampler_pixel(0, 0, 0, 0);    // column, row, frame, sample
     check(nf_sampler_fill(&first, &dims, 1, width, height, samples, u.data(), u.size()));
     for (uint32_t i = 0; i < pixels; ++i) {

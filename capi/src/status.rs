@@ -51,7 +51,9 @@ pub extern "C" fn nf_status_message(status: nf_status) -> *const c_char {
     let text = match status {
         NF_OK => c"success",
         NF_ERR_NULL => c"a required pointer is NULL",
-        NF_ERR_RANGE => c"an argument is outside its documented range: the function's description lists what can be",
+        NF_ERR_RANGE => {
+            c"an argument is outside its range: its description says what can be, nf_check() a configuration's"
+        }
         NF_ERR_NOT_FINITE => c"an input value is NaN or infinite",
         NF_ERR_MEMORY => c"caller-supplied memory is too small: ask the matching size function",
         NF_ERR_ALIGNMENT => c"caller-supplied memory is not aligned: 8 bytes are needed",

@@ -247,6 +247,20 @@ static void controls(void)
     stream_free(&s);
 }
 
+static void skipping(void)
+{
+    nf_cv_config config = make_config(2, 2, 2, NF_CV_ROBUST);
+    const float saved = f[7];
+    stream s;
+    config.nonfinite = NF_NONFINITE_SKIP;
+    s = stream_new(&config);
+    f[7] = not_a_number();
+    CHECK_STATUS(add_samples(s.accumulator, u, f, N), NF_OK);
+    f[7] = saved;
+    CHECK(estimate(&s).samples == N - 1);
+    stream_free(&s);
+}
+
 int main(void)
 {
     size_t i;
@@ -260,5 +274,6 @@ int main(void)
     no_object();
     another_build();
     controls();
+    skipping();
     return report("accumulator");
 }

@@ -290,14 +290,16 @@ static void growing(void)
     nf_table table;
     memory m = memory_new(nf_table_size(20));
     uint32_t items;
+    double total;
     CHECK_STATUS(nf_table_init(&table, m.start, m.bytes, 1, ones), NF_OK);
     CHECK_STATUS(nf_table_append(&table, mixed + 2, 19), NF_OK);
     CHECK(table.items == 20 && table.importance[19] == mixed[20] && total_of(&table) > mixed[20]);
     while (nf_table_append(&table, ones, 1) == NF_OK) {
     }
     items = table.items;
+    total = total_of(&table);
     CHECK_STATUS(nf_table_append(&table, ones, 1), NF_ERR_MEMORY);
-    CHECK(table.items == items && items < 40);
+    CHECK(table.items == items && items < 40 && total_of(&table) == total);
     memory_free(&m);
 }
 
@@ -356,16 +358,27 @@ static void saving(void)
 static void damaged(void)
 {
     nf_table table, made;
-    memory m = make(&table, 300, NULL);
+    memory m = make(&table, 300, NULL), kept = memory_new(m.bytes);
     nf_rng rng;
     nf_shard shards[2] = {{1.0, 1}, {1000.0, 300}};
-    uint32_t index[70], i, way, k, drawn = 0;
-    float weight[70];
+    uint32_t index[70], every[300], i, way, k, drawn = 0;
+    float weight[70], importance[300];
+    for (i = 0; i < 300; ++i) {
+        every[i] = i;
+        importance[i] = (float)(i % 7);
+    }
+    CHECK_STATUS(nf_table_update(&table, every, importance, 300, 0.0f), NF_OK);
     made = table;
+    memcpy(kept.start, m.start, m.bytes);
     nf_rng_seed(&rng, 7);
-    for (i = 0; i < 8 * sizeof table; ++i) {
+    for (i = 0; i < 3000; ++i) {
+        unsigned char *const bytes = (unsigned char *)(i % 10 < 8 ? m.start : (void *)&table);
+        const uint32_t count = i % 10 < 8 ? (uint32_t)m.bytes : (uint32_t)sizeof table;
+        const uint32_t flips = i % 10 >= 8 || i % 2 == 0 ? 1 : i % 5 == 0 ? 1000 : 5;
         const uint32_t batch = i % 3 == 0 ? 70 : 1;
-        ((unsigned char *)&table)[i / 8] ^= (unsigned char)(1 << i % 8);
+        table.uniform_fraction = i % 4 == 0 ? 0.2f : 0.0f;
+        for (k = 0; k < flips; ++k)
+            bytes[nf_rng_next(&rng) % count] ^= (unsigned char)(1 << nf_rng_next(&rng) % 8);
         for (way = 0; way < 4; ++way) {
             nf_status status = NF_ERR_STATE;
             poison(index, sizeof index);
@@ -378,8 +391,11 @@ static void damaged(void)
             drawn += status == NF_OK;
         }
         table = made;
+        memcpy(m.start, kept.start, m.bytes);
     }
-    CHECK(drawn > 0);
+    /* Most damage leaves something that can be drawn. */
+    CHECK(drawn > 3 * 3000);
+    memory_free(&kept);
     memory_free(&m);
 }
 

@@ -83,7 +83,7 @@ struct White {
     }
 };
 
-constexpr uint32_t SIZE = 1024, TURNS = 256, RUNS = 9;
+constexpr uint32_t SIZE = 1024, RUNS = 9;
 
 /* A thread is a pixel, in the image's order, and takes a sample and a domain after the other. */
 template <class Draw> __global__ void sums(float *out, const Draw draw)
@@ -91,7 +91,7 @@ template <class Draw> __global__ void sums(float *out, const Draw draw)
     const uint32_t x = blockIdx.x * blockDim.x + threadIdx.x, y = blockIdx.y;
     float sum = 0;
 #pragma unroll 1
-    for (uint32_t k = 0; k < TURNS; ++k) {
+    for (uint32_t k = 0; k < SAMPLES; ++k) {
         const nfs_floats u = draw(x, y, k, k);
         sum += u.x + u.y + u.z + u.w;
     }
@@ -114,7 +114,7 @@ template <class Draw> void measure(const char *name, const Draw &draw)
         check(cudaEventElapsedTime(&took[run > 0 ? run - 1 : 0], start, end), "event");
     }
     std::sort(took, took + RUNS);
-    printf("  %-52s %6.1f draws a nanosecond\n", name, double(SIZE) * SIZE * TURNS / (1e6 * took[RUNS / 2]));
+    printf("  %-52s %6.1f draws a nanosecond\n", name, double(SIZE) * SIZE * SAMPLES / (1e6 * took[RUNS / 2]));
     check(cudaEventDestroy(start), "event");
     check(cudaEventDestroy(end), "event");
     check(cudaFree(out), "memory");

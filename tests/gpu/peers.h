@@ -5,6 +5,8 @@
 #include "../../examples_c/pathtracer/sobol.hpp"
 
 static __constant__ uint32_t sobol_columns[4][32];
+/* Of a pixel: a power of two. */
+constexpr uint32_t SAMPLES = 256;
 
 static __device__ nfs_floats units(uint32_t x, uint32_t y, uint32_t z, uint32_t w)
 {
@@ -49,7 +51,9 @@ struct SobolXor {
     }
 };
 
-/* Shuffled and scrambled by hashes: B. Burley, "Practical Hash-based Owen Scrambling", 2020. */
+/* Shuffled and scrambled by hashes: B. Burley, "Practical Hash-based Owen Scrambling", 2020. Of a shuffled index only
+ * the digits count that samples have.
+ */
 struct SobolOwen {
     static __device__ uint32_t scramble(uint32_t digits, uint32_t seed)
     {
@@ -62,10 +66,10 @@ struct SobolOwen {
     }
     __device__ nfs_floats operator()(uint32_t x, uint32_t y, uint32_t index, uint32_t domain) const
     {
-        const uint32_t seed = seed_of(x, y, domain), order = scramble(index, seed);
+        const uint32_t seed = seed_of(x, y, domain), order = scramble(index, seed) & (SAMPLES - 1);
         uint32_t v[4] = {0, 0, 0, 0};
 #pragma unroll
-        for (uint32_t k = 0; k < 32; ++k)
+        for (uint32_t k = 0; SAMPLES >> k > 1; ++k)
 #pragma unroll
             for (uint32_t d = 0; d < 4; ++d)
                 v[d] ^= sobol_columns[d][k] & (0u - (order >> k & 1u));

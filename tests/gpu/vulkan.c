@@ -25,10 +25,13 @@ static uint32_t kind_of_memory(VkPhysicalDevice physical, uint32_t allowed)
     VkPhysicalDeviceMemoryProperties kinds;
     uint32_t k;
     vkGetPhysicalDeviceMemoryProperties(physical, &kinds);
-    for (;; wanted &= ~(VkMemoryPropertyFlags)VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)
+    for (;; wanted &= ~(VkMemoryPropertyFlags)VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) {
         for (k = 0; k < kinds.memoryTypeCount; ++k)
             if (allowed >> k & 1 && (kinds.memoryTypes[k].propertyFlags & wanted) == wanted)
                 return k;
+        if (!(wanted & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT))
+            failed("memory that both sides see", 0);
+    }
 }
 
 static block make_block(VkPhysicalDevice physical, VkDevice device, VkDeviceSize bytes)

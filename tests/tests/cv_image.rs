@@ -153,13 +153,29 @@ fn linear_pixels() {
             error += (estimate.mean[0] - truth(pixel)).powi(2);
             assert!(channels == 1 || (estimate.mean[1] - 2.0 * estimate.mean[0]).abs() < 1e-3, "{estimate:?}");
             assert!(estimate.gain.is_finite() && estimate.samples == 4);
-            assert_eq!((estimate.mean[3], estimate.std_error[3]), (0.0, 0.0));
+            for (channel, (&mean, &error)) in estimate.mean.iter().zip(&estimate.std_error).enumerate() {
+                assert!(if channel < channels { error >= 0.0 } else { (mean, error) == (0.0, 0.0) }, "{estimate:?}");
+            }
         }
         assert!(error < 0.01 * plain, "{estimator:?} {channels}: {error} {plain}");
     }
     let f: Vec<f32> = (0..77).map(linear).collect();
     for estimate in image(&Config::new(2, 1, 1), &of, Samples::new(&u[..2 * 77], &f)).unwrap() {
         assert!((estimate.mean[0] - 2.0).abs() < 0.1 && estimate.std_error[0].is_finite(), "{estimate:?}");
+        assert_eq!(estimate.samples, 1);
+    }
+}
+
+/// Where corrections leave the type's range pixels are their means, to the sign of zero.
+#[test]
+fn no_correction_keeps_every_bit() {
+    let u = points(64, 2, &mut SplitMix64::new(3));
+    let mut f: Vec<f32> = u.chunks(2).map(|u| 3e38 * (2.0 * u[0] - 1.0)).collect();
+    f[20] = -0.0;
+    for estimator in SHARED {
+        let config = Config { estimator, ..Config::new(2, 2, 1) };
+        let estimates = image(&config, &Image::new(8, 8), Samples::new(&u, &f)).unwrap();
+        assert_eq!(estimates[20].mean[0].to_bits(), f[20].to_bits(), "{estimator:?}");
     }
 }
 

@@ -266,6 +266,16 @@ proptest! {
         }
     }
 
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 500,
+        rng_seed: proptest::test_runner::RngSeed::Fixed(3),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
     /// Merging is associative, the order of samples does not matter, and estimates scale with f, within 1e-5.
     #[test]
     fn merging_order_and_scale(

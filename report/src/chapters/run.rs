@@ -84,7 +84,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         bail!("written: {}; failed, and left as they were:\n{}", written.join(", "), failed.join("\n"));
     }
     let seconds = start.elapsed().as_secs_f64();
-    println!("report: {} ({seconds:.0} s, compiling included)", folder.display());
+    println!("report: {} (made in {seconds:.0} s)", folder.display());
     Ok(())
 }
 

@@ -185,7 +185,7 @@ impl Layout<'_> {
         let mut places: Vec<(Place, u32), { Image::MAX_WINDOW }> = Vec::new();
         let corner = self.window(first);
         self.each_place(|place| {
-            let apart = self.pixel(corner, place, 0).wrapping_sub(self.pixel(corner, Place::default(), 0));
+            let apart = self.pixel(corner, place, 0) - self.pixel(corner, Place::default(), 0);
             // A window has no more pixels than that.
             let _ = places.push((place, apart as u32));
         });

@@ -64,8 +64,8 @@ fn inverse(a: &Eight) -> Wide {
 
 /// From 1 at the centre linearly to almost 0 at the ends.
 #[inline]
-fn hat(at: u32, over_extent: f32) -> f32 {
-    1.0 - Real::abs((2 * at as i32 + 1) as f32 * over_extent - 1.0)
+fn hat(place: u32, over_extent: f32) -> f32 {
+    1.0 - Real::abs((2 * place as i32 + 1) as f32 * over_extent - 1.0)
 }
 
 /// Eight numbers, each so many after the one before; 0 where there is none.
@@ -115,18 +115,18 @@ impl Call<'_> {
                     *place = Place::read(member);
                 }
                 // Where the pixels have their sums, and how near each is to its window's centre.
-                let mut at = core::array::from_fn(|lane| (begin + lane) as u32);
+                let mut spots = core::array::from_fn(|lane| (begin + lane) as u32);
                 let mut near = [1.0; LANES];
                 let [x, y, frame] = Place::split_each(&places);
                 if self.windows.is_ordered {
                     for l in 0..LANES {
                         let row = top as u32 + y[l];
                         let row = frame[l] * rows + if row < rows { row } else { row - rows };
-                        at[l] = row * width + left as u32 + x[l];
+                        spots[l] = row * width + left as u32 + x[l];
                         near[l] = hat(x[l], across) * hat(y[l], down);
                     }
                 } else if !self.is_joined() {
-                    at = x;
+                    spots = x;
                 }
                 let mut sums = [NONE; sums_len(Config::MAX_CHANNELS)];
                 sums[0] = near;
@@ -145,11 +145,11 @@ impl Call<'_> {
                         })
                     });
                 }
-                for (lane, &at) in at.iter().enumerate().take(group.len - begin) {
-                    let at = at as usize;
-                    let out = row_at_mut(band.sums, len, at / LANES);
+                for (lane, &spot) in spots.iter().enumerate().take(group.len - begin) {
+                    let spot = spot as usize;
+                    let out = row_at_mut(band.sums, len, spot / LANES);
                     for (out, sum) in out.iter_mut().zip(&sums) {
-                        out[at % LANES] += sum[lane % LANES];
+                        out[spot % LANES] += sum[lane % LANES];
                     }
                 }
             }
@@ -183,7 +183,7 @@ impl Call<'_> {
         let sums = row_at_mut(band.sums, self.eights() * len, row);
         for (eight, sums) in rows_mut(sums, len).enumerate() {
             let column = given.x + eight * LANES;
-            if y >= wanted.y {
+            if y >= wanted.y && column < wanted.x + wanted.width && wanted.x < column + LANES {
                 let begin = (frame * wanted.height + y - wanted.y) * wanted.width;
                 let estimates = self.estimate(self.windows.number(column, y, frame), sums);
                 for (lane, &estimate) in estimates.iter().enumerate() {
@@ -229,8 +229,11 @@ impl Call<'_> {
                 }
             }
             // In no group there is no correction; nor is one that left the type's range.
-            let correction = lanes::zip(&correction, &correction, |c, _| if c.is_finite() { c } else { 0.0 });
-            let mean = narrow(&lanes::zip(&plain, &correction, |plain, correction| plain + correction), saturate);
+            let mut mean = plain;
+            for l in 0..LANES {
+                mean[l] = if correction[l].is_finite() { plain[l] + correction[l] } else { plain[l] };
+            }
+            let mean = narrow(&mean, saturate);
             let mut told = [f64::INFINITY; LANES];
             for l in 0..LANES {
                 let has_error = error_weight[l] > 0.0;
@@ -239,7 +242,8 @@ impl Call<'_> {
                 } else if self.n > 1 {
                     let ratio = if has_error { spread[l] * spread[l] } else { 1.0 };
                     // A correction that the pixel's own samples make unlikely is an error.
-                    let unlikely = (correction[l] * correction[l] - UNLIKELY * variance[l]).max(0.0);
+                    let moved = if correction[l].is_finite() { correction[l] * correction[l] } else { 0.0 };
+                    let unlikely = (moved - UNLIKELY * variance[l]).max(0.0);
                     told[l] = libm::sqrt(ratio * variance[l] + unlikely);
                 }
             }
