@@ -35,7 +35,7 @@ fn tracked() -> Result<Vec<String>> {
 
 /// The columns of a line of Markdown: 0 where it cannot be broken, and without the targets of links.
 fn columns_of_text(line: &str) -> usize {
-    let is_whole = ["|", "<", "!["].iter().any(|start| line.trim_start().starts_with(start));
+    let is_whole = ["|", "!["].iter().any(|start| line.trim_start().starts_with(start));
     let mut parts = line.split("](");
     let first = parts.next().unwrap_or_default().chars().count();
     let rest = parts.map(|part| 1 + part.split_once(')').map_or(part, |(_, text)| text).chars().count());
