@@ -8,21 +8,23 @@ static void values(void)
 {
     static const float p[2] = {1.0f, 3.0f}, a[2] = {0.5f, -1.0f};
     static const uint32_t one[2] = {1, 1}, n[2] = {2, 1};
+    static const struct {
+        uint32_t heuristic;
+        float parameter;
+        const uint32_t *counts;
+        uint32_t technique;
+        float expected;
+    } known[] = {{NF_MIS_BALANCE, 0.0f, n, 1, 0.6f},    {NF_MIS_POWER, 2.0f, one, 1, 0.9f},
+                 {NF_MIS_POWER, 0.0f, one, 1, 0.9f},    {NF_MIS_POWER, 1.0f, one, 1, 0.75f},
+                 {NF_MIS_CUTOFF, 0.5f, one, 0, 0.0f},   {NF_MIS_CUTOFF, 0.25f, one, 0, 0.25f},
+                 {NF_MIS_MAXIMUM, 0.0f, one, 1, 1.0f}};
     float w;
-    CHECK_STATUS(nf_mis_weight(NF_MIS_BALANCE, 0.0f, p, n, 2, 1, &w), NF_OK);
-    CHECK(w == 0.6f);
-    CHECK_STATUS(nf_mis_weight(NF_MIS_POWER, 2.0f, p, one, 2, 1, &w), NF_OK);
-    CHECK(w == 0.9f);
-    CHECK_STATUS(nf_mis_weight(NF_MIS_POWER, 0.0f, p, one, 2, 1, &w), NF_OK);
-    CHECK(w == 0.9f);
-    CHECK_STATUS(nf_mis_weight(NF_MIS_POWER, 1.0f, p, one, 2, 1, &w), NF_OK);
-    CHECK(w == 0.75f);
-    CHECK_STATUS(nf_mis_weight(NF_MIS_CUTOFF, 0.5f, p, one, 2, 0, &w), NF_OK);
-    CHECK(w == 0.0f);
-    CHECK_STATUS(nf_mis_weight(NF_MIS_CUTOFF, 0.25f, p, one, 2, 0, &w), NF_OK);
-    CHECK(w == 0.25f);
-    CHECK_STATUS(nf_mis_weight(NF_MIS_MAXIMUM, 0.0f, p, one, 2, 1, &w), NF_OK);
-    CHECK(w == 1.0f);
+    size_t i;
+    for (i = 0; i < sizeof known / sizeof *known; ++i) {
+        CHECK_STATUS(nf_mis_weight(known[i].heuristic, known[i].parameter, p, known[i].counts, 2, known[i].technique,
+                                   &w), NF_OK);
+        CHECK(w == known[i].expected);
+    }
     CHECK_STATUS(nf_mis_optimal_contribution(p, n, 2, 0, a, 0.0f, &w), NF_OK);
     CHECK(w == 0.75f);
 }

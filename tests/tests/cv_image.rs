@@ -385,12 +385,7 @@ fn any_call() -> impl Strategy<Value = (Config, [usize; 5], usize, u64)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 150,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(8),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(crate::cases(150, 8))]
 
     /// Any shape and configuration, values of any size, surfaces and factors: finite numbers, each pixel once and in
     /// order (which the calls check), the same again.
@@ -426,12 +421,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 500,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(3),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(crate::cases(500, 3))]
 
     /// But for the robust choice a pixel's own samples never shape its correction, and their order
     /// never matters, within the rounding of a fit in `f32`.

@@ -13,7 +13,6 @@ use noisefloor_tests::oracle::{Regression, stream_folds};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::stream::Stream;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 fn estimators() -> impl Strategy<Value = Estimator> {
     prop::sample::select(ESTIMATORS.to_vec())
@@ -194,13 +193,16 @@ fn knock<R: Real>(config: &Config, samples: Samples<'_>, rng: &mut SplitMix64) {
     }
 }
 
+/// Points, and dyadic values there: sums and products with integers are exact, and only an estimate's own roundings are
+/// left.
+fn dyadic(dims: usize, n: usize, seed: u64) -> (Vec<f32>, Vec<f32>) {
+    let u = points(n, dims, &mut SplitMix64::new(seed));
+    let f = values(&u, dims, smooth).iter().map(|f| (f * 1024.0).round() / 1024.0).collect();
+    (u, f)
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 1500,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(crate::cases(1500, 1))]
 
     /// Any configuration, any arrays: an error or finite numbers, and never a panic.
     #[test]
@@ -266,10 +268,7 @@ proptest! {
     /// magnifies the roundings of what is added, `f32`s).
     #[test]
     fn constants_shift(config in valid(), n in 12_usize..40, shift in -100_i32..100, seed in any::<u64>()) {
-        // Dyadic values and an integer: f + shift is exact, and only the estimate's own roundings are left.
-        let mut rng = SplitMix64::new(seed);
-        let u = points(n, config.dims, &mut rng);
-        let f: Vec<f32> = values(&u, config.dims, smooth).iter().map(|f| (f * 1024.0).round() / 1024.0).collect();
+        let (u, f) = dyadic(config.dims, n, seed);
         let shift = shift as f32;
         let shifted: Vec<f32> = f.iter().map(|f| f + shift).collect();
         let error = |base: Estimate, shifted: Estimate| f64::from(shifted.mean[0] - base.mean[0] - shift).abs();
@@ -282,10 +281,7 @@ proptest! {
     /// Whole numbers times f: as many times the estimate, within 1e-5.
     #[test]
     fn factors_scale(config in valid(), n in 12_usize..60, factor in -100_i32..100, seed in any::<u64>()) {
-        let mut rng = SplitMix64::new(seed);
-        let u = points(n, config.dims, &mut rng);
-        // Dyadic values and an integer: products are exact, and only the estimate's own roundings are left.
-        let f: Vec<f32> = values(&u, config.dims, smooth).iter().map(|f| (f * 1024.0).round() / 1024.0).collect();
+        let (u, f) = dyadic(config.dims, n, seed);
         let factor = factor as f32;
         let scaled: Vec<f32> = f.iter().map(|f| f * factor).collect();
         let close = |base: Estimate, scaled: Estimate| {
@@ -492,12 +488,7 @@ fn expected(config: &Config, model: &Model, ridge: f64) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 400,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(crate::cases(400, 1))]
 
     /// Any sequence of operations: the estimate is that of the samples which went in, within 1e-6 of the largest; what
     /// is refused changes nothing.

@@ -1,6 +1,7 @@
 //! The tests of the library as one program: linking each file on its own took longer than running it.
 //! `cargo test -p noisefloor-tests --test noisefloor cv_hard::` runs those of one file. A new file needs a line here.
 
+use proptest::test_runner::{Config, RngSeed};
 use std::path::Path;
 
 mod cv_basis;
@@ -53,6 +54,11 @@ mod tile_statistics;
 mod tile_vectors;
 mod vectors;
 mod warp;
+
+/// So many cases of a property, the same at every run.
+fn cases(cases: u32, seed: u64) -> Config {
+    Config { cases, rng_seed: RngSeed::Fixed(seed), failure_persistence: None, ..Config::default() }
+}
 
 /// A file that is not named above would not run.
 #[test]

@@ -8,7 +8,6 @@ use noisefloor::minibatch::table::{Shard, allocate};
 use noisefloor::rng::Rng;
 use noisefloor_tests::random::SplitMix64;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 #[derive(Clone, Debug)]
 enum Operation {
@@ -251,12 +250,7 @@ fn run(start: &[f32], room: u32, operations: &[Operation]) -> Result<(), TestCas
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 3000,
-        rng_seed: RngSeed::Fixed(61),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(crate::cases(3000, 61))]
 
     #[test]
     fn operations_are_those_of_a_list(
@@ -283,12 +277,7 @@ fn valid_fraction() -> impl Strategy<Value = f32> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 1000,
-        rng_seed: RngSeed::Fixed(3),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(crate::cases(1000, 3))]
 
     /// p_i = (1 - d) q_i / sum q + d / N are probabilities, and the weight 1 / (N p_i) is at most 1 / d,
     /// drawn independently or stratified.

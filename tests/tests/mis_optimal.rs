@@ -265,16 +265,10 @@ proptest! {
             prop_assert!(alpha.iter().all(|x| x.is_finite()));
         }
     }
-
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 500,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(3),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(crate::cases(500, 3))]
 
     /// Merging is associative, the order of samples does not matter, and estimates scale with f, within 1e-5.
     #[test]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import mitsuba as mi
 
 from . import _fits, _sampler
+from ._sampler import table
 
 __all__ = ["prepare", "register", "table"]
 
@@ -31,8 +32,3 @@ def prepare(scene: mi.Scene) -> mi.Scene:
             sampler.size = tuple(int(length) + border for length in film.crop_size())
             sampler.lens = sensor.needs_aperture_sample()
     return scene
-
-
-def table() -> mi.UInt32:
-    """The numbers that samplers read, on the variant's device: state of a function that `drjit.freeze` records."""
-    return _sampler.table()

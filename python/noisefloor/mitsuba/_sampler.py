@@ -21,7 +21,8 @@ COLUMNS = (0x80000000, 0x40000000, 0xA0000000, 0xD0000000, 0x68000000, 0xFC00000
 _tables = {}
 
 
-def table():
+def table() -> "mi.UInt32":
+    """The numbers that samplers read, on the variant's device: state of a function that `drjit.freeze` records."""
     variant = mi.variant()
     if variant not in _tables:
         numbers = ctypes.cast(_c.sampler_table(), ctypes.POINTER(ctypes.c_uint32))
