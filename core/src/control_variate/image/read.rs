@@ -5,7 +5,7 @@ use super::call::Call;
 use super::products::{AT_ONCE, AT_ONCE_LANES, Eight, Four, NONE, Rows};
 use crate::lanes::{self, LANES};
 use crate::matrix::{at, first_mut, from, halves_mut, row_at};
-use crate::real::Real;
+use crate::real::{Real, saturate};
 use crate::rows::part_mut;
 use core::ops::Range;
 
@@ -99,8 +99,7 @@ impl Call<'_> {
 
     #[inline]
     fn over_factor(&self, value: f32, pixel: usize, channel: usize) -> f32 {
-        let most = f64::from(f32::MAX);
-        (f64::from(value) / self.factor(pixel, channel)).clamp(-most, most) as f32
+        saturate(f64::from(value) / self.factor(pixel, channel))
     }
 
     /// What a pixel's values are divided by. Black says nothing about what it multiplies: 1.

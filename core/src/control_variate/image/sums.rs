@@ -165,8 +165,7 @@ impl Call<'_> {
         channel: usize,
         [corrections, errors]: &mut [Eight; 2],
     ) {
-        let most = f64::from(f32::MAX);
-        let times = |value: f32, factor: f64| (f64::from(value) * factor).clamp(-most, most) as f32;
+        let times = |value: f32, factor: f64| saturate(f64::from(value) * factor);
         for (lane, &place) in places.iter().enumerate() {
             let factor = self.factor(self.pixel(window, place, begin + lane), channel);
             corrections[lane % LANES] = times(corrections[lane % LANES], factor);
