@@ -78,6 +78,12 @@ pub(super) fn blocks(layout: &Layout<'_>, slots: usize) -> usize {
     if layout.has_colours() { COLOURS * slots.div_ceil(COLOURS * AT_ONCE) } else { slots.div_ceil(AT_ONCE) }
 }
 
+/// How many sums of pixels' means, and how many of what is within pixels, are kept apart.
+fn parts(layout: &Layout<'_>) -> [usize; 2] {
+    let parts = if layout.has_colours() { COLOURS } else { 1 };
+    [parts, if layout.n > 1 { parts } else { 0 }]
+}
+
 /// Numbers that a batch of so many slots takes.
 pub(super) fn batch_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Option<usize> {
     let (columns, functions) = (terms.columns(), terms.functions);
@@ -88,8 +94,8 @@ pub(super) fn batch_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Opt
     let rows = AT_ONCE * (functions + columns + 2 * values);
     let pixel = Sums::len(functions, values) + functions + 2 * values;
     let deviations = AT_ONCE * (functions + values) * functions + AT_ONCE * values;
-    let of_slices = apart * Sums::len(columns, values);
-    let sums = 2 * COLOURS * slices * Sums::len(columns, values) + rows + pixel + deviations + of_slices;
+    let [between, within] = parts(layout);
+    let sums = (between * slices + within + apart) * Sums::len(columns, values) + rows + pixel + deviations;
     blocks(layout, slots).checked_mul(AT_ONCE * each)?.checked_add(sums)?.checked_mul(LANES)
 }
 
@@ -130,7 +136,7 @@ impl<'a> Batch<'a> {
         let [Group { len, .. }, ..] = lanes;
         let slots = if call.is_joined() { len.div_ceil(LANES) } else { len };
         let (columns, channels, values) = (terms.columns(), call.config.channels, call.values());
-        let (blocks, parts) = (blocks(call, slots), if call.has_colours() { COLOURS } else { 1 });
+        let (blocks, [between, within]) = (blocks(call, slots), parts(call));
         let known = if call.image.has_known() { blocks * channels } else { 0 };
         Ok(Self {
             lanes,
@@ -148,8 +154,8 @@ impl<'a> Batch<'a> {
             values,
             means: arena.take_fours(blocks * values)?,
             functions: arena.take_fours(blocks * terms.functions)?,
-            between: Sums::sliced(parts, terms.slices.max(1), columns, values, arena)?,
-            within: Sums::new(if call.n > 1 { parts } else { 0 }, columns, values, arena)?,
+            between: Sums::sliced(between, terms.slices.max(1), columns, values, arena)?,
+            within: Sums::new(within, columns, values, arena)?,
         })
     }
 
