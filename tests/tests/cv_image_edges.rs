@@ -4,7 +4,9 @@
 
 use crate::cv_support::points;
 use noisefloor::Error;
-use noisefloor::control_variate::{Config, Estimate, Estimator, Image, Ridge, Samples, image_workspace_len};
+use noisefloor::control_variate::{
+    Config, Estimate, Estimator, Image, Ridge, Samples, estimate_image, image_workspace_len,
+};
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::image;
 use noisefloor_tests::statistics::Moments;
@@ -227,3 +229,26 @@ const PINNED: [[u32; 4]; 3] = [
     [0x3f2c_432e, 0x3f10_a95d, 0x3f05_1893, 0x3f66_8ad1],
     [0x3f1e_bd45, 0x3efb_afeb, 0x3f37_c343, 0x3efb_f075],
 ];
+
+/// Without polynomials, groups that no edge cuts keep their means, whatever the workspace held.
+#[test]
+fn edges_alone_leave_lit_pixels_alone() {
+    let n = 4;
+    for estimator in [Estimator::Robust, Estimator::KFold] {
+        let config = Config { estimator, edges: 1, ..Config::new(2, 0, 1) };
+        let of = Image { stride: SIDE, ..Image::new(2 * SIDE, SIDE) };
+        let u = points(2 * PIXELS * n, 2, &mut SplitMix64::new(11));
+        let is_lit = |pixel: usize| pixel % (2 * SIDE) >= SIDE;
+        let at = |(i, u): (usize, &[f32])| if is_lit(i / n) || u[0] < 0.5 { 1.0 + u[1] } else { 0.0 };
+        let f: Vec<f32> = u.chunks(2).enumerate().map(at).collect();
+        for held in [f32::NAN, 7.0] {
+            let mut workspace = vec![held; image_workspace_len(&config, &of, n).unwrap()];
+            let out = |pixel: usize, estimate: Estimate| {
+                let mean = f[pixel * n..][..n].iter().map(|f| f64::from(*f)).sum::<f64>() / n as f64;
+                let is_mean = (f64::from(estimate.mean[0]) - mean).abs() < 1e-6 && estimate.gain == 1.0;
+                assert!(is_mean || !is_lit(pixel), "{pixel}: {estimate:?}, {mean}");
+            };
+            estimate_image(&config, &of, Samples::new(&u, &f), &mut workspace, out).unwrap();
+        }
+    }
+}

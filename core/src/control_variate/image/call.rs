@@ -48,6 +48,11 @@ impl Layout<'_> {
         if self.image.has_known() { 2 * self.config.channels } else { self.config.channels }
     }
 
+    /// Whether groups without an edge of a shadow are corrected: not by edges alone.
+    pub(super) fn fits_without_edges(&self) -> bool {
+        self.image.has_known() || !self.terms(self.windows.pixels()).ends.is_empty()
+    }
+
     /// In how many turns pixels are chosen for.
     pub(super) fn turns(&self) -> usize {
         if self.has_halves() { 2 } else { 1 }

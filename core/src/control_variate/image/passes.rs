@@ -33,7 +33,7 @@ impl Call<'_> {
         let [rows, touched] = self.band();
         let mut band = Band::new(self, touched, arena)?;
         let mut groups = self.groups(arena)?;
-        let has_fits = self.image.has_known() || self.has_edges() || !self.terms(self.windows.pixels()).ends.is_empty();
+        let has_fits = self.has_edges() || self.fits_without_edges();
         let mut done = self.windows.top(0);
         for row in (0..down).step_by(rows.max(1)) {
             let last = (row + rows).min(down);
@@ -61,8 +61,8 @@ impl Call<'_> {
     /// Fits to all groups: first to all of their pixels, then, where some are too bright, to the others.
     pub(super) fn fit<P: Processor>(&self, groups: &mut Groups<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
         let later = if self.is_single_fit() { 0 } else { self.turns() };
-        let kinds = if self.has_edges() { 2 } else { 1 };
-        for (pass, kind) in (0..=later).flat_map(|pass| (0..kinds).map(move |kind| (pass, kind))) {
+        let kinds = if self.fits_without_edges() { 0 } else { 1 }..if self.has_edges() { 2 } else { 1 };
+        for (pass, kind) in (0..=later).flat_map(|pass| kinds.clone().map(move |kind| (pass, kind))) {
             let turn = pass.checked_sub(1);
             let mut place = 0;
             // Groups of one size, which come one after the other, have the same.
@@ -112,9 +112,6 @@ impl Call<'_> {
         let channels = self.config.channels;
         let [Group { len, has_edges, .. }, ..] = lanes;
         let terms = self.terms(len).with_edges(has_edges);
-        if terms.candidates() == 0 && !self.image.has_known() {
-            return Ok(());
-        }
         let mut batch = Batch::new(self, &terms, lanes, arena)?;
         steps::survey::<P>(&mut batch, self, groups, &terms);
         if let Some(turn) = turn {

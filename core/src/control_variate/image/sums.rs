@@ -103,7 +103,8 @@ impl Call<'_> {
         let len = sums_len(channels);
         let [rows, width] = [band.rows, self.eights() * LANES].map(|extent| extent as u32);
         let [across, down, _] = self.windows.extent.map(|extent| (1.0 / extent.max(1) as f64) as f32);
-        for group in groups.in_order(self) {
+        let all = self.fits_without_edges();
+        for group in groups.in_order(self).filter(|group| all || group.has_edges) {
             let Some(([gain, has_error], errors)) = groups.told(self, &group).split_first_chunk() else { continue };
             let window = self.window(first + group.window);
             let (top, left) = (window.y % band.rows.max(1), window.x - self.windows.given.x);
