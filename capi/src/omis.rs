@@ -258,7 +258,7 @@ fn used_counts(header: &Header) -> Result<&[u32], nf_status> {
 }
 
 /// What nf_omis_init, nf_omis_solve, nf_omis_next_batch, nf_omis_weights and nf_gradient_estimate take, for nf_check();
-/// zero where a function does not take it.
+/// zero where a function does not take it, but for `techniques`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 #[allow(non_camel_case_types)]

@@ -20,8 +20,8 @@ std::vector<Float> shared_fits(const Film &film, const NoisefloorSampler &sample
     const auto n = static_cast<uint32_t>(sampler.SamplesPerPixel());
 
     // For each sample the point on the light, then the choice: a number that picks one of several is the last.
-    const nf_sampler domains[] = {sampler.Request({0, 0}, light_dimension),
-                                  sampler.Request({0, 0}, choice_dimension)};
+    const Point2i first{0, 0}; // In pbrt film.PixelBounds().pMin, which a crop window moves.
+    const nf_sampler domains[] = {sampler.Request(first, light_dimension), sampler.Request(first, choice_dimension)};
     const uint32_t dims[] = {2, 1};
     std::vector<Float> u(std::size_t{3} * width * height * n);
     room::check(nf_sampler_fill(domains, dims, 2, width, height, n, u.data(), u.size()), "nf_sampler_fill");

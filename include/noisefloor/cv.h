@@ -79,10 +79,12 @@ typedef struct nf_cv_config {
     uint32_t precision;
     uint32_t nonfinite; // NF_NONFINITE_*
     uint32_t color; // NF_COLOR_*
-    // Runs of samples, in their order, for NF_CV_K_FOLD and the streaming NF_CV_ROBUST: 2 to 16; 0 means 4.
+    // Runs of samples, in their order, for NF_CV_K_FOLD and the streaming NF_CV_ROBUST: 2 to 16; 0 means 4. Images
+    // have two, of their pixels, whatever this says.
     uint32_t folds;
     // Ridge strength per sample (at least 1e-12, in float 1e-5), NF_RIDGE_AUTO, or 0 for the estimator's default.
-    // NF_CV_ROBUST and NF_CV_GRADIENT_DESCENT do not use it; NF_RIDGE_AUTO biases NF_CV_LEAVE_ONE_OUT slightly.
+    // NF_CV_GRADIENT_DESCENT, and of one integral NF_CV_ROBUST, do not use it; of images any strength, but not
+    // NF_RIDGE_AUTO, makes one fit, unbiased. NF_RIDGE_AUTO biases NF_CV_LEAVE_ONE_OUT slightly.
     float ridge;
 } nf_cv_config;
 
@@ -157,7 +159,8 @@ typedef struct nf_cv_image {
     // at least 0, and not dependent on its own samples; 0 counts as 1. For textures of which all samples of a pixel
     // see the same; pixels near 0 beside others are better kept apart by `surfaces`.
     const float *factors;
-    // The pixels that all arrays hold, in all frames, and that are counted; all zero: all of the image.
+    // The pixels that all arrays hold, in all frames, and that are counted, at most 2^30 - 1; all zero: all of the
+    // image.
     nf_cv_rectangle given;
     // The pixels to estimate, of which every window must be given whole: see nf_cv_image_needed(). All zero: all that
     // are given. Parts that are estimated apart, by threads say, have the bits of the whole.
@@ -179,14 +182,14 @@ size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image 
 //
 // NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
 // they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and a `ridge` are exactly
-// unbiased for independent samples. Groups of up to 4 pixels stay at their mean. Of a texture one sample in each pixel
-// cannot tell: say it by `surfaces` or `factors`. With one sample, or `stratified`, std_error is the spread of the
-// pixels' estimates about their linear trend: an upper bound where the signal varies otherwise.
+// unbiased for independent samples. Small groups, of up to 4 pixels in one frame, stay at their mean. Of a texture one
+// sample in each pixel cannot tell: say it by `surfaces` or `factors`. With one sample, or `stratified`, std_error is
+// the spread of the pixels' estimates about their linear trend: an upper bound where the signal varies otherwise.
 //
 // With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
 // to what is left of it, with order 0 between the mean and what is known; NF_CV_K_FOLD is unsupported.
-// NF_ERR_UNSUPPORTED: other estimators, `controls`, NF_NONFINITE_SKIP, luminance ratio; NF_ERR_RANGE also for the
-// image, negative factors or integrals, and `known` without integrals; else as for nf_cv_estimate().
+// NF_ERR_UNSUPPORTED: other estimators and solvers, `controls`, NF_NONFINITE_SKIP, luminance ratio; NF_ERR_RANGE also
+// for the image, negative factors or integrals, and `known` without integrals; else as for nf_cv_estimate().
 nf_status nf_cv_image_estimate(const nf_cv_config *config, const nf_cv_image *image, const nf_cv_samples *samples,
     void *workspace, size_t bytes, nf_estimate *out);
 
@@ -198,9 +201,10 @@ nf_status nf_cv_image_estimate(const nf_cv_config *config, const nf_cv_image *im
 typedef struct nf_cv_descent {
     uint32_t optimizer; // NF_OPTIMIZER_*
     uint32_t iterations; // Steps, at most 2^20; by default half as many as samples, 8 to 128.
-    // Length of a step: in standard deviations of the values for Adam, else times one over the largest curvature.
+    // Length of a step: in standard deviations of the values for Adam, by default .05, else times one over the
+    // largest curvature, by default 1.
     float learning_rate;
-    float momentum; // Below 1.
+    float momentum; // Below 1; by default .5, of Adam .9. Plain steps have none.
 } nf_cv_descent;
 
 // nf_cv_estimate() of one integral by NF_CV_GRADIENT_DESCENT, which `estimator` must be, from a start: `coefficients`
@@ -222,8 +226,8 @@ typedef struct nf_cv_accumulator nf_cv_accumulator;
 size_t nf_cv_accumulator_size(const nf_cv_config *config, size_t *workspace);
 
 // Makes an empty accumulator in `memory`, or empties one: `*out` is its handle, the same address.
-// NF_ERR_RANGE: the configuration; NF_ERR_MEMORY; NF_ERR_UNSUPPORTED: NF_CV_LEAVE_ONE_OUT, which needs all samples at
-// once, and NF_SOLVER_DUAL.
+// NF_ERR_RANGE: the configuration; NF_ERR_MEMORY; NF_ERR_UNSUPPORTED: what needs all samples at once, which are
+// NF_CV_LEAVE_ONE_OUT, NF_SOLVER_DUAL, and NF_RIDGE_AUTO of least squares; and NF_SOLVER_SQUARE_ROOT of all else.
 nf_status nf_cv_accumulator_init(void *memory, size_t bytes, const nf_cv_config *config, nf_cv_accumulator **out);
 
 // Adds samples of the one integral: all of them or, on an error, none. Several at a time are cheaper. In single
@@ -232,7 +236,7 @@ nf_status nf_cv_accumulator_init(void *memory, size_t bytes, const nf_cv_config 
 nf_status nf_cv_accumulator_add(nf_cv_accumulator *accumulator, const nf_cv_samples *samples);
 
 // Adds all samples of `other`, which stays as it is.
-// NF_ERR_MISMATCH: other configurations; NF_ERR_RANGE: both are the same object.
+// NF_ERR_MISMATCH: other configurations; NF_ERR_RANGE: both are the same object, or hold too many samples together.
 nf_status nf_cv_accumulator_merge(nf_cv_accumulator *accumulator, const nf_cv_accumulator *other);
 
 // The estimate from all samples so far; more may be added afterwards.

@@ -106,7 +106,7 @@ nf_status nf_omis_next_batch(nf_omis *omis, uint32_t solver, float ridge, float 
 nf_status nf_omis_merge(nf_omis *omis, const nf_omis *other);
 
 // What nf_omis_init, nf_omis_solve, nf_omis_next_batch, nf_omis_weights and nf_gradient_estimate take, for nf_check();
-// zero where a function does not take it.
+// zero where a function does not take it, but for `techniques`.
 typedef struct nf_omis_arguments {
     const uint32_t *counts; // Samples of each technique in a round, each at least 1; or NULL.
     uint32_t techniques; // 1 to NF_MIS_MAX_TECHNIQUES.

@@ -48,7 +48,8 @@ class ImportanceBatchSampler(Sampler):
         uniform_fraction: the part of draws that are uniform, 0 to 1; no weight is above 1 / uniform_fraction.
         momentum: 0 to 1: of an item's importance, from one visit to the next.
         techniques: 1 to 16 tables; more than 1 is optimal multiple importance sampling of the output's derivatives.
-            Even, and at most twice as many as outputs. Weights are then slightly biased and may be negative.
+            Even, a divisor of the batch of all processes, and at most twice as many as outputs. Weights are then
+            slightly biased and may be negative.
         weighted: False gives weights of 1: adaptive sampling, which is biased towards difficult items.
         seed: 0 to 2**63 - 1, the same in all processes, which is why it has a default. PyTorch's `manual_seed` changes
             nothing here.

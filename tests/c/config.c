@@ -22,6 +22,7 @@ static void checked(void)
 {
     nf_cv_config config = make_config(2, 2, 1, NF_CV_ROBUST);
     memory work = memory_new(1 << 16);
+    const uint32_t surface = 0;
     nf_cv_image image;
     nf_estimate out;
     memset(&image, 0, sizeof image);
@@ -34,6 +35,12 @@ static void checked(void)
     CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "unordered must be 0 or 1");
     image.unordered = 1;
     CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, NULL);
+    image.surfaces = &surface;
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "at most 1024");
+    image.surfaces = NULL;
+    image.width = image.height = 1 << 15;
+    CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "2^30 - 1");
+    image.width = image.height = 64;
     image.wanted.width = image.wanted.height = 8;
     CHECK_NAMED(NF_CHECK_CV_IMAGE, &image, "all zero");
     image.unordered = 0;

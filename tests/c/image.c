@@ -78,14 +78,21 @@ static void unordered(void)
     nf_cv_image image = make_image(WIDTH, HEIGHT);
     nf_estimate out[PIXELS], expected[PIXELS];
     nf_cv_image row = make_image(PIXELS, 1);
+    static uint32_t surfaces[PIXELS];
     memory work;
+    size_t i;
     fill_pixels(1);
+    for (i = 0; i < PIXELS; ++i)
+        surfaces[i] = i % 2;
     image.unordered = row.unordered = 1;
     work = memory_new(image_workspace_size(&config, &row, N));
     CHECK(image_workspace_size(&config, &image, N) == work.bytes);
     estimate(&config, &image, N, out);
     estimate(&config, &row, N, expected);
     CHECK(memcmp(out, expected, sizeof out) == 0);
+    image.surfaces = surfaces;
+    estimate(&config, &image, N, out);
+    CHECK(memcmp(out, expected, sizeof out) != 0);
     image.unordered = 2;
     CHECK(image_workspace_size(&config, &image, N) == 0);
     CHECK_REFUSED(estimate_image(&config, &image, u, f, N, work.start, work.bytes, out), NF_ERR_RANGE, out);
@@ -339,6 +346,9 @@ static void errors(void)
     REFUSED(NF_ERR_UNSUPPORTED);
     config.estimator = 99;
     REFUSED(NF_ERR_RANGE);
+    config = make_config(2, 2, 1, NF_CV_ROBUST);
+    config.solver = NF_SOLVER_DUAL;
+    REFUSED(NF_ERR_UNSUPPORTED);
     fill_pixels(3);
     for (i = 0; i < 2; ++i) {
         image.unordered = (uint32_t)i;

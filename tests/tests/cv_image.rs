@@ -4,7 +4,7 @@ use crate::cv_support::{is_sound, largest, points, smooth, wide};
 use noisefloor::Error;
 use noisefloor::basis::Family;
 use noisefloor::control_variate::{
-    Color, Config, Estimate, Estimator, Image, NonFinite, Ridge, Samples, estimate_image, image_workspace_len,
+    Color, Config, Estimate, Estimator, Image, NonFinite, Ridge, Samples, Solver, estimate_image, image_workspace_len,
 };
 use noisefloor_tests::random::SplitMix64;
 use noisefloor_tests::shared::{block, image};
@@ -346,6 +346,9 @@ fn errors() {
         let other = Config { estimator, ..config };
         assert_eq!(run(&other, of, &u, &f, 9999), Err(Error::Unsupported));
         assert_eq!(image_workspace_len(&other, &of, 2), Err(Error::Unsupported));
+    }
+    for solver in [Solver::SquareRoot, Solver::Dual] {
+        assert_eq!(image_workspace_len(&Config { solver, ..config }, &of, 2), Err(Error::Unsupported));
     }
     assert_eq!(run(&Config { non_finite: NonFinite::Skip, ..config }, of, &u, &f, 9999), Err(Error::Unsupported));
     let luminance = Config { color: Color::LuminanceRatio, channels: 3, ..config };

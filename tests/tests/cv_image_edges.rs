@@ -70,6 +70,11 @@ fn bits(estimates: &[Estimate]) -> Vec<u32> {
     estimates.iter().flat_map(|e| [e.mean[0], e.std_error[0], e.gain].map(f32::to_bits)).collect()
 }
 
+fn squared_error(config: &Config, shadow: Shadow, u: &[f32], f: &[f32]) -> f64 {
+    let of = |(pixel, e): (usize, &Estimate)| (f64::from(e.mean[0]) - shadow.integral(pixel)).powi(2);
+    estimates(config, u, f).iter().enumerate().map(of).sum()
+}
+
 /// Squared errors with edges against those without, frame by frame.
 #[test]
 fn they_lower_the_error() {
@@ -83,11 +88,7 @@ fn they_lower_the_error() {
                 for _ in 0..60 {
                     let u = if stratified { jittered(n, &mut rng) } else { points(PIXELS * n, 2, &mut rng) };
                     let f = shadow.values(n, &u);
-                    let [plain, edges] = [config, with].map(|config| {
-                        let of =
-                            |(pixel, e): (usize, &Estimate)| (f64::from(e.mean[0]) - shadow.integral(pixel)).powi(2);
-                        estimates(&config, &u, &f).iter().enumerate().map(of).sum::<f64>()
-                    });
+                    let [plain, edges] = [config, with].map(|config| squared_error(&config, shadow, &u, &f));
                     gained.add(edges - plain);
                     all.iter_mut().zip([plain, edges]).for_each(|(moments, error)| moments.add(error));
                 }
@@ -229,6 +230,23 @@ const PINNED: [[u32; 4]; 3] = [
     [0x3f2c_432e, 0x3f10_a95d, 0x3f05_1893, 0x3f66_8ad1],
     [0x3f1e_bd45, 0x3efb_afeb, 0x3f37_c343, 0x3efb_f075],
 ];
+
+/// They do so without polynomials, too.
+#[test]
+fn edges_alone_lower_the_error() {
+    let plain = Config::new(2, 0, 1);
+    let mut rng = SplitMix64::new(302);
+    let (mut gained, mut all) = (Moments::default(), [Moments::default(); 2]);
+    for _ in 0..60 {
+        let u = points(PIXELS * 4, 2, &mut rng);
+        let f = Shadow::Disc.values(4, &u);
+        let errors = [plain, Config { edges: 1, ..plain }].map(|config| squared_error(&config, Shadow::Disc, &u, &f));
+        gained.add(errors[1] - errors[0]);
+        all.iter_mut().zip(errors).for_each(|(moments, error)| moments.add(error));
+    }
+    let (z, ratio) = (gained.z(0.0), all[1].mean() / all[0].mean());
+    assert!(z < -Z_LIMIT && ratio < 0.5, "{ratio} {z}");
+}
 
 /// Without polynomials, groups that no edge cuts keep their means, whatever the workspace held.
 #[test]

@@ -396,6 +396,18 @@ fn luminance_ratio_of_one_sample() {
     }
 }
 
+/// Where values cancel so that their luminance is 0, its error says nothing of the channels'.
+#[test]
+fn luminance_ratio_of_values_that_cancel() {
+    let config = Config { channels: 3, color: Color::LuminanceRatio, ..config(1, 0, Estimator::Robust) };
+    let u: Vec<f32> = (0..8).map(|i| i as f32 / 8.0).collect();
+    for (size, error) in [(1.0, f32::INFINITY), (0.0, 0.0)] {
+        let f: Vec<f32> = (0..8 * 3).map(|i| if i / 3 % 2 == 0 { size } else { -size }).collect();
+        let estimate = batch::<f64>(&config, &u, &f).unwrap();
+        assert_eq!((estimate.mean[..3].to_vec(), estimate.std_error[..3].to_vec()), (vec![0.0; 3], vec![error; 3]));
+    }
+}
+
 /// Skipping leaves the estimate of the others, to rounding, wherever the bad samples are.
 #[test]
 fn skipped_samples_were_never_there() {

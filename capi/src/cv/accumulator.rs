@@ -62,8 +62,8 @@ fn sizes<R: Real>(config: &Config) -> Result<[usize; 2], nf_status> {
 
 /// Makes an empty accumulator in `memory`, or empties one: `*out` is its handle, the same address.
 ///
-/// NF_ERR_RANGE: the configuration; NF_ERR_MEMORY; NF_ERR_UNSUPPORTED: NF_CV_LEAVE_ONE_OUT, which needs all samples at
-/// once, and NF_SOLVER_DUAL.
+/// NF_ERR_RANGE: the configuration; NF_ERR_MEMORY; NF_ERR_UNSUPPORTED: what needs all samples at once, which are
+/// NF_CV_LEAVE_ONE_OUT, NF_SOLVER_DUAL, and NF_RIDGE_AUTO of least squares; and NF_SOLVER_SQUARE_ROOT of all else.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_init(
     memory: *mut c_void,
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn nf_cv_accumulator_add(
 
 /// Adds all samples of `other`, which stays as it is.
 ///
-/// NF_ERR_MISMATCH: other configurations; NF_ERR_RANGE: both are the same object.
+/// NF_ERR_MISMATCH: other configurations; NF_ERR_RANGE: both are the same object, or hold too many samples together.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_accumulator_merge(
     accumulator: *mut nf_cv_accumulator,

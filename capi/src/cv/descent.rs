@@ -25,9 +25,10 @@ pub struct nf_cv_descent {
     pub optimizer: u32,
     /// Steps, at most 2^20; by default half as many as samples, 8 to 128.
     pub iterations: u32,
-    /// Length of a step: in standard deviations of the values for Adam, else times one over the largest curvature.
+    /// Length of a step: in standard deviations of the values for Adam, by default .05, else times one over the
+    /// largest curvature, by default 1.
     pub learning_rate: f32,
-    /// Below 1.
+    /// Below 1; by default .5, of Adam .9. Plain steps have none.
     pub momentum: f32,
 }
 

@@ -36,7 +36,8 @@ pub struct nf_cv_image {
     /// at least 0, and not dependent on its own samples; 0 counts as 1. For textures of which all samples of a pixel
     /// see the same; pixels near 0 beside others are better kept apart by `surfaces`.
     pub factors: *const f32,
-    /// The pixels that all arrays hold, in all frames, and that are counted; all zero: all of the image.
+    /// The pixels that all arrays hold, in all frames, and that are counted, at most 2^30 - 1; all zero: all of the
+    /// image.
     pub given: nf_cv_rectangle,
     /// The pixels to estimate, of which every window must be given whole: see nf_cv_image_needed(). All zero: all that
     /// are given. Parts that are estimated apart, by threads say, have the bits of the whole.
@@ -98,15 +99,15 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
 ///
 /// NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
 /// they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and a `ridge` are exactly
-/// unbiased for independent samples. Groups of up to 4 pixels stay at their mean. Of a texture one sample in each pixel
-/// cannot tell: say it by `surfaces` or `factors`. With one sample, or `stratified`, std_error is the spread of the
-/// pixels' estimates about their linear trend: an upper bound where the signal varies otherwise.
+/// unbiased for independent samples. Small groups, of up to 4 pixels in one frame, stay at their mean. Of a texture one
+/// sample in each pixel cannot tell: say it by `surfaces` or `factors`. With one sample, or `stratified`, std_error is
+/// the spread of the pixels' estimates about their linear trend: an upper bound where the signal varies otherwise.
 ///
 /// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
 /// to what is left of it, with order 0 between the mean and what is known; NF_CV_K_FOLD is unsupported.
 ///
-/// NF_ERR_UNSUPPORTED: other estimators, `controls`, NF_NONFINITE_SKIP, luminance ratio; NF_ERR_RANGE also for the
-/// image, negative factors or integrals, and `known` without integrals; else as for nf_cv_estimate().
+/// NF_ERR_UNSUPPORTED: other estimators and solvers, `controls`, NF_NONFINITE_SKIP, luminance ratio; NF_ERR_RANGE also
+/// for the image, negative factors or integrals, and `known` without integrals; else as for nf_cv_estimate().
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_cv_image_estimate(
     config: *const nf_cv_config,
@@ -153,8 +154,14 @@ pub(crate) fn check_image(image: &nf_cv_image) -> Result<(), Wrong> {
     let in_window = [side.min(image.width), side.min(image.height), image.frames.max(1)];
     let end = |of: &nf_cv_rectangle| [u64::from(of.x) + u64::from(of.width), u64::from(of.y) + u64::from(of.height)];
     let [right, below] = end(&image.given);
+    let area = |width: u32, height: u32| u128::from(width) * u128::from(height) * u128::from(image.frames.max(1));
+    let pixels = match image.given {
+        nf_cv_rectangle { width: 0, .. } | nf_cv_rectangle { height: 0, .. } => area(image.width, image.height),
+        given => area(given.width, given.height),
+    };
     let words = match image {
         nf_cv_image { width: 0, .. } | nf_cv_image { height: 0, .. } => c"width and height must be at least 1",
+        _ if pixels > u128::from(Image::MAX_PIXELS) => c"pixels must be at most 2^30 - 1, all frames together",
         nf_cv_image { unordered: 1, .. } => {
             c"given and wanted must be all zero, and pixels with surfaces at most 1024, where unordered is 1"
         }
@@ -186,18 +193,19 @@ fn supported(config: &nf_cv_config) -> Result<Config, nf_status> {
     if core.controls > 0 { Err(NF_ERR_UNSUPPORTED) } else { Ok(core) }
 }
 
-/// The image without its arrays; of `known` only whether there is one, on which the workspace depends.
+/// The image without its arrays; of `known` and `surfaces` only whether there are any, on which the workspace depends.
 fn core_image(image: &nf_cv_image, samples: &nf_cv_samples) -> Result<Image<'static>, Wrong> {
     let [width, height, frames, window, stride] =
         [image.width, image.height, image.frames, image.window, image.stride].map(|value| value as usize);
     let unordered = pick(image.unordered, &[false, true], c"unordered must be 0 or 1")?;
     let known: &[f32] = if samples.known.is_null() { &[] } else { &[0.0] };
+    let surfaces: &[u32] = if image.surfaces.is_null() { &[] } else { &[0] };
     let rectangle = |of: &nf_cv_rectangle| {
         let [x, y, width, height] = [of.x, of.y, of.width, of.height].map(|value| value as usize);
         Rectangle::new(x, y, width, height)
     };
     let (given, wanted) = (rectangle(&image.given), rectangle(&image.wanted));
-    Ok(Image { frames, window, stride, unordered, known, given, wanted, ..Image::new(width, height) })
+    Ok(Image { frames, window, stride, unordered, surfaces, known, given, wanted, ..Image::new(width, height) })
 }
 
 /// # Safety

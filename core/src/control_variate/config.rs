@@ -133,13 +133,14 @@ pub struct Config {
     /// How channels are treated.
     pub color: Color,
     /// Folds of [`Estimator::KFold`] and of the streaming robust estimate: 2 to 16; 0 means 4. They are runs of samples
-    /// in the order in which they come.
+    /// in the order in which they come. Images have two, of their pixels, whatever this says.
     pub folds: usize,
     /// Steps of gradient descent, at most 2^20; 0 means half as many as samples, at least 8 and at most 128.
     pub iterations: usize,
     /// The step rule of gradient descent.
     pub optimizer: Optimizer,
-    /// Ridge strength. [`Estimator::Robust`] and [`Estimator::GradientDescent`] do not use it.
+    /// Ridge strength. [`Estimator::GradientDescent`], and of one integral [`Estimator::Robust`], do not use it; of
+    /// images any strength, but not [`Ridge::Auto`], makes one fit, unbiased.
     pub ridge: Ridge,
     /// Step length of gradient descent, in units of the value's standard deviation for Adam, and of one over the
     /// largest curvature otherwise; 0 means the default.

@@ -3,7 +3,7 @@
 use super::power::{LANES, total};
 
 /// Frequencies along each axis.
-pub(crate) const MODES: usize = 16;
+pub(crate) const MODES: usize = 32;
 /// Numbers of a spectrum: `[frequency along x][along y]`.
 pub(crate) const SPECTRUM: usize = MODES * MODES;
 /// Places at which cosines are known.
@@ -73,7 +73,7 @@ impl Basis {
                 *sum += cx * value;
             }
         }
-        let lanes = std::array::from_fn(|lane| sums[lane] * cy[lane] + sums[lane + LANES] * cy[lane + LANES]);
+        let lanes = std::array::from_fn(|lane| (lane..MODES).step_by(LANES).map(|i| sums[i] * cy[i]).sum::<f32>());
         total(&lanes)
     }
 

@@ -177,7 +177,7 @@ impl SamplerOptimizer {
             let (dx, dy) = (wrapped(x - *other as i32 % size), wrapped(y - *other as i32 / size));
             let Some(weights) = self.weights.at(dx, dy) else { continue };
             for &octave in octaves {
-                add_weighed(&mut around[octave], weights, &change[octave]);
+                weights.add(&change[octave], &mut around[octave]);
             }
         }
     }
@@ -192,7 +192,7 @@ impl SamplerOptimizer {
                 let Some(weights) = self.weights.at(dx, dy) else { continue };
                 let other = (y + dy).rem_euclid(size) * size + (x + dx).rem_euclid(size);
                 for &octave in &energy.octaves {
-                    add_weighed(&mut around[octave], weights, &errors[other as usize][octave]);
+                    weights.add(&errors[other as usize][octave], &mut around[octave]);
                 }
             }
             around
@@ -360,12 +360,6 @@ impl SamplerOptimizer {
             report.border[octave] = self.border.extremes(octave);
         }
         report
-    }
-}
-
-fn add_weighed(sum: &mut Spectrum, weights: &Spectrum, errors: &Spectrum) {
-    for ((sum, weight), error) in sum.iter_mut().zip(weights).zip(errors) {
-        *sum += weight * error;
     }
 }
 

@@ -1,6 +1,7 @@
 //! How much the errors of two pixels count together.
 
-use super::basis::{MODES, SPECTRUM, Spectrum};
+use super::basis::{MODES, Spectrum};
+use super::power::LANES;
 
 /// Pixels whose errors are seen together: no farther than this along each axis.
 pub(crate) const REACH: usize = 8;
@@ -8,12 +9,34 @@ pub(crate) const REACH: usize = 8;
 const SIDE: usize = REACH + 1;
 /// Pairs of pixels that count less are left out.
 const LEAST: f64 = 0.003;
+/// Frequencies of which a pair counts less are left out.
+const FAINT: f64 = 0.02;
 
 /// What pairs of pixels count where a pixel with itself counts 1, for each product of cosines: the squares of Gaussian
 /// filters of 2.1 pixels and, for less, of one, times the correlation of two pixels' integrands.
 pub(crate) struct Weights {
     /// `[distance along y][along x]`; none if too little.
-    weights: Vec<Option<Box<Spectrum>>>,
+    weights: Vec<Option<Box<Weight>>>,
+}
+
+/// What two pixels count together.
+pub(crate) struct Weight {
+    /// Frequencies along each axis that count, from 0.
+    pub(crate) modes: usize,
+    pub(crate) factors: Spectrum,
+}
+
+impl Weight {
+    /// Adds weighed errors to a sum.
+    pub(crate) fn add(&self, errors: &Spectrum, sum: &mut Spectrum) {
+        let rows = |spectrum| <[f32]>::as_chunks::<MODES>(spectrum).0;
+        let sums = sum.as_chunks_mut::<MODES>().0.iter_mut();
+        for ((sum, factors), errors) in sums.zip(rows(&self.factors)).zip(rows(errors)).take(self.modes) {
+            for ((sum, factor), error) in sum[..self.modes].iter_mut().zip(factors).zip(errors) {
+                *sum += factor * error;
+            }
+        }
+    }
 }
 
 impl Weights {
@@ -24,13 +47,15 @@ impl Weights {
             let filtered = (filter(2.1) + 0.3 * filter(1.0)) / 1.3;
             let weight = |mode: usize| (filtered * correlation(mode, libm::sqrt(square))) as f32;
             let seen = square > 0.0 && filtered * correlation(MODES, libm::sqrt(square)) > LEAST;
-            seen.then(|| Box::new(std::array::from_fn::<f32, SPECTRUM, _>(weight)))
+            let counts = |mode: &usize| filtered * correlation(*mode, libm::sqrt(square)) > FAINT;
+            let modes = (0..MODES).take_while(counts).count().next_multiple_of(LANES);
+            seen.then(|| Box::new(Weight { modes, factors: std::array::from_fn(weight) }))
         });
         Weights { weights: weights.collect() }
     }
 
     /// None if two pixels so far apart do not see each other, or are one.
-    pub(crate) fn at(&self, x: i32, y: i32) -> Option<&Spectrum> {
+    pub(crate) fn at(&self, x: i32, y: i32) -> Option<&Weight> {
         let (x, y) = (x.unsigned_abs() as usize, y.unsigned_abs() as usize);
         if x > REACH || y > REACH {
             return None;

@@ -36,8 +36,8 @@ impl Default for SamplerProblem {
         SamplerProblem {
             size: 32,
             bits: 6,
-            weights: [3.0, 2.0, 2.0, 1.2, 2.0, 0.3, 0.7],
-            exponent: 0.6,
+            weights: [3.0, 2.0, 2.8, 1.7, 2.8, 0.3, 0.7],
+            exponent: 0.65,
             mean: 0.05,
             border: 0.3,
             heat: 1.0,
@@ -65,12 +65,12 @@ const STAGES: [Stage; 3] = [
     Stage { end: 1.0, octaves: OCTAVES, temperatures: [0.004, 0.000_01] },
 ];
 
-/// The steps of an optimisation: minutes, a quarter of an hour, or one of one core's time.
+/// The steps of an optimisation: minutes, half an hour, or three hours of one core's time.
 pub fn iterations(quality: Quality) -> u64 {
     match quality {
         Quality::Draft => 16,
         Quality::Standard => 128,
-        Quality::High => 560,
+        Quality::High => 640,
         Quality::Iterations(iterations) => iterations,
     }
 }

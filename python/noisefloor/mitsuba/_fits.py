@@ -70,7 +70,7 @@ def kind():
     """The class of integrators of the variant that is set."""
 
     class NoisefloorFits(mi.CppADIntegrator):
-        """Renders in one pass; order and `known` as docs/renderer.md has them."""
+        """Renders in one pass; order and `known` are described in integrations/mitsuba/README.md."""
 
         def __init__(self, props):
             super().__init__(props)

@@ -492,12 +492,12 @@ impl<'a> Apart<'a> {
         for (j, (out, total)) in rows_mut(self.functions, width).zip(totals).enumerate() {
             put(out, row(gram, j), total);
         }
-        let each = values.iter().zip(squares.iter().zip(rows(sides, width)));
-        let out = self.squares.iter_mut().zip(rows_mut(self.values, width));
-        for ((total, (square, sides)), (out, others)) in each.zip(out) {
+        for (out, (square, total)) in self.squares.iter_mut().zip(squares.iter().zip(values)) {
             let left = lanes::minus_product(*square, total.map(|total| total * inverse), *total);
             out[slot % AT_ONCE] = only(inside, &left.map(|square| Real::max(square, 0.0)));
-            put(others, sides, total);
+        }
+        for (out, (sides, total)) in rows_mut(self.values, width).zip(rows(sides, width).zip(values)) {
+            put(out, sides, total);
         }
     }
 
@@ -536,14 +536,15 @@ impl Sums<'_> {
                 }
             }
         }
-        let values = rows(apart.values, width).zip(apart.squares.iter());
-        for ((products, square), (sides, out)) in values.zip(rows_mut(sides, columns).zip(squares)) {
+        for (out, square) in squares.iter_mut().zip(apart.squares.iter()) {
+            *out = square.iter().fold(*out, |sum, square| plus(&sum, square));
+        }
+        for (products, sides) in rows(apart.values, width).zip(rows_mut(sides, columns)) {
             for (side, (factor, function)) in from_mut(sides, fixed).iter_mut().zip(terms.changing(places)) {
                 if let Some(product) = products.get(function) {
                     *side = plus_four(*side, factor, product);
                 }
             }
-            *out = square.iter().fold(*out, |sum, square| plus(&sum, square));
         }
     }
 }

@@ -45,7 +45,7 @@ mod terms;
 
 pub use pixels::{Image, Rectangle};
 
-use super::config::{Color, Config, Estimate, Estimator, NonFinite};
+use super::config::{Color, Config, Estimate, Estimator, NonFinite, Solver};
 use super::samples::{Reader, Samples};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -89,9 +89,9 @@ fn check_supported(config: &Config, image: &Image<'_>) -> Result<(), Error> {
     let estimator = matches!(config.estimator, Estimator::Robust | Estimator::LeaveOneOut | Estimator::KFold);
     // Halves that choose for each other would have to know nothing of each other's samples.
     let is_halved = config.estimator == Estimator::KFold && image.has_known();
-    let supported =
-        estimator && !is_halved && config.color == Color::PerChannel && config.non_finite == NonFinite::Error;
-    if supported { Ok(()) } else { Err(Error::Unsupported) }
+    let solver = matches!(config.solver, Solver::Auto | Solver::NormalEquations);
+    let samples = config.color == Color::PerChannel && config.non_finite == NonFinite::Error;
+    if estimator && !is_halved && solver && samples { Ok(()) } else { Err(Error::Unsupported) }
 }
 
 /// Estimates the integral of each of `pixels` pixels that are alike, in no order: [`estimate_image`] for
@@ -130,10 +130,11 @@ pub fn estimate_block(
 ///
 /// # Errors
 /// As for [`estimate`](super::estimate); [`Error::Unsupported`] also for a luminance ratio, for skipping samples, for
-/// estimators other than the robust, leave-one-out and K-fold ones, and for the last if something is known;
-/// [`Error::Range`] also for an image without pixels or with more than [`Image::MAX_PIXELS`], for windows and parts
-/// that [`Image`] does not allow, for negative factors or integrals and for arrays of the wrong length;
-/// [`Error::NotFinite`] for factors, for what is known and for integrals that are not finite.
+/// estimators other than the robust, leave-one-out and K-fold ones, for the last if something is known, and for solvers
+/// other than the normal equations; [`Error::Range`] also for an image without pixels or with more than
+/// [`Image::MAX_PIXELS`], for windows and parts that [`Image`] does not allow, for negative factors or integrals and
+/// for arrays of the wrong length; [`Error::NotFinite`] for factors, for what is known and for integrals that are not
+/// finite.
 ///
 /// ```
 /// use noisefloor::control_variate::{Config, Image, Samples, estimate_image, image_workspace_len};

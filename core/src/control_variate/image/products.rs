@@ -213,8 +213,10 @@ impl<'a> Sums<'a> {
             gram = rest;
             add_products(row, column, columns);
         }
-        for ((value, sides), square) in values.iter().zip(rows_mut(sides, width)).zip(squares) {
+        for (value, sides) in values.iter().zip(rows_mut(sides, width)) {
             add_products(sides, value, columns);
+        }
+        for (value, square) in values.iter().zip(squares) {
             *square = plus_four(*square, value, value);
         }
     }

@@ -16,8 +16,8 @@ use crate::rows::rows_mut;
 /// Sums of a pixel that are not a channel's: the weight of the groups that it was in, of those with an error, and their
 /// gain.
 const COMMON: usize = 3;
-/// The largest correction that the windows of a pixel may add up, 2^120.
-const MOST: f32 = (1_u128 << 120) as f32;
+/// The largest correction that the windows of a pixel may add up: their weights are at most 512.
+const MOST: f32 = (1_u128 << 118) as f32;
 
 /// The square of a likely correction is at most this many times the variance of the mean.
 const UNLIKELY: f64 = 4.0;
