@@ -79,12 +79,10 @@ typedef struct nf_cv_config {
     uint32_t precision;
     uint32_t nonfinite; // NF_NONFINITE_*
     uint32_t color; // NF_COLOR_*
-    // Runs of samples, in their order, for NF_CV_K_FOLD and the streaming NF_CV_ROBUST: 2 to 16; 0 means 4. Images
-    // have two, of their pixels, whatever this says.
+    // Runs of samples, in order, for NF_CV_K_FOLD (images have two) and streaming NF_CV_ROBUST: 2 to 16; 0 means 4.
     uint32_t folds;
-    // Ridge strength per sample (at least 1e-12, in float 1e-5), NF_RIDGE_AUTO, or 0 for the estimator's default.
-    // NF_CV_GRADIENT_DESCENT, and of one integral NF_CV_ROBUST, do not use it; of images any strength, but not
-    // NF_RIDGE_AUTO, makes one fit, unbiased. NF_RIDGE_AUTO biases NF_CV_LEAVE_ONE_OUT slightly.
+    // Ridge strength per sample (at least 1e-12, in float 1e-5), NF_RIDGE_AUTO (not of images), or 0: the default.
+    // NF_CV_GRADIENT_DESCENT, and NF_CV_ROBUST of one integral, do not use it. NF_RIDGE_AUTO biases leave-one-out.
     float ridge;
 } nf_cv_config;
 
@@ -159,8 +157,7 @@ typedef struct nf_cv_image {
     // at least 0, and not dependent on its own samples; 0 counts as 1. For textures of which all samples of a pixel
     // see the same; pixels near 0 beside others are better kept apart by `surfaces`.
     const float *factors;
-    // The pixels that all arrays hold, in all frames, and that are counted, at most 2^30 - 1; all zero: all of the
-    // image.
+    // The pixels that all arrays hold, in all frames, and that count, at most 2^30 - 1; all zero: all of the image.
     nf_cv_rectangle given;
     // The pixels to estimate, of which every window must be given whole: see nf_cv_image_needed(). All zero: all that
     // are given. Parts that are estimated apart, by threads say, have the bits of the whole.
@@ -201,10 +198,9 @@ nf_status nf_cv_image_estimate(const nf_cv_config *config, const nf_cv_image *im
 typedef struct nf_cv_descent {
     uint32_t optimizer; // NF_OPTIMIZER_*
     uint32_t iterations; // Steps, at most 2^20; by default half as many as samples, 8 to 128.
-    // Length of a step: in standard deviations of the values for Adam, by default .05, else times one over the
-    // largest curvature, by default 1.
+    // Length of a step: for Adam in standard deviations of the values (.05), else over the largest curvature (1).
     float learning_rate;
-    float momentum; // Below 1; by default .5, of Adam .9. Plain steps have none.
+    float momentum; // Below 1; 0 means .5, for Adam .9. Plain steps have none.
 } nf_cv_descent;
 
 // nf_cv_estimate() of one integral by NF_CV_GRADIENT_DESCENT, which `estimator` must be, from a start: `coefficients`

@@ -98,12 +98,10 @@ pub struct nf_cv_config {
     pub nonfinite: u32,
     /// NF_COLOR_*
     pub color: u32,
-    /// Runs of samples, in their order, for NF_CV_K_FOLD and the streaming NF_CV_ROBUST: 2 to 16; 0 means 4. Images
-    /// have two, of their pixels, whatever this says.
+    /// Runs of samples, in order, for NF_CV_K_FOLD (images have two) and streaming NF_CV_ROBUST: 2 to 16; 0 means 4.
     pub folds: u32,
-    /// Ridge strength per sample (at least 1e-12, in float 1e-5), NF_RIDGE_AUTO, or 0 for the estimator's default.
-    /// NF_CV_GRADIENT_DESCENT, and of one integral NF_CV_ROBUST, do not use it; of images any strength, but not
-    /// NF_RIDGE_AUTO, makes one fit, unbiased. NF_RIDGE_AUTO biases NF_CV_LEAVE_ONE_OUT slightly.
+    /// Ridge strength per sample (at least 1e-12, in float 1e-5), NF_RIDGE_AUTO (not of images), or 0: the default.
+    /// NF_CV_GRADIENT_DESCENT, and NF_CV_ROBUST of one integral, do not use it. NF_RIDGE_AUTO biases leave-one-out.
     pub ridge: f32,
 }
 
