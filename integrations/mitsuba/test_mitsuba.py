@@ -287,8 +287,8 @@ class Fits(unittest.TestCase):
         scale = reference**2 + 0.01 * reference.mean() ** 2
         error = lambda scene: np.minimum((pictures(scene, 8, 1) - reference) ** 2 / scale, 25).mean()
         self.assertLess(error(fitted), 0.7 * error(plain))
-        mean = pictures(fitted, 24, 4).mean((1, 2, 3))
-        self.assertLess(abs(np.mean(mean) / reference.mean() - 1), 0.01)
+        # Of the same samples: 24 frames' own noise is .5 %.
+        self.assertLess(abs(pictures(fitted, 24, 4).mean() / pictures(plain, 24, 4).mean() - 1), 0.002)
 
     def test_known_light_is_the_exact_mean(self):
         plain, _ = self.fits()
