@@ -179,9 +179,9 @@ size_t nf_cv_image_workspace_size(const nf_cv_config *config, const nf_cv_image 
 //
 // NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
 // they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and a `ridge` are exactly
-// unbiased for independent samples. Small groups, of up to 4 pixels in one frame, stay at their mean. Of a texture one
-// sample in each pixel cannot tell: say it by `surfaces` or `factors`. With one sample, or `stratified`, std_error is
-// the spread of the pixels' estimates about their linear trend: an upper bound where the signal varies otherwise.
+// unbiased for independent samples. Groups of up to 4 pixels in one frame stay at their mean; with several samples
+// NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. Of a texture one sample in each pixel cannot tell: say it by `surfaces`
+// or `factors`. With one sample, or `stratified`, std_error is the spread of the estimates about their linear trend.
 //
 // With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
 // to what is left of it, with order 0 between the mean and what is known; NF_CV_K_FOLD is unsupported.

@@ -70,29 +70,30 @@ fn bits(estimates: &[Estimate]) -> Vec<u32> {
     estimates.iter().flat_map(|e| [e.mean[0], e.std_error[0], e.gain].map(f32::to_bits)).collect()
 }
 
-fn squared_error(config: &Config, shadow: Shadow, u: &[f32], f: &[f32]) -> f64 {
-    let of = |(pixel, e): (usize, &Estimate)| (f64::from(e.mean[0]) - shadow.integral(pixel)).powi(2);
-    estimates(config, u, f).iter().enumerate().map(of).sum()
+/// Squared errors with edges against those without, frame by frame: how sure it is that they differ, and their ratio.
+fn compare(config: &Config, shadow: Shadow, n: usize, rng: &mut SplitMix64) -> (f64, f64) {
+    let (mut gained, mut all) = (Moments::default(), [Moments::default(); 2]);
+    for _ in 0..60 {
+        let u = if config.stratified { jittered(n, rng) } else { points(PIXELS * n, 2, rng) };
+        let f = shadow.values(n, &u);
+        let [plain, edges] = [0, 1].map(|edges| {
+            let of = |(pixel, e): (usize, &Estimate)| (f64::from(e.mean[0]) - shadow.integral(pixel)).powi(2);
+            estimates(&Config { edges, ..*config }, &u, &f).iter().enumerate().map(of).sum::<f64>()
+        });
+        gained.add(edges - plain);
+        all.iter_mut().zip([plain, edges]).for_each(|(moments, error)| moments.add(error));
+    }
+    (gained.z(0.0), all[1].mean() / all[0].mean())
 }
 
-/// Squared errors with edges against those without, frame by frame.
 #[test]
 fn they_lower_the_error() {
     for (index, shadow) in [Shadow::Disc, Shadow::Line].into_iter().enumerate() {
         for n in [4, 16] {
             for stratified in [false, true] {
                 let config = Config { stratified, ..Config::new(2, 3, 1) };
-                let with = Config { edges: 1, ..config };
                 let mut rng = SplitMix64::new(300 + index as u64);
-                let (mut gained, mut all) = (Moments::default(), [Moments::default(); 2]);
-                for _ in 0..60 {
-                    let u = if stratified { jittered(n, &mut rng) } else { points(PIXELS * n, 2, &mut rng) };
-                    let f = shadow.values(n, &u);
-                    let [plain, edges] = [config, with].map(|config| squared_error(&config, shadow, &u, &f));
-                    gained.add(edges - plain);
-                    all.iter_mut().zip([plain, edges]).for_each(|(moments, error)| moments.add(error));
-                }
-                let (z, ratio) = (gained.z(0.0), all[1].mean() / all[0].mean());
+                let (z, ratio) = compare(&config, shadow, n, &mut rng);
                 println!("{shadow:?}, {n} samples, stratified {stratified}: {ratio:.3} of the error, z {z:.1}");
                 assert!(z < -Z_LIMIT && ratio < 0.95, "{shadow:?} {n} {stratified}: {ratio} {z}");
             }
@@ -234,17 +235,7 @@ const PINNED: [[u32; 4]; 3] = [
 /// They do so without polynomials, too.
 #[test]
 fn edges_alone_lower_the_error() {
-    let plain = Config::new(2, 0, 1);
-    let mut rng = SplitMix64::new(302);
-    let (mut gained, mut all) = (Moments::default(), [Moments::default(); 2]);
-    for _ in 0..60 {
-        let u = points(PIXELS * 4, 2, &mut rng);
-        let f = Shadow::Disc.values(4, &u);
-        let errors = [plain, Config { edges: 1, ..plain }].map(|config| squared_error(&config, Shadow::Disc, &u, &f));
-        gained.add(errors[1] - errors[0]);
-        all.iter_mut().zip(errors).for_each(|(moments, error)| moments.add(error));
-    }
-    let (z, ratio) = (gained.z(0.0), all[1].mean() / all[0].mean());
+    let (z, ratio) = compare(&Config::new(2, 0, 1), Shadow::Disc, 4, &mut SplitMix64::new(302));
     assert!(z < -Z_LIMIT && ratio < 0.5, "{ratio} {z}");
 }
 

@@ -98,9 +98,9 @@ pub unsafe extern "C" fn nf_cv_image_workspace_size(
 ///
 /// NF_CV_ROBUST weighs fits of rising degree, and the plain mean, by their errors across the pixels and within those
 /// they have not seen; unbiased as the group grows. NF_CV_K_FOLD, NF_CV_LEAVE_ONE_OUT and a `ridge` are exactly
-/// unbiased for independent samples. Small groups, of up to 4 pixels in one frame, stay at their mean. Of a texture one
-/// sample in each pixel cannot tell: say it by `surfaces` or `factors`. With one sample, or `stratified`, std_error is
-/// the spread of the pixels' estimates about their linear trend: an upper bound where the signal varies otherwise.
+/// unbiased for independent samples. Groups of up to 4 pixels in one frame stay at their mean; with several samples
+/// NF_CV_LEAVE_ONE_OUT and a `ridge` correct 2. Of a texture one sample in each pixel cannot tell: say it by `surfaces`
+/// or `factors`. With one sample, or `stratified`, std_error is the spread of the estimates about their linear trend.
 ///
 /// With `known`, NF_CV_LEAVE_ONE_OUT corrects by that alone, exactly unbiased; NF_CV_ROBUST chooses among fits to f and
 /// to what is left of it, with order 0 between the mean and what is known; NF_CV_K_FOLD is unsupported.
@@ -153,20 +153,20 @@ pub(crate) fn check_image(image: &nf_cv_image) -> Result<(), Wrong> {
     let in_window = [side.min(image.width), side.min(image.height), image.frames.max(1)];
     let end = |of: &nf_cv_rectangle| [u64::from(of.x) + u64::from(of.width), u64::from(of.y) + u64::from(of.height)];
     let [right, below] = end(&image.given);
-    let area = |width: u32, height: u32| u128::from(width) * u128::from(height) * u128::from(image.frames.max(1));
-    let pixels = match image.given {
-        nf_cv_rectangle { width: 0, .. } | nf_cv_rectangle { height: 0, .. } => area(image.width, image.height),
-        given => area(given.width, given.height),
+    let [width, height] = match [image.given.width, image.given.height] {
+        [0, 0] => [image.width, image.height],
+        given => given,
     };
+    let product = |lengths: [u32; 3]| lengths.map(u128::from).iter().product::<u128>();
     let words = match image {
         nf_cv_image { width: 0, .. } | nf_cv_image { height: 0, .. } => c"width and height must be at least 1",
-        _ if pixels > u128::from(Image::MAX_PIXELS) => c"pixels must be at most 2^30 - 1, all frames together",
+        _ if product([width, height, image.frames.max(1)]) > Image::MAX_PIXELS.into() => {
+            c"pixels must be at most 2^30 - 1, all frames together"
+        }
         nf_cv_image { unordered: 1, .. } => {
             c"given and wanted must be all zero, and pixels with surfaces at most 1024, where unordered is 1"
         }
-        _ if in_window.iter().map(|&length| u128::from(length)).product::<u128>() > 1024 => {
-            c"window must be at most 1024 pixels, all frames together"
-        }
+        _ if product(in_window) > 1024 => c"window must be at most 1024 pixels, all frames together",
         _ if image.stride > side => c"stride must be at most window",
         _ if right > u64::from(image.width) || below > u64::from(image.height) => c"given must lie in the image",
         _ => c"wanted must have pixels, and given hold its windows whole: see nf_cv_image_needed()",

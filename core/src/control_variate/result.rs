@@ -116,11 +116,11 @@ pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estim
     if let Some((colour, luminance)) = summary.colour {
         // (4.3): the colour of the plain mean, with the regressed luminance.
         let (regressed, deviation) = (mean[0], error[0]);
-        let is_black = luminance == 0.0;
-        let divisor = black_box(if is_black { 1.0 } else { luminance });
-        let ratio = if is_black { 1.0 } else { regressed / divisor };
+        let is_zero = luminance == 0.0;
+        let divisor = black_box(if is_zero { 1.0 } else { luminance });
+        let ratio = if is_zero { 1.0 } else { regressed / divisor };
         // One sample's error is unknown in every channel, also where its colour is 0; and that of values which cancel.
-        let is_known = deviation.is_finite() && (!is_black || deviation == 0.0);
+        let is_known = deviation.is_finite() && (!is_zero || deviation == 0.0);
         for ((mean, error), colour) in mean.iter_mut().zip(error.iter_mut()).zip(colour) {
             *mean = ratio * colour;
             *error = if is_known { libm::fabs(deviation * colour / divisor) } else { f64::INFINITY };

@@ -22,8 +22,8 @@ pub(crate) struct Weights {
 /// What two pixels count together.
 pub(crate) struct Weight {
     /// Frequencies along each axis that count, from 0.
-    pub(crate) modes: usize,
-    pub(crate) factors: Spectrum,
+    modes: usize,
+    factors: Spectrum,
 }
 
 impl Weight {
@@ -45,11 +45,10 @@ impl Weights {
             let square = ((place / SIDE).pow(2) + (place % SIDE).pow(2)) as f64;
             let filter = |sigma: f64| libm::exp(-square / (4.0 * sigma * sigma));
             let filtered = (filter(2.1) + 0.3 * filter(1.0)) / 1.3;
-            let weight = |mode: usize| (filtered * correlation(mode, libm::sqrt(square))) as f32;
-            let seen = square > 0.0 && filtered * correlation(MODES, libm::sqrt(square)) > LEAST;
-            let counts = |mode: &usize| filtered * correlation(*mode, libm::sqrt(square)) > FAINT;
-            let modes = (0..MODES).take_while(counts).count().next_multiple_of(LANES);
-            seen.then(|| Box::new(Weight { modes, factors: std::array::from_fn(weight) }))
+            let weight = |mode: usize| filtered * correlation(mode, libm::sqrt(square));
+            let seen = square > 0.0 && weight(MODES) > LEAST;
+            let modes = (0..MODES).take_while(|&mode| weight(mode) > FAINT).count().next_multiple_of(LANES);
+            seen.then(|| Box::new(Weight { modes, factors: std::array::from_fn(|mode| weight(mode) as f32) }))
         });
         Weights { weights: weights.collect() }
     }
