@@ -12,7 +12,7 @@ use crate::measure::output::Output;
 use crate::measure::part::Part;
 use crate::measure::renderer::{Job, Renderer, View};
 use crate::measure::{progress, running, text};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use image::imageops::replace;
 use image::{Rgb, Rgb32FImage, RgbImage};
@@ -20,6 +20,7 @@ use itertools::{Itertools, iproduct};
 use serde_json::json;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::thread;
 use xtask::paths;
 use xtask::tools::Missing;
 
@@ -60,12 +61,18 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let folder = options.out.clone().unwrap_or_else(|| paths::target().join("demo"));
     let folder = std::path::absolute(&folder).with_context(|| format!("{} is no folder", folder.display()))?;
     println!("building the library and the path tracer");
-    let renderer = Renderer::new(running::example("pathtracer.cpp", &["-O2"])?)?;
+    // The library and the page's module are compiled for the most part by one thread each.
+    let (page, program) = thread::scope(|scope| {
+        let page = scope.spawn(xtask::playground::build);
+        let program = running::example("pathtracer.cpp", &["-O2"]);
+        (page.join(), program)
+    });
+    let renderer = Renderer::new(program?)?;
     let output = Output::new(&folder)?;
     println!("rendering");
     scenes(options, &renderer, &output)?;
     output.commit()?;
-    match xtask::playground::build() {
+    match page.map_err(|_| anyhow!("the page's build was lost"))? {
         Ok(page) if page != folder.join(PAGE) => {
             fs::copy(&page, folder.join(PAGE)).with_context(|| format!("cannot copy {}", page.display()))?;
         }

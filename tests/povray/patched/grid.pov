@@ -18,6 +18,10 @@ light_source {
 camera { location <0, 7, -14> look_at <0, 1, 0> angle 45 right x*image_width/image_height }
 
 plane { y, 0 pigment { checker rgb 0.8 rgb <0.3, 0.5, 0.3> scale 2 } finish { ambient 0.05 diffuse 0.8 } }
-sphere { <0, 2, 0>, 2 pigment { rgb <0.9, 0.3, 0.2> } finish { ambient 0.05 diffuse 0.7 phong 0.4 phong_size 40 reflection 0.2 } }
+sphere {
+    <0, 2, 0>, 2
+    pigment { rgb <0.9, 0.3, 0.2> }
+    finish { ambient 0.05 diffuse 0.7 phong 0.4 phong_size 40 reflection 0.2 }
+}
 box { <2.5, 0, -3>, <4.5, 3, -1> rotate 15*y pigment { rgb <0.3, 0.4, 0.8> } finish { ambient 0.05 diffuse 0.7 } }
 cylinder { <-4, 0, -1>, <-4, 2.5, -1>, 0.8 pigment { rgbf <0.9, 0.9, 0.5, 0.5> } finish { ambient 0.05 diffuse 0.6 } }

@@ -19,7 +19,10 @@ difference {
     Surface(3, texture { pigment { rgb <0.22, 0.36, 0.52> } finish { Skin } })
     translate <-0.25, 0, 0.6>
 }
-torus { 0.5, 0.07 translate <-0.25, 0.07, 0.6> Surface(3, texture { pigment { rgb <0.22, 0.36, 0.52> } finish { Skin } }) }
+torus {
+    0.5, 0.07 translate <-0.25, 0.07, 0.6>
+    Surface(3, texture { pigment { rgb <0.22, 0.36, 0.52> } finish { Skin } })
+}
 
 #macro Fruit(Where, R, Number, Colour)
     union {
@@ -47,4 +50,7 @@ lathe {
     translate <1.35, 0, 2.0>
     Surface(8, texture { pigment { rgb <0.6, 0.42, 0.16> } finish { Fill specular 0.5 roughness 0.02 } })
 }
-cylinder { <1.35, 1.44, 2.0>, <1.35, 2.65, 2.0>, 0.15 Surface(9, texture { pigment { rgb <0.88, 0.84, 0.74> } finish { Fill } }) }
+cylinder {
+    <1.35, 1.44, 2.0>, <1.35, 2.65, 2.0>, 0.15
+    Surface(9, texture { pigment { rgb <0.88, 0.84, 0.74> } finish { Fill } })
+}

@@ -36,11 +36,18 @@ torus { 0.8, 0.24 rotate <90, 35, 0> translate <-2.6, 1.84, 1.4> Surface(4, Bron
 
 Base(2.5, 1.8, 0.65, 0.6)
 #for (I, 0, 4)
-    box { -0.42 * (1 - 0.1 * I), 0.42 * (1 - 0.1 * I) rotate 17 * I * y translate <2.5, 1.02 + 0.62 * I * (1 - 0.04 * I), 1.8> Surface(5, Stone) }
+    box {
+        -0.42 * (1 - 0.1 * I), 0.42 * (1 - 0.1 * I)
+        rotate 17 * I * y translate <2.5, 1.02 + 0.62 * I * (1 - 0.04 * I), 1.8>
+        Surface(5, Stone)
+    }
 #end
 
 Base(0, -0.4, 0.75, 0.5)
-sphere { <0, 1.62, -0.4>, 0.62 Surface(6, texture { pigment { rgb <0.62, 0.16, 0.12> } finish { Fill specular 0.4 roughness 0.03 } }) }
+sphere {
+    <0, 1.62, -0.4>, 0.62
+    Surface(6, texture { pigment { rgb <0.62, 0.16, 0.12> } finish { Fill specular 0.4 roughness 0.03 } })
+}
 union {
     #for (I, 0, 2)
         torus { 1.02, 0.07 rotate 90 * x rotate 60 * I * y }

@@ -8,7 +8,10 @@ Panel_point(<-4.6, 6.2, -3.2>, <0, 1, 0.4>, 2.4, 2.4, rgb 0.70 * <1, 0.94, 0.84>
 #declare Fill = finish { ambient 0.04 * <0.8, 0.9, 1.1> diffuse 0.85 }
 #macro Paint(R, G, B) texture { pigment { rgb <R, G, B> } finish { Fill specular 0.2 roughness 0.05 } } #end
 
-plane { y, 0 Surface(1, texture { pigment { checker rgb <0.62, 0.58, 0.5>, rgb <0.42, 0.43, 0.42> scale 0.9 } finish { Fill } }) }
+plane {
+    y, 0
+    Surface(1, texture { pigment { checker rgb <0.62, 0.58, 0.5>, rgb <0.42, 0.43, 0.42> scale 0.9 } finish { Fill } })
+}
 plane { -z, -5 Surface(2, texture { pigment { rgb <0.45, 0.52, 0.56> } finish { Fill } }) }
 
 // The mill: a tower, and four sails that make a twelfth of a turn.
