@@ -977,10 +977,12 @@ enum class split : std::uint32_t { norm = NF_NODES_NORM, sign = NF_NODES_SIGN };
 
 namespace detail {
 inline std::uint32_t number(std::size_t size) noexcept { return static_cast<std::uint32_t>(size); }
-// How many values each of so many rows has; 0 if they do not agree.
+// How many values each of so many rows has, 1 of no rows; 0 if they do not agree.
 inline std::uint32_t columns(std::size_t size, std::size_t rows) noexcept
 {
-    const bool fits = rows > 0 && rows <= UINT32_MAX && size % rows == 0 && size / rows <= UINT32_MAX;
+    if (rows == 0)
+        return size == 0 ? 1 : 0;
+    const bool fits = rows <= UINT32_MAX && size % rows == 0 && size / rows <= UINT32_MAX;
     return fits ? number(size / rows) : 0;
 }
 } // namespace detail
@@ -1012,8 +1014,9 @@ inline returned<void> squared_error(span<const float> output, span<const float> 
 inline returned<void> gradient(span<const float> derivatives, std::uint32_t techniques, span<float> out,
                                split how = split::norm)
 {
-    const std::size_t rows = techniques > 0 && out.size() % techniques == 0 ? out.size() / techniques : 0;
-    const std::uint32_t outputs = detail::columns(derivatives.size(), rows);
+    const bool whole = techniques > 0 && out.size() % techniques == 0;
+    const std::size_t rows = whole ? out.size() / techniques : 0;
+    const std::uint32_t outputs = whole ? detail::columns(derivatives.size(), rows) : 0;
     return noisefloor::detail::finish(
         outputs > 0 ? nf_importance_gradient(derivatives.data(), detail::number(rows), outputs,
                                              static_cast<std::uint32_t>(how), techniques, out.data())

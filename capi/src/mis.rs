@@ -60,7 +60,7 @@ pub unsafe extern "C" fn nf_mis_weight(
 /// (2019): w_j f / (n_j p_j) = alpha_j / n_j + (f - sum_k alpha_k p_k) / S, S = sum_k n_k p_k.
 ///
 /// Unbiased if alpha came from other samples. The term is not 0 where f is: add those samples too. Times the number of
-/// samples, it is what a regression is fitted to (4.3.3).
+/// samples that are regressed together, it is what a regression is fitted to (4.3.3).
 ///
 /// pdf[techniques]: finite, at least 0, that of the technique positive. counts[techniques]: at least 1.
 /// alpha[techniques]: from nf_omis_solve. value: f, not divided by a density. All finite.

@@ -126,7 +126,7 @@ pub unsafe extern "C" fn nf_table_draw(
 }
 
 /// As nf_table_draw, from `batch` equal parts of the line of probabilities: less variance where neighbouring items are
-/// alike. In the order of the data set, uniform draws first: use the batch as a whole.
+/// alike. In the order of the data set but within blocks of 16, uniform draws first: use the batch as a whole.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nf_table_draw_stratified(
     table: *const nf_table,

@@ -66,8 +66,9 @@ pub struct Recommendation {
     /// .81 to 1.4 times this.
     pub filtered_error: f32,
     /// Nanoseconds that the method takes for each sample on the machine of the report: of [`Method::Shared`] in
-    /// rendered frames of three channels with surfaces, in windows side by side, of [`Method::PerPixel`] for one
-    /// channel. Windows that overlap by half take three times as long, and pay from twice `pays_from` on.
+    /// rendered frames of three channels with surfaces, in windows of `image_stride`, of [`Method::PerPixel`] for one
+    /// channel. Windows that overlap by half take three times as long as windows side by side, and pay from twice as
+    /// much on.
     pub cost: f32,
     /// The cost of a sample, in nanoseconds, from which a fit pays: below it more samples of the plain mean, in the
     /// same time, would lower the error further. Of [`Method::Shared`] the median over eight rendered frames, where
@@ -183,9 +184,10 @@ const fn windows(order: usize, cost: u16, error: f32, filtered_error: f32) -> Ce
 impl Cell {
     /// What it takes for each sample, and the cost of a sample from which it pays, in nanoseconds.
     ///
-    /// Shared fits of 2 dims in rendered frames of three channels, with surfaces, in windows side by side: medians of
-    /// eight scenes, if more samples lower the mean's squared error as 1 / N, of stratified ones as 1 / N^1.5. Other
-    /// dims by their cost. Of one pixel's fits: they leave .78 in those frames.
+    /// Shared fits of 2 dims in rendered frames of three channels, with surfaces, in windows side by side (those that
+    /// overlap take three times as long, and pay from twice as much on): medians of eight scenes, if more samples lower
+    /// the mean's squared error as 1 / N, of stratified ones as 1 / N^1.5. Other dims by their cost. Of one
+    /// pixel's fits: they leave .78 in those frames.
     fn time(&self, sampling: Sampling, samples: usize) -> (f32, f32) {
         let (unit, cost, independent, stratified) = match samples {
             ..4 => (164.0, 259.0, 1440.0, 1540.0),
@@ -194,11 +196,12 @@ impl Cell {
             _ => (45.0, 49.0, 248.0, f32::INFINITY),
         };
         let scale = self.cost / unit;
+        let (longer, later) = if self.image_stride == 4 { (3.0, 2.0) } else { (1.0, 1.0) };
         match (self.method, sampling) {
             (Method::PlainMean, _) => (0.0, f32::INFINITY),
             (Method::PerPixel, _) => (self.cost, self.cost * (0.78 / 0.22)),
-            (Method::Shared, Sampling::Independent) => (cost * scale, independent * scale),
-            (Method::Shared, Sampling::Stratified) => (cost * scale, stratified * scale),
+            (Method::Shared, Sampling::Independent) => (cost * scale * longer, independent * scale * later),
+            (Method::Shared, Sampling::Stratified) => (cost * scale * longer, stratified * scale * later),
         }
     }
 }

@@ -48,7 +48,7 @@ nf_status nf_table_init(nf_table *table, void *memory, size_t bytes, uint32_t it
 nf_status nf_table_draw(const nf_table *table, nf_rng *rng, uint32_t batch, uint32_t *index, float *weight);
 
 // As nf_table_draw, from `batch` equal parts of the line of probabilities: less variance where neighbouring items are
-// alike. In the order of the data set, uniform draws first: use the batch as a whole.
+// alike. In the order of the data set but within blocks of 16, uniform draws first: use the batch as a whole.
 nf_status nf_table_draw_stratified(const nf_table *table, nf_rng *rng, uint32_t batch, uint32_t *index, float *weight);
 
 // Draws `batch` different items, the k-th being item i with probability c_i = ((1 - d) q_i / sum q + d / N) / (1 - d

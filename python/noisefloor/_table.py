@@ -85,9 +85,9 @@ class Table:
         Args:
             batch: how many, 0 to 2**32 - 1; (k, b) for k minibatches of b, and so on.
             method: "iid", independently and with replacement; "stratified", one from each of `batch` equal parts of the
-                probabilities, in the order of the data set: use the batch as a whole; "distinct", without replacement,
-                at most n: use that as a whole, too. Its weights depend on the place in the batch (D. Raj, 1956), and
-                are at most 1 / uniform_fraction + 1.
+                probabilities, in the order of the data set but within blocks of 16: use the batch as a whole;
+                "distinct", without replacement, at most n: use that as a whole, too. Its weights depend on the place in
+                the batch (D. Raj, 1956), and are at most 1 / uniform_fraction + 1.
 
         Returns:
             index, int64, and weight, float32, both of shape (batch,): the mean of weight times gradient estimates the

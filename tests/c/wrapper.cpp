@@ -464,6 +464,11 @@ static void importances()
     CHECK(parts[0] == 0.5f && parts[1] == 0.5f);
     CHECK(CODE(nf::importance::gradient(gradient, 0, parts)) == nf::status::range);
     CHECK(CODE(nf::importance::gradient({}, 1, norm)) == nf::status::range);
+    // No rows, as a process has to which nf_shards_allocate() gave none.
+    SUCCEED(nf::importance::cross_entropy({}, {}, {}));
+    SUCCEED(nf::importance::squared_error({}, {}, {}));
+    SUCCEED(nf::importance::gradient({}, 1, {}));
+    CHECK(CODE(nf::importance::squared_error(logits, target, {})) == nf::status::range);
     std::uint32_t order[5], rest[3];
     SUCCEED(nf::shuffle(1, 5, 0, order));
     SUCCEED(nf::shuffle(1, 5, 2, rest));

@@ -60,6 +60,17 @@ fn batches_are_unbiased() {
     }
 }
 
+/// Of sorted classes, each of whole blocks, a draw from each.
+#[test]
+fn stratified_draws_follow_the_data_set() {
+    let table = table(&[1.0; 320], 0.0);
+    let (mut rng, mut index) = (Rng::seed(3), [0; 10]);
+    for _ in 0..1000 {
+        table.draw_stratified(&mut rng, &mut index, None).unwrap();
+        assert_eq!(index.map(|item| item / 32), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]);
+    }
+}
+
 /// Raj's estimator of a batch without replacement: unbiased, and of at most the variance of one with replacement.
 #[test]
 fn distinct_batches_are_unbiased() {

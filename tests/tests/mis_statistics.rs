@@ -83,12 +83,12 @@ fn samples_of_value_zero_count() {
     assert!(skipped.std_error() > 1.02 * right.std_error(), "{} {}", skipped.std_error(), right.std_error());
 
     // What the accumulator's documentation warns of: without the zeros even the number of rounds is wrong.
-    let mut moments = Moments::default();
+    let mut moments = [(); 2].map(|()| Moments::default());
     for _ in 0..5_000 {
-        let [p] = estimates(problem, &mut rng, 6, 2, [Solver::Progressive], |value| value != 0.0);
-        moments.add(p);
+        let values = estimates(problem, &mut rng, 6, 2, [Solver::Progressive, Solver::Balance], |value| value != 0.0);
+        moments.iter_mut().zip(values).for_each(|(m, v)| m.add(v));
     }
-    assert!(moments.z(problem.integral).abs() > 20.0);
+    assert!(moments.iter().all(|m| m.z(problem.integral) > 20.0));
 }
 
 /// Random choice of the technique, with probabilities in proportion to the counts, is unbiased too.
@@ -225,6 +225,10 @@ fn estimated_weights_reach_most_of_the_gain() {
             // In-sample alpha fits noise too, by about 1/R of the variance.
             assert!(m.mean() > least * 0.97 - slack, "{}, {solver:?}: below the optimum", problem.name);
             assert!(m.mean() < balance * 1.0 + slack, "{}, {solver:?}: above the balance heuristic", problem.name);
+            if least < 0.8 * balance && solver != Solver::Balance {
+                let most = (least + balance) / 2.0;
+                assert!(m.mean() < most + slack, "{}, {solver:?}: less than half of the gain", problem.name);
+            }
         }
         assert!(squares[3].z(balance).abs() < Z_LIMIT, "{}: balance differs from theory", problem.name);
     }

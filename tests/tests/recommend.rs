@@ -96,6 +96,9 @@ fn examples() {
     assert_eq!(recommend(2, 4, Sampling::Stratified, true, f32::INFINITY).unwrap().method, Method::Shared);
     let filtered = |sampling| recommend(2, 16, sampling, true, f32::INFINITY).unwrap().filtered_error;
     assert!(filtered(Sampling::Stratified) < filtered(Sampling::Independent));
+    // Windows that overlap pay later than those side by side, of which 25,400 ns was measured.
+    let overlapping = recommend(2, 16, Sampling::Stratified, true, 30_000.0).unwrap();
+    assert_eq!((overlapping.method, overlapping.pays_from), (Method::PlainMean, 50_800.0));
     // Many samples bear more terms; in many dims there are too many of a high order.
     let order =
         |dims, samples| recommend(dims, samples, Sampling::Independent, false, f32::INFINITY).unwrap().config.order;

@@ -34,10 +34,10 @@ use crate::rows::{first, rows, rows_mut};
 /// # Ok::<(), noisefloor::Error>(())
 /// ```
 ///
-/// Add **every** sample, those with f = 0 included: each says something about the densities, and without them no
-/// estimate but the balance heuristic's is unbiased or consistent. The samples should make whole rounds of `counts`, or
-/// be drawn from technique j with probability n_j / sum n; the number of rounds R is taken to be samples / sum n, and a
-/// round interrupted in the middle over- or under-weights the techniques accordingly.
+/// Add **every** sample, those with f = 0 included: each says something about the densities, and the number of rounds R
+/// is taken to be samples / sum n, so that without them every estimate is too large. The samples should make whole
+/// rounds of `counts`, or be drawn from technique j with probability n_j / sum n: a round interrupted in the middle
+/// over- or under-weights the techniques accordingly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OptimalMis<M> {
     counts: [u32; MAX_TECHNIQUES],

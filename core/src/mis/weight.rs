@@ -36,8 +36,8 @@ pub fn optimal(pdf: &[f32], counts: &[u32], technique: usize, alpha: &[f32], val
 /// `alpha_j / n_j + (f - sum_k alpha_k p_k) / S`, S = sum_k n_k p_k.
 ///
 /// The sum over all samples is the estimate, unbiased if alpha came from other samples. The term is not 0 where f is;
-/// leaving such samples out keeps the mean and loses part of the gain. These terms, times the number of samples, are
-/// what a regression control variate is fitted to (4.3.3).
+/// leaving such samples out keeps the mean and loses part of the gain. These terms, times the number of samples that
+/// are regressed together, are what a regression control variate is fitted to (4.3.3).
 ///
 /// Arguments and errors as for [`optimal`], except that `value` may be 0 and that the technique's own density must be
 /// positive, as it is for the technique that drew the point ([`Error::Range`]).

@@ -55,7 +55,8 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
     /// for each of the two ways to it, an item comes less than two times more or less often than on average. Less
     /// variance than independent draws wherever neighbouring items are alike; weights and their use are the same.
     ///
-    /// Those drawn uniformly come first, and both in the order of the data set: use the batch as a whole.
+    /// Those drawn uniformly come first, and both in the order of the data set, but for the 16 items of a block, which
+    /// come by columns of four: 0, 4, 8, 12, 1, ... Use the batch as a whole.
     #[inline]
     pub fn draw_stratified(&self, rng: &mut Rng, index: &mut [u32], weight: Option<&mut [f32]>) -> Result<(), Error> {
         check_lengths(index, &weight)?;

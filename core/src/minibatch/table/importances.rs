@@ -132,7 +132,8 @@ impl<I: AsRef<[f32]>, S: AsRef<[i64]>, K: Kernel> Table<I, S, K> {
         (self.blocks * ARITY).min(u32::MAX as usize) as u32
     }
 
-    /// The sum of all importances, as the tree has it: each block's sum is rounded, by 1 / 2^50 of all or so.
+    /// The sum of all importances, as the tree has it: each block's sum is rounded, by 1 / 2^50 of all or so, and by up
+    /// to 2^-17 of the mean block's once importances have shrunk.
     pub fn total(&self) -> f64 {
         self.sum() as f64 / self.state.scale
     }
@@ -228,14 +229,21 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
                 return Err(Error::NoSamples);
             }
         }
-        let memory = table.importance.as_mut();
-        memory.fill(0.0);
+        let memory = table.clear();
         match values {
             Some(values) => memory.iter_mut().zip(values).for_each(|(to, &from)| *to = from + 0.0),
             None => memory.iter_mut().take(items as usize).for_each(|q| *q = 1.0),
         }
         table.rebuild();
         Ok(table)
+    }
+
+    /// Makes the memory that of no items, and returns that of the importances.
+    pub(super) fn clear(&mut self) -> &mut [f32] {
+        self.sums.as_mut().fill(0);
+        let importances = self.importance.as_mut();
+        importances.fill(0.0);
+        importances
     }
 }
 

@@ -7,8 +7,9 @@
 //! Integers neither drift nor depend on the order of updates: after any number of them the sums are those that the same
 //! importances give in a tree built afresh at the same scale. The scale is a power of two, so chosen that the sum is
 //! near 2^50, and changed when the sum leaves its range: a block's weight is its sum rounded to 1 / 2^50 or so of all,
-//! and never to 0. Within a block f64 decides. What [`Table::probability`] says is the probability of these rounded
-//! weights, so that estimates are unbiased, down to probabilities of 2^-53 within a block.
+//! or, once importances have shrunk, to 2^-17 of the mean block's, and never to 0. Within a block f64 decides. What
+//! [`Table::probability`] says is the probability of these rounded weights, so that estimates are unbiased, down to
+//! probabilities of 2^-53 within a block.
 
 mod block;
 mod distinct;

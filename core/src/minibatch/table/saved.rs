@@ -72,9 +72,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>> Table<I, S>
     /// [`Error::Length`], [`Error::Corrupt`] if they are damaged; [`Error::Memory`].
     pub fn load(importance: I, sums: S, bytes: &[u8]) -> Result<Self, Error> {
         let mut table = Table::resume(importance, sums, check(bytes)?)?;
-        let memory = table.importance.as_mut();
-        memory.fill(0.0);
-        memory.iter_mut().zip(values(bytes)).for_each(|(to, from)| *to = from);
+        table.clear().iter_mut().zip(values(bytes)).for_each(|(to, from)| *to = from);
         if !table.rebuild_at_scale() {
             // No library has saved this scale with these importances, but nothing is lost.
             table.rebuild();

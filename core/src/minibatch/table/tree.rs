@@ -93,12 +93,13 @@ pub(super) fn add_all(node: &mut Node, differences: &Node) {
     }
 }
 
-/// Makes the levels above the lowest from it.
-pub(super) fn raise(nodes: &mut [Node], levels: &Levels) {
+/// Makes the levels above the lowest from its first `used` nodes, the only ones with weights.
+pub(super) fn raise(nodes: &mut [Node], levels: &Levels, mut used: usize) {
     for pair in levels.starts().windows(2) {
         let &[below, above] = pair else { return };
         let Some((lower, upper)) = nodes.split_at_mut_checked(above) else { return };
-        let lower = from(lower, below);
+        let lower = first(from(lower, below), used);
+        used = used.div_ceil(CHILDREN);
         for (node, children) in upper.iter_mut().zip(lower.chunks(CHILDREN)) {
             let mut sum = 0;
             let mut children = children.iter();

@@ -3,7 +3,7 @@
 use super::block::{ARITY, Block};
 use super::importances::{Table, check_importances, power_of_two};
 use super::kernel::{Kernel, Portable};
-use super::tree::{self, CHILDREN, Levels, Node};
+use super::tree::{self, CHILDREN, Node};
 use crate::error::{Error, check_part};
 use crate::rows::{first_mut, from, halves_mut};
 
@@ -92,17 +92,14 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     pub fn add_epsilon(&mut self, epsilon: f32) -> Result<(), Error> {
         check_importances(&[epsilon])?;
         let items = self.state.items as usize;
-        let scale = self.state.scale;
-        let levels = self.levels;
-        let (blocks, nodes) = self.parts();
-        let (full, rest) = halves_mut(blocks, items / ARITY);
+        let (full, rest) = halves_mut(self.parts().0, items / ARITY);
         for block in full.iter_mut() {
             *block = block.map(|q| (q + epsilon).min(f32::MAX));
         }
         for q in rest.iter_mut().flatten().take(items % ARITY) {
             *q = (*q + epsilon).min(f32::MAX);
         }
-        let in_range = build::<K>(blocks, nodes, &levels, scale);
+        let in_range = self.build::<K>();
         self.restore_scale(in_range);
         Ok(())
     }
@@ -179,7 +176,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     #[cold]
     #[inline(never)]
     pub(super) fn rebuild(&mut self) {
-        let sum: f64 = self.blocks().iter().map(Portable::total).sum();
+        let sum: f64 = self.blocks().iter().take(self.used()).map(Portable::total).sum();
         if sum > 0.0 {
             // Between 2^-149 and 2^160: the exponent of a normal f64.
             let exponent = (sum.to_bits() >> 52) as i64 - 1023;
@@ -190,9 +187,36 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
 
     /// Builds the sums at the scale there is. False if they are beyond their range.
     pub(super) fn rebuild_at_scale(&mut self) -> bool {
-        let (levels, scale) = (self.levels, self.state.scale);
+        self.build::<Portable>()
+    }
+
+    /// How many blocks have items. Those behind them are room, and weigh nothing.
+    fn used(&self) -> usize {
+        (self.state.items as usize).div_ceil(ARITY)
+    }
+
+    /// All sums. False if they are beyond their range.
+    #[inline]
+    fn build<By: Kernel>(&mut self) -> bool {
+        let (levels, scale, used) = (self.levels, self.state.scale, self.used());
         let (blocks, nodes) = self.parts();
-        build::<Portable>(blocks, nodes, &levels, scale)
+        let blocks = first_mut(blocks, used);
+        let mut in_range = true;
+        let mut sum_of_all = 0i64;
+        for (node, blocks) in nodes.iter_mut().zip(blocks.chunks(CHILDREN)) {
+            let mut sum = 0i64;
+            let mut blocks = blocks.iter();
+            for end in node.iter_mut() {
+                let weight = blocks.next().map_or(0, |block| weight(By::total(block), scale));
+                // Wrapping around could end at a harmless number.
+                sum = sum.saturating_add(weight);
+                *end = sum;
+            }
+            in_range &= sum < LARGEST_SUM;
+            sum_of_all = sum_of_all.saturating_add(sum);
+        }
+        tree::raise(nodes, &levels, used.div_ceil(CHILDREN));
+        in_range && sum_of_all < LARGEST_SUM
     }
 
     /// The blocks and the nodes, to write.
@@ -213,25 +237,4 @@ fn weight(total: f64, scale: f64) -> i64 {
     // A number that no i64 holds is an invalid operation on some processors, though the cast saturates.
     let rounded = (total * scale + 0.5).min(MOST_WEIGHT) as i64;
     if total > 0.0 { rounded.max(1) } else { 0 }
-}
-
-/// All sums. False if they are beyond their range.
-#[inline]
-fn build<K: Kernel>(blocks: &[Block], nodes: &mut [Node], levels: &Levels, scale: f64) -> bool {
-    let mut in_range = true;
-    let mut sum_of_all = 0i64;
-    for (node, blocks) in nodes.iter_mut().zip(blocks.chunks(CHILDREN)) {
-        let mut sum = 0i64;
-        let mut blocks = blocks.iter();
-        for end in node.iter_mut() {
-            let weight = blocks.next().map_or(0, |block| weight(K::total(block), scale));
-            // Wrapping around could end at a harmless number.
-            sum = sum.saturating_add(weight);
-            *end = sum;
-        }
-        in_range &= sum < LARGEST_SUM;
-        sum_of_all = sum_of_all.saturating_add(sum);
-    }
-    tree::raise(nodes, levels);
-    in_range && sum_of_all < LARGEST_SUM
 }
