@@ -5,7 +5,7 @@ use super::importances::{Table, check_importances, power_of_two};
 use super::kernel::{Kernel, Portable};
 use super::tree::{self, CHILDREN, Node};
 use crate::error::{Error, check_part};
-use crate::rows::{first_mut, from, halves_mut};
+use crate::rows::{first_mut, from};
 
 /// How many changes go up the tree together.
 const CHUNK: usize = 64;
@@ -91,12 +91,7 @@ impl<I: AsRef<[f32]> + AsMut<[f32]>, S: AsRef<[i64]> + AsMut<[i64]>, K: Kernel> 
     #[inline]
     pub fn add_epsilon(&mut self, epsilon: f32) -> Result<(), Error> {
         check_importances(&[epsilon])?;
-        let items = self.state.items as usize;
-        let (full, rest) = halves_mut(self.parts().0, items / ARITY);
-        for block in full.iter_mut() {
-            *block = block.map(|q| (q + epsilon).min(f32::MAX));
-        }
-        for q in rest.iter_mut().flatten().take(items % ARITY) {
+        for q in first_mut(self.importance.as_mut(), self.state.items as usize) {
             *q = (*q + epsilon).min(f32::MAX);
         }
         let in_range = self.build::<K>();
