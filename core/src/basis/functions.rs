@@ -1,6 +1,6 @@
 //! One-dimensional functions: orthonormal on [0, 1], integral zero.
 
-use super::family::Family;
+use super::Family;
 use crate::lanes::Lanes;
 use crate::matrix::at;
 use crate::real::Real;

@@ -15,24 +15,44 @@
 //! is not regressed as a number. The functions of the other coordinates are shared by all slices, each slice adds its
 //! indicator, and as many degrees of its own copy of the functions as fit in [`MAX_TERMS`].
 
-mod family;
 mod functions;
 mod gaussian;
-mod limits;
 mod terms;
-
-pub use family::Family;
-pub use limits::{MAX_DIMS, MAX_ORDER, MAX_TERMS};
 
 use crate::error::Error;
 use crate::lanes::Lanes;
 use crate::matrix::{at, halves_mut};
 use crate::real::Real;
 use crate::rows::rows_mut;
-
 use gaussian::Gaussians;
 use heapless::Vec;
 use terms::Term;
+
+/// The largest number of coordinates.
+pub const MAX_DIMS: usize = 16;
+/// The largest total degree.
+pub const MAX_ORDER: usize = 7;
+/// The largest number of terms, constant included: 15 coordinates at order 2.
+pub const MAX_TERMS: usize = 136;
+
+/// Which one-dimensional functions a basis is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Family {
+    /// Orthonormal shifted Legendre polynomials.
+    #[default]
+    Legendre,
+    /// Walsh functions: piecewise constant on eighths.
+    Step,
+    /// Half-waves sin(pi d x + pi/2).
+    Sine,
+    /// Isotropic Gaussians.
+    Gaussian,
+}
+
+impl Family {
+    /// Every one, in the order of their numbers in C.
+    pub const ALL: [Family; 4] = [Self::Legendre, Self::Step, Self::Sine, Self::Gaussian];
+}
 
 /// A set of centred functions of unit variance on `[0, 1]^dims`.
 ///

@@ -1,8 +1,6 @@
 //! Multi-indices of total degree, as a program that computes each product from earlier ones.
 
-use super::family::Family;
-use super::functions;
-use super::limits::{MAX_DIMS, MAX_ORDER, MAX_TERMS};
+use super::{Family, MAX_DIMS, MAX_ORDER, MAX_TERMS, functions};
 use crate::lanes::{self, Lanes};
 use crate::real::Real;
 use crate::rows::at;
