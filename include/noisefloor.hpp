@@ -35,7 +35,8 @@ inline namespace throwing {
 
 // ---- Views ----
 
-// A pointer and a length, as std::span: made from arrays, and from whatever has data() and size().
+// A pointer and a length, as std::span: made from arrays, and from whatever has data() and size(). data() of no
+// elements is NULL, which is how C says that an array is not there.
 template <class T> class span {
 public:
     constexpr span() noexcept = default;
@@ -47,7 +48,7 @@ public:
     {
     }
 
-    constexpr T *data() const noexcept { return data_; }
+    constexpr T *data() const noexcept { return empty() ? nullptr : data_; }
     constexpr std::size_t size() const noexcept { return size_; }
     constexpr bool empty() const noexcept { return size_ == 0; }
     constexpr T *begin() const noexcept { return data_; }
@@ -226,7 +227,7 @@ struct config : nf_cv_config {
     }
     config with_stratified_samples(bool value = true) const noexcept
     {
-        return set(&nf_cv_config::stratified, value ? 1u : 0u);
+        return set(&nf_cv_config::stratified, std::uint32_t{value});
     }
     config with_slices(std::uint32_t count) const noexcept { return set(&nf_cv_config::slices, count); }
     config with_edges(std::uint32_t first) const noexcept { return set(&nf_cv_config::edges, first); }

@@ -182,6 +182,33 @@ class Recorded(unittest.TestCase):
         one.seed(0, 1)
         self.assertEqual([len(a) for a in (one.x, one.y, one.index)], [1, 1, 1])
 
+    def test_a_film_of_one_pixel_has_seeds(self):
+        drawn = []
+        for seed in (1, 2):
+            one = sampler(1, sample_count=1)
+            one.seed(seed, 1)
+            drawn.append(float(one.next_1d()[0]))
+            np.testing.assert_array_equal(drawn[-1:], fill([0], 1, 1, 1, seed)[0, 0, :1])
+        self.assertNotEqual(*drawn)
+
+    def test_a_seed_alone_keeps_the_size(self):
+        one = sampler(9, 7, sample_count=4)
+        one.seed(1, 9 * 7 * 4)
+        one.seed(5)
+        np.testing.assert_array_equal(np.array(one.next_1d()), fill([0], 9, 7, 4, 5).reshape(-1, 2)[:, 0])
+
+    def test_after_a_film_has_grown(self):
+        one = sampler(8, sample_count=4)
+        one.seed(3, 8 * 8 * 4)
+        # Four times as many pixels would be four times as many samples of each.
+        with self.assertRaisesRegex(ValueError, "after a film's size has changed"):
+            one.seed(3, 16 * 16 * 4)
+        one.seed(3, 8 * 8 * 4)
+        one.size = 16, 16
+        other = one.clone()
+        other.seed(3, 16 * 16 * 4)
+        np.testing.assert_array_equal(np.array(other.next_1d()), fill([0], 16, 16, 4, 3).reshape(-1, 2)[:, 0])
+
     def test_an_unknown_width_is_refused(self):
         for width in (0, 7):
             with self.assertRaisesRegex(ValueError, f"for {width} x 8 pixels, and 256 samples.*prepare"):
@@ -249,11 +276,12 @@ class Fits(unittest.TestCase):
         mi.set_variant(VARIANTS[0])
         nf.register()
 
-    def fits(self, depth=6, width=24, height=20, scene=None, **more):
+    def fits(self, depth=6, width=24, height=20, scene=None, inner="path", **more):
         scene = scene or mi.cornell_box()
-        film = {"type": "hdrfilm", "width": width, "height": height, "rfilter": {"type": "box"}, "pixel_format": "rgb"}
+        film = {"type": "hdrfilm", "width": width, "height": height, "rfilter": {"type": "box"}}
+        film["pixel_format"] = "luminance" if mi.is_monochromatic else "rgb"
         scene["sensor"] = {**scene["sensor"], "film": film, "sampler": {"type": "noisefloor"}}
-        scene["integrator"] = {"type": "path", "max_depth": depth}
+        scene["integrator"] = {"type": inner, "max_depth": depth}
         plain = nf.prepare(mi.load_dict(scene))
         scene["integrator"] = {"type": "noisefloor_fits", "inner": scene["integrator"], **more}
         return plain, nf.prepare(mi.load_dict(scene))
@@ -263,9 +291,14 @@ class Fits(unittest.TestCase):
         scene["sensor"].update(type="thinlens", aperture_radius=0.1, focus_distance=3.0)
         return scene
 
+    def fog(self):
+        scene = mi.cornell_box()
+        scene["sensor"]["medium"] = {"type": "homogeneous", "albedo": 0.5, "sigma_t": 0.2}
+        return scene
+
     def test_order_0_is_the_plain_picture(self):
-        for scene in (mi.cornell_box(), self.lens()):
-            plain, fitted = self.fits(scene=scene, order=0, known=False)
+        for scene, inner in ((mi.cornell_box(), "path"), (self.lens(), "path"), (self.fog(), "volpath")):
+            plain, fitted = self.fits(scene=scene, inner=inner, order=0, known=False)
             for spp in (1, 4):
                 expected = np.array(mi.render(plain, spp=spp, seed=3))
                 np.testing.assert_allclose(np.array(mi.render(fitted, spp=spp, seed=3)), expected, rtol=1e-4, atol=1e-5)
@@ -303,6 +336,34 @@ class Fits(unittest.TestCase):
         # The points are a net of 1,024.
         np.testing.assert_allclose(a.mean(2)[lit], exact[lit], rtol=2e-3, atol=1e-6)
 
+    def test_known_light_of_a_lamp_that_is_mirrored(self):
+        exact = []
+        for x in (1, -1):
+            scene = mi.cornell_box()
+            scene["light"]["to_world"] = scene["light"]["to_world"] @ mi.ScalarTransform4f().scale([x, 1, 1])
+            plain, _ = self.fits(scene=scene)
+            sensor = plain.sensors()[0]
+            middle = plain.ray_intersect(_fits._rays(sensor, _fits._middles(sensor.film()))[0])
+            exact.append(_known.light(plain, middle, _fits.kept(sensor, 1, 24, 20, 1, 0))[0][1])
+        np.testing.assert_allclose(*exact, rtol=1e-4, atol=1e-6)
+
+    def test_one_channel(self):
+        mi.set_variant("llvm_ad_mono")
+        nf.register()
+        plain, fitted = self.fits()
+        expected, found = (pictures(scene, 8, 4).mean(0) for scene in (plain, fitted))
+        self.assertEqual(found.shape[:2], (20, 24))
+        self.assertEqual(fitted.integrator().unknown, "")
+        self.assertLess(abs(found.mean() / expected.mean() - 1), 0.02)
+
+    def test_lights_that_are_not_equally_likely(self):
+        scene = scenes.lights()
+        name = next(name for name, part in scene.items() if isinstance(part, dict) and "emitter" in part)
+        scene[name]["emitter"]["sampling_weight"] = 2.0
+        plain, fitted = self.fits(2, scene=scene)
+        self.assertEqual(_fits.equally_likely(plain), 1)
+        self.assertEqual(np.array(mi.render(fitted, spp=1)).shape, (20, 24, 3))
+
     def test_without_a_closed_form_it_is_said_why(self):
         scene = mi.cornell_box()
         scene["more"] = {"type": "constant"}
@@ -322,10 +383,11 @@ class Fits(unittest.TestCase):
             with self.assertRaises((ValueError, RuntimeError)) as refused:
                 mi.render(nf.prepare(mi.load_dict(scene)), spp=1)
             self.assertIn(why, f"{refused.exception} {refused.exception.__cause__}")
-        del scene["integrator"]["inner"]
-        with self.assertRaises((ValueError, RuntimeError)) as refused:
-            mi.load_dict(scene)
-        self.assertIn("holds one integrator, not 0", f"{refused.exception} {refused.exception.__cause__}")
+        for inner, why in (({}, "holds one integrator, not 0"), ({"inner": {"type": "prb"}}, "such as path, not PRB"),
+                           ({"inner": {"type": "ptracer"}}, "such as path, not")):  # fmt: skip
+            with self.assertRaises((ValueError, RuntimeError)) as refused:
+                mi.load_dict({**scene, "integrator": {"type": "noisefloor_fits", **inner}})
+            self.assertIn(why, f"{refused.exception} {refused.exception.__cause__}")
 
 
 class OtherVariants(unittest.TestCase):

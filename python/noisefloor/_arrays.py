@@ -90,6 +90,8 @@ def number(name, value, least, most):
         result = value.__float__()
     except (AttributeError, TypeError, ValueError):
         raise TypeError(f"{name} is {value!r}: a number is expected") from None
+    except OverflowError:
+        raise ValueError(f"{name} is an integer beyond a float's range: it must be {least} to {most}") from None
     if not least <= result <= most:
         raise ValueError(f"{name} is {result}: it must be {least} to {most}")
     return result

@@ -19,6 +19,7 @@ class Recommendation(NamedTuple):
         filtered_error: the same of an image seen through a Gaussian of 2.1 pixels.
         cost: nanoseconds that the method takes for each sample.
         pays_from: nanoseconds that a sample must cost for the method to pay; infinite if none pays.
+        dims: how many coordinates to give to that function, the first; 15 of 20, say.
     """
 
     method: str
@@ -30,6 +31,7 @@ class Recommendation(NamedTuple):
     filtered_error: float
     cost: float
     pays_from: float
+    dims: int
 
 
 def recommend(
@@ -70,4 +72,5 @@ def recommend(
         filtered_error=out.filtered_error,
         cost=out.cost,
         pays_from=out.pays_from,
+        dims=config.dims,
     )

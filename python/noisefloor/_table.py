@@ -116,10 +116,13 @@ class Table:
 
     def _draw_many(self, shape, method):
         """Minibatches, in arrays of this shape."""
+        _arrays.one_of("method", method, _c.DRAWS)
         shape = tuple(_arrays.integer("batch", size, 0, _arrays.MAX_U32) for size in shape)
         most = _arrays.MAX_U32
         if not shape or math.prod(shape) > most:
             raise ValueError(f"batch is {shape}: it must be one number or several, of a product up to {most}")
+        if method == "distinct" and shape[-1] > self._n:
+            raise self._draw_error(0, shape[-1], method)
         if method == "iid":
             # Independent of each other they may be drawn as one.
             index, weight = self.draw(math.prod(shape))

@@ -190,7 +190,7 @@ class ImportanceBatchSampler(Sampler):
         self._learn(importance, index)
 
     def _learn(self, importance, index=None, skip=False):
-        """`update`; skip: leaves out items that are NaN for a table."""
+        """`update`; skip: leaves out items of negative importance, which no norm is."""
         first = self._last is not None and self._last[2] and index is None
         if index is None:
             own = self._own(0)
@@ -210,8 +210,10 @@ class ImportanceBatchSampler(Sampler):
             # The other processes are reached from the importances' device.
             index = self._gather(own.to(importance.device))
         importance = self._gather(importance).reshape(len(index), techniques)
-        known = ~torch.isnan(importance).any(1) if skip else slice(None)
+        known = ~(importance < 0).any(1) if skip else slice(None)
         index, importance = index[known].numpy(), importance[known].numpy()
+        # Before any table is changed.
+        _arrays.check_positive("importance", importance if techniques > 1 else importance[:, 0])
         for j, table in enumerate(self._tables):
             table.update(index, importance[:, j], 0.0 if first else self._momentum)
 
@@ -220,8 +222,8 @@ class ImportanceBatchSampler(Sampler):
         if self._processes == 1:
             return own.cpu()
         own = own.contiguous()
-        if torch.distributed.get_backend(self._group) == "gloo":
-            own = own.cpu()
+        # Each reaches the others from its own kind of memory only.
+        own = {"gloo": own.cpu, "nccl": own.cuda}.get(torch.distributed.get_backend(self._group), lambda: own)()
         parts = [torch.empty_like(own) for _ in range(self._processes)]
         torch.distributed.all_gather(parts, own, group=self._group)
         return torch.stack(parts, 1).flatten(0, 1).cpu()
@@ -257,7 +259,7 @@ class ImportanceBatchSampler(Sampler):
         signs = gradient.clamp(min=0), (-gradient).clamp(min=0)
         parts = [sign[:, group::groups].norm(dim=1) for group in range(groups) for sign in signs]
         importance = torch.stack(parts, 1)
-        importance[weight.abs() < LEAST_WEIGHT] = float("nan")
+        importance[weight.abs() < LEAST_WEIGHT] = -1
         self._learn(importance, skip=True)
 
     def state_dict(self) -> dict[str, Any]:

@@ -277,6 +277,10 @@ def test_recommendations():
     assert best.method == "per_pixel" and best.estimator in ESTIMATORS and 0 < best.error < 1
     u = samples(16, 2)
     noisefloor.estimate(u, smooth(u), order=best.order, estimator=best.estimator, stratified=best.stratified)
+    # What is recommended can be called: of many dims the first.
+    best = noisefloor.recommend(20, 64)
+    u = samples(64, 20)
+    noisefloor.estimate(u[:, : best.dims], smooth(u), order=best.order, estimator=best.estimator)
     assert noisefloor.recommend(2, 1, stratified=True, can_share=True).method == "shared"
     # What docs/python.md says of Sobol points: no fit is safe.
     for dims, n in ((1, 64), (2, 256), (4, 1024), (8, 4096)):
@@ -285,6 +289,7 @@ def test_recommendations():
     for options, said in (
         ({"sample_cost": 0}, "sample_cost is 0.0"),
         ({"sample_cost": math.nan}, "sample_cost is nan"),
+        ({"sample_cost": 10**400}, "sample_cost is an integer beyond a float's range"),
     ):
         with pytest.raises(ValueError, match=said):
             noisefloor.recommend(2, 16, **options)

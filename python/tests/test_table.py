@@ -174,6 +174,8 @@ def test_arrays_of_anybody():
         (lambda t: t.draw((2, -1)), "batch is -1"),
         (lambda t: t.draw((2, 1.5)), "batch is 1.5: an integer"),
         (lambda t: t.draw((2, 11), "distinct"), "batch is 11: a distinct draw takes 0 to 10"),
+        (lambda t: t.draw((0, 11), "distinct"), "batch is 11: a distinct draw takes 0 to 10"),
+        (lambda t: t.draw((0, 1), "all"), "method is 'all': it must be one of"),
         (lambda t: t.update([1], [1.0], 1.5), r"momentum is 1.5: it must be 0 to 1"),
         (lambda t: t.update([1], [1.0], math.nan), "momentum is nan"),
         (lambda t: t.draw(-1), "batch is -1: it must be 0 to"),

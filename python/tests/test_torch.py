@@ -375,6 +375,24 @@ def test_refusals_name_argument_value_and_range(call, said):
         call(sampler)
 
 
+@pytest.mark.parametrize("bad", [float("nan"), float("inf"), -1.0])
+def test_a_refused_importance_of_one_technique_changes_no_other(bad):
+    sampler = ImportanceBatchSampler(10, 2, techniques=2, warmup=None)
+    next(iter(sampler))
+    sampler.batch()
+    before = [table.state_dict() for table in sampler._tables]
+    with pytest.raises(ValueError, match=rf"importance\[0, 1\] is {bad}"):
+        sampler.update(torch.tensor([[3.0, bad], [1.0, 1.0]]))
+    logits = torch.ones(2, 3, requires_grad=True)
+    logits.sum().backward()
+    if bad != -1.0:
+        logits.grad[0, 0] = bad
+        with pytest.raises(ValueError, match=r"importance\[0, \d\] is"):
+            sampler.update_from(logits)
+    after = [table.state_dict() for table in sampler._tables]
+    assert all(numpy.array_equal(a["table"], b["table"]) for a, b in zip(before, after))
+
+
 def differentiated(kind):
     """Outputs after a backward pass."""
     logits = torch.ones(2, 3, dtype=kind, requires_grad=True)

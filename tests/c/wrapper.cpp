@@ -398,6 +398,11 @@ static void minibatches()
     CHECK(index == expected);
     for (std::size_t i = 0; i < index.size(); ++i)
         CHECK(index[i] > 0 && std::fabs(weight[i] * 5.0f * table.probability(index[i]) - 1.0f) < 1e-6f);
+    // No elements at an address, as of a vector that was cleared: no weights, all the same.
+    std::array<float, 8> unused{};
+    nf::rng other_rng(7);
+    SUCCEED(table.draw(other_rng, expected, {unused.data(), 0}));
+    CHECK(unused == (std::array<float, 8>{}));
     SUCCEED(table.draw_stratified(rng, index));
     SUCCEED(table.draw_distinct(rng, {index.data(), 4}, {weight.data(), 4}));
     CHECK(CODE(table.draw(rng, index, {weight.data(), 7})) == nf::status::range);

@@ -42,6 +42,12 @@ def surfaces(hit):
     return numpy.array(dr.select(hit.is_valid(), found, 0))
 
 
+def equally_likely(scene):
+    """How many lights one number picks, each as likely as the others; 1 where that is not how they are picked."""
+    emitters = scene.emitters()
+    return len(emitters) if all(emitter.sampling_weight() == 1 for emitter in emitters) else 1
+
+
 def kept(sensor, lights, width, height, spp, seed, white=False, scramble=False):
     """The numbers that the fits see: of the point on a light, and of several lights which."""
     before = 2 + 2 * sensor.needs_aperture_sample() + (sensor.shutter_open_time() > 0)
@@ -77,6 +83,8 @@ def kind():
             found = [props[name] for name in props.keys() if isinstance(props[name], mi.Integrator)]
             if len(found) != 1:
                 raise ValueError(f"noisefloor_fits: holds one integrator, not {len(found)}")
+            if isinstance(found[0], (mi.CppADIntegrator, mi.AdjointIntegrator)):
+                raise ValueError(f"noisefloor_fits: holds an integrator such as path, not {type(found[0]).__name__}")
             self.inner = found[0]
             self.order, self.known = int(props.get("order", 2)), bool(props.get("known", True))
             # Why `known` was left out, or "".
@@ -89,7 +97,7 @@ def kind():
             pixel = dr.arange(mi.UInt32, width * height * spp) // spp
             corner = mi.Point2f(pixel % width, pixel // width) + offset
             ray, weight = _rays(sensor, corner + sampler.next_2d(), sampler)
-            radiance, valid, _ = self.inner.sample(scene, sampler, ray)
+            radiance, valid, _ = self.inner.sample(scene, sampler, ray, sensor.get_medium())
             value = dr.select(valid, weight * radiance, 0)
             return numpy.array(value).T.reshape(height, width, spp, -1)
 
@@ -103,8 +111,8 @@ def kind():
             spp, (width, height) = sampler.sample_count(), film.crop_size()
             sampler.seed(seed, width * height * spp)
             f = self.samples(scene, sensor, sampler)
-            lights, first = scene.emitters(), int(mi.UInt32(seed)[0])
-            u = kept(sensor, len(lights), width, height, spp, first, original.white, original.scramble)
+            lights, first = equally_likely(scene), int(mi.UInt32(seed)[0])
+            u = kept(sensor, lights, width, height, spp, first, original.white, original.scramble)
             middle = scene.ray_intersect(_rays(sensor, _middles(film))[0])
             more = {}
             if self.known:
@@ -112,7 +120,7 @@ def kind():
                 if a is not None:
                     more = dict(zip(("known", "known_integrals"), a))
             found = image_estimate(
-                u, f, surfaces=surfaces(middle).reshape(height, width), order=self.order, slices=len(lights),
+                u, f, surfaces=surfaces(middle).reshape(height, width), order=self.order, slices=lights,
                 stratified=True, channels=True, **more,
             )  # fmt: skip
             return mi.TensorXf(found.mean)

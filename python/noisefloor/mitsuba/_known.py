@@ -34,7 +34,7 @@ def light(scene, middle, u):
     parameters = mi.traverse(emitters[0])
     if "radiance.value" not in parameters:
         return None, "the emitter's radiance is textured"
-    radiance, corners = mi.Color3f(parameters["radiance.value"]), _corners(shape)
+    radiance, corners = mi.Spectrum(parameters["radiance.value"]), _corners(shape)
     height, width, spp, _ = u.shape
     context, bsdf = mi.BSDFContext(), middle.bsdf()
     flags = bsdf.flags()
@@ -43,8 +43,8 @@ def light(scene, middle, u):
         is_diffuse &= ~mi.has_flag(flags, other)
     n = dr.select(dr.dot(middle.n, middle.to_world(middle.wi)) > 0, middle.n, -middle.n)
     factor, above = _form_factor(corners, middle.p, n)
-    facing = dr.cross(corners[1] - corners[0], corners[3] - corners[0])
-    front = dr.dot(facing, middle.p - corners[0]) > 0
+    lamp, _ = scene.sample_emitter_direction(middle, mi.Point2f(0.5), False)
+    front = dr.dot(lamp.n, lamp.d) < 0
     wo = middle.to_local(n)
     albedo = bsdf.eval(context, middle, wo, middle.is_valid()) * dr.pi
     usable = is_diffuse & above & front
@@ -55,7 +55,7 @@ def light(scene, middle, u):
     at = mi.Point2f(*(mi.Float(numpy.ascontiguousarray(u[..., k]).ravel()) for k in range(2)))
     sample, weight = scene.sample_emitter_direction(middle, at, False)
     cosine = dr.maximum(dr.dot(dr.gather(mi.Normal3f, n, pixel), sample.d), 0)
-    value = weight * cosine * dr.gather(mi.Color3f, albedo, pixel) * dr.inv_pi
+    value = weight * cosine * dr.gather(mi.Spectrum, albedo, pixel) * dr.inv_pi
     value = dr.select(dr.gather(mi.Bool, usable, pixel), value, 0)
-    arrays = numpy.array(value).T.reshape(height, width, spp, 3), numpy.array(exact).T.reshape(height, width, 3)
+    arrays = numpy.array(value).T.reshape(height, width, spp, -1), numpy.array(exact).T.reshape(height, width, -1)
     return tuple(numpy.ascontiguousarray(numpy.maximum(array, 0)) for array in arrays), ""

@@ -112,12 +112,12 @@ def _jit_sampler():
         def seed(self, seed, wavefront_size=2**32 - 1):
             super().seed(seed, wavefront_size)
             self._clear()
-            if wavefront_size == 1:  # how Mitsuba frees a sampler's memory
+            wavefront_size, (width, height) = self.wavefront_size(), self.size
+            if wavefront_size == 1 != width * height:  # how Mitsuba frees a sampler's memory
                 return
-            width, height = self.size
             # Not what set_samples_per_wavefront() said: integrators' calls do not come as far as here.
             self.per_wave, rest = divmod(wavefront_size, max(width * height, 1))
-            if width < 1 or height < 1 or rest:
+            if width < 1 or height < 1 or rest or self.sample_count() % self.per_wave:
                 raise ValueError(
                     f"noisefloor: the sampler takes its film for {width} x {height} pixels, and {wavefront_size} "
                     "samples are not so many times a number. Call noisefloor.mitsuba.prepare(scene) once the scene is "
@@ -131,10 +131,10 @@ def _jit_sampler():
             wave = dr.arange(mi.UInt32, wavefront_size)
             pixel = wave // self.per_wave
             self.index = wave - pixel * self.per_wave
-            self.y = pixel // width
-            self.x = pixel - self.y * width
+            row = pixel // width
+            self.x, self.y = (pixel - row * width) & 0xFFFF, row & 0xFFFF
             if self.white:
-                at = _mix((self.x & 0xFFFF) | (self.y << 16))
+                at = _mix(self.x | (self.y << 16))
                 self.x, self.y = at & 0xFFFF, at >> 16
 
         def advance(self):
@@ -157,7 +157,8 @@ def _jit_sampler():
         def clone(self):
             other = self._copy()
             if self.wavefront_size():
-                other.seed(0, self.wavefront_size())
+                mi.Sampler.seed(other, 0, self.wavefront_size())
+            other.per_wave = self.per_wave
             # Arrays of their own: a loop that changes one sampler must not change the other.
             for name in ("x", "y", "index", "base", "dimension"):
                 setattr(other, name, mi.UInt32(getattr(self, name)))
