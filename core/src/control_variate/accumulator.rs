@@ -8,9 +8,9 @@ use super::folds;
 use super::incremental;
 use super::per_channel::PerChannel;
 use super::plan::{self, Method};
+use super::result::Summary;
 use super::samples::{Reader, Samples, Subset};
 use super::sums::{Change, Form, Layout};
-use super::totals::Totals;
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
 use crate::error::Error;
 use crate::lanes::Lanes;
@@ -128,7 +128,7 @@ impl<R: Real> Accumulator<R> {
         &self.config
     }
 
-    fn check_length(&self, sums: &[R]) -> Result<(), Error> {
+    pub(super) fn check_length(&self, sums: &[R]) -> Result<(), Error> {
         if sums.len() < self.len() { Err(Error::Memory) } else { Ok(()) }
     }
 
@@ -269,7 +269,7 @@ impl<R: Real> Accumulator<R> {
 
     #[inline(never)]
     fn move_zero_to_mean(&mut self, sums: &mut [R]) {
-        let units = self.totals(sums).units;
+        let units = self.summary(sums).units;
         let mut change = Change::none();
         for ((shift, before), after) in change.shift.iter_mut().zip(&self.units).zip(&units) {
             *shift = before.offset - after.offset;
@@ -278,10 +278,15 @@ impl<R: Real> Accumulator<R> {
         self.change(sums, &change);
     }
 
-    /// What the sums say about the plain mean.
-    pub(super) fn totals(&self, sums: &[R]) -> Totals<R> {
+    /// What the sums say without a fit.
+    pub(super) fn summary(&self, sums: &[R]) -> Summary<R> {
         let groups = (0..self.groups().get()).filter_map(|fold| self.layout.group(sums, fold).ok());
-        Totals::new(groups, self.samples, self.units)
+        let mut summary = Summary::of_sums(groups, self.samples, self.layout.channels, self.units);
+        if self.config.color == Color::LuminanceRatio {
+            let inverse = 1.0 / self.samples as f64;
+            summary.colour = Some(self.colour.map(|sum| sum * inverse));
+        }
+        summary
     }
 
     fn change(&mut self, sums: &mut [R], change: &Change<R>) {

@@ -7,7 +7,7 @@ use super::fit::descent;
 use super::fitter::{self, Fitter, Rule};
 use super::k_fold;
 use super::plan::{Method, Plan};
-use super::result::{self, Outcome};
+use super::result::{Outcome, Summary};
 use super::samples::{Reader, Samples, Subset};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -105,15 +105,14 @@ pub fn estimate_inlined<R: Real>(
             let outcome = fitter.solve(rule, None, &mut arena)?.outcome(&design);
             // As many terms as samples leave nothing to tell the error from.
             let is_told = method != Method::LeastSquares || design.n > design.columns + 1;
-            let variance = if is_told { outcome.variance } else { result::plain_variance(&design) };
-            Outcome { variance, ..outcome }
+            Outcome { variance: outcome.variance.filter(|_| is_told), ..outcome }
         }
         (None, Method::KFold) => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
         (None, Method::Descent) => descent::estimate(&design, config, &basis, None, &mut arena)?,
         // What streams went its own way above.
-        (None, _) => Outcome::plain(result::plain_variance(&design)),
+        (None, _) => Outcome::default(),
     };
-    Ok(result::finish(result::Summary::of(&design, &reader), outcome))
+    Ok(Summary::of(&design, &reader).finish(outcome))
 }
 
 /// (4.30) is about a stream, and Givens rotations take one row at a time: their batch form streams.
@@ -122,5 +121,7 @@ fn streamed<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R])
     let (sums, workspace) = workspace.split_at_mut_checked(stream.len()).ok_or(Error::Memory)?;
     stream.reset(sums)?;
     stream.add(sums, samples)?;
-    stream.estimate_of_array(sums, workspace)
+    let summary = stream.checked_summary(sums)?;
+    let outcome = stream.one_by_one(sums, &summary, &mut Arena::new(workspace))?;
+    Ok(summary.finish(outcome))
 }

@@ -199,7 +199,8 @@ impl<R: Real> Candidates<'_, '_, R> {
         let mut centres = [None; FITS];
         coefficients.fill(R::ZERO);
         let penalties = arena.take(self.groups.layout.columns)?;
-        if let Some(centred) = Centred::new(train, &mut arena)? {
+        if train.count() > R::ZERO {
+            let centred = Centred::new(train, &mut arena)?;
             // From the training set alone, as the coefficients.
             ridge::penalties(self.config, self.basis, |j| train.mean_square(j), penalties);
             let each = rows_mut(coefficients, self.groups.layout.coefficients());
@@ -224,18 +225,13 @@ impl<R: Real> Candidates<'_, '_, R> {
 }
 
 /// Squared errors on groups that the fits have not seen, of how many samples.
+#[derive(Default)]
 struct Errors<R> {
     fits: [PerChannel<R>; FITS],
     plain: PerChannel<R>,
     count: R,
     /// How many groups.
     judged: R,
-}
-
-impl<R: Real> Default for Errors<R> {
-    fn default() -> Self {
-        Self { fits: Default::default(), plain: Default::default(), count: R::ZERO, judged: R::ZERO }
-    }
 }
 
 impl<R: Real> Errors<R> {

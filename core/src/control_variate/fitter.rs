@@ -187,7 +187,7 @@ impl<R: Real> Blend<R> {
         let factor = result::press_factor(n);
         let own = |fit: Fit<R>| fit.influence * factor * trust::few_left(fit.freedom, n);
         let (correction, variance) = self.mixture.estimate(plain_press(design) * factor, self.fits.map(own));
-        Outcome { correction, variance: (design.n > 1).then_some(variance) }
+        Outcome { correction, variance: Some(variance) }
     }
 
     /// What the error of the mixture's coefficients adds to the variance of an estimate that is corrected by them, as a

@@ -91,7 +91,7 @@ pub(crate) fn estimate<R: Real>(
     let correction = totals.map(|total| total / n);
     let spread = sums::spread(squares, totals, correction) * inflations;
     let variance = spread.map(|spread| spread / (n * n * (n - R::ONE).max(R::ONE)));
-    Ok(Outcome { correction, variance: (whole.n > 1).then_some(variance) })
+    Ok(Outcome { correction, variance: Some(variance) })
 }
 
 /// [`Design::load`], of which the two callers share one copy.

@@ -22,7 +22,6 @@ mod result;
 mod ridge;
 mod samples;
 mod sums;
-mod totals;
 mod trust;
 
 pub use accumulator::Accumulator;

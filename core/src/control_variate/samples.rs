@@ -349,7 +349,7 @@ impl<'a> Reader<'a> {
     }
 
     /// For a luminance-ratio estimate, the mean colour of the used samples and its luminance.
-    pub(crate) fn mean_colour(&self) -> Option<([f64; 3], f64)> {
+    pub(crate) fn mean_colour(&self) -> Option<[f64; 4]> {
         if !self.luminance {
             return None;
         }
@@ -359,8 +359,7 @@ impl<'a> Reader<'a> {
                 *sum += value;
             }
         });
-        let [red, green, blue, luminance] = sums.map(|sum| sum / used.max(1) as f64);
-        Some(([red, green, blue], luminance))
+        Some(sums.map(|sum| sum / used.max(1) as f64))
     }
 }
 

@@ -8,7 +8,7 @@ use super::super::config::{Config, Estimate, Optimizer};
 use super::super::design::{Design, square};
 use super::super::per_channel::PerChannel;
 use super::super::plan::Plan;
-use super::super::result::{self, Outcome};
+use super::super::result::{self, Outcome, Summary};
 use super::super::samples::{Reader, Samples, Subset};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -93,7 +93,7 @@ pub fn estimate_from<R: Real>(
     let mut arena = Arena::new(workspace);
     let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena)?;
     let outcome = estimate(&design, config, &basis, Some(coefficients), &mut arena)?;
-    Ok(result::finish(result::Summary::of(&design, &reader), outcome))
+    Ok(Summary::of(&design, &reader).finish(outcome))
 }
 
 /// Descends from zero, or from `warm` and back into it.
