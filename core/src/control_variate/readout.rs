@@ -61,16 +61,18 @@ impl<R: Real> Accumulator<R> {
     }
 
     fn cross_fit(&self, sums: &[R], summary: &Summary<R>, arena: &mut Arena<'_, R>) -> Result<Outcome<R>, Error> {
-        let (config, basis) = (&self.config, self.basis()?);
-        let groups = Groups { sums, folds: self.groups().get(), layout: self.layout };
+        let (config, layout, basis) = (&self.config, self.layout, &self.basis()?);
+        let groups = Groups { sums, folds: self.groups().get(), layout, config, basis };
         let k_fold = self.method == Method::KFold;
         // One fold to fit to and one to judge by, and for K-fold one to correct.
         let needed = if k_fold && !matches!(config.ridge, Ridge::Fixed(_)) { groups.folds.min(3) } else { 2 };
-        let Some(variance) = summary.variance.filter(|_| groups.has(needed)) else { return Ok(Outcome::default()) };
+        let Some(variance) = summary.variance.filter(|_| groups.filled() >= needed) else {
+            return Ok(Outcome::default());
+        };
         if k_fold {
-            cross_fit::nested(&groups, config, &basis, summary.mean, arena)
+            cross_fit::nested(&groups, summary.mean, arena)
         } else {
-            cross_fit::pooled(&groups, config, &basis, summary.mean, variance, arena)
+            cross_fit::pooled(&groups, summary.mean, variance, arena)
         }
     }
 

@@ -57,7 +57,7 @@ pub(crate) struct Centre<R> {
 }
 
 impl<R: Real> Centre<R> {
-    /// Of a fit to `n` samples, at least two.
+    /// Of a fit to `n` samples; with less than two nothing speaks against the fit.
     #[inline]
     pub(crate) fn new(eccentricity: R, freedom: R, n: R) -> Self {
         let freedom = freedom.min(n - R::from_f64(1.5)).max(R::EPSILON);

@@ -82,7 +82,8 @@ pub fn estimate_from<R: Real>(
     let mut basis = Basis::empty();
     basis.set(config.basis, config.checked_shape()?)?;
     let reader = Reader::new(config, samples)?;
-    let columns = Plan::new(config, basis.columns(), reader.len())?.columns;
+    Plan::new(config, basis.columns(), reader.len())?;
+    let columns = config.controls + basis.columns();
     if coefficients.len() != columns * reader.channels() {
         return Err(Error::Range);
     }

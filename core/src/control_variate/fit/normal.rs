@@ -124,16 +124,13 @@ impl<'a, R: Real> Normal<'a, R> {
         Ok(not_below_zero(self.gram.quadratic(x)) * self.count)
     }
 
-    /// Where the samples of a fit lie, for two or more.
+    /// Where the samples of a fit lie.
     pub(crate) fn centre(
         &self,
         factor: &Ldlt<&mut [R]>,
         penalty: Penalty<'_, R>,
         mut arena: Arena<'_, R>,
-    ) -> Result<Option<Centre<R>>, Error> {
-        if self.count <= R::ONE {
-            return Ok(None);
-        }
+    ) -> Result<Centre<R>, Error> {
         let columns = self.gram.order();
         let (inverse, diagonal) = (arena.triangle(columns)?, arena.take(columns)?);
         factor.inverse_diagonal(inverse, diagonal);
@@ -144,7 +141,7 @@ impl<'a, R: Real> Normal<'a, R> {
             freedom -= strength * value * relative;
         }
         let eccentricity = self.eccentricity(factor, &mut arena)?;
-        Ok(Some(Centre::new(eccentricity, freedom, self.count)))
+        Ok(Centre::new(eccentricity, freedom, self.count))
     }
 }
 
