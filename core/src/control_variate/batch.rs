@@ -7,7 +7,7 @@ use super::fit::descent;
 use super::fitter;
 use super::k_fold;
 use super::plan::{Method, Plan};
-use super::result::{Outcome, Summary};
+use super::result::{self, Outcome, Summary};
 use super::samples::{Reader, Samples, Subset};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -95,7 +95,10 @@ pub fn estimate_inlined<R: Real>(
             fitter::fit(&design, config, &basis, &plan, None, &mut arena)?.outcome(&design)
         }
         Method::KFold => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
-        Method::Descent => descent::estimate(&design, config, &basis, None, &mut arena)?,
+        Method::Descent => {
+            let coefficients = arena.zeros(design.columns * design.channels)?;
+            descent::descend(&design, config, &basis, coefficients, result::plain_variance(&design), &mut arena)?
+        }
         // What streams went its own way above.
         Method::Plain | Method::Incremental | Method::SquareRoot => Outcome::default(),
     };

@@ -13,7 +13,7 @@ use super::per_channel::PerChannel;
 use super::result::{self, Outcome};
 use super::ridge::{self, MIXED};
 use super::sums::{self, Layout, Sums};
-use super::trust::{self, Centre, Judge, Mixture};
+use super::trust::{Centre, Judge, Mixture};
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
@@ -119,9 +119,7 @@ pub(crate) fn pooled<R: Real>(
     let fits = corrections.iter_mut().zip(&mut discounts).zip(&centres).zip(crossed).zip(rows(coefficients, each));
     for ((((correction, discount), centre), crossed), b) in fits {
         let whole = all.residual_totals(b) * inverse - mean;
-        *correction = whole + (crossed * inverse - mean - whole) * centre.share();
-        let aside = centre.discount();
-        *discount = correction.zip(variance, |correction, variance| trust::surprise(correction, variance) + aside);
+        (*correction, *discount) = centre.judge(whole, crossed * inverse - mean, variance);
     }
     let (plain_weight, weights) = errors.weigh(&discounts);
     let mixture = Mixture { plain_weight, weights, corrections };
@@ -154,7 +152,8 @@ pub(crate) fn nested<R: Real>(
         count += held_out.count();
         let mut errors = Errors::default();
         let mut discounts = [R::ZERO; FITS];
-        for (other, judging) in groups.each().filter(|&(other, _)| other != fold) {
+        // Where there is one fit there is nothing to judge.
+        for (other, judging) in groups.each().filter(|&(other, _)| other != fold && !is_fixed) {
             let train = groups.train(&[fold, other], train)?;
             let centres = groups.fit(strengths, &train, coefficients, arena)?;
             errors.add(&train, &judging, rows(coefficients, each));

@@ -120,9 +120,7 @@ fn mix<R: Real>(
     let mut parts = [R::ONE; MAX_FITS];
     for (((fit, correction), discount), part) in fits.iter().zip(&mut corrections).zip(&mut discounts).zip(&mut parts) {
         let centre = Centre::new(fit.eccentricity, fit.freedom, n);
-        *correction = fit.in_sample + (fit.leave_one_out - fit.in_sample) * centre.share();
-        let aside = centre.discount();
-        *discount = correction.zip(variance, |correction, variance| aside + trust::surprise(correction, variance));
+        (*correction, *discount) = centre.judge(fit.in_sample, fit.leave_one_out, variance);
         if method == Method::KFold {
             *part = centre.independence();
         }

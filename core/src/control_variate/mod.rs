@@ -16,7 +16,6 @@ mod incremental;
 mod k_fold;
 mod per_channel;
 mod plan;
-mod readout;
 mod regressor;
 mod result;
 mod ridge;

@@ -2,11 +2,11 @@
 //!
 //! | [`Method`] | samples in arrays | a stream | unbiased | its error is told by |
 //! |---|---|---|---|---|
-//! | `Plain` | `batch` | `readout` | yes | the values' spread |
+//! | `Plain` | `batch` | `accumulator` | yes | the values' spread |
 //! | `Robust` | `fitter` | `cross_fit::pooled` | nearly | residuals left out |
 //! | `LeaveOneOut` | `fitter` | - | yes | residuals left out |
 //! | `KFold` | `k_fold` | `cross_fit::nested` | yes | residuals held out |
-//! | `LeastSquares` | `fitter` | `readout` | O(1/n) | residuals |
+//! | `LeastSquares` | `fitter` | `accumulator` | O(1/n) | residuals |
 //! | `SquareRoot` | as a stream | `fit::givens` | O(1/n) | residuals |
 //! | `Descent` | `fit::descent` | `fit::descent` | no | residuals and the gradient |
 //! | `Incremental` | as a stream | `incremental` | yes | the corrected values' spread |

@@ -4,6 +4,7 @@ use super::config::{Config, Estimate};
 use super::design::Units;
 use super::fit::{Penalty, normal};
 use super::result::Summary;
+use super::samples::Sample;
 use super::sums::{Change, Form, Sums};
 use crate::arena::Arena;
 use crate::basis::{Basis, Family};
@@ -67,20 +68,17 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     /// [`Error::NotFinite`] or [`Error::Range`]; the sample is then not added.
     #[inline]
     pub fn add(&mut self, u: &[f32; DIMS], f: &[f32; CHANNELS]) -> Result<(), Error> {
-        if !u.iter().chain(f).all(|value| value.is_finite()) {
-            return Err(Error::NotFinite);
-        }
-        if !u.iter().all(|u| (0.0..=1.0).contains(u)) {
-            return Err(Error::Range);
-        }
+        Sample::new(u, f).check()?;
         if self.samples == 0 {
             self.offset = *f;
         }
         let x = u.map(|u| [f64::from(u)]);
         let mut p = [[1.0]; TERMS];
         self.basis.evaluate(&x, from_mut(&mut p, 1));
-        let mut values =
-            core::array::from_fn::<f64, CHANNELS, _>(|channel| f64::from(f[channel]) - f64::from(self.offset[channel]));
+        let mut values = f.map(f64::from);
+        for (value, &offset) in values.iter_mut().zip(&self.offset) {
+            *value -= f64::from(offset);
+        }
         self.sums_mut()?.add(p.as_flattened_mut(), &mut values);
         self.samples += 1;
         Ok(())
