@@ -1,16 +1,18 @@
 //! Streaming estimates: sums of fixed size that samples are added to and that can be merged.
 
-use super::config::{Color, Config};
-use super::cross_fit;
+use super::config::{Color, Config, Estimate, Ridge};
+use super::cross_fit::{self, Groups};
 use super::design::Units;
-use super::fit::{descent, givens, normal};
+use super::fit::{Penalty, descent, givens, normal};
 use super::folds;
 use super::incremental;
 use super::per_channel::PerChannel;
 use super::plan::{self, Method};
+use super::result::{Outcome, Summary};
+use super::ridge;
 use super::samples::{Reader, Samples, Subset};
-use super::sums::{Change, Form, Layout};
-use super::totals::Totals;
+use super::sums::{Change, Form, Layout, Sums};
+use crate::arena::Arena;
 use crate::basis::{Basis, MAX_DIMS, MAX_TERMS, Shape};
 use crate::error::Error;
 use crate::lanes::Lanes;
@@ -44,15 +46,15 @@ const NARROW_CAPACITY: u64 = 1 << 22;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Accumulator<R> {
-    pub(super) config: Config,
-    pub(super) shape: Shape,
-    pub(super) method: Method,
-    pub(super) layout: Layout,
-    pub(super) samples: u64,
-    pub(super) units: [Units<R>; Config::MAX_CHANNELS],
+    config: Config,
+    shape: Shape,
+    method: Method,
+    layout: Layout,
+    samples: u64,
+    units: [Units<R>; Config::MAX_CHANNELS],
     /// Sums of red, green, blue and luminance, for a luminance ratio.
-    pub(super) colour: [f64; 4],
-    pub(super) incremental: incremental::Progress<R>,
+    colour: [f64; 4],
+    incremental: incremental::Progress<R>,
 }
 
 impl<R: Real> Accumulator<R> {
@@ -83,7 +85,7 @@ impl<R: Real> Accumulator<R> {
     }
 
     /// Groups of sums: one for each fold, or one.
-    pub(super) fn groups(&self) -> NonZeroUsize {
+    fn groups(&self) -> NonZeroUsize {
         match self.method {
             Method::Robust | Method::KFold => self.config.fold_count(),
             _ => NonZeroUsize::MIN,
@@ -257,6 +259,80 @@ impl<R: Real> Accumulator<R> {
         Ok(())
     }
 
+    /// The estimate from all samples so far. More may be added afterwards.
+    ///
+    /// # Errors
+    /// [`Error::NoSamples`] if there are none, [`Error::Memory`] if `workspace` is shorter than
+    /// [`Accumulator::workspace_len`] says.
+    pub fn estimate(&self, sums: &[R], workspace: &mut [R]) -> Result<Estimate, Error> {
+        let (summary, arena) = (self.checked_summary(sums)?, &mut Arena::new(workspace));
+        let outcome = match self.method {
+            Method::Robust | Method::KFold => self.cross_fit(sums, &summary, arena)?,
+            Method::Incremental | Method::SquareRoot => self.one_by_one(sums, &summary, arena)?,
+            Method::Descent => self.descend(&self.layout.group(sums, 0)?, &summary, arena)?,
+            Method::LeastSquares => self.least_squares(&self.layout.group(sums, 0)?, arena)?,
+            // A stream has no leave-one-out errors.
+            Method::Plain | Method::LeaveOneOut => Outcome::default(),
+        };
+        Ok(summary.finish(outcome))
+    }
+
+    pub(crate) fn checked_summary(&self, sums: &[R]) -> Result<Summary<R>, Error> {
+        self.check_length(sums)?;
+        if self.samples == 0 { Err(Error::NoSamples) } else { Ok(self.summary(sums)) }
+    }
+
+    /// What takes one sample after the other, also from arrays.
+    pub(crate) fn one_by_one(
+        &self,
+        sums: &[R],
+        summary: &Summary<R>,
+        arena: &mut Arena<'_, R>,
+    ) -> Result<Outcome<R>, Error> {
+        let outcome = if self.method == Method::SquareRoot {
+            givens::least_squares(&self.layout.group(sums, 0)?, &self.config, &self.basis()?, arena)?
+        } else {
+            incremental::outcome(&self.incremental, self.samples)
+        };
+        Ok(Outcome { correction: outcome.correction - summary.mean, ..outcome })
+    }
+
+    #[inline(never)]
+    fn basis(&self) -> Result<Basis, Error> {
+        let mut basis = Basis::empty();
+        basis.set(self.config.basis, self.shape)?;
+        Ok(basis)
+    }
+
+    fn cross_fit(&self, sums: &[R], summary: &Summary<R>, arena: &mut Arena<'_, R>) -> Result<Outcome<R>, Error> {
+        let (config, layout, basis) = (&self.config, self.layout, &self.basis()?);
+        let groups = Groups { sums, folds: self.groups().get(), layout, config, basis };
+        let k_fold = self.method == Method::KFold;
+        // One fold to fit to and one to judge by, and for K-fold one to correct.
+        let needed = if k_fold && !matches!(config.ridge, Ridge::Fixed(_)) { groups.folds.min(3) } else { 2 };
+        let Some(variance) = summary.variance.filter(|_| groups.filled() >= needed) else {
+            return Ok(Outcome::default());
+        };
+        if k_fold {
+            cross_fit::nested(&groups, summary.mean, arena)
+        } else {
+            cross_fit::pooled(&groups, summary.mean, variance, arena)
+        }
+    }
+
+    fn least_squares(&self, group: &Sums<&[R]>, arena: &mut Arena<'_, R>) -> Result<Outcome<R>, Error> {
+        let penalties = arena.take(self.layout.columns)?;
+        ridge::penalties(&self.config, &self.basis()?, |j| group.mean_square(j), penalties);
+        let strength = R::from_f64(ridge::least_squares::<R>(self.config.ridge));
+        normal::least_squares(group, Penalty { strength, relative: penalties }, arena)
+    }
+
+    fn descend(&self, group: &Sums<&[R]>, summary: &Summary<R>, arena: &mut Arena<'_, R>) -> Result<Outcome<R>, Error> {
+        let centred = normal::Centred::new(group, arena)?;
+        let coefficients = arena.zeros(self.layout.coefficients())?;
+        descent::descend(&centred, &self.config, &self.basis()?, coefficients, summary.variance, arena)
+    }
+
     /// Moves the units' zero of a narrow type to the mean so far, each time that the samples, of which there were
     /// `before`, have doubled: of values that all lie to one side of it, as where the first sample is an outlier or in
     /// shadow, the sums would soon be too large for one more to show.
@@ -269,7 +345,7 @@ impl<R: Real> Accumulator<R> {
 
     #[inline(never)]
     fn move_zero_to_mean(&mut self, sums: &mut [R]) {
-        let units = self.totals(sums).units;
+        let units = self.summary(sums).units;
         let mut change = Change::none();
         for ((shift, before), after) in change.shift.iter_mut().zip(&self.units).zip(&units) {
             *shift = before.offset - after.offset;
@@ -278,10 +354,15 @@ impl<R: Real> Accumulator<R> {
         self.change(sums, &change);
     }
 
-    /// What the sums say about the plain mean.
-    pub(super) fn totals(&self, sums: &[R]) -> Totals<R> {
+    /// What the sums say without a fit.
+    fn summary(&self, sums: &[R]) -> Summary<R> {
         let groups = (0..self.groups().get()).filter_map(|fold| self.layout.group(sums, fold).ok());
-        Totals::new(groups, self.samples, self.units)
+        let mut summary = Summary::of_sums(groups, self.samples, self.layout.channels, self.units);
+        if self.config.color == Color::LuminanceRatio {
+            let inverse = 1.0 / self.samples as f64;
+            summary.colour = Some(self.colour.map(|sum| sum * inverse));
+        }
+        summary
     }
 
     fn change(&mut self, sums: &mut [R], change: &Change<R>) {

@@ -4,10 +4,10 @@ use super::accumulator::Accumulator;
 use super::config::{Color, Config, Estimate};
 use super::design::Design;
 use super::fit::descent;
-use super::fitter::{self, Fitter, Rule};
+use super::fitter;
 use super::k_fold;
 use super::plan::{Method, Plan};
-use super::result::{self, Outcome};
+use super::result::{self, Outcome, Summary};
 use super::samples::{Reader, Samples, Subset};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -25,7 +25,7 @@ pub fn workspace_len<R: Real>(config: &Config, n: usize) -> Result<usize, Error>
     let columns = plan.columns;
     let channels = if config.color == Color::LuminanceRatio { 1 } else { config.channels };
     let solve = match plan.method {
-        Method::Plain => return Design::<R>::size(n, 0, channels).ok_or(Error::Memory),
+        Method::Plain => Some(0),
         // The fits of an incremental estimate are part of the stream.
         Method::Incremental => return Ok(Accumulator::<R>::new(config)?.len()),
         Method::SquareRoot => {
@@ -88,32 +88,21 @@ pub fn estimate_inlined<R: Real>(
     let plan = Plan::new(config, shape.columns(), reader.len())?;
     reader.check()?;
     let mut arena = Arena::new(workspace);
-    let columns = if plan.method == Method::Plain { 0 } else { plan.columns };
-    let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena)?;
-    let method = if design.n == 1 { Method::Plain } else { plan.method };
-    // One place that fits: it is most of what a program with an estimate carries.
-    let rule = match method {
-        Method::Robust => Some(Rule::Robust),
-        Method::LeaveOneOut => Some(Rule::Single(config.ridge)),
-        // Algorithm 1: the residuals' mean is zero, so the estimate is the fit's constant term.
-        Method::LeastSquares => Some(Rule::LeastSquares(config.ridge)),
-        Method::Plain | Method::Incremental | Method::KFold | Method::Descent | Method::SquareRoot => None,
-    };
-    let outcome = match (rule, method) {
-        (Some(rule), _) => {
-            let fitter = Fitter::new(&design, config, &basis, plan.dual, &mut arena)?;
-            let outcome = fitter.solve(rule, None, &mut arena)?.outcome(&design);
-            // As many terms as samples leave nothing to tell the error from.
-            let is_told = method != Method::LeastSquares || design.n > design.columns + 1;
-            let variance = if is_told { outcome.variance } else { result::plain_variance(&design) };
-            Outcome { variance, ..outcome }
+    let design = Design::load(&reader, &basis, plan.columns, Subset::All, true, &mut arena)?;
+    let outcome = match plan.method {
+        _ if design.n == 1 => Outcome::default(),
+        Method::Robust | Method::LeaveOneOut | Method::LeastSquares => {
+            fitter::fit(&design, config, &basis, &plan, None, &mut arena)?.outcome(&design)
         }
-        (None, Method::KFold) => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
-        (None, Method::Descent) => descent::estimate(&design, config, &basis, None, &mut arena)?,
+        Method::KFold => k_fold::estimate(&reader, &design, config, &basis, &mut arena)?,
+        Method::Descent => {
+            let coefficients = arena.zeros(design.columns * design.channels)?;
+            descent::descend(&design, config, &basis, coefficients, result::plain_variance(&design), &mut arena)?
+        }
         // What streams went its own way above.
-        (None, _) => Outcome::plain(result::plain_variance(&design)),
+        Method::Plain | Method::Incremental | Method::SquareRoot => Outcome::default(),
     };
-    Ok(result::finish(result::Summary::of(&design, &reader), outcome))
+    Ok(Summary::of(&design, &reader).finish(outcome))
 }
 
 /// (4.30) is about a stream, and Givens rotations take one row at a time: their batch form streams.
@@ -122,5 +111,7 @@ fn streamed<R: Real>(config: &Config, samples: Samples<'_>, workspace: &mut [R])
     let (sums, workspace) = workspace.split_at_mut_checked(stream.len()).ok_or(Error::Memory)?;
     stream.reset(sums)?;
     stream.add(sums, samples)?;
-    stream.estimate_of_array(sums, workspace)
+    let summary = stream.checked_summary(sums)?;
+    let outcome = stream.one_by_one(sums, &summary, &mut Arena::new(workspace))?;
+    Ok(summary.finish(outcome))
 }

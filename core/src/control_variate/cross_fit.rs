@@ -13,7 +13,7 @@ use super::per_channel::PerChannel;
 use super::result::{self, Outcome};
 use super::ridge::{self, MIXED};
 use super::sums::{self, Layout, Sums};
-use super::trust::{self, Centre, Judge, Mixture};
+use super::trust::{Centre, Judge, Mixture};
 use crate::arena::Arena;
 use crate::basis::Basis;
 use crate::error::Error;
@@ -24,11 +24,13 @@ use crate::rows::{first, rows, rows_mut};
 /// The number of candidates besides the plain mean.
 const FITS: usize = MIXED.len();
 
-/// An accumulator's sums, fold after fold.
+/// An accumulator's sums, fold after fold, and how they are fitted.
 pub(crate) struct Groups<'a, R> {
     pub(crate) sums: &'a [R],
     pub(crate) folds: usize,
     pub(crate) layout: Layout,
+    pub(crate) config: &'a Config,
+    pub(crate) basis: &'a Basis,
 }
 
 /// Numbers that an estimate takes from its arena beyond one fit.
@@ -43,9 +45,9 @@ impl<'a, R: Real> Groups<'a, R> {
         (0..self.folds).filter_map(move |fold| Some((fold, filled(fold)?)))
     }
 
-    /// Whether at least so many folds hold samples.
-    pub(crate) fn has(&self, folds: usize) -> bool {
-        self.each().count() >= folds
+    /// How many folds hold samples.
+    pub(crate) fn filled(&self) -> usize {
+        self.each().count()
     }
 
     /// Writes the sums of all folds but those left out.
@@ -58,27 +60,43 @@ impl<'a, R: Real> Groups<'a, R> {
         }
         self.layout.group(sums, 0)
     }
-}
 
-struct Candidates<'p, 'a, R> {
-    groups: &'p Groups<'a, R>,
-    config: &'p Config,
-    basis: &'p Basis,
-    strengths: &'p [f64],
-    /// Whether the one strength was asked for, so that nothing is weighed.
-    is_fixed: bool,
+    /// Writes the coefficients of a fit of each strength to a training set, zero where there is no sample, and says
+    /// where its samples lie.
+    fn fit(
+        &self,
+        strengths: &[f64],
+        train: &Sums<&[R]>,
+        coefficients: &mut [R],
+        arena: &mut Arena<'_, R>,
+    ) -> Result<[Centre<R>; FITS], Error> {
+        let mut arena = arena.scratch();
+        let mut centres = [Centre::new(R::ZERO, R::ZERO, R::ZERO); FITS];
+        coefficients.fill(R::ZERO);
+        if train.count() > R::ZERO {
+            let penalties = arena.take(self.layout.columns)?;
+            // From the training set alone, as the coefficients.
+            ridge::penalties(self.config, self.basis, |j| train.mean_square(j), penalties);
+            let centred = Centred::new(train, &mut arena)?;
+            let each = rows_mut(coefficients, self.layout.coefficients());
+            for ((&strength, coefficients), centre) in strengths.iter().zip(each).zip(&mut centres) {
+                let mut arena = arena.scratch();
+                let penalty = Penalty { strength: R::from_f64(strength), relative: penalties };
+                let factor = centred.normal.solve(penalty, coefficients, &mut arena)?;
+                *centre = centred.normal.centre(&factor, penalty, arena)?;
+            }
+        }
+        Ok(centres)
+    }
 }
 
 /// What is added to the plain `mean`, robust, of two folds or more; `variance` is the mean's.
 pub(crate) fn pooled<R: Real>(
     groups: &Groups<'_, R>,
-    config: &Config,
-    basis: &Basis,
     mean: PerChannel<R>,
     variance: PerChannel<R>,
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
-    let candidates = Candidates { groups, config, basis, strengths: &MIXED, is_fixed: false };
     let each = groups.layout.coefficients();
     let coefficients = arena.take(FITS * each)?;
     let train = arena.take(groups.layout.len())?;
@@ -87,31 +105,28 @@ pub(crate) fn pooled<R: Real>(
     let mut crossed = [PerChannel::default(); FITS];
     for (fold, held_out) in groups.each() {
         let train = groups.train(&[fold], train)?;
-        candidates.fit(&train, coefficients, arena)?;
+        groups.fit(&MIXED, &train, coefficients, arena)?;
         errors.add(&train, &held_out, rows(coefficients, each));
         for (crossed, b) in crossed.iter_mut().zip(rows(coefficients, each)) {
             *crossed += held_out.residual_totals(b);
         }
     }
     let all = groups.train(&[], train)?;
-    let centres = candidates.fit(&all, coefficients, arena)?;
+    let centres = groups.fit(&MIXED, &all, coefficients, arena)?;
     let (n, inverse) = (all.count(), R::ONE / all.count());
     let mut corrections = [PerChannel::default(); FITS];
     let mut discounts = [PerChannel::default(); FITS];
     let fits = corrections.iter_mut().zip(&mut discounts).zip(&centres).zip(crossed).zip(rows(coefficients, each));
     for ((((correction, discount), centre), crossed), b) in fits {
         let whole = all.residual_totals(b) * inverse - mean;
-        let share = centre.map_or(R::ZERO, |centre| centre.share());
-        *correction = whole + (crossed * inverse - mean - whole) * share;
-        let aside = centre.map_or(R::ZERO, |centre| centre.discount());
-        *discount = correction.zip(variance, |correction, variance| trust::surprise(correction, variance) + aside);
+        (*correction, *discount) = centre.judge(whole, crossed * inverse - mean, variance);
     }
-    let (plain_weight, weights) = candidates.weigh(&errors, &discounts);
+    let (plain_weight, weights) = errors.weigh(&discounts);
     let mixture = Mixture { plain_weight, weights, corrections };
     let factor = result::press_factor(n);
     let mut own = errors.fits;
     for (own, centre) in own.iter_mut().zip(centres) {
-        *own = *own * factor * centre.map_or(R::ONE, |centre| centre.inflation);
+        *own = *own * factor * centre.inflation;
     }
     let (correction, variance) = mixture.estimate(errors.plain * factor, own);
     Ok(Outcome { correction, variance: Some(variance) })
@@ -120,41 +135,42 @@ pub(crate) fn pooled<R: Real>(
 /// What is added to the plain `mean`, unbiased, of two folds, or three or more.
 pub(crate) fn nested<R: Real>(
     groups: &Groups<'_, R>,
-    config: &Config,
-    basis: &Basis,
     mean: PerChannel<R>,
     arena: &mut Arena<'_, R>,
 ) -> Result<Outcome<R>, Error> {
     // With two folds no third is left to judge a fit: one ridge it is.
-    let is_fixed = groups.folds < 3 || matches!(config.ridge, Ridge::Fixed(_));
-    let fixed = [ridge::single::<R>(config.ridge)];
+    let is_fixed = groups.folds < 3 || matches!(groups.config.ridge, Ridge::Fixed(_));
+    let fixed = [ridge::single::<R>(groups.config.ridge)];
     let strengths: &[f64] = if is_fixed { &fixed } else { &MIXED };
-    let candidates = Candidates { groups, config, basis, strengths, is_fixed };
+    let alone = (PerChannel::default(), [R::ONE, R::ZERO].map(PerChannel::all));
     let (each, columns) = (groups.layout.coefficients(), groups.layout.columns);
     let coefficients = arena.take(FITS * each)?;
     let train = arena.take(groups.layout.len())?;
     let (mut sums, mut press) = (PerChannel::default(), PerChannel::default());
-    let mut count = R::ZERO;
+    let (mut count, others) = (R::ZERO, R::from_usize(groups.filled() - 1));
     for (fold, held_out) in groups.each() {
         count += held_out.count();
         let mut errors = Errors::default();
         let mut discounts = [R::ZERO; FITS];
-        for (other, judging) in groups.each().filter(|&(other, _)| other != fold) {
+        // Where there is one fit there is nothing to judge.
+        for (other, judging) in groups.each().filter(|&(other, _)| other != fold && !is_fixed) {
             let train = groups.train(&[fold, other], train)?;
-            let centres = candidates.fit(&train, coefficients, arena)?;
+            let centres = groups.fit(strengths, &train, coefficients, arena)?;
             errors.add(&train, &judging, rows(coefficients, each));
             for (discount, centre) in discounts.iter_mut().zip(centres) {
-                *discount += centre.map_or(R::ZERO, |centre| centre.discount());
+                *discount += centre.discount();
             }
         }
-        let discounts = discounts.map(|total| PerChannel::all(total / errors.judged.max(R::ONE)));
+        let discounts = discounts.map(|total| PerChannel::all(total / others));
         let train = groups.train(&[fold], train)?;
-        let centres = candidates.fit(&train, coefficients, arena)?;
-        let (mut inflation, weights) = candidates.weigh(&errors, &discounts);
+        let centres = groups.fit(strengths, &train, coefficients, arena)?;
+        let (mut inflation, weights) = if is_fixed { alone } else { errors.weigh(&discounts) };
         let mut kept = weights;
-        keep_independent(&mut kept, &centres, is_fixed);
+        if !is_fixed {
+            keep_independent(&mut kept, &centres);
+        }
         for ((&weights, &kept), centre) in weights.iter().zip(&kept).zip(centres) {
-            inflation += weights - kept + kept * centre.map_or(R::ONE, |centre| centre.inflation);
+            inflation += weights - kept + kept * centre.inflation;
         }
         // The mixture's coefficients, in place of the first candidate's.
         for index in 0..each {
@@ -174,78 +190,37 @@ pub(crate) fn nested<R: Real>(
     Ok(Outcome { correction, variance: Some(press * result::press_factor(count)) })
 }
 
-/// Takes from fits what [`Centre::independence`] says, unless there is one alone; the mean gets it.
+/// Takes from fits what [`Centre::independence`] says; the mean gets it.
 // Not inlined, as `weigh` is not: compilers order what they hold in vector registers now one way, now another, so that
 // the same source would not make the same bytes.
 #[inline(never)]
-fn keep_independent<R: Real>(weights: &mut [PerChannel<R>; FITS], centres: &[Option<Centre<R>>; FITS], is_alone: bool) {
+fn keep_independent<R: Real>(weights: &mut [PerChannel<R>; FITS], centres: &[Centre<R>; FITS]) {
     for (weights, centre) in weights.iter_mut().zip(centres) {
-        if let Some(centre) = centre.filter(|_| !is_alone) {
-            *weights = *weights * centre.independence();
-        }
-    }
-}
-
-impl<R: Real> Candidates<'_, '_, R> {
-    /// Writes every candidate's coefficients for a training set, zero where there is no sample, and says where its
-    /// samples lie.
-    fn fit(
-        &self,
-        train: &Sums<&[R]>,
-        coefficients: &mut [R],
-        arena: &mut Arena<'_, R>,
-    ) -> Result<[Option<Centre<R>>; FITS], Error> {
-        let mut arena = arena.scratch();
-        let mut centres = [None; FITS];
-        coefficients.fill(R::ZERO);
-        let penalties = arena.take(self.groups.layout.columns)?;
-        if let Some(centred) = Centred::new(train, &mut arena)? {
-            // From the training set alone, as the coefficients.
-            ridge::penalties(self.config, self.basis, |j| train.mean_square(j), penalties);
-            let each = rows_mut(coefficients, self.groups.layout.coefficients());
-            for ((&strength, coefficients), centre) in self.strengths.iter().zip(each).zip(&mut centres) {
-                let mut arena = arena.scratch();
-                let penalty = Penalty { strength: R::from_f64(strength), relative: penalties };
-                let factor = centred.normal.solve(penalty, coefficients, &mut arena)?;
-                *centre = centred.normal.centre(&factor, penalty, arena)?;
-            }
-        }
-        Ok(centres)
-    }
-
-    /// The weights of the plain mean and of the candidates; a ridge of the caller's choice gets all.
-    #[inline(never)]
-    fn weigh(&self, errors: &Errors<R>, discounts: &[PerChannel<R>; FITS]) -> (PerChannel<R>, [PerChannel<R>; FITS]) {
-        if self.is_fixed {
-            return (PerChannel::default(), [R::ONE, R::ZERO].map(PerChannel::all));
-        }
-        Judge::informed(errors.count).weigh(errors.plain, &errors.fits, discounts, FITS)
+        *weights = *weights * centre.independence();
     }
 }
 
 /// Squared errors on groups that the fits have not seen, of how many samples.
+#[derive(Default)]
 struct Errors<R> {
     fits: [PerChannel<R>; FITS],
     plain: PerChannel<R>,
     count: R,
-    /// How many groups.
-    judged: R,
-}
-
-impl<R: Real> Default for Errors<R> {
-    fn default() -> Self {
-        Self { fits: Default::default(), plain: Default::default(), count: R::ZERO, judged: R::ZERO }
-    }
 }
 
 impl<R: Real> Errors<R> {
+    /// The weights of the plain mean and of the fits.
+    #[inline(never)]
+    fn weigh(&self, discounts: &[PerChannel<R>; FITS]) -> (PerChannel<R>, [PerChannel<R>; FITS]) {
+        Judge::informed(self.count).weigh(self.plain, &self.fits, discounts, FITS)
+    }
+
     /// Adds those on one group of the fits to another.
     fn add<'c>(&mut self, train: &Sums<&[R]>, judging: &Sums<&[R]>, fits: impl Iterator<Item = &'c [R]>)
     where
         R: 'c,
     {
         self.count += judging.count();
-        self.judged += R::ONE;
         self.plain += judging.residual_squares(train.intercepts(&[]), &[]);
         for (errors, b) in self.fits.iter_mut().zip(fits) {
             *errors += judging.residual_squares(train.intercepts(b), b);

@@ -6,6 +6,7 @@ use super::fit::dual::{self, Dual};
 use super::fit::normal::{self, Normal};
 use super::fit::{Fit, Penalty};
 use super::per_channel::PerChannel;
+use super::plan::{Method, Plan};
 use super::result::{self, Outcome};
 use super::ridge::{self, CHOICES, MAX_FITS, MIXED};
 use super::trust::{self, Centre, Judge, Mixture};
@@ -17,22 +18,12 @@ use crate::real::Real;
 use crate::rows::{rows, rows_mut};
 use core::array;
 
-/// Which fits are made and how one is made of them.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Rule {
-    /// The mixture of all strengths and the plain mean.
-    Robust,
-    /// The same for a fit that corrects other samples, which is not used where these samples are too even.
-    Fold,
-    /// One strength, each sample corrected by the fit to the others.
-    Single(Ridge),
-    /// One strength, next to none by default, and the fit's own estimate.
-    LeastSquares(Ridge),
-}
-
+/// The fits to a design, and how much each counts.
 pub(crate) struct Blend<R> {
     fits: [Fit<R>; MAX_FITS],
     mixture: Mixture<R, MAX_FITS>,
+    /// Whether residuals tell the error: as many terms as samples leave least squares none.
+    is_told: bool,
 }
 
 /// The system that all fits to a design start from.
@@ -41,14 +32,7 @@ enum System<'a, R> {
     Dual(Dual<'a, R>),
 }
 
-/// The fits that can be made to a design.
-pub(crate) struct Fitter<'a, 'd, R> {
-    design: &'d Design<'a, R>,
-    system: System<'a, R>,
-    penalties: &'a [R],
-}
-
-/// How many numbers a [`Fitter`] and its fits take, for up to `n` samples.
+/// How many numbers [`fit`] takes from its arena, for up to `n` samples.
 pub(crate) fn size(n: usize, dual: bool, columns: usize, channels: usize) -> Option<usize> {
     let gram = if dual { 0 } else { packed_len(columns) };
     let dual = if dual { dual::len(n, channels)? } else { 0 };
@@ -56,111 +40,99 @@ pub(crate) fn size(n: usize, dual: bool, columns: usize, channels: usize) -> Opt
     systems.checked_add(normal::fit_len(columns, channels).max(dual))
 }
 
-impl<'a, 'd, R: Real> Fitter<'a, 'd, R> {
-    // Without, and without it on `Normal::of`, estimates of one pixel take 20 to 29 % more instructions.
-    #[inline(always)]
-    pub(crate) fn new(
-        design: &'d Design<'a, R>,
-        config: &Config,
-        basis: &Basis,
-        use_dual: bool,
-        arena: &mut Arena<'a, R>,
-    ) -> Result<Self, Error> {
-        let penalties = arena.take(design.columns)?;
-        // Penalties of control functions come from the matrix, but the dual has no control functions.
-        let system = if use_dual {
-            ridge::penalties(config, basis, |_| R::ZERO, penalties);
-            System::Dual(Dual::new(design, penalties, arena)?)
-        } else {
-            let normal = Normal::of(design, arena)?;
-            let per_sample = R::ONE / normal.count;
-            ridge::penalties(config, basis, |j| normal.gram.diagonal(j) * per_sample, penalties);
-            let factor = ridge::control_factor::<R>(config);
-            for penalty in penalties.iter_mut().take(config.controls) {
-                *penalty *= factor;
-            }
-            System::Normal(normal)
+/// Makes and weighs the fits of a method. `coefficients`, if wanted, gets the blended fit's, a row for each channel.
+// Without, and without it on `Normal::of`, estimates of one pixel take 20 to 29 % more instructions.
+#[inline(always)]
+pub(crate) fn fit<'a, R: Real>(
+    design: &Design<'a, R>,
+    config: &Config,
+    basis: &Basis,
+    plan: &Plan,
+    coefficients: Option<&mut [R]>,
+    arena: &mut Arena<'a, R>,
+) -> Result<Blend<R>, Error> {
+    let penalties = arena.take(design.columns)?;
+    // Penalties of control functions come from the matrix, but the dual has no control functions.
+    let system = if plan.dual {
+        ridge::penalties(config, basis, |_| R::ZERO, penalties);
+        System::Dual(Dual::new(design, penalties, arena)?)
+    } else {
+        let normal = Normal::of(design, arena)?;
+        let per_sample = R::ONE / normal.count;
+        ridge::penalties(config, basis, |j| normal.gram.diagonal(j) * per_sample, penalties);
+        let factor = ridge::control_factor::<R>(config);
+        for penalty in penalties.iter_mut().take(config.controls) {
+            *penalty *= factor;
+        }
+        System::Normal(normal)
+    };
+    let is_least_squares = plan.method == Method::LeastSquares;
+    let is_mixed = matches!((plan.method, config.ridge), (Method::Robust, _) | (Method::KFold, Ridge::Default));
+    let single = [if is_least_squares { ridge::least_squares::<R> } else { ridge::single::<R> }(config.ridge)];
+    let strengths = match config.ridge {
+        _ if is_mixed => &MIXED[..],
+        Ridge::Auto => &CHOICES[..],
+        Ridge::Default | Ridge::Fixed(_) => &single[..],
+    };
+    let is_told = !is_least_squares || design.n > design.columns + 1;
+    let leave_one_out = is_told || strengths.len() > 1;
+    let each = design.columns * design.channels;
+    let kept = arena.take(if coefficients.is_some() { strengths.len() * each } else { 0 })?;
+    let mut fits = [Fit::default(); MAX_FITS];
+    for (index, (&strength, fit)) in strengths.iter().zip(&mut fits).enumerate() {
+        let kept = kept.get_mut(index * each..(index + 1) * each).filter(|kept| !kept.is_empty());
+        let penalty = Penalty { strength: R::from_f64(strength), relative: penalties };
+        *fit = match &system {
+            System::Normal(normal) => normal.fit(design, penalty, leave_one_out, kept, arena.scratch())?,
+            System::Dual(dual) => dual.fit(design, penalty, leave_one_out, kept, arena.scratch())?,
         };
-        Ok(Self { design, system, penalties })
     }
-
-    /// Makes and weighs the fits. `coefficients`, if wanted, gets the blended fit's, a row for each channel.
-    #[inline(always)]
-    pub(crate) fn solve(
-        &self,
-        rule: Rule,
-        coefficients: Option<&mut [R]>,
-        arena: &mut Arena<'_, R>,
-    ) -> Result<Blend<R>, Error> {
-        let design = self.design;
-        let single = [match rule {
-            Rule::LeastSquares(ridge) => ridge::least_squares::<R>(ridge),
-            Rule::Single(ridge) => ridge::single::<R>(ridge),
-            Rule::Robust | Rule::Fold => 0.0,
-        }];
-        let (strengths, leave_one_out) = match rule {
-            Rule::Robust | Rule::Fold => (&MIXED[..], true),
-            Rule::Single(Ridge::Auto) | Rule::LeastSquares(Ridge::Auto) => (&CHOICES[..], true),
-            Rule::Single(_) => (&single[..], true),
-            // As many terms as samples leave nothing to tell the error from.
-            Rule::LeastSquares(_) => (&single[..], design.n > design.columns + 1),
-        };
-        let each = design.columns * design.channels;
-        let kept = arena.take(if coefficients.is_some() { strengths.len() * each } else { 0 })?;
-        let mut fits = [Fit::default(); MAX_FITS];
-        for (index, (&strength, fit)) in strengths.iter().zip(&mut fits).enumerate() {
-            let kept = kept.get_mut(index * each..(index + 1) * each).filter(|kept| !kept.is_empty());
-            let penalty = Penalty { strength: R::from_f64(strength), relative: self.penalties };
-            *fit = match &self.system {
-                System::Normal(normal) => normal.fit(design, penalty, leave_one_out, kept, arena.scratch())?,
-                System::Dual(dual) => dual.fit(design, penalty, leave_one_out, kept, arena.scratch())?,
-            };
-        }
-        let blend = self.weigh(rule, fits, strengths.len());
-        for (channel, out) in coefficients.into_iter().flat_map(|all| rows_mut(all, design.columns)).enumerate() {
-            for (j, out) in out.iter_mut().enumerate() {
-                *out = R::ZERO;
-                for (kept, weights) in rows(kept, each).zip(&blend.mixture.weights) {
-                    let b = at(kept, channel * design.columns + j);
-                    *out += weights[channel] * b;
-                }
+    let mixture = if is_mixed {
+        mix(design, plan.method, &fits, strengths.len())
+    } else {
+        let best = if strengths.len() > 1 { best_of(&fits, &plain_press(design)) } else { 0 };
+        let weights = array::from_fn(|fit| PerChannel::all(if fit == best { R::ONE } else { R::ZERO }));
+        let corrections = fits.map(|fit| if is_least_squares { fit.in_sample } else { fit.leave_one_out });
+        Mixture { plain_weight: PerChannel::default(), weights, corrections }
+    };
+    for (channel, out) in coefficients.into_iter().flat_map(|all| rows_mut(all, design.columns)).enumerate() {
+        for (j, out) in out.iter_mut().enumerate() {
+            *out = R::ZERO;
+            for (kept, weights) in rows(kept, each).zip(&mixture.weights) {
+                *out += weights[channel] * at(kept, channel * design.columns + j);
             }
         }
-        Ok(blend)
     }
+    Ok(Blend { fits, mixture, is_told })
+}
 
-    fn weigh(&self, rule: Rule, fits: [Fit<R>; MAX_FITS], used: usize) -> Blend<R> {
-        let mut corrections =
-            fits.map(|fit| if let Rule::LeastSquares(_) = rule { fit.in_sample } else { fit.leave_one_out });
-        let plain = plain_press(self.design);
-        if !matches!(rule, Rule::Robust | Rule::Fold) {
-            let best = if used > 1 { best_of(&fits, &plain) } else { 0 };
-            let weights = array::from_fn(|fit| PerChannel::all(if fit == best { R::ONE } else { R::ZERO }));
-            return Blend { fits, mixture: Mixture { plain_weight: PerChannel::default(), weights, corrections } };
+/// The plain mean and the first `used` fits, weighed. Fits that are to correct other samples are trusted less where
+/// their own are too even.
+fn mix<R: Real>(
+    design: &Design<'_, R>,
+    method: Method,
+    fits: &[Fit<R>; MAX_FITS],
+    used: usize,
+) -> Mixture<R, MAX_FITS> {
+    let (n, plain) = (R::from_usize(design.n), plain_press(design));
+    let variance = plain * result::press_factor(n);
+    let [mut corrections, mut discounts] = [[PerChannel::default(); MAX_FITS]; 2];
+    let mut parts = [R::ONE; MAX_FITS];
+    for (((fit, correction), discount), part) in fits.iter().zip(&mut corrections).zip(&mut discounts).zip(&mut parts) {
+        let centre = Centre::new(fit.eccentricity, fit.freedom, n);
+        (*correction, *discount) = centre.judge(fit.in_sample, fit.leave_one_out, variance);
+        if method == Method::KFold {
+            *part = centre.independence();
         }
-        let n = R::from_usize(self.design.n);
-        let variance = plain * result::press_factor(n);
-        let mut discounts = [PerChannel::default(); MAX_FITS];
-        let mut parts = [R::ONE; MAX_FITS];
-        let each = fits.iter().zip(&mut corrections).zip(&mut discounts).zip(&mut parts);
-        for (((fit, correction), discount), part) in each {
-            let centre = Centre::new(fit.eccentricity, fit.freedom, n);
-            *correction = fit.in_sample + (*correction - fit.in_sample) * centre.share();
-            let aside = centre.discount();
-            *discount = correction.zip(variance, |correction, variance| aside + trust::surprise(correction, variance));
-            if rule == Rule::Fold {
-                *part = centre.independence();
-            }
-        }
-        let press = fits.map(|fit| fit.press);
-        let (mut plain_weight, mut weights) = Judge::informed(n).weigh(plain, &press, &discounts, used);
-        for (weights, part) in weights.iter_mut().zip(parts) {
-            let kept = *weights * part;
-            plain_weight += *weights - kept;
-            *weights = kept;
-        }
-        Blend { fits, mixture: Mixture { plain_weight, weights, corrections } }
     }
+    let press = fits.map(|fit| fit.press);
+    let (mut plain_weight, mut weights) = Judge::informed(n).weigh(plain, &press, &discounts, used);
+    for (weights, part) in weights.iter_mut().zip(parts) {
+        let kept = *weights * part;
+        plain_weight += *weights - kept;
+        *weights = kept;
+    }
+    Mixture { plain_weight, weights, corrections }
 }
 
 /// Of fits the one with the smallest leave-one-out error summed over the channels, each relative to its plain mean's.
@@ -187,7 +159,7 @@ impl<R: Real> Blend<R> {
         let factor = result::press_factor(n);
         let own = |fit: Fit<R>| fit.influence * factor * trust::few_left(fit.freedom, n);
         let (correction, variance) = self.mixture.estimate(plain_press(design) * factor, self.fits.map(own));
-        Outcome { correction, variance: (design.n > 1).then_some(variance) }
+        Outcome { correction, variance: self.is_told.then_some(variance) }
     }
 
     /// What the error of the mixture's coefficients adds to the variance of an estimate that is corrected by them, as a

@@ -53,8 +53,7 @@ pub(crate) fn outcome<R: Real>(progress: &Progress<R>, samples: u64) -> Outcome<
     let n = R::from_f64(samples as f64);
     let correction = progress.total.map(|total| total / n);
     let spread = sums::spread(progress.square, progress.total, correction);
-    let variance = spread.map(|spread| spread / result::mean_divisor(n));
-    Outcome { correction, variance: (samples > 1).then_some(variance) }
+    Outcome { correction, variance: Some(spread.map(|spread| spread / result::mean_divisor(n))) }
 }
 
 impl<R: Real> Progress<R> {
@@ -107,7 +106,7 @@ impl<R: Real> Progress<R> {
                 basis.set(config.basis, config.checked_shape().ok()?).ok()?;
                 ridge::penalties(config, &basis, |j| sums.mean_square(j), penalties);
             }
-            let centred = Centred::new(&sums, &mut arena).ok()??;
+            let centred = Centred::new(&sums, &mut arena).ok()?;
             let fits = rows_mut(coefficients, layout.coefficients()).zip(strengths).zip(&mut self.intercepts);
             for ((coefficients, strength), intercepts) in fits {
                 let penalty = Penalty { strength, relative: penalties };

@@ -1,11 +1,11 @@
 //! Cross-fit: each fold is corrected by a fit to the other folds, so that no sample shapes its own correction.
 //!
-//! If the samples are even as a whole, what a fold lacks and what the others have does not cancel: [`Rule::Fold`] then
-//! trusts the mean.
+//! If the samples are even as a whole, what a fold lacks and what the others have does not cancel: the fits then
+//! count for less.
 
-use super::config::{Config, Ridge, Solver};
+use super::config::{Config, Solver};
 use super::design::Design;
-use super::fitter::{self, Fitter, Rule};
+use super::fitter;
 use super::folds::Fold;
 use super::per_channel::PerChannel;
 use super::plan::Plan;
@@ -46,21 +46,14 @@ pub(crate) fn estimate<R: Real>(
     for index in 0..config.fold_count().get() {
         let fold = Fold::new(index, config.fold_count(), reader.len());
         let mut arena = arena.scratch();
-        let held_out = match load(reader, basis, whole.columns, Subset::Fold(fold), false, &mut arena) {
-            Err(Error::NoSamples) => continue,
-            other => other?,
-        };
-        let train = match load(reader, basis, whole.columns, Subset::Complement(fold), true, &mut arena) {
-            Err(Error::NoSamples) => None,
-            other => Some(other?),
-        };
+        let held_out = load(reader, basis, whole.columns, Subset::Fold(fold), false, &mut arena)?;
+        let Some(held_out) = held_out else { continue };
+        let train = load(reader, basis, whole.columns, Subset::Complement(fold), true, &mut arena)?;
         coefficients.fill(R::ZERO);
         let mut inflation = PerChannel::all(R::ONE);
         if let Some(train) = train.filter(|train| train.n > 1) {
             let plan = Plan::new(config, basis.columns(), train.n)?;
-            let fitter = Fitter::new(&train, config, basis, plan.dual, &mut arena)?;
-            let rule = if config.ridge == Ridge::Default { Rule::Fold } else { Rule::Single(config.ridge) };
-            let blend = fitter.solve(rule, Some(coefficients), &mut arena)?;
+            let blend = fitter::fit(&train, config, basis, &plan, Some(coefficients), &mut arena)?;
             inflation = blend.inflation(R::from_usize(train.n));
             // Everything meets in the units of all samples, which are the largest.
             let units = train.units.iter().zip(&whole.units);
@@ -91,10 +84,10 @@ pub(crate) fn estimate<R: Real>(
     let correction = totals.map(|total| total / n);
     let spread = sums::spread(squares, totals, correction) * inflations;
     let variance = spread.map(|spread| spread / (n * n * (n - R::ONE).max(R::ONE)));
-    Ok(Outcome { correction, variance: (whole.n > 1).then_some(variance) })
+    Ok(Outcome { correction, variance: Some(variance) })
 }
 
-/// [`Design::load`], of which the two callers share one copy.
+/// [`Design::load`], of which the two callers share one copy; None without a sample.
 #[inline(never)]
 fn load<'a, R: Real>(
     reader: &Reader<'_>,
@@ -103,6 +96,9 @@ fn load<'a, R: Real>(
     subset: Subset,
     centre: bool,
     arena: &mut Arena<'a, R>,
-) -> Result<Design<'a, R>, Error> {
-    Design::load(reader, basis, columns, subset, centre, arena)
+) -> Result<Option<Design<'a, R>>, Error> {
+    match Design::load(reader, basis, columns, subset, centre, arena) {
+        Err(Error::NoSamples) => Ok(None),
+        design => design.map(Some),
+    }
 }

@@ -16,13 +16,11 @@ mod incremental;
 mod k_fold;
 mod per_channel;
 mod plan;
-mod readout;
 mod regressor;
 mod result;
 mod ridge;
 mod samples;
 mod sums;
-mod totals;
 mod trust;
 
 pub use accumulator::Accumulator;

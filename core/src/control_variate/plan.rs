@@ -2,11 +2,11 @@
 //!
 //! | [`Method`] | samples in arrays | a stream | unbiased | its error is told by |
 //! |---|---|---|---|---|
-//! | `Plain` | `batch` | `readout` | yes | the values' spread |
+//! | `Plain` | `batch` | `accumulator` | yes | the values' spread |
 //! | `Robust` | `fitter` | `cross_fit::pooled` | nearly | residuals left out |
 //! | `LeaveOneOut` | `fitter` | - | yes | residuals left out |
 //! | `KFold` | `k_fold` | `cross_fit::nested` | yes | residuals held out |
-//! | `LeastSquares` | `fitter` | `readout` | O(1/n) | residuals |
+//! | `LeastSquares` | `fitter` | `accumulator` | O(1/n) | residuals |
 //! | `SquareRoot` | as a stream | `fit::givens` | O(1/n) | residuals |
 //! | `Descent` | `fit::descent` | `fit::descent` | no | residuals and the gradient |
 //! | `Incremental` | as a stream | `incremental` | yes | the corrected values' spread |
@@ -74,7 +74,7 @@ pub(crate) fn check_stream(config: &Config) -> Result<(), Error> {
 #[derive(Clone, Copy)]
 pub(crate) struct Plan {
     pub(crate) method: Method,
-    /// Functions, control functions included, the constant not.
+    /// Functions that are fitted, control functions included, the constant not.
     pub(crate) columns: usize,
     /// Whether fits go through the samples' n x n system.
     pub(crate) dual: bool,
@@ -94,6 +94,7 @@ impl Plan {
             Solver::SquareRoot if config.estimator == Estimator::LeastSquares && config.ridge != Ridge::Auto => false,
             Solver::SquareRoot => return Err(Error::Unsupported),
         };
-        Ok(Self { method: Method::of(config, columns), columns, dual })
+        let method = Method::of(config, columns);
+        Ok(Self { method, columns: if method == Method::Plain { 0 } else { columns }, dual })
     }
 }

@@ -3,9 +3,9 @@
 use super::config::{Config, Estimate};
 use super::design::Units;
 use super::fit::{Penalty, normal};
-use super::result::{self, Outcome, Summary};
+use super::result::Summary;
+use super::samples::Sample;
 use super::sums::{Change, Form, Sums};
-use super::totals::Totals;
 use crate::arena::Arena;
 use crate::basis::{Basis, Family};
 use crate::error::Error;
@@ -68,20 +68,17 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
     /// [`Error::NotFinite`] or [`Error::Range`]; the sample is then not added.
     #[inline]
     pub fn add(&mut self, u: &[f32; DIMS], f: &[f32; CHANNELS]) -> Result<(), Error> {
-        if !u.iter().chain(f).all(|value| value.is_finite()) {
-            return Err(Error::NotFinite);
-        }
-        if !u.iter().all(|u| (0.0..=1.0).contains(u)) {
-            return Err(Error::Range);
-        }
+        Sample::new(u, f).check()?;
         if self.samples == 0 {
             self.offset = *f;
         }
         let x = u.map(|u| [f64::from(u)]);
         let mut p = [[1.0]; TERMS];
         self.basis.evaluate(&x, from_mut(&mut p, 1));
-        let mut values =
-            core::array::from_fn::<f64, CHANNELS, _>(|channel| f64::from(f[channel]) - f64::from(self.offset[channel]));
+        let mut values = f.map(f64::from);
+        for (value, &offset) in values.iter_mut().zip(&self.offset) {
+            *value -= f64::from(offset);
+        }
         self.sums_mut()?.add(p.as_flattened_mut(), &mut values);
         self.samples += 1;
         Ok(())
@@ -104,12 +101,11 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         if !(strength > 0.0 && strength.is_finite()) {
             return Err(Error::Range);
         }
-        let sums = self.sums()?;
         let mut units = [Units::default(); Config::MAX_CHANNELS];
         for (unit, offset) in units.iter_mut().zip(self.offset) {
             unit.offset = f64::from(offset);
         }
-        let total = Totals::new(iter::once(self.sums()?), self.samples, units);
+        let summary = Summary::of_sums(iter::once(self.sums()?), self.samples, CHANNELS, units);
         let mut penalties = [0.0; TERMS];
         let penalties = first_mut(&mut penalties, self.basis.columns());
         self.basis.penalties(penalties);
@@ -117,12 +113,7 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
         // Enough for `normal::len`, whatever the sizes are.
         let mut workspace = [[[0.0; TERMS]; TERMS]; 4];
         let arena = &mut Arena::new(workspace.as_flattened_mut().as_flattened_mut());
-        let outcome = normal::least_squares(&sums, penalty, arena)?.unwrap_or(total.plain());
-        let outcome = Outcome { variance: outcome.variance.or(total.variance), ..outcome };
-        let Totals { units, variance, .. } = total;
-        let summary =
-            Summary { samples: self.samples, channels: CHANNELS, units, plain_variance: variance, colour: None };
-        Ok(result::finish(summary, outcome))
+        Ok(summary.finish(normal::least_squares(&self.sums()?, penalty, arena)?))
     }
 
     /// Adds all samples of another regressor.
@@ -147,21 +138,13 @@ impl<const DIMS: usize, const TERMS: usize, const CHANNELS: usize> Regressor<DIM
 
     fn sums(&self) -> Result<Sums<&[f64]>, Error> {
         let gram = Triangle::new(self.gram.as_flattened(), TERMS)?;
-        Ok(Sums {
-            form: Form::Products,
-            gram,
-            rhs: Panel::new(self.rhs.as_flattened(), CHANNELS),
-            square: &self.square,
-        })
+        let rhs = Panel::new(self.rhs.as_flattened(), CHANNELS);
+        Ok(Sums { form: Form::Products, gram, rhs, square: &self.square })
     }
 
     fn sums_mut(&mut self) -> Result<Sums<&mut [f64]>, Error> {
         let gram = Triangle::new(self.gram.as_flattened_mut(), TERMS)?;
-        Ok(Sums {
-            form: Form::Products,
-            gram,
-            rhs: Panel::new(self.rhs.as_flattened_mut(), CHANNELS),
-            square: &mut self.square,
-        })
+        let rhs = Panel::new(self.rhs.as_flattened_mut(), CHANNELS);
+        Ok(Sums { form: Form::Products, gram, rhs, square: &mut self.square })
     }
 }

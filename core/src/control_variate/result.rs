@@ -4,24 +4,19 @@ use super::config::{Config, Estimate};
 use super::design::{Design, Units};
 use super::per_channel::PerChannel;
 use super::samples::Reader;
+use super::sums::{self, Sums};
 use super::trust::Centre;
 use crate::real::Real;
 pub(crate) use crate::real::saturate;
 use core::hint::black_box;
 
-/// What an estimator found, in a design's units.
+/// What an estimator found, in a design's units; by default the plain mean.
+#[derive(Default)]
 pub(crate) struct Outcome<R> {
     /// What to add to the plain mean.
     pub(crate) correction: PerChannel<R>,
-    /// The variance of the estimate; None if the samples are too few to tell.
+    /// The variance of the estimate; None, which is to say the plain mean's, if the samples are too few to tell.
     pub(crate) variance: Option<PerChannel<R>>,
-}
-
-impl<R: Real> Outcome<R> {
-    /// The plain mean.
-    pub(crate) fn plain(variance: Option<PerChannel<R>>) -> Self {
-        Self { correction: PerChannel::default(), variance }
-    }
 }
 
 /// The variance of the plain mean, None for one sample.
@@ -67,14 +62,18 @@ pub(crate) fn residual_variance<R: Real>(
     Some(residual * factor)
 }
 
-/// What an [`Estimate`] is put together from, besides the outcome.
+/// What samples say without a fit.
 pub(crate) struct Summary<R> {
-    pub(crate) samples: u64,
-    pub(crate) channels: usize,
+    samples: u64,
+    channels: usize,
+    /// Units whose zero is the plain mean.
     pub(crate) units: [Units<R>; Config::MAX_CHANNELS],
-    pub(crate) plain_variance: Option<PerChannel<R>>,
+    /// The plain mean in the units that sums are in; of a design, whose units are those above, zero.
+    pub(crate) mean: PerChannel<R>,
+    /// The plain mean's variance, None for one sample.
+    pub(crate) variance: Option<PerChannel<R>>,
     /// For a luminance ratio: the mean colour and its luminance.
-    pub(crate) colour: Option<([f64; 3], f64)>,
+    pub(crate) colour: Option<[f64; 4]>,
 }
 
 impl<R: Real> Summary<R> {
@@ -83,54 +82,79 @@ impl<R: Real> Summary<R> {
             samples: design.n as u64,
             channels: design.channels,
             units: design.units,
-            plain_variance: plain_variance(design),
+            mean: PerChannel::default(),
+            variance: plain_variance(design),
             colour: reader.mean_colour(),
         }
     }
-}
 
-/// Puts an estimate together; for a luminance ratio, the colours too.
-///
-/// A correction that left the type's range, as control functions of extreme size can make it, is none: the plain mean.
-pub(crate) fn finish<R: Real>(summary: Summary<R>, outcome: Outcome<R>) -> Estimate {
-    let (mut mean, mut error) = (PerChannel::<f64>::default(), PerChannel::<f64>::default());
-    let (mut gain, mut counted) = (0.0, 0.0);
-    for (channel, unit) in summary.units.iter().enumerate().take(summary.channels) {
-        let correction = outcome.correction[channel];
-        let is_usable = correction.is_finite();
-        mean[channel] = unit.value(if is_usable { correction } else { R::ZERO });
-        error[channel] = f64::INFINITY;
-        if let (Some(variance), Some(plain)) = (&outcome.variance, &summary.plain_variance) {
-            let (variance, plain) = (variance[channel], plain[channel]);
-            // Of what is no number all that is known is the mean's.
-            let is_known = is_usable && (variance >= R::ZERO || variance < R::ZERO);
-            let variance = if is_known { variance.max(R::ZERO) } else { plain };
-            error[channel] = unit.length(variance.sqrt());
-            if plain > R::ZERO {
-                // Behind a black box, so that no compiler divides by zero ahead of the decision.
-                gain += (variance / black_box(plain)).to_f64();
-                counted += 1.0;
+    /// Of groups of sums over so many samples together.
+    pub(crate) fn of_sums<'a>(
+        groups: impl Iterator<Item = Sums<&'a [R]>>,
+        samples: u64,
+        channels: usize,
+        mut units: [Units<R>; Config::MAX_CHANNELS],
+    ) -> Self {
+        let (mut totals, mut squares) = (PerChannel::default(), PerChannel::default());
+        for group in groups {
+            totals += group.totals();
+            squares += group.squares();
+        }
+        let n = R::from_f64(samples as f64);
+        let mean = totals.map(|total| total / n);
+        for (unit, &mean) in units.iter_mut().zip(mean.iter()) {
+            unit.offset += mean;
+        }
+        let variance = sums::spread(squares, totals, mean).map(|spread| spread / mean_divisor(n));
+        Self { samples, channels, units, mean, variance: (samples > 1).then_some(variance), colour: None }
+    }
+
+    /// Puts an estimate together; for a luminance ratio, the colours too.
+    ///
+    /// A correction that left the type's range, as control functions of extreme size can make it, is none: the plain
+    /// mean.
+    pub(crate) fn finish(self, outcome: Outcome<R>) -> Estimate {
+        let (mut mean, mut error) = (PerChannel::<f64>::default(), PerChannel::<f64>::default());
+        let (mut gain, mut counted) = (0.0, 0.0);
+        let variance = outcome.variance.or(self.variance);
+        for (channel, unit) in self.units.iter().enumerate().take(self.channels) {
+            let correction = outcome.correction[channel];
+            let is_usable = correction.is_finite();
+            mean[channel] = unit.value(if is_usable { correction } else { R::ZERO });
+            error[channel] = f64::INFINITY;
+            if let (Some(variance), Some(plain)) = (&variance, &self.variance) {
+                let (variance, plain) = (variance[channel], plain[channel]);
+                // Of what is no number all that is known is the mean's.
+                let is_known = is_usable && (variance >= R::ZERO || variance < R::ZERO);
+                let variance = if is_known { variance.max(R::ZERO) } else { plain };
+                error[channel] = unit.length(variance.sqrt());
+                if plain > R::ZERO {
+                    // Behind a black box, so that no compiler divides by zero ahead of the decision.
+                    gain += (variance / black_box(plain)).to_f64();
+                    counted += 1.0;
+                }
             }
         }
-    }
-    if let Some((colour, luminance)) = summary.colour {
-        // (4.3): the colour of the plain mean, with the regressed luminance.
-        let (regressed, deviation) = (mean[0], error[0]);
-        let is_zero = luminance == 0.0;
-        let divisor = black_box(if is_zero { 1.0 } else { luminance });
-        let ratio = if is_zero { 1.0 } else { regressed / divisor };
-        // One sample's error is unknown in every channel, also where its colour is 0; and that of values which cancel.
-        let is_known = deviation.is_finite() && (!is_zero || deviation == 0.0);
-        for ((mean, error), colour) in mean.iter_mut().zip(error.iter_mut()).zip(colour) {
-            *mean = ratio * colour;
-            *error = if is_known { libm::fabs(deviation * colour / divisor) } else { f64::INFINITY };
+        if let Some([red, green, blue, luminance]) = self.colour {
+            // (4.3): the colour of the plain mean, with the regressed luminance.
+            let (regressed, deviation) = (mean[0], error[0]);
+            let is_zero = luminance == 0.0;
+            let divisor = black_box(if is_zero { 1.0 } else { luminance });
+            let ratio = if is_zero { 1.0 } else { regressed / divisor };
+            // One sample's error is unknown in every channel, also where its colour is 0; and that of values which
+            // cancel.
+            let is_known = deviation.is_finite() && (!is_zero || deviation == 0.0);
+            for ((mean, error), colour) in mean.iter_mut().zip(error.iter_mut()).zip([red, green, blue]) {
+                *mean = ratio * colour;
+                *error = if is_known { libm::fabs(deviation * colour / divisor) } else { f64::INFINITY };
+            }
         }
-    }
-    Estimate {
-        mean: mean.0.map(saturate),
-        std_error: error.0.map(standard_error),
-        samples: summary.samples.min(u32::MAX.into()) as u32,
-        gain: if counted > 0.0 { (gain / counted) as f32 } else { 1.0 },
+        Estimate {
+            mean: mean.0.map(saturate),
+            std_error: error.0.map(standard_error),
+            samples: self.samples.min(u32::MAX.into()) as u32,
+            gain: if counted > 0.0 { (gain / counted) as f32 } else { 1.0 },
+        }
     }
 }
 

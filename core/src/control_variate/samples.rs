@@ -14,15 +14,6 @@ use super::folds::Fold;
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// `n` samples in caller arrays.
-///
-/// ```
-/// use noisefloor::control_variate::Samples;
-///
-/// // Three samples of two coordinates and one value, and a function of known integral at each: `Config::controls` 1.
-/// let (u, f) = ([0.1, 0.2, 0.5, 0.6, 0.8, 0.1], [1.0, 2.0, 4.0]);
-/// let samples = Samples { controls: &[0.1, 0.5, 0.8], control_integrals: &[0.5], ..Samples::new(&u, &f) };
-/// # assert_eq!(samples.f.len(), 3);
-/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Samples<'a> {
     /// Positions in [0, 1], `n` rows of `Config::stride` numbers (`Config::dims` if that is 0); the last row may end
@@ -191,19 +182,10 @@ impl<'a> Reader<'a> {
     #[cold]
     #[inline(never)]
     fn explain(&self) -> Result<(), Error> {
-        for index in 0..self.n {
-            let sample = self.get(index);
-            if !sample.is_finite() {
-                if self.skip {
-                    continue;
-                }
-                return Err(Error::NotFinite);
-            }
-            if !sample.u.iter().all(|u| (0.0..=1.0).contains(u)) {
-                return Err(Error::Range);
-            }
-        }
-        Ok(())
+        (0..self.n)
+            .map(|index| self.get(index))
+            .filter(|sample| !self.skip || sample.is_finite())
+            .try_for_each(|sample| sample.check())
     }
 
     /// Whether sample `index` of the subset counts.
@@ -349,7 +331,7 @@ impl<'a> Reader<'a> {
     }
 
     /// For a luminance-ratio estimate, the mean colour of the used samples and its luminance.
-    pub(crate) fn mean_colour(&self) -> Option<([f64; 3], f64)> {
+    pub(crate) fn mean_colour(&self) -> Option<[f64; 4]> {
         if !self.luminance {
             return None;
         }
@@ -359,14 +341,30 @@ impl<'a> Reader<'a> {
                 *sum += value;
             }
         });
-        let [red, green, blue, luminance] = sums.map(|sum| sum / used.max(1) as f64);
-        Some(([red, green, blue], luminance))
+        Some(sums.map(|sum| sum / used.max(1) as f64))
     }
 }
 
-impl Sample<'_> {
+impl<'a> Sample<'a> {
+    /// Without control functions.
+    #[inline]
+    pub(crate) fn new(u: &'a [f32], f: &'a [f32]) -> Self {
+        Self { u, f, h: &[] }
+    }
+
+    #[inline]
     fn is_finite(&self) -> bool {
         [self.u, self.f, self.h].iter().all(|values| values.iter().all(|value| value.is_finite()))
+    }
+
+    /// # Errors
+    /// [`Error::NotFinite`], or [`Error::Range`] for a position outside [0, 1].
+    #[inline]
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        if !self.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        if self.u.iter().all(|u| (0.0..=1.0).contains(u)) { Ok(()) } else { Err(Error::Range) }
     }
 
     /// Writes the position and the control functions to lane `lane`.

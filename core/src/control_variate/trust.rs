@@ -57,7 +57,7 @@ pub(crate) struct Centre<R> {
 }
 
 impl<R: Real> Centre<R> {
-    /// Of a fit to `n` samples, at least two.
+    /// Of a fit to `n` samples; with less than two nothing speaks against the fit.
     #[inline]
     pub(crate) fn new(eccentricity: R, freedom: R, n: R) -> Self {
         let freedom = freedom.min(n - R::from_f64(1.5)).max(R::EPSILON);
@@ -79,11 +79,18 @@ impl<R: Real> Centre<R> {
         }
     }
 
-    /// How much of what leaving samples out adds to the estimate of the fit to all is used.
+    /// What the fit adds to the mean, from what it does by its own estimate and by the one that leaves samples out, and
+    /// the logarithm of what trust in that is divided by.
     #[inline]
-    pub(crate) fn share(&self) -> R {
-        let f = self.f.max(R::ZERO);
-        f / (f + R::from_f64(EVEN_F))
+    pub(crate) fn judge(
+        &self,
+        in_sample: PerChannel<R>,
+        left_out: PerChannel<R>,
+        variance: PerChannel<R>,
+    ) -> (PerChannel<R>, PerChannel<R>) {
+        let (f, aside) = (self.f.max(R::ZERO), self.discount());
+        let correction = in_sample + (left_out - in_sample) * (f / (f + R::from_f64(EVEN_F)));
+        (correction, correction.zip(variance, |correction, variance| aside + surprise(correction, variance)))
     }
 
     /// From 1 for samples that may well be independent to 0 for such as are too even for it, from the logarithm of the
@@ -115,7 +122,7 @@ pub(crate) fn few_left<R: Real>(freedom: R, n: R) -> R {
 /// The logarithm of what trust in a fit that adds `correction` to the mean is divided by; nothing for a mean without
 /// variance, which is exact.
 #[inline]
-pub(crate) fn surprise<R: Real>(correction: R, variance: R) -> R {
+fn surprise<R: Real>(correction: R, variance: R) -> R {
     let error = if variance > R::ZERO { variance.sqrt() } else { R::INFINITY };
     let errors = correction.abs() / error;
     // A correction that is no number is as surprising as can be.

@@ -8,7 +8,7 @@ use super::super::config::{Config, Estimate, Optimizer};
 use super::super::design::{Design, square};
 use super::super::per_channel::PerChannel;
 use super::super::plan::Plan;
-use super::super::result::{self, Outcome};
+use super::super::result::{self, Outcome, Summary};
 use super::super::samples::{Reader, Samples, Subset};
 use crate::arena::Arena;
 use crate::basis::Basis;
@@ -82,7 +82,8 @@ pub fn estimate_from<R: Real>(
     let mut basis = Basis::empty();
     basis.set(config.basis, config.checked_shape()?)?;
     let reader = Reader::new(config, samples)?;
-    let columns = Plan::new(config, basis.columns(), reader.len())?.columns;
+    Plan::new(config, basis.columns(), reader.len())?;
+    let columns = config.controls + basis.columns();
     if coefficients.len() != columns * reader.channels() {
         return Err(Error::Range);
     }
@@ -92,34 +93,17 @@ pub fn estimate_from<R: Real>(
     reader.check()?;
     let mut arena = Arena::new(workspace);
     let design = Design::load(&reader, &basis, columns, Subset::All, true, &mut arena)?;
-    let outcome = estimate(&design, config, &basis, Some(coefficients), &mut arena)?;
-    Ok(result::finish(result::Summary::of(&design, &reader), outcome))
-}
-
-/// Descends from zero, or from `warm` and back into it.
-#[inline(never)]
-pub(crate) fn estimate<R: Real>(
-    design: &Design<'_, R>,
-    config: &Config,
-    basis: &Basis,
-    warm: Option<&mut [f32]>,
-    arena: &mut Arena<'_, R>,
-) -> Result<Outcome<R>, Error> {
-    let columns = design.columns;
-    let solutions = arena.zeros(columns * design.channels)?;
-    let unit = |index: usize| index.checked_div(columns).and_then(|channel| design.units.get(channel));
-    if let Some(warm) = &warm {
-        for (index, (out, &value)) in solutions.iter_mut().zip(warm.iter()).enumerate() {
-            *out = unit(index).map_or(R::ZERO, |unit| unit.stored_length(value));
-        }
+    let solutions = arena.take(coefficients.len())?;
+    let unit = |index: usize| at(&design.units, index / columns.max(1));
+    for (index, (out, &value)) in solutions.iter_mut().zip(&*coefficients).enumerate() {
+        *out = unit(index).stored_length(value);
     }
-    let outcome = descend(design, config, basis, solutions, result::plain_variance(design), arena)?;
-    if let Some(warm) = warm {
-        for (index, (out, &value)) in warm.iter_mut().zip(solutions.iter()).enumerate() {
-            *out = unit(index).map_or(0.0, |unit| result::saturate(unit.length(value)));
-        }
+    let plain = result::plain_variance(&design);
+    let outcome = descend(&design, config, &basis, solutions, plain, &mut arena)?;
+    for (index, (out, &value)) in coefficients.iter_mut().zip(&*solutions).enumerate() {
+        *out = result::saturate(unit(index).length(value));
     }
-    Ok(outcome)
+    Ok(Summary::of(&design, &reader).finish(outcome))
 }
 
 /// Improves the coefficients, a row for each channel, step by step, and says what they make of the plain mean and of
@@ -148,15 +132,15 @@ pub(crate) fn descend<R: Real>(
     let variance_factor = variance_factor(objective, units);
     let mut outcome = Outcome { correction: PerChannel::default(), variance: plain };
     let squares = objective.squares();
+    let steps = match config.iterations {
+        0 => (objective.count() / 2).clamp(ITERATIONS.0, ITERATIONS.1),
+        steps => steps,
+    };
     for (channel, solution) in rows_mut(coefficients, columns).enumerate() {
         let square = squares[channel];
         let descent = Descent::new(config, (square / n).sqrt(), curvature);
         first.fill(R::ZERO);
         second.fill(R::ZERO);
-        let steps = match config.iterations {
-            0 => (objective.count() / 2).clamp(ITERATIONS.0, ITERATIONS.1),
-            steps => steps,
-        };
         let mut bias = [R::ONE; 2];
         for _ in 0..steps {
             objective.gradient(Some(channel), solution, gradient);
@@ -224,13 +208,12 @@ struct Descent<R> {
 
 impl<R: Real> Descent<R> {
     fn new(config: &Config, deviation: R, curvature: R) -> Self {
-        let rate = R::from_f32(config.learning_rate);
-        let rate = match config.optimizer {
-            Optimizer::Adam if rate > R::ZERO => rate * deviation,
-            Optimizer::Adam => R::from_f64(ADAM_RATE) * deviation,
-            Optimizer::Momentum | Optimizer::Plain if rate > R::ZERO => rate / curvature,
-            Optimizer::Momentum | Optimizer::Plain => R::ONE / curvature,
+        let is_adam = config.optimizer == Optimizer::Adam;
+        let rate = match config.learning_rate {
+            0.0 => R::from_f64(if is_adam { ADAM_RATE } else { 1.0 }),
+            rate => R::from_f32(rate),
         };
+        let rate = if is_adam { rate * deviation } else { rate / curvature };
         let momentum = match config.optimizer {
             Optimizer::Plain => R::ZERO,
             _ if config.momentum > 0.0 => R::from_f32(config.momentum),

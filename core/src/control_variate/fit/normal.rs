@@ -124,16 +124,13 @@ impl<'a, R: Real> Normal<'a, R> {
         Ok(not_below_zero(self.gram.quadratic(x)) * self.count)
     }
 
-    /// Where the samples of a fit lie, for two or more.
+    /// Where the samples of a fit lie.
     pub(crate) fn centre(
         &self,
         factor: &Ldlt<&mut [R]>,
         penalty: Penalty<'_, R>,
         mut arena: Arena<'_, R>,
-    ) -> Result<Option<Centre<R>>, Error> {
-        if self.count <= R::ONE {
-            return Ok(None);
-        }
+    ) -> Result<Centre<R>, Error> {
         let columns = self.gram.order();
         let (inverse, diagonal) = (arena.triangle(columns)?, arena.take(columns)?);
         factor.inverse_diagonal(inverse, diagonal);
@@ -144,7 +141,7 @@ impl<'a, R: Real> Normal<'a, R> {
             freedom -= strength * value * relative;
         }
         let eccentricity = self.eccentricity(factor, &mut arena)?;
-        Ok(Some(Centre::new(eccentricity, freedom, self.count)))
+        Ok(Centre::new(eccentricity, freedom, self.count))
     }
 }
 
@@ -226,16 +223,16 @@ pub(crate) fn len(Layout { columns, channels, .. }: Layout) -> usize {
     3 * packed_len(columns) + columns * (4 + 2 * channels)
 }
 
-/// Algorithm 1 from sums: what a fit to all samples adds to the mean. None if there is no sample.
+/// Algorithm 1 from sums: what a fit to all samples adds to the mean.
 #[inline]
 pub(crate) fn least_squares<R: Real>(
     sums: &Sums<&[R]>,
     penalty: Penalty<'_, R>,
     arena: &mut Arena<'_, R>,
-) -> Result<Option<Outcome<R>>, Error> {
+) -> Result<Outcome<R>, Error> {
     let Layout { columns, channels, .. } = sums.layout();
     let coefficients = arena.take(columns * channels)?;
-    let Some(centred) = Centred::new(sums, arena)? else { return Ok(None) };
+    let centred = Centred::new(sums, arena)?;
     let factor = centred.normal.solve(penalty, coefficients, arena)?;
     let eccentricity = centred.normal.eccentricity(&factor, arena)?;
     // Its residuals have mean zero: its intercept is the estimate.
@@ -243,20 +240,17 @@ pub(crate) fn least_squares<R: Real>(
     let b = |channel| row_at(coefficients, columns, channel);
     let residual = PerChannel::of(channels, |channel| centred.residual_square(channel, b(channel)));
     let variance = result::residual_variance(residual, columns, centred.normal.count, eccentricity);
-    Ok(Some(Outcome { correction, variance }))
+    Ok(Outcome { correction, variance })
 }
 
 impl<'a, R: Real> Centred<'a, R> {
-    /// Centres a group of sums; None if it holds no sample.
-    pub(crate) fn new(sums: &Sums<&[R]>, arena: &mut Arena<'a, R>) -> Result<Option<Self>, Error> {
+    /// Centres a group of sums that holds samples.
+    pub(crate) fn new(sums: &Sums<&[R]>, arena: &mut Arena<'a, R>) -> Result<Self, Error> {
         let Layout { columns, channels, .. } = sums.layout();
         let mut gram = arena.triangle(columns)?;
         let mut rhs = Panel::new(arena.take(columns * channels)?, columns);
         let means = arena.take(columns)?;
         let count = sums.count();
-        if count <= R::ZERO {
-            return Ok(None);
-        }
         let inverse = R::ONE / count;
         for (j, mean) in means.iter_mut().enumerate() {
             *mean = sums.column_total(j) * inverse;
@@ -290,7 +284,7 @@ impl<'a, R: Real> Centred<'a, R> {
                 *value = R::ZERO;
             }
         }
-        Ok(Some(Self { normal: Normal { count, gram, rhs, means }, value_means, squares }))
+        Ok(Self { normal: Normal { count, gram, rhs, means }, value_means, squares })
     }
 
     /// The intercepts that go with coefficients, a row for each channel.
