@@ -13,6 +13,8 @@ pub(super) struct Layout<'a> {
     pub(super) config: &'a Config,
     pub(super) image: &'a Image<'a>,
     pub(super) windows: Windows,
+    /// Pixels that are given, in all frames.
+    pub(super) pixels: usize,
     pub(super) shape: Shape,
     /// Samples of a pixel.
     pub(super) n: usize,
