@@ -249,11 +249,11 @@ impl<'a> Spreads<'a> {
         Ok(Self { sums, within, freedom, pixels, has_several: fits.has_several, choices })
     }
 
-    /// Chooses, for all pixels or for a colour, and keeps that as one of the times that is chosen.
+    /// Chooses for all pixels, and for those of each of so many colours, and keeps that from a time on.
     #[inline(always)]
     pub(super) fn choose(
         &self,
-        colour: Option<usize>,
+        colours: usize,
         time: usize,
         is_stratified: bool,
         present: &Eight,
@@ -261,12 +261,14 @@ impl<'a> Spreads<'a> {
     ) {
         // Stratified samples' means differ by less than their variance within pixels tells: it may only warn.
         let part = if is_stratified { 0.0 } else { WITHIN };
-        let sharper = if colour.is_some() { SHARPER } else { 1.0 };
-        let freedom = lanes::each(&self.freedom, |freedom| freedom * if freedom < ENOUGH { 1.0 } else { sharper });
-        for channel in 0..self.choices.channels {
-            let row = colour.map_or(0, |colour| 1 + colour) * self.choices.channels + channel;
-            let [sums, within] = [&*self.sums, &*self.within].map(|all| row_at(all, self.choices.count, row));
-            self.share([sums, within], (&freedom, part), present, shares.of_mut(time, channel));
+        for by in 0..=colours {
+            let sharper = if by > 0 { SHARPER } else { 1.0 };
+            let freedom = lanes::each(&self.freedom, |freedom| freedom * if freedom < ENOUGH { 1.0 } else { sharper });
+            for channel in 0..self.choices.channels {
+                let row = by * self.choices.channels + channel;
+                let [sums, within] = [&*self.sums, &*self.within].map(|all| row_at(all, self.choices.count, row));
+                self.share([sums, within], (&freedom, part), present, shares.of_mut(time + by, channel));
+            }
         }
     }
 

@@ -36,12 +36,11 @@ pub(super) fn correct<P: Processor>(
     }
 }
 
+/// `name = function(arguments)`: the function as a step of its own.
 macro_rules! steps {
     ($(
-        $(#[$doc:meta])*
-        fn $name:ident($($argument:ident: $type:ty),* $(,)?) -> $result:ty $body:block
+        $name:ident = $owner:ident::$function:ident($($argument:ident: $type:ty),* $(,)?) -> $result:ty;
     )*) => {$(
-        $(#[$doc])*
         pub(super) fn $name<'s, 'a, P: Processor>($($argument: $type),*) -> $result {
             struct Arguments<'s, 'a> {
                 $($argument: $type),*
@@ -51,8 +50,7 @@ macro_rules! steps {
 
                 #[inline(always)]
                 fn run(self) -> $result {
-                    let Self { $($argument),* } = self;
-                    $body
+                    $owner::$function($(self.$argument),*)
                 }
             }
             P::run(Arguments { $($argument),* })
@@ -61,131 +59,44 @@ macro_rules! steps {
 }
 
 steps! {
-    /// [`Batch::survey`].
-    fn survey(batch: &'s mut Batch<'a>, call: &'s Call<'s>, groups: &'s Groups<'s>, terms: &'s Terms) -> () {
-        batch.survey(call, groups, terms);
-    }
-
-    /// [`Batch::relate`].
-    fn relate(batch: &'s mut Batch<'a>, call: &'s Call<'s>, arena: &'s mut Arena<'a, f32>) -> Result<(), Error> {
-        batch.relate(call, arena)
-    }
-
-    /// [`Batch::load`].
-    fn load(
-        batch: &'s mut Batch<'a>,
-        call: &'s Call<'s>,
-        terms: &'s Terms,
+    survey = Batch::survey(batch: &'s mut Batch<'a>, call: &'s Call<'s>, groups: &'s Groups<'s>, terms: &'s Terms) -> ();
+    relate = Batch::relate(batch: &'s mut Batch<'a>, call: &'s Call<'s>, arena: &'s mut Arena<'a, f32>)
+        -> Result<(), Error>;
+    load = Batch::load(batch: &'s mut Batch<'a>, call: &'s Call<'s>, terms: &'s Terms, arena: &'s mut Arena<'a, f32>)
+        -> Result<(), Error>;
+    factor = Fits::factor(
+        fits: &'s mut Fits<'a>, call: &'s Call<'s>, terms: &'s Terms, batch: &'s Batch<'s>, training: Colours,
+    ) -> ();
+    leave_own = Fits::leave_own(fits: &'s mut Fits<'a>, terms: &'s Terms, batch: &'s Batch<'s>, taken: Colours) -> ();
+    correct_colour = Fits::correct_colour(
+        fits: &'s mut Fits<'a>, terms: &'s Terms, batch: &'s Batch<'s>, colour: usize,
+    ) -> ();
+    correct_slices = Apart::correct(
+        apart: &'s mut Apart<'a>, terms: &'s Terms, batch: &'s Batch<'s>,
+        penalties: &'s [f32], taken: Colours, corrections: &'s mut [Four],
+    ) -> ();
+    load_edges = Edges::load(edges: &'s mut Edges<'a>, call: &'s Call<'s>, batch: &'s Batch<'s>) -> ();
+    correct_edges = Edges::correct(
+        edges: &'s mut Edges<'a>, batch: &'s Batch<'s>, taken: Colours, fits: &'s mut Fits<'a>,
+    ) -> ();
+    spreads = Spreads::new(
+        choices: Choices, terms: &'s Terms, batch: &'s Batch<'s>, fits: &'s Fits<'s>, taken: Colours,
         arena: &'s mut Arena<'a, f32>,
-    ) -> Result<(), Error> {
-        batch.load(call, terms, arena)
-    }
-
-    /// [`Fits::factor`].
-    fn factor(
-        fits: &'s mut Fits<'a>,
-        call: &'s Call<'s>,
-        terms: &'s Terms,
-        batch: &'s Batch<'s>,
-        training: Colours,
-    ) -> () {
-        fits.factor(call, terms, batch, training);
-    }
-
-    /// [`Fits::leave_own`].
-    fn leave_own(fits: &'s mut Fits<'a>, terms: &'s Terms, batch: &'s Batch<'s>, taken: Colours) -> () {
-        fits.leave_own(terms, batch, taken);
-    }
-
-    /// [`Fits::correct_colour`].
-    fn correct_colour(fits: &'s mut Fits<'a>, terms: &'s Terms, batch: &'s Batch<'s>, colour: usize) -> () {
-        fits.correct_colour(terms, batch, colour);
-    }
-
-    /// [`Apart::correct`].
-    fn correct_slices(
-        apart: &'s mut Apart<'a>,
-        terms: &'s Terms,
-        batch: &'s Batch<'s>,
-        penalties: &'s [f32],
-        taken: Colours,
-        corrections: &'s mut [Four],
-    ) -> () {
-        apart.correct(terms, batch, penalties, taken, corrections);
-    }
-
-    /// [`Edges::load`].
-    fn load_edges(edges: &'s mut Edges<'a>, call: &'s Call<'s>, batch: &'s Batch<'s>) -> () {
-        edges.load(call, batch);
-    }
-
-    /// [`Edges::correct`].
-    fn correct_edges(edges: &'s mut Edges<'a>, batch: &'s Batch<'s>, taken: Colours, fits: &'s mut Fits<'a>) -> () {
-        edges.correct(batch, taken, fits);
-    }
-
-    /// [`Spreads::new`].
-    fn spreads(
-        choices: Choices,
-        terms: &'s Terms,
-        batch: &'s Batch<'s>,
-        fits: &'s Fits<'s>,
-        taken: Colours,
-        arena: &'s mut Arena<'a, f32>,
-    ) -> Result<Spreads<'a>, Error> {
-        Spreads::new(choices, terms, batch, fits, taken, arena)
-    }
-
-    /// [`Spreads::choose`] for all pixels, and for those of each of so many colours.
-    fn choose(
-        spreads: &'s Spreads<'s>,
-        colours: usize,
-        time: usize,
-        is_stratified: bool,
-        present: &'s Eight,
+    ) -> Result<Spreads<'a>, Error>;
+    choose = Spreads::choose(
+        spreads: &'s Spreads<'s>, colours: usize, time: usize, is_stratified: bool, present: &'s Eight,
         shares: &'s mut Shares<'a>,
-    ) -> () {
-        spreads.choose(None, time, is_stratified, present, shares);
-        for colour in 0..colours {
-            spreads.choose(Some(colour), 1 + colour, is_stratified, present, shares);
-        }
-    }
-
-    /// [`Call::find_limits`].
-    fn find_limits(
-        call: &'s Call<'s>,
-        groups: &'s mut Groups<'a>,
-        batch: &'s Batch<'s>,
-        by: (usize, Colours),
+    ) -> ();
+    find_limits = Call::find_limits(
+        call: &'s Call<'s>, groups: &'s mut Groups<'a>, batch: &'s Batch<'s>, by: (usize, Colours),
         shares: &'s Shares<'s>,
-    ) -> () {
-        call.find_limits(groups, batch, by, shares);
-    }
-
-    /// [`Call::put`].
-    fn put(
-        call: &'s Call<'s>,
-        groups: &'s mut Groups<'a>,
-        batch: &'s Batch<'s>,
-        fits: &'s Fits<'s>,
-        turn: Option<usize>,
-        shares: &'s Shares<'s>,
-    ) -> () {
-        call.put(groups, batch, fits, turn, shares);
-    }
-
-    /// [`Call::add`].
-    fn add(call: &'s Call<'s>, first: usize, groups: &'s Groups<'a>, band: &'s mut Band<'a>) -> () {
-        call.add(first, groups, band);
-    }
-
-    /// [`Call::write`].
-    fn write(
-        call: &'s Call<'s>,
-        row: (usize, usize),
-        band: &'s mut Band<'a>,
-        out: &'s mut (dyn FnMut(usize, Estimate) + 'a),
-    ) -> () {
-        call.write(row, band, out);
-    }
+    ) -> ();
+    put = Call::put(
+        call: &'s Call<'s>, groups: &'s mut Groups<'a>, batch: &'s Batch<'s>, fits: &'s Fits<'s>,
+        turn: Option<usize>, shares: &'s Shares<'s>,
+    ) -> ();
+    add = Call::add(call: &'s Call<'s>, first: usize, groups: &'s Groups<'a>, band: &'s mut Band<'a>) -> ();
+    write = Call::write(
+        call: &'s Call<'s>, row: (usize, usize), band: &'s mut Band<'a>, out: &'s mut (dyn FnMut(usize, Estimate) + 'a),
+    ) -> ();
 }
