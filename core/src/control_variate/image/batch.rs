@@ -42,6 +42,8 @@ pub(super) struct Units {
 
 /// Eight groups, or eight parts of one.
 pub(super) struct Batch<'a> {
+    pub(super) call: &'a Call<'a>,
+    pub(super) terms: Terms,
     pub(super) lanes: [Group; LANES],
     pub(super) is_joined: bool,
     /// Whether the slots of a block are of one colour.
@@ -128,8 +130,8 @@ fn power_of_two(exponent: i32) -> f32 {
 impl<'a> Batch<'a> {
     /// Room for groups of which none is larger than the first.
     pub(super) fn new(
-        call: &Call<'_>,
-        terms: &Terms,
+        call: &'a Call<'a>,
+        terms: Terms,
         lanes: [Group; LANES],
         arena: &mut Arena<'a, f32>,
     ) -> Result<Self, Error> {
@@ -139,6 +141,7 @@ impl<'a> Batch<'a> {
         let (blocks, [between, within]) = (blocks(call, slots), parts(call));
         let known = if call.image.has_known() { blocks * channels } else { 0 };
         Ok(Self {
+            call,
             lanes,
             is_joined: call.is_joined(),
             has_colours: call.has_colours(),
@@ -156,6 +159,7 @@ impl<'a> Batch<'a> {
             functions: arena.take_fours(blocks * terms.functions)?,
             between: Sums::sliced(between, terms.slices.max(1), columns, values, arena)?,
             within: Sums::new(within, columns, values, arena)?,
+            terms,
         })
     }
 
@@ -192,8 +196,7 @@ impl<'a> Batch<'a> {
     /// Zero in the lanes of a block's slots without a pixel.
     #[inline(always)]
     pub(super) fn empty_missing<'f>(&self, block: usize, columns: impl Iterator<Item = &'f mut Four>) {
-        let fixed = self.places.len() / self.inside.len().max(1);
-        let Some(one) = row_at(self.places, fixed, block).first() else { return };
+        let Some(one) = row_at(self.places, self.terms.fixed(), block).first() else { return };
         if *one != [[1.0; LANES]; AT_ONCE] {
             for column in columns {
                 *column = zip_four(one, column, only);
@@ -204,7 +207,8 @@ impl<'a> Batch<'a> {
 
     /// The columns of a block's pixels.
     #[inline(always)]
-    pub(super) fn put_columns(&self, terms: &Terms, block: usize, columns: &mut [Four]) {
+    pub(super) fn put_columns(&self, block: usize, columns: &mut [Four]) {
+        let terms = &self.terms;
         let places = row_at(self.places, terms.fixed(), block);
         let functions = row_at(self.functions, terms.functions, block);
         copy(columns, places);
@@ -215,8 +219,9 @@ impl<'a> Batch<'a> {
 
     /// Where the lanes' pixels are, and between what values theirs lie.
     #[inline(always)]
-    pub(super) fn survey(&mut self, call: &Call<'_>, groups: &Groups<'_>, terms: &Terms) {
-        let (fixed, channels) = (terms.fixed(), call.config.channels);
+    pub(super) fn survey(&mut self, groups: &Groups<'_>) {
+        let call = self.call;
+        let (fixed, channels) = (self.terms.fixed(), call.config.channels);
         let axes = call.windows.used_axes();
         let scales = axes.map(|axis| (SQRT_3 / call.windows.extent[axis % MAX_AXES].max(1) as f64) as f32);
         let [width, height] = [call.windows.given.width, call.windows.given.height].map(|extent| extent as u32);
@@ -265,7 +270,8 @@ impl<'a> Batch<'a> {
     }
 
     /// Keeps pixels beyond their group's limits out of all fits.
-    pub(super) fn leave_out<'l>(&mut self, channels: usize, limits: impl Fn(&Group) -> &'l [f32]) {
+    pub(super) fn leave_out<'l>(&mut self, limits: impl Fn(&Group) -> &'l [f32]) {
+        let channels = self.call.config.channels;
         self.leaves_out = true;
         for channel in 0..channels {
             let (mut lowest, mut highest) = (NONE, NONE);
@@ -288,7 +294,8 @@ impl<'a> Batch<'a> {
 
     /// As for one pixel's samples: the zero at a value, the unit near the largest.
     #[inline]
-    fn set_units(&mut self, channels: usize) {
+    fn set_units(&mut self) {
+        let channels = self.call.config.channels;
         for (channel, units) in self.units.iter_mut().enumerate().take(channels) {
             let mut largest = NONE;
             let mut first = [f32::INFINITY; LANES];
@@ -318,28 +325,30 @@ impl<'a> Batch<'a> {
 
     /// Reads all samples and sums their products.
     #[inline(always)]
-    pub(super) fn load(&mut self, call: &Call<'_>, terms: &Terms, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+    pub(super) fn load(&mut self, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+        let (call, values, slices) = (self.call, self.values, self.terms.slices);
+        let (columns, functions, fixed) = (self.terms.columns(), self.terms.functions, self.terms.fixed());
         let mut arena = arena.scratch();
-        let mut samples = Rows::new(terms.functions, self.values, &mut arena)?;
-        let mut pixels = Rows::new(terms.columns(), self.values, &mut arena)?;
-        let mut pixel = Pixel::new(terms.functions, self.values, &mut arena)?;
-        let mut apart = Apart::new(terms.functions, self.values, &mut arena)?;
-        let products = arena.take_lanes(if terms.slices > 0 { Sums::len(terms.columns(), self.values) } else { 0 })?;
-        self.set_units(call.config.channels);
+        let mut samples = Rows::new(functions, values, &mut arena)?;
+        let mut pixels = Rows::new(columns, values, &mut arena)?;
+        let mut pixel = Pixel::new(functions, values, &mut arena)?;
+        let mut apart = Apart::new(functions, values, &mut arena)?;
+        let products = arena.take_lanes(if slices > 0 { Sums::len(columns, values) } else { 0 })?;
+        self.set_units();
         self.between.empty();
         self.within.empty();
         for block in 0..self.inside.len() {
             let part = if self.has_colours { block % COLOURS } else { 0 };
             if call.n == 1 {
                 call.read(self, (block, 0..AT_ONCE), 0..1, &mut samples);
-                copy(row_at_mut(self.functions, terms.functions, block), samples.columns);
-                copy(row_at_mut(self.means, self.values, block), samples.values);
+                copy(row_at_mut(self.functions, functions, block), samples.columns);
+                copy(row_at_mut(self.means, values, block), samples.values);
             } else {
                 for row in 0..AT_ONCE {
-                    self.load_several(call, terms, (block, row), &mut samples, &mut pixel, &mut apart);
+                    self.load_several((block, row), &mut samples, &mut pixel, &mut apart);
                 }
             }
-            self.put_means(call, terms, block, &mut pixels);
+            self.put_means(block, &mut pixels);
             if let Some(slices) = self.slices.get_mut(block) {
                 let at = call.basis.slices_at(&samples.x);
                 for (slices, at) in slices.iter_mut().zip(at.as_chunks::<LANES>().0) {
@@ -352,11 +361,11 @@ impl<'a> Batch<'a> {
             if call.n > 1 {
                 let inside = at(self.inside, block);
                 let mut places = [[NONE; AT_ONCE]; MAX_FIXED];
-                for (out, place) in places.iter_mut().zip(row_at(self.places, terms.fixed(), block)) {
+                for (out, place) in places.iter_mut().zip(row_at(self.places, fixed, block)) {
                     *out = zip_four(&inside, place, only);
                 }
-                apart.mirror(terms.functions);
-                self.within.add_apart(part, terms, first(&places, terms.fixed()), &apart);
+                apart.mirror(functions);
+                self.within.add_apart(part, &self.terms, first(&places, fixed), &apart);
             }
         }
         if self.is_joined {
@@ -370,13 +379,12 @@ impl<'a> Batch<'a> {
     #[inline(always)]
     fn load_several(
         &mut self,
-        call: &Call<'_>,
-        terms: &Terms,
         (block, row): (usize, usize),
         samples: &mut Rows<'_>,
         pixel: &mut Pixel<'_>,
         apart: &mut Apart<'_>,
     ) {
+        let (call, fixed, functions) = (self.call, self.terms.fixed(), self.terms.functions);
         let inside = at(self.inside, block)[row % AT_ONCE];
         let is_full = inside == [1.0; LANES];
         pixel.sums.empty();
@@ -405,10 +413,10 @@ impl<'a> Batch<'a> {
             pixel.sums.add(0, samples.columns, samples.values);
         }
         let inverse = 1.0 / call.n as f32;
-        let (sums, values) = halves(pixel.totals, terms.functions);
-        let one = at(row_at(self.places, terms.fixed(), block), 0)[row % AT_ONCE];
+        let (sums, values) = halves(pixel.totals, functions);
+        let one = at(row_at(self.places, fixed, block), 0)[row % AT_ONCE];
         let mean = |sum: &Eight| only(&one, &sum.map(|sum| sum * inverse));
-        for (out, sum) in row_at_mut(self.functions, terms.functions, block).iter_mut().zip(sums.iter()) {
+        for (out, sum) in row_at_mut(self.functions, functions, block).iter_mut().zip(sums.iter()) {
             out[row] = mean(sum);
             lanes::keep_together();
         }
@@ -417,12 +425,13 @@ impl<'a> Batch<'a> {
         {
             out[row] = only(&one, &plus(&mean(sum), first));
         }
-        apart.put(row, &inside, inverse, pixel, terms.functions);
+        apart.put(row, &inside, inverse, pixel, functions);
     }
 
     /// The columns and values of a block's pixels that fits are made to.
     #[inline(always)]
-    fn put_means(&self, call: &Call<'_>, terms: &Terms, block: usize, pixels: &mut Rows<'_>) {
+    fn put_means(&self, block: usize, pixels: &mut Rows<'_>) {
+        let (terms, n) = (&self.terms, self.call.n);
         let places = row_at(self.places, terms.fixed(), block);
         let (fixed, rest) = halves_mut(pixels.columns, terms.fixed());
         let (functions, products) = halves_mut(rest, terms.functions);
@@ -430,8 +439,8 @@ impl<'a> Batch<'a> {
         copy(functions, row_at(self.functions, terms.functions, block));
         copy(pixels.values, row_at(self.means, self.values, block));
         let inside = at(self.inside, block);
-        if self.leaves_out || call.n > 1 {
-            let root = Real::sqrt(call.n as f32);
+        if self.leaves_out || n > 1 {
+            let root = Real::sqrt(n as f32);
             for four in fixed.iter_mut().chain(&mut *functions).chain(pixels.values.iter_mut()) {
                 *four = zip_four(&inside, four, |inside, value| only(inside, &value.map(|value| value * root)));
                 lanes::keep_together();

@@ -143,13 +143,12 @@ impl<'a> Spreads<'a> {
     #[inline(always)]
     pub(super) fn new(
         choices: Choices,
-        terms: &Terms,
         batch: &Batch<'_>,
         fits: &Fits<'_>,
         taken: Colours,
         arena: &mut Arena<'a, f32>,
     ) -> Result<Self, Error> {
-        let fixed = terms.fixed();
+        let fixed = batch.terms.fixed();
         let joined = |sum: &Eight| if batch.is_joined { [lanes::sum(sum); LANES] } else { *sum };
         let all = choices.channels * choices.count;
         let [sums, within] = [arena.take_lanes(CHOSEN * all)?, arena.take_lanes(CHOSEN * all)?];
@@ -246,7 +245,7 @@ impl<'a> Spreads<'a> {
             }
             count(within, channel * choices.count + choice, &each);
         }
-        Ok(Self { sums, within, freedom, pixels, has_several: fits.has_several, choices })
+        Ok(Self { sums, within, freedom, pixels, has_several: batch.call.n > 1, choices })
     }
 
     /// Chooses for all pixels, and for those of each of so many colours, and keeps that from a time on.

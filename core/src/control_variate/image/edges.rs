@@ -99,9 +99,6 @@ pub(super) fn edges_len(layout: &Layout<'_>, terms: &Terms, slots: usize) -> Opt
 
 /// The fits to a batch whose groups have lit and dark samples.
 pub(super) struct Edges<'a> {
-    fixed: usize,
-    n: usize,
-    channels: usize,
     /// For each block and sample: its two coordinates, 1 if it is lit, and its values in units.
     samples: &'a mut [Four],
     /// Of each colour: all samples, with whether they are lit; lit ones, with their values.
@@ -167,18 +164,10 @@ fn logistic(q: &Eight) -> Eight {
 }
 
 impl<'a> Edges<'a> {
-    pub(super) fn new(
-        call: &Call<'_>,
-        terms: &Terms,
-        batch: &Batch<'_>,
-        arena: &mut Arena<'a, f32>,
-    ) -> Result<Self, Error> {
-        let (n, channels, fixed) = (call.n, call.config.channels, terms.fixed());
+    pub(super) fn new(batch: &Batch<'_>, arena: &mut Arena<'a, f32>) -> Result<Self, Error> {
+        let (n, channels, fixed) = (batch.call.n, batch.call.config.channels, batch.terms.fixed());
         let (columns, columns_of_a) = (fixed + FUNCTIONS, fixed + SLOPES);
         Ok(Self {
-            fixed,
-            n,
-            channels,
             samples: arena.take_fours(batch.inside.len() * n * (3 + channels))?,
             all: Sums::new(COLOURS, columns, 1, arena)?,
             lit: Sums::new(COLOURS, columns_of_a, channels, arena)?,
@@ -193,11 +182,11 @@ impl<'a> Edges<'a> {
 
     /// Reads the samples and sums their products.
     #[inline(always)]
-    pub(super) fn load(&mut self, call: &Call<'_>, batch: &Batch<'_>) {
+    pub(super) fn load(&mut self, batch: &Batch<'_>) {
         self.all.empty();
         self.lit.empty();
         for block in 0..batch.inside.len() {
-            self.read(call, batch, block);
+            self.read(batch, block);
             self.add(batch, block);
         }
         if batch.is_joined {
@@ -210,25 +199,25 @@ impl<'a> Edges<'a> {
     }
 
     #[inline]
-    fn samples(&self, block: usize) -> impl Iterator<Item = (&Four, &Four, &Four, &[Four])> {
-        let width = 3 + self.channels;
-        (block * self.n..(block + 1) * self.n).filter_map(move |sample| {
+    fn samples(&self, batch: &Batch<'_>, block: usize) -> impl Iterator<Item = (&Four, &Four, &Four, &[Four])> {
+        let (n, width) = (batch.call.n, 3 + batch.call.config.channels);
+        (block * n..(block + 1) * n).filter_map(move |sample| {
             let [x, y, lit, values @ ..] = row_at(self.samples, width, sample) else { return None };
             Some((x, y, lit, values))
         })
     }
 
     #[inline]
-    fn read(&mut self, call: &Call<'_>, batch: &Batch<'_>, block: usize) {
-        let width = 3 + self.channels;
+    fn read(&mut self, batch: &Batch<'_>, block: usize) {
+        let (call, width) = (batch.call, 3 + batch.call.config.channels);
         let inside = at(batch.inside, block);
         let mut x = [[0.0; AT_ONCE_LANES]; MAX_DIMS];
-        for sample in 0..self.n {
-            let out = row_at_mut(self.samples, width, block * self.n + sample);
+        for sample in 0..call.n {
+            let out = row_at_mut(self.samples, width, block * call.n + sample);
             let [u, v, lit, values @ ..] = out else { return };
             for row in 0..AT_ONCE {
                 let pixels = batch.pixels((block, row));
-                call.reader.put_positions(&pixels.map(|pixel| pixel * self.n + sample), 1, row * LANES, &mut x);
+                call.reader.put_positions(&pixels.map(|pixel| pixel * call.n + sample), 1, row * LANES, &mut x);
                 lit[row] = NONE;
                 for (channel, (value, units)) in values.iter_mut().zip(&batch.units).enumerate() {
                     let input = call.inputs(&pixels, sample, channel);
@@ -249,15 +238,16 @@ impl<'a> Edges<'a> {
     /// Adds a block's samples to the sums of its colour.
     #[inline(always)]
     fn add(&mut self, batch: &Batch<'_>, block: usize) {
-        let (fixed, colour) = (self.fixed, block % COLOURS);
+        let (fixed, channels, n, colour) =
+            (batch.terms.fixed(), batch.call.config.channels, batch.call.n, block % COLOURS);
         let inside = at(batch.inside, block);
         let mut columns = [[NONE; AT_ONCE]; MAX_COLUMNS];
         let columns = first_mut(&mut columns, fixed + FUNCTIONS);
         for (out, place) in columns.iter_mut().zip(row_at(batch.places, fixed, block)) {
             *out = times(&inside, place);
         }
-        for sample in block * self.n..(block + 1) * self.n {
-            let [x, y, lit, values @ ..] = row_at(self.samples, 3 + self.channels, sample) else { return };
+        for sample in block * n..(block + 1) * n {
+            let [x, y, lit, values @ ..] = row_at(self.samples, 3 + channels, sample) else { return };
             for (out, function) in from_mut(columns, fixed).iter_mut().zip(functions(x, y)) {
                 *out = times(&inside, &function);
             }
@@ -265,7 +255,7 @@ impl<'a> Edges<'a> {
             let mut columns_of_lit = [[NONE; AT_ONCE]; MAX_FIXED + SLOPES];
             let mut values_of_lit = [[NONE; AT_ONCE]; Config::MAX_CHANNELS];
             let columns_of_lit = first_mut(&mut columns_of_lit, fixed + SLOPES);
-            let values_of_lit = first_mut(&mut values_of_lit, self.channels);
+            let values_of_lit = first_mut(&mut values_of_lit, channels);
             let most = self.most.get_mut(colour).into_iter().flatten();
             for (out, column) in columns_of_lit.iter_mut().zip(columns.iter()) {
                 *out = times(lit, column);
@@ -281,6 +271,7 @@ impl<'a> Edges<'a> {
     /// Corrects every pixel of the colours `taken` by fits to the other of them, as the last candidate.
     #[inline(always)]
     pub(super) fn correct(&mut self, batch: &Batch<'_>, taken: Colours, fits: &mut Fits<'_>) {
+        let (fixed, channels) = (batch.terms.fixed(), batch.call.config.channels);
         self.training.set_total(&self.all, taken);
         self.present = self.has_both();
         for colour in (0..COLOURS).filter(|&colour| taken.has(colour)) {
@@ -293,8 +284,8 @@ impl<'a> Edges<'a> {
             let mut a = [[NONE; MAX_FIXED + SLOPES]; Config::MAX_CHANNELS];
             let mut most = [NONE; Config::MAX_CHANNELS];
             if is_needed {
-                self.regress(batch, others, &has_both, first_mut(&mut q, self.fixed + FUNCTIONS));
-                self.fit_lit(&mut a);
+                self.regress(batch, others, &has_both, first_mut(&mut q, fixed + FUNCTIONS));
+                self.fit_lit(batch, &mut a);
                 for (_, colour) in self.most.iter().enumerate().filter(|&(colour, _)| others.has(colour)) {
                     most.iter_mut().zip(colour).for_each(|(most, value)| *most = lanes::zip(value, most, Real::max));
                 }
@@ -305,7 +296,7 @@ impl<'a> Edges<'a> {
                     if is_needed {
                         self.share_out(batch, (block, row), &q);
                     }
-                    for channel in 0..self.channels {
+                    for channel in 0..channels {
                         let corrections = fits.corrections_mut(block, channel).last_mut();
                         let (Some(out), Some(a), Some(most), Some(within)) =
                             (corrections, a.get(channel), most.get(channel), within.get_mut(channel))
@@ -313,18 +304,18 @@ impl<'a> Edges<'a> {
                             return;
                         };
                         let integral = if is_needed { self.light(batch, (block, row), a, most) } else { NONE };
-                        out[row] = self.compare((block, row), channel, &integral, &has_both, batch.inside, within);
+                        out[row] = self.compare(batch, (block, row), channel, &integral, &has_both, within);
                     }
                 }
             }
             for value in 0..batch.values {
                 let whole = fits.within(value, colour, 0);
-                let left = within.get(value).filter(|_| value < self.channels).unwrap_or(&whole);
+                let left = within.get(value).filter(|_| value < channels).unwrap_or(&whole);
                 fits.set_within(value, colour, fits.count, left);
             }
         }
         // Of what is left of values without what is known nothing is dark.
-        for (block, value) in batch.blocks(taken).flat_map(|b| (self.channels..batch.values).map(move |v| (b, v))) {
+        for (block, value) in batch.blocks(taken).flat_map(|b| (channels..batch.values).map(move |v| (b, v))) {
             fits.corrections_mut(block, value).last_mut().into_iter().for_each(|out| *out = [NONE; AT_ONCE]);
         }
     }
@@ -339,7 +330,7 @@ impl<'a> Edges<'a> {
     /// The logistic regression, by Newton's steps, where `wanted`.
     #[inline(always)]
     fn regress(&self, batch: &Batch<'_>, training: Colours, wanted: &Eight, weights: &mut [Eight]) {
-        let width = weights.len();
+        let (width, fixed) = (weights.len(), batch.terms.fixed());
         let sums = self.training.part(0);
         let [count, lit] = [sums.gram, sums.sides].map(|sums| at(sums, 0));
         let odds = lanes::zip(&lit, &count, |lit, count| (lit + 0.5) / (count - lit + 0.5));
@@ -372,7 +363,7 @@ impl<'a> Edges<'a> {
                 }
             }
             for (j, (side, weight)) in sides.iter_mut().zip(weights.iter()).enumerate() {
-                let penalty = penalty(&PENALTIES, self.fixed, j);
+                let penalty = penalty(&PENALTIES, fixed, j);
                 *side = lanes::minus_product(*side, *weight, [penalty; LANES]);
                 if let Some(diagonal) = row_mut(matrix, j).last_mut() {
                     *diagonal = diagonal.map(|value| value + penalty);
@@ -406,14 +397,14 @@ impl<'a> Edges<'a> {
         matrix: &mut [Eight],
         sides: &mut [Eight],
     ) {
-        let fixed = self.fixed;
+        let fixed = batch.terms.fixed();
         let places = row_at(batch.places, fixed, block);
         let inside = at(batch.inside, block);
         let base = combine([NONE; AT_ONCE], places, weights);
         // A pixel's place is the same for all of its samples.
         let (mut total, mut totals) = ([NONE; AT_ONCE], [[NONE; AT_ONCE]; FUNCTIONS]);
         let mut rest = [NONE; AT_ONCE];
-        for (x, y, lit, _) in self.samples(block) {
+        for (x, y, lit, _) in self.samples(batch, block) {
             let functions = functions(x, y);
             let q = combine(base, &functions, from(weights, fixed));
             let (mut variance, mut apart) = (q, *lit);
@@ -450,22 +441,22 @@ impl<'a> Edges<'a> {
 
     /// Least squares to the lit samples of the training set.
     #[inline]
-    fn fit_lit(&self, a: &mut [[Eight; MAX_FIXED + SLOPES]; Config::MAX_CHANNELS]) {
-        let width = self.fixed + SLOPES;
+    fn fit_lit(&self, batch: &Batch<'_>, a: &mut [[Eight; MAX_FIXED + SLOPES]; Config::MAX_CHANNELS]) {
+        let (fixed, width) = (batch.terms.fixed(), batch.terms.fixed() + SLOPES);
         let sums = self.training_lit.part(0);
         let count = at(sums.gram, 0);
         let mut matrix = [NONE; packed_len(MAX_FIXED + SLOPES)];
         let matrix = first_mut(&mut matrix, packed_len(width));
         copy(matrix, sums.gram);
         for j in 0..width {
-            let penalty = penalty(&PENALTIES_OF_A, self.fixed, j);
+            let penalty = penalty(&PENALTIES_OF_A, fixed, j);
             if let Some(diagonal) = row_mut(matrix, j).last_mut() {
                 *diagonal = diagonal.map(|value| value + penalty);
             }
         }
         ldlt::factor_each(matrix, width);
         let divisor = lanes::divisor(&count);
-        for (channel, out) in a.iter_mut().enumerate().take(self.channels) {
+        for (channel, out) in a.iter_mut().enumerate().take(batch.call.config.channels) {
             let out = first_mut(out, width);
             copy(out, row_at(sums.sides, width, channel));
             // About their mean, which is not held back.
@@ -492,7 +483,7 @@ impl<'a> Edges<'a> {
         const CHANGE: f32 = SQRT_5 * STEP * STEP;
         const FIRST: f32 = 0.5 * CHANGE - SQRT_5 * SQRT_3 * STEP;
         let base = self.place_part(batch, at, q);
-        let Some(&[x, y, xx, xy, yy]) = q.get(self.fixed..).and_then(<[Eight]>::first_chunk) else { return };
+        let Some(&[x, y, xx, xy, yy]) = q.get(batch.terms.fixed()..).and_then(<[Eight]>::first_chunk) else { return };
         let mut largest = base.map(Real::abs);
         for (weight, most) in [(x, SQRT_3), (y, SQRT_3), (xx, SQRT_5), (xy, 3.0), (yy, SQRT_5)] {
             largest = lanes::zip(&largest, &weight, |sum, weight| sum + most * Real::abs(weight));
@@ -526,7 +517,7 @@ impl<'a> Edges<'a> {
     #[inline(always)]
     fn light(&mut self, batch: &Batch<'_>, at: (usize, usize), a: &[Eight], most: &Eight) -> Eight {
         let base = self.place_part(batch, at, a);
-        let Some(&[x, y]) = a.get(self.fixed..).and_then(<[Eight]>::first_chunk) else { return NONE };
+        let Some(&[x, y]) = a.get(batch.terms.fixed()..).and_then(<[Eight]>::first_chunk) else { return NONE };
         let mut integral = NONE;
         let lines = self.points.as_chunks_mut::<POINTS>().0.iter_mut();
         for (j, ((line, shares), first)) in lines.zip(self.shares.as_chunks::<POINTS>().0).zip(LINE).enumerate() {
@@ -551,7 +542,7 @@ impl<'a> Edges<'a> {
     /// The part of a polynomial that the pixels' places decide.
     #[inline]
     fn place_part(&self, batch: &Batch<'_>, (block, row): (usize, usize), coefficients: &[Eight]) -> Eight {
-        let places = row_at(batch.places, self.fixed, block).iter().zip(coefficients);
+        let places = row_at(batch.places, batch.terms.fixed(), block).iter().zip(coefficients);
         places.fold(NONE, |sum, (place, coefficient)| lanes::plus_product(sum, place[row % AT_ONCE], *coefficient))
     }
 
@@ -559,16 +550,16 @@ impl<'a> Edges<'a> {
     #[inline(always)]
     fn compare(
         &self,
+        batch: &Batch<'_>,
         (block, row): (usize, usize),
         channel: usize,
         integral: &Eight,
         wanted: &Eight,
-        inside: &[Four],
         within: &mut Eight,
     ) -> Eight {
         let (mut sum, mut square) = (NONE, NONE);
         let (mut total, mut first) = (NONE, None);
-        for (x, y, _, values) in self.samples(block) {
+        for (x, y, _, values) in self.samples(batch, block) {
             let value = at(values, channel)[row % AT_ONCE];
             let light = only(wanted, &self.interpolate(&x[row % AT_ONCE], &y[row % AT_ONCE]));
             total = plus(&total, &light);
@@ -578,9 +569,9 @@ impl<'a> Edges<'a> {
             sum = plus(&sum, &apart);
             square = lanes::plus_product(square, apart, apart);
         }
-        let inverse = 1.0 / self.n as f32;
+        let inverse = 1.0 / batch.call.n as f32;
         let left = lanes::minus_product(square, sum.map(|sum| sum * inverse), sum);
-        *within = plus(within, &only(&at(inside, block)[row % AT_ONCE], &left.map(|left| Real::max(left, 0.0))));
+        *within = plus(within, &only(&at(batch.inside, block)[row % AT_ONCE], &left.map(|left| Real::max(left, 0.0))));
         only(wanted, &lanes::zip(integral, &total, |integral, total| integral - total * inverse))
     }
 

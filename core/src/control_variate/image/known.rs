@@ -6,7 +6,6 @@
 //! most v, and at most 1. Where more arrives than is known, v says little.
 
 use super::batch::{Batch, KNOWN_SUMS};
-use super::call::Call;
 use super::products::{AT_ONCE, Eight, Four, NONE, only, plus};
 use crate::arena::Arena;
 use crate::error::Error;
@@ -70,7 +69,8 @@ fn coefficient([mean, known, square, mean_product, integral_product]: &Sums) -> 
 impl Batch<'_> {
     /// Computes the coefficient of each slot and channel.
     #[inline(always)]
-    pub(super) fn relate(&mut self, call: &Call<'_>, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+    pub(super) fn relate(&mut self, arena: &mut Arena<'_, f32>) -> Result<(), Error> {
+        let call = self.call;
         let channels = call.config.channels;
         let mut arena = arena.scratch();
         let inside = self.inside.as_flattened();

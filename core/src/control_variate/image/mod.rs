@@ -58,6 +58,7 @@ use choice::Choices;
 use edges::edges_len;
 use fit::fits_len;
 use sums::sums_len;
+use terms::Terms;
 
 /// Numbers of workspace that [`estimate_image`] needs for `n` samples in each pixel.
 ///
@@ -175,7 +176,7 @@ impl<'a> Layout<'a> {
         let sums = eights.checked_mul(rows)?.checked_mul(frames)?.checked_mul(sums_len(channels) * LANES)?;
         let pixels = self.windows.pixels();
         let slots = if self.is_joined() { pixels.div_ceil(LANES) } else { pixels };
-        let terms = self.terms(pixels).with_edges(self.has_edges());
+        let terms = Terms::new(self, pixels, self.has_edges());
         let batch = batch_len(self, &terms, slots)?.checked_add(fits_len(self, &terms, slots)?)?;
         let batch = batch.checked_add(edges_len(self, &terms, slots)?)?;
         let choices = Choices::new(self, &terms).len().checked_mul(LANES)?;

@@ -11,6 +11,7 @@ use super::groups::{Group, Groups};
 use super::products::{AT_ONCE, COLOURS, Colours, NONE, plus};
 use super::steps;
 use super::sums::Band;
+use super::terms::Terms;
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
@@ -76,7 +77,7 @@ impl Call<'_> {
                     let is_kind = group.has_edges == (kind == 1);
                     let is_wanted = is_kind && turn.is_none_or(|turn| groups.has_limits(self, &group, turn));
                     if last.0 != group.len {
-                        last = (group.len, self.terms(group.len).columns());
+                        last = (group.len, Terms::new(self, group.len, false).columns());
                     }
                     if is_wanted && used > 0 && last.1 != columns {
                         break;
@@ -95,7 +96,7 @@ impl Call<'_> {
                 if used == 0 {
                     break;
                 }
-                self.batch::<P>(lanes, turn, groups, &mut arena.scratch())?;
+                self.batch::<P>(lanes, turn, groups, arena)?;
             }
         }
         Ok(())
@@ -109,24 +110,24 @@ impl Call<'_> {
         groups: &mut Groups<'_>,
         arena: &mut Arena<'_, f32>,
     ) -> Result<(), Error> {
-        let channels = self.config.channels;
+        let arena = &mut arena.scratch();
         let [Group { len, has_edges, .. }, ..] = lanes;
-        let terms = self.terms(len).with_edges(has_edges);
-        let mut batch = Batch::new(self, &terms, lanes, arena)?;
-        steps::survey::<P>(&mut batch, self, groups, &terms);
+        let terms = Terms::new(self, len, has_edges);
+        let mut batch = Batch::new(self, terms, lanes, arena)?;
+        steps::survey::<P>(&mut batch, groups);
         if let Some(turn) = turn {
-            batch.leave_out(channels, |group| groups.limits(self, group, turn));
+            batch.leave_out(|group| groups.limits(self, group, turn));
         }
         if self.image.has_known() {
-            steps::relate::<P>(&mut batch, self, arena)?;
+            steps::relate::<P>(&mut batch, arena)?;
         }
-        steps::load::<P>(&mut batch, self, &terms, arena)?;
-        let mut fits = Fits::new(self, &terms, &batch, arena)?;
-        let mut edges = if has_edges { Some(Edges::new(self, &terms, &batch, arena)?) } else { None };
+        steps::load::<P>(&mut batch, arena)?;
+        let mut fits = Fits::new(&batch, arena)?;
+        let mut edges = if has_edges { Some(Edges::new(&batch, arena)?) } else { None };
         if let Some(edges) = &mut edges {
-            steps::load_edges::<P>(edges, self, &batch);
+            steps::load_edges::<P>(edges, &batch);
         }
-        let choices = Choices::new(self, &terms);
+        let choices = Choices::new(self, &batch.terms);
         let mut shares = Shares::last(choices, arena)?;
         // Halves choose for each other, then fits to all correct; or fits to all do both.
         let turns = self.turns();
@@ -136,26 +137,26 @@ impl Call<'_> {
                 continue;
             }
             let judges = if is_last { Colours::ALL } else { Colours::HALVES[(step + 1) % 2] };
-            steps::correct::<P>(&mut fits, self, &terms, &batch, judges);
+            steps::correct::<P>(&mut fits, &batch, judges);
             let mut present = NONE;
             if let Some(edges) = &mut edges {
                 steps::correct_edges::<P>(edges, &batch, judges, &mut fits);
                 present = edges.present;
             }
-            let spreads = steps::spreads::<P>(choices, &terms, &batch, &fits, judges, &mut arena.scratch())?;
+            let spreads = steps::spreads::<P>(choices, &batch, &fits, judges, &mut arena.scratch())?;
             let chooses = !self.is_single_fit() && (turns == 1 || !is_last);
             if chooses {
                 let colours = if turns == 1 { COLOURS } else { 0 };
                 steps::choose::<P>(&spreads, colours, step, self.config.stratified, &present, &mut shares);
                 if turn.is_none() {
-                    steps::find_limits::<P>(self, groups, &batch, (step, judges), &shares);
+                    steps::find_limits::<P>(&batch, groups, (step, judges), &shares);
                 }
             }
             if is_last {
                 if turn.is_none() {
                     self.tell(groups, &batch, &spreads, &shares);
                 }
-                steps::put::<P>(self, groups, &batch, &fits, turn, &shares);
+                steps::put::<P>(&batch, groups, &fits, turn, &shares);
             }
         }
         Ok(())
@@ -197,28 +198,23 @@ impl Call<'_> {
             }
         }
     }
+}
 
+impl Batch<'_> {
     /// Keeps the corrections of the pixels that are chosen for in a turn.
     #[inline(always)]
-    pub(super) fn put(
-        &self,
-        groups: &mut Groups<'_>,
-        batch: &Batch<'_>,
-        fits: &Fits<'_>,
-        turn: Option<usize>,
-        shares: &Shares<'_>,
-    ) {
-        let channels = self.config.channels;
-        for block in 0..batch.inside.len() {
-            let half = if self.turns() == 1 { 0 } else { usize::from(Colours::HALVES[1].has(block)) };
+    pub(super) fn put(&self, groups: &mut Groups<'_>, fits: &Fits<'_>, turn: Option<usize>, shares: &Shares<'_>) {
+        let (channels, turns) = (self.call.config.channels, self.call.turns());
+        for block in 0..self.inside.len() {
+            let half = if turns == 1 { 0 } else { usize::from(Colours::HALVES[1].has(block)) };
             if turn.is_some_and(|turn| turn != half) {
                 continue;
             }
-            for (channel, units) in batch.units.iter().enumerate().take(channels) {
+            for (channel, units) in self.units.iter().enumerate().take(channels) {
                 let mut sum = [NONE; AT_ONCE];
-                let means = row_at(batch.means, batch.values, block);
+                let means = row_at(self.means, self.values, block);
                 for (row, sum) in sum.iter_mut().enumerate() {
-                    let time = if self.turns() == 1 { 1 + batch.colour((block, row)) } else { half };
+                    let time = if turns == 1 { 1 + self.colour((block, row)) } else { half };
                     for (kind, shares) in rows(shares.of(time, channel), 1 + fits.count).enumerate() {
                         let Some((plain, shares)) = shares.split_first() else { continue };
                         let value = channel + kind * channels;
@@ -237,9 +233,9 @@ impl Call<'_> {
                 let powers = units.powers();
                 let sum = sum
                     .map(|sum| lanes::zip(&sum, &powers, |sum, power| if sum.is_finite() { sum * power } else { 0.0 }));
-                for (lane, group) in batch.lanes.iter().enumerate() {
+                for (lane, group) in self.lanes.iter().enumerate() {
                     for (row, sum) in sum.iter().enumerate() {
-                        let index = batch.member((block, row), lane);
+                        let index = self.member((block, row), lane);
                         let at = (group.start + index) * channels + channel;
                         if index < group.len
                             && let Some(out) = groups.corrections.get_mut(at)
@@ -254,19 +250,13 @@ impl Call<'_> {
 
     /// Finds the limits of the groups' values for a turn, where any is too far from those of the `judges`.
     #[inline]
-    pub(super) fn find_limits(
-        &self,
-        groups: &mut Groups<'_>,
-        batch: &Batch<'_>,
-        (turn, judges): (usize, Colours),
-        shares: &Shares<'_>,
-    ) {
-        let channels = self.config.channels;
+    pub(super) fn find_limits(&self, groups: &mut Groups<'_>, (turn, judges): (usize, Colours), shares: &Shares<'_>) {
+        let channels = self.call.config.channels;
         for channel in 0..channels {
             let trust = at(shares.of(turn, channel), 0);
-            let limits = bright::limits(batch, channels, channel, judges, &trust);
-            for (lane, group) in batch.lanes.iter().enumerate().filter(|(_, group)| group.len > 0) {
-                let out = groups.limits_mut(self, group, turn);
+            let limits = bright::limits(self, channels, channel, judges, &trust);
+            for (lane, group) in self.lanes.iter().enumerate().filter(|(_, group)| group.len > 0) {
+                let out = groups.limits_mut(self.call, group, turn);
                 if let Some([lowest, highest]) = rows_mut(out, 2).nth(channel) {
                     [*lowest, *highest] = limits[lane % LANES].unwrap_or([f32::NEG_INFINITY, f32::INFINITY]);
                 }
