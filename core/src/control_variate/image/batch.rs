@@ -8,8 +8,8 @@ use super::call::{Call, Layout};
 use super::groups::{Group, Groups, Place};
 use super::pixels::Image;
 use super::products::{
-    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sums, add_products, only, plus, plus_four, times, total,
-    zip_four,
+    AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Rows, Sums, add_products, minus, only, plus, plus_four,
+    product, times, total, zip_four,
 };
 use super::terms::{MAX_AXES, Terms};
 use crate::arena::Arena;
@@ -32,8 +32,8 @@ const MOST: i32 = 56;
 /// What the lanes' values of a channel are divided by, and what is subtracted then.
 #[derive(Clone, Copy)]
 pub(super) struct Units {
-    /// Powers of two.
-    pub(super) exponents: [i32; LANES],
+    /// Powers of two, and 1 over them.
+    pub(super) powers: Eight,
     scales: Eight,
     offsets: Eight,
     /// The largest values, not yet divided.
@@ -105,20 +105,14 @@ impl Units {
     /// A value in units. Only what no fit is made to, or is known of it, is far beyond them; its square fits too.
     #[inline]
     pub(super) fn apply(&self, value: &Eight) -> Eight {
-        lanes::zip(&self.scale(value), &self.offsets, |value, offset| value - offset)
+        minus(&self.scale(value), &self.offsets)
     }
 
     /// The same with the zero at 0.
     #[inline]
     pub(super) fn scale(&self, value: &Eight) -> Eight {
         let limited = lanes::zip(value, &self.limits, |value, most| Real::min(Real::max(value, -most), most));
-        lanes::zip(&limited, &self.scales, |value, scale| value * scale)
-    }
-
-    /// Two to the powers of the exponents.
-    #[inline]
-    pub(super) fn powers(&self) -> Eight {
-        self.exponents.map(power_of_two)
+        product(&limited, &self.scales)
     }
 }
 
@@ -145,7 +139,7 @@ impl<'a> Batch<'a> {
             lanes,
             is_joined: call.is_joined(),
             has_colours: call.has_colours(),
-            units: [Units { exponents: [0; LANES], scales: NONE, offsets: NONE, limits: NONE }; Config::MAX_CHANNELS],
+            units: [Units { powers: NONE, scales: NONE, offsets: NONE, limits: NONE }; Config::MAX_CHANNELS],
             leaves_out: false,
             numbers: arena.take_fours(blocks)?,
             places: arena.take_fours(blocks * terms.fixed())?,
@@ -157,7 +151,7 @@ impl<'a> Batch<'a> {
             values,
             means: arena.take_fours(blocks * values)?,
             functions: arena.take_fours(blocks * terms.functions)?,
-            between: Sums::sliced(between, terms.slices.max(1), columns, values, arena)?,
+            between: Sums::new(between * terms.slices.max(1), columns, values, arena)?,
             within: Sums::new(within, columns, values, arena)?,
             terms,
         })
@@ -168,6 +162,12 @@ impl<'a> Batch<'a> {
     pub(super) fn blocks(&self, colours: Colours) -> impl Iterator<Item = usize> + use<> {
         let has_colours = self.has_colours;
         (0..self.inside.len()).filter(move |&block| !has_colours || colours.has(block))
+    }
+
+    /// A sum over all pixels of a group, by those of its lanes.
+    #[inline]
+    pub(super) fn joined(&self, sum: &Eight) -> Eight {
+        if self.is_joined { [lanes::sum(sum); LANES] } else { *sum }
     }
 
     /// Of which colour a slot is.
@@ -225,7 +225,7 @@ impl<'a> Batch<'a> {
         let axes = call.windows.used_axes();
         let scales = axes.map(|axis| (SQRT_3 / call.windows.extent[axis % MAX_AXES].max(1) as f64) as f32);
         let [width, height] = [call.windows.given.width, call.windows.given.height].map(|extent| extent as u32);
-        let corners = self.lanes.map(|group| call.corner(groups, &group) as u32);
+        let corners = self.lanes.map(|group| call.corner(group.window) as u32);
         let members = self.lanes.map(|group| groups.members(&group));
         let mut other = None;
         for block in 0..self.inside.len() {
@@ -315,9 +315,10 @@ impl<'a> Batch<'a> {
                 first = [first.into_iter().find(|&first| first < f32::INFINITY).unwrap_or(0.0); LANES];
             }
             for l in 0..LANES {
-                units.exponents[l] = Real::exponent(largest[l]).clamp(-126, 126);
-                units.scales[l] = power_of_two(-units.exponents[l]);
-                units.limits[l] = power_of_two(units.exponents[l] + MOST);
+                let exponent = Real::exponent(largest[l]).clamp(-126, 126);
+                units.powers[l] = power_of_two(exponent);
+                units.scales[l] = power_of_two(-exponent);
+                units.limits[l] = power_of_two(exponent + MOST);
                 units.offsets[l] = if first[l] < f32::INFINITY { first[l] * units.scales[l] } else { 0.0 };
             }
         }
@@ -354,7 +355,7 @@ impl<'a> Batch<'a> {
                 for (slices, at) in slices.iter_mut().zip(at.as_chunks::<LANES>().0) {
                     *slices = at.map(|slice| slice as f32);
                 }
-                self.between.add_sliced(part, slices, pixels.columns, pixels.values, products);
+                self.between.add_sliced(part * self.terms.slices, slices, pixels.columns, pixels.values, products);
             } else {
                 self.between.add(part, pixels.columns, pixels.values);
             }
@@ -397,7 +398,7 @@ impl<'a> Batch<'a> {
             }
             // Differences tell equal values from such as are nearly so.
             for (values, first) in samples.values.iter_mut().zip(pixel.firsts.iter()) {
-                *values = values.map(|value| lanes::zip(&value, first, |value, first| value - first));
+                *values = values.map(|value| minus(&value, first));
             }
             let columns = samples.columns.iter_mut().chain(samples.values.iter_mut());
             for (sum, four) in pixel.totals.iter_mut().zip(columns) {

@@ -11,8 +11,8 @@ use super::call::{Call, Layout};
 use super::fit::Fits;
 use super::groups::{Groups, Place};
 use super::products::{
-    AT_ONCE, AT_ONCE_LANES, COLOURS, Colours, Eight, Four, NONE, Sums, add_products, combine, only, plus, plus_four,
-    times,
+    AT_ONCE, AT_ONCE_LANES, COLOURS, Colours, Eight, Four, NONE, Sums, add_products, combine, minus, only, plus,
+    plus_four, product, times,
 };
 use super::terms::Terms;
 use crate::arena::Arena;
@@ -65,9 +65,9 @@ impl Call<'_> {
             return;
         }
         let channels = self.config.channels;
-        let mut index = 0;
-        while let Some(group) = groups.numbered(self, index) {
-            let window = self.window(groups.first + group.window);
+        for index in 0..groups.count {
+            let group = groups.numbered(index);
+            let window = self.window(group.window);
             let members = groups.members(&group);
             let is_lit = |member: usize, sample: usize| {
                 let place = Place::read(at(members, member));
@@ -77,10 +77,9 @@ impl Call<'_> {
             let first = is_lit(0, 0);
             let mut all = (0..group.len).flat_map(|member| (0..self.n).map(move |sample| (member, sample)));
             let has_both = all.any(|(member, sample)| is_lit(member, sample) != first);
-            if let Some(out) = groups.edges.get_mut(index) {
-                *out = if has_both && group.len >= FEWEST_PIXELS { 1.0 } else { 0.0 };
+            if has_both && group.len >= FEWEST_PIXELS {
+                groups.set_edges(index);
             }
-            index += 1;
         }
     }
 }
@@ -141,7 +140,7 @@ fn functions(x: &Four, y: &Four) -> [Four; FUNCTIONS] {
     let square = |x: &Eight| lanes::each(x, |x| (x * x - 1.0) * (0.5 * SQRT_5));
     for row in 0..AT_ONCE {
         let (x, y) = (place(&x[row]), place(&y[row]));
-        let xy = lanes::zip(&x, &y, |x, y| x * y);
+        let xy = product(&x, &y);
         for (out, function) in out.iter_mut().zip([x, y, square(&x), xy, square(&y)]) {
             out[row] = function;
         }
@@ -348,7 +347,7 @@ impl<'a> Edges<'a> {
                 // All are as likely to be lit, so that the sums are at hand.
                 let variance = share.map(|share| Real::max(share * (1.0 - share), LEAST_VARIANCE));
                 for (out, sum) in matrix.iter_mut().zip(sums.gram) {
-                    *out = lanes::zip(sum, &variance, |sum, variance| sum * variance);
+                    *out = product(sum, &variance);
                 }
                 for (j, (out, side)) in sides.iter_mut().zip(sums.sides).enumerate() {
                     *out = lanes::minus_product(*side, at(row(sums.gram, j), 0), share);
@@ -358,9 +357,7 @@ impl<'a> Edges<'a> {
                 for block in batch.blocks(training) {
                     self.add_slopes(batch, block, weights, matrix, sides);
                 }
-                if batch.is_joined {
-                    matrix.iter_mut().chain(sides.iter_mut()).for_each(|sum| *sum = [lanes::sum(sum); LANES]);
-                }
+                matrix.iter_mut().chain(sides.iter_mut()).for_each(|sum| *sum = batch.joined(sum));
             }
             for (j, (side, weight)) in sides.iter_mut().zip(weights.iter()).enumerate() {
                 let penalty = penalty(&PENALTIES, fixed, j);
@@ -491,9 +488,9 @@ impl<'a> Edges<'a> {
         let scale = largest.map(|largest| -LOG2_E * (MOST / Real::max(largest, MOST)));
         let power = |terms: &[(Eight, f32)]| {
             let sum = terms.iter().fold(NONE, |sum, (weight, f)| lanes::plus_product(sum, *weight, [*f; LANES]));
-            lanes::exp2(&lanes::zip(&sum, &scale, |sum, scale| sum * scale))
+            lanes::exp2(&product(&sum, &scale))
         };
-        let multiply = |a: &mut Eight, b: &Eight| *a = lanes::zip(a, b, |a, b| a * b);
+        let multiply = |a: &mut Eight, b: &Eight| *a = product(a, b);
         let corner = [(base, 1.0), (x, -SQRT_3), (y, -SQRT_3), (xx, SQRT_5), (xy, 3.0), (yy, SQRT_5)];
         let (mut begin, mut down) = (power(&corner), power(&[(y, STEP), (xy, -SQRT_3 * STEP), (yy, FIRST)]));
         let mut along = power(&[(x, STEP), (xy, -SQRT_3 * STEP), (xx, FIRST)]);
@@ -526,7 +523,7 @@ impl<'a> Edges<'a> {
             for ((out, share), first) in line.iter_mut().zip(shares).zip(LINE) {
                 let light = lanes::plus_product(constant, x, [first; LANES]);
                 let light = lanes::zip(&light, most, |light, most| Real::max(Real::min(light, most), 0.0));
-                *out = lanes::zip(&light, share, |light, share| light * share);
+                *out = product(&light, share);
                 sum = plus(&sum, out);
                 lanes::keep_together();
             }
@@ -563,9 +560,9 @@ impl<'a> Edges<'a> {
             let value = at(values, channel)[row % AT_ONCE];
             let light = only(wanted, &self.interpolate(&x[row % AT_ONCE], &y[row % AT_ONCE]));
             total = plus(&total, &light);
-            let apart = lanes::zip(&value, &light, |value, light| value - light);
+            let apart = minus(&value, &light);
             let first = *first.get_or_insert(apart);
-            let apart = lanes::zip(&apart, &first, |apart, first| apart - first);
+            let apart = minus(&apart, &first);
             sum = plus(&sum, &apart);
             square = lanes::plus_product(square, apart, apart);
         }

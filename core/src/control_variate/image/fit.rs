@@ -4,7 +4,7 @@
 
 use super::batch::{Batch, MAX_FIXED, blocks};
 use super::call::Layout;
-use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only, plus};
+use super::products::{AT_ONCE, COLOURS, Colours, Eight, Four, NONE, Part, Sums, combine, only, plus, product};
 use super::slices::Apart;
 use super::terms::{SINGULAR, Terms, strength};
 use crate::arena::Arena;
@@ -166,7 +166,7 @@ impl<'a> Fits<'a> {
         for (side, coefficients) in rows_mut(sides, width).zip(rows_mut(self.coefficients, self.count * width)) {
             ldlt::forward_each::<f32, 1>(gram, 0, ldlt::one_each_mut(side));
             for (side, pivot) in side.iter_mut().zip(self.pivots.iter()) {
-                *side = lanes::zip(side, pivot, |side, pivot| side * pivot);
+                *side = product(side, pivot);
                 lanes::keep_together();
             }
             for (coefficients, &end) in rows_mut(coefficients, width).zip(&terms.ends) {
@@ -211,7 +211,7 @@ impl<'a> Fits<'a> {
             ldlt::forward_each::<f32, 1>(&trend, 0, ldlt::one_each_mut(explained));
             let mut apart = *whole;
             for (j, value) in explained.iter().enumerate() {
-                let scaled = lanes::zip(value, &diagonal(&trend, j), |value, pivot| value * pivot);
+                let scaled = product(value, &diagonal(&trend, j));
                 apart = lanes::minus_product(apart, scaled, *value);
             }
             let samples = lanes::divisor(&pixels.map(|count| count * (n - 1.0)));
@@ -305,7 +305,7 @@ impl<'a> Fits<'a> {
             let (Some(solved), Some(pivots)) = (solved, pivots) else { return };
             for (z, pivot) in solved.iter_mut().zip(pivots) {
                 for row in 0..AT_ONCE {
-                    let scaled = lanes::zip(&z[row], pivot, |z, pivot| z * pivot);
+                    let scaled = product(&z[row], pivot);
                     leverage[row] = lanes::plus_product(leverage[row], scaled, z[row]);
                     z[row] = scaled;
                 }

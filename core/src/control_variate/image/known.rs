@@ -6,7 +6,7 @@
 //! most v, and at most 1. Where more arrives than is known, v says little.
 
 use super::batch::{Batch, KNOWN_SUMS};
-use super::products::{AT_ONCE, Eight, Four, NONE, only, plus};
+use super::products::{AT_ONCE, Eight, Four, NONE, minus, only, plus, product};
 use crate::arena::Arena;
 use crate::error::Error;
 use crate::lanes::{self, LANES};
@@ -27,8 +27,8 @@ type Sums = [Eight; KNOWN_SUMS];
 /// Of one pixel, by its f, its a and a - A.
 #[inline]
 fn products([mean, known, apart]: &[Eight; 3]) -> Sums {
-    let times = |a: &Eight| lanes::zip(a, apart, |a, b| a * b);
-    let integral = lanes::zip(known, apart, |known, apart| known - apart);
+    let times = |a: &Eight| product(a, apart);
+    let integral = minus(known, apart);
     [*mean, *known, times(apart), times(mean), times(&integral)]
 }
 
@@ -112,7 +112,7 @@ impl Batch<'_> {
                 let unit = lanes::zip(&integral, &largest, |integral, largest| Real::max(integral, largest * LEAST));
                 let unit = lanes::divisor(&unit);
                 let over = |value: &Eight| lanes::zip(value, &unit, |value, unit| black_box(value / unit));
-                let apart = lanes::zip(&known, &integral, |known, integral| known - integral);
+                let apart = minus(&known, &integral);
                 let values = [over(&mean), over(&known), over(&apart)];
                 let mut counts = inside;
                 for l in 0..LANES {

@@ -8,7 +8,7 @@ use super::choice::{Choices, Shares, Spreads};
 use super::edges::Edges;
 use super::fit::Fits;
 use super::groups::{Group, Groups};
-use super::products::{AT_ONCE, COLOURS, Colours, NONE, plus};
+use super::products::{AT_ONCE, COLOURS, Colours, NONE, minus, plus};
 use super::steps;
 use super::sums::Band;
 use super::terms::Terms;
@@ -46,7 +46,7 @@ impl Call<'_> {
                 self.divide(first, end, &mut groups);
                 self.find_edges(&mut groups);
                 self.fit::<P>(&mut groups, arena)?;
-                steps::add::<P>(self, first, &groups, &mut band);
+                steps::add::<P>(self, &groups, &mut band);
             }
             let end = if last < down { self.windows.top(last) } else { wanted.y + wanted.height };
             for frame in 0..frames {
@@ -73,9 +73,9 @@ impl Call<'_> {
                 let mut used = 0;
                 let mut columns = 0;
                 // Eight, or fewer if the next have other columns.
-                while let Some(group) = groups.by_size(self, place).filter(|_| used < LANES) {
+                while let Some(group) = groups.by_size(place).filter(|_| used < LANES) {
                     let is_kind = group.has_edges == (kind == 1);
-                    let is_wanted = is_kind && turn.is_none_or(|turn| groups.has_limits(self, &group, turn));
+                    let is_wanted = is_kind && turn.is_none_or(|turn| groups.has_limits(&group, turn));
                     if last.0 != group.len {
                         last = (group.len, Terms::new(self, group.len, false).columns());
                     }
@@ -116,7 +116,7 @@ impl Call<'_> {
         let mut batch = Batch::new(self, terms, lanes, arena)?;
         steps::survey::<P>(&mut batch, groups);
         if let Some(turn) = turn {
-            batch.leave_out(|group| groups.limits(self, group, turn));
+            batch.leave_out(|group| groups.limits(group, turn));
         }
         if self.image.has_known() {
             steps::relate::<P>(&mut batch, arena)?;
@@ -177,7 +177,7 @@ impl Call<'_> {
         }
         let freedom = lanes::divisor(&spreads.freedom);
         for (lane, group) in batch.lanes.iter().enumerate().filter(|(_, group)| group.len > 0) {
-            let told = groups.told_mut(self, group);
+            let told = groups.told_mut(group);
             let Some(([gain, has_error], errors)) = told.split_first_chunk_mut() else { continue };
             // Without freedom there is no spread to tell the error from.
             let is_known = !by_groups || spreads.freedom[lane % LANES] > 0.0;
@@ -191,7 +191,7 @@ impl Call<'_> {
                 *error = if !by_groups {
                     ratio[lane % LANES].sqrt()
                 } else if is_known {
-                    spread.sqrt().scale(units.exponents[lane % LANES])
+                    spread.sqrt() * units.powers[lane % LANES]
                 } else {
                     0.0
                 };
@@ -222,17 +222,16 @@ impl Batch<'_> {
                             *sum = lanes::plus_product(*sum, correction[row % AT_ONCE], *share);
                         }
                         if let (1, Some(mean), Some(other)) = (kind, means.get(channel), means.get(value)) {
-                            let known =
-                                lanes::zip(&other[row % AT_ONCE], &mean[row % AT_ONCE], |other, mean| other - mean);
+                            let known = minus(&other[row % AT_ONCE], &mean[row % AT_ONCE]);
                             let share = shares.iter().fold(*plain, |sum, share| plus(&sum, share));
                             *sum = lanes::plus_product(*sum, known, share);
                         }
                     }
                 }
                 // What is too large is no number, and found at the end.
-                let powers = units.powers();
-                let sum = sum
-                    .map(|sum| lanes::zip(&sum, &powers, |sum, power| if sum.is_finite() { sum * power } else { 0.0 }));
+                let sum = sum.map(|sum| {
+                    lanes::zip(&sum, &units.powers, |sum, power| if sum.is_finite() { sum * power } else { 0.0 })
+                });
                 for (lane, group) in self.lanes.iter().enumerate() {
                     for (row, sum) in sum.iter().enumerate() {
                         let index = self.member((block, row), lane);
@@ -254,11 +253,11 @@ impl Batch<'_> {
         let channels = self.call.config.channels;
         for channel in 0..channels {
             let trust = at(shares.of(turn, channel), 0);
-            let limits = bright::limits(self, channels, channel, judges, &trust);
+            let limits = bright::limits(self, channel, judges, &trust);
             for (lane, group) in self.lanes.iter().enumerate().filter(|(_, group)| group.len > 0) {
-                let out = groups.limits_mut(self.call, group, turn);
+                let out = groups.limits_mut(group, turn);
                 if let Some([lowest, highest]) = rows_mut(out, 2).nth(channel) {
-                    [*lowest, *highest] = limits[lane % LANES].unwrap_or([f32::NEG_INFINITY, f32::INFINITY]);
+                    [*lowest, *highest] = limits[lane % LANES];
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use super::batch::Batch;
 use super::call::Call;
-use super::products::{AT_ONCE, AT_ONCE_LANES, Eight, Four, NONE, Rows};
+use super::products::{AT_ONCE, AT_ONCE_LANES, Eight, Four, NONE, Rows, minus};
 use crate::lanes::{self, LANES};
 use crate::matrix::{at, first_mut, from, halves_mut, row_at};
 use crate::real::{Real, saturate};
@@ -58,7 +58,7 @@ impl Call<'_> {
     fn divide_by_factors(&self, pixels: &[usize; LANES], channel: usize, values: &mut Eight) {
         if !self.image.factors.is_empty() {
             for (value, pixel) in values.iter_mut().zip(pixels) {
-                *value = self.over_factor(*value, *pixel, channel);
+                *value = saturate(f64::from(*value) / self.factor(*pixel, channel));
             }
         }
     }
@@ -95,11 +95,6 @@ impl Call<'_> {
             }
         }
         out.iter_mut().for_each(|values| self.divide_by_factors(pixels, channel, values));
-    }
-
-    #[inline]
-    fn over_factor(&self, value: f32, pixel: usize, channel: usize) -> f32 {
-        saturate(f64::from(value) / self.factor(pixel, channel))
     }
 
     /// What a pixel's values are divided by. Black says nothing about what it multiplies: 1.
@@ -170,7 +165,7 @@ impl Call<'_> {
             let out = part_mut(out, row, samples.len());
             self.put_rows(self.image.known, pixels, (self.n, samples.start), channel, out);
             for (out, value) in out.iter_mut().zip(from(values, row)) {
-                let apart = lanes::zip(out, &integral[slot % AT_ONCE], |known, integral| known - integral);
+                let apart = minus(out, &integral[slot % AT_ONCE]);
                 *out = lanes::minus_product(*value, coefficient[slot % AT_ONCE], apart);
             }
         }

@@ -8,7 +8,7 @@
 //! the difference.
 
 use super::batch::{Batch, MAX_FIXED};
-use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, only, plus};
+use super::products::{AT_ONCE, Colours, Eight, Four, NONE, Part, Sums, minus, only, plus, product};
 use super::terms::{SINGULAR, Terms, strength};
 use crate::arena::Arena;
 use crate::error::Error;
@@ -87,7 +87,7 @@ impl<'a> Apart<'a> {
         Ok(Self {
             width,
             own: 0,
-            totals: Sums::sliced(1, slices, width, values, arena)?,
+            totals: Sums::new(slices, width, values, arena)?,
             blocks: arena.take_lanes(slices * order * terms.all_own())?,
             border: arena.take_lanes(packed_len(width))?,
             sides: arena.take_lanes((values + terms.fixed()) * width)?,
@@ -193,7 +193,7 @@ impl<'a> Apart<'a> {
                         break;
                     };
                     *out = lanes::minus_products(*out, before, left);
-                    *l = lanes::zip(out, inverse, |value, inverse| value * inverse);
+                    *l = product(out, inverse);
                 }
                 // What the block leaves.
                 for (c, out) in out.iter_mut().enumerate() {
@@ -205,7 +205,7 @@ impl<'a> Apart<'a> {
         for side in rows_mut(self.sides, width) {
             ldlt::forward_each::<f32, 1>(self.border, 0, ldlt::one_each_mut(side));
             for (j, side) in side.iter_mut().enumerate() {
-                *side = lanes::zip(side, &at(self.border, packed_len(j) + j), |side, inverse| side * inverse);
+                *side = product(side, &at(self.border, packed_len(j) + j));
             }
         }
     }
@@ -249,7 +249,7 @@ impl<'a> Apart<'a> {
         trend.iter_mut().for_each(|sum| *sum = lanes::plus_product(NONE, *sum, inverse));
         for slice in 0..slices {
             for (out, mean) in row_at_mut(coefficients, terms.columns(), slice).iter_mut().zip(&*trend) {
-                *out = lanes::zip(out, mean, |own, mean| own - mean);
+                *out = minus(out, mean);
             }
         }
         trend.iter_mut().zip(&*shared).for_each(|(trend, shared)| *trend = plus(trend, shared));
@@ -282,7 +282,7 @@ impl<'a> Apart<'a> {
                     first(row(self.border, j.saturating_sub(own)), of_border.len()),
                 );
                 if j < own {
-                    let scaled = lanes::zip(out, &at(self.gathered, start + j), |z, inverse| z * inverse);
+                    let scaled = product(out, &at(self.gathered, start + j));
                     leverage = lanes::plus_product(leverage, scaled, *out);
                     for (unit, share) in shares.iter_mut().enumerate().take(fixed) {
                         let unit = packed_len(own) + (width + values + unit) * own + j;
@@ -295,7 +295,7 @@ impl<'a> Apart<'a> {
             for fit in fits.clone() {
                 let end = at(&terms.ends, fit);
                 for (b, z) in of_border.iter().enumerate().take(end).skip(begin) {
-                    let scaled = lanes::zip(z, &at(self.border, packed_len(b) + b), |z, inverse| z * inverse);
+                    let scaled = product(z, &at(self.border, packed_len(b) + b));
                     leverage = lanes::plus_product(leverage, scaled, *z);
                     for (unit, share) in shares.iter_mut().enumerate().take(fixed) {
                         let entry = at(row_at(self.sides, width, values + unit), b);

@@ -76,7 +76,7 @@ steps! {
         batch: &'s Batch<'s>, groups: &'s mut Groups<'a>, fits: &'s Fits<'s>, turn: Option<usize>,
         shares: &'s Shares<'s>,
     ) -> ();
-    add = Call::add(call: &'s Call<'s>, first: usize, groups: &'s Groups<'a>, band: &'s mut Band<'a>) -> ();
+    add = Call::add(call: &'s Call<'s>, groups: &'s Groups<'a>, band: &'s mut Band<'a>) -> ();
     write = Call::write(
         call: &'s Call<'s>, row: (usize, usize), band: &'s mut Band<'a>, out: &'s mut (dyn FnMut(usize, Estimate) + 'a),
     ) -> ();
